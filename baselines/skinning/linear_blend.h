@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "baselines/skinning/influences.h"
+#include "core/rig.h"
+
+namespace geoprior {
+
+/// Linear blend skinning: v' = (sum_j w_j T_j) v.
+///
+/// Fast and general (any affine transform, any number of influences), but the blend of two
+/// rotations is no rotation: a twist by theta shrinks a tube to r |cos(theta/2)| (candy wrapper)
+/// and a bend makes its mid-ring an ellipse of half axes r cos(theta/2) and r (collapsing elbow).
+/// Nothing prevents self-contact.
+///
+/// Source: Magnenat-Thalmann et al. 1988; thesis 3.1.
+class LinearBlend {
+ public:
+  /// @param rig  welded mesh of n vertices, skeleton of m joints, weights n x m (validated; throws
+  /// Error)
+  explicit LinearBlend(const RiggedMesh& rig);
+
+  /// Writes the posed positions (n x 3, metres); resizes `posed` when needed, allocates nothing
+  /// otherwise.
+  /// @throws Error  unless `pose` has m transforms
+  void deform(const Pose& pose, Eigen::MatrixX3d& posed) const;
+
+ private:
+  PackedInfluences influences_;
+};
+
+}  // namespace geoprior

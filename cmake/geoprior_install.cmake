@@ -1,0 +1,16 @@
+# What someone else's CMake project gets from `find_package(geoprior)`: the libraries without the runner.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(libraries geoprior_flags geoprior_core geoprior_metrics geoprior_skinning_baselines geoprior_skinning)
+set_target_properties(geoprior_flags PROPERTIES EXPORT_NAME flags)
+install(TARGETS ${libraries} EXPORT geoprior_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT geoprior_targets NAMESPACE geoprior:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/geoprior)
+foreach(room core metrics baselines solvers)
+  install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/geoprior FILES_MATCHING PATTERN "*.h")
+endforeach()
+configure_package_config_file(cmake/geoprior-config.cmake.in ${PROJECT_BINARY_DIR}/geoprior-config.cmake
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/geoprior)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/geoprior-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/geoprior-config.cmake ${PROJECT_BINARY_DIR}/geoprior-config-version.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/geoprior)

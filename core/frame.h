@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace geoprior {
+
+/// A named array over the points or the cells of a part; one row per element, one column per
+/// component.
+struct NamedArray {
+  enum class On { points, cells };
+  std::string name;
+  std::string unit;  ///< SI, "1" for a ratio
+  On on = On::points;
+  Eigen::MatrixXd values;
+};
+
+/// One piece of geometry of a frame: triangles, poly-lines, points or a regular grid.
+struct Part {
+  enum class Kind { triangles, lines, points, grid };
+  Kind kind = Kind::triangles;
+  Eigen::MatrixX3d points;              ///< metres; unused by a grid
+  Eigen::MatrixX3i triangles;           ///< kind == triangles
+  std::vector<std::vector<int>> lines;  ///< kind == lines: one poly-line an entry
+  std::array<int, 3> grid_size{1, 1,
+                               1};  ///< kind == grid: points along x, y, z; arrays run x fastest
+  Eigen::Vector3d grid_origin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d grid_spacing = Eigen::Vector3d::Ones();
+  std::vector<NamedArray> arrays;
+};
+
+/// A small table of numbers that belongs to a frame (pieces of a surface, steps of a solver).
+struct FrameTable {
+  std::vector<std::string> columns;  ///< "name [unit]"
+  Eigen::MatrixXd rows;
+};
+
+/// One recorded state: a pose, a time, an iteration, a variation, a day. Frames are compared by
+/// parameter, not by index.
+struct Frame {
+  double parameter = 0;  ///< angle, time, iteration …; the scene says which and its unit
+  std::map<std::string, Part> parts;  ///< "surface", "rulings", "strokes", …
+  std::map<std::string, FrameTable> tables;
+  std::map<std::string, double>
+      diagnostics;  ///< what only the method can know: iterations, residual, evaluations
+};
+
+/// A discrete event for sound and for logs.
+struct Event {
+  double time_s = 0;
+  std::string kind;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  double energy_J = 0;
+  double duration_s = 0;
+};
+
+/// A file that belongs to a run but is no frame (WAV, SVG, EXR, glTF): stored beside the frames
+/// with its checksum.
+struct Artifact {
+  std::string name;  ///< file name with extension, no folder
+  std::vector<std::byte> bytes;
+};
+
+}  // namespace geoprior

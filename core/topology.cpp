@@ -1,0 +1,177 @@
+#include "core/topology.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <unordered_map>
+
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+struct DirectedEdge {
+  int from;
+  int to;
+  auto operator<=>(const DirectedEdge&) const = default;
+};
+
+std::vector<DirectedEdge> sorted_directed_edges(const Eigen::MatrixX3i& F) {
+  std::vector<DirectedEdge> edges;
+  edges.reserve(static_cast<std::size_t>(F.rows()) * 3);
+  for (Eigen::Index t = 0; t < F.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) edges.push_back({F(t, k), F(t, (k + 1) % 3)});
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+/// Orders the ring of one vertex by following `next_of`, which maps a neighbour to the one after
+/// it, counter-clockwise. Leaves the ring sorted when the triangles around the vertex are no single
+/// fan.
+void order_ring(std::vector<int>& ring, const std::vector<DirectedEdge>& fan) {
+  std::sort(ring.begin(), ring.end());
+  if (fan.empty()) return;
+  const auto follow = [&](int from) {
+    const auto it =
+        std::find_if(fan.begin(), fan.end(), [&](const DirectedEdge& e) { return e.from == from; });
+    return it == fan.end() ? -1 : it->to;
+  };
+  // A border vertex starts at the neighbour that no triangle leads to.
+  int start = ring.front();
+  for (const int n : ring) {
+    if (std::none_of(fan.begin(), fan.end(), [&](const DirectedEdge& e) { return e.to == n; }))
+      start = n;
+  }
+  std::vector<int> ordered{start};
+  for (int n = follow(start); n >= 0 && n != start && ordered.size() <= ring.size();
+       n = follow(n)) {
+    ordered.push_back(n);
+  }
+  if (ordered.size() == ring.size()) ring = std::move(ordered);
+}
+
+std::string edge_list(const std::vector<Edge>& edges) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(edges.size(), 5); ++i) {
+    text += (i == 0 ? "" : ", ") + std::to_string(edges[i][0]) + "-" + std::to_string(edges[i][1]);
+  }
+  if (edges.size() > 5) text += ", and " + std::to_string(edges.size() - 5) + " more";
+  return text;
+}
+
+struct PositionHash {
+  std::size_t operator()(const std::array<std::uint64_t, 3>& key) const {
+    std::uint64_t h = 0;
+    for (const std::uint64_t k : key) h = (std::rotl(h, 5) ^ k) * 0x9E3779B97F4A7C15ULL;
+    return static_cast<std::size_t>(h ^ (h >> 32));
+  }
+};
+
+}  // namespace
+
+VertexGraph one_rings(const Eigen::MatrixX3i& F, int vertex_count) {
+  const auto n = static_cast<std::size_t>(vertex_count);
+  std::vector<std::vector<DirectedEdge>> fans(n);  // per vertex: the edges opposite to it
+  for (Eigen::Index t = 0; t < F.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      fans[static_cast<std::size_t>(F(t, k))].push_back({F(t, (k + 1) % 3), F(t, (k + 2) % 3)});
+    }
+  }
+  VertexGraph graph;
+  graph.offset.reserve(n + 1);
+  graph.offset.push_back(0);
+  std::vector<int> ring;
+  for (const std::vector<DirectedEdge>& fan : fans) {
+    ring.clear();
+    for (const DirectedEdge& e : fan) {
+      ring.push_back(e.from);
+      ring.push_back(e.to);
+    }
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    order_ring(ring, fan);
+    graph.neighbours.insert(graph.neighbours.end(), ring.begin(), ring.end());
+    graph.offset.push_back(static_cast<int>(graph.neighbours.size()));
+  }
+  return graph;
+}
+
+std::vector<Edge> boundary_edges(const Eigen::MatrixX3i& F) {
+  const std::vector<DirectedEdge> edges = sorted_directed_edges(F);
+  std::vector<Edge> boundary;
+  for (Eigen::Index t = 0; t < F.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const DirectedEdge opposite{F(t, (k + 1) % 3), F(t, k)};
+      if (!std::binary_search(edges.begin(), edges.end(), opposite))
+        boundary.push_back({opposite.to, opposite.from});
+    }
+  }
+  return boundary;
+}
+
+std::vector<Edge> non_manifold_edges(const Eigen::MatrixX3i& F) {
+  const std::vector<DirectedEdge> edges = sorted_directed_edges(F);
+  std::vector<Edge> bad;
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    if (edges[i] != edges[i - 1]) continue;
+    const Edge edge{std::min(edges[i].from, edges[i].to), std::max(edges[i].from, edges[i].to)};
+    if (std::find(bad.begin(), bad.end(), edge) == bad.end()) bad.push_back(edge);
+  }
+  return bad;
+}
+
+std::vector<bool> boundary_vertices(const Eigen::MatrixX3i& F, int vertex_count) {
+  std::vector<bool> on_boundary(static_cast<std::size_t>(vertex_count), false);
+  for (const Edge& e : boundary_edges(F)) {
+    on_boundary[static_cast<std::size_t>(e[0])] = true;
+    on_boundary[static_cast<std::size_t>(e[1])] = true;
+  }
+  return on_boundary;
+}
+
+void require_closed_manifold(const TriMesh& mesh, const std::string& who,
+                             const std::string& where) {
+  const std::vector<Edge> bad = non_manifold_edges(mesh.F);
+  if (!bad.empty()) {
+    throw Error(
+        who + " needs a manifold mesh; " + std::to_string(bad.size()) +
+            " edges have more than two triangles or two of equal direction: " + edge_list(bad),
+        where, "two triangles of opposite direction at every edge");
+  }
+  const std::vector<Edge> open = boundary_edges(mesh.F);
+  if (!open.empty()) {
+    throw Error(who + " needs a closed mesh; " + std::to_string(open.size()) +
+                    " boundary edges: " + edge_list(open),
+                where, "two triangles of opposite direction at every edge");
+  }
+}
+
+Weld weld_by_position(const TriMesh& split) {
+  Weld weld;
+  std::unordered_map<std::array<std::uint64_t, 3>, int, PositionHash> seen;
+  for (int v = 0; v < split.vertex_count(); ++v) {
+    std::array<std::uint64_t, 3> key{};
+    for (int k = 0; k < 3; ++k)
+      key[static_cast<std::size_t>(k)] = std::bit_cast<std::uint64_t>(split.V(v, k) + 0.0);
+    const auto [it, is_new] = seen.emplace(key, static_cast<int>(weld.split_of_welded.size()));
+    if (is_new) weld.split_of_welded.push_back(v);
+    weld.welded_of_split.push_back(it->second);
+  }
+  weld.mesh.V.resize(static_cast<Eigen::Index>(weld.split_of_welded.size()), 3);
+  for (Eigen::Index v = 0; v < weld.mesh.V.rows(); ++v) {
+    weld.mesh.V.row(v) = split.V.row(weld.split_of_welded[static_cast<std::size_t>(v)]);
+  }
+  weld.mesh.F.resize(split.F.rows(), 3);
+  Eigen::Index kept = 0;
+  for (Eigen::Index t = 0; t < split.F.rows(); ++t) {
+    Eigen::RowVector3i f;
+    for (int k = 0; k < 3; ++k)
+      f(k) = weld.welded_of_split[static_cast<std::size_t>(split.F(t, k))];
+    if (f(0) != f(1) && f(1) != f(2) && f(2) != f(0)) weld.mesh.F.row(kept++) = f;
+  }
+  weld.mesh.F.conservativeResize(kept, 3);
+  return weld;
+}
+
+}  // namespace geoprior

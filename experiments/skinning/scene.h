@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+#include "core/rig.h"
+#include "core/topology.h"
+#include "experiments/topic.h"
+#include "metrics/joint_region.h"
+
+namespace geoprior {
+
+/// `[scene]` of a skinning experiment (options to be completed by their owner: character, skeleton,
+/// motion, refine, …).
+struct SkinningSceneOptions;
+void describe(OptionVisitor& v, SkinningSceneOptions& options);
+
+/// A rigged character and a motion: what every skinning method is given and every skinning metric
+/// is measured on.
+class SkinningScene final : public Scene {
+ public:
+  RiggedMesh rig;                    ///< welded, refined as asked
+  TriMesh input_mesh;                ///< as the file had it, split at seams (refined the same way)
+  std::vector<int> welded_of_input;  ///< for each vertex of `input_mesh`, its vertex in `rig.mesh`
+  std::vector<double> frame_parameter;
+  std::vector<Pose> frame_pose;  ///< one a parameter
+  std::vector<JointRegion>
+      regions;  ///< of the joints the motion turns; the first is the one metrics report
+  std::string parameter_label = "angle";
+  std::string parameter_unit_label = "deg";
+  std::vector<std::filesystem::path> input_files;
+  std::vector<std::string> load_warnings;
+
+  [[nodiscard]] std::vector<double> parameters() const override { return frame_parameter; }
+  [[nodiscard]] std::string parameter_name() const override { return parameter_label; }
+  [[nodiscard]] std::string parameter_unit() const override { return parameter_unit_label; }
+  [[nodiscard]] std::vector<std::filesystem::path> inputs() const override { return input_files; }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return load_warnings; }
+  [[nodiscard]] std::map<std::string, double> facts() const override;
+
+  /// Pose at a parameter: that of the frame whose parameter is equal; throws Error when there is
+  /// none.
+  [[nodiscard]] const Pose& pose_at(double parameter) const;
+};
+
+}  // namespace geoprior
