@@ -1,0 +1,15 @@
+#pragma once
+
+#include "experiments/runner/run_record.h"
+#include "experiments/runner/spec.h"
+
+namespace geoprior {
+
+/// Decides every claim of the experiment on the cases of a run. A claim about a metric, variant,
+/// frame or phase that the run does not have is an Error (it would otherwise hold silently).
+std::vector<ClaimRecord> decide_claims(const Experiment& experiment, const RunRecord& record);
+
+/// Quantities across cases, with a 95 % interval (t for slopes, bootstrap for spreads).
+std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRecord& record);
+
+}  // namespace geoprior

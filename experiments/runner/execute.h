@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "experiments/runner/run_record.h"
+#include "experiments/runner/spec.h"
+
+namespace geoprior {
+
+struct ExecuteRequest {
+  std::optional<std::filesystem::path>
+      out;  ///< --out; absent: results/runs/<id>/<timestamp>-<short hash>
+  bool resume = false;
+  bool show_progress = false;  ///< bar on stderr
+  bool timing = true;          ///< run the benchmark after the frames
+};
+
+struct ExecuteResult {
+  std::filesystem::path folder;
+  RunRecord record;
+  bool stopped = false;  ///< Ctrl-C: the folder can be resumed
+};
+
+/// Runs an experiment: load each case's scene, run its variants, record, measure, time, decide
+/// claims, assemble run.h5.
+ExecuteResult execute(const Experiment& experiment, const std::vector<Topic>& topics,
+                      const ExecuteRequest& request);
+
+/// A finished run of the same hash, newest first; absent when there is none.
+std::optional<std::filesystem::path> find_run(const Experiment& experiment);
+
+}  // namespace geoprior

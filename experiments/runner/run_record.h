@@ -1,0 +1,123 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/frame.h"
+
+namespace geoprior {
+
+struct StoredFile {
+  std::string name;  ///< relative to the run folder
+  std::string sha256;
+};
+
+struct FrameRecord {
+  double parameter = 0;
+  std::vector<StoredFile> files;  ///< one a part
+};
+
+struct MetricColumn {
+  std::string unit;
+  std::string definition;
+  std::string direction;
+  std::vector<double> values;  ///< one a frame; NaN where the metric has no value
+};
+
+struct SummaryValue {
+  double value = 0;
+  std::string unit;
+  std::string definition;
+  std::string direction;
+};
+
+/// Everything known of one variant of one case.
+struct VariantRecord {
+  std::string name;
+  std::string method;
+  std::string role;
+  std::string reference;
+  std::string options_json;
+  std::string status;  ///< "done" or "stopped"
+  std::vector<FrameRecord> frames;
+  std::map<std::string, MetricColumn> metrics;
+  std::map<std::string, SummaryValue>
+      summary;  ///< sequence metrics, and max/median of frame metrics as "<name>.max"
+  std::map<std::string, std::vector<double>> diagnostics;  ///< one value a frame, NaN where absent
+  std::map<std::string, std::vector<std::vector<double>>>
+      timing;  ///< phase: [frame][repetition] seconds
+  std::vector<Event> events;
+  std::vector<StoredFile> artifacts;
+};
+
+/// The comparison of two variants' solve times in one run.
+struct TimingRatio {
+  std::string variant;
+  std::string of;
+  double median_ratio = 0;  ///< median over paired (frame, repetition) of time(variant) / time(of)
+  double low = 0;           ///< bootstrap 95 % interval
+  double high = 0;
+};
+
+struct CaseRecord {
+  std::string name;
+  std::string parameter_name;
+  std::string parameter_unit;
+  std::uint64_t seed = 0;
+  int threads = 0;
+  std::string scene_json;
+  std::map<std::string, std::string> swept;
+  std::map<std::string, double> facts;
+  std::vector<std::string> warnings;
+  std::vector<VariantRecord> variants;
+  std::vector<TimingRatio> ratios;
+};
+
+struct StudyRecord {
+  std::string name;
+  std::string kind;
+  std::string quantity;
+  double value = 0;
+  double low = 0;
+  double high = 0;
+  std::vector<double> x;
+  std::vector<double> y;
+};
+
+struct ClaimRecord {
+  std::string text;
+  std::string case_name;
+  std::string detail;  ///< "overlap_volume of implicit at 90: 1.2e-07 <= 0.2 * 3.4e-06 m^3"
+  double left = 0;
+  double right = 0;
+  bool holds = false;
+};
+
+/// The memory image of a run: what run.h5 holds (docs/file-formats.md), what claims, check and
+/// report read.
+struct RunRecord {
+  int schema_version = 1;
+  std::string experiment_id;
+  std::string title;
+  std::string figure;
+  std::string topic;
+  bool quick = false;
+  std::string experiment_toml;  ///< resolved text
+  std::string spec_hash;
+  std::string content_sha256;                     ///< frames and metrics, without times
+  std::map<std::string, std::string> provenance;  ///< git_commit, compiler, cpu, start, versions, …
+  std::vector<StoredFile> inputs;                 ///< file name and sha256
+  std::vector<CaseRecord> cases;
+  std::vector<StudyRecord> studies;
+  std::vector<ClaimRecord> claims;
+};
+
+/// Writes run.h5 as temporary + fsync + rename. Throws Error naming the file.
+void write_run_file(const RunRecord& record, const std::filesystem::path& file);
+
+/// Throws Error naming the file and what is missing or damaged.
+RunRecord read_run_file(const std::filesystem::path& file);
+
+}  // namespace geoprior
