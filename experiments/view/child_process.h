@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace geoprior {
+
+struct ChildResult {
+  int exit_code = 0;   ///< 127 when the program could not be started, 128 + n after signal n
+  std::string errors;  ///< what it wrote on its standard error
+};
+
+/// Runs a program to its end without a shell: arguments arrive as they are given. Its standard
+/// output goes to our standard error, so that ours stays machine-readable. `environment` adds
+/// "NAME=value" entries to ours.
+ChildResult run_child(const std::vector<std::string>& command,
+                      const std::vector<std::string>& environment = {});
+
+}  // namespace geoprior

@@ -1,0 +1,52 @@
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
+#include "core/error.h"
+#include "experiments/view/view.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_home(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::is_directory(folder / "experiments", ignored) &&
+         fs::is_directory(folder / "results", ignored);
+}
+
+/// A clone has the two folders above build/<preset>/geoprior; an installed program finds them in
+/// share/geoprior beside its bin.
+std::optional<fs::path> home_above(fs::path folder) {
+  for (;; folder = folder.parent_path()) {
+    if (is_home(folder)) return folder;
+    if (is_home(folder / "share" / "geoprior")) return folder / "share" / "geoprior";
+    if (folder == folder.parent_path()) return std::nullopt;
+  }
+}
+
+}  // namespace
+
+fs::path geoprior_home() {
+  if (const char* chosen = std::getenv("GEOPRIOR_HOME"); chosen != nullptr && *chosen != '\0') {
+    if (!is_home(chosen)) {
+      throw Error("no folder with experiments/ and results/ in it",
+                  "GEOPRIOR_HOME=" + std::string(chosen),
+                  "the clone, or share/geoprior of an "
+                  "installation");
+    }
+    return fs::absolute(chosen).lexically_normal();
+  }
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const auto home = error ? std::nullopt : home_above(program.parent_path());
+  if (!home) {
+    throw Error("no folder above it has experiments/ and results/", program.string(),
+                "set the environment variable GEOPRIOR_HOME to the clone");
+  }
+  return *home;
+}
+
+}  // namespace geoprior
