@@ -9,8 +9,7 @@
 
 namespace geoprior {
 
-void parallel_blocks(std::size_t n, std::size_t block,
-                     const std::function<void(std::size_t, std::size_t)>& body) {
+void parallel_blocks(std::size_t n, std::size_t block, BlockBody body) {
   const std::size_t blocks = (n + block - 1) / block;
   if (blocks <= 1) {
     if (n > 0) body(0, n);

@@ -1,0 +1,141 @@
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+#include "baselines/skinning/influences.h"
+
+// Four doubles at a time, for the sources of this folder only. GCC's vector types compile for every
+// instruction set (two SSE2 registers where there is no AVX) and round alike on all of them.
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"  // every function here is inlined: no ABI is crossed
+
+namespace geoprior::lanes {
+
+using Double4 [[gnu::vector_size(32)]] = double;
+using Float4 [[gnu::vector_size(16)]] = float;
+
+[[gnu::always_inline]] inline Double4 load(const double* p) {
+  Double4 x;
+  std::memcpy(&x, p, sizeof x);
+  return x;
+}
+
+[[gnu::always_inline]] inline Double4 load(const float* p) {
+  Float4 x;
+  std::memcpy(&x, p, sizeof x);
+  return __builtin_convertvector(x, Double4);
+}
+
+[[gnu::always_inline]] inline void store(double* p, const Double4& x) {
+  std::memcpy(p, &x, sizeof x);
+}
+
+[[gnu::always_inline]] inline Double4 all(double x) { return Double4{x, x, x, x}; }
+
+/// Rows become columns.
+[[gnu::always_inline]] inline void transpose(Double4& a, Double4& b, Double4& c, Double4& d) {
+  const Double4 ab_lo = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  const Double4 ab_hi = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Double4 cd_lo = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+  const Double4 cd_hi = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab_lo, cd_lo, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_hi, cd_hi, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab_lo, cd_lo, 2, 3, 6, 7);
+  d = __builtin_shufflevector(ab_hi, cd_hi, 2, 3, 6, 7);
+}
+
+/// Sums of the elements of each argument.
+[[gnu::always_inline]] inline Double4 sums(const Double4& a, const Double4& b, const Double4& c,
+                                           const Double4& d) {
+  const Double4 ab =
+      __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Double4 cd =
+      __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+}
+
+/// Copies past the caches (the destination is not read, nothing useful is evicted); a plain copy
+/// where the instruction set has no such store.
+inline void stream(const double* from, double* to, std::size_t n) {
+#if defined(__AVX__)
+  std::size_t i = 0;
+  for (; i < n && reinterpret_cast<std::uintptr_t>(to + i) % 32 != 0; ++i) to[i] = from[i];
+  for (; i + 4 <= n; i += 4) _mm256_stream_pd(to + i, _mm256_loadu_pd(from + i));
+#elif defined(__SSE2__)
+  std::size_t i = 0;
+  for (; i < n && reinterpret_cast<std::uintptr_t>(to + i) % 16 != 0; ++i) to[i] = from[i];
+  for (; i + 2 <= n; i += 2) _mm_stream_pd(to + i, _mm_loadu_pd(from + i));
+#else
+  std::size_t i = 0;
+#endif
+  for (; i < n; ++i) to[i] = from[i];
+}
+
+inline void stream_fence() {
+#if defined(__SSE2__)
+  _mm_sfence();
+#endif
+}
+
+/// Above this many vertices the posed positions do not stay in a cache anyway (24 MB), and are
+/// written past it.
+constexpr int kStreamedVertices = 1'000'000 / 2;
+
+/// One block of four vertices as a kernel sees it.
+struct Block {
+  const double* rest;           ///< 4 x, 4 y, 4 z
+  const std::uint16_t* joints;  ///< 4 a slot
+  const float* weights;         ///< 4 a slot from the second on
+  int slots;
+};
+
+/// Weight of the strongest influence: what the others leave of 1.
+[[gnu::always_inline]] inline Double4 first_weight(const Block& block) {
+  Double4 w = all(1.0);
+  for (int s = 1; s < block.slots; ++s) w -= load(block.weights + 4 * (s - 1));
+  return w;
+}
+
+/// Calls `kernel(block, x, y, z)` for all blocks of a chunk; the kernel sets the posed coordinates.
+template <class Kernel>
+[[gnu::always_inline]] inline void for_chunk(const PackedInfluences& packed, std::size_t chunk,
+                                             Eigen::MatrixX3d& posed, const Kernel& kernel) {
+  constexpr auto kBlocks = static_cast<std::size_t>(PackedInfluences::kChunkBlocks);
+  alignas(32) double buffer[3][4 * kBlocks];
+  const std::size_t first = chunk * kBlocks;
+  const std::size_t last = std::min(first + kBlocks, packed.slots.size());
+  const std::size_t slots_before = packed.chunk_slots[chunk];
+  const std::uint16_t* joints = packed.joints.data() + 4 * slots_before;
+  const float* weights = packed.weights.data() + 4 * (slots_before - first);
+  for (std::size_t b = first; b < last; ++b) {
+    const int slots = packed.slots[b];
+    Double4 x, y, z;
+    kernel(Block{packed.rest.data() + 12 * b, joints, weights, slots}, x, y, z);
+    store(&buffer[0][4 * (b - first)], x);
+    store(&buffer[1][4 * (b - first)], y);
+    store(&buffer[2][4 * (b - first)], z);
+    joints += 4 * static_cast<std::ptrdiff_t>(slots);
+    weights += 4 * static_cast<std::ptrdiff_t>(slots - 1);
+  }
+  const auto total = static_cast<std::size_t>(packed.vertex_count);
+  const std::size_t count = std::min(4 * last, total) - 4 * first;
+  for (std::size_t k = 0; k < 3; ++k) {
+    double* to = posed.data() + k * total + 4 * first;
+    if (packed.vertex_count >= kStreamedVertices) {
+      stream(buffer[k], to, count);
+    } else {
+      std::memcpy(to, buffer[k], count * sizeof(double));
+    }
+  }
+  if (packed.vertex_count >= kStreamedVertices) stream_fence();
+}
+
+}  // namespace geoprior::lanes
+
+#pragma GCC diagnostic pop
