@@ -37,7 +37,9 @@ struct CaseSpec {
 /// A statement that the runner can decide: value (is) factor * value of the other side + offset.
 struct ClaimSpec {
   std::string text;
-  std::string metric;  ///< of the metric table, or "timing:<phase>" (median, in s)
+  /// Of the metric table, or "timing:<phase>" (median, in s), "diagnostic:<name>" (per frame), or
+  /// "study:<name>" (its value; has no variant and is decided once).
+  std::string metric;
   std::string variant;
   std::optional<std::string> of;  ///< compared with this variant; absent: with `value`
   std::optional<double> value;
@@ -46,6 +48,7 @@ struct ClaimSpec {
   double offset = 0;
   double tolerance = 0;                ///< for "=="
   std::optional<double> at_parameter;  ///< at = { angle_deg = 90 }; the frame must exist
+  std::string at_key;  ///< "angle_deg": parameter name and unit, compared with the scene's
   std::string reduce =
       "max";  ///< "max", "min", "median", "mean", "last" over the frames, when there is no `at`
   std::vector<std::string> cases;  ///< empty: every case
@@ -58,9 +61,17 @@ struct StudySpec {
                      ///< convergence; "spread"
   std::string variant;
   std::string
-      quantity;  ///< a metric's summary, or "timing:<phase>" (median over frames and repetitions)
-  std::string against;  ///< a scene fact ("vertices") or a swept key; unused by "spread"
-  std::string reduce = "median";
+      quantity;  ///< as a claim's metric: of the table, "timing:<phase>", "diagnostic:<name>"
+  std::string against;             ///< a scene fact ("vertices") or a swept key; unused by "spread"
+  std::string reduce = "median";   ///< over the frames, as a claim's
+  std::vector<std::string> cases;  ///< empty: every case that has the variant and `against`
+};
+
+/// A plane that cuts the part: figure_view.section = { origin = [x, y, z], normal = [x, y, z] }.
+/// Metres; the eye is on the side of the normal that the picture's direction is on.
+struct SectionView {
+  std::array<double, 3> origin{0, 0, 0};
+  std::array<double, 3> normal{0, 0, 1};
 };
 
 /// How the picture of the experiment is drawn. Positions in metres; absent: fitted to the part.
@@ -72,10 +83,12 @@ struct FigureView {
   std::optional<std::array<double, 3>> target;
   std::array<double, 3> direction{0, 0, 1};  ///< from the target to the eye
   std::array<double, 3> up{0, 1, 0};
-  std::optional<double> height_m;     ///< height of the view (parallel projection)
-  std::vector<std::string> variants;  ///< empty: all
-  std::vector<std::string> cases;     ///< empty: all
-  std::vector<std::string> metrics;   ///< curves of metrics.svg; empty: all that vary
+  std::optional<double> height_m;      ///< height of the view (parallel projection)
+  std::optional<SectionView> section;  ///< adds a row with the cut, overlaps of the solid in red
+  std::vector<std::string> overlays;   ///< further parts drawn over `part` ("rulings", "strokes")
+  std::vector<std::string> variants;   ///< empty: all
+  std::vector<std::string> cases;      ///< empty: all
+  std::vector<std::string> metrics;    ///< curves of metrics.svg; empty: all that vary
 };
 
 struct Experiment {
@@ -93,8 +106,11 @@ struct Experiment {
   int timing_repetitions = 1;
   int timing_warm_up = 1;
   FigureView view;
-  std::string resolved_toml;  ///< the whole text after quick, --set and defaults, before sweeps
-  std::string hash;  ///< sha256 of `resolved_toml`, topic and program version; 64 hex digits
+  /// The whole text after quick, --set and defaults, before sweeps: an experiment file itself.
+  std::string resolved_toml;
+  /// sha256 of `resolved_toml` without [figure_view] (a camera changes no number), program version,
+  /// commit and the sources' difference from it; 64 hex digits.
+  std::string hash;
 };
 
 struct LoadRequest {
@@ -106,7 +122,15 @@ struct LoadRequest {
 
 /// Parses, applies [quick] and --set, expands sweeps, resolves options. Throws Error naming file,
 /// line, key, allowed.
+///
+/// The identifier is <folder>/<stem> for a file in experiments/<folder>/, else its stem. Selecting
+/// variants keeps the references that they are compared with, and drops claims and studies about
+/// the others.
 Experiment load_experiment(const std::filesystem::path& file, const std::vector<Topic>& topics,
                            const LoadRequest& request);
+
+/// The [figure_view] of a resolved text (that of a run), to draw the run again.
+FigureView figure_view_of(const std::string& resolved_toml, const std::string& source,
+                          const std::vector<Topic>& topics);
 
 }  // namespace geoprior

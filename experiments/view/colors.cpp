@@ -1,0 +1,129 @@
+#include "experiments/view/colors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+using Color = std::array<double, 3>;
+
+// Viridis (van der Walt and Smith 2015, CC0) at eleven even steps.
+constexpr std::array<Color, 11> kSequential{{{0.267, 0.005, 0.329},
+                                             {0.283, 0.141, 0.458},
+                                             {0.254, 0.265, 0.530},
+                                             {0.207, 0.372, 0.553},
+                                             {0.164, 0.471, 0.558},
+                                             {0.128, 0.567, 0.551},
+                                             {0.135, 0.659, 0.518},
+                                             {0.267, 0.749, 0.441},
+                                             {0.478, 0.821, 0.318},
+                                             {0.741, 0.873, 0.150},
+                                             {0.993, 0.906, 0.144}}};
+
+// Moreland's cool-warm at nine even steps.
+constexpr std::array<Color, 9> kDiverging{{{0.230, 0.299, 0.754},
+                                           {0.384, 0.510, 0.918},
+                                           {0.554, 0.690, 0.996},
+                                           {0.721, 0.817, 0.977},
+                                           {0.865, 0.865, 0.865},
+                                           {0.957, 0.768, 0.677},
+                                           {0.957, 0.603, 0.482},
+                                           {0.869, 0.378, 0.301},
+                                           {0.706, 0.016, 0.150}}};
+
+Color interpolate(std::span<const Color> map, double t) {
+  const double position = std::clamp(t, 0.0, 1.0) * static_cast<double>(map.size() - 1);
+  const auto index = std::min(static_cast<std::size_t>(position), map.size() - 2);
+  const double f = position - static_cast<double>(index);
+  Color out{};
+  for (std::size_t c = 0; c < 3; ++c) out[c] = (1 - f) * map[index][c] + f * map[index + 1][c];
+  return out;
+}
+
+std::vector<double> finite_values(const std::vector<const Part*>& parts, const std::string& name,
+                                  std::string& unit) {
+  std::vector<double> values;
+  for (const Part* part : parts) {
+    const NamedArray* array = find_array(*part, name);
+    if (array == nullptr) continue;
+    unit = array->unit;
+    for (const double x : scalars(*array)) {
+      if (std::isfinite(x)) values.push_back(x);
+    }
+  }
+  return values;
+}
+
+std::string array_names(const std::vector<const Part*>& parts) {
+  std::set<std::string> names;
+  for (const Part* part : parts) {
+    for (const NamedArray& array : part->arrays) names.insert(array.name);
+  }
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "this part has no arrays; leave color_by out" : text;
+}
+
+double percentile(std::vector<double>& values, double fraction) {
+  const auto index =
+      static_cast<std::ptrdiff_t>(std::lround(fraction * static_cast<double>(values.size() - 1)));
+  std::nth_element(values.begin(), values.begin() + index, values.end());
+  return values[static_cast<std::size_t>(index)];
+}
+
+}  // namespace
+
+Color color_at(double t, bool diverging) {
+  return diverging ? interpolate(kDiverging, t) : interpolate(kSequential, t);
+}
+
+const NamedArray* find_array(const Part& part, const std::string& name) {
+  for (const NamedArray& array : part.arrays) {
+    if (array.name == name) return &array;
+  }
+  return nullptr;
+}
+
+Eigen::VectorXd scalars(const NamedArray& array) {
+  return array.values.cols() == 1 ? Eigen::VectorXd(array.values.col(0))
+                                  : Eigen::VectorXd(array.values.rowwise().norm());
+}
+
+ColorScale make_color_scale(const std::vector<const Part*>& parts, const std::string& name) {
+  ColorScale scale;
+  scale.array = name;
+  std::vector<double> values = finite_values(parts, name, scale.unit);
+  if (values.empty()) {
+    throw Error("no array '" + name + "' with finite values", "figure_view.color_by",
+                array_names(parts));
+  }
+  const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+  const double lowest = *least;
+  const double highest = *greatest;
+  scale.low = percentile(values, 0.005);
+  scale.high = percentile(values, 0.995);
+  const bool is_ratio = name.ends_with("ratio");
+  const double center = is_ratio ? 1 : 0;
+  if (is_ratio || (scale.low < 0 && scale.high > 0)) {
+    scale.diverging = true;
+    const double reach = std::max(scale.high - center, center - scale.low);
+    scale.low = center - reach;
+    scale.high = center + reach;
+  }
+  if (!(scale.high > scale.low)) {  // a constant array still needs a bar
+    const double pad = std::max(std::abs(scale.low), 1.0) * 1e-3;
+    scale.low -= pad;
+    scale.high += pad;
+  }
+  scale.below = lowest < scale.low;
+  scale.above = highest > scale.high;
+  return scale;
+}
+
+}  // namespace geoprior

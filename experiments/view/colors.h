@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+
+#include "core/frame.h"
+#include "experiments/view/picture.h"
+
+namespace geoprior {
+
+/// Colour (0 … 1 a channel) at t in 0 … 1 of a perceptually even map: viridis for magnitudes, a
+/// cool-warm diverging map (Moreland 2009) for signed quantities.
+std::array<double, 3> color_at(double t, bool diverging);
+
+/// One mapping from values to colours, shared by every panel of a picture.
+struct ColorScale {
+  std::string array;
+  std::string unit;
+  double low = 0;
+  double high = 1;
+  bool diverging = false;
+  bool below = false;  ///< some values lie under `low` and take its colour
+  bool above = false;
+};
+
+/// The array of that name; null when the part has none.
+const NamedArray* find_array(const Part& part, const std::string& name);
+
+/// One number an element: the value, or the length of a vector.
+Eigen::VectorXd scalars(const NamedArray& array);
+
+/// Range of the values of all parts drawn: 0.5 … 99.5 percentiles, so that a few extreme elements
+/// do not take all the colours; symmetric about 0 (signed values) or 1 (ratios).
+/// @throws Error  when no part has the array, listing the arrays there are
+ColorScale make_color_scale(const std::vector<const Part*>& parts, const std::string& name);
+
+}  // namespace geoprior

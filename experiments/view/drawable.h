@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "core/frame.h"
+
+class vtkPolyData;
+template <class T>
+class vtkSmartPointer;
+
+namespace geoprior {
+
+/// What is drawn for a part: a surface with smooth normals, tubes, spheres, a plane or an
+/// iso-surface. The array `color_by` (may be empty) becomes the active scalars where the part has
+/// it.
+/// @param thickness_m  diameter of tubes and spheres
+vtkSmartPointer<vtkPolyData> to_drawable(const Part& part, const std::string& color_by,
+                                         double thickness_m);
+
+}  // namespace geoprior

@@ -1,0 +1,171 @@
+#include "experiments/view/panel.h"
+
+#include <vtkActor.h>
+#include <vtkCamera.h>
+#include <vtkLight.h>
+#include <vtkLookupTable.h>
+#include <vtkNew.h>
+#include <vtkOpenGLRenderer.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkRenderStepsPass.h>
+#include <vtkRenderWindow.h>
+#include <vtkSSAOPass.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "core/error.h"
+#include "experiments/view/drawable.h"
+
+namespace geoprior {
+namespace {
+
+// Matt clay, close to skin: neutral enough that shading alone shows the shape.
+constexpr std::array<double, 3> kSurfaceColor{0.86, 0.72, 0.63};
+constexpr std::array<double, 3> kLineColor{0.16, 0.27, 0.45};
+
+vtkSmartPointer<vtkLookupTable> to_lookup_table(const ColorScale& scale) {
+  auto table = vtkSmartPointer<vtkLookupTable>::New();
+  constexpr int kColors = 256;
+  table->SetNumberOfTableValues(kColors);
+  table->SetRange(scale.low, scale.high);
+  for (int i = 0; i < kColors; ++i) {
+    const auto color = color_at(i / (kColors - 1.0), scale.diverging);
+    table->SetTableValue(i, color[0], color[1], color[2]);
+  }
+  table->SetNanColor(0.6, 0.6, 0.6, 1);
+  table->Build();
+  return table;
+}
+
+vtkSmartPointer<vtkActor> make_actor(const Part& part, const std::optional<ColorScale>& scale,
+                                     double thickness) {
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(to_drawable(part, scale ? scale->array : "", thickness));
+  const bool colored = scale && find_array(part, scale->array) != nullptr;
+  mapper->SetScalarVisibility(colored);
+  if (colored) {
+    mapper->SetLookupTable(to_lookup_table(*scale));
+    mapper->UseLookupTableScalarRangeOn();
+    mapper->SetInterpolateScalarsBeforeMapping(1);
+  }
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  vtkProperty* material = actor->GetProperty();
+  const bool thin = part.kind == Part::Kind::lines || part.kind == Part::Kind::points;
+  const auto& color = thin ? kLineColor : kSurfaceColor;
+  material->SetColor(color[0], color[1], color[2]);
+  material->SetInterpolationToPhong();
+  material->SetAmbient(colored ? 0.30 : 0.22);
+  material->SetDiffuse(0.82);
+  material->SetSpecular(colored ? 0.05 : 0.14);
+  material->SetSpecularPower(22);
+  return actor;
+}
+
+/// Position in camera coordinates: x to the right, y up, z towards the eye.
+void add_light(vtkRenderer* renderer, const std::array<double, 3>& from, double intensity,
+               const std::array<double, 3>& color) {
+  vtkNew<vtkLight> light;
+  light->SetLightTypeToCameraLight();
+  light->SetPosition(from[0], from[1], from[2]);
+  light->SetFocalPoint(0, 0, 0);
+  light->SetIntensity(intensity);
+  light->SetColor(color[0], color[1], color[2]);
+  renderer->AddLight(light);
+}
+
+void set_lights(vtkRenderer* renderer) {
+  renderer->SetAutomaticLightCreation(false);
+  add_light(renderer, {-0.9, 1.1, 1.3}, 1.0, {1.0, 0.985, 0.96});  // key
+  add_light(renderer, {1.4, 0.1, 0.9}, 0.42, {0.92, 0.96, 1.0});   // fill
+  add_light(renderer, {0.5, 1.2, -1.0}, 0.40, {1.0, 1.0, 1.0});    // rim
+}
+
+void set_camera(vtkRenderer* renderer, const ViewWindow& window) {
+  vtkCamera* camera = renderer->GetActiveCamera();
+  const Eigen::Vector3d eye = window.center + 1.1 * window.depth_m * window.direction;
+  camera->SetFocalPoint(window.center.x(), window.center.y(), window.center.z());
+  camera->SetPosition(eye.x(), eye.y(), eye.z());
+  camera->SetViewUp(window.up.x(), window.up.y(), window.up.z());
+  camera->ParallelProjectionOn();
+  camera->SetParallelScale(window.height_m / 2);
+  camera->SetClippingRange(0.05 * window.depth_m, 2.2 * window.depth_m);
+}
+
+/// Ambient occlusion at the scale of the folds seen.
+void set_occlusion(vtkRenderer* renderer, double height_m) {
+  vtkNew<vtkRenderStepsPass> steps;
+  vtkNew<vtkSSAOPass> occlusion;
+  occlusion->SetRadius(0.07 * height_m);
+  occlusion->SetBias(0.0012 * height_m);
+  occlusion->SetKernelSize(192);
+  occlusion->BlurOn();
+  occlusion->SetDelegatePass(steps);
+  vtkOpenGLRenderer::SafeDownCast(renderer)->SetPass(occlusion);
+}
+
+/// Edges are smoothed by drawing larger and averaging, at most to what software GL can address.
+int supersampling(int width_px, int height_px) {
+  constexpr int kLargestTarget = 8192;
+  return std::clamp(kLargestTarget / std::max(width_px, height_px), 1, 4);
+}
+
+/// Averages blocks of `factor` by `factor` pixels of the window, rows from the top.
+Picture read_pixels(vtkRenderWindow* window, int width, int height, int factor) {
+  vtkNew<vtkUnsignedCharArray> pixels;
+  window->GetPixelData(0, 0, width * factor - 1, height * factor - 1, 0, pixels);
+  const unsigned char* bytes = pixels->GetPointer(0);
+  Picture picture(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      std::array<int, 3> sum{};
+      for (int row = (height - 1 - y) * factor; row < (height - y) * factor; ++row) {
+        const unsigned char* byte =
+            bytes + 3 * (static_cast<std::ptrdiff_t>(row) * width + x) * factor;
+        for (int i = 0; i < factor; ++i) {
+          for (std::size_t c = 0; c < 3; ++c) sum[c] += *byte++;
+        }
+      }
+      const int count = factor * factor;
+      for (std::size_t c = 0; c < 3; ++c) {
+        picture.at(x, y)[c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
+      }
+    }
+  }
+  return picture;
+}
+
+}  // namespace
+
+Picture draw_panel(const std::vector<const Part*>& parts, const ViewWindow& window,
+                   const std::optional<ColorScale>& scale, int width_px, int height_px) {
+  vtkNew<vtkRenderer> renderer;
+  renderer->SetBackground(1, 1, 1);
+  for (const Part* part : parts) {
+    renderer->AddActor(make_actor(*part, scale, 0.008 * window.height_m));
+  }
+  set_lights(renderer);
+  set_camera(renderer, window);
+  set_occlusion(renderer, window.height_m);
+  vtkNew<vtkRenderWindow> target;
+  target->SetOffScreenRendering(1);
+  target->SetMultiSamples(0);
+  const int factor = supersampling(width_px, height_px);
+  target->SetSize(factor * width_px, factor * height_px);
+  target->AddRenderer(renderer);
+  if (target->SupportsOpenGL() == 0) {
+    throw Error("the display has no OpenGL 3.2", "render", "apt-get install libgl1-mesa-dri");
+  }
+  target->Render();
+  Picture picture = read_pixels(target, width_px, height_px, factor);
+  renderer->ReleaseGraphicsResources(target);
+  return picture;
+}
+
+}  // namespace geoprior
