@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace geoprior {
+
+/// One column of a table: its values decide the type in the file (float64, int64, float64[3],
+/// UTF-8 of fixed length).
+struct H5Column {
+  std::string name;
+  std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::array<double, 3>>,
+               std::vector<std::string>>
+      values;
+};
+
+/// A data set of float64 with its extents (none for a scalar), rows first, and its text attributes.
+struct H5Array {
+  std::vector<std::size_t> extents;
+  std::vector<double> values;
+  std::map<std::string, std::string> attributes;
+};
+
+/// An open group of a file. Names are percent-encoded where HDF5 does not allow them (`/`).
+///
+/// The library's own printing of errors is off; every failure throws Error with the file, the place
+/// in it and the text of the library's error stack.
+class H5Group {
+ public:
+  H5Group(H5Group&& other) noexcept;
+  H5Group& operator=(H5Group&& other) noexcept;
+  H5Group(const H5Group&) = delete;
+  H5Group& operator=(const H5Group&) = delete;
+  ~H5Group();
+
+  H5Group create_group(std::string_view name);
+  [[nodiscard]] H5Group open_group(std::string_view name) const;
+  [[nodiscard]] bool has(std::string_view name) const;
+  /// Names of the groups and data sets inside, sorted.
+  [[nodiscard]] std::vector<std::string> children() const;
+
+  void write_attribute(std::string_view name, const std::string& text);
+  void write_attribute(std::string_view name, const std::vector<std::string>& texts);
+  void write_attribute(std::string_view name, double value);
+  void write_attribute(std::string_view name, std::int64_t value);
+  void write_attribute(std::string_view name, std::uint64_t value);
+  [[nodiscard]] std::string read_text(std::string_view name) const;
+  [[nodiscard]] std::vector<std::string> read_texts(std::string_view name) const;
+  [[nodiscard]] double read_double(std::string_view name) const;
+  [[nodiscard]] std::int64_t read_int(std::string_view name) const;
+  [[nodiscard]] std::uint64_t read_unsigned(std::string_view name) const;
+  /// Names of the attributes, sorted.
+  [[nodiscard]] std::vector<std::string> attributes() const;
+
+  void write_array(std::string_view name, const H5Array& array);
+  [[nodiscard]] H5Array read_array(std::string_view name) const;
+  /// Columns of equal length become one compound data set.
+  void write_table(std::string_view name, const std::vector<H5Column>& columns);
+  /// Reads the columns of these names; the alternatives that `columns` hold say the types.
+  void read_table(std::string_view name, std::vector<H5Column>& columns) const;
+
+ private:
+  friend class H5File;
+  H5Group(std::int64_t id, std::string place) : id_(id), place_(std::move(place)) {}
+  [[nodiscard]] std::string at(std::string_view name) const;
+
+  std::int64_t id_;    ///< hid_t; this header does not include HDF5's
+  std::string place_;  ///< "file: /group", for messages
+};
+
+/// An open HDF5 file in the default file format.
+class H5File {
+ public:
+  static H5File create(const std::filesystem::path& file);
+  static H5File open_for_reading(const std::filesystem::path& file);
+  H5File(H5File&& other) noexcept;
+  H5File& operator=(H5File&& other) noexcept;
+  H5File(const H5File&) = delete;
+  H5File& operator=(const H5File&) = delete;
+  ~H5File();
+
+  [[nodiscard]] H5Group root() const;
+  /// Writes what is still in memory and closes. The destructor ignores errors, this reports them.
+  void close();
+
+ private:
+  H5File(std::int64_t id, std::string name) : id_(id), name_(std::move(name)) {}
+
+  std::int64_t id_;
+  std::string name_;
+};
+
+}  // namespace geoprior
