@@ -26,6 +26,8 @@ class LinearBlend {
   /// @throws Error  unless `pose` has m transforms
   void deform(const Pose& pose, Eigen::MatrixX3d& posed) const;
 
+  [[nodiscard]] const PackedInfluences& influences() const { return influences_; }
+
  private:
   PackedInfluences influences_;
 };
