@@ -1,0 +1,195 @@
+#include "solvers/skinning/composition.h"
+
+#include <array>
+#include <cmath>
+
+#include "solvers/skinning/compact_support.h"
+
+namespace geoprior {
+namespace {
+
+/// At most this many fields are positive at one point; weaker ones beyond are left out.
+constexpr int kMaxOverlap = 24;
+
+Float4 to_float4(const Eigen::Vector3d& v) {
+  return Float4{static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
+                0.0F};
+}
+
+/// The rigid motion of a bone: scale and shear are dropped about the image of its head, as in the
+/// dual quaternions that the solve starts from.
+Eigen::Isometry3d bone_motion(const BoneField& field, const Pose& pose) {
+  const Eigen::Affine3d& transform = pose[static_cast<std::size_t>(field.bone.joint)];
+  Eigen::Isometry3d rigid = rigid_part(transform);
+  rigid.translation() = transform * field.bone.head - rigid.linear() * field.bone.head;
+  return rigid;
+}
+
+/// Bones that one vertex's field is made of: neighbours in the skeleton or in the skin.
+std::vector<std::uint8_t> body_parts(const std::vector<int>& parent,
+                                     const std::vector<int>& bone_of_vertex,
+                                     const VertexGraph& graph, bool everything) {
+  const std::size_t n = parent.size();
+  std::vector<std::uint8_t> same(n * n, everything ? 1 : 0);
+  const auto join = [&](int a, int b) {
+    same[static_cast<std::size_t>(a) * n + static_cast<std::size_t>(b)] = 1;
+    same[static_cast<std::size_t>(b) * n + static_cast<std::size_t>(a)] = 1;
+  };
+  for (std::size_t b = 0; b < n; ++b) {
+    join(static_cast<int>(b), static_cast<int>(b));
+    if (parent[b] >= 0) join(static_cast<int>(b), parent[b]);
+  }
+  for (std::size_t v = 0; v < bone_of_vertex.size(); ++v) {
+    for (const int w : graph.of(static_cast<int>(v))) {
+      const int a = bone_of_vertex[v], b = bone_of_vertex[static_cast<std::size_t>(w)];
+      if (a >= 0 && b >= 0) join(a, b);
+    }
+  }
+  return same;
+}
+
+}  // namespace
+
+FieldComposition::FieldComposition(std::vector<BoneField> fields,
+                                   std::vector<JointOperator> operators, SupportKind support,
+                                   const std::vector<int>& bone_of_vertex, const VertexGraph& graph,
+                                   bool limb_contact)
+    : fields_(std::move(fields)), operators_(std::move(operators)), support_(support) {
+  for (const BoneField& field : fields_) parent_.push_back(field.bone.parent);
+  same_part_ = body_parts(parent_, bone_of_vertex, graph, !limb_contact);
+  posed_.resize(fields_.size());
+  to_rest_.resize(fields_.size());
+}
+
+void FieldComposition::set_pose(const Pose& pose) {
+  for (std::size_t b = 0; b < fields_.size(); ++b) {
+    const BoneField& field = fields_[b];
+    const Eigen::Isometry3d rigid = bone_motion(field, pose);
+    const Eigen::Isometry3d inverse = rigid.inverse();
+    to_rest_[b] = inverse;
+    // An exact field has grid coordinates in metres.
+    const double cell = field.cache ? field.cache->cell_size() : 1;
+    const Eigen::Vector3d extent =
+        field.cache ? field.cache->extent() : Eigen::Vector3d(field.box.high - field.box.low);
+    const Eigen::Matrix3d linear = field.box.axes.transpose() * inverse.linear() / cell;
+    const Eigen::Vector3d offset =
+        (field.box.axes.transpose() * inverse.translation() - field.box.low) / cell;
+    PosedBone& posed = posed_[b];
+    for (int k = 0; k < 3; ++k) {
+      posed.to_grid[k] = to_float4(linear.col(k));
+      posed.rotation[k] = to_float4(rigid.linear().col(k));
+    }
+    posed.to_grid[3] = to_float4(offset);
+    posed.extent = to_float4(extent);
+    posed.centre = posed.extent * 0.5F;
+    posed.half_extent = posed.centre;
+  }
+}
+
+int FieldComposition::bones_near(Float4 low, Float4 high, int* bones) const {
+  const Float4 centre = (low + high) * 0.5F;
+  const Float4 half = (high - low) * 0.5F;
+  int count = 0;
+  for (std::size_t b = 0; b < posed_.size(); ++b) {
+    const PosedBone& posed = posed_[b];
+    const Float4 c = posed.to_grid[0] * splat(centre[0]) + posed.to_grid[1] * splat(centre[1]) +
+                     posed.to_grid[2] * splat(centre[2]) + posed.to_grid[3] - posed.centre;
+    bool meets = true;
+    for (int k = 0; k < 3; ++k) {
+      const float reach = posed.half_extent[k] + std::abs(posed.to_grid[0][k]) * half[0] +
+                          std::abs(posed.to_grid[1][k]) * half[1] +
+                          std::abs(posed.to_grid[2][k]) * half[2];
+      meets = meets && std::abs(c[k]) <= reach;
+    }
+    if (meets) bones[count++] = static_cast<int>(b);
+  }
+  return count;
+}
+
+Float4 FieldComposition::exact_distance(int bone, Float4 p) const {
+  const auto b = static_cast<std::size_t>(bone);
+  const Hrbf::Value v = fields_[b].hrbf(to_rest_[b] * Eigen::Vector3d(static_cast<double>(p[0]),
+                                                                      static_cast<double>(p[1]),
+                                                                      static_cast<double>(p[2])));
+  Float4 result = to_float4(v.gradient);
+  result[3] = static_cast<float>(v.value);
+  return result;
+}
+
+bool FieldComposition::sample_bone(int bone, Float4 p, Sampled& out) const {
+  const auto b = static_cast<std::size_t>(bone);
+  const PosedBone& posed = posed_[b];
+  const Float4 u = posed.to_grid[0] * splat(p[0]) + posed.to_grid[1] * splat(p[1]) +
+                   posed.to_grid[2] * splat(p[2]) + posed.to_grid[3];
+  const Float4 e = posed.extent;
+  if (!(u[0] >= 0 && u[1] >= 0 && u[2] >= 0 && u[0] < e[0] && u[1] < e[1] && u[2] < e[2])) {
+    return false;
+  }
+  const BoneField& field = fields_[b];
+  const Float4 d = field.cache ? field.cache->sample(u) : exact_distance(bone, p);
+  if (!(d[3] < 1.0F)) return false;
+  const SupportValue f = compact_support(support_, static_cast<double>(d[3]));
+  const auto slope = static_cast<float>(f.derivative / field.bone.radius);
+  out.f = static_cast<float>(f.value);
+  out.gradient = (posed.rotation[0] * splat(d[0]) + posed.rotation[1] * splat(d[1]) +
+                  posed.rotation[2] * splat(d[2])) *
+                 splat(slope);
+  out.bone = bone;
+  return true;
+}
+
+FieldAt FieldComposition::at(Float4 p, int owner, std::span<const int> bones) const {
+  std::array<Sampled, kMaxOverlap> own;
+  int count = 0;
+  FieldAt result;
+  const std::uint8_t* part = same_part_.data() + static_cast<std::size_t>(owner) * fields_.size();
+  for (const int bone : bones) {
+    Sampled sampled;
+    ++result.evaluations;
+    if (!sample_bone(bone, p, sampled)) continue;
+    if (part[bone] == 0) {
+      if (sampled.f > result.other) {
+        result.other = sampled.f;
+        result.other_gradient = sampled.gradient;
+        result.other_bone = bone;
+      }
+      continue;
+    }
+    if (count < kMaxOverlap) own[static_cast<std::size_t>(count++)] = sampled;
+    if (sampled.f > result.value) {
+      result.value = sampled.f;
+      result.gradient = sampled.gradient;
+      result.bone = bone;
+    }
+  }
+  for (int i = 1; i < count; ++i) {  // parents come before children
+    const Sampled& child = own[static_cast<std::size_t>(i)];
+    const JointOperator& op = operators_[static_cast<std::size_t>(child.bone)];
+    const int parent = parent_[static_cast<std::size_t>(child.bone)];
+    if (parent < 0 || op.is_union()) continue;
+    for (int j = 0; j < i; ++j) {
+      const Sampled& up = own[static_cast<std::size_t>(j)];
+      if (up.bone != parent) continue;
+      const float lengths = dot3(child.gradient, child.gradient) * dot3(up.gradient, up.gradient);
+      if (!(lengths > 0)) break;
+      const double cos_alpha =
+          static_cast<double>(dot3(child.gradient, up.gradient) / std::sqrt(lengths));
+      const BlendValue g = op(static_cast<double>(child.f), static_cast<double>(up.f), cos_alpha);
+      if (static_cast<float>(g.value) > result.value) {
+        result.value = static_cast<float>(g.value);
+        result.gradient = splat(static_cast<float>(g.d1)) * child.gradient +
+                          splat(static_cast<float>(g.d2)) * up.gradient;
+        result.bone = child.f > up.f ? child.bone : up.bone;
+      }
+      break;
+    }
+  }
+  return result;
+}
+
+float FieldComposition::difference(Float4 p, int a, int b) const {
+  Sampled sa, sb;
+  return (sample_bone(a, p, sa) ? sa.f : 0.0F) - (sample_bone(b, p, sb) ? sb.f : 0.0F);
+}
+
+}  // namespace geoprior

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "solvers/skinning/skin_state.h"
+
+namespace geoprior {
+
+/// Spreads the contact mark: `passes` Jacobi passes of beta <- max-free mean of the one ring and
+/// the vertex itself.
+void diffuse_contact(SkinState& state, int passes);
+
+/// `passes` Jacobi passes of v <- (1 - beta) v + beta (mean of the one ring), where beta > 0:
+/// repairs the zigzag between vertices that stopped at a contact and their neighbours.
+void smooth_contact(SkinState& state, int passes);
+
+}  // namespace geoprior

@@ -1,0 +1,261 @@
+#include "solvers/skinning/implicit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "baselines/skinning/dual_quaternion.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/topology.h"
+#include "solvers/skinning/composition.h"
+#include "solvers/skinning/contact_smoothing.h"
+#include "solvers/skinning/projection.h"
+#include "solvers/skinning/relaxation.h"
+#include "solvers/skinning/skin_state.h"
+
+namespace geoprior {
+namespace {
+
+// Passes of the authors' released code.
+constexpr int kReleasedFitSteps = 2;
+constexpr int kReleasedRelaxations = 7;
+
+std::vector<JointOperator> joint_operators(const BonePartition& partition, const Skeleton& skeleton,
+                                           const ImplicitOptions& options) {
+  std::vector<JointOperator> operators;
+  for (const JointBlend& own : options.joint_blends) (void)skeleton.index_of(own.joint);
+  for (const FieldBone& bone : partition.bones) {
+    const std::string& name = skeleton.joints[static_cast<std::size_t>(bone.joint)].name;
+    BlendKind blend = options.blend;
+    OpeningPreset opening = options.opening;
+    for (const JointBlend& own : options.joint_blends) {
+      if (own.joint != name) continue;
+      blend = own.blend;
+      opening = own.opening;
+    }
+    operators.emplace_back(blend, opening, options.ricci_exponent);
+  }
+  return operators;
+}
+
+std::vector<BoneField> fit_fields(const RiggedMesh& rig, const BonePartition& partition,
+                                  const ImplicitOptions& options, const RunContext& context) {
+  const Eigen::MatrixX3d normals = vertex_normals(rig.mesh);
+  std::vector<BoneField> fields(partition.bones.size());
+  parallel_blocks(fields.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      BoneField& field = fields[b];
+      field.bone = partition.bones[b];
+      const auto joint = static_cast<std::size_t>(field.bone.joint);
+      const std::string& name = rig.skeleton.joints[joint].name;
+      field.samples = sample_bone(rig.mesh, normals, partition, static_cast<int>(b),
+                                  options.sampling, context.random("samples of " + name));
+      field.hrbf = Hrbf(field.samples.points, field.samples.normals, field.bone.radius);
+      field.box = field_box(field.bone, rig.mesh.V);
+      if (options.grid > 0) {
+        field.cache =
+            std::make_unique<FieldCache>(field.hrbf, field.box, std::max(2, options.grid));
+      }
+    }
+  });
+  return fields;
+}
+
+Float4 row_of(const Eigen::MatrixX3d& V, int v) {
+  return Float4{static_cast<float>(V(v, 0)), static_cast<float>(V(v, 1)),
+                static_cast<float>(V(v, 2)), 0.0F};
+}
+
+}  // namespace
+
+struct ImplicitSkinning::Impl {
+  Impl(const RiggedMesh& rig, const ImplicitOptions& chosen, const RunContext& context)
+      : options(chosen),
+        dual_quaternions(rig),
+        joint_count(rig.skeleton.size()),
+        graph(one_rings(rig.mesh.F, rig.mesh.vertex_count())),
+        partition(partition_bones(rig, options.partition, options.radius_scale)),
+        field(fit_fields(rig, partition, options, context),
+              joint_operators(partition, rig.skeleton, options), options.support,
+              partition.bone_of_vertex, graph, options.limb_contact),
+        projection(field, options),
+        state(rig.mesh, graph, partition.bone_of_vertex) {
+    if (partition.bones.empty()) {
+      throw Error("no joint moves enough vertices for a field", "implicit skinning",
+                  "at least " + std::to_string(kMinBoneVertices) + " vertices a joint");
+    }
+    field.set_pose(rest_pose(joint_count));
+    for (std::size_t s = 0; s < state.size(); ++s) {
+      state.position[s] = row_of(rig.mesh.V, state.vertex[s]);
+    }
+    projection.record_rest(state);
+    prepare_relaxation(state);
+  }
+
+  void start(const Pose& pose, Eigen::MatrixX3d& posed);
+  void fit(RunContext& context);
+  void smooth(int diffusion, int passes);
+  void finish(Eigen::MatrixX3d& posed);
+
+  ImplicitOptions options;
+  DualQuaternionBlend dual_quaternions;
+  int joint_count;
+  VertexGraph graph;
+  BonePartition partition;
+  FieldComposition field;
+  Projection projection;
+  SkinState state;
+  int iterations = 0;
+};
+
+void ImplicitSkinning::Impl::start(const Pose& pose, Eigen::MatrixX3d& posed) {
+  dual_quaternions.deform(pose, posed);
+  field.set_pose(pose);
+  iterations = 0;
+  std::fill(state.beta.begin(), state.beta.end(), 0.0F);
+  std::fill(state.contact_bone.begin(), state.contact_bone.end(), -1);
+  std::fill(state.evaluations.begin(), state.evaluations.end(), 0);
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    state.start[s] = row_of(posed, state.vertex[s]);
+  }
+  state.position = state.start;
+}
+
+void ImplicitSkinning::Impl::fit(RunContext& context) {
+  const bool released = options.schedule == Schedule::released_code;
+  const int steps = released ? kReleasedFitSteps : 1;
+  const int relaxations = !options.relaxation ? 0 : released ? kReleasedRelaxations : 1;
+  const RelaxationLaw law = released ? RelaxationLaw::released_code : RelaxationLaw::paper;
+  state.activate();
+  for (int i = 0; i < options.max_iterations && !state.live_blocks.empty(); ++i) {
+    ++iterations;
+    {
+      const Phase phase(context, "projection");
+      for (int k = 0; k < steps; ++k) projection.step(state);
+    }
+    const Phase phase(context, "relaxation");
+    for (int k = 0; k < relaxations; ++k) relax(state, law);
+  }
+}
+
+void ImplicitSkinning::Impl::smooth(int diffusion, int passes) {
+  const bool any_contact =
+      std::any_of(state.beta.begin(), state.beta.end(), [](float beta) { return beta > 0; });
+  if (!any_contact) return;
+  diffuse_contact(state, diffusion);
+  smooth_contact(state, passes);
+}
+
+void ImplicitSkinning::Impl::finish(Eigen::MatrixX3d& posed) {
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    const Float4 moved = state.position[s] - state.start[s];
+    for (int k = 0; k < 3; ++k) posed(state.vertex[s], k) += static_cast<double>(moved[k]);
+  }
+}
+
+ImplicitSkinning::ImplicitSkinning(const RiggedMesh& rig, const ImplicitOptions& options,
+                                   RunContext& context) {
+  require_closed_manifold(rig.mesh, "implicit skinning", "mesh");
+  validate(rig.skeleton);
+  validate(rig.weights, rig.mesh.vertex_count(), rig.skeleton.size());
+  impl_ = std::make_unique<Impl>(rig, options, context);
+}
+
+ImplicitSkinning::~ImplicitSkinning() = default;
+ImplicitSkinning::ImplicitSkinning(ImplicitSkinning&&) noexcept = default;
+ImplicitSkinning& ImplicitSkinning::operator=(ImplicitSkinning&&) noexcept = default;
+
+void ImplicitSkinning::deform(const Pose& pose, Eigen::MatrixX3d& posed, RunContext& context) {
+  Impl& impl = *impl_;
+  {
+    const Phase phase(context, "start");
+    impl.start(pose, posed);
+  }
+  impl.fit(context);
+  const bool released = impl.options.schedule == Schedule::released_code;
+  {
+    const Phase phase(context, "smoothing");
+    impl.smooth(impl.options.diffusion_passes, impl.options.smoothing_passes);
+  }
+  if (released) {
+    impl.fit(context);
+    const Phase phase(context, "smoothing");
+    impl.smooth(impl.options.diffusion_passes, impl.options.smoothing_passes);
+  }
+  impl.finish(posed);
+}
+
+std::map<std::string, double> ImplicitSkinning::diagnostics() const {
+  const Impl& impl = *impl_;
+  const SkinState& state = impl.state;
+  double evaluations = 0, squares = 0, largest = 0, gap = 0;
+  std::size_t free = 0, stopped = 0, unfinished = 0;
+  for (const std::int64_t e : state.evaluations) evaluations += static_cast<double>(e);
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    if (state.owner[s] < 0) continue;
+    const FieldAt at = impl.projection.field_of(state, s, state.position[s]);
+    if (state.stop[s] == VertexStop::contact) {
+      ++stopped;
+      const int other = state.contact_bone[s], last = state.last_bone[s];
+      if (other >= 0 && last >= 0 && other != last) {
+        const auto difference =
+            static_cast<double>(impl.field.difference(state.position[s], last, other));
+        gap = std::max(gap, std::abs(difference));
+      }
+    }
+    if (state.stop[s] == VertexStop::active) ++unfinished;
+    if (state.beta[s] > 0 || state.stop[s] == VertexStop::no_field) continue;
+    const auto error = static_cast<double>(at.value - Projection::target_of(state, s, at).value);
+    ++free;
+    squares += error * error;
+    largest = std::max(largest, std::abs(error));
+  }
+  const auto n = static_cast<double>(state.size());
+  return {{"evaluations_per_vertex", evaluations / n},
+          {"iterations", impl.iterations},
+          {"field_error_rms", free > 0 ? std::sqrt(squares / static_cast<double>(free)) : 0},
+          {"field_error_max", largest},
+          {"stopped_fraction", static_cast<double>(stopped) / n},
+          {"unfinished_fraction", static_cast<double>(unfinished) / n},
+          {"contact_gap_max", gap}};
+}
+
+Eigen::VectorXd ImplicitSkinning::field_error(const Eigen::MatrixX3d& positions) const {
+  const SkinState& state = impl_->state;
+  Eigen::VectorXd error = Eigen::VectorXd::Zero(positions.rows());
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    if (state.owner[s] < 0) continue;
+    const int v = state.vertex[s];
+    const FieldAt at = impl_->projection.field_of(state, s, row_of(positions, v));
+    error(v) = static_cast<double>(at.value) - static_cast<double>(state.iso[s]);
+  }
+  return error;
+}
+
+ImplicitSkinning::Samples ImplicitSkinning::samples() const {
+  Samples all;
+  Eigen::Index rows = 0;
+  for (const BoneField& f : impl_->field.fields()) rows += f.samples.points.rows();
+  all.points.resize(rows, 3);
+  all.normals.resize(rows, 3);
+  Eigen::Index row = 0;
+  for (const BoneField& f : impl_->field.fields()) {
+    const Eigen::Index n = f.samples.points.rows();
+    all.points.middleRows(row, n) = f.samples.points;
+    all.normals.middleRows(row, n) = f.samples.normals;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      all.joint.push_back(f.bone.joint);
+      all.is_cap.push_back(i >= n - f.samples.cap_count);
+    }
+    row += n;
+  }
+  return all;
+}
+
+std::size_t ImplicitSkinning::cache_bytes() const {
+  std::size_t bytes = 0;
+  for (const BoneField& f : impl_->field.fields()) bytes += f.cache ? f.cache->bytes() : 0;
+  return bytes;
+}
+
+}  // namespace geoprior

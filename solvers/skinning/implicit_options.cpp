@@ -1,0 +1,101 @@
+#include "solvers/skinning/implicit_options.h"
+
+#include <array>
+#include <string_view>
+
+namespace geoprior {
+namespace {
+
+constexpr std::array<std::string_view, 5> kBlendNames{"union", "ricci", "gradient-controlled",
+                                                      "bulge-in-contact", "contact"};
+constexpr std::array<std::string_view, 7> kOpeningNames{
+    "smooth-finger", "elbow", "elbow-soft", "finger", "bulge", "flat-max", "flat-blend"};
+constexpr std::array<std::string_view, 2> kPartitionNames{"highest-weight", "closest-bone"};
+constexpr std::array<std::string_view, 3> kSupportNames{"quintic", "cubic", "logistic"};
+constexpr std::array<std::string_view, 2> kScheduleNames{"paper", "released-code"};
+
+void describe_fields(OptionVisitor& v, ImplicitOptions& o) {
+  describe_choice(v, "blend", o.blend, kBlendNames,
+                  {.doc = "operator between the fields of the two bones of a joint"});
+  describe_choice(v, "opening", o.opening, kOpeningNames,
+                  {.doc = "opening angle theta of the blend over the angle between gradients"});
+  v.value("ricci_exponent", o.ricci_exponent,
+          {.doc = "n of the Ricci operator; large: union", .min = 1, .max = 100});
+  describe_list(v, "joint_blends", o.joint_blends,
+                {.doc = "joints whose operator differs from the others"});
+  v.value("limb_contact", o.limb_contact,
+          {.doc = "contact operator between limbs that no joint connects (off: maximum)"});
+  describe_choice(v, "partition", o.partition, kPartitionNames,
+                  {.doc = "which bone a vertex belongs to"});
+  describe_group(v, "sampling", o.sampling,
+                 {.doc = "samples to which each bone's field is fitted"});
+  describe_choice(v, "support", o.support, kSupportNames,
+                  {.doc = "field value over the distance d / r"});
+  v.value("radius_scale", o.radius_scale,
+          {.doc = "support radius r over the largest distance of skin from its bone",
+           .min = 0.1,
+           .max = 10});
+  v.value("grid", o.grid,
+          {.doc = "field cache: grid^3 nodes a bone; 0 evaluates exactly (slow reference)",
+           .min = 0,
+           .max = 256});
+}
+
+void describe_solve(OptionVisitor& v, ImplicitOptions& o) {
+  describe_choice(v, "schedule", o.schedule, kScheduleNames,
+                  {.doc = "order of the passes: the paper's, or the authors' released code's"});
+  v.value("step", o.step, {.doc = "Delta L of eq. 3.2", .min = 1e-3, .max = 1.5});
+  v.value("max_step", o.max_step,
+          {.doc = "longest step, in support radii r", .min = 1e-3, .max = 10});
+  v.value("stop_angle_deg", o.stop_angle_deg,
+          {.doc = "a larger angle between consecutive gradients is a contact",
+           .unit = "deg",
+           .min = 1,
+           .max = 180});
+  v.value("bisect_at_stop", o.bisect_at_stop,
+          {.doc = "move stopped vertices onto f1 = f2 instead of back to the last step"});
+  v.value("stop_on_growth", o.stop_on_growth, {.doc = "stop a vertex whose field error grows"});
+  v.value("tolerance", o.tolerance,
+          {.doc = "|F - iso| at which a vertex is done", .min = 1e-6, .max = 0.1});
+  v.value("max_iterations", o.max_iterations,
+          {.doc = "projection passes at most", .min = 0, .max = 1000});
+  v.value("relaxation", o.relaxation, {.doc = "tangential relaxation after each projection pass"});
+  v.value("diffusion_passes", o.diffusion_passes,
+          {.doc = "passes that spread the contact mark beta", .min = 0, .max = 100});
+  v.value("smoothing_passes", o.smoothing_passes,
+          {.doc = "Laplacian passes at contacts, weighted by beta", .min = 0, .max = 100});
+}
+
+}  // namespace
+
+void describe(OptionVisitor& v, JointBlend& o) {
+  v.value("joint", o.joint, {.doc = "name of the joint (the child bone's)", .required = true});
+  describe_choice(v, "blend", o.blend, kBlendNames, {.doc = "operator of this joint"});
+  describe_choice(v, "opening", o.opening, kOpeningNames, {.doc = "its opening curve"});
+}
+
+void describe(OptionVisitor& v, SamplingOptions& o) {
+  v.value("samples", o.samples,
+          {.doc = "N of eq. 3.1: samples per bone, caps not counted", .min = 4, .max = 400});
+  v.value("fold", o.fold,
+          {.doc = "reject samples where (p - nearest point of the bone) . n is below this times r",
+           .min = -1,
+           .max = 1});
+  v.value("trim_head", o.trim_head,
+          {.doc = "leave out samples within this fraction of the bone from a joint at its head",
+           .min = -1,
+           .max = 0.5});
+  v.value("trim_tail", o.trim_tail,
+          {.doc = "the same at its tail, where another bone begins", .min = -1, .max = 0.5});
+  v.value("caps", o.caps, {.doc = "close the field beyond joints by a sample on the bone's axis"});
+  v.value(
+      "cap_scale", o.cap_scale,
+      {.doc = "its distance from the joint over that of the nearest sample", .min = 0.1, .max = 5});
+}
+
+void describe(OptionVisitor& v, ImplicitOptions& o) {
+  describe_fields(v, o);
+  describe_solve(v, o);
+}
+
+}  // namespace geoprior

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+
+namespace geoprior {
+
+/// How the fields of two bones that share a joint are combined (operators.h has the equations).
+enum class BlendKind { union_max, ricci, gradient_controlled, bulge_in_contact, contact };
+
+/// Opening angle of a blend as a function of the angle between the two gradients (opening.h).
+enum class OpeningPreset {
+  smooth_finger,
+  elbow,
+  elbow_soft,
+  finger,
+  bulge,
+  flat_max,
+  flat_blend,
+};
+
+/// Which bone a vertex belongs to.
+enum class PartitionRule { highest_weight, closest_bone };
+
+/// Field value as a function of s = distance / r (compact_support.h).
+enum class SupportKind { quintic, cubic, logistic };
+
+/// Order of the passes of one solve: that of the paper, or that of the code its authors released.
+enum class Schedule { paper, released_code };
+
+/// Operator of one joint, where it differs from the others.
+struct JointBlend {
+  std::string joint;
+  BlendKind blend = BlendKind::gradient_controlled;
+  OpeningPreset opening = OpeningPreset::elbow;
+};
+void describe(OptionVisitor& v, JointBlend& options);
+
+/// Samples from which the field of each bone is fitted (thesis 3.1, N and p_k, n_k of eq. 3.1).
+struct SamplingOptions {
+  int samples = 50;  ///< N per bone, caps not counted
+  double fold = 0;   ///< reject samples with (p - nearest point of the bone) . n below fold r
+  double trim_head = 0.05;  ///< drop samples within this fraction of the bone from its head
+  double trim_tail = 0.05;  ///< and from its tail, where another bone begins
+  bool caps = true;         ///< close the field at joints by one sample on the bone's axis
+  double cap_scale = 1;     ///< distance of that sample from the joint, in radii of the joint
+};
+void describe(OptionVisitor& v, SamplingOptions& options);
+
+/// Every choice that the two published sources of implicit skinning differ in, or leave open.
+struct ImplicitOptions {
+  BlendKind blend = BlendKind::gradient_controlled;
+  OpeningPreset opening = OpeningPreset::elbow;
+  double ricci_exponent = 8;
+  std::vector<JointBlend> joint_blends;
+  bool limb_contact = true;  ///< contact operator between limbs that no joint connects
+
+  PartitionRule partition = PartitionRule::highest_weight;
+  SamplingOptions sampling;
+  SupportKind support = SupportKind::quintic;
+  double radius_scale = 1;  ///< support radius r over the largest distance of skin from bone
+  int grid = 32;            ///< nodes of the field cache: grid^3 a bone; 0 evaluates exactly
+
+  Schedule schedule = Schedule::paper;
+  double step = 0.35;           ///< Delta L of eq. 3.2
+  double max_step = 0.25;       ///< longest step, in r
+  double stop_angle_deg = 55;   ///< between consecutive gradients: contact
+  bool bisect_at_stop = true;   ///< move stopped vertices onto f1 = f2
+  bool stop_on_growth = false;  ///< stop where the error grows
+  double tolerance = 1e-3;      ///< |F - iso| at which a vertex is done
+  int max_iterations = 40;
+
+  bool relaxation = true;
+  int diffusion_passes = 3;  ///< spreading of the contact mark beta
+  int smoothing_passes = 1;  ///< Laplacian passes weighted by beta
+};
+void describe(OptionVisitor& v, ImplicitOptions& options);
+
+}  // namespace geoprior

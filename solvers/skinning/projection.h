@@ -1,0 +1,56 @@
+#pragma once
+
+#include "solvers/skinning/composition.h"
+#include "solvers/skinning/implicit_options.h"
+#include "solvers/skinning/skin_state.h"
+
+namespace geoprior {
+
+/// Marching of the vertices to their rest iso-value (thesis eq. 3.2 with its sign corrected).
+///
+///   p <- p - Delta_L (F(p) - target) grad F / |grad F|^2
+///
+/// The printed equation has a plus, which walks away from the surface whatever the convention of
+/// the field. A vertex stops when |F - target| < tolerance; at a contact, where the gradient turns
+/// by more than the stop angle between two steps; where the gradient vanishes; and, as an option,
+/// where the error grows. A step is at most `max_step` r long.
+///
+/// Target: the vertex' iso-value. Where another part of the body is deeper than that, its field:
+/// F = f_other is the contact surface of the two, what Cani's operator makes of it for iso = 1/2.
+/// What overlaps already at rest is left out, so the rest pose stays as it is.
+class Projection {
+ public:
+  Projection(const FieldComposition& field, const ImplicitOptions& options);
+
+  /// Writes rest iso-values and gradients; `state.position` holds the rest pose, the field is at
+  /// rest.
+  void record_rest(SkinState& state) const;
+
+  /// One step of all active vertices; drops those that stop.
+  void step(SkinState& state) const;
+
+  /// Value that F should have at a vertex, and whether another part of the body sets it.
+  struct Target {
+    float value;
+    bool in_contact;
+  };
+  static Target target_of(const SkinState& state, std::size_t slot, const FieldAt& at);
+
+  /// F at one vertex, by the bones that can reach it.
+  [[nodiscard]] FieldAt field_of(const SkinState& state, std::size_t slot, Float4 p) const;
+
+ private:
+  void step_block(SkinState& state, std::size_t block) const;
+  bool step_vertex(SkinState& state, std::size_t slot, const FieldAt& at) const;
+  void stop_in_contact(SkinState& state, std::size_t slot, int bone_now) const;
+
+  const FieldComposition& field_;
+  float step_;
+  float max_step_;
+  float stop_cos_;
+  float tolerance_;
+  bool bisect_;
+  bool stop_on_growth_;
+};
+
+}  // namespace geoprior

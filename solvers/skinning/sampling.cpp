@@ -1,0 +1,175 @@
+#include "solvers/skinning/sampling.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace geoprior {
+namespace {
+
+constexpr int kCandidatesPerSample = 40;
+
+struct Candidate {
+  Eigen::Vector3d point;
+  Eigen::Vector3d normal;
+};
+
+std::vector<int> bone_triangles(const TriMesh& mesh, const std::vector<int>& bone_of_vertex,
+                                int bone) {
+  std::vector<int> triangles;
+  for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+      inside = inside && bone_of_vertex[static_cast<std::size_t>(mesh.F(t, k))] == bone;
+    }
+    if (inside) triangles.push_back(static_cast<int>(t));
+  }
+  return triangles;
+}
+
+/// Uniform by area over the triangles; normals interpolated from the vertices.
+std::vector<Candidate> spread(const TriMesh& mesh, const Eigen::MatrixX3d& normals,
+                              const std::vector<int>& triangles, int count, RandomStream& random) {
+  std::vector<double> cumulative;
+  double total = 0;
+  for (const int t : triangles) {
+    const Eigen::Vector3d a = mesh.V.row(mesh.F(t, 0));
+    const Eigen::Vector3d ab = mesh.V.row(mesh.F(t, 1)).transpose() - a;
+    const Eigen::Vector3d ac = mesh.V.row(mesh.F(t, 2)).transpose() - a;
+    total += 0.5 * ab.cross(ac).norm();
+    cumulative.push_back(total);
+  }
+  std::vector<Candidate> candidates;
+  if (!(total > 0)) return candidates;
+  for (int i = 0; i < count; ++i) {
+    const auto hit =
+        std::upper_bound(cumulative.begin(), cumulative.end(), random.uniform() * total);
+    const auto index =
+        std::min(static_cast<std::size_t>(hit - cumulative.begin()), triangles.size() - 1);
+    const int t = triangles[index];
+    double u = random.uniform(), w = random.uniform();
+    if (u + w > 1) {
+      u = 1 - u;
+      w = 1 - w;
+    }
+    const auto mix = [&](const Eigen::MatrixX3d& rows) -> Eigen::Vector3d {
+      return ((1 - u - w) * rows.row(mesh.F(t, 0)) + u * rows.row(mesh.F(t, 1)) +
+              w * rows.row(mesh.F(t, 2)))
+          .transpose();
+    };
+    const Eigen::Vector3d normal = mix(normals);
+    if (normal.norm() > 1e-9) candidates.push_back({mix(mesh.V), normal.normalized()});
+  }
+  return candidates;
+}
+
+bool near_a_joint(const FieldBone& bone, const SamplingOptions& options, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d axis = bone.tail - bone.head;
+  if (!(axis.squaredNorm() > 0)) return false;
+  const double h = (p - bone.head).dot(axis) / axis.squaredNorm();
+  return (bone.parent >= 0 && h < options.trim_head) ||
+         (bone.has_children && h > 1 - options.trim_tail);
+}
+
+bool folds_back(const FieldBone& bone, const SamplingOptions& options, const Candidate& c) {
+  const Eigen::Vector3d nearest =
+      bone.head + segment_parameter(c.point, bone.head, bone.tail) * (bone.tail - bone.head);
+  return (c.point - nearest).dot(c.normal) < options.fold * bone.radius;
+}
+
+std::vector<Candidate> usable(const std::vector<Candidate>& all, const FieldBone& bone,
+                              const SamplingOptions& options) {
+  std::vector<Candidate> unfolded, trimmed;
+  for (const Candidate& c : all) {
+    if (folds_back(bone, options, c)) continue;
+    unfolded.push_back(c);
+    if (!near_a_joint(bone, options, c.point)) trimmed.push_back(c);
+  }
+  if (3 * trimmed.size() >= all.size()) return trimmed;
+  return unfolded.empty() ? all : unfolded;
+}
+
+/// Candidates, in order, that keep `distance` from all kept before.
+std::vector<std::size_t> throw_darts(const std::vector<Candidate>& candidates, double distance,
+                                     std::size_t limit) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < candidates.size() && kept.size() <= limit; ++i) {
+    const bool is_free = std::all_of(kept.begin(), kept.end(), [&](std::size_t k) {
+      return (candidates[k].point - candidates[i].point).squaredNorm() >= distance * distance;
+    });
+    if (is_free) kept.push_back(i);
+  }
+  return kept;
+}
+
+/// The largest spacing that still leaves `count` samples.
+std::vector<std::size_t> poisson_disk(const std::vector<Candidate>& candidates, std::size_t count,
+                                      double size) {
+  double low = 1e-4 * size, high = size;
+  std::vector<std::size_t> best = throw_darts(candidates, low, count);
+  for (int i = 0; i < 24; ++i) {
+    const double middle = 0.5 * (low + high);
+    std::vector<std::size_t> kept = throw_darts(candidates, middle, count);
+    if (kept.size() >= count) {
+      low = middle;
+      best = std::move(kept);
+    } else {
+      high = middle;
+    }
+  }
+  if (best.size() > count) best.resize(count);
+  return best;
+}
+
+/// On the bone's axis beyond an end, as far from it as the nearest sample.
+void add_cap(BoneSamples& samples, Eigen::Index sample_count, const Eigen::Vector3d& joint,
+             const Eigen::Vector3d& outward, double scale) {
+  const double distance =
+      scale * (samples.points.topRows(sample_count).rowwise() - joint.transpose())
+                  .rowwise()
+                  .norm()
+                  .minCoeff();
+  const Eigen::Index row = sample_count + samples.cap_count++;
+  samples.points.row(row) = (joint + distance * outward).transpose();
+  samples.normals.row(row) = outward.transpose();
+}
+
+}  // namespace
+
+BoneSamples sample_bone(const TriMesh& mesh, const Eigen::MatrixX3d& normals,
+                        const BonePartition& partition, int bone_index,
+                        const SamplingOptions& options, RandomStream random) {
+  const FieldBone& bone = partition.bones[static_cast<std::size_t>(bone_index)];
+  const std::vector<int> triangles = bone_triangles(mesh, partition.bone_of_vertex, bone_index);
+  std::vector<Candidate> candidates =
+      spread(mesh, normals, triangles, options.samples * kCandidatesPerSample, random);
+  if (candidates.empty()) {
+    for (const int v : bone.vertices) candidates.push_back({mesh.V.row(v), normals.row(v)});
+  }
+  candidates = usable(candidates, bone, options);
+  const std::vector<std::size_t> chosen = poisson_disk(
+      candidates, static_cast<std::size_t>(options.samples), bounding_box_diagonal(mesh.V));
+
+  const auto n = static_cast<Eigen::Index>(chosen.size());
+  BoneSamples samples;
+  samples.points.resize(n + 2, 3);
+  samples.normals.resize(n + 2, 3);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Candidate& c = candidates[chosen[static_cast<std::size_t>(i)]];
+    samples.points.row(i) = c.point.transpose();
+    samples.normals.row(i) = c.normal.transpose();
+  }
+  const Eigen::Vector3d axis = bone.tail - bone.head;
+  if (options.caps && axis.norm() > 0) {
+    const Eigen::Vector3d direction = axis.normalized();
+    if (bone.parent >= 0) add_cap(samples, n, bone.head, -direction, options.cap_scale);
+    if (bone.has_children) add_cap(samples, n, bone.tail, direction, options.cap_scale);
+  }
+  samples.points.conservativeResize(n + samples.cap_count, 3);
+  samples.normals.conservativeResize(n + samples.cap_count, 3);
+  return samples;
+}
+
+}  // namespace geoprior

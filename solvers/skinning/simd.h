@@ -1,0 +1,20 @@
+#pragma once
+
+namespace geoprior {
+
+/// Four floats in one register (x, y, z and one more): the unit in which the per-frame passes work.
+/// A vector extension of GCC and Clang, so the same source serves every instruction set.
+using Float4 = float __attribute__((vector_size(16)));
+
+inline Float4 splat(float x) { return Float4{x, x, x, x}; }
+
+/// Sum of products of the first three components.
+inline float dot3(Float4 a, Float4 b) {
+  const Float4 product = a * b;
+  return product[0] + product[1] + product[2];
+}
+
+/// First three components; the fourth set to zero.
+inline Float4 xyz(Float4 a) { return Float4{a[0], a[1], a[2], 0.0F}; }
+
+}  // namespace geoprior

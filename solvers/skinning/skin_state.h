@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/mesh.h"
+#include "core/topology.h"
+#include "solvers/skinning/bones.h"
+#include "solvers/skinning/simd.h"
+
+namespace geoprior {
+
+/// Why a vertex no longer moves.
+enum class VertexStop : std::uint8_t {
+  active,     ///< still moving, or out of iterations
+  converged,  ///< |F - iso| below the tolerance
+  contact,    ///< gradient discontinuity
+  pit,        ///< the error grew
+  no_field,   ///< zero gradient, or a vertex without bone
+};
+
+/// The skin as the per-frame passes see it: vertices sorted by bone and then along a Morton curve,
+/// so that a block of consecutive vertices meets the same few bones and shares cache lines.
+struct SkinState {
+  static constexpr std::size_t kBlock = 64;  ///< vertices of a block of the projection
+
+  // Fixed at construction.
+  std::vector<int> vertex;       ///< mesh vertex of each slot
+  std::vector<int> owner;        ///< bone, -1 for none
+  std::vector<int> ring_offset;  ///< one rings in slots, compressed rows, cyclic order
+  std::vector<int> ring;
+  std::vector<float> ring_weight;  ///< mean-value coordinates at rest; all zero: do not relax
+  std::vector<float> iso;          ///< F at rest
+  std::vector<float> rest_other;   ///< largest field of other parts of the body at rest
+
+  // Of one frame.
+  std::vector<Float4> start;  ///< dual quaternion positions
+  std::vector<Float4> position;
+  std::vector<Float4> next;           ///< second buffer of Jacobi passes
+  std::vector<Float4> last_position;  ///< before the last step
+  std::vector<Float4> gradient;       ///< of F at `last_position`; w: F - target there
+  std::vector<int> last_bone;         ///< of the largest field at `last_position`
+  std::vector<int> contact_bone;      ///< the other bone of a contact, -1: none
+  std::vector<VertexStop> stop;
+  std::vector<float> beta;  ///< contact mark
+  std::vector<float> next_beta;
+
+  // Slots still active, packed at the beginning of each block.
+  std::vector<int> active;
+  std::vector<int> active_count;          ///< per block
+  std::vector<int> live_blocks;           ///< blocks that have any
+  std::vector<std::int64_t> evaluations;  ///< bone fields sampled, per block
+
+  SkinState(const TriMesh& mesh, const VertexGraph& graph, const std::vector<int>& bone_of_vertex);
+
+  [[nodiscard]] std::size_t size() const { return vertex.size(); }
+  [[nodiscard]] std::size_t block_count() const { return active_count.size(); }
+
+  /// Makes every vertex active again that has a bone and is not in `keep_stopped` contact.
+  void activate();
+  /// Drops blocks without active vertices, keeping the order.
+  void drop_dead_blocks();
+};
+
+}  // namespace geoprior
