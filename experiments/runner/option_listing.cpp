@@ -6,7 +6,7 @@
 namespace geoprior {
 namespace {
 
-std::string quoted(const std::string& text) { return "\"" + text + "\""; }
+std::string in_quotes(const std::string& text) { return "\"" + text + "\""; }
 
 template <class Items, class Text>
 std::string array_text(const Items& items, Text text) {
@@ -43,14 +43,14 @@ void OptionLister::value(std::string_view key, bool& x, const OptionInfo& info) 
   add(key, "boolean", x ? "true" : "false", info);
 }
 void OptionLister::value(std::string_view key, std::string& x, const OptionInfo& info) {
-  add(key, "text", quoted(x), info);
+  add(key, "text", in_quotes(x), info);
 }
 void OptionLister::value(std::string_view key, std::vector<double>& x, const OptionInfo& info) {
   add(key, "numbers", array_text(x, number_text), info);
 }
 void OptionLister::value(std::string_view key, std::vector<std::string>& x,
                          const OptionInfo& info) {
-  add(key, "texts", array_text(x, quoted), info);
+  add(key, "texts", array_text(x, in_quotes), info);
 }
 void OptionLister::value(std::string_view key, std::optional<double>& x, const OptionInfo& info) {
   add(key, "number", x ? number_text(*x) : "", info);
@@ -60,7 +60,7 @@ void OptionLister::value(std::string_view key, std::optional<int>& x, const Opti
 }
 void OptionLister::value(std::string_view key, std::optional<std::string>& x,
                          const OptionInfo& info) {
-  add(key, "text", x ? quoted(*x) : "", info);
+  add(key, "text", x ? in_quotes(*x) : "", info);
 }
 void OptionLister::value(std::string_view key, std::array<double, 3>& x, const OptionInfo& info) {
   add(key, "3 numbers", array_text(x, number_text), info);
@@ -71,7 +71,7 @@ void OptionLister::value(std::string_view key, std::array<int, 3>& x, const Opti
 
 void OptionLister::choice(std::string_view key, int& index, std::span<const std::string_view> names,
                           const OptionInfo& info) {
-  add(key, "choice", quoted(std::string(names[static_cast<std::size_t>(index)])), info);
+  add(key, "choice", in_quotes(std::string(names[static_cast<std::size_t>(index)])), info);
   std::string range;
   for (const std::string_view name : names)
     range += (range.empty() ? "" : " | ") + std::string(name);

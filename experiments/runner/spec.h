@@ -65,6 +65,8 @@ struct StudySpec {
   std::string against;             ///< a scene fact ("vertices") or a swept key; unused by "spread"
   std::string reduce = "median";   ///< over the frames, as a claim's
   std::vector<std::string> cases;  ///< empty: every case that has the variant and `against`
+  std::string finer = "smaller";   ///< of "order": whether smaller x (a step) or "larger" x (a
+                                  ///< count) is the finer discretisation
 };
 
 /// A plane that cuts the part: figure_view.section = { origin = [x, y, z], normal = [x, y, z] }.

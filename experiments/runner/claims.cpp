@@ -1,0 +1,125 @@
+#include "experiments/runner/claims.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "experiments/runner/number_text.h"
+#include "experiments/runner/quantity.h"
+
+namespace geoprior {
+namespace {
+
+const VariantRecord* variant_named(const CaseRecord& in, const std::string& name) {
+  const auto found = std::find_if(in.variants.begin(), in.variants.end(),
+                                  [&](const VariantRecord& v) { return v.name == name; });
+  return found == in.variants.end() ? nullptr : &*found;
+}
+
+bool holds(const ClaimSpec& claim, double left, double right) {
+  if (claim.is == "<=") return left <= right;
+  if (claim.is == "<") return left < right;
+  if (claim.is == ">=") return left >= right;
+  if (claim.is == ">") return left > right;
+  if (claim.is == "==") return std::abs(left - right) <= claim.tolerance;
+  throw Error("unknown comparison '" + claim.is + "'", "claim '" + claim.text + "'",
+              "<=, <, >=, >, ==");
+}
+
+/// "0.2 * 3.4e-06 + 1e-9 m^3 (+- 1e-12)".
+std::string right_text(const ClaimSpec& claim, double other, const std::string& unit) {
+  std::string text = rounded_text(other);
+  if (claim.factor != 1) text = number_text(claim.factor) + " * " + text;
+  if (claim.offset != 0) text += " + " + number_text(claim.offset);
+  if (!unit.empty() && unit != "1") text += " " + unit;
+  if (claim.is == "==") text += " (within " + number_text(claim.tolerance) + ")";
+  return text;
+}
+
+ClaimRecord decided(const ClaimSpec& claim, const std::string& subject, const Quantity& left,
+                    double other) {
+  ClaimRecord record;
+  record.text = claim.text;
+  record.left = left.value;
+  record.right = claim.factor * other + claim.offset;
+  record.holds = holds(claim, record.left, record.right);
+  record.detail = subject + ": " + rounded_text(left.value) + " " + claim.is + " " +
+                  right_text(claim, other, left.unit);
+  return record;
+}
+
+/// `at` must name the scene's parameter: 90 in another unit would be another frame.
+void require_parameter(const ClaimSpec& claim, const CaseRecord& in) {
+  if (!claim.at_parameter || claim.at_key.empty()) return;
+  const std::string with_unit = in.parameter_name + "_" + in.parameter_unit;
+  if (claim.at_key == with_unit || claim.at_key == in.parameter_name) return;
+  throw Error("the frames have no parameter '" + claim.at_key + "'",
+              "claim '" + claim.text + "', case '" + in.name + "'", with_unit);
+}
+
+ClaimRecord decide_in_case(const ClaimSpec& claim, const CaseRecord& in,
+                           const VariantRecord& variant, const VariantRecord* of) {
+  require_parameter(claim, in);
+  const auto value = [&](const VariantRecord& v) {
+    return quantity_of(in, v, claim.metric, claim.at_parameter, claim.reduce);
+  };
+  const Quantity left = value(variant);
+  std::string subject = claim.metric + " of " + variant.name;
+  if (claim.at_parameter) {
+    subject += " at " + in.parameter_name + " " + number_text(*claim.at_parameter) + " " +
+               in.parameter_unit;
+  } else if (!variant.summary.contains(claim.metric)) {
+    subject += " (" + claim.reduce + ")";
+  }
+  if (of != nullptr) subject += " against " + of->name;
+  ClaimRecord record =
+      decided(claim, subject, left, of != nullptr ? value(*of).value : claim.value.value_or(0));
+  record.case_name = in.name;
+  return record;
+}
+
+ClaimRecord decide_study(const ClaimSpec& claim, const std::vector<StudyRecord>& studies) {
+  const std::string name = claim.metric.substr(6);
+  for (const StudyRecord& study : studies) {
+    if (study.name != name) continue;
+    return decided(claim, study.kind + " of " + study.quantity + " (study '" + name + "')",
+                   {study.value, ""}, claim.value.value_or(0));
+  }
+  throw Error("the run has no study '" + name + "'", "claim '" + claim.text + "'");
+}
+
+}  // namespace
+
+std::vector<ClaimRecord> decide_claims(const Experiment& experiment, const RunRecord& record) {
+  std::vector<ClaimRecord> decisions;
+  std::vector<StudyRecord> studies = record.studies;
+  if (studies.empty()) studies = make_studies(experiment, record);
+  for (const ClaimSpec& claim : experiment.claims) {
+    if (claim.metric.starts_with("study:")) {
+      decisions.push_back(decide_study(claim, studies));
+      continue;
+    }
+    std::size_t decided_in = 0;
+    for (const CaseRecord& in : record.cases) {
+      const bool named =
+          std::find(claim.cases.begin(), claim.cases.end(), in.name) != claim.cases.end();
+      if (!claim.cases.empty() && !named) continue;
+      const VariantRecord* variant = variant_named(in, claim.variant);
+      const VariantRecord* of = claim.of ? variant_named(in, *claim.of) : nullptr;
+      const bool complete = variant != nullptr && (!claim.of || of != nullptr);
+      if (!complete && named) {
+        throw Error("has not both variants", "claim '" + claim.text + "', case '" + in.name + "'");
+      }
+      if (!complete) continue;
+      decisions.push_back(decide_in_case(claim, in, *variant, of));
+      ++decided_in;
+    }
+    if (decided_in == 0) {
+      throw Error("no case has what it is about", "claim '" + claim.text + "'",
+                  "variant '" + claim.variant + "'" + (claim.of ? " and '" + *claim.of + "'" : ""));
+    }
+  }
+  return decisions;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,113 @@
+#include "experiments/runner/quantity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/error.h"
+#include "experiments/runner/number_text.h"
+
+namespace geoprior {
+namespace {
+
+std::string place(const CaseRecord& in, const VariantRecord& variant) {
+  return "case '" + in.name + "', variant '" + variant.name + "'";
+}
+
+template <class Map>
+std::string key_list(const Map& map) {
+  std::string text;
+  for (const auto& [key, value] : map) text += (text.empty() ? "" : ", ") + key;
+  return text.empty() ? "none there" : text;
+}
+
+double reduced(std::vector<double> values, const std::string& how) {
+  std::erase_if(values, [](double x) { return std::isnan(x); });
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (how == "max") return *std::max_element(values.begin(), values.end());
+  if (how == "min") return *std::min_element(values.begin(), values.end());
+  if (how == "median") return median(std::move(values));
+  if (how == "last") return values.back();
+  if (how == "mean") {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  }
+  throw Error("unknown reduction '" + how + "'", "reduce", "max, min, median, mean, last");
+}
+
+std::size_t frame_at(const CaseRecord& in, const VariantRecord& variant, double parameter) {
+  std::string parameters;
+  for (std::size_t i = 0; i < variant.frames.size(); ++i) {
+    if (same_parameter(variant.frames[i].parameter, parameter)) return i;
+    parameters += (i == 0 ? "" : ", ") + rounded_text(variant.frames[i].parameter, 6);
+  }
+  throw Error("there is no frame at " + in.parameter_name + " " + number_text(parameter) + " " +
+                  in.parameter_unit,
+              place(in, variant), parameters);
+}
+
+/// One value a frame; one value for all when the phase is timed as a whole.
+std::vector<double> timing_values(const VariantRecord& variant, const std::string& phase,
+                                  const std::string& where) {
+  const auto found = variant.timing.find(phase);
+  if (found == variant.timing.end()) {
+    throw Error("phase '" + phase + "' was not timed", where, key_list(variant.timing));
+  }
+  std::vector<double> values;
+  for (const std::vector<double>& repetitions : found->second)
+    values.push_back(median(repetitions));
+  return values;
+}
+
+}  // namespace
+
+bool same_parameter(double a, double b) {
+  return std::abs(a - b) <= 1e-9 * std::max({1.0, std::abs(a), std::abs(b)});
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+Quantity quantity_of(const CaseRecord& in, const VariantRecord& variant, const std::string& name,
+                     std::optional<double> at_parameter, const std::string& reduce) {
+  const std::string where = place(in, variant);
+  std::vector<double> values;
+  Quantity quantity;
+  if (name.starts_with("timing:")) {
+    quantity.unit = "s";
+    values = timing_values(variant, name.substr(7), where);
+  } else if (name.starts_with("diagnostic:")) {
+    const auto found = variant.diagnostics.find(name.substr(11));
+    if (found == variant.diagnostics.end()) {
+      throw Error("there is no diagnostic '" + name.substr(11) + "'", where,
+                  key_list(variant.diagnostics));
+    }
+    values = found->second;
+  } else if (const auto column = variant.metrics.find(name); column != variant.metrics.end()) {
+    quantity.unit = column->second.unit;
+    values = column->second.values;
+  } else if (const auto summary = variant.summary.find(name); summary != variant.summary.end()) {
+    if (at_parameter) {
+      throw Error("metric '" + name + "' has one value for all frames", where, "no `at`");
+    }
+    quantity.unit = summary->second.unit;
+    values = {summary->second.value};
+  } else {
+    throw Error("metric '" + name + "' was not measured", where, key_list(variant.metrics));
+  }
+  if (at_parameter) {
+    const std::size_t frame = frame_at(in, variant, *at_parameter);
+    quantity.value =
+        frame < values.size() ? values[frame] : std::numeric_limits<double>::quiet_NaN();
+  } else {
+    quantity.value = reduced(std::move(values), reduce);
+  }
+  if (std::isnan(quantity.value)) throw Error("'" + name + "' has no value", where);
+  return quantity;
+}
+
+}  // namespace geoprior

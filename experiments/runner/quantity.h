@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/runner/run_record.h"
+
+namespace geoprior {
+
+/// A number of one variant with its unit.
+struct Quantity {
+  double value = 0;
+  std::string unit;
+};
+
+/// Value of a metric, "timing:<phase>" (median over repetitions) or "diagnostic:<name>" of a
+/// variant: at one parameter, or reduced over the frames ("max", "min", "median", "mean", "last";
+/// frames without a value are left out). Metrics of a sequence have one value and take neither.
+///
+/// @throws Error  when the run has no such quantity, no such frame, or no value there
+Quantity quantity_of(const CaseRecord& in, const VariantRecord& variant, const std::string& name,
+                     std::optional<double> at_parameter, const std::string& reduce);
+
+/// Parameters are the same frame when they differ by at most 1e-9 of their size.
+bool same_parameter(double a, double b);
+
+/// Middle of the sorted values, mean of the two middle ones for an even count; NaN for none.
+double median(std::vector<double> values);
+
+}  // namespace geoprior

@@ -1,0 +1,110 @@
+#include "experiments/runner/spec_tables.h"
+
+#include <array>
+#include <limits>
+
+namespace geoprior {
+namespace {
+
+constexpr std::array<std::string_view, 2> kSizes{"full", "quick"};
+constexpr std::array<std::string_view, 5> kComparisons{"<=", "<", ">=", ">", "=="};
+constexpr std::array<std::string_view, 5> kReductions{"max", "min", "median", "mean", "last"};
+constexpr std::array<std::string_view, 3> kStudyKinds{"exponent", "order", "spread"};
+constexpr std::array<std::string_view, 2> kFiner{"smaller", "larger"};
+
+template <class Enum, std::size_t N>
+std::string name_of(Enum x, const std::array<std::string_view, N>& names) {
+  return std::string(names.at(static_cast<std::size_t>(x)));
+}
+
+}  // namespace
+
+std::string text_of(Comparison x) { return name_of(x, kComparisons); }
+std::string text_of(Reduction x) { return name_of(x, kReductions); }
+std::string text_of(StudyKind x) { return name_of(x, kStudyKinds); }
+std::string text_of(Finer x) { return name_of(x, kFiner); }
+
+void describe(OptionVisitor& v, HeaderTable& t) {
+  v.value("title", t.title, {.doc = "what is shown, one line", .required = true});
+  v.value("figure", t.figure, {.doc = "figure of the thesis; empty for a study of our own"});
+  v.value("topic", t.topic, {.doc = "which scenes, methods and metrics", .required = true});
+  v.value("id", t.id, {.doc = "identifier; absent: from the file's folder and name"});
+  describe_choice(v, "size", t.size, kSizes, {.doc = "quick in the resolved text of a quick run"});
+  v.value("seed", t.seed, {.doc = "of every random stream", .min = 0});
+  v.value("threads", t.threads, {.doc = "0: all", .min = 0, .max = 1024});
+}
+
+void describe(OptionVisitor& v, VariantTable& t) {
+  v.value("name", t.name, {.doc = "letters, digits, '-' and '_'", .required = true});
+  v.value("method", t.method, {.doc = "of the topic's method table", .required = true});
+  v.value("role", t.role, {.doc = "method, baseline or ablation; absent: by the method table"});
+  v.value("reference", t.reference,
+          {.doc = "variant that metrics of distance between variants compare with"});
+}
+
+void describe(OptionVisitor& v, SweepTable& t) {
+  v.value("key", t.key,
+          {.doc = "scene.*, seed, threads or variant.<name>.options.*", .required = true});
+  v.value("names", t.names, {.doc = "of the cases, one a value; absent: key=value"});
+  v.value("variants", t.variants, {.doc = "that run in these cases; absent: all"});
+  v.value("grid", t.grid, {.doc = "product with the other sweeps that say so"});
+  v.value("base", t.base, {.doc = "false: no case 'default' beside the sweep's own"});
+}
+
+void describe(OptionVisitor& v, ClaimTable& t) {
+  v.value("text", t.text, {.doc = "the statement in words", .required = true});
+  v.value("metric", t.metric,
+          {.doc = "of the metric table, timing:<phase>, diagnostic:<name> or study:<name>",
+           .required = true});
+  v.value("variant", t.variant, {.doc = "whose value is judged"});
+  v.value("of", t.of, {.doc = "variant that it is compared with"});
+  v.value("value", t.value, {.doc = "number that it is compared with, in the metric's unit"});
+  describe_choice(v, "is", t.is, kComparisons, {.doc = "comparison"});
+  v.value("factor", t.factor, {.doc = "times the other side"});
+  v.value("offset", t.offset, {.doc = "added to the other side, in the metric's unit"});
+  v.value("tolerance", t.tolerance, {.doc = "for ==, in the metric's unit", .min = 0});
+  describe_choice(v, "reduce", t.reduce, kReductions, {.doc = "over the frames, without `at`"});
+  v.value("cases", t.cases, {.doc = "names of cases; absent: all that have the variants"});
+}
+
+void describe(OptionVisitor& v, StudyTable& t) {
+  v.value("name", t.name, {.doc = "of the study", .required = true});
+  describe_choice(v, "kind", t.kind, kStudyKinds,
+                  {.doc = "slope in log-log, observed order of convergence, spread"});
+  v.value("variant", t.variant, {.doc = "whose quantity", .required = true});
+  v.value("quantity", t.quantity,
+          {.doc = "of the metric table, timing:<phase> or diagnostic:<name>", .required = true});
+  v.value("against", t.against, {.doc = "a fact of the scene, or a swept key"});
+  describe_choice(v, "finer", t.finer, kFiner,
+                  {.doc = "x of the finer discretisation: a step is smaller, a count larger"});
+  describe_choice(v, "reduce", t.reduce, kReductions, {.doc = "over the frames"});
+  v.value("cases", t.cases, {.doc = "names of cases; absent: all that have what is asked"});
+}
+
+void describe(OptionVisitor& v, TimingTable& t) {
+  v.value("repetitions", t.repetitions,
+          {.doc = "of each solve; whole runs of processes", .min = 1, .max = 100000});
+  v.value("warm_up", t.warm_up, {.doc = "repetitions that are not counted", .min = 0, .max = 1000});
+}
+
+void describe(OptionVisitor& v, ToleranceTable& t) {
+  v.value("absolute", t.absolute, {.doc = "in the metric's unit", .min = 0});
+  v.value("relative", t.relative, {.doc = "fraction of the reference value", .min = 0});
+}
+
+void describe(OptionVisitor& v, FigureViewTable& t) {
+  v.value("at_parameter", t.at_parameter, {.doc = "frame that is drawn; absent: the last"});
+  v.value("parameters", t.parameters, {.doc = "several frames, side by side"});
+  v.value("part", t.part, {.doc = "part of the frames"});
+  v.value("color_by", t.color_by, {.doc = "array of the part; absent: plain material"});
+  v.value("target", t.target, {.doc = "point looked at; absent: fitted", .unit = "m"});
+  v.value("direction", t.direction, {.doc = "from the target to the eye"});
+  v.value("up", t.up, {.doc = "upward in the picture"});
+  v.value("height_m", t.height_m,
+          {.doc = "height of the view; absent: fitted", .unit = "m", .min = 1e-12});
+  v.value("variants", t.variants, {.doc = "absent: all"});
+  v.value("cases", t.cases, {.doc = "absent: all"});
+  v.value("metrics", t.metrics, {.doc = "curves of metrics.svg; absent: all that vary"});
+}
+
+}  // namespace geoprior

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+
+namespace geoprior {
+
+/// The tables of an experiment file as they are written; spec.h has what they resolve to. Free-form
+/// members (`options`, `at`, `values`, [scene]) are taken out before these are read.
+
+enum class RunSize { full, quick };
+
+struct HeaderTable {
+  std::string title;
+  std::string figure;
+  std::string topic;
+  std::optional<std::string> id;
+  RunSize size = RunSize::full;
+  int seed = 1;
+  int threads = 0;
+};
+
+struct VariantTable {
+  std::string name;
+  std::string method;
+  std::optional<std::string> role;
+  std::optional<std::string> reference;
+};
+
+struct SweepTable {
+  std::string key;
+  std::vector<std::string> names;
+  std::vector<std::string> variants;
+  bool grid = false;
+  bool base = true;
+};
+
+enum class Comparison { less_equal, less, greater_equal, greater, equal };
+enum class Reduction { max, min, median, mean, last };
+
+struct ClaimTable {
+  std::string text;
+  std::string metric;
+  std::optional<std::string> variant;
+  std::optional<std::string> of;
+  std::optional<double> value;
+  Comparison is = Comparison::less_equal;
+  double factor = 1;
+  double offset = 0;
+  double tolerance = 0;
+  Reduction reduce = Reduction::max;
+  std::vector<std::string> cases;
+};
+
+enum class StudyKind { exponent, order, spread };
+enum class Finer { smaller, larger };
+
+struct StudyTable {
+  std::string name;
+  StudyKind kind = StudyKind::exponent;
+  std::string variant;
+  std::string quantity;
+  std::optional<std::string> against;
+  Finer finer = Finer::smaller;
+  Reduction reduce = Reduction::median;
+  std::vector<std::string> cases;
+};
+
+struct TimingTable {
+  int repetitions = 1;
+  int warm_up = 1;
+};
+
+struct ToleranceTable {
+  double absolute = 0;
+  double relative = 0;
+};
+
+struct FigureViewTable {
+  std::optional<double> at_parameter;
+  std::vector<double> parameters;
+  std::string part;
+  std::optional<std::string> color_by;
+  std::vector<double> target;
+  std::array<double, 3> direction{0, 0, 1};
+  std::array<double, 3> up{0, 1, 0};
+  std::optional<double> height_m;
+  std::vector<std::string> variants;
+  std::vector<std::string> cases;
+  std::vector<std::string> metrics;
+};
+
+void describe(OptionVisitor& v, HeaderTable& t);
+void describe(OptionVisitor& v, VariantTable& t);
+void describe(OptionVisitor& v, SweepTable& t);
+void describe(OptionVisitor& v, ClaimTable& t);
+void describe(OptionVisitor& v, StudyTable& t);
+void describe(OptionVisitor& v, TimingTable& t);
+void describe(OptionVisitor& v, ToleranceTable& t);
+void describe(OptionVisitor& v, FigureViewTable& t);
+
+/// The texts of the enumerators, as files have them.
+std::string text_of(Comparison x);
+std::string text_of(Reduction x);
+std::string text_of(StudyKind x);
+std::string text_of(Finer x);
+
+}  // namespace geoprior

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "core/random.h"
+
+namespace geoprior {
+
+struct Interval {
+  double value = 0;
+  double low = 0;
+  double high = 0;
+};
+
+/// Slope of the least-squares line through (x, y) with its 95 % t-interval, normal errors in y.
+/// Two points fix the slope and say nothing of its error: the interval is NaN.
+/// @throws Error  with fewer than two different x
+Interval slope_with_interval(std::span<const double> x, std::span<const double> y);
+
+/// Sample standard deviation (n - 1) with its 95 % percentile bootstrap interval (2000 resamples).
+/// @throws Error  with fewer than two values
+Interval spread_with_interval(std::span<const double> values, RandomStream random);
+
+/// t with P(|T| <= t) = probability for Student's distribution (Abramowitz and Stegun 26.7.3-4).
+double student_t(double probability, int degrees_of_freedom);
+
+}  // namespace geoprior
