@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/mesh.h"
+#include "metrics/joint_region.h"
+
+namespace geoprior {
+
+/// Volume of a joint's region: its triangles, closed by a fan from the centroid of each border loop
+/// to the loop's edges (m^3).
+///
+/// Exact to round-off for the closed surface so made. Because the loops lie where the skin moves
+/// with one bone, the fans move rigidly and a change of this volume is one of the skin between
+/// them. Where a surface overlaps itself the overlap counts twice (read it beside overlap_volume).
+/// The volume of a whole closed mesh is `signed_volume` (core/mesh.h).
+double region_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
+                     const JointRegion& region);
+
+/// (after - before) / before; 0 when both are 0.
+/// @throws Error  when only `before` is 0
+double relative_change(double before, double after);
+
+}  // namespace geoprior
