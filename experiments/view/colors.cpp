@@ -13,18 +13,15 @@ namespace {
 
 using Color = std::array<double, 3>;
 
-// Viridis (van der Walt and Smith 2015, CC0) at eleven even steps.
-constexpr std::array<Color, 11> kSequential{{{0.267, 0.005, 0.329},
-                                             {0.283, 0.141, 0.458},
-                                             {0.254, 0.265, 0.530},
-                                             {0.207, 0.372, 0.553},
-                                             {0.164, 0.471, 0.558},
-                                             {0.128, 0.567, 0.551},
-                                             {0.135, 0.659, 0.518},
-                                             {0.267, 0.749, 0.441},
-                                             {0.478, 0.821, 0.318},
-                                             {0.741, 0.873, 0.150},
-                                             {0.993, 0.906, 0.144}}};
+// Pale skin to dark violet at even steps of lightness, after the "rocket" map of seaborn (Waskom
+// 2021) reversed: zero is near white, so that the shading of an unaffected surface stays visible.
+constexpr std::array<Color, 7> kSequential{{{0.960, 0.925, 0.890},
+                                            {0.965, 0.780, 0.640},
+                                            {0.957, 0.580, 0.404},
+                                            {0.930, 0.335, 0.250},
+                                            {0.763, 0.120, 0.295},
+                                            {0.495, 0.115, 0.345},
+                                            {0.230, 0.100, 0.240}}};
 
 // Moreland's cool-warm at nine even steps.
 constexpr std::array<Color, 9> kDiverging{{{0.230, 0.299, 0.754},

@@ -10,8 +10,8 @@
 
 namespace geoprior {
 
-/// Colour (0 … 1 a channel) at t in 0 … 1 of a perceptually even map: viridis for magnitudes, a
-/// cool-warm diverging map (Moreland 2009) for signed quantities.
+/// Colour (0 … 1 a channel) at t in 0 … 1 of a map even in lightness: pale to dark for magnitudes,
+/// a cool-warm diverging map (Moreland 2009) for signed quantities.
 std::array<double, 3> color_at(double t, bool diverging);
 
 /// One mapping from values to colours, shared by every panel of a picture.

@@ -104,7 +104,7 @@ void set_occlusion(vtkRenderer* renderer, double height_m) {
   vtkNew<vtkSSAOPass> occlusion;
   occlusion->SetRadius(0.07 * height_m);
   occlusion->SetBias(0.0012 * height_m);
-  occlusion->SetKernelSize(192);
+  occlusion->SetKernelSize(64);
   occlusion->BlurOn();
   occlusion->SetDelegatePass(steps);
   vtkOpenGLRenderer::SafeDownCast(renderer)->SetPass(occlusion);
@@ -113,7 +113,7 @@ void set_occlusion(vtkRenderer* renderer, double height_m) {
 /// Edges are smoothed by drawing larger and averaging, at most to what software GL can address.
 int supersampling(int width_px, int height_px) {
   constexpr int kLargestTarget = 8192;
-  return std::clamp(kLargestTarget / std::max(width_px, height_px), 1, 4);
+  return std::clamp(kLargestTarget / std::max(width_px, height_px), 1, 3);
 }
 
 /// Averages blocks of `factor` by `factor` pixels of the window, rows from the top.

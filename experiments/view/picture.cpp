@@ -20,9 +20,15 @@ namespace {
 constexpr int kDpi = 72;  // a font size is then in pixels
 
 void apply(const TextStyle& style, vtkTextProperty* property) {
-  property->SetFontFamilyToArial();  // built into VTK: no font files, same pixels everywhere
+  // The font of the plots, a dependency of Debian's matplotlib; VTK's own has no degree sign.
+  const std::string file = style.bold ? "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf"
+                                      : "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+  property->SetFontFamilyToArial();
+  if (std::filesystem::exists(file)) {
+    property->SetFontFamily(VTK_FONT_FILE);
+    property->SetFontFile(file.c_str());
+  }
   property->SetFontSize(style.size_px);
-  property->SetBold(style.bold ? 1 : 0);
   property->SetOrientation(style.vertical ? 90 : 0);
   property->SetColor(style.color[0] / 255.0, style.color[1] / 255.0, style.color[2] / 255.0);
 }

@@ -1,0 +1,180 @@
+#include "experiments/view/figure_cells.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+
+#include "core/error.h"
+#include "experiments/formats/vtk_files.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostColumns = 6;
+constexpr std::size_t kMostRows = 8;
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// `wanted` in its own order, checked; all of `available` when none is wanted.
+std::vector<std::string> choose(const std::vector<std::string>& wanted,
+                                const std::vector<std::string>& available, const std::string& key) {
+  if (wanted.empty()) return available;
+  for (const std::string& name : wanted) {
+    if (std::find(available.begin(), available.end(), name) == available.end()) {
+      throw Error("no '" + name + "' in this run", key, joined(available));
+    }
+  }
+  return wanted;
+}
+
+std::vector<std::string> case_names(const RunRecord& record) {
+  std::vector<std::string> names;
+  for (const CaseRecord& c : record.cases) names.push_back(c.name);
+  return names;
+}
+
+std::vector<std::string> variant_names(const RunRecord& record) {
+  std::vector<std::string> names;
+  for (const CaseRecord& c : record.cases) {
+    for (const VariantRecord& v : c.variants) {
+      if (std::find(names.begin(), names.end(), v.name) == names.end()) names.push_back(v.name);
+    }
+  }
+  return names;
+}
+
+const VariantRecord* find_variant(const CaseRecord& c, const std::string& name) {
+  for (const VariantRecord& v : c.variants) {
+    if (v.name == name) return &v;
+  }
+  return nullptr;
+}
+
+const FrameRecord* nearest_frame(const VariantRecord& variant, std::optional<double> wanted) {
+  if (variant.frames.empty()) return nullptr;
+  if (!wanted) return &variant.frames.back();
+  return &*std::min_element(
+      variant.frames.begin(), variant.frames.end(), [&](const auto& a, const auto& b) {
+        return std::abs(a.parameter - *wanted) < std::abs(b.parameter - *wanted);
+      });
+}
+
+/// "surface" of "frames/default/implicit/surface_0012.vtp".
+std::string part_name(const StoredFile& file) {
+  const std::string stem = fs::path(file.name).stem().string();
+  return stem.substr(0, stem.find_last_of('_'));
+}
+
+std::optional<Part> load_part(const FrameRecord& frame, const std::string& name,
+                              const fs::path& folder) {
+  for (const StoredFile& file : frame.files) {
+    if (fs::path(file.name).extension() != ".csv" && part_name(file) == name) {
+      return read_vtk_part(folder / file.name);
+    }
+  }
+  return std::nullopt;
+}
+
+Part require_part(const FrameRecord& frame, const std::string& name, const fs::path& folder) {
+  if (auto part = load_part(frame, name, folder)) return *std::move(part);
+  std::vector<std::string> available;
+  for (const StoredFile& file : frame.files) available.push_back(part_name(file));
+  throw Error("no part '" + name + "' in the frames", "figure_view.part", joined(available));
+}
+
+FigureCell make_cell(const CaseRecord& c, const std::string& variant_name,
+                     std::optional<double> parameter, const FigureView& view,
+                     const fs::path& folder) {
+  FigureCell cell;
+  cell.label = display_name(variant_name);
+  const VariantRecord* variant = find_variant(c, variant_name);
+  const FrameRecord* frame = variant != nullptr ? nearest_frame(*variant, parameter) : nullptr;
+  if (frame == nullptr) return cell;
+  cell.part = require_part(*frame, view.part, folder);
+  for (const std::string& overlay : view.overlays) {
+    if (auto part = load_part(*frame, overlay, folder)) cell.overlays.push_back(*std::move(part));
+  }
+  return cell;
+}
+
+std::string state_label(const CaseRecord& c, std::optional<double> wanted) {
+  for (const VariantRecord& variant : c.variants) {
+    if (const FrameRecord* frame = nearest_frame(variant, wanted)) {
+      return display_name(c.parameter_name) + " " + with_unit(frame->parameter, c.parameter_unit);
+    }
+  }
+  return {};
+}
+
+/// Splits columns evenly into as few rows as the limit allows.
+std::vector<std::vector<std::string>> wrap(const std::vector<std::string>& variants) {
+  const std::size_t rows = (variants.size() + kMostColumns - 1) / kMostColumns;
+  const std::size_t columns = rows == 0 ? 0 : (variants.size() + rows - 1) / rows;
+  std::vector<std::vector<std::string>> out;
+  for (std::size_t i = 0; i < variants.size(); i += columns) {
+    const auto begin = variants.begin() + static_cast<std::ptrdiff_t>(i);
+    out.emplace_back(begin,
+                     begin + static_cast<std::ptrdiff_t>(std::min(columns, variants.size() - i)));
+  }
+  return out;
+}
+
+std::vector<std::optional<double>> wanted_parameters(const FigureView& view) {
+  std::vector<std::optional<double>> wanted;
+  if (view.at_parameter) wanted.emplace_back(*view.at_parameter);
+  for (const double p : view.parameters) wanted.emplace_back(p);
+  if (wanted.empty()) wanted.emplace_back(std::nullopt);
+  return wanted;
+}
+
+}  // namespace
+
+std::string display_name(const std::string& name) {
+  std::string text = name;
+  std::replace(text.begin(), text.end(), '-', ' ');
+  std::replace(text.begin(), text.end(), '_', ' ');
+  if (!text.empty()) {
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  }
+  return text;
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  if (unit == "deg") return std::string(text.data()) + "\u00b0";
+  return std::string(text.data()) + (unit.empty() || unit == "1" ? "" : " " + unit);
+}
+
+std::vector<FigureRow> collect_cells(const RunRecord& record, const fs::path& run_folder,
+                                     const FigureView& view) {
+  const auto cases = choose(view.cases, case_names(record), "figure_view.cases");
+  const auto blocks = wrap(choose(view.variants, variant_names(record), "figure_view.variants"));
+  std::vector<FigureRow> rows;
+  for (const CaseRecord& c : record.cases) {
+    if (std::find(cases.begin(), cases.end(), c.name) == cases.end()) continue;
+    for (const std::optional<double>& parameter : wanted_parameters(view)) {
+      for (const auto& block : blocks) {
+        if (rows.size() == kMostRows) return rows;
+        FigureRow row;
+        row.label = state_label(c, parameter);
+        if (cases.size() > 1) row.label += (row.label.empty() ? "" : ", ") + c.name;
+        row.has_headings = rows.empty() || blocks.size() > 1;
+        for (const std::string& variant : block) {
+          row.cells.push_back(make_cell(c, variant, parameter, view, run_folder));
+        }
+        rows.push_back(std::move(row));
+      }
+    }
+  }
+  return rows;
+}
+
+}  // namespace geoprior

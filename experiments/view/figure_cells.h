@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/frame.h"
+#include "experiments/runner/run_record.h"
+#include "experiments/runner/spec.h"
+
+namespace geoprior {
+
+/// One panel of a figure before it is drawn: a variant in one state.
+struct FigureCell {
+  std::string label;         ///< of the variant
+  std::optional<Part> part;  ///< absent: the variant has no such frame (stopped)
+  std::vector<Part> overlays;
+};
+
+/// Panels side by side.
+struct FigureRow {
+  std::string label;         ///< the state ("angle 90°") and, in a sweep, the case
+  bool has_headings = true;  ///< variants are named over it: not when the row above has the same
+  std::vector<FigureCell> cells;
+};
+
+/// Which states are drawn, loaded from the run's files: variants as columns (wrapped past six),
+/// parameters and cases as rows (at most eight). The frame nearest to a wanted parameter is taken,
+/// and the label gives the parameter it really has.
+/// @throws Error  naming the variant, case or part that the run does not have, or a damaged file
+std::vector<FigureRow> collect_cells(const RunRecord& record,
+                                     const std::filesystem::path& run_folder,
+                                     const FigureView& view);
+
+/// "dual-quaternion" as "Dual quaternion".
+std::string display_name(const std::string& name);
+
+/// "90°", "0.25 s", "12": a parameter with its unit.
+std::string with_unit(double value, const std::string& unit);
+
+}  // namespace geoprior
