@@ -1,21 +1,27 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/options.h"
 #include "core/rig.h"
-#include "core/topology.h"
+#include "experiments/skinning/characters.h"
+#include "experiments/skinning/motion.h"
 #include "experiments/topic.h"
 #include "metrics/joint_region.h"
 
 namespace geoprior {
 
-/// `[scene]` of a skinning experiment (options to be completed by their owner: character, skeleton,
-/// motion, refine, …).
-struct SkinningSceneOptions;
+/// `[scene]` of a skinning experiment: a character (its members stand at the top level), a motion,
+/// and the joints whose regions are measured.
+struct SkinningSceneOptions {
+  CharacterOptions character;
+  MotionOptions motion;
+  std::vector<std::string> regions;  ///< empty: the joints that a ramp turns
+  double region_extent = 2;          ///< half length along the bones, in local radii
+};
 void describe(OptionVisitor& v, SkinningSceneOptions& options);
 
 /// A rigged character and a motion: what every skinning method is given and every skinning metric
@@ -45,5 +51,12 @@ class SkinningScene final : public Scene {
   /// none.
   [[nodiscard]] const Pose& pose_at(double parameter) const;
 };
+
+/// Loads the character, makes the motion's poses and chooses the regions: joints of a ramp that are
+/// neighbours in the skeleton (a finger's) share a region.
+/// @param folder  of the experiment file, against which relative files are tried first
+/// @throws Error  naming the file or option
+std::shared_ptr<SkinningScene> load_skinning_scene(const SkinningSceneOptions& options,
+                                                   const std::filesystem::path& folder);
 
 }  // namespace geoprior

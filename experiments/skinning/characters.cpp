@@ -1,0 +1,256 @@
+#include "experiments/skinning/characters.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "core/error.h"
+#include "core/subdivision.h"
+#include "core/topology.h"
+#include "experiments/view/view.h"
+#include "metrics/joint_region.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Triangles of a split mesh that survive its weld, so that both have the same triangles in the
+/// same order.
+void drop_degenerate(TriMesh& split, const std::vector<int>& welded) {
+  Eigen::Index kept = 0;
+  for (Eigen::Index f = 0; f < split.F.rows(); ++f) {
+    const auto w = [&](int k) { return welded[static_cast<std::size_t>(split.F(f, k))]; };
+    if (w(0) == w(1) || w(1) == w(2) || w(2) == w(0)) continue;
+    if (kept != f) split.F.row(kept) = Eigen::RowVector3i(split.F.row(f));
+    ++kept;
+  }
+  split.F.conservativeResize(kept, 3);
+}
+
+/// Weights of welded vertices: the mean over the split vertices they are made of.
+SkinWeights weld_weights(const SkinWeights& split, const Weld& weld, std::string& warning) {
+  const auto n = static_cast<std::size_t>(weld.mesh.vertex_count());
+  std::vector<double> copies(n, 0);
+  for (const int w : weld.welded_of_split) copies[static_cast<std::size_t>(w)] += 1;
+  std::vector<Eigen::Triplet<double>> triplets;
+  for (int v = 0; v < split.rows(); ++v) {
+    const int w = weld.welded_of_split[static_cast<std::size_t>(v)];
+    for (SkinWeights::InnerIterator it(split, v); it; ++it)
+      triplets.emplace_back(w, static_cast<int>(it.col()),
+                            it.value() / copies[static_cast<std::size_t>(w)]);
+  }
+  SkinWeights welded(weld.mesh.vertex_count(), split.cols());
+  welded.setFromTriplets(triplets.begin(), triplets.end());
+  int differing = 0;
+  for (int v = 0; v < split.rows(); ++v) {
+    const int w = weld.welded_of_split[static_cast<std::size_t>(v)];
+    const Eigen::SparseVector<double> difference =
+        Eigen::SparseVector<double>(split.row(v).transpose()) -
+        Eigen::SparseVector<double>(welded.row(w).transpose());
+    if (difference.norm() > 1e-3) ++differing;
+  }
+  if (differing > 0) {
+    warning = std::to_string(differing) +
+              " vertices that meet at a seam have different weights: their mean is used";
+  }
+  return welded;
+}
+
+/// Weights of the file on the joints of another skeleton, by name; absent when a joint that carries
+/// weight has no namesake.
+std::optional<SkinWeights> rename_columns(const SkinWeights& weights, const Skeleton& from,
+                                          const Skeleton& to, std::string& missing) {
+  std::vector<int> column(static_cast<std::size_t>(from.size()), -1);
+  for (int i = 0; i < from.size(); ++i) {
+    for (int j = 0; j < to.size(); ++j) {
+      if (to.joints[static_cast<std::size_t>(j)].name ==
+          from.joints[static_cast<std::size_t>(i)].name)
+        column[static_cast<std::size_t>(i)] = j;
+    }
+  }
+  std::vector<Eigen::Triplet<double>> triplets;
+  for (int v = 0; v < weights.rows(); ++v) {
+    for (SkinWeights::InnerIterator it(weights, v); it; ++it) {
+      const int j = column[static_cast<std::size_t>(it.col())];
+      if (j < 0) {
+        missing = from.joints[static_cast<std::size_t>(it.col())].name;
+        return std::nullopt;
+      }
+      triplets.emplace_back(v, j, it.value());
+    }
+  }
+  SkinWeights renamed(weights.rows(), to.size());
+  renamed.setFromTriplets(triplets.begin(), triplets.end());
+  return renamed;
+}
+
+/// Weights that came with the character, on its skeleton; absent: there are none.
+void choose_weights(const CharacterOptions& options, const std::string& file,
+                    std::optional<SkinWeights> given, Character& character) {
+  if (options.weights == WeightSource::file && !given) {
+    throw Error("no weights for the joints of the skeleton", file, "weights = \"heat\"");
+  }
+  if (given && options.weights != WeightSource::heat) {
+    character.rig.weights = std::move(*given);
+  } else {
+    character.rig.weights = heat_weights(character.rig.mesh, character.rig.skeleton, options.heat);
+  }
+}
+
+void take_mesh(TriMesh split, Character& character, Weld& weld) {
+  weld = weld_by_position(split);
+  character.rig.mesh = weld.mesh;
+  character.welded_of_input = weld.welded_of_split;
+  drop_degenerate(split, weld.welded_of_split);
+  character.input_mesh = std::move(split);
+}
+
+void read_skeleton_option(const std::string& name, const fs::path& folder, Character& character) {
+  const fs::path file = find_input(name, folder);
+  character.skeleton_file = read_skeleton_file(file);
+  character.files.push_back(file);
+}
+
+void scale_to_metres(Skeleton& skeleton, double unit_m) {
+  for (Joint& joint : skeleton.joints) {
+    joint.head *= unit_m;
+    if (joint.tail) *joint.tail *= unit_m;
+  }
+}
+
+void load_file(const CharacterOptions& options, const fs::path& file, const fs::path& folder,
+               Character& character) {
+  GltfCharacter gltf = read_gltf(file, {options.mesh});
+  character.files = gltf.files;
+  character.warnings = gltf.warnings;
+  character.unit_m = options.unit_m;
+  TriMesh split = gltf.mesh;
+  split.V *= options.unit_m;
+  Weld weld;
+  take_mesh(std::move(split), character, weld);
+  if (options.skeleton) read_skeleton_option(*options.skeleton, folder, character);
+  if (!gltf.skeleton && !character.skeleton_file) {
+    throw Error("no skin, and the scene names no skeleton file", file.string(),
+                "a skinned file, or skeleton = \"<name>.skeleton.toml\"");
+  }
+  std::optional<SkinWeights> given;
+  if (gltf.skeleton) {
+    scale_to_metres(*gltf.skeleton, options.unit_m);
+    std::string warning;
+    given = weld_weights(gltf.weights, weld, warning);
+    if (!warning.empty()) character.warnings.push_back(file.string() + ": " + warning);
+  }
+  if (!character.skeleton_file) {
+    character.rig.skeleton = *gltf.skeleton;
+  } else {
+    character.rig.skeleton = character.skeleton_file->skeleton;
+    std::string missing;
+    if (given) given = rename_columns(*given, *gltf.skeleton, character.rig.skeleton, missing);
+    if (!missing.empty() && options.weights == WeightSource::file_or_heat) {
+      character.warnings.push_back("the skeleton file has no joint '" + missing + "' of " +
+                                   file.string() + ": heat weights are used");
+    }
+  }
+  choose_weights(options, file.string(), std::move(given), character);
+  character.gltf = std::move(gltf);
+}
+
+void take_procedural(const CharacterOptions& options, RiggedMesh rig, const fs::path& folder,
+                     Character& character) {
+  character.rig = std::move(rig);
+  character.input_mesh = character.rig.mesh;
+  character.welded_of_input.resize(static_cast<std::size_t>(character.rig.mesh.vertex_count()));
+  std::iota(character.welded_of_input.begin(), character.welded_of_input.end(), 0);
+  std::optional<SkinWeights> given = std::move(character.rig.weights);
+  if (options.skeleton) {
+    read_skeleton_option(*options.skeleton, folder, character);
+    std::string missing;
+    given =
+        rename_columns(*given, character.rig.skeleton, character.skeleton_file->skeleton, missing);
+    character.rig.skeleton = character.skeleton_file->skeleton;
+  }
+  choose_weights(options, options.character, std::move(given), character);
+}
+
+/// Triangles of the skin about the named joints; empty for "all".
+std::vector<bool> marks_of(const RefineOptions& options, const RiggedMesh& rig) {
+  if (options.region.empty() || options.region == std::vector<std::string>{"all"}) return {};
+  std::vector<bool> marks(static_cast<std::size_t>(rig.mesh.triangle_count()), false);
+  std::vector<int> joints;
+  for (const std::string& name : options.region) joints.push_back(rig.skeleton.index_of(name));
+  const std::vector<Eigen::Vector3d> no_axes(joints.size(), Eigen::Vector3d::Zero());
+  const JointRegion region = make_joint_region(rig, "refined", joints, no_axes, options.extent);
+  for (const int f : region.triangles) marks[static_cast<std::size_t>(f)] = true;
+  return marks;
+}
+
+void refine(const RefineOptions& options, Character& character) {
+  if (options.levels == 0) return;
+  TriMesh welded = character.rig.mesh;
+  RefinedRig refined =
+      loop_subdivide_region(character.rig, marks_of(options, character.rig), options.levels);
+  for (const Subdivision& step : refined.steps) {
+    welded.V = Eigen::MatrixX3d(step.stencil * welded.V);
+    SplitSubdivision split =
+        subdivide_split(character.input_mesh, character.welded_of_input, welded.F, step, welded.V);
+    welded.F = step.F;
+    character.input_mesh = std::move(split.mesh);
+    character.welded_of_input = std::move(split.welded_of_split);
+  }
+  character.rig = std::move(refined.rig);
+}
+
+/// The body of Debian's assimp-testmodels, converted at set-up.
+void load_human(CharacterOptions options, const fs::path& folder, Character& character) {
+  const fs::path file = data_folder() / "human.glb";
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) {
+    throw Error("the body is not converted yet", file.string(), "run scripts/convert_data.sh");
+  }
+  if (!options.mesh) options.mesh = "human-baseMesh";
+  if (!options.skeleton) options.skeleton = "human.skeleton.toml";
+  load_file(options, file, folder, character);
+}
+
+}  // namespace
+
+Character load_character(const CharacterOptions& options, const fs::path& folder) {
+  Character character;
+  if (options.character == "human") {
+    load_human(options, folder, character);
+  } else if (options.character == "cylinder") {
+    take_procedural(options, two_bone_cylinder(options.cylinder), folder, character);
+  } else if (options.character == "finger") {
+    take_procedural(options, capsule_finger(options.finger), folder, character);
+  } else {
+    load_file(options, find_input(options.character, folder), folder, character);
+  }
+  for (const RefineOptions& r : options.refine) refine(r, character);
+  return character;
+}
+
+fs::path data_folder() { return geoprior_home() / "data"; }
+
+fs::path test_models_folder() { return "/usr/share/assimp/models"; }
+
+fs::path find_input(const std::string& name, const fs::path& folder) {
+  const fs::path path(name);
+  std::vector<fs::path> tried{folder / path};  // an absolute path replaces the folder
+  if (path.is_relative()) {
+    tried.push_back(geoprior_home() / "experiments" / "skinning" / path);
+    tried.push_back(data_folder() / path);
+    tried.push_back(test_models_folder() / path);
+  }
+  std::string list;
+  for (const fs::path& candidate : tried) {
+    std::error_code ignored;
+    if (fs::is_regular_file(candidate, ignored)) return candidate.lexically_normal();
+    list += (list.empty() ? "" : ", ") + candidate.lexically_normal().string();
+  }
+  throw Error("no such file", name, "one of " + list);
+}
+
+}  // namespace geoprior

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "baselines/skinning/heat_weights.h"
+#include "core/options.h"
+#include "core/procedural.h"
+#include "experiments/formats/gltf_reader.h"
+#include "experiments/skinning/skeleton_file.h"
+
+namespace geoprior {
+
+enum class WeightSource { file_or_heat, file, heat };
+
+/// Refinement of a part of the mesh before anything else is done with it.
+struct RefineOptions {
+  std::vector<std::string> region{"all"};  ///< joints whose skin is refined, or "all"
+  int levels = 1;
+  double extent = 2;  ///< of a joint's region along its bones, in local radii
+};
+void describe(OptionVisitor& v, RefineOptions& options);
+void describe(OptionVisitor& v, CylinderOptions& options);
+void describe(OptionVisitor& v, FingerOptions& options);
+
+/// Which character, and how its mesh, skeleton and weights come about.
+struct CharacterOptions {
+  std::string character = "human";  ///< "human", "cylinder", "finger" or a .glb or .gltf file
+  std::optional<std::string> mesh;
+  std::optional<std::string> skeleton;
+  double unit_m = 1;
+  WeightSource weights = WeightSource::file_or_heat;
+  HeatWeightsOptions heat;
+  CylinderOptions cylinder;
+  FingerOptions finger;
+  std::vector<RefineOptions> refine;
+  std::optional<int> simplify_to;
+};
+/// Members of an enclosing `describe`.
+void describe(OptionVisitor& v, CharacterOptions& options);
+
+/// A character in its rest pose, with all that is needed to move it and to write it back.
+struct Character {
+  RiggedMesh rig;                    ///< welded
+  TriMesh input_mesh;                ///< split at seams as in the file, refined alike
+  std::vector<int> welded_of_input;  ///< for each vertex of `input_mesh`
+  std::optional<SkeletonFile> skeleton_file;
+  std::optional<GltfCharacter> gltf;  ///< clips and binding, in the file's unit
+  double unit_m = 1;                  ///< metres for one unit of `gltf`
+  std::vector<std::filesystem::path> files;
+  std::vector<std::string> warnings;
+};
+
+/// Loads or makes the character, gives it weights, refines or simplifies it.
+/// @param folder  of the experiment, against which relative files are tried first
+/// @throws Error  naming the file: no skin and no skeleton file; weights = "file" without any; …
+Character load_character(const CharacterOptions& options, const std::filesystem::path& folder);
+
+/// A file named in an experiment: absolute, or relative to `folder`, to experiments/skinning, to
+/// data/ or to the models of Debian's assimp-testmodels.
+/// @throws Error  listing where it was looked for
+std::filesystem::path find_input(const std::string& name, const std::filesystem::path& folder);
+
+/// Folder of converted models (made by scripts/convert_data.sh) and of the installed test models.
+std::filesystem::path data_folder();
+std::filesystem::path test_models_folder();
+
+}  // namespace geoprior

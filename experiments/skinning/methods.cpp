@@ -1,0 +1,115 @@
+#include "baselines/skinning/delta_mush.h"
+#include "baselines/skinning/dual_quaternion.h"
+#include "baselines/skinning/linear_blend.h"
+#include "experiments/skinning/scene.h"
+#include "experiments/skinning/topic.h"
+#include "solvers/skinning/implicit.h"
+#include "solvers/skinning/implicit_options.h"
+
+namespace geoprior {
+namespace {
+
+/// Linear and dual quaternion blending have nothing to choose.
+struct NoOptions {};
+void describe(OptionVisitor& /*v*/, NoOptions& /*options*/) {}
+
+Part surface_part(const SkinningScene& scene, const Eigen::MatrixX3d& posed) {
+  Part part;
+  part.points = posed;
+  part.triangles = scene.rig.mesh.F;
+  NamedArray displacement;
+  displacement.name = "displacement";
+  displacement.unit = "m";
+  displacement.values = (posed - scene.rig.mesh.V).rowwise().norm();
+  part.arrays.push_back(std::move(displacement));
+  return part;
+}
+
+/// The bones in their posed places.
+Part bones_part(const SkinningScene& scene, const Pose& pose) {
+  Part part;
+  part.kind = Part::Kind::lines;
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t j = 0; j < pose.size(); ++j) {
+    const Joint& joint = scene.rig.skeleton.joints[j];
+    if (!joint.tail) continue;
+    const int first = static_cast<int>(points.size());
+    points.emplace_back(pose[j] * joint.head);
+    points.emplace_back(pose[j] * *joint.tail);
+    part.lines.push_back({first, first + 1});
+  }
+  part.points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    part.points.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+  return part;
+}
+
+/// Wraps a class with `deform(pose, posed)` or `deform(pose, posed, context)`. The scene must
+/// outlive the method, as the runner sees to.
+template <class Deformer>
+class SkinningMethod final : public PoseMethod {
+ public:
+  template <class... Arguments>
+  explicit SkinningMethod(const SkinningScene& scene, Arguments&&... arguments)
+      : scene_(scene), deformer_(scene.rig, std::forward<Arguments>(arguments)...) {}
+
+  void solve(double parameter, RunContext& context) override {
+    parameter_ = parameter;
+    const Pose& pose = scene_.pose_at(parameter);
+    if constexpr (requires { deformer_.deform(pose, posed_, context); }) {
+      deformer_.deform(pose, posed_, context);
+    } else {
+      deformer_.deform(pose, posed_);
+    }
+  }
+
+  [[nodiscard]] Frame frame() const override {
+    Frame frame;
+    frame.parameter = parameter_;
+    frame.parts["surface"] = surface_part(scene_, posed_);
+    frame.parts["bones"] = bones_part(scene_, scene_.pose_at(parameter_));
+    if constexpr (requires { deformer_.diagnostics(); }) {
+      frame.diagnostics = deformer_.diagnostics();
+    }
+    return frame;
+  }
+
+ private:
+  const SkinningScene& scene_;
+  Deformer deformer_;
+  Eigen::MatrixX3d posed_;
+  double parameter_ = 0;
+};
+
+}  // namespace
+
+std::vector<MethodEntry> skinning_methods() {
+  using S = SkinningScene;
+  return {
+      method_entry<S, NoOptions>("linear-blend", true, "weighted mean of the bones' transforms",
+                                 "Magnenat-Thalmann et al. 1988",
+                                 [](const S& scene, const NoOptions&, RunContext&) {
+                                   return std::make_unique<SkinningMethod<LinearBlend>>(scene);
+                                 }),
+      method_entry<S, NoOptions>(
+          "dual-quaternion", true, "normalised weighted mean of unit dual quaternions",
+          "Kavan et al. 2007",
+          [](const S& scene, const NoOptions&, RunContext&) {
+            return std::make_unique<SkinningMethod<DualQuaternionBlend>>(scene);
+          }),
+      method_entry<S, DeltaMushOptions>(
+          "delta-mush", true, "smoothed linear blend with the rest pose's detail put back",
+          "Mancewicz et al. 2014",
+          [](const S& scene, const DeltaMushOptions& options, RunContext&) {
+            return std::make_unique<SkinningMethod<DeltaMush>>(scene, options);
+          }),
+      method_entry<S, ImplicitOptions>(
+          "implicit", false, "dual quaternions, then projection onto a field of blended bones",
+          "thesis 3.1; Vaillant et al. 2013",
+          [](const S& scene, const ImplicitOptions& options, RunContext& context) {
+            return std::make_unique<SkinningMethod<ImplicitSkinning>>(scene, options, context);
+          }),
+  };
+}
+
+}  // namespace geoprior

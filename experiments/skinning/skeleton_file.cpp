@@ -1,0 +1,236 @@
+#include "experiments/skinning/skeleton_file.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "core/error.h"
+#include "experiments/formats/atomic_file.h"
+
+namespace geoprior {
+namespace {
+
+std::string place(const std::string& name, const toml::source_region& source) {
+  return name + ":" + std::to_string(source.begin.line);
+}
+
+toml::table parse(std::string_view text, const std::string& name) {
+  try {
+    return toml::parse(text, name);
+  } catch (const toml::parse_error& e) {
+    throw Error("no valid TOML: " + std::string(e.description()), place(name, e.source()));
+  }
+}
+
+/// Members of a table in the order of the file (toml++ sorts them by name).
+std::vector<std::pair<std::string, const toml::node*>> in_file_order(const toml::table& table) {
+  std::vector<std::pair<std::string, const toml::node*>> members;
+  for (const auto& [key, node] : table) members.emplace_back(key.str(), &node);
+  const auto position = [](const toml::node& node) {
+    const auto& begin = node.source().begin;
+    return std::pair(begin.line, begin.column);
+  };
+  std::stable_sort(members.begin(), members.end(), [&](const auto& a, const auto& b) {
+    return position(*a.second) < position(*b.second);
+  });
+  return members;
+}
+
+/// A TOML value with its key and place, for messages.
+struct Value {
+  const toml::node& node;
+  std::string key;
+  const std::string& file;
+
+  [[noreturn]] void fail(const std::string& problem, const std::string& allowed) const {
+    throw Error("'" + key + "' " + problem, place(file, node.source()), allowed);
+  }
+  [[nodiscard]] const toml::table& table() const {
+    if (!node.is_table()) fail("is no table", "a table");
+    return *node.as_table();
+  }
+  [[nodiscard]] std::string text() const {
+    if (!node.is_string()) fail("is no string", "a string");
+    return node.as_string()->get();
+  }
+  [[nodiscard]] bool flag() const {
+    if (!node.is_boolean()) fail("is no boolean", "true or false");
+    return node.as_boolean()->get();
+  }
+  [[nodiscard]] double number() const {
+    const auto x = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!x || !std::isfinite(*x)) fail("is no finite number", "a number");
+    return *x;
+  }
+  [[nodiscard]] Eigen::Vector3d vector() const {
+    const toml::array* array = node.as_array();
+    if (array == nullptr || array->size() != 3) fail("is no vector", "[x, y, z]");
+    Eigen::Vector3d x;
+    for (std::size_t i = 0; i < 3; ++i)
+      x[static_cast<Eigen::Index>(i)] = Value{*array->get(i), key, file}.number();
+    return x;
+  }
+};
+
+Eigen::Vector3d parse_axis(const Value& value) {
+  if (!value.node.is_string()) {
+    const Eigen::Vector3d axis = value.vector();
+    if (!(axis.norm() > 1e-9) || !std::isfinite(axis.norm())) {
+      value.fail("has no direction", "[x, y, z] with a length");
+    }
+    return axis.normalized();
+  }
+  static const std::map<std::string, Eigen::Vector3d> kAxes{
+      {"+x", Eigen::Vector3d::UnitX()}, {"-x", -Eigen::Vector3d::UnitX()},
+      {"+y", Eigen::Vector3d::UnitY()}, {"-y", -Eigen::Vector3d::UnitY()},
+      {"+z", Eigen::Vector3d::UnitZ()}, {"-z", -Eigen::Vector3d::UnitZ()}};
+  const auto it = kAxes.find(value.text());
+  if (it == kAxes.end()) value.fail("is no axis", "\"+x\" … \"-z\" or [x, y, z]");
+  return it->second;
+}
+
+/// A joint before the joints are sorted.
+struct Entry {
+  Joint joint;
+  std::optional<std::string> parent;
+  std::optional<std::string> bvh;
+  bool bvh_align = true;
+  std::string place;
+};
+
+Entry parse_joint(const std::string& name, const Value& value) {
+  Entry entry;
+  entry.joint.name = name;
+  entry.place = place(value.file, value.node.source());
+  bool has_head = false;
+  for (const auto& [key, node] : in_file_order(value.table())) {
+    const Value member{*node, key, value.file};
+    if (key == "parent") {
+      entry.parent = member.text();
+    } else if (key == "head") {
+      entry.joint.head = member.vector();
+      has_head = true;
+    } else if (key == "tail") {
+      entry.joint.tail = member.vector();
+    } else if (key == "axes") {
+      for (const auto& [axis, axis_node] : in_file_order(member.table()))
+        entry.joint.axes[axis] = parse_axis({*axis_node, axis, value.file});
+    } else if (key == "bvh") {
+      entry.bvh = member.text();
+    } else if (key == "bvh_align") {
+      entry.bvh_align = member.flag();
+    } else {
+      member.fail("is no key of a joint", "parent, head, tail, axes, bvh, bvh_align");
+    }
+  }
+  if (!has_head) throw Error("joint '" + name + "' has no 'head'", entry.place, "head = [x, y, z]");
+  if (entry.joint.tail && (*entry.joint.tail - entry.joint.head).norm() == 0)
+    throw Error("head and tail of joint '" + name + "' coincide", entry.place,
+                "a bone with a length, or no tail");
+  return entry;
+}
+
+/// Adds a joint after its ancestors. `state`: 0 new, 1 being visited, 2 done.
+void add_with_ancestors(const std::map<std::string, std::size_t>& by_name,
+                        const std::vector<Entry>& entries, std::size_t first,
+                        std::vector<int>& state, std::vector<int>& index, SkeletonFile& result) {
+  std::vector<std::size_t> chain;
+  for (std::optional<std::size_t> at = first; at && state[*at] != 2;) {
+    const Entry& entry = entries[*at];
+    if (state[*at] == 1)
+      throw Error("joint '" + entry.joint.name + "' is its own ancestor", entry.place);
+    state[*at] = 1;
+    chain.push_back(*at);
+    if (!entry.parent) break;
+    const auto parent = by_name.find(*entry.parent);
+    if (parent == by_name.end()) {
+      throw Error("no joint '" + *entry.parent + "', the parent of '" + entry.joint.name + "'",
+                  entry.place, "the joints of the file");
+    }
+    at = parent->second;
+  }
+  for (auto it = chain.rbegin(); it != chain.rend(); ++it) {
+    const Entry& entry = entries[*it];
+    Joint joint = entry.joint;
+    if (entry.parent) joint.parent = index[by_name.at(*entry.parent)];
+    index[*it] = result.skeleton.size();
+    result.skeleton.joints.push_back(std::move(joint));
+    result.bvh_joint.push_back(entry.bvh);
+    result.bvh_align.push_back(entry.bvh_align);
+    state[*it] = 2;
+  }
+}
+
+}  // namespace
+
+SkeletonFile parse_skeleton(std::string_view text, const std::string& name) {
+  const toml::table root = parse(text, name);
+  std::vector<Entry> entries;
+  std::map<std::string, std::size_t> by_name;
+  for (const auto& [key, node] : in_file_order(root)) {
+    const Value value{*node, key, name};
+    if (key != "joint") value.fail("is no key of a skeleton file", "[joint.<name>] tables");
+    for (const auto& [joint, joint_node] : in_file_order(value.table())) {
+      by_name[joint] = entries.size();
+      entries.push_back(parse_joint(joint, {*joint_node, joint, name}));
+    }
+  }
+  if (entries.empty()) throw Error("no joints", name, "[joint.<name>] tables");
+  SkeletonFile result;
+  std::vector<int> state(entries.size(), 0);
+  std::vector<int> index(entries.size(), -1);
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    add_with_ancestors(by_name, entries, i, state, index, result);
+  validate(result.skeleton);
+  return result;
+}
+
+SkeletonFile read_skeleton_file(const std::filesystem::path& file) {
+  return parse_skeleton(read_whole_file(file), file.string());
+}
+
+std::vector<NamedPose> parse_poses(std::string_view text, const std::string& name) {
+  const toml::table root = parse(text, name);
+  std::vector<NamedPose> poses;
+  for (const auto& [key, node] : in_file_order(root)) {
+    const Value value{*node, key, name};
+    if (key != "pose") value.fail("is no key of a pose file", "[pose.<name>] tables");
+    for (const auto& [pose, pose_node] : in_file_order(value.table())) {
+      poses.push_back({pose, {}});
+      const Value pose_value{*pose_node, pose, name};
+      for (const auto& [joint, joint_node] : in_file_order(pose_value.table())) {
+        const Value joint_value{*joint_node, joint, name};
+        for (const auto& [axis, angle] : in_file_order(joint_value.table()))
+          poses.back().angles.push_back({joint, axis, Value{*angle, axis, name}.number()});
+      }
+    }
+  }
+  if (poses.empty()) throw Error("no poses", name, "[pose.<name>] tables");
+  return poses;
+}
+
+std::vector<NamedPose> read_pose_file(const std::filesystem::path& file) {
+  return parse_poses(read_whole_file(file), file.string());
+}
+
+Eigen::Vector3d joint_axis(const Skeleton& skeleton, const std::string& joint,
+                           const std::string& axis) {
+  const Joint& found = skeleton.joints[static_cast<std::size_t>(skeleton.index_of(joint))];
+  const auto it = found.axes.find(axis);
+  if (it != found.axes.end()) return it->second;
+  std::string names;
+  for (const auto& [name, direction] : found.axes) names += (names.empty() ? "" : ", ") + name;
+  throw Error("no axis '" + axis + "'", "joint '" + joint + "'",
+              names.empty() ? "none: the skeleton file names no axes for it" : names);
+}
+
+JointRotation joint_rotation(const Skeleton& skeleton, const JointAngle& angle) {
+  const Eigen::Vector3d axis = joint_axis(skeleton, angle.joint, angle.axis);
+  const double radians = angle.angle_deg * std::numbers::pi / 180;
+  return {skeleton.index_of(angle.joint), Eigen::Quaterniond(Eigen::AngleAxisd(radians, axis))};
+}
+
+}  // namespace geoprior

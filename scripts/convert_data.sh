@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Converts the models of Debian's assimp-testmodels that the experiments use into data/ (ignored by
+# git). Idempotent: what is there and newer than its source is left alone. Needs no network.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+models="$(dpkg -L assimp-testmodels 2>/dev/null | grep -m1 '/Collada/human\.zae$' || true)"
+models="${models%/Collada/human.zae}"
+if [[ -z "$models" || ! -d "$models" ]]; then
+  echo "convert_data: the package assimp-testmodels is not installed" >&2
+  exit 2
+fi
+if ! command -v assimp >/dev/null; then
+  echo "convert_data: the program assimp (package assimp-utils) is not installed" >&2
+  exit 2
+fi
+
+# convert <source below the models> <target in data/>
+convert() {
+  local source="$models/$1" target="data/$2" temporary log
+  if [[ -s "$target" && ! "$source" -nt "$target" ]]; then
+    echo "convert_data: $target is there"
+    return
+  fi
+  if [[ ! -r "$source" ]]; then
+    echo "convert_data: $source is missing" >&2
+    exit 2
+  fi
+  mkdir -p data
+  temporary="$(mktemp "data/.converting.XXXXXX")"
+  trap 'rm -f "$temporary"' EXIT
+  if ! log="$(assimp export "$source" "$temporary" -fglb2 2>&1)" || [[ ! -s "$temporary" ]]; then
+    echo "$log" >&2
+    echo "convert_data: assimp could not convert $source" >&2
+    exit 2
+  fi
+  chmod 644 "$temporary"
+  mv "$temporary" "$target"
+  trap - EXIT
+  echo "convert_data: $source -> $target"
+}
+
+convert Collada/human.zae human.glb
+convert FBX/animation_with_skeleton.fbx animation_with_skeleton.glb
