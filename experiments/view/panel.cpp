@@ -61,8 +61,8 @@ vtkSmartPointer<vtkActor> make_actor(const Part& part, const std::optional<Color
   const auto& color = thin ? kLineColor : kSurfaceColor;
   material->SetColor(color[0], color[1], color[2]);
   material->SetInterpolationToPhong();
-  material->SetAmbient(colored ? 0.30 : 0.22);
-  material->SetDiffuse(0.82);
+  material->SetAmbient(colored ? 0.26 : 0.22);
+  material->SetDiffuse(colored ? 0.70 : 0.82);
   material->SetSpecular(colored ? 0.05 : 0.14);
   material->SetSpecularPower(22);
   return actor;

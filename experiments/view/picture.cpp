@@ -5,6 +5,7 @@
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
 #include <vtkTextProperty.h>
+#include <vtkUnicodeString.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
@@ -32,6 +33,25 @@ void apply(const TextStyle& style, vtkTextProperty* property) {
   property->SetOrientation(style.vertical ? 90 : 0);
   property->SetColor(style.color[0] / 255.0, style.color[1] / 255.0, style.color[2] / 255.0);
 }
+
+// VTK 9.1 drops every character outside ASCII from a std::string; the overloads that do not are
+// marked deprecated in favour of it.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
+std::array<int, 4> text_box(vtkTextProperty* property, const std::string& text) {
+  std::array<int, 4> box{};
+  vtkFreeTypeTools::GetInstance()->GetBoundingBox(property, vtkUnicodeString::from_utf8(text), kDpi,
+                                                  box.data());
+  return box;
+}
+
+bool text_image(vtkTextProperty* property, const std::string& text, vtkImageData* image) {
+  std::array<int, 2> size{};
+  vtkFreeTypeTools* tools = vtkFreeTypeTools::GetInstance();
+  tools->ScaleToPowerTwoOff();
+  return tools->RenderString(property, vtkUnicodeString::from_utf8(text), kDpi, image, size.data());
+}
+#pragma GCC diagnostic pop
 
 }  // namespace
 
@@ -87,8 +107,7 @@ int text_width(const std::string& text, const TextStyle& style) {
   vtkNew<vtkTextProperty> property;
   apply(style, property);
   property->SetOrientation(0);
-  std::array<int, 4> box{};
-  vtkFreeTypeTools::GetInstance()->GetBoundingBox(property, text, kDpi, box.data());
+  const std::array<int, 4> box = text_box(property, text);
   return box[1] - box[0] + 1;
 }
 
@@ -97,11 +116,8 @@ void draw_text(Picture& picture, const std::string& text, int x, int baseline, A
   if (text.empty()) return;
   vtkNew<vtkTextProperty> property;
   apply(style, property);
-  vtkFreeTypeTools* tools = vtkFreeTypeTools::GetInstance();
-  tools->ScaleToPowerTwoOff();
   vtkNew<vtkImageData> image;
-  std::array<int, 2> size{};
-  if (!tools->RenderString(property, text, kDpi, image, size.data())) {
+  if (!text_image(property, text, image)) {
     throw Error("text could not be drawn", "'" + text + "'");
   }
   const int length = text_width(text, style);
