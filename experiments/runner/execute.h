@@ -15,12 +15,14 @@ struct ExecuteRequest {
   bool resume = false;
   bool show_progress = false;  ///< bar on stderr
   bool timing = true;          ///< run the benchmark after the frames
+  bool pictures = true;        ///< figure.png, metrics.svg, summary.md when the run is finished
 };
 
 struct ExecuteResult {
   std::filesystem::path folder;
   RunRecord record;
-  bool stopped = false;  ///< Ctrl-C: the folder can be resumed
+  bool stopped = false;       ///< Ctrl-C: the folder can be resumed
+  bool was_finished = false;  ///< --resume of a finished run: nothing was done
 };
 
 /// Runs an experiment: load each case's scene, run its variants, record, measure, time, decide

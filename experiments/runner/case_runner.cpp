@@ -1,0 +1,266 @@
+#include "experiments/runner/case_runner.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "experiments/runner/benchmark.h"
+#include "experiments/runner/measure.h"
+#include "experiments/runner/sha256.h"
+#include "experiments/runner/stop.h"
+
+namespace geoprior {
+
+namespace {
+
+const MethodEntry& method_of(const Topic& topic, const std::string& name) {
+  std::string allowed;
+  for (const MethodEntry& entry : topic.methods) {
+    if (entry.name == name) return entry;
+    allowed += (allowed.empty() ? "" : ", ") + entry.name;
+  }
+  throw Error("unknown method '" + name + "'", "topic '" + topic.name + "'", allowed);
+}
+
+const VariantSpec* find_variant(const std::vector<VariantSpec>& variants, const std::string& name) {
+  for (const VariantSpec& variant : variants) {
+    if (variant.name == name) return &variant;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<const VariantSpec*> references_first(const std::vector<VariantSpec>& variants) {
+  std::vector<const VariantSpec*> order;
+  const auto placed = [&](const VariantSpec* variant) {
+    return std::find(order.begin(), order.end(), variant) != order.end();
+  };
+  while (order.size() < variants.size()) {
+    const std::size_t before = order.size();
+    for (const VariantSpec& variant : variants) {
+      if (placed(&variant)) continue;
+      const VariantSpec* reference =
+          variant.reference ? find_variant(variants, *variant.reference) : nullptr;
+      // A reference left out by --variant is no obstacle: its metrics are then absent.
+      if (reference == nullptr || placed(reference) || reference == &variant) {
+        order.push_back(&variant);
+        break;  // start over: keeps the given order wherever references allow it
+      }
+    }
+    if (order.size() == before) throw Error("variants refer to each other in a circle");
+  }
+  return order;
+}
+
+/// Receives what a process pushes; the process' clock stands still meanwhile.
+class CaseRunner::Sink final : public FrameSink {
+ public:
+  Sink(CaseRunner& runner, const VariantSpec& variant, TimedContext& context,
+       const journal::Numbers& earlier)
+      : runner_(runner), variant_(variant), context_(context), earlier_(earlier) {}
+
+  void frame(Frame frame) override {
+    const TimedContext::Pause pause(context_);
+    runner_.record_frame(variant_, std::move(frame));
+  }
+  void event(const Event& event) override {
+    const TimedContext::Pause pause(context_);
+    // Not flushed: an event is safe with the next frame or checkpoint, and void without it.
+    runner_.recorder_.add(journal::EventLine{runner_.place(variant_), event}, false);
+  }
+  void artifact(Artifact artifact) override {
+    const TimedContext::Pause pause(context_);
+    runner_.recorder_.write_artifact(runner_.place(variant_), artifact);
+  }
+  void checkpoint(const State& state) override {
+    journal::Numbers seconds = earlier_;
+    for (const auto& [phase, value] : context_.phases()) seconds[phase] += value;
+    const TimedContext::Pause pause(context_);
+    runner_.recorder_.write_checkpoint(runner_.place(variant_), state, seconds);
+  }
+
+ private:
+  CaseRunner& runner_;
+  const VariantSpec& variant_;
+  TimedContext& context_;
+  const journal::Numbers& earlier_;
+};
+
+CaseRunner::CaseRunner(const Experiment& experiment, const CaseSpec& spec, const Topic& topic,
+                       Recorder& recorder, RunState& state, Progress& progress)
+    : experiment_(experiment),
+      spec_(spec),
+      topic_(topic),
+      recorder_(recorder),
+      state_(state),
+      progress_(progress) {}
+
+void CaseRunner::load(const OptionSet& options, std::vector<StoredFile> inputs) {
+  const auto begin = std::chrono::steady_clock::now();
+  scene_ = topic_.load(options, experiment_.file.parent_path());
+  journal::CaseLine line;
+  line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  line.case_name = spec_.name;
+  line.parameter_name = scene_->parameter_name();
+  line.parameter_unit = scene_->parameter_unit();
+  line.facts = scene_->facts();
+  line.warnings = scene_->warnings();
+  for (const auto& file : scene_->inputs()) {
+    inputs.push_back({file.filename().string(), sha256_of_file(file)});
+  }
+  line.inputs = std::move(inputs);
+  const CaseState& known = state_.case_of(spec_.name);
+  if (!known.inputs) {
+    for (const std::string& warning : line.warnings) progress_.say("warning: " + warning);
+    recorder_.add(line);
+    return;
+  }
+  const auto same = [](const StoredFile& a, const StoredFile& b) {
+    return a.name == b.name && a.sha256 == b.sha256;
+  };
+  if (!std::equal(line.inputs.begin(), line.inputs.end(), known.inputs->begin(),
+                  known.inputs->end(), same)) {
+    throw Error("the input files are not those that the run began with: it cannot be resumed",
+                "case '" + spec_.name + "'", "a new run");
+  }
+}
+
+MethodEntry::Instance& CaseRunner::prepare(const VariantSpec& variant, bool log) {
+  if (const auto found = prepared_.find(variant.name); found != prepared_.end()) {
+    return found->second;
+  }
+  TimedContext context(spec_.seed);
+  const MethodEntry& entry = method_of(topic_, variant.method);
+  std::optional<MethodEntry::Instance> instance;
+  {
+    const Phase phase(context, "prepare");
+    instance = entry.make(*scene_, *variant.options, context);
+  }
+  if (log) recorder_.add(journal::BeginLine{place(variant), context.take_phases()});
+  return prepared_.emplace(variant.name, std::move(*instance)).first->second;
+}
+
+std::optional<Frame> CaseRunner::reference_frame(const VariantSpec& variant, double parameter) {
+  if (!variant.reference || !has_reference_metrics(topic_)) return std::nullopt;
+  const VariantSpec* reference = find_variant(spec_.variants, *variant.reference);
+  if (reference == nullptr || reference == &variant) return std::nullopt;
+  const VariantRecord& record = state_of(*reference).record;
+  const int index = frame_of_parameter(record.frames, parameter);
+  if (index < 0) return std::nullopt;
+  return recorder_.read_frame(record, static_cast<std::size_t>(index));
+}
+
+void CaseRunner::record_frame(const VariantSpec& variant, Frame frame) {
+  const std::size_t index = state_of(variant).record.frames.size();
+  require_finite(frame, index, variant.method);
+  journal::FrameLine line;
+  line.place = place(variant);
+  line.index = index;
+  line.parameter = frame.parameter;
+  line.files = recorder_.write_frame(line.place, index, frame);
+  const std::optional<Frame> reference = reference_frame(variant, frame.parameter);
+  line.metrics = measure_frame(topic_, *scene_, frame, reference ? &*reference : nullptr);
+  line.diagnostics = frame.diagnostics;
+  recorder_.add(line);
+  if (has_sequence_metrics(topic_)) kept_[index] = std::move(frame);
+}
+
+bool CaseRunner::run_poses(const VariantSpec& variant, PoseMethod& method, TimedContext& context) {
+  const std::vector<double> parameters = scene_->parameters();
+  for (std::size_t i = state_of(variant).record.frames.size(); i < parameters.size(); ++i) {
+    if (stop_requested()) return false;
+    method.solve(parameters[i], context);
+    // A method that broke off its solve has no state worth recording.
+    if (context.stop_was_told()) return false;
+    Frame frame = method.frame();
+    frame.parameter = parameters[i];
+    record_frame(variant, std::move(frame));
+    progress_.fraction(static_cast<double>(i + 1) / static_cast<double>(parameters.size()));
+  }
+  return true;
+}
+
+bool CaseRunner::run_process(const VariantSpec& variant, Process& process, TimedContext& context,
+                             journal::Numbers& seconds) {
+  const std::optional<State> from = recorder_.prepare_resume(place(variant), true);
+  const auto& checkpoint = state_of(variant).checkpoint;
+  const journal::Numbers earlier = from ? checkpoint->timing : journal::Numbers{};
+  Sink sink(*this, variant, context, earlier);
+  {
+    const Phase phase(context, "run");
+    process.run(sink, context, from);
+  }
+  seconds = earlier;
+  for (const auto& [phase, value] : context.take_phases()) seconds[phase] += value;
+  return !context.stop_was_told();
+}
+
+void CaseRunner::finish(const VariantSpec& variant, const journal::Numbers& seconds) {
+  journal::EndLine line{place(variant), {}, seconds};
+  const VariantRecord& record = state_of(variant).record;
+  if (has_sequence_metrics(topic_)) {
+    std::vector<Frame> frames;
+    for (std::size_t i = 0; i < record.frames.size(); ++i) {
+      const auto kept = kept_.find(i);
+      frames.push_back(kept != kept_.end() ? std::move(kept->second)
+                                           : recorder_.read_frame(record, i));
+    }
+    kept_.clear();
+    line.summary = measure_sequence(topic_, *scene_, std::move(frames));
+  }
+  recorder_.write_collection(line.place);
+  recorder_.add(line);
+}
+
+bool CaseRunner::run_variant(const VariantSpec& variant) {
+  progress_.begin(experiment_.id + " " + spec_.name + "/" + variant.name);
+  kept_.clear();
+  MethodEntry::Instance& instance = prepare(variant, true);
+  TimedContext context(spec_.seed, [this](double done) { progress_.fraction(done); });
+  journal::Numbers seconds;
+  bool complete = false;
+  if (auto* method = std::get_if<std::unique_ptr<PoseMethod>>(&instance)) {
+    recorder_.prepare_resume(place(variant), false);
+    complete = run_poses(variant, **method, context);
+  } else {
+    auto& process = std::get<std::unique_ptr<Process>>(instance);
+    complete = run_process(variant, *process, context, seconds);
+  }
+  if (!complete) return false;
+  finish(variant, seconds);
+  progress_.end();
+  return true;
+}
+
+void CaseRunner::log_error(const journal::Place& at, const std::string& message) {
+  try {
+    recorder_.add(journal::ErrorLine{at, message});
+  } catch (const Error&) {
+    // Disk full, most likely: the message is on its way to the person anyway.
+  }
+}
+
+bool CaseRunner::run(const OptionSet& options, std::vector<StoredFile> inputs, bool timing) {
+  load(options, std::move(inputs));
+  for (const VariantSpec* variant : references_first(spec_.variants)) {
+    if (state_of(*variant).ended) {
+      progress_.skip();
+      continue;
+    }
+    if (stop_requested()) return false;
+    try {
+      if (!run_variant(*variant)) return false;
+    } catch (const Error& error) {
+      const std::string where = "case '" + spec_.name + "', variant '" + variant->name + "'";
+      log_error(place(*variant), error.what());
+      throw Error(error.what(), where);
+    }
+  }
+  if (!timing || state_.case_of(spec_.name).timed) return true;
+  progress_.begin(experiment_.id + " " + spec_.name + ": timing");
+  if (!time_variants()) return false;
+  progress_.end();
+  return true;
+}
+
+}  // namespace geoprior

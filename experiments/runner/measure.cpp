@@ -1,0 +1,120 @@
+#include "experiments/runner/measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "experiments/runner/number_text.h"
+#include "experiments/runner/timing_statistics.h"
+
+namespace geoprior {
+
+namespace {
+
+constexpr double kEqualParameters = 1e-9;
+
+const char* direction_text(Direction direction) {
+  switch (direction) {
+    case Direction::lower_is_better:
+      return "lower_is_better";
+    case Direction::higher_is_better:
+      return "higher_is_better";
+    case Direction::closer_to_target:
+      return "closer_to_target";
+    case Direction::none:
+      break;
+  }
+  return "none";
+}
+
+const MetricEntry* find_metric(const Topic& topic, const std::string& name) {
+  for (const MetricEntry& metric : topic.metrics) {
+    if (metric.name == name) return &metric;
+  }
+  return nullptr;
+}
+
+template <class Of>
+std::map<std::string, double> values_of(const Topic& topic, const std::string& where, Of of) {
+  std::map<std::string, double> values;
+  for (const MetricEntry& metric : topic.metrics) {
+    try {
+      if (const std::optional<double> value = of(metric)) values[metric.name] = *value;
+    } catch (const Error& error) {
+      throw Error(error.what(), "metric '" + metric.name + "'" + where);
+    }
+  }
+  return values;
+}
+
+void summarise_column(const std::string& name, const MetricColumn& column, VariantRecord& variant) {
+  std::vector<double> values;
+  std::copy_if(column.values.begin(), column.values.end(), std::back_inserter(values),
+               [](double x) { return !std::isnan(x); });
+  if (values.empty()) return;
+  const auto put = [&](const char* which, const char* of, double value) {
+    variant.summary[name + which] = {value, column.unit, of + column.definition, column.direction};
+  };
+  put(".max", "Largest over the frames. ", *std::max_element(values.begin(), values.end()));
+  put(".min", "Smallest over the frames. ", *std::min_element(values.begin(), values.end()));
+  put(".median", "Median over the frames. ", median(values));
+  put(".last", "At the last frame that has a value. ", values.back());
+}
+
+}  // namespace
+
+int frame_of_parameter(const std::vector<FrameRecord>& frames, double parameter) {
+  const auto matches = [&](const FrameRecord& frame) {
+    const double scale = std::max({1.0, std::abs(parameter), std::abs(frame.parameter)});
+    return std::abs(frame.parameter - parameter) <= kEqualParameters * scale;
+  };
+  const auto found = std::find_if(frames.begin(), frames.end(), matches);
+  return found == frames.end() ? -1 : static_cast<int>(found - frames.begin());
+}
+
+std::map<std::string, double> measure_frame(const Topic& topic, const Scene& scene,
+                                            const Frame& frame, const Frame* reference) {
+  return values_of(topic, " at parameter " + number_text(frame.parameter),
+                   [&](const MetricEntry& metric) -> std::optional<double> {
+                     if (!metric.of_frame) return std::nullopt;
+                     if (metric.needs_reference && reference == nullptr) return std::nullopt;
+                     return metric.of_frame(scene, frame, reference);
+                   });
+}
+
+std::map<std::string, double> measure_sequence(const Topic& topic, const Scene& scene,
+                                               std::vector<Frame> frames) {
+  std::stable_sort(frames.begin(), frames.end(),
+                   [](const Frame& a, const Frame& b) { return a.parameter < b.parameter; });
+  return values_of(topic, "", [&](const MetricEntry& metric) -> std::optional<double> {
+    if (!metric.of_sequence) return std::nullopt;
+    return metric.of_sequence(scene, frames);
+  });
+}
+
+bool has_sequence_metrics(const Topic& topic) {
+  return std::any_of(topic.metrics.begin(), topic.metrics.end(),
+                     [](const MetricEntry& metric) { return bool(metric.of_sequence); });
+}
+
+bool has_reference_metrics(const Topic& topic) {
+  return std::any_of(topic.metrics.begin(), topic.metrics.end(),
+                     [](const MetricEntry& metric) { return metric.needs_reference; });
+}
+
+void summarise(const Topic& topic, VariantRecord& variant) {
+  const auto describe_column = [&](const std::string& name, auto& column) {
+    if (const MetricEntry* metric = find_metric(topic, name)) {
+      column.unit = metric->unit;
+      column.definition = metric->definition;
+      column.direction = direction_text(metric->direction);
+    }
+  };
+  for (auto& [name, value] : variant.summary) describe_column(name, value);
+  for (auto& [name, column] : variant.metrics) {
+    describe_column(name, column);
+    summarise_column(name, column, variant);
+  }
+}
+
+}  // namespace geoprior

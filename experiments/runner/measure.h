@@ -1,0 +1,30 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "experiments/runner/run_record.h"
+#include "experiments/topic.h"
+
+namespace geoprior {
+
+/// Index of the frame of equal parameter (relative difference at most 1e-9), or -1.
+int frame_of_parameter(const std::vector<FrameRecord>& frames, double parameter);
+
+/// Values of the topic's frame metrics at a frame; those without meaning there are absent.
+std::map<std::string, double> measure_frame(const Topic& topic, const Scene& scene,
+                                            const Frame& frame, const Frame* reference);
+
+/// Values of the topic's sequence metrics. `frames` is sorted by parameter.
+std::map<std::string, double> measure_sequence(const Topic& topic, const Scene& scene,
+                                               std::vector<Frame> frames);
+
+bool has_sequence_metrics(const Topic& topic);
+bool has_reference_metrics(const Topic& topic);
+
+/// Adds "<metric>.max", ".min", ".median" and ".last" to the summary, and unit, definition and
+/// direction from the topic's table to every column.
+void summarise(const Topic& topic, VariantRecord& variant);
+
+}  // namespace geoprior
