@@ -22,7 +22,8 @@ void require_positive(double x, const char* what) {
 }
 
 /// Triangles of `rings` rings of `segments` vertices between two poles (the first and the last
-/// vertex), outward. Diagonals alternate, so that no direction of twist is preferred.
+/// vertex), outward. Odd rings are turned by half a segment: every inner vertex has six neighbours
+/// and no direction of twist is preferred.
 Eigen::MatrixX3i revolution_triangles(int rings, int segments) {
   Eigen::MatrixX3i F(2 * segments * rings, 3);
   const int last_pole = 1 + rings * segments;
@@ -32,12 +33,12 @@ Eigen::MatrixX3i revolution_triangles(int rings, int segments) {
   for (int i = 0; i + 1 < rings; ++i) {
     for (int k = 0; k < segments; ++k) {
       const int a = id(i, k), b = id(i, k + 1), c = id(i + 1, k + 1), d = id(i + 1, k);
-      if ((i + k) % 2 == 0) {
-        F.row(row++) << a, b, c;
-        F.row(row++) << a, c, d;
-      } else {
+      if (i % 2 == 0) {
         F.row(row++) << a, b, d;
         F.row(row++) << b, c, d;
+      } else {
+        F.row(row++) << a, b, c;
+        F.row(row++) << a, c, d;
       }
     }
   }
@@ -52,9 +53,10 @@ TriMesh surface_of_revolution(const Profile& profile, int segments) {
   mesh.V.resize(2 + rings * segments, 3);
   mesh.V.row(0) << profile.first_pole, 0, 0;
   Eigen::Index row = 1;
-  for (const Eigen::Vector2d& ring : profile.rings) {
+  for (int i = 0; i < rings; ++i) {
+    const Eigen::Vector2d& ring = profile.rings[static_cast<std::size_t>(i)];
     for (int k = 0; k < segments; ++k) {
-      const double angle = 2 * std::numbers::pi * k / segments;
+      const double angle = 2 * std::numbers::pi * (k + 0.5 * (i % 2)) / segments;
       mesh.V.row(row++) << ring.x(), ring.y() * std::cos(angle), ring.y() * std::sin(angle);
     }
   }

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <array>
-#include <memory>
 
 #include "baselines/skinning/lanes.h"
 #include "core/error.h"
@@ -56,10 +55,10 @@ struct Four {
 }
 
 [[gnu::always_inline]] inline void add(Four& sum, const Double4& w, const Four& q) {
-  sum.x += lanes::all(w[0]) * q.x;
-  sum.y += lanes::all(w[1]) * q.y;
-  sum.z += lanes::all(w[2]) * q.z;
-  sum.w += lanes::all(w[3]) * q.w;
+  sum.x = lanes::multiply_add(lanes::spread<0>(w), q.x, sum.x);
+  sum.y = lanes::multiply_add(lanes::spread<1>(w), q.y, sum.y);
+  sum.z = lanes::multiply_add(lanes::spread<2>(w), q.z, sum.z);
+  sum.w = lanes::multiply_add(lanes::spread<3>(w), q.w, sum.w);
 }
 
 [[gnu::always_inline]] inline Four dual_parts(const DualQuaternion* table,
@@ -114,20 +113,17 @@ void DualQuaternionBlend::deform(const Pose& pose, Eigen::MatrixX3d& posed) cons
     throw Error("pose of " + std::to_string(pose.size()) + " transforms", "dual quaternion blend",
                 std::to_string(influences_.joint_count));
   }
-  constexpr std::size_t kOnStack = 256;
-  std::array<DualQuaternion, kOnStack> on_stack;
-  std::unique_ptr<DualQuaternion[]> on_heap;
-  if (pose.size() > kOnStack) on_heap = std::make_unique<DualQuaternion[]>(pose.size());
-  DualQuaternion* table = on_heap ? on_heap.get() : on_stack.data();
+  lanes::JointTable<DualQuaternion> table(pose.size());
   for (std::size_t j = 0; j < pose.size(); ++j) {
     if (!pose[j].matrix().allFinite())
       throw Error("transform is not finite", "joint " + std::to_string(j) + " of the pose");
     table[j] = dual_quaternion(pose[j], heads_[j]);
   }
   posed.resize(influences_.vertex_count, 3);
-  const auto kernel = [table](const lanes::Block& block, Double4& x, Double4& y, Double4& z) {
+  const auto kernel = [q = table.data()](const lanes::Block& block, Double4& x, Double4& y,
+                                         Double4& z) {
     Four real, dual;
-    blend(table, block, real, dual);
+    blend(q, block, real, dual);
     transform(real, dual, block.rest, x, y, z);
   };
   parallel_blocks(influences_.chunk_slots.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <memory>
 
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -10,7 +14,7 @@
 #include "baselines/skinning/influences.h"
 
 // Four doubles at a time, for the sources of this folder only. GCC's vector types compile for every
-// instruction set (two SSE2 registers where there is no AVX) and round alike on all of them.
+// instruction set (two SSE2 registers where there is no AVX).
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"  // every function here is inlined: no ABI is crossed
@@ -27,9 +31,13 @@ using Float4 [[gnu::vector_size(16)]] = float;
 }
 
 [[gnu::always_inline]] inline Double4 load(const float* p) {
+#if defined(__AVX__)
+  return _mm256_cvtps_pd(_mm_loadu_ps(p));
+#else
   Float4 x;
   std::memcpy(&x, p, sizeof x);
   return __builtin_convertvector(x, Double4);
+#endif
 }
 
 [[gnu::always_inline]] inline void store(double* p, const Double4& x) {
@@ -37,6 +45,23 @@ using Float4 [[gnu::vector_size(16)]] = float;
 }
 
 [[gnu::always_inline]] inline Double4 all(double x) { return Double4{x, x, x, x}; }
+
+/// a b + c; fused where the instruction set has it (its results differ in the last bit from sets
+/// that have not).
+[[gnu::always_inline]] inline Double4 multiply_add(const Double4& a, const Double4& b,
+                                                   const Double4& c) {
+#if defined(__FMA__) && defined(__AVX__)
+  return _mm256_fmadd_pd(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+
+/// Element `lane` in all places.
+template <int lane>
+[[gnu::always_inline]] inline Double4 spread(const Double4& x) {
+  return __builtin_shufflevector(x, x, lane, lane, lane, lane);
+}
 
 /// Rows become columns.
 [[gnu::always_inline]] inline void transpose(Double4& a, Double4& b, Double4& c, Double4& d) {
@@ -82,6 +107,23 @@ inline void stream_fence() {
   _mm_sfence();
 #endif
 }
+
+/// One value a joint for the length of a call; on the stack up to 256 joints.
+template <class Value>
+class JointTable {
+ public:
+  explicit JointTable(std::size_t joints) {
+    if (joints > on_stack_.size()) on_heap_ = std::make_unique<Value[]>(joints);
+    values_ = on_heap_ ? on_heap_.get() : on_stack_.data();
+  }
+  Value& operator[](std::size_t joint) { return values_[joint]; }
+  [[nodiscard]] const Value* data() const { return values_; }
+
+ private:
+  std::array<Value, 256> on_stack_;
+  std::unique_ptr<Value[]> on_heap_;
+  Value* values_;
+};
 
 /// Above this many vertices the posed positions do not stay in a cache anyway (24 MB), and are
 /// written past it.

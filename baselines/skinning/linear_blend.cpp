@@ -11,25 +11,59 @@ namespace {
 
 using lanes::Double4;
 
-static_assert(sizeof(Eigen::Affine3d) == 16 * sizeof(double));
+/// Upper three rows of a transform, padded to two cache lines: a joint's index becomes its address
+/// by one shift.
+struct alignas(128) Rows {
+  std::array<double, 12> row;
+};
 
-/// Columns of the blended 3 x 4 matrix of one vertex, applied to its rest position.
-[[gnu::always_inline]] inline Double4 blend(const Eigen::Affine3d* pose, const lanes::Block& block,
-                                            const Double4& first_weight, int lane) {
-  const double* T = pose[block.joints[lane]].data();
-  const Double4 w = lanes::all(first_weight[lane]);
-  Double4 c0 = w * lanes::load(T), c1 = w * lanes::load(T + 4), c2 = w * lanes::load(T + 8),
-          c3 = w * lanes::load(T + 12);
-  for (int s = 1; s < block.slots; ++s) {
-    T = pose[block.joints[4 * s + lane]].data();
-    const Double4 ws = lanes::all(static_cast<double>(block.weights[4 * (s - 1) + lane]));
-    c0 += ws * lanes::load(T);
-    c1 += ws * lanes::load(T + 4);
-    c2 += ws * lanes::load(T + 8);
-    c3 += ws * lanes::load(T + 12);
+struct Blended {
+  Double4 row0, row1, row2;
+};
+
+template <int lane>
+[[gnu::always_inline]] inline void add(const Rows* table, std::uint16_t joint,
+                                       const Double4& weights, Blended& sum) {
+  const double* row = table[joint].row.data();
+  const Double4 w = lanes::spread<lane>(weights);
+  sum.row0 = lanes::multiply_add(w, lanes::load(row), sum.row0);
+  sum.row1 = lanes::multiply_add(w, lanes::load(row + 4), sum.row1);
+  sum.row2 = lanes::multiply_add(w, lanes::load(row + 8), sum.row2);
+}
+
+/// Rows of the blended matrix of one vertex. `Slots` > 0 is the number of influences known when
+/// compiling; 0 asks the block. The strongest influence comes last: its weight is known last.
+template <int Slots, int lane>
+[[gnu::always_inline]] inline Blended blend(const Rows* table, const lanes::Block& block,
+                                            const Double4& first_weight) {
+  Blended sum{lanes::all(0), lanes::all(0), lanes::all(0)};
+  const int slots = Slots > 0 ? Slots : block.slots;
+#pragma GCC unroll 4
+  for (int s = 1; s < slots; ++s) {
+    add<lane>(table, block.joints[4 * s + lane], lanes::load(block.weights + 4 * (s - 1)), sum);
   }
-  return (c0 * lanes::all(block.rest[lane]) + c1 * lanes::all(block.rest[4 + lane])) +
-         (c2 * lanes::all(block.rest[8 + lane]) + c3);
+  add<lane>(table, block.joints[lane], first_weight, sum);
+  return sum;
+}
+
+/// One row of four blended matrices, applied to the four rest positions.
+[[gnu::always_inline]] inline Double4 apply(Double4 a, Double4 b, Double4 c, Double4 d,
+                                            const Double4& x, const Double4& y, const Double4& z) {
+  lanes::transpose(a, b, c, d);
+  return lanes::multiply_add(a, x, lanes::multiply_add(b, y, lanes::multiply_add(c, z, d)));
+}
+
+template <int Slots>
+[[gnu::always_inline]] inline void blend_block(const Rows* table, const lanes::Block& block,
+                                               Double4& x, Double4& y, Double4& z) {
+  const Double4 w = lanes::first_weight(block);
+  const Blended a = blend<Slots, 0>(table, block, w), b = blend<Slots, 1>(table, block, w),
+                c = blend<Slots, 2>(table, block, w), d = blend<Slots, 3>(table, block, w);
+  const Double4 rest_x = lanes::load(block.rest), rest_y = lanes::load(block.rest + 4),
+                rest_z = lanes::load(block.rest + 8);
+  x = apply(a.row0, b.row0, c.row0, d.row0, rest_x, rest_y, rest_z);
+  y = apply(a.row1, b.row1, c.row1, d.row1, rest_x, rest_y, rest_z);
+  z = apply(a.row2, b.row2, c.row2, d.row2, rest_x, rest_y, rest_z);
 }
 
 }  // namespace
@@ -41,15 +75,25 @@ void LinearBlend::deform(const Pose& pose, Eigen::MatrixX3d& posed) const {
     throw Error("pose of " + std::to_string(pose.size()) + " transforms", "linear blend",
                 std::to_string(influences_.joint_count));
   }
+  lanes::JointTable<Rows> table(pose.size());
+  for (std::size_t j = 0; j < pose.size(); ++j)
+    Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(table[j].row.data()) =
+        pose[j].matrix().topRows<3>();
   posed.resize(influences_.vertex_count, 3);
-  const auto kernel = [T = pose.data()](const lanes::Block& block, Double4& x, Double4& y,
-                                        Double4& z) {
-    const Double4 w = lanes::first_weight(block);
-    x = blend(T, block, w, 0);
-    y = blend(T, block, w, 1);
-    z = blend(T, block, w, 2);
-    Double4 homogeneous = blend(T, block, w, 3);
-    lanes::transpose(x, y, z, homogeneous);
+  const auto kernel = [T = table.data()](const lanes::Block& block, Double4& x, Double4& y,
+                                         Double4& z) {
+    switch (block.slots) {
+      case 1:
+        return blend_block<1>(T, block, x, y, z);
+      case 2:
+        return blend_block<2>(T, block, x, y, z);
+      case 3:
+        return blend_block<3>(T, block, x, y, z);
+      case 4:
+        return blend_block<4>(T, block, x, y, z);
+      default:
+        return blend_block<0>(T, block, x, y, z);
+    }
   };
   parallel_blocks(influences_.chunk_slots.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk)
