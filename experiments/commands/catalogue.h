@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace geoprior {
+
+/// An experiment file of the clone, as `list` shows it.
+struct CatalogueEntry {
+  std::string id;
+  std::string title;
+  std::string figure;
+  std::string topic;
+  std::filesystem::path file;
+};
+
+/// experiments/<topic>/<name>.toml of the clone, sorted; files with a second dot in their name
+/// (human.skeleton.toml) are inputs.
+std::vector<CatalogueEntry> catalogue();
+
+/// The file of an identifier of the catalogue, or a file that is named itself.
+/// @throws Error  naming identifiers that are near
+std::filesystem::path experiment_file(const std::string& id_or_file);
+
+/// The folder of a finished run: a folder, its run.h5, or an experiment's newest run.
+/// @throws Error  saying how to make the run
+std::filesystem::path run_folder_of(const std::string& run);
+
+}  // namespace geoprior

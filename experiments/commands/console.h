@@ -1,0 +1,22 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace geoprior {
+
+/// Words for people go to stderr, coloured on a terminal only; JSON for programs goes to stdout.
+
+void say(const std::string& line = {});
+
+enum class Tint { good, bad, strong, faint };
+/// The text in a colour when stderr is a terminal (and NO_COLOR is not set).
+std::string tinted(const std::string& text, Tint tint);
+
+/// Rows of cells, columns aligned; the first row is a heading.
+void say_table(const std::vector<std::vector<std::string>>& rows, const std::string& indent = "  ");
+
+void print_json(const nlohmann::ordered_json& json);
+
+}  // namespace geoprior

@@ -1,0 +1,162 @@
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/console.h"
+#include "experiments/commands/direction_text.h"
+#include "experiments/runner/number_text.h"
+#include "experiments/runner/option_listing.h"
+#include "experiments/runner/spec_tables.h"
+#include "experiments/runner/toml_tree.h"
+
+namespace geoprior {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// One thing that has a name and perhaps options.
+struct Described {
+  std::string kind;   ///< "method", "topic", "metric", "experiment"
+  std::string title;  ///< "skinning/implicit"
+  std::vector<std::pair<std::string, std::string>> facts;
+  std::string options_place;  ///< "[scene]", "options of a [[variant]]"
+  std::vector<OptionRow> options;
+};
+
+std::vector<OptionRow> rows_of(OptionSet& set) {
+  OptionLister lister;
+  set.visit(lister);
+  return lister.rows();
+}
+
+template <class Table>
+Described file_table(const std::string& name) {
+  Table table;
+  OptionLister lister;
+  describe(lister, table);
+  return {"experiment", name, {}, name, lister.rows()};
+}
+
+Described describe_method(const Topic& topic, const MethodEntry& method) {
+  return {"method",
+          topic.name + "/" + method.name,
+          {{"summary", method.summary},
+           {"source", method.source},
+           {"role", method.is_baseline ? "baseline" : "method"}},
+          "options of a [[variant]]",
+          rows_of(*method.default_options())};
+}
+
+Described describe_topic(const Topic& topic) {
+  Described result{"topic", topic.name, {{"summary", topic.summary}}, "[scene]", {}};
+  std::string methods, metrics;
+  for (const auto& m : topic.methods) methods += (methods.empty() ? "" : ", ") + m.name;
+  for (const auto& m : topic.metrics) metrics += (metrics.empty() ? "" : ", ") + m.name;
+  result.facts.emplace_back("methods", methods);
+  result.facts.emplace_back("metrics", metrics);
+  result.options = rows_of(*topic.default_scene());
+  return result;
+}
+
+Described describe_metric(const Topic& topic, const MetricEntry& metric) {
+  Described result{"metric", topic.name + "/" + metric.name, {}, "", {}};
+  result.facts = {{"definition", metric.definition},
+                  {"unit", metric.unit},
+                  {"direction", direction_text(metric.direction)},
+                  {"of", metric.of_frame ? "a frame" : "the sequence of frames"},
+                  {"tolerance", rounded_text(metric.tolerance.absolute) + " + " +
+                                    rounded_text(metric.tolerance.relative) + " * |reference|"}};
+  if (metric.direction == Direction::closer_to_target) {
+    result.facts.emplace_back("target", rounded_text(metric.target));
+  }
+  if (metric.needs_reference) result.facts.emplace_back("needs", "a variant with `reference`");
+  return result;
+}
+
+std::vector<Described> experiment_tables() {
+  return {file_table<HeaderTable>("top of the file"),
+          file_table<VariantTable>("[[variant]]"),
+          file_table<ClaimTable>("[[claim]]"),
+          file_table<SweepTable>("[[sweep]]"),
+          file_table<StudyTable>("[[study]]"),
+          file_table<TimingTable>("[timing]"),
+          file_table<ToleranceTable>("[tolerance] metric = { … }"),
+          file_table<FigureViewTable>("[figure_view]")};
+}
+
+std::vector<Described> find_described(const std::vector<Topic>& topics, const std::string& name) {
+  if (name == "experiment") return experiment_tables();
+  std::vector<Described> found;
+  std::vector<std::string> names{"experiment"};
+  const auto matches = [&](const Topic& topic, const std::string& item) {
+    names.push_back(item);
+    return name == item || name == topic.name + "/" + item;
+  };
+  for (const Topic& topic : topics) {
+    names.push_back(topic.name);
+    if (name == topic.name) found.push_back(describe_topic(topic));
+    for (const MethodEntry& method : topic.methods) {
+      if (matches(topic, method.name)) found.push_back(describe_method(topic, method));
+    }
+    for (const MetricEntry& metric : topic.metrics) {
+      if (matches(topic, metric.name)) found.push_back(describe_metric(topic, metric));
+    }
+  }
+  if (found.empty()) throw Error("unknown name '" + name + "'", "", allowed_names(name, names));
+  return found;
+}
+
+Json json_of(const Described& described) {
+  Json json{{"kind", described.kind}, {"name", described.title}};
+  for (const auto& [key, text] : described.facts) json[key] = text;
+  json["options"] = Json::array();
+  for (const OptionRow& row : described.options) {
+    json["options"].push_back({{"key", row.key},
+                               {"type", row.type},
+                               {"default", row.default_value},
+                               {"range", row.range},
+                               {"unit", row.unit},
+                               {"doc", row.doc}});
+  }
+  return json;
+}
+
+void say_described(const Described& described) {
+  say(tinted(described.title, Tint::strong) + "  " + tinted(described.kind, Tint::faint));
+  for (const auto& [key, text] : described.facts) say("  " + key + ": " + text);
+  if (described.kind == "metric") return;
+  if (described.options.empty()) {
+    say("  no options");
+    return;
+  }
+  say("  " + described.options_place + ":");
+  std::vector<std::vector<std::string>> rows{
+      {"key", "type", "default", "range", "unit", "meaning"}};
+  for (const OptionRow& row : described.options) {
+    rows.push_back({row.key, row.type, row.default_value, row.range, row.unit, row.doc});
+  }
+  say_table(rows, "    ");
+}
+
+}  // namespace
+
+int describe_command(const CommandContext& context, const std::string& name, bool markdown) {
+  const std::vector<Described> found = find_described(context.topics, name);
+  if (context.json) {
+    Json json = Json::array();
+    for (const Described& described : found) json.push_back(json_of(described));
+    print_json(json);
+    return done;
+  }
+  for (const Described& described : found) {
+    if (markdown) {
+      std::cout << "### " << described.title << "\n\n" << markdown_table(described.options) << "\n";
+    } else {
+      say_described(described);
+    }
+  }
+  return done;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,86 @@
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "experiments/commands/catalogue.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/console.h"
+#include "experiments/commands/outcome.h"
+#include "experiments/commands/pictures.h"
+#include "experiments/runner/execute.h"
+#include "experiments/runner/stop.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The command that goes on with a stopped run, as it would be typed.
+std::string resume_command(const RunRequest& request, const fs::path& folder) {
+  std::string command = "geoprior run " + request.experiment.id_or_file;
+  for (const auto& name : request.experiment.load.variants) command += " --variant " + name;
+  for (const auto& set : request.experiment.load.sets) command += " --set '" + set + "'";
+  if (request.experiment.load.quick) command += " --quick";
+  if (request.experiment.load.threads) {
+    command += " --threads " + std::to_string(*request.experiment.load.threads);
+  }
+  return command + " --out " + folder.string() + " --resume";
+}
+
+int report_stop(const CommandContext& context, const RunRequest& request,
+                const ExecuteResult& result) {
+  const std::string command = resume_command(request, result.folder);
+  say("stopped; go on with:  " + command);
+  if (context.json) {
+    print_json({{"stopped", true}, {"run", result.folder.string()}, {"resume", command}});
+  }
+  return wrong_use;
+}
+
+void say_outcome(const ExecuteResult& result, const Pictures& pictures) {
+  const RunRecord& record = result.record;
+  say();
+  say_summary(record);
+  say_studies(record);
+  say_claims(record);
+  if (!record.claims.empty()) say();
+  say("numbers  " + (result.folder / "run.h5").string());
+  if (pictures.figure) say("picture  " + pictures.figure->string());
+  if (pictures.report) say("report   " + pictures.report->string());
+  if (!all_claims_hold(record)) say(tinted("a claim fell short", Tint::bad));
+}
+
+}  // namespace
+
+int run_command(const CommandContext& context, const RunRequest& request) {
+  const fs::path file = experiment_file(request.experiment.id_or_file);
+  const Experiment experiment = load_experiment(file, context.topics, request.experiment.load);
+  install_stop_handler();
+  ExecuteRequest execution;
+  if (request.out) execution.out = *request.out;
+  execution.resume = request.resume;
+  execution.show_progress = isatty(STDERR_FILENO) == 1;
+  say(tinted(experiment.id, Tint::strong) + (experiment.quick ? " (quick)" : "") + "  " +
+      experiment.title);
+  const ExecuteResult result = execute(experiment, context.topics, execution);
+  if (result.stopped) return report_stop(context, request, result);
+
+  Pictures pictures;
+  if (request.pictures) pictures = make_pictures(result.folder, experiment.view);
+  say_outcome(result, pictures);
+  if (context.json) {
+    nlohmann::ordered_json json = outcome_json(result.record, result.folder);
+    json["stopped"] = false;
+    if (pictures.figure) json["figure"] = pictures.figure->string();
+    if (pictures.report) json["report"] = pictures.report->string();
+    print_json(json);
+  }
+  if (!pictures.error.empty()) {
+    say("error: the run is complete, but its pictures are not: " + pictures.error);
+    return wrong_use;
+  }
+  return all_claims_hold(result.record) ? done : fell_short;
+}
+
+}  // namespace geoprior

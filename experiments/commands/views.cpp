@@ -1,0 +1,70 @@
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "experiments/commands/catalogue.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/console.h"
+#include "experiments/commands/pictures.h"
+#include "experiments/runner/run_folder.h"
+#include "experiments/view/view.h"
+
+namespace geoprior {
+
+namespace fs = std::filesystem;
+
+int render_command(const CommandContext& context, const RenderRequest& request) {
+  const fs::path folder = run_folder_of(request.run);
+  FigureView view;
+  if (request.view) {
+    view = load_experiment(experiment_file(*request.view), context.topics, {}).view;
+  } else {
+    const fs::path file = folder / "run.h5";
+    view = figure_view_of(read_run_file(file).experiment_toml, file.string(), context.topics);
+  }
+  render_run(folder, view);
+  const fs::path figure = folder / "figure.png";
+  say("picture  " + figure.string());
+  if (context.json) print_json({{"run", folder.string()}, {"figure", figure.string()}});
+  return done;
+}
+
+int report_command(const CommandContext& context, const ReportRequest& request) {
+  std::vector<fs::path> folders;
+  for (const std::string& run : request.runs) folders.push_back(run_folder_of(run));
+  if (request.runs.empty()) {
+    for (const CatalogueEntry& entry : catalogue()) {
+      try {
+        folders.push_back(run_folder_of(entry.id));
+      } catch (const Error&) {
+        say(tinted(entry.id + " has no run", Tint::faint));
+      }
+    }
+  }
+  if (folders.empty()) throw Error("there are no runs", runs_root().string(), "geoprior run <id>");
+  // Damage is named before Python meets it.
+  for (const fs::path& folder : folders) (void)read_run_file(folder / "run.h5");
+  fs::path page =
+      folders.size() == 1 ? folders.front() / "report.html" : runs_root() / "report.html";
+  if (request.out) page = *request.out;
+  make_report(folders, page);
+  say("report   " + page.string());
+  if (context.json) {
+    nlohmann::ordered_json runs = nlohmann::ordered_json::array();
+    for (const fs::path& folder : folders) runs.push_back(folder.string());
+    print_json({{"report", page.string()}, {"runs", runs}});
+  }
+  return done;
+}
+
+int export_command(const CommandContext& context, const ExportRequest& request) {
+  const fs::path folder = run_folder_of(request.run);
+  const fs::path out = request.out ? fs::path(*request.out) : folder / ("export-" + request.format);
+  export_run(folder, request.format, out);
+  say("exported to " + out.string());
+  if (context.json) {
+    print_json({{"run", folder.string()}, {"format", request.format}, {"out", out.string()}});
+  }
+  return done;
+}
+
+}  // namespace geoprior
