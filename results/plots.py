@@ -1,0 +1,272 @@
+"""Draws metrics.svg of a run: one panel a metric over the parameter, one line a variant; studies as
+log-log plots with their slope.
+
+    python3 results/plots.py RUN_FOLDER [--output FILE]
+"""
+
+import argparse
+import io
+import math
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+import runfile  # noqa: E402
+from wording import display_name, interval, labelled, scale_for, unit_symbol  # noqa: E402
+
+# Okabe and Ito (2008): told apart with any colour vision; line styles and markers for black and white.
+COLORS = ["#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#999999", "#000000"]
+DASHES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1))]
+MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
+METHOD_COLOR = "#D55E00"
+MOST_CASES = 6
+MOST_METRICS = 12
+
+STYLE = {
+    "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 9.5, "axes.titleweight": "bold",
+    "axes.titlelocation": "left", "axes.spines.top": False, "axes.spines.right": False,
+    "axes.linewidth": 0.7, "axes.grid": True, "grid.color": "#e6e6e6", "grid.linewidth": 0.6,
+    "axes.axisbelow": True, "lines.linewidth": 1.6, "lines.markersize": 4, "legend.frameon": False,
+    "svg.fonttype": "path", "svg.hashsalt": "geoprior", "figure.facecolor": "white",
+    "axes.formatter.use_mathtext": True, "axes.formatter.limits": (-3, 4),
+}
+
+
+def styles(run):
+    """Colour, dash and marker of every variant: by its place in the experiment, the same in every
+    panel. The thesis' methods are drawn in one warm colour first, above the baselines."""
+    roles = {v.name: v.role for case in run.cases for v in case.variants}
+    out = {}
+    cool = [c for c in COLORS if c != METHOD_COLOR]
+    methods = [n for n in run.variant_names() if roles[n] == "method"]
+    for i, name in enumerate(run.variant_names()):
+        j = i - sum(1 for m in methods if run.variant_names().index(m) < i)
+        color = METHOD_COLOR if methods[:1] == [name] else cool[j % len(cool)]
+        out[name] = {"color": color, "linestyle": DASHES[(i // len(COLORS) + i) % len(DASHES)],
+                     "marker": MARKERS[i % len(MARKERS)],
+                     "zorder": 4 if roles[name] == "method" else 3}
+        if methods[:1] == [name]:
+            out[name].update(linestyle="-", linewidth=2.2)
+    return out
+
+
+def frame_metrics(run):
+    """Metrics that are drawn: those of figure_view.metrics, else all that vary over the frames."""
+    found = {}
+    for case in run.cases:
+        for variant in case.variants:
+            for name, metric in variant.metrics.items():
+                values = metric.values[np.isfinite(metric.values)]
+                varies = values.size > 1 and np.ptp(values) > 0
+                found[name] = found.get(name, False) or varies
+    wanted = [m for m in run.view.get("metrics", []) if m in found]
+    chosen = wanted or [m for m, varies in found.items() if varies]
+    return chosen[:MOST_METRICS]
+
+
+def shown_cases(run):
+    wanted = run.view.get("cases", [])
+    cases = [c for c in run.cases if not wanted or c.name in wanted]
+    return cases[:MOST_CASES]
+
+
+def noise_floor(case, name, unit):
+    """Largest value that is no signal, where the run measured one: a metric `<x>_noise_floor` speaks
+    for the metrics `<x>…` of its unit."""
+    floors = [0.0]
+    for variant in case.variants:
+        for other, metric in variant.metrics.items():
+            prefix = other.removesuffix("_noise_floor")
+            if prefix != other and name != other and name.startswith(prefix) \
+                    and metric.unit == unit:
+                floors += [v for v in metric.values if math.isfinite(v)]
+    return max(floors)
+
+
+def needs_log(curves):
+    """Positive curves whose peaks lie more than three decades apart cannot share a linear axis."""
+    values = np.concatenate(curves) if curves else np.array([])
+    values = values[np.isfinite(values)]
+    if values.size == 0 or (values < 0).any():
+        return False
+    peaks = [np.nanmax(c) for c in curves if np.isfinite(c).any() and np.nanmax(c) > 0]
+    return len(peaks) > 1 and max(peaks) > 1000 * min(peaks)
+
+
+def set_log_axis(axes, curves):
+    positive = np.concatenate([c[np.isfinite(c) & (c > 0)] for c in curves])
+    smallest = positive.min()
+    if all((c[np.isfinite(c)] > 0).all() for c in curves):
+        axes.set_yscale("log")
+    else:  # zeros stay on the axis, in a linear part below the smallest value
+        axes.set_yscale("symlog", linthresh=max(smallest, positive.max() * 1e-9), linscale=0.5)
+
+
+def mark_every(count):
+    return max(1, math.ceil(count / 12))
+
+
+def draw_metric(axes, case, name, names, look):
+    curves = [(v, v.metrics[name]) for v in case.variants if name in v.metrics and v.name in names]
+    curves = [(v, m) for v, m in curves if np.isfinite(m.values).any()]
+    if not curves:
+        axes.text(0.5, 0.5, "no values", ha="center", va="center", transform=axes.transAxes,
+                  color="#888888")
+        axes.set_title(display_name(name))
+        return
+    unit = curves[0][1].unit
+    size, symbol = scale_for(np.concatenate([m.values for _, m in curves]), unit)
+    scaled = [m.values / size for _, m in curves]
+    for (variant, _), values in zip(curves, scaled):
+        style = dict(look[variant.name])
+        if values.size == 1:
+            style["linestyle"] = "none"
+        axes.plot(variant.parameter, values, label=display_name(variant.name),
+                  markevery=mark_every(values.size), markeredgewidth=0, **style)
+    if needs_log(scaled):
+        set_log_axis(axes, scaled)
+    else:
+        low, high = axes.get_ylim()
+        if low < 0 < high:
+            axes.axhline(0, color="#444444", linewidth=0.7, zorder=2)
+        elif 0 <= low < 0.5 * high:
+            axes.set_ylim(bottom=0)
+    floor = noise_floor(case, name, unit) / size
+    if floor > 0:
+        axes.axhspan(0, floor, color="#d9d9d9", zorder=1, linewidth=0)
+        axes.annotate("noise floor", (1, floor), xycoords=("axes fraction", "data"), ha="right",
+                      va="bottom", fontsize=7, color="#777777")
+    axes.set_title(labelled(display_name(name), symbol))
+
+
+def parameter_label(case):
+    return labelled(display_name(case.parameter_name), unit_symbol(case.parameter_unit))
+
+
+def variants_shown(run):
+    wanted = run.view.get("variants", [])
+    return [n for n in run.variant_names() if not wanted or n in wanted]
+
+
+def add_legend(figure, all_axes, height):
+    handles = {}
+    for axes in all_axes:
+        for handle, label in zip(*axes.get_legend_handles_labels()):
+            handles.setdefault(label, handle)
+    if len(handles) > 0:
+        figure.legend(handles.values(), handles.keys(), loc="upper left", fontsize=9,
+                      ncol=min(6, len(handles)), bbox_to_anchor=(0.01, 1 - 0.04 / height),
+                      handlelength=2.8, columnspacing=1.8, borderaxespad=0)
+
+
+def curves_figure(run):
+    """All metric curves of a run: one case as a grid of panels, a sweep as a row a metric and a
+    column a case. None when nothing varies."""
+    metrics, cases = frame_metrics(run), shown_cases(run)
+    if not metrics or not cases:
+        return None
+    many = len(cases) > 1
+    columns = len(cases) if many else min(3, len(metrics))
+    rows = len(metrics) if many else math.ceil(len(metrics) / columns)
+    look, names = styles(run), variants_shown(run)
+    legend_rows = math.ceil(len(names) / 6)
+    width = 3.55 * columns if columns < 4 else 2.6 * columns
+    height = 2.35 * rows + 0.25 * legend_rows + 0.3
+    figure, grid = plt.subplots(rows, columns, figsize=(width, height), squeeze=False,
+                                sharey="row" if many else False)
+    flat = [a for line in grid for a in line]
+    panels = [(c, m) for m in metrics for c in cases]
+    for axes, (case, metric) in zip(flat, panels):
+        draw_metric(axes, case, metric, names, look)
+        if many:
+            axes.set_title(f"{axes.get_title(loc='left')}\n{case.name}", fontsize=8)
+    for i, axes in enumerate(flat):
+        if i >= len(panels):
+            axes.set_visible(False)
+        elif i + columns >= len(panels):
+            axes.set_xlabel(parameter_label(panels[i][0]))
+    figure.tight_layout(rect=(0, 0, 1, 1 - (0.25 * legend_rows + 0.1) / height), h_pad=1.4)
+    add_legend(figure, flat, height)
+    return figure
+
+
+def studies_with_points(run):
+    return [s for s in run.studies if s.kind in ("exponent", "order") and s.x.size > 1]
+
+
+def draw_study(axes, study):
+    good = (study.x > 0) & (study.y > 0) & np.isfinite(study.x) & np.isfinite(study.y)
+    x, y = study.x[good], study.y[good]
+    is_time = study.quantity.startswith("timing:")
+    size, symbol = scale_for(y, "s") if is_time else (1.0, "")
+    axes.loglog(x, y / size, "o", color=COLORS[0], zorder=3)
+    if x.size > 1 and math.isfinite(study.value):
+        line = np.exp(np.mean(np.log(y / size)) + study.value * (np.log(x) - np.mean(np.log(x))))
+        axes.loglog(x, line, "-", color=METHOD_COLOR, linewidth=1.4,
+                    label=f"slope {interval(study.value, study.low, study.high)}")
+        axes.legend(loc="best", fontsize=8)
+    name = study.quantity.removeprefix("timing:")
+    axes.set_title(display_name(study.name))
+    axes.set_ylabel(labelled(f"{display_name(name)} time" if is_time else display_name(name),
+                             symbol))
+    axes.grid(True, which="both")
+
+
+def studies_figure(run):
+    studies = studies_with_points(run)
+    if not studies:
+        return None
+    columns = min(3, len(studies))
+    rows = math.ceil(len(studies) / columns)
+    figure, grid = plt.subplots(rows, columns, figsize=(3.55 * columns, 2.9 * rows), squeeze=False)
+    flat = [a for line in grid for a in line]
+    for axes, study in zip(flat, studies):
+        draw_study(axes, study)
+    for axes in flat[len(studies):]:
+        axes.set_visible(False)
+    figure.tight_layout()
+    return figure
+
+
+def to_svg(figure):
+    """Deterministic SVG text: no date, fixed ids, text as paths."""
+    out = io.BytesIO()
+    figure.savefig(out, format="svg", metadata={"Date": None, "Creator": "geoprior"})
+    plt.close(figure)
+    return out.getvalue().decode("utf-8")
+
+
+def figures(run):
+    """(title, SVG text) of every figure that the run has data for."""
+    with plt.rc_context(STYLE):
+        drawn = [("Metrics over the frames", curves_figure(run)), ("Studies", studies_figure(run))]
+        return [(title, to_svg(figure)) for title, figure in drawn if figure is not None]
+
+
+def empty_figure():
+    with plt.rc_context(STYLE):
+        figure = plt.figure(figsize=(4, 1))
+        figure.text(0.5, 0.5, "No metric of this run varies over its frames.", ha="center")
+        return to_svg(figure)
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("run", help="run folder or its run.h5")
+    parser.add_argument("--output", help="SVG file; default: metrics.svg in the run folder")
+    options = parser.parse_args(arguments)
+    run = runfile.read_run(options.run)
+    drawn = figures(run)
+    target = Path(options.output) if options.output else run.folder / "metrics.svg"
+    runfile.write_atomically(target, drawn[0][1] if drawn else empty_figure())
+    if len(drawn) > 1:
+        runfile.write_atomically(target.with_name("studies.svg"), drawn[1][1])
+    return 0
+
+
+if __name__ == "__main__":
+    runfile.run_main(main)

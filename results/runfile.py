@@ -1,0 +1,244 @@
+"""Reads run.h5 (docs/file-formats.md) into plain Python objects. Needs h5py and numpy only."""
+
+import json
+import sys
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from urllib.parse import unquote
+
+import h5py
+import numpy as np
+
+SCHEMA_VERSION = 1
+
+
+class RunFileError(Exception):
+    """A run that cannot be read; the message names the file and what is wrong with it."""
+
+
+@dataclass
+class Metric:
+    """A quantity with its meaning; `values` has one entry a frame, or is one number."""
+    values: np.ndarray | float
+    unit: str
+    definition: str
+    direction: str
+
+
+@dataclass
+class Variant:
+    name: str
+    method: str
+    role: str
+    reference: str
+    options: dict
+    status: str
+    parameter: np.ndarray
+    metrics: dict[str, Metric]
+    summary: dict[str, Metric]
+    diagnostics: dict[str, np.ndarray]
+    timing: dict[str, np.ndarray]  # phase: frames x repetitions, seconds
+    events: np.ndarray
+    frames: list[tuple[int, str, str]]  # index, name, sha256
+    artifacts: list[tuple[str, str]]
+
+
+@dataclass
+class Ratio:
+    variant: str
+    of: str
+    median: float
+    low: float
+    high: float
+
+
+@dataclass
+class Case:
+    name: str
+    parameter_name: str
+    parameter_unit: str
+    seed: int
+    threads: int
+    scene: dict
+    warnings: list[str]
+    swept: dict[str, object]
+    facts: dict[str, float]
+    variants: list[Variant]
+    ratios: list[Ratio]
+
+    def variant(self, name):
+        """The variant of that name, or None."""
+        return next((v for v in self.variants if v.name == name), None)
+
+
+@dataclass
+class Study:
+    name: str
+    kind: str
+    quantity: str
+    value: float
+    low: float
+    high: float
+    x: np.ndarray
+    y: np.ndarray
+
+
+@dataclass
+class Claim:
+    text: str
+    case: str
+    detail: str
+    left: float
+    right: float
+    holds: bool
+
+
+@dataclass
+class Run:
+    folder: Path
+    experiment_id: str
+    title: str
+    figure: str
+    topic: str
+    quick: bool
+    experiment: str  # resolved TOML text
+    spec_hash: str
+    content_sha256: str
+    provenance: dict[str, str]
+    inputs: list[tuple[str, str]]
+    cases: list[Case]
+    studies: list[Study]
+    claims: list[Claim]
+    view: dict = field(default_factory=dict)  # [figure_view] of the experiment
+
+    def variant_names(self):
+        """Names of all variants, in the order of the experiment: what fixes their colours."""
+        return list(dict.fromkeys(v.name for case in self.cases for v in case.variants))
+
+
+ROOT_TEXTS = ("experiment_id", "title", "figure", "topic", "experiment", "spec_hash",
+              "content_sha256")
+
+
+def text(value):
+    return value.decode("utf-8") if isinstance(value, bytes) else str(value)
+
+
+def read_json(value):
+    value = text(value)
+    try:
+        return json.loads(value) if value else {}
+    except json.JSONDecodeError:
+        return {"text": value}
+
+
+def by_index(group):
+    """Members of a group in the order of their `index` attribute, with their decoded names."""
+    members = [(unquote(name), group[name]) for name in group]
+    return sorted(members, key=lambda m: (int(m[1].attrs.get("index", 0)), m[0]))
+
+
+def read_metrics(group):
+    out = {}
+    for name in group:
+        data = group[name]
+        values = data[()]
+        out[unquote(name)] = Metric(float(values) if np.ndim(values) == 0 else values,
+                                    text(data.attrs["unit"]), text(data.attrs["definition"]),
+                                    text(data.attrs["direction"]))
+    return out
+
+
+def read_variant(name, group):
+    attrs = group.attrs
+    return Variant(
+        name=name, method=text(attrs["method"]), role=text(attrs["role"]),
+        reference=text(attrs.get("reference", "")), options=read_json(attrs["options"]),
+        status=text(attrs["status"]), parameter=group["parameter"][()],
+        metrics=read_metrics(group["metrics"]), summary=read_metrics(group["summary"]),
+        diagnostics={unquote(n): group["diagnostics"][n][()] for n in group["diagnostics"]},
+        timing={unquote(n): np.atleast_2d(group["timing"][n][()]) for n in group["timing"]},
+        events=group["events"][()],
+        frames=[(int(f["frame"]), text(f["name"]), text(f["sha256"])) for f in group["frames"][()]],
+        artifacts=[(text(a["name"]), text(a["sha256"])) for a in group["artifacts"][()]])
+
+
+def read_case(name, group):
+    attrs = group.attrs
+    return Case(
+        name=name, parameter_name=text(attrs["parameter_name"]),
+        parameter_unit=text(attrs["parameter_unit"]), seed=int(attrs["seed"]),
+        threads=int(attrs["threads"]), scene=read_json(attrs["scene"]),
+        warnings=[text(w) for w in np.atleast_1d(attrs["warnings"])],
+        swept={unquote(k): read_json(v) for k, v in group["swept"].attrs.items()},
+        facts={unquote(k): float(v) for k, v in group["facts"].attrs.items()},
+        variants=[read_variant(n, g) for n, g in by_index(group["variants"])],
+        ratios=[Ratio(text(r["variant"]), text(r["of"]), float(r["median_ratio"]),
+                      float(r["low"]), float(r["high"])) for r in group["ratios"][()]])
+
+
+def read_root(folder, file):
+    attrs = file.attrs
+    known = set(ROOT_TEXTS) | {"schema_version", "quick"}
+    run = Run(
+        folder=folder, quick=bool(attrs["quick"]),
+        **{name: text(attrs[name]) for name in ROOT_TEXTS},
+        provenance={unquote(k): text(v) for k, v in sorted(attrs.items()) if k not in known},
+        inputs=[(text(i["name"]), text(i["sha256"])) for i in file["inputs"][()]],
+        cases=[read_case(n, g) for n, g in by_index(file["cases"])],
+        studies=[Study(n, text(g.attrs["kind"]), text(g.attrs["quantity"]),
+                       float(g.attrs["value"]), float(g.attrs["low"]), float(g.attrs["high"]),
+                       g["x"][()], g["y"][()]) for n, g in by_index(file["study"])],
+        claims=[Claim(text(c["text"]), text(c["case"]), text(c["detail"]), float(c["left"]),
+                      float(c["right"]), bool(c["holds"])) for c in file["claims"][()]])
+    try:
+        run.view = tomllib.loads(run.experiment).get("figure_view", {})
+    except tomllib.TOMLDecodeError:
+        run.view = {}
+    return run
+
+
+def read_run(place):
+    """Reads a run folder (or its run.h5). Raises RunFileError with one clear line."""
+    path = Path(place)
+    path = path / "run.h5" if path.is_dir() else path
+    if not path.is_file():
+        raise RunFileError(f"{path}: no such file (a finished run has a run.h5; an interrupted one "
+                           "goes on with --resume)")
+    try:
+        with h5py.File(path, "r") as file:
+            version = int(file.attrs.get("schema_version", -1))
+            if version != SCHEMA_VERSION:
+                raise RunFileError(f"{path}: schema version {version} "
+                                   f"(this program reads {SCHEMA_VERSION})")
+            return read_root(path.parent, file)
+    except RunFileError:
+        raise
+    except (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError) as error:
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise RunFileError(f"{path}: damaged or not a run file ({reason})") from error
+
+
+def write_atomically(path, content):
+    """Writes text or bytes as temporary + rename."""
+    path = Path(path)
+    temporary = path.with_name(path.name + ".geoprior-tmp")
+    try:
+        if isinstance(content, bytes):
+            temporary.write_bytes(content)
+        else:
+            temporary.write_text(content, encoding="utf-8")
+        temporary.replace(path)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise RunFileError(f"{path}: cannot be written ({error.strerror or error})") from error
+
+
+def run_main(main):
+    """Runs a script's main: one line on stderr and exit code 2 for what the user can mend."""
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except RunFileError as error:
+        print(error, file=sys.stderr)
+        sys.exit(2)

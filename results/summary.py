@@ -1,0 +1,131 @@
+"""Writes summary.md of a run: claims, summary metrics, times, where the files lie.
+
+    python3 results/summary.py RUN_FOLDER [--output FILE]
+"""
+
+import argparse
+import math
+from pathlib import Path
+
+import numpy as np
+
+import runfile
+from wording import display_name, interval, number, scale_for, with_unit
+
+
+def table(head, rows):
+    """A Markdown table; the first column to the left, numbers to the right."""
+    clean = [[str(c).replace("|", "\\|") for c in row] for row in rows]
+    lines = ["| " + " | ".join(head) + " |", "|---" + "|---:" * (len(head) - 1) + "|"]
+    return lines + ["| " + " | ".join(row) + " |" for row in clean]
+
+
+def claims(run):
+    if not run.claims:
+        return []
+    held = sum(c.holds for c in run.claims)
+    lines = ["", f"## Claims: {held} of {len(run.claims)} hold", ""]
+    for claim in run.claims:
+        case = f" ({claim.case})" if len(run.cases) > 1 else ""
+        lines.append(f"- **{'holds' if claim.holds else 'falls short'}**: {claim.text}{case}  ")
+        lines.append(f"  `{claim.detail}`")
+    return lines
+
+
+def summary_names(case):
+    """Summary values in the order of the first variant that has them."""
+    return list(dict.fromkeys(n for v in case.variants for n in v.summary))
+
+
+def preferred_names(run, case):
+    """What the table shows: sequence metrics, and of each frame metric its worst value."""
+    names = summary_names(case)
+    return [n for n in names if "." not in n or n.endswith(".max")] or names
+
+
+def metrics_table(run, case):
+    names = preferred_names(run, case)
+    if not names:
+        return []
+    rows = []
+    for name in names:
+        found = [v.summary.get(name) for v in case.variants]
+        unit = next(m.unit for m in found if m is not None)
+        size, symbol = scale_for([m.values for m in found if m is not None], unit)
+        values = [number(m.values / size) if m is not None else "–" for m in found]
+        rows.append([f"{display_name(name)}{f' [{symbol}]' if symbol else ''}", *values])
+    return ["", *table(["metric"] + [display_name(v.name) for v in case.variants], rows)]
+
+
+def quartiles(times):
+    """Median and quartiles over the finite times of all frames and repetitions."""
+    finite = times[np.isfinite(times)]
+    if finite.size == 0:
+        return math.nan, math.nan, math.nan
+    low, middle, high = np.percentile(finite, [25, 50, 75])
+    return float(middle), float(low), float(high)
+
+
+def main_phase(variant):
+    """The phase that stands for the method's cost."""
+    return next((p for p in ("solve", "run") if p in variant.timing), None)
+
+
+def timing_table(case):
+    rows = []
+    for variant in case.variants:
+        phase = main_phase(variant)
+        if phase is None:
+            continue
+        middle, low, high = quartiles(variant.timing[phase])
+        ratios = [f"{interval(r.median, r.low, r.high)} × {display_name(r.of)}"
+                  for r in case.ratios if r.variant == variant.name]
+        prepare = quartiles(variant.timing["prepare"])[0] if "prepare" in variant.timing \
+            else math.nan
+        rows.append([display_name(variant.name), phase, with_unit(middle, "s"),
+                     f"{with_unit(low, 's')} … {with_unit(high, 's')}", with_unit(prepare, "s"),
+                     "<br>".join(ratios)])
+    if not rows:
+        return []
+    head = ["variant", "phase", "median", "quartiles", "prepare", "ratio [95 % interval]"]
+    return ["", *table(head, rows)]
+
+
+def summary_text(run):
+    figure = f" (thesis Figure {run.figure})" if run.figure else ""
+    lines = [f"# {run.title}{figure}", "",
+             f"Experiment `{run.experiment_id}`{', quick version' if run.quick else ''}, "
+             f"{run.provenance.get('start', 'start unknown')}, "
+             f"commit {run.provenance.get('git_commit', 'unknown')}."]
+    lines += claims(run)
+    for case in run.cases:
+        heading = f": {case.name}" if len(run.cases) > 1 else ""
+        lines += ["", f"## Metrics{heading}"] + metrics_table(run, case)
+        times = timing_table(case)
+        if times:
+            lines += ["", f"## Times{heading}"] + times
+        lines += [f"\nWarning: {warning}" for warning in case.warnings]
+    if run.studies:
+        rows = [[s.name, s.kind, s.quantity, interval(s.value, s.low, s.high)] for s in run.studies]
+        lines += ["", "## Studies", "",
+                  *table(["study", "kind", "quantity", "value [95 % interval]"], rows)]
+    lines += ["", "## Files", "", "- `figure.png`, `metrics.svg`: what to look at first",
+              "- `run.h5`: every number (docs/file-formats.md)",
+              "- `frames/`: geometry of every frame; open the `.pvd` files with ParaView",
+              "- `spec.toml`: the experiment as it ran", ""]
+    return "\n".join(lines)
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("run", help="run folder or its run.h5")
+    parser.add_argument("--output", help="default: summary.md in the run folder")
+    options = parser.parse_args(arguments)
+    run = runfile.read_run(options.run)
+    target = Path(options.output) if options.output else run.folder / "summary.md"
+    runfile.write_atomically(target, summary_text(run))
+    return 0
+
+
+if __name__ == "__main__":
+    runfile.run_main(main)

@@ -1,0 +1,75 @@
+"""Names, units and numbers as a reader wants them: shared by plots, summary and report."""
+
+import math
+
+UNIT_SYMBOLS = {"deg": "°", "1": "", "m^2": "m²", "m^3": "m³"}
+
+# SI units with the powers of ten of their named steps; the exponent is that of the length's prefix.
+PREFIXES = {
+    "m": [(1, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")],
+    "m^2": [(1, "m²"), (1e-4, "cm²"), (1e-6, "mm²")],
+    "m^3": [(1, "m³"), (1e-3, "dm³"), (1e-6, "cm³"), (1e-9, "mm³")],
+    "s": [(1, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")],
+    "J": [(1, "J"), (1e-3, "mJ"), (1e-6, "µJ")],
+}
+
+
+def display_name(name):
+    """`dual-quaternion` as `Dual quaternion`."""
+    words = name.replace("_", " ").replace("-", " ")
+    return words[:1].upper() + words[1:]
+
+
+def unit_symbol(unit):
+    return UNIT_SYMBOLS.get(unit, unit)
+
+
+def scale_for(values, unit):
+    """Factor and unit in which the largest of the values is easy to read."""
+    steps = PREFIXES.get(unit)
+    finite = [abs(v) for v in values if math.isfinite(v) and v != 0]
+    if not steps or not finite:
+        return 1.0, unit_symbol(unit)
+    largest = max(finite)
+    for size, symbol in steps:
+        if largest >= size:
+            return size, symbol
+    size, symbol = steps[-1]
+    return size, symbol
+
+
+def labelled(name, symbol):
+    return f"{name} [{symbol}]" if symbol else name
+
+
+def number(value, digits=3):
+    """Three significant digits, no needless exponent; a dash where there is no value."""
+    if value is None or math.isnan(value):
+        return "–"
+    if math.isinf(value):
+        return "∞" if value > 0 else "−∞"
+    if value == 0:
+        return "0"
+    magnitude = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
+    if -4 < magnitude < digits + 3:
+        if float(value).is_integer() and abs(value) < 1e6:
+            text = f"{int(value):,}".replace(",", "\u202f")
+        else:
+            text = f"{value:.{max(0, digits - 1 - magnitude)}f}"
+        return text.replace("-", "−")
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    superscript = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return f"{mantissa.replace('-', '−')}·10{superscript}"
+
+
+def with_unit(value, unit):
+    """A value in the unit's easiest step: `0.0031 s` as `3.10 ms`."""
+    size, symbol = scale_for([value], unit)
+    text = number(value / size)
+    return text + (symbol if symbol == "°" else f" {symbol}" if symbol else "")
+
+
+def interval(median, low, high):
+    if not (math.isfinite(low) and math.isfinite(high)):
+        return number(median)
+    return f"{number(median)} [{number(low)}, {number(high)}]"
