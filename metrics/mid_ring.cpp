@@ -1,5 +1,6 @@
 #include "metrics/mid_ring.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +12,17 @@ namespace {
 
 constexpr double kRoundOff = 1e-9;  // of the radius
 constexpr std::size_t kSmallestRing = 8;
+
+/// Eigenvalues, ascending, of the second moments of the ring about a point.
+Eigen::Vector3d moments(const Eigen::MatrixX3d& V, const Eigen::Vector3d& centre,
+                        const std::vector<int>& ring) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const int v : ring) {
+    const Eigen::Vector3d r = V.row(v).transpose() - centre;
+    sum += r * r.transpose();
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum, Eigen::EigenvaluesOnly).eigenvalues();
+}
 
 }  // namespace
 
@@ -35,14 +47,11 @@ RingRatio ring_radius_ratio(const Eigen::MatrixX3d& rest, const Eigen::Vector3d&
                             const Eigen::MatrixX3d& posed, const Eigen::Vector3d& posed_joint,
                             const std::vector<int>& ring) {
   if (ring.empty()) throw Error("the ring has no vertices", "ring radius", "at least one");
-  RingRatio ratio{std::numeric_limits<double>::infinity(), 0};
-  for (const int v : ring) {
-    const double before = (rest.row(v).transpose() - rest_joint).norm();
-    const double after = (posed.row(v).transpose() - posed_joint).norm();
-    ratio.min = std::min(ratio.min, after / before);
-    ratio.max = std::max(ratio.max, after / before);
-  }
-  return ratio;
+  const Eigen::Vector3d before = moments(rest, rest_joint, ring);
+  const Eigen::Vector3d after = moments(posed, posed_joint, ring);
+  // At rest the ring is a circle: both larger moments are n r^2 / 2.
+  const double circle = 0.5 * (before(1) + before(2));
+  return {std::sqrt(std::max(after(1), 0.0) / circle), std::sqrt(std::max(after(2), 0.0) / circle)};
 }
 
 }  // namespace geoprior

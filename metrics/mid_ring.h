@@ -15,10 +15,12 @@ namespace geoprior {
 std::vector<int> find_mid_ring(const JointRegion::Hinge& hinge, const Eigen::MatrixX3d& rest,
                                const std::vector<int>& vertices);
 
-/// Smallest and largest distance of the ring from the joint, relative to the rest radius.
+/// Half axes of the ring's ellipse about the joint, relative to the rest radius.
 ///
-/// Closed forms: linear blending by half weights gives cos(theta/2) for both under a twist and
-/// cos(theta/2), 1 under a bend; dual quaternions give 1, 1.
+/// They are the square roots of the two larger eigenvalues of sum (x - joint)(x - joint)^T, over
+/// that at rest: exact for every linear image of a regular ring, wherever its vertices stand on the
+/// ellipse. Closed forms: linear blending by half weights gives cos(theta/2) twice under a twist
+/// and cos(theta/2), 1 under a bend; dual quaternions give 1, 1.
 struct RingRatio {
   double min = 1;
   double max = 1;

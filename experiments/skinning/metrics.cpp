@@ -418,7 +418,9 @@ void add_position_metrics(std::vector<MetricEntry>& table) {
   const Tolerance ring{1e-9, 1e-6};
   table.push_back(entry(
       "mid_ring_min", "1",
-      "smallest distance of a vertex of the tube's mid-ring from the joint, over the rest radius",
+      "smaller half axis of the tube's mid-ring (from its second moments about the joint), over "
+      "the "
+      "rest radius",
       Direction::closer_to_target, ring,
       [](const Measured& m) -> Value {
         const std::optional<RingRatio> ratio = mid_ring(m);
@@ -427,7 +429,8 @@ void add_position_metrics(std::vector<MetricEntry>& table) {
       1));
   table.push_back(entry(
       "mid_ring_max", "1",
-      "largest distance of a vertex of the tube's mid-ring from the joint, over the rest radius",
+      "larger half axis of the tube's mid-ring (from its second moments about the joint), over the "
+      "rest radius",
       Direction::closer_to_target, ring,
       [](const Measured& m) -> Value {
         const std::optional<RingRatio> ratio = mid_ring(m);
