@@ -5,7 +5,11 @@
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Simple_cartesian.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace geoprior {
 namespace {
@@ -19,6 +23,17 @@ using Traits = CGAL::AABB_traits<Kernel, Primitive>;
 constexpr double kStart = 1e-3;
 
 Kernel::Point_3 point(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
+/// Point nearest to `d` in the wedge {x a + y b, x, y >= 0} of a triangle's corner, `n` its unit
+/// normal.
+Eigen::Vector3d nearest_in_wedge(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                 const Eigen::Vector3d& n, const Eigen::Vector3d& d) {
+  const Eigen::Vector3d in_plane = d - d.dot(n) * n;
+  if (in_plane.cross(b).dot(n) >= 0 && a.cross(in_plane).dot(n) >= 0) return in_plane;
+  const Eigen::Vector3d on_a = std::max(0.0, d.dot(a) / a.squaredNorm()) * a;
+  const Eigen::Vector3d on_b = std::max(0.0, d.dot(b) / b.squaredNorm()) * b;
+  return (on_a - d).squaredNorm() < (on_b - d).squaredNorm() ? on_a : on_b;
+}
 
 }  // namespace
 
@@ -43,11 +58,24 @@ std::vector<Bone> bones_of(const Skeleton& skeleton) {
 }
 
 InsideVisibility::InsideVisibility(const TriMesh& mesh)
-    : mesh_(mesh), normals_(vertex_normals(mesh)), tree_(std::make_unique<Tree>()) {
+    : mesh_(mesh),
+      fan_offset_(static_cast<std::size_t>(mesh.vertex_count()) + 1, 0),
+      tree_(std::make_unique<Tree>()) {
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
     const Triangle triangle(point(mesh.V.row(mesh.F(t, 0))), point(mesh.V.row(mesh.F(t, 1))),
                             point(mesh.V.row(mesh.F(t, 2))));
     if (!triangle.is_degenerate()) tree_->triangles.push_back(triangle);
+  }
+  for (Eigen::Index i = 0; i < mesh.F.size(); ++i)
+    ++fan_offset_[static_cast<std::size_t>(mesh.F.data()[i]) + 1];
+  std::partial_sum(fan_offset_.begin(), fan_offset_.end(), fan_offset_.begin());
+  fan_.resize(static_cast<std::size_t>(mesh.F.size()));
+  std::vector<int> next = fan_offset_;
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      int& slot = next[static_cast<std::size_t>(mesh.F(t, k))];
+      fan_[static_cast<std::size_t>(slot++)] = t;
+    }
   }
   tree_->tree.insert(tree_->triangles.cbegin(), tree_->triangles.cend());
   tree_->tree.build();
@@ -55,11 +83,35 @@ InsideVisibility::InsideVisibility(const TriMesh& mesh)
 
 InsideVisibility::~InsideVisibility() = default;
 
+/// Whether the way starts on the inner side of the triangles around the vertex: the side of the one
+/// nearest to it; between triangles equally near (a common edge), of the one it is steepest to.
+bool InsideVisibility::leaves_inwards(int v, const Eigen::Vector3d& way) const {
+  const Eigen::Vector3d d = way.normalized();
+  double nearest = std::numeric_limits<double>::infinity();
+  double height = 1;
+  for (int i = fan_offset_[static_cast<std::size_t>(v)];
+       i < fan_offset_[static_cast<std::size_t>(v) + 1]; ++i) {
+    const int t = fan_[static_cast<std::size_t>(i)];
+    const int k = mesh_.F(t, 0) == v ? 0 : (mesh_.F(t, 1) == v ? 1 : 2);
+    const Eigen::Vector3d a = mesh_.V.row(mesh_.F(t, (k + 1) % 3)) - mesh_.V.row(v);
+    const Eigen::Vector3d b = mesh_.V.row(mesh_.F(t, (k + 2) % 3)) - mesh_.V.row(v);
+    const Eigen::Vector3d n = a.cross(b);
+    if (!(n.norm() > 1e-12 * a.norm() * b.norm())) continue;
+    const Eigen::Vector3d unit = n.normalized();
+    const double distance = (d - nearest_in_wedge(a, b, unit, d)).norm();
+    const double side = d.dot(unit);
+    const bool tie = std::abs(distance - nearest) < 1e-9;
+    if (tie ? std::abs(side) > std::abs(height) : distance < nearest) height = side;
+    nearest = std::min(nearest, distance);
+  }
+  return height <= 0;
+}
+
 bool InsideVisibility::sees(int v, const Eigen::Vector3d& target) const {
   const Eigen::Vector3d from = mesh_.V.row(v);
   const Eigen::Vector3d way = target - from;
-  if (way.dot(normals_.row(v)) > 0) return false;
   if (way.norm() == 0) return true;
+  if (!leaves_inwards(v, way)) return false;
   const Kernel::Segment_3 segment(point(from + kStart * way), point(target));
   return !tree_->tree.do_intersect(segment);
 }

@@ -30,14 +30,17 @@ class InsideVisibility {
   InsideVisibility(const InsideVisibility&) = delete;
   InsideVisibility& operator=(const InsideVisibility&) = delete;
 
-  /// True when the segment from vertex `v` to `target` leaves the surface inwards (against the
-  /// vertex normal) and meets no triangle beyond its first thousandth.
+  /// True when the segment from vertex `v` to `target` leaves the surface inwards and meets no
+  /// triangle beyond its first thousandth.
   [[nodiscard]] bool sees(int v, const Eigen::Vector3d& target) const;
 
  private:
+  [[nodiscard]] bool leaves_inwards(int v, const Eigen::Vector3d& way) const;
+
   struct Tree;
   const TriMesh& mesh_;
-  Eigen::MatrixX3d normals_;
+  std::vector<int> fan_offset_;  ///< triangles of vertex v: fan_[fan_offset_[v] .. [v + 1])
+  std::vector<int> fan_;
   std::unique_ptr<Tree> tree_;
 };
 
