@@ -4,13 +4,11 @@
 """
 
 import argparse
-import math
 from pathlib import Path
 
-import numpy as np
-
 import runfile
-from wording import display_name, interval, number, scale_for, with_unit
+from tables import metric_rows, timing_rows
+from wording import display_name, interval, with_unit
 
 
 def table(head, rows):
@@ -32,59 +30,20 @@ def claims(run):
     return lines
 
 
-def summary_names(case):
-    """Summary values in the order of the first variant that has them."""
-    return list(dict.fromkeys(n for v in case.variants for n in v.summary))
-
-
-def preferred_names(run, case):
-    """What the table shows: sequence metrics, and of each frame metric its worst value."""
-    names = summary_names(case)
-    return [n for n in names if "." not in n or n.endswith(".max")] or names
-
-
-def metrics_table(run, case):
-    names = preferred_names(run, case)
-    if not names:
+def metrics_table(case):
+    rows = [[row.label(), *row.cells] for row in metric_rows(case)]
+    if not rows:
         return []
-    rows = []
-    for name in names:
-        found = [v.summary.get(name) for v in case.variants]
-        unit = next(m.unit for m in found if m is not None)
-        size, symbol = scale_for([m.values for m in found if m is not None], unit)
-        values = [number(m.values / size) if m is not None else "–" for m in found]
-        rows.append([f"{display_name(name)}{f' [{symbol}]' if symbol else ''}", *values])
     return ["", *table(["metric"] + [display_name(v.name) for v in case.variants], rows)]
-
-
-def quartiles(times):
-    """Median and quartiles over the finite times of all frames and repetitions."""
-    finite = times[np.isfinite(times)]
-    if finite.size == 0:
-        return math.nan, math.nan, math.nan
-    low, middle, high = np.percentile(finite, [25, 50, 75])
-    return float(middle), float(low), float(high)
-
-
-def main_phase(variant):
-    """The phase that stands for the method's cost."""
-    return next((p for p in ("solve", "run") if p in variant.timing), None)
 
 
 def timing_table(case):
     rows = []
-    for variant in case.variants:
-        phase = main_phase(variant)
-        if phase is None:
-            continue
-        middle, low, high = quartiles(variant.timing[phase])
-        ratios = [f"{interval(r.median, r.low, r.high)} × {display_name(r.of)}"
-                  for r in case.ratios if r.variant == variant.name]
-        prepare = quartiles(variant.timing["prepare"])[0] if "prepare" in variant.timing \
-            else math.nan
-        rows.append([display_name(variant.name), phase, with_unit(middle, "s"),
-                     f"{with_unit(low, 's')} … {with_unit(high, 's')}", with_unit(prepare, "s"),
-                     "<br>".join(ratios)])
+    for row in timing_rows(case):
+        ratios = [f"{interval(r.median, r.low, r.high)} × {display_name(r.of)}" for r in row.ratios]
+        rows.append([row.variant, row.phase, with_unit(row.median, "s"),
+                     f"{with_unit(row.low, 's')} … {with_unit(row.high, 's')}",
+                     with_unit(row.prepare, "s"), "<br>".join(ratios)])
     if not rows:
         return []
     head = ["variant", "phase", "median", "quartiles", "prepare", "ratio [95 % interval]"]
@@ -100,7 +59,7 @@ def summary_text(run):
     lines += claims(run)
     for case in run.cases:
         heading = f": {case.name}" if len(run.cases) > 1 else ""
-        lines += ["", f"## Metrics{heading}"] + metrics_table(run, case)
+        lines += ["", f"## Metrics{heading}"] + metrics_table(case)
         times = timing_table(case)
         if times:
             lines += ["", f"## Times{heading}"] + times
