@@ -1,0 +1,228 @@
+"""The parts of a run's report, each from the run alone; an empty text where there is nothing."""
+
+import json
+
+import numpy as np
+
+import plots
+from report_html import details, escape, png_figure, svg_figure, table
+from tables import event_counts, metric_rows, phase_rows, timing_rows
+from wording import display_name, interval, number, with_unit
+
+
+def meta_line(run):
+    bits = [f"Thesis Figure {escape(run.figure)}"] if run.figure else []
+    bits.append(f"experiment <code>{escape(run.experiment_id)}</code>")
+    if run.quick:
+        bits.append('<span class="badge">quick version</span>')
+    bits += [escape(run.provenance[k]) for k in ("start",) if k in run.provenance]
+    commit = run.provenance.get("git_commit")
+    if commit:
+        bits.append(f"commit <code>{escape(commit[:12])}</code>")
+    return f'<p class="meta">{" · ".join(bits)}</p>'
+
+
+def case_heading(run, case):
+    return f"<h3>{escape(case.name)}</h3>" if len(run.cases) > 1 else ""
+
+
+def claims(run):
+    if not run.claims:
+        return ""
+    held = sum(c.holds for c in run.claims)
+    items = []
+    for claim in run.claims:
+        badge = '<span class="badge good">✓ holds</span>' if claim.holds \
+            else '<span class="badge bad">✗ falls short</span>'
+        case = f' <span class="note">({escape(claim.case)})</span>' if len(run.cases) > 1 else ""
+        items.append(f"<li><div>{badge}</div><div>{escape(claim.text)}{case}<br>"
+                     f"<code>{escape(claim.detail)}</code></div></li>")
+    return (f"<h2>Claims: {held} of {len(run.claims)} hold</h2>\n"
+            f'<ul class="claims">{"".join(items)}</ul>')
+
+
+def picture(run):
+    names = ", ".join(display_name(n) for n in plots.variants_shown(run))
+    image = png_figure(run.folder / "figure.png", f"Rendered frames of {names}",
+                       f"{escape(names)}: one camera, one light"
+                       + (", one colour range." if run.view.get("color_by") else "."))
+    return f"<h2>Picture</h2>\n{image}" if image else ""
+
+
+def curves(run):
+    with plots.plt.rc_context(plots.STYLE):
+        drawn = plots.curves_figure(run)
+        if drawn is None:
+            return ""
+        svg = plots.to_svg(drawn)
+    case = run.cases[0]
+    names = ", ".join(display_name(m).lower() for m in plots.frame_metrics(run))
+    left_out = len(run.cases) - len(plots.shown_cases(run))
+    more = f" {left_out} further cases are in run.h5." if left_out > 0 else ""
+    caption = f"Metrics over {escape(case.parameter_name)}; one line a variant.{more}"
+    return "<h2>Metrics over the frames</h2>\n" + svg_figure(svg, f"Curves of {names}", caption)
+
+
+def definitions(rows):
+    return details("What is measured", table(
+        [], [[f"<strong>{escape(r.label())}</strong>",
+              escape(r.definition) + f' <span class="note">({escape(r.direction.replace("_", " "))})'
+              "</span>"] for r in rows], ["text", "text wrap"]))
+
+
+def marked(row):
+    return [f"<b>{escape(c)}</b>" if best else escape(c) for c, best in zip(row.cells, row.best)]
+
+
+def metrics(run):
+    blocks, rows = [], []
+    for case in run.cases:
+        rows = metric_rows(case)
+        if not rows:
+            continue
+        head = ["Metric"] + [escape(display_name(v.name)) for v in case.variants]
+        blocks += [case_heading(run, case),
+                   table(head, [[escape(r.label()), *marked(r)] for r in rows])]
+    if not blocks:
+        return ""
+    note = '<p class="note">Worst value over the frames where a metric has a better side; the best ' \
+        "variant of a line is <b>bold</b>.</p>"
+    return "\n".join(["<h2>Metrics</h2>", note, *blocks, definitions(rows)])
+
+
+def ratio_text(row):
+    return "<br>".join(f"{interval(r.median, r.low, r.high)} × {escape(display_name(r.of))}"
+                       for r in row.ratios)
+
+
+def timing(run):
+    blocks = []
+    for case in run.cases:
+        rows = timing_rows(case)
+        if not rows:
+            continue
+        head = ["Variant", "Phase", "Median", "Quartiles", "Samples", "Prepare",
+                "Ratio of times [95 % interval]"]
+        body = [[escape(r.variant), escape(r.phase), with_unit(r.median, "s"),
+                 f"{with_unit(r.low, 's')} … {with_unit(r.high, 's')}", str(r.count),
+                 with_unit(r.prepare, "s"), ratio_text(r)] for r in rows]
+        blocks += [case_heading(run, case), table(head, body, ["text", "text"])]
+        inside = [[escape(v), escape(p), with_unit(m, "s"),
+                   f"{with_unit(a, 's')} … {with_unit(b, 's')}"]
+                  for v, p, m, a, b in phase_rows(case)]
+        if inside:
+            blocks.append(details("Phases inside", table(
+                ["Variant", "Phase", "Median", "Quartiles"], inside, ["text", "text"])))
+    if not blocks:
+        return ""
+    cpu = run.provenance.get("cpu", "")
+    threads = {c.threads for c in run.cases}
+    note = f'<p class="note">{escape(cpu)}{", " if cpu else ""}threads: ' \
+        f'{", ".join("all" if t == 0 else str(t) for t in sorted(threads))}. Methods interleaved, ' \
+        "recording excluded; a ratio is the median of paired ratios.</p>"
+    return "\n".join(["<h2>Times</h2>", note, *blocks])
+
+
+def studies(run):
+    if not run.studies:
+        return ""
+    with plots.plt.rc_context(plots.STYLE):
+        drawn = plots.studies_figure(run)
+        image = "" if drawn is None else svg_figure(
+            plots.to_svg(drawn), "Log-log plots of the studies",
+            "Both axes logarithmic; the line has the fitted slope.")
+    rows = [[escape(display_name(s.name)), escape(s.kind), f"<code>{escape(s.quantity)}</code>",
+             interval(s.value, s.low, s.high)] for s in run.studies]
+    head = ["Study", "Kind", "Quantity", "Value [95 % interval]"]
+    return "\n".join(["<h2>Studies</h2>", image, table(head, rows, ["text", "text", "text"])])
+
+
+def diagnostics(run):
+    blocks = []
+    for case in run.cases:
+        rows = []
+        for variant in case.variants:
+            for name, values in variant.diagnostics.items():
+                finite = values[np.isfinite(values)]
+                if finite.size:
+                    rows.append([escape(display_name(variant.name)), escape(display_name(name)),
+                                 *(number(float(f(finite))) for f in (np.min, np.median, np.max))])
+        if rows:
+            blocks += [case_heading(run, case),
+                       table(["Variant", "Diagnostic", "Least", "Median", "Greatest"], rows,
+                             ["text", "text"])]
+    return "\n".join(["<h2>Diagnostics</h2>", '<p class="note">What only the method itself can '
+                      "know.</p>", *blocks]) if blocks else ""
+
+
+def events(run):
+    rows = [[escape(case.name), escape(display_name(v.name)), escape(kind), number(float(count))]
+            for case in run.cases for v in case.variants
+            for kind, count in event_counts(v).items()]
+    if not rows:
+        return ""
+    return "<h2>Events</h2>\n" + table(["Case", "Variant", "Kind", "Count"], rows, ["text"] * 3)
+
+
+def warnings(run):
+    found = dict.fromkeys(w for case in run.cases for w in case.warnings)
+    unfinished = [f"{display_name(v.name)} ({case.name}) is {v.status}" for case in run.cases
+                  for v in case.variants if v.status != "done"]
+    lines = "".join(f'<p class="warning">{escape(w)}</p>' for w in [*unfinished, *found])
+    return f"<h2>Warnings</h2>\n{lines}" if lines else ""
+
+
+def rerun(run):
+    quick = " --quick" if run.quick else ""
+    return ("<h2>Run it again</h2>\n"
+            f"<pre>geoprior run {escape(run.experiment_id)}{quick}</pre>\n"
+            f'<p class="note">Equal frames and metrics give the same <code>content_sha256</code>: '
+            f"<code>{escape(run.content_sha256)}</code>. The run's folder: "
+            f"<code>{escape(run.folder.name)}</code>.</p>")
+
+
+def facts(run):
+    rows = [[escape(case.name), *(f"{escape(display_name(k))} {number(v)}" for k, v in
+                                  case.facts.items())] for case in run.cases if case.facts]
+    width = max((len(r) for r in rows), default=0)
+    rows = [r + [""] * (width - len(r)) for r in rows]
+    return details("Scene facts", table([], rows)) if rows else ""
+
+
+def options(run):
+    seen, rows = set(), []
+    for case in run.cases:
+        for v in case.variants:
+            text = json.dumps(v.options, indent=1, ensure_ascii=False)
+            if (v.name, text) not in seen:
+                seen.add((v.name, text))
+                rows.append(f"<h3>{escape(display_name(v.name))} "
+                            f'<span class="note">{escape(v.method)}, {escape(v.role)}</span></h3>'
+                            f"<pre>{escape(text)}</pre>")
+    return details("Options of every variant", "\n".join(rows)) if rows else ""
+
+
+def provenance(run):
+    inputs = table(["Input", "SHA-256"], [[escape(n), escape(s)] for n, s in run.inputs],
+                   ["text", "text hash"]) if run.inputs else ""
+    rows = [[escape(k.replace("_", " ")), escape(v)] for k, v in run.provenance.items()]
+    rows.append(["specification hash", f"<code>{escape(run.spec_hash)}</code>"])
+    return "\n".join(b for b in [
+        "<h2>Provenance</h2>", inputs, facts(run), options(run),
+        details("Program and machine", table([], rows, ["text", "text wrap"])),
+        details("The experiment as it ran", f"<pre>{escape(run.experiment)}</pre>")] if b)
+
+
+def comparison_table(name, runs):
+    """One variant in several runs: a column a run."""
+    by_run = [{r.label(): r.cells[[v.name for v in run.cases[0].variants].index(name)]
+               for r in metric_rows(run.cases[0])} for run in runs]
+    labels = dict.fromkeys(label for found in by_run for label in found)
+    rows = [[escape(label), *(escape(found.get(label, "–")) for found in by_run)]
+            for label in labels if sum(label in found for found in by_run) > 1]
+    times = []
+    for run in runs:
+        found = [t.median for t in timing_rows(run.cases[0]) if t.variant == display_name(name)]
+        times.append(with_unit(found[0], "s") if found else "–")
+    rows.append(["Median time", *times])
+    return table(["Metric", *(escape(run.experiment_id) for run in runs)], rows)
