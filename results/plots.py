@@ -1,7 +1,7 @@
 """Draws metrics.svg of a run: one panel a metric over the parameter, one line a variant; studies as
 log-log plots with their slope.
 
-    python3 results/plots.py RUN_FOLDER [--output FILE]
+    python3 results/plots.py RUN_FOLDER [--out FILE]
 """
 
 import argparse
@@ -257,11 +257,11 @@ def empty_figure():
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("run", help="run folder or its run.h5")
-    parser.add_argument("--output", help="SVG file; default: metrics.svg in the run folder")
+    parser.add_argument("--out", help="SVG file; default: metrics.svg in the run folder")
     options = parser.parse_args(arguments)
     run = runfile.read_run(options.run)
     drawn = figures(run)
-    target = Path(options.output) if options.output else run.folder / "metrics.svg"
+    target = Path(options.out) if options.out else run.folder / "metrics.svg"
     runfile.write_atomically(target, drawn[0][1] if drawn else empty_figure())
     if len(drawn) > 1:
         runfile.write_atomically(target.with_name("studies.svg"), drawn[1][1])

@@ -1,6 +1,6 @@
 """Writes one self-contained HTML page for a run or several: no network, no scripts, no other files.
 
-    python3 results/report.py RUN_FOLDER... [--output FILE]
+    python3 results/report.py RUN_FOLDER... [--out FILE]
 """
 
 import argparse
@@ -70,13 +70,14 @@ def target_of(runs, output):
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("runs", nargs="+", metavar="run", help="run folder or its run.h5")
-    parser.add_argument("--output", help="default: report.html in the run folder; results/report.html"
+    parser.add_argument("--out", help="default: report.html in the run folder; results/report.html"
                         " for several runs")
     options = parser.parse_args(arguments)
     runs = [runfile.read_run(place) for place in options.runs]
-    target = target_of(runs, options.output)
+    target = target_of(runs, options.out)
     runfile.write_atomically(target, build(runs))
-    print(target)
+    if not options.out:
+        print(target)
     return 0
 
 

@@ -1,6 +1,6 @@
 """Writes summary.md of a run: claims, summary metrics, times, where the files lie.
 
-    python3 results/summary.py RUN_FOLDER [--output FILE]
+    python3 results/summary.py RUN_FOLDER [--out FILE]
 """
 
 import argparse
@@ -78,10 +78,10 @@ def summary_text(run):
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("run", help="run folder or its run.h5")
-    parser.add_argument("--output", help="default: summary.md in the run folder")
+    parser.add_argument("--out", help="default: summary.md in the run folder")
     options = parser.parse_args(arguments)
     run = runfile.read_run(options.run)
-    target = Path(options.output) if options.output else run.folder / "summary.md"
+    target = Path(options.out) if options.out else run.folder / "summary.md"
     runfile.write_atomically(target, summary_text(run))
     return 0
 
