@@ -11,6 +11,14 @@
 namespace geoprior {
 namespace {
 
+/// A word of the file for a message, shortened.
+std::string quoted(std::string_view word) {
+  std::string text("'");
+  text.append(word.substr(0, 40));
+  text.push_back('\'');
+  return text;
+}
+
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f'; }
 
 /// Words of a text, with the line of the last one.
@@ -34,16 +42,16 @@ class Words {
   }
   void expect(std::string_view word) {
     const std::string_view found = next(std::string(word).c_str());
-    if (found != word) fail("'" + std::string(found.substr(0, 40)) + "'", std::string(word));
+    if (found != word) fail(quoted(found), std::string(word));
   }
   double number() {
     std::string_view word = next("a number");
-    const std::string shown(word.substr(0, 40));
+    const std::string shown = quoted(word);
     if (word.starts_with('+')) word.remove_prefix(1);
     double x = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
     if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(x))
-      fail("'" + shown + "' is no number", "a finite number");
+      fail(shown + " is no number", "a finite number");
     return x;
   }
   int integer(int min, int max) {
@@ -79,7 +87,7 @@ BvhChannel channel_of(const Words& words, std::string_view word) {
   const std::size_t axis = word.empty() ? std::string_view::npos : kAxes.find(word[0]);
   const std::string_view kind = word.empty() ? word : word.substr(1);
   if (axis == std::string_view::npos || (kind != "rotation" && kind != "position"))
-    words.fail("channel '" + std::string(word.substr(0, 40)) + "'",
+    words.fail("channel " + quoted(word),
                "Xposition, Yposition, Zposition, Xrotation, Yrotation, Zrotation");
   return {kind == "rotation", static_cast<int>(axis)};
 }
@@ -123,8 +131,7 @@ void parse_hierarchy(Words& words, BvhMotion& motion, int& columns) {
     } else if (word == "}") {
       open.pop_back();
     } else {
-      words.fail("'" + std::string(word.substr(0, 40)) + "'",
-                 "OFFSET, CHANNELS, JOINT, End Site or }");
+      words.fail(quoted(word), "OFFSET, CHANNELS, JOINT, End Site or }");
     }
   }
 }
