@@ -4,6 +4,9 @@ include(CMakePackageConfigHelpers)
 
 set(libraries geoprior_flags geoprior_core geoprior_metrics geoprior_skinning_baselines geoprior_skinning)
 set_target_properties(geoprior_flags PROPERTIES EXPORT_NAME flags)
+# Eigen aligns fixed-size types (a quaternion, an affine transform) by the instruction set even when
+# EIGEN_MAX_ALIGN_BYTES is given, so the layout of our types is that of the set the libraries were built for.
+target_compile_options(geoprior_flags INTERFACE $<INSTALL_INTERFACE:-march=${GEOPRIOR_ARCH}>)
 install(TARGETS ${libraries} EXPORT geoprior_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT geoprior_targets NAMESPACE geoprior:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/geoprior)
 foreach(room core metrics baselines solvers)
