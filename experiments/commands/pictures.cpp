@@ -15,18 +15,23 @@ void make_report(const std::vector<fs::path>& run_folders, const fs::path& page)
 
 Pictures make_pictures(const fs::path& run_folder, const FigureView& view) {
   Pictures pictures;
-  try {
+  const auto attempt = [&](const auto& body) {
+    try {
+      body();
+    } catch (const Error& error) {
+      pictures.error += (pictures.error.empty() ? "" : "; ") + std::string(error.what());
+    }
+  };
+  attempt([&] {
     render_run(run_folder, view);
     pictures.figure = run_folder / "figure.png";
-  } catch (const Error& error) {
-    pictures.error = error.what();
-  }
-  try {
+  });
+  attempt([&] { run_python("plots", {run_folder.string()}); });
+  attempt([&] { run_python("summary", {run_folder.string()}); });
+  attempt([&] {
     make_report({run_folder}, run_folder / "report.html");
     pictures.report = run_folder / "report.html";
-  } catch (const Error& error) {
-    pictures.error += (pictures.error.empty() ? "" : "; ") + std::string(error.what());
-  }
+  });
   return pictures;
 }
 

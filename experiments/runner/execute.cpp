@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <functional>
 #include <numeric>
 
 #include "core/error.h"
@@ -22,7 +21,6 @@
 #include "experiments/runner/run_state.h"
 #include "experiments/runner/spec_json.h"
 #include "experiments/runner/stop.h"
-#include "experiments/view/view.h"
 
 namespace geoprior {
 
@@ -165,27 +163,11 @@ bool run_cases(const Experiment& experiment, const std::vector<Topic>& topics,
   return true;
 }
 
-void warn(const std::string& what, const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "warning: %s: %s\n", what.c_str(), error.what());
-  }
-}
-
-/// Pictures are drawn from the files; that one cannot be drawn does not undo the run.
-void draw(const Experiment& experiment, const fs::path& folder) {
-  warn("figure.png is not drawn", [&] { render_run(folder, experiment.view); });
-  warn("metrics.svg is not drawn", [&] { run_python("plots", {folder.string()}); });
-  warn("summary.md is not written", [&] { run_python("summary", {folder.string()}); });
-}
-
-void finish(const Experiment& experiment, const ExecuteRequest& request, ExecuteResult& result) {
+void finish(const Experiment& experiment, ExecuteResult& result) {
   result.record.studies = make_studies(experiment, result.record);
   result.record.claims = decide_claims(experiment, result.record);
   fs::remove_all(result.folder / "checkpoints");
   write_run_file(result.record, result.folder / "run.h5");
-  if (request.pictures) draw(experiment, result.folder);
 }
 
 }  // namespace
@@ -208,7 +190,7 @@ ExecuteResult execute_in_chain(const Experiment& experiment, const std::vector<T
   if (!state.run()) begin_run(experiment, recorder);
   result.stopped = !run_cases(experiment, topics, request, chain, recorder, state);
   result.record = assemble(experiment, topic, state);
-  if (!result.stopped) finish(experiment, request, result);
+  if (!result.stopped) finish(experiment, result);
   return result;
 }
 

@@ -15,7 +15,6 @@ struct ExecuteRequest {
   bool resume = false;
   bool show_progress = false;  ///< bar on stderr
   bool timing = true;          ///< run the benchmark after the frames
-  bool pictures = true;        ///< figure.png, metrics.svg, summary.md when the run is finished
 };
 
 struct ExecuteResult {
@@ -26,7 +25,7 @@ struct ExecuteResult {
 };
 
 /// Runs an experiment: load each case's scene, run its variants, record, measure, time, decide
-/// claims, assemble run.h5.
+/// claims, assemble run.h5. Pictures are the caller's: they are drawn from the folder.
 ExecuteResult execute(const Experiment& experiment, const std::vector<Topic>& topics,
                       const ExecuteRequest& request);
 
