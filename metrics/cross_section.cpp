@@ -11,8 +11,9 @@
 namespace geoprior {
 namespace {
 
-constexpr double kSkinWindow = 2;  // radii along the bone, about the section
-constexpr double kEnoughDirections = 0.8;
+constexpr double kSkinWindow = 2;           // radii along the bone, about the section
+constexpr double kEnoughDirections = 0.95;  // of a half; no section is closed by guess
+
 constexpr double kSmallestWedge = 1e-3;  // rad
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kRadialLimit = 2.5;   // skin farther from the bones, in radii, is no part of it
 constexpr double kHeldByBoth = 0.1;    // weights of both bones in the blended skin
+constexpr double kRigidEnough = 0.95;  // skin that one rigid part holds so far is not blended
 constexpr int kEnoughBlended = 8;      // vertices that give a median
 constexpr double kIslandShare = 0.05;  // of the region's area
 
@@ -170,28 +171,55 @@ std::vector<bool> sibling_joints(const Skeleton& skeleton, const JointRegion& re
   return sibling;
 }
 
+/// Joints that no hinge separates move as one: the hinge's joint, or root, that leads each.
+std::vector<int> rigid_groups(const Skeleton& skeleton, const JointRegion& region) {
+  std::vector<int> group(static_cast<std::size_t>(skeleton.size()));
+  for (int j = 0; j < skeleton.size(); ++j) {
+    const int parent = skeleton.joints[static_cast<std::size_t>(j)].parent;
+    const bool turns = std::any_of(region.hinges.begin(), region.hinges.end(),
+                                   [&](const JointRegion::Hinge& h) { return h.joint == j; });
+    const bool leads = turns || parent < 0;
+    group[static_cast<std::size_t>(j)] = leads ? j : group[static_cast<std::size_t>(parent)];
+  }
+  return group;
+}
+
+/// Largest sum of weights of joints that move as one: 1 for skin that moves rigidly.
+double rigidity(const SkinWeights& weights, int v, const std::vector<int>& group) {
+  std::map<int, double> sum;
+  for (SkinWeights::InnerIterator it(weights, v); it; ++it) {
+    sum[group[static_cast<std::size_t>(it.col())]] += it.value();
+  }
+  double largest = 0;
+  for (const auto& [joint, weight] : sum) largest = std::max(largest, weight);
+  return largest;
+}
+
 /// What a vertex may contribute to the region.
 struct VertexRole {
-  bool own = false;   ///< near the bones, not held by a sibling limb
-  bool near = false;  ///< within the band of a hinge
+  bool own = false;   ///< near the bones, and blended or not held by a sibling limb
+  bool near = false;  ///< within the band of a hinge, or blended within twice the band
 };
 
 std::vector<VertexRole> vertex_roles(const RiggedMesh& rig, const JointRegion& region,
                                      const std::vector<Band>& bands) {
   const std::vector<bool> sibling = sibling_joints(rig.skeleton, region);
+  const std::vector<int> group = rigid_groups(rig.skeleton, region);
   std::vector<VertexRole> roles(static_cast<std::size_t>(rig.mesh.vertex_count()));
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
     double foreign = 0;
     for (SkinWeights::InnerIterator it(rig.weights, v); it; ++it) {
       if (sibling[static_cast<std::size_t>(it.col())]) foreign += it.value();
     }
+    const bool blended = rigidity(rig.weights, v, group) < kRigidEnough;
     VertexRole& role = roles[static_cast<std::size_t>(v)];
     const Eigen::Vector3d x = row(rig.mesh.V, v);
     for (std::size_t h = 0; h < region.hinges.size(); ++h) {
       const JointRegion::Hinge& hinge = region.hinges[h];
+      const Band wide{2 * bands[h].proximal, 2 * bands[h].distal};
       const bool close = bone_distance(hinge, x) <= kRadialLimit * hinge.radius;
-      role.own |= close && foreign <= 0.5;
-      role.near |= close && in_band(hinge, bands[h], x);
+      role.own |= close && (blended || foreign <= 0.5);
+      role.near |= close && in_band(hinge, blended ? wide : bands[h], x);
     }
   }
   return roles;
@@ -380,26 +408,10 @@ JointRegion make_joint_region(const RiggedMesh& rig, const std::string& name,
 }
 
 double border_rigidity(const RiggedMesh& rig, const JointRegion& region) {
-  // Joints that no hinge separates form one rigid group.
-  std::vector<int> group(static_cast<std::size_t>(rig.skeleton.size()));
-  for (int j = 0; j < rig.skeleton.size(); ++j) {
-    const int parent = rig.skeleton.joints[static_cast<std::size_t>(j)].parent;
-    const bool turns = std::any_of(region.hinges.begin(), region.hinges.end(),
-                                   [&](const JointRegion::Hinge& h) { return h.joint == j; });
-    const bool starts = turns || parent < 0;
-    group[static_cast<std::size_t>(j)] = starts ? j : group[static_cast<std::size_t>(parent)];
-  }
+  const std::vector<int> group = rigid_groups(rig.skeleton, region);
   double least = 1;
   for (const std::vector<int>& loop : region.border_loops) {
-    for (const int v : loop) {
-      std::map<int, double> sum;
-      for (SkinWeights::InnerIterator it(rig.weights, v); it; ++it) {
-        sum[group[static_cast<std::size_t>(it.col())]] += it.value();
-      }
-      double largest = 0;
-      for (const auto& [joint, weight] : sum) largest = std::max(largest, weight);
-      least = std::min(least, largest);
-    }
+    for (const int v : loop) least = std::min(least, rigidity(rig.weights, v, group));
   }
   return least;
 }

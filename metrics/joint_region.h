@@ -42,8 +42,11 @@ struct JointRegion {
 /// A triangle belongs to the region when one of its vertices lies within `extent` radii of a joint
 /// along the bone on its side of the joint's bisector plane (the whole bone between two joints of
 /// the region), and all three lie within 2.5 radii of the bones and are not held mainly (weight
-/// above one half) by a sibling limb such as the next finger. Islands smaller than a twentieth of
-/// the region's area are taken in, so that no border loop lies in moving skin.
+/// above one half) by a sibling limb such as the next finger. Blended skin, that no rigid part of
+/// the body holds by 0.95 or more, belongs to it up to twice as far and whoever holds the rest: so
+/// the border loops lie where the skin moves nearly rigidly (`border_rigidity` says how nearly).
+/// Islands smaller than a twentieth of the region's area are taken in, so that no border loop lies
+/// in moving skin.
 ///
 /// The radius of a joint is the median distance from its two bones of the skin that both hold with
 /// weights of at least 0.1, or, when there is hardly any (rigid weights), of the skin within three

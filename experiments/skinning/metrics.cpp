@@ -97,7 +97,7 @@ struct Measured {
 
 const Eigen::MatrixX3d& surface_of(const SkinningScene& scene, const Frame& frame) {
   const auto part = frame.parts.find("surface");
-  const std::string where = "frame at " + std::to_string(frame.parameter);
+  const std::string where = std::string("frame at ").append(std::to_string(frame.parameter));
   if (part == frame.parts.end()) throw Error("no part 'surface'", where, "a skinned surface");
   const Eigen::MatrixX3d& points = part->second.points;
   if (points.rows() != scene.rig.mesh.V.rows()) {
@@ -132,11 +132,18 @@ ContentKey key_of(const Measured& m, const Eigen::MatrixX3d& posed, const Pose& 
 
 /// What the metrics of one table share: the quantities that several of them read.
 struct Shared {
+  Memo<bool> closed;
   Memo<OverlapStudy> overlap;
   Memo<int> pairs;
   Memo<SectionSummary> sections;
   Memo<DistortionSummary> distortion;
 };
+
+bool is_closed(Shared& shared, const Measured& m) {
+  ContentKey key;
+  key.add_matrix(m.mesh().F);
+  return shared.closed.get(key, [&] { return boundary_edges(m.mesh().F).empty(); });
+}
 
 OverlapStudy compute_overlap(const Measured& m, const Eigen::MatrixX3d& V, const Pose& pose) {
   if (const JointRegion* region = m.region()) {
@@ -156,7 +163,7 @@ std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m) {
   const auto study = [&](const Eigen::MatrixX3d& V, const Pose& pose) {
     return shared.overlap.get(key_of(m, V, pose), [&] { return compute_overlap(m, V, pose); });
   };
-  if (!boundary_edges(m.mesh().F).empty()) return std::nullopt;
+  if (!is_closed(shared, m)) return std::nullopt;
   const OverlapStudy rest = study(m.mesh().V, at_rest);
   OverlapStudy excess = study(m.posed, m.pose);
   excess.volume -= rest.volume;
@@ -210,8 +217,8 @@ Value volume_change(const Measured& m) {
                          region_volume(m.posed, m.mesh().F, *m.region()));
 }
 
-Value volume_change_global(const Measured& m) {
-  if (!boundary_edges(m.mesh().F).empty()) return std::nullopt;
+Value volume_change_global(Shared& shared, const Measured& m) {
+  if (!is_closed(shared, m)) return std::nullopt;
   return relative_change(signed_volume(m.mesh().V, m.mesh().F), signed_volume(m.posed, m.mesh().F));
 }
 
@@ -305,7 +312,7 @@ MetricEntry reference_entry(std::string name, std::string unit, std::string defi
 
 using SharedPtr = std::shared_ptr<Shared>;
 
-void add_volume_metrics(std::vector<MetricEntry>& table) {
+void add_volume_metrics(std::vector<MetricEntry>& table, const SharedPtr& shared) {
   const Tolerance ratio{1e-9, 1e-6};
   table.push_back(entry("volume_change", "1",
                         "change of the volume of the joint's region, closed by fans from the "
@@ -319,7 +326,8 @@ void add_volume_metrics(std::vector<MetricEntry>& table) {
   table.push_back(entry("volume_change_global", "1",
                         "change of the signed volume of the whole closed surface over its rest "
                         "volume",
-                        Direction::closer_to_target, ratio, volume_change_global));
+                        Direction::closer_to_target, ratio,
+                        [shared](const Measured& m) { return volume_change_global(*shared, m); }));
 }
 
 void add_contact_metrics(std::vector<MetricEntry>& table, const SharedPtr& shared) {
@@ -470,7 +478,7 @@ void add_reference_metrics(std::vector<MetricEntry>& table) {
 std::vector<MetricEntry> skinning_metrics() {
   const auto shared = std::make_shared<Shared>();
   std::vector<MetricEntry> table;
-  add_volume_metrics(table);
+  add_volume_metrics(table, shared);
   add_contact_metrics(table, shared);
   add_section_metrics(table, shared);
   add_distortion_metrics(table, shared);
