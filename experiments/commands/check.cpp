@@ -136,7 +136,9 @@ int bless_command(const CommandContext& context, const BlessRequest& request) {
   reference.sets[size] = bless_values(run.record, reference.sets[size], request.reason,
                                       build.git_commit + (build.git_dirty() ? "-modified" : ""));
   write_reference(reference, file);
-  for (const Mismatch& mismatch : before) say("  " + mismatch_text(run.experiment.id, mismatch));
+  for (const Mismatch& mismatch : before) {
+    if (!std::isnan(mismatch.reference)) say("  " + mismatch_text(run.experiment.id, mismatch));
+  }
   for (const ClaimRecord& claim : decide_claims(run.experiment, run.record)) {
     if (!claim.holds) say("  note: a claim falls short: " + claim.text + ": " + claim.detail);
   }

@@ -37,7 +37,10 @@ void say_case(const CaseRecord& in) {
   std::set<std::string> phases;
   for (const VariantRecord& variant : in.variants) {
     rows.front().push_back(variant.name);
-    for (const auto& [name, value] : variant.summary) metrics[name] = value.unit;
+    for (const auto& [name, value] : variant.summary) {
+      const bool detail = name.ends_with(".last") || name.ends_with(".min");
+      if (!detail) metrics[name] = value.unit;
+    }
     for (const auto& [phase, values] : variant.timing) phases.insert(phase);
   }
   for (const auto& [metric, unit] : metrics) {

@@ -1,5 +1,7 @@
 #include "experiments/commands/pictures.h"
 
+#include <functional>
+
 #include "core/error.h"
 #include "experiments/view/view.h"
 
@@ -13,22 +15,28 @@ void make_report(const std::vector<fs::path>& run_folders, const fs::path& page)
   run_python("report", arguments);
 }
 
+namespace {
+
+/// Runs one step; what it cannot do is told beside what the others cannot.
+void attempt(std::string& problems, const std::function<void()>& step) {
+  try {
+    step();
+  } catch (const Error& error) {
+    problems += (problems.empty() ? "" : "; ") + std::string(error.what());
+  }
+}
+
+}  // namespace
+
 Pictures make_pictures(const fs::path& run_folder, const FigureView& view) {
   Pictures pictures;
-  const auto attempt = [&](const auto& body) {
-    try {
-      body();
-    } catch (const Error& error) {
-      pictures.error += (pictures.error.empty() ? "" : "; ") + std::string(error.what());
-    }
-  };
-  attempt([&] {
+  attempt(pictures.error, [&] {
     render_run(run_folder, view);
     pictures.figure = run_folder / "figure.png";
   });
-  attempt([&] { run_python("plots", {run_folder.string()}); });
-  attempt([&] { run_python("summary", {run_folder.string()}); });
-  attempt([&] {
+  attempt(pictures.error, [&] { run_python("plots", {run_folder.string()}); });
+  attempt(pictures.error, [&] { run_python("summary", {run_folder.string()}); });
+  attempt(pictures.error, [&] {
     make_report({run_folder}, run_folder / "report.html");
     pictures.report = run_folder / "report.html";
   });

@@ -15,7 +15,7 @@ struct Pictures {
   std::string error;  ///< what kept the rest from being made; the run itself is complete
 };
 
-/// figure.png and report.html in the folder of a run.
+/// figure.png, metrics.svg, summary.md and report.html in the folder of a run.
 Pictures make_pictures(const std::filesystem::path& run_folder, const FigureView& view);
 
 /// One page about several runs. @throws Error  as run_python does

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/error.h"
 #include "experiments/runner/number_text.h"
@@ -78,6 +79,38 @@ ClaimRecord decide_in_case(const ClaimSpec& claim, const CaseRecord& in,
   return record;
 }
 
+/// How far the claim is from failing; negative when it fails.
+double margin(const ClaimSpec& claim, const ClaimRecord& record) {
+  if (claim.is == "==") return claim.tolerance - std::abs(record.left - record.right);
+  return claim.is.starts_with('<') ? record.right - record.left : record.left - record.right;
+}
+
+/// Frame by frame; the frame nearest to failing speaks for all. Frames where a side has no value
+/// are passed over, but one at least must have both.
+ClaimRecord decide_every_frame(const ClaimSpec& claim, const CaseRecord& in,
+                               const VariantRecord& variant, const VariantRecord* of) {
+  std::optional<ClaimRecord> worst;
+  const auto has_value = [&](const VariantRecord& v, double parameter) {
+    return value_at(in, v, claim.metric, parameter).has_value();
+  };
+  for (const FrameRecord& frame : variant.frames) {
+    if (!has_value(variant, frame.parameter)) continue;
+    if (of != nullptr && !has_value(*of, frame.parameter)) continue;
+    ClaimSpec here = claim;
+    here.at_parameter = frame.parameter;
+    ClaimRecord record = decide_in_case(here, in, variant, of);
+    const bool worse =
+        !worst || (worst->holds && !record.holds) ||
+        (worst->holds == record.holds && margin(claim, record) < margin(claim, *worst));
+    if (worse) worst = std::move(record);
+  }
+  if (!worst) {
+    throw Error("no frame has a value of '" + claim.metric + "'",
+                "claim '" + claim.text + "', case '" + in.name + "'");
+  }
+  return *worst;
+}
+
 ClaimRecord decide_study(const ClaimSpec& claim, const std::vector<StudyRecord>& studies) {
   const std::string name = claim.metric.substr(6);
   for (const StudyRecord& study : studies) {
@@ -111,7 +144,9 @@ std::vector<ClaimRecord> decide_claims(const Experiment& experiment, const RunRe
         throw Error("has not both variants", "claim '" + claim.text + "', case '" + in.name + "'");
       }
       if (!complete) continue;
-      decisions.push_back(decide_in_case(claim, in, *variant, of));
+      decisions.push_back(claim.reduce == "every" && !claim.at_parameter
+                              ? decide_every_frame(claim, in, *variant, of)
+                              : decide_in_case(claim, in, *variant, of));
       ++decided_in;
     }
     if (decided_in == 0) {

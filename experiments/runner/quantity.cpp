@@ -59,6 +59,32 @@ std::vector<double> timing_values(const VariantRecord& variant, const std::strin
   return values;
 }
 
+/// The values of a quantity, one a frame or one for all.
+struct Column {
+  std::string unit;
+  std::vector<double> values;
+  bool of_sequence = false;
+};
+
+Column column_of(const CaseRecord& in, const VariantRecord& variant, const std::string& name) {
+  const std::string where = place(in, variant);
+  if (name.starts_with("timing:"))
+    return {"s", timing_values(variant, name.substr(7), where), false};
+  if (name.starts_with("diagnostic:")) {
+    const auto found = variant.diagnostics.find(name.substr(11));
+    if (found != variant.diagnostics.end()) return {"", found->second, false};
+    throw Error("there is no diagnostic '" + name.substr(11) + "'", where,
+                key_list(variant.diagnostics));
+  }
+  if (const auto found = variant.metrics.find(name); found != variant.metrics.end()) {
+    return {found->second.unit, found->second.values, false};
+  }
+  if (const auto found = variant.summary.find(name); found != variant.summary.end()) {
+    return {found->second.unit, {found->second.value}, true};
+  }
+  throw Error("metric '" + name + "' was not measured", where, key_list(variant.metrics));
+}
+
 }  // namespace
 
 bool same_parameter(double a, double b) {
@@ -74,40 +100,36 @@ double median(std::vector<double> values) {
 
 Quantity quantity_of(const CaseRecord& in, const VariantRecord& variant, const std::string& name,
                      std::optional<double> at_parameter, const std::string& reduce) {
-  const std::string where = place(in, variant);
-  std::vector<double> values;
-  Quantity quantity;
-  if (name.starts_with("timing:")) {
-    quantity.unit = "s";
-    values = timing_values(variant, name.substr(7), where);
-  } else if (name.starts_with("diagnostic:")) {
-    const auto found = variant.diagnostics.find(name.substr(11));
-    if (found == variant.diagnostics.end()) {
-      throw Error("there is no diagnostic '" + name.substr(11) + "'", where,
-                  key_list(variant.diagnostics));
-    }
-    values = found->second;
-  } else if (const auto column = variant.metrics.find(name); column != variant.metrics.end()) {
-    quantity.unit = column->second.unit;
-    values = column->second.values;
-  } else if (const auto summary = variant.summary.find(name); summary != variant.summary.end()) {
-    if (at_parameter) {
-      throw Error("metric '" + name + "' has one value for all frames", where, "no `at`");
-    }
-    quantity.unit = summary->second.unit;
-    values = {summary->second.value};
-  } else {
-    throw Error("metric '" + name + "' was not measured", where, key_list(variant.metrics));
+  const Column column = column_of(in, variant, name);
+  if (column.of_sequence && at_parameter) {
+    throw Error("metric '" + name + "' has one value for all frames", place(in, variant),
+                "no `at`, no reduction");
   }
+  Quantity quantity{std::numeric_limits<double>::quiet_NaN(), column.unit};
   if (at_parameter) {
     const std::size_t frame = frame_at(in, variant, *at_parameter);
-    quantity.value =
-        frame < values.size() ? values[frame] : std::numeric_limits<double>::quiet_NaN();
+    if (frame < column.values.size()) quantity.value = column.values[frame];
   } else {
-    quantity.value = reduced(std::move(values), reduce);
+    quantity.value = reduced(column.values, reduce);
   }
-  if (std::isnan(quantity.value)) throw Error("'" + name + "' has no value", where);
+  if (std::isnan(quantity.value)) {
+    throw Error("'" + name + "' has no value", place(in, variant));
+  }
   return quantity;
+}
+
+std::optional<double> value_at(const CaseRecord& in, const VariantRecord& variant,
+                               const std::string& name, double parameter) {
+  const Column column = column_of(in, variant, name);
+  if (column.of_sequence) {
+    throw Error("metric '" + name + "' has one value for all frames", place(in, variant),
+                "no `at`, no reduction");
+  }
+  for (std::size_t i = 0; i < std::min(variant.frames.size(), column.values.size()); ++i) {
+    const bool here = same_parameter(variant.frames[i].parameter, parameter);
+    if (here && !std::isnan(column.values[i])) return column.values[i];
+  }
+  return std::nullopt;
 }
 
 }  // namespace geoprior

@@ -22,6 +22,12 @@ struct Quantity {
 Quantity quantity_of(const CaseRecord& in, const VariantRecord& variant, const std::string& name,
                      std::optional<double> at_parameter, const std::string& reduce);
 
+/// The value of a metric of frames, of a diagnostic or of a timed phase at the frame of that
+/// parameter; absent when there is no such frame, or no value there.
+/// @throws Error  when the run has no such quantity of frames
+std::optional<double> value_at(const CaseRecord& in, const VariantRecord& variant,
+                               const std::string& name, double parameter);
+
 /// Parameters are the same frame when they differ by at most 1e-9 of their size.
 bool same_parameter(double a, double b);
 

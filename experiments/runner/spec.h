@@ -49,8 +49,9 @@ struct ClaimSpec {
   double tolerance = 0;                ///< for "=="
   std::optional<double> at_parameter;  ///< at = { angle_deg = 90 }; the frame must exist
   std::string at_key;  ///< "angle_deg": parameter name and unit, compared with the scene's
-  std::string reduce =
-      "max";  ///< "max", "min", "median", "mean", "last" over the frames, when there is no `at`
+  /// "max", "min", "median", "mean", "last" over the frames, when there is no `at`; "every": the
+  /// claim must hold at each frame, and the one nearest to failing is recorded.
+  std::string reduce = "max";
   std::vector<std::string> cases;  ///< empty: every case
 };
 
@@ -66,7 +67,7 @@ struct StudySpec {
   std::string reduce = "median";   ///< over the frames, as a claim's
   std::vector<std::string> cases;  ///< empty: every case that has the variant and `against`
   std::string finer = "smaller";   ///< of "order": whether smaller x (a step) or "larger" x (a
-                                  ///< count) is the finer discretisation
+                                   ///< count) is the finer discretisation
 };
 
 /// A plane that cuts the part: figure_view.section = { origin = [x, y, z], normal = [x, y, z] }.

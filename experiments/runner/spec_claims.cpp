@@ -167,6 +167,10 @@ std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
       throw Error("a study of a study", place_of(node, "quantity"), "a metric");
     }
     require_metric(table.quantity, topic, place_of(node, "quantity"), {});
+    if (table.reduce == Reduction::every) {
+      throw Error("a study needs one value a case", place_of(node, "reduce"),
+                  "max, min, median, mean, last");
+    }
     if (table.kind != StudyKind::spread && !table.against) {
       throw Error("is missing", place_of(node, "against"),
                   "a fact of the scene or a swept key, the x of the slope");

@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kSizes{"full", "quick"};
 constexpr std::array<std::string_view, 5> kComparisons{"<=", "<", ">=", ">", "=="};
-constexpr std::array<std::string_view, 5> kReductions{"max", "min", "median", "mean", "last"};
+constexpr std::array<std::string_view, 6> kReductions{"max",  "min",  "median",
+                                                      "mean", "last", "every"};
 constexpr std::array<std::string_view, 3> kStudyKinds{"exponent", "order", "spread"};
 constexpr std::array<std::string_view, 2> kFiner{"smaller", "larger"};
 
@@ -63,7 +64,8 @@ void describe(OptionVisitor& v, ClaimTable& t) {
   v.value("factor", t.factor, {.doc = "times the other side"});
   v.value("offset", t.offset, {.doc = "added to the other side, in the metric's unit"});
   v.value("tolerance", t.tolerance, {.doc = "for ==, in the metric's unit", .min = 0});
-  describe_choice(v, "reduce", t.reduce, kReductions, {.doc = "over the frames, without `at`"});
+  describe_choice(v, "reduce", t.reduce, kReductions,
+                  {.doc = "over the frames, without `at`; every: it must hold frame by frame"});
   v.value("cases", t.cases, {.doc = "names of cases; absent: all that have the variants"});
 }
 

@@ -39,7 +39,7 @@ struct SweepTable {
 };
 
 enum class Comparison { less_equal, less, greater_equal, greater, equal };
-enum class Reduction { max, min, median, mean, last };
+enum class Reduction { max, min, median, mean, last, every };
 
 struct ClaimTable {
   std::string text;
