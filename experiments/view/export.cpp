@@ -2,6 +2,8 @@
 // animated out/<case>/<variant>/<part>.glb.
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -10,9 +12,7 @@
 #include "core/error.h"
 #include "core/mesh.h"
 #include "experiments/formats/atomic_file.h"
-#if __has_include("experiments/formats/gltf_writer.h")
 #include "experiments/formats/gltf_writer.h"
-#endif
 #include "experiments/formats/vtk_files.h"
 #include "experiments/view/mesh_text.h"
 #include "experiments/view/view.h"
@@ -64,8 +64,10 @@ void claim_folder(const fs::path& out, const std::string& text) {
 
 std::string describe_frame(const CaseRecord& c, const VariantRecord& variant,
                            const FrameFile& frame) {
-  return "geoprior: " + variant.name + ", " + c.parameter_name + " " +
-         std::to_string(frame.parameter) + " " + c.parameter_unit;
+  std::array<char, 32> number{};
+  std::snprintf(number.data(), number.size(), "%.10g", frame.parameter);
+  return "geoprior: " + variant.name + ", " + c.parameter_name + " " + number.data() + " " +
+         c.parameter_unit;
 }
 
 /// Returns how many files were written.
@@ -94,19 +96,6 @@ bool same_topology(const std::vector<Part>& parts) {
   });
 }
 
-void write_glb(const fs::path& file, const std::vector<const Part*>& parts,
-               const std::vector<double>& times, const std::string& name) {
-  std::vector<Eigen::MatrixX3d> positions;
-  for (const Part* part : parts) positions.push_back(part->points);
-#if __has_include("experiments/formats/gltf_writer.h")
-  write_glb_animation(file, {parts.front()->points, parts.front()->triangles}, positions, times,
-                      name);
-#else
-  (void)times;
-  throw Error("glb is not built in", file.string() + name);
-#endif
-}
-
 /// Seconds of the frames in the animation: a time as it is, any other parameter spread evenly over
 /// 24 frames a second.
 std::vector<double> animation_times(const CaseRecord& c, const std::vector<FrameFile>& frames) {
@@ -120,6 +109,9 @@ std::vector<double> animation_times(const CaseRecord& c, const std::vector<Frame
   return times;
 }
 
+TriMesh mesh_of(const Part& part) { return {part.points, part.triangles}; }
+
+/// One animation, or a still a frame where the topology changes.
 int export_glb(const CaseRecord& c, const VariantRecord& variant, const std::string& part_name,
                const std::vector<FrameFile>& frames, const fs::path& folder) {
   std::vector<Part> parts;
@@ -130,15 +122,15 @@ int export_glb(const CaseRecord& c, const VariantRecord& variant, const std::str
   if (parts.empty() || !triangles) return 0;
   make_folders(folder);
   if (same_topology(parts)) {
-    std::vector<const Part*> all;
-    for (const Part& part : parts) all.push_back(&part);
-    write_glb(folder / (part_name + ".glb"), all, animation_times(c, frames),
-              variant.name + " " + part_name);
+    std::vector<Eigen::MatrixX3d> positions;
+    for (const Part& part : parts) positions.push_back(part.points);
+    write_glb_animation(folder / (part_name + ".glb"), mesh_of(parts.front()), positions,
+                        animation_times(c, frames), variant.name + " " + part_name);
     return 1;
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    write_glb(folder / (frames[i].stem + ".glb"), {&parts[i]}, {0.0},
-              variant.name + " " + frames[i].stem);
+    write_glb_animation(folder / (frames[i].stem + ".glb"), mesh_of(parts[i]), {}, {},
+                        variant.name + " " + frames[i].stem);
   }
   return static_cast<int>(parts.size());
 }

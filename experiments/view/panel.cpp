@@ -17,7 +17,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <cstdlib>
 
 #include "core/error.h"
 #include "experiments/view/drawable.h"
@@ -98,22 +100,10 @@ void set_camera(vtkRenderer* renderer, const ViewWindow& window) {
   camera->SetClippingRange(0.05 * window.depth_m, 2.2 * window.depth_m);
 }
 
-/// Ambient occlusion at the scale of the folds seen.
-void set_occlusion(vtkRenderer* renderer, double height_m) {
-  vtkNew<vtkRenderStepsPass> steps;
-  vtkNew<vtkSSAOPass> occlusion;
-  occlusion->SetRadius(0.07 * height_m);
-  occlusion->SetBias(0.0012 * height_m);
-  occlusion->SetKernelSize(64);
-  occlusion->BlurOn();
-  occlusion->SetDelegatePass(steps);
-  vtkOpenGLRenderer::SafeDownCast(renderer)->SetPass(occlusion);
-}
-
 /// Edges are smoothed by drawing larger and averaging, at most to what software GL can address.
 int supersampling(int width_px, int height_px) {
   constexpr int kLargestTarget = 8192;
-  return std::clamp(kLargestTarget / std::max(width_px, height_px), 1, 3);
+  return std::clamp(kLargestTarget / std::max(width_px, height_px), 1, 4);
 }
 
 /// Averages blocks of `factor` by `factor` pixels of the window, rows from the top.
@@ -141,22 +131,10 @@ Picture read_pixels(vtkRenderWindow* window, int width, int height, int factor) 
   return picture;
 }
 
-}  // namespace
-
-Picture draw_panel(const std::vector<const Part*>& parts, const ViewWindow& window,
-                   const std::optional<ColorScale>& scale, int width_px, int height_px) {
-  vtkNew<vtkRenderer> renderer;
-  renderer->SetBackground(1, 1, 1);
-  for (const Part* part : parts) {
-    renderer->AddActor(make_actor(*part, scale, 0.008 * window.height_m));
-  }
-  set_lights(renderer);
-  set_camera(renderer, window);
-  set_occlusion(renderer, window.height_m);
+Picture draw(vtkRenderer* renderer, int width_px, int height_px, int factor) {
   vtkNew<vtkRenderWindow> target;
   target->SetOffScreenRendering(1);
   target->SetMultiSamples(0);
-  const int factor = supersampling(width_px, height_px);
   target->SetSize(factor * width_px, factor * height_px);
   target->AddRenderer(renderer);
   if (target->SupportsOpenGL() == 0) {
@@ -165,6 +143,86 @@ Picture draw_panel(const std::vector<const Part*>& parts, const ViewWindow& wind
   target->Render();
   Picture picture = read_pixels(target, width_px, height_px, factor);
   renderer->ReleaseGraphicsResources(target);
+  return picture;
+}
+
+Picture draw_lit(const std::vector<vtkSmartPointer<vtkActor>>& actors, const ViewWindow& window,
+                 int width_px, int height_px) {
+  vtkNew<vtkRenderer> renderer;
+  renderer->SetBackground(1, 1, 1);
+  for (const auto& actor : actors) renderer->AddActor(actor);
+  set_lights(renderer);
+  set_camera(renderer, window);
+  return draw(renderer, width_px, height_px, supersampling(width_px, height_px));
+}
+
+/// How open every pixel's surface is, 1 … 255; 0 where nothing is drawn. The scale is that of the
+/// folds seen. One sample a pixel: occlusion is smooth, and it is what costs.
+Picture draw_openness(const std::vector<vtkSmartPointer<vtkActor>>& actors,
+                      const ViewWindow& window, int width_px, int height_px) {
+  vtkNew<vtkRenderer> renderer;
+  renderer->SetBackground(0, 0, 0);
+  for (const auto& actor : actors) {
+    vtkNew<vtkActor> plain;
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(vtkPolyDataMapper::SafeDownCast(actor->GetMapper())->GetInput());
+    mapper->ScalarVisibilityOff();
+    plain->SetMapper(mapper);
+    plain->GetProperty()->LightingOff();
+    renderer->AddActor(plain);
+  }
+  set_camera(renderer, window);
+  vtkNew<vtkRenderStepsPass> steps;
+  vtkNew<vtkSSAOPass> occlusion;
+  occlusion->SetRadius(0.07 * window.height_m);
+  occlusion->SetBias(0.0012 * window.height_m);
+  occlusion->SetKernelSize(128);
+  occlusion->BlurOn();
+  occlusion->SetDelegatePass(steps);
+  vtkOpenGLRenderer::SafeDownCast(renderer)->SetPass(occlusion);
+  return draw(renderer, width_px, height_px, 1);
+}
+
+/// One direction of a Gaussian blur (sigma 1.6 px) that mixes drawn pixels only.
+Picture blurred(const Picture& openness, int dx, int dy) {
+  constexpr std::array<double, 5> kWeight{1.0, 0.823, 0.458, 0.172, 0.044};
+  Picture out = openness;
+  for (int y = 0; y < openness.height; ++y) {
+    for (int x = 0; x < openness.width; ++x) {
+      if (openness.at(x, y)[0] == 0) continue;
+      double sum = 0;
+      double weight = 0;
+      for (int i = -4; i <= 4; ++i) {
+        const int u = std::clamp(x + i * dx, 0, openness.width - 1);
+        const int v = std::clamp(y + i * dy, 0, openness.height - 1);
+        const std::uint8_t value = openness.at(u, v)[0];
+        if (value == 0) continue;
+        sum += kWeight[static_cast<std::size_t>(std::abs(i))] * value;
+        weight += kWeight[static_cast<std::size_t>(std::abs(i))];
+      }
+      out.at(x, y).fill(static_cast<std::uint8_t>(std::lround(sum / weight)));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Picture draw_panel(const std::vector<const Part*>& parts, const ViewWindow& window,
+                   const std::optional<ColorScale>& scale, int width_px, int height_px) {
+  std::vector<vtkSmartPointer<vtkActor>> actors;
+  for (const Part* part : parts) {
+    actors.push_back(make_actor(*part, scale, 0.008 * window.height_m));
+  }
+  Picture picture = draw_lit(actors, window, width_px, height_px);
+  const Picture openness =
+      blurred(blurred(draw_openness(actors, window, width_px, height_px), 1, 0), 0, 1);
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+    const double open = openness.pixels[i][0] == 0 ? 1.0 : openness.pixels[i][0] / 255.0;
+    for (std::uint8_t& channel : picture.pixels[i]) {
+      channel = static_cast<std::uint8_t>(std::lround(channel * open));
+    }
+  }
   return picture;
 }
 

@@ -1,0 +1,311 @@
+// The picture of a run: sections, framing, colours, and pixels that show what they should.
+
+#include "experiments/view/view.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <numbers>
+#include <string>
+
+#include "core/error.h"
+#include "experiments/view/colors.h"
+#include "experiments/view/display.h"
+#include "experiments/view/figure_cells.h"
+#include "experiments/view/panel.h"
+#include "experiments/view/section.h"
+#include "experiments/view/view_window.h"
+#include "tests/experiments/fake_run.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::string message_of(const auto& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// Looks along -z at the plane z = 1/2, four by four metres.
+ViewWindow front_window() {
+  ViewWindow window;
+  window.center = {0, 0, 0.5};
+  window.width_m = 4;
+  window.height_m = 4;
+  return window;
+}
+
+Part box_about(double x, double half) {
+  return make_box({x - half, -half, 0}, {x + half, half, 1});
+}
+
+double enclosed_area(const std::vector<SectionSegment>& segments) {
+  double area = 0;
+  for (const SectionSegment& s : segments) {
+    area += 0.5 * (s.from.x() * s.to.y() - s.from.y() * s.to.x());
+  }
+  return area;
+}
+
+TEST(Section, OfABoxIsItsSquareCounterClockwise) {
+  const auto segments = cut(box_about(0, 0.5), front_window());
+  EXPECT_NEAR(enclosed_area(segments), 1.0, 1e-12);  // round-off of a few products
+  EXPECT_EQ(winding_number(segments, {0.1, 0.2}), 1);
+  EXPECT_EQ(winding_number(segments, {0.7, 0.2}), 0);
+  EXPECT_EQ(winding_number(segments, {0.1, 0.8}), 0);
+}
+
+TEST(Section, CountsOverlapTwiceAndInsideOutNegative) {
+  const auto overlapping = cut(join(box_about(0, 0.5), box_about(0.6, 0.5)), front_window());
+  EXPECT_EQ(winding_number(overlapping, {0.3, 0.0}), 2);
+  EXPECT_EQ(winding_number(overlapping, {-0.3, 0.0}), 1);
+  EXPECT_EQ(winding_number(overlapping, {0.9, 0.0}), 1);
+  Part inside_out = box_about(0, 0.5);
+  inside_out.triangles.col(1).swap(inside_out.triangles.col(2));
+  EXPECT_EQ(winding_number(cut(inside_out, front_window()), {0, 0}), -1);
+}
+
+TEST(Section, PlaneThroughVerticesGivesAClosedCurve) {
+  ViewWindow window = front_window();
+  window.center.z() = 1;  // the top face lies in the plane and counts as in front of it
+  EXPECT_NEAR(enclosed_area(cut(box_about(0, 0.5), window)), 1.0, 1e-12);
+}
+
+TEST(Section, PaintsOverlapRedOnItsTrueArea) {
+  const Part part = join(box_about(0, 0.5), box_about(0.6, 0.5));
+  constexpr int kSize = 400;
+  const Picture picture = draw_section(cut(part, front_window()), front_window(), kSize, kSize);
+  int red = 0;
+  for (const Rgb& p : picture.pixels) red += p[0] > 180 && p[1] < 120 ? 1 : 0;
+  // The overlap is 0.4 m by 1 m of 16 m^2; its border, 1.5 px thick, takes at most a pixel a side.
+  const double pixels_per_metre = kSize / 4.0;
+  EXPECT_NEAR(red, 0.4 * pixels_per_metre * pixels_per_metre, 2.8 * pixels_per_metre);
+  EXPECT_EQ(picture.at(2, 2), (Rgb{255, 255, 255}));
+}
+
+TEST(Section, OpenSurfaceIsNotFilled) {
+  Part open = box_about(0, 0.5);
+  open.triangles.conservativeResize(2, 3);  // one side
+  const Picture picture = draw_section(cut(open, front_window()), front_window(), 100, 100);
+  EXPECT_EQ(picture.at(90, 50), (Rgb{255, 255, 255}));
+  EXPECT_EQ(picture.at(50, 50), (Rgb{255, 255, 255}));
+}
+
+TEST(ViewWindow, HoldsEveryPointAndIsOrthonormal) {
+  const Part a = make_box({0, 0, 0}, {1, 2, 3});
+  const Part b = make_box({-2, 0.5, 0}, {-1, 1, 1});
+  FigureView view;
+  view.direction = {1, 0.5, 2};
+  const ViewWindow window = fit_window({&a, &b}, view);
+  Eigen::Matrix3d axes;
+  axes << window.right, window.up, window.direction;
+  EXPECT_LT((axes.transpose() * axes - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+  for (const Part* part : {&a, &b}) {
+    for (Eigen::Index i = 0; i < part->points.rows(); ++i) {
+      const Eigen::Vector3d p = part->points.row(i).transpose() - window.center;
+      EXPECT_LE(std::abs(p.dot(window.right)), window.width_m / 2);
+      EXPECT_LE(std::abs(p.dot(window.up)), window.height_m / 2);
+      EXPECT_LE(std::abs(p.dot(window.direction)), window.depth_m);
+    }
+  }
+}
+
+TEST(ViewWindow, DirectionAlongUpIsAnError) {
+  const Part part = make_box({0, 0, 0}, {1, 1, 1});
+  FigureView view;
+  view.direction = {0, 2, 0};
+  EXPECT_THAT(message_of([&] { fit_window({&part}, view); }), HasSubstr("figure_view.direction"));
+}
+
+TEST(ViewWindow, SectionLooksAlongTheNormalAtThePlane) {
+  SectionView section;
+  section.origin = {3, 0, 0};
+  section.normal = {-1, 0, 0};
+  ViewWindow window = front_window();
+  window.direction = Eigen::Vector3d(1, 0, 1).normalized();
+  const ViewWindow plane = section_window(window, section);
+  EXPECT_LT((plane.direction - Eigen::Vector3d::UnitX()).norm(), 1e-12);  // towards the eye
+  EXPECT_NEAR(plane.center.x(), 3, 1e-12);
+  EXPECT_NEAR(plane.center.z(), window.center.z(), 1e-12);
+}
+
+Part with_values(const std::string& name, const Eigen::VectorXd& values) {
+  Part part = make_box({0, 0, 0}, {1, 1, 1});
+  part.arrays.push_back({name, "m", NamedArray::On::points, values});
+  return part;
+}
+
+TEST(ColorScale, SignedValuesAreSymmetricAboutZeroAndRatiosAboutOne) {
+  const Eigen::VectorXd signs = Eigen::VectorXd::LinSpaced(8, -1, 3);
+  const Part part = with_values("offset", signs);
+  const ColorScale scale = make_color_scale({&part}, "offset");
+  EXPECT_TRUE(scale.diverging);
+  EXPECT_DOUBLE_EQ(scale.low, -3);
+  EXPECT_DOUBLE_EQ(scale.high, 3);
+  const Part ratios = with_values("area_ratio", Eigen::VectorXd::LinSpaced(8, 0.5, 1.2));
+  const ColorScale about_one = make_color_scale({&ratios}, "area_ratio");
+  EXPECT_DOUBLE_EQ(about_one.low, 0.5);
+  EXPECT_DOUBLE_EQ(about_one.high, 1.5);
+}
+
+TEST(ColorScale, OneRangeForAllPartsAndUnknownArrayNamesTheOnesThereAre) {
+  const Part a = with_values("height", Eigen::VectorXd::LinSpaced(8, 1, 2));
+  const Part b = with_values("height", Eigen::VectorXd::LinSpaced(8, 3, 7));
+  const ColorScale scale = make_color_scale({&a, &b}, "height");
+  EXPECT_DOUBLE_EQ(scale.low, 1);
+  EXPECT_DOUBLE_EQ(scale.high, 7);
+  EXPECT_THAT(message_of([&] { make_color_scale({&a}, "curvature"); }), HasSubstr("height"));
+}
+
+TEST(Names, AreWrittenForReaders) {
+  EXPECT_EQ(display_name("dual-quaternion"), "Dual quaternion");
+  EXPECT_EQ(with_unit(90, "deg"), "90\u00b0");
+  EXPECT_EQ(with_unit(0.25, "s"), "0.25 s");
+  EXPECT_EQ(with_unit(3, "1"), "3");
+}
+
+TEST(Display, IsOursAndEndsWithItsObject) {
+  const char* before = std::getenv("DISPLAY");
+  const std::string old = before != nullptr ? before : "";
+  std::string ours;
+  {
+    const Display display;
+    ours = std::getenv("DISPLAY");
+    EXPECT_NE(ours, old);
+  }
+  const char* after = std::getenv("DISPLAY");
+  EXPECT_EQ(after != nullptr ? after : "", old);
+  EXPECT_FALSE(fs::exists("/tmp/.X11-unix/X" + ours.substr(1)));
+}
+
+Part make_sphere(double radius, int rings) {
+  Part part;
+  const int sectors = 2 * rings;
+  part.points.resize((rings + 1) * sectors, 3);
+  part.triangles.resize(2 * rings * sectors, 3);
+  Eigen::Index t = 0;
+  for (int i = 0; i <= rings; ++i) {
+    for (int j = 0; j < sectors; ++j) {
+      const double theta = std::numbers::pi * i / rings;
+      const double phi = 2 * std::numbers::pi * j / sectors;
+      part.points.row(i * sectors + j) =
+          radius * Eigen::RowVector3d(std::sin(theta) * std::cos(phi), std::cos(theta),
+                                      -std::sin(theta) * std::sin(phi));
+      if (i == rings) continue;
+      const int next = (j + 1) % sectors;
+      part.triangles.row(t++) << i * sectors + j, (i + 1) * sectors + j, i * sectors + next;
+      part.triangles.row(t++) << i * sectors + next, (i + 1) * sectors + j,
+          (i + 1) * sectors + next;
+    }
+  }
+  return part;
+}
+
+TEST(Panel, SphereCoversItsDiscOnWhite) {
+  const Display display;
+  const Part sphere = make_sphere(1, 48);
+  ViewWindow window;
+  window.width_m = 4;
+  window.height_m = 4;
+  window.depth_m = 1.2;
+  constexpr int kSize = 200;
+  const Picture picture = draw_panel({&sphere}, window, std::nullopt, kSize, kSize);
+  int covered = 0;
+  for (const Rgb& p : picture.pixels) covered += p[0] < 250 || p[2] < 250 ? 1 : 0;
+  const double radius_px = kSize / 4.0;
+  // One pixel of soft edge around the disc.
+  EXPECT_NEAR(covered, std::numbers::pi * radius_px * radius_px, 2 * std::numbers::pi * radius_px);
+  EXPECT_EQ(picture.at(0, 0), (Rgb{255, 255, 255}));
+  const Rgb lit = picture.at(80, 75);  // the key light comes from the upper left
+  const Rgb shaded = picture.at(125, 135);
+  EXPECT_GT(lit[0], shaded[0] + 20);
+}
+
+TEST(Panel, LinesPointsAndGridsAreDrawn) {
+  const Display display;
+  Part lines;
+  lines.kind = Part::Kind::lines;
+  lines.points.resize(2, 3);
+  lines.points << -1, 0, 0, 1, 0, 0;
+  lines.lines = {{0, 1}};
+  Part points;
+  points.kind = Part::Kind::points;
+  points.points = lines.points;
+  Part ball;  // the distance field of a ball: its zero level is drawn
+  ball.kind = Part::Kind::grid;
+  ball.grid_size = {21, 21, 21};
+  ball.grid_origin.setConstant(-1);
+  ball.grid_spacing.setConstant(0.1);
+  Eigen::VectorXd distance(21 * 21 * 21);
+  for (int i = 0; i < distance.size(); ++i) {
+    const Eigen::Vector3d p(i % 21, (i / 21) % 21, i / 441);
+    distance[i] = (0.1 * p - Eigen::Vector3d::Ones()).norm() - 0.6;
+  }
+  ball.arrays.push_back({"distance", "m", NamedArray::On::points, distance});
+  ViewWindow window;
+  window.width_m = 4;
+  window.height_m = 4;
+  window.depth_m = 2;
+  for (const Part* part : {&lines, &points, &ball}) {
+    const Picture picture = draw_panel({part}, window, std::nullopt, 100, 100);
+    int covered = 0;
+    for (const Rgb& p : picture.pixels) covered += p[0] < 240 ? 1 : 0;
+    EXPECT_GT(covered, 4) << static_cast<int>(part->kind);
+    EXPECT_LT(covered, 3000) << static_cast<int>(part->kind);
+  }
+}
+
+TEST(Render, DrawsTheSameFigureTwiceWithoutADisplay) {
+  const TestFolder folder;
+  make_fake_run(folder.path);
+  ::unsetenv("DISPLAY");
+  FigureView view;
+  view.parameters = {0, 90};
+  view.color_by = "height";
+  view.section = SectionView{{0.5, 0.5, 0.1}, {0, 0, 1}};
+  render_run(folder.path, view);
+  const std::string once = read_whole_file(folder.path / "figure.png");
+  EXPECT_EQ(once.substr(1, 3), "PNG");
+  EXPECT_LT(once.size(), 1u << 20);
+  render_run(folder.path, view);
+  EXPECT_EQ(read_whole_file(folder.path / "figure.png"), once);
+}
+
+TEST(Render, NamesWhatTheRunDoesNotHave) {
+  const TestFolder folder;
+  make_fake_run(folder.path);
+  FigureView view;
+  view.variants = {"third-box"};
+  EXPECT_THAT(message_of([&] { render_run(folder.path, view); }),
+              HasSubstr("first-box, second-box"));
+  view.variants = {};
+  view.part = "strokes";
+  EXPECT_THAT(message_of([&] { render_run(folder.path, view); }), HasSubstr("surface"));
+  EXPECT_FALSE(fs::exists(folder.path / "figure.png"));
+}
+
+TEST(Cells, NearestFrameIsTakenAndLabelledWithItsOwnParameter) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  FigureView view;
+  view.parameters = {50};
+  const auto rows = collect_cells(record, folder.path, view);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].label, "Angle 45\u00b0");
+  ASSERT_EQ(rows[0].cells.size(), 2u);
+  EXPECT_EQ(rows[0].cells[1].label, "Second box");
+  EXPECT_DOUBLE_EQ(rows[0].cells[0].part->points.col(0).maxCoeff(), 1.1);
+}
+
+}  // namespace
+}  // namespace geoprior
