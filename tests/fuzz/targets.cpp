@@ -1,0 +1,56 @@
+#include "tests/fuzz/targets.h"
+
+#include <cstring>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+#include "experiments/formats/gltf_reader.h"
+#include "experiments/runner/toml_tree.h"
+#include "experiments/skinning/bvh.h"
+#include "experiments/skinning/skeleton_file.h"
+
+namespace geoprior::test {
+namespace {
+
+/// Runs a reader; Error is its way to refuse.
+template <class Action>
+void allow_error(Action action) {
+  try {
+    action();
+  } catch (const Error&) {
+  }
+}
+
+std::string_view text_of(const std::uint8_t* data, std::size_t size) {
+  return {reinterpret_cast<const char*>(data), size};
+}
+
+}  // namespace
+
+void fuzz_gltf(const std::uint8_t* data, std::size_t size) {
+  std::vector<std::byte> bytes(size);
+  if (size > 0) std::memcpy(bytes.data(), data, size);
+  allow_error([&] {
+    const GltfCharacter character = read_gltf_bytes(bytes, "fuzz");
+    for (const GltfClip& clip : character.clips) {
+      if (character.skeleton) clip_pose(character, clip, (clip.start_s + clip.end_s) / 2);
+    }
+  });
+}
+
+void fuzz_bvh(const std::uint8_t* data, std::size_t size) {
+  allow_error([&] {
+    const BvhMotion motion = parse_bvh(text_of(data, size), "fuzz");
+    bvh_frame(motion, motion.frame_count() - 1);
+  });
+}
+
+void fuzz_toml(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text = text_of(data, size);
+  allow_error([&] { parse_skeleton(text, "fuzz"); });
+  allow_error([&] { parse_poses(text, "fuzz"); });
+  allow_error([&] { parse_toml_text(text, "fuzz"); });
+}
+
+}  // namespace geoprior::test
