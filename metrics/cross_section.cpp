@@ -31,9 +31,12 @@ struct Segment {
   int slot;  ///< of the region's triangle list
 };
 
-/// Where each triangle of the region lies along the chain of one hinge, at rest.
+/// Where a triangle of the region lies at one hinge, at rest.
 struct ChainRange {
-  double low, high;
+  double low, high;  ///< along the chain (m)
+  bool is_outer;     ///< its middle is on the outer side of the bones
+
+  [[nodiscard]] bool is_distal() const { return low + high >= 0; }
 };
 
 /// One hinge in one pose: what all its sections share.
@@ -87,12 +90,16 @@ PosedHinge pose_hinge(const JointRegion& region, const JointRegion::Hinge& hinge
   p.chain.reserve(region.triangles.size());
   for (const int t : region.triangles) {
     ChainRange range{std::numeric_limits<double>::infinity(),
-                     -std::numeric_limits<double>::infinity()};
+                     -std::numeric_limits<double>::infinity(), false};
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (int k = 0; k < 3; ++k) {
-      const double s = chain_coordinate(hinge, rest.row(F(t, k)).transpose());
+      const Eigen::Vector3d x = rest.row(F(t, k)).transpose();
+      const double s = chain_coordinate(hinge, x);
       range.low = std::min(range.low, s);
       range.high = std::max(range.high, s);
+      middle += (x - hinge.head) / 3;
     }
+    range.is_outer = middle.dot(range.is_distal() ? p.outer_distal : p.outer_proximal) > 0;
     p.chain.push_back(range);
   }
   return p;
@@ -157,20 +164,20 @@ double outer_share(int k, int n) {
   return k < quarter || k > 3 * quarter ? 1.0 : 0.0;
 }
 
-/// Outermost crossing of each ray from the centre with the segments that `seen` allows; NaN where
-/// there is none.
+/// First crossing of each ray from the centre with the segments that `seen` allows (a farther one
+/// may be the next finger's); NaN where there is none.
 template <class Seen>
 std::vector<double> radial_profile(const std::vector<Segment>& segments, int n, const Seen& seen) {
   std::vector<double> rho(static_cast<std::size_t>(n), kNone);
   for (int k = 0; k < n; ++k) {
     const Eigen::Vector2d dir = direction(k, n);
-    double& farthest = rho[static_cast<std::size_t>(k)];
+    double& nearest = rho[static_cast<std::size_t>(k)];
     for (const Segment& segment : segments) {
       const double a = dir.x() * segment.a.y() - dir.y() * segment.a.x();
       const double b = dir.x() * segment.b.y() - dir.y() * segment.b.x();
       if ((a >= 0) == (b >= 0) || !seen(k, segment)) continue;
       const double t = dir.dot(segment.a + a / (a - b) * (segment.b - segment.a));
-      if (t > 0 && !(t <= farthest)) farthest = t;
+      if (t > 0 && !(t >= nearest)) nearest = t;
     }
   }
   return rho;
@@ -264,10 +271,9 @@ SectionRatio bone_section(const Surface& surface, const PosedHinge& hinge, doubl
   rest.u = is_distal ? hinge.outer_distal : hinge.outer_proximal;
   rest.v = rest.n.cross(rest.u);
   rest.centre = hinge.rest.head + s * rest.n;
-  const auto seen = [&](int k, const Segment& segment) {
-    if (!hinge.has_halves || outer_share(k, n) > 0) return true;
-    const ChainRange& range = hinge.chain[static_cast<std::size_t>(segment.slot)];
-    return is_distal ? range.high >= 0 : range.low <= 0;
+  const auto seen = [&](int, const Segment& segment) {
+    return !hinge.has_halves ||
+           hinge.chain[static_cast<std::size_t>(segment.slot)].is_distal() == is_distal;
   };
   const Eigen::Vector2d centroid = profile_centroid(
       radial_profile(cut(surface.region, surface.F, surface.rest, hinge, side * s, rest), n, seen));
@@ -287,7 +293,7 @@ SectionRatio bone_section(const Surface& surface, const PosedHinge& hinge, doubl
   section.outer = half_area(profiles, 1, 0).ratio(surface.options.min_share);
   section.inner = half_area(profiles, 0, 1).ratio(surface.options.min_share);
   const double point = profiles.posed.front() / profiles.rest.front();
-  if (std::isfinite(point)) section.outer_point = point;
+  if (section.outer && std::isfinite(point)) section.outer_point = point;
   return section;
 }
 
@@ -311,7 +317,9 @@ void add_wedge_sections(const Surface& surface, const PosedHinge& hinge, int ind
     return PlaneFrame{head, u, axis, u.cross(axis)};
   };
   const int n = surface.options.directions;
-  const auto seen = [n](int k, const Segment&) { return outer_share(k, n) > 0; };
+  const auto seen = [&](int k, const Segment& segment) {
+    return outer_share(k, n) > 0 && hinge.chain[static_cast<std::size_t>(segment.slot)].is_outer;
+  };
   for (int w = 0; w < surface.options.wedge_planes; ++w) {
     const double f = (w + 0.5) / surface.options.wedge_planes;
     const PlaneFrame rest =
@@ -327,7 +335,7 @@ void add_wedge_sections(const Surface& surface, const PosedHinge& hinge, int ind
     section.s = f;
     section.outer = half_area(profiles, 1, 0).ratio(surface.options.min_share);
     const double point = profiles.posed.front() / profiles.rest.front();
-    if (std::isfinite(point)) section.outer_point = point;
+    if (section.outer && std::isfinite(point)) section.outer_point = point;
     sections.push_back(section);
   }
 }

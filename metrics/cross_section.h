@@ -18,19 +18,22 @@ struct CrossSectionOptions {
 
 /// Area of one posed section over that of the same section at rest; both halves apart.
 ///
-/// A section is the radial profile of the skin in a plane about a centre; its area is the sum of
-/// rho^2 dphi / 2. Three families of planes, all moved with the bones:
+/// A section is the radial profile rho(phi) of the skin in a plane about a centre: the distance at
+/// which a ray first meets the skin of the region; its area is the sum of rho^2 dphi / 2. A half of
+/// which more than 5 % of the rays meet nothing (a palm, that is no limb) is not compared. Three
+/// families of planes, all moved with the bones:
 ///  - `proximal`, `distal`: planes orthogonal to a bone at distance s from the joint; the centre is
 ///    the centroid of the rest section, carried by the bone;
 ///  - `wedge`: half planes that contain the bend axis and point outwards, between the two bones'
 ///    planes s = 0: they cover the outside of the joint, which the other two leave out.
 ///
-/// The outer half is the one away from the bend. On the inner side the two limbs meet: there, only
-/// triangles whose rest position is on the bone's own side of the joint are seen, and the profile
-/// of both the posed and the rest section ends at the posed bisector plane of the joint. So two
-/// rigid limbs that just meet give 1, skin of the other limb is never taken for the limb's own, and
-/// a loss of section is one that the bend itself does not explain. Skin farther along the bone
-/// than two radii from the section is never looked at.
+/// The outer half is the one away from the bend. In the planes of a bone only triangles whose rest
+/// position is on the bone's own side of the joint are seen, and on the inner side, where the two
+/// limbs meet, the profile of both the posed and the rest section ends at the posed bisector plane
+/// of the joint. So two rigid limbs that just meet give 1, skin of the other limb is never taken
+/// for the limb's own, and a loss of section is one that the bend itself does not explain. Skin
+/// farther along the bone than two radii from the section is never looked at. Near s = 0, where
+/// skin of both sides lies in the plane, a section may have too few rays and be absent.
 ///
 /// It is blind to overlap beyond the bisector plane: see overlap_volume.
 struct SectionRatio {
