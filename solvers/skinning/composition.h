@@ -64,6 +64,18 @@ class FieldComposition {
   /// f_a - f_b at p: zero on the contact surface of two bones.
   [[nodiscard]] float difference(Float4 p, int a, int b) const;
 
+  /// A rest direction turned with a bone.
+  [[nodiscard]] Float4 turn(int bone, Float4 direction) const {
+    const PosedBone& posed = posed_[static_cast<std::size_t>(bone)];
+    return posed.rotation[0] * splat(direction[0]) + posed.rotation[1] * splat(direction[1]) +
+           posed.rotation[2] * splat(direction[2]);
+  }
+
+  /// Whether one bone is the other's parent.
+  [[nodiscard]] bool share_joint(int a, int b) const {
+    return parent_[static_cast<std::size_t>(a)] == b || parent_[static_cast<std::size_t>(b)] == a;
+  }
+
   [[nodiscard]] int bone_count() const { return static_cast<int>(fields_.size()); }
   [[nodiscard]] const std::vector<BoneField>& fields() const { return fields_; }
   [[nodiscard]] bool same_part(int a, int b) const {

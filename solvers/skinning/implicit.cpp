@@ -79,11 +79,12 @@ struct ImplicitSkinning::Impl {
               joint_operators(partition, rig.skeleton, options), options.support,
               partition.bone_of_vertex, graph, options.limb_contact),
         projection(field, options),
-        state(rig.mesh, graph, partition.bone_of_vertex) {
+        state(rig, graph, partition.bone_of_vertex) {
     if (partition.bones.empty()) {
       throw Error("no joint moves enough vertices for a field", "implicit skinning",
                   "at least " + std::to_string(kMinBoneVertices) + " vertices a joint");
     }
+    rotation.resize(3 * static_cast<std::size_t>(joint_count));
     field.set_pose(rest_pose(joint_count));
     for (std::size_t s = 0; s < state.size(); ++s) {
       state.position[s] = row_of(rig.mesh.V, state.vertex[s]);
@@ -93,6 +94,7 @@ struct ImplicitSkinning::Impl {
   }
 
   void start(const Pose& pose, Eigen::MatrixX3d& posed);
+  void turn_normals(const Pose& pose);
   void fit(RunContext& context);
   void smooth(int diffusion, int passes);
   void finish(Eigen::MatrixX3d& posed);
@@ -105,6 +107,7 @@ struct ImplicitSkinning::Impl {
   FieldComposition field;
   Projection projection;
   SkinState state;
+  std::vector<Float4> rotation;  // columns of the joints' rotations
   int iterations = 0;
 };
 
@@ -119,6 +122,28 @@ void ImplicitSkinning::Impl::start(const Pose& pose, Eigen::MatrixX3d& posed) {
     state.start[s] = row_of(posed, state.vertex[s]);
   }
   state.position = state.start;
+  turn_normals(pose);
+}
+
+void ImplicitSkinning::Impl::turn_normals(const Pose& pose) {
+  for (std::size_t j = 0; j < pose.size(); ++j) {
+    const Eigen::Matrix3f turn = rigid_part(pose[j]).linear().cast<float>();
+    for (int k = 0; k < 3; ++k) {
+      rotation[3 * j + static_cast<std::size_t>(k)] =
+          Float4{turn(0, k), turn(1, k), turn(2, k), 0.0F};
+    }
+  }
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    const Float4 n = state.rest_normal[s];
+    Float4 sum{};
+    for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const Float4* r = &rotation[3 * static_cast<std::size_t>(state.influence_joint[k])];
+      sum += splat(state.influence_weight[k]) *
+             (r[0] * splat(n[0]) + r[1] * splat(n[1]) + r[2] * splat(n[2]));
+    }
+    state.outward[s] = sum;
+  }
 }
 
 void ImplicitSkinning::Impl::fit(RunContext& context) {
@@ -205,7 +230,8 @@ std::map<std::string, double> ImplicitSkinning::diagnostics() const {
     }
     if (state.stop[s] == VertexStop::active) ++unfinished;
     if (state.beta[s] > 0 || state.stop[s] == VertexStop::no_field) continue;
-    const auto error = static_cast<double>(at.value - Projection::target_of(state, s, at).value);
+    const auto error =
+        static_cast<double>(at.value - impl.projection.target_of(state, s, at).value);
     ++free;
     squares += error * error;
     largest = std::max(largest, std::abs(error));

@@ -25,6 +25,10 @@ void describe_fields(OptionVisitor& v, ImplicitOptions& o) {
                 {.doc = "joints whose operator differs from the others"});
   v.value("limb_contact", o.limb_contact,
           {.doc = "contact operator between limbs that no joint connects (off: maximum)"});
+  v.value("contact_gap", o.contact_gap,
+          {.doc = "by how much a vertex' own field exceeds the other limb's in contact",
+           .min = 0,
+           .max = 0.1});
   describe_choice(v, "partition", o.partition, kPartitionNames,
                   {.doc = "which bone a vertex belongs to"});
   describe_group(v, "sampling", o.sampling,
@@ -55,6 +59,9 @@ void describe_solve(OptionVisitor& v, ImplicitOptions& o) {
   v.value("bisect_at_stop", o.bisect_at_stop,
           {.doc = "move stopped vertices onto f1 = f2 instead of back to the last step"});
   v.value("stop_on_growth", o.stop_on_growth, {.doc = "stop a vertex whose field error grows"});
+  v.value(
+      "leave_far_side", o.leave_far_side,
+      {.doc = "vertices that the field pushes against their skinned normal walk along it first"});
   v.value("tolerance", o.tolerance,
           {.doc = "|F - iso| at which a vertex is done", .min = 1e-6, .max = 0.1});
   v.value("max_iterations", o.max_iterations,

@@ -58,6 +58,9 @@ struct ImplicitOptions {
   std::vector<JointBlend> joint_blends;
   bool limb_contact = true;  ///< contact operator between limbs that no joint connects
 
+  double contact_gap =
+      2e-3;  ///< by how much a vertex' own field exceeds the other limb's in contact
+
   PartitionRule partition = PartitionRule::highest_weight;
   SamplingOptions sampling;
   SupportKind support = SupportKind::quintic;
@@ -70,12 +73,13 @@ struct ImplicitOptions {
   double stop_angle_deg = 55;   ///< between consecutive gradients: contact
   bool bisect_at_stop = true;   ///< move stopped vertices onto f1 = f2
   bool stop_on_growth = false;  ///< stop where the error grows
+  bool leave_far_side = true;   ///< vertices that start beyond a medial axis first walk back
   double tolerance = 1e-3;      ///< |F - iso| at which a vertex is done
   int max_iterations = 40;
 
   bool relaxation = true;
   int diffusion_passes = 3;  ///< spreading of the contact mark beta
-  int smoothing_passes = 1;  ///< Laplacian passes weighted by beta
+  int smoothing_passes = 5;  ///< Laplacian passes weighted by beta
 };
 void describe(OptionVisitor& v, ImplicitOptions& options);
 

@@ -25,6 +25,12 @@ struct Bounds {
 
 constexpr std::size_t kLiveBlocksPerTask = 4;
 
+/// Stride of a vertex that leaves the far side of a fold, over the longest step.
+constexpr float kWalk = 0.5F;
+
+/// Cosine between the inward gradient and the outward normal above which a vertex is on that side.
+const float kAgainst = getenv("AG") ? static_cast<float>(atof(getenv("AG"))) : 0.5F;
+
 }  // namespace
 
 Projection::Projection(const FieldComposition& field, const ImplicitOptions& options)
@@ -33,13 +39,15 @@ Projection::Projection(const FieldComposition& field, const ImplicitOptions& opt
       max_step_(static_cast<float>(options.max_step)),
       stop_cos_(static_cast<float>(std::cos(options.stop_angle_deg * std::numbers::pi / 180))),
       tolerance_(static_cast<float>(options.tolerance)),
+      gap_(static_cast<float>(options.contact_gap)),
       bisect_(options.bisect_at_stop),
+      leave_far_side_(options.leave_far_side),
       stop_on_growth_(options.stop_on_growth) {}
 
 Projection::Target Projection::target_of(const SkinState& state, std::size_t slot,
-                                         const FieldAt& at) {
+                                         const FieldAt& at) const {
   const float iso = state.iso[slot];
-  const float excess = at.other - std::max(0.0F, state.rest_other[slot] - iso);
+  const float excess = at.other + gap_ - std::max(0.0F, state.rest_other[slot] + gap_ - iso);
   return excess > iso ? Target{excess, true} : Target{iso, false};
 }
 
@@ -56,6 +64,8 @@ void Projection::record_rest(SkinState& state) const {
     state.iso[s] = at.value;
     state.rest_other[s] = at.other;
     state.gradient[s] = at.gradient;
+    const float slope = std::sqrt(dot3(at.gradient, at.gradient));
+    state.rest_normal[s] = slope > 0 ? -xyz(at.gradient) / splat(slope) : Float4{};
   }
 }
 
@@ -102,6 +112,12 @@ bool Projection::step_vertex(SkinState& state, std::size_t slot, const FieldAt& 
   const auto radius = static_cast<float>(field_.fields()[owner].bone.radius);
   const Float4 last = state.gradient[slot];
   const bool has_last = state.last_bone[slot] >= 0;
+  const Target target = target_of(state, slot, at);
+  const float error = at.value - target.value;
+  if (leave_far_side_ && error > tolerance_ && on_far_side(state, slot, at)) {
+    walk_out(state, slot, at.bone);
+    return true;
+  }
   if (has_last) {
     const float cos_times_lengths = dot3(last, at.gradient);
     if (cos_times_lengths < stop_cos_ * std::sqrt(slope2 * dot3(last, last))) {
@@ -109,8 +125,6 @@ bool Projection::step_vertex(SkinState& state, std::size_t slot, const FieldAt& 
       return false;
     }
   }
-  const Target target = target_of(state, slot, at);
-  const float error = at.value - target.value;
   state.contact_bone[slot] = target.in_contact ? at.other_bone : -1;
   if (std::abs(error) < tolerance_) {
     state.stop[slot] = VertexStop::converged;
@@ -136,6 +150,26 @@ bool Projection::step_vertex(SkinState& state, std::size_t slot, const FieldAt& 
   state.gradient[slot][3] = error;
   state.last_bone[slot] = at.bone;
   return true;
+}
+
+bool Projection::on_far_side(const SkinState& state, std::size_t slot, const FieldAt& at) const {
+  const int owner = state.owner[slot];
+  if (at.bone < 0 || (at.bone != owner && !field_.share_joint(at.bone, owner))) return false;
+  const float against = dot3(at.gradient, field_.turn(at.bone, state.rest_normal[slot]));
+  return against > kAgainst * std::sqrt(dot3(at.gradient, at.gradient));
+}
+
+void Projection::walk_out(SkinState& state, std::size_t slot, int bone) const {
+  const int owner = state.owner[slot];
+  const Float4 normal = state.rest_normal[slot];
+  const Float4 out =
+      bone == owner ? state.outward[slot] : field_.turn(owner, normal) + field_.turn(bone, normal);
+  const float length = std::sqrt(dot3(out, out));
+  const auto radius =
+      static_cast<float>(field_.fields()[static_cast<std::size_t>(owner)].bone.radius);
+  if (length > 0) state.position[slot] += out * splat(kWalk * max_step_ * radius / length);
+  state.gradient[slot] = Float4{};
+  state.last_bone[slot] = -1;
 }
 
 void Projection::stop_in_contact(SkinState& state, std::size_t slot, int bone_now) const {

@@ -15,6 +15,10 @@ namespace geoprior {
 /// by more than the stop angle between two steps; where the gradient vanishes; and, as an option,
 /// where the error grows. A step is at most `max_step` r long.
 ///
+/// A vertex that starts beyond a medial axis (a deep fold: the far half of the other bone) would
+/// be pushed out on the wrong side. It is recognised by a field that pushes against the vertex'
+/// skinned normal, and walks along that normal, out of the fold, until the two agree.
+///
 /// Target: the vertex' iso-value. Where another part of the body is deeper than that, its field:
 /// F = f_other is the contact surface of the two, what Cani's operator makes of it for iso = 1/2.
 /// What overlaps already at rest is left out, so the rest pose stays as it is.
@@ -34,7 +38,7 @@ class Projection {
     float value;
     bool in_contact;
   };
-  static Target target_of(const SkinState& state, std::size_t slot, const FieldAt& at);
+  [[nodiscard]] Target target_of(const SkinState& state, std::size_t slot, const FieldAt& at) const;
 
   /// F at one vertex, by the bones that can reach it.
   [[nodiscard]] FieldAt field_of(const SkinState& state, std::size_t slot, Float4 p) const;
@@ -42,6 +46,8 @@ class Projection {
  private:
   void step_block(SkinState& state, std::size_t block) const;
   bool step_vertex(SkinState& state, std::size_t slot, const FieldAt& at) const;
+  [[nodiscard]] bool on_far_side(const SkinState& state, std::size_t slot, const FieldAt& at) const;
+  void walk_out(SkinState& state, std::size_t slot, int bone) const;
   void stop_in_contact(SkinState& state, std::size_t slot, int bone_now) const;
 
   const FieldComposition& field_;
@@ -49,7 +55,9 @@ class Projection {
   float max_step_;
   float stop_cos_;
   float tolerance_;
+  float gap_;
   bool bisect_;
+  bool leave_far_side_;
   bool stop_on_growth_;
 };
 

@@ -35,10 +35,10 @@ std::vector<std::uint64_t> morton_codes(const Eigen::MatrixX3d& V) {
 
 }  // namespace
 
-SkinState::SkinState(const TriMesh& mesh, const VertexGraph& graph,
+SkinState::SkinState(const RiggedMesh& rig, const VertexGraph& graph,
                      const std::vector<int>& bone_of_vertex) {
-  const auto n = static_cast<std::size_t>(mesh.vertex_count());
-  const std::vector<std::uint64_t> codes = morton_codes(mesh.V);
+  const auto n = static_cast<std::size_t>(rig.mesh.vertex_count());
+  const std::vector<std::uint64_t> codes = morton_codes(rig.mesh.V);
   vertex.resize(n);
   std::iota(vertex.begin(), vertex.end(), 0);
   const auto bone_of = [&](int v) { return bone_of_vertex[static_cast<std::size_t>(v)]; };
@@ -56,11 +56,19 @@ SkinState::SkinState(const TriMesh& mesh, const VertexGraph& graph,
     for (const int w : graph.of(vertex[s])) ring.push_back(slot_of[static_cast<std::size_t>(w)]);
     ring_offset.push_back(static_cast<int>(ring.size()));
   }
+  influence_offset.push_back(0);
+  for (const int v : vertex) {
+    for (SkinWeights::InnerIterator it(rig.weights, v); it; ++it) {
+      influence_joint.push_back(static_cast<int>(it.col()));
+      influence_weight.push_back(static_cast<float>(it.value()));
+    }
+    influence_offset.push_back(static_cast<int>(influence_joint.size()));
+  }
   ring_weight.assign(ring.size(), 0);
   iso.assign(n, 0);
   rest_other.assign(n, 0);
   start.assign(n, Float4{});
-  position = next = last_position = gradient = start;
+  position = next = outward = rest_normal = last_position = gradient = start;
   last_bone.assign(n, -1);
   contact_bone.assign(n, -1);
   stop.assign(n, VertexStop::active);

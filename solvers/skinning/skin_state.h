@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/mesh.h"
+#include "core/rig.h"
 #include "core/topology.h"
 #include "solvers/skinning/bones.h"
 #include "solvers/skinning/simd.h"
@@ -33,8 +33,14 @@ struct SkinState {
   std::vector<float> iso;          ///< F at rest
   std::vector<float> rest_other;   ///< largest field of other parts of the body at rest
 
+  std::vector<Float4> rest_normal;    ///< unit, outward: of the field at rest
+  std::vector<int> influence_offset;  ///< skinning weights, compressed rows
+  std::vector<int> influence_joint;
+  std::vector<float> influence_weight;
+
   // Of one frame.
-  std::vector<Float4> start;  ///< dual quaternion positions
+  std::vector<Float4> start;    ///< dual quaternion positions
+  std::vector<Float4> outward;  ///< rest normal turned by the blended joints; no unit length
   std::vector<Float4> position;
   std::vector<Float4> next;           ///< second buffer of Jacobi passes
   std::vector<Float4> last_position;  ///< before the last step
@@ -51,7 +57,8 @@ struct SkinState {
   std::vector<int> live_blocks;           ///< blocks that have any
   std::vector<std::int64_t> evaluations;  ///< bone fields sampled, per block
 
-  SkinState(const TriMesh& mesh, const VertexGraph& graph, const std::vector<int>& bone_of_vertex);
+  SkinState(const RiggedMesh& rig, const VertexGraph& graph,
+            const std::vector<int>& bone_of_vertex);
 
   [[nodiscard]] std::size_t size() const { return vertex.size(); }
   [[nodiscard]] std::size_t block_count() const { return active_count.size(); }
