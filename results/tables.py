@@ -55,10 +55,10 @@ def values_of(variant, name, framed):
     return [float(finite.min()), float(finite.max())]
 
 
-def cell_text(values, size):
+def cell_text(values, size, symbol):
     if not values:
         return "–"
-    texts = list(dict.fromkeys(number(v / size) for v in values))
+    texts = list(dict.fromkeys(number(v / size, counts=not symbol) for v in values))
     return " … ".join(texts)
 
 
@@ -84,7 +84,7 @@ def metric_rows(case):
         reduction = (worst(example.direction) or "range") if framed else ""
         label = display_name(name) + (f", {reduction}" if reduction else "")
         rows.append(MetricRow(label, symbol, example.definition, example.direction,
-                              [cell_text(v, size) for v in values],
+                              [cell_text(v, size, symbol) for v in values],
                               best_of(values, example.direction)))
     return rows
 

@@ -42,8 +42,9 @@ def labelled(name, symbol):
     return f"{name} [{symbol}]" if symbol else name
 
 
-def number(value, digits=3):
-    """Three significant digits, no needless exponent; a dash where there is no value."""
+def number(value, digits=3, counts=True):
+    """Three significant digits, no needless exponent; a dash where there is no value. A whole number
+    is taken for a count and shown exactly, unless the quantity is measured."""
     if value is None or math.isnan(value):
         return "–"
     if math.isinf(value):
@@ -52,7 +53,7 @@ def number(value, digits=3):
         return "0"
     magnitude = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
     if -4 < magnitude < digits + 3:
-        if float(value).is_integer() and abs(value) < 1e6:
+        if counts and float(value).is_integer():
             text = f"{int(value):,}".replace(",", "\u202f")
         else:
             text = f"{value:.{max(0, digits - 1 - magnitude)}f}"
@@ -64,12 +65,14 @@ def number(value, digits=3):
 
 def with_unit(value, unit):
     """A value in the unit's easiest step: `0.0031 s` as `3.10 ms`."""
+    if not math.isfinite(value):
+        return number(value)
     size, symbol = scale_for([value], unit)
-    text = number(value / size)
+    text = number(value / size, counts=symbol == "°")
     return text + (symbol if symbol == "°" else f" {symbol}" if symbol else "")
 
 
 def interval(median, low, high):
     if not (math.isfinite(low) and math.isfinite(high)):
-        return number(median)
-    return f"{number(median)} [{number(low)}, {number(high)}]"
+        return number(median, counts=False)
+    return "{} [{}, {}]".format(*(number(v, counts=False) for v in (median, low, high)))

@@ -226,6 +226,8 @@ FigureView read_figure_view(const TomlNode& root, const Topic& topic) {
   view.direction = table.direction;
   view.up = table.up;
   view.height_m = table.height_m;
+  view.section = table.section;
+  view.overlays = table.overlays;
   view.variants = table.variants;
   view.cases = table.cases;
   view.metrics = table.metrics;

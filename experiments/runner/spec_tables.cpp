@@ -94,6 +94,11 @@ void describe(OptionVisitor& v, ToleranceTable& t) {
   v.value("relative", t.relative, {.doc = "fraction of the reference value", .min = 0});
 }
 
+void describe(OptionVisitor& v, SectionView& t) {
+  v.value("origin", t.origin, {.doc = "point of the plane", .unit = "m"});
+  v.value("normal", t.normal, {.doc = "across the plane"});
+}
+
 void describe(OptionVisitor& v, FigureViewTable& t) {
   v.value("at_parameter", t.at_parameter, {.doc = "frame that is drawn; absent: the last"});
   v.value("parameters", t.parameters, {.doc = "several frames, side by side"});
@@ -104,6 +109,9 @@ void describe(OptionVisitor& v, FigureViewTable& t) {
   v.value("up", t.up, {.doc = "upward in the picture"});
   v.value("height_m", t.height_m,
           {.doc = "height of the view; absent: fitted", .unit = "m", .min = 1e-12});
+  describe_group(v, "section", t.section,
+                 {.doc = "adds a row with the part cut by a plane, overlaps of the solid in red"});
+  v.value("overlays", t.overlays, {.doc = "further parts drawn over `part`"});
   v.value("variants", t.variants, {.doc = "absent: all"});
   v.value("cases", t.cases, {.doc = "absent: all"});
   v.value("metrics", t.metrics, {.doc = "curves of metrics.svg; absent: all that vary"});

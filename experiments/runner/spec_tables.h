@@ -88,6 +88,8 @@ struct FigureViewTable {
   std::array<double, 3> direction{0, 0, 1};
   std::array<double, 3> up{0, 1, 0};
   std::optional<double> height_m;
+  std::optional<SectionView> section;
+  std::vector<std::string> overlays;
   std::vector<std::string> variants;
   std::vector<std::string> cases;
   std::vector<std::string> metrics;
@@ -100,6 +102,7 @@ void describe(OptionVisitor& v, ClaimTable& t);
 void describe(OptionVisitor& v, StudyTable& t);
 void describe(OptionVisitor& v, TimingTable& t);
 void describe(OptionVisitor& v, ToleranceTable& t);
+void describe(OptionVisitor& v, SectionView& t);
 void describe(OptionVisitor& v, FigureViewTable& t);
 
 /// The texts of the enumerators, as files have them.

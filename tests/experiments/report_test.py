@@ -1,0 +1,233 @@
+"""What results/*.py make of a run: read from run.h5 alone, self-contained, the same twice, and one
+clear line when the file is damaged. Run with Debian's python3."""
+
+import base64
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+from html.parser import HTMLParser
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+RESULTS = Path(__file__).resolve().parents[2] / "results"
+sys.path.insert(0, str(RESULTS))
+
+import plots  # noqa: E402
+import report  # noqa: E402
+import runfile  # noqa: E402
+import summary  # noqa: E402
+import tables  # noqa: E402
+import wording  # noqa: E402
+
+ANGLES = np.array([0.0, 45.0, 90.0])
+PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJ"
+                         "ggg==")
+
+
+def table(rows, fields):
+    """A compound table as docs/file-formats.md describes it."""
+    kinds = [(n, f"S{max([len(str(r[i]).encode()) for r in rows] + [1])}" if k == "text" else k)
+             for i, (n, k) in enumerate(fields)]
+    encoded = [tuple(str(x).encode() if k == "text" else x for x, (_, k) in zip(r, fields))
+               for r in rows]
+    return np.array(encoded, dtype=kinds)
+
+
+def add_metric(group, name, values, unit, direction):
+    data = group.create_dataset(name, data=values)
+    data.attrs.update(unit=unit, definition=f"What {name} is.", direction=direction)
+
+
+def add_variant(parent, index, name, overlap, seconds):
+    group = parent.create_group(name)
+    group.attrs.update(index=index, method=name, role="method" if index else "baseline",
+                       reference="", options='{"step": 0.35}', status="done")
+    group["parameter"] = ANGLES
+    metrics = group.create_group("metrics")
+    add_metric(metrics, "overlap_excess", overlap, "m^3", "lower_is_better")
+    add_metric(metrics, "volume_change", -0.001 * ANGLES * (index + 1), "1", "closer_to_target")
+    summary = group.create_group("summary")
+    add_metric(summary, "overlap_excess.max", np.nanmax(overlap), "m^3", "lower_is_better")
+    add_metric(summary, "volume_change.min", -0.09 * (index + 1), "1", "closer_to_target")
+    add_metric(summary, "rest_identity", 1e-16, "1", "lower_is_better")
+    group.create_group("diagnostics")["iterations"] = np.array([1.0, np.nan, 7.0])
+    group.create_group("timing")["solve"] = seconds * np.ones((3, 4))
+    group["events"] = np.array(
+        [(0.5, b"hit", (0, 0, 0), 1.0, 0.1)] * (2 * index),
+        dtype=[("time_s", "f8"), ("kind", "S8"), ("position", "f8", (3,)), ("energy_J", "f8"),
+               ("duration_s", "f8")])
+    group["frames"] = table([(0, "frames/x.vtp", "0" * 64)],
+                            [("frame", "i8"), ("name", "text"), ("sha256", "text")])
+    group["artifacts"] = table([], [("name", "text"), ("sha256", "text")])
+
+
+def make_run(folder, title="Knee <flexion> & more"):
+    with h5py.File(folder / "run.h5", "w") as file:
+        file.attrs.update(schema_version=1, experiment_id="test/knee", title=title, figure="3.2",
+                          topic="skinning", quick=1, spec_hash="a" * 64, content_sha256="b" * 64,
+                          experiment='title = "x"\n[figure_view]\nmetrics = ["overlap_excess"]\n',
+                          git_commit="0123456789abcdef", cpu="A CPU", start="2026-01-01T00:00:00Z")
+        file["inputs"] = table([("human.glb", "c" * 64)], [("name", "text"), ("sha256", "text")])
+        case = file.create_group("cases/default")
+        case.attrs.update(index=0, parameter_name="angle", parameter_unit="deg", seed=1, threads=0,
+                          scene="{}", warnings=["one <warning>"])
+        case.create_group("swept")
+        case.create_group("facts").attrs["vertices"] = 13380.0
+        case["ratios"] = table([("implicit", "dual-quaternion", 4.0, 3.9, 4.1)], [
+            ("variant", "text"), ("of", "text"), ("median_ratio", "f8"), ("low", "f8"),
+            ("high", "f8")])
+        variants = case.create_group("variants")
+        add_variant(variants, 1, "implicit", np.array([0, 1e-9, 2e-9]), 0.004)
+        add_variant(variants, 0, "dual-quaternion", np.array([0, 2e-6, 4e-6]), 0.001)
+        study = file.create_group("study/growth")
+        study.attrs.update(index=0, kind="exponent", quantity="timing:solve", value=1.0, low=0.9,
+                           high=1.1)
+        study["x"], study["y"] = np.array([1e3, 1e4]), np.array([1e-3, 1e-2])
+        file["claims"] = table(
+            [("contact goes", "default", "1e-9 <= 2e-6", 1e-9, 2e-6, 1),
+             ("bulge stays", "default", "0.03 <= 0.02", 0.03, 0.02, 0)],
+            [("text", "text"), ("case", "text"), ("detail", "text"), ("left", "f8"),
+             ("right", "f8"), ("holds", "i4")])
+    (folder / "figure.png").write_bytes(PIXEL)
+
+
+class Page(HTMLParser):
+    """Counts tags and collects what a page would load."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.loads, self.open = [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.loads += [v for k, v in attrs if k in ("src", "srcset", "data") or
+                       (k == "href" and tag == "link")]
+        if tag not in ("meta", "img", "br"):
+            self.open.append(tag)
+        if tag == "img":
+            assert dict(attrs).get("alt"), "a picture without alternative text"
+
+    def handle_endtag(self, tag):
+        assert self.open and self.open.pop() == tag, f"</{tag}> closes nothing"
+
+
+def run_script(name, *arguments):
+    return subprocess.run([sys.executable, "-B", str(RESULTS / f"{name}.py"), *map(str, arguments)],
+                          capture_output=True, text=True, timeout=120, check=False)
+
+
+class RunTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="geoprior-report-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        make_run(self.folder)
+
+    def test_variants_come_in_the_order_of_the_experiment(self):
+        run = runfile.read_run(self.folder)
+        self.assertEqual(run.variant_names(), ["dual-quaternion", "implicit"])
+        self.assertEqual(run.provenance["cpu"], "A CPU")
+        self.assertEqual([c.holds for c in run.claims], [True, False])
+
+    def test_report_is_one_file_that_loads_nothing(self):
+        report.main([str(self.folder), "--out", str(self.folder / "report.html")])
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        page = Page(text)
+        self.assertEqual(page.open, [])
+        self.assertNotIn("script", page.tags)
+        self.assertTrue(page.loads)
+        self.assertTrue(all(v.startswith("data:image/") for v in page.loads))
+        self.assertIsNone(re.search(r"@import|url\(", text))
+        self.assertTrue(base64.b64encode(PIXEL).decode() in text)
+
+    def test_report_says_what_the_run_says(self):
+        report.main([str(self.folder), "--out", str(self.folder / "report.html")])
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        for expected in ("Claims: 1 of 2 hold", "falls short", "0.03 &lt;= 0.02",
+                         "Knee &lt;flexion&gt; &amp; more", "one &lt;warning&gt;",
+                         "4.00 [3.90, 4.10] × Dual quaternion", "1.00 ms", "c" * 64, "quick version",
+                         "geoprior run test/knee --quick", "Overlap excess, max [cm³]"):
+            self.assertTrue(expected in text, expected)
+        self.assertTrue("<b>0.00200</b>" in text)  # the best overlap, in cm³, is marked
+
+    def test_several_runs_have_contents_and_a_comparison(self):
+        other = self.folder / "other"
+        other.mkdir()
+        make_run(other, "Second")
+        out = self.folder / "both.html"
+        report.main([str(self.folder), str(other), "--out", str(out)])
+        text = out.read_text(encoding="utf-8")
+        Page(text)
+        self.assertTrue("Shared variants" in text)
+        for anchor in re.findall(r'href="#([^"]+)"', text):
+            self.assertTrue(f'id="{anchor}"' in text, anchor)
+
+    def test_damaged_run_is_one_clear_line_and_exit_code_2(self):
+        whole = (self.folder / "run.h5").read_bytes()
+        for content in (whole[:len(whole) // 2], b"", b"no HDF5 at all"):
+            (self.folder / "run.h5").write_bytes(content)
+            with self.assertRaisesRegex(runfile.RunFileError, "run.h5: damaged"):
+                runfile.read_run(self.folder)
+        done = run_script("report", self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        self.assertIn(str(self.folder / "run.h5"), done.stderr)
+        self.assertFalse((self.folder / "report.html").exists())
+
+    def test_missing_part_of_a_run_names_the_file(self):
+        with h5py.File(self.folder / "run.h5", "a") as file:
+            del file["claims"]
+        with self.assertRaisesRegex(runfile.RunFileError, "run.h5"):
+            runfile.read_run(self.folder)
+
+    def test_plots_are_the_same_bytes_twice(self):
+        self.assertEqual(run_script("plots", self.folder).returncode, 0)
+        svg = (self.folder / "metrics.svg").read_text(encoding="utf-8")
+        self.assertEqual(svg, plots.figures(runfile.read_run(self.folder))[0][1])
+        ElementTree.fromstring(svg)
+
+    def test_figure_view_selects_the_curves(self):
+        run = runfile.read_run(self.folder)
+        self.assertEqual(plots.frame_metrics(run), ["overlap_excess"])
+        run.view = {}
+        self.assertEqual(plots.frame_metrics(run), ["overlap_excess", "volume_change"])
+
+    def test_unwritable_target_leaves_nothing_behind(self):
+        with self.assertRaisesRegex(runfile.RunFileError, "cannot be written"):
+            report.main([str(self.folder), "--out", str(self.folder / "absent" / "page.html")])
+
+    def test_summary_names_claims_and_times(self):
+        summary.main([str(self.folder)])
+        text = (self.folder / "summary.md").read_text(encoding="utf-8")
+        self.assertIn("**falls short**: bulge stays", text)
+        self.assertIn("4.00 ms", text)
+
+    def test_worst_value_follows_the_direction(self):
+        rows = {r.name: r for r in tables.metric_rows(runfile.read_run(self.folder).cases[0])}
+        self.assertEqual(rows["Overlap excess, max"].cells, ["4.00", "0.00200"])
+        self.assertEqual(rows["Overlap excess, max"].best, [False, True])
+        self.assertEqual(rows["Volume change, range"].best, [False, False])
+
+
+class WordingTest(unittest.TestCase):
+    def test_numbers_have_three_significant_digits(self):
+        for value, expected in [(0.0123456, "0.0123"), (-4.0, "−4"), (13380.0, "13\u202f380"),
+                                (1.5e-9, "1.50·10⁻⁹"), (float("nan"), "–"), (0.0, "0"),
+                                (0.99999, "1.00"), (123.456, "123"), (1.2345e9, "1.23·10⁹")]:
+            self.assertEqual(wording.number(value), expected)
+
+    def test_units_take_the_step_that_reads_easily(self):
+        self.assertEqual(wording.with_unit(0.00312, "s"), "3.12 ms")
+        self.assertEqual(wording.with_unit(2.5e-6, "m^3"), "2.50 cm³")
+        self.assertEqual(wording.with_unit(90.0, "deg"), "90°")
+        self.assertEqual(wording.with_unit(0.5, "1"), "0.500")
+
+
+if __name__ == "__main__":
+    unittest.main()
