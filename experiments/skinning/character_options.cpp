@@ -65,6 +65,9 @@ void describe(OptionVisitor& v, CharacterOptions& options) {
   describe_group(v, "heat", options.heat, {.doc = "bone heat diffusion"});
   describe_group(v, "cylinder", options.cylinder, {.doc = "shape of character = \"cylinder\""});
   describe_group(v, "finger", options.finger, {.doc = "shape of character = \"finger\""});
+  v.value("simplify_to", options.simplify_to,
+          {.doc = "collapse edges until so many vertices are left (heat weights), before refining",
+           .min = 4});
   describe_list(v, "refine", options.refine,
                 {.doc = "Loop subdivision of the whole mesh or of regions, in order"});
 }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/simplify.h"
 #include "core/subdivision.h"
 #include "core/topology.h"
 #include "experiments/view/view.h"
@@ -158,12 +159,17 @@ void load_file(const CharacterOptions& options, const fs::path& file, const fs::
   character.gltf = std::move(gltf);
 }
 
+std::vector<int> identity(int n) {
+  std::vector<int> result(static_cast<std::size_t>(n));
+  std::iota(result.begin(), result.end(), 0);
+  return result;
+}
+
 void take_procedural(const CharacterOptions& options, RiggedMesh rig, const fs::path& folder,
                      Character& character) {
   character.rig = std::move(rig);
   character.input_mesh = character.rig.mesh;
-  character.welded_of_input.resize(static_cast<std::size_t>(character.rig.mesh.vertex_count()));
-  std::iota(character.welded_of_input.begin(), character.welded_of_input.end(), 0);
+  character.welded_of_input = identity(character.rig.mesh.vertex_count());
   std::optional<SkinWeights> given = std::move(character.rig.weights);
   if (options.skeleton) {
     read_skeleton_option(*options.skeleton, folder, character);
@@ -203,6 +209,21 @@ void refine(const RefineOptions& options, Character& character) {
   character.rig = std::move(refined.rig);
 }
 
+/// Coarser mesh with heat weights: quadric collapse carries no weights and no seams along.
+void simplify_character(const CharacterOptions& options, int target, Character& character) {
+  if (options.weights == WeightSource::file)
+    throw Error("weights of the file do not survive simplify_to", "scene.weights",
+                "\"heat\" or \"file-or-heat\"");
+  const int before = character.rig.mesh.vertex_count();
+  character.rig.mesh = simplify(character.rig.mesh, target);
+  character.input_mesh = character.rig.mesh;
+  character.welded_of_input = identity(character.rig.mesh.vertex_count());
+  character.rig.weights = heat_weights(character.rig.mesh, character.rig.skeleton, options.heat);
+  character.warnings.push_back("simplified from " + std::to_string(before) + " to " +
+                               std::to_string(character.rig.mesh.vertex_count()) +
+                               " vertices, with heat weights and without the file's seams");
+}
+
 /// The body of Debian's assimp-testmodels, converted at set-up.
 void load_human(CharacterOptions options, const fs::path& folder, Character& character) {
   const fs::path file = data_folder() / "human.glb";
@@ -228,6 +249,7 @@ Character load_character(const CharacterOptions& options, const fs::path& folder
   } else {
     load_file(options, find_input(options.character, folder), folder, character);
   }
+  if (options.simplify_to) simplify_character(options, *options.simplify_to, character);
   for (const RefineOptions& r : options.refine) refine(r, character);
   return character;
 }

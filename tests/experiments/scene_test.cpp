@@ -97,6 +97,19 @@ TEST(SkinningScene, SeamsFollowRefinementOfARegion) {
   validate(scene->rig.weights, scene->rig.mesh.vertex_count(), scene->rig.skeleton.size());
 }
 
+TEST(SkinningScene, SimplifiedBodyStaysClosedAndRigged) {
+  SkinningSceneOptions options;
+  options.motion.joint = "knee-left";
+  options.character.simplify_to = 4000;
+  const auto scene = load(options);
+  EXPECT_NEAR(scene->rig.mesh.vertex_count(), 4000, 40);
+  EXPECT_TRUE(boundary_edges(scene->rig.mesh.F).empty());
+  expect_split_follows_weld(*scene);
+  EXPECT_EQ(scene->regions.size(), 1U);
+  options.character.weights = WeightSource::file;
+  EXPECT_THROW(load(options), Error);
+}
+
 TEST(SkinningScene, NeighbouringJointsShareARegionOthersDoNot) {
   SkinningSceneOptions options;
   options.motion.joint = "index-1-left";
