@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kRowsOfStrip = 16;
 constexpr double kMaxColumns = 268435456;  // 2^28
-constexpr double kSpacingsOfRadius = 48;
+constexpr double kSpacingsOfRadius = 24;
 
 /// A square grid of columns seen along their axis; (x, y, z) is a cyclic permutation, so that
 /// orientation is kept.
@@ -121,24 +121,46 @@ double integrate(const Crossing* begin, const Crossing* end, const ColumnGrid& g
   return sum;
 }
 
-OverlapVolume integrate_strip(std::vector<Crossing>& crossings, const ColumnGrid& grid) {
-  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
-    return a.column != b.column ? a.column < b.column : a.z < b.z;
-  });
+/// What a thread needs for one strip after another.
+struct StripBuffers {
+  std::vector<Crossing> crossings;  // in order of triangles
+  std::vector<Crossing> sorted;     // in order of columns
+  std::vector<std::size_t> end_of_column;
+};
+
+/// Groups the crossings by column (counting sort, keeps the order of triangles).
+void sort_by_column(StripBuffers& b, int first_column, int columns) {
+  const auto slot = [&](const Crossing& c) {
+    return static_cast<std::size_t>(c.column - first_column);
+  };
+  b.end_of_column.assign(static_cast<std::size_t>(columns) + 1, 0);
+  for (const Crossing& c : b.crossings) ++b.end_of_column[slot(c) + 1];
+  for (std::size_t i = 1; i < b.end_of_column.size(); ++i)
+    b.end_of_column[i] += b.end_of_column[i - 1];
+  b.sorted.resize(b.crossings.size());
+  for (const Crossing& c : b.crossings) b.sorted[b.end_of_column[slot(c)]++] = c;
+}
+
+OverlapVolume integrate_strip(StripBuffers& b, int first_column, int columns,
+                              const ColumnGrid& grid) {
+  sort_by_column(b, first_column, columns);
   OverlapVolume strip;
-  for (std::size_t begin = 0; begin < crossings.size();) {
-    std::size_t end = begin;
-    int balance = 0;
-    for (; end < crossings.size() && crossings[end].column == crossings[begin].column; ++end) {
-      balance += crossings[end].sign;
-    }
-    ++strip.columns;
-    if (balance == 0) {
-      strip.volume += integrate(crossings.data() + begin, crossings.data() + end, grid);
-    } else {
-      ++strip.unbalanced_columns;
-    }
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(columns); ++i) {
+    const std::size_t end = b.end_of_column[i];
+    if (begin == end) continue;
+    Crossing* first = b.sorted.data() + begin;
+    Crossing* last = b.sorted.data() + end;
     begin = end;
+    int balance = 0;
+    for (const Crossing* c = first; c != last; ++c) balance += c->sign;
+    ++strip.columns;
+    if (balance != 0) {
+      ++strip.unbalanced_columns;
+      continue;
+    }
+    std::sort(first, last, [](const Crossing& l, const Crossing& r) { return l.z < r.z; });
+    strip.volume += integrate(first, last, grid);
   }
   return strip;
 }
@@ -190,18 +212,19 @@ OverlapVolume overlap_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& 
   const std::vector<std::vector<int>> of_strip = triangles_of_strips(corners, F, grid);
   std::vector<OverlapVolume> partial(of_strip.size());
   parallel_blocks(of_strip.size(), 1, [&](std::size_t begin, std::size_t end) {
-    std::vector<Crossing> crossings;
+    StripBuffers buffers;
     for (std::size_t s = begin; s < end; ++s) {
-      crossings.clear();
+      buffers.crossings.clear();
       const int strip_first = static_cast<int>(s) * kRowsOfStrip;
       for (const int t : of_strip[s]) {
         const std::array<Corner, 3> c = corners_of(corners, F, t);
         RowRange rows = rows_of(c, grid.height);
         rows.first = std::max(rows.first, strip_first);
         rows.last = std::min(rows.last, strip_first + kRowsOfStrip - 1);
-        rasterise(c, rows, grid, crossings);
+        rasterise(c, rows, grid, buffers.crossings);
       }
-      partial[s] = integrate_strip(crossings, grid);
+      const int rows_here = std::min(kRowsOfStrip, grid.height - strip_first);
+      partial[s] = integrate_strip(buffers, strip_first * grid.width, rows_here * grid.width, grid);
     }
   });
   OverlapVolume total;
@@ -250,11 +273,15 @@ Eigen::AlignedBox3d joint_box(const JointRegion& region, const Pose& pose) {
   return box;
 }
 
-double region_column_spacing(const JointRegion& region) {
+double smallest_radius(const JointRegion& region) {
   if (region.hinges.empty()) throw Error("a region without joints has no size", region.name);
   double radius = region.hinges.front().radius;
   for (const JointRegion::Hinge& hinge : region.hinges) radius = std::min(radius, hinge.radius);
-  return radius / kSpacingsOfRadius;
+  return radius;
+}
+
+double region_column_spacing(const JointRegion& region) {
+  return smallest_radius(region) / kSpacingsOfRadius;
 }
 
 }  // namespace geoprior

@@ -62,7 +62,10 @@ double overlap_noise_floor(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
 /// method.
 Eigen::AlignedBox3d joint_box(const JointRegion& region, const Pose& pose);
 
-/// Spacing h used for a region: the smallest radius of its joints over 48.
+/// Smallest radius of the region's joints (m): the scale of its overlaps.
+double smallest_radius(const JointRegion& region);
+
+/// Spacing h used for a region: the smallest radius of its joints over 24.
 double region_column_spacing(const JointRegion& region);
 
 }  // namespace geoprior

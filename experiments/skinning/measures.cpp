@@ -56,7 +56,7 @@ OverlapStudy compute_overlap(const Measured& m, const Eigen::MatrixX3d& V, const
   if (const JointRegion* region = m.region()) {
     const double spacing = region_column_spacing(*region);
     return overlap_study(V, m.mesh().F, joint_box(*region, pose), spacing,
-                         region->hinges.front().radius);
+                         smallest_radius(*region));
   }
   Eigen::AlignedBox3d box;
   for (Eigen::Index v = 0; v < V.rows(); ++v) box.extend(V.row(v).transpose());
