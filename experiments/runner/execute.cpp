@@ -48,15 +48,16 @@ void require_same_specification(const std::string& recorded, const Experiment& e
 std::optional<RunRecord> finished_record(const Experiment& experiment, const fs::path& folder) {
   const fs::path file = folder / "run.h5";
   if (!fs::exists(file)) return std::nullopt;
+  std::optional<RunRecord> record;
   try {
-    RunRecord record = read_run_file(file);
-    require_same_specification(record.spec_hash, experiment, folder);
-    return record;
+    record = read_run_file(file);
   } catch (const Error&) {
     // The journal has it all: a damaged run.h5 is assembled again.
     if (!fs::exists(folder / "journal.jsonl")) throw;
     return std::nullopt;
   }
+  require_same_specification(record->spec_hash, experiment, folder);
+  return record;
 }
 
 RunState restore(const Experiment& experiment, const Journal& journal, const fs::path& folder) {
