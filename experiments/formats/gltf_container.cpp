@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <optional>
 #include <string_view>
 
 #include "core/error.h"
@@ -131,14 +130,10 @@ Container split_container(const std::vector<std::byte>& bytes, const std::filesy
   return result;
 }
 
-std::vector<std::byte> load_uri(const std::string& uri, const std::filesystem::path& file,
-                                const std::string& where, bool other_files_allowed) {
-  if (uri.starts_with("data:")) {
-    const std::size_t comma = uri.find(',');
-    if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
-      throw Error("a data URI that is not base64", where, "data:<type>;base64,<text>");
-    return decode_base64(std::string_view(uri).substr(comma + 1), where);
-  }
+std::optional<std::filesystem::path> file_of_uri(const std::string& uri,
+                                                 const std::filesystem::path& file,
+                                                 const std::string& where) {
+  if (uri.starts_with("data:")) return std::nullopt;
   const std::filesystem::path relative = decode_percent(uri, where);
   const std::filesystem::path normal = relative.lexically_normal();
   const bool has_scheme = uri.find("://") != std::string::npos;
@@ -148,13 +143,21 @@ std::vector<std::byte> load_uri(const std::string& uri, const std::filesystem::p
     throw Error("the URI '" + uri.substr(0, 80) + "' is not a file beside this one", where,
                 "a relative path below its folder, or a data URI");
   }
-  if (!other_files_allowed) throw Error("refers to another file", where);
   const std::filesystem::path target = file.parent_path() / normal;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(target, ignored)) {
     throw Error("the buffer's file " + target.string() + " does not exist", where);
   }
-  return read_bytes(target);
+  return target;
+}
+
+std::vector<std::byte> decode_data_uri(const std::string& uri, const std::string& where) {
+  const std::string_view text(uri);
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos || !text.substr(0, comma).ends_with(";base64")) {
+    throw Error("a data URI that is not base64", where, "data:<type>;base64,<text>");
+  }
+  return decode_base64(text.substr(comma + 1), where);
 }
 
 std::vector<std::byte> read_bytes(const std::filesystem::path& file) {

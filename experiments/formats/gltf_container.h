@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,11 +19,16 @@ struct Container {
 /// @throws Error  on a truncated or malformed .glb, naming the byte
 Container split_container(const std::vector<std::byte>& bytes, const std::filesystem::path& file);
 
-/// Bytes behind the URI of a buffer: a base64 data URI or a file below the folder of `file`.
-/// @throws Error  naming `where` for any other scheme, absolute paths and paths that leave the
-/// folder
-std::vector<std::byte> load_uri(const std::string& uri, const std::filesystem::path& file,
-                                const std::string& where, bool other_files_allowed);
+/// The file that the URI of a buffer names, below the folder of `file`; absent for a data URI.
+/// @throws Error  naming `where` for any other scheme, absolute paths, paths that leave the folder
+/// and files that are not there
+std::optional<std::filesystem::path> file_of_uri(const std::string& uri,
+                                                 const std::filesystem::path& file,
+                                                 const std::string& where);
+
+/// Bytes of a base64 data URI.
+/// @throws Error  naming `where` for anything else
+std::vector<std::byte> decode_data_uri(const std::string& uri, const std::string& where);
 
 /// Bytes of a whole file.
 std::vector<std::byte> read_bytes(const std::filesystem::path& file);

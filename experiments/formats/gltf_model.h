@@ -94,7 +94,7 @@ struct Animation {
 };
 
 struct Buffer {
-  std::optional<std::string> uri;
+  std::optional<std::filesystem::path> file;  ///< absent: a data URI or the binary chunk
   std::size_t length = 0;
   std::vector<std::byte> bytes;
 };

@@ -46,8 +46,11 @@ class At {
   [[nodiscard]] std::size_t size() const {
     // 2^40 bytes are beyond any file we could hold; the bound keeps sums of sizes from overflowing.
     constexpr std::uint64_t kLimit = std::uint64_t{1} << 40;
-    if (!value_.is_number_unsigned() || value_.get<std::uint64_t>() > kLimit)
-      fail("is " + value_.dump().substr(0, 40), "an integer, 0 to 2^40");
+    if (!value_.is_number_unsigned() || value_.get<std::uint64_t>() > kLimit) {
+      // No dump of anything but numbers: it recurses as deeply as the file nests.
+      fail("is " + (value_.is_number() ? value_.dump() : std::string(value_.type_name())),
+           "an integer, 0 to 2^40");
+    }
     return value_.get<std::size_t>();
   }
   [[nodiscard]] std::size_t size(const char* key, std::size_t otherwise) const {
@@ -114,10 +117,11 @@ void parse_buffers(const At& root, const Container& container, bool other_files,
     buffer.length = at.object().member("byteLength").size();
     if (at.has("uri")) {
       const At uri = at.member("uri");
-      if (!uri.text().starts_with("data:")) buffer.uri = uri.text();
-      buffer.bytes = load_uri(
-          uri.text(), model.file,
-          place(model, "/buffers/" + std::to_string(model.buffers.size()) + "/uri"), other_files);
+      const std::string where =
+          place(model, "/buffers/" + std::to_string(model.buffers.size()) + "/uri");
+      buffer.file = file_of_uri(uri.text(), model.file, where);
+      if (buffer.file && !other_files) uri.fail("refers to another file");
+      buffer.bytes = buffer.file ? read_bytes(*buffer.file) : decode_data_uri(uri.text(), where);
     } else if (model.buffers.empty() && container.has_binary) {
       buffer.bytes = container.binary;
     } else {

@@ -235,7 +235,7 @@ GltfCharacter read_gltf(const std::filesystem::path& file, const GltfReadOptions
   GltfCharacter character = make_character(model, options);
   character.files.push_back(file);
   for (const gltf::Buffer& buffer : model.buffers) {
-    if (buffer.uri) character.files.push_back(file.parent_path() / *buffer.uri);
+    if (buffer.file) character.files.push_back(*buffer.file);
   }
   return character;
 }

@@ -288,6 +288,18 @@ TEST(Gltf, UrisLeadNowhereButBeside) {
   }
 }
 
+TEST(Gltf, DeepNestingIsRefusedWithoutRecursion) {
+  const std::string deep(200000, '[');
+  const std::string text =
+      R"({"asset": {"version": "2.0"}, "accessors": [{"componentType": 5126, "type": "VEC3",
+      "count": )" +
+      deep + std::string(deep.size(), ']') + "}]}";
+  std::vector<std::byte> bytes(text.size());
+  std::memcpy(bytes.data(), text.data(), text.size());
+  EXPECT_THAT(error_of([&] { read_gltf_bytes(bytes, "deep.gltf"); }),
+              HasSubstr("/accessors/0/count: is array"));
+}
+
 TEST(Gltf, RequiredExtensionsAreRefused) {
   GltfSample s = skinned_square();
   s.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
