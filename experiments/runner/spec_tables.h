@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/options.h"
+#include "experiments/runner/spec.h"
 
 namespace geoprior {
 
