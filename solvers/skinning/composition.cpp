@@ -80,6 +80,7 @@ void FieldComposition::set_pose(const Pose& pose) {
       posed.rotation[k] = to_float4(rigid.linear().col(k));
     }
     posed.to_grid[3] = to_float4(offset);
+    posed.translation = to_float4(rigid.translation());
     posed.extent = to_float4(extent);
     posed.centre = posed.extent * 0.5F;
     posed.half_extent = posed.centre;
@@ -185,6 +186,13 @@ FieldAt FieldComposition::at(Float4 p, int owner, std::span<const int> bones) co
     }
   }
   return result;
+}
+
+float FieldComposition::rest_value(Float4 rest, int bone) const {
+  // The field moves rigidly: carry the point along.
+  Sampled sampled;
+  const Float4 carried = turn(bone, rest) + posed_[static_cast<std::size_t>(bone)].translation;
+  return sample_bone(bone, carried, sampled) ? sampled.f : 0.0F;
 }
 
 float FieldComposition::difference(Float4 p, int a, int b) const {

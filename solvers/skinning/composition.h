@@ -64,6 +64,9 @@ class FieldComposition {
   /// f_a - f_b at p: zero on the contact surface of two bones.
   [[nodiscard]] float difference(Float4 p, int a, int b) const;
 
+  /// Field of a bone at the rest position of a point.
+  [[nodiscard]] float rest_value(Float4 rest, int bone) const;
+
   /// A rest direction turned with a bone.
   [[nodiscard]] Float4 turn(int bone, Float4 direction) const {
     const PosedBone& posed = posed_[static_cast<std::size_t>(bone)];
@@ -87,7 +90,8 @@ class FieldComposition {
   struct PosedBone {
     Float4 to_grid[4];   // columns of the affine map world -> grid coordinates
     Float4 rotation[3];  // columns, rest -> posed
-    Float4 extent;       // grid coordinates of the far corner
+    Float4 translation;
+    Float4 extent;  // grid coordinates of the far corner
     Float4 half_extent;
     Float4 centre;  // of the box, grid coordinates
   };

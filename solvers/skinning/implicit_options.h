@@ -35,7 +35,7 @@ enum class Schedule { paper, released_code };
 struct JointBlend {
   std::string joint;
   BlendKind blend = BlendKind::gradient_controlled;
-  OpeningPreset opening = OpeningPreset::elbow;
+  OpeningPreset opening = OpeningPreset::elbow_soft;
 };
 void describe(OptionVisitor& v, JointBlend& options);
 
@@ -53,7 +53,7 @@ void describe(OptionVisitor& v, SamplingOptions& options);
 /// Every choice that the two published sources of implicit skinning differ in, or leave open.
 struct ImplicitOptions {
   BlendKind blend = BlendKind::gradient_controlled;
-  OpeningPreset opening = OpeningPreset::elbow;
+  OpeningPreset opening = OpeningPreset::elbow_soft;
   double ricci_exponent = 8;
   std::vector<JointBlend> joint_blends;
   bool limb_contact = true;  ///< contact operator between limbs that no joint connects

@@ -29,7 +29,10 @@ constexpr std::size_t kLiveBlocksPerTask = 4;
 constexpr float kWalk = 0.5F;
 
 /// Cosine between the inward gradient and the outward normal above which a vertex is on that side.
-const float kAgainst = getenv("AG") ? static_cast<float>(atof(getenv("AG"))) : 0.5F;
+constexpr float kAgainst = 0.5F;
+
+/// Rest field of a bone above which a vertex is near enough for that test to mean anything.
+constexpr float kNear = 0.25F;
 
 }  // namespace
 
@@ -58,6 +61,7 @@ FieldAt Projection::field_of(const SkinState& state, std::size_t slot, Float4 p)
 }
 
 void Projection::record_rest(SkinState& state) const {
+  state.rest = state.position;
   for (std::size_t s = 0; s < state.size(); ++s) {
     if (state.owner[s] < 0) continue;
     const FieldAt at = field_of(state, s, state.position[s]);
@@ -155,6 +159,7 @@ bool Projection::step_vertex(SkinState& state, std::size_t slot, const FieldAt& 
 bool Projection::on_far_side(const SkinState& state, std::size_t slot, const FieldAt& at) const {
   const int owner = state.owner[slot];
   if (at.bone < 0 || (at.bone != owner && !field_.share_joint(at.bone, owner))) return false;
+  if (field_.rest_value(state.rest[slot], at.bone) < kNear) return false;
   const float against = dot3(at.gradient, field_.turn(at.bone, state.rest_normal[slot]));
   return against > kAgainst * std::sqrt(dot3(at.gradient, at.gradient));
 }
@@ -186,7 +191,7 @@ void Projection::stop_in_contact(SkinState& state, std::size_t slot, int bone_no
   // f_before - f_now falls from positive at a to negative at b: find its zero.
   for (int i = 0; i < 6; ++i) {
     const Float4 middle = (a + b) * 0.5F;
-    (field_.difference(middle, before, bone_now) > 0 ? a : b) = middle;
+    (field_.difference(middle, before, bone_now) > gap_ ? a : b) = middle;
   }
   state.position[slot] = (a + b) * 0.5F;
 }

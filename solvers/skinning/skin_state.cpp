@@ -68,7 +68,7 @@ SkinState::SkinState(const RiggedMesh& rig, const VertexGraph& graph,
   iso.assign(n, 0);
   rest_other.assign(n, 0);
   start.assign(n, Float4{});
-  position = next = outward = rest_normal = last_position = gradient = start;
+  position = next = outward = rest = rest_normal = last_position = gradient = start;
   last_bone.assign(n, -1);
   contact_bone.assign(n, -1);
   stop.assign(n, VertexStop::active);

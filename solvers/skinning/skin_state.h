@@ -33,6 +33,7 @@ struct SkinState {
   std::vector<float> iso;          ///< F at rest
   std::vector<float> rest_other;   ///< largest field of other parts of the body at rest
 
+  std::vector<Float4> rest;           ///< rest positions
   std::vector<Float4> rest_normal;    ///< unit, outward: of the field at rest
   std::vector<int> influence_offset;  ///< skinning weights, compressed rows
   std::vector<int> influence_joint;
