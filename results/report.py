@@ -4,6 +4,7 @@
 """
 
 import argparse
+import os
 from pathlib import Path
 
 import report_parts as parts
@@ -64,14 +65,15 @@ def target_of(runs, output):
         return Path(output)
     if len(runs) == 1:
         return runs[0].folder / "report.html"
-    return Path(__file__).resolve().parent / "report.html"
+    runs_root = Path(__file__).resolve().parent / "runs"
+    return Path(os.environ.get("GEOPRIOR_RUNS") or runs_root) / "report.html"
 
 
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("runs", nargs="+", metavar="run", help="run folder or its run.h5")
-    parser.add_argument("--out", help="default: report.html in the run folder; results/report.html"
-                        " for several runs")
+    parser.add_argument("--out", help="default: report.html in the run folder;"
+                        " results/runs/report.html for several runs")
     options = parser.parse_args(arguments)
     runs = [runfile.read_run(place) for place in options.runs]
     target = target_of(runs, options.out)
