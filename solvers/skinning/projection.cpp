@@ -170,8 +170,10 @@ void Projection::walk_out(SkinState& state, std::size_t slot, int bone) const {
   const Float4 out =
       bone == owner ? state.outward[slot] : field_.turn(owner, normal) + field_.turn(bone, normal);
   const float length = std::sqrt(dot3(out, out));
-  const auto radius =
-      static_cast<float>(field_.fields()[static_cast<std::size_t>(owner)].bone.radius);
+  const auto radius_of = [&](int b) {
+    return field_.fields()[static_cast<std::size_t>(b)].bone.radius;
+  };
+  const auto radius = static_cast<float>(std::min(radius_of(owner), radius_of(bone)));
   if (length > 0) state.position[slot] += out * splat(kWalk * max_step_ * radius / length);
   state.gradient[slot] = Float4{};
   state.last_bone[slot] = -1;
