@@ -8,7 +8,7 @@
 namespace geoprior {
 namespace {
 
-/// At most this many fields are positive at one point; weaker ones beyond are left out.
+/// At most this many positive fields are composed at one point; a body has a handful.
 constexpr int kMaxOverlap = 24;
 
 Float4 to_float4(const Eigen::Vector3d& v) {
