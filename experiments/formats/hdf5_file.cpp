@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "experiments/formats/atomic_file.h"
 #include "experiments/formats/hdf5_handle.h"
 
 namespace geoprior {
@@ -174,11 +175,15 @@ H5Array H5Group::read_array(std::string_view name) const {
   return array;
 }
 
-H5File H5File::create(const std::filesystem::path& file) {
+H5File H5File::create() {
   h5::silence();
-  Handle id(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
-            "cannot be written", file.string());
-  return {id.give_up(), file.string()};
+  const std::string name = "new HDF5 file";
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "cannot be made", name);
+  constexpr std::size_t kGrowth = 1 << 20;
+  check(H5Pset_fapl_core(access, kGrowth, false), "cannot be made", name);
+  Handle id(H5Fcreate("in-memory.h5", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
+            "cannot be made", name);
+  return {id.give_up(), name};
 }
 
 H5File H5File::open_for_reading(const std::filesystem::path& file) {
@@ -208,10 +213,13 @@ H5Group H5File::root() const {
   return {id.give_up(), where};
 }
 
-void H5File::close() {
-  if (id_ < 0) return;
-  check(H5Fflush(id_, H5F_SCOPE_LOCAL), "cannot be written", name_);
-  check(H5Fclose(std::exchange(id_, -1)), "cannot be written", name_);
+void H5File::save(const std::filesystem::path& file) const {
+  check(H5Fflush(id_, H5F_SCOPE_LOCAL), "cannot be written", file.string());
+  const ssize_t size =
+      check(H5Fget_file_image(id_, nullptr, 0), "cannot be written", file.string());
+  std::string image(static_cast<std::size_t>(size), '\0');
+  check(H5Fget_file_image(id_, image.data(), image.size()), "cannot be written", file.string());
+  write_file_atomically(file, image);
 }
 
 }  // namespace geoprior

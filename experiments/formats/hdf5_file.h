@@ -75,9 +75,12 @@ class H5Group {
 };
 
 /// An open HDF5 file in the default file format.
+///
+/// A new file is built in memory and saved as a whole: HDF5 1.10 crashes the program when the disk
+/// refuses a write while it closes a file.
 class H5File {
  public:
-  static H5File create(const std::filesystem::path& file);
+  static H5File create();
   static H5File open_for_reading(const std::filesystem::path& file);
   H5File(H5File&& other) noexcept;
   H5File& operator=(H5File&& other) noexcept;
@@ -86,8 +89,9 @@ class H5File {
   ~H5File();
 
   [[nodiscard]] H5Group root() const;
-  /// Writes what is still in memory and closes. The destructor ignores errors, this reports them.
-  void close();
+  /// Writes a created file: temporary + fsync + rename. Groups should be closed before.
+  /// @throws Error  naming the file and the system's reason
+  void save(const std::filesystem::path& file) const;
 
  private:
   H5File(std::int64_t id, std::string name) : id_(id), name_(std::move(name)) {}

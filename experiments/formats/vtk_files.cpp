@@ -95,6 +95,10 @@ vtkSmartPointer<vtkCellArray> triangle_cells(const Part& part) {
 vtkSmartPointer<vtkCellArray> line_cells(const Part& part) {
   auto cells = vtkSmartPointer<vtkCellArray>::New();
   for (std::size_t l = 0; l < part.lines.size(); ++l) {
+    if (part.lines[l].size() < 2) {
+      throw Error("has " + std::to_string(part.lines[l].size()) + " points",
+                  "poly-line " + std::to_string(l), "2 or more");  // VTK crashes on shorter ones
+    }
     cells->InsertNextCell(static_cast<int>(part.lines[l].size()));
     for (const int index : part.lines[l]) {
       check_index(index, part, l);
@@ -126,7 +130,8 @@ vtkSmartPointer<vtkPolyData> to_poly_data(const Part& part) {
 vtkSmartPointer<vtkImageData> to_image(const Part& part) {
   auto data = vtkSmartPointer<vtkImageData>::New();
   for (const int n : part.grid_size) {
-    if (n < 1) throw Error("a grid has " + std::to_string(n) + " points along an axis", "", "1 …");
+    if (n < 1)
+      throw Error("a grid has " + std::to_string(n) + " points along an axis", "", "1 or more");
   }
   data->SetDimensions(part.grid_size.data());
   data->SetOrigin(part.grid_origin.data());

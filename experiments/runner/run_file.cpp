@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "experiments/formats/atomic_file.h"
 #include "experiments/formats/hdf5_file.h"
 
 namespace geoprior {
@@ -202,11 +201,9 @@ void write_root(H5Group root, const RunRecord& record) {
 }  // namespace
 
 void write_run_file(const RunRecord& record, const std::filesystem::path& file) {
-  PendingFile pending(file);
-  H5File out = H5File::create(pending.temporary());
+  const H5File out = H5File::create();
   write_root(out.root(), record);
-  out.close();
-  pending.commit();
+  out.save(file);
 }
 
 }  // namespace geoprior

@@ -172,11 +172,9 @@ TEST_F(RunFile, CutAnywhereIsOneErrorThatNamesTheFile) {
 }
 
 TEST_F(RunFile, MissingPartOfAnHdf5FileIsNamed) {
-  {
-    H5File other = H5File::create(file());
-    other.root().write_attribute("schema_version", std::int64_t{1});
-    other.close();
-  }
+  const H5File other = H5File::create();
+  other.root().write_attribute("schema_version", std::int64_t{1});
+  other.save(file());
   const std::string message = error_of([&] { (void)read_run_file(file()); });
   EXPECT_THAT(message, StartsWith(file().string()));
   EXPECT_THAT(message, HasSubstr("quick"));

@@ -41,7 +41,7 @@ Part lines() {
   Part part;
   part.kind = Part::Kind::lines;
   part.points = noise(6, 3, "points");
-  part.lines = {{0, 1, 2}, {5, 3}, {4}};
+  part.lines = {{0, 1, 2}, {5, 3}, {4, 0, 4}};
   part.arrays = {{"width", "m", NamedArray::On::cells, noise(3, 1, "width")}};
   return part;
 }
@@ -171,6 +171,9 @@ TEST(VtkText, OfABadPartIsAnErrorThatNamesArrayOrCell) {
   part = triangles();
   part.triangles(2, 1) = 5;
   EXPECT_THAT(error_of([&] { (void)part_to_vtk_xml(part, 0); }), HasSubstr("cell 2"));
+  part = lines();
+  part.lines[2] = {4};
+  EXPECT_THAT(error_of([&] { (void)part_to_vtk_xml(part, 0); }), HasSubstr("poly-line 2"));
   part = triangles();
   part.arrays[2].name = "strain";
   EXPECT_THAT(error_of([&] { (void)part_to_vtk_xml(part, 0); }), HasSubstr("twice"));
