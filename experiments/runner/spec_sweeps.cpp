@@ -77,12 +77,13 @@ std::vector<std::string> value_names(const Sweep& sweep, const std::vector<TomlN
 
 void require_sweepable(const SweepTable& table, const TomlNode& node) {
   const std::string& key = table.key;
-  const bool allowed = key == "seed" || key == "threads" || key.starts_with("scene.") ||
+  const bool allowed = key == "seed" || key == "threads" || key == "scene" ||
+                       key.starts_with("scene.") ||
                        (key.starts_with("variant.") && key.find(".options.") != std::string::npos);
   if (allowed) return;
   const TomlNode* place = node.find("key");
   throw Error("'" + key + "' cannot be swept", (place != nullptr ? *place : node).place + ": key",
-              "scene.*, seed, threads, variant.<name>.options.*");
+              "scene, scene.*, seed, threads, variant.<name>.options.*");
 }
 
 Sweep read_sweep(const TomlNode& node, bool quick) {
@@ -105,7 +106,19 @@ Sweep read_sweep(const TomlNode& node, bool quick) {
 }
 
 void apply(SweptCase& result, const Sweep& sweep, std::size_t i) {
-  set_experiment_key(result.root, sweep.table.key, sweep.values[i]);
+  const TomlNode& value = sweep.values[i];
+  if (sweep.table.key == "scene") {
+    // A table of several scene keys: those it names change, the others stay.
+    if (value.kind != TomlNode::Kind::table) {
+      throw Error("is " + value.kind_name(), value.place + ": sweep.values",
+                  "tables of scene keys");
+    }
+    for (std::size_t k = 0; k < value.keys.size(); ++k) {
+      set_experiment_key(result.root, "scene." + value.keys[k], value.items[k]);
+    }
+  } else {
+    set_experiment_key(result.root, sweep.table.key, value);
+  }
   result.name = result.name == "default" ? sweep.names[i] : result.name + "," + sweep.names[i];
   result.swept[sweep.table.key] = json_of(sweep.values[i]).dump();
   for (const std::string& name : sweep.table.variants) result.variants.push_back(name);
