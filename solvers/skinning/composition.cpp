@@ -139,43 +139,22 @@ bool FieldComposition::sample_bone(int bone, Float4 p, Sampled& out) const {
   return true;
 }
 
-FieldAt FieldComposition::at(Float4 p, int owner, std::span<const int> bones) const {
-  std::array<Sampled, kMaxOverlap> own;
-  int count = 0;
-  FieldAt result;
-  const std::uint8_t* part = same_part_.data() + static_cast<std::size_t>(owner) * fields_.size();
-  for (const int bone : bones) {
-    Sampled sampled;
-    ++result.evaluations;
-    if (!sample_bone(bone, p, sampled)) continue;
-    if (part[bone] == 0) {
-      if (sampled.f > result.other) {
-        result.other = sampled.f;
-        result.other_gradient = sampled.gradient;
-        result.other_bone = bone;
-      }
-      continue;
-    }
-    if (count < kMaxOverlap) own[static_cast<std::size_t>(count++)] = sampled;
-    if (sampled.f > result.value) {
-      result.value = sampled.f;
-      result.gradient = sampled.gradient;
-      result.bone = bone;
-    }
-  }
-  for (int i = 1; i < count; ++i) {  // parents come before children
-    const Sampled& child = own[static_cast<std::size_t>(i)];
+FieldComposition::Composed FieldComposition::compose(std::span<const Sampled> fields) const {
+  Composed result;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const Sampled& child = fields[i];
+    if (child.f > result.value) result = {child.f, child.gradient, child.bone};
     const JointOperator& op = operators_[static_cast<std::size_t>(child.bone)];
     const int parent = parent_[static_cast<std::size_t>(child.bone)];
     if (parent < 0 || op.is_union()) continue;
-    for (int j = 0; j < i; ++j) {
-      const Sampled& up = own[static_cast<std::size_t>(j)];
+    for (std::size_t j = 0; j < i; ++j) {  // parents come before children
+      const Sampled& up = fields[j];
       if (up.bone != parent) continue;
       const float lengths = dot3(child.gradient, child.gradient) * dot3(up.gradient, up.gradient);
       if (!(lengths > 0)) break;
-      const double cos_alpha =
-          static_cast<double>(dot3(child.gradient, up.gradient) / std::sqrt(lengths));
-      const BlendValue g = op(static_cast<double>(child.f), static_cast<double>(up.f), cos_alpha);
+      const BlendValue g =
+          op(static_cast<double>(child.f), static_cast<double>(up.f),
+             static_cast<double>(dot3(child.gradient, up.gradient) / std::sqrt(lengths)));
       if (static_cast<float>(g.value) > result.value) {
         result.value = static_cast<float>(g.value);
         result.gradient = splat(static_cast<float>(g.d1)) * child.gradient +
@@ -184,6 +163,34 @@ FieldAt FieldComposition::at(Float4 p, int owner, std::span<const int> bones) co
       }
       break;
     }
+  }
+  return result;
+}
+
+FieldAt FieldComposition::at(Float4 p, int owner, std::span<const int> bones) const {
+  std::array<Sampled, kMaxOverlap> own, other;
+  std::size_t own_count = 0, other_count = 0;
+  FieldAt result;
+  const std::uint8_t* part = same_part_.data() + static_cast<std::size_t>(owner) * fields_.size();
+  for (const int bone : bones) {
+    Sampled sampled;
+    ++result.evaluations;
+    if (!sample_bone(bone, p, sampled)) continue;
+    if (part[bone] != 0) {
+      if (own_count < kMaxOverlap) own[own_count++] = sampled;
+    } else if (other_count < kMaxOverlap) {
+      other[other_count++] = sampled;
+    }
+  }
+  const Composed inside = compose({own.data(), own_count});
+  result.value = inside.value;
+  result.gradient = inside.gradient;
+  result.bone = inside.bone;
+  if (other_count > 0) {
+    const Composed outside = compose({other.data(), other_count});
+    result.other = outside.value;
+    result.other_gradient = outside.gradient;
+    result.other_bone = outside.bone;
   }
   return result;
 }

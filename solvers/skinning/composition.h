@@ -28,7 +28,7 @@ struct FieldAt {
   float value = 0;    ///< of the vertex's own part of the body
   Float4 gradient{};  ///< of `value`, 1/m
   int bone = -1;      ///< whose field is largest in `value`; -1 where all fields vanish
-  float other = 0;    ///< largest field among bones that do not belong to that part
+  float other = 0;    ///< composed field of the bones that do not belong to that part
   Float4 other_gradient{};
   int other_bone = -1;
   int evaluations = 0;  ///< bone fields sampled
@@ -100,6 +100,13 @@ class FieldComposition {
     Float4 gradient;
     int bone;
   };
+  struct Composed {
+    float value = 0;
+    Float4 gradient{};
+    int bone = -1;
+  };
+  /// @param fields  sorted by bone
+  [[nodiscard]] Composed compose(std::span<const Sampled> fields) const;
   [[nodiscard]] bool sample_bone(int bone, Float4 p, Sampled& out) const;
   [[nodiscard]] Float4 exact_distance(int bone, Float4 p) const;
 
