@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "experiments/runner/benchmark.h"
 #include "experiments/runner/measure.h"
+#include "experiments/runner/run_folder.h"
 #include "experiments/runner/sha256.h"
 #include "experiments/runner/stop.h"
 
@@ -106,7 +107,7 @@ void CaseRunner::load(const OptionSet& options, std::vector<StoredFile> inputs) 
   line.facts = scene_->facts();
   line.warnings = scene_->warnings();
   for (const auto& file : scene_->inputs()) {
-    inputs.push_back({file.filename().string(), sha256_of_file(file)});
+    inputs.push_back({input_name(file), sha256_of_file(file)});
   }
   line.inputs = std::move(inputs);
   const CaseState& known = state_.case_of(spec_.name);

@@ -164,11 +164,23 @@ bool run_cases(const Experiment& experiment, const std::vector<Topic>& topics,
   return true;
 }
 
+/// Studies, claims, run.h5. What cannot be decided must not cost the run: it is recorded as a claim
+/// that falls short, run.h5 is written, and the error is thrown after that.
 void finish(const Experiment& experiment, ExecuteResult& result) {
-  result.record.studies = make_studies(experiment, result.record);
-  result.record.claims = decide_claims(experiment, result.record);
+  std::optional<Error> undecided;
+  try {
+    result.record.studies = make_studies(experiment, result.record);
+    result.record.claims = decide_claims(experiment, result.record);
+  } catch (const Error& error) {
+    undecided = error;
+    ClaimRecord claim;
+    claim.text = "every study and claim of the experiment can be decided";
+    claim.detail = error.what();
+    result.record.claims.push_back(claim);
+  }
   fs::remove_all(result.folder / "checkpoints");
   write_run_file(result.record, result.folder / "run.h5");
+  if (undecided) throw Error(*undecided);
 }
 
 }  // namespace

@@ -13,6 +13,8 @@
 #include "core/error.h"
 #include "experiments/formats/atomic_file.h"
 #include "experiments/runner/run_file.h"
+#include "experiments/runner/run_inputs.h"
+#include "experiments/runner/sha256.h"
 #include "experiments/view/view.h"
 
 namespace geoprior {
@@ -92,7 +94,27 @@ fs::path folder_to_resume(const Experiment& experiment, const ExecuteRequest& re
   return folders.empty() ? new_default_folder(experiment) : folders.front();
 }
 
+/// Whether every input file is what it was when the run read it. Runs that were inputs have their
+/// specification in the hash.
+bool has_unchanged_inputs(const fs::path& folder) {
+  try {
+    for (const StoredFile& input : read_run_file(folder / "run.h5").inputs) {
+      if (is_run_reference(input.name)) continue;
+      if (sha256_of_file(geoprior_home() / input.name) != input.sha256) return false;
+    }
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace
+
+std::string input_name(const fs::path& file) {
+  const fs::path full = fs::weakly_canonical(file);
+  const fs::path relative = full.lexically_relative(fs::weakly_canonical(geoprior_home()));
+  return relative.empty() || *relative.begin() == ".." ? full.string() : relative.string();
+}
 
 fs::path runs_root() {
   if (const char* folder = std::getenv("GEOPRIOR_RUNS"); folder != nullptr && *folder != '\0') {
@@ -127,7 +149,7 @@ fs::path open_run_folder(const Experiment& experiment, const ExecuteRequest& req
 
 std::optional<fs::path> find_run(const Experiment& experiment) {
   for (const fs::path& folder : folders_of(experiment)) {
-    if (is_finished(folder, experiment.hash)) return folder;
+    if (is_finished(folder, experiment.hash) && has_unchanged_inputs(folder)) return folder;
   }
   return std::nullopt;
 }

@@ -23,6 +23,10 @@ std::string utc_now();
 /// @throws Error  naming the folder and what is allowed; before anything is computed
 std::filesystem::path open_run_folder(const Experiment& experiment, const ExecuteRequest& request);
 
+/// Name under which a run records an input file: relative to the clone where it lies inside, else
+/// absolute.
+std::string input_name(const std::filesystem::path& file);
+
 /// The newest folder of the experiment that an interrupted run of the same hash left.
 std::optional<std::filesystem::path> find_unfinished_run(const Experiment& experiment);
 
