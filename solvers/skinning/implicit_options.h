@@ -41,12 +41,12 @@ void describe(OptionVisitor& v, JointBlend& options);
 
 /// Samples from which the field of each bone is fitted (thesis 3.1, N and p_k, n_k of eq. 3.1).
 struct SamplingOptions {
-  int samples = 50;      ///< N per bone, caps not counted
-  double fold = 0;       ///< reject samples with (p - nearest point of the bone) . n below fold r
-  double trim_head = 0;  ///< drop samples within this fraction of the bone from its head
-  double trim_tail = 0;  ///< and from its tail, where another bone begins
-  bool caps = true;      ///< close the field at joints by one sample on the bone's axis
-  double cap_scale = 1;  ///< distance of that sample from the joint, in radii of the joint
+  int samples = 80;        ///< N per bone, caps not counted
+  double fold = 0;         ///< reject samples with (p - nearest point of the bone) . n below fold r
+  double trim_head = 0;    ///< drop samples within this fraction of the bone from its head
+  double trim_tail = 0;    ///< and from its tail, where another bone begins
+  bool caps = true;        ///< close the field at joints by one sample on the bone's axis
+  double cap_scale = 0.9;  ///< distance of that sample from the joint, in radii of the joint
 };
 void describe(OptionVisitor& v, SamplingOptions& options);
 

@@ -64,7 +64,7 @@ struct SkinState {
   [[nodiscard]] std::size_t size() const { return vertex.size(); }
   [[nodiscard]] std::size_t block_count() const { return active_count.size(); }
 
-  /// Makes every vertex active again that has a bone and is not in `keep_stopped` contact.
+  /// Makes every vertex active that has a bone.
   void activate();
   /// Drops blocks without active vertices, keeping the order.
   void drop_dead_blocks();
