@@ -4,7 +4,7 @@
 
 namespace geoprior {
 
-/// Spreads the contact mark: `passes` Jacobi passes of beta <- max-free mean of the one ring and
+/// Spreads the contact mark: `passes` Jacobi passes of beta <- mean of the one ring and
 /// the vertex itself.
 void diffuse_contact(SkinState& state, int passes);
 
