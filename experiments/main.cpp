@@ -1,4 +1,6 @@
 #include "experiments/program.h"
 #include "experiments/topic.h"
 
-int main(int argc, char** argv) { return geoprior::run_program(argc, argv, geoprior::all_topics()); }
+int main(int argc, char** argv) {
+  return geoprior::run_program(argc, argv, geoprior::all_topics());
+}
