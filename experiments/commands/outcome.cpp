@@ -6,7 +6,7 @@
 
 #include "experiments/commands/console.h"
 #include "experiments/runner/number_text.h"
-#include "experiments/runner/quantity.h"
+#include "experiments/runner/timing_statistics.h"
 
 namespace geoprior {
 namespace {
@@ -21,7 +21,7 @@ double median_time(const std::vector<std::vector<double>>& frames) {
   for (const auto& repetitions : frames) {
     all.insert(all.end(), repetitions.begin(), repetitions.end());
   }
-  return median(std::move(all));
+  return median(all);
 }
 
 std::string time_text(double seconds) {

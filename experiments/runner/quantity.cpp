@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "experiments/runner/number_text.h"
+#include "experiments/runner/timing_statistics.h"
 
 namespace geoprior {
 namespace {
@@ -27,7 +28,7 @@ double reduced(std::vector<double> values, const std::string& how) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   if (how == "max") return *std::max_element(values.begin(), values.end());
   if (how == "min") return *std::min_element(values.begin(), values.end());
-  if (how == "median") return median(std::move(values));
+  if (how == "median") return median(values);
   if (how == "last") return values.back();
   if (how == "mean") {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -89,13 +90,6 @@ Column column_of(const CaseRecord& in, const VariantRecord& variant, const std::
 
 bool same_parameter(double a, double b) {
   return std::abs(a - b) <= 1e-9 * std::max({1.0, std::abs(a), std::abs(b)});
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 Quantity quantity_of(const CaseRecord& in, const VariantRecord& variant, const std::string& name,

@@ -31,7 +31,4 @@ std::optional<double> value_at(const CaseRecord& in, const VariantRecord& varian
 /// Parameters are the same frame when they differ by at most 1e-9 of their size.
 bool same_parameter(double a, double b);
 
-/// Middle of the sorted values, mean of the two middle ones for an even count; NaN for none.
-double median(std::vector<double> values);
-
 }  // namespace geoprior

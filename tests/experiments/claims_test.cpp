@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "experiments/runner/quantity.h"
@@ -25,6 +26,8 @@ VariantRecord variant(const std::string& name, std::vector<double> errors) {
   v.metrics["error"] = {"m", "", "lower_is_better", std::move(errors)};
   v.summary["whole"] = {7, "J", "", "none"};
   v.timing["solve"] = {{0.3, 0.1, 0.2}, {0.5, 0.4, 0.6}, {0.2, 0.2, 0.2}};
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  v.timing["contact"] = {{kNone, kNone, kNone}, {0.25, kNone, 0.5}, {0.125, 0.125, 0.125}};
   return v;
 }
 
@@ -72,6 +75,7 @@ TEST(Claims, ReductionsAndFramesPickTheirValue) {
   EXPECT_EQ(value("error", 45, "max"), 5);
   EXPECT_EQ(value("whole", {}, "max"), 7);
   EXPECT_EQ(value("timing:solve", {}, "median"), 0.2) << "median of the frames' medians";
+  EXPECT_EQ(value("timing:contact", {}, "median"), 0.25) << "what was not entered is left out";
 }
 
 TEST(Claims, EveryComparisonFollowsItsDefinition) {
