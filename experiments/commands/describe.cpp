@@ -4,7 +4,7 @@
 #include "core/error.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/console.h"
-#include "experiments/commands/direction_text.h"
+#include "experiments/runner/measure.h"
 #include "experiments/runner/number_text.h"
 #include "experiments/runner/option_listing.h"
 #include "experiments/runner/spec_tables.h"

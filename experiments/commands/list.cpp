@@ -3,7 +3,7 @@
 #include "experiments/commands/catalogue.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/console.h"
-#include "experiments/commands/direction_text.h"
+#include "experiments/runner/measure.h"
 
 namespace geoprior {
 namespace {

@@ -5,27 +5,12 @@
 
 #include "core/error.h"
 #include "experiments/runner/number_text.h"
+#include "experiments/runner/quantity.h"
 #include "experiments/runner/timing_statistics.h"
 
 namespace geoprior {
 
 namespace {
-
-constexpr double kEqualParameters = 1e-9;
-
-const char* direction_text(Direction direction) {
-  switch (direction) {
-    case Direction::lower_is_better:
-      return "lower_is_better";
-    case Direction::higher_is_better:
-      return "higher_is_better";
-    case Direction::closer_to_target:
-      return "closer_to_target";
-    case Direction::none:
-      break;
-  }
-  return "none";
-}
 
 const MetricEntry* find_metric(const Topic& topic, const std::string& name) {
   for (const MetricEntry& metric : topic.metrics) {
@@ -63,10 +48,23 @@ void summarise_column(const std::string& name, const MetricColumn& column, Varia
 
 }  // namespace
 
+std::string direction_text(Direction direction) {
+  switch (direction) {
+    case Direction::lower_is_better:
+      return "lower_is_better";
+    case Direction::higher_is_better:
+      return "higher_is_better";
+    case Direction::closer_to_target:
+      return "closer_to_target";
+    case Direction::none:
+      break;
+  }
+  return "none";
+}
+
 int frame_of_parameter(const std::vector<FrameRecord>& frames, double parameter) {
   const auto matches = [&](const FrameRecord& frame) {
-    const double scale = std::max({1.0, std::abs(parameter), std::abs(frame.parameter)});
-    return std::abs(frame.parameter - parameter) <= kEqualParameters * scale;
+    return same_parameter(frame.parameter, parameter);
   };
   const auto found = std::find_if(frames.begin(), frames.end(), matches);
   return found == frames.end() ? -1 : static_cast<int>(found - frames.begin());

@@ -9,6 +9,9 @@
 
 namespace geoprior {
 
+/// "lower_is_better", …: the words of run.h5.
+std::string direction_text(Direction direction);
+
 /// Index of the frame of equal parameter (relative difference at most 1e-9), or -1.
 int frame_of_parameter(const std::vector<FrameRecord>& frames, double parameter);
 
