@@ -32,9 +32,7 @@ BlessedRun run_without_clock(const CommandContext& context, const std::string& i
   LoadRequest load;
   load.quick = quick;
   run.experiment = load_experiment(experiment_file(id), context.topics, load);
-  for (const Topic& topic : context.topics) {
-    if (topic.name == run.experiment.topic) run.topic = &topic;
-  }
+  run.topic = &topic_of(run.experiment, context.topics);
   drop_timing(run.experiment);
   if (const auto folder = find_run(run.experiment)) {
     run.folder = *folder;

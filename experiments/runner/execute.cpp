@@ -28,13 +28,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const Topic& topic_of(const Experiment& experiment, const std::vector<Topic>& topics) {
-  for (const Topic& topic : topics) {
-    if (topic.name == experiment.topic) return topic;
-  }
-  throw Error("unknown topic '" + experiment.topic + "'", experiment.file.string());
-}
-
 void require_same_specification(const std::string& recorded, const Experiment& experiment,
                                 const fs::path& folder) {
   if (recorded == experiment.hash) return;

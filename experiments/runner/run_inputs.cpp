@@ -17,13 +17,6 @@ namespace {
 
 constexpr std::string_view kPrefix = "run:";
 
-const Topic& topic_of(const Experiment& experiment, const std::vector<Topic>& topics) {
-  for (const Topic& topic : topics) {
-    if (topic.name == experiment.topic) return topic;
-  }
-  throw Error("unknown topic '" + experiment.topic + "'", experiment.file.string());
-}
-
 /// <id>.toml among the experiments of the clone, or beside the experiment that needs it.
 fs::path file_of(const std::string& id, const Experiment& needed_by) {
   const fs::path name = id + ".toml";

@@ -197,6 +197,13 @@ void read_timing(const TomlNode& root, Experiment& experiment) {
 
 }  // namespace
 
+const Topic& topic_of(const Experiment& experiment, const std::vector<Topic>& topics) {
+  for (const Topic& topic : topics) {
+    if (topic.name == experiment.topic) return topic;
+  }
+  throw Error("unknown topic '" + experiment.topic + "'", experiment.file.string());
+}
+
 FigureView figure_view_of(const std::string& resolved_toml, const std::string& source,
                           const std::vector<Topic>& topics) {
   const TomlNode root = parse_toml_text(resolved_toml, source);

@@ -132,6 +132,9 @@ struct LoadRequest {
 Experiment load_experiment(const std::filesystem::path& file, const std::vector<Topic>& topics,
                            const LoadRequest& request);
 
+/// The topic of a loaded experiment. Throws Error when it is none of `topics`.
+const Topic& topic_of(const Experiment& experiment, const std::vector<Topic>& topics);
+
 /// The [figure_view] of a resolved text (that of a run), to draw the run again.
 FigureView figure_view_of(const std::string& resolved_toml, const std::string& source,
                           const std::vector<Topic>& topics);
