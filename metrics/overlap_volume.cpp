@@ -257,11 +257,6 @@ OverlapStudy overlap_study(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
   return study;
 }
 
-double overlap_noise_floor(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
-                           const Eigen::AlignedBox3d& box, double spacing, double depth_scale) {
-  return overlap_study(V, F, box, spacing, depth_scale).noise_floor;
-}
-
 Eigen::AlignedBox3d joint_box(const JointRegion& region, const Pose& pose) {
   Eigen::AlignedBox3d box;
   for (const JointRegion::Hinge& hinge : region.hinges) {

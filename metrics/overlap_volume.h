@@ -53,10 +53,6 @@ struct OverlapStudy {
 OverlapStudy overlap_study(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
                            const Eigen::AlignedBox3d& box, double spacing, double depth_scale);
 
-/// The noise floor of `overlap_study` alone.
-double overlap_noise_floor(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
-                           const Eigen::AlignedBox3d& box, double spacing, double depth_scale);
-
 /// Box in which a region's overlap counts: the axis-aligned box of the balls of (extent + 1) radii
 /// about the region's posed joints. It depends on the pose alone, so it is the same for every
 /// method.
