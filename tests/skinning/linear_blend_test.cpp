@@ -22,6 +22,15 @@ Eigen::MatrixX3d linear_blend(const RiggedMesh& rig, const Pose& pose) {
   return posed;
 }
 
+/// sum_j w_j T_j v of one vertex.
+Eigen::Vector3d by_definition(const RiggedMesh& rig, const Pose& pose, int v) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (SkinWeights::InnerIterator it(rig.weights, v); it; ++it)
+    sum += it.value() *
+           (pose[static_cast<std::size_t>(it.col())] * Eigen::Vector3d(rig.mesh.V.row(v)));
+  return sum;
+}
+
 TEST(LinearBlend, RestPoseReturnsTheInput) {
   for (const RiggedMesh& rig : {two_bone_cylinder(cylinder_options()), capsule_finger(),
                                 fixtures::cylinder_of_many_influences(5)}) {
@@ -79,10 +88,7 @@ TEST(LinearBlend, AgreesWithTheDefinitionForAnyNumberOfInfluences) {
   }
   const Eigen::MatrixX3d posed = linear_blend(rig, pose);
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
-    Eigen::Vector3d expected = Eigen::Vector3d::Zero();
-    for (SkinWeights::InnerIterator it(rig.weights, v); it; ++it)
-      expected += it.value() *
-                  (pose[static_cast<std::size_t>(it.col())] * Eigen::Vector3d(rig.mesh.V.row(v)));
+    const Eigen::Vector3d expected = by_definition(rig, pose, v);
     // Weights are packed as floats: half a unit in the last place each, 11 of them.
     EXPECT_LE((posed.row(v).transpose() - expected).norm(), 1e-6) << v;
   }
@@ -110,10 +116,7 @@ TEST(LinearBlend, LargeMeshesTakeTheStreamedPathAndAgree) {
   const Pose pose = fixtures::turned(rig, "upper", "twist", 0.8);
   const Eigen::MatrixX3d posed = linear_blend(rig, pose);
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
-    Eigen::Vector3d expected = Eigen::Vector3d::Zero();
-    for (SkinWeights::InnerIterator it(rig.weights, v); it; ++it)
-      expected += it.value() *
-                  (pose[static_cast<std::size_t>(it.col())] * Eigen::Vector3d(rig.mesh.V.row(v)));
+    const Eigen::Vector3d expected = by_definition(rig, pose, v);
     ASSERT_LE((posed.row(v).transpose() - expected).norm(), 1e-7) << v;
   }
 }
