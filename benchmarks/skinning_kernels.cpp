@@ -1,7 +1,7 @@
 // How fast the baselines stream a skin, beside the fastest copy of as many bytes on this machine.
 //
-//   geoprior_kernels --benchmark_filter=skin        (18 k vertices: what an interactive frame
-//   costs) geoprior_kernels --benchmark_filter='copy|/1000000'     (share of the copy bandwidth)
+//   geoprior_kernels --benchmark_filter='/18000'         what an interactive frame costs
+//   geoprior_kernels --benchmark_filter='copy|/1000000'  share of the copy bandwidth
 //
 // "bytes_per_second" counts what a kernel must move: rest positions and influences read, posed
 // positions written (PackedInfluences::bytes_per_vertex). "of_copy_bandwidth" divides it by the
@@ -179,8 +179,7 @@ void skin_delta_mush(benchmark::State& state) {
 }
 
 void copy_same_bytes(benchmark::State& state) {
-  constexpr double kBytesPerVertex = 68.5;
-  const double bytes = kBytesPerVertex * static_cast<double>(state.range(0));
+  const double bytes = bytes_of(PackedInfluences(shared_tube(static_cast<int>(state.range(0)))));
   Copy copy(bytes);
   measure(state, bytes, [&] { copy.run(); });
 }
