@@ -26,7 +26,7 @@ check_format
 
 if [ "$mode" = --sanitize ]; then
   scripts/build.sh sanitize
-  # VTK, TBB and the font library keep small global blocks to the end: leaks are looked for in our code elsewhere.
+  # Leaks are not looked for: VTK, TBB and the font library keep small global blocks to the end.
   export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
   ctest --test-dir build/sanitize --output-on-failure -j 2 --timeout 1200
   exit 0
