@@ -46,8 +46,7 @@ class OptionVisitor {
   /// One of `names`, stored as its index.
   virtual void choice(std::string_view key, int& index, std::span<const std::string_view> names,
                       const OptionInfo& info) = 0;
-  /// A nested table; `inside` describes its members. `present` is absent for a table that is always
-  /// there.
+  /// A nested table that is always there; `inside` describes its members.
   virtual void group(std::string_view key, const OptionInfo& info,
                      const std::function<void()>& inside) = 0;
   /// A table that may be absent: `present` says so and is set by a reader before `inside` is
@@ -62,6 +61,9 @@ class OptionVisitor {
 };
 
 /// An enum option: `names[i]` is the text of the enumerator of value i.
+///
+/// A tagged choice: describe the tag first, then the members that it selects (MotionOptions in
+/// experiments/skinning/motion.cpp); the reader has set the tag by then.
 template <class Enum>
 void describe_choice(OptionVisitor& v, std::string_view key, Enum& x,
                      std::span<const std::string_view> names, const OptionInfo& info) {
@@ -99,9 +101,5 @@ void describe_list(OptionVisitor& v, std::string_view key, std::vector<Options>&
       key, list.size(), info, [&](std::size_t n) { list.resize(n); },
       [&](std::size_t i) { describe(v, list[i]); });
 }
-
-/// An ordered choice of one of several option structs, tagged by a key (by default `kind`):
-/// describe the tag with `describe_choice`, then the members of the struct it selects. See
-/// `experiments/skinning/scene.h` for an example.
 
 }  // namespace geoprior
