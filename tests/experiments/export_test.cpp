@@ -9,10 +9,10 @@
 #include <sstream>
 #include <string>
 
-#include "core/error.h"
 #include "experiments/view/mesh_text.h"
 #include "experiments/view/view.h"
 #include "tests/experiments/fake_run.h"
+#include "tests/experiments/run_fixture.h"
 
 namespace geoprior {
 namespace {
@@ -20,15 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-std::string message_of(const auto& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 int count_files(const fs::path& folder, const std::string& extension) {
   int count = 0;
@@ -115,7 +106,8 @@ TEST(Export, ForeignFolderIsRefusedAndLeftAlone) {
   const fs::path out = folder.path / "mine";
   fs::create_directories(out);
   std::ofstream(out / "thesis.tex") << "years of work";
-  EXPECT_THAT(message_of([&] { export_run(folder.path, "obj", out); }), HasSubstr(out.string()));
+  EXPECT_THAT(test::error_of([&] { export_run(folder.path, "obj", out); }),
+              HasSubstr(out.string()));
   EXPECT_EQ(count_files(out, ".obj"), 0);
   EXPECT_EQ(read_whole_file(out / "thesis.tex"), "years of work");
 }
@@ -130,7 +122,7 @@ TEST(Export, AnEarlierExportMayBeReplaced) {
 TEST(Export, UnknownFormatListsTheAllowedOnes) {
   const TestFolder folder;
   make_fake_run(folder.path);
-  EXPECT_THAT(message_of([&] { export_run(folder.path, "stl", folder.path / "out"); }),
+  EXPECT_THAT(test::error_of([&] { export_run(folder.path, "stl", folder.path / "out"); }),
               HasSubstr("obj, ply, glb"));
   EXPECT_FALSE(fs::exists(folder.path / "out"));
 }

@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 
-#include "core/error.h"
 #include "experiments/view/child_process.h"
 #include "experiments/view/view.h"
+#include "tests/experiments/run_fixture.h"
 
 namespace geoprior {
 namespace {
@@ -58,15 +58,6 @@ class HomeWithScript {
   fs::path folder;
 };
 
-std::string message_of(const auto& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(Home, IsFoundAboveTheExecutableOfABuild) {
   EXPECT_EQ(fs::canonical(geoprior_home()), fs::canonical(GEOPRIOR_SOURCE_DIR));
 }
@@ -78,7 +69,7 @@ TEST(Home, VariableWinsAndIsChecked) {
     EXPECT_EQ(geoprior_home(), home.folder);
   }
   const Variable variable("GEOPRIOR_HOME", "/proc");
-  EXPECT_THAT(message_of([] { geoprior_home(); }), HasSubstr("GEOPRIOR_HOME=/proc"));
+  EXPECT_THAT(test::error_of([] { geoprior_home(); }), HasSubstr("GEOPRIOR_HOME=/proc"));
 }
 
 TEST(ChildProcess, ArgumentsArriveUnchanged) {
@@ -102,8 +93,8 @@ TEST(Python, PassesArgumentsAndTheScriptsError) {
       "    sys.exit('got ' + repr(sys.argv[1:]))\n");
   const Variable variable("GEOPRIOR_HOME", home.folder.string());
   EXPECT_NO_THROW(run_python("script", {"a b", "c'd"}));
-  EXPECT_THAT(message_of([] { run_python("script", {"other"}); }), HasSubstr("got ['other']"));
-  EXPECT_THAT(message_of([] { run_python("absent", {}); }), HasSubstr("absent.py"));
+  EXPECT_THAT(test::error_of([] { run_python("script", {"other"}); }), HasSubstr("got ['other']"));
+  EXPECT_THAT(test::error_of([] { run_python("absent", {}); }), HasSubstr("absent.py"));
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include <numbers>
 #include <string>
 
-#include "core/error.h"
 #include "experiments/view/colors.h"
 #include "experiments/view/display.h"
 #include "experiments/view/figure_cells.h"
@@ -20,21 +19,13 @@
 #include "experiments/view/section.h"
 #include "experiments/view/view_window.h"
 #include "tests/experiments/fake_run.h"
+#include "tests/experiments/run_fixture.h"
 
 namespace geoprior {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-std::string message_of(const auto& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 /// Looks along -z at the plane z = 1/2, four by four metres.
 ViewWindow front_window() {
@@ -124,7 +115,8 @@ TEST(ViewWindow, DirectionAlongUpIsAnError) {
   const Part part = make_box({0, 0, 0}, {1, 1, 1});
   FigureView view;
   view.direction = {0, 2, 0};
-  EXPECT_THAT(message_of([&] { fit_window({&part}, view); }), HasSubstr("figure_view.direction"));
+  EXPECT_THAT(test::error_of([&] { fit_window({&part}, view); }),
+              HasSubstr("figure_view.direction"));
 }
 
 TEST(ViewWindow, SectionLooksAlongTheNormalAtThePlane) {
@@ -164,7 +156,7 @@ TEST(ColorScale, OneRangeForAllPartsAndUnknownArrayNamesTheOnesThereAre) {
   const ColorScale scale = make_color_scale({&a, &b}, "height");
   EXPECT_DOUBLE_EQ(scale.low, 1);
   EXPECT_DOUBLE_EQ(scale.high, 7);
-  EXPECT_THAT(message_of([&] { make_color_scale({&a}, "curvature"); }), HasSubstr("height"));
+  EXPECT_THAT(test::error_of([&] { make_color_scale({&a}, "curvature"); }), HasSubstr("height"));
 }
 
 TEST(Names, AreWrittenForReaders) {
@@ -286,11 +278,11 @@ TEST(Render, NamesWhatTheRunDoesNotHave) {
   make_fake_run(folder.path);
   FigureView view;
   view.variants = {"third-box"};
-  EXPECT_THAT(message_of([&] { render_run(folder.path, view); }),
+  EXPECT_THAT(test::error_of([&] { render_run(folder.path, view); }),
               HasSubstr("first-box, second-box"));
   view.variants = {};
   view.part = "strokes";
-  EXPECT_THAT(message_of([&] { render_run(folder.path, view); }), HasSubstr("surface"));
+  EXPECT_THAT(test::error_of([&] { render_run(folder.path, view); }), HasSubstr("surface"));
   EXPECT_FALSE(fs::exists(folder.path / "figure.png"));
 }
 
