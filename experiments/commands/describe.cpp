@@ -30,12 +30,15 @@ std::vector<OptionRow> rows_of(OptionSet& set) {
   return lister.rows();
 }
 
+/// A table of an experiment file: the members of its struct, then those of free form.
 template <class Table>
-Described file_table(const std::string& name) {
+Described file_table(const std::string& name, const std::vector<OptionRow>& free_form = {}) {
   Table table;
   OptionLister lister;
   describe(lister, table);
-  return {"experiment", name, {}, name, lister.rows()};
+  std::vector<OptionRow> rows = lister.rows();
+  rows.insert(rows.end(), free_form.begin(), free_form.end());
+  return {"experiment", name, {}, name, rows};
 }
 
 Described describe_method(const Topic& topic, const MethodEntry& method) {
@@ -75,14 +78,26 @@ Described describe_metric(const Topic& topic, const MetricEntry& metric) {
 }
 
 std::vector<Described> experiment_tables() {
+  const OptionRow options{"options", "table", "", "", "", "geoprior describe <method>"};
+  const OptionRow at{"at", "table", "", "", "", "one frame by its parameter, { angle_deg = 90 }"};
+  const OptionRow values{"values", "array", "required", "", "", "of the key, one case each"};
+  const OptionRow quick_values{"quick_values", "array", "", "", "", "those of quick runs"};
+  const OptionRow quick{"\"<dotted key>\"",
+                        "any",
+                        "",
+                        "",
+                        "",
+                        "value in quick runs of scene.*, seed, threads, timing.*, figure_view.*, "
+                        "variant.<name>.options.*"};
   return {file_table<HeaderTable>("top of the file"),
-          file_table<VariantTable>("[[variant]]"),
-          file_table<ClaimTable>("[[claim]]"),
-          file_table<SweepTable>("[[sweep]]"),
+          file_table<VariantTable>("[[variant]]", {options}),
+          file_table<ClaimTable>("[[claim]]", {at}),
+          file_table<SweepTable>("[[sweep]]", {values, quick_values}),
           file_table<StudyTable>("[[study]]"),
           file_table<TimingTable>("[timing]"),
           file_table<ToleranceTable>("[tolerance] metric = { … }"),
-          file_table<FigureViewTable>("[figure_view]")};
+          {"experiment", "[quick]", {}, "[quick]", {quick}},
+          file_table<FigureViewTable>("[figure_view]", {at})};
 }
 
 std::vector<Described> find_described(const std::vector<Topic>& topics, const std::string& name) {

@@ -76,7 +76,9 @@ TEST_F(Program, DescribesMethodsTopicsMetricsAndFiles) {
   EXPECT_EQ(method["options"][1]["range"], "on-rim | outside");
   EXPECT_THAT(run("describe toy-circle").err, HasSubstr("motion.to_deg"));
   EXPECT_THAT(run("describe toy-circle/radius_error").err, HasSubstr("lower_is_better"));
-  EXPECT_THAT(run("describe experiment").err, AllOf(HasSubstr("[[claim]]"), HasSubstr("factor")));
+  EXPECT_THAT(run("describe experiment").err,
+              AllOf(HasSubstr("[[claim]]"), HasSubstr("factor"), HasSubstr("quick_values"),
+                    HasSubstr("[quick]")));
   EXPECT_THAT(run("describe polygon --markdown").out, HasSubstr("| `segments` | integer |"));
   const Outcome unknown = run("describe poligon");
   EXPECT_EQ(unknown.code, 2);
