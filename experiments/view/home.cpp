@@ -17,12 +17,10 @@ bool is_home(const fs::path& folder) {
          fs::is_directory(folder / "results", ignored);
 }
 
-/// A clone has the two folders above build/<preset>/geoprior; an installed program finds them in
-/// share/geoprior beside its bin.
+/// A clone has the two folders above build/<preset>/geoprior.
 std::optional<fs::path> home_above(fs::path folder) {
   for (;; folder = folder.parent_path()) {
     if (is_home(folder)) return folder;
-    if (is_home(folder / "share" / "geoprior")) return folder / "share" / "geoprior";
     if (folder == folder.parent_path()) return std::nullopt;
   }
 }
@@ -33,9 +31,7 @@ fs::path geoprior_home() {
   if (const char* chosen = std::getenv("GEOPRIOR_HOME"); chosen != nullptr && *chosen != '\0') {
     if (!is_home(chosen)) {
       throw Error("no folder with experiments/ and results/ in it",
-                  "GEOPRIOR_HOME=" + std::string(chosen),
-                  "the clone, or share/geoprior of an "
-                  "installation");
+                  "GEOPRIOR_HOME=" + std::string(chosen), "the clone");
     }
     return fs::absolute(chosen).lexically_normal();
   }

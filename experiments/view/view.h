@@ -16,7 +16,7 @@ void render_run(const std::filesystem::path& run_folder, const FigureView& view)
 void export_run(const std::filesystem::path& run_folder, const std::string& format,
                 const std::filesystem::path& out);
 
-/// Root of the installation or clone: where experiments/ and results/ are found (beside or above
+/// Root of the clone: where experiments/ and results/ are found (above
 /// the executable).
 std::filesystem::path geoprior_home();
 
