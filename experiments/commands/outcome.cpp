@@ -15,13 +15,13 @@ using Json = nlohmann::ordered_json;
 
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
-/// Median over frames and repetitions.
-double median_time(const std::vector<std::vector<double>>& frames) {
+/// Times of all frames and repetitions.
+std::vector<double> all_times(const std::vector<std::vector<double>>& frames) {
   std::vector<double> all;
   for (const auto& repetitions : frames) {
     all.insert(all.end(), repetitions.begin(), repetitions.end());
   }
-  return median(all);
+  return all;
 }
 
 std::string time_text(double seconds) {
@@ -29,6 +29,13 @@ std::string time_text(double seconds) {
   if (seconds < 1e-3) return rounded_text(1e6 * seconds, 3) + " us";
   if (seconds < 1) return rounded_text(1e3 * seconds, 3) + " ms";
   return rounded_text(seconds, 3) + " s";
+}
+
+/// "8.31 ms (0.42 ms)": median and interquartile range.
+std::string times_text(const std::vector<std::vector<double>>& frames) {
+  const std::vector<double> times = all_times(frames);
+  const std::string text = time_text(median(times));
+  return times.size() < 2 ? text : text + " (" + time_text(interquartile_range(times)) + ")";
 }
 
 void say_case(const CaseRecord& in) {
@@ -52,10 +59,10 @@ void say_case(const CaseRecord& in) {
     rows.push_back(row);
   }
   for (const std::string& phase : phases) {
-    std::vector<std::string> row{"time of " + phase + " (median)", ""};
+    std::vector<std::string> row{"time of " + phase + ", median (IQR)", ""};
     for (const VariantRecord& variant : in.variants) {
       const auto found = variant.timing.find(phase);
-      row.push_back(found == variant.timing.end() ? "-" : time_text(median_time(found->second)));
+      row.push_back(found == variant.timing.end() ? "-" : times_text(found->second));
     }
     rows.push_back(row);
   }
@@ -74,7 +81,7 @@ Json variant_json(const VariantRecord& variant) {
   }
   json["median_time_s"] = Json::object();
   for (const auto& [phase, frames] : variant.timing) {
-    json["median_time_s"][phase] = number(median_time(frames));
+    json["median_time_s"][phase] = number(median(all_times(frames)));
   }
   return json;
 }
