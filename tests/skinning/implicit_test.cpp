@@ -121,7 +121,7 @@ TEST(ImplicitSkinning, HasNoMemoryOfEarlierPoses) {
   EXPECT_TRUE((a.array() == b.array()).all());
 }
 
-TEST(ImplicitSkinning, BothSchedulesReduceSelfContact) {
+TEST(ImplicitSkinning, TheReleasedScheduleReachesTheIsoValues) {
   ImplicitOptions options;
   options.schedule = Schedule::released_code;
   ImplicitSkinning skin = make(finger(), options);
