@@ -89,7 +89,7 @@ struct StudyRecord {
 struct ClaimRecord {
   std::string text;
   std::string case_name;
-  std::string detail;  ///< "overlap_volume of implicit at 90: 1.2e-07 <= 0.2 * 3.4e-06 m^3"
+  std::string detail;  ///< "overlap_excess of implicit at angle 90 deg: 1e-07 <= 0.2 * 3e-06 m^3"
   double left = 0;
   double right = 0;
   bool holds = false;

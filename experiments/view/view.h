@@ -16,8 +16,7 @@ void render_run(const std::filesystem::path& run_folder, const FigureView& view)
 void export_run(const std::filesystem::path& run_folder, const std::string& format,
                 const std::filesystem::path& out);
 
-/// Root of the clone: where experiments/ and results/ are found (above
-/// the executable).
+/// Root of the clone: where experiments/ and results/ are found, above the executable.
 std::filesystem::path geoprior_home();
 
 /// Runs results/<script>.py with Debian's Python; throws Error with its message on failure, naming
