@@ -4,8 +4,8 @@
 #include <array>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
+#include <tuple>
 
 #include "core/error.h"
 

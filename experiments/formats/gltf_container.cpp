@@ -1,6 +1,5 @@
 #include "experiments/formats/gltf_container.h"
 
-#include <array>
 #include <cstdint>
 #include <cstring>
 #include <string_view>

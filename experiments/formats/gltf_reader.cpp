@@ -1,7 +1,6 @@
 #include "experiments/formats/gltf_reader.h"
 
 #include <Eigen/LU>
-#include <cmath>
 #include <limits>
 
 #include "core/error.h"

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 
 #include "core/error.h"
 #include "experiments/runner/spec_parts.h"

@@ -1,7 +1,6 @@
 #include "experiments/runner/spec_tables.h"
 
 #include <array>
-#include <limits>
 
 namespace geoprior {
 namespace {

@@ -1,9 +1,6 @@
 #include "experiments/skinning/characters.h"
 
 #include <Eigen/LU>
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <numeric>
 
 #include "core/error.h"

@@ -16,8 +16,6 @@
 #include <vtkSphereSource.h>
 #include <vtkTubeFilter.h>
 
-#include <cmath>
-
 #include "core/mesh.h"
 #include "core/topology.h"
 #include "experiments/view/colors.h"

@@ -1,8 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "core/error.h"
 #include "experiments/skinning/characters.h"
 #include "experiments/skinning/skeleton_file.h"

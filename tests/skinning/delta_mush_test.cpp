@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "core/error.h"
 #include "core/parallel.h"
 #include "tests/skinning/fixtures.h"

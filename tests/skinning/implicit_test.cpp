@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
-#include <cstdlib>
 #include <numbers>
 
 #include "baselines/skinning/dual_quaternion.h"
