@@ -85,7 +85,8 @@ void describe(OptionVisitor& v, StudyTable& t) {
 void describe(OptionVisitor& v, TimingTable& t) {
   v.value("repetitions", t.repetitions,
           {.doc = "of each solve; whole runs of processes", .min = 1, .max = 100000});
-  v.value("warm_up", t.warm_up, {.doc = "repetitions that are not counted", .min = 0, .max = 1000});
+  v.value("warm_up", t.warm_up,
+          {.doc = "rounds of pose methods that are not counted", .min = 0, .max = 1000});
 }
 
 void describe(OptionVisitor& v, ToleranceTable& t) {
