@@ -10,7 +10,6 @@
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkXMLImageDataWriter.h>
@@ -19,6 +18,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "experiments/formats/vtk_points.h"
 
 namespace geoprior {
 
@@ -109,14 +109,8 @@ vtkSmartPointer<vtkCellArray> line_cells(const Part& part) {
 }
 
 vtkSmartPointer<vtkPolyData> to_poly_data(const Part& part) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(part.points.rows());
-  for (Eigen::Index i = 0; i < part.points.rows(); ++i) {
-    points->SetPoint(i, part.points(i, 0), part.points(i, 1), part.points(i, 2));
-  }
   auto data = vtkSmartPointer<vtkPolyData>::New();
-  data->SetPoints(points);
+  data->SetPoints(to_vtk_points(part.points));
   if (part.kind == Part::Kind::triangles) data->SetPolys(triangle_cells(part));
   if (part.kind == Part::Kind::lines) data->SetLines(line_cells(part));
   if (part.kind == Part::Kind::points) {

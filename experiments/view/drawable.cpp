@@ -10,7 +10,6 @@
 #include <vtkNew.h>
 #include <vtkOutlineSource.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkSphereSource.h>
@@ -18,6 +17,7 @@
 
 #include "core/mesh.h"
 #include "core/topology.h"
+#include "experiments/formats/vtk_points.h"
 #include "experiments/view/colors.h"
 
 namespace geoprior {
@@ -43,14 +43,8 @@ void add_scalars(const Part& part, const std::string& color_by, vtkDataSet* data
 }
 
 vtkSmartPointer<vtkPolyData> with_points(const Part& part) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(part.points.rows());
-  for (Eigen::Index i = 0; i < part.points.rows(); ++i) {
-    points->SetPoint(i, part.points(i, 0), part.points(i, 1), part.points(i, 2));
-  }
   auto data = vtkSmartPointer<vtkPolyData>::New();
-  data->SetPoints(points);
+  data->SetPoints(to_vtk_points(part.points));
   return data;
 }
 
