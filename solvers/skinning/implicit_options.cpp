@@ -10,6 +10,7 @@ constexpr std::array<std::string_view, 5> kBlendNames{"union", "ricci", "gradien
                                                       "bulge-in-contact", "contact"};
 constexpr std::array<std::string_view, 7> kOpeningNames{
     "smooth-finger", "elbow", "elbow-soft", "finger", "bulge", "flat-max", "flat-blend"};
+constexpr std::array<std::string_view, 3> kCapNames{"none", "point", "dome"};
 constexpr std::array<std::string_view, 2> kPartitionNames{"highest-weight", "closest-bone"};
 constexpr std::array<std::string_view, 3> kSupportNames{"quintic", "cubic", "logistic"};
 constexpr std::array<std::string_view, 2> kScheduleNames{"paper", "released-code"};
@@ -94,7 +95,8 @@ void describe(OptionVisitor& v, SamplingOptions& o) {
            .max = 0.5});
   v.value("trim_tail", o.trim_tail,
           {.doc = "the same at its tail, where another bone begins", .min = -1, .max = 0.5});
-  v.value("caps", o.caps, {.doc = "close the field beyond joints by a sample on the bone's axis"});
+  describe_choice(v, "caps", o.caps, kCapNames,
+                  {.doc = "what closes a field beyond a joint: one sample on the axis, or a dome"});
   v.value(
       "cap_scale", o.cap_scale,
       {.doc = "its distance from the joint over that of the nearest sample", .min = 0.1, .max = 5});

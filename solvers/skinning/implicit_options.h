@@ -22,6 +22,10 @@ enum class OpeningPreset {
   flat_blend,
 };
 
+/// What closes a bone's field beyond a joint: nothing, one sample on the axis, or a dome that
+/// continues the skin.
+enum class CapKind { none, point, dome };
+
 /// Which bone a vertex belongs to.
 enum class PartitionRule { highest_weight, closest_bone };
 
@@ -41,12 +45,13 @@ void describe(OptionVisitor& v, JointBlend& options);
 
 /// Samples from which the field of each bone is fitted (thesis 3.1, N and p_k, n_k of eq. 3.1).
 struct SamplingOptions {
-  int samples = 80;        ///< N per bone, caps not counted
-  double fold = 0;         ///< reject samples with (p - nearest point of the bone) . n below fold r
-  double trim_head = 0;    ///< drop samples within this fraction of the bone from its head
-  double trim_tail = 0;    ///< and from its tail, where another bone begins
-  bool caps = true;        ///< close the field at joints by one sample on the bone's axis
-  double cap_scale = 0.9;  ///< distance of that sample from the joint, in radii of the joint
+  int samples = 80;      ///< N per bone, caps not counted
+  double fold = 0;       ///< reject samples with (p - nearest point of the bone) . n below fold r
+  double trim_head = 0;  ///< drop samples within this fraction of the bone from its head
+  double trim_tail = 0;  ///< and from its tail, where another bone begins
+  CapKind caps = CapKind::point;  ///< what closes the field beyond joints (caps.h)
+  double cap_scale =
+      0.9;  ///< distance of the cap from the joint on the axis, over that of the nearest sample
 };
 void describe(OptionVisitor& v, SamplingOptions& options);
 

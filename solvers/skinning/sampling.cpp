@@ -3,8 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
+
+#include "solvers/skinning/caps.h"
 
 namespace geoprior {
 namespace {
@@ -123,17 +126,52 @@ std::vector<std::size_t> poisson_disk(const std::vector<Candidate>& candidates, 
   return best;
 }
 
-/// On the bone's axis beyond an end, as far from it as the nearest sample.
-void add_cap(BoneSamples& samples, Eigen::Index sample_count, const Eigen::Vector3d& joint,
-             const Eigen::Vector3d& outward, double scale) {
-  const double distance =
-      scale * (samples.points.topRows(sample_count).rowwise() - joint.transpose())
-                  .rowwise()
-                  .norm()
-                  .minCoeff();
-  const Eigen::Index row = sample_count + samples.cap_count++;
-  samples.points.row(row) = (joint + distance * outward).transpose();
-  samples.normals.row(row) = outward.transpose();
+double nearest_distance(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& joint) {
+  double nearest = std::numeric_limits<double>::max();
+  for (const Eigen::Vector3d& p : points) nearest = std::min(nearest, (p - joint).norm());
+  return nearest;
+}
+
+std::vector<Eigen::Vector3d> skin_of(const TriMesh& mesh, const FieldBone& bone) {
+  std::vector<Eigen::Vector3d> skin;
+  for (const int v : bone.vertices) skin.emplace_back(mesh.V.row(v));
+  return skin;
+}
+
+/// Closes a field at one joint: at its own head against its parent, or at the head of a child. The
+/// skin of the bone beyond (`child`, or the bone itself) says how thick the joint is.
+CapSamples close_joint(const TriMesh& mesh, const FieldBone& child, const FieldBone& other,
+                       const BoneEnd& end, const SamplingOptions& options) {
+  std::vector<Eigen::Vector3d> skin = skin_of(mesh, child);
+  if (skin.empty()) return {};
+  const double pole = options.cap_scale * nearest_distance(skin, end.joint);
+  if (options.caps == CapKind::point) return point_cap(end, pole);
+  const std::vector<Eigen::Vector3d> beyond = skin_of(mesh, other);
+  skin.insert(skin.end(), beyond.begin(), beyond.end());
+  return dome_cap(end, skin, pole);
+}
+
+/// Caps of a bone at every joint that it shares with another bone: a hand has one for each finger.
+CapSamples close_ends(const TriMesh& mesh, const BonePartition& partition, int bone_index,
+                      const SamplingOptions& options) {
+  CapSamples caps;
+  if (options.caps == CapKind::none) return caps;
+  const auto close = [&](int child_index, int other_index, double direction) {
+    const FieldBone& child = partition.bones[static_cast<std::size_t>(child_index)];
+    const FieldBone& other = partition.bones[static_cast<std::size_t>(other_index)];
+    const Eigen::Vector3d axis = child.tail - child.head;
+    if (!(axis.norm() > 0)) return;
+    const CapSamples cap =
+        close_joint(mesh, child, other, {child.head, direction * axis.normalized()}, options);
+    caps.points.insert(caps.points.end(), cap.points.begin(), cap.points.end());
+    caps.normals.insert(caps.normals.end(), cap.normals.begin(), cap.normals.end());
+  };
+  const int parent = partition.bones[static_cast<std::size_t>(bone_index)].parent;
+  if (parent >= 0) close(bone_index, parent, -1);
+  for (std::size_t b = 0; b < partition.bones.size(); ++b) {
+    if (partition.bones[b].parent == bone_index) close(static_cast<int>(b), bone_index, 1);
+  }
+  return caps;
 }
 
 }  // namespace
@@ -152,23 +190,23 @@ BoneSamples sample_bone(const TriMesh& mesh, const Eigen::MatrixX3d& normals,
   const std::vector<std::size_t> chosen = poisson_disk(
       candidates, static_cast<std::size_t>(options.samples), bounding_box_diagonal(mesh.V));
 
-  const auto n = static_cast<Eigen::Index>(chosen.size());
+  std::vector<Eigen::Vector3d> points, normals_of_points;
+  for (const std::size_t i : chosen) {
+    points.push_back(candidates[i].point);
+    normals_of_points.push_back(candidates[i].normal);
+  }
+  const CapSamples caps = close_ends(mesh, partition, bone_index, options);
+  points.insert(points.end(), caps.points.begin(), caps.points.end());
+  normals_of_points.insert(normals_of_points.end(), caps.normals.begin(), caps.normals.end());
+
   BoneSamples samples;
-  samples.points.resize(n + 2, 3);
-  samples.normals.resize(n + 2, 3);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Candidate& c = candidates[chosen[static_cast<std::size_t>(i)]];
-    samples.points.row(i) = c.point.transpose();
-    samples.normals.row(i) = c.normal.transpose();
+  samples.cap_count = static_cast<int>(caps.points.size());
+  samples.points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  samples.normals.resize(samples.points.rows(), 3);
+  for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
+    samples.points.row(i) = points[static_cast<std::size_t>(i)].transpose();
+    samples.normals.row(i) = normals_of_points[static_cast<std::size_t>(i)].transpose();
   }
-  const Eigen::Vector3d axis = bone.tail - bone.head;
-  if (options.caps && axis.norm() > 0) {
-    const Eigen::Vector3d direction = axis.normalized();
-    if (bone.parent >= 0) add_cap(samples, n, bone.head, -direction, options.cap_scale);
-    if (bone.has_children) add_cap(samples, n, bone.tail, direction, options.cap_scale);
-  }
-  samples.points.conservativeResize(n + samples.cap_count, 3);
-  samples.normals.conservativeResize(n + samples.cap_count, 3);
   return samples;
 }
 
