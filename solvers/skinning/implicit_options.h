@@ -64,7 +64,7 @@ struct ImplicitOptions {
   bool limb_contact = true;  ///< contact operator between limbs that no joint connects
 
   double contact_gap =
-      2e-3;  ///< by how much a vertex' own field exceeds the other limb's in contact
+      0.02;  ///< by how much a vertex' own field exceeds the other limb's in contact
 
   PartitionRule partition = PartitionRule::closest_bone;
   SamplingOptions sampling;
