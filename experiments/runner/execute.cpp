@@ -176,6 +176,26 @@ void finish(const Experiment& experiment, ExecuteResult& result) {
   if (undecided) throw Error(*undecided);
 }
 
+bool has_results(const RunState& state) {
+  return std::any_of(state.cases().begin(), state.cases().end(), [](const CaseState& one) {
+    return std::any_of(one.variants.begin(), one.variants.end(), [](const VariantState& variant) {
+      return variant.ended || variant.checkpoint || !variant.record.frames.empty();
+    });
+  });
+}
+
+/// Takes back what a run wrote that broke off without a result: bad input leaves no folder.
+void discard(const fs::path& folder, bool made_folder) {
+  std::error_code ignored;
+  for (const char* name : {"frames", "artifacts", "checkpoints"}) {
+    fs::remove_all(folder / name, ignored);
+  }
+  for (const char* name : {"spec.toml", "spec.json", "journal.jsonl"}) {
+    fs::remove(folder / name, ignored);
+  }
+  if (made_folder) fs::remove(folder, ignored);
+}
+
 }  // namespace
 
 ExecuteResult execute_in_chain(const Experiment& experiment, const std::vector<Topic>& topics,
@@ -183,6 +203,7 @@ ExecuteResult execute_in_chain(const Experiment& experiment, const std::vector<T
   const Topic& topic = topic_of(experiment, topics);
   chain.push_back(experiment.id);
   ExecuteResult result;
+  const bool made_folder = !request.out || !fs::exists(*request.out);
   result.folder = open_run_folder(experiment, request);
   if (auto record = finished_record(experiment, result.folder)) {
     std::fprintf(stderr, "%s is finished: nothing to do\n", result.folder.c_str());
@@ -193,8 +214,14 @@ ExecuteResult execute_in_chain(const Experiment& experiment, const std::vector<T
   Journal journal(result.folder / "journal.jsonl");
   RunState state = restore(experiment, journal, result.folder);
   Recorder recorder(result.folder, journal, state);
-  if (!state.run()) begin_run(experiment, recorder);
-  result.stopped = !run_cases(experiment, topics, request, chain, recorder, state);
+  const bool is_new = !state.run();
+  try {
+    if (is_new) begin_run(experiment, recorder);
+    result.stopped = !run_cases(experiment, topics, request, chain, recorder, state);
+  } catch (const Error&) {
+    if (is_new && !has_results(state)) discard(result.folder, made_folder);
+    throw;
+  }
   result.record = assemble(experiment, topic, state);
   if (!result.stopped) finish(experiment, result);
   return result;
