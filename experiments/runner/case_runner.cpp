@@ -98,7 +98,11 @@ CaseRunner::CaseRunner(const Experiment& experiment, const CaseSpec& spec, const
 
 void CaseRunner::load(const OptionSet& options, std::vector<StoredFile> inputs) {
   const auto begin = std::chrono::steady_clock::now();
-  scene_ = topic_.load(options, experiment_.file.parent_path());
+  try {
+    scene_ = topic_.load(options, experiment_.file.parent_path());
+  } catch (const Error& error) {
+    throw Error(error.what(), experiment_.file.string() + ": scene of case '" + spec_.name + "'");
+  }
   journal::CaseLine line;
   line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   line.case_name = spec_.name;
