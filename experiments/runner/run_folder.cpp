@@ -132,6 +132,9 @@ fs::path open_run_folder(const Experiment& experiment, const ExecuteRequest& req
       folder = folder_to_resume(experiment, request);
     } else {
       folder = request.out ? *request.out : new_default_folder(experiment);
+      if (fs::exists(folder) && !fs::is_directory(folder)) {
+        throw Error("is no folder", folder.string(), "a folder that is new or empty");
+      }
       if (!is_empty_or_absent(folder)) {
         throw Error("is there already and not empty: a run is never overwritten", folder.string(),
                     "a new folder, or --resume to go on with this run");
