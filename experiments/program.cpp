@@ -1,5 +1,7 @@
 #include "experiments/program.h"
 
+#include <signal.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -133,6 +135,8 @@ int fail(const char* kind, const std::string& what, int code) {
 }  // namespace
 
 int run_program(int argc, const char* const* argv, const std::vector<Topic>& topics) {
+  // A file size limit (ulimit -f) shall be an error of the write that hits it, not a death.
+  ::signal(SIGXFSZ, SIG_IGN);
   try {
     CommandLine line;
     build(line);
