@@ -1,6 +1,9 @@
 #include "baselines/skinning/delta_mush.h"
 #include "baselines/skinning/dual_quaternion.h"
 #include "baselines/skinning/linear_blend.h"
+#include "core/error.h"
+#include "core/mesh.h"
+#include "core/topology.h"
 #include "experiments/skinning/scene.h"
 #include "experiments/skinning/topic.h"
 #include "solvers/skinning/implicit.h"
@@ -42,6 +45,17 @@ Part bones_part(const SkinningScene& scene, const Pose& pose) {
   for (std::size_t i = 0; i < points.size(); ++i)
     part.points.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
   return part;
+}
+
+/// Fields need an inside: names the character's file where the method knows only a mesh.
+void require_solid(const SkinningScene& scene, const std::string& who) {
+  const TriMesh& mesh = scene.rig.mesh;
+  const std::string where =
+      scene.input_files.empty() ? "mesh" : scene.input_files.front().string() + ", welded vertices";
+  require_closed_manifold(mesh, who, where);
+  if (signed_volume(mesh.V, mesh.F) > 0) return;
+  throw Error(who + " needs triangles that face outwards, and these enclose a negative volume",
+              where, "triangles counter-clockwise seen from outside");
 }
 
 /// Wraps a class with `deform(pose, posed)` or `deform(pose, posed, context)`. The scene must
@@ -107,6 +121,7 @@ std::vector<MethodEntry> skinning_methods() {
           "implicit", false, "dual quaternions, then projection onto a field of blended bones",
           "thesis 3.1; Vaillant et al. 2013",
           [](const S& scene, const ImplicitOptions& options, RunContext& context) {
+            require_solid(scene, "implicit skinning");
             return std::make_unique<SkinningMethod<ImplicitSkinning>>(scene, options, context);
           }),
   };
