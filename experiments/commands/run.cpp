@@ -16,16 +16,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A word as a shell reads it back: in quotes unless it is plain.
+std::string shell_word(const std::string& word) {
+  const std::string plain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./:,@%";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 /// The command that goes on with a stopped run, as it would be typed.
 std::string resume_command(const RunRequest& request, const fs::path& folder) {
-  std::string command = "geoprior run " + request.experiment.id_or_file;
+  std::string command = "geoprior run " + shell_word(request.experiment.id_or_file);
   for (const auto& name : request.experiment.load.variants) command += " --variant " + name;
-  for (const auto& set : request.experiment.load.sets) command += " --set '" + set + "'";
+  for (const auto& set : request.experiment.load.sets) command += " --set " + shell_word(set);
   if (request.experiment.load.quick) command += " --quick";
   if (request.experiment.load.threads) {
     command += " --threads " + std::to_string(*request.experiment.load.threads);
   }
-  return command + " --out " + folder.string() + " --resume";
+  if (!request.pictures) command += " --no-pictures";
+  return command + " --out " + shell_word(folder.string()) + " --resume";
 }
 
 int report_stop(const CommandContext& context, const RunRequest& request,

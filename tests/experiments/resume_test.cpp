@@ -30,7 +30,7 @@ std::size_t count_lines(const fs::path& journal, const std::string& kind) {
 
 class Resume : public RunTest {
  protected:
-  [[nodiscard]] fs::path out() const { return folder() / "out"; }
+  [[nodiscard]] fs::path out() const { return folder() / "an out's folder"; }
   [[nodiscard]] fs::path log() const { return folder() / "log"; }
   [[nodiscard]] fs::path journal() const { return out() / "journal.jsonl"; }
 
@@ -89,7 +89,9 @@ TEST_F(Resume, AfterAKillOfPosesGoesOnAtTheNextFrame) {
 TEST_F(Resume, AfterCtrlC) {
   const auto file = pendulum("frames = 6\nframe_delay_ms = 50");
   EXPECT_GT(interrupt(file, 3, SIGINT), 0) << text_of(log());  // left by itself, not done
-  EXPECT_THAT(text_of(log()), HasSubstr("--resume"));
+  // The command is told as a shell reads it.
+  EXPECT_THAT(text_of(log()), HasSubstr(" --no-pictures --out '" + folder().string() +
+                                        R"(/an out'\''s folder' --resume)"));
   EXPECT_FALSE(fs::exists(out() / "run.h5"));
   expect_equal_to_undisturbed(file);
 }
