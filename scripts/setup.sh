@@ -19,7 +19,7 @@ packages=(
   # plots, report and the checks that a run needs nothing of ours
   python3 python3-numpy python3-h5py python3-matplotlib
   # pictures without a display
-  xvfb xauth libgl1-mesa-dri libegl1 fonts-dejavu-core
+  xvfb libgl1-mesa-dri fonts-dejavu-core
   # models that nobody here made, and the converter that reads them
   assimp-utils assimp-testmodels
 )

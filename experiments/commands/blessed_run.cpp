@@ -8,6 +8,10 @@
 #include "experiments/commands/catalogue.h"
 #include "experiments/commands/console.h"
 #include "experiments/runner/execute.h"
+#include "experiments/runner/run_folder.h"
+#include "experiments/runner/sha256.h"
+
+namespace fs = std::filesystem;
 
 namespace geoprior {
 namespace {
@@ -34,7 +38,13 @@ BlessedRun run_without_clock(const CommandContext& context, const std::string& i
   run.experiment = load_experiment(experiment_file(id), context.topics, load);
   run.topic = &topic_of(run.experiment, context.topics);
   drop_timing(run.experiment);
-  if (const auto folder = find_run(run.experiment)) {
+  std::optional<fs::path> folder = find_run(run.experiment);
+  if (!folder) {
+    // A run without times is not the run that `geoprior run` would make: it has a hash of its own.
+    run.experiment.hash = sha256(run.experiment.hash + " without times");
+    folder = find_run(run.experiment);
+  }
+  if (folder) {
     run.folder = *folder;
     run.record = read_run_file(*folder / "run.h5");
     return run;
@@ -42,6 +52,7 @@ BlessedRun run_without_clock(const CommandContext& context, const std::string& i
   say(tinted("running " + run.experiment.id + (quick ? " (quick)" : ""), Tint::faint));
   ExecuteRequest request;
   request.timing = false;
+  request.resume = find_unfinished_run(run.experiment).has_value();
   request.show_progress = isatty(STDERR_FILENO) == 1;
   ExecuteResult result = execute(run.experiment, context.topics, request);
   if (result.stopped) throw Error("stopped", run.experiment.id, "the same command again");

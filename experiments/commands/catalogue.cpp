@@ -68,6 +68,11 @@ fs::path run_folder_of(const std::string& run) {
   for (const fs::path& folder : sorted_entries(runs_root() / run)) {
     if (fs::is_regular_file(folder / "run.h5")) runs.push_back(folder);
   }
+  // Runs that a check made have no picture: a run that somebody asked for comes first.
+  const auto drawn = std::find_if(runs.rbegin(), runs.rend(), [](const fs::path& folder) {
+    return fs::is_regular_file(folder / "figure.png");
+  });
+  if (drawn != runs.rend()) return *drawn;
   if (!runs.empty()) return runs.back();
   (void)experiment_file(run);
   throw Error("has no finished run", run, "geoprior run " + run);

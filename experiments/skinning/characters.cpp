@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/mesh.h"
 #include "core/simplify.h"
 #include "core/subdivision.h"
 #include "core/topology.h"
@@ -106,6 +107,16 @@ void take_mesh(TriMesh split, Character& character, Weld& weld) {
   character.input_mesh = std::move(split);
 }
 
+/// Files in the wild have closed skins that face inwards: viewers draw both sides, volumes and
+/// fields tell them apart.
+void turn_outwards(const fs::path& file, Character& character) {
+  TriMesh& mesh = character.rig.mesh;
+  if (!boundary_edges(mesh.F).empty() || signed_volume(mesh.V, mesh.F) >= 0) return;
+  mesh.F.col(1).swap(mesh.F.col(2));
+  character.input_mesh.F.col(1).swap(character.input_mesh.F.col(2));
+  character.warnings.push_back(file.string() + ": the triangles faced inwards and were turned");
+}
+
 void read_skeleton_option(const std::string& name, const fs::path& folder, Character& character) {
   const fs::path file = find_input(name, folder);
   character.skeleton_file = read_skeleton_file(file);
@@ -129,6 +140,7 @@ void load_file(const CharacterOptions& options, const fs::path& file, const fs::
   split.V *= options.unit_m;
   Weld weld;
   take_mesh(std::move(split), character, weld);
+  turn_outwards(file, character);
   if (options.skeleton) read_skeleton_option(*options.skeleton, folder, character);
   if (!gltf.skeleton && !character.skeleton_file) {
     throw Error("no skin, and the scene names no skeleton file", file.string(),

@@ -1,8 +1,6 @@
 #include "baselines/skinning/delta_mush.h"
 #include "baselines/skinning/dual_quaternion.h"
 #include "baselines/skinning/linear_blend.h"
-#include "core/error.h"
-#include "core/mesh.h"
 #include "core/topology.h"
 #include "experiments/skinning/scene.h"
 #include "experiments/skinning/topic.h"
@@ -28,6 +26,18 @@ Part surface_part(const SkinningScene& scene, const Eigen::MatrixX3d& posed) {
   return part;
 }
 
+/// The skin with the vertices of the input file, split at seams: what goes back to the program it
+/// came from.
+Part input_part(const SkinningScene& scene, const Eigen::MatrixX3d& posed) {
+  Part part;
+  part.points.resize(scene.input_mesh.V.rows(), 3);
+  for (Eigen::Index v = 0; v < part.points.rows(); ++v) {
+    part.points.row(v) = posed.row(scene.welded_of_input[static_cast<std::size_t>(v)]);
+  }
+  part.triangles = scene.input_mesh.F;
+  return part;
+}
+
 /// The bones in their posed places.
 Part bones_part(const SkinningScene& scene, const Pose& pose) {
   Part part;
@@ -49,13 +59,9 @@ Part bones_part(const SkinningScene& scene, const Pose& pose) {
 
 /// Fields need an inside: names the character's file where the method knows only a mesh.
 void require_solid(const SkinningScene& scene, const std::string& who) {
-  const TriMesh& mesh = scene.rig.mesh;
   const std::string where =
       scene.input_files.empty() ? "mesh" : scene.input_files.front().string() + ", welded vertices";
-  require_closed_manifold(mesh, who, where);
-  if (signed_volume(mesh.V, mesh.F) > 0) return;
-  throw Error(who + " needs triangles that face outwards, and these enclose a negative volume",
-              where, "triangles counter-clockwise seen from outside");
+  require_closed_manifold(scene.rig.mesh, who, where);
 }
 
 /// Wraps a class with `deform(pose, posed)` or `deform(pose, posed, context)`. The scene must
@@ -81,6 +87,9 @@ class SkinningMethod final : public PoseMethod {
     Frame frame;
     frame.parameter = parameter_;
     frame.parts["surface"] = surface_part(scene_, posed_);
+    if (scene_.input_mesh.vertex_count() != scene_.rig.mesh.vertex_count()) {
+      frame.parts["input"] = input_part(scene_, posed_);
+    }
     frame.parts["bones"] = bones_part(scene_, scene_.pose_at(parameter_));
     if constexpr (requires { deformer_.diagnostics(); }) {
       frame.diagnostics = deformer_.diagnostics();

@@ -33,6 +33,10 @@ BonePartition partition_bones(const RiggedMesh& rig, PartitionRule rule, double 
 
 inline constexpr int kMinBoneVertices = 12;
 
+/// Fields at most: the bones that reach a block of vertices are listed in a fixed array, so that no
+/// pass allocates.
+inline constexpr int kMaxFieldBones = 512;
+
 /// The point of the segment [a, b] nearest to p, as a fraction in [0, 1].
 double segment_parameter(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                          const Eigen::Vector3d& b);

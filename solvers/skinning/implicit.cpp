@@ -20,6 +20,8 @@ namespace {
 constexpr int kReleasedFitSteps = 2;
 constexpr int kReleasedRelaxations = 7;
 
+constexpr std::size_t kVerticesPerTask = 4096;
+
 std::vector<JointOperator> joint_operators(const BonePartition& partition, const Skeleton& skeleton,
                                            const ImplicitOptions& options) {
   std::vector<JointOperator> operators;
@@ -84,6 +86,10 @@ struct ImplicitSkinning::Impl {
       throw Error("no joint moves enough vertices for a field", "implicit skinning",
                   "at least " + std::to_string(kMinBoneVertices) + " vertices a joint");
     }
+    if (static_cast<int>(partition.bones.size()) > kMaxFieldBones) {
+      throw Error(std::to_string(partition.bones.size()) + " joints have skin of their own",
+                  "implicit skinning", "at most " + std::to_string(kMaxFieldBones));
+    }
     rotation.resize(3 * static_cast<std::size_t>(joint_count));
     field.set_pose(rest_pose(joint_count));
     for (std::size_t s = 0; s < state.size(); ++s) {
@@ -133,17 +139,19 @@ void ImplicitSkinning::Impl::turn_normals(const Pose& pose) {
           Float4{turn(0, k), turn(1, k), turn(2, k), 0.0F};
     }
   }
-  for (std::size_t s = 0; s < state.size(); ++s) {
-    const Float4 n = state.rest_normal[s];
-    Float4 sum{};
-    for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const Float4* r = &rotation[3 * static_cast<std::size_t>(state.influence_joint[k])];
-      sum += splat(state.influence_weight[k]) *
-             (r[0] * splat(n[0]) + r[1] * splat(n[1]) + r[2] * splat(n[2]));
+  parallel_blocks(state.size(), kVerticesPerTask, [this](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const Float4 n = state.rest_normal[s];
+      Float4 sum{};
+      for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const Float4* r = &rotation[3 * static_cast<std::size_t>(state.influence_joint[k])];
+        sum += splat(state.influence_weight[k]) *
+               (r[0] * splat(n[0]) + r[1] * splat(n[1]) + r[2] * splat(n[2]));
+      }
+      state.outward[s] = sum;
     }
-    state.outward[s] = sum;
-  }
+  });
 }
 
 void ImplicitSkinning::Impl::fit(RunContext& context) {

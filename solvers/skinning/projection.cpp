@@ -11,9 +11,6 @@
 namespace geoprior {
 namespace {
 
-/// Bones that can reach any of a few points: a fixed array, so that no pass allocates.
-constexpr int kMaxBones = 512;
-
 struct Bounds {
   Float4 low = splat(std::numeric_limits<float>::max());
   Float4 high = splat(std::numeric_limits<float>::lowest());
@@ -55,7 +52,7 @@ Projection::Target Projection::target_of(const SkinState& state, std::size_t slo
 }
 
 FieldAt Projection::field_of(const SkinState& state, std::size_t slot, Float4 p) const {
-  std::array<int, kMaxBones> bones;
+  std::array<int, kMaxFieldBones> bones;
   const int count = field_.bones_near(p, p, bones.data());
   return field_.at(p, state.owner[slot], {bones.data(), static_cast<std::size_t>(count)});
 }
@@ -95,7 +92,7 @@ void Projection::step_block(SkinState& state, std::size_t block) const {
   for (std::size_t i = begin; i < begin + count; ++i) {
     bounds.include(state.position[static_cast<std::size_t>(state.active[i])]);
   }
-  std::array<int, kMaxBones> bones;
+  std::array<int, kMaxFieldBones> bones;
   const int near = field_.bones_near(bounds.low, bounds.high, bones.data());
   const std::span<const int> reach{bones.data(), static_cast<std::size_t>(near)};
   std::size_t kept = begin;
