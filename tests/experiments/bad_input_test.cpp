@@ -113,7 +113,7 @@ TEST_F(BadCharacter, NamesFileAndPlaceAndLeavesNoFolder) {
   EXPECT_THAT(refusal(), HasSubstr("no skin, and the scene names no skeleton file"));
 }
 
-TEST_F(BadCharacter, OpenNonManifoldOrInsideOutIsRefusedWhereAnInsideIsNeeded) {
+TEST_F(BadCharacter, OpenOrNonManifoldIsRefusedWhereAnInsideIsNeeded) {
   write(skinned_square());
   EXPECT_THAT(refusal("implicit"), AllOf(HasSubstr("closed mesh"), HasSubstr("0-1")));
 
@@ -122,9 +122,20 @@ TEST_F(BadCharacter, OpenNonManifoldOrInsideOutIsRefusedWhereAnInsideIsNeeded) {
       fin.accessor<std::uint16_t>({0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2, 0, 2, 1}, "SCALAR", 1, 5123);
   write(fin);
   EXPECT_THAT(refusal("implicit"), AllOf(HasSubstr("manifold mesh"), HasSubstr("0-2")));
+}
 
-  write(skinned_tetrahedron(true));
-  EXPECT_THAT(refusal("implicit"), HasSubstr("face outwards"));
+TEST_F(BadCharacter, ClosedSkinThatFacesInwardsIsTurnedWithAWarning) {
+  const auto file =
+      experiment("character = \"character.glb\"\nmotion = { kind = \"clip\", frames = 2 }");
+  for (const bool inside_out : {false, true}) {
+    fs::remove_all(out());
+    write(skinned_tetrahedron(inside_out));
+    fs::copy_file(character(), file.parent_path() / "character.glb",
+                  fs::copy_options::overwrite_existing);
+    const CaseRecord record = run_skinning(file).record.cases.at(0);
+    EXPECT_EQ(record.warnings.size(), inside_out ? 1U : 0U);
+    for (const auto& warning : record.warnings) EXPECT_THAT(warning, HasSubstr("faced inwards"));
+  }
 }
 
 TEST_F(BadCharacter, OpenMeshOfTheTestModelsRunsThroughTheBaselines) {
