@@ -198,8 +198,11 @@ FieldAt FieldComposition::at(Float4 p, int owner, std::span<const int> bones) co
 float FieldComposition::rest_value(Float4 rest, int bone) const {
   // The field moves rigidly: carry the point along.
   Sampled sampled;
-  const Float4 carried = turn(bone, rest) + posed_[static_cast<std::size_t>(bone)].translation;
-  return sample_bone(bone, carried, sampled) ? sampled.f : 0.0F;
+  return sample_bone(bone, carry(bone, rest), sampled) ? sampled.f : 0.0F;
+}
+
+Float4 FieldComposition::carry(int bone, Float4 rest) const {
+  return turn(bone, rest) + posed_[static_cast<std::size_t>(bone)].translation;
 }
 
 float FieldComposition::difference(Float4 p, int a, int b) const {

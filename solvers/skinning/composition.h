@@ -66,6 +66,8 @@ class FieldComposition {
 
   /// Field of a bone at the rest position of a point.
   [[nodiscard]] float rest_value(Float4 rest, int bone) const;
+  /// Where a bone carries a point of the rest pose.
+  [[nodiscard]] Float4 carry(int bone, Float4 rest) const;
 
   /// A rest direction turned with a bone.
   [[nodiscard]] Float4 turn(int bone, Float4 direction) const {

@@ -119,6 +119,7 @@ bool Projection::step_vertex(SkinState& state, std::size_t slot, const FieldAt& 
     walk_out(state, slot, at.bone);
     return true;
   }
+  if (!has_last && at.value == 0) return enter_field(state, slot);
   if (has_last) {
     const float cos_times_lengths = dot3(last, at.gradient);
     if (cos_times_lengths < stop_cos_ * std::sqrt(slope2 * dot3(last, last))) {
@@ -150,6 +151,17 @@ bool Projection::step_vertex(SkinState& state, std::size_t slot, const FieldAt& 
   state.gradient[slot] = at.gradient;
   state.gradient[slot][3] = error;
   state.last_bone[slot] = at.bone;
+  return true;
+}
+
+bool Projection::enter_field(SkinState& state, std::size_t slot) const {
+  const Float4 carried = field_.carry(state.owner[slot], state.rest[slot]);
+  const Float4 moved = carried - state.position[slot];
+  if (!(dot3(moved, moved) > 0)) {
+    state.stop[slot] = VertexStop::no_field;
+    return false;
+  }
+  state.position[slot] = carried;
   return true;
 }
 

@@ -47,6 +47,9 @@ class Projection {
   void step_block(SkinState& state, std::size_t block) const;
   bool step_vertex(SkinState& state, std::size_t slot, const FieldAt& at) const;
   [[nodiscard]] bool on_far_side(const SkinState& state, std::size_t slot, const FieldAt& at) const;
+  /// A vertex outside every field (swollen start, or walked out) goes where its own bone carries
+  /// it.
+  bool enter_field(SkinState& state, std::size_t slot) const;
   void walk_out(SkinState& state, std::size_t slot, int bone) const;
   void stop_in_contact(SkinState& state, std::size_t slot, int bone_now) const;
 
