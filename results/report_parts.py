@@ -23,7 +23,7 @@ def meta_line(run):
 
 
 def case_heading(run, case):
-    return f"<h3>{escape(case.name)}</h3>" if len(run.cases) > 1 else ""
+    return f"<h3>{escape(case.name)}</h3>" if claim.case and len(run.cases) > 1 else ""
 
 
 def claims(run):
@@ -34,7 +34,7 @@ def claims(run):
     for claim in run.claims:
         badge = '<span class="badge good">✓ holds</span>' if claim.holds \
             else '<span class="badge bad">✗ falls short</span>'
-        case = f' <span class="note">({escape(claim.case)})</span>' if len(run.cases) > 1 else ""
+        case = f' <span class="note">({escape(claim.case)})</span>' if claim.case and len(run.cases) > 1 else ""
         items.append(f"<li><div>{badge}</div><div>{escape(claim.text)}{case}<br>"
                      f"<code>{escape(claim.detail)}</code></div></li>")
     return (f"<h2>Claims: {held} of {len(run.claims)} hold</h2>\n"

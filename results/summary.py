@@ -24,7 +24,7 @@ def claims(run):
     held = sum(c.holds for c in run.claims)
     lines = ["", f"## Claims: {held} of {len(run.claims)} hold", ""]
     for claim in run.claims:
-        case = f" ({claim.case})" if len(run.cases) > 1 else ""
+        case = f" ({claim.case})" if claim.case and len(run.cases) > 1 else ""
         lines.append(f"- **{'holds' if claim.holds else 'falls short'}**: {claim.text}{case}  ")
         lines.append(f"  `{claim.detail}`")
     return lines
@@ -58,7 +58,7 @@ def summary_text(run):
              f"commit {run.provenance.get('git_commit', 'unknown')}."]
     lines += claims(run)
     for case in run.cases:
-        heading = f": {case.name}" if len(run.cases) > 1 else ""
+        heading = f": {case.name}" if claim.case and len(run.cases) > 1 else ""
         lines += ["", f"## Metrics{heading}"] + metrics_table(case)
         times = timing_table(case)
         if times:
