@@ -23,7 +23,7 @@ def meta_line(run):
 
 
 def case_heading(run, case):
-    return f"<h3>{escape(case.name)}</h3>" if claim.case and len(run.cases) > 1 else ""
+    return f"<h3>{escape(case.name)}</h3>" if len(run.cases) > 1 else ""
 
 
 def claims(run):

@@ -58,7 +58,7 @@ def summary_text(run):
              f"commit {run.provenance.get('git_commit', 'unknown')}."]
     lines += claims(run)
     for case in run.cases:
-        heading = f": {case.name}" if claim.case and len(run.cases) > 1 else ""
+        heading = f": {case.name}" if len(run.cases) > 1 else ""
         lines += ["", f"## Metrics{heading}"] + metrics_table(case)
         times = timing_table(case)
         if times:
