@@ -93,6 +93,7 @@ ClaimSpec claim_of(const ClaimTable& table, const TomlNode& node) {
   claim.factor = table.factor;
   claim.offset = table.offset;
   claim.tolerance = table.tolerance;
+  claim.known_shortfall = table.known_shortfall;
   claim.reduce = text_of(table.reduce);
   claim.cases = table.cases;
   read_at(node.find("at"), claim.at_parameter, &claim.at_key);

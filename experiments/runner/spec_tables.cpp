@@ -63,6 +63,8 @@ void describe(OptionVisitor& v, ClaimTable& t) {
   v.value("factor", t.factor, {.doc = "times the other side"});
   v.value("offset", t.offset, {.doc = "added to the other side, in the metric's unit"});
   v.value("tolerance", t.tolerance, {.doc = "for ==, in the metric's unit", .min = 0});
+  v.value("known_shortfall", t.known_shortfall,
+          {.doc = "why the claim falls short, where that is known: check lets it pass"});
   describe_choice(v, "reduce", t.reduce, kReductions,
                   {.doc = "over the frames, without `at`; every: it must hold frame by frame"});
   v.value("cases", t.cases, {.doc = "names of cases; absent: all that have the variants"});

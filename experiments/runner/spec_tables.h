@@ -52,6 +52,7 @@ struct ClaimTable {
   double factor = 1;
   double offset = 0;
   double tolerance = 0;
+  std::optional<std::string> known_shortfall;
   Reduction reduce = Reduction::max;
   std::vector<std::string> cases;
 };
