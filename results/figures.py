@@ -27,8 +27,8 @@ def overview(runs):
         vertices = ", ".join(sorted({f"{int(case.facts['vertices']):,}" for case in run.cases if "vertices" in case.facts},
                                     key=lambda text: int(text.replace(",", ""))))
         rows.append([f"`{run.experiment_id}`", run.figure or "–", vertices, verdict,
-                     f"`{run.content_sha256[:12]}`"])
-    return table(["experiment", "figure", "vertices", "result", "content_sha256"], rows)
+                     f"`{run.content_sha256[:12]}`", f"`{run.provenance.get('git_commit', 'unknown')[:12]}`"])
+    return table(["experiment", "figure", "vertices", "result", "content_sha256", "commit"], rows)
 
 
 def section(run):
@@ -49,7 +49,7 @@ def main(arguments):
     chosen = parser.parse_args(arguments)
     runs = [runfile.read_run(place) for place in chosen.runs]
     provenance = runs[0].provenance
-    lines = [HEADER, f"Processor: {provenance.get('cpu', 'unknown')}; commit {provenance.get('git_commit', 'unknown')[:12]}.", ""]
+    lines = [HEADER, f"Processor: {provenance.get('cpu', 'unknown')}.", ""]
     lines += overview(runs)
     for run in runs:
         lines += section(run)
