@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+
+#include "baselines/paper/sheet_process.h"
+
+namespace geoprior {
+
+enum class DenseLayout { structured, equilateral, delaunay };
+
+/// Baseline: one uniform mesh from start to end.
+struct DenseOptions {
+  int triangles = 4096;                          ///< aimed at
+  DenseLayout layout = DenseLayout::structured;  ///< structured: rectangles only
+  StepperOptions stepper;
+};
+void describe(OptionVisitor& v, DenseOptions& options);
+
+/// Uniform triangulation of a pattern that has all `anchors` among its vertices.
+/// structured: a grid of squares, each with a diagonal, alternating; equilateral: a hexagonal
+/// lattice cut by the border; delaunay: jittered points, seeded. Border vertices lie on the border.
+ShellMesh uniform_mesh(const Pattern& pattern, int triangles, DenseLayout layout,
+                       const std::vector<Eigen::Vector2d>& anchors, std::uint64_t seed);
+
+std::unique_ptr<Process> make_dense_sheet(const Sheet& sheet, const DenseOptions& options);
+
+}  // namespace geoprior

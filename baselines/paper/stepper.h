@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "baselines/paper/sheet.h"
+#include "baselines/paper/shell_state.h"
+#include "core/context.h"
+#include "core/options.h"
+
+namespace geoprior {
+
+enum class BendingModel { shape_operator, hinge };
+enum class Integration { linear, newton };  ///< one linear solve a step, or implicit Euler solved
+enum class LinearSolver { automatic, eigen, cholmod };
+
+/// How a sheet is stepped in time; the same for every mesh, so that meshes are compared and nothing
+/// else.
+struct StepperOptions {
+  Integration integration = Integration::linear;
+  BendingModel bending = BendingModel::shape_operator;
+  double hinge_calibration =
+      4;  ///< D_hinge / D that makes equilateral hinges as stiff as the plate
+  bool plasticity = true;
+  int newton_iterations = 30;      ///< most, of a step
+  double newton_tolerance = 1e-8;  ///< on the residual, relative to the typical force of the step
+  int most_halvings = 8;           ///< of a step that does not converge, before the run ends
+  LinearSolver solver = LinearSolver::automatic;
+  int supernodal_from = 600;       ///< triangles from which "automatic" takes CHOLMOD
+  double contact_distance = 5e-4;  ///< gap at which an obstacle begins to push (m)
+  double contact_stiffness = 1e4;  ///< of the push, per area of sheet (N/m^3)
+};
+void describe(OptionVisitor& v, StepperOptions& options);
+
+/// Mechanical energies (J).
+struct ShellEnergies {
+  double membrane = 0, bending = 0, kinetic = 0, gravity = 0, contact = 0;
+};
+
+/// What one step took.
+struct StepReport {
+  int newton_iterations = 0;  ///< linear solves
+  int halvings = 0;
+  double residual = 0;     ///< reached, relative (newton)
+  double handle_work = 0;  ///< done by prescribed handles on the sheet (J)
+  std::vector<Eigen::Vector3d>
+      handle_force;  ///< on the sheet by each handle, mean over the step (N)
+};
+
+/// Implicit time stepping of one sheet. Keeps the analysis of the connectivity (masses, element
+/// fits, sparsity, offsets, symbolic factorisation) until the connectivity changes.
+class ShellStepper {
+ public:
+  ShellStepper(const Sheet& sheet, const StepperOptions& options, std::uint64_t seed);
+  ~ShellStepper();
+  ShellStepper(ShellStepper&&) noexcept;
+  ShellStepper& operator=(ShellStepper&&) noexcept;
+
+  /// Takes up a connectivity: must be called before the first step and after every remeshing.
+  /// @throws Error  on a triangle without area or turned over in the pattern (names it)
+  void set_mesh(const ShellState& state);
+
+  /// Advances by `dt` (s); halves the step when it does not converge (NaN, residual, inverted
+  /// pattern map), up to `most_halvings`, then throws Error naming the time.
+  StepReport step(ShellState& state, double dt, RunContext& context);
+
+  [[nodiscard]] ShellEnergies energies(const ShellState& state) const;
+  /// Elastic force on every vertex (n x 3, N): -dE/dx of membrane and bending.
+  [[nodiscard]] Eigen::MatrixX3d elastic_forces(const ShellState& state) const;
+  [[nodiscard]] long factor_nonzeros() const;
+  /// Vertices that an active handle prescribes at `time`, and by which handle.
+  struct Held {
+    int vertex;
+    int handle;
+  };
+  [[nodiscard]] std::vector<Held> held(double time) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace geoprior

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "baselines/paper/shell_state.h"
+
+namespace geoprior {
+
+/// Carries a state to another triangulation of the same pattern: positions and velocities linear on
+/// the triangles of `from`, plastic curvature and damage area-weighted over the overlap of old and
+/// new triangles.
+/// @throws Error  when a vertex of `to` lies farther than 1e-6 of the pattern's width outside
+/// `from`
+ShellState transfer_state(const ShellState& from, const ShellMesh& to);
+
+/// Finds triangles of a triangulated pattern by point: built once, asked often.
+class PatternLocator {
+ public:
+  explicit PatternLocator(const ShellMesh& mesh);
+  struct Place {
+    int triangle = -1;
+    Eigen::Vector3d weights;  ///< barycentric
+  };
+  /// The triangle that contains `p`, or the nearest one (weights then clamped to it).
+  [[nodiscard]] Place locate(const Eigen::Vector2d& p) const;
+
+ private:
+  Eigen::MatrixX2d pattern_;
+  Eigen::MatrixX3i triangles_;
+  Eigen::Vector2d origin_;
+  double cell_ = 1;
+  int columns_ = 1, rows_ = 1;
+  std::vector<int> offset_, items_;  ///< triangles whose boxes meet each cell of a grid
+};
+
+}  // namespace geoprior

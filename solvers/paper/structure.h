@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "baselines/paper/pattern.h"
+#include "baselines/paper/shell_state.h"
+
+namespace geoprior {
+
+/// A straight line of the sheet: a segment of the pattern that stays straight in space.
+struct Ruling {
+  Eigen::Vector2d a, b;  ///< ends in the pattern (m); of a cone, `a` is at the apex
+  int piece = -1;
+};
+
+/// A part of the sheet that is developable and smooth: thesis 3.2.1, Figure 3.7.
+struct PaperPiece {
+  enum class Kind { flat, cylinder, cone };
+  Kind kind = Kind::flat;
+  int id = 0;                           ///< stays with the piece while it is tracked
+  std::vector<int> rulings;             ///< of PaperStructure::rulings, in order across the piece
+  Eigen::Vector2d direction{1, 0};      ///< of a cylinder's rulings, unit
+  std::optional<Eigen::Vector2d> apex;  ///< of a cone
+  std::optional<int> singular_point;    ///< that the apex is, if it lies in the sheet
+  std::vector<Eigen::Vector2d> region;  ///< polygon in the pattern, counter-clockwise
+  std::vector<int> neighbours;          ///< pieces that share a part of their outline
+};
+
+/// A point where the sheet is not smooth (a d-cone). It never vanishes.
+struct SingularPoint {
+  int id = 0;
+  Eigen::Vector2d position;  ///< in the pattern (m)
+  double birth = 0;          ///< s
+  double weakening = 0;      ///< w: bending stiffness about it falls by 1 / (1 + w)
+  bool on_border = false;
+};
+
+/// The geometric layer of the hybrid method: what the sheet is made of at one time.
+struct PaperStructure {
+  std::vector<Ruling> rulings;
+  std::vector<PaperPiece> pieces;
+  std::vector<SingularPoint> singular_points;
+  std::vector<std::vector<int>>
+      border_points;  ///< singular points on each edge of the border, in order
+
+  [[nodiscard]] std::vector<int> pieces_at(int singular_point) const;
+  [[nodiscard]] int piece_at(const Eigen::Vector2d& p) const;  ///< -1: none (flat ground)
+};
+
+/// What the invariants say of a structure and its mesh; empty when all hold:
+/// rulings of different pieces meet only at a common apex or the border; the mesh covers the
+/// pattern exactly (areas agree to 1e-9, no triangle turned over or without area); every ruling is
+/// a path of mesh edges; every singular point is a vertex.
+std::vector<std::string> broken_invariants(const PaperStructure& structure, const Pattern& pattern,
+                                           const ShellMesh& mesh);
+
+}  // namespace geoprior
