@@ -63,7 +63,9 @@ struct Handle {
   /// Times at which it holds or pulls; empty: always.
   std::vector<std::pair<double, double>> active;
 
+  /// Points; ends of the segment; centre of the disc and `kDiscAnchors` points of its rim.
   [[nodiscard]] std::vector<Eigen::Vector2d> anchors() const;
+  static constexpr int kDiscAnchors = 4;
   [[nodiscard]] bool covers(const Eigen::Vector2d& pattern_point, double tolerance = 1e-9) const;
   [[nodiscard]] bool is_active(double time) const;
   /// Where a covered pattern point is at `time` under `motion`. @param rest its place at the start
@@ -94,6 +96,22 @@ struct Obstacle {
   [[nodiscard]] Contact contact(const Eigen::Vector3d& x, double time) const;
 };
 
+/// An obstacle at one time: made once a step, asked for every point of contact.
+class ObstacleAt {
+ public:
+  ObstacleAt(const Obstacle& obstacle, double time);
+  [[nodiscard]] Obstacle::Contact contact(const Eigen::Vector3d& x) const;
+  [[nodiscard]] double radius() const { return radius_; }
+
+ private:
+  Obstacle::Kind kind_;
+  double tube_radius_, half_length_;
+  Eigen::Vector3d centre_, axis_;
+  double radius_ = 0, radius_rate_ = 0;
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d spin_ = Eigen::Matrix3d::Zero();  ///< velocity of a point about the centre
+};
+
 /// Everything a paper method is given: the sheet, what moves it and what is in its way.
 struct Sheet {
   Pattern pattern;
@@ -113,12 +131,14 @@ struct Sheet {
 
   /// Place of a pattern point at t = 0, imperfection included.
   [[nodiscard]] Eigen::Vector3d rest_place(const Eigen::Vector2d& p, std::uint64_t seed) const;
-  [[nodiscard]] int frame_count() const;  ///< recorded frames, the start included
+  [[nodiscard]] int frame_count() const;             ///< recorded frames, the start included
+  [[nodiscard]] double frame_time(int frame) const;  ///< of a frame, counted from 0 (s)
 };
 
-/// Throws Error naming what is wrong: a material out of range, a handle outside the pattern, two
-/// handles that move one point differently at one time, key times that do not increase, an obstacle
-/// that contains the sheet's start, a value that is not finite.
+/// Throws Error naming what is wrong and where ("scene.handles.1.keys.2.t" for `where` = "scene"):
+/// a pattern that is not simple, a material out of range, a handle outside the pattern, two handles
+/// that move one point differently at one time, key times that do not increase, an obstacle that
+/// contains the sheet's start, a value that is not finite.
 void require_valid(const Sheet& sheet, const std::string& where);
 
 }  // namespace geoprior

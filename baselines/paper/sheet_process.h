@@ -30,8 +30,11 @@ class SheetMesher {
 /// Each frame has the part "surface" (triangles; point arrays "pattern" [m] (2), "velocity" [m/s]
 /// (3); cell arrays "plastic_curvature" [1/m] (3), "damage" [1]), the part "handles" (points held;
 /// arrays "handle" [1], "force" [N] (3)), and the diagnostics triangles, vertices, substeps,
-/// newton_iterations, halvings, factor_nonzeros, handle_work (J, since the start). Phases:
-/// "elastic" and what the mesher marks.
+/// newton_iterations, halvings, factor_nonzeros, handle_work (J, since the start). Each point of
+/// "handles" has an equal share of its handle's mean force over the frame. Scenes with obstacles
+/// have the part "obstacles" (triangles, to look at). Phases: "elastic", "connectivity" (the
+/// stepper's new analysis after a remeshing) and what the mesher marks. Frame times are multiples
+/// of the interval, never sums.
 class SheetProcess final : public Process {
  public:
   SheetProcess(const Sheet& sheet, const StepperOptions& options,

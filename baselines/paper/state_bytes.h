@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+#include "core/error.h"
+#include "core/method.h"
+
+namespace geoprior {
+
+/// Appends numbers and matrices to the bytes of a checkpoint. Bytes of this machine: a checkpoint
+/// is read by the program that wrote it.
+class StateWriter {
+ public:
+  template <class T>
+  void number(T x) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const auto* bytes = reinterpret_cast<const std::byte*>(&x);
+    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(T));
+  }
+  template <class Derived>
+  void matrix(const Eigen::PlainObjectBase<Derived>& m) {
+    number(m.rows());
+    number(m.cols());
+    const auto* bytes = reinterpret_cast<const std::byte*>(m.data());
+    bytes_.insert(bytes_.end(), bytes,
+                  bytes + static_cast<std::size_t>(m.size()) * sizeof(typename Derived::Scalar));
+  }
+  void bytes(const State& state) {
+    number(state.size());
+    bytes_.insert(bytes_.end(), state.begin(), state.end());
+  }
+  [[nodiscard]] State take() { return std::move(bytes_); }
+
+ private:
+  State bytes_;
+};
+
+/// Reads them back in the same order. @throws Error  when the bytes end early
+class StateReader {
+ public:
+  explicit StateReader(const State& state) : state_(state) {}
+  template <class T>
+  [[nodiscard]] T number() {
+    T x;
+    copy(&x, sizeof(T));
+    return x;
+  }
+  template <class Derived>
+  void matrix(Eigen::PlainObjectBase<Derived>& m) {
+    const auto rows = number<Eigen::Index>();
+    const auto cols = number<Eigen::Index>();
+    m.resize(rows, cols);
+    copy(m.data(), static_cast<std::size_t>(m.size()) * sizeof(typename Derived::Scalar));
+  }
+  [[nodiscard]] State bytes() {
+    State result(number<std::size_t>());
+    copy(result.data(), result.size());
+    return result;
+  }
+
+ private:
+  void copy(void* to, std::size_t size) {
+    if (size > state_.size() - at_) throw Error("ends early", "checkpoint", "an unharmed one");
+    if (size > 0) std::memcpy(to, state_.data() + at_, size);
+    at_ += size;
+  }
+
+  const State& state_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace geoprior
