@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <vector>
 
 namespace geoprior {
@@ -15,19 +14,31 @@ namespace geoprior {
 /// the plain hinge energy is not. Triangles whose own edges do not determine S (borders, six points
 /// on a conic) also use their neighbours' edges, least squares; what no edge observes (bending
 /// along an unbroken ruling) is zero (least norm).
+///
+/// What it cannot do: where fewer than three independent jumps are within reach (a strip of two
+/// triangles, a sheet that rulings cut from border to border) a part of S stays unseen.
 struct CurvatureFit {
+  static constexpr int kMostTerms = 12;
+  static constexpr int kMostVertices = 12;
+
   struct Hinge {
     int a, b;         ///< the edge, as in the triangle `left`
     int left, right;  ///< triangles
     int c, d;         ///< vertices opposite to the edge in left and right
+    /// Jump of the slope across the edge, left less right, per unit of S_uu, S_uv, S_vv (m).
+    Eigen::Vector3d jump;
   };
   struct Term {
     int hinge;
     Eigen::Vector3d coefficient;  ///< of S_uu, S_uv, S_vv (1/m per rad)
   };
-  std::vector<Hinge> hinges;             ///< interior edges
-  std::vector<std::vector<Term>> terms;  ///< of each triangle
-  std::vector<double> area;              ///< of each triangle in the pattern (m^2)
+  std::vector<Hinge> hinges;  ///< interior edges
+  /// Of each triangle, at most `kMostTerms`; its own edges come first. Together they touch at most
+  /// `kMostVertices` vertices.
+  std::vector<std::vector<Term>> terms;
+  std::vector<int> own;      ///< terms of each triangle that are its own edges, 0 ... 3
+  std::vector<int> rank;     ///< components of S that the terms observe, 0 ... 3
+  std::vector<double> area;  ///< of each triangle in the pattern (m^2)
 };
 
 /// @param pattern    n x 2 (m)

@@ -11,15 +11,27 @@
 namespace geoprior {
 
 /// Elastic energy of a thin shell, one element a triangle: St. Venant-Kirchhoff membrane and plate
-/// bending of the shape operator that the dihedral angles about the triangle give
+/// bending of the shape operator S that the dihedral angles about the triangle give
 /// (core/curvature_fit.h), or hinges.
 ///
-///   membrane  E = A h/2 * 4 mu... see elements.cpp; bending  E = A D/2 [(1-nu) |S-S_p|^2 + nu
-///   tr(S-S_p)^2]
+///   G = (F'F - I) / 2, F the map from the pattern (3 x 2), A the pattern's area
+///   membrane  E = A Y/2 [(1-nu) |G|^2 + nu tr(G)^2],            Y = E h / (1 - nu^2)
+///   bending   E = A D/2 [(1-nu) |S-S_p|^2 + nu tr(S-S_p)^2] / (1 + weakening damage)
+///   hinge     E = sum over edges, k D/4 l^2/(A1+A2) (theta - theta_p)^2 / 2, k =
+///   hinge_calibration,
+///             theta_p the angle that S_p would give; half of it in each triangle
+///
+/// Triangles whose fit uses more edges than unknowns also resist the residual of the fit
+/// (`kFitResidual`), which is zero for constant curvature; so every interior edge is resisted.
+///
+/// Hessians are positive semidefinite: the membrane's keeps the tensile part of the stress, that of
+/// bending is Gauss-Newton in the angles. Both are exact at rest and differ from the true ones by
+/// stress times second derivatives.
 class ShellElements {
  public:
   static constexpr int kMostNodes = 12;
 
+  /// @throws Error  from `fit_curvature`
   ShellElements(const ShellMesh& mesh, const PaperMaterial& material, BendingModel bending,
                 double hinge_calibration);
 
@@ -27,7 +39,8 @@ class ShellElements {
   /// Vertices that an element depends on; the first three are those of its triangle.
   [[nodiscard]] std::span<const int> nodes(int element) const;
 
-  /// Energy and derivatives of one element; rows 3k … 3k+2 belong to nodes(element)[k].
+  /// Energy and derivatives of one element; rows 3k … 3k+2 belong to nodes(element)[k]. Rows and
+  /// columns beyond its nodes are not written.
   struct Local {
     double membrane = 0;  ///< J
     double bending = 0;   ///< J

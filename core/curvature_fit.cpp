@@ -1,0 +1,300 @@
+#include "core/curvature_fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <tuple>
+
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+using Hinge = CurvatureFit::Hinge;
+using Rows3 = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, CurvatureFit::kMostTerms, 3>;
+using Columns3 = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, CurvatureFit::kMostTerms>;
+
+/// Smallest ratio of singular values at which a direction of S counts as observed, for rows of unit
+/// length in the affine frame of the triangle. Below it the inverse would multiply the variation of
+/// curvature across the patch, which the fit cannot represent, by more than ten.
+constexpr double kObserved = 0.1;
+/// Weight of an edge `distance` triangles away, as a factor on its row: the fit belongs to the
+/// triangle.
+double distance_weight(int distance) { return 1.0 / (1 + distance); }
+
+// Symmetric matrices as (uu, sqrt2 uv, vv): Frobenius products are dot products.
+const double kRoot2 = std::numbers::sqrt2;
+
+Eigen::Vector3d mandel(const Eigen::Matrix2d& S) {
+  return {S(0, 0), kRoot2 / 2 * (S(0, 1) + S(1, 0)), S(1, 1)};
+}
+
+Eigen::Matrix2d from_mandel(const Eigen::Vector3d& m) {
+  Eigen::Matrix2d S;
+  S << m[0], m[1] / kRoot2, m[1] / kRoot2, m[2];
+  return S;
+}
+
+/// Matrix of S -> K' S K.
+Eigen::Matrix3d congruence(const Eigen::Matrix2d& K) {
+  Eigen::Matrix3d T;
+  for (int i = 0; i < 3; ++i)
+    T.col(i) = mandel(K.transpose() * from_mandel(Eigen::Vector3d::Unit(i)) * K);
+  return T;
+}
+
+/// Jump of slope per unit of S_uu, S_uv, S_vv. With s along the edge of length L and t to its left,
+/// c = (cs, ct) and d = (ds, -dt):
+///   1/2 k_ss [(cs^2 - cs L)/ct + (ds^2 - ds L)/dt] + k_st (cs - ds) + 1/2 k_tt (ct + dt).
+Eigen::Vector3d slope_jump(const Eigen::MatrixX2d& pattern, const Hinge& h) {
+  const Eigen::Vector2d origin = pattern.row(h.a);
+  const Eigen::Vector2d edge = pattern.row(h.b).transpose() - origin;
+  const double L = edge.norm();
+  const Eigen::Vector2d s = edge / L, t(-s.y(), s.x());
+  const Eigen::Vector2d c = pattern.row(h.c).transpose() - origin;
+  const Eigen::Vector2d d = pattern.row(h.d).transpose() - origin;
+  const double cs = c.dot(s), ct = c.dot(t), ds = d.dot(s), dt = -d.dot(t);
+  const double ss = 0.5 * (cs * (cs - L) / ct + ds * (ds - L) / dt);
+  const double st = cs - ds, tt = 0.5 * (ct + dt);
+  return {ss * s.x() * s.x() + st * s.x() * t.x() + tt * t.x() * t.x(),
+          2 * ss * s.x() * s.y() + st * (s.x() * t.y() + s.y() * t.x()) + 2 * tt * t.x() * t.y(),
+          ss * s.y() * s.y() + st * s.y() * t.y() + tt * t.y() * t.y()};
+}
+
+std::vector<double> pattern_areas(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX3i& F) {
+  std::vector<double> area(static_cast<std::size_t>(F.rows()));
+  for (Eigen::Index t = 0; t < F.rows(); ++t) {
+    const Eigen::RowVector2d p = pattern.row(F(t, 0));
+    const Eigen::RowVector2d e = pattern.row(F(t, 1)) - p, f = pattern.row(F(t, 2)) - p;
+    const double twice = e.x() * f.y() - e.y() * f.x();
+    const double longest =
+        std::max({e.squaredNorm(), f.squaredNorm(), (f - e).eval().squaredNorm()});
+    if (!(twice > 1e-12 * longest))
+      throw Error(twice < 0 ? "triangle turned over in the pattern"
+                            : "triangle without area in the pattern",
+                  "triangle " + std::to_string(t), "counter-clockwise triangles");
+    area[static_cast<std::size_t>(t)] = twice / 2;
+  }
+  return area;
+}
+
+/// Interior edges in the order of the triangles that have them first; `of_triangle` gets the
+/// hinge at each triangle's three edges (-1: border).
+std::vector<Hinge> find_hinges(const Eigen::MatrixX3i& F,
+                               std::vector<std::array<int, 3>>& of_triangle) {
+  struct Side {
+    int low, high, triangle, corner;
+  };
+  std::vector<Side> sides;
+  sides.reserve(static_cast<std::size_t>(3 * F.rows()));
+  for (int t = 0; t < static_cast<int>(F.rows()); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(F(t, k), F(t, (k + 1) % 3));
+      sides.push_back({low, high, t, k});
+    }
+  std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
+    return std::tie(p.low, p.high, p.triangle) < std::tie(q.low, q.high, q.triangle);
+  });
+  std::vector<std::array<int, 3>> other(static_cast<std::size_t>(F.rows()), {-1, -1, -1});
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i + 1;
+    while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high)
+      ++end;
+    const Side &p = sides[i], &q = sides[end - 1];
+    if (end - i > 2 || (end - i == 2 && F(p.triangle, p.corner) == F(q.triangle, q.corner)))
+      throw Error("edge that is not manifold",
+                  "edge " + std::to_string(p.low) + "-" + std::to_string(p.high),
+                  "one or two triangles of opposite direction at an edge");
+    if (end - i == 2) {
+      other[static_cast<std::size_t>(p.triangle)][static_cast<std::size_t>(p.corner)] =
+          3 * q.triangle + q.corner;
+      other[static_cast<std::size_t>(q.triangle)][static_cast<std::size_t>(q.corner)] =
+          3 * p.triangle + p.corner;
+    }
+    i = end;
+  }
+  std::vector<Hinge> hinges;
+  of_triangle.assign(static_cast<std::size_t>(F.rows()), {-1, -1, -1});
+  for (int t = 0; t < static_cast<int>(F.rows()); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int opposite = other[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)];
+      if (opposite < 0 || opposite / 3 < t) continue;
+      const int right = opposite / 3, corner = opposite % 3;
+      const int index = static_cast<int>(hinges.size());
+      of_triangle[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)] = index;
+      of_triangle[static_cast<std::size_t>(right)][static_cast<std::size_t>(corner)] = index;
+      hinges.push_back({F(t, k), F(t, (k + 1) % 3), t, right, F(t, (k + 2) % 3),
+                        F(right, (corner + 2) % 3), Eigen::Vector3d::Zero()});
+    }
+  return hinges;
+}
+
+/// The edges within reach of a triangle, ring by ring.
+class Patch {
+ public:
+  Patch(const std::vector<Hinge>& hinges, const std::vector<std::array<int, 3>>& of_triangle,
+        int triangle)
+      : hinges_(&hinges), of_triangle_(&of_triangle), triangles_{triangle} {}
+
+  /// Adds the edges of the outermost triangles; those across them become the outermost.
+  void grow() {
+    const std::size_t last = triangles_.size();
+    for (; next_ < last; ++next_)
+      for (const int h : (*of_triangle_)[static_cast<std::size_t>(triangles_[next_])]) add(h);
+    ++rings_;
+  }
+  [[nodiscard]] const std::vector<int>& edges() const { return edges_; }
+  [[nodiscard]] const std::vector<int>& distance() const { return distance_; }
+
+ private:
+  void add(int index) {
+    if (index < 0 || std::find(edges_.begin(), edges_.end(), index) != edges_.end()) return;
+    const Hinge& h = (*hinges_)[static_cast<std::size_t>(index)];
+    std::vector<int> vertices = vertices_;
+    for (const int v : {h.a, h.b, h.c, h.d})
+      if (std::find(vertices.begin(), vertices.end(), v) == vertices.end()) vertices.push_back(v);
+    if (vertices.size() > CurvatureFit::kMostVertices || edges_.size() == CurvatureFit::kMostTerms)
+      return;
+    vertices_ = vertices;
+    edges_.push_back(index);
+    distance_.push_back(rings_);
+    for (const int t : {h.left, h.right})
+      if (std::find(triangles_.begin(), triangles_.end(), t) == triangles_.end())
+        triangles_.push_back(t);
+  }
+
+  const std::vector<Hinge>* hinges_;
+  const std::vector<std::array<int, 3>>* of_triangle_;
+  std::vector<int> triangles_, edges_, distance_, vertices_;
+  std::size_t next_ = 0;
+  int rings_ = 0;
+};
+
+/// Directions of S that the edges of a patch observe.
+struct Observation {
+  Rows3 rows;             ///< jumps in the triangle's affine frame
+  Eigen::Matrix3d basis;  ///< orthonormal there; the last `rank` columns are observed
+  int rank = 0;
+};
+
+/// In the affine frame of the triangle and with rows of unit length the rank does not depend on the
+/// triangle's shape: six points on a conic stay so under affine maps.
+Observation observe(const std::vector<Hinge>& hinges, const Patch& patch,
+                    const Eigen::Matrix3d& from_affine) {
+  Observation seen;
+  const auto n = static_cast<Eigen::Index>(patch.edges().size());
+  seen.rows.resize(n, 3);
+  Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    Eigen::Vector3d row =
+        hinges[static_cast<std::size_t>(patch.edges()[static_cast<std::size_t>(i)])].jump;
+    row[1] /= kRoot2;
+    seen.rows.row(i) = row.transpose() * from_affine;
+    gram += seen.rows.row(i).normalized().transpose() * seen.rows.row(i).normalized();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(gram);
+  seen.basis = eigen.eigenvectors();
+  for (int i = 0; i < 3 && n > 0; ++i)
+    seen.rank += eigen.eigenvalues()[i] > kObserved * kObserved * eigen.eigenvalues()[2];
+  return seen;
+}
+
+/// Coefficients (3 x edges, Mandel) of the least-squares fit, zero in the directions not observed.
+Columns3 solve_fit(const std::vector<Hinge>& hinges, const Patch& patch, const Observation& seen,
+                   const Eigen::Matrix3d& from_affine) {
+  const Eigen::Index n = seen.rows.rows();
+  if (seen.rank == 0) return Columns3::Zero(3, n);
+  Eigen::VectorXd weight(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    Eigen::Vector3d jump = hinges[static_cast<std::size_t>(patch.edges()[k])].jump;
+    jump[1] /= kRoot2;
+    weight[i] = distance_weight(patch.distance()[k]) / jump.norm();
+  }
+  const Eigen::MatrixXd kept = seen.basis.rightCols(seen.rank);
+  const Eigen::MatrixXd weighted = weight.asDiagonal() * (seen.rows * kept);
+  const Eigen::MatrixXd z =
+      Eigen::HouseholderQR<Eigen::MatrixXd>(weighted).solve(Eigen::MatrixXd(weight.asDiagonal()));
+  Columns3 coefficients = from_affine * kept * z;
+  if (seen.rank < 3) {
+    const Eigen::MatrixXd unseen = from_affine * seen.basis.leftCols(3 - seen.rank);
+    const Eigen::MatrixXd component =
+        Eigen::HouseholderQR<Eigen::MatrixXd>(unseen).solve(Eigen::MatrixXd(coefficients));
+    coefficients -= unseen * component;
+  }
+  return coefficients;
+}
+
+/// Matrix from S in the frame that makes the triangle equilateral to S in the pattern.
+Eigen::Matrix3d affine_frame(const Eigen::MatrixX2d& pattern, const Eigen::RowVector3i& face) {
+  Eigen::Matrix2d edges, equilateral;
+  edges.col(0) = pattern.row(face[1]) - pattern.row(face[0]);
+  edges.col(1) = pattern.row(face[2]) - pattern.row(face[0]);
+  equilateral << 1, 0.5, 0, std::numbers::sqrt3 / 2;
+  return congruence(equilateral * edges.inverse());
+}
+
+}  // namespace
+
+CurvatureFit fit_curvature(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX3i& triangles) {
+  CurvatureFit fit;
+  fit.area = pattern_areas(pattern, triangles);
+  std::vector<std::array<int, 3>> of_triangle;
+  fit.hinges = find_hinges(triangles, of_triangle);
+  for (Hinge& h : fit.hinges) h.jump = slope_jump(pattern, h);
+  const std::size_t m = fit.area.size();
+  fit.terms.resize(m);
+  fit.own.resize(m);
+  fit.rank.resize(m);
+  for (std::size_t t = 0; t < m; ++t) {
+    const Eigen::Matrix3d from_affine =
+        affine_frame(pattern, triangles.row(static_cast<Eigen::Index>(t)));
+    Patch patch(fit.hinges, of_triangle, static_cast<int>(t));
+    patch.grow();
+    fit.own[t] = static_cast<int>(patch.edges().size());
+    Observation seen = observe(fit.hinges, patch, from_affine);
+    // Farther edges only where they show more of S.
+    Patch wider = patch;
+    for (int ring = 0; ring < 2 && seen.rank < 3; ++ring) {
+      wider.grow();
+      Observation more = observe(fit.hinges, wider, from_affine);
+      if (more.rank <= seen.rank) continue;
+      seen = more;
+      patch = wider;
+    }
+    fit.rank[t] = seen.rank;
+    const Columns3 coefficients = solve_fit(fit.hinges, patch, seen, from_affine);
+    for (std::size_t i = 0; i < patch.edges().size(); ++i) {
+      Eigen::Vector3d c = coefficients.col(static_cast<Eigen::Index>(i));
+      c[1] /= kRoot2;
+      fit.terms[t].push_back({patch.edges()[i], c});
+    }
+  }
+  return fit;
+}
+
+double dihedral_angle(const Eigen::MatrixX3d& x, const CurvatureFit::Hinge& hinge) {
+  const Eigen::Vector3d a = x.row(hinge.a), b = x.row(hinge.b), c = x.row(hinge.c),
+                        d = x.row(hinge.d);
+  const Eigen::Vector3d e = b - a, ad = d - a;
+  const Eigen::Vector3d left = e.cross(c - a), right = ad.cross(e);
+  // right x left = (ad x e) x left = e (ad . left).
+  return std::atan2(ad.dot(left) * e.norm(), left.dot(right));
+}
+
+Eigen::MatrixX3d shape_operators(const CurvatureFit& fit, const Eigen::MatrixX3d& x) {
+  std::vector<double> angle;
+  angle.reserve(fit.hinges.size());
+  for (const Hinge& h : fit.hinges) angle.push_back(dihedral_angle(x, h));
+  Eigen::MatrixX3d S = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(fit.terms.size()), 3);
+  for (std::size_t t = 0; t < fit.terms.size(); ++t)
+    for (const CurvatureFit::Term& term : fit.terms[t])
+      S.row(static_cast<Eigen::Index>(t)) +=
+          term.coefficient.transpose() * angle[static_cast<std::size_t>(term.hinge)];
+  return S;
+}
+
+}  // namespace geoprior
