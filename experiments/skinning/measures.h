@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/frame.h"
-#include "experiments/skinning/memo.h"
+#include "experiments/memo.h"
 #include "experiments/skinning/scene.h"
 #include "metrics/cross_section.h"
 #include "metrics/distance.h"

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -34,9 +35,9 @@ struct ContentKey {
   }
 };
 
-/// Remembers the last values of one expensive quantity, several metrics of a frame share it. Two
-/// threads that miss at once compute the same value twice, which is harmless.
-template <class T>
+/// Remembers the last `Remembered` values of one expensive quantity, several metrics of a frame
+/// share it. Two threads that miss at once compute the same value twice, which is harmless.
+template <class T, std::size_t Remembered = 1024>
 class Memo {
  public:
   T get(const ContentKey& key, const std::function<T()>& compute) {
@@ -49,12 +50,11 @@ class Memo {
     T value = compute();
     const std::lock_guard lock(mutex_);
     entries_.emplace_front(key, value);
-    if (entries_.size() > kRemembered) entries_.pop_back();
+    if (entries_.size() > Remembered) entries_.pop_back();
     return value;
   }
 
  private:
-  static constexpr std::size_t kRemembered = 1024;  // values, a few numbers each
   std::mutex mutex_;
   std::deque<std::pair<ContentKey, T>> entries_;
 };
