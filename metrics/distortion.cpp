@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/error.h"
+#include "metrics/weighted_quantile.h"
 
 namespace geoprior {
 namespace {
@@ -29,22 +29,6 @@ Eigen::Vector2d singular_values_of(const Eigen::Vector3d& rest_u, const Eigen::V
   const double difference = std::sqrt(std::max(norm2 - 2 * determinant, 0.0));
   const double large = (sum + difference) / 2;
   return {large, large > 0 ? determinant / large : 0.0};
-}
-
-/// Smallest value such that values up to it hold the given share of the weight.
-double weighted_quantile(const Eigen::VectorXd& values, const Eigen::VectorXd& weights,
-                         double share) {
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(values.size()));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Eigen::Index a, Eigen::Index b) { return values(a) < values(b); });
-  const double wanted = share * weights.sum();
-  double passed = 0;
-  for (const Eigen::Index i : order) {
-    passed += weights(i);
-    if (passed >= wanted) return values(i);
-  }
-  return values(order.back());
 }
 
 }  // namespace

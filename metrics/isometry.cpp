@@ -1,0 +1,72 @@
+#include "metrics/isometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "core/mesh.h"
+#include "metrics/distortion.h"
+#include "metrics/weighted_quantile.h"
+
+namespace geoprior {
+namespace {
+
+/// Every edge of the triangles once, ascending.
+std::vector<std::pair<int, int>> edges_of(const Eigen::MatrixX3i& triangles) {
+  std::vector<std::pair<int, int>> edges;
+  edges.reserve(3 * static_cast<std::size_t>(triangles.rows()));
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      edges.push_back(std::minmax(int{triangles(t, k)}, int{triangles(t, (k + 1) % 3)}));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+void measure_edges(const Eigen::MatrixX3d& flat, const Eigen::MatrixX3d& x,
+                   const Eigen::MatrixX3i& triangles, IsometrySummary& summary) {
+  const std::vector<std::pair<int, int>> edges = edges_of(triangles);
+  Eigen::VectorXd error(static_cast<Eigen::Index>(edges.size()));
+  Eigen::VectorXd length(error.size());
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto [a, b] = edges[i];
+    const double rest = (flat.row(a) - flat.row(b)).norm();
+    const double now = (x.row(a) - x.row(b)).norm();
+    length(static_cast<Eigen::Index>(i)) = rest;
+    error(static_cast<Eigen::Index>(i)) = rest > 0 ? std::abs(now / rest - 1) : 0.0;
+  }
+  summary.edge_error_p95 = weighted_quantile(error, length, 0.95);
+  summary.edge_error_max = error.maxCoeff();
+}
+
+}  // namespace
+
+IsometrySummary isometry(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX3d& x,
+                         const Eigen::MatrixX3i& triangles) {
+  if (pattern.rows() != x.rows()) {
+    throw Error(std::to_string(x.rows()) + " points", "isometry",
+                std::to_string(pattern.rows()) + ", as in the pattern");
+  }
+  Eigen::MatrixX3d flat = Eigen::MatrixX3d::Zero(pattern.rows(), 3);
+  flat.leftCols<2>() = pattern;
+  const Eigen::VectorXd area = triangle_areas(flat, triangles);
+  if (!(area.sum() > 0)) throw Error("no triangles with an area", "isometry", "at least one");
+  std::vector<int> all(static_cast<std::size_t>(triangles.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  const Eigen::ArrayX2d strain = (singular_values(flat, x, triangles, all).array() - 1).abs();
+  IsometrySummary summary;
+  summary.rms =
+      std::sqrt((strain.square().rowwise().sum() * area.array()).sum() / (2 * area.sum()));
+  summary.max = strain.maxCoeff();
+  summary.area_drift = triangle_areas(x, triangles).sum() / area.sum() - 1;
+  measure_edges(flat, x, triangles, summary);
+  return summary;
+}
+
+}  // namespace geoprior

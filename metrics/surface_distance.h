@@ -1,0 +1,21 @@
+#pragma once
+
+#include "core/mesh.h"
+
+namespace geoprior {
+
+/// Hausdorff distance of two triangle surfaces (m): the largest distance of a point of one from the
+/// other, both ways.
+///
+/// Taken at samples: the vertices, and points inside the triangles and on their edges so that
+/// neighbouring samples are at most `spacing` apart. The distance of a sample is exact; the
+/// supremum is missed by at most spacing / sqrt(3), and by far less where the surfaces are nearly
+/// parallel. Borders count: a smaller piece of the same surface is not at distance 0.
+///
+/// @param a,b      triangles without connectivity requirements; degenerate ones are left out
+/// @param spacing  of the samples (m), positive
+/// @throws Error   on a surface without triangles, a coordinate that is not finite, or a spacing
+///                 that is not positive
+double hausdorff_distance(const TriMesh& a, const TriMesh& b, double spacing);
+
+}  // namespace geoprior

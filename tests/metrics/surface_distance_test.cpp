@@ -1,0 +1,73 @@
+#include "metrics/surface_distance.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/error.h"
+#include "tests/metrics/shapes.h"
+#include "tests/metrics/sheets.h"
+
+namespace geoprior {
+namespace {
+
+TEST(HausdorffDistance, OfShiftedPlanes) {
+  const TriMesh plane = sheets::rectangle(1, 1, 5, 5).mesh();
+  TriMesh other = sheets::rectangle(1, 1, 3, 4, 0.2).mesh();
+  other.V.col(2).array() += 0.07;
+  EXPECT_NEAR(hausdorff_distance(plane, other, 0.05), 0.07, 1e-15);
+  // Slid along itself, the border is what is away.
+  other.V.col(2).setZero();
+  other.V.col(0).array() += 0.2;
+  EXPECT_NEAR(hausdorff_distance(plane, other, 0.05), 0.2, 1e-15);
+  EXPECT_EQ(hausdorff_distance(plane, plane, 0.05), 0);
+}
+
+TEST(HausdorffDistance, OfConcentricSpheres) {
+  // Inscribed polyhedra: farthest is a vertex of the outer from a face centre of the inner, which
+  // lies below the sphere by up to its sagitta.
+  const TriMesh inner = shapes::sphere(0.8, {0, 0, 0}, 4);
+  const TriMesh outer = shapes::sphere(1, {0, 0, 0}, 5);
+  const double distance = hausdorff_distance(inner, outer, 0.1);
+  EXPECT_GT(distance, 0.2 - 1e-12);
+  EXPECT_LT(distance, 0.2 + 0.004);  // sagitta of an edge of 0.12 at radius 0.8: 0.0023
+}
+
+TEST(HausdorffDistance, IsSymmetricThoughEachWayIsNot) {
+  // A corner of the plane against a small plane inside it: one way 0, the other the diagonal.
+  const TriMesh plane = sheets::rectangle(1, 1, 2, 2).mesh();
+  const TriMesh inside = sheets::rectangle(0.2, 0.2, 2, 2).mesh();
+  const double gap = 0.4 * std::sqrt(2.0);
+  EXPECT_NEAR(hausdorff_distance(plane, inside, 0.05), gap, 1e-15);
+  EXPECT_NEAR(hausdorff_distance(inside, plane, 0.05), gap, 1e-15);
+}
+
+TEST(HausdorffDistance, SeesTheMiddleOfALargeTriangle) {
+  // Two squares with the same corners; the second is a pyramid whose apex is above a triangle's
+  // interior. The apex is a vertex one way; without it samples inside the base see it.
+  TriMesh base;
+  base.V.resize(4, 3);
+  base.V << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;
+  base.F.resize(2, 3);
+  base.F << 0, 1, 2, 0, 2, 3;
+  TriMesh ring;  // the square without its inner part [0.3, 0.7]^2
+  ring.V.resize(8, 3);
+  ring.V << base.V, 0.3, 0.3, 0, 0.7, 0.3, 0, 0.7, 0.7, 0, 0.3, 0.7, 0;
+  ring.F.resize(8, 3);
+  ring.F << 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7;
+  // The centre of the square is 0.2 from the ring; sampled every 0.01.
+  EXPECT_NEAR(hausdorff_distance(base, ring, 0.01), 0.2, 0.01);
+  EXPECT_LE(hausdorff_distance(base, ring, 0.01), 0.2 + 1e-12);
+}
+
+TEST(HausdorffDistance, RefusesWhatItCannotMeasure) {
+  const TriMesh plane = sheets::rectangle(1, 1, 2, 2).mesh();
+  EXPECT_THROW(hausdorff_distance(plane, TriMesh{}, 0.1), Error);
+  EXPECT_THROW(hausdorff_distance(plane, plane, 0), Error);
+  TriMesh broken = plane;
+  broken.V(3, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(hausdorff_distance(broken, plane, 0.1), Error);
+}
+
+}  // namespace
+}  // namespace geoprior
