@@ -19,8 +19,13 @@ void describe(OptionVisitor& v, DenseOptions& options);
 /// Uniform triangulation of a pattern that has all `anchors` among its vertices.
 /// structured: a grid of squares, each with a diagonal, alternating; equilateral: a hexagonal
 /// lattice cut by the border; delaunay: jittered points, seeded. Border vertices lie on the border.
+/// @throws Error  on a pattern that is not simple, an anchor outside it, fewer than two triangles,
+///                structured layout of anything but an upright rectangle
 ShellMesh uniform_mesh(const Pattern& pattern, int triangles, DenseLayout layout,
                        const std::vector<Eigen::Vector2d>& anchors, std::uint64_t seed);
+
+/// The sheet at t = 0 on this mesh: at rest in its place, imperfection included, without creases.
+ShellState resting_state(const Sheet& sheet, ShellMesh mesh, std::uint64_t seed);
 
 std::unique_ptr<Process> make_dense_sheet(const Sheet& sheet, const DenseOptions& options);
 

@@ -8,7 +8,9 @@ namespace geoprior {
 
 /// Carries a state to another triangulation of the same pattern: positions and velocities linear on
 /// the triangles of `from`, plastic curvature and damage area-weighted over the overlap of old and
-/// new triangles.
+/// new triangles, so that their integrals over the sheet stay (to round-off).
+///
+/// A vertex that both triangulations have keeps its position and velocity bit for bit.
 /// @throws Error  when a vertex of `to` lies farther than 1e-6 of the pattern's width outside
 /// `from`
 ShellState transfer_state(const ShellState& from, const ShellMesh& to);
@@ -24,7 +26,16 @@ class PatternLocator {
   /// The triangle that contains `p`, or the nearest one (weights then clamped to it).
   [[nodiscard]] Place locate(const Eigen::Vector2d& p) const;
 
+  /// Triangles whose bounding boxes may meet the box from `low` to `high`, ascending, each once.
+  void candidates(const Eigen::Vector2d& low, const Eigen::Vector2d& high,
+                  std::vector<int>& triangles) const;
+
  private:
+  [[nodiscard]] Eigen::Vector3d barycentric(int triangle, const Eigen::Vector2d& p) const;
+  [[nodiscard]] Place nearest(const Eigen::Vector2d& p) const;
+  [[nodiscard]] int column(double u) const;
+  [[nodiscard]] int row(double v) const;
+
   Eigen::MatrixX2d pattern_;
   Eigen::MatrixX3i triangles_;
   Eigen::Vector2d origin_;

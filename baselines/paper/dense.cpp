@@ -1,0 +1,72 @@
+#include "baselines/paper/dense.h"
+
+#include <array>
+#include <string_view>
+
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+constexpr std::array<std::string_view, 3> kLayoutNames{"structured", "equilateral", "delaunay"};
+
+/// A mesh that never changes: nothing to adapt, annotate or remember.
+class UniformMesher final : public SheetMesher {
+ public:
+  explicit UniformMesher(const DenseOptions& options) : options_(options) {}
+
+  ShellState start(const Sheet& sheet, RunContext& context) override {
+    std::vector<Eigen::Vector2d> anchors;
+    for (const Handle& handle : sheet.handles) {
+      const std::vector<Eigen::Vector2d> own = handle.anchors();
+      anchors.insert(anchors.end(), own.begin(), own.end());
+    }
+    return resting_state(
+        sheet,
+        uniform_mesh(sheet.pattern, options_.triangles, options_.layout, anchors, context.seed()),
+        context.seed());
+  }
+  bool adapt(const Sheet& /*sheet*/, ShellStepper& /*stepper*/, ShellState& /*state*/,
+             RunContext& /*context*/) override {
+    return false;
+  }
+  void annotate(const ShellState& /*state*/, Frame& /*frame*/) const override {}
+  [[nodiscard]] State save() const override { return {}; }
+  void load(const State& state) override {
+    if (!state.empty()) throw Error("state of another method", "dense sheet");
+  }
+
+ private:
+  DenseOptions options_;
+};
+
+}  // namespace
+
+void describe(OptionVisitor& v, DenseOptions& options) {
+  v.value("triangles", options.triangles,
+          {.doc = "of the uniform mesh, aimed at", .min = 2, .max = 1e6});
+  describe_choice(v, "layout", options.layout, kLayoutNames,
+                  {.doc = "structured: squares with alternating diagonals (rectangles only)"});
+  describe_group(v, "stepper", options.stepper, {.doc = "time stepping"});
+}
+
+ShellState resting_state(const Sheet& sheet, ShellMesh mesh, std::uint64_t seed) {
+  ShellState state;
+  state.mesh = std::move(mesh);
+  const int n = state.mesh.vertex_count(), m = state.mesh.triangle_count();
+  state.x.resize(n, 3);
+  for (int i = 0; i < n; ++i) {
+    state.x.row(i) = sheet.rest_place(state.mesh.pattern.row(i), seed);
+  }
+  state.v = Eigen::MatrixX3d::Zero(n, 3);
+  state.plastic_curvature = Eigen::MatrixX3d::Zero(m, 3);
+  state.damage = Eigen::VectorXd::Zero(m);
+  return state;
+}
+
+std::unique_ptr<Process> make_dense_sheet(const Sheet& sheet, const DenseOptions& options) {
+  return std::make_unique<SheetProcess>(sheet, options.stepper,
+                                        std::make_unique<UniformMesher>(options));
+}
+
+}  // namespace geoprior

@@ -1,0 +1,102 @@
+#include "baselines/paper/transfer.h"
+
+#include <algorithm>
+#include <string>
+
+#include "baselines/paper/overlap.h"
+#include "baselines/paper/planar.h"
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+using Eigen::Vector2d;
+
+/// Farthest that a vertex may lie outside the old mesh, over the pattern's width.
+constexpr double kOutside = 1e-6;
+/// A weight this near to 1 means the old vertex itself.
+constexpr double kSame = 1e-12;
+
+PlaneTriangle corners(const ShellMesh& mesh, int f) {
+  return {Vector2d(mesh.pattern.row(mesh.triangles(f, 0))),
+          Vector2d(mesh.pattern.row(mesh.triangles(f, 1))),
+          Vector2d(mesh.pattern.row(mesh.triangles(f, 2)))};
+}
+
+double area(const PlaneTriangle& t) { return cross(t[1] - t[0], t[2] - t[0]) / 2; }
+
+double width(const ShellMesh& mesh) {
+  return (mesh.pattern.colwise().maxCoeff() - mesh.pattern.colwise().minCoeff()).maxCoeff();
+}
+
+void carry_vertices(const ShellState& from, const PatternLocator& locator, ShellState& to) {
+  const int n = to.mesh.vertex_count();
+  const double allowed = kOutside * width(from.mesh);
+  to.x.resize(n, 3);
+  to.v.resize(n, 3);
+  for (int i = 0; i < n; ++i) {
+    const Vector2d p = to.mesh.pattern.row(i);
+    const PatternLocator::Place place = locator.locate(p);
+    const Eigen::RowVector3i t = from.mesh.triangles.row(place.triangle);
+    Eigen::Index nearest = 0;
+    if (place.weights.maxCoeff(&nearest) > 1 - kSame) {
+      to.x.row(i) = from.x.row(t[nearest]);
+      to.v.row(i) = from.v.row(t[nearest]);
+    } else {
+      to.x.row(i).setZero();
+      to.v.row(i).setZero();
+      for (int k = 0; k < 3; ++k) {
+        to.x.row(i) += place.weights[k] * from.x.row(t[k]);
+        to.v.row(i) += place.weights[k] * from.v.row(t[k]);
+      }
+    }
+    Eigen::RowVector2d reached = Eigen::RowVector2d::Zero();
+    for (int k = 0; k < 3; ++k) reached += place.weights[k] * from.mesh.pattern.row(t[k]);
+    if (!((reached.transpose() - p).norm() <= allowed)) {
+      throw Error("vertex lies outside the mesh that the state comes from",
+                  "vertex " + std::to_string(i));
+    }
+  }
+}
+
+/// Only old triangles that remember something are visited: most of a sheet has no crease.
+void carry_creases(const ShellState& from, ShellState& to) {
+  const int m = to.mesh.triangle_count();
+  to.plastic_curvature = Eigen::MatrixX3d::Zero(m, 3);
+  to.damage = Eigen::VectorXd::Zero(m);
+  std::vector<int> creased;
+  for (int f = 0; f < from.mesh.triangle_count(); ++f) {
+    if (from.damage[f] != 0 || !from.plastic_curvature.row(f).isZero(0)) creased.push_back(f);
+  }
+  if (creased.empty()) return;
+  const PatternLocator locator(to.mesh);
+  std::vector<int> near;
+  for (const int f : creased) {
+    const PlaneTriangle old = corners(from.mesh, f);
+    locator.candidates(old[0].cwiseMin(old[1]).cwiseMin(old[2]),
+                       old[0].cwiseMax(old[1]).cwiseMax(old[2]), near);
+    for (const int g : near) {
+      const double shared = overlap_area(corners(to.mesh, g), old);
+      to.plastic_curvature.row(g) += shared * from.plastic_curvature.row(f);
+      to.damage[g] += shared * from.damage[f];
+    }
+  }
+  for (int g = 0; g < m; ++g) {
+    const double whole = area(corners(to.mesh, g));
+    to.plastic_curvature.row(g) /= whole;
+    to.damage[g] /= whole;
+  }
+}
+
+}  // namespace
+
+ShellState transfer_state(const ShellState& from, const ShellMesh& to) {
+  ShellState state;
+  state.mesh = to;
+  state.time = from.time;
+  carry_vertices(from, PatternLocator(from.mesh), state);
+  carry_creases(from, state);
+  return state;
+}
+
+}  // namespace geoprior
