@@ -1,0 +1,161 @@
+#include "experiments/paper/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <system_error>
+
+#include "core/error.h"
+#include "experiments/view/view.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+
+Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
+Eigen::Quaterniond turn(const std::array<double, 3>& turn_deg) {
+  const Eigen::Vector3d r = vector(turn_deg) * (std::numbers::pi / 180);
+  const double angle = r.norm();
+  if (angle == 0) return Eigen::Quaterniond::Identity();
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, r / angle));
+}
+
+Trajectory trajectory(const std::vector<KeyOptions>& keys) {
+  Trajectory result;
+  for (const KeyOptions& key : keys) {
+    result.keys.push_back({key.t, vector(key.move), turn(key.turn_deg)});
+  }
+  return result;
+}
+
+void require_count(const std::vector<double>& numbers, std::size_t count,
+                   const std::string& where) {
+  if (numbers.size() == count) return;
+  throw Error("has " + std::to_string(numbers.size()) + " numbers", where, std::to_string(count));
+}
+
+Handle make_handle(const HandleOptions& options, const std::string& where) {
+  Handle handle;
+  handle.name = options.name;
+  for (const PatternPointOptions& p : options.points) handle.points.emplace_back(p.u, p.v);
+  if (!options.segment.empty()) {
+    const std::vector<double>& s = options.segment;
+    require_count(s, 4, where + ".segment");
+    handle.segment = {Eigen::Vector2d(s[0], s[1]), Eigen::Vector2d(s[2], s[3])};
+  }
+  if (options.disc) {
+    if (!options.points.empty()) {
+      throw Error("has more than one shape", where, "points, segment or disc");
+    }
+    handle.points = {Eigen::Vector2d(options.disc->u, options.disc->v)};
+    handle.disc_radius = options.disc->radius;
+  }
+  if (!options.keys.empty()) handle.motion = trajectory(options.keys);
+  if (!options.force.empty()) {
+    require_count(options.force, 3, where + ".force");
+    handle.force = Eigen::Vector3d(options.force[0], options.force[1], options.force[2]);
+  }
+  for (const IntervalOptions& interval : options.active) {
+    handle.active.emplace_back(interval.from, interval.to);
+  }
+  return handle;
+}
+
+Obstacle make_obstacle(const ObstacleOptions& options, const std::string& where) {
+  Obstacle obstacle;
+  obstacle.kind = options.kind;
+  obstacle.name = options.name;
+  obstacle.centre = vector(options.centre);
+  const Eigen::Vector3d axis = vector(options.axis);
+  if (!(axis.norm() > 0))
+    throw Error("has no direction", where + ".axis", "a vector of any length");
+  obstacle.axis = axis.normalized();
+  obstacle.radius = options.radius;
+  obstacle.tube_radius = options.tube_radius;
+  obstacle.half_length = options.half_length;
+  if (!options.keys.empty()) obstacle.motion = trajectory(options.keys);
+  for (const RadiusKeyOptions& key : options.radii) {
+    obstacle.radii.emplace_back(key.t, key.radius);
+  }
+  return obstacle;
+}
+
+/// A file named in an experiment: absolute, or relative to its folder or to experiments/paper.
+fs::path find_pattern_file(const std::string& name, const fs::path& folder) {
+  std::string tried;
+  for (const fs::path& base : {folder, geoprior_home() / "experiments" / "paper"}) {
+    const fs::path candidate = (base / name).lexically_normal();
+    std::error_code ignored;
+    if (fs::is_regular_file(candidate, ignored)) return candidate;
+    tried += (tried.empty() ? "" : ", ") + candidate.string();
+  }
+  throw Error("no file '" + name + "'", "scene.pattern.file", "looked for " + tried);
+}
+
+Pattern make_pattern(const PatternOptions& options, const fs::path& folder,
+                     std::vector<fs::path>& files) {
+  switch (options.kind) {
+    case PatternKind::rectangle:
+      return rectangle_pattern(options.width, options.height);
+    case PatternKind::disc:
+      return disc_pattern(options.radius, options.corners);
+    case PatternKind::polygon: {
+      Pattern pattern;
+      for (const PatternPointOptions& p : options.points) pattern.border.emplace_back(p.u, p.v);
+      if (signed_area(pattern) < 0) std::reverse(pattern.border.begin(), pattern.border.end());
+      return pattern;
+    }
+    case PatternKind::svg:
+      files.push_back(find_pattern_file(options.file, folder));
+      return read_svg_pattern(files.back(), options.svg);
+  }
+  throw Error("unknown kind of pattern", "scene.pattern", "rectangle, disc, polygon, svg");
+}
+
+}  // namespace
+
+std::map<std::string, double> PaperScene::facts() const {
+  return {{"pattern_area", signed_area(sheet.pattern)},
+          {"pattern_width", width(sheet.pattern)},
+          {"pattern_corners", static_cast<double>(sheet.pattern.border.size())},
+          {"handles", static_cast<double>(sheet.handles.size())},
+          {"obstacles", static_cast<double>(sheet.obstacles.size())},
+          {"frames", static_cast<double>(sheet.frame_count())},
+          {"membrane_stiffness", sheet.material.membrane_stiffness()},
+          {"bending_stiffness", sheet.material.bending_stiffness()}};
+}
+
+Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern) {
+  Sheet sheet;
+  sheet.pattern = pattern;
+  sheet.material = options.material;
+  for (std::size_t i = 0; i < options.handles.size(); ++i) {
+    sheet.handles.push_back(make_handle(options.handles[i], "scene.handles." + std::to_string(i)));
+  }
+  for (std::size_t i = 0; i < options.obstacles.size(); ++i) {
+    sheet.obstacles.push_back(
+        make_obstacle(options.obstacles[i], "scene.obstacles." + std::to_string(i)));
+  }
+  sheet.gravity = vector(options.gravity);
+  sheet.placement = Eigen::Isometry3d::Identity();
+  sheet.placement.translate(vector(options.placement.move))
+      .rotate(turn(options.placement.turn_deg));
+  sheet.imperfection = options.imperfection;
+  sheet.duration = options.duration;
+  sheet.frame_interval = options.frame_interval;
+  sheet.substeps = options.substeps;
+  return sheet;
+}
+
+std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
+                                             const fs::path& folder) {
+  auto scene = std::make_shared<PaperScene>();
+  const Pattern pattern = make_pattern(options.pattern, folder, scene->input_files);
+  scene->sheet = make_sheet(options, pattern);
+  require_valid(scene->sheet, "scene");
+  return scene;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "baselines/paper/sheet.h"
+#include "experiments/paper/scene_options.h"
+#include "experiments/topic.h"
+
+namespace geoprior {
+
+/// A sheet, what moves it and what is in its way: what every paper method is given and every paper
+/// metric is measured on.
+class PaperScene final : public Scene {
+ public:
+  Sheet sheet;
+  std::vector<std::filesystem::path> input_files;
+
+  [[nodiscard]] std::vector<double> parameters() const override { return {}; }
+  [[nodiscard]] std::string parameter_name() const override { return "time"; }
+  [[nodiscard]] std::string parameter_unit() const override { return "s"; }
+  [[nodiscard]] std::vector<std::filesystem::path> inputs() const override { return input_files; }
+  [[nodiscard]] std::map<std::string, double> facts() const override;
+};
+
+/// The sheet that the options describe. @throws Error  naming the key
+Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern);
+
+/// Reads the pattern and makes the sheet.
+/// @param folder  of the experiment file, against which relative files are tried first
+/// @throws Error  naming key or file, and place (see require_valid)
+std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
+                                             const std::filesystem::path& folder);
+
+}  // namespace geoprior

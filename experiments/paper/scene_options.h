@@ -1,0 +1,109 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "baselines/paper/sheet.h"
+#include "core/options.h"
+#include "experiments/paper/svg_pattern.h"
+
+namespace geoprior {
+
+/// A point of the pattern (m).
+struct PatternPointOptions {
+  double u = 0, v = 0;
+};
+void describe(OptionVisitor& v, PatternPointOptions& options);
+
+enum class PatternKind { rectangle, disc, polygon, svg };
+
+/// `pattern`: a tagged choice, `kind` selects which of the others are described.
+struct PatternOptions {
+  PatternKind kind = PatternKind::rectangle;
+  double width = 0.21;    ///< rectangle: along u (m)
+  double height = 0.297;  ///< along v (m)
+  double radius = 0.1;    ///< disc (m)
+  int corners = 96;
+  std::vector<PatternPointOptions> points;  ///< polygon
+  std::string file;                         ///< svg
+  SvgPatternOptions svg;
+};
+void describe(OptionVisitor& v, PatternOptions& options);
+
+/// Position and orientation at a time.
+struct KeyOptions {
+  double t = 0;
+  std::array<double, 3> move{0, 0, 0};      ///< from where it starts (m)
+  std::array<double, 3> turn_deg{0, 0, 0};  ///< axis times angle
+};
+void describe(OptionVisitor& v, KeyOptions& options);
+
+struct IntervalOptions {
+  double from = 0, to = 0;
+};
+void describe(OptionVisitor& v, IntervalOptions& options);
+
+struct DiscOptions {
+  double u = 0, v = 0;
+  double radius = 0.01;
+};
+void describe(OptionVisitor& v, DiscOptions& options);
+
+/// One of `handles`.
+struct HandleOptions {
+  std::string name;
+  std::vector<PatternPointOptions> points;
+  std::vector<double> segment;  ///< u v of both ends; empty: none
+  std::optional<DiscOptions> disc;
+  std::vector<KeyOptions> keys;
+  std::vector<double> force;  ///< x y z (N); empty: none
+  std::vector<IntervalOptions> active;
+};
+void describe(OptionVisitor& v, HandleOptions& options);
+
+struct RadiusKeyOptions {
+  double t = 0;
+  double radius = 0.1;
+};
+void describe(OptionVisitor& v, RadiusKeyOptions& options);
+
+/// One of `obstacles`.
+struct ObstacleOptions {
+  Obstacle::Kind kind = Obstacle::Kind::plane;
+  std::string name;
+  std::array<double, 3> centre{0, 0, 0};
+  std::array<double, 3> axis{0, 0, 1};
+  double radius = 0.1;
+  double tube_radius = 0.002;
+  double half_length = 0;
+  std::vector<KeyOptions> keys;
+  std::vector<RadiusKeyOptions> radii;
+};
+void describe(OptionVisitor& v, ObstacleOptions& options);
+
+/// Where the flat sheet lies at the start.
+struct PlacementOptions {
+  std::array<double, 3> move{0, 0, 0};
+  std::array<double, 3> turn_deg{0, 0, 0};
+};
+void describe(OptionVisitor& v, PlacementOptions& options);
+
+/// `[scene]` of a paper experiment.
+struct PaperSceneOptions {
+  PatternOptions pattern;
+  PaperMaterial material;
+  std::vector<HandleOptions> handles;
+  std::vector<ObstacleOptions> obstacles;
+  std::array<double, 3> gravity{0, 0, -9.81};
+  PlacementOptions placement;
+  double imperfection = 1e-4;
+  double duration = 1;
+  double frame_interval = 0.04;
+  int substeps = 8;
+};
+void describe(OptionVisitor& v, PaperMaterial& options);
+void describe(OptionVisitor& v, PaperSceneOptions& options);
+
+}  // namespace geoprior

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "baselines/paper/pattern.h"
+
+namespace geoprior {
+
+/// How a path of an SVG drawing becomes a pattern.
+struct SvgPatternOptions {
+  std::optional<std::string> path;  ///< id; absent: the only path of the file
+  double unit_m = 1e-3;             ///< metres for one user unit
+  double tolerance = 1e-4;          ///< largest distance of a curve from its chords (m)
+  bool centred = true;              ///< the middle of its box at the origin
+};
+
+/// Reads a pattern: v points up where the drawing's y points down, so that the sheet looks like the
+/// drawing; counter-clockwise.
+/// @throws Error  naming the file and path: no such path, several, a `transform` on the path or
+///                around it, malformed XML or path data
+Pattern read_svg_pattern(const std::filesystem::path& file, const SvgPatternOptions& options);
+
+}  // namespace geoprior
