@@ -1,0 +1,183 @@
+#include "experiments/paper/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "baselines/paper/pattern.h"
+#include "baselines/paper/transfer.h"
+#include "core/error.h"
+#include "experiments/paper/scene.h"
+#include "metrics/elastica.h"
+#include "metrics/self_contact.h"
+#include "metrics/shell_energy.h"
+#include "metrics/surface_distance.h"
+
+namespace geoprior {
+namespace {
+
+constexpr double kSamplesAcross = 64;      // of the Hausdorff distance, along the pattern's width
+constexpr double kLeastShortening = 1e-3;  // under it the imperfection decides the height
+constexpr int kStripSamples = 9;           // across the strip, where its height is taken
+
+const NamedArray* find_array(const Part& part, const std::string& name, NamedArray::On on) {
+  for (const NamedArray& array : part.arrays) {
+    if (array.name == name && array.on == on) return &array;
+  }
+  return nullptr;
+}
+
+std::string place(const Frame& frame) {
+  return "frame at " + std::to_string(frame.parameter) + " s";
+}
+
+ContentKey key_of(const SheetFrame& f) {
+  ContentKey key;
+  const PaperMaterial& m = f.sheet.material;
+  for (const double x : {m.thickness, m.young_modulus, m.poisson_ratio, m.area_density}) {
+    key.add(std::bit_cast<std::uint64_t>(x));
+  }
+  for (const Eigen::Vector2d& p : f.sheet.pattern.border) key.add_matrix(p);
+  key.add_matrix(f.x());
+  key.add_matrix(f.triangles());
+  for (const NamedArray& array : f.surface.arrays) key.add_matrix(array.values);
+  return key;
+}
+
+void measure_energies(const SheetFrame& f, SurfaceMeasures& out) {
+  const PaperMaterial& material = f.sheet.material;
+  const PlateStiffness plate{material.membrane_stiffness(), material.bending_stiffness(),
+                             material.poisson_ratio};
+  out.membrane_energy = membrane_energy(f.pattern, f.x(), f.triangles(), plate);
+  const NamedArray* plastic = find_array(f.surface, "plastic_curvature", NamedArray::On::cells);
+  const Eigen::MatrixX3d rest = plastic != nullptr
+                                    ? Eigen::MatrixX3d(plastic->values)
+                                    : Eigen::MatrixX3d::Zero(f.triangles().rows(), 3);
+  out.bending_energy = bending_energy(fit_curvature(f.pattern, f.triangles()), f.x(), rest, plate);
+  if (const NamedArray* v = find_array(f.surface, "velocity", NamedArray::On::points)) {
+    out.kinetic_energy = kinetic_energy(f.pattern, v->values, f.triangles(), material.area_density);
+  }
+}
+
+SurfaceMeasures compute(const SheetFrame& f) {
+  SurfaceMeasures out;
+  out.isometry = isometry(f.pattern, f.x(), f.triangles());
+  out.mesh = pattern_mesh(f.pattern, f.triangles());
+  out.uncovered_area = std::abs(out.mesh.area - signed_area(f.sheet.pattern));
+  measure_energies(f, out);
+  out.intersecting_pairs = intersecting_pairs(f.x(), f.triangles());
+  return out;
+}
+
+/// Two opposite sides of a rectangle, corner to corner: p(s, t) is at `s` along the sides, `t` from
+/// one to the other.
+struct Strip {
+  std::pair<Eigen::Vector2d, Eigen::Vector2d> first, second;
+  [[nodiscard]] Eigen::Vector2d at(double s, double t) const {
+    const Eigen::Vector2d a = (1 - s) * first.first + s * first.second;
+    const Eigen::Vector2d b = (1 - s) * second.first + s * second.second;
+    return (1 - t) * a + t * b;
+  }
+  [[nodiscard]] double length() const { return (at(0.5, 1) - at(0.5, 0)).norm(); }
+};
+
+std::optional<Strip> strip_of(const Sheet& sheet) {
+  const std::vector<Handle>& h = sheet.handles;
+  if (h.size() != 2 || !h[0].segment || !h[1].segment || !h[0].motion || !h[1].motion ||
+      !sheet.obstacles.empty() || !sheet.gravity.isZero()) {
+    return std::nullopt;
+  }
+  Strip strip{*h[0].segment, *h[1].segment};
+  const Eigen::Vector2d side = strip.first.second - strip.first.first;
+  if (side.dot(strip.second.second - strip.second.first) < 0) {
+    std::swap(strip.second.first, strip.second.second);
+  }
+  // Equal parallel sides, their distance along the normal, and nothing beyond them.
+  const double tolerance = 1e-6 * side.norm();
+  const Eigen::Vector2d across = strip.second.first - strip.first.first;
+  const bool rectangle = (strip.second.second - strip.second.first - side).norm() < tolerance &&
+                         std::abs(across.dot(side.normalized())) < tolerance;
+  const double area = side.norm() * across.norm();
+  if (!rectangle || std::abs(signed_area(sheet.pattern) - area) > 1e-6 * area) return std::nullopt;
+  return strip;
+}
+
+}  // namespace
+
+SheetFrame sheet_frame(const Scene& scene, const Frame& frame) {
+  const auto part = frame.parts.find("surface");
+  if (part == frame.parts.end()) throw Error("no part 'surface'", place(frame), "a sheet");
+  const Part& surface = part->second;
+  const NamedArray* pattern = find_array(surface, "pattern", NamedArray::On::points);
+  if (pattern == nullptr || pattern->values.rows() != surface.points.rows() ||
+      pattern->values.cols() < 2) {
+    throw Error("part 'surface' has no pattern coordinates", place(frame),
+                "a point array 'pattern' with two components");
+  }
+  if (!surface.points.allFinite() || !pattern->values.allFinite()) {
+    throw Error("a coordinate of part 'surface' is not finite", place(frame), "finite numbers");
+  }
+  return {dynamic_cast<const PaperScene&>(scene).sheet, frame, surface,
+          pattern->values.leftCols<2>()};
+}
+
+SurfaceMeasures surface_measures(SheetMemo& memo, const SheetFrame& f) {
+  return memo.surface.get(key_of(f), [&] { return compute(f); });
+}
+
+std::optional<HandleForce> handle_force(const SheetFrame& f) {
+  const auto part = f.frame.parts.find("handles");
+  if (part == f.frame.parts.end()) return std::nullopt;
+  const NamedArray* handle = find_array(part->second, "handle", NamedArray::On::points);
+  const NamedArray* force = find_array(part->second, "force", NamedArray::On::points);
+  if (handle == nullptr || force == nullptr || handle->values.rows() == 0) return std::nullopt;
+  std::map<int, Eigen::Vector3d> total;
+  for (Eigen::Index i = 0; i < handle->values.rows(); ++i) {
+    const int h = static_cast<int>(std::lround(handle->values(i, 0)));
+    total.try_emplace(h, Eigen::Vector3d::Zero()).first->second += force->values.row(i).transpose();
+  }
+  HandleForce out;
+  for (const auto& [h, sum] : total) {
+    out.max = std::max(out.max, sum.norm());
+    out.mean += sum.norm() / static_cast<double>(total.size());
+  }
+  return out;
+}
+
+Value elastica_error(const SheetFrame& f) {
+  const std::optional<Strip> strip = strip_of(f.sheet);
+  if (!strip) return std::nullopt;
+  const PatternLocator locator({f.pattern, f.triangles()});
+  const auto in_space = [&](const Eigen::Vector2d& p) -> Eigen::Vector3d {
+    const PatternLocator::Place at = locator.locate(p);
+    Eigen::Vector3d x = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) {
+      x += at.weights(k) * f.x().row(f.triangles()(at.triangle, k)).transpose();
+    }
+    return x;
+  };
+  double distance = 0;
+  double height = 0;
+  for (int i = 0; i < kStripSamples; ++i) {
+    const double s = (i + 0.5) / kStripSamples;
+    const Eigen::Vector3d a = in_space(strip->at(s, 0));
+    const Eigen::Vector3d chord = in_space(strip->at(s, 1)) - a;
+    const Eigen::Vector3d rise = in_space(strip->at(s, 0.5)) - a;
+    distance += chord.norm() / kStripSamples;
+    height += rise.cross(chord).norm() / chord.norm() / kStripSamples;
+  }
+  if (distance > (1 - kLeastShortening) * strip->length()) return std::nullopt;
+  const double exact = elastica_height(strip->length(), distance);
+  return std::abs(height - exact) / exact;
+}
+
+double hausdorff_ratio(const SheetFrame& f, const SheetFrame& reference) {
+  const double across = width(f.sheet.pattern);
+  return hausdorff_distance({f.x(), f.triangles()}, {reference.x(), reference.triangles()},
+                            across / kSamplesAcross) /
+         across;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+
+#include "baselines/paper/sheet.h"
+#include "core/frame.h"
+#include "experiments/memo.h"
+#include "experiments/topic.h"
+#include "metrics/isometry.h"
+#include "metrics/pattern_mesh.h"
+
+namespace geoprior {
+
+/// What the rows of the paper metric table (metrics.cpp) read: quantities of one frame of one
+/// scene, absent where they have no meaning.
+using Value = std::optional<double>;
+
+/// One frame of one scene, as every metric sees it.
+struct SheetFrame {
+  const Sheet& sheet;
+  const Frame& frame;
+  const Part& surface;
+  Eigen::MatrixX2d pattern;
+
+  [[nodiscard]] const Eigen::MatrixX3d& x() const { return surface.points; }
+  [[nodiscard]] const Eigen::MatrixX3i& triangles() const { return surface.triangles; }
+};
+
+/// @throws Error  when the frame has no part "surface" of triangles with a point array "pattern",
+///                or a coordinate is not finite
+SheetFrame sheet_frame(const Scene& scene, const Frame& frame);
+
+/// Everything that is read off the surface of one frame alone.
+struct SurfaceMeasures {
+  IsometrySummary isometry;
+  PatternMeshSummary mesh;
+  double uncovered_area = 0;  ///< |area of the mesh - area of the pattern| (m^2)
+  double membrane_energy = 0, bending_energy = 0;  ///< J
+  Value kinetic_energy;                            ///< J; absent without velocities
+  int intersecting_pairs = 0;
+};
+
+/// Values that the metrics of a frame share.
+struct SheetMemo {
+  Memo<SurfaceMeasures> surface;
+};
+SurfaceMeasures surface_measures(SheetMemo& memo, const SheetFrame& f);
+
+/// Norms of the total forces of the handles that hold the sheet (N); absent when none does.
+struct HandleForce {
+  double max = 0, mean = 0;
+};
+std::optional<HandleForce> handle_force(const SheetFrame& f);
+
+/// Distance of the ends and height of the middle against the closed form (metrics/elastica.h),
+/// relative. Absent unless the scene is a strip: two opposite sides of a rectangle held as segments
+/// and nothing else, no gravity, no obstacle; and until it is shortened by a thousandth.
+Value elastica_error(const SheetFrame& f);
+
+/// Hausdorff distance of the two surfaces over the width of the pattern.
+double hausdorff_ratio(const SheetFrame& f, const SheetFrame& reference);
+
+}  // namespace geoprior

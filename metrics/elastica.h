@@ -1,0 +1,27 @@
+#pragma once
+
+namespace geoprior {
+
+/// Complete elliptic integrals K(k) and E(k) of modulus k, 0 <= k < 1, by the arithmetic-geometric
+/// mean, to round-off.
+struct EllipticIntegrals {
+  double first = 0;   ///< K = int_0^(pi/2) dt / sqrt(1 - k^2 sin^2 t)
+  double second = 0;  ///< E = int_0^(pi/2) sqrt(1 - k^2 sin^2 t) dt
+};
+/// @throws Error  on a modulus out of range
+EllipticIntegrals elliptic_integrals(double modulus);
+
+/// Height of the middle of an inextensible elastic strip over the line through its ends (m), when
+/// the ends are pinned (free to turn) and pushed together: Euler's elastica, first mode, no weight.
+///
+/// With k the sine of half the slope at the ends: distance / length = 2 E(k) / K(k) - 1 and height
+/// / length = k / K(k). The height does not depend on the stiffness, so a sheet bent to a cylinder
+/// has the same. Small shortening: height = (2 / pi) sqrt(length (length - distance)).
+///
+/// @param length    of the strip (m), positive
+/// @param distance  of its ends (m), 0 … length
+/// @throws Error    when they are out of range
+/// Source: Love, A Treatise on the Mathematical Theory of Elasticity, art. 263.
+double elastica_height(double length, double distance);
+
+}  // namespace geoprior
