@@ -17,24 +17,27 @@ class StateWriter {
   template <class T>
   void number(T x) {
     static_assert(std::is_trivially_copyable_v<T>);
-    const auto* bytes = reinterpret_cast<const std::byte*>(&x);
-    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(T));
+    append(&x, sizeof(T));
   }
   template <class Derived>
   void matrix(const Eigen::PlainObjectBase<Derived>& m) {
     number(m.rows());
     number(m.cols());
-    const auto* bytes = reinterpret_cast<const std::byte*>(m.data());
-    bytes_.insert(bytes_.end(), bytes,
-                  bytes + static_cast<std::size_t>(m.size()) * sizeof(typename Derived::Scalar));
+    append(m.data(), static_cast<std::size_t>(m.size()) * sizeof(typename Derived::Scalar));
   }
   void bytes(const State& state) {
     number(state.size());
-    bytes_.insert(bytes_.end(), state.begin(), state.end());
+    append(state.data(), state.size());
   }
   [[nodiscard]] State take() { return std::move(bytes_); }
 
  private:
+  void append(const void* from, std::size_t size) {
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + size);
+    if (size > 0) std::memcpy(bytes_.data() + at, from, size);
+  }
+
   State bytes_;
 };
 
