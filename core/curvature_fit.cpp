@@ -18,9 +18,11 @@ using Rows3 = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, CurvatureFit::kMostTer
 using Columns3 = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, CurvatureFit::kMostTerms>;
 
 /// Smallest ratio of singular values at which a direction of S counts as observed, for rows of unit
-/// length in the affine frame of the triangle. Below it the inverse would multiply the variation of
-/// curvature across the patch, which the fit cannot represent, by more than ten.
-constexpr double kObserved = 0.1;
+/// length in the affine frame of the patch. The inverse multiplies by up to its reciprocal what the
+/// fit cannot represent, the variation of S over the patch: fans about an apex, whose edges all see
+/// nearly the same combination of S, lock when it is small. On random Delaunay meshes the patches
+/// of a triangle and its neighbours stay above it (3,200 triangles).
+constexpr double kObserved = 0.2;
 /// Weight of an edge `distance` triangles away, as a factor on its row: the fit belongs to the
 /// triangle.
 double distance_weight(int distance) { return 1.0 / (1 + distance); }
@@ -147,6 +149,7 @@ class Patch {
     ++rings_;
   }
   [[nodiscard]] const std::vector<int>& edges() const { return edges_; }
+  [[nodiscard]] const std::vector<int>& vertices() const { return vertices_; }
   [[nodiscard]] const std::vector<int>& distance() const { return distance_; }
 
  private:
@@ -173,38 +176,52 @@ class Patch {
   int rings_ = 0;
 };
 
+/// Matrix from S in the affine frame of a patch, where its vertices spread alike in all directions,
+/// to S in the pattern. There the rank does not depend on stretch: six points on a conic stay so.
+Eigen::Matrix3d affine_frame(const Eigen::MatrixX2d& pattern, const Patch& patch) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const int v : patch.vertices()) mean += pattern.row(v);
+  mean /= static_cast<double>(patch.vertices().size());
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (const int v : patch.vertices()) {
+    const Eigen::Vector2d p = pattern.row(v).transpose() - mean;
+    spread += p * p.transpose();
+  }
+  return congruence(spread.llt().matrixL().toDenseMatrix().inverse());
+}
+
 /// Directions of S that the edges of a patch observe.
 struct Observation {
-  Rows3 rows;             ///< jumps in the triangle's affine frame
+  Eigen::Matrix3d from_affine;
+  Rows3 rows;             ///< jumps in the affine frame
   Eigen::Matrix3d basis;  ///< orthonormal there; the last `rank` columns are observed
   int rank = 0;
 };
 
-/// In the affine frame of the triangle and with rows of unit length the rank does not depend on the
-/// triangle's shape: six points on a conic stay so under affine maps.
-Observation observe(const std::vector<Hinge>& hinges, const Patch& patch,
-                    const Eigen::Matrix3d& from_affine) {
+Observation observe(const Eigen::MatrixX2d& pattern, const std::vector<Hinge>& hinges,
+                    const Patch& patch) {
   Observation seen;
   const auto n = static_cast<Eigen::Index>(patch.edges().size());
   seen.rows.resize(n, 3);
+  if (n == 0) return seen;
+  seen.from_affine = affine_frame(pattern, patch);
   Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
   for (Eigen::Index i = 0; i < n; ++i) {
     Eigen::Vector3d row =
         hinges[static_cast<std::size_t>(patch.edges()[static_cast<std::size_t>(i)])].jump;
     row[1] /= kRoot2;
-    seen.rows.row(i) = row.transpose() * from_affine;
+    seen.rows.row(i) = row.transpose() * seen.from_affine;
     gram += seen.rows.row(i).normalized().transpose() * seen.rows.row(i).normalized();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(gram);
   seen.basis = eigen.eigenvectors();
-  for (int i = 0; i < 3 && n > 0; ++i)
+  for (int i = 0; i < 3; ++i)
     seen.rank += eigen.eigenvalues()[i] > kObserved * kObserved * eigen.eigenvalues()[2];
   return seen;
 }
 
 /// Coefficients (3 x edges, Mandel) of the least-squares fit, zero in the directions not observed.
-Columns3 solve_fit(const std::vector<Hinge>& hinges, const Patch& patch, const Observation& seen,
-                   const Eigen::Matrix3d& from_affine) {
+Columns3 solve_fit(const std::vector<Hinge>& hinges, const Patch& patch, const Observation& seen) {
   const Eigen::Index n = seen.rows.rows();
   if (seen.rank == 0) return Columns3::Zero(3, n);
   Eigen::VectorXd weight(n);
@@ -218,23 +235,14 @@ Columns3 solve_fit(const std::vector<Hinge>& hinges, const Patch& patch, const O
   const Eigen::MatrixXd weighted = weight.asDiagonal() * (seen.rows * kept);
   const Eigen::MatrixXd z =
       Eigen::HouseholderQR<Eigen::MatrixXd>(weighted).solve(Eigen::MatrixXd(weight.asDiagonal()));
-  Columns3 coefficients = from_affine * kept * z;
+  Columns3 coefficients = seen.from_affine * kept * z;
   if (seen.rank < 3) {
-    const Eigen::MatrixXd unseen = from_affine * seen.basis.leftCols(3 - seen.rank);
+    const Eigen::MatrixXd unseen = seen.from_affine * seen.basis.leftCols(3 - seen.rank);
     const Eigen::MatrixXd component =
         Eigen::HouseholderQR<Eigen::MatrixXd>(unseen).solve(Eigen::MatrixXd(coefficients));
     coefficients -= unseen * component;
   }
   return coefficients;
-}
-
-/// Matrix from S in the frame that makes the triangle equilateral to S in the pattern.
-Eigen::Matrix3d affine_frame(const Eigen::MatrixX2d& pattern, const Eigen::RowVector3i& face) {
-  Eigen::Matrix2d edges, equilateral;
-  edges.col(0) = pattern.row(face[1]) - pattern.row(face[0]);
-  edges.col(1) = pattern.row(face[2]) - pattern.row(face[0]);
-  equilateral << 1, 0.5, 0, std::numbers::sqrt3 / 2;
-  return congruence(equilateral * edges.inverse());
 }
 
 }  // namespace
@@ -250,23 +258,21 @@ CurvatureFit fit_curvature(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX
   fit.own.resize(m);
   fit.rank.resize(m);
   for (std::size_t t = 0; t < m; ++t) {
-    const Eigen::Matrix3d from_affine =
-        affine_frame(pattern, triangles.row(static_cast<Eigen::Index>(t)));
     Patch patch(fit.hinges, of_triangle, static_cast<int>(t));
     patch.grow();
     fit.own[t] = static_cast<int>(patch.edges().size());
-    Observation seen = observe(fit.hinges, patch, from_affine);
-    // Farther edges only where they show more of S.
+    Observation seen = observe(pattern, fit.hinges, patch);
+    // Farther edges only where they complete S: one fan or strip more shows nothing new.
     Patch wider = patch;
     for (int ring = 0; ring < 2 && seen.rank < 3; ++ring) {
       wider.grow();
-      Observation more = observe(fit.hinges, wider, from_affine);
-      if (more.rank <= seen.rank) continue;
+      const Observation more = observe(pattern, fit.hinges, wider);
+      if (more.rank < 3) continue;
       seen = more;
       patch = wider;
     }
     fit.rank[t] = seen.rank;
-    const Columns3 coefficients = solve_fit(fit.hinges, patch, seen, from_affine);
+    const Columns3 coefficients = solve_fit(fit.hinges, patch, seen);
     for (std::size_t i = 0; i < patch.edges().size(); ++i) {
       Eigen::Vector3d c = coefficients.col(static_cast<Eigen::Index>(i));
       c[1] /= kRoot2;
