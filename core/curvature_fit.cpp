@@ -262,12 +262,14 @@ CurvatureFit fit_curvature(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX
     patch.grow();
     fit.own[t] = static_cast<int>(patch.edges().size());
     Observation seen = observe(pattern, fit.hinges, patch);
-    // Farther edges only where they complete S: one fan or strip more shows nothing new.
+    // Farther edges only where they complete S: one fan or strip more shows nothing new. But an ear
+    // sees too little by its one edge (the end of a strip: the diagonal, not the ruling).
     Patch wider = patch;
-    for (int ring = 0; ring < 2 && seen.rank < 3; ++ring) {
+    for (int ring = 1; ring <= 2 && seen.rank < 3; ++ring) {
       wider.grow();
       const Observation more = observe(pattern, fit.hinges, wider);
-      if (more.rank < 3) continue;
+      const bool helps_ear = ring == 1 && fit.own[t] == 1 && more.rank > seen.rank;
+      if (more.rank < 3 && !helps_ear) continue;
       seen = more;
       patch = wider;
     }
