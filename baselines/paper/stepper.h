@@ -29,7 +29,9 @@ struct StepperOptions {
   LinearSolver solver = LinearSolver::automatic;
   int supernodal_from = 600;       ///< triangles from which "automatic" takes CHOLMOD
   double contact_distance = 5e-4;  ///< gap at which an obstacle begins to push (m)
-  double contact_stiffness = 1e4;  ///< of the push, per area of sheet (N/m^3)
+  double contact_stiffness = 1e7;  ///< of the push, per area of sheet (N/m^3)
+  double contact_spacing = 0.01;   ///< of the points of a triangle tested against obstacles (m)
+  double creep_speed = 1e-3;       ///< slip at which friction reaches 0.7 of Coulomb's (m/s)
 };
 void describe(OptionVisitor& v, StepperOptions& options);
 

@@ -1,0 +1,50 @@
+#include <Eigen/SparseCholesky>
+#include <cmath>
+
+#include "baselines/paper/sparse_cholesky.h"
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+class EigenCholesky final : public SparseCholesky {
+ public:
+  explicit EigenCholesky(const BlockMatrix& matrix) {
+    if (matrix.triangle() != BlockMatrix::Triangle::upper) {
+      throw Error("the lower triangle is stored", "Eigen's L D L'", "upper");
+    }
+    solver_.analyzePattern(matrix.sparse());
+  }
+
+  bool factorise(const BlockMatrix& matrix) override {
+    solver_.factorize(matrix.sparse());
+    if (solver_.info() != Eigen::Success) return false;
+    // L D L' also succeeds on an indefinite matrix; a negated comparison catches NaN.
+    const auto pivots = solver_.vectorD();
+    for (Eigen::Index i = 0; i < pivots.size(); ++i) {
+      if (!(pivots[i] > 0) || !std::isfinite(pivots[i])) return false;
+    }
+    return true;
+  }
+
+  void solve(Eigen::VectorXd& b) override {
+    solver_.matrixL().solveInPlace(b);
+    b.array() /= solver_.vectorD().array();
+    solver_.matrixU().solveInPlace(b);
+  }
+
+  [[nodiscard]] long nonzeros() const override {
+    return static_cast<long>(solver_.matrixL().nestedExpression().nonZeros() + solver_.cols());
+  }
+
+ private:
+  Eigen::SimplicialLDLT<BlockMatrix::Sparse, Eigen::Upper, Eigen::NaturalOrdering<int>> solver_;
+};
+
+}  // namespace
+
+std::unique_ptr<SparseCholesky> make_eigen_cholesky(const BlockMatrix& matrix) {
+  return std::make_unique<EigenCholesky>(matrix);
+}
+
+}  // namespace geoprior
