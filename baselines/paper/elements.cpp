@@ -3,8 +3,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
-#include <cassert>
+#include <cstddef>
 #include <cstdint>
+#include <type_traits>
+#include <utility>
 
 #include "baselines/paper/hinge.h"
 #include "core/curvature_fit.h"
@@ -23,7 +25,7 @@ static_assert(CurvatureFit::kMostVertices == ShellElements::kMostNodes);
 /// curvature that varies by a tenth over a patch gets 1e-3 of its energy added.
 constexpr double kFitResidual = 0.1;
 
-/// [A, ...] with |S|^2 (1-nu) + nu tr(S)^2 = |L S|^2 for S = (uu, uv, vv).
+/// L with (1-nu) |S|^2 + nu tr(S)^2 = |L S|^2 for S = (uu, uv, vv).
 Eigen::Matrix3d plate_root(double nu) {
   Eigen::Matrix3d M;
   M << 1, 0, nu, 0, 2 * (1 - nu), 0, nu, 0, 1;
@@ -107,6 +109,25 @@ Eigen::Matrix2d tensile_part(const Eigen::Matrix2d& S) {
   return scale * positive;
 }
 
+/// Rows whose outer products add up to a Hessian.
+using Rows = double[kMostRows][kMostColumns];
+template <int value>
+using Constant = std::integral_constant<int, value>;
+
+/// Adds sum_r rows_r rows_r' to the top left `n` x `n` of `hessian`; `n` constant where it is
+/// known.
+template <class Size>
+void add_outer_products(const Rows& rows, int count, Size n,
+                        Eigen::Matrix<double, kMostColumns, kMostColumns>& hessian) {
+  for (int j = 0; j < n; ++j) {
+    double* column = hessian.data() + static_cast<std::ptrdiff_t>(j) * kMostColumns;
+    for (int r = 0; r < count; ++r) {
+      const double factor = rows[r][j];
+      for (int i = 0; i < n; ++i) column[i] += factor * rows[r][i];
+    }
+  }
+}
+
 }  // namespace
 
 struct ShellElements::Impl {
@@ -122,7 +143,10 @@ struct ShellElements::Impl {
                    BendingModel model, double hinge_calibration);
   int add_hinges(const ShellMesh& mesh, const CurvatureFit& fit, int t, Element& element);
   void membrane(const Element& element, const Eigen::Vector3d* p, Order order, Local& out,
-                double (*rows)[kMostColumns]) const;
+                Rows& rows) const;
+  [[nodiscard]] double bending(std::size_t index, double stiffness, const Eigen::Vector3d& rest,
+                               const HingeAngle* angle, double* moments) const;
+  void bending_rows(const Element& e, double stiffness, const HingeAngle* angle, Rows& rows) const;
 };
 
 /// Appends the hinges and the vertices they touch; returns the vertices that the triangle's own
@@ -216,7 +240,7 @@ std::span<const int> ShellElements::nodes(int element) const {
 /// Adds energy and gradient, the geometric Hessian of the tensile stress, and writes three `rows`
 /// whose outer products are the rest of the Hessian.
 void ShellElements::Impl::membrane(const Element& element, const Eigen::Vector3d* p, Order order,
-                                   Local& out, double (*rows)[kMostColumns]) const {
+                                   Local& out, Rows& rows) const {
   const auto& b = element.gradient;
   Eigen::Matrix<double, 3, 2> F = Eigen::Matrix<double, 3, 2>::Zero();
   for (std::size_t k = 1; k < 3; ++k) F += (p[k] - p[0]) * b[k].transpose();
@@ -248,23 +272,37 @@ void ShellElements::Impl::membrane(const Element& element, const Eigen::Vector3d
   }
 }
 
-namespace {
-
-/// Adds sum_r rows_r rows_r' to the top left `n` x `n` of `hessian`; `n` constant where it is
-/// known.
-template <class Size>
-void add_outer_products(double (*rows)[kMostColumns], int count, Size n,
-                        Eigen::Matrix<double, kMostColumns, kMostColumns>& hessian) {
-  for (int j = 0; j < n; ++j) {
-    double* column = hessian.data() + static_cast<std::ptrdiff_t>(j) * kMostColumns;
-    for (int r = 0; r < count; ++r) {
-      const double factor = rows[r][j];
-      for (int i = 0; i < n; ++i) column[i] += factor * rows[r][i];
-    }
+/// Energy of bending; `moments` get stiffness R'(R theta - T S_p), the derivative by each angle.
+double ShellElements::Impl::bending(std::size_t index, double stiffness,
+                                    const Eigen::Vector3d& rest, const HingeAngle* angle,
+                                    double* moments) const {
+  const Element& e = elements[index];
+  const double* R = coefficients.data() + e.first_row;
+  double energy = 0;
+  std::fill_n(moments, e.hinges, 0.0);
+  for (int r = 0; r < e.rows; ++r) {
+    double excess = -plastic[index].row(r).dot(rest);
+    for (int i = 0; i < e.hinges; ++i) excess += R[i * e.rows + r] * angle[i].angle;
+    energy += 0.5 * stiffness * excess * excess;
+    for (int i = 0; i < e.hinges; ++i) moments[i] += stiffness * R[i * e.rows + r] * excess;
   }
+  return energy;
 }
 
-}  // namespace
+/// Gauss-Newton: sum over the rows of sqrt(stiffness) R d theta.
+void ShellElements::Impl::bending_rows(const Element& e, double stiffness, const HingeAngle* angle,
+                                       Rows& rows) const {
+  const double* R = coefficients.data() + e.first_row;
+  const LocalHinge* hinge = hinges.data() + e.first_hinge;
+  const double scale = std::sqrt(stiffness);
+  for (int r = 0; r < e.rows; ++r) {
+    std::fill_n(rows[r], 3 * e.nodes, 0.0);
+    for (int i = 0; i < e.hinges; ++i)
+      for (std::size_t k = 0; k < 4; ++k)
+        for (int c = 0; c < 3; ++c)
+          rows[r][3 * hinge[i].node[k] + c] += scale * R[i * e.rows + r] * angle[i].gradient[k][c];
+  }
+}
 
 void ShellElements::evaluate(int element, const ShellState& state, const Eigen::MatrixX3d& x,
                              Order order, Local& out) const {
@@ -276,56 +314,32 @@ void ShellElements::evaluate(int element, const ShellState& state, const Eigen::
   for (int k = 0; k < e.nodes; ++k) p[static_cast<std::size_t>(k)] = x.row(node[k]);
   if (order != Order::energy) out.gradient.head(columns).setZero();
   if (order == Order::hessian) out.hessian.topLeftCorner(columns, columns).setZero();
-
-  // Rows whose outer products are the Hessian: of the membrane (on the triangle), of bending.
-  alignas(32) double rows[kMostRows + 3][kMostColumns];
+  Rows rows;
   impl_->membrane(e, p.data(), order, out, rows);
-  if (order == Order::hessian)
-    add_outer_products(rows, 3, std::integral_constant<int, 9>(), out.hessian);
+  if (order == Order::hessian) add_outer_products(rows, 3, Constant<9>(), out.hessian);
 
-  const double stiffness = e.stiffness / (1 + impl_->weakening * state.damage[element]);
   std::array<HingeAngle, kMostTerms> angle;
   const LocalHinge* hinge = impl_->hinges.data() + e.first_hinge;
   for (int i = 0; i < e.hinges; ++i) {
     const auto& v = hinge[i].node;
-    const auto k = static_cast<std::size_t>(i);
-    angle[k] = order == Order::energy ? HingeAngle::of<false>(p[v[0]], p[v[1]], p[v[2]], p[v[3]])
-                                      : HingeAngle::of<true>(p[v[0]], p[v[1]], p[v[2]], p[v[3]]);
+    HingeAngle& h = angle[static_cast<std::size_t>(i)];
+    h = order == Order::energy ? HingeAngle::of<false>(p[v[0]], p[v[1]], p[v[2]], p[v[3]])
+                               : HingeAngle::of<true>(p[v[0]], p[v[1]], p[v[2]], p[v[3]]);
   }
-  const double* R = impl_->coefficients.data() + e.first_row;
-  const Eigen::Vector3d rest = state.plastic_curvature.row(element);
-  std::array<double, kMostRows> y{};
-  out.bending = 0;
-  for (int r = 0; r < e.rows; ++r) {
-    double value = -impl_->plastic[index].row(r).dot(rest);
-    for (int i = 0; i < e.hinges; ++i)
-      value += R[i * e.rows + r] * angle[static_cast<std::size_t>(i)].angle;
-    y[static_cast<std::size_t>(r)] = value;
-    out.bending += 0.5 * stiffness * value * value;
-  }
+  const double stiffness = e.stiffness / (1 + impl_->weakening * state.damage[element]);
+  std::array<double, kMostTerms> moments;
+  out.bending = impl_->bending(index, stiffness, state.plastic_curvature.row(element), angle.data(),
+                               moments.data());
   if (order == Order::energy) return;
-  const double scale = std::sqrt(stiffness);
-  if (order == Order::hessian)
-    for (int r = 0; r < e.rows; ++r) std::fill_n(rows[r], columns, 0.0);
-  for (int i = 0; i < e.hinges; ++i) {
-    const HingeAngle& h = angle[static_cast<std::size_t>(i)];
-    const std::array<const Eigen::Vector3d*, 4> parts = {&h.da, &h.db, &h.dc, &h.dd};
-    double moment = 0;
-    for (int r = 0; r < e.rows; ++r)
-      moment += stiffness * R[i * e.rows + r] * y[static_cast<std::size_t>(r)];
+  for (int i = 0; i < e.hinges; ++i)
     for (std::size_t k = 0; k < 4; ++k) {
-      const int at = 3 * hinge[i].node[k];
-      out.gradient.segment<3>(at) += moment * *parts[k];
-      if (order != Order::hessian) continue;
-      for (int r = 0; r < e.rows; ++r) {
-        const double factor = scale * R[i * e.rows + r];
-        for (int c = 0; c < 3; ++c) rows[r][at + c] += factor * (*parts[k])[c];
-      }
+      const auto j = static_cast<std::size_t>(i);
+      out.gradient.segment<3>(3 * hinge[i].node[k]) += moments[j] * angle[j].gradient[k];
     }
-  }
-  if (order != Order::hessian) return;
+  if (order == Order::gradient) return;
+  impl_->bending_rows(e, stiffness, angle.data(), rows);
   if (e.nodes == 6)
-    add_outer_products(rows, e.rows, std::integral_constant<int, 18>(), out.hessian);
+    add_outer_products(rows, e.rows, Constant<18>(), out.hessian);
   else
     add_outer_products(rows, e.rows, columns, out.hessian);
 }

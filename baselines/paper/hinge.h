@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 
 namespace geoprior {
@@ -14,8 +15,8 @@ namespace geoprior {
 /// Not defined for a triangle without area in space, nor differentiable where folded flat on
 /// itself.
 struct HingeAngle {
-  double angle = 0;                ///< rad
-  Eigen::Vector3d da, db, dc, dd;  ///< rad/m
+  double angle = 0;                         ///< rad
+  std::array<Eigen::Vector3d, 4> gradient;  ///< by a, b, c, d (rad/m)
 
   template <bool WithGradient>
   static HingeAngle of(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
@@ -27,11 +28,10 @@ struct HingeAngle {
     // right x left = (ad x e) x left = e (ad . left).
     h.angle = std::atan2(ad.dot(left) * length, left.dot(right));
     if constexpr (WithGradient) {
-      h.dc = left * (length / left.squaredNorm());
-      h.dd = right * (length / right.squaredNorm());
-      const double along_c = ac.dot(e) / square, along_d = ad.dot(e) / square;
-      h.db = -along_c * h.dc - along_d * h.dd;
-      h.da = -h.db - h.dc - h.dd;
+      const Eigen::Vector3d dc = left * (length / left.squaredNorm());
+      const Eigen::Vector3d dd = right * (length / right.squaredNorm());
+      const Eigen::Vector3d db = -(ac.dot(e) / square) * dc - (ad.dot(e) / square) * dd;
+      h.gradient = {-db - dc - dd, db, dc, dd};
     }
     return h;
   }
