@@ -6,16 +6,23 @@
 
 namespace geoprior {
 
+/// What the size of triangles answers to; an edge is as long as the shortest of these allows.
+struct SizingOptions {
+  double size_min = 0.01;     ///< smallest edge length asked for (m)
+  double size_max = 0.2;      ///< largest (m)
+  double refine_angle = 0.3;  ///< change of normal along an edge (rad)
+  /// Edge length times the root of the compressive strain along it (m): up to a factor 2 / pi the
+  /// height of the wrinkle that the edge would hide.
+  double refine_compression = 5e-4;
+  double refine_velocity = 0.5;  ///< difference of velocity along an edge (m/s)
+  double aspect_min = 0.1;       ///< smallest ratio of the two sizes at a vertex
+};
+void describe(OptionVisitor& v, SizingOptions& options);
+
 /// Baseline: anisotropic adaptive remeshing in the pattern (Narain, Samii, O'Brien 2012; Narain,
-/// Pfaff, O'Brien 2013).
-struct AdaptiveOptions {
-  double size_min = 0.01;            ///< smallest edge length asked for (m)
-  double size_max = 0.2;             ///< largest (m)
-  double refine_angle = 0.3;         ///< change of normal along an edge (rad)
-  double refine_compression = 5e-3;  ///< compressive strain along an edge
-  double refine_velocity = 0.5;      ///< difference of velocity along an edge (m/s)
-  double aspect_min = 0.1;           ///< smallest ratio of the two sizes at a vertex
-  bool pop_filter = false;           ///< relaxes new vertices after remeshing
+/// Pfaff, O'Brien 2013): docs of the parts in sizing.h, remesh.h and pop_filter.h.
+struct AdaptiveOptions : SizingOptions {
+  bool pop_filter = false;  ///< relaxes what remeshing changed (pop_filter.h)
   StepperOptions stepper;
 };
 void describe(OptionVisitor& v, AdaptiveOptions& options);

@@ -1,7 +1,9 @@
 #include "baselines/paper/dense.h"
 
 #include <array>
+#include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "core/error.h"
 
@@ -16,11 +18,9 @@ class UniformMesher final : public SheetMesher {
   explicit UniformMesher(const DenseOptions& options) : options_(options) {}
 
   ShellState start(const Sheet& sheet, RunContext& context) override {
-    std::vector<Eigen::Vector2d> anchors;
-    for (const Handle& handle : sheet.handles) {
-      const std::vector<Eigen::Vector2d> own = handle.anchors();
-      anchors.insert(anchors.end(), own.begin(), own.end());
-    }
+    const double edge =
+        std::sqrt(4 / std::sqrt(3.0) * signed_area(sheet.pattern) / options_.triangles);
+    const std::vector<Eigen::Vector2d> anchors = handle_points(sheet, edge);
     return resting_state(
         sheet,
         uniform_mesh(sheet.pattern, options_.triangles, options_.layout, anchors, context.seed()),
@@ -48,6 +48,24 @@ void describe(OptionVisitor& v, DenseOptions& options) {
   describe_choice(v, "layout", options.layout, kLayoutNames,
                   {.doc = "structured: squares with alternating diagonals (rectangles only)"});
   describe_group(v, "stepper", options.stepper, {.doc = "time stepping"});
+}
+
+std::vector<Eigen::Vector2d> handle_points(const Sheet& sheet, double edge) {
+  const double tolerance = 1e-9 * width(sheet.pattern);
+  const auto on_border = [&](const Eigen::Vector2d& p) {
+    return nearest_on_border(sheet.pattern, p).distance <= tolerance;
+  };
+  std::vector<Eigen::Vector2d> points;
+  for (const Handle& handle : sheet.handles) {
+    const std::vector<Eigen::Vector2d> anchors = handle.anchors();
+    points.insert(points.end(), anchors.begin(), anchors.end());
+    if (!handle.segment) continue;
+    const auto& [a, b] = *handle.segment;
+    if (on_border(a) && on_border((a + b) / 2) && on_border(b)) continue;
+    const auto pieces = static_cast<int>(std::ceil((b - a).norm() / edge));
+    for (int i = 1; i < pieces; ++i) points.emplace_back(a + (b - a) * i / pieces);
+  }
+  return points;
 }
 
 ShellState resting_state(const Sheet& sheet, ShellMesh mesh, std::uint64_t seed) {

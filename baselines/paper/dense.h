@@ -24,6 +24,11 @@ void describe(OptionVisitor& v, DenseOptions& options);
 ShellMesh uniform_mesh(const Pattern& pattern, int triangles, DenseLayout layout,
                        const std::vector<Eigen::Vector2d>& anchors, std::uint64_t seed);
 
+/// Places where a mesh of this edge length needs a vertex for the sheet's handles: their anchors,
+/// and points along the segments that cross the inside. (Border vertices of a segment on the
+/// border are held as they come.)
+std::vector<Eigen::Vector2d> handle_points(const Sheet& sheet, double edge);
+
 /// The sheet at t = 0 on this mesh: at rest in its place, imperfection included, without creases.
 ShellState resting_state(const Sheet& sheet, ShellMesh mesh, std::uint64_t seed);
 

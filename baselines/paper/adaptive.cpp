@@ -1,0 +1,132 @@
+#include "baselines/paper/adaptive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "baselines/paper/dense.h"
+#include "baselines/paper/pop_filter.h"
+#include "baselines/paper/remesh.h"
+#include "baselines/paper/sizing.h"
+#include "baselines/paper/state_bytes.h"
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+/// Edge length of the first mesh, over the largest allowed: splits and collapses both stay away.
+constexpr double kStartSize = 0.8;
+
+struct Counts {
+  int splits = 0, collapses = 0, flips = 0, pop_steps = 0;
+};
+
+class AdaptiveMesher final : public SheetMesher {
+ public:
+  explicit AdaptiveMesher(const AdaptiveOptions& options) : options_(options) {
+    if (!(options.size_min > 0 && options.size_min <= options.size_max)) {
+      throw Error("size_min is not between 0 and size_max", "adaptive options",
+                  "0 < size_min <= size_max");
+    }
+  }
+
+  ShellState start(const Sheet& sheet, RunContext& context) override {
+    const double edge = kStartSize * options_.size_max;
+    const double triangles = signed_area(sheet.pattern) / (std::sqrt(3.0) / 4 * edge * edge);
+    return resting_state(
+        sheet,
+        uniform_mesh(sheet.pattern, std::max(2, static_cast<int>(std::lround(triangles))),
+                     DenseLayout::equilateral, handle_points(sheet, edge), context.seed()),
+        context.seed());
+  }
+
+  bool adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
+             RunContext& context) override {
+    last_ = {};
+    std::optional<ShellState> before;
+    if (options_.pop_filter) before = state;
+    RemeshReport report;
+    {
+      const Phase phase(context, "remesh");
+      report = remesh(sheet, sizing_tensors(state, sheet.obstacles, options_), state);
+    }
+    last_.splits = report.splits;
+    last_.collapses = report.collapses;
+    last_.flips = report.flips;
+    if (!report.any()) return false;
+    if (options_.pop_filter) {
+      const Phase phase(context, "pop_filter");
+      last_.pop_steps =
+          filter_pops(sheet, options_.stepper, *before, stepper.elastic_forces(*before),
+                      report.changed, held_vertices(sheet, state), state);
+    }
+    return true;
+  }
+
+  void annotate(const ShellState& /*state*/, Frame& frame) const override {
+    frame.diagnostics["splits"] = last_.splits;
+    frame.diagnostics["collapses"] = last_.collapses;
+    frame.diagnostics["flips"] = last_.flips;
+    if (options_.pop_filter) frame.diagnostics["pop_filter_steps"] = last_.pop_steps;
+  }
+
+  /// Counts of the last frame only: the next remeshing depends on the sheet alone.
+  [[nodiscard]] State save() const override {
+    StateWriter out;
+    out.number(last_);
+    return out.take();
+  }
+  void load(const State& state) override { last_ = StateReader(state).number<Counts>(); }
+
+ private:
+  static std::vector<int> held_vertices(const Sheet& sheet, const ShellState& state) {
+    std::vector<int> held;
+    for (int v = 0; v < state.mesh.vertex_count(); ++v) {
+      for (const Handle& handle : sheet.handles) {
+        if (!handle.motion || !handle.is_active(state.time)) continue;
+        if (!handle.covers(state.mesh.pattern.row(v))) continue;
+        held.push_back(v);
+        break;
+      }
+    }
+    return held;
+  }
+
+  AdaptiveOptions options_;
+  Counts last_;
+};
+
+}  // namespace
+
+void describe(OptionVisitor& v, SizingOptions& options) {
+  v.value("size_min", options.size_min,
+          {.doc = "smallest edge length asked for", .unit = "m", .min = 1e-5, .max = 10});
+  v.value("size_max", options.size_max,
+          {.doc = "largest edge length", .unit = "m", .min = 1e-5, .max = 10});
+  v.value("refine_angle", options.refine_angle,
+          {.doc = "change of normal along an edge", .unit = "rad", .min = 1e-3, .max = 10});
+  v.value("refine_compression", options.refine_compression,
+          {.doc = "edge length times the root of the compressive strain along it",
+           .unit = "m",
+           .min = 1e-7,
+           .max = 1e3});
+  v.value("refine_velocity", options.refine_velocity,
+          {.doc = "difference of velocity along an edge", .unit = "m/s", .min = 1e-3, .max = 1e6});
+  v.value("aspect_min", options.aspect_min,
+          {.doc = "smallest ratio of the two sizes at a vertex", .min = 0.01, .max = 1});
+}
+
+void describe(OptionVisitor& v, AdaptiveOptions& options) {
+  describe(v, static_cast<SizingOptions&>(options));
+  v.value("pop_filter", options.pop_filter,
+          {.doc = "moves vertices with new triangles until forces are what they were"});
+  describe_group(v, "stepper", options.stepper, {.doc = "time stepping"});
+}
+
+std::unique_ptr<Process> make_adaptive_sheet(const Sheet& sheet, const AdaptiveOptions& options) {
+  return std::make_unique<SheetProcess>(sheet, options.stepper,
+                                        std::make_unique<AdaptiveMesher>(options));
+}
+
+}  // namespace geoprior

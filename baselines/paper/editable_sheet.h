@@ -1,0 +1,113 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "baselines/paper/shell_state.h"
+
+namespace geoprior {
+
+/// A sheet whose triangulation changes: triangles with their neighbours, and the three local
+/// operations, each of which carries the state along.
+///
+/// Split halves an edge, flip exchanges the diagonal of two triangles, collapse takes a vertex
+/// away. Positions and velocities of new vertices are linear along the edge; plastic curvature and
+/// damage keep their integral over the triangles that change. Vertices and triangles taken away
+/// stay as dead entries until `state()`.
+class EditableSheet {
+ public:
+  enum class Kind {
+    inside,  ///< may go anywhere
+    side,    ///< on a straight part of the border: may go along it
+    fixed    ///< corner of the border or anchor of a handle
+  };
+  struct Vertex {
+    Eigen::Vector2d pattern;
+    Eigen::Vector3d x, v;
+    Eigen::Matrix2d size = Eigen::Matrix2d::Identity();  ///< sizing tensor (1/m^2)
+    Kind kind = Kind::inside;
+    int segment = -1;   ///< handle whose segment it lies on
+    int triangle = -1;  ///< one of those about it; -1: dead
+    bool is_new = false;
+  };
+  struct Triangle {
+    std::array<int, 3> vertex;     ///< counter-clockwise in the pattern; -1: dead
+    std::array<int, 3> neighbour;  ///< across the edge from vertex[k] to vertex[k + 1]; -1: border
+    Eigen::Vector3d plastic_curvature;
+    double damage = 0;
+  };
+  /// The edge from vertex[k] to vertex[k + 1] of a triangle.
+  struct Side {
+    int triangle = -1;
+    int k = 0;
+  };
+
+  /// @throws Error  on an edge with more than two triangles
+  explicit EditableSheet(const ShellState& state);
+
+  [[nodiscard]] ShellState state(double time) const;
+  /// Rows of `state()` that are new or whose surroundings changed: what a pop filter may move.
+  [[nodiscard]] std::vector<bool> changed() const;
+
+  [[nodiscard]] const std::vector<Vertex>& vertices() const { return vertices_; }
+  [[nodiscard]] std::vector<Vertex>& vertices() { return vertices_; }
+  [[nodiscard]] const std::vector<Triangle>& triangles() const { return triangles_; }
+
+  /// The side from a to b, or from b to a where only that exists; triangle -1 when they are no
+  /// neighbours.
+  [[nodiscard]] Side find(int a, int b) const;
+  [[nodiscard]] int start(Side s) const { return corner(s.triangle, s.k); }
+  [[nodiscard]] int end(Side s) const { return corner(s.triangle, (s.k + 1) % 3); }
+  /// Vertex opposite to the side in its triangle.
+  [[nodiscard]] int apex(Side s) const { return corner(s.triangle, (s.k + 2) % 3); }
+  /// The same edge in the triangle across; triangle -1 at the border.
+  [[nodiscard]] Side opposite(Side s) const;
+  /// Triangles about a vertex, counter-clockwise; at the border from one end to the other.
+  void star(int v, std::vector<int>& triangles) const;
+  /// Neighbours of a vertex, counter-clockwise.
+  void ring(int v, std::vector<int>& neighbours) const;
+  /// Both ends lie on the segment of one handle: the edge stays.
+  [[nodiscard]] bool is_held(Side s) const;
+
+  /// @return  the new vertex in the middle of the edge; its size is the mean of both ends'
+  int split(Side s);
+
+  /// Whether the two triangles can exchange their diagonal: neither border nor held, and the new
+  /// ones are not flatter than `least_altitude` of their longest edge unless the old ones were.
+  [[nodiscard]] bool can_flip(Side s, double least_altitude) const;
+  void flip(Side s);
+
+  /// Whether `v` can be drawn into its neighbour `w`: connectivity stays that of a disc, border and
+  /// held segments keep their shape, no triangle turns over or gets too flat, and no new edge is
+  /// strained by more than `most_strain` unless one of the old ones was.
+  [[nodiscard]] bool can_collapse(int v, int w, double least_altitude, double most_strain) const;
+  void collapse(int v, int w);
+
+ private:
+  [[nodiscard]] int corner(int triangle, int k) const {
+    return triangles_[static_cast<std::size_t>(triangle)].vertex[static_cast<std::size_t>(k)];
+  }
+  [[nodiscard]] int across(int triangle, int k) const {
+    return triangles_[static_cast<std::size_t>(triangle)].neighbour[static_cast<std::size_t>(k)];
+  }
+  [[nodiscard]] int corner_of(int triangle, int v) const;
+  [[nodiscard]] const Eigen::Vector2d& point(int v) const {
+    return vertices_[static_cast<std::size_t>(v)].pattern;
+  }
+  [[nodiscard]] double twice_area(int triangle) const;
+  [[nodiscard]] double altitude_ratio(int a, int b, int c) const;
+  [[nodiscard]] double strain(int a, int b) const;
+  [[nodiscard]] bool keeps_disc(int v, int w) const;
+  [[nodiscard]] bool keeps_border(int v, int w) const;
+  void replace_neighbour(int triangle, int old, int now);
+  void place_triangle(int triangle, const std::array<int, 3>& vertex,
+                      const std::array<int, 3>& neighbour);
+  void carry_creases(const std::vector<Triangle>& old, const std::vector<int>& now);
+
+  std::vector<Vertex> vertices_;
+  std::vector<Triangle> triangles_;
+  std::vector<bool> changed_;  ///< of vertices
+};
+
+}  // namespace geoprior

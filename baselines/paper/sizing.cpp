@@ -1,0 +1,236 @@
+#include "baselines/paper/sizing.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "baselines/paper/planar.h"
+
+namespace geoprior {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Gradient = Eigen::Matrix<double, 3, 2>;
+
+/// Eigenvalues and the axis of the greater one of a symmetric 2 x 2 matrix.
+struct Axes {
+  double major, minor;
+  Vector2d axis;
+};
+
+Axes axes_of(const Matrix2d& m) {
+  const double mean = (m(0, 0) + m(1, 1)) / 2, half = (m(0, 0) - m(1, 1)) / 2;
+  const double off = (m(0, 1) + m(1, 0)) / 2;
+  const double radius = std::hypot(half, off);
+  // The larger of two equal expressions for the axis: the other one cancels.
+  Vector2d axis = half >= 0 ? Vector2d(half + radius, off) : Vector2d(off, radius - half);
+  const double length = axis.norm();
+  if (length > 0) {
+    axis /= length;
+  } else {
+    axis = Vector2d::UnitX();
+  }
+  return {mean + radius, mean - radius, axis};
+}
+
+Matrix2d from_axes(double major, double minor, const Vector2d& axis) {
+  return minor * Matrix2d::Identity() + (major - minor) * axis * axis.transpose();
+}
+
+/// The part of a symmetric matrix with positive eigenvalues.
+Matrix2d positive_part(const Matrix2d& m) {
+  const Axes a = axes_of(m);
+  return from_axes(std::max(a.major, 0.0), std::max(a.minor, 0.0), a.axis);
+}
+
+/// Triangles with what the criteria need of them.
+class SizingField {
+ public:
+  SizingField(const ShellState& state, const std::vector<Obstacle>& obstacles,
+              const SizingOptions& options);
+  [[nodiscard]] SizeTensor of_triangle(int f) const;
+  [[nodiscard]] double twice_area(int f) const { return twice_area_[static_cast<std::size_t>(f)]; }
+
+ private:
+  void build_triangles();
+  void build_normals();
+  void build_curvature();
+  [[nodiscard]] Vector2d pattern(int v) const { return state_.mesh.pattern.row(v); }
+  [[nodiscard]] Vector3d place(int v) const { return state_.x.row(v); }
+  /// Gradient over the pattern of the linear function with these values at the corners.
+  [[nodiscard]] Gradient gradient(int f, const Vector3d& a, const Vector3d& b,
+                                  const Vector3d& c) const {
+    Gradient d;
+    d.col(0) = b - a;
+    d.col(1) = c - a;
+    return d * inverse_[static_cast<std::size_t>(f)];
+  }
+
+  const ShellState& state_;
+  const SizingOptions& options_;
+  std::vector<Matrix2d> inverse_;          ///< of the edge matrix of each triangle in the pattern
+  std::vector<double> twice_area_;         ///< in the pattern
+  std::vector<Vector3d> normal_;           ///< of triangles, unit
+  std::vector<Vector3d> smooth_;           ///< of vertices, unit
+  std::vector<Matrix2d> curvature_;        ///< of triangles
+  std::vector<Eigen::VectorXd> distance_;  ///< of vertices to each obstacle
+};
+
+SizingField::SizingField(const ShellState& state, const std::vector<Obstacle>& obstacles,
+                         const SizingOptions& options)
+    : state_(state), options_(options) {
+  build_triangles();
+  build_normals();
+  build_curvature();
+  for (const Obstacle& obstacle : obstacles) {
+    Eigen::VectorXd distance(state.mesh.vertex_count());
+    for (int v = 0; v < state.mesh.vertex_count(); ++v) {
+      distance[v] = obstacle.contact(place(v), state.time).distance;
+    }
+    distance_.push_back(std::move(distance));
+  }
+}
+
+void SizingField::build_triangles() {
+  const Eigen::MatrixX3i& F = state_.mesh.triangles;
+  for (int f = 0; f < state_.mesh.triangle_count(); ++f) {
+    const Vector2d a = pattern(F(f, 0)), b = pattern(F(f, 1)), c = pattern(F(f, 2));
+    Matrix2d edges;
+    edges << b - a, c - a;
+    const double det = cross(b - a, c - a);
+    Matrix2d inverse;
+    inverse << edges(1, 1), -edges(0, 1), -edges(1, 0), edges(0, 0);
+    inverse_.emplace_back(inverse / det);
+    twice_area_.push_back(det);
+    const Vector3d n = (place(F(f, 1)) - place(F(f, 0))).cross(place(F(f, 2)) - place(F(f, 0)));
+    const double length = n.norm();
+    normal_.push_back(length > 0 ? Vector3d(n / length) : Vector3d::UnitZ());
+  }
+}
+
+void SizingField::build_normals() {
+  smooth_.assign(static_cast<std::size_t>(state_.mesh.vertex_count()), Vector3d::Zero());
+  for (int f = 0; f < state_.mesh.triangle_count(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      smooth_[static_cast<std::size_t>(state_.mesh.triangles(f, k))] +=
+          twice_area_[static_cast<std::size_t>(f)] * normal_[static_cast<std::size_t>(f)];
+    }
+  }
+  for (Vector3d& n : smooth_) {
+    const double length = n.norm();
+    if (length > 0) n /= length;
+  }
+}
+
+/// Each hinge bends its two triangles by theta l t t' / 2, spread over their areas.
+void SizingField::build_curvature() {
+  const Eigen::MatrixX3i& F = state_.mesh.triangles;
+  const auto m = static_cast<std::size_t>(state_.mesh.triangle_count());
+  curvature_.assign(m, Matrix2d::Zero());
+  struct Side {
+    int low, high, triangle;
+    bool operator<(const Side& o) const {
+      return std::tie(low, high, triangle) < std::tie(o.low, o.high, o.triangle);
+    }
+  };
+  std::vector<Side> sides;
+  sides.reserve(3 * m);
+  for (int f = 0; f < static_cast<int>(m); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = F(f, k), b = F(f, (k + 1) % 3);
+      sides.push_back({std::min(a, b), std::max(a, b), f});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+    const Side& s = sides[i];
+    if (s.low != sides[i + 1].low || s.high != sides[i + 1].high) continue;
+    const auto f = static_cast<std::size_t>(s.triangle);
+    const auto g = static_cast<std::size_t>(sides[i + 1].triangle);
+    const Vector2d along = pattern(s.high) - pattern(s.low);
+    const double length = along.norm();
+    const Vector2d across(-along.y() / length, along.x() / length);
+    // The sign belongs to the operator: mountains and valleys beside each other do not add up.
+    const Vector3d edge = place(s.high) - place(s.low);
+    const double sine = normal_[f].cross(normal_[g]).norm();
+    const double angle = std::atan2(sine, normal_[f].dot(normal_[g]));
+    const double turn = edge.dot(normal_[f].cross(normal_[g]));
+    const bool left = [&] {
+      for (int k = 0; k < 3; ++k) {
+        if (F(s.triangle, k) == s.low) return F(s.triangle, (k + 1) % 3) == s.high;
+      }
+      return false;
+    }();
+    const double theta = (turn >= 0) == left ? angle : -angle;
+    const Matrix2d bend = 0.5 * theta * length * across * across.transpose();
+    curvature_[f] += bend / (0.5 * twice_area_[f]);
+    curvature_[g] += bend / (0.5 * twice_area_[g]);
+  }
+}
+
+SizeTensor SizingField::of_triangle(int f) const {
+  const auto i = static_cast<std::size_t>(f);
+  const int a = state_.mesh.triangles(f, 0), b = state_.mesh.triangles(f, 1),
+            c = state_.mesh.triangles(f, 2);
+  const auto normal = [&](int v) { return smooth_[static_cast<std::size_t>(v)]; };
+  const auto square = [](const auto& m, double unit) -> Matrix2d {
+    return m.transpose() * m / (unit * unit);
+  };
+  SizeTensor size = square(curvature_[i], options_.refine_angle);
+  size =
+      tensor_max(size, square(gradient(f, normal(a), normal(b), normal(c)), options_.refine_angle));
+  size = tensor_max(size, square(gradient(f, state_.v.row(a), state_.v.row(b), state_.v.row(c)),
+                                 options_.refine_velocity));
+  const Gradient F = gradient(f, place(a), place(b), place(c));
+  const Matrix2d strain = (F.transpose() * F - Matrix2d::Identity()) / 2;
+  const double unit = options_.refine_compression;
+  size = tensor_max(size, positive_part(-strain) / (unit * unit));
+  for (const Eigen::VectorXd& h : distance_) {
+    const double mean = (h[a] + h[b] + h[c]) / 3;
+    if (mean > options_.size_max) continue;
+    const Eigen::RowVector2d slope = Eigen::RowVector2d(h[b] - h[a], h[c] - h[a]) * inverse_[i];
+    size = tensor_max(size, square(slope, std::max(mean, options_.size_min)));
+  }
+  return limited(size, options_);
+}
+
+}  // namespace
+
+SizeTensor tensor_max(const SizeTensor& a, const SizeTensor& b) { return a + positive_part(b - a); }
+
+SizeTensor limited(const SizeTensor& tensor, const SizingOptions& options) {
+  const double least = 1 / (options.size_max * options.size_max);
+  const double most = 1 / (options.size_min * options.size_min);
+  const Axes axes = axes_of(tensor);
+  const double major = std::clamp(axes.major, least, most);
+  const double minor = std::clamp(
+      axes.minor, std::max(least, major * options.aspect_min * options.aspect_min), most);
+  return from_axes(major, minor, axes.axis);
+}
+
+std::vector<SizeTensor> sizing_tensors(const ShellState& state,
+                                       const std::vector<Obstacle>& obstacles,
+                                       const SizingOptions& options) {
+  const SizingField field(state, obstacles, options);
+  const auto n = static_cast<std::size_t>(state.mesh.vertex_count());
+  std::vector<SizeTensor> sum(n, SizeTensor::Zero());
+  std::vector<double> weight(n, 0);
+  for (int f = 0; f < state.mesh.triangle_count(); ++f) {
+    const SizeTensor size = field.of_triangle(f);
+    const double area = field.twice_area(f);
+    for (int k = 0; k < 3; ++k) {
+      const auto v = static_cast<std::size_t>(state.mesh.triangles(f, k));
+      sum[v] += area * size;
+      weight[v] += area;
+    }
+  }
+  for (std::size_t v = 0; v < n; ++v) sum[v] /= weight[v];
+  return sum;
+}
+
+}  // namespace geoprior
