@@ -13,14 +13,17 @@ namespace geoprior {
 /// A straight line of the sheet: a segment of the pattern that stays straight in space.
 struct Ruling {
   Eigen::Vector2d a, b;  ///< ends in the pattern (m); of a cone, `a` is at the apex
-  int piece = -1;
+  int piece = -1;        ///< of PaperStructure::pieces; -1: a fold between two flat pieces
+  /// Singular points that the ends are; an end that is none lies on the border.
+  std::optional<int> singular_a, singular_b;
+  int unbent_frames = 0;  ///< for how many frames the sheet has been flat across it
 };
 
 /// A part of the sheet that is developable and smooth: thesis 3.2.1, Figure 3.7.
 struct PaperPiece {
   enum class Kind { flat, cylinder, cone };
   Kind kind = Kind::flat;
-  int id = 0;                           ///< stays with the piece while it is tracked
+  int id = 0;                           ///< stays with a bent piece while it is tracked
   std::vector<int> rulings;             ///< of PaperStructure::rulings, in order across the piece
   Eigen::Vector2d direction{1, 0};      ///< of a cylinder's rulings, unit
   std::optional<Eigen::Vector2d> apex;  ///< of a cone
@@ -39,15 +42,21 @@ struct SingularPoint {
 };
 
 /// The geometric layer of the hybrid method: what the sheet is made of at one time.
+///
+/// The rulings and singular points are the state; pieces and border points follow from them and
+/// from the mesh whose edges they are (solvers/paper/pieces.h).
 struct PaperStructure {
   std::vector<Ruling> rulings;
   std::vector<PaperPiece> pieces;
   std::vector<SingularPoint> singular_points;
   std::vector<std::vector<int>>
-      border_points;  ///< singular points on each edge of the border, in order
+      border_points;      ///< singular points on each edge of the border, in order
+  int next_piece_id = 0;  ///< that the next new piece gets
 
   [[nodiscard]] std::vector<int> pieces_at(int singular_point) const;
-  [[nodiscard]] int piece_at(const Eigen::Vector2d& p) const;  ///< -1: none (flat ground)
+  [[nodiscard]] int piece_at(const Eigen::Vector2d& p) const;  ///< -1: outside the pattern
+  /// Rulings that end at a singular point, counter-clockwise.
+  [[nodiscard]] std::vector<int> rulings_at(int singular_point) const;
 };
 
 /// What the invariants say of a structure and its mesh; empty when all hold:

@@ -1,0 +1,228 @@
+#include "solvers/paper/ruling_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "baselines/paper/planar.h"
+#include "core/error.h"
+#include "solvers/paper/mesh_edges.h"
+#include "solvers/paper/segments.h"
+
+namespace geoprior {
+namespace {
+
+using Eigen::Vector2d;
+
+/// Collects the vertices: points closer than the tolerance are one.
+class PointSet {
+ public:
+  explicit PointSet(double tolerance) : tolerance_(tolerance) {}
+  int add(const Vector2d& p) {
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if ((points_[i] - p).norm() <= tolerance_) return static_cast<int>(i);
+    }
+    points_.push_back(p);
+    return static_cast<int>(points_.size()) - 1;
+  }
+  [[nodiscard]] const std::vector<Vector2d>& points() const { return points_; }
+
+ private:
+  double tolerance_;
+  std::vector<Vector2d> points_;
+};
+
+struct OnBorder {
+  int edge;
+  double t;
+  int vertex;
+  bool operator<(const OnBorder& other) const {
+    return std::pair(edge, t) < std::pair(other.edge, other.t);
+  }
+};
+
+/// Vertices round the border in order, gaps longer than `flat_size` divided evenly.
+std::vector<int> border_chain(const Pattern& pattern, double flat_size, double tolerance,
+                              PointSet& set) {
+  std::vector<OnBorder> on_border;
+  const std::vector<Vector2d> points = set.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const BorderPoint near = nearest_on_border(pattern, points[i]);
+    if (near.distance > tolerance) continue;
+    // A corner is both the end of one edge and the start of the next: count it once, as the start.
+    const int n = static_cast<int>(pattern.border.size());
+    const int next = (near.edge + 1) % n;
+    const bool at_end =
+        (points[i] - pattern.border[static_cast<std::size_t>(next)]).norm() <= tolerance;
+    on_border.push_back({at_end ? next : near.edge, at_end ? 0 : near.t, static_cast<int>(i)});
+  }
+  std::sort(on_border.begin(), on_border.end());
+  std::vector<int> chain;
+  for (std::size_t i = 0; i < on_border.size(); ++i) {
+    const int from = on_border[i].vertex;
+    const int to = on_border[(i + 1) % on_border.size()].vertex;
+    chain.push_back(from);
+    const Vector2d a = points[static_cast<std::size_t>(from)];
+    const Vector2d b = points[static_cast<std::size_t>(to)];
+    const int parts = static_cast<int>(std::ceil((b - a).norm() / flat_size - 1e-9));
+    for (int k = 1; k < parts; ++k) chain.push_back(set.add(a + (b - a) * k / parts));
+  }
+  return chain;
+}
+
+/// Lattice points that are half a `flat_size` away from border, rulings and every vertex.
+void add_lattice(const PaperStructure& structure, const Pattern& pattern, double flat_size,
+                 PointSet& set) {
+  Vector2d low = pattern.border.front(), high = low;
+  for (const Vector2d& p : pattern.border) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Vector2d size = high - low;
+  const double row_height = flat_size * std::numbers::sqrt3 / 2;
+  const int rows = static_cast<int>(size.y() / row_height);
+  const int columns = static_cast<int>(size.x() / flat_size) + 1;
+  for (int j = 0; j <= rows; ++j) {
+    for (int i = 0; i <= columns; ++i) {
+      const Vector2d p((low.x() + high.x()) / 2 + (i - columns / 2 + (j % 2) * 0.5) * flat_size,
+                       (low.y() + high.y()) / 2 + (j - rows / 2) * row_height);
+      if (!contains(pattern, p) || nearest_on_border(pattern, p).distance < flat_size / 2) continue;
+      const auto near = [&](const Vector2d& q) { return (p - q).norm() < flat_size / 2; };
+      const auto near_ruling = [&](const Ruling& r) {
+        return distance_to_segment(p, r.a, r.b) < flat_size / 2;
+      };
+      if (std::any_of(set.points().begin(), set.points().end(), near) ||
+          std::any_of(structure.rulings.begin(), structure.rulings.end(), near_ruling)) {
+        continue;
+      }
+      set.add(p);
+    }
+  }
+}
+
+/// Vertices on the ruling from a to b, in order.
+std::vector<int> points_along(const std::vector<Vector2d>& points, const Ruling& ruling,
+                              double tolerance) {
+  std::vector<std::pair<double, int>> along;
+  const Vector2d d = (ruling.b - ruling.a).normalized();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (distance_to_segment(points[i], ruling.a, ruling.b) <= tolerance) {
+      along.emplace_back((points[i] - ruling.a).dot(d), static_cast<int>(i));
+    }
+  }
+  std::sort(along.begin(), along.end());
+  std::vector<int> path;
+  for (const auto& [t, i] : along) path.push_back(i);
+  return path;
+}
+
+void number_cells(RulingMesh& result) {
+  const MeshEdges edges(result.mesh.triangles);
+  std::vector<std::array<int, 2>> walls;
+  for (const auto& path : result.ruling_paths) {
+    for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+      walls.push_back({std::min(path[k], path[k + 1]), std::max(path[k], path[k + 1])});
+    }
+  }
+  std::sort(walls.begin(), walls.end());
+  const int m = result.mesh.triangle_count();
+  result.cell.assign(static_cast<std::size_t>(m), -1);
+  result.cell_count = 0;
+  std::vector<int> stack;
+  for (int start = 0; start < m; ++start) {
+    if (result.cell[static_cast<std::size_t>(start)] >= 0) continue;
+    const int cell = result.cell_count++;
+    result.cell[static_cast<std::size_t>(start)] = cell;
+    stack.push_back(start);
+    while (!stack.empty()) {
+      const int f = stack.back();
+      stack.pop_back();
+      for (int k = 0; k < 3; ++k) {
+        const MeshEdges::Edge& e = edges.of(f, k);
+        const int next = e.left == f ? e.right : e.left;
+        if (next < 0 || result.cell[static_cast<std::size_t>(next)] >= 0) continue;
+        if (std::binary_search(walls.begin(), walls.end(), std::array<int, 2>{e.a, e.b})) continue;
+        result.cell[static_cast<std::size_t>(next)] = cell;
+        stack.push_back(next);
+      }
+    }
+  }
+}
+
+/// A canonical order, so that nothing depends on how the triangulation was stored.
+void sort_triangles(Eigen::MatrixX3i& triangles) {
+  std::vector<std::array<int, 3>> rows;
+  for (int f = 0; f < triangles.rows(); ++f) {
+    std::array<int, 3> t{triangles(f, 0), triangles(f, 1), triangles(f, 2)};
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    rows.push_back(t);
+  }
+  std::sort(rows.begin(), rows.end());
+  for (int f = 0; f < triangles.rows(); ++f) {
+    const auto& t = rows[static_cast<std::size_t>(f)];
+    triangles.row(f) << t[0], t[1], t[2];
+  }
+}
+
+}  // namespace
+
+RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& pattern,
+                          const std::vector<Vector2d>& anchors, double flat_size) {
+  const double tolerance = 1e-9 * width(pattern);
+  PointSet set(tolerance);
+  RulingMesh result;
+  for (const Vector2d& p : pattern.border) set.add(p);
+  for (const Vector2d& p : anchors) set.add(p);
+  for (const SingularPoint& s : structure.singular_points) {
+    result.singular_vertices.push_back(set.add(s.position));
+  }
+  for (const Ruling& r : structure.rulings) {
+    set.add(r.a);
+    set.add(r.b);
+  }
+  const std::vector<int> chain = border_chain(pattern, flat_size, tolerance, set);
+  add_lattice(structure, pattern, flat_size, set);
+
+  std::vector<Eigen::Vector2i> segments;
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    segments.emplace_back(chain[i], chain[(i + 1) % chain.size()]);
+  }
+  for (const Ruling& r : structure.rulings) {
+    result.ruling_paths.push_back(points_along(set.points(), r, tolerance));
+    const std::vector<int>& path = result.ruling_paths.back();
+    for (std::size_t k = 0; k + 1 < path.size(); ++k) segments.emplace_back(path[k], path[k + 1]);
+  }
+  result.mesh.pattern.resize(static_cast<Eigen::Index>(set.points().size()), 2);
+  for (std::size_t i = 0; i < set.points().size(); ++i) {
+    result.mesh.pattern.row(static_cast<Eigen::Index>(i)) = set.points()[i];
+  }
+  result.mesh.triangles = constrained_delaunay(result.mesh.pattern, segments);
+  sort_triangles(result.mesh.triangles);
+  number_cells(result);
+  return result;
+}
+
+std::vector<int> edge_path(const ShellMesh& mesh, const Vector2d& a, const Vector2d& b,
+                           double tolerance) {
+  std::vector<Vector2d> points(static_cast<std::size_t>(mesh.vertex_count()));
+  for (int i = 0; i < mesh.vertex_count(); ++i) {
+    points[static_cast<std::size_t>(i)] = mesh.pattern.row(i);
+  }
+  Ruling segment;
+  segment.a = a;
+  segment.b = b;
+  std::vector<int> path = points_along(points, segment, tolerance);
+  if (path.size() < 2 || (points[static_cast<std::size_t>(path.front())] - a).norm() > tolerance ||
+      (points[static_cast<std::size_t>(path.back())] - b).norm() > tolerance) {
+    return {};
+  }
+  const MeshEdges edges(mesh.triangles);
+  for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+    if (!edges.find(path[k], path[k + 1])) return {};
+  }
+  return path;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "baselines/paper/pattern.h"
+#include "baselines/paper/shell_state.h"
+#include "solvers/paper/structure.h"
+
+namespace geoprior {
+
+/// The mesh that a structure asks for, and where the structure is in it.
+struct RulingMesh {
+  ShellMesh mesh;
+  std::vector<std::vector<int>> ruling_paths;  ///< vertices of each ruling from `a` to `b`
+  std::vector<int> singular_vertices;          ///< of each singular point
+  std::vector<int> cell;  ///< of each triangle: rulings and border separate the cells
+  int cell_count = 0;
+  std::vector<int> piece;  ///< of each triangle, after `derive_pieces`
+};
+
+/// Constrained Delaunay triangulation with the rulings as edges, from scratch.
+///
+/// Vertices are the corners of the pattern, the anchors, the ends of rulings and the singular
+/// points; where the ground is flat, also the border at most `flat_size` apart and a hexagonal
+/// lattice of that size, at least half of it away from everything else.
+/// A pure function of its input: the same structure has the same mesh.
+RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& pattern,
+                          const std::vector<Eigen::Vector2d>& anchors, double flat_size);
+
+/// Vertices of the mesh on the segment a b, in order, if each two in a row share an edge and they
+/// reach from one end to the other; empty otherwise. Points within `tolerance` (m) count as on it.
+std::vector<int> edge_path(const ShellMesh& mesh, const Eigen::Vector2d& a,
+                           const Eigen::Vector2d& b, double tolerance);
+
+}  // namespace geoprior
