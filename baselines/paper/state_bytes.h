@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstring>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -29,16 +30,18 @@ class StateWriter {
     number(state.size());
     append(state.data(), state.size());
   }
-  [[nodiscard]] State take() { return std::move(bytes_); }
+  [[nodiscard]] State take() const {
+    State result(bytes_.size());
+    if (!bytes_.empty()) std::memcpy(result.data(), bytes_.data(), bytes_.size());
+    return result;
+  }
 
  private:
   void append(const void* from, std::size_t size) {
-    const std::size_t at = bytes_.size();
-    bytes_.resize(at + size);
-    if (size > 0) std::memcpy(bytes_.data() + at, from, size);
+    bytes_.append(static_cast<const char*>(from), size);
   }
 
-  State bytes_;
+  std::string bytes_;  // GCC 12 takes the growth of a vector of bytes for an overflow
 };
 
 /// Reads them back in the same order. @throws Error  when the bytes end early
