@@ -1,6 +1,7 @@
 #include "baselines/paper/block_matrix.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/error.h"
@@ -135,6 +136,16 @@ void BlockMatrix::add_to_diagonal(int position, double value) {
   const int blocks = first_[at(position) + 1] - first_[at(position)];
   double* values = sparse_.valuePtr() + diagonal_[at(position)];
   for (int c = 0; c < 3; ++c) values[c * 3 * blocks + c] += value;
+}
+
+double BlockMatrix::diagonal_norm() const {
+  double sum = 0;
+  for (int i = 0; i < nodes(); ++i) {
+    const int stride = 3 * (first_[at(i) + 1] - first_[at(i)]);
+    const double* values = sparse_.valuePtr() + diagonal_[at(i)];
+    for (int c = 0; c < 3; ++c) sum += values[c * stride + c] * values[c * stride + c];
+  }
+  return std::sqrt(sum);
 }
 
 void BlockMatrix::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {

@@ -55,6 +55,10 @@ class BlockMatrix {
   /// Adds the block of (row, column); its transpose is implied.
   void add(const Place& place, const Eigen::Matrix3d& block);
   void add_to_diagonal(int position, double value);
+  /// Adds a matrix of the same pattern.
+  void add(const BlockMatrix& other) { sparse_.coeffs() += other.sparse_.coeffs(); }
+  /// Euclidean norm of the scalar diagonal.
+  [[nodiscard]] double diagonal_norm() const;
 
   /// y = A x, from the one triangle.
   void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;

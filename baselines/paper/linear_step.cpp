@@ -31,9 +31,7 @@ void ShellDynamics::add_linear_contacts() {
   const auto add = [&](const ContactPoint& point, const Eigen::Matrix3d& block,
                        const Eigen::Vector3d& impulse) {
     add_contact_block(point, block);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k) {
-      right_.segment<3>(row(point.vertex[k])) += point.weight[k] * impulse;
-    }
+    add_contact_vector(point, impulse, right_);
   };
   const auto speed = [&](const ContactPoint& point) {
     Eigen::Vector3d v = Eigen::Vector3d::Zero();

@@ -150,6 +150,13 @@ void ShellDynamics::add_contact_block(const ContactPoint& point, const Eigen::Ma
   }
 }
 
+void ShellDynamics::add_contact_vector(const ContactPoint& point, const Eigen::Vector3d& vector,
+                                       Eigen::VectorXd& sum) const {
+  for (std::size_t k = 0; k < at(point.count); ++k) {
+    sum.segment<3>(row(point.vertex[k])) += point.weight[k] * vector;
+  }
+}
+
 void ShellDynamics::place(const Eigen::VectorXd& change, Step& result) const {
   const ShellState& state = *problem_.state;
   for (int i = 0; i < vertices(); ++i) {
@@ -183,7 +190,11 @@ void ShellDynamics::step(const ShellState& state, double dt, Step& result) {
   result.v.resize(vertices(), 3);
   Eigen::VectorXd change, reaction;
   const bool solved = solve_linear(change, reaction);
-  if (solved) place(change, result);
+  if (solved) {
+    place(change, result);
+  } else {
+    result.x.resize(0, 3);
+  }
   if (options_->integration == Integration::newton) {
     if (!solve_newton(result, reaction)) return;
   } else if (!solved) {

@@ -62,6 +62,7 @@ class ShellDynamics {
     Eigen::VectorXd prescribed;  ///< v1 - v0 of held vertices, 0 of others
     std::vector<ContactPoint> contacts;
     std::vector<FrictionPoint> frictions;
+    Eigen::VectorXd start, inertial;  ///< newton: x0; x0 + dt v0 + dt^2 M^-1 loads
   };
 
   void analyse();
@@ -74,19 +75,25 @@ class ShellDynamics {
   void add_linear_contacts();
   bool solve_held(const Eigen::VectorXd& prescribed, Eigen::VectorXd& solution);
 
-  // Implicit Euler solved (newton_step.cpp), from the positions in `result`.
+  // Implicit Euler solved (newton_step.cpp).
   bool solve_newton(Step& result, Eigen::VectorXd& reaction);
+  void prepare_newton(Step& result);
+  bool search_line(const Eigen::VectorXd& direction, double slope, Eigen::MatrixX3d& x,
+                   double& value, Eigen::MatrixX3d& trial);
   double potential(const Eigen::MatrixX3d& x);
-  void potential_gradient(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient, bool with_hessian);
-  void add_contact_gradient(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient,
-                            bool with_hessian);
-  void add_friction_gradient(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient,
-                             bool with_hessian);
+  double potential_gradient(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient);
+  void add_contact_gradient(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient);
+  void add_friction_gradient(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient);
+  [[nodiscard]] Eigen::Vector3d slip_of(const FrictionPoint& friction,
+                                        const Eigen::MatrixX3d& x) const;
 
   void place(const Eigen::VectorXd& change, Step& result) const;
   void report_handles(const Eigen::VectorXd& reaction, Step& result) const;
   /// Adds w_i w_j `block` for the vertices of a contact to the matrix.
   void add_contact_block(const ContactPoint& point, const Eigen::Matrix3d& block);
+  /// Adds w_i `vector` for the vertices of a contact.
+  void add_contact_vector(const ContactPoint& point, const Eigen::Vector3d& vector,
+                          Eigen::VectorXd& sum) const;
   [[nodiscard]] bool sound(const Eigen::MatrixX3d& before, const Eigen::MatrixX3d& after) const;
   void gather(const Eigen::MatrixX3d& by_vertex, Eigen::VectorXd& by_position) const;
   [[nodiscard]] Eigen::Index row(int vertex) const {
@@ -109,6 +116,8 @@ class ShellDynamics {
   ShellSystem::Sums sums_;
   Eigen::VectorXd right_, scratch_;
   std::vector<BlockMatrix::Taken> taken_;
+  std::vector<ContactPoint> touching_;
+  BlockMatrix damping_;  ///< dt c K, newton
 };
 
 /// Mass of each vertex: a third of its triangles' (kg).
