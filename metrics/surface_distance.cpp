@@ -41,20 +41,30 @@ Triangles triangles_of(const TriMesh& mesh, const char* which) {
   return triangles;
 }
 
-/// Vertices of the subdivision of each triangle into edges of at most `spacing`. A point on a
-/// common edge appears once a triangle, which costs little and changes nothing.
-std::vector<Kernel::Point_3> samples_of(const Triangles& triangles, double spacing) {
+/// The vertices of the mesh, and the centres of the pieces when each triangle is cut into similar
+/// ones with edges of at most `spacing`.
+std::vector<Kernel::Point_3> samples_of(const TriMesh& mesh, const Triangles& triangles,
+                                        double spacing) {
   std::vector<Kernel::Point_3> samples;
+  std::vector<bool> used(static_cast<std::size_t>(mesh.V.rows()), false);
+  for (const int v : mesh.F.reshaped()) used[static_cast<std::size_t>(v)] = true;
+  for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
+    if (!used[static_cast<std::size_t>(v)]) continue;
+    samples.emplace_back(mesh.V(v, 0), mesh.V(v, 1), mesh.V(v, 2));
+  }
   for (const Kernel::Triangle_3& t : triangles) {
     const double longest2 =
         std::max({CGAL::squared_distance(t[0], t[1]), CGAL::squared_distance(t[1], t[2]),
                   CGAL::squared_distance(t[2], t[0])});
     const int n = std::max(1, static_cast<int>(std::ceil(std::sqrt(longest2) / spacing)));
-    for (int i = 0; i <= n; ++i) {
-      for (int j = 0; i + j <= n; ++j) {
+    // Weights in thirds of a piece add up to 3 n; those of a centre all leave the same rest by 3: 1
+    // in upright pieces, 2 in the others.
+    for (int i = 1; i < 3 * n; ++i) {
+      if (i % 3 == 0) continue;
+      for (int j = i % 3; i + j < 3 * n; j += 3) {
         samples.push_back(CGAL::barycenter(t[0], static_cast<double>(i), t[1],
                                            static_cast<double>(j), t[2],
-                                           static_cast<double>(n - i - j)));
+                                           static_cast<double>(3 * n - i - j)));
       }
     }
   }
@@ -86,8 +96,8 @@ double hausdorff_distance(const TriMesh& a, const TriMesh& b, double spacing) {
   const Triangles second = triangles_of(b, "b");
   const Tree first_tree(first.begin(), first.end());
   const Tree second_tree(second.begin(), second.end());
-  const double forth = largest_distance2(samples_of(first, spacing), second_tree, 0);
-  return std::sqrt(largest_distance2(samples_of(second, spacing), first_tree, forth));
+  const double forth = largest_distance2(samples_of(a, first, spacing), second_tree, 0);
+  return std::sqrt(largest_distance2(samples_of(b, second, spacing), first_tree, forth));
 }
 
 }  // namespace geoprior

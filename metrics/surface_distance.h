@@ -7,10 +7,10 @@ namespace geoprior {
 /// Hausdorff distance of two triangle surfaces (m): the largest distance of a point of one from the
 /// other, both ways.
 ///
-/// Taken at samples: the vertices, and points inside the triangles and on their edges so that
-/// neighbouring samples are at most `spacing` apart. The distance of a sample is exact; the
-/// supremum is missed by at most spacing / sqrt(3), and by far less where the surfaces are nearly
-/// parallel. Borders count: a smaller piece of the same surface is not at distance 0.
+/// Taken at samples: the vertices, and the centres of the pieces when the triangles are cut into
+/// ones with edges of at most `spacing`. The distance of a sample is exact; the supremum is missed
+/// by at most 2/3 of the spacing, and by far less where the surfaces are nearly parallel. Borders
+/// count: a smaller piece of the same surface is not at distance 0.
 ///
 /// @param a,b      triangles without connectivity requirements; degenerate ones are left out
 /// @param spacing  of the samples (m), positive

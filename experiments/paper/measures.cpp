@@ -18,7 +18,7 @@
 namespace geoprior {
 namespace {
 
-constexpr double kSamplesAcross = 64;      // of the Hausdorff distance, along the pattern's width
+constexpr double kSamplesAcross = 32;      // of the Hausdorff distance, along the pattern's width
 constexpr double kLeastShortening = 1e-3;  // under it the imperfection decides the height
 constexpr int kStripSamples = 9;           // across the strip, where its height is taken
 

@@ -145,7 +145,7 @@ void add_comparisons(std::vector<MetricEntry>& table) {
                         Direction::lower_is_better, {1e-7, 1e-6}, elastica_error));
   MetricEntry hausdorff =
       entry("hausdorff_ratio", "1",
-            "Hausdorff distance from the surface of the reference variant, sampled every 64th of "
+            "Hausdorff distance from the surface of the reference variant, sampled every 32nd of "
             "the pattern's width, over that width",
             Direction::lower_is_better, {1e-7, 1e-6}, {});
   hausdorff.needs_reference = true;

@@ -79,6 +79,14 @@ inline Map fold(double angle, double at = 0) {
   };
 }
 
+/// A rectangle that is folded by `angle` along u = 0, on a mesh with edges there (nx even) and
+/// everywhere else irregular; its pattern is turned by `turn`.
+inline Sheet folded(double width, double height, int nx, int ny, double angle, double turn = 0) {
+  Sheet s = rectangle(width, height, nx, ny, 0.25);
+  for (int j = 0; j <= ny; ++j) s.pattern(nx / 2 * (ny + 1) + j, 0) = 0;
+  return turned_pattern(mapped(s, fold(angle)), turn);
+}
+
 /// Rolled about an axis parallel to v: an isometry.
 inline Map cylinder(double radius) {
   return [=](const Eigen::Vector2d& p) -> Eigen::Vector3d {
@@ -89,7 +97,7 @@ inline Map cylinder(double radius) {
 /// Miura-ori: planar parallelograms folded along every one of their sides, an isometric image of
 /// its pattern with no angle defect anywhere. Shifts as in Schenk and Guest 2013.
 struct Miura {
-  double S = 0.02, V = 0.006, L = 0.018, H = 0.01;  ///< m
+  double S = 0.02, V = 0.012, L = 0.018, H = 0.01;  ///< m
   int columns = 10, rows = 10;                      ///< parallelograms
 };
 inline Sheet miura_ori(const Miura& m = {}) {

@@ -43,8 +43,7 @@ TEST(HausdorffDistance, IsSymmetricThoughEachWayIsNot) {
 }
 
 TEST(HausdorffDistance, SeesTheMiddleOfALargeTriangle) {
-  // Two squares with the same corners; the second is a pyramid whose apex is above a triangle's
-  // interior. The apex is a vertex one way; without it samples inside the base see it.
+  // No vertex of either is away from the other; the hole of the ring is inside the base.
   TriMesh base;
   base.V.resize(4, 3);
   base.V << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;
