@@ -56,35 +56,62 @@ std::vector<const VariantSpec*> references_first(const std::vector<VariantSpec>&
 /// Receives what a process pushes; the process' clock stands still meanwhile.
 class CaseRunner::Sink final : public FrameSink {
  public:
+  /// @param earlier  seconds between the last frame and the checkpoint that the process goes on
+  /// from
   Sink(CaseRunner& runner, const VariantSpec& variant, TimedContext& context,
-       const journal::Numbers& earlier)
-      : runner_(runner), variant_(variant), context_(context), earlier_(earlier) {}
+       journal::Numbers earlier)
+      : runner_(runner), variant_(variant), context_(context), earlier_(std::move(earlier)) {}
 
   void frame(Frame frame) override {
+    const journal::Numbers seconds = with_earlier(context_.lap());
+    earlier_.clear();
     const TimedContext::Pause pause(context_);
-    runner_.record_frame(variant_, std::move(frame));
+    require_finite(frame, runner_.state_of(variant_).record.frames.size(), variant_.method);
+    guarded([&] { runner_.record_frame(variant_, std::move(frame), seconds); });
   }
   void event(const Event& event) override {
     const TimedContext::Pause pause(context_);
     // Not flushed: an event is safe with the next frame or checkpoint, and void without it.
-    runner_.recorder_.add(journal::EventLine{runner_.place(variant_), event}, false);
+    guarded([&] {
+      runner_.recorder_.add(journal::EventLine{runner_.place(variant_), event}, false);
+    });
   }
   void artifact(Artifact artifact) override {
     const TimedContext::Pause pause(context_);
-    runner_.recorder_.write_artifact(runner_.place(variant_), artifact);
+    guarded([&] { runner_.recorder_.write_artifact(runner_.place(variant_), artifact); });
   }
   void checkpoint(const State& state) override {
-    journal::Numbers seconds = earlier_;
-    for (const auto& [phase, value] : context_.phases()) seconds[phase] += value;
+    const journal::Numbers seconds = with_earlier(context_.phases());
     const TimedContext::Pause pause(context_);
-    runner_.recorder_.write_checkpoint(runner_.place(variant_), state, seconds);
+    guarded([&] { runner_.recorder_.write_checkpoint(runner_.place(variant_), state, seconds); });
+  }
+
+  /// Throws what broke the recording, as against the process, if anything did.
+  void rethrow_failure() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+  [[nodiscard]] journal::Numbers with_earlier(const journal::Numbers& seconds) const {
+    journal::Numbers sum = earlier_;
+    for (const auto& [phase, value] : seconds) sum[phase] += value;
+    return sum;
   }
 
  private:
+  template <class Record>
+  void guarded(Record record) {
+    try {
+      record();
+    } catch (...) {
+      failure_ = std::current_exception();
+      throw;
+    }
+  }
+
   CaseRunner& runner_;
   const VariantSpec& variant_;
   TimedContext& context_;
-  const journal::Numbers& earlier_;
+  journal::Numbers earlier_;
+  std::exception_ptr failure_;
 };
 
 CaseRunner::CaseRunner(const Experiment& experiment, const CaseSpec& spec, const Topic& topic,
@@ -155,9 +182,9 @@ std::optional<Frame> CaseRunner::reference_frame(const VariantSpec& variant, dou
   return recorder_.read_frame(record, static_cast<std::size_t>(index));
 }
 
-void CaseRunner::record_frame(const VariantSpec& variant, Frame frame) {
+void CaseRunner::record_frame(const VariantSpec& variant, Frame frame,
+                              const journal::Numbers& seconds) {
   const std::size_t index = state_of(variant).record.frames.size();
-  require_finite(frame, index, variant.method);
   journal::FrameLine line;
   line.place = place(variant);
   line.index = index;
@@ -166,6 +193,7 @@ void CaseRunner::record_frame(const VariantSpec& variant, Frame frame) {
   const std::optional<Frame> reference = reference_frame(variant, frame.parameter);
   line.metrics = measure_frame(topic_, *scene_, frame, reference ? &*reference : nullptr);
   line.diagnostics = frame.diagnostics;
+  line.timing = seconds;
   recorder_.add(line);
   if (has_sequence_metrics(topic_)) kept_[index] = std::move(frame);
 }
@@ -179,6 +207,7 @@ bool CaseRunner::run_poses(const VariantSpec& variant, PoseMethod& method, Timed
     if (context.stop_was_told()) return false;
     Frame frame = method.frame();
     frame.parameter = parameters[i];
+    require_finite(frame, i, variant.method);
     record_frame(variant, std::move(frame));
     progress_.fraction(static_cast<double>(i + 1) / static_cast<double>(parameters.size()));
   }
@@ -186,24 +215,27 @@ bool CaseRunner::run_poses(const VariantSpec& variant, PoseMethod& method, Timed
 }
 
 bool CaseRunner::run_process(const VariantSpec& variant, Process& process, TimedContext& context,
-                             journal::Numbers& seconds) {
+                             journal::EndLine& end) {
   const std::optional<State> from = recorder_.prepare_resume(place(variant), true);
   const auto& checkpoint = state_of(variant).checkpoint;
-  const journal::Numbers earlier = from ? checkpoint->timing : journal::Numbers{};
-  Sink sink(*this, variant, context, earlier);
-  {
+  Sink sink(*this, variant, context, from ? checkpoint->timing : journal::Numbers{});
+  try {
     const Phase phase(context, "run");
     process.run(sink, context, from);
+  } catch (const Error& error) {
+    sink.rethrow_failure();
+    if (state_of(variant).record.frames.empty()) throw;
+    end.error = error.what();
   }
-  seconds = earlier;
-  for (const auto& [phase, value] : context.take_phases()) seconds[phase] += value;
-  return !context.stop_was_told();
+  sink.rethrow_failure();
+  end.timing = sink.with_earlier(context.take_phases());
+  return !end.error.empty() || !context.stop_was_told();
 }
 
-void CaseRunner::finish(const VariantSpec& variant, const journal::Numbers& seconds) {
-  journal::EndLine line{place(variant), {}, seconds};
+void CaseRunner::finish(const VariantSpec& variant, journal::EndLine line) {
   const VariantRecord& record = state_of(variant).record;
-  if (has_sequence_metrics(topic_)) {
+  // The metrics of a sequence have no meaning on a part of it.
+  if (has_sequence_metrics(topic_) && line.error.empty()) {
     std::vector<Frame> frames;
     for (std::size_t i = 0; i < record.frames.size(); ++i) {
       const auto kept = kept_.find(i);
@@ -222,17 +254,22 @@ bool CaseRunner::run_variant(const VariantSpec& variant) {
   kept_.clear();
   MethodEntry::Instance& instance = prepare(variant, true);
   TimedContext context(spec_.seed, [this](double done) { progress_.fraction(done); });
-  journal::Numbers seconds;
+  journal::EndLine end;
+  end.place = place(variant);
   bool complete = false;
   if (auto* method = std::get_if<std::unique_ptr<PoseMethod>>(&instance)) {
     recorder_.prepare_resume(place(variant), false);
     complete = run_poses(variant, **method, context);
   } else {
     auto& process = std::get<std::unique_ptr<Process>>(instance);
-    complete = run_process(variant, *process, context, seconds);
+    complete = run_process(variant, *process, context, end);
   }
   if (!complete) return false;
-  finish(variant, seconds);
+  if (!end.error.empty()) {
+    progress_.say("variant '" + variant.name + "' of case '" + spec_.name + "' failed after " +
+                  std::to_string(state_of(variant).record.frames.size()) + " frames: " + end.error);
+  }
+  finish(variant, std::move(end));
   progress_.end();
   return true;
 }

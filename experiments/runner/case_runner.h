@@ -16,6 +16,10 @@
 namespace geoprior {
 
 /// Runs the variants of one case that are not done yet, then times them.
+///
+/// An Error that a process throws after its first frame ends that variant: its frames stay, its
+/// record has the status "failed" with the message, the other variants run. Any other Error (bad
+/// input, a full disk, a metric that cannot be measured) ends the run.
 class CaseRunner {
  public:
   CaseRunner(const Experiment& experiment, const CaseSpec& spec, const Topic& topic,
@@ -36,9 +40,9 @@ class CaseRunner {
   bool run_variant(const VariantSpec& variant);
   bool run_poses(const VariantSpec& variant, PoseMethod& method, TimedContext& context);
   bool run_process(const VariantSpec& variant, Process& process, TimedContext& context,
-                   journal::Numbers& seconds);
-  void finish(const VariantSpec& variant, const journal::Numbers& seconds);
-  void record_frame(const VariantSpec& variant, Frame frame);
+                   journal::EndLine& end);
+  void finish(const VariantSpec& variant, journal::EndLine end);
+  void record_frame(const VariantSpec& variant, Frame frame, const journal::Numbers& seconds = {});
   std::optional<Frame> reference_frame(const VariantSpec& variant, double parameter);
   void log_error(const journal::Place& at, const std::string& message);
   bool time_variants();

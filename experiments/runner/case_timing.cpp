@@ -4,6 +4,15 @@
 
 namespace geoprior {
 
+namespace {
+
+/// Rounds that are not counted, when the experiment does not say: a solve is short and its first
+/// call meets cold memory; a whole run of a process has warmed up by its first frames, and costs.
+constexpr int kPoseWarmUp = 1;
+constexpr int kProcessWarmUp = 0;
+
+}  // namespace
+
 bool CaseRunner::time_poses(std::map<std::string, Timing>& timing) {
   std::vector<BenchmarkEntry> entries;
   for (const VariantSpec& variant : spec_.variants) {
@@ -15,30 +24,31 @@ bool CaseRunner::time_poses(std::map<std::string, Timing>& timing) {
   const std::vector<double> parameters = scene_->parameters();
   if (entries.empty() || parameters.empty()) return true;
   TimedContext context(spec_.seed);
-  timing = benchmark_poses(entries, parameters,
-                           {experiment_.timing_repetitions, experiment_.timing_warm_up}, context,
-                           [this](double done) { progress_.fraction(done); });
+  timing = benchmark_poses(
+      entries, parameters,
+      {experiment_.timing_repetitions, experiment_.timing_warm_up.value_or(kPoseWarmUp)}, context,
+      [this](double done) { progress_.fraction(done); });
   return !timing.empty();
 }
 
 bool CaseRunner::time_processes(std::map<std::string, Timing>& timing) {
+  std::vector<ProcessEntry> entries;
   for (const VariantSpec& variant : spec_.variants) {
-    auto* process = std::get_if<std::unique_ptr<Process>>(&prepare(variant, false));
-    if (process == nullptr) continue;
-    Timing& own = timing[variant.name];
-    // The recording run is the first repetition: its phases are in the record, 1 x 1.
-    own = state_of(variant).record.timing;
-    for (int repetition = 1; repetition < experiment_.timing_repetitions; ++repetition) {
-      TimedContext context(spec_.seed);
-      const auto seconds = time_process(**process, context);
-      if (context.stop_was_told()) return false;
-      for (auto& [phase, rows] : own) {
-        const auto found = seconds.find(phase);
-        if (found != seconds.end()) rows.front().push_back(found->second);
-      }
+    const VariantRecord& record = state_of(variant).record;
+    // A process that failed would fail again; its record keeps the times of its frames.
+    if (record.status == "failed") continue;
+    if (auto* process = std::get_if<std::unique_ptr<Process>>(&prepare(variant, false))) {
+      entries.push_back({variant.name, process->get(), record.timing, record.frames.size()});
     }
   }
-  return true;
+  if (entries.empty()) return true;
+  auto times = benchmark_processes(
+      entries,
+      {experiment_.timing_repetitions, experiment_.timing_warm_up.value_or(kProcessWarmUp)},
+      spec_.seed, [this](double done) { progress_.fraction(done); });
+  const bool complete = !times.empty();
+  timing.merge(times);
+  return complete;
 }
 
 bool CaseRunner::time_variants() {
@@ -50,6 +60,8 @@ bool CaseRunner::time_variants() {
     variants.push_back({});
     variants.back().name = state.record.name;
     variants.back().role = state.record.role;
+    variants.back().status = state.record.status;
+    variants.back().frames = state.record.frames;
   }
   line.ratios = timing_ratios(variants, line.timing, spec_.seed);
   recorder_.add(line);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/error.h"
@@ -61,10 +62,11 @@ void require_parameter(const ClaimSpec& claim, const CaseRecord& in) {
 ClaimRecord decide_in_case(const ClaimSpec& claim, const CaseRecord& in,
                            const VariantRecord& variant, const VariantRecord* of) {
   require_parameter(claim, in);
-  const auto value = [&](const VariantRecord& v) {
-    return quantity_of(in, v, claim.metric, claim.at_parameter, claim.reduce);
+  const auto value = [&](const VariantRecord& v, const std::string& reduce) {
+    return quantity_of(in, v, claim.metric, claim.at_parameter, reduce);
   };
-  const Quantity left = value(variant);
+  const Quantity left = value(variant, claim.reduce);
+  const std::string of_reduce = claim.of_reduce.value_or(claim.reduce);
   std::string subject = claim.metric + " of " + variant.name;
   if (claim.at_parameter) {
     subject += " at " + in.parameter_name + " " + number_text(*claim.at_parameter) + " " +
@@ -73,8 +75,9 @@ ClaimRecord decide_in_case(const ClaimSpec& claim, const CaseRecord& in,
     subject += " (" + claim.reduce + ")";
   }
   if (of != nullptr) subject += " against " + of->name;
-  ClaimRecord record =
-      decided(claim, subject, left, of != nullptr ? value(*of).value : claim.value.value_or(0));
+  if (claim.of_reduce) subject += " (" + of_reduce + ")";
+  const double other = of != nullptr ? value(*of, of_reduce).value : claim.value.value_or(0);
+  ClaimRecord record = decided(claim, subject, left, other);
   record.case_name = in.name;
   return record;
 }
@@ -111,6 +114,30 @@ ClaimRecord decide_every_frame(const ClaimSpec& claim, const CaseRecord& in,
   return *worst;
 }
 
+/// A variant that broke off has values of some frames only: they decide nothing.
+std::optional<ClaimRecord> fallen_short(const ClaimSpec& claim, const CaseRecord& in,
+                                        const VariantRecord& variant, const VariantRecord* of) {
+  for (const VariantRecord* side : {&variant, of}) {
+    if (side == nullptr || side->status != "failed") continue;
+    ClaimRecord record;
+    record.text = claim.text;
+    record.case_name = in.name;
+    record.left = record.right = std::numeric_limits<double>::quiet_NaN();
+    record.detail = "variant '" + side->name + "' failed after " +
+                    std::to_string(side->frames.size()) + " frames: " + side->error;
+    return record;
+  }
+  return std::nullopt;
+}
+
+ClaimRecord decide_for(const ClaimSpec& claim, const CaseRecord& in, const VariantRecord& variant,
+                       const VariantRecord* of) {
+  if (auto record = fallen_short(claim, in, variant, of)) return *record;
+  const bool every = claim.reduce == "every" && !claim.at_parameter;
+  return every ? decide_every_frame(claim, in, variant, of)
+               : decide_in_case(claim, in, variant, of);
+}
+
 ClaimRecord decide_study(const ClaimSpec& claim, const std::vector<StudyRecord>& studies) {
   const std::string name = claim.metric.substr(6);
   for (const StudyRecord& study : studies) {
@@ -144,9 +171,7 @@ std::vector<ClaimRecord> decide_claims(const Experiment& experiment, const RunRe
         throw Error("has not both variants", "claim '" + claim.text + "', case '" + in.name + "'");
       }
       if (!complete) continue;
-      decisions.push_back(claim.reduce == "every" && !claim.at_parameter
-                              ? decide_every_frame(claim, in, *variant, of)
-                              : decide_in_case(claim, in, *variant, of));
+      decisions.push_back(decide_for(claim, in, *variant, of));
       ++decided_in;
     }
     if (decided_in == 0) {

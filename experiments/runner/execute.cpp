@@ -95,7 +95,12 @@ CaseRecord case_record(const CaseState& state, const Topic& topic) {
   CaseRecord record = state.record;
   for (const VariantState& variant : state.variants) {
     record.variants.push_back(variant.record);
-    record.variants.back().timing["load"] = {{state.load_seconds}};
+    auto& timing = record.variants.back().timing;
+    for (const auto& [phase, seconds] : variant.prepare) {
+      // A phase that is entered while preparing and later on has two entries.
+      timing[timing.contains(phase) ? "prepare:" + phase : phase] = {{seconds}};
+    }
+    timing["load"] = {{state.load_seconds}};
     summarise(topic, record.variants.back());
   }
   return record;

@@ -48,6 +48,7 @@ struct FrameLine {
   std::vector<StoredFile> files;
   Numbers metrics;
   Numbers diagnostics;
+  Numbers timing;  ///< of a process: "run" and the phases in it since the frame before, s
 };
 struct EventLine {
   Place place;
@@ -63,7 +64,7 @@ struct CheckpointLine {
   std::size_t frames = 0;
   std::size_t events = 0;
   std::size_t artifacts = 0;
-  Numbers timing;  ///< "run" and the phases in it up to here, s
+  Numbers timing;  ///< "run" and the phases in it since the last frame, s
 };
 struct ResumeLine {
   Place place;
@@ -73,8 +74,9 @@ struct ResumeLine {
 };
 struct EndLine {
   Place place;
-  Numbers summary;  ///< metrics of the sequence
-  Numbers timing;   ///< of a process: "run" and the phases in it, s
+  Numbers summary;    ///< metrics of the sequence
+  Numbers timing;     ///< of a process: "run" and the phases in it after the last frame, s
+  std::string error;  ///< why the variant ended early; empty: it is complete
 };
 struct TimingLine {
   std::string case_name;

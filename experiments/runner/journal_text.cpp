@@ -117,6 +117,7 @@ Json write(const FrameLine& line) {
   json["files"] = files(line.files);
   json["metrics"] = numbers(line.metrics);
   json["diagnostics"] = numbers(line.diagnostics);
+  json["timing"] = numbers(line.timing);
   return json;
 }
 
@@ -162,6 +163,7 @@ Json write(const EndLine& line) {
   Json json = at(line.place, "end");
   json["summary"] = numbers(line.summary);
   json["timing"] = numbers(line.timing);
+  if (!line.error.empty()) json["error"] = line.error;
   return json;
 }
 
@@ -175,6 +177,7 @@ Json write(const TimingLine& line) {
   for (const TimingRatio& ratio : line.ratios) {
     ratios.push_back({{"variant", ratio.variant},
                       {"of", ratio.of},
+                      {"paired", ratio.paired},
                       {"median_ratio", number(ratio.median_ratio)},
                       {"low", number(ratio.low)},
                       {"high", number(ratio.high)}});
@@ -208,7 +211,7 @@ Line read_timing(const Json& json) {
   }
   for (const Json& ratio : json.at("ratios")) {
     line.ratios.push_back({ratio.at("variant"), ratio.at("of"), number(ratio.at("median_ratio")),
-                           number(ratio.at("low")), number(ratio.at("high"))});
+                           number(ratio.at("low")), number(ratio.at("high")), ratio.at("paired")});
   }
   return line;
 }
@@ -219,7 +222,8 @@ Line read_frame(const Json& json) {
                    number(json.at("parameter")),
                    files(json.at("files")),
                    numbers(json.at("metrics")),
-                   numbers(json.at("diagnostics"))};
+                   numbers(json.at("diagnostics")),
+                   numbers(json.at("timing"))};
 }
 
 Line read(const Json& json) {
@@ -247,7 +251,8 @@ Line read(const Json& json) {
     return ResumeLine{place(json), json.at("frames"), json.at("events"), json.at("artifacts")};
   }
   if (kind == "end") {
-    return EndLine{place(json), numbers(json.at("summary")), numbers(json.at("timing"))};
+    return EndLine{place(json), numbers(json.at("summary")), numbers(json.at("timing")),
+                   json.value("error", "")};
   }
   throw Error("unknown kind of line '" + kind + "'");
 }

@@ -15,8 +15,9 @@ struct Quantity {
 };
 
 /// Value of a metric, "timing:<phase>" (median over repetitions) or "diagnostic:<name>" of a
-/// variant: at one parameter, or reduced over the frames ("max", "min", "median", "mean", "last";
-/// frames without a value are left out). Metrics of a sequence have one value and take neither.
+/// variant: at one parameter, or reduced over the frames ("max", "min", "median", "p95",
+/// "mean", "sum", "last"; frames without a value are left out). Metrics of a sequence have one
+/// value and take neither.
 ///
 /// @throws Error  when the run has no such quantity, no such frame, or no value there
 Quantity quantity_of(const CaseRecord& in, const VariantRecord& variant, const std::string& name,

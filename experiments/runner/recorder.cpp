@@ -159,7 +159,9 @@ std::optional<State> Recorder::prepare_resume(const journal::Place& place, bool 
     const journal::ResumeLine keep{place, checkpoint ? checkpoint->frames : 0,
                                    checkpoint ? checkpoint->events : 0,
                                    checkpoint ? checkpoint->artifacts : 0};
-    if (keep.frames != record.frames.size() || keep.events != record.events.size() ||
+    // A line for every resumption from a checkpoint, whether or not it drops anything: the time of
+    // the next frame includes reading the state, and this is what tells.
+    if (checkpoint || keep.frames != record.frames.size() || keep.events != record.events.size() ||
         keep.artifacts != record.artifacts.size()) {
       add(keep);
     }

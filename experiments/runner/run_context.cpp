@@ -30,6 +30,15 @@ std::map<std::string, double> TimedContext::phases() const {
   return seconds;
 }
 
+std::map<std::string, double> TimedContext::lap() {
+  const Clock::time_point at = now();
+  for (auto& [name, begin] : open_) {
+    seconds_[name] += std::chrono::duration<double>(at - begin).count();
+    begin = at;
+  }
+  return take_phases();
+}
+
 std::map<std::string, double> TimedContext::take_phases() { return std::exchange(seconds_, {}); }
 
 }  // namespace geoprior

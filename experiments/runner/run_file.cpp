@@ -107,6 +107,7 @@ void write_variant(H5Group& parent, const CaseRecord& of, std::size_t index) {
   group.write_attribute("reference", variant.reference);
   group.write_attribute("options", variant.options_json);
   group.write_attribute("status", variant.status);
+  group.write_attribute("error", variant.error);
   H5Array parameter{
       {variant.frames.size()}, {}, {{"name", of.parameter_name}, {"unit", of.parameter_unit}}};
   for (const FrameRecord& frame : variant.frames) parameter.values.push_back(frame.parameter);
@@ -118,18 +119,22 @@ void write_variant(H5Group& parent, const CaseRecord& of, std::size_t index) {
 }
 
 void write_ratios(H5Group& group, const std::vector<TimingRatio>& ratios) {
-  std::vector<std::string> variant, of;
+  std::vector<std::string> variant, of, paired;
   std::vector<double> median, low, high;
   for (const TimingRatio& ratio : ratios) {
+    paired.push_back(ratio.paired);
     variant.push_back(ratio.variant);
     of.push_back(ratio.of);
     median.push_back(ratio.median_ratio);
     low.push_back(ratio.low);
     high.push_back(ratio.high);
   }
-  group.write_table(
-      "ratios",
-      {{"variant", variant}, {"of", of}, {"median_ratio", median}, {"low", low}, {"high", high}});
+  group.write_table("ratios", {{"variant", variant},
+                               {"of", of},
+                               {"median_ratio", median},
+                               {"low", low},
+                               {"high", high},
+                               {"paired", paired}});
 }
 
 void write_case(H5Group& parent, const CaseRecord& record, std::size_t index) {
@@ -161,6 +166,7 @@ void write_studies(H5Group& root, const std::vector<StudyRecord>& studies) {
     group.write_attribute("high", study.high);
     group.write_array("x", {{study.x.size()}, study.x, {}});
     group.write_array("y", {{study.y.size()}, study.y, {}});
+    group.write_array("y_of", {{study.y_of.size()}, study.y_of, {}});
   }
 }
 

@@ -112,6 +112,13 @@ void read_numbers(const H5Group& group, VariantRecord& variant) {
   }
 }
 
+/// What schema version 1 did not have.
+std::string read_text_or_none(const H5Group& group, const std::string& name) {
+  const std::vector<std::string> names = group.attributes();
+  const bool there = std::find(names.begin(), names.end(), name) != names.end();
+  return there ? group.read_text(name) : std::string();
+}
+
 VariantRecord read_variant(const H5Group& group, const std::string& name) {
   VariantRecord variant;
   variant.name = name;
@@ -120,6 +127,7 @@ VariantRecord read_variant(const H5Group& group, const std::string& name) {
   variant.reference = group.read_text("reference");
   variant.options_json = group.read_text("options");
   variant.status = group.read_text("status");
+  variant.error = read_text_or_none(group, "error");
   variant.frames = read_frames(group);
   read_numbers(group, variant);
   variant.events = read_events(group);
@@ -127,23 +135,25 @@ VariantRecord read_variant(const H5Group& group, const std::string& name) {
   return variant;
 }
 
-std::vector<TimingRatio> read_ratios(const H5Group& group) {
+std::vector<TimingRatio> read_ratios(const H5Group& group, std::int64_t version) {
   std::vector<H5Column> table{{"variant", Texts{}},
                               {"of", Texts{}},
                               {"median_ratio", Numbers{}},
                               {"low", Numbers{}},
                               {"high", Numbers{}}};
+  if (version > 1) table.push_back({"paired", Texts{}});
   group.read_table("ratios", table);
   std::vector<TimingRatio> ratios;
   for (std::size_t i = 0; i < column<std::string>(table, 0).size(); ++i) {
     ratios.push_back({column<std::string>(table, 0)[i], column<std::string>(table, 1)[i],
                       column<double>(table, 2)[i], column<double>(table, 3)[i],
-                      column<double>(table, 4)[i]});
+                      column<double>(table, 4)[i], "frame"});
+    if (version > 1) ratios.back().paired = column<std::string>(table, 5)[i];
   }
   return ratios;
 }
 
-CaseRecord read_case(const H5Group& group, const std::string& name) {
+CaseRecord read_case(const H5Group& group, const std::string& name, std::int64_t version) {
   CaseRecord record;
   record.name = name;
   record.parameter_name = group.read_text("parameter_name");
@@ -156,7 +166,7 @@ CaseRecord read_case(const H5Group& group, const std::string& name) {
   for (const std::string& key : swept.attributes()) record.swept[key] = swept.read_text(key);
   const H5Group facts = group.open_group("facts");
   for (const std::string& key : facts.attributes()) record.facts[key] = facts.read_double(key);
-  record.ratios = read_ratios(group);
+  record.ratios = read_ratios(group, version);
   const H5Group variants = group.open_group("variants");
   for (const std::string& variant : in_order(variants)) {
     record.variants.push_back(read_variant(variants.open_group(variant), variant));
@@ -177,6 +187,7 @@ std::vector<StudyRecord> read_studies(const H5Group& parent) {
     study.high = group.read_double("high");
     study.x = group.read_array("x").values;
     study.y = group.read_array("y").values;
+    if (group.has("y_of")) study.y_of = group.read_array("y_of").values;
   }
   return studies;
 }
@@ -220,7 +231,7 @@ RunRecord read_root(const H5Group& root) {
   record.inputs = read_stored_files(root, "inputs");
   const H5Group cases = root.open_group("cases");
   for (const std::string& name : in_order(cases)) {
-    record.cases.push_back(read_case(cases.open_group(name), name));
+    record.cases.push_back(read_case(cases.open_group(name), name, record.schema_version));
   }
   record.studies = read_studies(root.open_group("study"));
   record.claims = read_claims(root);

@@ -40,14 +40,16 @@ struct VariantRecord {
   std::string role;
   std::string reference;
   std::string options_json;
-  std::string status;  ///< "done" or "stopped"
+  std::string status;  ///< "done", "stopped", or "failed": `error` ended it, its frames are kept
+  std::string error;   ///< of a failed variant
   std::vector<FrameRecord> frames;
   std::map<std::string, MetricColumn> metrics;
   std::map<std::string, SummaryValue>
       summary;  ///< sequence metrics, and max/median of frame metrics as "<name>.max"
   std::map<std::string, std::vector<double>> diagnostics;  ///< one value a frame, NaN where absent
-  std::map<std::string, std::vector<std::vector<double>>>
-      timing;  ///< phase: [frame][repetition] seconds
+  /// Phase: [frame][repetition] seconds. "load", "prepare" and "finish" (of a process: after its
+  /// last frame) have one row.
+  std::map<std::string, std::vector<std::vector<double>>> timing;
   std::vector<Event> events;
   std::vector<StoredFile> artifacts;
 };
@@ -56,9 +58,12 @@ struct VariantRecord {
 struct TimingRatio {
   std::string variant;
   std::string of;
-  double median_ratio = 0;  ///< median over paired (frame, repetition) of time(variant) / time(of)
-  double low = 0;           ///< bootstrap 95 % interval
+  double median_ratio = 0;  ///< median over the pairs of time(variant) / time(of)
+  double low = 0;           ///< bootstrap 95 % interval; NaN for one pair
   double high = 0;
+  /// What a pair is: "frame" (frame and repetition), or "run" (a repetition) for processes whose
+  /// frames differ.
+  std::string paired = "frame";
 };
 
 struct CaseRecord {
@@ -84,6 +89,7 @@ struct StudyRecord {
   double high = 0;
   std::vector<double> x;
   std::vector<double> y;
+  std::vector<double> y_of;  ///< of "within-spread": the values of the variant compared with
 };
 
 struct ClaimRecord {
@@ -98,7 +104,7 @@ struct ClaimRecord {
 /// The memory image of a run: what run.h5 holds (docs/file-formats.md), what claims, check and
 /// report read.
 struct RunRecord {
-  int schema_version = 1;
+  int schema_version = 2;
   std::string experiment_id;
   std::string title;
   std::string figure;

@@ -17,8 +17,17 @@ void put(std::vector<double>& column, std::size_t index, double value) {
   column.push_back(value);
 }
 
-void put_once(const journal::Numbers& seconds, VariantRecord& record) {
-  for (const auto& [phase, value] : seconds) record.timing[phase] = {{value}};
+/// The same for the one repetition of a phase's times.
+void put(std::vector<std::vector<double>>& rows, std::size_t index, double seconds) {
+  rows.resize(index, {kAbsent});
+  rows.push_back({seconds});
+}
+
+/// What follows the last frame of a process is no frame's: "finish", and the phases in it.
+void put_rest(const journal::Numbers& seconds, VariantRecord& record) {
+  for (const auto& [phase, value] : seconds) {
+    record.timing[phase == "run" ? "finish" : "finish:" + phase] = {{value}};
+  }
 }
 
 template <class Map, class Values>
@@ -93,7 +102,7 @@ void RunState::apply(const journal::CaseLine& line) {
 void RunState::apply(const journal::BeginLine& line) {
   VariantState& state = variant_of(line.place);
   state.begun = true;
-  put_once(line.timing, state.record);
+  state.prepare = line.timing;
 }
 
 void RunState::apply(const journal::FrameLine& line) {
@@ -108,6 +117,7 @@ void RunState::apply(const journal::FrameLine& line) {
   for (const auto& [name, value] : line.diagnostics) {
     put(record.diagnostics[name], line.index, value);
   }
+  for (const auto& [phase, seconds] : line.timing) put(record.timing[phase], line.index, seconds);
 }
 
 void RunState::apply(const journal::EventLine& line) {
@@ -135,12 +145,17 @@ void RunState::apply(const journal::ResumeLine& line) {
       record.metrics, line.frames, [](MetricColumn & c) -> auto& { return c.values; });
   cut(
       record.diagnostics, line.frames, [](std::vector<double> & c) -> auto& { return c; });
+  for (auto it = record.timing.begin(); it != record.timing.end();) {
+    if (it->second.size() > line.frames) it->second.resize(line.frames);
+    it = it->second.empty() ? record.timing.erase(it) : std::next(it);
+  }
 }
 
 void RunState::apply(const journal::EndLine& line) {
   VariantState& state = variant_of(line.place);
   state.ended = true;
-  state.record.status = "done";
+  state.record.status = line.error.empty() ? "done" : "failed";
+  state.record.error = line.error;
   // Columns that had no value at the last frames end with the frames.
   for (auto& [name, column] : state.record.metrics) {
     column.values.resize(state.record.frames.size(), kAbsent);
@@ -148,8 +163,11 @@ void RunState::apply(const journal::EndLine& line) {
   for (auto& [name, column] : state.record.diagnostics) {
     column.resize(state.record.frames.size(), kAbsent);
   }
+  for (auto& [phase, rows] : state.record.timing) {
+    rows.resize(state.record.frames.size(), {kAbsent});
+  }
   for (const auto& [name, value] : line.summary) state.record.summary[name].value = value;
-  put_once(line.timing, state.record);
+  put_rest(line.timing, state.record);
 }
 
 void RunState::apply(const journal::TimingLine& line) {

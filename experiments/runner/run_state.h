@@ -14,6 +14,7 @@ namespace geoprior {
 /// How far one variant of one case has come.
 struct VariantState {
   VariantRecord record;  ///< summary: metrics of the sequence only; units are filled in at the end
+  journal::Numbers prepare;  ///< "prepare" and the phases in it, s
   bool begun = false;
   bool ended = false;
   std::optional<journal::CheckpointLine> checkpoint;

@@ -108,8 +108,8 @@ Json resolved_json(const TomlNode& root, const Experiment& experiment, const Hea
   json["id"] = experiment.id;
   json["size"] = experiment.quick ? "quick" : "full";
   json["scene"] = Json::parse(base.scene_json);
-  json["timing"] = {{"repetitions", experiment.timing_repetitions},
-                    {"warm_up", experiment.timing_warm_up}};
+  json["timing"] = {{"repetitions", experiment.timing_repetitions}};
+  if (experiment.timing_warm_up) json["timing"]["warm_up"] = *experiment.timing_warm_up;
   for (const auto& [metric, tolerance] : experiment.tolerances) {
     json["tolerance"][metric] = {{"absolute", tolerance.absolute},
                                  {"relative", tolerance.relative}};

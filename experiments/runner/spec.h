@@ -52,17 +52,20 @@ struct ClaimSpec {
   std::optional<std::string> known_shortfall;
   std::optional<double> at_parameter;  ///< at = { angle_deg = 90 }; the frame must exist
   std::string at_key;  ///< "angle_deg": parameter name and unit, compared with the scene's
-  /// "max", "min", "median", "mean", "last" over the frames, when there is no `at`; "every": the
-  /// claim must hold at each frame, and the one nearest to failing is recorded.
+  /// "max", "min", "median", "p95", "mean", "sum", "last" over the frames, when there is no `at`;
+  /// "every": the claim must hold at each frame, and the one nearest to failing is recorded.
   std::string reduce = "max";
-  std::vector<std::string> cases;  ///< empty: every case
+  std::optional<std::string> of_reduce;  ///< of the other side; absent: as `reduce`
+  std::vector<std::string> cases;        ///< empty: every case
 };
 
 /// A quantity across cases.
 struct StudySpec {
   std::string name;
-  std::string kind;  ///< "exponent": slope of log y against log x; "order": observed order of
-                     ///< convergence; "spread"
+  /// "exponent": slope of log y against log x; "order": observed order of convergence; "spread":
+  /// standard deviation; "within-spread": distance of the medians of `variant` and `of` over half
+  /// the range of `of`.
+  std::string kind;
   std::string variant;
   std::string
       quantity;  ///< as a claim's metric: of the table, "timing:<phase>", "diagnostic:<name>"
@@ -71,6 +74,7 @@ struct StudySpec {
   std::vector<std::string> cases;  ///< empty: every case that has the variant and `against`
   std::string finer = "smaller";   ///< of "order": whether smaller x (a step) or "larger" x (a
                                    ///< count) is the finer discretisation
+  std::string of;                  ///< of "within-spread": the variant that is the yardstick
 };
 
 /// A plane that cuts the part: figure_view.section = { origin = [x, y, z], normal = [x, y, z] }.
@@ -86,6 +90,10 @@ struct FigureView {
   std::vector<double> parameters;      ///< further columns/rows, when more than one frame is drawn
   std::string part = "surface";
   std::optional<std::string> color_by;  ///< array of the part; absent: plain material
+  std::vector<std::string> classes;     ///< of `color_by`: the names of its integers 0, 1, …
+  std::string shading = "smooth";       ///< "smooth", "flat": one tone a triangle
+  std::string material = "clay";        ///< "clay", "paper": an open sheet with two sides
+  bool edges = false;                   ///< the triangles' edges as thin lines
   std::optional<std::array<double, 3>> target;
   std::array<double, 3> direction{0, 0, 1};  ///< from the target to the eye
   std::array<double, 3> up{0, 1, 0};
@@ -110,7 +118,7 @@ struct Experiment {
   std::map<std::string, Tolerance>
       tolerances;  ///< [tolerance] overrides of the metric table, by metric
   int timing_repetitions = 1;
-  int timing_warm_up = 1;
+  std::optional<int> timing_warm_up;  ///< absent: 1 for pose methods, 0 for processes
   FigureView view;
   /// The whole text after quick, --set and defaults, before sweeps: an experiment file itself.
   std::string resolved_toml;

@@ -95,6 +95,7 @@ ClaimSpec claim_of(const ClaimTable& table, const TomlNode& node) {
   claim.tolerance = table.tolerance;
   claim.known_shortfall = table.known_shortfall;
   claim.reduce = text_of(table.reduce);
+  if (table.of_reduce != OfReduction::same) claim.of_reduce = text_of(table.of_reduce);
   claim.cases = table.cases;
   read_at(node.find("at"), claim.at_parameter, &claim.at_key);
   return claim;
@@ -113,9 +114,18 @@ void require_sides(const ClaimSpec& claim, const TomlNode& node) {
   if (!study && claim.variant.empty()) {
     throw Error("is missing", place_of(node, "variant"), "the variant whose value is judged");
   }
-  if (claim.at_parameter && node.find("reduce") != nullptr) {
-    throw Error("`at` picks one frame, `reduce` takes all", node.place + ": claim",
+  const bool reduces = node.find("reduce") != nullptr || claim.of_reduce;
+  if (claim.at_parameter && reduces) {
+    throw Error("`at` picks one frame, `reduce` and `of_reduce` take all", node.place + ": claim",
                 "one of the two");
+  }
+  if (claim.of_reduce && !claim.of) {
+    throw Error("reduces the frames of no variant", place_of(node, "of_reduce"),
+                "with `of`, which may be the variant itself");
+  }
+  if (claim.of_reduce && claim.reduce == "every") {
+    throw Error("`every` compares frame by frame", place_of(node, "of_reduce"),
+                "another `reduce`, or no `of_reduce`");
   }
 }
 
@@ -170,16 +180,24 @@ std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
     require_metric(table.quantity, topic, place_of(node, "quantity"), {});
     if (table.reduce == Reduction::every) {
       throw Error("a study needs one value a case", place_of(node, "reduce"),
-                  "max, min, median, mean, last");
+                  "max, min, median, p95, mean, sum, last");
     }
-    if (table.kind != StudyKind::spread && !table.against) {
+    const bool slope = table.kind == StudyKind::exponent || table.kind == StudyKind::order;
+    if (slope && !table.against) {
       throw Error("is missing", place_of(node, "against"),
                   "a fact of the scene or a swept key, the x of the slope");
     }
-    if (!runs(table.variant, names, place_of(node, "variant"))) continue;
+    const bool compares = table.kind == StudyKind::within_spread;
+    if (compares != table.of.has_value()) {
+      throw Error(compares ? "is missing" : "has no meaning for this kind", place_of(node, "of"),
+                  "the variant whose spread is the yardstick, for kind = \"within-spread\"");
+    }
+    bool decidable = runs(table.variant, names, place_of(node, "variant"));
+    if (table.of) decidable = runs(*table.of, names, place_of(node, "of")) && decidable;
+    if (!decidable) continue;
     studies.push_back({table.name, text_of(table.kind), table.variant, table.quantity,
                        table.against.value_or(""), text_of(table.reduce), table.cases,
-                       text_of(table.finer)});
+                       text_of(table.finer), table.of.value_or("")});
   }
   return studies;
 }
@@ -218,11 +236,18 @@ FigureView read_figure_view(const TomlNode& root, const Topic& topic) {
       throw Error("has " + std::to_string(table.target.size()) + " elements",
                   place_of(*node, "target"), "an array of 3 numbers");
     }
+    if (!table.classes.empty() && !table.color_by) {
+      throw Error("names the values of no array", place_of(*node, "classes"), "with `color_by`");
+    }
   }
   view.at_parameter = table.at_parameter;
   view.parameters = table.parameters;
   view.part = table.part;
   view.color_by = table.color_by;
+  view.classes = table.classes;
+  view.shading = text_of(table.shading);
+  view.material = text_of(table.material);
+  view.edges = table.edges;
   if (table.target.size() == 3) view.target = {table.target[0], table.target[1], table.target[2]};
   view.direction = table.direction;
   view.up = table.up;

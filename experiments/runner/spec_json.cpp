@@ -40,15 +40,15 @@ Json case_json(const CaseSpec& spec) {
 std::string spec_json(const Experiment& experiment) {
   Json cases = Json::array();
   for (const CaseSpec& spec : experiment.cases) cases.push_back(case_json(spec));
-  const Json json{{"id", experiment.id},
-                  {"title", experiment.title},
-                  {"figure", experiment.figure},
-                  {"topic", experiment.topic},
-                  {"quick", experiment.quick},
-                  {"hash", experiment.hash},
-                  {"timing_repetitions", experiment.timing_repetitions},
-                  {"timing_warm_up", experiment.timing_warm_up},
-                  {"cases", cases}};
+  Json json{{"id", experiment.id},
+            {"title", experiment.title},
+            {"figure", experiment.figure},
+            {"topic", experiment.topic},
+            {"quick", experiment.quick},
+            {"hash", experiment.hash},
+            {"timing_repetitions", experiment.timing_repetitions},
+            {"cases", cases}};
+  if (experiment.timing_warm_up) json["timing_warm_up"] = *experiment.timing_warm_up;
   return json.dump(2) + "\n";
 }
 

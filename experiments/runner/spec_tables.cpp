@@ -7,10 +7,15 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kSizes{"full", "quick"};
 constexpr std::array<std::string_view, 5> kComparisons{"<=", "<", ">=", ">", "=="};
-constexpr std::array<std::string_view, 6> kReductions{"max",  "min",  "median",
-                                                      "mean", "last", "every"};
-constexpr std::array<std::string_view, 3> kStudyKinds{"exponent", "order", "spread"};
+constexpr std::array<std::string_view, 8> kReductions{"max",  "min", "median", "p95",
+                                                      "mean", "sum", "last",   "every"};
+constexpr std::array<std::string_view, 8> kOfReductions{"same", "max",  "min", "median",
+                                                        "p95",  "mean", "sum", "last"};
+constexpr std::array<std::string_view, 4> kStudyKinds{"exponent", "order", "spread",
+                                                      "within-spread"};
 constexpr std::array<std::string_view, 2> kFiner{"smaller", "larger"};
+constexpr std::array<std::string_view, 2> kShadings{"smooth", "flat"};
+constexpr std::array<std::string_view, 2> kMaterials{"clay", "paper"};
 
 template <class Enum, std::size_t N>
 std::string name_of(Enum x, const std::array<std::string_view, N>& names) {
@@ -21,8 +26,11 @@ std::string name_of(Enum x, const std::array<std::string_view, N>& names) {
 
 std::string text_of(Comparison x) { return name_of(x, kComparisons); }
 std::string text_of(Reduction x) { return name_of(x, kReductions); }
+std::string text_of(OfReduction x) { return name_of(x, kOfReductions); }
 std::string text_of(StudyKind x) { return name_of(x, kStudyKinds); }
 std::string text_of(Finer x) { return name_of(x, kFiner); }
+std::string text_of(Shading x) { return name_of(x, kShadings); }
+std::string text_of(Material x) { return name_of(x, kMaterials); }
 
 void describe(OptionVisitor& v, HeaderTable& t) {
   v.value("title", t.title, {.doc = "what is shown, one line", .required = true});
@@ -67,16 +75,20 @@ void describe(OptionVisitor& v, ClaimTable& t) {
           {.doc = "why the claim falls short, where that is known: check lets it pass"});
   describe_choice(v, "reduce", t.reduce, kReductions,
                   {.doc = "over the frames, without `at`; every: it must hold frame by frame"});
+  describe_choice(v, "of_reduce", t.of_reduce, kOfReductions,
+                  {.doc = "over the frames of the other side; same: as `reduce`"});
   v.value("cases", t.cases, {.doc = "names of cases; absent: all that have the variants"});
 }
 
 void describe(OptionVisitor& v, StudyTable& t) {
   v.value("name", t.name, {.doc = "of the study", .required = true});
   describe_choice(v, "kind", t.kind, kStudyKinds,
-                  {.doc = "slope in log-log, observed order of convergence, spread"});
+                  {.doc = "slope in log-log, observed order of convergence, standard deviation, or "
+                          "distance of two medians over half the range of `of`"});
   v.value("variant", t.variant, {.doc = "whose quantity", .required = true});
   v.value("quantity", t.quantity,
           {.doc = "of the metric table, timing:<phase> or diagnostic:<name>", .required = true});
+  v.value("of", t.of, {.doc = "of within-spread: the variant whose range is the yardstick"});
   v.value("against", t.against, {.doc = "a fact of the scene, or a swept key"});
   describe_choice(v, "finer", t.finer, kFiner,
                   {.doc = "x of the finer discretisation: a step is smaller, a count larger"});
@@ -88,7 +100,9 @@ void describe(OptionVisitor& v, TimingTable& t) {
   v.value("repetitions", t.repetitions,
           {.doc = "of each solve; whole runs of processes", .min = 1, .max = 100000});
   v.value("warm_up", t.warm_up,
-          {.doc = "rounds of pose methods that are not counted", .min = 0, .max = 1000});
+          {.doc = "rounds that are not counted; absent: 1 of pose methods, 0 of processes",
+           .min = 0,
+           .max = 1000});
 }
 
 void describe(OptionVisitor& v, ToleranceTable& t) {
@@ -106,6 +120,12 @@ void describe(OptionVisitor& v, FigureViewTable& t) {
   v.value("parameters", t.parameters, {.doc = "several frames, side by side"});
   v.value("part", t.part, {.doc = "part of the frames"});
   v.value("color_by", t.color_by, {.doc = "array of the part; absent: plain material"});
+  v.value("classes", t.classes,
+          {.doc = "names of the integers 0, 1, … in `color_by`: a legend instead of a scale"});
+  describe_choice(v, "shading", t.shading, kShadings, {.doc = "flat: one tone a triangle"});
+  describe_choice(v, "material", t.material, kMaterials,
+                  {.doc = "of what has no colour; paper: white, the back side darker"});
+  v.value("edges", t.edges, {.doc = "edges of the triangles as thin lines"});
   v.value("target", t.target, {.doc = "point looked at; absent: fitted", .unit = "m"});
   v.value("direction", t.direction, {.doc = "from the target to the eye"});
   v.value("up", t.up, {.doc = "upward in the picture"});
@@ -113,7 +133,8 @@ void describe(OptionVisitor& v, FigureViewTable& t) {
           {.doc = "height of the view; absent: fitted", .unit = "m", .min = 1e-12});
   describe_group(v, "section", t.section,
                  {.doc = "adds a row with the part cut by a plane, overlaps of the solid in red"});
-  v.value("overlays", t.overlays, {.doc = "further parts drawn over `part`"});
+  v.value("overlays", t.overlays,
+          {.doc = "further parts drawn over `part`: lines thin, points as balls"});
   v.value("variants", t.variants, {.doc = "absent: all"});
   v.value("cases", t.cases, {.doc = "absent: all"});
   v.value("metrics", t.metrics, {.doc = "curves of metrics.svg; absent: all that vary"});

@@ -40,7 +40,8 @@ struct SweepTable {
 };
 
 enum class Comparison { less_equal, less, greater_equal, greater, equal };
-enum class Reduction { max, min, median, mean, last, every };
+enum class Reduction { max, min, median, p95, mean, sum, last, every };
+enum class OfReduction { same, max, min, median, p95, mean, sum, last };
 
 struct ClaimTable {
   std::string text;
@@ -54,10 +55,11 @@ struct ClaimTable {
   double tolerance = 0;
   std::optional<std::string> known_shortfall;
   Reduction reduce = Reduction::max;
+  OfReduction of_reduce = OfReduction::same;
   std::vector<std::string> cases;
 };
 
-enum class StudyKind { exponent, order, spread };
+enum class StudyKind { exponent, order, spread, within_spread };
 enum class Finer { smaller, larger };
 
 struct StudyTable {
@@ -65,6 +67,7 @@ struct StudyTable {
   StudyKind kind = StudyKind::exponent;
   std::string variant;
   std::string quantity;
+  std::optional<std::string> of;
   std::optional<std::string> against;
   Finer finer = Finer::smaller;
   Reduction reduce = Reduction::median;
@@ -73,7 +76,7 @@ struct StudyTable {
 
 struct TimingTable {
   int repetitions = 1;
-  int warm_up = 1;
+  std::optional<int> warm_up;
 };
 
 struct ToleranceTable {
@@ -81,11 +84,18 @@ struct ToleranceTable {
   double relative = 0;
 };
 
+enum class Shading { smooth, flat };
+enum class Material { clay, paper };
+
 struct FigureViewTable {
   std::optional<double> at_parameter;
   std::vector<double> parameters;
   std::string part;
   std::optional<std::string> color_by;
+  std::vector<std::string> classes;
+  Shading shading = Shading::smooth;
+  Material material = Material::clay;
+  bool edges = false;
   std::vector<double> target;
   std::array<double, 3> direction{0, 0, 1};
   std::array<double, 3> up{0, 1, 0};
@@ -110,7 +120,10 @@ void describe(OptionVisitor& v, FigureViewTable& t);
 /// The texts of the enumerators, as files have them.
 std::string text_of(Comparison x);
 std::string text_of(Reduction x);
+std::string text_of(OfReduction x);
 std::string text_of(StudyKind x);
 std::string text_of(Finer x);
+std::string text_of(Shading x);
+std::string text_of(Material x);
 
 }  // namespace geoprior

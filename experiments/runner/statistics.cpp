@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "experiments/runner/timing_statistics.h"
 
 namespace geoprior {
 namespace {
@@ -33,6 +34,25 @@ double central_probability(double t, int nu) {
     sum += term;
   }
   return nu % 2 == 0 ? sine * sum : 2 / std::numbers::pi * (theta + sine * sum);
+}
+
+constexpr int kResamples = 2000;
+
+/// Of `values`, and left in `sample`.
+void draw(std::span<const double> values, RandomStream& random, std::vector<double>& sample) {
+  sample.resize(values.size());
+  for (double& x : sample) x = values[random.below(static_cast<std::uint32_t>(values.size()))];
+}
+
+/// Value with the percentile interval of its sorted resamples.
+Interval percentile_interval(double value, std::vector<double>& resampled) {
+  std::sort(resampled.begin(), resampled.end());
+  return {value, resampled[kResamples / 40], resampled[kResamples - 1 - kResamples / 40]};
+}
+
+double ratio_to_spread(double distance, double half_range) {
+  if (half_range > 0) return distance / half_range;
+  return distance > 0 ? std::numeric_limits<double>::infinity() : 0;
 }
 
 }  // namespace
@@ -71,15 +91,29 @@ Interval slope_with_interval(std::span<const double> x, std::span<const double> 
 
 Interval spread_with_interval(std::span<const double> values, RandomStream random) {
   if (values.size() < 2) throw Error("a spread needs two values", "study");
-  constexpr int kResamples = 2000;
-  std::vector<double> spreads, sample(values.size());
+  std::vector<double> spreads, sample;
   for (int r = 0; r < kResamples; ++r) {
-    for (double& x : sample) x = values[random.below(static_cast<std::uint32_t>(values.size()))];
+    draw(values, random, sample);
     spreads.push_back(standard_deviation(sample));
   }
-  std::sort(spreads.begin(), spreads.end());
-  return {standard_deviation(values), spreads[kResamples / 40],
-          spreads[kResamples - 1 - kResamples / 40]};
+  return percentile_interval(standard_deviation(values), spreads);
+}
+
+Interval median_distance_with_interval(std::span<const double> values,
+                                       std::span<const double> yardstick, RandomStream random) {
+  if (values.size() < 2 || yardstick.size() < 2) throw Error("a spread needs two values", "study");
+  const auto [low, high] = std::minmax_element(yardstick.begin(), yardstick.end());
+  const double half_range = 0.5 * (*high - *low);
+  const auto of = [&](std::span<const double> a, std::span<const double> b) {
+    return ratio_to_spread(std::abs(median(a) - median(b)), half_range);
+  };
+  std::vector<double> ratios, sample, of_yardstick;
+  for (int r = 0; r < kResamples; ++r) {
+    draw(values, random, sample);
+    draw(yardstick, random, of_yardstick);
+    ratios.push_back(of(sample, of_yardstick));
+  }
+  return percentile_interval(of(values, yardstick), ratios);
 }
 
 }  // namespace geoprior

@@ -22,6 +22,15 @@ Interval slope_with_interval(std::span<const double> x, std::span<const double> 
 /// @throws Error  with fewer than two values
 Interval spread_with_interval(std::span<const double> values, RandomStream random);
 
+/// How far apart the medians of two samples are, |median(values) - median(yardstick)|, over half
+/// the range of `yardstick`: at most 1 means that they agree within its spread. The 95 % percentile
+/// bootstrap interval (2000 resamples) draws both samples anew and keeps the range: that of a
+/// resample is never larger, and would bias the ratio upward. A yardstick without a spread gives 0
+/// for equal medians and infinity for others.
+/// @throws Error  with fewer than two values of either
+Interval median_distance_with_interval(std::span<const double> values,
+                                       std::span<const double> yardstick, RandomStream random);
+
 /// t with P(|T| <= t) = probability for Student's distribution (Abramowitz and Stegun 26.7.3-4).
 double student_t(double probability, int degrees_of_freedom);
 

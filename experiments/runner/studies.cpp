@@ -31,21 +31,34 @@ void require_positive(double value, const std::string& what, const StudySpec& st
               "study '" + study.name + "', case '" + in.name + "'");
 }
 
-void add_point(StudyRecord& record, const StudySpec& study, const CaseRecord& in) {
+bool is_slope(const StudySpec& study) { return study.kind == "exponent" || study.kind == "order"; }
+
+/// The study's quantity of a variant in a case; absent when the case does not have the variant, or
+/// only some of its frames.
+std::optional<double> value_in(const CaseRecord& in, const std::string& name,
+                               const StudySpec& study) {
   const auto variant = std::find_if(in.variants.begin(), in.variants.end(),
-                                    [&](const auto& v) { return v.name == study.variant; });
-  if (variant == in.variants.end()) return;
-  const bool spread = study.kind == "spread";
+                                    [&](const auto& v) { return v.name == name; });
+  if (variant == in.variants.end() || variant->status == "failed") return std::nullopt;
+  return quantity_of(in, *variant, study.quantity, std::nullopt, study.reduce).value;
+}
+
+void add_point(StudyRecord& record, const StudySpec& study, const CaseRecord& in) {
   const std::optional<double> x =
-      spread ? static_cast<double>(record.x.size()) : abscissa(in, study);
-  if (!x) return;
-  const double y = quantity_of(in, *variant, study.quantity, std::nullopt, study.reduce).value;
-  if (!spread) {
+      is_slope(study) ? abscissa(in, study) : static_cast<double>(record.x.size());
+  const std::optional<double> y = x ? value_in(in, study.variant, study) : std::nullopt;
+  if (!y) return;
+  if (study.kind == "within-spread") {
+    const std::optional<double> other = value_in(in, study.of, study);
+    if (!other) return;
+    record.y_of.push_back(*other);
+  }
+  if (is_slope(study)) {
     require_positive(*x, study.against, study, in);
-    require_positive(y, study.quantity, study, in);
+    require_positive(*y, study.quantity, study, in);
   }
   record.x.push_back(*x);
-  record.y.push_back(y);
+  record.y.push_back(*y);
 }
 
 Interval logarithmic_slope(const StudyRecord& record) {
@@ -59,12 +72,24 @@ Interval interval_of(const StudySpec& study, const StudyRecord& record, std::uin
   if (study.kind == "spread") {
     return spread_with_interval(record.y, RandomStream(seed, "study " + study.name));
   }
+  if (study.kind == "within-spread") {
+    return median_distance_with_interval(record.y, record.y_of,
+                                         RandomStream(seed, "study " + study.name));
+  }
   const Interval slope = logarithmic_slope(record);
   // Errors fall with a smaller step, or with a larger count: the order is positive either way.
   if (study.kind == "order" && study.finer == "larger") {
     return {-slope.value, -slope.high, -slope.low};
   }
   return slope;
+}
+
+std::string needed_by(const StudySpec& study) {
+  if (study.kind == "spread") return "at least 2 cases with variant '" + study.variant + "'";
+  if (study.kind == "within-spread") {
+    return "at least 2 cases with variants '" + study.variant + "' and '" + study.of + "'";
+  }
+  return "at least 2 cases with '" + study.against + "', a fact of the scene or a swept key";
 }
 
 }  // namespace
@@ -83,10 +108,7 @@ std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRec
     }
     if (made.x.size() < 2) {
       throw Error("only " + std::to_string(made.x.size()) + " cases have what it needs",
-                  "study '" + study.name + "'",
-                  study.kind == "spread" ? "at least 2 cases with variant '" + study.variant + "'"
-                                         : "at least 2 cases with '" + study.against +
-                                               "', a fact of the scene or a swept key");
+                  "study '" + study.name + "'", needed_by(study));
     }
     const Interval interval =
         interval_of(study, made, record.cases.empty() ? 1 : record.cases.front().seed);

@@ -72,6 +72,10 @@ Interval median_of_paired_ratios(std::span<const double> a, std::span<const doub
     if (!std::isnan(a[i]) && b[i] > 0) ratios.push_back(a[i] / b[i]);
   }
   if (ratios.empty()) throw Error("no pair of times to compare");
+  if (ratios.size() == 1) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    return {ratios.front(), none, none};
+  }
   return bootstrap_median(ratios, seed);
 }
 

@@ -21,7 +21,8 @@ double interquartile_range(std::span<const double> values);
 /// drawn with a PCG stream of `seed`: same values, same interval).
 Interval bootstrap_median(std::span<const double> values, std::uint64_t seed);
 
-/// Median of a[i] / b[i] with its bootstrap 95 % interval. Pairs with a NaN or b <= 0 are left out.
+/// Median of a[i] / b[i] with its bootstrap 95 % interval. Pairs with a NaN or b <= 0 are left out;
+/// one pair says nothing of the spread: the interval is NaN.
 /// @throws Error  when the lengths differ or no pair is left
 Interval median_of_paired_ratios(std::span<const double> a, std::span<const double> b,
                                  std::uint64_t seed);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "experiments/runner/number_text.h"
 
 namespace geoprior {
 namespace {
@@ -33,6 +34,16 @@ constexpr std::array<Color, 9> kDiverging{{{0.230, 0.299, 0.754},
                                            {0.957, 0.603, 0.482},
                                            {0.869, 0.378, 0.301},
                                            {0.706, 0.016, 0.150}}};
+
+// Pale grounds that keep their shading, after the hues of Okabe and Ito (2008).
+constexpr std::array<Color, 8> kClasses{{{0.900, 0.880, 0.830},
+                                         {0.420, 0.650, 0.850},
+                                         {0.945, 0.640, 0.240},
+                                         {0.360, 0.720, 0.560},
+                                         {0.820, 0.520, 0.690},
+                                         {0.930, 0.860, 0.350},
+                                         {0.850, 0.430, 0.300},
+                                         {0.450, 0.450, 0.500}}};
 
 Color interpolate(std::span<const Color> map, double t) {
   const double position = std::clamp(t, 0.0, 1.0) * static_cast<double>(map.size() - 1);
@@ -80,6 +91,8 @@ Color color_at(double t, bool diverging) {
   return diverging ? interpolate(kDiverging, t) : interpolate(kSequential, t);
 }
 
+Color class_color(std::size_t index) { return kClasses[index % kClasses.size()]; }
+
 const NamedArray* find_array(const Part& part, const std::string& name) {
   for (const NamedArray& array : part.arrays) {
     if (array.name == name) return &array;
@@ -120,6 +133,22 @@ ColorScale make_color_scale(const std::vector<const Part*>& parts, const std::st
   }
   scale.below = lowest < scale.low;
   scale.above = highest > scale.high;
+  return scale;
+}
+
+ColorScale make_class_scale(const std::vector<const Part*>& parts, const std::string& name,
+                            const std::vector<std::string>& classes) {
+  ColorScale scale;
+  scale.array = name;
+  scale.classes = classes;
+  scale.low = -0.5;
+  scale.high = static_cast<double>(classes.size()) - 0.5;
+  std::string unit;
+  for (const double x : finite_values(parts, name, unit)) {
+    if (x == std::floor(x) && x > scale.low && x < scale.high) continue;
+    throw Error("the array '" + name + "' has the value " + rounded_text(x), "figure_view.classes",
+                "0 to " + std::to_string(classes.size() - 1));
+  }
   return scale;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/frame.h"
 #include "experiments/view/picture.h"
@@ -14,9 +15,13 @@ namespace geoprior {
 /// a cool-warm diverging map (Moreland 2009) for signed quantities.
 std::array<double, 3> color_at(double t, bool diverging);
 
+/// Colour of a class: told apart by people who see no red or no green, in print, and under shading.
+std::array<double, 3> class_color(std::size_t index);
+
 /// One mapping from values to colours, shared by every panel of a picture.
 struct ColorScale {
   std::string array;
+  std::vector<std::string> classes;  ///< of integers 0, 1, …; empty: a scale of numbers
   std::string unit;
   double low = 0;
   double high = 1;
@@ -35,5 +40,10 @@ Eigen::VectorXd scalars(const NamedArray& array);
 /// do not take all the colours; symmetric about 0 (signed values) or 1 (ratios).
 /// @throws Error  when no part has the array, listing the arrays there are
 ColorScale make_color_scale(const std::vector<const Part*>& parts, const std::string& name);
+
+/// The scale of an array of integers; no part need have it.
+/// @throws Error  when a value is none of 0, 1, … classes - 1
+ColorScale make_class_scale(const std::vector<const Part*>& parts, const std::string& name,
+                            const std::vector<std::string>& classes);
 
 }  // namespace geoprior

@@ -59,13 +59,15 @@ Eigen::MatrixX3d seamless_normals(const Part& part) {
   return normals;
 }
 
-vtkSmartPointer<vtkPolyData> surface(const Part& part, const std::string& color_by) {
+vtkSmartPointer<vtkPolyData> surface(const Part& part, const std::string& color_by, bool flat) {
   auto data = with_points(part);
   vtkNew<vtkCellArray> triangles;
   for (Eigen::Index t = 0; t < part.triangles.rows(); ++t) {
     triangles->InsertNextCell({part.triangles(t, 0), part.triangles(t, 1), part.triangles(t, 2)});
   }
   data->SetPolys(triangles);
+  add_scalars(part, color_by, data);
+  if (flat) return data;
   const Eigen::MatrixX3d normals = seamless_normals(part);
   vtkNew<vtkDoubleArray> array;
   array->SetNumberOfComponents(3);
@@ -74,7 +76,6 @@ vtkSmartPointer<vtkPolyData> surface(const Part& part, const std::string& color_
     array->SetTuple3(i, normals(i, 0), normals(i, 1), normals(i, 2));
   }
   data->GetPointData()->SetNormals(array);
-  add_scalars(part, color_by, data);
   return data;
 }
 
@@ -155,10 +156,10 @@ vtkSmartPointer<vtkPolyData> grid(const Part& part, const std::string& color_by)
 }  // namespace
 
 vtkSmartPointer<vtkPolyData> to_drawable(const Part& part, const std::string& color_by,
-                                         double thickness_m) {
+                                         double thickness_m, bool flat) {
   switch (part.kind) {
     case Part::Kind::triangles:
-      return surface(part, color_by);
+      return surface(part, color_by, flat);
     case Part::Kind::lines:
       return tubes(part, color_by, thickness_m);
     case Part::Kind::points:

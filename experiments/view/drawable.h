@@ -13,8 +13,9 @@ namespace geoprior {
 /// What is drawn for a part: a surface with smooth normals, tubes, spheres, a plane or an
 /// iso-surface. The array `color_by` (may be empty) becomes the active scalars where the part has
 /// it.
-/// @param thickness_m  diameter of tubes and spheres
+/// @param thickness_m  diameter of tubes, radius of spheres
+/// @param flat         a surface without normals: each triangle has one tone
 vtkSmartPointer<vtkPolyData> to_drawable(const Part& part, const std::string& color_by,
-                                         double thickness_m);
+                                         double thickness_m, bool flat);
 
 }  // namespace geoprior

@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostColumns = 6;
 constexpr std::size_t kMostRows = 8;
+constexpr const char* kObstacles = "obstacles";
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
@@ -99,8 +100,11 @@ FigureCell make_cell(const CaseRecord& c, const std::string& variant_name,
   if (frame == nullptr) return cell;
   cell.part = require_part(*frame, view.part, folder);
   for (const std::string& overlay : view.overlays) {
-    if (auto part = load_part(*frame, overlay, folder)) cell.overlays.push_back(*std::move(part));
+    if (auto part = load_part(*frame, overlay, folder)) {
+      cell.overlays.push_back({overlay, *std::move(part)});
+    }
   }
+  if (view.part != kObstacles) cell.obstacles = load_part(*frame, kObstacles, folder);
   return cell;
 }
 

@@ -11,11 +11,17 @@
 
 namespace geoprior {
 
+struct NamedPart {
+  std::string name;
+  Part part;
+};
+
 /// One panel of a figure before it is drawn: a variant in one state.
 struct FigureCell {
   std::string label;         ///< of the variant
   std::optional<Part> part;  ///< absent: the variant has no such frame (stopped)
-  std::vector<Part> overlays;
+  std::vector<NamedPart> overlays;
+  std::optional<Part> obstacles;  ///< part "obstacles" of the frame: drawn faintly, never fitted
 };
 
 /// Panels side by side.

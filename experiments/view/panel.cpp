@@ -3,7 +3,6 @@
 #include <vtkActor.h>
 #include <vtkCamera.h>
 #include <vtkLight.h>
-#include <vtkLookupTable.h>
 #include <vtkNew.h>
 #include <vtkOpenGLRenderer.h>
 #include <vtkPolyData.h>
@@ -22,53 +21,10 @@
 #include <cstdlib>
 
 #include "core/error.h"
-#include "experiments/view/drawable.h"
+#include "experiments/view/actors.h"
 
 namespace geoprior {
 namespace {
-
-// Matt clay, close to skin: neutral enough that shading alone shows the shape.
-constexpr std::array<double, 3> kSurfaceColor{0.86, 0.72, 0.63};
-constexpr std::array<double, 3> kLineColor{0.16, 0.27, 0.45};
-
-vtkSmartPointer<vtkLookupTable> to_lookup_table(const ColorScale& scale) {
-  auto table = vtkSmartPointer<vtkLookupTable>::New();
-  constexpr int kColors = 256;
-  table->SetNumberOfTableValues(kColors);
-  table->SetRange(scale.low, scale.high);
-  for (int i = 0; i < kColors; ++i) {
-    const auto color = color_at(i / (kColors - 1.0), scale.diverging);
-    table->SetTableValue(i, color[0], color[1], color[2]);
-  }
-  table->SetNanColor(0.6, 0.6, 0.6, 1);
-  table->Build();
-  return table;
-}
-
-vtkSmartPointer<vtkActor> make_actor(const Part& part, const std::optional<ColorScale>& scale,
-                                     double thickness) {
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputData(to_drawable(part, scale ? scale->array : "", thickness));
-  const bool colored = scale && find_array(part, scale->array) != nullptr;
-  mapper->SetScalarVisibility(colored);
-  if (colored) {
-    mapper->SetLookupTable(to_lookup_table(*scale));
-    mapper->UseLookupTableScalarRangeOn();
-    mapper->SetInterpolateScalarsBeforeMapping(1);
-  }
-  auto actor = vtkSmartPointer<vtkActor>::New();
-  actor->SetMapper(mapper);
-  vtkProperty* material = actor->GetProperty();
-  const bool thin = part.kind == Part::Kind::lines || part.kind == Part::Kind::points;
-  const auto& color = thin ? kLineColor : kSurfaceColor;
-  material->SetColor(color[0], color[1], color[2]);
-  material->SetInterpolationToPhong();
-  material->SetAmbient(colored ? 0.26 : 0.22);
-  material->SetDiffuse(colored ? 0.70 : 0.82);
-  material->SetSpecular(colored ? 0.05 : 0.14);
-  material->SetSpecularPower(22);
-  return actor;
-}
 
 /// Position in camera coordinates: x to the right, y up, z towards the eye.
 void add_light(vtkRenderer* renderer, const std::array<double, 3>& from, double intensity,
@@ -98,6 +54,15 @@ void set_camera(vtkRenderer* renderer, const ViewWindow& window) {
   camera->ParallelProjectionOn();
   camera->SetParallelScale(window.height_m / 2);
   camera->SetClippingRange(0.05 * window.depth_m, 2.2 * window.depth_m);
+}
+
+/// Obstacles reach out of the window's depth: the eye steps back, which a parallel projection does
+/// not show.
+void show_all_depths(vtkRenderer* renderer, const ViewWindow& window) {
+  const Eigen::Vector3d eye =
+      window.center + 20 * (window.depth_m + window.height_m) * window.direction;
+  renderer->GetActiveCamera()->SetPosition(eye.x(), eye.y(), eye.z());
+  renderer->ResetCameraClippingRange();
 }
 
 /// Edges are smoothed by drawing larger and averaging, at most to what software GL can address.
@@ -146,13 +111,14 @@ Picture draw(vtkRenderer* renderer, int width_px, int height_px, int factor) {
   return picture;
 }
 
-Picture draw_lit(const std::vector<vtkSmartPointer<vtkActor>>& actors, const ViewWindow& window,
-                 int width_px, int height_px) {
+Picture draw_lit(const PanelActors& actors, const ViewWindow& window, int width_px, int height_px) {
   vtkNew<vtkRenderer> renderer;
   renderer->SetBackground(1, 1, 1);
-  for (const auto& actor : actors) renderer->AddActor(actor);
+  for (const auto& actor : actors.opaque) renderer->AddActor(actor);
+  for (const auto& actor : actors.faint) renderer->AddActor(actor);
   set_lights(renderer);
   set_camera(renderer, window);
+  if (!actors.faint.empty()) show_all_depths(renderer, window);
   return draw(renderer, width_px, height_px, supersampling(width_px, height_px));
 }
 
@@ -168,6 +134,7 @@ Picture draw_openness(const std::vector<vtkSmartPointer<vtkActor>>& actors,
     mapper->SetInputData(vtkPolyDataMapper::SafeDownCast(actor->GetMapper())->GetInput());
     mapper->ScalarVisibilityOff();
     plain->SetMapper(mapper);
+    plain->SetPosition(actor->GetPosition());
     plain->GetProperty()->LightingOff();
     renderer->AddActor(plain);
   }
@@ -208,15 +175,12 @@ Picture blurred(const Picture& openness, int dx, int dy) {
 
 }  // namespace
 
-Picture draw_panel(const std::vector<const Part*>& parts, const ViewWindow& window,
-                   const std::optional<ColorScale>& scale, int width_px, int height_px) {
-  std::vector<vtkSmartPointer<vtkActor>> actors;
-  for (const Part* part : parts) {
-    actors.push_back(make_actor(*part, scale, 0.008 * window.height_m));
-  }
+Picture draw_panel(const PanelParts& parts, const ViewWindow& window, const PanelStyle& style,
+                   int width_px, int height_px) {
+  const PanelActors actors = make_actors(parts, window, style, supersampling(width_px, height_px));
   Picture picture = draw_lit(actors, window, width_px, height_px);
   const Picture openness =
-      blurred(blurred(draw_openness(actors, window, width_px, height_px), 1, 0), 0, 1);
+      blurred(blurred(draw_openness(actors.opaque, window, width_px, height_px), 1, 0), 0, 1);
   for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
     const double open = openness.pixels[i][0] == 0 ? 1.0 : openness.pixels[i][0] / 255.0;
     for (std::uint8_t& channel : picture.pixels[i]) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -22,14 +23,32 @@ struct ViewWindow {
   double depth_m = 1;  ///< distance from the centre within which everything drawn lies
 };
 
-/// Draws parts in three dimensions: smooth shading, three lights that follow the camera, ambient
-/// occlusion, supersampled edges. Needs a Display.
-/// @param parts  drawn together: triangles as a surface, lines as tubes, points as spheres, a grid
-///               as a coloured plane (one point thick), an iso-surface of its first scalar, or its
-///               outline
-/// @param scale  parts that have its array are coloured by it; absent: plain material
+/// A part that explains another: thin lines and small balls, slightly lifted towards the eye.
+struct PanelOverlay {
+  const Part* part = nullptr;
+  std::array<double, 3> color{0, 0, 0};
+};
+
+/// What is drawn together: triangles as a surface, lines as tubes, points as spheres, a grid as a
+/// coloured plane (one point thick), an iso-surface of its first scalar, or its outline.
+struct PanelParts {
+  std::vector<const Part*> parts;
+  std::vector<PanelOverlay> overlays;
+  std::vector<const Part*> obstacles;  ///< drawn translucent
+};
+
+struct PanelStyle {
+  enum class Material { clay, paper };
+  std::optional<ColorScale> scale;  ///< parts that have its array are coloured; absent: plain
+  bool flat = false;                ///< one tone a triangle
+  bool edges = false;               ///< edges of the triangles as thin lines
+  Material material = Material::clay;
+};
+
+/// Draws parts in three dimensions: three lights that follow the camera, ambient occlusion,
+/// supersampled edges. Needs a Display.
 /// @throws Error  when OpenGL is missing, naming the package
-Picture draw_panel(const std::vector<const Part*>& parts, const ViewWindow& window,
-                   const std::optional<ColorScale>& scale, int width_px, int height_px);
+Picture draw_panel(const PanelParts& parts, const ViewWindow& window, const PanelStyle& style,
+                   int width_px, int height_px);
 
 }  // namespace geoprior

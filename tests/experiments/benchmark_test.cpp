@@ -74,6 +74,14 @@ TEST(PairedRatios, CancelWhatBothSuffer) {
   EXPECT_NEAR(ratio.high - ratio.low, 0, 1e-15);
 }
 
+TEST(PairedRatios, OfOnePairHaveNoInterval) {
+  const std::vector<double> a{3}, b{2};
+  const Interval ratio = median_of_paired_ratios(a, b, 1);
+  EXPECT_EQ(ratio.value, 1.5);
+  EXPECT_TRUE(std::isnan(ratio.low));
+  EXPECT_TRUE(std::isnan(ratio.high));
+}
+
 TEST(PairedRatios, OfNothingAreAnError) {
   EXPECT_THROW((void)median_of_paired_ratios(std::vector<double>{1}, std::vector<double>{0}, 1),
                Error);
@@ -100,6 +108,125 @@ class Logged final : public PoseMethod {
   std::string name_;
   std::vector<Call>& log_;
 };
+
+/// Logs its runs; makes `frames` frames, marks the phase "inner" before the second one only, and
+/// "outer" across all of them.
+class LoggedProcess final : public Process {
+ public:
+  LoggedProcess(std::string name, int frames, std::string& log)
+      : name_(std::move(name)), frames_(frames), log_(log) {}
+  void run(FrameSink& sink, RunContext& context, const std::optional<State>&) override {
+    log_ += name_;
+    const Phase outer(context, "outer");
+    for (int i = 0; i < frames_; ++i) {
+      if (context.stop_requested()) return;
+      if (i == 1) const Phase inner(context, "inner");
+      Frame frame;
+      frame.parameter = i;
+      sink.frame(std::move(frame));
+    }
+  }
+
+ private:
+  std::string name_;
+  int frames_;
+  std::string& log_;
+};
+
+class ProcessBenchmark : public ::testing::Test {
+ protected:
+  void TearDown() override { clear_stop(); }
+  [[nodiscard]] std::vector<ProcessEntry> entries() {
+    const Timing recorded{{"run", {{1}, {2}, {3}}}, {"finish", {{0.5}}}};
+    return {{"a", &a, recorded, 3}, {"b", &b, recorded, 3}, {"c", &c, recorded, 3}};
+  }
+  std::map<std::string, Timing> run(int repetitions, int warm_up) {
+    return benchmark_processes(entries(), {repetitions, warm_up}, 1, [](double) {});
+  }
+  std::string log;
+  LoggedProcess a{"a", 3, log}, b{"b", 3, log}, c{"c", 3, log};
+};
+
+TEST_F(ProcessBenchmark, CountsTheRecordedRunAsTheFirstRepetition) {
+  const auto timing = run(3, 0);
+  EXPECT_EQ(log, "bcacab");  // rotated every round, the recorded runs were the first
+  const auto& whole = timing.at("b").at("run");
+  ASSERT_EQ(whole.size(), 3U);
+  for (std::size_t frame = 0; frame < 3; ++frame) {
+    ASSERT_EQ(whole[frame].size(), 3U);
+    EXPECT_EQ(whole[frame][0], static_cast<double>(frame + 1));
+    EXPECT_LT(whole[frame][1], 1) << "an empty frame";
+  }
+  EXPECT_EQ(timing.at("b").at("finish").front().at(0), 0.5);
+}
+
+TEST_F(ProcessBenchmark, CountsTheRecordedRunAsTheFirstWarmUp) {
+  const auto timing = run(1, 2);
+  EXPECT_EQ(log, "bcacab");
+  ASSERT_EQ(timing.at("a").at("run").front().size(), 1U);
+  EXPECT_LT(timing.at("a").at("run")[2][0], 3);
+}
+
+TEST_F(ProcessBenchmark, GivesEachFrameTheTimeSinceTheOneBefore) {
+  const auto timing = run(1, 1);
+  const Timing& times = timing.at("a");
+  for (std::size_t frame = 0; frame < 3; ++frame) {
+    EXPECT_EQ(std::isnan(times.contains("inner") ? times.at("inner")[frame][0] : 0), frame != 1);
+    EXPECT_LE(times.at("outer")[frame][0], times.at("run")[frame][0]);
+  }
+  EXPECT_GE(times.at("finish").front().front(), times.at("finish:outer").front().front());
+}
+
+TEST_F(ProcessBenchmark, OfOneRepetitionRunsNothingAgain) {
+  const auto timing = run(1, 0);
+  EXPECT_EQ(log, "");
+  EXPECT_EQ(timing.at("c").at("run")[1][0], 2);
+}
+
+TEST_F(ProcessBenchmark, StopsWhenAsked) {
+  request_stop();
+  EXPECT_TRUE(run(5, 0).empty());
+  EXPECT_EQ(log, "b");
+}
+
+TEST_F(ProcessBenchmark, RefusesARepetitionOfOtherFrames) {
+  auto all = entries();
+  all[2].frames = 4;
+  EXPECT_THROW((void)benchmark_processes(all, {2, 0}, 1, [](double) {}), Error);
+}
+
+/// Two processes of two frames and two repetitions, the method four times as fast at each.
+std::vector<TimingRatio> ratios_of(std::vector<double> own_parameters, const std::string& status) {
+  std::vector<VariantRecord> variants(2);
+  variants[0].name = "ours";
+  variants[0].role = "method";
+  variants[0].status = status;
+  for (const double t : own_parameters) variants[0].frames.push_back({t, {}});
+  variants[1].name = "dense";
+  variants[1].role = "baseline";
+  variants[1].frames = {{0, {}}, {1, {}}};
+  std::map<std::string, Timing> timing;
+  timing["ours"] = {{"run", {{1, 2}, {3, 4}}}, {"finish", {{0, 6}}}};
+  timing["dense"] = {{"run", {{4, 8}, {12, 16}}}, {"finish", {{0, 0}}}};
+  return timing_ratios(variants, timing, 1);
+}
+
+TEST(TimingRatios, OfProcessesWithTheSameFramesArePairedByFrame) {
+  const TimingRatio ratio = ratios_of({0, 1}, "done").at(0);
+  EXPECT_EQ(ratio.paired, "frame");
+  EXPECT_EQ(ratio.median_ratio, 0.25);
+  EXPECT_EQ(ratio.high, 0.25) << "every pair has it";
+}
+
+TEST(TimingRatios, OfProcessesWithOtherFramesArePairedByWholeRuns) {
+  const TimingRatio ratio = ratios_of({0, 0.5}, "done").at(0);
+  EXPECT_EQ(ratio.paired, "run");
+  // 4 s over 16 s, and 12 s (6 of them after the last frame) over 24 s.
+  EXPECT_EQ(ratio.median_ratio, (0.25 + 0.5) / 2);
+  EXPECT_EQ(ratio.low, 0.25);
+}
+
+TEST(TimingRatios, AVariantThatFailedHasNone) { EXPECT_TRUE(ratios_of({0, 1}, "failed").empty()); }
 
 class Benchmark : public ::testing::Test {
  protected:
@@ -179,6 +306,28 @@ TEST(TimedContext, PausesStopTheClockOfEveryOpenPhase) {
   EXPECT_LE(seconds.at("inner"), seconds.at("outer"));
   EXPECT_LE(seconds.at("outer"), all - 0.02);
   EXPECT_TRUE(context.take_phases().empty());
+}
+
+// Laps cut one clock into pieces: none is lost, none is counted twice.
+TEST(TimedContext, LapsOfAnOpenPhaseAddUpToItsTime) {
+  using Clock = std::chrono::steady_clock;
+  TimedContext context(1);
+  const auto begin = Clock::now();
+  double laps = 0;
+  context.begin_phase("open");
+  for (int i = 0; i < 3; ++i) {
+    const auto wait = Clock::now();
+    while (Clock::now() - wait < std::chrono::milliseconds(5)) {
+    }
+    const double lap = context.lap().at("open");
+    EXPECT_GE(lap, 0.005);
+    laps += lap;
+  }
+  context.end_phase();
+  laps += context.take_phases().at("open");
+  const double all = std::chrono::duration<double>(Clock::now() - begin).count();
+  EXPECT_GE(laps, 0.015);
+  EXPECT_LE(laps, all);
 }
 
 }  // namespace

@@ -72,6 +72,10 @@ TEST(Claims, ReductionsAndFramesPickTheirValue) {
   EXPECT_EQ(value("error", {}, "median"), 2);
   EXPECT_NEAR(value("error", {}, "mean"), 8.0 / 3, 1e-15);
   EXPECT_EQ(value("error", {}, "last"), 2);
+  EXPECT_EQ(value("error", {}, "sum"), 8);
+  // numpy.quantile([1, 2, 5], 0.95) = 2 + 0.9 (5 - 2)
+  EXPECT_NEAR(value("error", {}, "p95"), 4.7, 1e-14);
+  EXPECT_NEAR(value("timing:solve", {}, "p95"), 0.47, 1e-14) << "of the frames' medians";
   EXPECT_EQ(value("error", 45, "max"), 5);
   EXPECT_EQ(value("whole", {}, "max"), 7);
   EXPECT_EQ(value("timing:solve", {}, "median"), 0.2) << "median of the frames' medians";
@@ -108,6 +112,31 @@ TEST(Claims, FactorAndOffsetApplyToTheOtherSide) {
   EXPECT_TRUE(record.holds);
   EXPECT_THAT(record.detail,
               AllOf(HasSubstr("error of a at angle 90 deg"), HasSubstr("0.05 * 20")));
+}
+
+TEST(Claims, OfReduceComparesAVariantWithItselfUnderAnotherReduction) {
+  ClaimSpec c = claim("timing:solve", "a");
+  c.reduce = "p95";
+  c.of_reduce = "median";
+  c.factor = 2;
+  const ClaimRecord record = decide(c, kTwo);
+  EXPECT_NEAR(record.left, 0.47, 1e-14);
+  EXPECT_NEAR(record.right, 2 * 0.2, 1e-14);
+  EXPECT_FALSE(record.holds);
+  EXPECT_THAT(record.detail, HasSubstr("timing:solve of a (p95) against a (median)"));
+  c.factor = 2.5;
+  EXPECT_TRUE(decide(c, kTwo).holds);
+}
+
+TEST(Claims, OfAVariantThatFailedFallShort) {
+  RunRecord record = kTwo;
+  record.cases[0].variants[1].status = "failed";
+  record.cases[0].variants[1].error = "does not converge";
+  ClaimSpec c = claim("error", "b");
+  c.reduce = "every";
+  const ClaimRecord decided = decide(c, record);
+  EXPECT_FALSE(decided.holds) << "every frame that b has would hold it";
+  EXPECT_THAT(decided.detail, HasSubstr("variant 'b' failed after 3 frames: does not converge"));
 }
 
 TEST(Claims, EveryFrameMeansTheWorstFrame) {
@@ -215,6 +244,75 @@ TEST(Studies, SpreadIsTheStandardDeviationWithAReproducibleInterval) {
   EXPECT_LT(s.low, s.value);
   EXPECT_GT(s.high, s.value);
   EXPECT_EQ(make(study("spread", ""), record).low, s.low);
+}
+
+/// Cases of two variants with these errors.
+RunRecord seeds(const std::vector<double>& a, const std::vector<double>& b) {
+  RunRecord record;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    CaseRecord in = record_of({variant("a", {a[i]}), variant("b", {b[i]})}).cases[0];
+    in.name = "seed=" + std::to_string(i);
+    record.cases.push_back(in);
+  }
+  return record;
+}
+
+StudySpec within_spread() {
+  StudySpec s = study("within-spread", "");
+  s.of = "b";
+  return s;
+}
+
+TEST(Studies, WithinSpreadIsTheDistanceOfTheMediansOverHalfTheRange) {
+  // Medians 5 and 3, range 1 … 5.
+  const RunRecord record = seeds({4, 5, 9}, {1, 5, 3});
+  const StudyRecord s = make(within_spread(), record);
+  EXPECT_EQ(s.value, 2.0 / 2);
+  EXPECT_LE(s.low, s.value);
+  EXPECT_GE(s.high, s.value);
+  // No resample's median leaves 4 … 9 or 1 … 5.
+  EXPECT_LE(s.high, (9.0 - 1.0) / 2);
+  EXPECT_EQ(s.y, (std::vector<double>{4, 5, 9}));
+  EXPECT_EQ(s.y_of, (std::vector<double>{1, 5, 3}));
+  EXPECT_EQ(make(within_spread(), record).high, s.high);
+}
+
+TEST(Studies, WithinSpreadOfAYardstickWithoutSpreadIsZeroOrInfinite) {
+  EXPECT_EQ(make(within_spread(), seeds({2, 2, 2}, {2, 2, 2})).value, 0);
+  const StudyRecord apart = make(within_spread(), seeds({3, 3, 3}, {2, 2, 2}));
+  EXPECT_TRUE(std::isinf(apart.value));
+  EXPECT_TRUE(std::isinf(apart.low));
+}
+
+TEST(Studies, LeaveOutVariantsThatFailed) {
+  RunRecord record = seeds({4, 5, 9, 1000}, {1, 5, 3, 3});
+  record.cases[3].variants[0].status = "failed";
+  const StudyRecord s = make(within_spread(), record);
+  EXPECT_EQ(s.value, 1);
+  EXPECT_EQ(s.y.size(), 3U);
+}
+
+// Two samples of ten from one distribution: their medians agree within half the range of one almost
+// always, and the interval of the ratio holds the truth 0 for none, as a distance is positive; what
+// the test can see is that a shift of five standard deviations is never within.
+TEST(Statistics, MedianDistanceTellsAShiftFromNone) {
+  RandomStream random(7, "samples");
+  int same_within = 0, shifted_within = 0;
+  for (int t = 0; t < 200; ++t) {
+    std::vector<double> a, b, shifted;
+    for (int i = 0; i < 10; ++i) {
+      a.push_back(random.normal());
+      b.push_back(random.normal());
+      shifted.push_back(a.back() + 5);
+    }
+    const auto ratio = [&](const std::vector<double>& x) {
+      return median_distance_with_interval(x, b, RandomStream(1, "r")).value;
+    };
+    same_within += ratio(a) <= 1 ? 1 : 0;
+    shifted_within += ratio(shifted) <= 1 ? 1 : 0;
+  }
+  EXPECT_GE(same_within, 198);
+  EXPECT_EQ(shifted_within, 0);
 }
 
 TEST(Statistics, StudentQuantilesAreThoseOfTheTables) {

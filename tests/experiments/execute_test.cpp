@@ -83,7 +83,10 @@ TEST_F(Execute, WritesFilesWithTheirChecksums) {
     EXPECT_EQ(sha256_of_file(result.folder / variant.artifacts[0].name),
               variant.artifacts[0].sha256);
     EXPECT_FALSE(variant.events.empty());
+    EXPECT_EQ(variant.timing.at("run").size(), 9U);
     EXPECT_EQ(variant.timing.at("run").front().size(), 1U);
+    EXPECT_TRUE(std::isnan(variant.timing.at("solve").front().front())) << "nothing solved yet";
+    EXPECT_EQ(variant.timing.at("finish").size(), 1U);
     EXPECT_TRUE(fs::exists(result.folder / "frames/default" / (variant.name + ".pvd")));
   }
   double time = -1;
@@ -120,8 +123,96 @@ TEST_F(Execute, RepeatsProcessesAsOftenAsTimingAsks) {
   std::string text = text_of(pendulum("frames = 2\nduration_s = 0.1"));
   const auto file = write_experiment("toy-pendulum/swing", text + "[timing]\nrepetitions = 3\n");
   const ExecuteResult result = run(load(file), out());
+  EXPECT_EQ(variant_of(result.record, "euler").timing.at("run").size(), 3U);
   EXPECT_EQ(variant_of(result.record, "euler").timing.at("run").front().size(), 3U);
   EXPECT_EQ(variant_of(result.record, "euler").timing.at("prepare").front().size(), 1U);
+}
+
+TEST_F(Execute, TimesAFrameOfAProcessFromTheOneBefore) {
+  // Every frame waits first: the sleep is at least as long as asked.
+  const ExecuteResult result = run(load(pendulum("frames = 3\nframe_delay_ms = 10")), out());
+  for (const VariantRecord& variant : result.record.cases.front().variants) {
+    for (const auto& row : variant.timing.at("run")) EXPECT_GE(row.front(), 0.01);
+    EXPECT_LT(variant.timing.at("finish").front().front(), 0.01) << "no waiting after the last";
+  }
+}
+
+class FailedProcess : public Execute {
+ protected:
+  /// The second variant breaks off at the given time; frames are 0.25 s apart.
+  [[nodiscard]] fs::path failing(const std::string& at_s) const {
+    std::string text = text_of(pendulum());
+    const std::string method = "method = \"explicit-euler\"\n";
+    text.insert(text.find(method) + method.size(), "options = { fail_at_s = " + at_s + " }\n");
+    return write_experiment("toy-pendulum/swing", text + R"(
+[timing]
+repetitions = 2
+[[claim]]
+text = "Euler stays near"
+metric = "angle_error"
+variant = "euler"
+value = 100
+[[claim]]
+text = "the midpoint rule is nearer than Euler"
+metric = "angle_error"
+variant = "midpoint"
+of = "euler"
+[[claim]]
+text = "the midpoint rule stays near"
+metric = "angle_error"
+variant = "midpoint"
+value = 100
+)");
+  }
+};
+
+TEST_F(FailedProcess, KeepsItsFramesAndTheOtherVariantsRun) {
+  const ExecuteResult result = run(load(failing("0.6")), out());
+  const VariantRecord& euler = variant_of(result.record, "euler");
+  EXPECT_EQ(euler.status, "failed");
+  EXPECT_THAT(euler.error, HasSubstr("time 0.750000 s: does not converge"));
+  ASSERT_EQ(euler.frames.size(), 4U);  // 0, 0.25, 0.5, 0.75 s
+  for (const FrameRecord& frame : euler.frames) {
+    for (const StoredFile& file : frame.files) {
+      EXPECT_EQ(sha256_of_file(result.folder / file.name), file.sha256);
+    }
+  }
+  EXPECT_TRUE(fs::exists(result.folder / "frames/default/euler.pvd"));
+  EXPECT_EQ(euler.metrics.at("angle_error").values.size(), 4U);
+  EXPECT_EQ(euler.timing.at("run").size(), 4U);
+  EXPECT_FALSE(euler.summary.contains("largest_angle_error")) << "of the whole sequence";
+  EXPECT_EQ(variant_of(result.record, "midpoint").status, "done");
+  EXPECT_EQ(variant_of(result.record, "midpoint").frames.size(), 9U);
+  EXPECT_EQ(variant_of(result.record, "midpoint").timing.at("run").front().size(), 2U);
+  const VariantRecord read = variant_of(read_run_file(out() / "run.h5"), "euler");
+  EXPECT_EQ(read.status, "failed");
+  EXPECT_EQ(read.error, euler.error);
+}
+
+TEST_F(FailedProcess, DecidesNoClaim) {
+  const ExecuteResult result = run(load(failing("0.6")), out());
+  ASSERT_EQ(result.record.claims.size(), 3U);
+  for (const std::size_t about_euler : {0U, 1U}) {
+    EXPECT_FALSE(result.record.claims[about_euler].holds);
+    EXPECT_THAT(result.record.claims[about_euler].detail,
+                HasSubstr("variant 'euler' failed after 4 frames"));
+  }
+  EXPECT_TRUE(result.record.claims[2].holds);
+}
+
+TEST_F(FailedProcess, BeforeItsFirstFrameEndsTheRun) {
+  EXPECT_THAT(error_of([&] { run(load(failing("0")), out()); }),
+              HasSubstr("variant 'euler': time 0.000000 s: does not converge"));
+  EXPECT_FALSE(fs::exists(out() / "run.h5"));
+}
+
+TEST_F(FailedProcess, StaysFailedWhenTheRunIsResumed) {
+  const auto file = failing("0.6");
+  run(load(file), out());
+  fs::remove(out() / "run.h5");
+  const ExecuteResult again = run(load(file), out(), true);
+  EXPECT_EQ(variant_of(again.record, "euler").status, "failed");
+  EXPECT_EQ(variant_of(again.record, "euler").frames.size(), 4U);
 }
 
 TEST_F(Execute, RefusesAFolderThatIsNotEmpty) {

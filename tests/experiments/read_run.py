@@ -102,7 +102,7 @@ def check_frame(folder, run):
 
 
 def check_numbers(folder, run):
-    assert run.attrs["schema_version"] == 1 and run.attrs["quick"] == 0
+    assert run.attrs["schema_version"] == 2 and run.attrs["quick"] == 0
     assert isinstance(run.attrs["experiment"], str) and "toy-pendulum" in run.attrs["experiment"]
     for name in ["git_commit", "compiler", "flags", "instruction_set", "cpu", "start", "library_VTK"]:
         assert isinstance(run.attrs[name], str), name
@@ -118,7 +118,9 @@ def check_numbers(folder, run):
     assert error.attrs["direction"] == "lower_is_better" and error.attrs["definition"]
     assert euler["summary/angle_error.max"][()] == error[:].max()
     assert "distance_to_reference" in euler["metrics"]
-    assert euler["timing/run"].shape == (1, 1) and euler["timing/run"].attrs["unit"] == "s"
+    assert euler["timing/run"].shape == (9, 1) and euler["timing/run"].attrs["unit"] == "s"
+    assert euler["timing/finish"].shape == (1, 1) and euler["timing/prepare"].shape == (1, 1)
+    assert euler.attrs["status"] == "done" and euler.attrs["error"] == ""
     events = euler["events"]
     assert events.dtype["position"].shape == (3,) and events[0]["kind"] == b"crossing"
     for table in ["frames", "artifacts"]:

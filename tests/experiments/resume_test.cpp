@@ -71,6 +71,38 @@ TEST_F(Resume, AfterKillsOfAProcessWithCheckpoints) {
   EXPECT_LE(count_lines(journal(), "frame"), 21U + 4U);
 }
 
+// Every frame waits 50 ms: a frame made before the kill keeps the time that the journal has, one
+// made after it has a time of its own, and none has that of another.
+TEST_F(Resume, KeepsTheTimesOfTheFramesBeforeTheKill) {
+  const auto file = pendulum("frames = 6\nframe_delay_ms = 50");
+  ASSERT_EQ(interrupt(file, 4, SIGKILL), -SIGKILL) << text_of(log());
+  std::vector<double> before;
+  {
+    const Journal log_of_run(journal());
+    for (const journal::Line& line : log_of_run.lines()) {
+      const auto* frame = std::get_if<journal::FrameLine>(&line);
+      if (frame != nullptr) before.push_back(frame->timing.at("run"));
+    }
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  const ExecuteResult resumed = run(load(file), out(), true);
+  const double lasted =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const auto& timing = resumed.record.cases.front().variants.front().timing.at("run");
+  ASSERT_EQ(timing.size(), 7U);
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_GE(timing[i].front(), 0.05) << i;
+    // The last frame of the journal may lack its checkpoint: it is made again.
+    if (i + 1 < before.size()) {
+      EXPECT_EQ(timing[i].front(), before[i]) << i;
+    }
+    if (i >= before.size()) {
+      EXPECT_LT(timing[i].front(), lasted) << i;
+    }
+  }
+  EXPECT_EQ(count_lines(journal(), "resume"), 1U);
+}
+
 TEST_F(Resume, AfterKillsOfAProcessWithoutCheckpoints) {
   const auto file = pendulum("frames = 4\nframe_delay_ms = 50", "checkpoints = false");
   ASSERT_EQ(interrupt(file, 3, SIGKILL), -SIGKILL) << text_of(log());

@@ -29,7 +29,8 @@ VariantRecord sample_variant(const std::string& name) {
   variant.method = "implicit";
   variant.role = "method";
   variant.options_json = R"({"step": 0.35})";
-  variant.status = "done";
+  variant.status = "failed";
+  variant.error = "time 0.5 s: does not converge";
   variant.frames = {{0.1, {{"frames/default/a/surface_0000.vtp", std::string(64, 'a')}}},
                     {-0.0, {}},
                     {90, {{"x.vtp", std::string(64, 'b')}, {"y.csv", std::string(64, 'c')}}}};
@@ -67,10 +68,11 @@ RunRecord sample_record() {
   one.facts = {{"vertices", 13380}};
   one.warnings = {"one", "two lines\nof it"};
   one.variants = {sample_variant("zeta"), sample_variant("alpha")};  // not sorted by name
-  one.ratios = {{"zeta", "alpha", 1.5, 1.25, 2}};
+  one.ratios = {{"zeta", "alpha", 1.5, 1.25, 2, "run"}, {"zeta", "beta", 1, kNan, kNan, "frame"}};
   record.cases = {one, {}};
   record.cases[1].name = "default";
-  record.studies = {{"growth", "exponent", "timing:solve", 1.02, 0.9, 1.1, {1, 2}, {3, 4}}};
+  record.studies = {{"growth", "exponent", "timing:solve", 1.02, 0.9, 1.1, {1, 2}, {3, 4}, {}},
+                    {"near", "within-spread", "x", kInfinity, 0, 1, {0, 1}, {3, 4}, {5, 5}}};
   record.claims = {{"it holds", "default", "1 <= 2", 1, 2, true},
                    {"it does not", "", "", kNan, 0, false}};
   return record;
@@ -88,7 +90,8 @@ std::string numbers(const std::vector<double>& values) {
 }
 
 std::string dump(const VariantRecord& v) {
-  std::string text = v.name + v.method + v.role + v.reference + v.options_json + v.status + "\n";
+  std::string text =
+      v.name + v.method + v.role + v.reference + v.options_json + v.status + v.error + "\n";
   for (const auto& frame : v.frames) {
     text += numbers({frame.parameter});
     for (const auto& file : frame.files) text += file.name + file.sha256 + "\n";
@@ -119,7 +122,7 @@ std::string dump(const CaseRecord& c) {
   for (const auto& [key, value] : c.facts) text += key + numbers({value});
   for (const auto& warning : c.warnings) text += warning + "\n";
   for (const auto& r : c.ratios)
-    text += r.variant + r.of + numbers({r.median_ratio, r.low, r.high});
+    text += r.variant + r.of + r.paired + numbers({r.median_ratio, r.low, r.high});
   for (const auto& v : c.variants) text += dump(v);
   return text;
 }
@@ -133,7 +136,7 @@ std::string dump(const RunRecord& r) {
   for (const auto& c : r.cases) text += dump(c);
   for (const auto& s : r.studies) {
     text += s.name + s.kind + s.quantity + numbers({s.value, s.low, s.high}) + numbers(s.x) +
-            numbers(s.y);
+            numbers(s.y) + numbers(s.y_of);
   }
   for (const auto& c : r.claims) {
     text += c.text + c.case_name + c.detail + numbers({c.left, c.right}) + (c.holds ? "1" : "0");

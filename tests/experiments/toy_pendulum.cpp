@@ -36,6 +36,7 @@ struct PendulumOptions {
   double step_s = 0.01;
   bool checkpoints = true;
   int sound_rate_hz = 8000;
+  std::optional<double> fail_at_s;
 };
 
 void describe(OptionVisitor& v, PendulumOptions& o) {
@@ -43,6 +44,10 @@ void describe(OptionVisitor& v, PendulumOptions& o) {
   v.value("checkpoints", o.checkpoints, {.doc = "save the state after every frame"});
   v.value("sound_rate_hz", o.sound_rate_hz,
           {.doc = "sample rate of swing.wav", .unit = "Hz", .min = 1000, .max = 96000});
+  v.value("fail_at_s", o.fail_at_s,
+          {.doc = "ends with an error at this time, as a solver that does not converge",
+           .unit = "s",
+           .min = 0});
 }
 
 class PendulumScene final : public Scene {
@@ -145,6 +150,9 @@ class PendulumProcess final : public Process {
     for (; s.next_frame <= last; ++s.next_frame) {
       if (context.stop_requested()) return;
       std::this_thread::sleep_for(std::chrono::milliseconds(scene_.options.frame_delay_ms));
+      if (options_.fail_at_s && s.time >= *options_.fail_at_s) {
+        throw Error("does not converge", "time " + std::to_string(s.time) + " s");
+      }
       if (s.next_frame > 0) {
         Phase phase(context, "solve");
         advance(s, scene_.options.duration_s / last, sink);

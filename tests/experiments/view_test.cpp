@@ -211,7 +211,7 @@ TEST(Panel, SphereCoversItsDiscOnWhite) {
   window.height_m = 4;
   window.depth_m = 1.2;
   constexpr int kSize = 200;
-  const Picture picture = draw_panel({&sphere}, window, std::nullopt, kSize, kSize);
+  const Picture picture = draw_panel({{&sphere}, {}, {}}, window, {}, kSize, kSize);
   int covered = 0;
   for (const Rgb& p : picture.pixels) covered += p[0] < 250 || p[2] < 250 ? 1 : 0;
   const double radius_px = kSize / 4.0;
@@ -249,7 +249,7 @@ TEST(Panel, LinesPointsAndGridsAreDrawn) {
   window.height_m = 4;
   window.depth_m = 2;
   for (const Part* part : {&lines, &points, &ball}) {
-    const Picture picture = draw_panel({part}, window, std::nullopt, 100, 100);
+    const Picture picture = draw_panel({{part}, {}, {}}, window, {}, 100, 100);
     int covered = 0;
     for (const Rgb& p : picture.pixels) covered += p[0] < 240 ? 1 : 0;
     EXPECT_GT(covered, 4) << static_cast<int>(part->kind);

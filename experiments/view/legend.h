@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "experiments/view/colors.h"
+#include "experiments/view/figure_cells.h"
+#include "experiments/view/picture.h"
+
+namespace geoprior {
+
+/// A horizontal bar with ticks below and "name [unit]" at its left; pointed ends where values go on
+/// beyond it.
+void draw_scalar_bar(Picture& picture, const ColorScale& scale, int top);
+
+/// A line of the legend: a class of the surface, or an overlay.
+struct LegendEntry {
+  enum class Mark { area, line, ball };
+  std::string label;
+  std::array<double, 3> color{0, 0, 0};
+  Mark mark = Mark::area;
+};
+
+using OverlayColors = std::map<std::string, std::array<double, 3>>;
+
+/// Colours of the overlays that some panel has: ink for lines, red for points, others for further
+/// ones of a kind.
+OverlayColors overlay_colors(const std::vector<FigureRow>& rows,
+                             const std::vector<std::string>& overlays);
+
+/// The classes of the view, then the overlays that some panel has. Empty for a view without
+/// classes.
+std::vector<LegendEntry> legend_entries(const std::vector<FigureRow>& rows, const FigureView& view);
+
+/// In one centred row below `top`.
+void draw_legend(Picture& picture, const std::vector<LegendEntry>& entries, int top);
+
+}  // namespace geoprior
