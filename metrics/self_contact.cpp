@@ -4,6 +4,8 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include "core/error.h"
@@ -32,19 +34,18 @@ class TrianglePairs {
     }
   }
 
-  /// Number of intersecting pairs for which `wanted(a, b)`.
-  template <class Wanted>
-  int count(const Wanted& wanted) {
-    int found = 0;
+  /// Calls `found(a, b)` for every intersecting pair for which `wanted(a, b)`, in no useful order.
+  template <class Wanted, class Found>
+  void each(const Wanted& wanted, const Found& found) const {
     std::vector<const Box*> pointers;
     pointers.reserve(boxes_.size());
     for (const Box& box : boxes_) pointers.push_back(&box);
-    CGAL::box_self_intersection_d(pointers.begin(), pointers.end(),
-                                  [&](const Box* a, const Box* b) {
-                                    if (wanted(a->info(), b->info()) && meet(a->info(), b->info()))
-                                      ++found;
-                                  });
-    return found;
+    CGAL::box_self_intersection_d(
+        pointers.begin(), pointers.end(), [&](const Box* a, const Box* b) {
+          if (wanted(a->info(), b->info()) && meet(a->info(), b->info())) {
+            found(a->info(), b->info());
+          }
+        });
   }
 
  private:
@@ -95,17 +96,32 @@ class TrianglePairs {
 
 }  // namespace
 
+std::vector<std::array<int, 2>> intersecting_triangles(const Eigen::MatrixX3d& V,
+                                                       const Eigen::MatrixX3i& F) {
+  std::vector<std::array<int, 2>> pairs;
+  TrianglePairs(V, F).each([](int, int) { return true; },
+                           [&](int a, int b) {
+                             pairs.push_back({std::min(a, b), std::max(a, b)});
+                           });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
 int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F) {
-  return TrianglePairs(V, F).count([](int, int) { return true; });
+  return static_cast<int>(intersecting_triangles(V, F).size());
 }
 
 int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
                        const JointRegion& region) {
   std::vector<bool> inside(static_cast<std::size_t>(F.rows()), false);
   for (const int t : region.triangles) inside[static_cast<std::size_t>(t)] = true;
-  return TrianglePairs(V, F).count([&](int a, int b) {
-    return inside[static_cast<std::size_t>(a)] || inside[static_cast<std::size_t>(b)];
-  });
+  int count = 0;
+  TrianglePairs(V, F).each(
+      [&](int a, int b) {
+        return inside[static_cast<std::size_t>(a)] || inside[static_cast<std::size_t>(b)];
+      },
+      [&](int, int) { ++count; });
+  return count;
 }
 
 }  // namespace geoprior

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "core/mesh.h"
 #include "metrics/joint_region.h"
 
@@ -17,6 +20,10 @@ namespace geoprior {
 /// Source: the rules of CGAL 5.5, Polygon Mesh Processing, self_intersections, here for indexed
 /// triangles that need not be manifold.
 int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F);
+
+/// The pairs themselves, each with the lower triangle first, in ascending order.
+std::vector<std::array<int, 2>> intersecting_triangles(const Eigen::MatrixX3d& V,
+                                                       const Eigen::MatrixX3i& F);
 
 /// Only the pairs of which at least one triangle belongs to the region.
 int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,

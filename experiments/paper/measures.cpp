@@ -10,10 +10,13 @@
 #include "baselines/paper/transfer.h"
 #include "core/error.h"
 #include "experiments/paper/scene.h"
+#include "metrics/creases.h"
 #include "metrics/elastica.h"
+#include "metrics/intersection_depth.h"
 #include "metrics/self_contact.h"
 #include "metrics/shell_energy.h"
 #include "metrics/surface_distance.h"
+#include "metrics/weighted_quantile.h"
 
 namespace geoprior {
 namespace {
@@ -46,7 +49,16 @@ ContentKey key_of(const SheetFrame& f) {
   return key;
 }
 
-void measure_energies(const SheetFrame& f, SurfaceMeasures& out) {
+std::shared_ptr<const CurvatureFit> fit_of(SheetMemo& memo, const SheetFrame& f) {
+  ContentKey key;
+  key.add_matrix(f.pattern);
+  key.add_matrix(f.triangles());
+  return memo.fit.get(key, [&] {
+    return std::make_shared<const CurvatureFit>(fit_curvature(f.pattern, f.triangles()));
+  });
+}
+
+void measure_energies(SheetMemo& memo, const SheetFrame& f, SurfaceMeasures& out) {
   const PaperMaterial& material = f.sheet.material;
   const PlateStiffness plate{material.membrane_stiffness(), material.bending_stiffness(),
                              material.poisson_ratio};
@@ -55,19 +67,35 @@ void measure_energies(const SheetFrame& f, SurfaceMeasures& out) {
   const Eigen::MatrixX3d rest = plastic != nullptr
                                     ? Eigen::MatrixX3d(plastic->values)
                                     : Eigen::MatrixX3d::Zero(f.triangles().rows(), 3);
-  out.bending_energy = bending_energy(fit_curvature(f.pattern, f.triangles()), f.x(), rest, plate);
+  out.bending_energy = bending_energy(*fit_of(memo, f), f.x(), rest, plate);
   if (const NamedArray* v = find_array(f.surface, "velocity", NamedArray::On::points)) {
     out.kinetic_energy = kinetic_energy(f.pattern, v->values, f.triangles(), material.area_density);
   }
 }
 
-SurfaceMeasures compute(const SheetFrame& f) {
+void measure_creases(const SheetFrame& f, SurfaceMeasures& out) {
+  const CreaseOptions options;
+  const GriddedSheet sheet = gridded_sheet(f.pattern, f.x(), f.triangles(), options.grid_spacing);
+  out.crease_length = crease_length(sheet, options);
+  out.cones = static_cast<int>(detect_cones(sheet, options).size());
+  const std::vector<double> facets = facet_areas(sheet, options);
+  out.facets = static_cast<int>(facets.size());
+  if (facets.empty()) return;
+  const Eigen::Map<const Eigen::VectorXd> areas(facets.data(), out.facets);
+  out.facet_area_median = weighted_quantile(areas, Eigen::VectorXd::Ones(out.facets), 0.5);
+}
+
+SurfaceMeasures compute(SheetMemo& memo, const SheetFrame& f) {
   SurfaceMeasures out;
   out.isometry = isometry(f.pattern, f.x(), f.triangles());
+  out.developability = developability({f.x(), f.triangles()});
+  measure_creases(f, out);
   out.mesh = pattern_mesh(f.pattern, f.triangles());
   out.uncovered_area = std::abs(out.mesh.area - signed_area(f.sheet.pattern));
-  measure_energies(f, out);
-  out.intersecting_pairs = intersecting_pairs(f.x(), f.triangles());
+  if (out.mesh.inverted == 0) measure_energies(memo, f, out);
+  const auto pairs = intersecting_triangles(f.x(), f.triangles());
+  out.intersecting_pairs = static_cast<int>(pairs.size());
+  out.intersection_depth = intersection_depth(f.x(), f.triangles(), pairs);
   return out;
 }
 
@@ -124,7 +152,7 @@ SheetFrame sheet_frame(const Scene& scene, const Frame& frame) {
 }
 
 SurfaceMeasures surface_measures(SheetMemo& memo, const SheetFrame& f) {
-  return memo.surface.get(key_of(f), [&] { return compute(f); });
+  return memo.surface.get(key_of(f), [&] { return compute(memo, f); });
 }
 
 std::optional<HandleForce> handle_force(const SheetFrame& f) {

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "baselines/paper/sheet.h"
+#include "core/curvature_fit.h"
 #include "core/frame.h"
 #include "experiments/memo.h"
 #include "experiments/topic.h"
+#include "metrics/developability.h"
 #include "metrics/isometry.h"
 #include "metrics/pattern_mesh.h"
 
@@ -33,16 +36,24 @@ SheetFrame sheet_frame(const Scene& scene, const Frame& frame);
 /// Everything that is read off the surface of one frame alone.
 struct SurfaceMeasures {
   IsometrySummary isometry;
+  DevelopabilitySummary developability;
+  double crease_length = 0;  ///< m
+  int cones = 0;             ///< detected apexes
+  int facets = 0;
+  Value facet_area_median;  ///< m^2; absent when all facets are dust
   PatternMeshSummary mesh;
   double uncovered_area = 0;  ///< |area of the mesh - area of the pattern| (m^2)
-  double membrane_energy = 0, bending_energy = 0;  ///< J
-  Value kinetic_energy;                            ///< J; absent without velocities
+  /// J; absent when a triangle has no area in the pattern or is turned over there, the kinetic
+  /// energy also without velocities.
+  Value membrane_energy, bending_energy, kinetic_energy;
   int intersecting_pairs = 0;
+  double intersection_depth = 0;  ///< m
 };
 
-/// Values that the metrics of a frame share.
+/// Values that the metrics of a frame share, and the bending fits of the last meshes.
 struct SheetMemo {
   Memo<SurfaceMeasures> surface;
+  Memo<std::shared_ptr<const CurvatureFit>, 4> fit;
 };
 SurfaceMeasures surface_measures(SheetMemo& memo, const SheetFrame& f);
 

@@ -17,6 +17,7 @@ namespace {
 constexpr Tolerance kSmooth{1e-12, 1e-6};
 constexpr Tolerance kStrain{1e-7, 1e-6};
 constexpr Tolerance kCount{1, 0.02};
+constexpr Tolerance kShare{0.01, 0};
 
 using SharedMemo = std::shared_ptr<SheetMemo>;
 
@@ -74,6 +75,43 @@ void add_isometry(SurfaceRows rows) {
   rows.add("area_drift", "1", "area in space over the area of the pattern's triangles, minus 1",
            Direction::closer_to_target, kStrain,
            [](const Surface& s) { return s.isometry.area_drift; });
+}
+
+void add_developability(SurfaceRows rows) {
+  constexpr auto lower = Direction::lower_is_better;
+  rows.add("angle_defect_mean", "rad", "mean of |angle defect| over the interior vertices", lower,
+           kSmooth, [](const Surface& s) { return s.developability.angle_defect_mean; });
+  rows.add("angle_defect_max", "rad", "largest |angle defect| of an interior vertex", lower,
+           kSmooth, [](const Surface& s) { return s.developability.angle_defect_max; });
+  rows.add("hinge_energy_sum", "rad",
+           "sum over the interior vertices of the smallest eigenvalue of sum theta n n' over the "
+           "star (Stein, Grinspun, Crane 2018)",
+           lower, kSmooth, [](const Surface& s) { return s.developability.hinge_energy_sum; });
+  rows.add("hinge_energy_max", "rad", "largest such eigenvalue", lower, kSmooth,
+           [](const Surface& s) { return s.developability.hinge_energy_max; });
+  rows.add("gauss_image_thinness", "1",
+           "share of the area at interior vertices whose triangles' normals lie within one degree "
+           "of a great circle",
+           Direction::higher_is_better, kShare,
+           [](const Surface& s) { return s.developability.thinness; });
+}
+
+void add_creases(SurfaceRows rows) {
+  constexpr auto none = Direction::none;
+  rows.add("crease_length", "m",
+           "length in the pattern of the folds where the normal turns by more than 20 degrees "
+           "within about 5 mm, by crossings of the links of a 2.5 mm grid (Cauchy, Crofton)",
+           none, {5e-3, 0.02}, [](const Surface& s) { return s.crease_length; });
+  rows.add("dcone_count", "1",
+           "singular points: peaks above 0.05 rad, 20 mm apart, of the hinge energy of a ring of "
+           "10 mm radius about the points of a 5 mm grid",
+           none, kCount, [](const Surface& s) { return s.cones; });
+  rows.add("facet_count", "1",
+           "facets of at least 1 cm^2 between creases: connected points of a 2.5 mm grid whose "
+           "neighbours' normals differ by at most 20 degrees",
+           none, kCount, [](const Surface& s) { return s.facets; });
+  rows.add("facet_area_median", "m^2", "median area of those facets", none, {1e-4, 0.02},
+           [](const Surface& s) { return s.facet_area_median; });
 }
 
 void add_energies(SurfaceRows rows, std::vector<MetricEntry>& table) {
@@ -135,6 +173,11 @@ void add_contact(SurfaceRows rows) {
   rows.add("intersecting_pairs", "1", "pairs of triangles that intersect each other",
            Direction::lower_is_better, kCount,
            [](const Surface& s) { return s.intersecting_pairs; });
+  rows.add("intersection_depth", "m",
+           "largest, over the intersecting pairs, of the shortest way along a normal of the two "
+           "that takes them apart; at most the triangles' height",
+           Direction::lower_is_better, {1e-9, 1e-6},
+           [](const Surface& s) { return s.intersection_depth; });
 }
 
 void add_comparisons(std::vector<MetricEntry>& table) {
@@ -162,6 +205,8 @@ std::vector<MetricEntry> paper_metrics() {
   std::vector<MetricEntry> table;
   const SurfaceRows rows(table, std::make_shared<SheetMemo>());
   add_isometry(rows);
+  add_developability(rows);
+  add_creases(rows);
   add_energies(rows, table);
   add_mesh(rows, table);
   add_contact(rows);
