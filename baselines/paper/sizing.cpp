@@ -57,9 +57,14 @@ class SizingField {
   [[nodiscard]] double twice_area(int f) const { return twice_area_[static_cast<std::size_t>(f)]; }
 
  private:
+  /// The edge from `a` to `b` as its triangle `left` has it.
+  struct Hinge {
+    int a, b, left, right;
+  };
   void build_triangles();
   void build_normals();
   void build_curvature();
+  [[nodiscard]] std::vector<Hinge> hinges() const;
   [[nodiscard]] Vector2d pattern(int v) const { return state_.mesh.pattern.row(v); }
   [[nodiscard]] Vector3d place(int v) const { return state_.x.row(v); }
   /// Gradient over the pattern of the linear function with these values at the corners.
@@ -113,12 +118,20 @@ void SizingField::build_triangles() {
   }
 }
 
+/// Weights of Max 1999, which make the normals of a sphere exact on any triangulation: weights by
+/// area alone overestimated curvature by a quarter on irregular meshes.
 void SizingField::build_normals() {
   smooth_.assign(static_cast<std::size_t>(state_.mesh.vertex_count()), Vector3d::Zero());
   for (int f = 0; f < state_.mesh.triangle_count(); ++f) {
     for (int k = 0; k < 3; ++k) {
-      smooth_[static_cast<std::size_t>(state_.mesh.triangles(f, k))] +=
-          twice_area_[static_cast<std::size_t>(f)] * normal_[static_cast<std::size_t>(f)];
+      const int v = state_.mesh.triangles(f, k);
+      const double before =
+          (pattern(state_.mesh.triangles(f, (k + 2) % 3)) - pattern(v)).squaredNorm();
+      const double after =
+          (pattern(state_.mesh.triangles(f, (k + 1) % 3)) - pattern(v)).squaredNorm();
+      smooth_[static_cast<std::size_t>(v)] += twice_area_[static_cast<std::size_t>(f)] /
+                                              (before * after) *
+                                              normal_[static_cast<std::size_t>(f)];
     }
   }
   for (Vector3d& n : smooth_) {
@@ -127,50 +140,60 @@ void SizingField::build_normals() {
   }
 }
 
-/// Each hinge bends its two triangles by theta l t t' / 2, spread over their areas.
-void SizingField::build_curvature() {
+/// Interior edges, by ends and then triangles.
+std::vector<SizingField::Hinge> SizingField::hinges() const {
   const Eigen::MatrixX3i& F = state_.mesh.triangles;
-  const auto m = static_cast<std::size_t>(state_.mesh.triangle_count());
-  curvature_.assign(m, Matrix2d::Zero());
-  struct Side {
-    int low, high, triangle;
-    bool operator<(const Side& o) const {
-      return std::tie(low, high, triangle) < std::tie(o.low, o.high, o.triangle);
-    }
-  };
-  std::vector<Side> sides;
-  sides.reserve(3 * m);
-  for (int f = 0; f < static_cast<int>(m); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = F(f, k), b = F(f, (k + 1) % 3);
-      sides.push_back({std::min(a, b), std::max(a, b), f});
-    }
+  std::vector<Hinge> sides;
+  sides.reserve(static_cast<std::size_t>(3 * F.rows()));
+  for (int f = 0; f < static_cast<int>(F.rows()); ++f) {
+    for (int k = 0; k < 3; ++k) sides.push_back({F(f, k), F(f, (k + 1) % 3), f, -1});
   }
-  std::sort(sides.begin(), sides.end());
+  const auto key = [](const Hinge& h) {
+    return std::make_tuple(std::min(h.a, h.b), std::max(h.a, h.b), h.left);
+  };
+  std::sort(sides.begin(), sides.end(),
+            [&](const Hinge& p, const Hinge& q) { return key(p) < key(q); });
+  std::vector<Hinge> result;
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-    const Side& s = sides[i];
-    if (s.low != sides[i + 1].low || s.high != sides[i + 1].high) continue;
-    const auto f = static_cast<std::size_t>(s.triangle);
-    const auto g = static_cast<std::size_t>(sides[i + 1].triangle);
-    const Vector2d along = pattern(s.high) - pattern(s.low);
+    Hinge h = sides[i];
+    if (h.a != sides[i + 1].b || h.b != sides[i + 1].a) continue;
+    h.right = sides[i + 1].left;
+    result.push_back(h);
+  }
+  return result;
+}
+
+/// Each hinge bends its two triangles by theta l t t' / 2, spread over their areas. One triangle's
+/// sum depends on how its edges lie to the curvature; the mean over it and its neighbours does so
+/// much less.
+void SizingField::build_curvature() {
+  const auto m = static_cast<std::size_t>(state_.mesh.triangle_count());
+  std::vector<Matrix2d> bend(m, Matrix2d::Zero());  // area times curvature
+  const std::vector<Hinge> all = hinges();
+  for (const Hinge& h : all) {
+    const auto f = static_cast<std::size_t>(h.left), g = static_cast<std::size_t>(h.right);
+    const Vector2d along = pattern(h.b) - pattern(h.a);
     const double length = along.norm();
     const Vector2d across(-along.y() / length, along.x() / length);
-    // The sign belongs to the operator: mountains and valleys beside each other do not add up.
-    const Vector3d edge = place(s.high) - place(s.low);
-    const double sine = normal_[f].cross(normal_[g]).norm();
-    const double angle = std::atan2(sine, normal_[f].dot(normal_[g]));
-    const double turn = edge.dot(normal_[f].cross(normal_[g]));
-    const bool left = [&] {
-      for (int k = 0; k < 3; ++k) {
-        if (F(s.triangle, k) == s.low) return F(s.triangle, (k + 1) % 3) == s.high;
-      }
-      return false;
-    }();
-    const double theta = (turn >= 0) == left ? angle : -angle;
-    const Matrix2d bend = 0.5 * theta * length * across * across.transpose();
-    curvature_[f] += bend / (0.5 * twice_area_[f]);
-    curvature_[g] += bend / (0.5 * twice_area_[g]);
+    const Vector3d edge = place(h.b) - place(h.a);
+    const Vector3d turn = normal_[f].cross(normal_[g]);
+    const double angle = std::atan2(turn.norm(), normal_[f].dot(normal_[g]));
+    // Mountains and valleys beside each other cancel, so the sign matters.
+    const double theta = turn.dot(edge) < 0 ? angle : -angle;
+    const Matrix2d half = 0.5 * theta * length * across * across.transpose();
+    bend[f] += half;
+    bend[g] += half;
   }
+  curvature_ = bend;
+  std::vector<double> area(twice_area_);
+  for (const Hinge& h : all) {
+    const auto f = static_cast<std::size_t>(h.left), g = static_cast<std::size_t>(h.right);
+    curvature_[f] += bend[g];
+    curvature_[g] += bend[f];
+    area[f] += twice_area_[g];
+    area[g] += twice_area_[f];
+  }
+  for (std::size_t f = 0; f < m; ++f) curvature_[f] /= 0.5 * area[f];
 }
 
 SizeTensor SizingField::of_triangle(int f) const {
