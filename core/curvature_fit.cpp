@@ -190,11 +190,17 @@ Eigen::Matrix3d affine_frame(const Eigen::MatrixX2d& pattern, const Patch& patch
   return congruence(spread.llt().matrixL().toDenseMatrix().inverse());
 }
 
+/// Jump at edge i of a patch, to be multiplied with S as (uu, sqrt2 uv, vv).
+Eigen::Vector3d mandel_jump(const std::vector<Hinge>& hinges, const Patch& patch, Eigen::Index i) {
+  const int edge = patch.edges()[static_cast<std::size_t>(i)];
+  const Eigen::Vector3d& jump = hinges[static_cast<std::size_t>(edge)].jump;
+  return {jump[0], jump[1] / kRoot2, jump[2]};
+}
+
 /// Directions of S that the edges of a patch observe.
 struct Observation {
   Eigen::Matrix3d from_affine;
-  Rows3 rows;             ///< jumps in the affine frame
-  Eigen::Matrix3d basis;  ///< orthonormal there; the last `rank` columns are observed
+  Rows3 rows;  ///< jumps in the affine frame
   int rank = 0;
 };
 
@@ -207,40 +213,39 @@ Observation observe(const Eigen::MatrixX2d& pattern, const std::vector<Hinge>& h
   seen.from_affine = affine_frame(pattern, patch);
   Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
   for (Eigen::Index i = 0; i < n; ++i) {
-    Eigen::Vector3d row =
-        hinges[static_cast<std::size_t>(patch.edges()[static_cast<std::size_t>(i)])].jump;
-    row[1] /= kRoot2;
-    seen.rows.row(i) = row.transpose() * seen.from_affine;
+    seen.rows.row(i) = mandel_jump(hinges, patch, i).transpose() * seen.from_affine;
     gram += seen.rows.row(i).normalized().transpose() * seen.rows.row(i).normalized();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(gram);
-  seen.basis = eigen.eigenvectors();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(gram, Eigen::EigenvaluesOnly);
   for (int i = 0; i < 3; ++i)
     seen.rank += eigen.eigenvalues()[i] > kObserved * kObserved * eigen.eigenvalues()[2];
   return seen;
 }
 
-/// Coefficients (3 x edges, Mandel) of the least-squares fit, zero in the directions not observed.
-Columns3 solve_fit(const std::vector<Hinge>& hinges, const Patch& patch, const Observation& seen) {
+/// Coefficients (3 x edges, Mandel) of the weighted least-squares fit where all of S is observed.
+Columns3 fitted(const std::vector<Hinge>& hinges, const Patch& patch, const Observation& seen) {
   const Eigen::Index n = seen.rows.rows();
-  if (seen.rank == 0) return Columns3::Zero(3, n);
   Eigen::VectorXd weight(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    Eigen::Vector3d jump = hinges[static_cast<std::size_t>(patch.edges()[k])].jump;
-    jump[1] /= kRoot2;
-    weight[i] = distance_weight(patch.distance()[k]) / jump.norm();
+    weight[i] = distance_weight(patch.distance()[k]) / mandel_jump(hinges, patch, i).norm();
   }
-  const Eigen::MatrixXd kept = seen.basis.rightCols(seen.rank);
-  const Eigen::MatrixXd weighted = weight.asDiagonal() * (seen.rows * kept);
-  const Eigen::MatrixXd z =
-      Eigen::HouseholderQR<Eigen::MatrixXd>(weighted).solve(Eigen::MatrixXd(weight.asDiagonal()));
-  Columns3 coefficients = seen.from_affine * kept * z;
-  if (seen.rank < 3) {
-    const Eigen::MatrixXd unseen = seen.from_affine * seen.basis.leftCols(3 - seen.rank);
-    const Eigen::MatrixXd component =
-        Eigen::HouseholderQR<Eigen::MatrixXd>(unseen).solve(Eigen::MatrixXd(coefficients));
-    coefficients -= unseen * component;
+  const Eigen::MatrixXd weighted = weight.asDiagonal() * seen.rows;
+  return seen.from_affine * Eigen::HouseholderQR<Eigen::MatrixXd>(weighted).solve(
+                                Eigen::MatrixXd(weight.asDiagonal()));
+}
+
+/// Coefficients (3 x edges, Mandel) of folds: each angle is spread over half the heights of the two
+/// triangles at its edge, as curvature across the edge.
+Columns3 folds(const Eigen::MatrixX2d& pattern, const std::vector<Hinge>& hinges,
+               const Patch& patch) {
+  Columns3 coefficients(3, static_cast<Eigen::Index>(patch.edges().size()));
+  for (Eigen::Index i = 0; i < coefficients.cols(); ++i) {
+    const Hinge& h = hinges[static_cast<std::size_t>(patch.edges()[static_cast<std::size_t>(i)])];
+    const Eigen::Vector2d edge = (pattern.row(h.b) - pattern.row(h.a)).normalized();
+    const Eigen::Vector2d across(-edge.y(), edge.x());
+    const Eigen::Vector3d fold = mandel(across * across.transpose());
+    coefficients.col(i) = fold / mandel_jump(hinges, patch, i).dot(fold);
   }
   return coefficients;
 }
@@ -262,19 +267,19 @@ CurvatureFit fit_curvature(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX
     patch.grow();
     fit.own[t] = static_cast<int>(patch.edges().size());
     Observation seen = observe(pattern, fit.hinges, patch);
-    // Farther edges only where they complete S: one fan or strip more shows nothing new. But an ear
-    // sees too little by its one edge (the end of a strip: the diagonal, not the ruling).
     Patch wider = patch;
     for (int ring = 1; ring <= 2 && seen.rank < 3; ++ring) {
       wider.grow();
       const Observation more = observe(pattern, fit.hinges, wider);
-      const bool helps_ear = ring == 1 && fit.own[t] == 1 && more.rank > seen.rank;
-      if (more.rank < 3 && !helps_ear) continue;
-      seen = more;
-      patch = wider;
+      // The one edge of the triangle at the end of a strip is a diagonal: it needs the ruling too.
+      if (more.rank == 3 || (fit.own[t] == 1 && ring == 1)) {
+        seen = more;
+        patch = wider;
+      }
     }
     fit.rank[t] = seen.rank;
-    const Columns3 coefficients = solve_fit(fit.hinges, patch, seen);
+    const Columns3 coefficients =
+        seen.rank == 3 ? fitted(fit.hinges, patch, seen) : folds(pattern, fit.hinges, patch);
     for (std::size_t i = 0; i < patch.edges().size(); ++i) {
       Eigen::Vector3d c = coefficients.col(static_cast<Eigen::Index>(i));
       c[1] /= kRoot2;

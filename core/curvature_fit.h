@@ -12,11 +12,13 @@ namespace geoprior {
 /// determine S (three edges, three unknowns). The fit inverts that relation: S_T = sum_e B_Te
 /// theta_e, exact for constant curvature on any mesh where it can be observed ("patch test"), which
 /// the plain hinge energy is not. Triangles whose own edges do not determine S (borders, six points
-/// on a conic) also use their neighbours' edges, least squares; what no edge observes (bending
-/// along an unbroken ruling) is zero (least norm).
+/// on a conic) also use their neighbours' edges, least squares.
 ///
-/// What it cannot do: where fewer than three independent jumps are within reach (a strip of two
-/// triangles, a sheet that rulings cut from border to border) a part of S stays unseen.
+/// Where that is not enough, the triangles are strips and fans between rulings, whose vertices lie
+/// on two lines or about an apex. There S is a sum of folds, the angle of each edge spread over
+/// half the heights of the triangles beside it: exact for a cylinder over its rulings whatever
+/// their slant, and bounded for a cone, whose curvature falls as 1/r along the rulings. What a fold
+/// cannot do: bending along an unbroken ruling, or by rulings that are no edges, is seen wrongly.
 struct CurvatureFit {
   static constexpr int kMostTerms = 12;
   static constexpr int kMostVertices = 12;
@@ -37,7 +39,7 @@ struct CurvatureFit {
   /// `kMostVertices` vertices.
   std::vector<std::vector<Term>> terms;
   std::vector<int> own;      ///< terms of each triangle that are its own edges, 0 ... 3
-  std::vector<int> rank;     ///< components of S that the terms observe, 0 ... 3
+  std::vector<int> rank;     ///< components of S that the terms observe; under 3: folds
   std::vector<double> area;  ///< of each triangle in the pattern (m^2)
 };
 

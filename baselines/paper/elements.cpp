@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -62,7 +63,6 @@ std::array<Eigen::Vector2d, 3> shape_gradients(const ShellMesh& mesh, int t, dou
   return gradient;
 }
 
-using Angles = Eigen::Matrix<double, kMostTerms, 1>;
 using Root = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRows, kMostTerms>;
 using PlasticRows = Eigen::Matrix<double, kMostRows, 3>;
 
@@ -70,6 +70,7 @@ using PlasticRows = Eigen::Matrix<double, kMostRows, 3>;
 Root plate_rows(const CurvatureFit& fit, int t, const Eigen::Matrix3d& root) {
   const auto& terms = fit.terms[static_cast<std::size_t>(t)];
   const auto n = static_cast<Eigen::Index>(terms.size());
+  if (n == 0) return {};
   Eigen::MatrixXd fitted(3, n), jumps(n, 3);
   Eigen::VectorXd curvature(n);  // per angle, of an edge alone
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -79,20 +80,18 @@ Root plate_rows(const CurvatureFit& fit, int t, const Eigen::Matrix3d& root) {
     jumps.row(i) = jump;
     curvature[i] = 1 / Eigen::Vector3d(jump[0], jump[1] / std::sqrt(2.0), jump[2]).norm();
   }
-  const int rank = fit.rank[static_cast<std::size_t>(t)];
-  const int spare = static_cast<int>(n) - rank;
-  Root rows = Root::Zero(3 + spare, n);
-  rows.topRows(3) = root * fitted;
-  if (spare > 0) {
-    const Eigen::MatrixXd residual = std::sqrt(kFitResidual / static_cast<double>(n)) *
-                                     curvature.asDiagonal() *
-                                     (Eigen::MatrixXd::Identity(n, n) - jumps * fitted);
-    // As few rows as the residual has dimensions.
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(residual.transpose() * residual);
-    for (int i = 0; i < spare; ++i)
-      rows.row(3 + i) = std::sqrt(std::max(0.0, eigen.eigenvalues()[n - 1 - i])) *
-                        eigen.eigenvectors().col(n - 1 - i).transpose();
-  }
+  const Eigen::MatrixXd plate = root * fitted;
+  const Eigen::MatrixXd residual = std::sqrt(kFitResidual / static_cast<double>(n)) *
+                                   curvature.asDiagonal() *
+                                   (Eigen::MatrixXd::Identity(n, n) - jumps * fitted);
+  // As many rows as the residual has dimensions: none where three edges determine S.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(residual.transpose() * residual);
+  const auto spare = (eigen.eigenvalues().array() > 1e-12 * plate.squaredNorm()).count();
+  assert(3 + spare <= kMostRows);
+  Root rows(3 + spare, n);
+  rows.topRows(3) = plate;
+  rows.bottomRows(spare) = eigen.eigenvalues().tail(spare).cwiseSqrt().asDiagonal() *
+                           eigen.eigenvectors().rightCols(spare).transpose();
   return rows;
 }
 
@@ -209,7 +208,6 @@ void ShellElements::Impl::add_element(const ShellMesh& mesh, const CurvatureFit&
     element.stiffness = bending_stiffness;
     element.nodes = own_nodes;
   }
-  if (element.hinges == 0) rows.resize(0, 0);
   element.rows = static_cast<int>(rows.rows());
   element.first_row = static_cast<int>(coefficients.size());
   coefficients.insert(coefficients.end(), rows.data(), rows.data() + rows.size());

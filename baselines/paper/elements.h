@@ -21,8 +21,9 @@ namespace geoprior {
 ///   hinge_calibration,
 ///             theta_p the angle that S_p would give; half of it in each triangle
 ///
-/// Triangles whose fit uses more edges than unknowns also resist the residual of the fit
-/// (`kFitResidual`), which is zero for constant curvature; so every interior edge is resisted.
+/// Triangles whose angles S does not reproduce also resist the residual theta - jump . S of the
+/// fit, a tenth as much as S; it is zero for constant curvature. So every interior edge is
+/// resisted.
 ///
 /// Hessians are positive semidefinite: the membrane's keeps the tensile part of the stress, that of
 /// bending is Gauss-Newton in the angles. Both are exact at rest and differ from the true ones by

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -150,6 +151,18 @@ inline ShellMesh cone_strips(int count, double inner, double outer, double angle
   return mesh;
 }
 
+/// Triangles about an apex at the origin: the sector of `angle` (rad).
+inline ShellMesh fan(int count, double radius, double angle) {
+  ShellMesh mesh;
+  mesh.pattern = Eigen::MatrixX2d::Zero(count + 2, 2);
+  mesh.triangles.resize(count, 3);
+  for (int i = 0; i <= count; ++i)
+    mesh.pattern.row(i + 1) << radius * std::cos(angle * i / count),
+        radius * std::sin(angle * i / count);
+  for (int i = 0; i < count; ++i) mesh.triangles.row(i) << 0, i + 1, i + 2;
+  return mesh;
+}
+
 /// The same triangles on the pattern turned by `angle` (rad) about the origin.
 inline ShellMesh turned(ShellMesh mesh, double angle) {
   Eigen::Matrix2d R;
@@ -180,6 +193,20 @@ inline Eigen::MatrixX3d rolled(const Eigen::MatrixX2d& pattern, double kappa, do
     const double s = pattern.row(v).dot(across), t = pattern.row(v).dot(along);
     const Eigen::Vector2d flat = std::sin(kappa * s) / kappa * across + t * along;
     x.row(v) << flat.x(), flat.y(), (1 - std::cos(kappa * s)) / kappa;
+  }
+  return x;
+}
+
+/// Isometric image of a pattern on the circular cone with apex at the origin whose curvature at
+/// distance r from it is `curvature` / r; valley as in `rolled`.
+inline Eigen::MatrixX3d coned(const Eigen::MatrixX2d& pattern, double curvature) {
+  // On the unit sphere the cone is a circle of geodesic curvature `curvature`, of radius `circle`.
+  const double circle = 1 / std::hypot(1.0, curvature), height = curvature * circle;
+  Eigen::MatrixX3d x(pattern.rows(), 3);
+  for (Eigen::Index v = 0; v < pattern.rows(); ++v) {
+    const double r = pattern.row(v).norm();
+    const double turn = std::atan2(pattern(v, 1), pattern(v, 0)) / circle;
+    x.row(v) << r * circle * std::cos(turn), r * circle * std::sin(turn), r * height;
   }
   return x;
 }
