@@ -1,5 +1,6 @@
 #include <cholmod.h>
 
+#include <cmath>
 #include <cstring>
 #include <mutex>
 
@@ -85,7 +86,7 @@ class CholmodCholesky final : public SparseCholesky {
     force_one_thread();
     cholmod_sparse a = scalar(matrix);
     cholmod_factorize(&a, factor_, common_.get());
-    return common_->status == CHOLMOD_OK && factor_->minor == factor_->n;
+    return common_->status == CHOLMOD_OK && factor_->minor == factor_->n && pivots_are_finite();
   }
 
   void solve(Eigen::VectorXd& b) override {
@@ -105,6 +106,21 @@ class CholmodCholesky final : public SparseCholesky {
   [[nodiscard]] long nonzeros() const override { return static_cast<long>(factor_->xsize); }
 
  private:
+  /// A NaN passes the comparisons by which LAPACK finds a matrix that is not positive definite.
+  [[nodiscard]] bool pivots_are_finite() const {
+    const auto* super = static_cast<const int*>(factor_->super);
+    const auto* rows = static_cast<const int*>(factor_->pi);
+    const auto* start = static_cast<const int*>(factor_->px);
+    const auto* values = static_cast<const double*>(factor_->x);
+    for (std::size_t s = 0; s < factor_->nsuper; ++s) {
+      const int height = rows[s + 1] - rows[s];
+      for (int c = 0; c < super[s + 1] - super[s]; ++c) {
+        if (!std::isfinite(values[start[s] + c * (height + 1)])) return false;
+      }
+    }
+    return true;
+  }
+
   /// CHOLMOD does not write to a matrix it factorises, but its interface has no const.
   static cholmod_sparse scalar(const BlockMatrix& matrix) {
     const BlockMatrix::Sparse& s = matrix.sparse();

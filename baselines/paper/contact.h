@@ -61,11 +61,12 @@ std::unique_ptr<ContactTerm> make_obstacle_contact(const std::vector<Obstacle>& 
 double contact_energy(const std::vector<ContactPoint>& points, double distance);
 
 /// Coulomb friction of a point, smoothed so that it has a derivative where sliding begins:
-/// |friction| = mu N s / sqrt(s^2 + s_0^2) at slip speed s. A resting contact therefore creeps, at
+/// |friction| = mu N s / sqrt(s^2 + s_0^2) at slip speed s. What should stick therefore creeps, at
 /// less than s_0 on slopes below atan(mu / sqrt 2).
 struct FrictionPoint {
   ContactPoint contact;
   double limit = 0;  ///< mu N, the normal force that of the start of the step (N)
+  double slip = 0;   ///< slip speed to expect, for the linear step (m/s)
 };
 
 }  // namespace geoprior

@@ -25,7 +25,7 @@ bool ShellDynamics::solve_linear(Eigen::VectorXd& change, Eigen::VectorXd& react
 }
 
 /// Contacts as linear springs that end at the contact distance, friction as a viscous force with
-/// the coefficient that the present slip has.
+/// the coefficient that the expected slip has.
 void ShellDynamics::add_linear_contacts() {
   const double dt = problem_.dt;
   const auto add = [&](const ContactPoint& point, const Eigen::Matrix3d& block,
@@ -50,7 +50,7 @@ void ShellDynamics::add_linear_contacts() {
     const Eigen::Matrix3d across =
         Eigen::Matrix3d::Identity() - point.normal * point.normal.transpose();
     const Eigen::Vector3d slip = across * (speed(point) - point.surface_velocity);
-    const double viscosity = friction.limit / std::hypot(slip.norm(), options_->creep_speed);
+    const double viscosity = friction.limit / std::hypot(friction.slip, options_->creep_speed);
     add(point, dt * viscosity * across, -dt * viscosity * slip);
   }
 }

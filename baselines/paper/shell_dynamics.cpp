@@ -110,34 +110,47 @@ void ShellDynamics::pose(const ShellState& state, double dt) {
         move / dt - state.v.row(target.vertex).transpose();
   }
   find_contacts();
-  find_frictions();
 }
 
 void ShellDynamics::find_contacts() {
   Problem& p = problem_;
   p.contacts.clear();
+  p.frictions.clear();
   if (contact_terms_.empty()) return;
   // Where a step without contact and elasticity would lead.
-  Eigen::MatrixX3d displacement = p.dt * p.state->v;
-  displacement.rowwise() += p.dt * p.dt * sheet_->gravity.transpose();
+  p.ballistic = p.dt * p.state->v;
+  p.ballistic.rowwise() += p.dt * p.dt * sheet_->gravity.transpose();
   for (const HandleMap::Target& t : p.targets) {
-    displacement.row(t.vertex) = t.place.transpose() - p.state->x.row(t.vertex);
+    p.ballistic.row(t.vertex) = t.place.transpose() - p.state->x.row(t.vertex);
   }
   for (const auto& term : contact_terms_) {
-    term->find({p.state->x, &displacement, p.time}, p.contacts);
+    term->find({p.state->x, &p.ballistic, p.time}, p.contacts);
   }
-}
-
-void ShellDynamics::find_frictions() {
-  Problem& p = problem_;
-  p.frictions.clear();
   if (!(sheet_->material.friction > 0)) return;
   for (const ContactPoint& point : p.contacts) {
     // The gap at the start of the step: the obstacle moves meanwhile.
     const double gap = point.gap + p.dt * point.normal.dot(point.surface_velocity);
     const double push = point.stiffness * (options_->contact_distance - gap);
-    if (push > 0) p.frictions.push_back({point, sheet_->material.friction * push});
+    if (!(push > 0)) continue;
+    const double limit = sheet_->material.friction * push;
+    p.frictions.push_back({point, limit, expected_slip(point, limit)});
   }
+}
+
+/// Slip speed of a point at the end of the step as far as it is known before the solve: the present
+/// one, or that of free flight slowed by friction, whichever is faster.
+double ShellDynamics::expected_slip(const ContactPoint& point, double limit) const {
+  const Problem& p = problem_;
+  Eigen::Vector3d now = -point.surface_velocity, ballistic = now;
+  for (std::size_t k = 0; k < at(point.count); ++k) {
+    now += point.weight[k] * p.state->v.row(point.vertex[k]).transpose();
+    ballistic += point.weight[k] / p.dt * p.ballistic.row(point.vertex[k]).transpose();
+  }
+  const auto across = [&](const Eigen::Vector3d& v) {
+    return (v - point.normal * point.normal.dot(v)).norm();
+  };
+  const double mass = point.stiffness / options_->contact_stiffness * sheet_->material.area_density;
+  return std::max(across(now), across(ballistic) - p.dt * limit / mass);
 }
 
 void ShellDynamics::add_contact_block(const ContactPoint& point, const Eigen::Matrix3d& block) {

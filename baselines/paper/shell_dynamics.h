@@ -60,6 +60,7 @@ class ShellDynamics {
     std::vector<HandleMap::Target> targets;
     std::vector<char> held;      ///< of each position
     Eigen::VectorXd prescribed;  ///< v1 - v0 of held vertices, 0 of others
+    Eigen::MatrixX3d ballistic;  ///< displacement without contact and elasticity (n x 3, m)
     std::vector<ContactPoint> contacts;
     std::vector<FrictionPoint> frictions;
     Eigen::VectorXd start, inertial;  ///< newton: x0; x0 + dt v0 + dt^2 M^-1 loads
@@ -68,7 +69,7 @@ class ShellDynamics {
   void analyse();
   void pose(const ShellState& state, double dt);
   void find_contacts();
-  void find_frictions();
+  [[nodiscard]] double expected_slip(const ContactPoint& point, double limit) const;
 
   // One linear solve (linear_step.cpp): the change of velocity, and the reactions (N).
   bool solve_linear(Eigen::VectorXd& change, Eigen::VectorXd& reaction);

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "baselines/paper/dense.h"
+#include "baselines/paper/stepper.h"
+
+/// Small sheets in motion, for the tests of the stepper.
+namespace geoprior::sheets {
+
+/// A sheet without handles, obstacles, gravity or imperfection.
+inline Sheet free_sheet(double width, double height) {
+  Sheet sheet;
+  sheet.pattern = rectangle_pattern(width, height);
+  sheet.gravity.setZero();
+  sheet.imperfection = 0;
+  return sheet;
+}
+
+inline Handle point_handle(const std::string& name, std::vector<Eigen::Vector2d> points,
+                           std::vector<Keyframe> keys = {Keyframe{}}) {
+  Handle handle;
+  handle.name = name;
+  handle.points = std::move(points);
+  handle.motion = Trajectory{std::move(keys)};
+  return handle;
+}
+
+inline ShellState at_rest(const Sheet& sheet, int triangles,
+                          DenseLayout layout = DenseLayout::structured) {
+  return resting_state(
+      sheet, uniform_mesh(sheet.pattern, triangles, layout, handle_points(sheet, 0.05), 1), 1);
+}
+
+/// Places the flat sheet by `placement`: pattern (u, v, 0) to space.
+inline void put(ShellState& state, const Eigen::Isometry3d& placement) {
+  for (Eigen::Index i = 0; i < state.x.rows(); ++i) {
+    const Eigen::Vector3d flat(state.mesh.pattern(i, 0), state.mesh.pattern(i, 1), 0);
+    state.x.row(i) = placement * flat;
+  }
+}
+
+inline double area(const ShellMesh& mesh) {
+  double sum = 0;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    const Eigen::RowVector2d a = mesh.pattern.row(mesh.triangles(t, 0));
+    const Eigen::RowVector2d b = mesh.pattern.row(mesh.triangles(t, 1)) - a;
+    const Eigen::RowVector2d c = mesh.pattern.row(mesh.triangles(t, 2)) - a;
+    sum += (b.x() * c.y() - b.y() * c.x()) / 2;
+  }
+  return sum;
+}
+
+inline double mass(const Sheet& sheet, const ShellState& state) {
+  return sheet.material.area_density * area(state.mesh);
+}
+
+inline double total(const ShellEnergies& e) {
+  return e.membrane + e.bending + e.kinetic + e.gravity + e.contact;
+}
+
+inline StepReport advance(ShellStepper& stepper, ShellState& state, double dt, int steps) {
+  RunContext context;
+  StepReport last;
+  for (int k = 0; k < steps; ++k) last = stepper.step(state, dt, context);
+  return last;
+}
+
+}  // namespace geoprior::sheets
