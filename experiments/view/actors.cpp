@@ -10,6 +10,7 @@
 #include <vtkProperty.h>
 #include <vtkSmartPointer.h>
 
+#include <algorithm>
 #include <array>
 
 #include "experiments/view/drawable.h"
@@ -22,16 +23,17 @@ using Color = std::array<double, 3>;
 // Matt clay, close to skin: neutral enough that shading alone shows the shape.
 constexpr Color kClayColor{0.86, 0.72, 0.63};
 // Office paper, and its other side a little darker and cooler, so that a fold shows which is up.
+// A surface coloured by an array has the same colours on both sides.
 constexpr Color kPaperColor{0.93, 0.915, 0.87};
-constexpr Color kPaperBack{0.70, 0.735, 0.79};
+constexpr Color kPaperBack{0.86, 0.88, 0.92};
 constexpr Color kLineColor{0.16, 0.27, 0.45};
-constexpr Color kEdgeColor{0.30, 0.31, 0.34};
+constexpr Color kEdgeColor{0.47, 0.48, 0.51};
 constexpr Color kObstacleColor{0.55, 0.60, 0.66};
 
-// Parts of the window's height.
+// Parts of the window's size.
 constexpr double kThickness = 0.008;          ///< of lines and points that are the part itself
 constexpr double kOverlayThickness = 0.0032;  ///< of lines over it
-constexpr double kOverlayRadius = 0.0085;     ///< of points over it
+constexpr double kOverlayRadius = 0.012;      ///< of points over it
 constexpr double kLift = 0.002;               ///< of overlays, towards the eye
 
 vtkSmartPointer<vtkLookupTable> to_lookup_table(const ColorScale& scale) {
@@ -76,8 +78,8 @@ void set_material(const PanelStyle& style, bool colored, bool thin, vtkActor* ac
   vtkProperty* material = actor->GetProperty();
   const bool paper = style.material == PanelStyle::Material::paper;
   set_color(material, thin ? kLineColor : paper ? kPaperColor : kClayColor);
-  material->SetAmbient(colored ? 0.26 : 0.22);
-  material->SetDiffuse(colored ? 0.70 : 0.82);
+  material->SetAmbient(paper ? 0.30 : colored ? 0.26 : 0.22);
+  material->SetDiffuse(colored ? 0.70 : paper ? 0.68 : 0.82);
   material->SetSpecular(paper ? 0.03 : colored ? 0.05 : 0.14);
   material->SetSpecularPower(22);
   if (style.flat && !thin) {
@@ -89,8 +91,6 @@ void set_material(const PanelStyle& style, bool colored, bool thin, vtkActor* ac
     vtkNew<vtkProperty> back;
     back->DeepCopy(material);
     set_color(back, kPaperBack);
-    // Scalar colours are those of both sides: the back shows by less light.
-    if (colored) back->SetDiffuse(0.55);
     actor->SetBackfaceProperty(back);
   }
 }
@@ -99,7 +99,7 @@ void show_edges(int pixels_per_pixel, vtkActor* actor) {
   vtkProperty* material = actor->GetProperty();
   material->EdgeVisibilityOn();
   material->SetEdgeColor(kEdgeColor[0], kEdgeColor[1], kEdgeColor[2]);
-  material->SetLineWidth(static_cast<float>(0.8 * pixels_per_pixel));
+  material->SetLineWidth(static_cast<float>(0.7 * pixels_per_pixel));
 }
 
 vtkSmartPointer<vtkActor> main_actor(const Part& part, const ViewWindow& window,
@@ -117,9 +117,10 @@ vtkSmartPointer<vtkActor> main_actor(const Part& part, const ViewWindow& window,
 
 vtkSmartPointer<vtkActor> overlay_actor(const PanelOverlay& overlay, const ViewWindow& window) {
   const bool points = overlay.part->kind == Part::Kind::points;
-  auto actor = plain_actor(*overlay.part, "",
-                           (points ? kOverlayRadius : kOverlayThickness) * window.height_m, false);
-  const Eigen::Vector3d lift = kLift * window.height_m * window.direction;
+  const double size = std::max(window.height_m, 0.7 * window.width_m);
+  auto actor =
+      plain_actor(*overlay.part, "", (points ? kOverlayRadius : kOverlayThickness) * size, false);
+  const Eigen::Vector3d lift = kLift * size * window.direction;
   actor->SetPosition(lift.x(), lift.y(), lift.z());
   vtkProperty* material = actor->GetProperty();
   set_color(material, overlay.color);

@@ -38,11 +38,16 @@ void add_light(vtkRenderer* renderer, const std::array<double, 3>& from, double 
   renderer->AddLight(light);
 }
 
-void set_lights(vtkRenderer* renderer) {
+/// Paper gets a raking key and less fill: a fold is a change of tone, and there is little else to
+/// see.
+void set_lights(vtkRenderer* renderer, PanelStyle::Material material) {
+  const bool paper = material == PanelStyle::Material::paper;
   renderer->SetAutomaticLightCreation(false);
-  add_light(renderer, {-0.9, 1.1, 1.3}, 1.0, {1.0, 0.985, 0.96});  // key
-  add_light(renderer, {1.4, 0.1, 0.9}, 0.42, {0.92, 0.96, 1.0});   // fill
-  add_light(renderer, {0.5, 1.2, -1.0}, 0.40, {1.0, 1.0, 1.0});    // rim
+  const std::array<double, 3> key =
+      paper ? std::array{-1.15, 1.05, 1.3} : std::array{-0.9, 1.1, 1.3};
+  add_light(renderer, key, 1.0, {1.0, 0.985, 0.96});
+  add_light(renderer, {1.4, 0.1, 0.9}, paper ? 0.40 : 0.42, {0.92, 0.96, 1.0});  // fill
+  add_light(renderer, {0.5, 1.2, -1.0}, paper ? 0.25 : 0.40, {1.0, 1.0, 1.0});   // rim
 }
 
 void set_camera(vtkRenderer* renderer, const ViewWindow& window) {
@@ -111,12 +116,13 @@ Picture draw(vtkRenderer* renderer, int width_px, int height_px, int factor) {
   return picture;
 }
 
-Picture draw_lit(const PanelActors& actors, const ViewWindow& window, int width_px, int height_px) {
+Picture draw_lit(const PanelActors& actors, const ViewWindow& window, PanelStyle::Material material,
+                 int width_px, int height_px) {
   vtkNew<vtkRenderer> renderer;
   renderer->SetBackground(1, 1, 1);
   for (const auto& actor : actors.opaque) renderer->AddActor(actor);
   for (const auto& actor : actors.faint) renderer->AddActor(actor);
-  set_lights(renderer);
+  set_lights(renderer, material);
   set_camera(renderer, window);
   if (!actors.faint.empty()) show_all_depths(renderer, window);
   return draw(renderer, width_px, height_px, supersampling(width_px, height_px));
@@ -178,7 +184,7 @@ Picture blurred(const Picture& openness, int dx, int dy) {
 Picture draw_panel(const PanelParts& parts, const ViewWindow& window, const PanelStyle& style,
                    int width_px, int height_px) {
   const PanelActors actors = make_actors(parts, window, style, supersampling(width_px, height_px));
-  Picture picture = draw_lit(actors, window, width_px, height_px);
+  Picture picture = draw_lit(actors, window, style.material, width_px, height_px);
   const Picture openness =
       blurred(blurred(draw_openness(actors.opaque, window, width_px, height_px), 1, 0), 0, 1);
   for (std::size_t i = 0; i < picture.pixels.size(); ++i) {

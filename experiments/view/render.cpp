@@ -24,7 +24,7 @@ constexpr int kGap = 14;         ///< between panels
 constexpr int kHeading = 64;     ///< height of a line of variant names
 constexpr int kRowLabel = 58;    ///< width of the row labels at the left
 constexpr int kBarHeight = 120;  ///< the scalar bar with its labels
-constexpr int kLegendHeight = 70;
+constexpr int kLegendHeight = 52;
 const TextStyle kHeadingStyle{36, {20, 20, 20}, true, false};
 const TextStyle kRowStyle{30, {60, 60, 60}, false, true};
 const TextStyle kNoteStyle{28, {130, 130, 130}, false, false};

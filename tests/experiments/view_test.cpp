@@ -15,6 +15,7 @@
 #include "experiments/view/colors.h"
 #include "experiments/view/display.h"
 #include "experiments/view/figure_cells.h"
+#include "experiments/view/legend.h"
 #include "experiments/view/panel.h"
 #include "experiments/view/section.h"
 #include "experiments/view/view_window.h"
@@ -255,6 +256,124 @@ TEST(Panel, LinesPointsAndGridsAreDrawn) {
     EXPECT_GT(covered, 4) << static_cast<int>(part->kind);
     EXPECT_LT(covered, 3000) << static_cast<int>(part->kind);
   }
+}
+
+/// A square of two triangles in the plane z = 0, classes 0 and 1, seen from above.
+Part two_classes() {
+  Part part;
+  part.points.resize(4, 3);
+  part.points << -1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0;
+  part.triangles.resize(2, 3);
+  part.triangles << 0, 1, 2, 0, 2, 3;
+  part.arrays.push_back({"kind", "1", NamedArray::On::cells, Eigen::Vector2d(0, 1)});
+  return part;
+}
+
+ViewWindow above() {
+  ViewWindow window;
+  window.width_m = 4;
+  window.height_m = 4;
+  window.depth_m = 1;
+  return window;
+}
+
+/// Blue over red: above 1 for class 1 (blue), below it for class 0 (warm white) and for red.
+double blueness(const Rgb& pixel) { return 1.0 * pixel[2] / std::max<int>(1, pixel[0]); }
+
+TEST(Panel, ClassesHaveTheirColours) {
+  const Display display;
+  const Part part = two_classes();
+  PanelStyle style;
+  style.scale = make_class_scale({&part}, "kind", {"flat", "cylinder"});
+  style.flat = true;
+  const Picture picture = draw_panel({{&part}, {}, {}}, above(), style, 200, 200);
+  EXPECT_LT(blueness(picture.at(130, 120)), 1) << "below the diagonal";
+  EXPECT_GT(blueness(picture.at(70, 80)), 1.3) << "above it";
+}
+
+TEST(Panel, EdgesOverlaysAndBothSidesOfPaperAreSeen) {
+  const Display display;
+  const Part part = two_classes();
+  Part ball;
+  ball.kind = Part::Kind::points;
+  ball.points.resize(1, 3);
+  ball.points << 0.5, -0.5, 0;
+  PanelStyle style;
+  style.material = PanelStyle::Material::paper;
+  style.flat = true;
+  ViewWindow window = above();
+  const Picture plain = draw_panel({{&part}, {}, {}}, window, style, 200, 200);
+  style.edges = true;
+  const Picture with =
+      draw_panel({{&part}, {{&ball, {0.8, 0.1, 0.1}}}, {}}, window, style, 200, 200);
+  int darkest = 255;
+  for (int x = 88; x <= 92; ++x) darkest = std::min<int>(darkest, with.at(x, 110)[1]);
+  EXPECT_LT(darkest, plain.at(90, 110)[1] - 10) << "the diagonal";
+  EXPECT_EQ(with.at(60, 80), plain.at(60, 80)) << "no edge here";
+  EXPECT_GT(with.at(125, 125)[0], 2 * with.at(125, 125)[1]) << "the ball is red";
+  window.direction = {0, 0, -1};
+  window.right = {-1, 0, 0};
+  const Picture back = draw_panel({{&part}, {}, {}}, window, style, 200, 200);
+  EXPECT_GT(blueness(back.at(60, 80)), blueness(plain.at(60, 80)) + 0.05) << "the back is cooler";
+}
+
+TEST(Panel, AnObstacleIsTranslucentAndMayReachOutOfTheWindow) {
+  const Display display;
+  const Part part = two_classes();
+  const Part obstacle = make_box({-50, -50, -50}, {50, 50, 50});
+  PanelStyle style;
+  style.scale = make_class_scale({&part}, "kind", {"flat", "cylinder"});
+  const Picture picture = draw_panel({{&part}, {}, {&obstacle}}, above(), style, 200, 200);
+  EXPECT_LT(picture.at(3, 3)[0], 245) << "the obstacle";
+  EXPECT_GT(blueness(picture.at(70, 80)), blueness(picture.at(130, 120)) + 0.1)
+      << "the sheet shows through";
+}
+
+TEST(Colors, AValueThatIsNoClassIsNamed) {
+  Part part = two_classes();
+  part.arrays[0].values(1, 0) = 2;
+  EXPECT_THAT(test::error_of([&] {
+                make_class_scale({&part}, "kind", {"flat", "cylinder"});
+              }),
+              HasSubstr("has the value 2"));
+  EXPECT_EQ(make_class_scale({}, "kind", {"flat"}).classes.size(), 1u) << "no part need have it";
+}
+
+TEST(Cells, ObstaclesComeWithTheFrameAndDoNotMoveTheWindow) {
+  const TestFolder folder;
+  RunRecord record = make_fake_run(folder.path);
+  VariantRecord& variant = record.cases[0].variants[0];
+  VariantRecord extra;
+  extra.name = variant.name;
+  add_frame(extra, folder.path, 0, make_box({-9, -9, -9}, {9, 9, 9}), "obstacles");
+  variant.frames[0].files.push_back(extra.frames[0].files[0]);
+  FigureView view;
+  view.at_parameter = 0;
+  view.variants = {variant.name};
+  const auto rows = collect_cells(record, folder.path, view);
+  ASSERT_TRUE(rows.at(0).cells.at(0).obstacles.has_value());
+  EXPECT_TRUE(rows[0].cells[0].overlays.empty());
+}
+
+TEST(Legend, ExplainsTheClassesAndOverlaysThatSomePanelHas) {
+  FigureView view;
+  view.color_by = "kind";
+  view.classes = {"flat", "cone"};
+  view.overlays = {"rulings", "singular_points"};
+  FigureRow row;
+  row.cells.resize(2);
+  row.cells[0].part = make_box({0, 0, 0}, {1, 1, 1});  // a baseline without classes
+  EXPECT_TRUE(legend_entries({row}, view).empty());
+  row.cells[1].part = two_classes();
+  Part points;
+  points.kind = Part::Kind::points;
+  row.cells[1].overlays = {{"singular_points", points}};
+  const auto entries = legend_entries({row}, view);
+  ASSERT_EQ(entries.size(), 3u);
+  EXPECT_EQ(entries[1].label, "Cone");
+  EXPECT_EQ(entries[2].label, "Singular points");
+  EXPECT_EQ(entries[2].mark, LegendEntry::Mark::ball);
+  EXPECT_GT(entries[2].color[0], 2 * entries[2].color[2]) << "red, though it is named second";
 }
 
 TEST(Render, DrawsTheSameFigureTwiceWithoutADisplay) {
