@@ -134,18 +134,4 @@ PatternLocator::Place PatternLocator::nearest(const Vector2d& p) const {
   return best;
 }
 
-void PatternLocator::candidates(const Vector2d& low, const Vector2d& high,
-                                std::vector<int>& triangles) const {
-  triangles.clear();
-  for (int j = row(low.y()); j <= row(high.y()); ++j) {
-    for (int i = column(low.x()); i <= column(high.x()); ++i) {
-      const auto cell = static_cast<std::size_t>(j * columns_ + i);
-      triangles.insert(triangles.end(), items_.begin() + offset_[cell],
-                       items_.begin() + offset_[cell + 1]);
-    }
-  }
-  std::sort(triangles.begin(), triangles.end());
-  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-}
-
 }  // namespace geoprior

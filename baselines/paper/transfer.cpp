@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "baselines/paper/overlap.h"
 #include "baselines/paper/planar.h"
@@ -59,6 +61,35 @@ void carry_vertices(const ShellState& from, const PatternLocator& locator, Shell
   }
 }
 
+struct Box {
+  Vector2d low, high;
+  explicit Box(const PlaneTriangle& t)
+      : low(t[0].cwiseMin(t[1]).cwiseMin(t[2])), high(t[0].cwiseMax(t[1]).cwiseMax(t[2])) {}
+  [[nodiscard]] bool meets(const Box& o) const {
+    return low.x() < o.high.x() && o.low.x() < high.x() && low.y() < o.high.y() &&
+           o.low.y() < high.y();
+  }
+};
+
+/// Triangles of a mesh with their boxes, from left to right.
+struct BoxedTriangle {
+  int index;
+  PlaneTriangle corners;
+  Box box;
+};
+std::vector<BoxedTriangle> from_left_to_right(const ShellMesh& mesh) {
+  std::vector<BoxedTriangle> list;
+  list.reserve(static_cast<std::size_t>(mesh.triangle_count()));
+  for (int f = 0; f < mesh.triangle_count(); ++f) {
+    const PlaneTriangle t = corners(mesh, f);
+    list.push_back({f, t, Box(t)});
+  }
+  std::sort(list.begin(), list.end(), [](const BoxedTriangle& p, const BoxedTriangle& q) {
+    return std::tie(p.box.low.x(), p.index) < std::tie(q.box.low.x(), q.index);
+  });
+  return list;
+}
+
 /// Only old triangles that remember something are visited: most of a sheet has no crease.
 void carry_creases(const ShellState& from, ShellState& to) {
   const int m = to.mesh.triangle_count();
@@ -69,22 +100,26 @@ void carry_creases(const ShellState& from, ShellState& to) {
     if (from.damage[f] != 0 || !from.plastic_curvature.row(f).isZero(0)) creased.push_back(f);
   }
   if (creased.empty()) return;
-  const PatternLocator locator(to.mesh);
-  std::vector<int> near;
+  const std::vector<BoxedTriangle> triangles = from_left_to_right(to.mesh);
+  double widest = 0;
+  for (const BoxedTriangle& t : triangles) {
+    widest = std::max(widest, t.box.high.x() - t.box.low.x());
+  }
   for (const int f : creased) {
     const PlaneTriangle old = corners(from.mesh, f);
-    locator.candidates(old[0].cwiseMin(old[1]).cwiseMin(old[2]),
-                       old[0].cwiseMax(old[1]).cwiseMax(old[2]), near);
-    for (const int g : near) {
-      const double shared = overlap_area(corners(to.mesh, g), old);
-      to.plastic_curvature.row(g) += shared * from.plastic_curvature.row(f);
-      to.damage[g] += shared * from.damage[f];
+    const Box box(old);
+    const auto left_of = [](const BoxedTriangle& t, double u) { return t.box.low.x() < u; };
+    auto t = std::lower_bound(triangles.begin(), triangles.end(), box.low.x() - widest, left_of);
+    for (; t != triangles.end() && t->box.low.x() < box.high.x(); ++t) {
+      if (!t->box.meets(box)) continue;
+      const double shared = overlap_area(t->corners, old);
+      to.plastic_curvature.row(t->index) += shared * from.plastic_curvature.row(f);
+      to.damage[t->index] += shared * from.damage[f];
     }
   }
-  for (int g = 0; g < m; ++g) {
-    const double whole = area(corners(to.mesh, g));
-    to.plastic_curvature.row(g) /= whole;
-    to.damage[g] /= whole;
+  for (const BoxedTriangle& t : triangles) {
+    to.plastic_curvature.row(t.index) /= area(t.corners);
+    to.damage[t.index] /= area(t.corners);
   }
 }
 

@@ -26,10 +26,6 @@ class PatternLocator {
   /// The triangle that contains `p`, or the nearest one (weights then clamped to it).
   [[nodiscard]] Place locate(const Eigen::Vector2d& p) const;
 
-  /// Triangles whose bounding boxes may meet the box from `low` to `high`, ascending, each once.
-  void candidates(const Eigen::Vector2d& low, const Eigen::Vector2d& high,
-                  std::vector<int>& triangles) const;
-
  private:
   [[nodiscard]] Eigen::Vector3d barycentric(int triangle, const Eigen::Vector2d& p) const;
   [[nodiscard]] Place nearest(const Eigen::Vector2d& p) const;
