@@ -39,6 +39,16 @@ class BlockMatrix {
 
   [[nodiscard]] int nodes() const { return static_cast<int>(diagonal_.size()); }
   [[nodiscard]] Triangle triangle() const { return triangle_; }
+  [[nodiscard]] std::size_t block_count() const { return rows_.size(); }
+  /// Block rows stored in a column, ascending; its values are a panel of three times as many rows.
+  [[nodiscard]] std::span<const int> column_rows(int column) const {
+    const auto begin = static_cast<std::size_t>(first_[static_cast<std::size_t>(column)]);
+    const auto end = static_cast<std::size_t>(first_[static_cast<std::size_t>(column) + 1]);
+    return {rows_.data() + begin, end - begin};
+  }
+  [[nodiscard]] const double* column_values(int column) const {
+    return sparse_.valuePtr() + 9 * first_[static_cast<std::size_t>(column)];
+  }
   [[nodiscard]] const Sparse& sparse() const { return sparse_; }
   [[nodiscard]] double* values() { return sparse_.valuePtr(); }
   void set_zero() { sparse_.coeffs().setZero(); }

@@ -74,16 +74,21 @@ ShellDynamics::ShellDynamics(const Sheet& sheet, const StepperOptions& options, 
 }
 
 void ShellDynamics::analyse() {
-  const bool supernodal =
-      options_->solver == LinearSolver::cholmod ||
-      (options_->solver == LinearSolver::automatic && triangles() >= options_->supernodal_from);
+  const bool large = triangles() >= options_->dissection_from;
   const NodeGraph graph = element_graph(elements_, vertices());
   position_ =
-      elimination_order(graph, supernodal ? Ordering::nested_dissection : Ordering::minimum_degree);
+      elimination_order(graph, large ? Ordering::nested_dissection : Ordering::minimum_degree);
+  const bool eigen = options_->solver == LinearSolver::eigen;
   using Triangle = BlockMatrix::Triangle;
-  matrix_ = BlockMatrix(graph, position_, supernodal ? Triangle::lower : Triangle::upper);
+  matrix_ = BlockMatrix(graph, position_, eigen ? Triangle::upper : Triangle::lower);
   system_ = std::make_unique<ShellSystem>(elements_, position_, matrix_);
-  cholesky_ = supernodal ? make_cholmod_cholesky(matrix_) : make_eigen_cholesky(matrix_);
+  if (eigen) {
+    cholesky_ = make_eigen_cholesky(matrix_);
+  } else if (options_->solver == LinearSolver::cholmod) {
+    cholesky_ = make_cholmod_cholesky(matrix_);
+  } else {
+    cholesky_ = make_supernodal_cholesky(matrix_);
+  }
 }
 
 void ShellDynamics::gather(const Eigen::MatrixX3d& by_vertex, Eigen::VectorXd& by_position) const {

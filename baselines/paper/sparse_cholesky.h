@@ -31,4 +31,8 @@ std::unique_ptr<SparseCholesky> make_eigen_cholesky(const BlockMatrix& matrix);
 /// Supernodal L L' of CHOLMOD, one BLAS thread: lower triangle; for large sheets.
 std::unique_ptr<SparseCholesky> make_cholmod_cholesky(const BlockMatrix& matrix);
 
+/// Ours: multifrontal L L', dense kernels of 3 x 3 blocks, subtrees in parallel: lower triangle.
+/// The bits of the solution do not depend on the number of threads.
+std::unique_ptr<SparseCholesky> make_supernodal_cholesky(const BlockMatrix& matrix);
+
 }  // namespace geoprior

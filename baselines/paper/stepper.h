@@ -13,7 +13,7 @@ namespace geoprior {
 
 enum class BendingModel { shape_operator, hinge };
 enum class Integration { linear, newton };  ///< one linear solve a step, or implicit Euler solved
-enum class LinearSolver { automatic, eigen, cholmod };
+enum class LinearSolver { automatic, eigen, cholmod, supernodal };
 
 /// How a sheet is stepped in time; the same for every mesh, so that meshes are compared and nothing
 /// else.
@@ -27,7 +27,7 @@ struct StepperOptions {
   double newton_tolerance = 1e-8;  ///< on the residual, relative to the typical force of the step
   int most_halvings = 8;           ///< of a step that does not converge, before the run ends
   LinearSolver solver = LinearSolver::automatic;
-  int supernodal_from = 600;       ///< triangles from which "automatic" takes CHOLMOD
+  int dissection_from = 1000;      ///< triangles from which unknowns are ordered by dissection
   double contact_distance = 5e-4;  ///< gap at which an obstacle begins to push (m)
   double contact_stiffness = 1e7;  ///< of the push, per area of sheet (N/m^3)
   double contact_spacing = 0.01;   ///< of the points of a triangle tested against obstacles (m)

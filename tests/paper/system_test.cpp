@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -192,42 +193,65 @@ TEST(EliminationOrder, IsAPermutation) {
   }
 }
 
-TEST(SparseCholesky, BothSolversAgreeWithTheDenseSolution) {
-  System upper(300, Triangle::upper), lower(300, Triangle::lower);
-  upper.fill();
-  lower.fill();
-  const auto eigen = make_eigen_cholesky(upper.matrix);
-  const auto cholmod = make_cholmod_cholesky(lower.matrix);
-  ASSERT_TRUE(eigen->factorise(upper.matrix));
-  ASSERT_TRUE(cholmod->factorise(lower.matrix));
-  const Eigen::VectorXd b = upper.random_vector();
-  Eigen::VectorXd x = b, y = b;
-  eigen->solve(x);
-  cholmod->solve(y);
-  const Eigen::VectorXd expected = upper.dense().ldlt().solve(b);
-  EXPECT_LT((x - y).norm(), 1e-10 * expected.norm());
-  EXPECT_LT((x - expected).norm(), 1e-10 * expected.norm());
-  Eigen::VectorXd product;
-  lower.matrix.multiply(y, product);
-  EXPECT_LT((product - b).norm(), 1e-10 * b.norm());
+struct Solver {
+  Triangle triangle;
+  std::unique_ptr<SparseCholesky> (*make)(const BlockMatrix&);
+};
+constexpr std::array<Solver, 3> kSolvers{{{Triangle::upper, make_eigen_cholesky},
+                                          {Triangle::lower, make_cholmod_cholesky},
+                                          {Triangle::lower, make_supernodal_cholesky}}};
+
+TEST(SparseCholesky, EverySolverAgreesWithTheDenseSolution) {
+  for (const Solver& solver : kSolvers) {
+    // 2 triangles: one front; 60 and 300: one tree; 900: subtrees in parallel.
+    for (const int triangles : {2, 60, 300, 900}) {
+      for (const Ordering ordering : {Ordering::minimum_degree, Ordering::nested_dissection}) {
+        System s(triangles, solver.triangle, ordering);
+        s.fill();
+        const auto cholesky = solver.make(s.matrix);
+        ASSERT_TRUE(cholesky->factorise(s.matrix));
+        const Eigen::VectorXd b = s.random_vector();
+        Eigen::VectorXd x = b, product;
+        cholesky->solve(x);
+        if (triangles <= 300) {
+          const Eigen::VectorXd expected = s.dense().ldlt().solve(b);
+          EXPECT_LT((x - expected).norm(), 1e-10 * expected.norm());
+        }
+        s.matrix.multiply(x, product);
+        EXPECT_LT((product - b).norm(), 1e-10 * b.norm());
+      }
+    }
+  }
+}
+
+TEST(SparseCholesky, SupernodalSolvesTheSameBitsOnOneAndTwoThreads) {
+  System s(1500, Triangle::lower, Ordering::nested_dissection);
+  s.fill();
+  const auto cholesky = make_supernodal_cholesky(s.matrix);
+  const auto solve = [&](int threads) {
+    Eigen::VectorXd x = s.random_vector();
+    with_threads(threads, [&] {
+      ASSERT_TRUE(cholesky->factorise(s.matrix));
+      cholesky->solve(x);
+    });
+    return x;
+  };
+  const Eigen::VectorXd one = solve(1);
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(one, solve(2));
 }
 
 TEST(SparseCholesky, RefusesIndefiniteAndNotFinite) {
-  System upper(60, Triangle::upper), lower(60, Triangle::lower);
-  const auto eigen = make_eigen_cholesky(upper.matrix);
-  const auto cholmod = make_cholmod_cholesky(lower.matrix);
-  for (const double wrong : {-1e9, std::numeric_limits<double>::quiet_NaN()}) {
-    upper.fill();
-    lower.fill();
-    upper.matrix.add_to_diagonal(3, wrong);
-    lower.matrix.add_to_diagonal(3, wrong);
-    EXPECT_FALSE(eigen->factorise(upper.matrix));
-    EXPECT_FALSE(cholmod->factorise(lower.matrix));
+  for (const Solver& solver : kSolvers) {
+    System s(60, solver.triangle);
+    const auto cholesky = solver.make(s.matrix);
+    for (const double wrong : {-1e9, std::numeric_limits<double>::quiet_NaN()}) {
+      s.fill();
+      s.matrix.add_to_diagonal(3, wrong);
+      EXPECT_FALSE(cholesky->factorise(s.matrix));
+    }
+    s.fill();
+    EXPECT_TRUE(cholesky->factorise(s.matrix));
   }
-  upper.fill();
-  lower.fill();
-  EXPECT_TRUE(eigen->factorise(upper.matrix));
-  EXPECT_TRUE(cholmod->factorise(lower.matrix));
 }
 
 }  // namespace
