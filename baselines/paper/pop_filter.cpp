@@ -18,7 +18,7 @@ constexpr int kSteps = 5;
 /// at the scale of a small triangle, so that it only rules out free motion.
 constexpr double kStay = 1e3;
 /// Halvings of a step before the filter gives up.
-constexpr int kHalvings = 6;
+constexpr int kHalvings = 10;
 
 Eigen::VectorXd vertex_areas(const ShellMesh& mesh) {
   Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh.vertex_count());

@@ -273,7 +273,8 @@ TEST(Remesh, MakesLongTrianglesAlongACylinder) {
       widest = std::max(widest, std::abs(e.dot(around)));
       longest = std::max(longest, std::abs(e.dot(along)));
     }
-    EXPECT_LT(widest, 1.1 * size);
+    // Near the border fewer hinges see the bend: a quarter longer there.
+    EXPECT_LT(widest, 1.25 * size);
     EXPECT_GT(longest, 3 * size);
     // Equilateral triangles of edge 1 in the metric (1 / size^2, 1 / size_max^2), or at most four
     // times as many: edges between 0.5 and 1 are left alone.

@@ -1,0 +1,185 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "baselines/paper/adaptive.h"
+#include "baselines/paper/dense.h"
+#include "baselines/paper/pop_filter.h"
+#include "baselines/paper/remesh.h"
+#include "baselines/paper/transfer.h"
+#include "core/error.h"
+#include "tests/paper/plane_shapes.h"
+#include "tests/paper/sheets.h"
+
+namespace geoprior {
+namespace {
+
+class Recording final : public FrameSink {
+ public:
+  void frame(Frame frame) override { frames.push_back(std::move(frame)); }
+  void event(const Event& /*event*/) override {}
+  void artifact(Artifact /*artifact*/) override {}
+  void checkpoint(const State& state) override { checkpoints.push_back(state); }
+
+  std::vector<Frame> frames;
+  std::vector<State> checkpoints;
+};
+
+Recording run(const Sheet& sheet, const AdaptiveOptions& options,
+              const std::optional<State>& from = {}) {
+  Recording recording;
+  RunContext context(7);
+  make_adaptive_sheet(sheet, options)->run(recording, context, from);
+  return recording;
+}
+
+/// 20 cm square, the corners of which approach in pairs by 8 cm, from left and right.
+Sheet squeezed_square() {
+  Sheet sheet = sheets::free_sheet(0.2, 0.2);
+  sheet.imperfection = 1e-4;
+  for (const double u : {-0.1, 0.1}) {
+    for (const double v : {-0.1, 0.1}) {
+      Keyframe end;
+      end.time = 0.6;
+      end.shift.x() = -0.4 * u;
+      sheet.handles.push_back(
+          sheets::point_handle(std::to_string(u) + std::to_string(v), {{u, v}}, {Keyframe{}, end}));
+    }
+  }
+  sheet.duration = 0.6;
+  sheet.frame_interval = 0.04;
+  sheet.substeps = 4;
+  return sheet;
+}
+
+AdaptiveOptions fine() {
+  AdaptiveOptions options;
+  options.size_min = 0.005;
+  options.size_max = 0.08;
+  return options;
+}
+
+ShellMesh mesh_of(const Frame& frame) {
+  const Part& surface = frame.parts.at("surface");
+  ShellMesh mesh;
+  mesh.triangles = surface.triangles;
+  for (const NamedArray& array : surface.arrays) {
+    if (array.name == "pattern") mesh.pattern = array.values;
+  }
+  return mesh;
+}
+
+TEST(AdaptiveSheet, CoversThePatternAndKeepsTheHandlesInEveryFrame) {
+  const Sheet sheet = squeezed_square();
+  for (const bool pop_filter : {false, true}) {
+    AdaptiveOptions options = fine();
+    options.pop_filter = pop_filter;
+    const Recording recording = run(sheet, options);
+    ASSERT_EQ(recording.frames.size(), static_cast<std::size_t>(sheet.frame_count()));
+    for (const Frame& frame : recording.frames) {
+      const ShellMesh mesh = mesh_of(frame);
+      EXPECT_NEAR(test::total_area(mesh), 0.04, 1e-14);
+      EXPECT_GT(test::least_area(mesh), 0);
+      EXPECT_EQ(test::euler_characteristic(mesh), 1);
+      EXPECT_TRUE(frame.parts.at("surface").points.allFinite());
+      for (const Handle& handle : sheet.handles) {
+        EXPECT_LT(test::distance_to_vertices(mesh, handle.points[0]), 1e-12);
+      }
+    }
+  }
+}
+
+// The square bends about the v axis: along u the sheet is narrower, and the curved sheet needs more
+// triangles than the flat one.
+TEST(AdaptiveSheet, RefinesWhereTheSheetBends) {
+  const Recording recording = run(squeezed_square(), fine());
+  EXPECT_GT(recording.frames.back().diagnostics.at("triangles"),
+            2 * recording.frames.front().diagnostics.at("triangles"));
+  double splits = 0;
+  for (const Frame& frame : recording.frames) splits += frame.diagnostics.at("splits");
+  EXPECT_GT(splits, 0);
+  // An elastica of 0.2 m with its ends 0.12 m apart is 0.068 m high.
+  const Eigen::MatrixX3d& x = recording.frames.back().parts.at("surface").points;
+  EXPECT_NEAR((x.colwise().maxCoeff() - x.colwise().minCoeff()).z(), 0.068, 0.015);
+}
+
+TEST(AdaptiveSheet, GoesOnFromACheckpointAsIfNothingHadHappened) {
+  const Sheet sheet = squeezed_square();
+  const Recording whole = run(sheet, fine());
+  const Recording rest = run(sheet, fine(), whole.checkpoints[6]);
+  ASSERT_EQ(rest.frames.size(), whole.frames.size() - 7);
+  for (std::size_t i = 0; i < rest.frames.size(); ++i) {
+    const Frame &a = rest.frames[i], &b = whole.frames[i + 7];
+    EXPECT_EQ(a.parts.at("surface").points, b.parts.at("surface").points);
+    EXPECT_EQ(a.parts.at("surface").triangles, b.parts.at("surface").triangles);
+    EXPECT_EQ(a.diagnostics, b.diagnostics);
+  }
+}
+
+TEST(AdaptiveSheet, RefusesSizesInTheWrongOrder) {
+  AdaptiveOptions options;
+  options.size_min = 0.3;
+  EXPECT_THROW(make_adaptive_sheet(squeezed_square(), options), Error);
+}
+
+/// Mean over changed vertices off the border of the difference between elastic force per area and
+/// what it was at that place before (N/m^2).
+double pop(const Sheet& sheet, const ShellState& before, const ShellState& after,
+           const std::vector<bool>& changed) {
+  const auto density = [&](const ShellState& state) -> Eigen::MatrixX3d {
+    ShellStepper stepper(sheet, {}, 1);
+    stepper.set_mesh(state);
+    Eigen::VectorXd area = Eigen::VectorXd::Zero(state.mesh.vertex_count());
+    for (int f = 0; f < state.mesh.triangle_count(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        area[state.mesh.triangles(f, k)] += test::twice_area(state.mesh, f) / 6;
+      }
+    }
+    return stepper.elastic_forces(state).array().colwise() / area.array();
+  };
+  const Eigen::MatrixX3d old = density(before), now = density(after);
+  const PatternLocator locator(before.mesh);
+  double sum = 0;
+  int count = 0;
+  for (int v = 0; v < after.mesh.vertex_count(); ++v) {
+    if (!changed[static_cast<std::size_t>(v)]) continue;
+    const PatternLocator::Place place = locator.locate(after.mesh.pattern.row(v));
+    Eigen::RowVector3d was = Eigen::RowVector3d::Zero();
+    for (int k = 0; k < 3; ++k) {
+      was += place.weights[k] * old.row(before.mesh.triangles(place.triangle, k));
+    }
+    sum += (now.row(v) - was).norm();
+    ++count;
+  }
+  return sum / count;
+}
+
+TEST(PopFilter, BringsTheElasticForcesBackToWhatTheyWere) {
+  const Sheet sheet = squeezed_square();
+  ShellState before = sheets::at_rest(sheet, 300, DenseLayout::delaunay);
+  ShellStepper stepper(sheet, {}, 1);
+  stepper.set_mesh(before);
+  sheets::advance(stepper, before, 0.01, 100);
+  SizingOptions options;
+  options.size_min = 0.01;
+  ShellState after = before;
+  const RemeshReport report = remesh(sheet, sizing_tensors(before, {}, options), after);
+  ASSERT_GT(report.collapses + report.flips, 10);
+  ShellState filtered = after;
+  const int steps =
+      filter_pops(sheet, {}, before, stepper.elastic_forces(before), report.changed, {}, filtered);
+  EXPECT_GT(steps, 0);
+  EXPECT_LT(pop(sheet, before, filtered, report.changed),
+            0.2 * pop(sheet, before, after, report.changed));
+  // Vertices that remeshing left alone stay where they are.
+  for (int v = 0; v < after.mesh.vertex_count(); ++v) {
+    if (!report.changed[static_cast<std::size_t>(v)]) {
+      EXPECT_EQ(filtered.x.row(v), after.x.row(v));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace geoprior
