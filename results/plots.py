@@ -1,5 +1,5 @@
-"""Draws metrics.svg of a run: one panel a metric over the parameter, one line a variant; studies as
-log-log plots with their slope.
+"""Draws metrics.svg of a run: one panel a metric over the parameter, one line a variant; times.svg of
+processes: the time of each frame by phase; studies.svg: slopes in log-log plots, spreads as dots.
 
     python3 results/plots.py RUN_FOLDER [--out FILE]
 """
@@ -16,6 +16,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 import runfile  # noqa: E402
+from tables import has_frame_times, inner_phases  # noqa: E402
 from wording import display_name, interval, labelled, scale_for, unit_symbol  # noqa: E402
 
 # Okabe and Ito (2008): told apart with any colour vision; line styles and markers for black and white.
@@ -194,11 +195,119 @@ def curves_figure(run):
     return figure
 
 
+def timed_case(run):
+    """The first case shown that has times of frames; None without one."""
+    return next((c for c in shown_cases(run)
+                 if any(has_frame_times(v) and v.parameter.size > 1 for v in c.variants)), None)
+
+
+def frame_times(seconds):
+    """Milliseconds of each frame: the median of its repetitions, NaN where the phase was not. Without
+    the first frame where it is the state at the start, which costs next to nothing."""
+    out = np.full(len(seconds), np.nan)
+    for i, row in enumerate(seconds):
+        finite = row[np.isfinite(row)]
+        if finite.size:
+            out[i] = 1e3 * np.median(finite)
+    if np.isfinite(out[1:]).any() and out[0] < 0.01 * np.nanmedian(out[1:]):
+        out[0] = np.nan
+    return out
+
+
+def largest_phases(variant):
+    """The phases that cost most, at most as many as have colours."""
+    phases = {p: frame_times(s) for p, s in inner_phases(variant).items()}
+    cost = {p: np.nansum(ms) for p, ms in phases.items()}
+    chosen = sorted(phases, key=lambda p: (-cost[p], p))[:len(COLORS) - 1]
+    return {p: phases[p] for p in chosen if cost[p] > 0}
+
+
+def draw_phases(axes, variant, look, order):
+    """A phase has the same colour in every panel: its place in `order`."""
+    whole = frame_times(variant.timing["run"])
+    axes.plot(variant.parameter, whole, color="#222222", linewidth=1.6, label="whole frame")
+    for phase, ms in largest_phases(variant).items():
+        i = order.index(phase)
+        axes.plot(variant.parameter, ms, color=COLORS[i % (len(COLORS) - 1)], linewidth=1.0,
+                  linestyle="-" if i < len(COLORS) - 1 else ":", label=display_name(phase))
+    axes.set_title(display_name(variant.name), color=look[variant.name]["color"])
+    axes.legend(loc="best", fontsize=6.5, handlelength=2.2, labelspacing=0.25)
+
+
+def draw_whole_frames(axes, variants, look):
+    for variant in variants:
+        style = {k: v for k, v in look[variant.name].items() if k in ("color", "zorder")}
+        axes.plot(variant.parameter, frame_times(variant.timing["run"]),
+                  label=display_name(variant.name), **style)
+    axes.set_title("Whole frames")
+    axes.legend(loc="best", fontsize=7, handlelength=2.6)
+
+
+def times_figure(run):
+    """Milliseconds a frame over the parameter: all variants, then each with its phases. None when no
+    process was timed by frames."""
+    case = timed_case(run)
+    if case is None:
+        return None
+    names, look = variants_shown(run), styles(run)
+    timed = [v for v in case.variants
+             if v.name in names and has_frame_times(v) and v.parameter.size > 1]
+    if not timed:
+        return None
+    with_phases = [v for v in timed if largest_phases(v)]
+    count = 1 + len(with_phases)
+    columns = 2 if count in (2, 4) else min(3, count)
+    rows = math.ceil(count / columns)
+    figure, grid = plt.subplots(rows, columns, figsize=(3.9 * columns, 2.7 * rows), squeeze=False,
+                                sharey=True)
+    flat = [a for line in grid for a in line]
+    draw_whole_frames(flat[0], timed, look)
+    order = list(dict.fromkeys(p for v in with_phases for p in largest_phases(v)))
+    for axes, variant in zip(flat[1:], with_phases):
+        draw_phases(axes, variant, look, order)
+    times = [frame_times(v.timing["run"]) for v in timed]
+    inner = [ms for v in with_phases for ms in largest_phases(v).values()]
+    values = np.concatenate([*times, *inner])
+    positive = values[np.isfinite(values) & (values > 0)]
+    for i, axes in enumerate(flat):
+        axes.set_visible(i < count)
+        axes.set_yscale("log")
+        if positive.size:
+            top = positive.max()
+            axes.set_ylim(max(np.percentile(positive, 1) / 2, top * 1e-5), 2 * top)
+        if i + columns >= count:
+            axes.set_xlabel(parameter_label(case))
+        if i % columns == 0:
+            axes.set_ylabel("ms a frame")
+    figure.tight_layout()
+    return figure
+
+
 def studies_with_points(run):
-    return [s for s in run.studies if s.kind in ("exponent", "order") and s.x.size > 1]
+    return [s for s in run.studies if s.x.size > 1
+            and (s.kind in ("exponent", "order") or s.y_of.size > 1)]
+
+
+def draw_spreads(axes, study):
+    """One dot a case for both variants, the yardstick's range behind them."""
+    low, high = np.min(study.y_of), np.max(study.y_of)
+    axes.axhspan(low, high, color="#e4e4e4", zorder=1, linewidth=0)
+    for place, values, color in [(0, study.y, METHOD_COLOR), (1, study.y_of, COLORS[0])]:
+        axes.plot(np.full(values.size, place), values, "o", color=color, zorder=3, alpha=0.7,
+                  markeredgewidth=0)
+        axes.hlines(np.median(values), place - 0.28, place + 0.28, color=color, linewidth=2.2,
+                    zorder=4)
+    axes.set_xlim(-0.6, 1.6)
+    axes.set_xticks([0, 1], ["variant", "yardstick"])
+    axes.set_title(display_name(study.name))
+    axes.set_xlabel(f"distance over half range {interval(study.value, study.low, study.high)}")
+    axes.set_ylabel(display_name(study.quantity.removeprefix("timing:")))
 
 
 def draw_study(axes, study):
+    if study.y_of.size > 1:
+        draw_spreads(axes, study)
+        return
     good = (study.x > 0) & (study.y > 0) & np.isfinite(study.x) & np.isfinite(study.y)
     x, y = study.x[good], study.y[good]
     is_time = study.quantity.startswith("timing:")
@@ -241,10 +350,11 @@ def to_svg(figure):
 
 
 def figures(run):
-    """(title, SVG text) of every figure that the run has data for."""
+    """name: SVG text of every figure that the run has data for: metrics, times, studies."""
     with plt.rc_context(STYLE):
-        drawn = [("Metrics over the frames", curves_figure(run)), ("Studies", studies_figure(run))]
-        return [(title, to_svg(figure)) for title, figure in drawn if figure is not None]
+        drawn = [("metrics", curves_figure(run)), ("times", times_figure(run)),
+                 ("studies", studies_figure(run))]
+        return {name: to_svg(figure) for name, figure in drawn if figure is not None}
 
 
 def empty_figure():
@@ -262,9 +372,10 @@ def main(arguments):
     run = runfile.read_run(options.run)
     drawn = figures(run)
     target = Path(options.out) if options.out else run.folder / "metrics.svg"
-    runfile.write_atomically(target, drawn[0][1] if drawn else empty_figure())
-    if len(drawn) > 1:
-        runfile.write_atomically(target.with_name("studies.svg"), drawn[1][1])
+    runfile.write_atomically(target, drawn.get("metrics") or empty_figure())
+    for name in ("times", "studies"):
+        if name in drawn:
+            runfile.write_atomically(target.with_name(f"{name}.svg"), drawn[name])
     return 0
 
 

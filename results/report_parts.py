@@ -6,7 +6,7 @@ import numpy as np
 
 import plots
 from report_html import details, escape, png_figure, svg_figure, table
-from tables import event_counts, metric_rows, phase_rows, timing_rows
+from tables import event_counts, failures, metric_rows, phase_rows, timing_rows
 from wording import display_name, interval, number, with_unit
 
 
@@ -92,7 +92,25 @@ def metrics(run):
 
 def ratio_text(row):
     return "<br>".join(f"{interval(r.median, r.low, r.high)} × {escape(display_name(r.of))}"
-                       for r in row.ratios)
+                       + (" (whole runs)" if r.paired == "run" else "") for r in row.ratios)
+
+
+def time_cells(times):
+    return [with_unit(times.median, "s"), with_unit(times.p95, "s"),
+            f"{with_unit(times.low, 's')} … {with_unit(times.high, 's')}"]
+
+
+def times_over_frames(run):
+    with plots.plt.rc_context(plots.STYLE):
+        drawn = plots.times_figure(run)
+        if drawn is None:
+            return ""
+        svg = plots.to_svg(drawn)
+    case = plots.timed_case(run)
+    of = f" Case {escape(case.name)}." if len(run.cases) > 1 else ""
+    return svg_figure(svg, "Times of frames by phase", "Time of each frame (median of the "
+                      f"repetitions, logarithmic) over {escape(case.parameter_name)}: all variants, "
+                      f"then each with the phases inside.{of}")
 
 
 def timing(run):
@@ -101,18 +119,17 @@ def timing(run):
         rows = timing_rows(case)
         if not rows:
             continue
-        head = ["Variant", "Phase", "Median", "Quartiles", "Samples", "Prepare",
-                "Ratio of times [95 % interval]"]
-        body = [[escape(r.variant), escape(r.phase), with_unit(r.median, "s"),
-                 f"{with_unit(r.low, 's')} … {with_unit(r.high, 's')}", str(r.count),
-                 with_unit(r.prepare, "s"), ratio_text(r)] for r in rows]
+        with_whole = any(np.isfinite(r.whole) for r in rows)
+        head = ["Variant", "Phase", "Median", "p95", "Quartiles", "Samples",
+                *(["Whole run"] if with_whole else []), "Prepare", "Ratio of times [95 % interval]"]
+        body = [[escape(r.variant), escape(r.phase), *time_cells(r.times), str(r.count),
+                 *([with_unit(r.whole, "s")] if with_whole else []), with_unit(r.prepare, "s"),
+                 ratio_text(r)] for r in rows]
         blocks += [case_heading(run, case), table(head, body, ["text", "text"])]
-        inside = [[escape(v), escape(p), with_unit(m, "s"),
-                   f"{with_unit(a, 's')} … {with_unit(b, 's')}"]
-                  for v, p, m, a, b in phase_rows(case)]
+        inside = [[escape(v), escape(p), *time_cells(times)] for v, p, times in phase_rows(case)]
         if inside:
             blocks.append(details("Phases inside", table(
-                ["Variant", "Phase", "Median", "Quartiles"], inside, ["text", "text"])))
+                ["Variant", "Phase", "Median", "p95", "Quartiles"], inside, ["text", "text"])))
     if not blocks:
         return ""
     cpu = run.provenance.get("cpu", "")
@@ -120,7 +137,7 @@ def timing(run):
     note = f'<p class="note">{escape(cpu)}{", " if cpu else ""}threads: ' \
         f'{", ".join("all" if t == 0 else str(t) for t in sorted(threads))}. Methods interleaved, ' \
         "recording excluded; a ratio is the median of paired ratios.</p>"
-    return "\n".join(["<h2>Times</h2>", note, *blocks])
+    return "\n".join(["<h2>Times</h2>", note, times_over_frames(run), *blocks])
 
 
 def studies(run):
@@ -129,8 +146,9 @@ def studies(run):
     with plots.plt.rc_context(plots.STYLE):
         drawn = plots.studies_figure(run)
         image = "" if drawn is None else svg_figure(
-            plots.to_svg(drawn), "Log-log plots of the studies",
-            "Both axes logarithmic; the line has the fitted slope.")
+            plots.to_svg(drawn), "Plots of the studies",
+            "Slopes: both axes logarithmic, the line has the fitted slope. Spreads: one dot a case, "
+            "medians as bars, the range of the variant compared with in grey.")
     rows = [[escape(display_name(s.name)), escape(s.kind), f"<code>{escape(s.quantity)}</code>",
              interval(s.value, s.low, s.high)] for s in run.studies]
     head = ["Study", "Kind", "Quantity", "Value [95 % interval]"]
@@ -166,9 +184,7 @@ def events(run):
 
 def warnings(run):
     found = dict.fromkeys(w for case in run.cases for w in case.warnings)
-    unfinished = [f"{display_name(v.name)} ({case.name}) is {v.status}" for case in run.cases
-                  for v in case.variants if v.status != "done"]
-    lines = "".join(f'<p class="warning">{escape(w)}</p>' for w in [*unfinished, *found])
+    lines = "".join(f'<p class="warning">{escape(w)}</p>' for w in [*failures(run), *found])
     return f"<h2>Warnings</h2>\n{lines}" if lines else ""
 
 
@@ -222,7 +238,7 @@ def comparison_table(name, runs):
             for label in labels if sum(label in found for found in by_run) > 1]
     times = []
     for run in runs:
-        found = [t.median for t in timing_rows(run.cases[0]) if t.variant == display_name(name)]
+        found = [t.times.median for t in timing_rows(run.cases[0]) if t.variant == display_name(name)]
         times.append(with_unit(found[0], "s") if found else "–")
     rows.append(["Median time", *times])
     return table(["Metric", *(escape(run.experiment_id) for run in runs)], rows)

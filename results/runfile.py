@@ -10,7 +10,7 @@ from urllib.parse import unquote
 import h5py
 import numpy as np
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2  # and what came before it
 
 
 class RunFileError(Exception):
@@ -33,7 +33,8 @@ class Variant:
     role: str
     reference: str
     options: dict
-    status: str
+    status: str  # done, stopped or failed
+    error: str   # of a failed variant
     parameter: np.ndarray
     metrics: dict[str, Metric]
     summary: dict[str, Metric]
@@ -51,6 +52,7 @@ class Ratio:
     median: float
     low: float
     high: float
+    paired: str  # by frame, or by whole run
 
 
 @dataclass
@@ -82,6 +84,7 @@ class Study:
     high: float
     x: np.ndarray
     y: np.ndarray
+    y_of: np.ndarray  # of "within-spread": the values of the variant compared with
 
 
 @dataclass
@@ -155,7 +158,7 @@ def read_variant(name, group):
     return Variant(
         name=name, method=text(attrs["method"]), role=text(attrs["role"]),
         reference=text(attrs.get("reference", "")), options=read_json(attrs["options"]),
-        status=text(attrs["status"]), parameter=group["parameter"][()],
+        status=text(attrs["status"]), error=text(attrs.get("error", "")), parameter=group["parameter"][()],
         metrics=read_metrics(group["metrics"]), summary=read_metrics(group["summary"]),
         diagnostics={unquote(n): group["diagnostics"][n][()] for n in group["diagnostics"]},
         timing={unquote(n): np.atleast_2d(group["timing"][n][()]) for n in group["timing"]},
@@ -175,7 +178,9 @@ def read_case(name, group):
         facts={unquote(k): float(v) for k, v in group["facts"].attrs.items()},
         variants=[read_variant(n, g) for n, g in by_index(group["variants"])],
         ratios=[Ratio(text(r["variant"]), text(r["of"]), float(r["median_ratio"]),
-                      float(r["low"]), float(r["high"])) for r in group["ratios"][()]])
+                      float(r["low"]), float(r["high"]),
+                      text(r["paired"]) if "paired" in r.dtype.names else "frame")
+                for r in group["ratios"][()]])
 
 
 def read_root(folder, file):
@@ -189,7 +194,8 @@ def read_root(folder, file):
         cases=[read_case(n, g) for n, g in by_index(file["cases"])],
         studies=[Study(n, text(g.attrs["kind"]), text(g.attrs["quantity"]),
                        float(g.attrs["value"]), float(g.attrs["low"]), float(g.attrs["high"]),
-                       g["x"][()], g["y"][()]) for n, g in by_index(file["study"])],
+                       g["x"][()], g["y"][()], g["y_of"][()] if "y_of" in g else np.array([]))
+                 for n, g in by_index(file["study"])],
         claims=[Claim(text(c["text"]), text(c["case"]), text(c["detail"]), float(c["left"]),
                       float(c["right"]), bool(c["holds"])) for c in file["claims"][()]])
     try:
@@ -209,9 +215,9 @@ def read_run(place):
     try:
         with h5py.File(path, "r") as file:
             version = int(file.attrs.get("schema_version", -1))
-            if version != SCHEMA_VERSION:
+            if not 1 <= version <= SCHEMA_VERSION:
                 raise RunFileError(f"{path}: schema version {version} "
-                                   f"(this program reads {SCHEMA_VERSION})")
+                                   f"(this program reads up to {SCHEMA_VERSION})")
             return read_root(path.parent, file)
     except RunFileError:
         raise

@@ -6,8 +6,10 @@
 import argparse
 from pathlib import Path
 
+import numpy as np
+
 import runfile
-from tables import metric_rows, timing_rows
+from tables import failures, metric_rows, timing_rows
 from wording import display_name, interval, with_unit
 
 
@@ -38,15 +40,21 @@ def metrics_table(case):
 
 
 def timing_table(case):
+    found = timing_rows(case)
+    with_whole = any(np.isfinite(row.whole) for row in found)
     rows = []
-    for row in timing_rows(case):
-        ratios = [f"{interval(r.median, r.low, r.high)} × {display_name(r.of)}" for r in row.ratios]
-        rows.append([row.variant, row.phase, with_unit(row.median, "s"),
-                     f"{with_unit(row.low, 's')} … {with_unit(row.high, 's')}",
+    for row in found:
+        t = row.times
+        whole = [with_unit(row.whole, "s")] if with_whole else []
+        ratios = [f"{interval(r.median, r.low, r.high)} × {display_name(r.of)}"
+                  + (" (whole runs)" if r.paired == "run" else "") for r in row.ratios]
+        rows.append([row.variant, row.phase, with_unit(t.median, "s"), with_unit(t.p95, "s"),
+                     f"{with_unit(t.low, 's')} … {with_unit(t.high, 's')}", *whole,
                      with_unit(row.prepare, "s"), "<br>".join(ratios)])
     if not rows:
         return []
-    head = ["variant", "phase", "median", "quartiles", "prepare", "ratio [95 % interval]"]
+    head = ["variant", "phase", "median", "p95", "quartiles", *(["whole run"] if with_whole else []),
+            "prepare", "ratio [95 % interval]"]
     return ["", *table(head, rows)]
 
 
@@ -56,6 +64,7 @@ def summary_text(run):
              f"Experiment `{run.experiment_id}`{', quick version' if run.quick else ''}, "
              f"{run.provenance.get('start', 'start unknown')}, "
              f"commit {run.provenance.get('git_commit', 'unknown')}."]
+    lines += [f"\n**{line}**" for line in failures(run)]
     lines += claims(run)
     for case in run.cases:
         heading = f": {case.name}" if len(run.cases) > 1 else ""
@@ -68,7 +77,7 @@ def summary_text(run):
         rows = [[s.name, s.kind, s.quantity, interval(s.value, s.low, s.high)] for s in run.studies]
         lines += ["", "## Studies", "",
                   *table(["study", "kind", "quantity", "value [95 % interval]"], rows)]
-    lines += ["", "## Files", "", "- `figure.png`, `metrics.svg`: what to look at first",
+    lines += ["", "## Files", "", "- `figure.png`, `metrics.svg`, `times.svg` (of processes): what to look at first",
               "- `run.h5`: every number (docs/file-formats.md)",
               "- `frames/`: geometry of every frame; open the `.pvd` files with ParaView",
               "- `spec.toml`: the experiment as it ran", ""]

@@ -90,24 +90,49 @@ def metric_rows(case):
 
 
 @dataclass
-class TimingRow:
-    variant: str
-    phase: str
+class Times:
+    """Of one phase, over all frames and repetitions."""
     median: float
     low: float   # quartiles
     high: float
+    p95: float
+
+
+@dataclass
+class TimingRow:
+    variant: str
+    phase: str  # "solve" of a pose method, "frame" of a process, "run" of one timed as a whole
+    times: Times
     count: int
+    whole: float  # a run of all frames; NaN for a pose method
     prepare: float
     ratios: list
 
 
-def quartiles(times):
-    """Median and quartiles over the finite times of all frames and repetitions."""
-    finite = times[np.isfinite(times)]
+def times_of(seconds):
+    finite = seconds[np.isfinite(seconds)]
     if finite.size == 0:
-        return math.nan, math.nan, math.nan
-    low, middle, high = np.percentile(finite, [25, 50, 75])
-    return float(middle), float(low), float(high)
+        return Times(*[math.nan] * 4)
+    low, middle, high, p95 = np.percentile(finite, [25, 50, 75, 95])
+    return Times(float(middle), float(low), float(high), float(p95))
+
+
+def is_process(variant):
+    return "run" in variant.timing
+
+
+def has_frame_times(variant):
+    """Whether a process was timed frame by frame (before schema 2: as a whole)."""
+    return is_process(variant) and len(variant.timing["run"]) == len(variant.parameter)
+
+
+def whole_run(variant):
+    """Median over the repetitions of all frames and what follows the last one; the time of a frame
+    is NaN in no repetition."""
+    if not is_process(variant):
+        return math.nan
+    parts = [variant.timing[p].sum(axis=0) for p in ("run", "finish") if p in variant.timing]
+    return float(np.median(sum(parts)))
 
 
 def timing_rows(case):
@@ -119,18 +144,38 @@ def timing_rows(case):
             continue
         times = variant.timing[phase]
         prepare = variant.timing.get("prepare")
-        rows.append(TimingRow(display_name(variant.name), phase, *quartiles(times),
-                              int(np.isfinite(times).sum()),
-                              math.nan if prepare is None else quartiles(prepare)[0],
+        rows.append(TimingRow(display_name(variant.name),
+                              "frame" if has_frame_times(variant) else phase, times_of(times),
+                              int(np.isfinite(times).sum()), whole_run(variant),
+                              math.nan if prepare is None else times_of(prepare).median,
                               [r for r in case.ratios if r.variant == variant.name]))
     return rows
 
 
+def inner_phases(variant):
+    """phase: seconds of what a method marked inside its solve or its frames."""
+    whole = ("solve", "run", "load", "prepare", "finish")
+    return {phase: seconds for phase, seconds in variant.timing.items()
+            if phase.split(":")[0] not in whole}
+
+
 def phase_rows(case):
-    """(variant, phase, median, low, high) of what a method marked inside its solve."""
-    whole = ("solve", "run", "prepare", "load")
-    return [(display_name(v.name), phase, *quartiles(times)) for v in case.variants
-            for phase, times in v.timing.items() if phase not in whole]
+    """(variant, phase, times) of the inner phases."""
+    return [(display_name(v.name), phase, times_of(seconds)) for v in case.variants
+            for phase, seconds in inner_phases(v).items()]
+
+
+def failures(run):
+    """One line for every variant that an error ended, or that was stopped."""
+    lines = []
+    for case in run.cases:
+        for v in case.variants:
+            if v.status != "done":
+                of = f" of case {case.name}" if len(run.cases) > 1 else ""
+                why = f": {v.error}" if v.error else ""
+                lines.append(f"{display_name(v.name)}{of} {v.status} after {len(v.parameter)} "
+                             f"frames{why}")
+    return lines
 
 
 def event_counts(variant):

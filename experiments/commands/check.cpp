@@ -10,6 +10,7 @@
 #include "experiments/commands/catalogue.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/console.h"
+#include "experiments/commands/outcome.h"
 #include "experiments/runner/build_info.h"
 #include "experiments/runner/claims.h"
 #include "experiments/runner/reference.h"
@@ -29,11 +30,12 @@ struct Verdict {
   std::size_t compared = 0;
   std::vector<Mismatch> mismatches;
   std::vector<ClaimRecord> claims;
+  std::vector<std::string> failures;                    ///< of variants that an error ended
   std::map<std::string, std::string> known_shortfalls;  ///< text of a claim, why it falls short
   bool has_reference = true;
 
   [[nodiscard]] bool passed() const {
-    return has_reference && mismatches.empty() &&
+    return has_reference && mismatches.empty() && failures.empty() &&
            std::all_of(claims.begin(), claims.end(), [&](const ClaimRecord& claim) {
              return claim.holds || known_shortfalls.contains(claim.text);
            });
@@ -46,6 +48,7 @@ Verdict check_one(const CommandContext& context, const std::string& id, bool qui
   verdict.id = run.experiment.id;
   verdict.run = run.folder.string();
   verdict.claims = decide_claims(run.experiment, run.record);
+  verdict.failures = failures(run.record);
   for (const ClaimSpec& claim : run.experiment.claims) {
     if (claim.known_shortfall) verdict.known_shortfalls[claim.text] = *claim.known_shortfall;
   }
@@ -70,6 +73,7 @@ void say_verdict(const Verdict& verdict, bool quick) {
     say("        no reference values; make them with: geoprior bless " + verdict.id +
         (quick ? " --quick" : "") + " --reason \"…\"");
   }
+  for (const std::string& failure : verdict.failures) say("        " + failure);
   for (const Mismatch& mismatch : verdict.mismatches) {
     say("        " + mismatch_text(verdict.id, mismatch));
   }
@@ -87,8 +91,8 @@ void say_verdict(const Verdict& verdict, bool quick) {
 Json verdict_json(const Verdict& verdict) {
   Json json{{"experiment", verdict.id},     {"passed", verdict.passed()},
             {"run", verdict.run},           {"has_reference", verdict.has_reference},
-            {"compared", verdict.compared}, {"mismatches", Json::array()},
-            {"claims", Json::array()}};
+            {"compared", verdict.compared}, {"failures", verdict.failures},
+            {"mismatches", Json::array()},  {"claims", Json::array()}};
   for (const Mismatch& m : verdict.mismatches) {
     json["mismatches"].push_back({{"case", m.case_name},
                                   {"variant", m.variant},
@@ -147,6 +151,7 @@ int bless_command(const CommandContext& context, const BlessRequest& request) {
   reference.sets[size] = bless_values(run.record, reference.sets[size], request.reason,
                                       build.git_commit + (build.git_dirty() ? "-modified" : ""));
   write_reference(reference, file);
+  for (const std::string& failure : failures(run.record)) say("  note: " + failure);
   for (const Mismatch& mismatch : before) {
     if (!std::isnan(mismatch.reference)) say("  " + mismatch_text(run.experiment.id, mismatch));
   }

@@ -31,11 +31,11 @@ std::string time_text(double seconds) {
   return rounded_text(seconds, 3) + " s";
 }
 
-/// "8.31 ms (0.42 ms)": median and interquartile range.
+/// "8.31 ms (9.42 ms)": median and 95th percentile.
 std::string times_text(const std::vector<std::vector<double>>& frames) {
   const std::vector<double> times = all_times(frames);
   const std::string text = time_text(median(times));
-  return times.size() < 2 ? text : text + " (" + time_text(interquartile_range(times)) + ")";
+  return times.size() < 2 ? text : text + " (" + time_text(quantile(times, 0.95)) + ")";
 }
 
 void say_case(const CaseRecord& in) {
@@ -59,7 +59,7 @@ void say_case(const CaseRecord& in) {
     rows.push_back(row);
   }
   for (const std::string& phase : phases) {
-    std::vector<std::string> row{"time of " + phase + ", median (IQR)", ""};
+    std::vector<std::string> row{"time of " + phase + ", median (p95)", ""};
     for (const VariantRecord& variant : in.variants) {
       const auto found = variant.timing.find(phase);
       row.push_back(found == variant.timing.end() ? "-" : times_text(found->second));
@@ -75,6 +75,7 @@ Json variant_json(const VariantRecord& variant) {
             {"role", variant.role},
             {"status", variant.status},
             {"frames", variant.frames.size()}};
+  if (!variant.error.empty()) json["error"] = variant.error;
   json["summary"] = Json::object();
   for (const auto& [name, value] : variant.summary) {
     json["summary"][name] = {{"value", number(value.value)}, {"unit", value.unit}};
@@ -82,6 +83,7 @@ Json variant_json(const VariantRecord& variant) {
   json["median_time_s"] = Json::object();
   for (const auto& [phase, frames] : variant.timing) {
     json["median_time_s"][phase] = number(median(all_times(frames)));
+    json["p95_time_s"][phase] = number(quantile(all_times(frames), 0.95));
   }
   return json;
 }
@@ -93,6 +95,18 @@ bool all_claims_hold(const RunRecord& record) {
     if (!claim.holds) return false;
   }
   return true;
+}
+
+std::vector<std::string> failures(const RunRecord& record) {
+  std::vector<std::string> lines;
+  for (const CaseRecord& in : record.cases) {
+    for (const VariantRecord& variant : in.variants) {
+      if (variant.status != "failed") continue;
+      lines.push_back("variant '" + variant.name + "', case '" + in.name + "': failed after " +
+                      std::to_string(variant.frames.size()) + " frames: " + variant.error);
+    }
+  }
+  return lines;
 }
 
 void say_claims(const RunRecord& record) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "experiments/runner/run_record.h"
 
@@ -19,6 +20,9 @@ void say_summary(const RunRecord& record, std::size_t most_cases = 4);
 
 /// True when every claim holds.
 bool all_claims_hold(const RunRecord& record);
+
+/// "variant 'x', case 'y': failed after 12 frames: why", for every variant that an error ended.
+std::vector<std::string> failures(const RunRecord& record);
 
 /// Identity, claims, studies and summary values of a run; NaN and infinities are null.
 nlohmann::ordered_json outcome_json(const RunRecord& record, const std::filesystem::path& folder);

@@ -60,6 +60,7 @@ void say_outcome(const ExecuteResult& result, const Pictures& pictures) {
   if (pictures.figure) say("picture  " + pictures.figure->string());
   if (pictures.report) say("report   " + pictures.report->string());
   if (!all_claims_hold(record)) say(tinted("a claim fell short", Tint::bad));
+  for (const std::string& line : failures(record)) say(tinted(line, Tint::bad));
 }
 
 }  // namespace
@@ -91,7 +92,8 @@ int run_command(const CommandContext& context, const RunRequest& request) {
     say("error: the run is complete, but its pictures are not: " + pictures.error);
     return wrong_use;
   }
-  return all_claims_hold(result.record) ? done : fell_short;
+  const bool whole = all_claims_hold(result.record) && failures(result.record).empty();
+  return whole ? done : fell_short;
 }
 
 }  // namespace geoprior

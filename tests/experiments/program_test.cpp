@@ -102,6 +102,42 @@ TEST_F(Program, RunRecordsAndDecidesClaims) {
   EXPECT_THAT(bad.err, AllOf(HasSubstr("falls short"), HasSubstr("a claim fell short")));
 }
 
+TEST_F(Program, AVariantThatFailsExitsWithOneAndItsFramesAreKept) {
+  home_.write("experiments/toy-pendulum/swing.toml", R"(
+title = "A pendulum that breaks off"
+topic = "toy-pendulum"
+[scene]
+frames = 4
+duration_s = 1
+[[variant]]
+name = "euler"
+method = "explicit-euler"
+options = { fail_at_s = 0.5 }
+[[variant]]
+name = "exact"
+method = "closed-form"
+)");
+  const Outcome outcome = run("run toy-pendulum/swing --no-pictures --json");
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("variant 'euler', case 'default': failed after 3 frames: time "
+                                     "0.500000 s: does not converge"));
+  const json variants = json::parse(outcome.out)["cases"][0]["variants"];
+  EXPECT_EQ(variants[0]["status"], "failed");
+  EXPECT_EQ(variants[0]["frames"], 3);
+  EXPECT_EQ(variants[1]["status"], "done");
+  EXPECT_EQ(variants[1]["frames"], 5);
+  EXPECT_GE(variants[1]["p95_time_s"]["run"], variants[1]["median_time_s"]["run"]);
+  EXPECT_EQ(
+      run("export toy-pendulum/swing --format obj --out " + (home_.root() / "exported").string())
+          .code,
+      0);
+  ASSERT_EQ(run("bless toy-pendulum/swing --reason test").code, 0);
+  const Outcome check = run("check toy-pendulum/swing --json");
+  EXPECT_EQ(check.code, 1) << "the values are those blessed, but the variant failed";
+  EXPECT_EQ(json::parse(check.out)["experiments"][0]["failures"].size(), 1U);
+  EXPECT_EQ(json::parse(check.out)["experiments"][0]["mismatches"].size(), 0U);
+}
+
 TEST_F(Program, BadInputExitsWithTwoAndLeavesNothingBehind) {
   write(disc_experiment("segmants = 3"));
   const Outcome unknown = run("run toy-circle/disc --no-pictures");

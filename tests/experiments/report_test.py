@@ -97,6 +97,32 @@ def make_run(folder, title="Knee <flexion> & more"):
     (folder / "figure.png").write_bytes(PIXEL)
 
 
+def make_processes(folder):
+    """Makes the run one of processes as schema 2 has them, the second one failed."""
+    with h5py.File(folder / "run.h5", "a") as file:
+        file.attrs["schema_version"] = 2
+        case = file["cases/default"]
+        for i, name in enumerate(["dual-quaternion", "implicit"]):
+            variant = case["variants"][name]
+            variant.attrs.update(status="failed" if i else "done",
+                                 error="time 0.5 s: does not converge" if i else "")
+            del variant["timing"]
+            timing = variant.create_group("timing")
+            timing["run"] = (1 + i) * np.array([[0.01, 0.01], [0.02, 0.02], [0.03, 0.03]])
+            timing["elastic"] = np.array([[np.nan, np.nan], [0.01, 0.011], [0.02, 0.019]])
+            timing["finish"] = np.array([[0.5, 0.5]])
+            timing["finish:elastic"] = np.array([[0.4, 0.4]])
+        del case["ratios"]
+        case["ratios"] = table([("implicit", "dual-quaternion", 4.0, 3.9, 4.1, "run")], [
+            ("variant", "text"), ("of", "text"), ("median_ratio", "f8"), ("low", "f8"),
+            ("high", "f8"), ("paired", "text")])
+        study = file.create_group("study/near")
+        study.attrs.update(index=1, kind="within-spread", quantity="overlap_excess", value=0.5,
+                           low=0.1, high=1.2)
+        study["x"], study["y"] = np.arange(3.0), np.array([1.0, 2.0, 4.0])
+        study["y_of"] = np.array([1.0, 3.0, 5.0])
+
+
 class Page(HTMLParser):
     """Counts tags and collects what a page would load."""
 
@@ -189,7 +215,7 @@ class RunTest(unittest.TestCase):
     def test_plots_are_the_same_bytes_twice(self):
         self.assertEqual(run_script("plots", self.folder).returncode, 0)
         svg = (self.folder / "metrics.svg").read_text(encoding="utf-8")
-        self.assertEqual(svg, plots.figures(runfile.read_run(self.folder))[0][1])
+        self.assertEqual(svg, plots.figures(runfile.read_run(self.folder))["metrics"])
         ElementTree.fromstring(svg)
 
     def test_figure_view_selects_the_curves(self):
@@ -207,6 +233,36 @@ class RunTest(unittest.TestCase):
         text = (self.folder / "summary.md").read_text(encoding="utf-8")
         self.assertIn("**falls short**: bulge stays", text)
         self.assertIn("4.00 ms", text)
+
+    def test_processes_have_times_of_frames(self):
+        make_processes(self.folder)
+        run = runfile.read_run(self.folder)
+        first, second = tables.timing_rows(run.cases[0])
+        self.assertEqual((first.phase, first.times.median, first.count), ("frame", 0.02, 6))
+        # numpy.percentile([0.01, 0.01, 0.02, 0.02, 0.03, 0.03], 95) = 0.03
+        self.assertEqual(first.times.p95, 0.03)
+        self.assertAlmostEqual(first.whole, 0.01 + 0.02 + 0.03 + 0.5)
+        self.assertEqual([r.paired for r in second.ratios], ["run"])
+        self.assertEqual([p for _, p, _ in tables.phase_rows(run.cases[0])], ["elastic"] * 2)
+        drawn = plots.figures(run)
+        self.assertEqual(list(drawn), ["metrics", "times", "studies"])
+        for svg in drawn.values():
+            ElementTree.fromstring(svg)
+        report.main([str(self.folder), "--out", str(self.folder / "report.html")])
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        Page(text)
+        for expected in ("20.0 ms", "560 ms", "× Dual quaternion (whole runs)",
+                         "Implicit failed after 3 frames: time 0.5 s: does not converge"):
+            self.assertTrue(expected in text, expected)
+        summary.main([str(self.folder)])
+        self.assertIn("**Implicit failed after 3 frames: time 0.5 s",
+                      (self.folder / "summary.md").read_text(encoding="utf-8"))
+
+    def test_a_version_this_program_does_not_know_is_refused(self):
+        with h5py.File(self.folder / "run.h5", "a") as file:
+            file.attrs["schema_version"] = 99
+        with self.assertRaisesRegex(runfile.RunFileError, "schema version 99"):
+            runfile.read_run(self.folder)
 
     def test_worst_value_follows_the_direction(self):
         rows = {r.name: r for r in tables.metric_rows(runfile.read_run(self.folder).cases[0])}

@@ -235,6 +235,59 @@ TEST_F(Spec, SweepsOfOneNameAreToldApartAndRepeatedCasesRefused) {
               HasSubstr("cannot be swept"));
 }
 
+std::string disc_with(const std::string& more) { return toy::disc_experiment() + more; }
+
+TEST_F(Spec, ReductionsOfBothSidesOfAClaim) {
+  const std::string head =
+      "[[claim]]\ntext = \"t\"\nmetric = \"timing:solve\"\nvariant = \"polygon\"\n";
+  const Experiment e =
+      load(disc_with(head + "of = \"polygon\"\nreduce = \"p95\"\nof_reduce = \"median\"\n"));
+  EXPECT_EQ(e.claims.at(0).reduce, "p95");
+  EXPECT_EQ(e.claims.at(0).of_reduce, "median");
+  EXPECT_FALSE(load(disc_with(head + "of = \"exact\"\n")).claims.at(0).of_reduce.has_value());
+  EXPECT_THAT(error_of(disc_with(head + "value = 1\nof_reduce = \"median\"\n")),
+              HasSubstr("reduces the frames of no variant"));
+  EXPECT_THAT(error_of(disc_with(head + "of = \"exact\"\nat = { angle_deg = 90 }\n"
+                                        "of_reduce = \"median\"\n")),
+              HasSubstr("`at` picks one frame"));
+  EXPECT_THAT(error_of(disc_with(head + "of = \"exact\"\nreduce = \"every\"\n"
+                                        "of_reduce = \"median\"\n")),
+              HasSubstr("frame by frame"));
+}
+
+TEST_F(Spec, WithinSpreadNamesItsYardstick) {
+  const std::string sweep = "[[sweep]]\nkey = \"seed\"\nvalues = [1, 2, 3]\nbase = false\n";
+  const auto study = [&](const std::string& kind, const std::string& of) {
+    return disc_with(sweep + "[[study]]\nname = \"near\"\nkind = \"" + kind +
+                     "\"\nvariant = \"polygon\"\nquantity = \"radius_error\"\n" + of);
+  };
+  EXPECT_EQ(load(study("within-spread", "of = \"exact\"\n")).studies.at(0).of, "exact");
+  EXPECT_THAT(error_of(study("within-spread", "")), HasSubstr("of: is missing"));
+  EXPECT_THAT(error_of(study("spread", "of = \"exact\"\n")), HasSubstr("no meaning"));
+  EXPECT_THAT(error_of(study("within-spread", "of = \"circle\"\n")),
+              HasSubstr("no variant 'circle'"));
+}
+
+TEST_F(Spec, WarmUpIsOfTheExperimentOrOfTheKindOfMethod) {
+  EXPECT_FALSE(load(toy::disc_experiment()).timing_warm_up.has_value());
+  const Experiment e = load(disc_with("[timing]\nwarm_up = 3\n"));
+  EXPECT_EQ(e.timing_warm_up, 3);
+  EXPECT_THAT(e.resolved_toml, HasSubstr("warm_up = 3"));
+}
+
+TEST_F(Spec, FigureViewHasClassesOfItsColours) {
+  const Experiment e = load(disc_with(
+      "[figure_view]\ncolor_by = \"kind\"\nclasses = [\"flat\", \"cone\"]\nshading = \"flat\"\n"
+      "material = \"paper\"\nedges = true\n"));
+  EXPECT_THAT(e.view.classes, ElementsAre("flat", "cone"));
+  EXPECT_EQ(e.view.shading, "flat");
+  EXPECT_EQ(e.view.material, "paper");
+  EXPECT_TRUE(e.view.edges);
+  EXPECT_THAT(error_of(disc_with("[figure_view]\nclasses = [\"flat\"]\n")),
+              HasSubstr("the values of no array"));
+  EXPECT_THAT(error_of(disc_with("[figure_view]\nmaterial = \"wood\"\n")), HasSubstr("clay"));
+}
+
 /// The topic of the experiment in the documentation of the file format, as far as it needs one.
 struct KneeScene {
   std::string character, skeleton;
