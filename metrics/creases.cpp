@@ -1,6 +1,7 @@
 #include "metrics/creases.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,16 +38,27 @@ std::array<LinkFamily, 8> link_families() {
            {-2, 1, oblique}}};
 }
 
-/// Links of a family that a crease crosses.
+/// Creases that the lines of a family cross. A line is a chain of links; links that turn the same
+/// way, with at most one between them, cross one crease that is wider than a link.
 long crossings(const GriddedSheet& sheet, const LinkFamily& link, double cosine) {
+  const Eigen::MatrixX3d& n = sheet.normals;
+  // Axis of the turn from one grid point of the chain to the next; zero when it is not sharp.
+  const auto turn = [&](int i, int j) -> Eigen::RowVector3d {
+    const int a = sheet.grid.at(i, j);
+    const int b = sheet.grid.at(i + link.i, j + link.j);
+    if (a < 0 || b < 0 || a == b || n.row(a).dot(n.row(b)) >= cosine) {
+      return Eigen::RowVector3d::Zero();
+    }
+    return n.row(a).cross(n.row(b));
+  };
   long count = 0;
-  const PatternGrid& grid = sheet.grid;
-  for (int j = 0; j < grid.rows; ++j) {
-    for (int i = 0; i < grid.columns; ++i) {
-      const int a = grid.at(i, j);
-      const int b = grid.at(i + link.i, j + link.j);
-      if (a < 0 || b < 0 || a == b) continue;
-      if (sheet.normals.row(a).dot(sheet.normals.row(b)) < cosine) ++count;
+  for (int j = 0; j < sheet.grid.rows; ++j) {
+    for (int i = 0; i < sheet.grid.columns; ++i) {
+      const Eigen::RowVector3d axis = turn(i, j);
+      if (axis.isZero(0)) continue;
+      const bool goes_on = turn(i - link.i, j - link.j).dot(axis) > 0 ||
+                           turn(i - 2 * link.i, j - 2 * link.j).dot(axis) > 0;
+      if (!goes_on) ++count;
     }
   }
   return count;

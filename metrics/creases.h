@@ -35,10 +35,15 @@ GriddedSheet gridded_sheet(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX
 /// between points 3.5 to 5.6 mm apart (at the default spacing).
 ///
 /// By Cauchy and Crofton: the length of curves is half the integral over all straight lines of the
-/// number of crossings; here the lines have eight directions and the crossings are those of the
-/// links between grid points. A straight fold comes out within about 3 % at any angle, plus one
-/// spacing at an end on the border. A fold that a mesh spreads over a band of several edges counts
-/// by its edges above the angle; a smooth bend counts from a radius of about 14 mm down.
+/// number of crossings; here the lines have eight directions and are chains of links between grid
+/// points. Links of a chain that turn the same way, with at most one between them, cross one
+/// crease: a fold that a mesh spreads over a few edges counts once.
+///
+/// A straight fold comes out within 3 % at any angle to the grid; folds about four links apart lose
+/// a tenth where they meet. A smooth bend counts, in part, from a radius of 14 mm down. A mesh that
+/// carries a fold without edges along it really has a zigzag there, and it is measured: at 60
+/// degrees 1.08 of the fold's length with edges of 4.4 mm, 1.4 with 10 mm.
+///
 /// Source: Boykov and Kolmogorov 2003, Computing geodesics and minimal surfaces via graph cuts.
 double crease_length(const GriddedSheet& sheet, const CreaseOptions& options = {});
 

@@ -82,7 +82,7 @@ void measure_creases(const SheetFrame& f, SurfaceMeasures& out) {
   out.facets = static_cast<int>(facets.size());
   if (facets.empty()) return;
   const Eigen::Map<const Eigen::VectorXd> areas(facets.data(), out.facets);
-  out.facet_area_median = weighted_quantile(areas, Eigen::VectorXd::Ones(out.facets), 0.5);
+  out.facet_area_median = weighted_quantile(areas, areas, 0.5);
 }
 
 SurfaceMeasures compute(SheetMemo& memo, const SheetFrame& f) {

@@ -110,8 +110,10 @@ void add_creases(SurfaceRows rows) {
            "facets of at least 1 cm^2 between creases: connected points of a 2.5 mm grid whose "
            "neighbours' normals differ by at most 20 degrees",
            none, kCount, [](const Surface& s) { return s.facets; });
-  rows.add("facet_area_median", "m^2", "median area of those facets", none, {1e-4, 0.02},
-           [](const Surface& s) { return s.facet_area_median; });
+  rows.add("facet_area_median", "m^2",
+           "median area of those facets, weighted by area: half of the sheet lies in facets no "
+           "larger",
+           none, {1e-4, 0.02}, [](const Surface& s) { return s.facet_area_median; });
 }
 
 void add_energies(SurfaceRows rows, std::vector<MetricEntry>& table) {

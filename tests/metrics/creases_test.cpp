@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -33,6 +34,45 @@ TEST(CreaseLength, DoesNotDependOnTheMeshThatCarriesTheFold) {
   const double coarse = length_of(sheets::folded(0.2, 0.25, 2, 1, 50 * kDegree, 0.3));
   EXPECT_EQ(coarse, length_of(sheets::folded(0.2, 0.25, 8, 6, 50 * kDegree, 0.3)));
   EXPECT_EQ(coarse, length_of(sheets::folded(0.2, 0.25, 40, 60, 50 * kDegree, 0.3)));
+}
+
+/// Flat, a quarter of a cylinder about the middle, flat.
+sheets::Map rounded_fold(double radius) {
+  return [=](const Eigen::Vector2d& p) -> Eigen::Vector3d {
+    const double half = radius * std::numbers::pi / 4;
+    const double s = std::clamp(p(0), -half, half);
+    const double angle = s / radius;
+    const Eigen::Vector3d on_arc(radius * std::sin(angle), p(1), radius * (1 - std::cos(angle)));
+    return on_arc + (p(0) - s) * Eigen::Vector3d(std::cos(angle), 0, std::sin(angle));
+  };
+}
+
+TEST(CreaseLength, OfARoundedFoldCountsOnceNotPerEdge) {
+  for (const double turn : {0.0, 0.4}) {
+    const auto ratio = [&](double radius) {
+      const Sheet s = sheets::mapped(sheets::rectangle(0.2, 0.2, 80, 10), rounded_fold(radius));
+      return length_of(sheets::turned_pattern(s, turn)) / 0.2;
+    };
+    EXPECT_NEAR(ratio(0.002), 1, 0.05);
+    EXPECT_NEAR(ratio(0.004), 1, 0.1);
+    // 5 mm turn by 36 degrees, but lines near the rulings and short links turn by less than 20.
+    EXPECT_GT(ratio(0.008), 0.5);
+    EXPECT_LT(ratio(0.008), 1);
+    EXPECT_EQ(ratio(0.03), 0);
+  }
+}
+
+TEST(CreaseLength, OfAFoldAcrossTheMeshIsThatOfItsZigzag) {
+  const double slant = 0.4;
+  const auto ratio = [&](int n) {
+    const Eigen::Matrix2d turn = Eigen::Rotation2Dd(slant).toRotationMatrix();
+    const Sheet s = sheets::mapped(sheets::rectangle(0.2, 0.2, n, n), [&](const auto& p) {
+      return sheets::fold(60 * kDegree)(turn * p);
+    });
+    return length_of(s) / (0.2 / std::cos(slant));
+  };
+  EXPECT_NEAR(ratio(45), 1, 0.1);    // edges of 4.4 mm
+  EXPECT_NEAR(ratio(20), 1.4, 0.1);  // 10 mm: two rows of folds too far apart to be one
 }
 
 TEST(CreaseLength, CountsFoldsAboveTwentyDegrees) {
