@@ -1,8 +1,9 @@
+#include "experiments/paper/topic.h"
 #include "experiments/skinning/topic.h"
 #include "experiments/topic.h"
 
 namespace geoprior {
 
-std::vector<Topic> all_topics() { return {skinning_topic()}; }
+std::vector<Topic> all_topics() { return {skinning_topic(), paper_topic()}; }
 
 }  // namespace geoprior
