@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "baselines/paper/pattern.h"
 #include "baselines/paper/transfer.h"
@@ -111,13 +112,24 @@ struct Strip {
   [[nodiscard]] double length() const { return (at(0.5, 1) - at(0.5, 0)).norm(); }
 };
 
-std::optional<Strip> strip_of(const Sheet& sheet) {
-  const std::vector<Handle>& h = sheet.handles;
-  if (h.size() != 2 || !h[0].segment || !h[1].segment || !h[0].motion || !h[1].motion ||
-      !sheet.obstacles.empty() || !sheet.gravity.isZero()) {
-    return std::nullopt;
+/// The two segments that are moved, when nothing else acts on the sheet at `time`.
+std::optional<Strip> held_sides(const Sheet& sheet, double time) {
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> sides;
+  for (const Handle& handle : sheet.handles) {
+    if (handle.motion && handle.segment && handle.is_active(time)) {
+      sides.push_back(*handle.segment);
+    } else if (handle.is_active(time)) {
+      return std::nullopt;
+    }
   }
-  Strip strip{*h[0].segment, *h[1].segment};
+  if (sides.size() != 2 || !sheet.obstacles.empty() || !sheet.gravity.isZero()) return std::nullopt;
+  return Strip{sides[0], sides[1]};
+}
+
+std::optional<Strip> strip_of(const Sheet& sheet, double time) {
+  std::optional<Strip> held = held_sides(sheet, time);
+  if (!held) return std::nullopt;
+  Strip strip = *held;
   const Eigen::Vector2d side = strip.first.second - strip.first.first;
   if (side.dot(strip.second.second - strip.second.first) < 0) {
     std::swap(strip.second.first, strip.second.second);
@@ -175,7 +187,7 @@ std::optional<HandleForce> handle_force(const SheetFrame& f) {
 }
 
 Value elastica_error(const SheetFrame& f) {
-  const std::optional<Strip> strip = strip_of(f.sheet);
+  const std::optional<Strip> strip = strip_of(f.sheet, f.frame.parameter);
   if (!strip) return std::nullopt;
   const PatternLocator locator({f.pattern, f.triangles()});
   const auto in_space = [&](const Eigen::Vector2d& p) -> Eigen::Vector3d {

@@ -63,9 +63,10 @@ struct HandleForce {
 };
 std::optional<HandleForce> handle_force(const SheetFrame& f);
 
-/// Distance of the ends and height of the middle against the closed form (metrics/elastica.h),
-/// relative. Absent unless the scene is a strip: two opposite sides of a rectangle held as segments
-/// and nothing else, no gravity, no obstacle; and until it is shortened by a thousandth.
+/// Height of the middle against the closed form (metrics/elastica.h) at the distance of the ends,
+/// relative. Absent unless the scene is a strip: two opposite sides of a rectangle held as
+/// segments, no gravity, no obstacle and no other handle that acts at that time; and until it is
+/// shortened by a thousandth.
 Value elastica_error(const SheetFrame& f);
 
 /// Hausdorff distance of the two surfaces over the width of the pattern.

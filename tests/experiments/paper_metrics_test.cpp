@@ -181,6 +181,16 @@ TEST_F(StripMetrics, OnlyAStripIsComparedToTheElastica) {
   scene.sheet.obstacles.emplace_back();
   EXPECT_FALSE(value("elastica_error", arc).has_value());
   scene.sheet.obstacles.clear();
+  Handle finger;
+  finger.points = {Eigen::Vector2d::Zero()};
+  finger.force = Eigen::Vector3d(0, 0, 1e-3);
+  finger.active = {{0, 0.2}};
+  scene.sheet.handles.push_back(finger);
+  EXPECT_FALSE(value("elastica_error", arc).has_value());
+  Frame later = arc;  // the finger has let go
+  later.parameter = 0.5;
+  EXPECT_TRUE(value("elastica_error", later).has_value());
+  scene.sheet.handles.pop_back();
   scene.sheet.pattern = rectangle_pattern(0.3, 0.1);
   EXPECT_FALSE(value("elastica_error", arc).has_value());
   scene.sheet.pattern = rectangle_pattern(0.2, 0.1);
