@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "baselines/paper/planar.h"
-#include "core/error.h"
+#include "baselines/paper/triangle_neighbours.h"
 
 namespace geoprior {
 namespace {
@@ -25,43 +24,17 @@ EditableSheet::EditableSheet(const ShellState& state) {
     vertex.x = state.x.row(v);
     vertex.v = state.v.row(v);
   }
-  struct Half {
-    int low, high, triangle, k;
-  };
-  std::vector<Half> halves;
-  halves.reserve(static_cast<std::size_t>(3 * m));
+  const auto neighbours = triangle_neighbours(state.mesh.triangles, n);
   triangles_.resize(static_cast<std::size_t>(m));
   for (int f = 0; f < m; ++f) {
     Triangle& t = triangles_[static_cast<std::size_t>(f)];
-    t.neighbour = {-1, -1, -1};
+    t.neighbour = neighbours[static_cast<std::size_t>(f)];
     t.plastic_curvature = state.plastic_curvature.row(f);
     t.damage = state.damage[f];
     for (int k = 0; k < 3; ++k) {
-      const int a = state.mesh.triangles(f, k), b = state.mesh.triangles(f, kNext[k]);
-      t.vertex[static_cast<std::size_t>(k)] = a;
-      vertices_[static_cast<std::size_t>(a)].triangle = f;
-      halves.push_back({std::min(a, b), std::max(a, b), f, k});
+      t.vertex[static_cast<std::size_t>(k)] = state.mesh.triangles(f, k);
+      vertices_[static_cast<std::size_t>(state.mesh.triangles(f, k))].triangle = f;
     }
-  }
-  std::sort(halves.begin(), halves.end(), [](const Half& p, const Half& q) {
-    if (p.low != q.low) return p.low < q.low;
-    if (p.high != q.high) return p.high < q.high;
-    return p.triangle < q.triangle;
-  });
-  const auto same = [&](std::size_t i, std::size_t j) {
-    return j < halves.size() && halves[i].low == halves[j].low && halves[i].high == halves[j].high;
-  };
-  for (std::size_t i = 0; i < halves.size(); ++i) {
-    if (!same(i, i + 1)) continue;
-    if (same(i, i + 2)) {
-      throw Error("edge has more than two triangles", "edge " + std::to_string(halves[i].low) +
-                                                          " to " + std::to_string(halves[i].high));
-    }
-    const Half &p = halves[i], &q = halves[i + 1];
-    triangles_[static_cast<std::size_t>(p.triangle)].neighbour[static_cast<std::size_t>(p.k)] =
-        q.triangle;
-    triangles_[static_cast<std::size_t>(q.triangle)].neighbour[static_cast<std::size_t>(q.k)] =
-        p.triangle;
   }
 }
 
@@ -107,53 +80,40 @@ std::vector<bool> EditableSheet::changed() const {
   return result;
 }
 
-int EditableSheet::corner_of(int triangle, int v) const {
-  const auto& t = triangles_[static_cast<std::size_t>(triangle)].vertex;
-  return t[0] == v ? 0 : t[1] == v ? 1 : 2;
-}
-
 void EditableSheet::star(int v, std::vector<int>& triangles) const {
   triangles.clear();
-  const int first = vertices_[static_cast<std::size_t>(v)].triangle;
-  if (first < 0) return;
-  // Clockwise to the border, or once around.
-  int begin = first;
-  for (;;) {
-    const int next = across(begin, corner_of(begin, v));
-    if (next < 0 || next == first) break;
-    begin = next;
-  }
-  if (across(begin, corner_of(begin, v)) == first) begin = first;
-  for (int t = begin; t >= 0;) {
+  around(v, [&](int t, int) {
     triangles.push_back(t);
-    t = across(t, kPrevious[corner_of(t, v)]);
-    if (t == begin) break;
-  }
+    return false;
+  });
 }
 
 void EditableSheet::ring(int v, std::vector<int>& neighbours) const {
   neighbours.clear();
-  std::vector<int> triangles;
-  star(v, triangles);
-  for (const int t : triangles) neighbours.push_back(corner(t, kNext[corner_of(t, v)]));
-  if (triangles.empty()) return;
-  const int last = triangles.back();
-  if (across(last, kPrevious[corner_of(last, v)]) < 0) {
-    neighbours.push_back(corner(last, kPrevious[corner_of(last, v)]));
-  }
+  int last = -1;
+  around(v, [&](int t, int k) {
+    neighbours.push_back(corner(t, kNext[k]));
+    last = across(t, kPrevious[k]) < 0 ? corner(t, kPrevious[k]) : -1;
+    return false;
+  });
+  if (last >= 0) neighbours.push_back(last);
 }
 
 EditableSheet::Side EditableSheet::find(int a, int b) const {
-  if (vertices_[static_cast<std::size_t>(a)].triangle < 0) return {};
-  std::vector<int> triangles;
-  star(a, triangles);
-  for (const int t : triangles) {
-    const int k = corner_of(t, a);
-    if (corner(t, kNext[k]) == b) return {t, k};
-  }
-  if (triangles.empty()) return {};
-  const int last = triangles.back(), k = kPrevious[corner_of(last, a)];
-  return corner(last, k) == b ? Side{last, k} : Side{};
+  Side side;
+  around(a, [&](int t, int k) {
+    if (corner(t, kNext[k]) == b) {
+      side = {t, k};
+    } else if (across(t, kPrevious[k]) < 0 && corner(t, kPrevious[k]) == b) {
+      side = {t, kPrevious[k]};
+    }
+    return side.triangle >= 0;
+  });
+  return side;
+}
+
+EditableSheet::Side EditableSheet::find(int a, int b, Side hint) const {
+  return start(hint) == a && end(hint) == b ? hint : find(a, b);
 }
 
 EditableSheet::Side EditableSheet::opposite(Side s) const {

@@ -57,6 +57,8 @@ class EditableSheet {
   /// The side from a to b, or from b to a where only that exists; triangle -1 when they are no
   /// neighbours.
   [[nodiscard]] Side find(int a, int b) const;
+  /// The same; looks first where the edge was.
+  [[nodiscard]] Side find(int a, int b, Side hint) const;
   [[nodiscard]] int start(Side s) const { return corner(s.triangle, s.k); }
   [[nodiscard]] int end(Side s) const { return corner(s.triangle, (s.k + 1) % 3); }
   /// Vertex opposite to the side in its triangle.
@@ -67,6 +69,10 @@ class EditableSheet {
   void star(int v, std::vector<int>& triangles) const;
   /// Neighbours of a vertex, counter-clockwise.
   void ring(int v, std::vector<int>& neighbours) const;
+  /// Calls `visit(triangle, k)` for the triangles about v, which is their corner k, in the order of
+  /// `star`, until it returns true; returns whether it did.
+  template <class Visit>
+  bool around(int v, Visit&& visit) const;
   /// Both ends lie on the segment of one handle: the edge stays.
   [[nodiscard]] bool is_held(Side s) const;
 
@@ -91,7 +97,10 @@ class EditableSheet {
   [[nodiscard]] int across(int triangle, int k) const {
     return triangles_[static_cast<std::size_t>(triangle)].neighbour[static_cast<std::size_t>(k)];
   }
-  [[nodiscard]] int corner_of(int triangle, int v) const;
+  [[nodiscard]] int corner_of(int triangle, int v) const {
+    const auto& t = triangles_[static_cast<std::size_t>(triangle)].vertex;
+    return t[0] == v ? 0 : t[1] == v ? 1 : 2;
+  }
   [[nodiscard]] const Eigen::Vector2d& point(int v) const {
     return vertices_[static_cast<std::size_t>(v)].pattern;
   }
@@ -109,5 +118,25 @@ class EditableSheet {
   std::vector<Triangle> triangles_;
   std::vector<bool> changed_;  ///< of vertices
 };
+
+template <class Visit>
+bool EditableSheet::around(int v, Visit&& visit) const {
+  const int first = vertices_[static_cast<std::size_t>(v)].triangle;
+  if (first < 0) return false;
+  // Clockwise to the border, or once around.
+  int begin = first, next = first;
+  do {
+    begin = next;
+    next = across(begin, corner_of(begin, v));
+  } while (next >= 0 && next != first);
+  if (next == first) begin = first;
+  for (int t = begin; t >= 0;) {
+    const int k = corner_of(t, v);
+    if (visit(t, k)) return true;
+    t = across(t, k == 0 ? 2 : k - 1);
+    if (t == begin) break;
+  }
+  return false;
+}
 
 }  // namespace geoprior

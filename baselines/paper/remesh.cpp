@@ -29,10 +29,11 @@ constexpr double kMostStrain = 0.045;
 /// Rounds of each pass: sizes at new vertices are interpolated, so a few rounds suffice.
 constexpr int kRounds = 20;
 
-/// An edge by its ends, smaller index first.
+/// An edge by its ends, and where it was when it was noted.
 struct Edge {
-  double length;
   int a, b;
+  Side hint;
+  double length = 0;
 };
 
 class Remesher {
@@ -70,7 +71,7 @@ class Remesher {
 
   EditableSheet mesh_;
   RemeshReport report_;
-  std::vector<std::pair<int, int>> stack_;  ///< edges that may want a flip
+  std::vector<Edge> stack_;  ///< edges that may want a flip
   std::vector<int> scratch_;
 };
 
@@ -110,9 +111,9 @@ std::vector<Edge> Remesher::edges(Test&& test) const {
     if (triangle.vertex[0] < 0) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       if (triangle.neighbour[k] > t) continue;
-      const auto [a, b] = std::minmax({triangle.vertex[k], triangle.vertex[(k + 1) % 3]});
+      const int a = triangle.vertex[k], b = triangle.vertex[k == 2 ? 0 : k + 1];
       const double l = length(a, b);
-      if (test(l)) result.push_back({l, a, b});
+      if (test(l)) result.push_back({a, b, {t, static_cast<int>(k)}, l});
     }
   }
   return result;
@@ -146,8 +147,10 @@ bool Remesher::should_flip(Side s) const {
 }
 
 void Remesher::push_triangle(int triangle) {
-  const EditableSheet::Triangle& t = mesh_.triangles()[static_cast<std::size_t>(triangle)];
-  for (std::size_t k = 0; k < 3; ++k) stack_.emplace_back(t.vertex[k], t.vertex[(k + 1) % 3]);
+  for (int k = 0; k < 3; ++k) {
+    const Side s{triangle, k};
+    stack_.push_back({mesh_.start(s), mesh_.end(s), s});
+  }
 }
 
 void Remesher::push_star(int v) {
@@ -159,9 +162,9 @@ void Remesher::settle() {
   // A metric that varies has no Delaunay triangulation to end at: the budget ends a cycle.
   std::size_t budget = 3 * stack_.size() + 30;
   while (!stack_.empty() && budget-- > 0) {
-    const auto [a, b] = stack_.back();
+    const Edge e = stack_.back();
     stack_.pop_back();
-    const Side s = mesh_.find(a, b);
+    const Side s = mesh_.find(e.a, e.b, e.hint);
     if (s.triangle < 0 || !should_flip(s)) continue;
     const int other = mesh_.opposite(s).triangle;
     mesh_.flip(s);
@@ -173,7 +176,7 @@ void Remesher::settle() {
 }
 
 void Remesher::flip_all() {
-  for (const Edge& e : edges([](double) { return true; })) stack_.emplace_back(e.a, e.b);
+  stack_ = edges([](double) { return true; });
   settle();
 }
 
@@ -183,7 +186,7 @@ bool Remesher::split_round() {
     return std::tie(q.length, p.a, p.b) < std::tie(p.length, q.a, q.b);
   });
   for (const Edge& e : longest) {
-    const Side s = mesh_.find(e.a, e.b);
+    const Side s = mesh_.find(e.a, e.b, e.hint);
     if (s.triangle < 0) continue;  // flipped away
     push_star(mesh_.split(s));
     ++report_.splits;
@@ -194,10 +197,11 @@ bool Remesher::split_round() {
 
 bool Remesher::try_collapse(int v, int w) {
   if (vertex(v).kind == Kind::fixed) return false;
-  mesh_.ring(v, scratch_);
-  for (const int r : scratch_) {
-    if (r != w && length(w, r) > kCollapse) return false;
-  }
+  const bool too_long = mesh_.around(v, [&](int t, int k) {
+    const int r = mesh_.end({t, k}), q = mesh_.apex({t, k});
+    return (r != w && length(w, r) > kCollapse) || (q != w && length(w, q) > kCollapse);
+  });
+  if (too_long) return false;
   if (!mesh_.can_collapse(v, w, kLeastAltitude, kMostStrain)) return false;
   mesh_.collapse(v, w);
   ++report_.collapses;
@@ -213,9 +217,10 @@ bool Remesher::collapse_round() {
   });
   bool any = false;
   for (const Edge& e : shortest) {
-    if (mesh_.find(e.a, e.b).triangle < 0) continue;
+    if (mesh_.find(e.a, e.b, e.hint).triangle < 0) continue;
     // The later vertex goes first: what a split has made a collapse unmakes.
-    any = try_collapse(e.b, e.a) || try_collapse(e.a, e.b) || any;
+    const auto [earlier, later] = std::minmax({e.a, e.b});
+    any = try_collapse(later, earlier) || try_collapse(earlier, later) || any;
   }
   return any;
 }

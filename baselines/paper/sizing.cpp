@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include "baselines/paper/planar.h"
+#include "baselines/paper/triangle_neighbours.h"
 
 namespace geoprior {
 namespace {
@@ -140,25 +140,17 @@ void SizingField::build_normals() {
   }
 }
 
-/// Interior edges, by ends and then triangles.
+/// Interior edges, in the order of the triangles that have them first.
 std::vector<SizingField::Hinge> SizingField::hinges() const {
   const Eigen::MatrixX3i& F = state_.mesh.triangles;
-  std::vector<Hinge> sides;
-  sides.reserve(static_cast<std::size_t>(3 * F.rows()));
-  for (int f = 0; f < static_cast<int>(F.rows()); ++f) {
-    for (int k = 0; k < 3; ++k) sides.push_back({F(f, k), F(f, (k + 1) % 3), f, -1});
-  }
-  const auto key = [](const Hinge& h) {
-    return std::make_tuple(std::min(h.a, h.b), std::max(h.a, h.b), h.left);
-  };
-  std::sort(sides.begin(), sides.end(),
-            [&](const Hinge& p, const Hinge& q) { return key(p) < key(q); });
+  const auto across = triangle_neighbours(F, state_.mesh.vertex_count());
   std::vector<Hinge> result;
-  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-    Hinge h = sides[i];
-    if (h.a != sides[i + 1].b || h.b != sides[i + 1].a) continue;
-    h.right = sides[i + 1].left;
-    result.push_back(h);
+  result.reserve(2 * across.size());
+  for (int f = 0; f < static_cast<int>(F.rows()); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const int g = across[static_cast<std::size_t>(f)][static_cast<std::size_t>(k)];
+      if (g > f) result.push_back({F(f, k), F(f, (k + 1) % 3), f, g});
+    }
   }
   return result;
 }
