@@ -94,6 +94,19 @@ fs::path find_pattern_file(const std::string& name, const fs::path& folder) {
   throw Error("no file '" + name + "'", "scene.pattern.file", "looked for " + tried);
 }
 
+/// Corners in the order of the file, either way round: errors number them so.
+Pattern polygon_pattern(const std::vector<PatternPointOptions>& points) {
+  Pattern pattern, mirrored;
+  for (const PatternPointOptions& p : points) {
+    pattern.border.emplace_back(p.u, p.v);
+    mirrored.border.emplace_back(-p.u, p.v);
+  }
+  const bool clockwise = signed_area(pattern) < 0;
+  require_simple(clockwise ? mirrored : pattern, "scene.pattern");
+  if (clockwise) std::reverse(pattern.border.begin(), pattern.border.end());
+  return pattern;
+}
+
 Pattern make_pattern(const PatternOptions& options, const fs::path& folder,
                      std::vector<fs::path>& files) {
   switch (options.kind) {
@@ -101,15 +114,14 @@ Pattern make_pattern(const PatternOptions& options, const fs::path& folder,
       return rectangle_pattern(options.width, options.height);
     case PatternKind::disc:
       return disc_pattern(options.radius, options.corners);
-    case PatternKind::polygon: {
-      Pattern pattern;
-      for (const PatternPointOptions& p : options.points) pattern.border.emplace_back(p.u, p.v);
-      if (signed_area(pattern) < 0) std::reverse(pattern.border.begin(), pattern.border.end());
+    case PatternKind::polygon:
+      return polygon_pattern(options.points);
+    case PatternKind::svg: {
+      files.push_back(find_pattern_file(options.file, folder));
+      Pattern pattern = read_svg_pattern(files.back(), options.svg);
+      require_simple(pattern, "scene.pattern.file: " + files.back().string());
       return pattern;
     }
-    case PatternKind::svg:
-      files.push_back(find_pattern_file(options.file, folder));
-      return read_svg_pattern(files.back(), options.svg);
   }
   throw Error("unknown kind of pattern", "scene.pattern", "rectangle, disc, polygon, svg");
 }
