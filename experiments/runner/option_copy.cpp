@@ -3,6 +3,8 @@
 #include <deque>
 #include <variant>
 
+#include "experiments/runner/option_values_definition.h"
+
 namespace geoprior {
 
 namespace {
@@ -13,26 +15,14 @@ using Value =
                  std::array<double, 3>, std::array<int, 3>, std::size_t>;
 
 /// Both walks see the same members in the same order; `value` is what they do to each.
-class Walk : public OptionVisitor {
+class Walk : public OptionValues<Walk> {
  public:
   explicit Walk(std::deque<Value>& values) : values_(values) {}
 
-#define GEOPRIOR_VALUE(Type) \
-  void value(std::string_view, Type& x, const OptionInfo&) override { exchange(x); }
-  GEOPRIOR_VALUE(double)
-  GEOPRIOR_VALUE(int)
-  GEOPRIOR_VALUE(bool)
-  GEOPRIOR_VALUE(std::string)
-  GEOPRIOR_VALUE(std::vector<double>)
-  GEOPRIOR_VALUE(std::vector<std::string>)
-  GEOPRIOR_VALUE(std::optional<double>)
-  GEOPRIOR_VALUE(std::optional<int>)
-  GEOPRIOR_VALUE(std::optional<std::string>)
-#undef GEOPRIOR_VALUE
-  void value(std::string_view, std::array<double, 3>& x, const OptionInfo&) override {
+  template <class T>
+  void visit_value(std::string_view, T& x, const OptionInfo&) {
     exchange(x);
   }
-  void value(std::string_view, std::array<int, 3>& x, const OptionInfo&) override { exchange(x); }
   void choice(std::string_view, int& index, std::span<const std::string_view>,
               const OptionInfo&) override {
     exchange(index);

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "experiments/runner/number_text.h"
+#include "experiments/runner/option_values_definition.h"
 
 namespace geoprior {
 
@@ -12,14 +13,6 @@ using Json = nlohmann::ordered_json;
 OptionJsonWriter::OptionJsonWriter() : root_(Json::object()), table_(&root_) {}
 
 Json& OptionJsonWriter::member(std::string_view key) { return (*table_)[std::string(key)]; }
-
-template <class T>
-void OptionJsonWriter::optional_member(std::string_view key, const std::optional<T>& x) {
-  if (x)
-    member(key) = *x;
-  else
-    member(key) = nullptr;
-}
 
 Json OptionJsonWriter::walk(const std::function<void()>& inside) {
   Json nested = Json::object();
@@ -30,36 +23,16 @@ Json OptionJsonWriter::walk(const std::function<void()>& inside) {
   return nested;
 }
 
-void OptionJsonWriter::value(std::string_view key, double& x, const OptionInfo&) {
-  member(key) = x;
+template <class T>
+void OptionJsonWriter::visit_value(std::string_view key, T& x, const OptionInfo&) {
+  if constexpr (requires { x.has_value(); }) {
+    member(key) = x ? Json(*x) : Json(nullptr);
+  } else {
+    member(key) = x;
+  }
 }
-void OptionJsonWriter::value(std::string_view key, int& x, const OptionInfo&) { member(key) = x; }
-void OptionJsonWriter::value(std::string_view key, bool& x, const OptionInfo&) { member(key) = x; }
-void OptionJsonWriter::value(std::string_view key, std::string& x, const OptionInfo&) {
-  member(key) = x;
-}
-void OptionJsonWriter::value(std::string_view key, std::vector<double>& x, const OptionInfo&) {
-  member(key) = x;
-}
-void OptionJsonWriter::value(std::string_view key, std::vector<std::string>& x, const OptionInfo&) {
-  member(key) = x;
-}
-void OptionJsonWriter::value(std::string_view key, std::optional<double>& x, const OptionInfo&) {
-  optional_member(key, x);
-}
-void OptionJsonWriter::value(std::string_view key, std::optional<int>& x, const OptionInfo&) {
-  optional_member(key, x);
-}
-void OptionJsonWriter::value(std::string_view key, std::optional<std::string>& x,
-                             const OptionInfo&) {
-  optional_member(key, x);
-}
-void OptionJsonWriter::value(std::string_view key, std::array<double, 3>& x, const OptionInfo&) {
-  member(key) = x;
-}
-void OptionJsonWriter::value(std::string_view key, std::array<int, 3>& x, const OptionInfo&) {
-  member(key) = x;
-}
+
+template class OptionValues<OptionJsonWriter>;
 
 void OptionJsonWriter::choice(std::string_view key, int& index,
                               std::span<const std::string_view> names, const OptionInfo&) {

@@ -5,27 +5,20 @@
 #include <vector>
 
 #include "core/options.h"
+#include "experiments/runner/option_values.h"
 
 namespace geoprior {
 
+class OptionJsonWriter;
+extern template class OptionValues<OptionJsonWriter>;
+
 /// Writes the options that `describe` walks as JSON, every option with its value, in the order of
 /// `describe`; absent optionals are null.
-class OptionJsonWriter final : public OptionVisitor {
+class OptionJsonWriter final : public OptionValues<OptionJsonWriter> {
  public:
   OptionJsonWriter();
   [[nodiscard]] const nlohmann::ordered_json& json() const { return root_; }
 
-  void value(std::string_view key, double& x, const OptionInfo& info) override;
-  void value(std::string_view key, int& x, const OptionInfo& info) override;
-  void value(std::string_view key, bool& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::string& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::vector<double>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::vector<std::string>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::optional<double>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::optional<int>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::optional<std::string>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::array<double, 3>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::array<int, 3>& x, const OptionInfo& info) override;
   void choice(std::string_view key, int& index, std::span<const std::string_view> names,
               const OptionInfo& info) override;
   void group(std::string_view key, const OptionInfo& info,
@@ -37,9 +30,10 @@ class OptionJsonWriter final : public OptionVisitor {
             const std::function<void(std::size_t)>& inside) override;
 
  private:
-  nlohmann::ordered_json& member(std::string_view key);
+  friend OptionValues<OptionJsonWriter>;
   template <class T>
-  void optional_member(std::string_view key, const std::optional<T>& x);
+  void visit_value(std::string_view key, T& x, const OptionInfo& info);
+  nlohmann::ordered_json& member(std::string_view key);
   nlohmann::ordered_json walk(const std::function<void()>& inside);
 
   nlohmann::ordered_json root_;

@@ -2,17 +2,44 @@
 
 #include "experiments/runner/number_text.h"
 #include "experiments/runner/option_toml.h"
+#include "experiments/runner/option_values_definition.h"
 
 namespace geoprior {
 namespace {
 
 std::string in_quotes(const std::string& text) { return "\"" + text + "\""; }
 
-template <class Items, class Text>
-std::string array_text(const Items& items, Text text) {
+/// Type and default of an option as they are shown.
+struct Shown {
+  std::string type;
+  std::string value;
+};
+
+Shown shown(double x) { return {"number", number_text(x)}; }
+Shown shown(int x) { return {"integer", std::to_string(x)}; }
+Shown shown(bool x) { return {"boolean", x ? "true" : "false"}; }
+Shown shown(const std::string& x) { return {"text", in_quotes(x)}; }
+
+template <class T>
+Shown shown(const std::optional<T>& x) {
+  return {shown(T{}).type, x ? shown(*x).value : ""};
+}
+
+template <class Items>
+std::string array_text(const Items& items) {
   std::string joined;
-  for (const auto& item : items) joined += (joined.empty() ? "" : ", ") + text(item);
+  for (const auto& item : items) joined += (joined.empty() ? "" : ", ") + shown(item).value;
   return "[" + joined + "]";
+}
+
+template <class T>
+Shown shown(const std::vector<T>& x) {
+  return {shown(T{}).type + "s", array_text(x)};
+}
+
+template <class T>
+Shown shown(const std::array<T, 3>& x) {
+  return {"3 " + shown(T{}).type + "s", array_text(x)};
 }
 
 }  // namespace
@@ -33,41 +60,13 @@ void OptionLister::walk(const std::string& key, const std::function<void()>& ins
   prefix_ = outer;
 }
 
-void OptionLister::value(std::string_view key, double& x, const OptionInfo& info) {
-  add(key, "number", number_text(x), info);
+template <class T>
+void OptionLister::visit_value(std::string_view key, T& x, const OptionInfo& info) {
+  const Shown as = shown(x);
+  add(key, as.type, as.value, info);
 }
-void OptionLister::value(std::string_view key, int& x, const OptionInfo& info) {
-  add(key, "integer", std::to_string(x), info);
-}
-void OptionLister::value(std::string_view key, bool& x, const OptionInfo& info) {
-  add(key, "boolean", x ? "true" : "false", info);
-}
-void OptionLister::value(std::string_view key, std::string& x, const OptionInfo& info) {
-  add(key, "text", in_quotes(x), info);
-}
-void OptionLister::value(std::string_view key, std::vector<double>& x, const OptionInfo& info) {
-  add(key, "numbers", array_text(x, number_text), info);
-}
-void OptionLister::value(std::string_view key, std::vector<std::string>& x,
-                         const OptionInfo& info) {
-  add(key, "texts", array_text(x, in_quotes), info);
-}
-void OptionLister::value(std::string_view key, std::optional<double>& x, const OptionInfo& info) {
-  add(key, "number", x ? number_text(*x) : "", info);
-}
-void OptionLister::value(std::string_view key, std::optional<int>& x, const OptionInfo& info) {
-  add(key, "integer", x ? std::to_string(*x) : "", info);
-}
-void OptionLister::value(std::string_view key, std::optional<std::string>& x,
-                         const OptionInfo& info) {
-  add(key, "text", x ? in_quotes(*x) : "", info);
-}
-void OptionLister::value(std::string_view key, std::array<double, 3>& x, const OptionInfo& info) {
-  add(key, "3 numbers", array_text(x, number_text), info);
-}
-void OptionLister::value(std::string_view key, std::array<int, 3>& x, const OptionInfo& info) {
-  add(key, "3 integers", array_text(x, [](int i) { return std::to_string(i); }), info);
-}
+
+template class OptionValues<OptionLister>;
 
 void OptionLister::choice(std::string_view key, int& index, std::span<const std::string_view> names,
                           const OptionInfo& info) {

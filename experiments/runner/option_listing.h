@@ -4,8 +4,12 @@
 #include <vector>
 
 #include "core/options.h"
+#include "experiments/runner/option_values.h"
 
 namespace geoprior {
+
+class OptionLister;
+extern template class OptionValues<OptionLister>;
 
 /// One option as `geoprior describe` and the documentation show it.
 struct OptionRow {
@@ -20,21 +24,10 @@ struct OptionRow {
 /// Lists the options that `describe` walks, with the values they have as defaults. Lists without
 /// elements are given one and tables that are absent are walked, so the struct is changed: hand in
 /// a copy.
-class OptionLister final : public OptionVisitor {
+class OptionLister final : public OptionValues<OptionLister> {
  public:
   [[nodiscard]] const std::vector<OptionRow>& rows() const { return rows_; }
 
-  void value(std::string_view key, double& x, const OptionInfo& info) override;
-  void value(std::string_view key, int& x, const OptionInfo& info) override;
-  void value(std::string_view key, bool& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::string& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::vector<double>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::vector<std::string>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::optional<double>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::optional<int>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::optional<std::string>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::array<double, 3>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::array<int, 3>& x, const OptionInfo& info) override;
   void choice(std::string_view key, int& index, std::span<const std::string_view> names,
               const OptionInfo& info) override;
   void group(std::string_view key, const OptionInfo& info,
@@ -46,6 +39,9 @@ class OptionLister final : public OptionVisitor {
             const std::function<void(std::size_t)>& inside) override;
 
  private:
+  friend OptionValues<OptionLister>;
+  template <class T>
+  void visit_value(std::string_view key, T& x, const OptionInfo& info);
   void add(std::string_view key, std::string type, std::string default_value,
            const OptionInfo& info);
   void walk(const std::string& key, const std::function<void()>& inside);

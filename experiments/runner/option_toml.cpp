@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "core/error.h"
 #include "experiments/runner/number_text.h"
+#include "experiments/runner/option_values_definition.h"
 
 namespace geoprior {
 namespace {
@@ -13,6 +15,13 @@ namespace {
 std::string expected(std::string_view type, const OptionInfo& info) {
   const std::string range = range_text(info);
   return std::string(type) + (range.empty() ? "" : ", " + range);
+}
+
+template <class Item>
+constexpr std::string_view plural_of() {
+  if constexpr (std::is_same_v<Item, double>) return "numbers";
+  if constexpr (std::is_same_v<Item, int>) return "integers";
+  return "texts";
 }
 
 }  // namespace
@@ -134,72 +143,41 @@ const TomlNode& OptionTomlReader::array(const TomlNode& node, std::string_view k
   return node;
 }
 
-void OptionTomlReader::value(std::string_view key, double& x, const OptionInfo& info) {
-  if (const TomlNode* node = take(key, info)) x = number(*node, key, info);
-}
-
-void OptionTomlReader::value(std::string_view key, int& x, const OptionInfo& info) {
-  if (const TomlNode* node = take(key, info)) x = integer(*node, key, info);
-}
-
-void OptionTomlReader::value(std::string_view key, bool& x, const OptionInfo& info) {
-  const TomlNode* node = take(key, info);
-  if (node == nullptr) return;
-  if (node->kind != TomlNode::Kind::boolean) {
-    throw Error("is " + node->kind_name(), where(*node, key), "true or false");
+template <class T>
+T OptionTomlReader::read(const TomlNode& node, std::string_view key, const OptionInfo& info) const {
+  if constexpr (std::is_same_v<T, double>) {
+    return number(node, key, info);
+  } else if constexpr (std::is_same_v<T, int>) {
+    return integer(node, key, info);
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    return text(node, key, info);
+  } else if constexpr (std::is_same_v<T, bool>) {
+    if (node.kind == TomlNode::Kind::boolean) return node.boolean;
+    throw Error("is " + node.kind_name(), where(node, key), "true or false");
+  } else if constexpr (requires(T x) { x.has_value(); }) {
+    return read<typename T::value_type>(node, key, info);
+  } else if constexpr (requires(T x) { x.push_back({}); }) {
+    using Item = typename T::value_type;
+    T items;
+    for (const TomlNode& item : array(node, key, plural_of<Item>()).items) {
+      items.push_back(read<Item>(item, key, info));
+    }
+    return items;
+  } else {
+    using Item = typename T::value_type;
+    T items{};
+    const TomlNode& all = array(node, key, plural_of<Item>(), items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) items[i] = read<Item>(all.items[i], key, info);
+    return items;
   }
-  x = node->boolean;
 }
 
-void OptionTomlReader::value(std::string_view key, std::string& x, const OptionInfo& info) {
-  if (const TomlNode* node = take(key, info)) x = text(*node, key, info);
+template <class T>
+void OptionTomlReader::visit_value(std::string_view key, T& x, const OptionInfo& info) {
+  if (const TomlNode* node = take(key, info)) x = read<T>(*node, key, info);
 }
 
-void OptionTomlReader::value(std::string_view key, std::vector<double>& x, const OptionInfo& info) {
-  const TomlNode* node = take(key, info);
-  if (node == nullptr) return;
-  x.clear();
-  for (const TomlNode& item : array(*node, key, "numbers").items) {
-    x.push_back(number(item, key, info));
-  }
-}
-
-void OptionTomlReader::value(std::string_view key, std::vector<std::string>& x,
-                             const OptionInfo& info) {
-  const TomlNode* node = take(key, info);
-  if (node == nullptr) return;
-  x.clear();
-  for (const TomlNode& item : array(*node, key, "texts").items) x.push_back(text(item, key, info));
-}
-
-void OptionTomlReader::value(std::string_view key, std::optional<double>& x,
-                             const OptionInfo& info) {
-  if (const TomlNode* node = take(key, info)) x = number(*node, key, info);
-}
-
-void OptionTomlReader::value(std::string_view key, std::optional<int>& x, const OptionInfo& info) {
-  if (const TomlNode* node = take(key, info)) x = integer(*node, key, info);
-}
-
-void OptionTomlReader::value(std::string_view key, std::optional<std::string>& x,
-                             const OptionInfo& info) {
-  if (const TomlNode* node = take(key, info)) x = text(*node, key, info);
-}
-
-void OptionTomlReader::value(std::string_view key, std::array<double, 3>& x,
-                             const OptionInfo& info) {
-  const TomlNode* node = take(key, info);
-  if (node == nullptr) return;
-  const TomlNode& items = array(*node, key, "numbers", 3);
-  for (std::size_t i = 0; i < 3; ++i) x[i] = number(items.items[i], key, info);
-}
-
-void OptionTomlReader::value(std::string_view key, std::array<int, 3>& x, const OptionInfo& info) {
-  const TomlNode* node = take(key, info);
-  if (node == nullptr) return;
-  const TomlNode& items = array(*node, key, "integers", 3);
-  for (std::size_t i = 0; i < 3; ++i) x[i] = integer(items.items[i], key, info);
-}
+template class OptionValues<OptionTomlReader>;
 
 void OptionTomlReader::choice(std::string_view key, int& index,
                               std::span<const std::string_view> names, const OptionInfo& info) {

@@ -4,16 +4,20 @@
 #include <vector>
 
 #include "core/options.h"
+#include "experiments/runner/option_values.h"
 #include "experiments/runner/toml_tree.h"
 
 namespace geoprior {
+
+class OptionTomlReader;
+extern template class OptionValues<OptionTomlReader>;
 
 /// Reads a TOML table into the options that `describe` walks.
 ///
 /// Absent keys keep their default. Unknown keys, wrong types, NaN, infinities and values out of
 /// range throw Error "file:line:column: key …: problem (allowed: …)". A table that may be absent
 /// (`optional_group`) may also be switched off with `key = false`.
-class OptionTomlReader final : public OptionVisitor {
+class OptionTomlReader final : public OptionValues<OptionTomlReader> {
  public:
   /// @param table  must outlive the reader
   /// @param path   dotted key of the table, "" at the top: for messages
@@ -21,17 +25,6 @@ class OptionTomlReader final : public OptionVisitor {
   /// Throws on keys that nothing has asked for: call it after `describe`.
   void finish() const;
 
-  void value(std::string_view key, double& x, const OptionInfo& info) override;
-  void value(std::string_view key, int& x, const OptionInfo& info) override;
-  void value(std::string_view key, bool& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::string& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::vector<double>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::vector<std::string>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::optional<double>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::optional<int>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::optional<std::string>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::array<double, 3>& x, const OptionInfo& info) override;
-  void value(std::string_view key, std::array<int, 3>& x, const OptionInfo& info) override;
   void choice(std::string_view key, int& index, std::span<const std::string_view> names,
               const OptionInfo& info) override;
   void group(std::string_view key, const OptionInfo& info,
@@ -43,6 +36,9 @@ class OptionTomlReader final : public OptionVisitor {
             const std::function<void(std::size_t)>& inside) override;
 
  private:
+  friend OptionValues<OptionTomlReader>;
+  template <class T>
+  void visit_value(std::string_view key, T& x, const OptionInfo& info);
   struct Level {
     const TomlNode* table;
     std::string path;
@@ -53,6 +49,8 @@ class OptionTomlReader final : public OptionVisitor {
   [[nodiscard]] std::string where(const TomlNode& node, std::string_view key) const;
   [[nodiscard]] std::string path_of(std::string_view key) const;
   void walk(const TomlNode& table, std::string path, const std::function<void()>& inside);
+  template <class T>
+  T read(const TomlNode& node, std::string_view key, const OptionInfo& info) const;
   double number(const TomlNode& node, std::string_view key, const OptionInfo& info) const;
   int integer(const TomlNode& node, std::string_view key, const OptionInfo& info) const;
   const std::string& text(const TomlNode& node, std::string_view key, const OptionInfo& info) const;

@@ -1,8 +1,10 @@
 #include "experiments/runner/reference.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "core/error.h"
 #include "experiments/formats/atomic_file.h"
@@ -14,25 +16,66 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kSchemaVersion = 1;
+constexpr int kSchemaVersion = 2;
 
-Json json_of(const ReferenceSet& set) {
-  Json json = Json::object();
+/// "overlap_volume" of "overlap_volume.max": what has one unit in all of its reductions.
+std::string base_name(const std::string& summary_name) {
+  return summary_name.substr(0, summary_name.rfind('.'));
+}
+
+template <class Visit>
+void for_each_value(const ReferenceSet& set, Visit visit) {
   for (const auto& [case_name, variants] : set) {
     for (const auto& [variant, metrics] : variants) {
-      for (const auto& [metric, value] : metrics) {
-        Json& entry = json[case_name][variant][metric];
-        if (std::isfinite(value.value))
-          entry["value"] = value.value;
-        else
-          entry["value"] = number_text(value.value);
-        entry["unit"] = value.unit;
-        entry["reason"] = value.reason;
-        entry["commit"] = value.commit;
-      }
+      for (const auto& [metric, value] : metrics) visit(case_name, variant, metric, value);
     }
   }
-  return json;
+}
+
+/// What most values of a set share; a value says only what it has otherwise.
+struct Shared {
+  std::string reason;
+  std::string commit;
+  std::map<std::string, std::string> units;  ///< by `base_name`
+};
+
+Shared shared_by_most(const ReferenceSet& set) {
+  Shared shared;
+  std::map<std::pair<std::string, std::string>, std::size_t> blessings;
+  for_each_value(set, [&](const auto&, const auto&, const auto& metric, const auto& value) {
+    ++blessings[{value.reason, value.commit}];
+    shared.units.emplace(base_name(metric), value.unit);
+  });
+  const auto most =
+      std::max_element(blessings.begin(), blessings.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (most != blessings.end()) std::tie(shared.reason, shared.commit) = most->first;
+  return shared;
+}
+
+/// A plain number, or an object of what the value does not share.
+Json json_of(const ReferenceValue& value, const std::string& unit, const Shared& shared) {
+  const Json number =
+      std::isfinite(value.value) ? Json(value.value) : Json(number_text(value.value));
+  Json own = Json::object();
+  if (value.unit != unit) own["unit"] = value.unit;
+  if (value.reason != shared.reason) own["reason"] = value.reason;
+  if (value.commit != shared.commit) own["commit"] = value.commit;
+  if (own.empty()) return number;
+  own["value"] = number;
+  return own;
+}
+
+Json json_of(const ReferenceSet& set) {
+  const Shared shared = shared_by_most(set);
+  Json values = Json::object();
+  for_each_value(set, [&](const auto& in, const auto& variant, const auto& metric, const auto& v) {
+    values[in][variant][metric] = json_of(v, shared.units.at(base_name(metric)), shared);
+  });
+  return {{"reason", shared.reason},
+          {"commit", shared.commit},
+          {"units", shared.units},
+          {"values", values}};
 }
 
 double number_of(const Json& value) {
@@ -44,13 +87,21 @@ double number_of(const Json& value) {
   throw Error("'" + text + "' is no number", "value", "a number, \"nan\", \"inf\", \"-inf\"");
 }
 
+ReferenceValue value_of(const Json& entry, const std::string& unit, const Json& shared) {
+  if (!entry.is_object()) return {number_of(entry), unit, shared.at("reason"), shared.at("commit")};
+  const auto own = [&](const char* key) -> std::string {
+    return entry.contains(key) ? entry.at(key) : shared.at(key);
+  };
+  return {number_of(entry.at("value")), entry.value("unit", unit), own("reason"), own("commit")};
+}
+
 ReferenceSet set_of(const Json& json) {
   ReferenceSet set;
-  for (const auto& [case_name, variants] : json.items()) {
+  for (const auto& [case_name, variants] : json.at("values").items()) {
     for (const auto& [variant, metrics] : variants.items()) {
       for (const auto& [metric, entry] : metrics.items()) {
-        set[case_name][variant][metric] = {number_of(entry.at("value")), entry.at("unit"),
-                                           entry.at("reason"), entry.at("commit")};
+        const std::string unit = json.at("units").at(base_name(metric));
+        set[case_name][variant][metric] = value_of(entry, unit, json);
       }
     }
   }

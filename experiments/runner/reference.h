@@ -23,7 +23,8 @@ struct ReferenceValue {
 using ReferenceSet =
     std::map<std::string, std::map<std::string, std::map<std::string, ReferenceValue>>>;
 
-/// results/reference/<id>.json: one set for full and one for quick runs.
+/// results/reference/<id>.json: one set for full and one for quick runs. In the file a set names
+/// reason, commit and units once; values that have others say so themselves.
 struct Reference {
   std::map<std::string, ReferenceSet> sets;  ///< "full", "quick"
 };

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "tests/experiments/toy_home.h"
@@ -48,6 +49,30 @@ TEST(Reference, SurvivesAFileExactlyWithQuickAndFullApart) {
   const std::string bytes = toy::Home::read(file);
   write_reference(read, file);
   EXPECT_EQ(toy::Home::read(file), bytes);
+}
+
+TEST(Reference, SaysReasonCommitAndUnitOnceASetAndOtherwiseWhereTheyDiffer) {
+  const toy::Home home;
+  const auto file = home.root() / "r.json";
+  Reference reference;
+  reference.sets["full"] =
+      bless_values(record_of({{"a.max", 1}, {"a.min", 2}, {"b", 4}}),
+                   blessed({{"a.max", 1}, {"a.min", 2}, {"b", 3}}), "b grew", "c2");
+  reference.sets["full"]["default"]["v"]["a.min"].unit = "mm";
+  write_reference(reference, file);
+  const auto json = nlohmann::json::parse(toy::Home::read(file));
+  const auto& set = json.at("full");
+  EXPECT_EQ(set.at("reason"), "first");
+  EXPECT_EQ(set.at("commit"), "c1");
+  const auto& values = set.at("values").at("default").at("v");
+  EXPECT_EQ(values.at("a.max"), 1.0);
+  EXPECT_EQ(values.at("a.min"), nlohmann::json({{"unit", "mm"}, {"value", 2.0}}));
+  EXPECT_EQ(values.at("b"),
+            nlohmann::json({{"reason", "b grew"}, {"commit", "c2"}, {"value", 4.0}}));
+  const ReferenceSet read = read_reference(file).sets.at("full");
+  EXPECT_EQ(read.at("default").at("v").at("a.min").unit, "mm");
+  EXPECT_EQ(read.at("default").at("v").at("a.max").reason, "first");
+  EXPECT_EQ(read.at("default").at("v").at("b").commit, "c2");
 }
 
 TEST(Reference, DamagedFileIsAnErrorThatNamesIt) {
