@@ -8,15 +8,33 @@ Every number comes from the runs given; the order is theirs.
 import argparse
 from pathlib import Path
 
+import numpy as np
+
 import runfile
 from summary import claims, table, timing_table
+from tables import failures
 
 HEADER = """# Figures and numbers
 
 Thesis figure, the experiment that makes it, its claims with the values measured, and whether they hold. A claim that falls short is a
-finding, explained in [the method's page](methods/skinning.md#what-was-found). Written by `results/figures.py` from the runs that the table names; a run's folder is
+finding, explained in the method's page ({pages}). Written by `results/figures.py` from the runs that the table names; a run's folder is
 `results/runs/<experiment>/<time>-<hash>/` with `figure.png`, `metrics.svg`, `run.h5` and `frames/`. Make them again with `./reproduce.sh --all`.
 """
+
+
+def sizes(run):
+    """How large its scenes are; of simulations, whose meshes change, the largest frame of any variant."""
+    vertices = sorted({int(case.facts["vertices"]) for case in run.cases if "vertices" in case.facts})
+    if vertices:
+        return ", ".join(f"{n:,}" for n in vertices)
+    triangles = [np.nanmax(metric.values) for case in run.cases for variant in case.variants
+                 for name, metric in variant.metrics.items() if name == "triangles"]
+    return f"up to {int(max(triangles)):,} triangles" if triangles else ""
+
+
+def header(runs):
+    topics = dict.fromkeys(run.topic for run in runs)
+    return HEADER.replace("{pages}", ", ".join(f"[{t}](methods/{t}.md#what-was-found)" for t in topics))
 
 
 def overview(runs):
@@ -24,15 +42,14 @@ def overview(runs):
     for run in runs:
         held = sum(claim.holds for claim in run.claims)
         verdict = f"{held} of {len(run.claims)} claims hold" if run.claims else "no claims"
-        vertices = ", ".join(sorted({f"{int(case.facts['vertices']):,}" for case in run.cases if "vertices" in case.facts},
-                                    key=lambda text: int(text.replace(",", ""))))
-        rows.append([f"`{run.experiment_id}`", run.figure or "–", vertices, verdict,
+        rows.append([f"`{run.experiment_id}`", run.figure or "–", sizes(run), verdict,
                      f"`{run.content_sha256[:12]}`", f"`{run.provenance.get('git_commit', 'unknown')[:12]}`"])
-    return table(["experiment", "figure", "vertices", "result", "content_sha256", "commit"], rows)
+    return table(["experiment", "figure", "vertices or triangles", "result", "content_sha256", "commit"], rows)
 
 
 def section(run):
     lines = ["", f"## {run.experiment_id}" + (f" → Figure {run.figure}" if run.figure else ""), "", run.title + "."]
+    lines += [f"\n**{line}**\n" for line in failures(run)]
     lines += [line.replace("## Claims", "**Claims**") if line.startswith("## ") else line for line in claims(run)]
     if run.studies:
         lines += ["", *table(["study", "value", "95 % interval"],
@@ -49,7 +66,7 @@ def main(arguments):
     chosen = parser.parse_args(arguments)
     runs = [runfile.read_run(place) for place in chosen.runs]
     provenance = runs[0].provenance
-    lines = [HEADER, f"Processor: {provenance.get('cpu', 'unknown')}.", ""]
+    lines = [header(runs), f"Processor: {provenance.get('cpu', 'unknown')}.", ""]
     lines += overview(runs)
     for run in runs:
         lines += section(run)

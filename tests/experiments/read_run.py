@@ -19,6 +19,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+import numpy.lib.recfunctions
 
 EXPERIMENT = """
 title = "A pendulum"
@@ -35,6 +36,7 @@ method = "closed-form"
 [[variant]]
 name = "euler"
 method = "explicit-euler"
+role = "baseline"
 reference = "exact"
 """
 
@@ -164,20 +166,48 @@ def content_text(run):
     return "".join(line + "\n" for line in lines)
 
 
+def make_schema_1(file):
+    """What run.h5 was before processes were timed by frames."""
+    with h5py.File(file, "a") as run:
+        run.attrs["schema_version"] = 1
+        for case in run["cases"].values():
+            rows = case["ratios"][:][["variant", "of", "median_ratio", "low", "high"]]
+            del case["ratios"]
+            case["ratios"] = np.lib.recfunctions.repack_fields(rows)
+            for variant in case["variants"].values():
+                del variant.attrs["error"]
+                whole = variant["timing/run"][:].sum(axis=0, keepdims=True)
+                for phase in list(variant["timing"]):
+                    if phase not in ("load", "prepare"):
+                        del variant["timing"][phase]
+                variant["timing/run"] = whole
+        for study in run["study"].values():
+            del study["y_of"]
+
+
+def check_older_schema(program, folder, environment):
+    make_schema_1(folder / "run.h5")
+    subprocess.run([program, "export", str(folder), "--format", "obj", "--out", str(folder / "obj")],
+                   check=True, env=environment)
+    assert list((folder / "obj").rglob("*.obj"))
+
+
 def main():
     with tempfile.TemporaryDirectory() as temporary:
         experiment = Path(temporary) / "experiments/toy-pendulum/swing.toml"
         experiment.parent.mkdir(parents=True)
         experiment.write_text(EXPERIMENT)
         folder = Path(temporary) / "run"
+        environment = {**os.environ, "GEOPRIOR_RUNS": temporary + "/runs"}
         subprocess.run([sys.argv[1], "run", str(experiment), "--no-pictures", "--out", str(folder)],
-                       check=True, env={**os.environ, "GEOPRIOR_RUNS": temporary + "/runs"})
+                       check=True, env=environment)
         with h5py.File(folder / "run.h5") as run:
             check_numbers(folder, run)
             check_frame(folder, run)
             assert hashlib.sha256(content_text(run).encode()).hexdigest() == run.attrs["content_sha256"]
         for line in (folder / "journal.jsonl").read_text().splitlines():
             assert "kind" in json.loads(line)
+        check_older_schema(sys.argv[1], folder, environment)
     print("run.h5, .vtp, .vti, .csv, .pvd and journal.jsonl are as described")
 
 
