@@ -8,62 +8,29 @@
 #include <string>
 #include <tuple>
 
+#include "core/curvature_estimate.h"
 #include "core/error.h"
 
 namespace geoprior {
 namespace {
 
 using Hinge = CurvatureFit::Hinge;
-using Rows3 = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, CurvatureFit::kMostTerms, 3>;
-using Columns3 = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, CurvatureFit::kMostTerms>;
+using Terms = std::vector<CurvatureFit::Term>;  // here with coefficients as (uu, sqrt2 uv, vv)
 
-/// Smallest ratio of singular values at which a direction of S counts as observed, for rows of unit
-/// length in the affine frame of the patch. The inverse multiplies by up to its reciprocal what the
-/// fit cannot represent, the variation of S over the patch: fans about an apex, whose edges all see
-/// nearly the same combination of S, lock when it is small. On random Delaunay meshes the patches
-/// of a triangle and its neighbours stay above it (3,200 triangles).
-constexpr double kObserved = 0.2;
-/// Weight of an edge `distance` triangles away, as a factor on its row: the fit belongs to the
-/// triangle.
-double distance_weight(int distance) { return 1.0 / (1 + distance); }
+constexpr double kRoot2 = std::numbers::sqrt2;
 
-// Symmetric matrices as (uu, sqrt2 uv, vv): Frobenius products are dot products.
-const double kRoot2 = std::numbers::sqrt2;
-
-Eigen::Vector3d mandel(const Eigen::Matrix2d& S) {
-  return {S(0, 0), kRoot2 / 2 * (S(0, 1) + S(1, 0)), S(1, 1)};
-}
-
-Eigen::Matrix2d from_mandel(const Eigen::Vector3d& m) {
-  Eigen::Matrix2d S;
-  S << m[0], m[1] / kRoot2, m[1] / kRoot2, m[2];
-  return S;
-}
-
-/// Matrix of S -> K' S K.
-Eigen::Matrix3d congruence(const Eigen::Matrix2d& K) {
-  Eigen::Matrix3d T;
-  for (int i = 0; i < 3; ++i)
-    T.col(i) = mandel(K.transpose() * from_mandel(Eigen::Vector3d::Unit(i)) * K);
-  return T;
-}
-
-/// Jump of slope per unit of S_uu, S_uv, S_vv. With s along the edge of length L and t to its left,
-/// c = (cs, ct) and d = (ds, -dt):
-///   1/2 k_ss [(cs^2 - cs L)/ct + (ds^2 - ds L)/dt] + k_st (cs - ds) + 1/2 k_tt (ct + dt).
-Eigen::Vector3d slope_jump(const Eigen::MatrixX2d& pattern, const Hinge& h) {
-  const Eigen::Vector2d origin = pattern.row(h.a);
-  const Eigen::Vector2d edge = pattern.row(h.b).transpose() - origin;
+/// Slope across the edge a-b of the plane through a, b, c less that of the quadratic u' S u / 2 at
+/// the middle of the edge, per unit of S as (uu, sqrt2 uv, vv). With s along the edge of length L,
+/// t to its left and c = (cs, ct):
+///   1/2 k_ss cs (cs - L)/ct + k_st (cs - L/2) + 1/2 k_tt ct.
+Eigen::Vector3d slope_rise(const Eigen::MatrixX2d& pattern, int a, int b, int c) {
+  const Eigen::Vector2d edge = pattern.row(b) - pattern.row(a);
   const double L = edge.norm();
   const Eigen::Vector2d s = edge / L, t(-s.y(), s.x());
-  const Eigen::Vector2d c = pattern.row(h.c).transpose() - origin;
-  const Eigen::Vector2d d = pattern.row(h.d).transpose() - origin;
-  const double cs = c.dot(s), ct = c.dot(t), ds = d.dot(s), dt = -d.dot(t);
-  const double ss = 0.5 * (cs * (cs - L) / ct + ds * (ds - L) / dt);
-  const double st = cs - ds, tt = 0.5 * (ct + dt);
-  return {ss * s.x() * s.x() + st * s.x() * t.x() + tt * t.x() * t.x(),
-          2 * ss * s.x() * s.y() + st * (s.x() * t.y() + s.y() * t.x()) + 2 * tt * t.x() * t.y(),
-          ss * s.y() * s.y() + st * s.y() * t.y() + tt * t.y() * t.y()};
+  const Eigen::Vector2d p = pattern.row(c) - pattern.row(a);
+  const double cs = p.dot(s), ct = p.dot(t);
+  return mandel(0.5 * cs * (cs - L) / ct * s * s.transpose() + (cs - L / 2) * s * t.transpose() +
+                0.5 * ct * t * t.transpose());
 }
 
 std::vector<double> pattern_areas(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX3i& F) {
@@ -134,121 +101,85 @@ std::vector<Hinge> find_hinges(const Eigen::MatrixX3i& F,
   return hinges;
 }
 
-/// The edges within reach of a triangle, ring by ring.
-class Patch {
- public:
-  Patch(const std::vector<Hinge>& hinges, const std::vector<std::array<int, 3>>& of_triangle,
-        int triangle)
-      : hinges_(&hinges), of_triangle_(&of_triangle), triangles_{triangle} {}
+/// Turns estimates of S into shape operators whose constant moments are in equilibrium.
+struct Assembly {
+  const Eigen::MatrixX2d& pattern;
+  const Eigen::MatrixX3i& triangles;
+  const CurvatureFit& fit;
+  const std::vector<std::array<int, 3>>& of_triangle;
+  const std::vector<CurvatureEstimate>& estimates;
 
-  /// Adds the edges of the outermost triangles; those across them become the outermost.
-  void grow() {
-    const std::size_t last = triangles_.size();
-    for (; next_ < last; ++next_)
-      for (const int h : (*of_triangle_)[static_cast<std::size_t>(triangles_[next_])]) add(h);
-    ++rings_;
+  [[nodiscard]] Terms terms(int triangle) const {
+    const auto t = static_cast<std::size_t>(triangle);
+    if (fit.rank[t] < 3) return estimates[t].terms;
+    Terms sum;
+    // Own edges first.
+    for (const int h : of_triangle[t])
+      if (h >= 0) add(sum, h, Eigen::Vector3d::Zero());
+    for (int k = 0; k < 3; ++k) add_edge(sum, triangle, k);
+    return fits(sum) ? sum : estimates[t].terms;
   }
-  [[nodiscard]] const std::vector<int>& edges() const { return edges_; }
-  [[nodiscard]] const std::vector<int>& vertices() const { return vertices_; }
-  [[nodiscard]] const std::vector<int>& distance() const { return distance_; }
 
  private:
-  void add(int index) {
-    if (index < 0 || std::find(edges_.begin(), edges_.end(), index) != edges_.end()) return;
-    const Hinge& h = (*hinges_)[static_cast<std::size_t>(index)];
-    std::vector<int> vertices = vertices_;
-    for (const int v : {h.a, h.b, h.c, h.d})
-      if (std::find(vertices.begin(), vertices.end(), v) == vertices.end()) vertices.push_back(v);
-    if (vertices.size() > CurvatureFit::kMostVertices || edges_.size() == CurvatureFit::kMostTerms)
+  static void add(Terms& sum, int hinge, const Eigen::Vector3d& coefficient) {
+    for (CurvatureFit::Term& term : sum)
+      if (term.hinge == hinge) {
+        term.coefficient += coefficient;
+        return;
+      }
+    sum.push_back({hinge, coefficient});
+  }
+
+  /// l alpha n n' / A of one edge.
+  void add_edge(Terms& sum, int triangle, int k) const {
+    const auto t = static_cast<std::size_t>(triangle);
+    const int a = triangles(triangle, k), b = triangles(triangle, (k + 1) % 3);
+    const Eigen::Vector2d edge = pattern.row(b) - pattern.row(a);
+    const Eigen::Vector2d normal(-edge.y(), edge.x());
+    const Eigen::Vector3d dyad = mandel(normal * normal.transpose()) / (edge.norm() * fit.area[t]);
+    const int index = of_triangle[t][static_cast<std::size_t>(k)];
+    if (index < 0) {
+      const Eigen::Vector3d rise = slope_rise(pattern, a, b, triangles(triangle, (k + 2) % 3));
+      for (const auto& term : estimates[t].terms)
+        add(sum, term.hinge, dyad * rise.dot(term.coefficient));
       return;
-    vertices_ = vertices;
-    edges_.push_back(index);
-    distance_.push_back(rings_);
-    for (const int t : {h.left, h.right})
-      if (std::find(triangles_.begin(), triangles_.end(), t) == triangles_.end())
-        triangles_.push_back(t);
+    }
+    const Hinge& h = fit.hinges[static_cast<std::size_t>(index)];
+    add(sum, index, dyad / 2);
+    const Eigen::Vector3d beta =
+        (slope_rise(pattern, h.a, h.b, h.c) - slope_rise(pattern, h.b, h.a, h.d)) / 2;
+    if (beta.norm() < 1e-9 * edge.norm()) return;  // the edge's two triangles are point symmetric
+    const auto sources = sources_of(h);
+    const double share = (h.left == triangle ? 1.0 : -1.0) / static_cast<double>(sources.size());
+    for (const int source : sources)
+      for (const auto& term : estimates[static_cast<std::size_t>(source)].terms)
+        add(sum, term.hinge, dyad * (share * beta.dot(term.coefficient)));
   }
 
-  const std::vector<Hinge>* hinges_;
-  const std::vector<std::array<int, 3>>* of_triangle_;
-  std::vector<int> triangles_, edges_, distance_, vertices_;
-  std::size_t next_ = 0;
-  int rings_ = 0;
+  /// Triangles whose estimates stand for S at an edge: both if alike in reach, else the nearer.
+  [[nodiscard]] std::vector<int> sources_of(const Hinge& h) const {
+    const auto reach = [&](int t) {
+      const CurvatureEstimate& e = estimates[static_cast<std::size_t>(t)];
+      if (e.rank < 3) return 100;
+      return e.terms.size() == 3 && fit.own[static_cast<std::size_t>(t)] == 3
+                 ? 0
+                 : static_cast<int>(e.terms.size());
+    };
+    const int left = reach(h.left), right = reach(h.right);
+    if (left == 0 && right == 0) return {h.left, h.right};
+    return {left <= right ? h.left : h.right};
+  }
+
+  [[nodiscard]] bool fits(const Terms& sum) const {
+    std::vector<int> vertices;
+    for (const auto& term : sum) {
+      const Hinge& h = fit.hinges[static_cast<std::size_t>(term.hinge)];
+      for (const int v : {h.a, h.b, h.c, h.d})
+        if (std::find(vertices.begin(), vertices.end(), v) == vertices.end()) vertices.push_back(v);
+    }
+    return sum.size() <= CurvatureFit::kMostTerms && vertices.size() <= CurvatureFit::kMostVertices;
+  }
 };
-
-/// Matrix from S in the affine frame of a patch, where its vertices spread alike in all directions,
-/// to S in the pattern. There the rank does not depend on stretch: six points on a conic stay so.
-Eigen::Matrix3d affine_frame(const Eigen::MatrixX2d& pattern, const Patch& patch) {
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const int v : patch.vertices()) mean += pattern.row(v);
-  mean /= static_cast<double>(patch.vertices().size());
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-  for (const int v : patch.vertices()) {
-    const Eigen::Vector2d p = pattern.row(v).transpose() - mean;
-    spread += p * p.transpose();
-  }
-  return congruence(spread.llt().matrixL().toDenseMatrix().inverse());
-}
-
-/// Jump at edge i of a patch, to be multiplied with S as (uu, sqrt2 uv, vv).
-Eigen::Vector3d mandel_jump(const std::vector<Hinge>& hinges, const Patch& patch, Eigen::Index i) {
-  const int edge = patch.edges()[static_cast<std::size_t>(i)];
-  const Eigen::Vector3d& jump = hinges[static_cast<std::size_t>(edge)].jump;
-  return {jump[0], jump[1] / kRoot2, jump[2]};
-}
-
-/// Directions of S that the edges of a patch observe.
-struct Observation {
-  Eigen::Matrix3d from_affine;
-  Rows3 rows;  ///< jumps in the affine frame
-  int rank = 0;
-};
-
-Observation observe(const Eigen::MatrixX2d& pattern, const std::vector<Hinge>& hinges,
-                    const Patch& patch) {
-  Observation seen;
-  const auto n = static_cast<Eigen::Index>(patch.edges().size());
-  seen.rows.resize(n, 3);
-  if (n == 0) return seen;
-  seen.from_affine = affine_frame(pattern, patch);
-  Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    seen.rows.row(i) = mandel_jump(hinges, patch, i).transpose() * seen.from_affine;
-    gram += seen.rows.row(i).normalized().transpose() * seen.rows.row(i).normalized();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(gram, Eigen::EigenvaluesOnly);
-  for (int i = 0; i < 3; ++i)
-    seen.rank += eigen.eigenvalues()[i] > kObserved * kObserved * eigen.eigenvalues()[2];
-  return seen;
-}
-
-/// Coefficients (3 x edges, Mandel) of the weighted least-squares fit where all of S is observed.
-Columns3 fitted(const std::vector<Hinge>& hinges, const Patch& patch, const Observation& seen) {
-  const Eigen::Index n = seen.rows.rows();
-  Eigen::VectorXd weight(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    weight[i] = distance_weight(patch.distance()[k]) / mandel_jump(hinges, patch, i).norm();
-  }
-  const Eigen::MatrixXd weighted = weight.asDiagonal() * seen.rows;
-  return seen.from_affine * Eigen::HouseholderQR<Eigen::MatrixXd>(weighted).solve(
-                                Eigen::MatrixXd(weight.asDiagonal()));
-}
-
-/// Coefficients (3 x edges, Mandel) of folds: each angle is spread over half the heights of the two
-/// triangles at its edge, as curvature across the edge.
-Columns3 folds(const Eigen::MatrixX2d& pattern, const std::vector<Hinge>& hinges,
-               const Patch& patch) {
-  Columns3 coefficients(3, static_cast<Eigen::Index>(patch.edges().size()));
-  for (Eigen::Index i = 0; i < coefficients.cols(); ++i) {
-    const Hinge& h = hinges[static_cast<std::size_t>(patch.edges()[static_cast<std::size_t>(i)])];
-    const Eigen::Vector2d edge = (pattern.row(h.b) - pattern.row(h.a)).normalized();
-    const Eigen::Vector2d across(-edge.y(), edge.x());
-    const Eigen::Vector3d fold = mandel(across * across.transpose());
-    coefficients.col(i) = fold / mandel_jump(hinges, patch, i).dot(fold);
-  }
-  return coefficients;
-}
 
 }  // namespace
 
@@ -257,34 +188,25 @@ CurvatureFit fit_curvature(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX
   fit.area = pattern_areas(pattern, triangles);
   std::vector<std::array<int, 3>> of_triangle;
   fit.hinges = find_hinges(triangles, of_triangle);
-  for (Hinge& h : fit.hinges) h.jump = slope_jump(pattern, h);
+  for (Hinge& h : fit.hinges) {
+    h.jump = slope_rise(pattern, h.a, h.b, h.c) + slope_rise(pattern, h.b, h.a, h.d);
+    h.jump[1] *= kRoot2;
+  }
   const std::size_t m = fit.area.size();
-  fit.terms.resize(m);
   fit.own.resize(m);
   fit.rank.resize(m);
+  std::vector<CurvatureEstimate> estimates;
+  estimates.reserve(m);
   for (std::size_t t = 0; t < m; ++t) {
-    Patch patch(fit.hinges, of_triangle, static_cast<int>(t));
-    patch.grow();
-    fit.own[t] = static_cast<int>(patch.edges().size());
-    Observation seen = observe(pattern, fit.hinges, patch);
-    Patch wider = patch;
-    for (int ring = 1; ring <= 2 && seen.rank < 3; ++ring) {
-      wider.grow();
-      const Observation more = observe(pattern, fit.hinges, wider);
-      // The one edge of the triangle at the end of a strip is a diagonal: it needs the ruling too.
-      if (more.rank == 3 || (fit.own[t] == 1 && ring == 1)) {
-        seen = more;
-        patch = wider;
-      }
-    }
-    fit.rank[t] = seen.rank;
-    const Columns3 coefficients =
-        seen.rank == 3 ? fitted(fit.hinges, patch, seen) : folds(pattern, fit.hinges, patch);
-    for (std::size_t i = 0; i < patch.edges().size(); ++i) {
-      Eigen::Vector3d c = coefficients.col(static_cast<Eigen::Index>(i));
-      c[1] /= kRoot2;
-      fit.terms[t].push_back({patch.edges()[i], c});
-    }
+    estimates.push_back(estimate_curvature(pattern, fit.hinges, of_triangle, static_cast<int>(t)));
+    fit.rank[t] = estimates[t].rank;
+    fit.own[t] = static_cast<int>(
+        std::count_if(of_triangle[t].begin(), of_triangle[t].end(), [](int h) { return h >= 0; }));
+  }
+  const Assembly assembly{pattern, triangles, fit, of_triangle, estimates};
+  for (std::size_t t = 0; t < m; ++t) {
+    fit.terms.push_back(assembly.terms(static_cast<int>(t)));
+    for (CurvatureFit::Term& term : fit.terms.back()) term.coefficient[1] /= kRoot2;
   }
   return fit;
 }

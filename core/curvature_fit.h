@@ -7,21 +7,33 @@ namespace geoprior {
 
 /// Shape operators of a bent sheet from the dihedral angles of its triangles.
 ///
-/// The height of a surface of constant curvature S over its pattern, w(u) = u' S u / 2, gives each
-/// interior edge a jump of slope that is linear in S; so the dihedral angles about a triangle
-/// determine S (three edges, three unknowns). The fit inverts that relation: S_T = sum_e B_Te
-/// theta_e, exact for constant curvature on any mesh where it can be observed ("patch test"), which
-/// the plain hinge energy is not. Triangles whose own edges do not determine S (borders, six points
-/// on a conic) also use their neighbours' edges, least squares.
+/// The plane of a triangle meets the smooth surface at an angle alpha_e along each of its edges,
+/// and
+///   S_T = 1/A_T sum_e l_e alpha_e n_e n_e'        (n_e: unit normal of the edge in the pattern)
+/// exactly where S is constant. At an interior edge the angles of the two sides add up to the
+/// dihedral angle, alpha = theta/2 + beta and theta/2 - beta; beta comes from an estimate of S at
+/// the edge, which solves for the S whose jumps of slope are the angles of the edges around (three
+/// edges, three unknowns; least squares with farther edges at borders). So
+///  - S is exact for constant curvature on any mesh (patch test for angles),
+///  - sum_T A_T S_T = sum_e l_e theta_e n_e n_e' whatever beta: the forces of a constant moment
+///  vanish
+///    at interior vertices (patch test for forces). Without it a mesh finds wiggles that bend it
+///    with less energy than the plate's.
+/// The plain hinge energy has neither.
 ///
-/// Where that is not enough, the triangles are strips and fans between rulings, whose vertices lie
-/// on two lines or about an apex. There S is a sum of folds, the angle of each edge spread over
-/// half the heights of the triangles beside it: exact for a cylinder over its rulings whatever
-/// their slant, and bounded for a cone, whose curvature falls as 1/r along the rulings. What a fold
-/// cannot do: bending along an unbroken ruling, or by rulings that are no edges, is seen wrongly.
+/// Where the edges around do not determine S, the triangles are strips and fans between rulings,
+/// whose vertices lie on two lines or about an apex. There S is a sum of folds, the angle of each
+/// edge spread over half the heights of the triangles beside it: exact for a cylinder over its
+/// rulings whatever their slant, and bounded for a cone, whose curvature falls as 1/r along the
+/// rulings. What a fold cannot do: bending along an unbroken ruling, or by rulings that are no
+/// edges, is seen wrongly.
+///
+/// Source: the constant-moment plate element (Morley 1971; Hellan, Herrmann, Johnson) with its
+/// edge unknown beta estimated instead of solved for; beta = 0 is the basic shell triangle of Onate
+/// and Zarate 2000.
 struct CurvatureFit {
-  static constexpr int kMostTerms = 12;
-  static constexpr int kMostVertices = 12;
+  static constexpr int kMostTerms = 16;
+  static constexpr int kMostVertices = 16;
 
   struct Hinge {
     int a, b;         ///< the edge, as in the triangle `left`

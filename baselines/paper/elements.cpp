@@ -20,8 +20,8 @@ constexpr int kMostRows = kMostTerms;
 constexpr int kMostColumns = 3 * ShellElements::kMostNodes;
 static_assert(CurvatureFit::kMostVertices == ShellElements::kMostNodes);
 
-/// Stiffness against the residual of an overdetermined fit, relative to what the plate opposes to
-/// the curvature that would give an edge that angle. It must be positive, or border edges hinge
+/// Stiffness against the residual at border triangles and folds, relative to what the plate opposes
+/// to the curvature that would give an edge that angle. It must be positive, or border edges hinge
 /// freely, and small, since it resists the variation of curvature, which the plate does not: a
 /// curvature that varies by a tenth over a patch gets 1e-3 of its energy added.
 constexpr double kFitResidual = 0.1;
@@ -66,7 +66,7 @@ std::array<Eigen::Vector2d, 3> shape_gradients(const ShellMesh& mesh, int t, dou
 using Root = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRows, kMostTerms>;
 using PlasticRows = Eigen::Matrix<double, kMostRows, 3>;
 
-/// R of the plate: the shape operator's energy, then the residual of the fit.
+/// R of the plate: the shape operator's energy, then the residual where S may miss an edge.
 Root plate_rows(const CurvatureFit& fit, int t, const Eigen::Matrix3d& root) {
   const auto& terms = fit.terms[static_cast<std::size_t>(t)];
   const auto n = static_cast<Eigen::Index>(terms.size());
@@ -81,10 +81,12 @@ Root plate_rows(const CurvatureFit& fit, int t, const Eigen::Matrix3d& root) {
     curvature[i] = 1 / Eigen::Vector3d(jump[0], jump[1] / std::sqrt(2.0), jump[2]).norm();
   }
   const Eigen::MatrixXd plate = root * fitted;
-  const Eigen::MatrixXd residual = std::sqrt(kFitResidual / static_cast<double>(n)) *
-                                   curvature.asDiagonal() *
-                                   (Eigen::MatrixXd::Identity(n, n) - jumps * fitted);
-  // As many rows as the residual has dimensions: none where three edges determine S.
+  const int own = fit.own[static_cast<std::size_t>(t)];
+  if (own == 3 && fit.rank[static_cast<std::size_t>(t)] == 3) return plate;
+  Eigen::MatrixXd residual = std::sqrt(kFitResidual / own) * curvature.asDiagonal() *
+                             (Eigen::MatrixXd::Identity(n, n) - jumps * fitted);
+  residual.bottomRows(n - own).setZero();
+  // As many rows as the residual has dimensions.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(residual.transpose() * residual);
   const auto spare = (eigen.eigenvalues().array() > 1e-12 * plate.squaredNorm()).count();
   assert(3 + spare <= kMostRows);

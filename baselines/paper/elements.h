@@ -21,16 +21,18 @@ namespace geoprior {
 ///   hinge_calibration,
 ///             theta_p the angle that S_p would give; half of it in each triangle
 ///
-/// Triangles whose angles S does not reproduce also resist the residual theta - jump . S of the
-/// fit, a tenth as much as S; it is zero for constant curvature. So every interior edge is
-/// resisted.
+/// Triangles at the border and folds also resist the residual theta - jump . S of their own edges,
+/// a tenth as much as S; it is zero for constant curvature. So every interior edge is resisted.
+///
+/// An element has 6 nodes where every hinge about it is point symmetric (grids with parallel
+/// diagonals, equilateral meshes), up to 12 elsewhere inside, at borders a few more.
 ///
 /// Hessians are positive semidefinite: the membrane's keeps the tensile part of the stress, that of
 /// bending is Gauss-Newton in the angles. Both are exact at rest and differ from the true ones by
 /// stress times second derivatives.
 class ShellElements {
  public:
-  static constexpr int kMostNodes = 12;
+  static constexpr int kMostNodes = 16;
 
   /// @throws Error  from `fit_curvature`
   ShellElements(const ShellMesh& mesh, const PaperMaterial& material, BendingModel bending,

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -322,6 +323,35 @@ TEST(ShellElements, BendsAsThePlateWhateverTheMeshAndDirection) {
       EXPECT_NEAR(std::log2(error[0] / error[2]) / 2, 2, 0.2)
           << name << " at " << degrees << ": " << testing::PrintToString(error);
     }
+}
+
+// The patch test for forces: a constant moment is in equilibrium at every vertex away from the
+// border. A fit that is exact for angles alone fails it, and bends with less than the plate's
+// energy.
+TEST(ShellElements, ConstantMomentsAreInEquilibrium) {
+  PaperMaterial material = thick();
+  material.thickness = 10;  // bending outweighs the membrane
+  for (const auto& [name, levels] : refinements()) {
+    const ShellMesh& mesh = levels[1].front();
+    ShellState state = flat_state(mesh);
+    const Eigen::MatrixX2d& u = mesh.pattern;
+    state.x.col(2) =
+        1e-6 * (0.7 * u.col(0).array().square() - 0.9 * u.col(0).array() * u.col(1).array() +
+                0.4 * u.col(1).array().square());
+    const Assembled a = assemble(ShellElements(mesh, material, BendingModel::shape_operator, 4),
+                                 state, state.x, Order::gradient);
+    const Eigen::RowVector2d low = u.colwise().minCoeff(), high = u.colwise().maxCoeff();
+    int inside = 0;
+    double largest = 0;
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      const double away = std::min((u.row(v) - low).minCoeff(), (high - u.row(v)).minCoeff());
+      if (away < 4.5 / 16) continue;
+      ++inside;
+      largest = std::max(largest, std::abs(a.gradient[3 * v + 2]));
+    }
+    EXPECT_GT(inside, 25) << name;
+    EXPECT_LT(largest, 1e-8 * a.gradient.cwiseAbs().maxCoeff()) << name;
+  }
 }
 
 TEST(ShellElements, StripsAlongRulingsBendAsThePlate) {
