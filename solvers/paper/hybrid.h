@@ -13,28 +13,43 @@ enum class CompressionTest { euler, threshold };
 /// docs/methods/paper.md).
 struct HybridOptions {
   CompressionTest test = CompressionTest::euler;
-  double euler_factor = 1;  ///< compression / Euler's critical strain beyond which rulings start
+  double euler_factor = 1;     ///< compression / critical strain beyond which rulings start
+  double least_slope_deg = 2;  ///< slope of a buckle that is worth rulings (Euler's test)
   double compression_threshold = 1e-3;  ///< eps_c of the plain test
   double group_angle_deg = 20;          ///< directions of neighbours that belong together
   double seeding_distance = 0.02;       ///< s: distance of parallel rulings (m)
   double flat_size = 0.1;               ///< largest edge of the mesh where nothing is bent yet (m)
   double merge_angle_deg = 5;           ///< cylinders closer than this in direction become one
   double singular_spacing = 2;  ///< smallest distance of singular points, in seeding distances
+  int settle_frames = 3;        ///< age from which a ruling can be in conflict
+  double cone_reach = 3;  ///< farthest that a new singular point cuts rulings, in seeding distances
+  double flatten_angle_deg = 45;  ///< most that the rulings it cuts on a side turn the sheet
+  double fan_angle_deg = 25;      ///< widest sector of a new cone without a ruling
+  double refine_angle_deg = 15;   ///< fold of a ruling beside which another is put
   bool tracking = true;
   double tracking_rate_deg = 5;  ///< most that a ruling turns in a frame
   double flat_curvature = 0.5;   ///< kappa_0 under which a piece counts as flat (1/m)
   int flat_frames = 10;          ///< frames under it until a piece without singular point goes
-  bool projection = true;        ///< isometry projection after remeshing and at frames
-  int projection_iterations = 4;
+  bool projection = true;        ///< isometry projection at the end of every frame
+  int projection_iterations = 6;
   double projection_strain = 1e-4;  ///< edge strain at which it stops
   double weakening_radius = 4e-3;   ///< r_p about a singular point (m)
   StepperOptions stepper;
 };
 void describe(OptionVisitor& v, HybridOptions& options);
 
-/// The hybrid model as a process: parts "rulings" (lines; cell arrays "piece", "kind": 0 flat,
-/// 1 cylinder, 2 cone), "singular_points" (points; "id", "birth" [s], "weakening"), cell arrays
-/// "piece" and "kind" on "surface", tables "pieces" and "singular_points".
+/// The hybrid model as a process (thesis 3.2.1, Figures 3.6 to 3.9): elastic steps on a coarse mesh
+/// whose edges are the rulings of planes, cylinders and cones; after each frame the rulings follow
+/// the compression and bending that the steps have left.
+///
+/// What it cannot do: no contact of the sheet with itself on the geometric layer; a d-cone is a
+/// point, not a crescent; bending along a ruling is impossible until a singular point breaks it.
+///
+/// Frames have the parts "rulings" (lines; cell arrays "piece", "kind": 0 flat, 1 cylinder, 2 cone)
+/// and "singular_points" (points; "id", "birth" [s], "weakening"), the cell arrays "piece" and
+/// "kind" on "surface", the tables "pieces" and "singular_points", and as diagnostics the numbers
+/// of pieces of each kind, the events of the frame and the edge strain around the projection.
+/// Phases: "analyse", "propagate", "remesh", "project".
 std::unique_ptr<Process> make_hybrid_sheet(const Sheet& sheet, const HybridOptions& options);
 
 }  // namespace geoprior

@@ -16,6 +16,7 @@ struct Ruling {
   int piece = -1;        ///< of PaperStructure::pieces; -1: a fold between two flat pieces
   /// Singular points that the ends are; an end that is none lies on the border.
   std::optional<int> singular_a, singular_b;
+  int age_frames = 0;     ///< frames since it was made
   int unbent_frames = 0;  ///< for how many frames the sheet has been flat across it
 };
 

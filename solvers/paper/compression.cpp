@@ -1,0 +1,214 @@
+#include "solvers/paper/compression.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "baselines/paper/planar.h"
+#include "solvers/paper/mesh_edges.h"
+#include "solvers/paper/segments.h"
+
+namespace geoprior {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+
+constexpr double kRadians = std::numbers::pi / 180;
+
+struct Eigenpair {
+  double value;
+  Vector2d direction;
+};
+
+/// Eigenvalue of largest modulus of a symmetric 2 x 2 matrix, or the smallest one.
+Eigenpair principal(double uu, double uv, double vv, bool smallest) {
+  const double mean = (uu + vv) / 2, difference = (uu - vv) / 2;
+  const double radius = std::hypot(difference, uv);
+  const bool upper = !smallest && mean >= 0;
+  // The upper eigenvalue has its direction at half the angle of (difference, uv).
+  const double angle = std::atan2(uv, difference) / 2 + (upper ? 0 : std::numbers::pi / 2);
+  return {mean + (upper ? radius : -radius), {std::cos(angle), std::sin(angle)}};
+}
+
+Vector2d centroid(const ShellMesh& mesh, int f) {
+  return (mesh.pattern.row(mesh.triangles(f, 0)) + mesh.pattern.row(mesh.triangles(f, 1)) +
+          mesh.pattern.row(mesh.triangles(f, 2)))
+             .transpose() /
+         3;
+}
+
+double area(const ShellMesh& mesh, int f) {
+  const Vector2d a = mesh.pattern.row(mesh.triangles(f, 0));
+  const Vector2d b = mesh.pattern.row(mesh.triangles(f, 1));
+  const Vector2d c = mesh.pattern.row(mesh.triangles(f, 2));
+  return cross(b - a, c - a) / 2;
+}
+
+/// Direction of the rulings in a bent piece at a point; zero in a flat one.
+Vector2d ruling_direction(const PaperStructure& structure, int piece, const Vector2d& p) {
+  const PaperPiece& at = structure.pieces[static_cast<std::size_t>(piece)];
+  if (at.kind == PaperPiece::Kind::cylinder) return at.direction;
+  if (at.kind == PaperPiece::Kind::cone) return (p - *at.apex).normalized();
+  return Vector2d::Zero();
+}
+
+/// Free length of the sheet along d through p: to the border, a ruling or a singular point.
+double span(const RulingEditor& editor, const Vector2d& p, const Vector2d& d) {
+  return editor.propagate(p, d).distance + editor.propagate(p, -d).distance;
+}
+
+/// Strain at which the sheet buckles under compression along d.
+double critical_strain(const PaperMaterial& material, double length, double kappa) {
+  const double h = material.thickness, nu = material.poisson_ratio;
+  const double plate = 4 * std::numbers::pi * std::numbers::pi * material.bending_stiffness() /
+                       (material.young_modulus * h * length * length);
+  return plate + std::abs(kappa) * h / std::sqrt(3 * (1 - nu * nu));
+}
+
+}  // namespace
+
+Compression compression(const ShellState& state, int f) {
+  const Eigen::RowVector3i t = state.mesh.triangles.row(f);
+  Matrix2d rest;
+  rest.col(0) = state.mesh.pattern.row(t[1]) - state.mesh.pattern.row(t[0]);
+  rest.col(1) = state.mesh.pattern.row(t[2]) - state.mesh.pattern.row(t[0]);
+  Eigen::Matrix<double, 3, 2> now;
+  now.col(0) = state.x.row(t[1]) - state.x.row(t[0]);
+  now.col(1) = state.x.row(t[2]) - state.x.row(t[0]);
+  const Eigen::Matrix<double, 3, 2> F = now * rest.inverse();
+  const Matrix2d G = (F.transpose() * F - Matrix2d::Identity()) / 2;
+  const Eigenpair g = principal(G(0, 0), G(0, 1), G(1, 1), true);
+  return {-g.value, g.direction};
+}
+
+namespace {
+
+/// True when no ruling runs along the triangle and none is near: its curvature is then that of the
+/// ground, not of the fold beside it.
+bool inside_flat_cell(const RulingMesh& mesh, const MeshEdges& edges, int f) {
+  const auto cell = [&](int g) { return mesh.cell[static_cast<std::size_t>(g)]; };
+  for (int k = 0; k < 3; ++k) {
+    const MeshEdges::Edge& e = edges.of(f, k);
+    const int next = e.left == f ? e.right : e.left;
+    if (next >= 0 && cell(next) != cell(f)) return false;
+  }
+  return true;
+}
+
+/// Strain beyond which compression along d at p asks for rulings.
+double admissible_strain(const Sheet& sheet, const RulingEditor& editor,
+                         const HybridOptions& options, const Vector2d& p, const Vector2d& d,
+                         const Eigen::Vector3d& curvature) {
+  if (options.test == CompressionTest::threshold) return options.compression_threshold;
+  const Vector2d t = perpendicular(d);
+  const double across = t.x() * t.x() * curvature[0] + 2 * t.x() * t.y() * curvature[1] +
+                        t.y() * t.y() * curvature[2];
+  const double slope = options.least_slope_deg * kRadians;
+  return std::max(
+      options.euler_factor * critical_strain(sheet.material, span(editor, p, d), across),
+      slope * slope / 4);
+}
+
+}  // namespace
+
+std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
+                                 const Eigen::MatrixX3d& curvature, const RulingMesh& mesh,
+                                 const RulingEditor& editor, const HybridOptions& options) {
+  const int m = state.mesh.triangle_count();
+  const MeshEdges edges(state.mesh.triangles);
+  std::vector<Demand> demands(static_cast<std::size_t>(m));
+  for (int f = 0; f < m; ++f) {
+    Demand& demand = demands[static_cast<std::size_t>(f)];
+    const Vector2d p = centroid(state.mesh, f);
+    const Eigen::Vector3d S = curvature.row(f);
+    const Vector2d ruling =
+        ruling_direction(editor.structure(), mesh.piece[static_cast<std::size_t>(f)], p);
+    const bool bent = !ruling.isZero();
+    const Compression c = compression(state, f);
+    const bool served =
+        bent && line_angle(perpendicular(c.direction), ruling) < options.group_angle_deg * kRadians;
+    if (c.strain > 0 && !served) {
+      const double limit = admissible_strain(sheet, editor, options, p, c.direction, S);
+      if (c.strain > limit) {
+        demand = {c.strain, c.strain / limit, c.direction, bent, false};
+        continue;
+      }
+    }
+    if (bent) continue;
+    const Eigenpair kappa = principal(S[0], S[1], S[2], false);
+    if (std::abs(kappa.value) > options.flat_curvature && inside_flat_cell(mesh, edges, f)) {
+      const double shortening =
+          kappa.value * span(editor, p, kappa.direction) / (2 * std::numbers::pi);
+      demand = {shortening * shortening, 0, kappa.direction, false, true};
+    }
+  }
+  return demands;
+}
+
+std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const ShellMesh& mesh,
+                                       double group_angle_deg) {
+  const double group_angle = group_angle_deg * kRadians;
+  const MeshEdges edges(mesh.triangles);
+  std::vector<int> order;
+  for (std::size_t f = 0; f < demands.size(); ++f) {
+    if (demands[f].weight > 0) order.push_back(static_cast<int>(f));
+  }
+  const auto strength = [&](int f) {
+    return demands[static_cast<std::size_t>(f)].weight * area(mesh, f);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int f, int g) { return strength(f) > strength(g); });
+  std::vector<bool> taken(demands.size(), false);
+  std::vector<DemandGroup> groups;
+  for (const int seed : order) {
+    if (taken[static_cast<std::size_t>(seed)]) continue;
+    const Demand& first = demands[static_cast<std::size_t>(seed)];
+    DemandGroup group;
+    group.bent_ground = first.bent_ground;
+    group.by_bending = first.by_bending;
+    group.triangles.push_back(seed);
+    taken[static_cast<std::size_t>(seed)] = true;
+    Matrix2d sum = Matrix2d::Zero();
+    for (std::size_t k = 0; k < group.triangles.size(); ++k) {
+      const int f = group.triangles[k];
+      const Vector2d& d = demands[static_cast<std::size_t>(f)].direction;
+      sum += strength(f) * d * d.transpose();
+      group.strength += strength(f);
+      group.excess = std::max(group.excess, demands[static_cast<std::size_t>(f)].excess);
+      group.centre += strength(f) * centroid(mesh, f);
+      for (int corner = 0; corner < 3; ++corner) {
+        const MeshEdges::Edge& e = edges.of(f, corner);
+        const int next = e.left == f ? e.right : e.left;
+        if (next < 0 || taken[static_cast<std::size_t>(next)]) continue;
+        const Demand& other = demands[static_cast<std::size_t>(next)];
+        if (other.weight <= 0 || other.bent_ground != first.bent_ground ||
+            other.by_bending != first.by_bending ||
+            line_angle(other.direction, first.direction) > group_angle) {
+          continue;
+        }
+        taken[static_cast<std::size_t>(next)] = true;
+        group.triangles.push_back(next);
+      }
+    }
+    group.centre /= group.strength;
+    group.direction = principal(sum(0, 0), sum(0, 1), sum(1, 1), false).direction;
+    for (const int f : group.triangles) {
+      for (int k = 0; k < 3; ++k) {
+        const Vector2d p = mesh.pattern.row(mesh.triangles(f, k));
+        const double along = (p - group.centre).dot(group.direction);
+        group.low = std::min(group.low, along);
+        group.high = std::max(group.high, along);
+      }
+    }
+    groups.push_back(std::move(group));
+  }
+  std::stable_sort(groups.begin(), groups.end(), [](const DemandGroup& a, const DemandGroup& b) {
+    return a.strength > b.strength;
+  });
+  return groups;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,267 @@
+#include "solvers/paper/hybrid.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "baselines/paper/dense.h"
+#include "baselines/paper/handle_map.h"
+#include "baselines/paper/transfer.h"
+#include "solvers/paper/compression.h"
+#include "solvers/paper/hybrid_frame.h"
+#include "solvers/paper/hybrid_mesher.h"
+#include "solvers/paper/mesh_edges.h"
+#include "solvers/paper/pieces.h"
+#include "solvers/paper/plastic_apex.h"
+#include "solvers/paper/structure_bytes.h"
+#include "solvers/paper/tracking.h"
+
+namespace geoprior {
+namespace {
+
+/// Closest that rulings come to each other's ends, in seeding distances.
+constexpr double kGap = 0.2;
+/// Smallest angle between two rulings with a common end.
+constexpr double kLeastAngleDegrees = 6;
+
+/// Iterations of the projection after remeshing, over those of other frames.
+constexpr int kRemeshedIterations = 5;
+/// Edge strain after the projection beyond which a change of the structure is taken back.
+constexpr double kAcceptedStrain = 2e-3;
+/// How far a new singular point is moved out of the sheet, in seeding distances.
+constexpr double kDent = 0.05;
+
+/// Mean normal of the triangles about a vertex.
+Eigen::RowVector3d vertex_normal(const ShellState& state, int vertex) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int f = 0; f < state.mesh.triangle_count(); ++f) {
+    const Eigen::RowVector3i t = state.mesh.triangles.row(f);
+    if (t[0] != vertex && t[1] != vertex && t[2] != vertex) continue;
+    const Eigen::Vector3d a = state.x.row(t[1]) - state.x.row(t[0]);
+    const Eigen::Vector3d b = state.x.row(t[2]) - state.x.row(t[0]);
+    sum += a.cross(b);
+  }
+  return sum.normalized().transpose();
+}
+
+/// Side of the sheet (+1: that of the normal) to which the neighbours of a vertex lie.
+double hollow_side(const ShellState& state, int vertex, const Eigen::RowVector3d& normal) {
+  double sum = 0;
+  const MeshEdges edges(state.mesh.triangles);
+  for (const MeshEdges::Edge& e : edges.all()) {
+    if (e.a != vertex && e.b != vertex) continue;
+    const int other = e.a == vertex ? e.b : e.a;
+    const Eigen::RowVector3d d = state.x.row(other) - state.x.row(vertex);
+    // Height over distance squared: half the curvature in that direction.
+    sum += d.dot(normal) / d.squaredNorm();
+  }
+  return sum < 0 ? -1 : 1;
+}
+
+std::vector<bool> held_vertices(const Sheet& sheet, const ShellMesh& mesh, double time,
+                                std::uint64_t seed) {
+  std::vector<HandleMap::Target> targets;
+  HandleMap(sheet, mesh, seed).targets(sheet, time, targets);
+  std::vector<bool> held(static_cast<std::size_t>(mesh.vertex_count()), false);
+  for (const auto& target : targets) held[static_cast<std::size_t>(target.vertex)] = true;
+  return held;
+}
+
+}  // namespace
+
+RulingEditor HybridMesher::editor(const Sheet& sheet) {
+  return {sheet.pattern,
+          anchors_,
+          {kGap * options_.seeding_distance, kLeastAngleDegrees * std::numbers::pi / 180},
+          structure_};
+}
+
+void HybridMesher::take_scene(const Sheet& sheet) {
+  anchors_ = handle_points(sheet, options_.flat_size);
+}
+
+void HybridMesher::remesh(const Sheet& sheet) {
+  mesh_ = mesh_structure(structure_, sheet.pattern, anchors_, options_.flat_size);
+  derive_pieces(structure_, sheet.pattern, mesh_);
+  assert(broken_invariants(structure_, sheet.pattern, mesh_.mesh).empty());
+  fit_ = fit_curvature(mesh_.mesh.pattern, mesh_.mesh.triangles);
+  projector_.reset();
+  meshed_ = true;
+}
+
+ShellState HybridMesher::start(const Sheet& sheet, RunContext& context) {
+  structure_ = {};
+  draws_ = 0;
+  rejected_ = 0;
+  take_scene(sheet);
+  remesh(sheet);
+  return resting_state(sheet, mesh_.mesh, context.seed());
+}
+
+/// Where the simulated sheet asks for rulings; singular points yield on the way.
+std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, ShellState& state) {
+  curvature_ = shape_operators(fit_, state.x);
+  if (options_.stepper.plasticity) {
+    yield_at_apexes(sheet.material, options_.weakening_radius, mesh_.singular_vertices, curvature_,
+                    state, structure_);
+  }
+  const RulingEditor looker = editor(sheet);
+  return group_demands(find_demands(sheet, state, curvature_, mesh_, looker, options_), state.mesh,
+                       options_.group_angle_deg);
+}
+
+bool HybridMesher::track(const ShellState& state, const std::vector<double>& folds, bool at_rest,
+                         RulingEditor& editor) {
+  const bool refined = refine_rulings(folds, options_, editor);
+  const bool retired = retire_rulings(folds, options_, editor);
+  if (refined || retired || !at_rest) return refined || retired;
+  return turn_cylinders(state, curvature_, mesh_, options_, editor);
+}
+
+/// Changes the rulings as the groups ask; the mesh still is that of the old ones.
+PropagationReport HybridMesher::edit(const ShellState& state,
+                                     const std::vector<DemandGroup>& groups, std::uint64_t seed,
+                                     RulingEditor& editor) {
+  PropagationReport total;
+  for (Ruling& ruling : structure_.rulings) ++ruling.age_frames;
+  std::vector<double> folds = fold_angles(state, mesh_);
+  if (options_.tracking) total.changed = track(state, folds, groups.empty(), editor);
+  if (groups.empty()) return total;
+  // Tracking may have removed rulings: the folds then belong to others.
+  if (total.changed) folds.clear();
+  const PatternLocator locator(state.mesh);
+  for (const DemandGroup& group : groups) {
+    const auto in_group = [&](const Eigen::Vector2d& p) {
+      const int f = locator.locate(p).triangle;
+      return std::find(group.triangles.begin(), group.triangles.end(), f) != group.triangles.end();
+    };
+    const PropagationReport report =
+        resolve_group(group, in_group, folds, state.time, seed, draws_, options_, editor);
+    total.new_rulings += report.new_rulings;
+    total.new_singular_points += report.new_singular_points;
+    total.changed |= report.changed;
+    if (report.changed) folds.clear();
+  }
+  return total;
+}
+
+bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& /*stepper*/, ShellState& state,
+                         RunContext& context) {
+  if (!meshed_) {
+    take_scene(sheet);
+    remesh(sheet);
+  }
+  std::vector<DemandGroup> groups;
+  {
+    const Phase phase(context, "analyse");
+    groups = analyse(sheet, state);
+  }
+  const Geometry before{structure_, mesh_, fit_};
+  {
+    const Phase phase(context, "propagate");
+    RulingEditor pen = editor(sheet);
+    events_ = edit(state, groups, context.seed(), pen);
+  }
+  if (events_.changed) {
+    rebuild(sheet, before, state, context);
+  } else if (options_.projection) {
+    const Phase phase(context, "project");
+    projection_ = project(sheet, state, options_.projection_iterations, context.seed());
+  }
+  return events_.changed;
+}
+
+/// Mesh, state and projection of a changed structure. A change after which the sheet finds no
+/// isometric shape nearby is taken back, unless the old mesh has none either: the next frame draws
+/// anew.
+void HybridMesher::rebuild(const Sheet& sheet, const Geometry& before, ShellState& state,
+                           RunContext& context) {
+  const ShellState unchanged = state;
+  {
+    const Phase phase(context, "remesh");
+    remesh(sheet);
+    carry(state, before.structure.singular_points.size());
+  }
+  if (!options_.projection) return;
+  const Phase phase(context, "project");
+  // A new mesh cuts corners of the old one: it has farther to go.
+  const int iterations = kRemeshedIterations * options_.projection_iterations;
+  projection_ = project(sheet, state, iterations, context.seed());
+  if (projection_.strain_after <= kAcceptedStrain) return;
+  Geometry changed{structure_, mesh_, fit_};
+  ShellState old = unchanged;
+  structure_ = before.structure;
+  mesh_ = before.mesh;
+  fit_ = before.fit;
+  projector_.reset();
+  const ProjectionReport alternative =
+      project(sheet, old, options_.projection_iterations, context.seed());
+  if (alternative.strain_after < projection_.strain_after) {
+    state = std::move(old);
+    projection_ = alternative;
+    events_ = {};
+    ++rejected_;
+    return;
+  }
+  structure_ = std::move(changed.structure);
+  mesh_ = std::move(changed.mesh);
+  fit_ = std::move(changed.fit);
+  projector_.reset();
+}
+
+/// Takes the state to the new mesh. A new singular point is moved a little towards its neighbours,
+/// the hollow side: a sheet compressed along its rulings dents inwards, and edges in one plane
+/// could not decide.
+void HybridMesher::carry(ShellState& state, std::size_t old_points) const {
+  state = transfer_state(state, mesh_.mesh);
+  for (std::size_t s = old_points; s < mesh_.singular_vertices.size(); ++s) {
+    const int apex = mesh_.singular_vertices[s];
+    const Eigen::RowVector3d normal = vertex_normal(state, apex);
+    state.x.row(apex) +=
+        hollow_side(state, apex, normal) * kDent * options_.seeding_distance * normal;
+  }
+}
+
+ProjectionReport HybridMesher::project(const Sheet& sheet, ShellState& state, int iterations,
+                                       std::uint64_t seed) {
+  std::vector<bool> held = held_vertices(sheet, state.mesh, state.time, seed);
+  if (!projector_ || projector_->held() != held) projector_.emplace(state.mesh, held);
+  return projector_->project(state, {iterations, options_.projection_strain});
+}
+
+void HybridMesher::annotate(const ShellState& state, Frame& frame) const {
+  add_structure(structure_, mesh_, state, frame);
+  frame.diagnostics["new_rulings"] = events_.new_rulings;
+  frame.diagnostics["new_singular_points"] = events_.new_singular_points;
+  frame.diagnostics["rejected_changes"] = rejected_;
+  frame.diagnostics["remeshed"] = events_.changed ? 1 : 0;
+  frame.diagnostics["projection_iterations"] = projection_.iterations;
+  frame.diagnostics["edge_strain_before"] = projection_.strain_before;
+  frame.diagnostics["edge_strain_after"] = projection_.strain_after;
+}
+
+State HybridMesher::save() const {
+  StateWriter out;
+  write_structure(structure_, out);
+  out.number(draws_);
+  out.number(rejected_);
+  return out.take();
+}
+
+void HybridMesher::load(const State& state) {
+  StateReader in(state);
+  structure_ = read_structure(in);
+  draws_ = in.number<std::uint64_t>();
+  rejected_ = in.number<int>();
+  meshed_ = false;
+}
+
+std::unique_ptr<Process> make_hybrid_sheet(const Sheet& sheet, const HybridOptions& options) {
+  return std::make_unique<SheetProcess>(sheet, options.stepper,
+                                        std::make_unique<HybridMesher>(options));
+}
+
+}  // namespace geoprior

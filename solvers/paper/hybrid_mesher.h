@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "baselines/paper/sheet_process.h"
+#include "core/curvature_fit.h"
+#include "solvers/paper/hybrid.h"
+#include "solvers/paper/isometry_projection.h"
+#include "solvers/paper/propagation.h"
+#include "solvers/paper/ruling_editor.h"
+#include "solvers/paper/ruling_mesh.h"
+
+namespace geoprior {
+
+/// The geometric layer as a mesher of the common loop.
+class HybridMesher final : public SheetMesher {
+ public:
+  explicit HybridMesher(const HybridOptions& options) : options_(options) {}
+
+  [[nodiscard]] ShellState start(const Sheet& sheet, RunContext& context) override;
+  bool adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
+             RunContext& context) override;
+  void annotate(const ShellState& state, Frame& frame) const override;
+  [[nodiscard]] State save() const override;
+  void load(const State& state) override;
+
+  [[nodiscard]] const PaperStructure& structure() const { return structure_; }
+  [[nodiscard]] const RulingMesh& mesh() const { return mesh_; }
+
+ private:
+  /// What remeshing replaces.
+  struct Geometry {
+    PaperStructure structure;
+    RulingMesh mesh;
+    CurvatureFit fit;
+  };
+  void take_scene(const Sheet& sheet);
+  void remesh(const Sheet& sheet);
+  [[nodiscard]] RulingEditor editor(const Sheet& sheet);
+  [[nodiscard]] std::vector<DemandGroup> analyse(const Sheet& sheet, ShellState& state);
+  PropagationReport edit(const ShellState& state, const std::vector<DemandGroup>& groups,
+                         std::uint64_t seed, RulingEditor& editor);
+  bool track(const ShellState& state, const std::vector<double>& folds, bool at_rest,
+             RulingEditor& editor);
+  void rebuild(const Sheet& sheet, const Geometry& before, ShellState& state, RunContext& context);
+  void carry(ShellState& state, std::size_t old_points) const;
+  ProjectionReport project(const Sheet& sheet, ShellState& state, int iterations,
+                           std::uint64_t seed);
+
+  HybridOptions options_;
+  PaperStructure structure_;
+  RulingMesh mesh_;
+  CurvatureFit fit_;
+  Eigen::MatrixX3d curvature_;  ///< of each triangle, at the end of the frame's steps
+  std::vector<Eigen::Vector2d> anchors_;
+  std::optional<IsometryProjector> projector_;
+  std::uint64_t draws_ = 0;  ///< of singular points, so far
+  bool meshed_ = false;      ///< false after `load`, until the mesh is made again
+  PropagationReport events_;
+  ProjectionReport projection_;
+  int rejected_ = 0;  ///< changes of the structure that the sheet could not follow, so far
+};
+
+}  // namespace geoprior

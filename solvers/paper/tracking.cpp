@@ -1,0 +1,250 @@
+#include "solvers/paper/tracking.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "baselines/paper/planar.h"
+#include "core/curvature_fit.h"
+#include "solvers/paper/mesh_edges.h"
+#include "solvers/paper/segments.h"
+
+namespace geoprior {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kRadians = std::numbers::pi / 180;
+/// Turns smaller than this are not worth a new mesh.
+constexpr double kLeastTurnDegrees = 1;
+
+int third_vertex(const Eigen::MatrixX3i& triangles, int f, int a, int b) {
+  for (int k = 0; k < 3; ++k) {
+    if (triangles(f, k) != a && triangles(f, k) != b) return triangles(f, k);
+  }
+  return -1;
+}
+
+/// Direction of the rulings that the triangles of a piece show; zero when they are flat.
+Vector2d observed_direction(const ShellState& state, const Eigen::MatrixX3d& curvature,
+                            const RulingMesh& mesh, int piece) {
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (int f = 0; f < state.mesh.triangle_count(); ++f) {
+    if (mesh.piece[static_cast<std::size_t>(f)] != piece) continue;
+    const Vector2d a = state.mesh.pattern.row(state.mesh.triangles(f, 0));
+    const Vector2d b = state.mesh.pattern.row(state.mesh.triangles(f, 1));
+    const Vector2d c = state.mesh.pattern.row(state.mesh.triangles(f, 2));
+    Eigen::Matrix2d S;
+    S << curvature(f, 0), curvature(f, 1), curvature(f, 1), curvature(f, 2);
+    sum += cross(b - a, c - a) * S * S;
+  }
+  if (!(sum.trace() > 0)) return Vector2d::Zero();
+  const double angle = std::atan2(sum(0, 1), (sum(0, 0) - sum(1, 1)) / 2) / 2;
+  return {-std::sin(angle), std::cos(angle)};
+}
+
+/// Signed angle that takes one line to another, -pi/2 ... pi/2.
+double turn_between(const Vector2d& from, const Vector2d& to) {
+  const double angle = std::atan2(cross(from, to), from.dot(to));
+  if (angle > std::numbers::pi / 2) return angle - std::numbers::pi;
+  if (angle < -std::numbers::pi / 2) return angle + std::numbers::pi;
+  return angle;
+}
+
+/// Replaces the rulings of a piece by ones turned about their middles; false (and nothing done)
+/// when one of them would not fit.
+bool turn_piece(const PaperPiece& piece, double angle, RulingEditor& editor) {
+  const std::vector<Ruling> before = editor.structure().rulings;
+  std::vector<bool> marked(before.size(), false);
+  for (const int r : piece.rulings) marked[static_cast<std::size_t>(r)] = true;
+  editor.remove(marked);
+  const Vector2d d = Eigen::Rotation2Dd(angle) * piece.direction;
+  for (const int r : piece.rulings) {
+    const Ruling& old = before[static_cast<std::size_t>(r)];
+    auto turned = editor.chord((old.a + old.b) / 2, d);
+    if (!turned) {
+      editor.structure().rulings = before;
+      return false;
+    }
+    turned->piece = old.piece;
+    turned->age_frames = old.age_frames;
+    turned->unbent_frames = old.unbent_frames;
+    editor.add(*turned);
+  }
+  return true;
+}
+
+/// A ruling beside an end ruling of a piece, as far out as the last one is in.
+std::optional<Ruling> beside(const PaperPiece& piece, const Ruling& last, const Ruling* inner,
+                             double spacing, const RulingEditor& editor) {
+  if (piece.kind == PaperPiece::Kind::cylinder) {
+    Vector2d out = perpendicular(piece.direction);
+    const Vector2d middle = (last.a + last.b) / 2;
+    if (inner && out.dot(middle - (inner->a + inner->b) / 2) < 0) out = -out;
+    return editor.chord(middle + spacing * out, piece.direction);
+  }
+  const bool from_a = last.singular_a == piece.singular_point;
+  const Vector2d d = from_a ? Vector2d(last.b - last.a) : Vector2d(last.a - last.b);
+  double angle = std::max(spacing / d.norm(), 2 * editor.bounds().least_angle);
+  if (inner) {
+    const Vector2d other = inner->singular_a == piece.singular_point
+                               ? Vector2d(inner->b - inner->a)
+                               : Vector2d(inner->a - inner->b);
+    if (cross(d, other) > 0) angle = -angle;
+  }
+  return editor.ray(*piece.singular_point, Eigen::Rotation2Dd(angle) * d);
+}
+
+/// A ruling halfway between two of one piece.
+std::optional<Ruling> between(const PaperPiece& piece, const Ruling& r, const Ruling& s,
+                              const RulingEditor& editor) {
+  if (piece.kind == PaperPiece::Kind::cylinder) {
+    Vector2d d = (r.b - r.a).normalized();
+    const Vector2d e = (s.b - s.a).normalized();
+    d += d.dot(e) < 0 ? Vector2d(-e) : e;
+    return editor.chord((r.a + r.b + s.a + s.b) / 4, d);
+  }
+  const auto out = [&](const Ruling& x) {
+    return Vector2d((x.singular_a == piece.singular_point ? x.b - x.a : x.a - x.b).normalized());
+  };
+  return editor.ray(*piece.singular_point, out(r) + out(s));
+}
+
+/// Angle that stays open at a singular point when one of its rulings goes.
+double opening(const PaperStructure& structure, int singular_point, int ruling,
+               const std::vector<bool>& gone) {
+  std::vector<double> angles;
+  double own = 0;
+  for (const int i : structure.rulings_at(singular_point)) {
+    if (gone[static_cast<std::size_t>(i)]) continue;
+    const Ruling& r = structure.rulings[static_cast<std::size_t>(i)];
+    const Vector2d d = r.singular_a == singular_point ? Vector2d(r.b - r.a) : Vector2d(r.a - r.b);
+    const double angle = std::atan2(d.y(), d.x());
+    (i == ruling ? own = angle : angles.emplace_back(angle));
+  }
+  const double full = 2 * std::numbers::pi;
+  double ahead = full, behind = full;
+  for (const double angle : angles) {
+    const double turn = std::fmod(angle - own + 2 * full, full);
+    ahead = std::min(ahead, turn);
+    behind = std::min(behind, full - turn);
+  }
+  return ahead + behind;
+}
+
+}  // namespace
+
+std::vector<double> fold_angles(const ShellState& state, const RulingMesh& mesh) {
+  const MeshEdges edges(state.mesh.triangles);
+  std::vector<double> folds;
+  for (const auto& path : mesh.ruling_paths) {
+    double sum = 0, length = 0;
+    for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+      const auto found = edges.find(path[k], path[k + 1]);
+      if (!found) continue;
+      const MeshEdges::Edge& e = edges.all()[static_cast<std::size_t>(*found)];
+      if (e.left < 0 || e.right < 0) continue;
+      CurvatureFit::Hinge hinge{};
+      hinge.a = e.a;
+      hinge.b = e.b;
+      hinge.left = e.left;
+      hinge.right = e.right;
+      hinge.c = third_vertex(state.mesh.triangles, e.left, e.a, e.b);
+      hinge.d = third_vertex(state.mesh.triangles, e.right, e.a, e.b);
+      const double l = (state.mesh.pattern.row(e.b) - state.mesh.pattern.row(e.a)).norm();
+      sum += l * dihedral_angle(state.x, hinge);
+      length += l;
+    }
+    folds.push_back(length > 0 ? sum / length : 0);
+  }
+  return folds;
+}
+
+bool turn_cylinders(const ShellState& state, const Eigen::MatrixX3d& curvature,
+                    const RulingMesh& mesh, const HybridOptions& options, RulingEditor& editor) {
+  bool turned = false;
+  const std::vector<PaperPiece> pieces = editor.structure().pieces;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (pieces[i].kind != PaperPiece::Kind::cylinder) continue;
+    const Vector2d target = observed_direction(state, curvature, mesh, static_cast<int>(i));
+    if (target.isZero()) continue;
+    const double limit = options.tracking_rate_deg * kRadians;
+    const double angle = std::clamp(turn_between(pieces[i].direction, target), -limit, limit);
+    if (std::abs(angle) < kLeastTurnDegrees * kRadians) continue;
+    // Indices of rulings change when a piece turns: one piece a frame keeps them simple.
+    if (turn_piece(pieces[i], angle, editor)) {
+      turned = true;
+      break;
+    }
+  }
+  return turned;
+}
+
+bool refine_rulings(const std::vector<double>& folds, const HybridOptions& options,
+                    RulingEditor& editor) {
+  const double limit = options.refine_angle_deg * kRadians;
+  // Copies: adding rulings moves what the structure holds.
+  const std::vector<Ruling> rulings = editor.structure().rulings;
+  bool refined = false;
+  for (const PaperPiece& piece : std::vector<PaperPiece>(editor.structure().pieces)) {
+    const std::size_t n = piece.rulings.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto index = [&](std::size_t at) {
+        return static_cast<std::size_t>(piece.rulings[at]);
+      };
+      if (std::abs(folds[index(k)]) < limit) continue;
+      for (const int side : {-1, 1}) {
+        const bool end = side < 0 ? k == 0 : k + 1 == n;
+        const std::size_t next = side < 0 ? k - 1 : k + 1;
+        const std::size_t inner = side < 0 ? k + 1 : k - 1;
+        const Ruling* within = inner < n ? &rulings[index(inner)] : nullptr;
+        const auto ruling =
+            end ? beside(piece, rulings[index(k)], within, options.seeding_distance, editor)
+                : between(piece, rulings[index(k)], rulings[index(next)], editor);
+        if (!ruling) continue;
+        editor.add(*ruling);
+        refined = true;
+      }
+    }
+  }
+  return refined;
+}
+
+bool retire_rulings(const std::vector<double>& folds, const HybridOptions& options,
+                    RulingEditor& editor) {
+  PaperStructure& structure = editor.structure();
+  const double flat = options.flat_curvature * options.seeding_distance;
+  std::vector<bool> gone(structure.rulings.size(), false);
+  for (std::size_t i = 0; i < folds.size(); ++i) {
+    int& frames = structure.rulings[i].unbent_frames;
+    frames = std::abs(folds[i]) < flat ? frames + 1 : 0;
+  }
+  const auto unbent = [&](int r) {
+    return structure.rulings[static_cast<std::size_t>(r)].unbent_frames >= options.flat_frames;
+  };
+  for (const PaperPiece& piece : structure.pieces) {
+    if (piece.kind == PaperPiece::Kind::cylinder &&
+        std::all_of(piece.rulings.begin(), piece.rulings.end(), unbent)) {
+      for (const int r : piece.rulings) gone[static_cast<std::size_t>(r)] = true;
+    }
+  }
+  for (std::size_t s = 0; s < structure.singular_points.size(); ++s) {
+    for (const int r : structure.rulings_at(static_cast<int>(s))) {
+      const Ruling& ruling = structure.rulings[static_cast<std::size_t>(r)];
+      if (!unbent(r) || gone[static_cast<std::size_t>(r)]) continue;
+      bool free = true;
+      for (const auto& end : {ruling.singular_a, ruling.singular_b}) {
+        if (end && opening(structure, *end, r, gone) > std::numbers::pi / 2) free = false;
+      }
+      if (!free) continue;
+      gone[static_cast<std::size_t>(r)] = true;
+      break;
+    }
+  }
+  if (std::none_of(gone.begin(), gone.end(), [](bool b) { return b; })) return false;
+  editor.remove(gone);
+  return true;
+}
+
+}  // namespace geoprior

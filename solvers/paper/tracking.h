@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "baselines/paper/shell_state.h"
+#include "solvers/paper/hybrid.h"
+#include "solvers/paper/ruling_editor.h"
+#include "solvers/paper/ruling_mesh.h"
+
+namespace geoprior {
+
+/// Fold angle of the sheet at each ruling (rad, signed): mean of the dihedral angles of its edges,
+/// weighted by length.
+std::vector<double> fold_angles(const ShellState& state, const RulingMesh& mesh);
+
+/// Turns the rulings of each cylinder towards the direction of least bending of its triangles, the
+/// eigenvector of sum A S S, by at most `tracking_rate_deg`; less than a degree is left alone. A
+/// piece whose turned rulings would not fit stays. Returns true when anything turned.
+bool turn_cylinders(const ShellState& state, const Eigen::MatrixX3d& curvature,
+                    const RulingMesh& mesh, const HybridOptions& options, RulingEditor& editor);
+
+/// Puts rulings beside those that fold by more than the refinement angle: halfway to the next one
+/// of the piece, or as far as the one on the other side when there is none. Returns true when any
+/// fitted.
+bool refine_rulings(const std::vector<double>& folds, const HybridOptions& options,
+                    RulingEditor& editor);
+
+/// Counts for how long each ruling has been flat (folded by less than kappa_0 times the seeding
+/// distance), and removes: cylinders all of whose rulings have been for `flat_frames`; and rulings
+/// of singular points that have been, one a point and frame, as long as no more than a right angle
+/// stays open beside them. Returns true when anything went.
+bool retire_rulings(const std::vector<double>& folds, const HybridOptions& options,
+                    RulingEditor& editor);
+
+}  // namespace geoprior
