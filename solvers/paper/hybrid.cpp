@@ -29,7 +29,7 @@ constexpr double kLeastAngleDegrees = 6;
 
 /// Iterations of the projection after remeshing, over those of other frames.
 constexpr int kRemeshedIterations = 5;
-/// Edge strain after the projection beyond which a change of the structure is taken back.
+/// Principal strain after the projection beyond which a change of the structure is taken back.
 constexpr double kAcceptedStrain = 2e-3;
 /// How far a new singular point is moved out of the sheet, in seeding distances.
 constexpr double kDent = 0.05;
@@ -239,8 +239,8 @@ void HybridMesher::annotate(const ShellState& state, Frame& frame) const {
   frame.diagnostics["rejected_changes"] = rejected_;
   frame.diagnostics["remeshed"] = events_.changed ? 1 : 0;
   frame.diagnostics["projection_iterations"] = projection_.iterations;
-  frame.diagnostics["edge_strain_before"] = projection_.strain_before;
-  frame.diagnostics["edge_strain_after"] = projection_.strain_after;
+  frame.diagnostics["strain_before"] = projection_.strain_before;
+  frame.diagnostics["strain_after"] = projection_.strain_after;
 }
 
 State HybridMesher::save() const {

@@ -1,17 +1,19 @@
 #include "solvers/paper/isometry_projection.h"
 
+#include <Eigen/LU>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "solvers/paper/mesh_edges.h"
+#include <numbers>
 
 namespace geoprior {
 namespace {
 
-using Eigen::Vector3d;
+using Eigen::Matrix2d;
 using Matrix = Eigen::SparseMatrix<double>;
+using Vector9 = Eigen::Matrix<double, 9, 1>;
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 /// Damping mu at the start, over the squared mean edge length, and how it changes.
 constexpr double kDamping = 1e-6;
@@ -22,20 +24,62 @@ constexpr double kDampingDown = 0.1;
 /// says nothing.
 constexpr double kLongestMove = 0.3;
 
-struct EdgeTerm {
-  int i, j;       ///< vertices
-  double length;  ///< in the pattern (m)
-  double area;    ///< a third of the triangles beside it (m^2)
-  /// Places in the matrix of the blocks ii, jj, ij, column by column; -1 above the diagonal.
-  std::array<int, 9> ii, jj, ij;
+struct Triangle {
+  std::array<int, 3> vertices;
+  Eigen::Matrix<double, 3, 2> shape;  ///< gradients of the hat functions, one row a corner (1/m)
+  double area = 0;                    ///< m^2
+  /// Place in the matrix of each entry of the element's matrix; -1: above the diagonal or held.
+  std::array<int, 81> place;
 };
+
+/// Deformation gradient, 3 x 2.
+Eigen::Matrix<double, 3, 2> gradient_of_map(const Triangle& t, const Eigen::MatrixX3d& x) {
+  Eigen::Matrix<double, 3, 2> F = Eigen::Matrix<double, 3, 2>::Zero();
+  for (int k = 0; k < 3; ++k) {
+    F += x.row(t.vertices[static_cast<std::size_t>(k)]).transpose() * t.shape.row(k);
+  }
+  return F;
+}
+
+Matrix2d green_strain(const Eigen::Matrix<double, 3, 2>& F) {
+  return (F.transpose() * F - Matrix2d::Identity()) / 2;
+}
+
+double largest_principal(const Matrix2d& G) {
+  const double mean = (G(0, 0) + G(1, 1)) / 2;
+  return std::abs(mean) + std::hypot((G(0, 0) - G(1, 1)) / 2, G(0, 1));
+}
+
+/// The part of a symmetric matrix with eigenvalues > 0.
+Matrix2d positive_part(const Matrix2d& G) {
+  const double mean = (G(0, 0) + G(1, 1)) / 2;
+  const double radius = std::hypot((G(0, 0) - G(1, 1)) / 2, G(0, 1));
+  if (mean - radius >= 0) return G;
+  if (mean + radius <= 0) return Matrix2d::Zero();
+  // One eigenvalue of each sign: (mean + radius) times the projector on its eigenvector.
+  return (mean + radius) / (2 * radius) * (G - (mean - radius) * Matrix2d::Identity());
+}
+
+/// Derivative of (G_00, G_11, sqrt2 G_01) by the nine coordinates of the corners.
+Eigen::Matrix<double, 3, 9> strain_derivative(const Triangle& t,
+                                              const Eigen::Matrix<double, 3, 2>& F) {
+  Eigen::Matrix<double, 3, 9> J;
+  const Eigen::RowVector3d f0 = F.col(0), f1 = F.col(1);
+  for (int k = 0; k < 3; ++k) {
+    const double a = t.shape(k, 0), b = t.shape(k, 1);
+    J.block<1, 3>(0, 3 * k) = a * f0;
+    J.block<1, 3>(1, 3 * k) = b * f1;
+    J.block<1, 3>(2, 3 * k) = (a * f1 + b * f0) / std::numbers::sqrt2;
+  }
+  return J;
+}
 
 }  // namespace
 
 struct IsometryProjector::Impl {
   std::vector<bool> held;
   std::vector<int> free_index;  ///< of each vertex; -1: held
-  std::vector<EdgeTerm> terms;
+  std::vector<Triangle> triangles;
   Eigen::VectorXd mass;  ///< of each vertex, as area (m^2)
   double mean_length = 1;
   Matrix matrix;
@@ -44,147 +88,136 @@ struct IsometryProjector::Impl {
 
   void build(const ShellMesh& mesh);
   void build_matrix();
-  double merit(const Eigen::MatrixX3d& x, double& largest) const;
+  [[nodiscard]] int unknown(const Triangle& t, int k) const;
+  [[nodiscard]] double merit(const Eigen::MatrixX3d& x, double& largest) const;
   void assemble(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient);
-  Eigen::VectorXd stretching(const Eigen::MatrixX3d& x, const Eigen::MatrixX3d& v) const;
+  [[nodiscard]] Eigen::VectorXd straining(const Eigen::MatrixX3d& x,
+                                          const Eigen::MatrixX3d& v) const;
   bool factorise(double mu);
   bool iterate(ShellState& state, double& mu, double& merit_now, double& largest);
   void move(Eigen::MatrixX3d& x, const Eigen::VectorXd& step) const;
   void calm(ShellState& state, double mu);
 };
 
+/// Index of coordinate k = 0 ... 8 of a triangle among the unknowns; negative when held.
+int IsometryProjector::Impl::unknown(const Triangle& t, int k) const {
+  const int i = free_index[static_cast<std::size_t>(t.vertices[static_cast<std::size_t>(k / 3)])];
+  return i < 0 ? -1 : 3 * i + k % 3;
+}
+
 void IsometryProjector::Impl::build(const ShellMesh& mesh) {
-  const MeshEdges edges(mesh.triangles);
   mass = Eigen::VectorXd::Zero(mesh.vertex_count());
-  std::vector<double> area(static_cast<std::size_t>(mesh.triangle_count()));
+  double length = 0;
   for (int f = 0; f < mesh.triangle_count(); ++f) {
-    const Eigen::RowVector2d e =
-        mesh.pattern.row(mesh.triangles(f, 1)) - mesh.pattern.row(mesh.triangles(f, 0));
-    const Eigen::RowVector2d g =
-        mesh.pattern.row(mesh.triangles(f, 2)) - mesh.pattern.row(mesh.triangles(f, 0));
-    area[static_cast<std::size_t>(f)] = (e.x() * g.y() - e.y() * g.x()) / 2;
-    for (int k = 0; k < 3; ++k) mass[mesh.triangles(f, k)] += area[static_cast<std::size_t>(f)] / 3;
-  }
-  double sum = 0;
-  for (const MeshEdges::Edge& e : edges.all()) {
-    EdgeTerm term{};
-    term.i = e.a;
-    term.j = e.b;
-    term.length = (mesh.pattern.row(e.b) - mesh.pattern.row(e.a)).norm();
-    for (const int f : {e.left, e.right}) {
-      if (f >= 0) term.area += area[static_cast<std::size_t>(f)] / 3;
+    Triangle t{};
+    for (int k = 0; k < 3; ++k) {
+      t.vertices[static_cast<std::size_t>(k)] = mesh.triangles(f, k);
+      length += (mesh.pattern.row(mesh.triangles(f, (k + 1) % 3)) -
+                 mesh.pattern.row(mesh.triangles(f, k)))
+                    .norm();
     }
-    sum += term.length;
-    terms.push_back(term);
+    Matrix2d rest;
+    rest.col(0) = mesh.pattern.row(t.vertices[1]) - mesh.pattern.row(t.vertices[0]);
+    rest.col(1) = mesh.pattern.row(t.vertices[2]) - mesh.pattern.row(t.vertices[0]);
+    t.area = rest.determinant() / 2;
+    t.shape.bottomRows<2>() = rest.inverse();
+    t.shape.row(0) = -t.shape.row(1) - t.shape.row(2);
+    for (const int v : t.vertices) mass[v] += t.area / 3;
+    triangles.push_back(t);
   }
-  mean_length = sum / static_cast<double>(terms.size());
+  mean_length = length / (3 * mesh.triangle_count());
   free_index.assign(held.size(), -1);
   int next = 0;
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (!held[i]) free_index[i] = next++;
   }
+  matrix.resize(3 * next, 3 * next);
   build_matrix();
 }
 
 void IsometryProjector::Impl::build_matrix() {
-  const auto index = [&](int v) { return free_index[static_cast<std::size_t>(v)]; };
   std::vector<Eigen::Triplet<double>> entries;
-  const auto block = [&](int p, int q) {
-    for (int c = 0; c < 3; ++c) {
-      for (int r = 0; r < 3; ++r) {
-        const int row = 3 * std::max(p, q) + r, col = 3 * std::min(p, q) + c;
-        if (row >= col) entries.emplace_back(row, col, 1.0);
+  for (const Triangle& t : triangles) {
+    for (int c = 0; c < 9; ++c) {
+      for (int r = 0; r < 9; ++r) {
+        const int row = unknown(t, r), col = unknown(t, c);
+        if (col >= 0 && row >= col) entries.emplace_back(row, col, 1.0);
       }
     }
-  };
-  int count = 0;
-  for (const int i : free_index) {
-    if (i < 0) continue;
-    block(i, i);
-    ++count;
   }
-  for (const EdgeTerm& t : terms) {
-    if (index(t.i) >= 0 && index(t.j) >= 0) block(index(t.i), index(t.j));
-  }
-  matrix.resize(3 * count, 3 * count);
   matrix.setFromTriplets(entries.begin(), entries.end());
   const auto place = [&](int row, int col) {
     const int* begin = matrix.innerIndexPtr() + matrix.outerIndexPtr()[col];
     const int* end = matrix.innerIndexPtr() + matrix.outerIndexPtr()[col + 1];
     return static_cast<int>(std::lower_bound(begin, end, row) - matrix.innerIndexPtr());
   };
-  const auto places = [&](int p, int q, std::array<int, 9>& out) {
-    out.fill(-1);
-    if (p < 0 || q < 0) return;
-    for (int c = 0; c < 3; ++c) {
-      for (int r = 0; r < 3; ++r) {
-        const int row = 3 * std::max(p, q) + r, col = 3 * std::min(p, q) + c;
-        if (row >= col) out[static_cast<std::size_t>(3 * c + r)] = place(row, col);
+  for (Triangle& t : triangles) {
+    for (int c = 0; c < 9; ++c) {
+      for (int r = 0; r < 9; ++r) {
+        const int row = unknown(t, r), col = unknown(t, c);
+        t.place[static_cast<std::size_t>(9 * c + r)] =
+            col >= 0 && row >= col ? place(row, col) : -1;
       }
     }
-  };
-  for (EdgeTerm& t : terms) {
-    places(index(t.i), index(t.i), t.ii);
-    places(index(t.j), index(t.j), t.jj);
-    places(index(t.i), index(t.j), t.ij);
   }
   diagonal.clear();
-  for (int k = 0; k < 3 * count; ++k) diagonal.push_back(place(k, k));
-  if (count > 0) solver.analyzePattern(matrix);
+  for (int k = 0; k < matrix.rows(); ++k) diagonal.push_back(place(k, k));
+  if (matrix.rows() > 0) solver.analyzePattern(matrix);
 }
 
 double IsometryProjector::Impl::merit(const Eigen::MatrixX3d& x, double& largest) const {
   double sum = 0;
   largest = 0;
-  for (const EdgeTerm& t : terms) {
-    const double r = (x.row(t.j) - x.row(t.i)).norm() / t.length - 1;
-    sum += t.area * r * r;
-    largest = std::max(largest, std::abs(r));
+  for (const Triangle& t : triangles) {
+    const Matrix2d G = green_strain(gradient_of_map(t, x));
+    sum += t.area * G.squaredNorm();
+    largest = std::max(largest, largest_principal(G));
   }
   return sum;
 }
 
-/// Gauss-Newton matrix (without damping) and gradient of half the merit. Stretched edges add their
-/// geometric stiffness: it is positive semidefinite and calms steps out of a nearly flat plane.
+/// Gauss-Newton matrix (without damping) and gradient of half the merit. Stretch adds its geometric
+/// stiffness: it is positive semidefinite and calms steps out of a nearly flat plane.
 void IsometryProjector::Impl::assemble(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient) {
   double* value = matrix.valuePtr();
   std::fill(value, value + matrix.nonZeros(), 0.0);
   gradient.setZero(matrix.rows());
-  for (const EdgeTerm& t : terms) {
-    const Vector3d d = x.row(t.j) - x.row(t.i);
-    const double length = d.norm();
-    const Vector3d u = d / length;
-    const double r = length / t.length - 1;
-    Eigen::Matrix3d h = (t.area / (t.length * t.length)) * u * u.transpose();
-    if (r > 0) {
-      h += (t.area * r / (t.length * length)) * (Eigen::Matrix3d::Identity() - u * u.transpose());
+  for (const Triangle& t : triangles) {
+    const Eigen::Matrix<double, 3, 2> F = gradient_of_map(t, x);
+    const Matrix2d G = green_strain(F);
+    const Eigen::Matrix<double, 3, 9> J = strain_derivative(t, F);
+    const Vector9 g =
+        t.area * J.transpose() * Eigen::Vector3d(G(0, 0), G(1, 1), std::numbers::sqrt2 * G(0, 1));
+    Matrix9 H = t.area * J.transpose() * J;
+    const Eigen::Matrix3d stiffness = t.area * t.shape * positive_part(G) * t.shape.transpose();
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) {
+        H.block<3, 3>(3 * a, 3 * b).diagonal().array() += stiffness(a, b);
+      }
     }
-    const Vector3d g = (t.area * r / t.length) * u;
-    const int i = free_index[static_cast<std::size_t>(t.i)];
-    const int j = free_index[static_cast<std::size_t>(t.j)];
-    if (i >= 0) gradient.segment<3>(3 * i) -= g;
-    if (j >= 0) gradient.segment<3>(3 * j) += g;
-    for (std::size_t k = 0; k < 9; ++k) {
-      const double a = h.data()[k];
-      if (t.ii[k] >= 0) value[t.ii[k]] += a;
-      if (t.jj[k] >= 0) value[t.jj[k]] += a;
-      if (t.ij[k] >= 0) value[t.ij[k]] -= a;
+    for (int k = 0; k < 9; ++k) {
+      if (unknown(t, k) >= 0) gradient[unknown(t, k)] += g[k];
+    }
+    for (std::size_t k = 0; k < 81; ++k) {
+      if (t.place[k] >= 0) value[t.place[k]] += H.data()[k];
     }
   }
 }
 
-/// Half the gradient of the rate at which the edges stretch: J' A J v on the free vertices.
-Eigen::VectorXd IsometryProjector::Impl::stretching(const Eigen::MatrixX3d& x,
-                                                    const Eigen::MatrixX3d& v) const {
+/// Half the gradient of the squared rate of strain: dG' A dG v on the free vertices.
+Eigen::VectorXd IsometryProjector::Impl::straining(const Eigen::MatrixX3d& x,
+                                                   const Eigen::MatrixX3d& v) const {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(matrix.rows());
-  for (const EdgeTerm& t : terms) {
-    const Vector3d u = (x.row(t.j) - x.row(t.i)).normalized();
-    const double rate = (v.row(t.j) - v.row(t.i)).dot(u.transpose()) / t.length;
-    const Vector3d g = (t.area * rate / t.length) * u;
-    const int i = free_index[static_cast<std::size_t>(t.i)];
-    const int j = free_index[static_cast<std::size_t>(t.j)];
-    if (i >= 0) result.segment<3>(3 * i) -= g;
-    if (j >= 0) result.segment<3>(3 * j) += g;
+  for (const Triangle& t : triangles) {
+    const Eigen::Matrix<double, 3, 9> J = strain_derivative(t, gradient_of_map(t, x));
+    Vector9 velocity;
+    for (int k = 0; k < 3; ++k) {
+      velocity.segment<3>(3 * k) = v.row(t.vertices[static_cast<std::size_t>(k)]);
+    }
+    const Vector9 g = t.area * J.transpose() * (J * velocity);
+    for (int k = 0; k < 9; ++k) {
+      if (unknown(t, k) >= 0) result[unknown(t, k)] += g[k];
+    }
   }
   return result;
 }
@@ -235,12 +268,12 @@ bool IsometryProjector::Impl::iterate(ShellState& state, double& mu, double& mer
   return true;
 }
 
-/// Takes out of the velocities what stretches the edges.
+/// Takes out of the velocities what strains the triangles.
 void IsometryProjector::Impl::calm(ShellState& state, double mu) {
   Eigen::VectorXd gradient;
   assemble(state.x, gradient);
   if (!factorise(mu)) return;
-  move(state.v, -solver.solve(stretching(state.x, state.v)));
+  move(state.v, -solver.solve(straining(state.x, state.v)));
 }
 
 IsometryProjector::IsometryProjector(const ShellMesh& mesh, const std::vector<bool>& held)
@@ -260,24 +293,14 @@ ProjectionReport IsometryProjector::project(ShellState& state, const ProjectionO
   double merit = impl_->merit(state.x, report.strain_before);
   report.strain_after = report.strain_before;
   if (impl_->matrix.rows() == 0) return report;
-  double mu = kDamping / (impl_->mean_length * impl_->mean_length);
+  const double start = kDamping / (impl_->mean_length * impl_->mean_length);
+  double mu = start;
   while (report.iterations < options.iterations && report.strain_after > options.strain) {
     ++report.iterations;
     impl_->iterate(state, mu, merit, report.strain_after);
   }
-  if (report.iterations > 0)
-    impl_->calm(state, kDamping / (impl_->mean_length * impl_->mean_length));
+  if (report.iterations > 0) impl_->calm(state, start);
   return report;
-}
-
-double largest_edge_strain(const ShellState& state) {
-  double largest = 0;
-  const MeshEdges edges(state.mesh.triangles);
-  for (const MeshEdges::Edge& e : edges.all()) {
-    const double rest = (state.mesh.pattern.row(e.b) - state.mesh.pattern.row(e.a)).norm();
-    largest = std::max(largest, std::abs((state.x.row(e.b) - state.x.row(e.a)).norm() / rest - 1));
-  }
-  return largest;
 }
 
 }  // namespace geoprior

@@ -37,11 +37,19 @@ TEST(IsometryProjection, UndoesTheShorteningOfChordsInThreeSteps) {
   IsometryProjector projector(state.mesh,
                               std::vector<bool>(static_cast<std::size_t>(state.x.rows()), false));
   const Eigen::MatrixX3d before = state.x;
-  // A chord over the arc s / r = 0.4 is shorter by 1 - sin(0.2) / 0.2 = 0.67 %.
+  // A chord over the arc s / r = 0.4 is shorter by the ratio q = sin(0.2) / 0.2: G = (q^2 - 1) / 2.
+  const double q = std::sin(0.2) / 0.2;
   const ProjectionReport report = projector.project(state, {3, 1e-6});
-  EXPECT_NEAR(report.strain_before, 1 - std::sin(0.2) / 0.2, 1e-4);
+  EXPECT_NEAR(report.strain_before, (1 - q * q) / 2, 1e-6);
   EXPECT_LE(report.strain_after, 1e-6);
-  EXPECT_DOUBLE_EQ(report.strain_after, largest_edge_strain(state));
+  for (int f = 0; f < state.mesh.triangle_count(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = state.mesh.triangles(f, k), b = state.mesh.triangles(f, (k + 1) % 3);
+      EXPECT_NEAR((state.x.row(b) - state.x.row(a)).norm() /
+                      (state.mesh.pattern.row(b) - state.mesh.pattern.row(a)).norm(),
+                  1, 2e-6);
+    }
+  }
   // It stays near: the shape only has to grow by that share of its size.
   EXPECT_LE((state.x - before).rowwise().norm().maxCoeff(), 0.02 * 0.1);
 }
@@ -98,7 +106,9 @@ TEST(IsometryProjection, EndsAtALeastSquaresFitWhereNoIsometryExists) {
   IsometryProjector projector(state.mesh, held);
   const ProjectionReport report = projector.project(state, {10, 1e-6});
   EXPECT_TRUE(state.x.allFinite());
-  EXPECT_NEAR(report.strain_after, 0.1, 0.02);
+  // At least the stretch of the border between the two: (1.1^2 - 1) / 2, spread a little.
+  EXPECT_GT(report.strain_after, 0.05);
+  EXPECT_LT(report.strain_after, 0.2);
 }
 
 }  // namespace
