@@ -153,11 +153,14 @@ def variants_shown(run):
     return [n for n in run.variant_names() if not wanted or n in wanted]
 
 
-def add_legend(figure, all_axes, height):
-    handles = {}
+def add_legend(figure, all_axes, names, height):
+    """The variants in the order of the experiment, whichever panels they are in."""
+    found = {}
     for axes in all_axes:
         for handle, label in zip(*axes.get_legend_handles_labels()):
-            handles.setdefault(label, handle)
+            found.setdefault(label, handle)
+    labels = [display_name(n) for n in names]
+    handles = {label: found[label] for label in labels if label in found}
     if len(handles) > 0:
         figure.legend(handles.values(), handles.keys(), loc="upper left", fontsize=9,
                       ncol=min(6, len(handles)), bbox_to_anchor=(0.01, 1 - 0.04 / height),
@@ -191,7 +194,7 @@ def curves_figure(run):
         elif i + columns >= len(panels):
             axes.set_xlabel(parameter_label(panels[i][0]))
     figure.tight_layout(rect=(0, 0, 1, 1 - (0.25 * legend_rows + 0.1) / height), h_pad=1.4)
-    add_legend(figure, flat, height)
+    add_legend(figure, flat, names, height)
     return figure
 
 
@@ -228,8 +231,10 @@ def draw_phases(axes, variant, look, order):
     axes.plot(variant.parameter, whole, color="#222222", linewidth=1.6, label="whole frame")
     for phase, ms in largest_phases(variant).items():
         i = order.index(phase)
+        # Dots show a phase that some frames enter alone.
+        dots = {"marker": ".", "markersize": 3} if np.isnan(ms[1:]).any() else {}
         axes.plot(variant.parameter, ms, color=COLORS[i % (len(COLORS) - 1)], linewidth=1.0,
-                  linestyle="-" if i < len(COLORS) - 1 else ":", label=display_name(phase))
+                  linestyle="-" if i < len(COLORS) - 1 else ":", label=display_name(phase), **dots)
     axes.set_title(display_name(variant.name), color=look[variant.name]["color"])
     axes.legend(loc="best", fontsize=6.5, handlelength=2.2, labelspacing=0.25)
 
