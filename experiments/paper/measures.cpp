@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "experiments/paper/scene.h"
 #include "metrics/creases.h"
+#include "metrics/dcone_sector.h"
 #include "metrics/elastica.h"
 #include "metrics/intersection_depth.h"
 #include "metrics/self_contact.h"
@@ -211,6 +212,16 @@ Value elastica_error(const SheetFrame& f) {
   if (distance > (1 - kLeastShortening) * strip->length()) return std::nullopt;
   const double exact = elastica_height(strip->length(), distance);
   return std::abs(height - exact) / exact;
+}
+
+Value ring_sector(const SheetFrame& f) {
+  for (const Obstacle& obstacle : f.sheet.obstacles) {
+    if (obstacle.kind != Obstacle::Kind::torus) continue;
+    const Eigen::Vector3d apex = f.sheet.placement.inverse() * obstacle.centre;
+    return dcone_sector(f.pattern, f.x(), f.triangles(), apex.head<2>(), obstacle.radius,
+                        obstacle.axis);
+  }
+  return std::nullopt;
 }
 
 double hausdorff_ratio(const SheetFrame& f, const SheetFrame& reference) {

@@ -69,6 +69,11 @@ std::optional<HandleForce> handle_force(const SheetFrame& f);
 /// shortened by a thousandth.
 Value elastica_error(const SheetFrame& f);
 
+/// Width of the buckled sector of a sheet pushed into a ring (degrees): metrics/dcone_sector.h
+/// about the point of the pattern that starts at the centre of the scene's first torus. Absent
+/// without a torus and before there is a cone.
+Value ring_sector(const SheetFrame& f);
+
 /// Hausdorff distance of the two surfaces over the width of the pattern.
 double hausdorff_ratio(const SheetFrame& f, const SheetFrame& reference);
 

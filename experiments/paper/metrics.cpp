@@ -188,6 +188,15 @@ void add_comparisons(std::vector<MetricEntry>& table) {
                         "Euler's elastica of the same distance of the ends, relative; absent until "
                         "the strip is shortened by a thousandth",
                         Direction::lower_is_better, {1e-7, 1e-6}, elastica_error));
+  MetricEntry sector = entry(
+      "dcone_sector", "deg",
+      "sector over which a sheet pushed into a ring (the scene's torus) leaves it: 1.653 times the "
+      "width at a fifth of the rise, on the ring's circle in the pattern; absent before the rise "
+      "is "
+      "half of the apex' depth",
+      Direction::closer_to_target, {0.5, 0}, ring_sector);
+  sector.target = 138.99;  // small slopes, no thickness
+  table.push_back(std::move(sector));
   MetricEntry hausdorff =
       entry("hausdorff_ratio", "1",
             "Hausdorff distance from the surface of the reference variant, sampled every 32nd of "

@@ -198,6 +198,23 @@ TEST_F(StripMetrics, OnlyAStripIsComparedToTheElastica) {
   EXPECT_FALSE(value("elastica_error", arc).has_value());
 }
 
+TEST_F(StripMetrics, SectorOfAConeNeedsARing) {
+  // Half of the disc lies level on the ring, a bump over the rest: its width at a fifth is known.
+  const sheets::Sheet disc = sheets::disc(0.1, 5, 240);
+  const Frame cone = frame_of(sheets::mapped(disc, [](const Eigen::Vector2d& p) {
+    const double angle = std::atan2(p(1), p(0));
+    const double bump = std::max(0.0, 2 * std::cos(2 * angle)) * (p(0) > 0 ? 1 : 0);
+    return Eigen::Vector3d(p(0), p(1), 0.1 * p.norm() * (1 + bump));
+  }));
+  EXPECT_FALSE(value("dcone_sector", cone).has_value());
+  Obstacle ring;
+  ring.kind = Obstacle::Kind::torus;
+  ring.radius = 0.06;
+  scene.sheet.obstacles.push_back(ring);
+  const double width = std::acos(0.2) * 180 / std::numbers::pi;  // cos(2 angle) = 0.2, both sides
+  EXPECT_NEAR(value("dcone_sector", cone).value(), 1.653 * width, 0.5);
+}
+
 TEST_F(StripMetrics, ATurnedOverTriangleIsCountedAndLeavesNoEnergies) {
   strip.pattern.row(5 * 11 + 5) += Eigen::RowVector2d(0.015, 0);
   const Frame frame = frame_of(strip);
