@@ -3,7 +3,7 @@
 #
 #   ./test.sh               release build with warnings as errors, unit tests, quick runs against their reference values
 #   ./test.sh --sanitize    unit tests under the address and undefined-behaviour sanitizers
-#   ./test.sh --long        fuzzing, full runs against their reference values, kernels
+#   ./test.sh --long        fuzzing, long motions, full runs against their reference values, kernels
 #   ./test.sh --format      only: is every source file formatted?
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -35,7 +35,8 @@ fi
 scripts/build.sh release
 ctest --test-dir build/release --output-on-failure -j 2
 if [ "$mode" = --long ]; then
-  GEOPRIOR_FUZZ_SECONDS=600 ctest --test-dir build/release --output-on-failure -R '[Ff]uzz' --timeout 3600
+  # Tests named Long… do more when GEOPRIOR_LONG is set: more seeds, more frames.
+  GEOPRIOR_LONG=1 GEOPRIOR_FUZZ_SECONDS=600 ctest --test-dir build/release --output-on-failure -R '[Ff]uzz|Long' --timeout 3600
   build/release/geoprior check
   build/release/benchmarks/geoprior_kernels
 else
