@@ -17,6 +17,9 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
 constexpr double kRadians = std::numbers::pi / 180;
+/// On flat ground rulings are still free: about a point handle the directions of compression fan
+/// out, and their mean is meant (rad).
+constexpr double kFlatGroupAngle = std::numbers::pi / 4;
 
 struct Eigenpair {
   double value;
@@ -171,6 +174,7 @@ std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const
     group.by_bending = first.by_bending;
     group.triangles.push_back(seed);
     taken[static_cast<std::size_t>(seed)] = true;
+    const double limit = first.bent_ground ? group_angle : std::max(group_angle, kFlatGroupAngle);
     Matrix2d sum = Matrix2d::Zero();
     for (std::size_t k = 0; k < group.triangles.size(); ++k) {
       const int f = group.triangles[k];
@@ -186,7 +190,7 @@ std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const
         const Demand& other = demands[static_cast<std::size_t>(next)];
         if (other.weight <= 0 || other.bent_ground != first.bent_ground ||
             other.by_bending != first.by_bending ||
-            line_angle(other.direction, first.direction) > group_angle) {
+            line_angle(other.direction, first.direction) > limit) {
           continue;
         }
         taken[static_cast<std::size_t>(next)] = true;

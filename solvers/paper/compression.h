@@ -48,7 +48,8 @@ std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
                                  const Eigen::MatrixX3d& curvature, const RulingMesh& mesh,
                                  const RulingEditor& editor, const HybridOptions& options);
 
-/// Connected groups of one direction, strongest first.
+/// Connected groups of one direction, strongest first. On flat ground directions up to 45 degrees
+/// apart are one.
 std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const ShellMesh& mesh,
                                        double group_angle_deg);
 

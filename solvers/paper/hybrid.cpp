@@ -29,8 +29,11 @@ constexpr double kLeastAngleDegrees = 6;
 
 /// Iterations of the projection after remeshing, over those of other frames.
 constexpr int kRemeshedIterations = 5;
-/// Principal strain after the projection beyond which a change of the structure is taken back.
+/// Principal strain after the projection beyond which a change of the structure is taken back, and
+/// tries to make another: singular points are then drawn anew. When none is good enough, the best
+/// of them and of the unchanged structure stays.
 constexpr double kAcceptedStrain = 2e-3;
+constexpr int kAttempts = 4;
 /// How far a new singular point is moved out of the sheet, in seeding distances.
 constexpr double kDent = 0.05;
 
@@ -72,21 +75,22 @@ std::vector<bool> held_vertices(const Sheet& sheet, const ShellMesh& mesh, doubl
 
 }  // namespace
 
-RulingEditor HybridMesher::editor(const Sheet& sheet) {
-  return {sheet.pattern,
+RulingEditor HybridMesher::editor() {
+  return {pattern_,
           anchors_,
           {kGap * options_.seeding_distance, kLeastAngleDegrees * std::numbers::pi / 180},
           structure_};
 }
 
 void HybridMesher::take_scene(const Sheet& sheet) {
+  pattern_ = sheet.pattern;
   anchors_ = handle_points(sheet, options_.flat_size);
 }
 
-void HybridMesher::remesh(const Sheet& sheet) {
-  mesh_ = mesh_structure(structure_, sheet.pattern, anchors_, options_.flat_size);
-  derive_pieces(structure_, sheet.pattern, mesh_);
-  assert(broken_invariants(structure_, sheet.pattern, mesh_.mesh).empty());
+void HybridMesher::remesh() {
+  mesh_ = mesh_structure(structure_, pattern_, anchors_, options_.flat_size);
+  derive_pieces(structure_, pattern_, mesh_);
+  assert(broken_invariants(structure_, pattern_, mesh_.mesh).empty());
   fit_ = fit_curvature(mesh_.mesh.pattern, mesh_.mesh.triangles);
   projector_.reset();
   meshed_ = true;
@@ -97,7 +101,7 @@ ShellState HybridMesher::start(const Sheet& sheet, RunContext& context) {
   draws_ = 0;
   rejected_ = 0;
   take_scene(sheet);
-  remesh(sheet);
+  remesh();
   return resting_state(sheet, mesh_.mesh, context.seed());
 }
 
@@ -108,7 +112,7 @@ std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, ShellState& s
     yield_at_apexes(sheet.material, options_.weakening_radius, mesh_.singular_vertices, curvature_,
                     state, structure_);
   }
-  const RulingEditor looker = editor(sheet);
+  const RulingEditor looker = editor();
   return group_demands(find_demands(sheet, state, curvature_, mesh_, looker, options_), state.mesh,
                        options_.group_angle_deg);
 }
@@ -123,93 +127,93 @@ bool HybridMesher::track(const ShellState& state, const std::vector<double>& fol
 
 /// Changes the rulings as the groups ask; the mesh still is that of the old ones.
 PropagationReport HybridMesher::edit(const ShellState& state,
-                                     const std::vector<DemandGroup>& groups, std::uint64_t seed,
-                                     RulingEditor& editor) {
+                                     const std::vector<DemandGroup>& groups, bool tracking,
+                                     std::uint64_t seed) {
   PropagationReport total;
-  for (Ruling& ruling : structure_.rulings) ++ruling.age_frames;
+  RulingEditor pen = editor();
   std::vector<double> folds = fold_angles(state, mesh_);
-  if (options_.tracking) total.changed = track(state, folds, groups.empty(), editor);
+  if (tracking) total.changed = track(state, folds, groups.empty(), pen);
   if (groups.empty()) return total;
-  // Tracking may have removed rulings: the folds then belong to others.
-  if (total.changed) folds.clear();
   const PatternLocator locator(state.mesh);
   for (const DemandGroup& group : groups) {
+    // Once rulings have gone, the folds belong to others.
+    if (total.changed) folds.clear();
     const auto in_group = [&](const Eigen::Vector2d& p) {
       const int f = locator.locate(p).triangle;
       return std::find(group.triangles.begin(), group.triangles.end(), f) != group.triangles.end();
     };
     const PropagationReport report =
-        resolve_group(group, in_group, folds, state.time, seed, draws_, options_, editor);
+        resolve_group(group, in_group, folds, state.time, seed, draws_, options_, pen);
     total.new_rulings += report.new_rulings;
     total.new_singular_points += report.new_singular_points;
     total.changed |= report.changed;
-    if (report.changed) folds.clear();
   }
   return total;
+}
+
+HybridMesher::Snapshot HybridMesher::snapshot(const ShellState& state) const {
+  return {structure_, mesh_, fit_, state, events_, projection_};
+}
+
+void HybridMesher::restore(const Snapshot& before, ShellState& state) {
+  structure_ = before.structure;
+  mesh_ = before.mesh;
+  fit_ = before.fit;
+  state = before.state;
+  events_ = before.events;
+  projection_ = before.projection;
+  projector_.reset();
 }
 
 bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& /*stepper*/, ShellState& state,
                          RunContext& context) {
   if (!meshed_) {
     take_scene(sheet);
-    remesh(sheet);
+    remesh();
   }
   std::vector<DemandGroup> groups;
   {
     const Phase phase(context, "analyse");
+    for (Ruling& ruling : structure_.rulings) ++ruling.age_frames;
     groups = analyse(sheet, state);
   }
-  const Geometry before{structure_, mesh_, fit_};
-  {
-    const Phase phase(context, "propagate");
-    RulingEditor pen = editor(sheet);
-    events_ = edit(state, groups, context.seed(), pen);
+  const Snapshot before = snapshot(state);
+  std::optional<Snapshot> best;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    {
+      const Phase phase(context, "propagate");
+      events_ = edit(state, groups, options_.tracking && attempt == 0, context.seed());
+    }
+    if (!events_.changed) break;
+    rebuild(sheet, before.structure.singular_points.size(), state, context);
+    if (!options_.projection || projection_.strain_after <= kAcceptedStrain) return true;
+    if (!best || projection_.strain_after < best->projection.strain_after) best = snapshot(state);
+    ++rejected_;
+    restore(before, state);
   }
-  if (events_.changed) {
-    rebuild(sheet, before, state, context);
-  } else if (options_.projection) {
+  events_ = {};
+  if (options_.projection) {
     const Phase phase(context, "project");
     projection_ = project(sheet, state, options_.projection_iterations, context.seed());
   }
-  return events_.changed;
+  if (!best || projection_.strain_after <= best->projection.strain_after) return false;
+  restore(*best, state);
+  return true;
 }
 
-/// Mesh, state and projection of a changed structure. A change after which the sheet finds no
-/// isometric shape nearby is taken back, unless the old mesh has none either: the next frame draws
-/// anew.
-void HybridMesher::rebuild(const Sheet& sheet, const Geometry& before, ShellState& state,
+/// Mesh, state and projection of a changed structure.
+void HybridMesher::rebuild(const Sheet& sheet, std::size_t old_points, ShellState& state,
                            RunContext& context) {
-  const ShellState unchanged = state;
   {
     const Phase phase(context, "remesh");
-    remesh(sheet);
-    carry(state, before.structure.singular_points.size());
+    remesh();
+    carry(state, old_points);
   }
   if (!options_.projection) return;
   const Phase phase(context, "project");
   // A new mesh cuts corners of the old one: it has farther to go.
-  const int iterations = kRemeshedIterations * options_.projection_iterations;
-  projection_ = project(sheet, state, iterations, context.seed());
-  if (projection_.strain_after <= kAcceptedStrain) return;
-  Geometry changed{structure_, mesh_, fit_};
-  ShellState old = unchanged;
-  structure_ = before.structure;
-  mesh_ = before.mesh;
-  fit_ = before.fit;
-  projector_.reset();
-  const ProjectionReport alternative =
-      project(sheet, old, options_.projection_iterations, context.seed());
-  if (alternative.strain_after < projection_.strain_after) {
-    state = std::move(old);
-    projection_ = alternative;
-    events_ = {};
-    ++rejected_;
-    return;
-  }
-  structure_ = std::move(changed.structure);
-  mesh_ = std::move(changed.mesh);
-  fit_ = std::move(changed.fit);
-  projector_.reset();
+  projection_ =
+      project(sheet, state, kRemeshedIterations * options_.projection_iterations, context.seed());
 }
 
 /// Takes the state to the new mesh. A new singular point is moved a little towards its neighbours,

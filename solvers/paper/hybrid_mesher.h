@@ -30,30 +30,38 @@ class HybridMesher final : public SheetMesher {
   [[nodiscard]] const RulingMesh& mesh() const { return mesh_; }
 
  private:
-  /// What remeshing replaces.
-  struct Geometry {
+  /// What an attempt to change the structure may have to give back.
+  struct Snapshot {
     PaperStructure structure;
     RulingMesh mesh;
     CurvatureFit fit;
+    ShellState state;
+    PropagationReport events;
+    ProjectionReport projection;
   };
+  [[nodiscard]] Snapshot snapshot(const ShellState& state) const;
+  void restore(const Snapshot& before, ShellState& state);
+
   void take_scene(const Sheet& sheet);
-  void remesh(const Sheet& sheet);
-  [[nodiscard]] RulingEditor editor(const Sheet& sheet);
+  [[nodiscard]] RulingEditor editor();
+  void remesh();
   [[nodiscard]] std::vector<DemandGroup> analyse(const Sheet& sheet, ShellState& state);
-  PropagationReport edit(const ShellState& state, const std::vector<DemandGroup>& groups,
-                         std::uint64_t seed, RulingEditor& editor);
   bool track(const ShellState& state, const std::vector<double>& folds, bool at_rest,
              RulingEditor& editor);
-  void rebuild(const Sheet& sheet, const Geometry& before, ShellState& state, RunContext& context);
+  [[nodiscard]] PropagationReport edit(const ShellState& state,
+                                       const std::vector<DemandGroup>& groups, bool tracking,
+                                       std::uint64_t seed);
+  void rebuild(const Sheet& sheet, std::size_t old_points, ShellState& state, RunContext& context);
   void carry(ShellState& state, std::size_t old_points) const;
-  ProjectionReport project(const Sheet& sheet, ShellState& state, int iterations,
-                           std::uint64_t seed);
+  [[nodiscard]] ProjectionReport project(const Sheet& sheet, ShellState& state, int iterations,
+                                         std::uint64_t seed);
 
   HybridOptions options_;
   PaperStructure structure_;
   RulingMesh mesh_;
   CurvatureFit fit_;
   Eigen::MatrixX3d curvature_;  ///< of each triangle, at the end of the frame's steps
+  Pattern pattern_;
   std::vector<Eigen::Vector2d> anchors_;
   std::optional<IsometryProjector> projector_;
   std::uint64_t draws_ = 0;  ///< of singular points, so far
