@@ -90,6 +90,15 @@ double reach(const std::vector<Crossing>& p, std::size_t peak, int step, double 
   return angle;
 }
 
+/// Separate parts of the circle above the level.
+int rises(const std::vector<Crossing>& p, double level) {
+  int count = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p[i].height < level && p[(i + 1) % p.size()].height >= level) ++count;
+  }
+  return count;
+}
+
 }  // namespace
 
 std::optional<double> dcone_sector(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX3d& x,
@@ -115,6 +124,7 @@ std::optional<double> dcone_sector(const Eigen::MatrixX2d& pattern, const Eigen:
   if (!(ring > 0) || rise < kLeastRise * ring) return std::nullopt;
   const auto at = static_cast<std::size_t>(peak - p.begin());
   const double level = ring + kLevel * rise;
+  if (rises(p, level) != 1) return std::nullopt;
   return kSectorOfWidth * (reach(p, at, 1, level) + reach(p, at, -1, level)) * 180 / kPi;
 }
 

@@ -21,8 +21,8 @@ namespace geoprior {
 /// @param radius     of the circle in the pattern (m): where the ring is
 /// @param axis       of the ring, either sense
 /// @return  absent when the circle does not fit into the pattern, the apex is not below the circle,
-///          or the sheet rises by less than half of the depth of the apex: then there is no cone
-///          yet
+///          the sheet rises by less than half of the depth of the apex (there is no cone yet), or
+///          it leaves the ring in more than one sector
 /// Source: Cerda and Mahadevan, Conical surfaces and crescent singularities in crumpled sheets,
 /// 1998.
 std::optional<double> dcone_sector(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX3d& x,

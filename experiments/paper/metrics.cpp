@@ -192,8 +192,7 @@ void add_comparisons(std::vector<MetricEntry>& table) {
       "dcone_sector", "deg",
       "sector over which a sheet pushed into a ring (the scene's torus) leaves it: 1.653 times the "
       "width at a fifth of the rise, on the ring's circle in the pattern; absent before the rise "
-      "is "
-      "half of the apex' depth",
+      "is half of the apex' depth and when there are several sectors",
       Direction::closer_to_target, {0.5, 0}, ring_sector);
   sector.target = 138.99;  // small slopes, no thickness
   table.push_back(std::move(sector));

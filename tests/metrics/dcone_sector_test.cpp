@@ -88,6 +88,14 @@ TEST(DConeSector, IsAbsentWithoutACone) {
   const Sheet funnel = sheets::mapped(
       flat, [](const Eigen::Vector2d& p) { return Eigen::Vector3d(p(0), p(1), 0.1 * p.norm()); });
   EXPECT_FALSE(sector_of(funnel).has_value());
+  // Two sectors: no d-cone.
+  const Profile psi(110);
+  const Sheet twice = sheets::mapped(sheets::disc(0.1, 5, 180), [&](const Eigen::Vector2d& p) {
+    const double t = std::atan2(p(1), p(0));
+    const double opposite = std::remainder(t - std::numbers::pi, 2 * std::numbers::pi);
+    return Eigen::Vector3d(p(0), p(1), 0.1 * p.norm() * std::max(psi(t), psi(opposite)));
+  });
+  EXPECT_FALSE(sector_of(twice).has_value());
   // A circle that leaves the pattern.
   const Sheet small = cone(sheets::disc(0.05, 5, 60), Profile(138.99), {0, 0}, 0.1, 0);
   EXPECT_FALSE(sector_of(small).has_value());
