@@ -6,6 +6,8 @@
 #include <fstream>
 #include <numbers>
 
+#include "core/error.h"
+#include "core/random.h"
 #include "experiments/paper/svg_path.h"
 #include "experiments/paper/svg_pattern.h"
 #include "tests/experiments/run_fixture.h"
@@ -98,6 +100,34 @@ TEST(SvgPath, NamesTheCharacterThatIsWrong) {
   EXPECT_THAT(refusal("M0 0 1 0 1 1Z M3 3 4 3 4 4Z"), HasSubstr("second subpath"));
   EXPECT_THAT(refusal("M0 0 1 0 1 1Z 5"), HasSubstr("number follows Z"));
   EXPECT_THAT(refusal("M0 0 1 1Z"), HasSubstr("fewer than three points"));
+}
+
+// 20,000 paths with characters exchanged, doubled and cut: points or an Error, nothing else.
+TEST(SvgPath, AnswersMutatedPathsWithPointsOrAnError) {
+  const std::string good = "M1 0c0-1.5e-1 1 2 2 2S4,1 4 0q1 1 2 0t3 .5A2 1 30 0 1 -2 -1h3V-4l1 1z";
+  const std::string letters = "MLHVCSQTAZmlhvcsqtaz0123456789.,-+eE \n#";
+  RandomStream random(1, "mutated paths");
+  int refused = 0;
+  for (int i = 0; i < 20000; ++i) {
+    std::string d = good;
+    const std::uint32_t changes = 1 + random.below(4);
+    for (std::uint32_t k = 0; k < changes && !d.empty(); ++k) {
+      const std::uint32_t at = random.below(static_cast<std::uint32_t>(d.size()));
+      const char letter = letters[random.below(static_cast<std::uint32_t>(letters.size()))];
+      const std::uint32_t kind = random.below(4);
+      if (kind == 0) d[at] = letter;
+      if (kind == 1) d.insert(at, 1, letter);
+      if (kind == 2) d.erase(at, 1 + random.below(3));
+      if (kind == 3) d = d.substr(0, at + 1);
+    }
+    try {
+      for (const Eigen::Vector2d& p : path(d)) ASSERT_TRUE(p.allFinite()) << d;
+    } catch (const Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 1000);
+  EXPECT_LT(refused, 19000);
 }
 
 class SvgPattern : public ::testing::Test {
