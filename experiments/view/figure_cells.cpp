@@ -4,9 +4,11 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "core/error.h"
 #include "experiments/formats/vtk_files.h"
+#include "experiments/runner/quantity.h"
 
 namespace geoprior {
 namespace {
@@ -90,14 +92,45 @@ Part require_part(const FrameRecord& frame, const std::string& name, const fs::p
   throw Error("no part '" + name + "' in the frames", "figure_view.part", joined(available));
 }
 
+/// The parameter that a row shows: of all variants' frames the one nearest to the wanted one, or
+/// the last of all. Absent: there are no frames.
+std::optional<double> state_of(const CaseRecord& c, std::optional<double> wanted) {
+  std::optional<double> best;
+  for (const VariantRecord& variant : c.variants) {
+    const FrameRecord* frame = nearest_frame(variant, wanted);
+    if (frame == nullptr) continue;
+    const double parameter = frame->parameter;
+    const bool better = !best || (wanted ? std::abs(parameter - *wanted) < std::abs(*best - *wanted)
+                                         : parameter > *best);
+    if (better) best = parameter;
+  }
+  return best;
+}
+
+std::string state_label(const CaseRecord& c, std::optional<double> state) {
+  if (!state) return {};
+  return display_name(c.parameter_name) + " " + with_unit(*state, c.parameter_unit);
+}
+
+/// Whether the variant broke off before the state of its row: its last frame is another state.
+bool failed_before(const VariantRecord& variant, std::optional<double> state) {
+  if (variant.status != "failed" || variant.frames.empty() || !state) return false;
+  const double last = variant.frames.back().parameter;
+  return last < *state && !same_parameter(last, *state);
+}
+
 FigureCell make_cell(const CaseRecord& c, const std::string& variant_name,
-                     std::optional<double> parameter, const FigureView& view,
-                     const fs::path& folder) {
+                     std::optional<double> parameter, std::optional<double> state,
+                     const FigureView& view, const fs::path& folder) {
   FigureCell cell;
   cell.label = display_name(variant_name);
   const VariantRecord* variant = find_variant(c, variant_name);
   const FrameRecord* frame = variant != nullptr ? nearest_frame(*variant, parameter) : nullptr;
   if (frame == nullptr) return cell;
+  if (failed_before(*variant, state)) {
+    cell.note = "failed after " + with_unit(variant->frames.back().parameter, c.parameter_unit);
+    return cell;
+  }
   cell.part = require_part(*frame, view.part, folder);
   for (const std::string& overlay : view.overlays) {
     if (auto part = load_part(*frame, overlay, folder)) {
@@ -106,15 +139,6 @@ FigureCell make_cell(const CaseRecord& c, const std::string& variant_name,
   }
   if (view.part != kObstacles) cell.obstacles = load_part(*frame, kObstacles, folder);
   return cell;
-}
-
-std::string state_label(const CaseRecord& c, std::optional<double> wanted) {
-  for (const VariantRecord& variant : c.variants) {
-    if (const FrameRecord* frame = nearest_frame(variant, wanted)) {
-      return display_name(c.parameter_name) + " " + with_unit(frame->parameter, c.parameter_unit);
-    }
-  }
-  return {};
 }
 
 /// Splits columns evenly into as few rows as the limit allows.
@@ -164,15 +188,19 @@ std::vector<FigureRow> collect_cells(const RunRecord& record, const fs::path& ru
   std::vector<FigureRow> rows;
   for (const CaseRecord& c : record.cases) {
     if (std::find(cases.begin(), cases.end(), c.name) == cases.end()) continue;
+    std::set<std::string> states;
     for (const std::optional<double>& parameter : wanted_parameters(view)) {
+      // A quick run is shorter: what lies beyond it is its last frame, once.
+      const std::optional<double> state = state_of(c, parameter);
+      if (!states.insert(state_label(c, state)).second) continue;
       for (const auto& block : blocks) {
         if (rows.size() == kMostRows) return rows;
         FigureRow row;
-        row.label = state_label(c, parameter);
+        row.label = state_label(c, state);
         if (cases.size() > 1) row.label += (row.label.empty() ? "" : ", ") + c.name;
         row.has_headings = rows.empty() || blocks.size() > 1;
         for (const std::string& variant : block) {
-          row.cells.push_back(make_cell(c, variant, parameter, view, run_folder));
+          row.cells.push_back(make_cell(c, variant, parameter, state, view, run_folder));
         }
         rows.push_back(std::move(row));
       }

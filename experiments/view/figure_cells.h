@@ -19,7 +19,8 @@ struct NamedPart {
 /// One panel of a figure before it is drawn: a variant in one state.
 struct FigureCell {
   std::string label;         ///< of the variant
-  std::optional<Part> part;  ///< absent: the variant has no such frame (stopped)
+  std::optional<Part> part;  ///< absent: the variant has no such frame (it failed, or was left out)
+  std::string note = "no frame";  ///< stands in place of the part
   std::vector<NamedPart> overlays;
   std::optional<Part> obstacles;  ///< part "obstacles" of the frame: drawn faintly, never fitted
 };
@@ -33,7 +34,8 @@ struct FigureRow {
 
 /// Which states are drawn, loaded from the run's files: variants as columns (wrapped past six),
 /// parameters and cases as rows (at most eight). The frame nearest to a wanted parameter is taken,
-/// and the label gives the parameter it really has.
+/// and the label gives the parameter it really has;
+/// parameters with the same nearest frame make one row.
 /// @throws Error  naming the variant, case or part that the run does not have, or a damaged file
 std::vector<FigureRow> collect_cells(const RunRecord& record,
                                      const std::filesystem::path& run_folder,

@@ -99,7 +99,7 @@ Picture draw_cell(const FigureCell& cell, bool is_section, const FigureView& vie
                   const Layout& layout) {
   if (!cell.part) {
     Picture empty(layout.panel_width, layout.panel_height);
-    draw_text(empty, "no frame", layout.panel_width / 2, layout.panel_height / 2, Align::center,
+    draw_text(empty, cell.note, layout.panel_width / 2, layout.panel_height / 2, Align::center,
               kNoteStyle);
     return empty;
   }

@@ -405,6 +405,33 @@ TEST(Render, NamesWhatTheRunDoesNotHave) {
   EXPECT_FALSE(fs::exists(folder.path / "figure.png"));
 }
 
+TEST(Cells, AFrameIsDrawnOnceThoughSeveralParametersAreNearestToIt) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  FigureView view;
+  view.parameters = {0, 90, 120, 180};
+  const auto rows = collect_cells(record, folder.path, view);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[1].label, "Angle 90\u00b0");
+}
+
+TEST(Cells, AVariantThatFailedBeforeTheStateIsNotDrawnInAnother) {
+  const TestFolder folder;
+  RunRecord record = make_fake_run(folder.path);
+  VariantRecord& failed = record.cases[0].variants[0];
+  failed.status = "failed";
+  failed.frames.resize(2);  // 0 and 45 degrees
+  FigureView view;
+  view.parameters = {45, 90};
+  const auto rows = collect_cells(record, folder.path, view);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_TRUE(rows[0].cells[0].part.has_value());
+  EXPECT_EQ(rows[1].label, "Angle 90\u00b0");
+  EXPECT_FALSE(rows[1].cells[0].part.has_value());
+  EXPECT_EQ(rows[1].cells[0].note, "failed after 45\u00b0");
+  EXPECT_TRUE(rows[1].cells[1].part.has_value());
+}
+
 TEST(Cells, NearestFrameIsTakenAndLabelledWithItsOwnParameter) {
   const TestFolder folder;
   const RunRecord record = make_fake_run(folder.path);
