@@ -1,7 +1,8 @@
 // Implicit Euler solved: the minimum over x, held vertices at their places, of
 //   1/2 |x - x0 - dt v0 - dt^2 M^-1 loads|^2_M + dt^2 (E + contact + friction) + dt c/2 |x -
 //   x0|^2_K
-// by Newton's method with Hessians projected to positive semidefinite and backtracking.
+// by Newton's method with Hessians projected to positive semidefinite, corrected by the secants of
+// the step's earlier iterations, and backtracking.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,13 +15,16 @@ namespace {
 /// Part of the decrease that the slope promises which a step must keep (Armijo).
 constexpr double kLeastDecrease = 1e-4;
 constexpr int kMostBacktracks = 20;
+/// Iterations left to the projected Hessian alone, which is the better guide where it converges.
+constexpr int kPatience = 6;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
 bool ShellDynamics::solve_newton(Step& result, Eigen::VectorXd& reaction) {
   prepare_newton(result);
-  Eigen::VectorXd gradient, direction;
+  SecantPairs secants;
+  Eigen::VectorXd gradient, direction, before, step;
   Eigen::MatrixX3d trial;
   double value = potential(result.x);
   for (int solves = 0;; ++solves) {
@@ -29,19 +33,45 @@ bool ShellDynamics::solve_newton(Step& result, Eigen::VectorXd& reaction) {
     reaction = gradient / (problem_.dt * problem_.dt);
     for (const HandleMap::Target& t : problem_.targets)
       gradient.segment<3>(row(t.vertex)).setZero();
+    if (solves >= kPatience) secants.remember(step, gradient - before);
     const double residual = gradient.norm();
     result.residual = scale > 0 ? residual / scale : 0;
     // What rounding of the positions alone leaves of the forces.
     const double floor = 4 * kEpsilon * result.x.cwiseAbs().maxCoeff() * matrix_.diagonal_norm();
     if (residual <= std::max(options_->newton_tolerance * scale, floor)) break;
     if (solves == options_->newton_iterations) return false;
-    direction = -gradient;
-    if (!solve_held(Eigen::VectorXd::Zero(gradient.size()), direction)) return false;
+    matrix_.take_out(problem_.held, taken_);
+    if (!cholesky_->factorise(matrix_)) return false;
     ++result.solves;
-    if (!search_line(direction, gradient.dot(direction), result.x, value, trial)) return false;
+    double length = 0;
+    for (int attempt = 0; attempt < 2 && length == 0; ++attempt) {
+      if (!find_direction(gradient, secants, direction)) return false;
+      length = search_line(direction, gradient.dot(direction), result.x, value, trial);
+      // Secants across a change of contact can mislead: once more without them.
+      if (length == 0) secants.clear();
+    }
+    if (length == 0) return false;
+    step = length * direction;
+    before = gradient;
   }
   result.v = (result.x - problem_.state->x) / problem_.dt;
   return true;
+}
+
+/// The step to the minimum of the quadratic model; that of the projected Hessian alone where the
+/// secants do not lead down.
+bool ShellDynamics::find_direction(const Eigen::VectorXd& gradient, SecantPairs& secants,
+                                   Eigen::VectorXd& direction) {
+  const auto solve = [&](Eigen::VectorXd& b) {
+    cholesky_->solve(b);
+    return b.allFinite();
+  };
+  direction = -gradient;
+  if (!secants.apply(direction, solve)) return false;
+  if (gradient.dot(direction) < 0) return true;
+  secants.clear();
+  direction = -gradient;
+  return solve(direction);
 }
 
 /// Starts where the potential is lower: the linear step's result, or the sheet at rest with its
@@ -65,9 +95,9 @@ void ShellDynamics::prepare_newton(Step& result) {
   if (!usable || !(potential(result.x) <= potential(still))) result.x = still;
 }
 
-/// Moves `x` along the direction, as far as the potential falls.
-bool ShellDynamics::search_line(const Eigen::VectorXd& direction, double slope, Eigen::MatrixX3d& x,
-                                double& value, Eigen::MatrixX3d& trial) {
+/// Moves `x` along the direction, as far as the potential falls. @return the part of it; 0: none
+double ShellDynamics::search_line(const Eigen::VectorXd& direction, double slope,
+                                  Eigen::MatrixX3d& x, double& value, Eigen::MatrixX3d& trial) {
   const double noise = 64 * kEpsilon * std::abs(value);
   double length = 1;
   for (int k = 0; k < kMostBacktracks; ++k, length /= 2) {
@@ -79,9 +109,9 @@ bool ShellDynamics::search_line(const Eigen::VectorXd& direction, double slope, 
     if (!(tried <= value + kLeastDecrease * length * slope + noise)) continue;
     x.swap(trial);
     value = tried;
-    return true;
+    return length;
   }
-  return false;
+  return 0;
 }
 
 double ShellDynamics::potential(const Eigen::MatrixX3d& x) {

@@ -7,6 +7,7 @@
 #include "baselines/paper/contact.h"
 #include "baselines/paper/elements.h"
 #include "baselines/paper/handle_map.h"
+#include "baselines/paper/secant_pairs.h"
 #include "baselines/paper/shell_system.h"
 #include "baselines/paper/sparse_cholesky.h"
 #include "baselines/paper/stepper.h"
@@ -79,8 +80,10 @@ class ShellDynamics {
   // Implicit Euler solved (newton_step.cpp).
   bool solve_newton(Step& result, Eigen::VectorXd& reaction);
   void prepare_newton(Step& result);
-  bool search_line(const Eigen::VectorXd& direction, double slope, Eigen::MatrixX3d& x,
-                   double& value, Eigen::MatrixX3d& trial);
+  bool find_direction(const Eigen::VectorXd& gradient, SecantPairs& secants,
+                      Eigen::VectorXd& direction);
+  double search_line(const Eigen::VectorXd& direction, double slope, Eigen::MatrixX3d& x,
+                     double& value, Eigen::MatrixX3d& trial);
   double potential(const Eigen::MatrixX3d& x);
   double potential_gradient(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient);
   void add_contact_gradient(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient);

@@ -66,21 +66,29 @@ void ShellSystem::colour_chunks(const ShellElements& elements, int vertices) {
 }
 
 void ShellSystem::find_targets(const ShellElements& elements, const BlockMatrix& matrix) {
-  target_of_.reserve(order_.size());
-  targets_.reserve(order_.size() * 21);
+  int count = 0;
   for (const int e : order_) {
-    target_of_.push_back(static_cast<int>(targets_.size()));
-    const auto nodes = elements.nodes(e);
-    for (std::size_t b = 0; b < nodes.size(); ++b) {
-      for (std::size_t a = 0; a <= b; ++a) {
-        const BlockMatrix::Place place =
-            matrix.place(position_[at(nodes[a])], position_[at(nodes[b])]);
-        const auto row = static_cast<std::uint8_t>(place.transposed ? b : a);
-        const auto column = static_cast<std::uint8_t>(place.transposed ? a : b);
-        targets_.push_back({place.start, place.stride, row, column});
+    target_of_.push_back(count);
+    const int nodes = static_cast<int>(elements.nodes(e).size());
+    count += nodes * (nodes + 1) / 2;
+  }
+  targets_.resize(at(count));
+  constexpr std::size_t kBlock = 64;
+  parallel_blocks(order_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto nodes = elements.nodes(order_[i]);
+      Target* target = targets_.data() + target_of_[i];
+      for (std::size_t b = 0; b < nodes.size(); ++b) {
+        for (std::size_t a = 0; a <= b; ++a) {
+          const BlockMatrix::Place place =
+              matrix.place(position_[at(nodes[a])], position_[at(nodes[b])]);
+          const auto row = static_cast<std::uint8_t>(place.transposed ? b : a);
+          const auto column = static_cast<std::uint8_t>(place.transposed ? a : b);
+          *target++ = {place.start, place.stride, row, column};
+        }
       }
     }
-  }
+  });
 }
 
 void ShellSystem::sum_chunk(const Chunk& chunk, std::size_t index, const ShellElements& elements,

@@ -23,13 +23,13 @@ struct StepperOptions {
   double hinge_calibration =
       4;  ///< D_hinge / D that makes equilateral hinges as stiff as the plate
   bool plasticity = true;
-  int newton_iterations = 30;      ///< most, of a step
+  int newton_iterations = 100;     ///< most, of a step
   double newton_tolerance = 1e-8;  ///< on the residual, relative to the typical force of the step
   int most_halvings = 8;           ///< of a step that does not converge, before the run ends
   LinearSolver solver = LinearSolver::automatic;
-  int dissection_from = 1000;      ///< triangles from which unknowns are ordered by dissection
+  int dissection_from = 3000;      ///< triangles from which unknowns are ordered by dissection
   double contact_distance = 5e-4;  ///< gap at which an obstacle begins to push (m)
-  double contact_stiffness = 1e7;  ///< of the push, per area of sheet (N/m^3)
+  double contact_stiffness = 1e9;  ///< of the push, per area of sheet (N/m^3)
   double contact_spacing = 0.01;   ///< of the points of a triangle tested against obstacles (m)
   double creep_speed = 1e-3;       ///< slip at which friction reaches 0.7 of Coulomb's (m/s)
 };
