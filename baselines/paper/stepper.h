@@ -13,6 +13,8 @@ namespace geoprior {
 
 enum class BendingModel { shape_operator, hinge };
 enum class Integration { linear, newton };  ///< one linear solve a step, or implicit Euler solved
+/// automatic takes `supernodal`, ours, which was fastest at every size measured (200 to 4,096
+/// triangles).
 enum class LinearSolver { automatic, eigen, cholmod, supernodal };
 
 /// How a sheet is stepped in time; the same for every mesh, so that meshes are compared and nothing
@@ -50,8 +52,15 @@ struct StepReport {
       handle_force;  ///< on the sheet by each handle, mean over the step (N)
 };
 
-/// Implicit time stepping of one sheet. Keeps the analysis of the connectivity (masses, element
-/// fits, sparsity, offsets, symbolic factorisation) until the connectivity changes.
+/// Implicit time stepping of one sheet (equations: shell_dynamics.h): elastic shell, handles, dead
+/// loads, contact with obstacles, then plastic flow. Keeps the analysis of the connectivity
+/// (masses, element fits, sparsity, offsets, symbolic factorisation) until the connectivity
+/// changes.
+///
+/// What it does not do: the sheet passes through itself. Friction takes the normal force of the
+/// start of the step; with `linear` a sheet that slides over a curved obstacle feels it unevenly.
+/// Damping is that of the stiffness at the start of a step, so that it also slows rotations.
+/// `linear` is exact in the forces only to first order in dt; `newton` reports what is left.
 class ShellStepper {
  public:
   ShellStepper(const Sheet& sheet, const StepperOptions& options, std::uint64_t seed);
