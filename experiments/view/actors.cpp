@@ -32,7 +32,7 @@ constexpr Color kObstacleColor{0.55, 0.60, 0.66};
 
 // Parts of the window's size.
 constexpr double kThickness = 0.008;          ///< of lines and points that are the part itself
-constexpr double kOverlayThickness = 0.0032;  ///< of lines over it
+constexpr double kOverlayThickness = 0.0027;  ///< of lines over it
 constexpr double kOverlayRadius = 0.012;      ///< of points over it
 constexpr double kLift = 0.002;               ///< of overlays, towards the eye
 
