@@ -5,100 +5,64 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/metrics/sheets.h"
+#include "core/error.h"
 
 namespace geoprior {
 namespace {
 
-using sheets::Sheet;
+/// The inextensible d-cone at small deflection: slope c1 cos t + c2 cos a t for |t| < t1 and 1
+/// beyond, with slope and first derivative continuous; 2 t1 = 138.99 degrees, a = 3.805
+/// (Cerda and Mahadevan 2005).
+double inextensible(double t) {
+  const double t1 = 138.99 / 2 * std::numbers::pi / 180, a = 3.805;
+  t = std::abs(std::remainder(t, 2 * std::numbers::pi));
+  if (t >= t1) return 1;
+  const double det = -a * std::cos(t1) * std::sin(a * t1) + std::cos(a * t1) * std::sin(t1);
+  const double c1 = -a * std::sin(a * t1) / det, c2 = std::sin(t1) / det;
+  return c1 * std::cos(t) + c2 * std::cos(a * t);
+}
 
-constexpr double kDegree = std::numbers::pi / 180;
+Eigen::VectorXd sampled(int samples, double turn) {
+  Eigen::VectorXd profile(samples);
+  for (int i = 0; i < samples; ++i)
+    profile[i] = 0.1 * inextensible(2 * std::numbers::pi * (i + 0.5) / samples - turn);
+  return profile;
+}
 
-/// Profile of a d-cone in a ring whose buckled sector is 2 t1 wide: psi = c1 cos t + c2 cos(a t)
-/// inside, 1 outside; psi, psi' and psi'' are continuous.
-struct Profile {
-  explicit Profile(double sector_deg) : t1(sector_deg * kDegree / 2) {
-    const auto jump = [&](double x) {  // of psi'', when psi' has none
-      return x * std::sin(t1) * std::cos(x * t1) - std::cos(t1) * std::sin(x * t1);
-    };
-    double low = 3 * std::numbers::pi / 2 / t1 * 0.9, high = 3 * std::numbers::pi / 2 / t1;
-    for (int i = 0; i < 80; ++i) {
-      a = (low + high) / 2;
-      (jump(low) * jump(a) > 0 ? low : high) = a;
-    }
-    c2 = 1 / (std::cos(a * t1) - a * std::sin(a * t1) / std::tan(t1));
-    c1 = -c2 * a * std::sin(a * t1) / std::sin(t1);
+TEST(DconeSector, IsThatOfTheInextensibleCone) {
+  EXPECT_NEAR(inextensible(0), 3.825, 0.005);
+  for (const double turn : {0.0, 1.234, -2.5})
+    EXPECT_NEAR(dcone_sector(sampled(360, turn)), 138.99, 3) << turn;
+  EXPECT_NEAR(dcone_sector(sampled(120, 0.3)), dcone_sector(sampled(720, 0.3)), 1.5);
+}
+
+TEST(DconeSector, HardlySeesNoiseOfTheContact) {
+  Eigen::VectorXd profile = sampled(360, 0);
+  for (Eigen::Index i = 0; i < profile.size(); ++i)
+    profile[i] += 5e-4 * std::sin(7.0 * static_cast<double>(i));
+  EXPECT_NEAR(dcone_sector(profile), dcone_sector(sampled(360, 0)), 3);
+}
+
+TEST(DconeSector, RefusesASheetWithoutBuckle) {
+  EXPECT_THROW(dcone_sector(Eigen::VectorXd::Constant(360, 0.1)), Error);
+}
+
+TEST(SlopeProfile, IsConstantOnACone) {
+  Eigen::MatrixX2d pattern(7, 2);
+  Eigen::MatrixX3d V(7, 3);
+  Eigen::MatrixX3i F(6, 3);
+  pattern.row(0).setZero();
+  V.row(0) << 1, 2, -0.3;
+  for (int i = 0; i < 6; ++i) {
+    const double t = i * std::numbers::pi / 3;
+    pattern.row(i + 1) << std::cos(t), std::sin(t);
+    V.row(i + 1) << 1 + std::cos(t), 2 + std::sin(t), -0.3 + 0.2;
+    F.row(i) << 0, i + 1, (i + 1) % 6 + 1;
   }
-  [[nodiscard]] double operator()(double t) const {
-    return std::abs(t) < t1 ? c1 * std::cos(t) + c2 * std::cos(a * t) : 1;
-  }
-  double t1, a = 0, c1 = 0, c2 = 0;
-};
-
-/// The cone as a height field over the pattern, apex at `apex`.
-Sheet cone(const Sheet& flat, const Profile& psi, const Eigen::Vector2d& apex, double slope,
-           double sector_at) {
-  return sheets::mapped(flat, [&](const Eigen::Vector2d& p) {
-    const Eigen::Vector2d d = p - apex;
-    const double angle = std::remainder(std::atan2(d(1), d(0)) - sector_at, 2 * std::numbers::pi);
-    return Eigen::Vector3d(p(0), p(1), slope * d.norm() * psi(angle));
-  });
-}
-
-std::optional<double> sector_of(const Sheet& s, const Eigen::Vector2d& apex = {0, 0},
-                                const Eigen::Vector3d& axis = {0, 0, 1}) {
-  return dcone_sector(s.pattern, s.x, s.triangles, apex, 0.06, axis);
-}
-
-TEST(DConeSector, ProfileOfTheTestIsThatOfTheLiterature) {
-  const Profile psi(138.99);
-  EXPECT_NEAR(psi.a, 3.805, 1e-3);
-  EXPECT_NEAR(psi(0), 3.825, 1e-3);
-}
-
-TEST(DConeSector, FindsTheSectorOfTheClosedForm) {
-  for (const double sector : {115.0, 138.99, 150.0}) {
-    const Sheet s = cone(sheets::disc(0.1, 5, 180), Profile(sector), {0, 0}, 0.1, 0.7);
-    EXPECT_NEAR(sector_of(s).value(), sector, 0.5) << sector;
-  }
-}
-
-TEST(DConeSector, DoesNotNeedRulingsForEdges) {
-  const Eigen::Vector2d apex(0.01, 0);
-  const Sheet flat = sheets::rectangle(0.2, 0.2, 40, 40, 0);
-  for (const double at : {0.0, 1.0, 3.1}) {
-    const Sheet s = cone(flat, Profile(138.99), apex, 0.1, at);
-    EXPECT_NEAR(sector_of(s, apex).value(), 138.99, 2) << at;  // edges of 5 mm at 60 mm: 5 degrees
-  }
-}
-
-TEST(DConeSector, DoesNotDependOnPlaceNorOnTheSenseOfTheAxis) {
-  Sheet s = cone(sheets::disc(0.1, 5, 180), Profile(138.99), {0, 0}, 0.1, -2);
-  const double before = sector_of(s).value();
-  const Eigen::Matrix3d R =
-      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 2).normalized()).toRotationMatrix();
-  s.x = (s.x * R.transpose()).rowwise() + Eigen::RowVector3d(1, 2, 3);
-  EXPECT_NEAR(sector_of(s, {0, 0}, R.col(2)).value(), before, 1e-9);
-  EXPECT_NEAR(sector_of(s, {0, 0}, -3 * R.col(2)).value(), before, 1e-9);
-}
-
-TEST(DConeSector, IsAbsentWithoutACone) {
-  const Sheet flat = sheets::disc(0.1, 5, 60);
-  EXPECT_FALSE(sector_of(flat).has_value());
-  const Sheet funnel = sheets::mapped(
-      flat, [](const Eigen::Vector2d& p) { return Eigen::Vector3d(p(0), p(1), 0.1 * p.norm()); });
-  EXPECT_FALSE(sector_of(funnel).has_value());
-  // Two sectors: no d-cone.
-  const Profile psi(110);
-  const Sheet twice = sheets::mapped(sheets::disc(0.1, 5, 180), [&](const Eigen::Vector2d& p) {
-    const double t = std::atan2(p(1), p(0));
-    const double opposite = std::remainder(t - std::numbers::pi, 2 * std::numbers::pi);
-    return Eigen::Vector3d(p(0), p(1), 0.1 * p.norm() * std::max(psi(t), psi(opposite)));
-  });
-  EXPECT_FALSE(sector_of(twice).has_value());
-  // A circle that leaves the pattern.
-  const Sheet small = cone(sheets::disc(0.05, 5, 60), Profile(138.99), {0, 0}, 0.1, 0);
-  EXPECT_FALSE(sector_of(small).has_value());
+  // On the flat facets the slope rises towards the middle of their edges, by 1 / cos 30.
+  const Eigen::VectorXd profile = slope_profile(V, pattern, F, 0, 0.5, 6);
+  EXPECT_LT((profile.array() - 0.2 / std::cos(std::numbers::pi / 6)).abs().maxCoeff(), 1e-14);
+  EXPECT_THROW(slope_profile(V, pattern, F, 0, 0.99, 6), Error);
 }
 
 }  // namespace
