@@ -11,8 +11,8 @@
 #include "baselines/paper/transfer.h"
 #include "core/error.h"
 #include "experiments/paper/scene.h"
+#include "metrics/buckled_sector.h"
 #include "metrics/creases.h"
-#include "metrics/dcone_sector.h"
 #include "metrics/elastica.h"
 #include "metrics/intersection_depth.h"
 #include "metrics/self_contact.h"
@@ -218,8 +218,8 @@ Value ring_sector(const SheetFrame& f) {
   for (const Obstacle& obstacle : f.sheet.obstacles) {
     if (obstacle.kind != Obstacle::Kind::torus) continue;
     const Eigen::Vector3d apex = f.sheet.placement.inverse() * obstacle.centre;
-    return dcone_sector(f.pattern, f.x(), f.triangles(), apex.head<2>(), obstacle.radius,
-                        obstacle.axis);
+    return buckled_sector(f.pattern, f.x(), f.triangles(), apex.head<2>(), obstacle.radius,
+                          obstacle.axis);
   }
   return std::nullopt;
 }

@@ -69,7 +69,7 @@ std::optional<HandleForce> handle_force(const SheetFrame& f);
 /// shortened by a thousandth.
 Value elastica_error(const SheetFrame& f);
 
-/// Width of the buckled sector of a sheet pushed into a ring (degrees): metrics/dcone_sector.h
+/// Width of the buckled sector of a sheet pushed into a ring (degrees): metrics/buckled_sector.h
 /// about the point of the pattern that starts at the centre of the scene's first torus. Absent
 /// without a torus and before there is a cone.
 Value ring_sector(const SheetFrame& f);
