@@ -17,6 +17,8 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
 constexpr double kRadians = std::numbers::pi / 180;
+/// Smaller over larger principal curvature from which ground is bent both ways.
+constexpr double kBothWays = 0.3;
 /// On flat ground rulings are still free: about a point handle the directions of compression fan
 /// out, and their mean is meant (rad).
 constexpr double kFlatGroupAngle = std::numbers::pi / 4;
@@ -89,6 +91,12 @@ Compression compression(const ShellState& state, int f) {
 
 namespace {
 
+bool touches_singular_point(const RulingMesh& mesh, int f) {
+  const auto& points = mesh.singular_vertices;
+  return std::any_of(points.begin(), points.end(),
+                     [&](int v) { return (mesh.mesh.triangles.row(f).array() == v).any(); });
+}
+
 /// True when no ruling runs along the triangle and none is near: its curvature is then that of the
 /// ground, not of the fold beside it.
 bool inside_flat_cell(const RulingMesh& mesh, const MeshEdges& edges, int f) {
@@ -113,6 +121,25 @@ double admissible_strain(const Sheet& sheet, const RulingEditor& editor,
   return std::max(
       options.euler_factor * critical_strain(sheet.material, span(editor, p, d), across),
       slope * slope / 4);
+}
+
+/// Ground that is bent both ways: the smaller principal curvature is compression that the mesh has
+/// already released, and is judged as the strain of that arc, once it folds a ruling visibly, by
+/// the refinement angle from vertex to vertex.
+Demand demand_of_double_bending(const Sheet& sheet, const RulingEditor& editor,
+                                const HybridOptions& options, const Vector2d& p,
+                                const Eigenpair& largest, const Eigen::Vector3d& curvature) {
+  const Vector2d d = perpendicular(largest.direction);
+  const double smaller = curvature[0] + curvature[2] - largest.value;
+  const double fold = options.ruling_size.value_or(0) * std::abs(smaller);
+  if (fold < options.refine_angle_deg * kRadians ||
+      std::abs(smaller) < kBothWays * std::abs(largest.value)) {
+    return {};
+  }
+  const double released = std::pow(smaller * span(editor, p, d) / (2 * std::numbers::pi), 2);
+  const double limit = admissible_strain(sheet, editor, options, p, d, curvature);
+  if (released <= limit) return {};
+  return {released, released / limit, d, true, true};
 }
 
 }  // namespace
@@ -140,8 +167,13 @@ std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
         continue;
       }
     }
-    if (bent) continue;
     const Eigenpair kappa = principal(S[0], S[1], S[2], false);
+    if (bent) {
+      if (!touches_singular_point(mesh, f)) {
+        demand = demand_of_double_bending(sheet, editor, options, p, kappa, S);
+      }
+      continue;
+    }
     if (std::abs(kappa.value) > options.flat_curvature && inside_flat_cell(mesh, edges, f)) {
       const double shortening =
           kappa.value * span(editor, p, kappa.direction) / (2 * std::numbers::pi);
@@ -152,7 +184,7 @@ std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
 }
 
 std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const ShellMesh& mesh,
-                                       double group_angle_deg) {
+                                       double group_angle_deg, double least_area) {
   const double group_angle = group_angle_deg * kRadians;
   const MeshEdges edges(mesh.triangles);
   std::vector<int> order;
@@ -197,6 +229,8 @@ std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const
         group.triangles.push_back(next);
       }
     }
+    double ground = 0;
+    for (const int f : group.triangles) ground += area(mesh, f);
     group.centre /= group.strength;
     group.direction = principal(sum(0, 0), sum(0, 1), sum(1, 1), false).direction;
     for (const int f : group.triangles) {
@@ -207,6 +241,8 @@ std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const
         group.high = std::max(group.high, along);
       }
     }
+    // A single small triangle beside a handle can show any curvature.
+    if (group.bent_ground && group.by_bending && ground < least_area) continue;
     groups.push_back(std::move(group));
   }
   std::stable_sort(groups.begin(), groups.end(), [](const DemandGroup& a, const DemandGroup& b) {

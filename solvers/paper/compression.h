@@ -29,7 +29,7 @@ struct DemandGroup {
   double strength = 0;              ///< sum of area times weight (m^2)
   double excess = 0;                ///< largest of its triangles
   bool bent_ground = false;
-  bool by_bending = false;  ///< asks for rulings, but never for a singular point
+  bool by_bending = false;  ///< on flat ground asks for rulings, but never for a singular point
 };
 
 /// Compression by the triangle's Green strain G = (F'F - I) / 2: eigenvalue g2 < 0 along d.
@@ -44,14 +44,19 @@ struct DemandGroup {
 /// asks for nothing. Inside flat ground, bending of more than kappa_0 that the mesh has already
 /// done counts as well, because at the stiffness of paper it releases compression within a step;
 /// its weight is the shortening of an arc, (kappa L / 2 pi)^2.
+/// Where rulings already are, the smaller principal curvature counts in the same way once it folds
+/// rulings by the refinement angle from vertex to vertex: ground that bends both ways is where the
+/// rulings of two directions meet.
 std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
                                  const Eigen::MatrixX3d& curvature, const RulingMesh& mesh,
                                  const RulingEditor& editor, const HybridOptions& options);
 
 /// Connected groups of one direction, strongest first. On flat ground directions up to 45 degrees
 /// apart are one.
+///
+/// @param least_area  of a group on bent ground that bending alone makes (m^2)
 std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const ShellMesh& mesh,
-                                       double group_angle_deg);
+                                       double group_angle_deg, double least_area);
 
 /// Strain -g of a triangle's map along its direction of strongest compression (negative when it is
 /// stretched everywhere) and that direction.

@@ -88,7 +88,8 @@ void HybridMesher::take_scene(const Sheet& sheet) {
 }
 
 void HybridMesher::remesh() {
-  mesh_ = mesh_structure(structure_, pattern_, anchors_, options_.flat_size);
+  mesh_ =
+      mesh_structure(structure_, pattern_, anchors_, {options_.flat_size, options_.ruling_size});
   derive_pieces(structure_, pattern_, mesh_);
   assert(broken_invariants(structure_, pattern_, mesh_.mesh).empty());
   fit_ = fit_curvature(mesh_.mesh.pattern, mesh_.mesh.triangles);
@@ -113,8 +114,9 @@ std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, ShellState& s
                     state, structure_);
   }
   const RulingEditor looker = editor();
+  const double s = options_.seeding_distance;
   return group_demands(find_demands(sheet, state, curvature_, mesh_, looker, options_), state.mesh,
-                       options_.group_angle_deg);
+                       options_.group_angle_deg, s * s);
 }
 
 bool HybridMesher::track(const ShellState& state, const std::vector<double>& folds, bool at_rest,

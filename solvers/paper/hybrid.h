@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "baselines/paper/sheet_process.h"
 #include "solvers/paper/structure.h"
@@ -19,7 +20,8 @@ struct HybridOptions {
   double group_angle_deg = 20;          ///< directions of neighbours that belong together
   double seeding_distance = 0.02;       ///< s: distance of parallel rulings (m)
   double flat_size = 0.1;               ///< largest edge of the mesh where nothing is bent yet (m)
-  double merge_angle_deg = 5;           ///< cylinders closer than this in direction become one
+  std::optional<double> ruling_size = 0.05;  ///< distance of vertices along rulings (m)
+  double merge_angle_deg = 5;                ///< cylinders closer than this in direction become one
   double singular_spacing = 2;  ///< smallest distance of singular points, in seeding distances
   int settle_frames = 3;        ///< age from which a ruling can be in conflict
   double cone_reach = 3;  ///< farthest that a new singular point cuts rulings, in seeding distances

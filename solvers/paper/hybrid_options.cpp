@@ -37,6 +37,11 @@ void describe_rulings(OptionVisitor& v, HybridOptions& o) {
            .unit = "m",
            .min = 1e-3,
            .max = 100});
+  v.value("ruling_size", o.ruling_size,
+          {.doc = "distance of vertices along rulings; absent: none but ends and handles",
+           .unit = "m",
+           .min = 1e-3,
+           .max = 100});
   v.value("merge_angle_deg", o.merge_angle_deg,
           {.doc = "cylinders closer than this in direction become one",
            .unit = "deg",

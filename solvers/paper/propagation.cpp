@@ -256,7 +256,7 @@ PropagationReport resolve_group(const DemandGroup& group, const GroupTest& in_gr
   for (const Candidate& c : candidates) {
     crossings.insert(crossings.end(), c.crossings.begin(), c.crossings.end());
   }
-  if (crossings.empty() || group.by_bending) {
+  if (crossings.empty() || (group.by_bending && !group.bent_ground)) {
     report.new_rulings = add_rulings(candidates, editor);
     report.changed = report.new_rulings > 0;
     return report;

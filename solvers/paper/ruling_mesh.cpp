@@ -102,6 +102,19 @@ void add_lattice(const PaperStructure& structure, const Pattern& pattern, double
   }
 }
 
+/// Vertices along a ruling; none near an anchor on it.
+void divide_ruling(const Ruling& ruling, const std::vector<Vector2d>& anchors, double size,
+                   PointSet& set) {
+  const int parts = static_cast<int>(std::lround((ruling.b - ruling.a).norm() / size));
+  for (int k = 1; k < parts; ++k) {
+    const Vector2d p = ruling.a + (ruling.b - ruling.a) * k / parts;
+    const bool near = std::any_of(anchors.begin(), anchors.end(), [&](const Vector2d& anchor) {
+      return (anchor - p).norm() < size / 2;
+    });
+    if (!near) set.add(p);
+  }
+}
+
 /// Vertices on the ruling from a to b, in order.
 std::vector<int> points_along(const std::vector<Vector2d>& points, const Ruling& ruling,
                               double tolerance) {
@@ -169,7 +182,7 @@ void sort_triangles(Eigen::MatrixX3i& triangles) {
 }  // namespace
 
 RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& pattern,
-                          const std::vector<Vector2d>& anchors, double flat_size) {
+                          const std::vector<Vector2d>& anchors, const MeshSizes& sizes) {
   const double tolerance = 1e-9 * width(pattern);
   PointSet set(tolerance);
   RulingMesh result;
@@ -182,8 +195,11 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
     set.add(r.a);
     set.add(r.b);
   }
-  const std::vector<int> chain = border_chain(pattern, flat_size, tolerance, set);
-  add_lattice(structure, pattern, flat_size, set);
+  if (sizes.ruling) {
+    for (const Ruling& r : structure.rulings) divide_ruling(r, anchors, *sizes.ruling, set);
+  }
+  const std::vector<int> chain = border_chain(pattern, sizes.flat, tolerance, set);
+  add_lattice(structure, pattern, sizes.flat, set);
 
   std::vector<Eigen::Vector2i> segments;
   for (std::size_t i = 0; i < chain.size(); ++i) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "baselines/paper/pattern.h"
@@ -19,14 +20,20 @@ struct RulingMesh {
   std::vector<int> piece;  ///< of each triangle, after `derive_pieces`
 };
 
+/// Lengths of the edges of a structure's mesh (m).
+struct MeshSizes {
+  double flat = 0.1;             ///< border and lattice where the ground is flat
+  std::optional<double> ruling;  ///< along rulings; absent: no vertices but ends and anchors
+};
+
 /// Constrained Delaunay triangulation with the rulings as edges, from scratch.
 ///
 /// Vertices are the corners of the pattern, the anchors, the ends of rulings and the singular
-/// points; where the ground is flat, also the border at most `flat_size` apart and a hexagonal
-/// lattice of that size, at least half of it away from everything else.
+/// points; rulings are divided evenly; where the ground is flat, also the border at most `flat`
+/// apart and a hexagonal lattice of that size, at least half of it away from everything else.
 /// A pure function of its input: the same structure has the same mesh.
 RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& pattern,
-                          const std::vector<Eigen::Vector2d>& anchors, double flat_size);
+                          const std::vector<Eigen::Vector2d>& anchors, const MeshSizes& sizes);
 
 /// Vertices of the mesh on the segment a b, in order, if each two in a row share an edge and they
 /// reach from one end to the other; empty otherwise. Points within `tolerance` (m) count as on it.

@@ -20,7 +20,7 @@ ShellState rolled(double radius) {
   for (int k = -4; k <= 4; ++k)
     editor.structure().rulings.push_back(*editor.chord({0.02 * k, 0}, {0, 1}));
   ShellState state;
-  state.mesh = mesh_structure(structure, pattern, anchors, 0.1).mesh;
+  state.mesh = mesh_structure(structure, pattern, anchors, {}).mesh;
   const int n = state.mesh.vertex_count();
   state.x.resize(n, 3);
   state.v = Eigen::MatrixX3d::Zero(n, 3);

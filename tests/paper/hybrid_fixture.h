@@ -1,0 +1,165 @@
+#pragma once
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "baselines/paper/sheet.h"
+#include "core/random.h"
+#include "solvers/paper/hybrid_mesher.h"
+
+namespace geoprior {
+
+/// Time and shift of a handle.
+using Keys = std::vector<std::pair<double, Eigen::Vector3d>>;
+
+inline Trajectory trajectory(const Keys& keys) {
+  Trajectory result;
+  for (const auto& [time, shift] : keys) {
+    Keyframe key;
+    key.time = time;
+    key.shift = shift;
+    result.keys.push_back(key);
+  }
+  return result;
+}
+
+inline Handle point_handle(const std::string& name, const Eigen::Vector2d& p, const Keys& keys) {
+  Handle handle;
+  handle.name = name;
+  handle.points = {p};
+  handle.motion = trajectory(keys);
+  return handle;
+}
+
+inline Handle edge_handle(const std::string& name, const Eigen::Vector2d& a,
+                          const Eigen::Vector2d& b, const Keys& keys) {
+  Handle handle;
+  handle.name = name;
+  handle.segment = {a, b};
+  handle.motion = trajectory(keys);
+  return handle;
+}
+
+/// A square of 0.2 m, no gravity, a little damped.
+inline Sheet square_sheet(double duration) {
+  Sheet sheet;
+  sheet.pattern = rectangle_pattern(0.2, 0.2);
+  sheet.gravity.setZero();
+  sheet.material.damping = 1e-3;
+  sheet.duration = duration;
+  return sheet;
+}
+
+/// Two opposite edges approach to 60 % of their distance in a second.
+inline Sheet bent_sheet() {
+  Sheet sheet = square_sheet(1.2);
+  sheet.handles = {
+      edge_handle("left", {-0.1, -0.1}, {-0.1, 0.1}, {{0, {0, 0, 0}}, {1, {0.04, 0, 0}}}),
+      edge_handle("right", {0.1, -0.1}, {0.1, 0.1}, {{0, {0, 0, 0}}, {1, {-0.04, 0, 0}}})};
+  return sheet;
+}
+
+/// Bent by its corners, then the corners of the left edge approach: thesis, Figure 3.10.
+inline Sheet pinched_sheet() {
+  Sheet sheet = square_sheet(2.2);
+  const Eigen::Vector3d none(0, 0, 0), in(0.03, 0, 0);
+  sheet.handles = {
+      point_handle("left low", {-0.1, -0.1}, {{0, none}, {1, in}, {2, {0.03, 0.03, 0}}}),
+      point_handle("left high", {-0.1, 0.1}, {{0, none}, {1, in}, {2, {0.03, -0.03, 0}}}),
+      point_handle("right low", {0.1, -0.1}, {{0, none}, {1, -in}}),
+      point_handle("right high", {0.1, 0.1}, {{0, none}, {1, -in}})};
+  return sheet;
+}
+
+/// A letter sheet whose corners wander about at random, never farther apart than 0.9 of their
+/// distance in the pattern.
+inline Sheet wandering_sheet(std::uint64_t seed, int frames) {
+  Sheet sheet;
+  sheet.pattern = rectangle_pattern(0.21, 0.297);
+  sheet.material.damping = 1e-3;
+  sheet.duration = frames * sheet.frame_interval;
+  RandomStream random(seed, "handle motion");
+  std::vector<Eigen::Vector3d> rest;
+  for (const Eigen::Vector2d& p : sheet.pattern.border) rest.emplace_back(p.x(), p.y(), 0);
+  std::vector<Eigen::Vector3d> at = rest;
+  std::vector<Keys> keys(4, {{0, {0, 0, 0}}});
+  const auto ratio = [&](const std::vector<Eigen::Vector3d>& p, std::size_t i, std::size_t j) {
+    return (p[i] - p[j]).norm() / (rest[i] - rest[j]).norm();
+  };
+  for (int second = 1; second <= static_cast<int>(sheet.duration) + 1; ++second) {
+    for (bool feasible = false; !feasible;) {
+      std::vector<Eigen::Vector3d> next = at, middle = at;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+        next[i] += 0.15 * Eigen::Vector3d(x - 0.5, y - 0.5, z - 0.5);
+        middle[i] = (at[i] + next[i]) / 2;
+      }
+      feasible = true;
+      for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+          feasible = feasible && ratio(next, i, j) < 0.9 && ratio(next, i, j) > 0.3 &&
+                     ratio(middle, i, j) > 0.25;
+        }
+      }
+      if (feasible) at = next;
+    }
+    for (std::size_t i = 0; i < 4; ++i) keys[i].emplace_back(second, at[i] - rest[i]);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    sheet.handles.push_back(
+        point_handle("corner " + std::to_string(i), sheet.pattern.border[i], keys[i]));
+  }
+  return sheet;
+}
+
+/// Runs the hybrid model and shows each frame.
+inline void run_hybrid(const Sheet& sheet, const HybridOptions& options, std::uint64_t seed,
+                       const std::function<void(const HybridMesher&, const ShellState&)>& look) {
+  RunContext context(seed);
+  HybridMesher mesher(options);
+  ShellState state = mesher.start(sheet, context);
+  ShellStepper stepper(sheet, options.stepper, seed);
+  stepper.set_mesh(state);
+  for (int frame = 1; frame < sheet.frame_count(); ++frame) {
+    const double start = sheet.frame_time(frame - 1);
+    const double dt = (sheet.frame_time(frame) - start) / sheet.substeps;
+    for (int i = 0; i < sheet.substeps; ++i) {
+      state.time = start + i * dt;
+      stepper.step(state, dt, context);
+    }
+    state.time = sheet.frame_time(frame);
+    if (mesher.adapt(sheet, stepper, state, context)) stepper.set_mesh(state);
+    look(mesher, state);
+  }
+}
+
+/// RMS (by area) and largest |sigma - 1| of the map from the pattern.
+struct Isometry {
+  double rms = 0, largest = 0;
+};
+inline Isometry isometry(const ShellState& state) {
+  double sum = 0, whole = 0, largest = 0;
+  for (int f = 0; f < state.mesh.triangle_count(); ++f) {
+    const Eigen::RowVector3i t = state.mesh.triangles.row(f);
+    Eigen::Matrix2d rest;
+    Eigen::Matrix<double, 3, 2> now;
+    for (int k = 0; k < 2; ++k) {
+      rest.col(k) = state.mesh.pattern.row(t[k + 1]) - state.mesh.pattern.row(t[0]);
+      now.col(k) = state.x.row(t[k + 1]) - state.x.row(t[0]);
+    }
+    const Eigen::MatrixXd F = now * rest.inverse();
+    const Eigen::Vector2d off = Eigen::JacobiSVD<Eigen::MatrixXd>(F).singularValues().array() - 1;
+    sum += rest.determinant() * off.squaredNorm() / 2;
+    whole += rest.determinant();
+    largest = std::max(largest, off.cwiseAbs().maxCoeff());
+  }
+  return {std::sqrt(sum / whole), largest};
+}
+
+}  // namespace geoprior
