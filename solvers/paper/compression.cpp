@@ -17,8 +17,6 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
 constexpr double kRadians = std::numbers::pi / 180;
-/// Smaller over larger principal curvature from which ground is bent both ways.
-constexpr double kBothWays = 0.3;
 /// On flat ground rulings are still free: about a point handle the directions of compression fan
 /// out, and their mean is meant (rad).
 constexpr double kFlatGroupAngle = std::numbers::pi / 4;
@@ -91,12 +89,6 @@ Compression compression(const ShellState& state, int f) {
 
 namespace {
 
-bool touches_singular_point(const RulingMesh& mesh, int f) {
-  const auto& points = mesh.singular_vertices;
-  return std::any_of(points.begin(), points.end(),
-                     [&](int v) { return (mesh.mesh.triangles.row(f).array() == v).any(); });
-}
-
 /// True when no ruling runs along the triangle and none is near: its curvature is then that of the
 /// ground, not of the fold beside it.
 bool inside_flat_cell(const RulingMesh& mesh, const MeshEdges& edges, int f) {
@@ -123,23 +115,54 @@ double admissible_strain(const Sheet& sheet, const RulingEditor& editor,
       slope * slope / 4);
 }
 
-/// Ground that is bent both ways: the smaller principal curvature is compression that the mesh has
-/// already released, and is judged as the strain of that arc, once it folds a ruling visibly, by
-/// the refinement angle from vertex to vertex.
-Demand demand_of_double_bending(const Sheet& sheet, const RulingEditor& editor,
-                                const HybridOptions& options, const Vector2d& p,
-                                const Eigenpair& largest, const Eigen::Vector3d& curvature) {
-  const Vector2d d = perpendicular(largest.direction);
-  const double smaller = curvature[0] + curvature[2] - largest.value;
-  const double fold = options.ruling_size.value_or(0) * std::abs(smaller);
-  if (fold < options.refine_angle_deg * kRadians ||
-      std::abs(smaller) < kBothWays * std::abs(largest.value)) {
-    return {};
+/// What a ruling's path through space shows: by how much its ends have approached, relative to its
+/// length, and the vertex at which it turns most.
+struct BentRuling {
+  double shortening = 0;
+  int sharpest = -1;
+  double turn = 0;  ///< there (rad)
+};
+BentRuling bent_ruling(const ShellState& state, const std::vector<int>& path) {
+  BentRuling result;
+  double length = 0;
+  for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+    const Eigen::RowVector3d along = state.x.row(path[k + 1]) - state.x.row(path[k]);
+    length += along.norm();
+    if (k == 0) continue;
+    const Eigen::RowVector3d before = state.x.row(path[k]) - state.x.row(path[k - 1]);
+    const double turn = std::atan2(along.cross(before).norm(), along.dot(before));
+    if (turn < result.turn) continue;
+    result.turn = turn;
+    result.sharpest = path[k];
   }
-  const double released = std::pow(smaller * span(editor, p, d) / (2 * std::numbers::pi), 2);
-  const double limit = admissible_strain(sheet, editor, options, p, d, curvature);
-  if (released <= limit) return {};
-  return {released, released / limit, d, true, true};
+  result.shortening = 1 - (state.x.row(path.back()) - state.x.row(path.front())).norm() / length;
+  return result;
+}
+
+/// Rulings that are straight no longer: the compression along them that this has released.
+void demand_of_bent_rulings(const Sheet& sheet, const ShellState& state,
+                            const Eigen::MatrixX3d& curvature, const RulingMesh& mesh,
+                            const RulingEditor& editor, const HybridOptions& options,
+                            std::vector<Demand>& demands) {
+  for (std::size_t r = 0; r < mesh.ruling_paths.size(); ++r) {
+    if (mesh.ruling_paths[r].size() < 3) continue;
+    const BentRuling bent = bent_ruling(state, mesh.ruling_paths[r]);
+    if (bent.turn < options.refine_angle_deg * kRadians) continue;
+    const Ruling& ruling = editor.structure().rulings[r];
+    const Vector2d d = (ruling.b - ruling.a).normalized();
+    for (int f = 0; f < state.mesh.triangle_count(); ++f) {
+      Demand& demand = demands[static_cast<std::size_t>(f)];
+      if (demand.weight > bent.shortening ||
+          !(state.mesh.triangles.row(f).array() == bent.sharpest).any()) {
+        continue;
+      }
+      const double limit =
+          admissible_strain(sheet, editor, options, centroid(state.mesh, f), d, curvature.row(f));
+      if (bent.shortening > limit) {
+        demand = {bent.shortening, bent.shortening / limit, d, true, false};
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -167,24 +190,20 @@ std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
         continue;
       }
     }
+    if (bent) continue;
     const Eigenpair kappa = principal(S[0], S[1], S[2], false);
-    if (bent) {
-      if (!touches_singular_point(mesh, f)) {
-        demand = demand_of_double_bending(sheet, editor, options, p, kappa, S);
-      }
-      continue;
-    }
     if (std::abs(kappa.value) > options.flat_curvature && inside_flat_cell(mesh, edges, f)) {
       const double shortening =
           kappa.value * span(editor, p, kappa.direction) / (2 * std::numbers::pi);
       demand = {shortening * shortening, 0, kappa.direction, false, true};
     }
   }
+  demand_of_bent_rulings(sheet, state, curvature, mesh, editor, options, demands);
   return demands;
 }
 
 std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const ShellMesh& mesh,
-                                       double group_angle_deg, double least_area) {
+                                       double group_angle_deg) {
   const double group_angle = group_angle_deg * kRadians;
   const MeshEdges edges(mesh.triangles);
   std::vector<int> order;
@@ -229,8 +248,6 @@ std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const
         group.triangles.push_back(next);
       }
     }
-    double ground = 0;
-    for (const int f : group.triangles) ground += area(mesh, f);
     group.centre /= group.strength;
     group.direction = principal(sum(0, 0), sum(0, 1), sum(1, 1), false).direction;
     for (const int f : group.triangles) {
@@ -241,8 +258,6 @@ std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const
         group.high = std::max(group.high, along);
       }
     }
-    // A single small triangle beside a handle can show any curvature.
-    if (group.bent_ground && group.by_bending && ground < least_area) continue;
     groups.push_back(std::move(group));
   }
   std::stable_sort(groups.begin(), groups.end(), [](const DemandGroup& a, const DemandGroup& b) {

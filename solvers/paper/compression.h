@@ -44,19 +44,17 @@ struct DemandGroup {
 /// asks for nothing. Inside flat ground, bending of more than kappa_0 that the mesh has already
 /// done counts as well, because at the stiffness of paper it releases compression within a step;
 /// its weight is the shortening of an arc, (kappa L / 2 pi)^2.
-/// Where rulings already are, the smaller principal curvature counts in the same way once it folds
-/// rulings by the refinement angle from vertex to vertex: ground that bends both ways is where the
-/// rulings of two directions meet.
+/// A ruling that turns by more than the refinement angle at one of its vertices is straight no
+/// longer and has released compression as well: the approach of its ends is judged like strain
+/// along it, there. The sheet bends in two directions, and rulings of both meet.
 std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
                                  const Eigen::MatrixX3d& curvature, const RulingMesh& mesh,
                                  const RulingEditor& editor, const HybridOptions& options);
 
 /// Connected groups of one direction, strongest first. On flat ground directions up to 45 degrees
 /// apart are one.
-///
-/// @param least_area  of a group on bent ground that bending alone makes (m^2)
 std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const ShellMesh& mesh,
-                                       double group_angle_deg, double least_area);
+                                       double group_angle_deg);
 
 /// Strain -g of a triangle's map along its direction of strongest compression (negative when it is
 /// stretched everywhere) and that direction.

@@ -114,9 +114,8 @@ std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, ShellState& s
                     state, structure_);
   }
   const RulingEditor looker = editor();
-  const double s = options_.seeding_distance;
   return group_demands(find_demands(sheet, state, curvature_, mesh_, looker, options_), state.mesh,
-                       options_.group_angle_deg, s * s);
+                       options_.group_angle_deg);
 }
 
 bool HybridMesher::track(const ShellState& state, const std::vector<double>& folds, bool at_rest,
