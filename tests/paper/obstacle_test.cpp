@@ -65,9 +65,8 @@ TEST(Obstacle, NormalIsTheGradientOfTheDistance) {
 // A sphere that moves 0.4 m in 2 s from rest to rest is fastest, 1.5 * 0.2 m/s, in the middle.
 TEST(Obstacle, SurfaceMovesWithTheBody) {
   Obstacle o = obstacle(Kind::sphere);
-  o.motion = Trajectory{{Keyframe{0, {0, 0, 0}, {}}, Keyframe{2, {0.4, 0, 0}, {}}}};
-  o.motion->keys[0].turn.setIdentity();
-  o.motion->keys[1].turn.setIdentity();
+  const Eigen::Quaterniond none = Eigen::Quaterniond::Identity();
+  o.motion = Trajectory{{Keyframe{0, {0, 0, 0}, none}, Keyframe{2, {0.4, 0, 0}, none}}};
   const Eigen::Vector3d middle = o.centre + Eigen::Vector3d(0.2, 0, 0);
   const Obstacle::Contact contact = o.contact(middle + Eigen::Vector3d(0, 0.5, 0), 1);
   EXPECT_NEAR(contact.distance, 0.4, 1e-12);
