@@ -24,6 +24,8 @@ namespace {
 
 /// Closest that rulings come to each other's ends, in seeding distances.
 constexpr double kGap = 0.2;
+/// Shortest edge that dividing a ruling makes, in seeding distances.
+constexpr double kLeastPart = 2;
 /// Smallest angle between two rulings with a common end.
 constexpr double kLeastAngleDegrees = 6;
 
@@ -88,8 +90,9 @@ void HybridMesher::take_scene(const Sheet& sheet) {
 }
 
 void HybridMesher::remesh() {
-  mesh_ =
-      mesh_structure(structure_, pattern_, anchors_, {options_.flat_size, options_.ruling_size});
+  mesh_ = mesh_structure(
+      structure_, pattern_, anchors_,
+      {options_.flat_size, options_.ruling_parts, kLeastPart * options_.seeding_distance});
   derive_pieces(structure_, pattern_, mesh_);
   assert(broken_invariants(structure_, pattern_, mesh_.mesh).empty());
   fit_ = fit_curvature(mesh_.mesh.pattern, mesh_.mesh.triangles);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "baselines/paper/sheet_process.h"
 #include "solvers/paper/structure.h"
@@ -20,8 +19,8 @@ struct HybridOptions {
   double group_angle_deg = 20;          ///< directions of neighbours that belong together
   double seeding_distance = 0.02;       ///< s: distance of parallel rulings (m)
   double flat_size = 0.1;               ///< largest edge of the mesh where nothing is bent yet (m)
-  std::optional<double> ruling_size = 0.05;  ///< distance of vertices along rulings (m)
-  double merge_angle_deg = 5;                ///< cylinders closer than this in direction become one
+  int ruling_parts = 4;                 ///< most edges along a ruling: 1 keeps it from ever bending
+  double merge_angle_deg = 5;           ///< cylinders closer than this in direction become one
   double singular_spacing = 2;  ///< smallest distance of singular points, in seeding distances
   int settle_frames = 3;        ///< age from which a ruling can be in conflict
   double cone_reach = 3;  ///< farthest that a new singular point cuts rulings, in seeding distances
@@ -45,7 +44,8 @@ void describe(OptionVisitor& v, HybridOptions& options);
 /// the compression and bending that the steps have left.
 ///
 /// What it cannot do: no contact of the sheet with itself on the geometric layer; a d-cone is a
-/// point, not a crescent; bending along a ruling is impossible until a singular point breaks it.
+/// point, not a crescent; a ruling has few vertices (`ruling_parts`), so it hardly bends until a
+/// singular point breaks it.
 ///
 /// Frames have the parts "rulings" (lines; cell arrays "piece", "kind": 0 flat, 1 cylinder, 2 cone)
 /// and "singular_points" (points; "id", "birth" [s], "weakening"), the cell arrays "piece" and

@@ -37,10 +37,10 @@ void describe_rulings(OptionVisitor& v, HybridOptions& o) {
            .unit = "m",
            .min = 1e-3,
            .max = 100});
-  v.value("ruling_size", o.ruling_size,
-          {.doc = "distance of vertices along rulings; absent: none but ends and handles",
-           .unit = "m",
-           .min = 1e-3,
+  v.value("ruling_parts", o.ruling_parts,
+          {.doc = "most edges along a ruling; with 1 it cannot bend, and only compression makes "
+                  "singular points",
+           .min = 1,
            .max = 100});
   v.value("merge_angle_deg", o.merge_angle_deg,
           {.doc = "cylinders closer than this in direction become one",

@@ -103,13 +103,15 @@ void add_lattice(const PaperStructure& structure, const Pattern& pattern, double
 }
 
 /// Vertices along a ruling; none near an anchor on it.
-void divide_ruling(const Ruling& ruling, const std::vector<Vector2d>& anchors, double size,
-                   PointSet& set) {
-  const int parts = static_cast<int>(std::lround((ruling.b - ruling.a).norm() / size));
+void divide_ruling(const Ruling& ruling, const std::vector<Vector2d>& anchors,
+                   const MeshSizes& sizes, PointSet& set) {
+  const double length = (ruling.b - ruling.a).norm();
+  int parts = sizes.ruling_parts;
+  while (parts > 1 && length < parts * sizes.least_part) --parts;
   for (int k = 1; k < parts; ++k) {
     const Vector2d p = ruling.a + (ruling.b - ruling.a) * k / parts;
     const bool near = std::any_of(anchors.begin(), anchors.end(), [&](const Vector2d& anchor) {
-      return (anchor - p).norm() < size / 2;
+      return (anchor - p).norm() < length / parts / 2;
     });
     if (!near) set.add(p);
   }
@@ -195,9 +197,7 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
     set.add(r.a);
     set.add(r.b);
   }
-  if (sizes.ruling) {
-    for (const Ruling& r : structure.rulings) divide_ruling(r, anchors, *sizes.ruling, set);
-  }
+  for (const Ruling& r : structure.rulings) divide_ruling(r, anchors, sizes, set);
   const std::vector<int> chain = border_chain(pattern, sizes.flat, tolerance, set);
   add_lattice(structure, pattern, sizes.flat, set);
 

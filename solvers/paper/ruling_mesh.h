@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "baselines/paper/pattern.h"
@@ -20,10 +19,11 @@ struct RulingMesh {
   std::vector<int> piece;  ///< of each triangle, after `derive_pieces`
 };
 
-/// Lengths of the edges of a structure's mesh (m).
+/// How fine the mesh of a structure is (m).
 struct MeshSizes {
-  double flat = 0.1;             ///< border and lattice where the ground is flat
-  std::optional<double> ruling;  ///< along rulings; absent: no vertices but ends and anchors
+  double flat = 0.1;      ///< border and lattice where the ground is flat
+  int ruling_parts = 1;   ///< most edges that a ruling is divided into
+  double least_part = 0;  ///< shortest of them
 };
 
 /// Constrained Delaunay triangulation with the rulings as edges, from scratch.

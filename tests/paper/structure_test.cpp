@@ -28,7 +28,7 @@ struct SquareSheet {
   RulingEditor editor{pattern, anchors, {4e-3, 0.1}, structure};
 
   RulingMesh meshed() {
-    RulingMesh mesh = mesh_structure(structure, pattern, anchors, {kFlatSize, {}});
+    RulingMesh mesh = mesh_structure(structure, pattern, anchors, {kFlatSize});
     derive_pieces(structure, pattern, mesh);
     return mesh;
   }
@@ -203,7 +203,7 @@ TEST(RulingEditor, RandomRulingsOnAnyPatternKeepAllInvariants) {
                            : editor.ray(static_cast<int>(random.below(count)), d);
         if (r) structure.rulings.push_back(*r);
       }
-      RulingMesh mesh = mesh_structure(structure, pattern, anchors, {kFlatSize, {}});
+      RulingMesh mesh = mesh_structure(structure, pattern, anchors, {kFlatSize});
       derive_pieces(structure, pattern, mesh);
       EXPECT_THAT(broken_invariants(structure, pattern, mesh.mesh), IsEmpty()) << "seed " << seed;
       EXPECT_GT(structure.rulings.size(), 5U);
