@@ -26,7 +26,7 @@ class PaperScenes : public RunTest {
 
 TEST_F(PaperScenes, DefaultsToAnA4SheetOfOfficePaper) {
   const Sheet s = sheet("");
-  EXPECT_NEAR(signed_area(s.pattern), 1.0 / 16, 1e-4);
+  EXPECT_NEAR(signed_area(s.pattern), 0.21 * 0.297, 1e-15);
   EXPECT_EQ(s.material.thickness, 1e-4);
   EXPECT_EQ(s.material.area_density, 0.08);
   EXPECT_EQ(s.gravity, Eigen::Vector3d(0, 0, -9.81));
