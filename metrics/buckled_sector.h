@@ -14,9 +14,6 @@ namespace geoprior {
 /// psi'' = 0 at the ends of the sector have the ratio 1.653 of sector to that width, within 0.3 %
 /// for sectors of 110 to 160 degrees; inextensibility, that makes it 138.99, is not used.
 ///
-/// `dcone_sector` (metrics/dcone_sector.h) extrapolates the lift to zero instead, from a sampled
-/// profile: no model of the sector's shape, 3 degrees on the exact profile where this has 0.5.
-///
 /// @param pattern    n x 2 (m)
 /// @param x          n x 3 (m)
 /// @param triangles  m x 3
