@@ -7,6 +7,13 @@
 namespace geoprior {
 namespace {
 
+/// Eigen answers for its factor only once factorised; its size is known from the analysis on.
+class Ldlt final
+    : public Eigen::SimplicialLDLT<BlockMatrix::Sparse, Eigen::Upper, Eigen::NaturalOrdering<int>> {
+ public:
+  [[nodiscard]] long nonzeros() const { return static_cast<long>(m_matrix.nonZeros() + cols()); }
+};
+
 class EigenCholesky final : public SparseCholesky {
  public:
   explicit EigenCholesky(const BlockMatrix& matrix) {
@@ -33,12 +40,10 @@ class EigenCholesky final : public SparseCholesky {
     solver_.matrixU().solveInPlace(b);
   }
 
-  [[nodiscard]] long nonzeros() const override {
-    return static_cast<long>(solver_.matrixL().nestedExpression().nonZeros() + solver_.cols());
-  }
+  [[nodiscard]] long nonzeros() const override { return solver_.nonzeros(); }
 
  private:
-  Eigen::SimplicialLDLT<BlockMatrix::Sparse, Eigen::Upper, Eigen::NaturalOrdering<int>> solver_;
+  Ldlt solver_;
 };
 
 }  // namespace

@@ -224,6 +224,7 @@ TEST(Stepper, HandlesSwitchWithoutANewAnalysis) {
   ASSERT_EQ(held.size(), 1U);
   const Eigen::RowVector3d place = state.x.row(held[0].vertex);
   const long nonzeros = stepper.factor_nonzeros();
+  EXPECT_GT(nonzeros, 0);  // known from the analysis, before the first step
   sheets::advance(stepper, state, 0.01, 10);
   EXPECT_EQ(state.x.row(held[0].vertex), place);
   EXPECT_TRUE(stepper.held(0.2).empty());
