@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 #include <string>
 
 #include "baselines/paper/dense.h"
@@ -16,6 +17,9 @@ struct Case {
   Pattern pattern;
   DenseLayout layout;
 };
+
+/// Without it the name of a test would list the bytes of its case, addresses included.
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 class UniformMesh : public ::testing::TestWithParam<Case> {};
 
