@@ -23,6 +23,7 @@ constexpr int kMostEdges = 12;
 double distance_weight(int distance) { return 1.0 / (1 + distance); }
 
 using Rows3 = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMostEdges, 3>;
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostEdges, kMostEdges>;
 using Columns3 = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMostEdges>;
 
 constexpr double kRoot2 = std::numbers::sqrt2;
@@ -41,6 +42,23 @@ Eigen::Matrix3d congruence(const Eigen::Matrix2d& K) {
   return T;
 }
 
+/// A few items in place: patches are built for every triangle whenever a mesh changes.
+class Few {
+ public:
+  Few() = default;
+  explicit Few(int item) { push_back(item); }
+  void push_back(int item) { items_[size_++] = item; }
+  [[nodiscard]] bool has(int item) const { return std::find(begin(), end(), item) != end(); }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  int operator[](std::size_t i) const { return items_[i]; }
+  [[nodiscard]] const int* begin() const { return items_.data(); }
+  [[nodiscard]] const int* end() const { return items_.data() + size_; }
+
+ private:
+  std::array<int, kMostEdges + 4> items_{};  // a patch may look one edge too far: 4 vertices more
+  std::size_t size_ = 0;
+};
+
 /// The edges within reach of a triangle, ring by ring.
 class Patch {
  public:
@@ -55,30 +73,29 @@ class Patch {
       for (const int h : (*of_triangle_)[static_cast<std::size_t>(triangles_[next_])]) add(h);
     ++rings_;
   }
-  [[nodiscard]] const std::vector<int>& edges() const { return edges_; }
-  [[nodiscard]] const std::vector<int>& vertices() const { return vertices_; }
-  [[nodiscard]] const std::vector<int>& distance() const { return distance_; }
+  [[nodiscard]] const Few& edges() const { return edges_; }
+  [[nodiscard]] const Few& vertices() const { return vertices_; }
+  [[nodiscard]] const Few& distance() const { return distance_; }
 
  private:
   void add(int index) {
-    if (index < 0 || std::find(edges_.begin(), edges_.end(), index) != edges_.end()) return;
+    if (index < 0 || edges_.has(index)) return;
     const Hinge& h = (*hinges_)[static_cast<std::size_t>(index)];
-    std::vector<int> vertices = vertices_;
+    Few vertices = vertices_;
     for (const int v : {h.a, h.b, h.c, h.d})
-      if (std::find(vertices.begin(), vertices.end(), v) == vertices.end()) vertices.push_back(v);
+      if (!vertices.has(v)) vertices.push_back(v);
     if (vertices.size() > std::size_t{kMostEdges} || edges_.size() == std::size_t{kMostEdges})
       return;
     vertices_ = vertices;
     edges_.push_back(index);
     distance_.push_back(rings_);
     for (const int t : {h.left, h.right})
-      if (std::find(triangles_.begin(), triangles_.end(), t) == triangles_.end())
-        triangles_.push_back(t);
+      if (!triangles_.has(t)) triangles_.push_back(t);
   }
 
   const std::vector<Hinge>* hinges_;
   const std::vector<std::array<int, 3>>* of_triangle_;
-  std::vector<int> triangles_, edges_, distance_, vertices_;
+  Few triangles_, edges_, distance_, vertices_;
   std::size_t next_ = 0;
   int rings_ = 0;
 };
@@ -132,14 +149,14 @@ Observation observe(const Eigen::MatrixX2d& pattern, const std::vector<Hinge>& h
 /// Coefficients (3 x edges, Mandel) of the weighted least-squares fit where all of S is observed.
 Columns3 fitted(const std::vector<Hinge>& hinges, const Patch& patch, const Observation& seen) {
   const Eigen::Index n = seen.rows.rows();
-  Eigen::VectorXd weight(n);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostEdges, 1> weight(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     weight[i] = distance_weight(patch.distance()[k]) / mandel_jump(hinges, patch, i).norm();
   }
-  const Eigen::MatrixXd weighted = weight.asDiagonal() * seen.rows;
-  return seen.from_affine * Eigen::HouseholderQR<Eigen::MatrixXd>(weighted).solve(
-                                Eigen::MatrixXd(weight.asDiagonal()));
+  const Rows3 weighted = weight.asDiagonal() * seen.rows;
+  const Square right = weight.asDiagonal();
+  return seen.from_affine * Eigen::HouseholderQR<Rows3>(weighted).solve(right);
 }
 
 /// Coefficients (3 x edges, Mandel) of folds: each angle is spread over half the heights of the two
@@ -185,6 +202,7 @@ CurvatureEstimate estimate_curvature(const Eigen::MatrixX2d& pattern,
       seen.rank == 3 ? fitted(hinges, patch, seen) : folds(pattern, hinges, patch);
   CurvatureEstimate result;
   result.rank = seen.rank;
+  result.terms.reserve(patch.edges().size());
   for (std::size_t i = 0; i < patch.edges().size(); ++i)
     result.terms.push_back({patch.edges()[i], coefficients.col(static_cast<Eigen::Index>(i))});
   return result;

@@ -10,6 +10,7 @@
 
 #include "core/curvature_estimate.h"
 #include "core/error.h"
+#include "core/parallel.h"
 
 namespace geoprior {
 namespace {
@@ -18,6 +19,7 @@ using Hinge = CurvatureFit::Hinge;
 using Terms = std::vector<CurvatureFit::Term>;  // here with coefficients as (uu, sqrt2 uv, vv)
 
 constexpr double kRoot2 = std::numbers::sqrt2;
+constexpr std::size_t kBlock = 64;  // triangles fitted by one thread: about 0.1 ms
 
 /// Slope across the edge a-b of the plane through a, b, c less that of the quadratic u' S u / 2 at
 /// the middle of the edge, per unit of S as (uu, sqrt2 uv, vv). With s along the edge of length L,
@@ -113,6 +115,7 @@ struct Assembly {
     const auto t = static_cast<std::size_t>(triangle);
     if (fit.rank[t] < 3) return estimates[t].terms;
     Terms sum;
+    sum.reserve(CurvatureFit::kMostTerms);
     // Own edges first.
     for (const int h : of_triangle[t])
       if (h >= 0) add(sum, h, Eigen::Vector3d::Zero());
@@ -149,15 +152,19 @@ struct Assembly {
     const Eigen::Vector3d beta =
         (slope_rise(pattern, h.a, h.b, h.c) - slope_rise(pattern, h.b, h.a, h.d)) / 2;
     if (beta.norm() < 1e-9 * edge.norm()) return;  // the edge's two triangles are point symmetric
-    const auto sources = sources_of(h);
-    const double share = (h.left == triangle ? 1.0 : -1.0) / static_cast<double>(sources.size());
-    for (const int source : sources)
+    const auto [first, second] = sources_of(h);
+    const double share = (h.left == triangle ? 1.0 : -1.0) / (first == second ? 1 : 2);
+    const auto add_source = [&](int source) {
       for (const auto& term : estimates[static_cast<std::size_t>(source)].terms)
         add(sum, term.hinge, dyad * (share * beta.dot(term.coefficient)));
+    };
+    add_source(first);
+    if (second != first) add_source(second);
   }
 
-  /// Triangles whose estimates stand for S at an edge: both if alike in reach, else the nearer.
-  [[nodiscard]] std::vector<int> sources_of(const Hinge& h) const {
+  /// Triangles whose estimates stand for S at an edge: both if they see their own edges
+  /// only, else the one of the smaller reach, twice.
+  [[nodiscard]] std::array<int, 2> sources_of(const Hinge& h) const {
     const auto reach = [&](int t) {
       const CurvatureEstimate& e = estimates[static_cast<std::size_t>(t)];
       if (e.rank < 3) return 100;
@@ -167,17 +174,22 @@ struct Assembly {
     };
     const int left = reach(h.left), right = reach(h.right);
     if (left == 0 && right == 0) return {h.left, h.right};
-    return {left <= right ? h.left : h.right};
+    const int nearer = left <= right ? h.left : h.right;
+    return {nearer, nearer};
   }
 
   [[nodiscard]] bool fits(const Terms& sum) const {
-    std::vector<int> vertices;
+    std::array<int, CurvatureFit::kMostVertices> vertices{};
+    auto end = vertices.begin();
     for (const auto& term : sum) {
       const Hinge& h = fit.hinges[static_cast<std::size_t>(term.hinge)];
-      for (const int v : {h.a, h.b, h.c, h.d})
-        if (std::find(vertices.begin(), vertices.end(), v) == vertices.end()) vertices.push_back(v);
+      for (const int v : {h.a, h.b, h.c, h.d}) {
+        if (std::find(vertices.begin(), end, v) != end) continue;
+        if (end == vertices.end()) return false;
+        *end++ = v;
+      }
     }
-    return sum.size() <= CurvatureFit::kMostTerms && vertices.size() <= CurvatureFit::kMostVertices;
+    return sum.size() <= CurvatureFit::kMostTerms;
   }
 };
 
@@ -195,19 +207,23 @@ CurvatureFit fit_curvature(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX
   const std::size_t m = fit.area.size();
   fit.own.resize(m);
   fit.rank.resize(m);
-  std::vector<CurvatureEstimate> estimates;
-  estimates.reserve(m);
-  for (std::size_t t = 0; t < m; ++t) {
-    estimates.push_back(estimate_curvature(pattern, fit.hinges, of_triangle, static_cast<int>(t)));
-    fit.rank[t] = estimates[t].rank;
-    fit.own[t] = static_cast<int>(
-        std::count_if(of_triangle[t].begin(), of_triangle[t].end(), [](int h) { return h >= 0; }));
-  }
+  std::vector<CurvatureEstimate> estimates(m);
+  parallel_blocks(m, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      estimates[t] = estimate_curvature(pattern, fit.hinges, of_triangle, static_cast<int>(t));
+      fit.rank[t] = estimates[t].rank;
+      fit.own[t] = static_cast<int>(std::count_if(of_triangle[t].begin(), of_triangle[t].end(),
+                                                  [](int h) { return h >= 0; }));
+    }
+  });
+  fit.terms.resize(m);
   const Assembly assembly{pattern, triangles, fit, of_triangle, estimates};
-  for (std::size_t t = 0; t < m; ++t) {
-    fit.terms.push_back(assembly.terms(static_cast<int>(t)));
-    for (CurvatureFit::Term& term : fit.terms.back()) term.coefficient[1] /= kRoot2;
-  }
+  parallel_blocks(m, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      fit.terms[t] = assembly.terms(static_cast<int>(t));
+      for (CurvatureFit::Term& term : fit.terms[t]) term.coefficient[1] /= kRoot2;
+    }
+  });
   return fit;
 }
 
