@@ -144,10 +144,12 @@ void demand_of_bent_rulings(const Sheet& sheet, const ShellState& state,
                             const Eigen::MatrixX3d& curvature, const RulingMesh& mesh,
                             const RulingEditor& editor, const HybridOptions& options,
                             std::vector<Demand>& demands) {
+  const bool plain = options.test == CompressionTest::threshold;
+  const double least_turn = plain ? 0 : options.refine_angle_deg * kRadians;
   for (std::size_t r = 0; r < mesh.ruling_paths.size(); ++r) {
     if (mesh.ruling_paths[r].size() < 3) continue;
     const BentRuling bent = bent_ruling(state, mesh.ruling_paths[r]);
-    if (bent.turn < options.refine_angle_deg * kRadians) continue;
+    if (bent.turn < least_turn) continue;
     const Ruling& ruling = editor.structure().rulings[r];
     const Vector2d d = (ruling.b - ruling.a).normalized();
     for (int f = 0; f < state.mesh.triangle_count(); ++f) {

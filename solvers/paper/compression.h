@@ -46,7 +46,8 @@ struct DemandGroup {
 /// its weight is the shortening of an arc, (kappa L / 2 pi)^2.
 /// A ruling that turns by more than the refinement angle at one of its vertices is straight no
 /// longer and has released compression as well: the approach of its ends is judged like strain
-/// along it, there. The sheet bends in two directions, and rulings of both meet.
+/// along it, there. The sheet bends in two directions, and rulings of both meet. With "threshold"
+/// any turn counts, and eps_c alone decides.
 std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
                                  const Eigen::MatrixX3d& curvature, const RulingMesh& mesh,
                                  const RulingEditor& editor, const HybridOptions& options);

@@ -29,11 +29,13 @@ constexpr double kLeastPart = 2;
 /// Smallest angle between two rulings with a common end.
 constexpr double kLeastAngleDegrees = 6;
 
-/// Iterations of the projection after remeshing, over those of other frames.
-constexpr int kRemeshedIterations = 5;
-/// Principal strain after the projection beyond which a change of the structure is taken back, and
-/// tries to make another: singular points are then drawn anew. When none is good enough, the best
-/// of them and of the unchanged structure stays.
+/// Iterations of the projection after remeshing, and in a frame that has come to its last resort,
+/// over those of other frames.
+constexpr int kRemeshedIterations = 2;
+constexpr int kLastIterations = 10;
+/// Principal strain after the projection beyond which a change of the structure is taken back; the
+/// next frame tries again, with another draw. Only when the unchanged structure is strained as well
+/// are there more attempts in the same frame, and the best of all stays.
 constexpr double kAcceptedStrain = 2e-3;
 constexpr int kAttempts = 4;
 /// How far a new singular point is moved out of the sheet, in seeding distances.
@@ -182,42 +184,66 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& /*stepper*/, ShellSta
     groups = analyse(sheet, state);
   }
   const Snapshot before = snapshot(state);
-  std::optional<Snapshot> best;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    {
-      const Phase phase(context, "propagate");
-      events_ = edit(state, groups, options_.tracking && attempt == 0, context.seed());
-    }
-    if (!events_.changed) break;
-    rebuild(sheet, before.structure.singular_points.size(), state, context);
-    if (!options_.projection || projection_.strain_after <= kAcceptedStrain) return true;
-    if (!best || projection_.strain_after < best->projection.strain_after) best = snapshot(state);
-    ++rejected_;
-    restore(before, state);
+  if (try_change(sheet, groups, options_.tracking, kRemeshedIterations, before, state, context)) {
+    return true;
   }
-  events_ = {};
-  if (options_.projection) {
-    const Phase phase(context, "project");
-    projection_ = project(sheet, state, options_.projection_iterations, context.seed());
-  }
-  if (!best || projection_.strain_after <= best->projection.strain_after) return false;
-  restore(*best, state);
-  return true;
+  // Wait for the next frame, unless this one is strained without a change.
+  const Snapshot tried = snapshot(state);
+  const bool changed = events_.changed;
+  if (changed) restore(before, state);
+  keep(sheet, 1, state, context);
+  if (!options_.projection || projection_.strain_after <= kAcceptedStrain) return false;
+  return last_resort(sheet, groups, before, changed ? &tried : nullptr, state, context);
 }
 
-/// Mesh, state and projection of a changed structure.
-void HybridMesher::rebuild(const Sheet& sheet, std::size_t old_points, ShellState& state,
-                           RunContext& context) {
+/// Changes the structure as the groups ask. False when there is nothing to change, or when the
+/// sheet cannot follow; the change is then still there.
+bool HybridMesher::try_change(const Sheet& sheet, const std::vector<DemandGroup>& groups,
+                              bool tracking, int effort, const Snapshot& before, ShellState& state,
+                              RunContext& context) {
+  {
+    const Phase phase(context, "propagate");
+    events_ = edit(state, groups, tracking, context.seed());
+  }
+  if (!events_.changed) return false;
   {
     const Phase phase(context, "remesh");
     remesh();
-    carry(state, old_points);
+    carry(state, before.structure.singular_points.size());
   }
-  if (!options_.projection) return;
-  const Phase phase(context, "project");
-  // A new mesh cuts corners of the old one: it has farther to go.
-  projection_ =
-      project(sheet, state, kRemeshedIterations * options_.projection_iterations, context.seed());
+  if (!options_.projection) return true;
+  project(sheet, effort, state, context);
+  if (projection_.strain_after <= kAcceptedStrain) return true;
+  ++rejected_;
+  return false;
+}
+
+/// Goes on with the structure as it is.
+void HybridMesher::keep(const Sheet& sheet, int effort, ShellState& state, RunContext& context) {
+  events_ = {};
+  if (options_.projection) project(sheet, effort, state, context);
+}
+
+/// Neither the change nor the structure before it can follow the handles: other draws of singular
+/// points, with patience. The least strained of all stays.
+bool HybridMesher::last_resort(const Sheet& sheet, const std::vector<DemandGroup>& groups,
+                               const Snapshot& before, const Snapshot* tried, ShellState& state,
+                               RunContext& context) {
+  keep(sheet, kLastIterations, state, context);
+  if (projection_.strain_after <= kAcceptedStrain || tried == nullptr) return false;
+  Snapshot best = snapshot(state);
+  const auto improve = [&](const Snapshot& other) {
+    if (other.projection.strain_after < best.projection.strain_after) best = other;
+  };
+  improve(*tried);
+  for (int attempt = 1; attempt < kAttempts; ++attempt) {
+    restore(before, state);
+    if (try_change(sheet, groups, false, kLastIterations, before, state, context)) return true;
+    if (!events_.changed) break;
+    improve(snapshot(state));
+  }
+  restore(best, state);
+  return events_.changed;
 }
 
 /// Takes the state to the new mesh. A new singular point is moved a little towards its neighbours,
@@ -233,11 +259,13 @@ void HybridMesher::carry(ShellState& state, std::size_t old_points) const {
   }
 }
 
-ProjectionReport HybridMesher::project(const Sheet& sheet, ShellState& state, int iterations,
-                                       std::uint64_t seed) {
-  std::vector<bool> held = held_vertices(sheet, state.mesh, state.time, seed);
+/// @param effort  iterations, in those of a usual frame
+void HybridMesher::project(const Sheet& sheet, int effort, ShellState& state, RunContext& context) {
+  const Phase phase(context, "project");
+  std::vector<bool> held = held_vertices(sheet, state.mesh, state.time, context.seed());
   if (!projector_ || projector_->held() != held) projector_.emplace(state.mesh, held);
-  return projector_->project(state, {iterations, options_.projection_strain});
+  projection_ = projector_->project(
+      state, {effort * options_.projection_iterations, options_.projection_strain});
 }
 
 void HybridMesher::annotate(const ShellState& state, Frame& frame) const {

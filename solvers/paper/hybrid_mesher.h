@@ -51,10 +51,14 @@ class HybridMesher final : public SheetMesher {
   [[nodiscard]] PropagationReport edit(const ShellState& state,
                                        const std::vector<DemandGroup>& groups, bool tracking,
                                        std::uint64_t seed);
-  void rebuild(const Sheet& sheet, std::size_t old_points, ShellState& state, RunContext& context);
+  bool try_change(const Sheet& sheet, const std::vector<DemandGroup>& groups, bool tracking,
+                  int effort, const Snapshot& before, ShellState& state, RunContext& context);
+  void keep(const Sheet& sheet, int effort, ShellState& state, RunContext& context);
+  bool last_resort(const Sheet& sheet, const std::vector<DemandGroup>& groups,
+                   const Snapshot& before, const Snapshot* tried, ShellState& state,
+                   RunContext& context);
   void carry(ShellState& state, std::size_t old_points) const;
-  [[nodiscard]] ProjectionReport project(const Sheet& sheet, ShellState& state, int iterations,
-                                         std::uint64_t seed);
+  void project(const Sheet& sheet, int effort, ShellState& state, RunContext& context);
 
   HybridOptions options_;
   PaperStructure structure_;

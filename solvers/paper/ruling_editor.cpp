@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "baselines/paper/planar.h"
 #include "solvers/paper/segments.h"
@@ -18,6 +19,9 @@ constexpr double kNeighbourhood = 3;
 
 /// Shortest edge of the border that an end that may not snap leaves, in gaps.
 constexpr double kLeastBorderEdge = 0.25;
+
+/// Most that a line turns into a row of anchors (rad).
+constexpr double kRowAngle = std::numbers::pi / 18;
 
 bool is_ignored(const std::vector<bool>& ignored, std::size_t i) {
   return i < ignored.size() && ignored[i];
@@ -196,16 +200,26 @@ std::optional<Ruling> RulingEditor::chord(const Vector2d& centre, const Vector2d
       through = p;
     }
   }
+  const auto line = [&](const Vector2d& along, bool snap) -> std::optional<Ruling> {
+    const auto b = border_end(through, along, snap, ignored);
+    const auto a = border_end(through, -along, snap, ignored);
+    if (!a || !b) return std::nullopt;
+    Ruling ruling;
+    ruling.a = *a;
+    ruling.b = *b;
+    return fits(ruling, ignored) ? std::optional(ruling) : std::nullopt;
+  };
   // Snapping an end would turn the line off its anchor.
   const bool snap = through == centre;
-  const auto b = border_end(through, d, snap, ignored);
-  const auto a = border_end(through, -d, snap, ignored);
-  if (!a || !b) return std::nullopt;
-  Ruling ruling;
-  ruling.a = *a;
-  ruling.b = *b;
-  if (!fits(ruling, ignored)) return std::nullopt;
-  return ruling;
+  const auto ruling = line(d, snap);
+  if (ruling || snap) return ruling;
+  // A row of anchors leaves one line through them.
+  std::optional<Vector2d> row;
+  for (const Vector2d& p : anchors_) {
+    const Vector2d to = p - through;
+    if (to.norm() > same_ && line_angle(to, d) < (row ? line_angle(*row, d) : kRowAngle)) row = to;
+  }
+  return row ? line(*row, true) : std::nullopt;
 }
 
 std::optional<Ruling> RulingEditor::ray(int singular_point, const Vector2d& direction) const {

@@ -42,7 +42,8 @@ class RulingEditor {
   [[nodiscard]] bool fits(const Ruling& ruling, const std::vector<bool>& ignored = {}) const;
 
   /// The line through `centre` from border to border, ends snapped, moved onto an anchor within the
-  /// gap; absent when it meets anything else or does not fit.
+  /// gap, and turned by up to ten degrees into a row of anchors that leaves no other; absent when
+  /// it meets anything else or does not fit.
   [[nodiscard]] std::optional<Ruling> chord(const Eigen::Vector2d& centre,
                                             const Eigen::Vector2d& direction,
                                             const std::vector<bool>& ignored = {}) const;
