@@ -32,7 +32,7 @@ constexpr double kLeastAngleDegrees = 6;
 /// Iterations of the projection after remeshing, and in a frame that has come to its last resort,
 /// over those of other frames.
 constexpr int kRemeshedIterations = 2;
-constexpr int kLastIterations = 10;
+constexpr int kLastIterations = 40;
 /// Principal strain after the projection beyond which a change of the structure is taken back; the
 /// next frame tries again, with another draw. Only when the unchanged structure is strained as well
 /// are there more attempts in the same frame, and the best of all stays.

@@ -1,0 +1,210 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "baselines/paper/planar.h"
+#include "core/curvature_fit.h"
+#include "solvers/paper/compression.h"
+#include "solvers/paper/pieces.h"
+#include "solvers/paper/plastic_apex.h"
+#include "solvers/paper/propagation.h"
+#include "solvers/paper/segments.h"
+#include "solvers/paper/singular_point.h"
+#include "solvers/paper/tracking.h"
+
+namespace geoprior {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// A sheet of 0.2 m by 0.2 m, its structure, mesh and flat state.
+struct EventSheet {
+  Sheet sheet;
+  std::vector<Vector2d> anchors;
+  PaperStructure structure;
+  HybridOptions options;
+  RulingMesh mesh;
+  ShellState state;
+
+  EventSheet() { sheet.pattern = rectangle_pattern(0.2, 0.2); }
+  RulingEditor editor() { return {sheet.pattern, anchors, {4e-3, 0.1}, structure}; }
+  void add_uprights() {
+    for (int k = -2; k <= 2; ++k) editor().add(*editor().chord({0.02 * k, 0}, {0, 1}));
+  }
+  void lay_flat() {
+    mesh = mesh_structure(structure, sheet.pattern, anchors, {0.1, 4, 0.04});
+    derive_pieces(structure, sheet.pattern, mesh);
+    state = resting(mesh.mesh);
+  }
+  /// Bends the sheet to a cylinder of radius R whose rulings have the given direction.
+  void bend(double radius, const Vector2d& rulings) {
+    const Vector2d across = -perpendicular(rulings);
+    for (Eigen::Index i = 0; i < state.x.rows(); ++i) {
+      const Vector2d p = mesh.mesh.pattern.row(i);
+      const double s = p.dot(across), angle = s / radius;
+      const Vector2d q = radius * std::sin(angle) * across + p.dot(rulings) * rulings;
+      state.x.row(i) << q.x(), q.y(), radius * (std::cos(angle) - 1);
+    }
+  }
+  static ShellState resting(const ShellMesh& m) {
+    ShellState s;
+    s.mesh = m;
+    s.x = Eigen::MatrixX3d::Zero(m.vertex_count(), 3);
+    s.x.leftCols<2>() = m.pattern;
+    s.v = Eigen::MatrixX3d::Zero(m.vertex_count(), 3);
+    s.plastic_curvature = Eigen::MatrixX3d::Zero(m.triangle_count(), 3);
+    s.damage = Eigen::VectorXd::Zero(m.triangle_count());
+    return s;
+  }
+  [[nodiscard]] Eigen::MatrixX3d curvature() const {
+    return shape_operators(fit_curvature(mesh.mesh.pattern, mesh.mesh.triangles), state.x);
+  }
+  std::vector<Demand> demands() {
+    const RulingEditor looker = editor();
+    return find_demands(sheet, state, curvature(), mesh, looker, options);
+  }
+};
+
+/// A map x -> (1 - e) x along d has Green strain ((1 - e)^2 - 1) / 2 there and none across.
+TEST(Compression, IsTheGreenStrainOfAUniformMapAndItsDirection) {
+  EventSheet s;
+  s.lay_flat();
+  const double e = 1e-3;
+  const Vector2d d(std::cos(0.4), std::sin(0.4));
+  const Eigen::Matrix2d map = Eigen::Matrix2d::Identity() - e * d * d.transpose();
+  s.state.x.leftCols<2>() = s.mesh.mesh.pattern * map;
+  for (int f = 0; f < s.mesh.mesh.triangle_count(); ++f) {
+    const Compression c = compression(s.state, f);
+    EXPECT_NEAR(c.strain, (1 - (1 - e) * (1 - e)) / 2, 1e-12);
+    EXPECT_NEAR(line_angle(c.direction, d), 0, 1e-6);
+  }
+}
+
+/// A plate of span L buckles at 4 pi^2 D / (E h L^2) = pi^2 h^2 / (3 (1 - nu^2) L^2).
+TEST(Compression, AsksForRulingsBeyondEulersStrain) {
+  EventSheet s;
+  s.lay_flat();
+  s.options.least_slope_deg = 0;
+  const double h = s.sheet.material.thickness, nu = s.sheet.material.poisson_ratio, L = 0.2;
+  const double euler = std::pow(std::numbers::pi * h / L, 2) / (3 * (1 - nu * nu));
+  for (const double factor : {0.9, 1.1}) {
+    s.state.x.col(0) = (1 - factor * euler) * s.mesh.mesh.pattern.col(0);
+    for (const Demand& demand : s.demands()) {
+      EXPECT_EQ(demand.weight > 0, factor > 1);
+      if (demand.weight > 0) {
+        EXPECT_NEAR(demand.excess, factor, 1e-3);
+      }
+    }
+  }
+}
+
+TEST(Compression, TheThresholdAloneDecidesInThePlainTest) {
+  EventSheet s;
+  s.lay_flat();
+  s.state.x.col(0) = (1 - 1e-3) * s.mesh.mesh.pattern.col(0);
+  s.options.test = CompressionTest::threshold;
+  for (const double threshold : {1.1e-3, 0.9e-3}) {
+    s.options.compression_threshold = threshold;
+    for (const Demand& demand : s.demands()) EXPECT_EQ(demand.weight > 0, threshold < 1e-3);
+  }
+}
+
+/// A group along y on a sheet with upright rulings: its candidates run along x across them.
+DemandGroup crossing_group() {
+  DemandGroup group;
+  group.direction = {0, 1};
+  group.low = -0.03;
+  group.high = 0.03;
+  group.strength = 1;
+  group.excess = 100;
+  return group;
+}
+
+TEST(Propagation, CandidatesAcrossACylinderMakeASingularPointInTheHullOfTheCrossings) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    EventSheet s;
+    s.add_uprights();
+    s.lay_flat();
+    RulingEditor pen = s.editor();
+    std::uint64_t draw = 0;
+    const PropagationReport report = resolve_group(
+        crossing_group(), [](const Vector2d&) { return true; }, {}, 0.5, seed, draw, s.options,
+        pen);
+    ASSERT_EQ(report.new_singular_points, 1);
+    // Seeds at y = -0.02, 0, 0.02; rulings at x = -0.04 ... 0.04.
+    const SingularPoint& point = s.structure.singular_points.at(0);
+    EXPECT_LE(std::abs(point.position.x()), 0.04 + 1e-12);
+    EXPECT_LE(std::abs(point.position.y()), 0.02 + 1e-12);
+    EXPECT_EQ(point.birth, 0.5);
+    s.lay_flat();
+    EXPECT_TRUE(broken_invariants(s.structure, s.sheet.pattern, s.mesh.mesh).empty());
+  }
+}
+
+TEST(Propagation, OnFlatGroundTheSameCandidatesAreACylinder) {
+  EventSheet s;
+  s.lay_flat();
+  RulingEditor pen = s.editor();
+  std::uint64_t draw = 0;
+  const PropagationReport report = resolve_group(
+      crossing_group(), [](const Vector2d&) { return true; }, {}, 0, 1, draw, s.options, pen);
+  EXPECT_EQ(report.new_singular_points, 0);
+  EXPECT_EQ(report.new_rulings, 3);
+  for (const Ruling& r : s.structure.rulings) {
+    EXPECT_NEAR(line_angle(r.b - r.a, Vector2d(1, 0)), 0, 1e-9);
+  }
+}
+
+TEST(RulingEditor, TurnsARulingIntoARowOfAnchors) {
+  EventSheet s;
+  s.anchors = {{0, -0.1}, {0, -0.05}, {0, 0.05}, {0, 0.1}};
+  const auto ruling = s.editor().chord({0.001, 0}, {std::sin(2.5 * kDegree), 1});
+  ASSERT_TRUE(ruling);
+  EXPECT_NEAR(ruling->a.x(), 0, 1e-12);
+  EXPECT_NEAR(ruling->b.x(), 0, 1e-12);
+}
+
+TEST(Tracking, TurnsRulingsTowardsThoseOfTheBentSheetNotFasterThanItsRate) {
+  EventSheet s;
+  s.add_uprights();
+  s.lay_flat();
+  s.bend(0.1, {std::sin(12 * kDegree), std::cos(12 * kDegree)});
+  RulingEditor pen = s.editor();
+  ASSERT_TRUE(turn_cylinders(s.state, s.curvature(), s.mesh, s.options, pen));
+  for (const Ruling& r : s.structure.rulings) {
+    const Vector2d d = r.b.y() > r.a.y() ? Vector2d(r.b - r.a) : Vector2d(r.a - r.b);
+    const double turned = std::atan2(d.x(), d.y()) / kDegree;
+    EXPECT_GT(turned, 1);
+    EXPECT_LE(turned, s.options.tracking_rate_deg + 1e-6);
+  }
+}
+
+TEST(PlasticApex, YieldsOnlyWhereTheConeBendsBeyondTheYieldCurvature) {
+  EventSheet s;
+  SingularPoint point;
+  point.position.setZero();
+  s.structure.singular_points.push_back(point);
+  RulingEditor pen = s.editor();
+  ASSERT_GE(fill_fan(0, s.options, pen), 8);
+  s.lay_flat();
+  const double radius = 4e-3;
+  Eigen::MatrixX3d curvature = Eigen::MatrixX3d::Zero(s.mesh.mesh.triangle_count(), 3);
+  for (const double kappa : {1e-3, 200.0}) {
+    curvature.col(0).setConstant(kappa);
+    yield_at_apexes(s.sheet.material, radius, s.mesh.singular_vertices, curvature, s.state,
+                    s.structure);
+    EXPECT_EQ(s.structure.singular_points[0].weakening > 0, kappa > 1);
+  }
+  const int apex = s.mesh.singular_vertices[0];
+  for (int f = 0; f < s.mesh.mesh.triangle_count(); ++f) {
+    const bool beside = (s.mesh.mesh.triangles.row(f).array() == apex).any();
+    EXPECT_EQ(s.state.plastic_curvature(f, 0) > 0, beside);
+    EXPECT_LT(s.state.plastic_curvature(f, 0), 200);
+  }
+}
+
+}  // namespace
+}  // namespace geoprior
