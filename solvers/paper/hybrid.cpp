@@ -29,10 +29,11 @@ constexpr double kLeastPart = 2;
 /// Smallest angle between two rulings with a common end.
 constexpr double kLeastAngleDegrees = 6;
 
-/// Iterations of the projection after remeshing, and in a frame that has come to its last resort,
-/// over those of other frames.
+/// Iterations of the projection over those of other frames: after remeshing; and, in a frame that
+/// has come to its last resort, for the structure as it is and for further changes.
 constexpr int kRemeshedIterations = 2;
 constexpr int kLastIterations = 40;
+constexpr int kRetryIterations = 10;
 /// Principal strain after the projection beyond which a change of the structure is taken back; the
 /// next frame tries again, with another draw. Only when the unchanged structure is strained as well
 /// are there more attempts in the same frame, and the best of all stays.
@@ -238,7 +239,7 @@ bool HybridMesher::last_resort(const Sheet& sheet, const std::vector<DemandGroup
   improve(*tried);
   for (int attempt = 1; attempt < kAttempts; ++attempt) {
     restore(before, state);
-    if (try_change(sheet, groups, false, kLastIterations, before, state, context)) return true;
+    if (try_change(sheet, groups, false, kRetryIterations, before, state, context)) return true;
     if (!events_.changed) break;
     improve(snapshot(state));
   }
