@@ -10,7 +10,8 @@
 namespace geoprior {
 namespace {
 
-constexpr std::array<std::string_view, 3> kLayoutNames{"structured", "equilateral", "delaunay"};
+constexpr std::array<std::string_view, 4> kLayoutNames{"automatic", "structured", "equilateral",
+                                                       "delaunay"};
 
 /// A mesh that never changes: nothing to adapt, annotate or remember.
 class UniformMesher final : public SheetMesher {
@@ -46,7 +47,9 @@ void describe(OptionVisitor& v, DenseOptions& options) {
   v.value("triangles", options.triangles,
           {.doc = "of the uniform mesh, aimed at", .min = 2, .max = 1e6});
   describe_choice(v, "layout", options.layout, kLayoutNames,
-                  {.doc = "structured: squares with alternating diagonals (rectangles only)"});
+                  {.doc = "automatic: structured for upright rectangles, otherwise equilateral; "
+                          "structured: squares "
+                          "with alternating diagonals"});
   describe_group(v, "stepper", options.stepper, {.doc = "time stepping"});
 }
 

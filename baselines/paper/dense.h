@@ -6,17 +6,18 @@
 
 namespace geoprior {
 
-enum class DenseLayout { structured, equilateral, delaunay };
+enum class DenseLayout { automatic, structured, equilateral, delaunay };
 
 /// Baseline: one uniform mesh from start to end.
 struct DenseOptions {
-  int triangles = 4096;                          ///< aimed at
-  DenseLayout layout = DenseLayout::structured;  ///< structured: rectangles only
+  int triangles = 4096;  ///< aimed at
+  DenseLayout layout = DenseLayout::automatic;
   StepperOptions stepper;
 };
 void describe(OptionVisitor& v, DenseOptions& options);
 
 /// Uniform triangulation of a pattern that has all `anchors` among its vertices.
+/// automatic: structured for an upright rectangle, equilateral for all else;
 /// structured: a grid of squares, each with a diagonal, alternating; equilateral: a hexagonal
 /// lattice cut by the border; delaunay: jittered points, seeded. Border vertices lie on the border.
 /// @throws Error  on a pattern that is not simple, an anchor outside it, fewer than two triangles,

@@ -234,6 +234,9 @@ ShellMesh uniform_mesh(const Pattern& pattern, int triangles, DenseLayout layout
     }
   }
   const std::vector<Vector2d> held = distinct(anchors, tolerance);
+  if (layout == DenseLayout::automatic) {
+    layout = is_rectangle(pattern) ? DenseLayout::structured : DenseLayout::equilateral;
+  }
   if (layout != DenseLayout::structured) {
     return unstructured_mesh(pattern, triangles, layout, held, seed);
   }

@@ -30,6 +30,7 @@ std::vector<Case> cases() {
           {"DelaunayRectangle", sheet, DenseLayout::delaunay},
           {"EquilateralDisc", disc_pattern(0.1, 40), DenseLayout::equilateral},
           {"DelaunayDisc", disc_pattern(0.1, 40), DenseLayout::delaunay},
+          {"AutomaticEll", test::ell_pattern(), DenseLayout::automatic},
           {"EquilateralEll", test::ell_pattern(), DenseLayout::equilateral},
           {"DelaunayEll", test::ell_pattern(), DenseLayout::delaunay}};
 }
@@ -126,6 +127,19 @@ TEST(StructuredMesh, MovesTheNearestVertexToAnAnchor) {
 
 TEST(StructuredMesh, RefusesWhatIsNoUprightRectangle) {
   EXPECT_THROW(uniform_mesh(disc_pattern(1, 8), 100, DenseLayout::structured, {}, 1), Error);
+}
+
+// An upright rectangle is the only pattern that the structured layout has.
+TEST(AutomaticMesh, IsStructuredOnAnUprightRectangleOnly) {
+  const auto same = [](const Pattern& pattern, DenseLayout layout) {
+    const ShellMesh a = uniform_mesh(pattern, 200, DenseLayout::automatic, {}, 1);
+    const ShellMesh b = uniform_mesh(pattern, 200, layout, {}, 1);
+    return a.pattern == b.pattern && a.triangles == b.triangles;
+  };
+  EXPECT_EQ(DenseOptions{}.layout, DenseLayout::automatic);
+  EXPECT_TRUE(same(rectangle_pattern(0.3, 0.2), DenseLayout::structured));
+  EXPECT_TRUE(same(disc_pattern(0.1, 40), DenseLayout::equilateral));
+  EXPECT_TRUE(same(test::ell_pattern(), DenseLayout::equilateral));
 }
 
 TEST(UniformMeshErrors, NameAnAnchorOutside) {
