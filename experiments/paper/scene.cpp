@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "experiments/paper/pulled_apart.h"
 #include "experiments/view/view.h"
 
 namespace geoprior {
@@ -22,9 +23,26 @@ Eigen::Quaterniond turn(const std::array<double, 3>& turn_deg) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, r / angle));
 }
 
-Trajectory trajectory(const std::vector<KeyOptions>& keys) {
+/// A rotation from key to key is the shorter way round: one of half a turn or more would go the
+/// other way. Beyond a whole turn the quaternions, which repeat after two, no longer tell.
+void require_less_than_half_a_turn(const KeyOptions& before, const KeyOptions& key,
+                                   const std::string& where) {
+  constexpr double kSlack = 1e-9;
+  const double cosine_of_half = turn(before.turn_deg).dot(turn(key.turn_deg));
+  const double change_deg = (vector(key.turn_deg) - vector(before.turn_deg)).norm();
+  if (cosine_of_half > kSlack && change_deg < 360) return;
+  throw Error("turns by 180 degrees or more from the key before", where,
+              "less than 180 degrees from key to key");
+}
+
+Trajectory trajectory(const std::vector<KeyOptions>& keys, const std::string& where) {
   Trajectory result;
-  for (const KeyOptions& key : keys) {
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const KeyOptions& key = keys[i];
+    if (i > 0) {
+      require_less_than_half_a_turn(keys[i - 1], key,
+                                    where + "." + std::to_string(i) + ".turn_deg");
+    }
     result.keys.push_back({key.t, vector(key.move), turn(key.turn_deg)});
   }
   return result;
@@ -52,7 +70,7 @@ Handle make_handle(const HandleOptions& options, const std::string& where) {
     handle.points = {Eigen::Vector2d(options.disc->u, options.disc->v)};
     handle.disc_radius = options.disc->radius;
   }
-  if (!options.keys.empty()) handle.motion = trajectory(options.keys);
+  if (!options.keys.empty()) handle.motion = trajectory(options.keys, where + ".keys");
   if (!options.force.empty()) {
     require_count(options.force, 3, where + ".force");
     handle.force = Eigen::Vector3d(options.force[0], options.force[1], options.force[2]);
@@ -75,7 +93,7 @@ Obstacle make_obstacle(const ObstacleOptions& options, const std::string& where)
   obstacle.radius = options.radius;
   obstacle.tube_radius = options.tube_radius;
   obstacle.half_length = options.half_length;
-  if (!options.keys.empty()) obstacle.motion = trajectory(options.keys);
+  if (!options.keys.empty()) obstacle.motion = trajectory(options.keys, where + ".keys");
   for (const RadiusKeyOptions& key : options.radii) {
     obstacle.radii.emplace_back(key.t, key.radius);
   }
@@ -167,6 +185,11 @@ std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
   const Pattern pattern = make_pattern(options.pattern, folder, scene->input_files);
   scene->sheet = make_sheet(options, pattern);
   require_valid(scene->sheet, "scene");
+  // Ten times what the imperfection may add.
+  constexpr double kStretch = 1e-3;
+  if (const auto worst = worst_pulled_apart(scene->sheet, kStretch)) {
+    scene->load_warnings.push_back(warning_text(scene->sheet, *worst, "scene"));
+  }
   return scene;
 }
 

@@ -18,18 +18,21 @@ class PaperScene final : public Scene {
  public:
   Sheet sheet;
   std::vector<std::filesystem::path> input_files;
+  std::vector<std::string> load_warnings;
 
   [[nodiscard]] std::vector<double> parameters() const override { return {}; }
   [[nodiscard]] std::string parameter_name() const override { return "time"; }
   [[nodiscard]] std::string parameter_unit() const override { return "s"; }
   [[nodiscard]] std::vector<std::filesystem::path> inputs() const override { return input_files; }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return load_warnings; }
   [[nodiscard]] std::map<std::string, double> facts() const override;
 };
 
 /// The sheet that the options describe. @throws Error  naming the key
 Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern);
 
-/// Reads the pattern and makes the sheet.
+/// Reads the pattern and makes the sheet; handles that pull it apart by more than 0.1 % are a
+/// warning of the scene.
 /// @param folder  of the experiment file, against which relative files are tried first
 /// @throws Error  naming key or file, and place (see require_valid)
 std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,

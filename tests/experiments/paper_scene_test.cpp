@@ -13,14 +13,17 @@ namespace {
 
 class PaperScenes : public RunTest {
  protected:
-  /// The sheet of a [scene] table.
-  [[nodiscard]] Sheet sheet(const std::string& scene_lines) const {
+  /// What a [scene] table describes.
+  [[nodiscard]] PaperScene scene(const std::string& scene_lines) const {
     const auto file = write_experiment(
         "paper/scene", "title = \"A scene\"\ntopic = \"paper\"\n[scene]\n" + scene_lines +
                            "\n[[variant]]\nname = \"dense\"\nmethod = \"dense\"\n");
     const Experiment experiment = load_experiment(file, all_topics(), {});
-    const auto scene = paper_topic().load(*experiment.cases[0].scene, file.parent_path());
-    return dynamic_cast<const PaperScene&>(*scene).sheet;
+    const auto loaded = paper_topic().load(*experiment.cases[0].scene, file.parent_path());
+    return dynamic_cast<const PaperScene&>(*loaded);
+  }
+  [[nodiscard]] Sheet sheet(const std::string& scene_lines) const {
+    return scene(scene_lines).sheet;
   }
 };
 
@@ -69,6 +72,33 @@ TEST_F(PaperScenes, ReadsEveryShapeOfHandleAndObstacle) {
   EXPECT_NEAR(s.obstacles[1].contact(x, 1).distance, 0.15, 1e-15);
   EXPECT_NEAR(s.obstacles[2].contact(x, 1).distance, -0.05, 1e-15);
   EXPECT_NEAR(s.obstacles[3].contact(x, 0).distance, std::hypot(0.15, 0.05) - 0.01, 1e-15);
+}
+
+/// Two corners of a pattern 0.2 m wide; the right one moves by `move`, from 0 to 1 s.
+std::string two_corners(const std::string& pattern, const std::string& move) {
+  return "duration = 2\npattern = " + pattern +
+         "\nhandles = [{ name = \"l\", points = [{ u = -0.1, v = -0.1 }], keys = [{ t = 0 }] }, "
+         "{ name = \"r\", points = [{ u = 0.1, v = -0.1 }], keys = [{ t = 0 }, { t = 1, move = " +
+         move + " }, { t = 2 }] }]\n";
+}
+const std::string kSquare = "{ kind = \"rectangle\", width = 0.2, height = 0.2 }";
+
+// 0.3 mm of 0.2 m are 0.15 %, and 0.1 mm are 0.05 %.
+TEST_F(PaperScenes, WarnOnceOfHandlesThatPullTheSheetApart) {
+  const auto warnings = scene(two_corners(kSquare, "[3e-4, 0, 0]")).warnings();
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0], ::testing::HasSubstr("scene.handles.0 'l' and scene.handles.1 'r'"));
+  EXPECT_THAT(warnings[0], ::testing::HasSubstr("at t = 1 s"));
+  EXPECT_TRUE(scene(two_corners(kSquare, "[1e-4, 0, 0]")).warnings().empty());
+  EXPECT_TRUE(scene(two_corners(kSquare, "[-0.1, 0, 0.1]")).warnings().empty());
+}
+
+// Between the feet of the notch the sheet has 0.28 m: their 0.2 m in the plane bound nothing.
+TEST_F(PaperScenes, WarnOfNothingOnAPatternThatIsNotConvex) {
+  const std::string notched =
+      "{ kind = \"polygon\", points = [{ u = -0.1, v = -0.1 }, { u = 0, v = 0 }, { u = 0.1, v = "
+      "-0.1 }, { u = 0.1, v = 0.1 }, { u = -0.1, v = 0.1 }] }";
+  EXPECT_TRUE(scene(two_corners(notched, "[0.02, 0, 0]")).warnings().empty());
 }
 
 // The same triangle clockwise and counter-clockwise, and drawn in millimetres.
