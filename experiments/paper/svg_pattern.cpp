@@ -12,6 +12,10 @@
 namespace geoprior {
 namespace {
 
+// The keys of the scene that errors name.
+const std::string kFileKey = "scene.pattern.file: ";
+const std::string kPathKey = "scene.pattern.path: ";
+
 /// Element name without namespace prefix.
 std::string_view local_name(const pugi::xml_node& node) {
   const std::string_view name = node.name();
@@ -42,16 +46,18 @@ std::string ids_of(const std::vector<pugi::xml_node>& paths) {
 
 pugi::xml_node choose_path(const std::vector<pugi::xml_node>& paths,
                            const std::optional<std::string>& id, const std::string& file) {
-  if (paths.empty()) throw Error("has no path element", file, "an SVG file with a <path>");
+  if (paths.empty())
+    throw Error("has no path element", kFileKey + file, "an SVG file with a <path>");
   if (!id) {
     if (paths.size() == 1) return paths[0];
-    throw Error(std::to_string(paths.size()) + " paths, and 'path' names none", file,
+    throw Error(std::to_string(paths.size()) + " paths, and 'path' names none", kPathKey + file,
                 ids_of(paths));
   }
   const auto found = std::find_if(paths.begin(), paths.end(), [&](const pugi::xml_node& path) {
     return *id == path.attribute("id").value();
   });
-  if (found == paths.end()) throw Error("no path with id '" + *id + "'", file, ids_of(paths));
+  if (found == paths.end())
+    throw Error("no path with id '" + *id + "'", kPathKey + file, ids_of(paths));
   return *found;
 }
 
@@ -71,11 +77,13 @@ Pattern read_svg_pattern(const std::filesystem::path& file, const SvgPatternOpti
   const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
   if (!parsed) {
     throw Error("no valid XML: " + std::string(parsed.description()),
-                file.string() + ", byte " + std::to_string(parsed.offset), "an SVG file");
+                kFileKey + file.string() + ", byte " + std::to_string(parsed.offset),
+                "an SVG file");
   }
   const pugi::xml_node path = choose_path(paths_of(document), options.path, file.string());
   const std::string id = path.attribute("id").value();
-  const std::string where = file.string() + ": path" + (id.empty() ? "" : " '" + id + "'");
+  const std::string where =
+      kFileKey + file.string() + ": path" + (id.empty() ? "" : " '" + id + "'");
   require_no_transform(path, where);
   Pattern pattern;
   pattern.border =

@@ -18,7 +18,8 @@ struct SvgPatternOptions {
 
 /// Reads a pattern: v points up where the drawing's y points down, so that the sheet looks like the
 /// drawing; counter-clockwise.
-/// @throws Error  naming the file and path: no such path, several, a `transform` on the path or
+/// @throws Error  naming the scene's key, the file and the path: no such path, several, a
+/// `transform` on the path or
 ///                around it, malformed XML or path data
 Pattern read_svg_pattern(const std::filesystem::path& file, const SvgPatternOptions& options);
 

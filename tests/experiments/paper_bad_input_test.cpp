@@ -100,6 +100,21 @@ TEST_F(BadSheet, NamesTheKeyTimeThatDoesNotIncrease) {
               AllOf(HasSubstr("scene.handles.0 'a'.keys.2.t"), HasSubstr("does not follow 1")));
 }
 
+// The shorter way round would be taken, silently; several keys may turn on and on.
+TEST_F(BadSheet, NamesTheKeyThatTurnsHalfWayRound) {
+  const auto turning = [](const std::string& turns) {
+    return kRectangle + "handles = [{ points = [{ u = 0, v = 0 }], keys = [{ t = 0 }, " + turns +
+           "] }]\n";
+  };
+  for (const std::string angle : {"180", "-180", "270", "360", "630", "720"}) {
+    EXPECT_THAT(refusal(turning("{ t = 1 }, { t = 2, turn_deg = [0, " + angle + ", 0] }")),
+                HasSubstr("scene.handles.0.keys.2.turn_deg: turns by 180 degrees or more"));
+  }
+  EXPECT_NO_THROW(run_paper(experiment(turning(
+      "{ t = 1, turn_deg = [0, 0, 179] }, { t = 2, turn_deg = [0, 0, 358] }, { t = 3, turn_deg = "
+      "[0, 0, 530] }"))));
+}
+
 TEST_F(BadSheet, NamesLineAndKeyOfAMaterialOutOfRange) {
   EXPECT_THAT(refusal(kRectangle + "material = { thickness = 0 }\n"),
               AllOf(HasSubstr("bad.toml:6"), HasSubstr("scene.material.thickness")));
@@ -138,6 +153,12 @@ TEST_F(BadSheet, NamesTheDrawingAndItsPath) {
   EXPECT_THAT(
       refusal("pattern = { kind = \"svg\", file = \"bow.svg\" }\n"),
       AllOf(HasSubstr("scene.pattern.file"), HasSubstr(drawing.string()), HasSubstr("edge")));
+  EXPECT_THAT(refusal("pattern = { kind = \"svg\", file = \"bow.svg\", path = \"arrow\" }\n"),
+              AllOf(HasSubstr("scene.pattern.path"), HasSubstr(drawing.string()),
+                    HasSubstr("no path with id 'arrow'")));
+  std::ofstream(drawing) << "<svg><path d='M0 0 L10 10 L10'/></svg>";
+  EXPECT_THAT(refusal("pattern = { kind = \"svg\", file = \"bow.svg\" }\n"),
+              AllOf(HasSubstr("scene.pattern.file"), HasSubstr(drawing.string())));
 }
 
 }  // namespace
