@@ -82,9 +82,7 @@ void H5Group::write_attribute(std::string_view name, const std::string& text) {
 }
 
 void H5Group::write_attribute(std::string_view name, const std::vector<std::string>& texts) {
-  std::vector<const char*> pointers;
-  for (const std::string& text : texts) pointers.push_back(text.c_str());
-  write_texts(id_, name, {texts.size()}, pointers, at(name));
+  h5::write_text_list(id_, name, texts, at(name));
 }
 
 void H5Group::write_attribute(std::string_view name, double value) {
@@ -139,6 +137,13 @@ namespace h5 {
 void write_text(hid_t owner, const std::string& name, const std::string& text,
                 const std::string& where) {
   write_texts(owner, name, {}, {text.c_str()}, where + "@" + name);
+}
+
+void write_text_list(hid_t owner, std::string_view name, const std::vector<std::string>& texts,
+                     const std::string& where) {
+  std::vector<const char*> pointers;
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  write_texts(owner, name, {texts.size()}, pointers, where);
 }
 
 std::map<std::string, std::string> read_all_attributes(hid_t owner, const std::string& where) {

@@ -60,6 +60,10 @@ class H5Group {
 
   void write_array(std::string_view name, const H5Array& array);
   [[nodiscard]] H5Array read_array(std::string_view name) const;
+  /// A data set rows x columns of float64 with the attribute `columns`, in chunks compressed by
+  /// zlib. `values` are row by row.
+  void write_matrix(std::string_view name, const std::vector<std::string>& columns,
+                    const std::vector<double>& values);
   /// Columns of equal length become one compound data set.
   void write_table(std::string_view name, const std::vector<H5Column>& columns);
   /// Reads the columns of these names; the alternatives that `columns` hold say the types.

@@ -63,6 +63,8 @@ std::string encoded(std::string_view name);
 /// Text attributes of a data set.
 void write_text(hid_t owner, const std::string& name, const std::string& text,
                 const std::string& where);
+void write_text_list(hid_t owner, std::string_view name, const std::vector<std::string>& texts,
+                     const std::string& where);
 std::map<std::string, std::string> read_all_attributes(hid_t owner, const std::string& where);
 
 }  // namespace geoprior::h5

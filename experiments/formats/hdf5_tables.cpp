@@ -152,6 +152,28 @@ void H5Group::write_table(std::string_view name, const std::vector<H5Column>& co
         "table cannot be written", where);
 }
 
+void H5Group::write_matrix(std::string_view name, const std::vector<std::string>& columns,
+                           const std::vector<double>& values) {
+  constexpr std::size_t kChunkRows = 4096;
+  const std::string where = at(name);
+  const std::size_t rows = values.size() / columns.size();
+  if (rows * columns.size() != values.size()) throw Error("a row is not whole", where);
+  const Handle space = h5::space_of({rows, columns.size()}, where);
+  const Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "layout", where);
+  if (rows > 0) {  // HDF5 knows no chunks without rows
+    const std::array<hsize_t, 2> chunk{std::min(rows, kChunkRows), columns.size()};
+    check(H5Pset_chunk(layout, 2, chunk.data()), "layout", where);
+    check(H5Pset_deflate(layout, 6), "layout", where);
+  }
+  const Handle data(H5Dcreate2(id_, h5::encoded(name).c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT,
+                               layout, H5P_DEFAULT),
+                    H5Dclose, "data set cannot be made", where);
+  h5::write_text_list(data, "columns", columns, where);
+  if (rows == 0) return;
+  check(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        "data set cannot be written", where);
+}
+
 void H5Group::read_table(std::string_view name, std::vector<H5Column>& columns) const {
   const std::string where = at(name);
   const Handle data(H5Dopen2(id_, h5::encoded(name).c_str(), H5P_DEFAULT), H5Dclose,

@@ -34,7 +34,8 @@ void require_same_specification(const std::string& recorded, const Experiment& e
   throw Error("the run has another specification than '" + experiment.id + "' has now (hash " +
                   recorded.substr(0, 8) + ", not " + experiment.hash.substr(0, 8) +
                   "): it cannot be resumed",
-              folder.string(), "the same experiment file, --set, --quick and program version");
+              folder.string(),
+              "the same experiment file, --set, --variant, --quick, --threads and program version");
 }
 
 /// The record of a run that is finished already; absent when there is work left.
@@ -177,7 +178,7 @@ void finish(const Experiment& experiment, ExecuteResult& result) {
     result.record.claims.push_back(claim);
   }
   fs::remove_all(result.folder / "checkpoints");
-  write_run_file(result.record, result.folder / "run.h5");
+  write_run_file(result.record, result.folder / "run.h5", result.folder);
   if (undecided) throw Error(*undecided);
 }
 

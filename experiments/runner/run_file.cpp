@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "experiments/formats/hdf5_file.h"
+#include "experiments/runner/run_tables.h"
 
 namespace geoprior {
 
@@ -98,7 +99,19 @@ void write_numbers(H5Group& group, const VariantRecord& variant) {
   }
 }
 
-void write_variant(H5Group& parent, const CaseRecord& of, std::size_t index) {
+/// The run folder that tables are read from; null: no tables.
+using TableSource = const std::filesystem::path*;
+
+void write_tables(H5Group& group, const VariantRecord& variant, TableSource run_folder) {
+  if (run_folder == nullptr) return;
+  const std::map<std::string, StackedTable> tables = stacked_tables(variant, *run_folder);
+  if (tables.empty()) return;
+  H5Group parent = group.create_group("tables");
+  for (const auto& [name, table] : tables) parent.write_matrix(name, table.columns, table.values);
+}
+
+void write_variant(H5Group& parent, const CaseRecord& of, std::size_t index,
+                   TableSource run_folder) {
   const VariantRecord& variant = of.variants[index];
   H5Group group = parent.create_group(variant.name);
   group.write_attribute("index", static_cast<std::int64_t>(index));
@@ -115,6 +128,7 @@ void write_variant(H5Group& parent, const CaseRecord& of, std::size_t index) {
   write_frames(group, variant.frames);
   write_numbers(group, variant);
   write_events(group, variant.events);
+  write_tables(group, variant, run_folder);
   write_stored_files(group, "artifacts", variant.artifacts);
 }
 
@@ -137,7 +151,8 @@ void write_ratios(H5Group& group, const std::vector<TimingRatio>& ratios) {
                                {"paired", paired}});
 }
 
-void write_case(H5Group& parent, const CaseRecord& record, std::size_t index) {
+void write_case(H5Group& parent, const CaseRecord& record, std::size_t index,
+                TableSource run_folder) {
   H5Group group = parent.create_group(record.name);
   group.write_attribute("index", static_cast<std::int64_t>(index));
   group.write_attribute("parameter_name", record.parameter_name);
@@ -150,7 +165,8 @@ void write_case(H5Group& parent, const CaseRecord& record, std::size_t index) {
   write_each(group, "facts", record.facts);
   write_ratios(group, record.ratios);
   H5Group variants = group.create_group("variants");
-  for (std::size_t v = 0; v < record.variants.size(); ++v) write_variant(variants, record, v);
+  for (std::size_t v = 0; v < record.variants.size(); ++v)
+    write_variant(variants, record, v, run_folder);
 }
 
 void write_studies(H5Group& root, const std::vector<StudyRecord>& studies) {
@@ -190,7 +206,7 @@ void write_claims(H5Group& root, const std::vector<ClaimRecord>& claims) {
                               {"holds", holds}});
 }
 
-void write_root(H5Group root, const RunRecord& record) {
+void write_root(H5Group root, const RunRecord& record, TableSource run_folder) {
   root.write_attribute("schema_version", static_cast<std::int64_t>(record.schema_version));
   root.write_attribute("quick", static_cast<std::int64_t>(record.quick ? 1 : 0));
   for (const auto& [name, member] : kRootTexts) {
@@ -199,17 +215,28 @@ void write_root(H5Group root, const RunRecord& record) {
   for (const auto& [key, text] : record.provenance) root.write_attribute(key, text);
   write_stored_files(root, "inputs", record.inputs);
   H5Group cases = root.create_group("cases");
-  for (std::size_t c = 0; c < record.cases.size(); ++c) write_case(cases, record.cases[c], c);
+  for (std::size_t c = 0; c < record.cases.size(); ++c)
+    write_case(cases, record.cases[c], c, run_folder);
   write_studies(root, record.studies);
   write_claims(root, record.claims);
+}
+
+void write_file(const RunRecord& record, const std::filesystem::path& file,
+                TableSource run_folder) {
+  const H5File out = H5File::create();
+  write_root(out.root(), record, run_folder);
+  out.save(file);
 }
 
 }  // namespace
 
 void write_run_file(const RunRecord& record, const std::filesystem::path& file) {
-  const H5File out = H5File::create();
-  write_root(out.root(), record);
-  out.save(file);
+  write_file(record, file, nullptr);
+}
+
+void write_run_file(const RunRecord& record, const std::filesystem::path& file,
+                    const std::filesystem::path& run_folder) {
+  write_file(record, file, &run_folder);
 }
 
 }  // namespace geoprior

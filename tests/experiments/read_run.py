@@ -125,6 +125,12 @@ def check_numbers(folder, run):
     assert euler.attrs["status"] == "done" and euler.attrs["error"] == ""
     events = euler["events"]
     assert events.dtype["position"].shape == (3,) and events[0]["kind"] == b"crossing"
+    states = euler["tables/state"]
+    assert list(states.attrs["columns"]) == ["frame", "angle [rad]", "velocity [rad/s]"]
+    assert states.compression == "gzip" and list(states[:, 0]) == list(range(9))
+    for i, row in enumerate(states):
+        line = (folder / f"frames/default/euler/state_{i:04d}.csv").read_text().splitlines()[1]
+        assert list(row[1:]) == [float(text) for text in line.split(",")], i
     for table in ["frames", "artifacts"]:
         for row in euler[table]:
             name = row["name"].decode()
