@@ -64,6 +64,12 @@ constexpr int kMarkWidth = 44;
 constexpr int kMarkHeight = 28;
 constexpr int kMarkGap = 12;   ///< to its label
 constexpr int kEntryGap = 48;  ///< to the next entry
+constexpr int kLineHeight = 52;
+constexpr int kSideMargin = 20;
+
+int entry_width(const LegendEntry& entry) {
+  return kMarkWidth + kMarkGap + text_width(entry.label, kStyle);
+}
 
 void draw_mark(Picture& picture, const LegendEntry& entry, int x, int top) {
   const Rgb color = to_rgb(entry.color);
@@ -158,17 +164,36 @@ std::vector<LegendEntry> legend_entries(const std::vector<FigureRow>& rows,
   return entries;
 }
 
-void draw_legend(Picture& picture, const std::vector<LegendEntry>& entries, int top) {
-  int width = -kEntryGap;
+std::vector<std::vector<LegendEntry>> legend_lines(const std::vector<LegendEntry>& entries,
+                                                   int width) {
+  std::vector<std::vector<LegendEntry>> lines;
+  int used = 0;
   for (const LegendEntry& entry : entries) {
-    width += kMarkWidth + kMarkGap + text_width(entry.label, kStyle) + kEntryGap;
+    const int with_this = used + kEntryGap + entry_width(entry);
+    const bool fits = !lines.empty() && with_this <= width - 2 * kSideMargin;
+    if (!fits) lines.emplace_back();
+    used = fits ? with_this : entry_width(entry);
+    lines.back().push_back(entry);
   }
-  int x = (picture.width - width) / 2;
-  for (const LegendEntry& entry : entries) {
-    draw_mark(picture, entry, x, top);
-    x += kMarkWidth + kMarkGap;
-    draw_text(picture, entry.label, x, top + kMarkHeight - 5, Align::left, kStyle);
-    x += text_width(entry.label, kStyle) + kEntryGap;
+  return lines;
+}
+
+int legend_height(const std::vector<LegendEntry>& entries, int width) {
+  return kLineHeight * static_cast<int>(legend_lines(entries, width).size());
+}
+
+void draw_legend(Picture& picture, const std::vector<LegendEntry>& entries, int top) {
+  for (const std::vector<LegendEntry>& line : legend_lines(entries, picture.width)) {
+    int width = -kEntryGap;
+    for (const LegendEntry& entry : line) width += entry_width(entry) + kEntryGap;
+    int x = (picture.width - width) / 2;
+    for (const LegendEntry& entry : line) {
+      draw_mark(picture, entry, x, top);
+      draw_text(picture, entry.label, x + kMarkWidth + kMarkGap, top + kMarkHeight - 5, Align::left,
+                kStyle);
+      x += entry_width(entry) + kEntryGap;
+    }
+    top += kLineHeight;
   }
 }
 

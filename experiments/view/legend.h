@@ -34,7 +34,14 @@ OverlayColors overlay_colors(const std::vector<FigureRow>& rows,
 /// classes.
 std::vector<LegendEntry> legend_entries(const std::vector<FigureRow>& rows, const FigureView& view);
 
-/// In one centred row below `top`.
+/// The entries in lines that fit a picture of that width (pixels), in order.
+std::vector<std::vector<LegendEntry>> legend_lines(const std::vector<LegendEntry>& entries,
+                                                   int width);
+
+/// Pixels that the lines of the legend take; 0 without entries.
+int legend_height(const std::vector<LegendEntry>& entries, int width);
+
+/// In centred lines below `top`.
 void draw_legend(Picture& picture, const std::vector<LegendEntry>& entries, int top);
 
 }  // namespace geoprior

@@ -24,7 +24,6 @@ constexpr int kGap = 14;         ///< between panels
 constexpr int kHeading = 64;     ///< height of a line of variant names
 constexpr int kRowLabel = 58;    ///< width of the row labels at the left
 constexpr int kBarHeight = 120;  ///< the scalar bar with its labels
-constexpr int kLegendHeight = 52;
 const TextStyle kHeadingStyle{36, {20, 20, 20}, true, false};
 const TextStyle kRowStyle{30, {60, 60, 60}, false, true};
 const TextStyle kNoteStyle{28, {130, 130, 130}, false, false};
@@ -67,7 +66,8 @@ std::vector<DrawnRow> drawn_rows(const std::vector<FigureRow>& rows, bool with_s
   return out;
 }
 
-Layout make_layout(const std::vector<DrawnRow>& rows, const ViewWindow& window, int key_height) {
+/// All but the height of the scalar bar or the legend.
+Layout make_layout(const std::vector<DrawnRow>& rows, const ViewWindow& window) {
   Layout layout;
   for (const DrawnRow& row : rows) {
     layout.columns = std::max(layout.columns, static_cast<int>(row.row->cells.size()));
@@ -81,7 +81,7 @@ Layout make_layout(const std::vector<DrawnRow>& rows, const ViewWindow& window, 
   layout.panel_height = std::max(2, static_cast<int>(std::lround(width / aspect)));
   layout.width =
       layout.left + layout.columns * layout.panel_width + (layout.columns - 1) * kGap + kMargin;
-  layout.height = 2 * kMargin + key_height;
+  layout.height = 2 * kMargin;
   for (const DrawnRow& row : rows) {
     layout.height += layout.panel_height + kGap + (row.has_headings ? kHeading : 0);
   }
@@ -136,8 +136,8 @@ Picture draw_figure(const std::vector<FigureRow>& rows, const FigureView& view) 
   const std::vector<LegendEntry> legend = legend_entries(rows, view);
   const bool has_bar = style.scale && style.scale->classes.empty();
   const std::vector<DrawnRow> lines = drawn_rows(rows, view.section.has_value());
-  const int key_height = has_bar ? kBarHeight : legend.empty() ? 0 : kLegendHeight;
-  const Layout layout = make_layout(lines, window, key_height);
+  Layout layout = make_layout(lines, window);
+  layout.height += has_bar ? kBarHeight : legend_height(legend, layout.width);
   Picture picture(layout.width, layout.height);
   int y = kMargin;
   for (const DrawnRow& line : lines) {

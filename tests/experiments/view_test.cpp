@@ -355,6 +355,26 @@ TEST(Cells, ObstaclesComeWithTheFrameAndDoNotMoveTheWindow) {
   EXPECT_TRUE(rows[0].cells[0].overlays.empty());
 }
 
+TEST(Legend, BreaksIntoLinesThatFitTheFigure) {
+  std::vector<LegendEntry> entries;
+  for (const char* name : {"Flat", "Cylinder", "Cone", "Rulings", "Singular points", "Handles"}) {
+    entries.push_back({name, {0, 0, 0}, LegendEntry::Mark::area});
+  }
+  EXPECT_EQ(legend_lines(entries, 2400).size(), 1U);
+  EXPECT_EQ(legend_height({}, 998), 0);
+  const auto lines = legend_lines(entries, 998);  // a figure of one column
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].size() + lines[1].size(), entries.size());
+  Picture picture(998, legend_height(entries, 998));
+  draw_legend(picture, entries, 0);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < 20; ++x) {
+      ASSERT_EQ(picture.at(x, y), (Rgb{255, 255, 255})) << x << ' ' << y;
+      ASSERT_EQ(picture.at(997 - x, y), (Rgb{255, 255, 255})) << 997 - x << ' ' << y;
+    }
+  }
+}
+
 TEST(Legend, ExplainsTheClassesAndOverlaysThatSomePanelHas) {
   FigureView view;
   view.color_by = "kind";
