@@ -102,10 +102,13 @@ void build(CommandLine& line) {
   line.app.set_version_flag("--version", version_line());
   line.app.require_subcommand(1);
   add_command(line, "list", "experiments, topics, methods and metrics");
-  CLI::App* describe =
-      add_command(line, "describe", "options of a method, topic or experiment file");
+  CLI::App* describe = add_command(
+      line, "describe",
+      "options of a method or a topic, keys of an experiment file, meaning of a metric");
   describe
-      ->add_option("name", line.described, "method, topic, metric, topic/method, or 'experiment'")
+      ->add_option(
+          "name", line.described,
+          "method, topic, metric, topic/method, or the word experiment (the keys of its file)")
       ->required();
   describe->add_flag("--markdown", line.markdown, "a table for the documentation, on stdout");
   add_run(line);

@@ -174,7 +174,7 @@ def failures(run):
                 of = f" of case {case.name}" if len(run.cases) > 1 else ""
                 why = f": {v.error}" if v.error else ""
                 lines.append(f"{display_name(v.name)}{of} {v.status} after {len(v.parameter)} "
-                             f"frames{why}")
+                             f"{'frame' if len(v.parameter) == 1 else 'frames'}{why}")
     return lines
 
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "experiments/commands/console.h"
+#include "experiments/runner/frames_text.h"
 #include "experiments/runner/number_text.h"
 #include "experiments/runner/timing_statistics.h"
 
@@ -103,7 +104,7 @@ std::vector<std::string> failures(const RunRecord& record) {
     for (const VariantRecord& variant : in.variants) {
       if (variant.status != "failed") continue;
       lines.push_back("variant '" + variant.name + "', case '" + in.name + "': failed after " +
-                      std::to_string(variant.frames.size()) + " frames: " + variant.error);
+                      frames_text(variant.frames.size()) + ": " + variant.error);
     }
   }
   return lines;

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "experiments/runner/benchmark.h"
+#include "experiments/runner/frames_text.h"
 #include "experiments/runner/measure.h"
 #include "experiments/runner/run_folder.h"
 #include "experiments/runner/sha256.h"
@@ -267,7 +268,7 @@ bool CaseRunner::run_variant(const VariantSpec& variant) {
   if (!complete) return false;
   if (!end.error.empty()) {
     progress_.say("variant '" + variant.name + "' of case '" + spec_.name + "' failed after " +
-                  std::to_string(state_of(variant).record.frames.size()) + " frames: " + end.error);
+                  frames_text(state_of(variant).record.frames.size()) + ": " + end.error);
   }
   finish(variant, std::move(end));
   progress_.end();

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "experiments/runner/frames_text.h"
 #include "experiments/runner/number_text.h"
 #include "experiments/runner/quantity.h"
 
@@ -124,7 +125,7 @@ std::optional<ClaimRecord> fallen_short(const ClaimSpec& claim, const CaseRecord
     record.case_name = in.name;
     record.left = record.right = std::numeric_limits<double>::quiet_NaN();
     record.detail = "variant '" + side->name + "' failed after " +
-                    std::to_string(side->frames.size()) + " frames: " + side->error;
+                    frames_text(side->frames.size()) + ": " + side->error;
     return record;
   }
   return std::nullopt;

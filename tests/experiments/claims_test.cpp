@@ -137,6 +137,8 @@ TEST(Claims, OfAVariantThatFailedFallShort) {
   const ClaimRecord decided = decide(c, record);
   EXPECT_FALSE(decided.holds) << "every frame that b has would hold it";
   EXPECT_THAT(decided.detail, HasSubstr("variant 'b' failed after 3 frames: does not converge"));
+  record.cases[0].variants[1].frames.resize(1);
+  EXPECT_THAT(decide(c, record).detail, HasSubstr("failed after 1 frame: "));
 }
 
 TEST(Claims, EveryFrameMeansTheWorstFrame) {
