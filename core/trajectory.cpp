@@ -1,8 +1,8 @@
+#include "core/trajectory.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include "baselines/paper/sheet.h"
 
 namespace geoprior {
 namespace {

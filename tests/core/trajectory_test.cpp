@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "baselines/paper/sheet.h"
+#include "core/trajectory.h"
 
 namespace geoprior {
 namespace {
