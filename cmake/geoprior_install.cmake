@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(libraries geoprior_flags geoprior_core geoprior_metrics geoprior_skinning_baselines geoprior_skinning
-  geoprior_paper_baselines geoprior_paper)
+  geoprior_paper_baselines geoprior_paper geoprior_fluid_baselines geoprior_fluid)
 set_target_properties(geoprior_flags PROPERTIES EXPORT_NAME flags)
 # Eigen aligns fixed-size types (a quaternion, an affine transform) by the instruction set even when
 # EIGEN_MAX_ALIGN_BYTES is given, so the layout of our types is that of the set the libraries were built for.
@@ -16,5 +16,5 @@ endforeach()
 configure_package_config_file(cmake/geoprior-config.cmake.in ${PROJECT_BINARY_DIR}/geoprior-config.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/geoprior)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/geoprior-config-version.cmake COMPATIBILITY SameMinorVersion)
-install(FILES cmake/cholmod.cmake ${PROJECT_BINARY_DIR}/geoprior-config.cmake ${PROJECT_BINARY_DIR}/geoprior-config-version.cmake
+install(FILES cmake/system_libraries.cmake ${PROJECT_BINARY_DIR}/geoprior-config.cmake ${PROJECT_BINARY_DIR}/geoprior-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/geoprior)

@@ -14,7 +14,8 @@ packages=(
   ca-certificates git cmake ninja-build ccache g++ clang-format pkg-config
   # libraries
   libeigen3-dev libtbb-dev libcgal-dev libvtk9-dev libhdf5-dev libssl-dev
-  libsuitesparse-dev libopenblas-dev libpugixml-dev
+  libsuitesparse-dev libopenblas-dev libpugixml-dev libfftw3-dev liblemon-dev
+  libopenimageio-dev openimageio-tools python3-imath
   libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   # plots, report and the checks that a run needs nothing of ours
@@ -22,7 +23,7 @@ packages=(
   # pictures without a display
   xvfb libgl1-mesa-dri fonts-dejavu-core
   # models that nobody here made, and the converter that reads them
-  assimp-utils assimp-testmodels
+  assimp-utils assimp-testmodels libcgal-demo
 )
 
 say() { printf 'setup: %s\n' "$*" >&2; }

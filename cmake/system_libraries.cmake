@@ -1,0 +1,23 @@
+# Libraries for which Debian ships no CMake package: CHOLMOD (supernodal sparse Cholesky) and the BLAS
+# below it, FFTW (Fourier transforms), LEMON (network flows).
+# Also installed, for the projects that link geoprior.
+if(NOT TARGET geoprior_cholmod)
+  find_path(CHOLMOD_INCLUDE_DIR NAMES cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+  find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+  find_library(OPENBLAS_LIBRARY openblas REQUIRED)
+  add_library(geoprior_cholmod INTERFACE IMPORTED)
+  target_include_directories(geoprior_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
+  target_link_libraries(geoprior_cholmod INTERFACE ${CHOLMOD_LIBRARY} ${OPENBLAS_LIBRARY})
+
+  find_path(FFTW_INCLUDE_DIR NAMES fftw3.h REQUIRED)
+  find_library(FFTW_LIBRARY fftw3 REQUIRED)
+  add_library(geoprior_fftw INTERFACE IMPORTED)
+  target_include_directories(geoprior_fftw SYSTEM INTERFACE ${FFTW_INCLUDE_DIR})
+  target_link_libraries(geoprior_fftw INTERFACE ${FFTW_LIBRARY})
+
+  find_path(LEMON_INCLUDE_DIR NAMES lemon/network_simplex.h REQUIRED)
+  find_library(LEMON_LIBRARY lemon REQUIRED)
+  add_library(geoprior_lemon INTERFACE IMPORTED)
+  target_include_directories(geoprior_lemon SYSTEM INTERFACE ${LEMON_INCLUDE_DIR})
+  target_link_libraries(geoprior_lemon INTERFACE ${LEMON_LIBRARY})
+endif()

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "core/context.h"
+#include "core/surface_sequence.h"
+#include "solvers/fluid/feature.h"
+#include "solvers/fluid/regions.h"
+#include "solvers/fluid/tracking.h"
+
+namespace geoprior {
+
+/// Space-time features of any surface animation. Thesis 3.3.1.
+struct ExtractionOptions {
+  SegmentationOptions segmentation;
+  TrackingOptions tracking;
+  MapOptions map;
+  int shortest_track = 3;  ///< frames; shorter features are not lifted out
+};
+void describe(OptionVisitor& v, ExtractionOptions& options);
+
+/// Labels of the vertices of every frame and the tracks that join them.
+struct Extraction {
+  double cell = 0;  ///< h (m)
+  Thresholds thresholds;
+  std::vector<double> times;
+  std::vector<Region> regions;  ///< of all frames, ordered by frame
+  TrackResult tracking;
+  std::vector<std::string> warnings;  ///< naming frame and what was done
+};
+
+/// Segments every frame and tracks the regions. Calls `each` for every frame as it is segmented.
+/// Phases: "segment", "track".
+Extraction extract_regions(
+    const SurfaceSequence& sequence, const ExtractionOptions& options, RunContext& context,
+    const std::function<void(int, const SurfaceFrame&, const SegmentedFrame&)>& each = {});
+
+/// Lifts tracks out of the animation (all of them when `ids` is empty): base surface, maps, moving
+/// frames. Phase "lift". @throws Error  for an id that does not exist (names those that do)
+std::vector<Feature> lift_features(const SurfaceSequence& sequence, const Extraction& extraction,
+                                   const ExtractionOptions& options, const std::vector<int>& ids,
+                                   RunContext& context);
+
+/// The animation without a feature: its bed is put back under a differential one, an isolated one
+/// is removed.
+SurfaceFrame without_feature(const SurfaceFrame& frame, int frame_index,
+                             const Extraction& extraction, const ExtractionOptions& options,
+                             const std::vector<int>& ids);
+
+}  // namespace geoprior

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <vector>
+
+#include "core/options.h"
+#include "solvers/fluid/regions.h"
+
+namespace geoprior {
+
+enum class AssignmentKind { flow, frame_by_frame, greedy };
+
+struct TrackingOptions {
+  AssignmentKind assignment = AssignmentKind::flow;
+  int largest_gap = 3;        ///< frames a link may span (1: consecutive ones only)
+  double sigma_centre = 2;    ///< of the centre's distance from its prediction (h)
+  double sigma_area = 0.5;    ///< of ln(area ratio)
+  double sigma_volume = 0.3;  ///< of ln(volume ratio), isolated only
+  double new_path_cost = 10;  ///< c_new, a chi-squared value
+  double gap_cost = 1;        ///< added for each frame skipped
+  double largest_speed = 0;   ///< gate (m/s); 0: from the data
+  bool ballistic = true;      ///< isolated regions are predicted with gravity
+  std::array<double, 3> gravity{0, 0, -9.81};
+  double overlap_for_event = 0.3;  ///< share of overlap that makes a split or merge
+};
+void describe(OptionVisitor& v, TrackingOptions& options);
+
+/// Minimum-cost vertex-disjoint path cover of a directed acyclic graph with n nodes: paths cost
+/// `new_path_cost` each and links their own cost; every node is in exactly one path. Solved as a
+/// minimum-cost flow (network simplex, costs in units of 1e-4).
+struct PathLink {
+  int from = 0, to = 0;  ///< from < to in time
+  double cost = 0;
+};
+/// @return  successor of every node, -1 at the end of a path
+std::vector<int> cover_by_paths(int nodes, const std::vector<PathLink>& links,
+                                double new_path_cost);
+
+/// A space-time feature: regions of increasing frames (indices into the list given), gaps allowed.
+struct Track {
+  int id = 0;  ///< 1 …, by first frame, then label
+  RegionKind kind = RegionKind::differential;
+  std::vector<int> regions;
+};
+
+enum class TrackEventKind { split, merge, causes };
+/// "causes": an isolated feature ends where a differential one begins within a short time.
+struct TrackEvent {
+  TrackEventKind kind = TrackEventKind::split;
+  int frame = 0;
+  int from = 0, to = 0;  ///< track ids
+};
+
+struct TrackResult {
+  std::vector<Track> tracks;
+  std::vector<TrackEvent> events;  ///< the causality graph's edges
+  std::vector<PathLink> links;     ///< candidates that were considered
+};
+
+/// @param regions  of all frames, ordered by frame; @param times of the frames (s); @param cell h
+/// (m)
+TrackResult track_regions(const std::vector<Region>& regions, const std::vector<double>& times,
+                          double cell, const TrackingOptions& options);
+
+}  // namespace geoprior
