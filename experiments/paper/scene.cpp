@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <system_error>
 
 #include "core/error.h"
+#include "experiments/keyframes.h"
 #include "experiments/paper/pulled_apart.h"
 #include "experiments/view/view.h"
 
@@ -13,40 +13,6 @@ namespace geoprior {
 namespace {
 
 namespace fs = std::filesystem;
-
-Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-
-Eigen::Quaterniond turn(const std::array<double, 3>& turn_deg) {
-  const Eigen::Vector3d r = vector(turn_deg) * (std::numbers::pi / 180);
-  const double angle = r.norm();
-  if (angle == 0) return Eigen::Quaterniond::Identity();
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, r / angle));
-}
-
-/// A rotation from key to key is the shorter way round: one of half a turn or more would go the
-/// other way. Beyond a whole turn the quaternions, which repeat after two, no longer tell.
-void require_less_than_half_a_turn(const KeyOptions& before, const KeyOptions& key,
-                                   const std::string& where) {
-  constexpr double kSlack = 1e-9;
-  const double cosine_of_half = turn(before.turn_deg).dot(turn(key.turn_deg));
-  const double change_deg = (vector(key.turn_deg) - vector(before.turn_deg)).norm();
-  if (cosine_of_half > kSlack && change_deg < 360) return;
-  throw Error("turns by 180 degrees or more from the key before", where,
-              "less than 180 degrees from key to key");
-}
-
-Trajectory trajectory(const std::vector<KeyOptions>& keys, const std::string& where) {
-  Trajectory result;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const KeyOptions& key = keys[i];
-    if (i > 0) {
-      require_less_than_half_a_turn(keys[i - 1], key,
-                                    where + "." + std::to_string(i) + ".turn_deg");
-    }
-    result.keys.push_back({key.t, vector(key.move), turn(key.turn_deg)});
-  }
-  return result;
-}
 
 void require_count(const std::vector<double>& numbers, std::size_t count,
                    const std::string& where) {
@@ -70,7 +36,7 @@ Handle make_handle(const HandleOptions& options, const std::string& where) {
     handle.points = {Eigen::Vector2d(options.disc->u, options.disc->v)};
     handle.disc_radius = options.disc->radius;
   }
-  if (!options.keys.empty()) handle.motion = trajectory(options.keys, where + ".keys");
+  if (!options.keys.empty()) handle.motion = to_trajectory(options.keys, where + ".keys");
   if (!options.force.empty()) {
     require_count(options.force, 3, where + ".force");
     handle.force = Eigen::Vector3d(options.force[0], options.force[1], options.force[2]);
@@ -85,15 +51,15 @@ Obstacle make_obstacle(const ObstacleOptions& options, const std::string& where)
   Obstacle obstacle;
   obstacle.kind = options.kind;
   obstacle.name = options.name;
-  obstacle.centre = vector(options.centre);
-  const Eigen::Vector3d axis = vector(options.axis);
+  obstacle.centre = to_vector(options.centre);
+  const Eigen::Vector3d axis = to_vector(options.axis);
   if (!(axis.norm() > 0))
     throw Error("has no direction", where + ".axis", "a vector of any length");
   obstacle.axis = axis.normalized();
   obstacle.radius = options.radius;
   obstacle.tube_radius = options.tube_radius;
   obstacle.half_length = options.half_length;
-  if (!options.keys.empty()) obstacle.motion = trajectory(options.keys, where + ".keys");
+  if (!options.keys.empty()) obstacle.motion = to_trajectory(options.keys, where + ".keys");
   for (const RadiusKeyOptions& key : options.radii) {
     obstacle.radii.emplace_back(key.t, key.radius);
   }
@@ -168,10 +134,10 @@ Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern) {
     sheet.obstacles.push_back(
         make_obstacle(options.obstacles[i], "scene.obstacles." + std::to_string(i)));
   }
-  sheet.gravity = vector(options.gravity);
+  sheet.gravity = to_vector(options.gravity);
   sheet.placement = Eigen::Isometry3d::Identity();
-  sheet.placement.translate(vector(options.placement.move))
-      .rotate(turn(options.placement.turn_deg));
+  sheet.placement.translate(to_vector(options.placement.move))
+      .rotate(to_rotation(options.placement.turn_deg));
   sheet.imperfection = options.imperfection;
   sheet.duration = options.duration;
   sheet.frame_interval = options.frame_interval;

@@ -5,11 +5,6 @@ namespace {
 
 constexpr double kLargest = 1e6;
 
-void describe_keys(OptionVisitor& v, std::vector<KeyOptions>& keys) {
-  describe_list(v, "keys", keys,
-                {.doc = "motion: place and orientation at times that increase, cubic between"});
-}
-
 }  // namespace
 
 void describe(OptionVisitor& v, PatternPointOptions& options) {
@@ -63,14 +58,6 @@ void describe(OptionVisitor& v, PaperMaterial& options) {
   v.value("friction", options.friction, {.doc = "Coulomb, against obstacles", .min = 0});
   v.value("damping", options.damping,
           {.doc = "proportional to stiffness (Rayleigh)", .unit = "s", .min = 0});
-}
-
-void describe(OptionVisitor& v, KeyOptions& options) {
-  v.value("t", options.t, {.doc = "time", .unit = "s", .required = true});
-  v.value("move", options.move, {.doc = "from where it starts", .unit = "m"});
-  v.value(
-      "turn_deg", options.turn_deg,
-      {.doc = "axis times angle, about its centre; less than 180 from key to key", .unit = "deg"});
 }
 
 void describe(OptionVisitor& v, IntervalOptions& options) {

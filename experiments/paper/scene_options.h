@@ -7,6 +7,7 @@
 
 #include "baselines/paper/sheet.h"
 #include "core/options.h"
+#include "experiments/keyframes.h"
 #include "experiments/paper/svg_pattern.h"
 
 namespace geoprior {
@@ -31,14 +32,6 @@ struct PatternOptions {
   SvgPatternOptions svg;
 };
 void describe(OptionVisitor& v, PatternOptions& options);
-
-/// Position and orientation at a time.
-struct KeyOptions {
-  double t = 0;
-  std::array<double, 3> move{0, 0, 0};      ///< from where it starts (m)
-  std::array<double, 3> turn_deg{0, 0, 0};  ///< axis times angle
-};
-void describe(OptionVisitor& v, KeyOptions& options);
 
 struct IntervalOptions {
   double from = 0, to = 0;
