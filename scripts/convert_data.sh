@@ -42,3 +42,30 @@ convert() {
 
 convert Collada/human.zae human.glb
 convert FBX/animation_with_skeleton.fbx animation_with_skeleton.glb
+
+# unpack <member of libcgal-demo's data.tar.gz> <target in data/>
+archive="$(dpkg -L libcgal-dev libcgal-demo 2>/dev/null | grep -m1 '/data\.tar\.gz$' || true)"
+unpack() {
+  local member="$1" target="data/$2" temporary
+  if [[ -s "$target" && ! "$archive" -nt "$target" ]]; then
+    echo "convert_data: $target is there"
+    return
+  fi
+  if [[ ! -r "$archive" ]]; then
+    echo "convert_data: the package libcgal-demo is not installed" >&2
+    exit 2
+  fi
+  mkdir -p data
+  temporary="$(mktemp "data/.converting.XXXXXX")"
+  trap 'rm -f "$temporary"' EXIT
+  if ! tar -xzOf "$archive" "$member" >"$temporary" || [[ ! -s "$temporary" ]]; then
+    echo "convert_data: no $member in $archive" >&2
+    exit 2
+  fi
+  chmod 644 "$temporary"
+  mv "$temporary" "$target"
+  trap - EXIT
+  echo "convert_data: $member of libcgal-demo -> $target"
+}
+
+unpack data/meshes/bunny00.off bunny.off
