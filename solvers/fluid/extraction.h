@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "core/context.h"
@@ -24,6 +26,7 @@ void describe(OptionVisitor& v, ExtractionOptions& options);
 struct Extraction {
   double cell = 0;  ///< h (m)
   Thresholds thresholds;
+  std::shared_ptr<const Segmenter> segmenter;  ///< labels any frame again, exactly as it did
   std::vector<double> times;
   std::vector<Region> regions;  ///< of all frames, ordered by frame
   TrackResult tracking;

@@ -2,38 +2,36 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/options.h"
 #include "core/surface_sequence.h"
 #include "solvers/fluid/curvature.h"
+#include "solvers/fluid/masks.h"
 
 namespace geoprior {
 
 enum class ThresholdKind { automatic, given };
 
-/// Parts of a frame that are not considered: walls and solids. Given as boxes, or inferred.
-struct MaskOptions {
-  bool infer_walls = true;  ///< planar, upright sides of the sequence's bounding box
-  double band = 2.5;        ///< vertices within this many cells of a wall or solid are masked
-};
-void describe(OptionVisitor& v, MaskOptions& options);
-
 struct SegmentationOptions {
   CurvatureOptions curvature;
   MaskOptions mask;
-  double cell = 0;  ///< h, unit of lengths below (m); 0: mean edge of the first frame
+  std::optional<double> cell;  ///< h, unit of lengths below (m); default: mean edge of a frame
   ThresholdKind thresholds = ThresholdKind::automatic;
-  double high = 0.12;         ///< seeds: |H| h above this (given)
-  double low = 0.04;          ///< grown through |H| h above this (given)
-  double noise_factor = 6;    ///< automatic: low = median + this * MAD of the calm frames
+  double high = 0.12;  ///< seeds: |H| h above this (given)
+  double low = 0.04;   ///< grown through |H| h above this (given)
+  /// Automatic: low = median + this * MAD of |H| h over the free surface of the calm frames.
+  double noise_factor = 6;
   double seed_factor = 3;     ///< automatic: high = this * low
   double smallest_area = 20;  ///< regions below this many h^2 are dropped
   double close_radius = 2;    ///< dilation then erosion (h)
   double open_radius = 1;     ///< erosion then dilation (h)
   double largest_hole = 100;  ///< holes of a region up to this many h^2 are filled
   double largest_drop = 0.1;  ///< isolated: volume at most this share of the largest component's
+  bool handles = true;        ///< isolated components may have handles (torn crowns)
 };
 void describe(OptionVisitor& v, SegmentationOptions& options);
 
@@ -53,7 +51,14 @@ struct Region {
   double mean_curvature = 0;                             ///< 1/m
   double crest_share = 0;                                ///< share of the area with H > 0
   Eigen::Vector3d box_min = Eigen::Vector3d::Zero(), box_max = Eigen::Vector3d::Zero();
+  /// Cubes of two cells' edge that hold its vertices, as sorted keys (`support_key`).
+  std::vector<std::int64_t> support;
 };
+
+/// Key of the cube (i, j, k), each within ± 2^20; adding keys adds indices.
+constexpr std::int64_t support_key(std::int64_t i, std::int64_t j, std::int64_t k) {
+  return (i << 42) + (j << 21) + k;
+}
 
 /// A frame with every vertex labelled: 0 bed, 1 … region.
 struct SegmentedFrame {
@@ -69,22 +74,33 @@ struct Thresholds {
 };
 
 /// Walls and thresholds that a whole sequence decides; made once, then every frame is on its own.
+///
+/// A frame's regions: |H| h above `high` seeds them, above `low` grows them; then closing, opening,
+/// holes, smallest area. Small closed components are isolated regions, whole and whatever their
+/// curvature. Masked vertices and borders are in no region and bound no morphology.
 class Segmenter {
  public:
   /// Looks at up to 16 frames. @throws Error  when all frames are empty
   Segmenter(const SurfaceSequence& sequence, const SegmentationOptions& options);
+  /// Equal bytes for any thread count. @throws Error  on vertices that are not finite (named)
   [[nodiscard]] SegmentedFrame segment(const SurfaceFrame& frame, int frame_index) const;
   [[nodiscard]] const Thresholds& thresholds() const { return thresholds_; }
   [[nodiscard]] double cell() const { return cell_; }
+  [[nodiscard]] const Walls& walls() const { return walls_; }
+  /// "no frame is calm: …": what the thresholds rest on when it is not the calm frames.
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
   SegmentationOptions options_;
   Thresholds thresholds_;
   double cell_ = 0;
-  std::optional<Eigen::AlignedBox3d> walls_;
+  Walls walls_;
+  std::vector<std::string> warnings_;
 };
 
-/// Geodesic (edge graph) dilation, erosion of a vertex set by a metric radius (m).
+/// Geodesic dilation and erosion of a vertex set by a metric radius (m). Distances run along edges,
+/// so they exceed the true ones by up to about a tenth on irregular meshes. The border of an open
+/// mesh does not erode.
 std::vector<char> dilate(const TriMesh& mesh, const std::vector<char>& set, double radius);
 std::vector<char> erode(const TriMesh& mesh, const std::vector<char>& set, double radius);
 
