@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,9 @@ struct Edit {
   double turn_deg = 0;                     ///< about the up axis, through the pivot
   std::optional<double> pivot_x, pivot_y;  ///< default: the feature's first centre
   std::array<double, 3> scale{1, 1, 1};    ///< along the feature's own axes
-  bool mirror = false;                     ///< across the plane of its path
-  bool froude = false;          ///< time runs sqrt(scale) times slower (omega^2 = g k kept)
+  bool scale_path = false;                 ///< the path is scaled too, about the pivot
+  bool mirror = false;                     ///< across the upright plane of its first x axis
+  bool froude = false;          ///< path scaled, time sqrt(scale) slower (omega^2 = g k kept)
   std::optional<double> start;  ///< target time of the feature's first frame (s); default: its own
   double speed = 1;             ///< of the clock
   std::vector<TimeKey> retime;  ///< instead of start and speed
@@ -48,19 +50,43 @@ struct Edit {
 };
 void describe(OptionVisitor& v, Edit& options);
 
-/// A feature at a target time under an edit: nothing when it is not there then.
+/// @throws Error  naming the edit: box, interval, keys or scale that have no meaning
+void require_valid(const Edit& edit);
+
+/// A feature at a target time under an edit.
 struct EditedFrame {
   double source_time = 0;  ///< s
   double fade = 1;         ///< 0 … 1
   Eigen::Affine3d placement =
       Eigen::Affine3d::Identity();  ///< feature frame -> target, scale included
 };
+
+/// Where a feature is at a target time: nothing when it is not there then.
+///
+/// In this order: the feature's own frame at the source time (cubic between its frames), scale
+/// along its axes, mirror, scale of the path and turn about the pivot, move, offset of the
+/// trajectory keys (cubic, so that the fine motion stays). Isolated features do not fade.
 std::optional<EditedFrame> edited_frame(const Feature& feature, const Edit& edit,
                                         double target_time, const Eigen::Vector3d& up);
-/// Target times between which the feature is there (s).
+/// Target times between which the feature is there (s). A retiming that stands still at an end
+/// ends at its last key.
 std::array<double, 2> edited_interval(const Feature& feature, const Edit& edit);
 
 /// Monotone cubic (Fritsch and Carlson 1980) through keys; linear beyond them with the end slopes.
 double retimed(const std::vector<TimeKey>& keys, double target_time);
+
+/// What selection looks at: known of a track before it is lifted, and of a feature.
+struct FeatureSummary {
+  int id = 0;
+  std::vector<double> times;             ///< s
+  std::vector<Eigen::Vector3d> centres;  ///< at these times (m)
+  double largest_area = 0;               ///< m^2
+};
+FeatureSummary summary_of(const Feature& feature);
+
+/// Ids that an edit selects, ascending: those it names, or all that meet its box, interval and
+/// smallest area.
+/// @throws Error  for an id that does not exist (names those that do), or a selection of nothing
+std::vector<int> select_features(std::span<const FeatureSummary> features, const Edit& edit);
 
 }  // namespace geoprior

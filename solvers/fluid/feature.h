@@ -49,7 +49,7 @@ struct MapOptions {
   double border = 3;            ///< width over which alpha falls to 0, outside the region (h)
   double margin = 1.2;          ///< extent of the map relative to the region's
   int smoothing_window = 7;     ///< frames, Savitzky-Golay (order 2) of the placement
-  double base_smoothing = 0.5;  ///< of the base in time: weight of the frame before
+  double base_smoothing = 0.5;  ///< of the base in time: weight of the mean of its neighbours
 };
 void describe(OptionVisitor& v, MapOptions& options);
 
