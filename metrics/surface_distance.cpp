@@ -41,8 +41,29 @@ Triangles triangles_of(const TriMesh& mesh, const char* which) {
   return triangles;
 }
 
-/// The vertices of the mesh, and the centres of the pieces when each triangle is cut into similar
-/// ones with edges of at most `spacing`.
+/// Pieces along an edge when a triangle is cut into similar ones with edges of at most `spacing`.
+int cuts(const Kernel::Triangle_3& t, double spacing) {
+  const double longest2 =
+      std::max({CGAL::squared_distance(t[0], t[1]), CGAL::squared_distance(t[1], t[2]),
+                CGAL::squared_distance(t[2], t[0])});
+  return std::max(1, static_cast<int>(std::ceil(std::sqrt(longest2) / spacing)));
+}
+
+/// Calls `visit(centre)` for the n * n pieces of a triangle.
+template <class Visit>
+void visit_pieces(const Kernel::Triangle_3& t, int n, const Visit& visit) {
+  // Weights in thirds of a piece add up to 3 n; those of a centre all leave the same rest by 3: 1
+  // in upright pieces, 2 in the others.
+  for (int i = 1; i < 3 * n; ++i) {
+    if (i % 3 == 0) continue;
+    for (int j = i % 3; i + j < 3 * n; j += 3) {
+      visit(CGAL::barycenter(t[0], static_cast<double>(i), t[1], static_cast<double>(j), t[2],
+                             static_cast<double>(3 * n - i - j)));
+    }
+  }
+}
+
+/// The vertices of the mesh, and the centres of the pieces.
 std::vector<Kernel::Point_3> samples_of(const TriMesh& mesh, const Triangles& triangles,
                                         double spacing) {
   std::vector<Kernel::Point_3> samples;
@@ -53,20 +74,7 @@ std::vector<Kernel::Point_3> samples_of(const TriMesh& mesh, const Triangles& tr
     samples.emplace_back(mesh.V(v, 0), mesh.V(v, 1), mesh.V(v, 2));
   }
   for (const Kernel::Triangle_3& t : triangles) {
-    const double longest2 =
-        std::max({CGAL::squared_distance(t[0], t[1]), CGAL::squared_distance(t[1], t[2]),
-                  CGAL::squared_distance(t[2], t[0])});
-    const int n = std::max(1, static_cast<int>(std::ceil(std::sqrt(longest2) / spacing)));
-    // Weights in thirds of a piece add up to 3 n; those of a centre all leave the same rest by 3: 1
-    // in upright pieces, 2 in the others.
-    for (int i = 1; i < 3 * n; ++i) {
-      if (i % 3 == 0) continue;
-      for (int j = i % 3; i + j < 3 * n; j += 3) {
-        samples.push_back(CGAL::barycenter(t[0], static_cast<double>(i), t[1],
-                                           static_cast<double>(j), t[2],
-                                           static_cast<double>(3 * n - i - j)));
-      }
-    }
+    visit_pieces(t, cuts(t, spacing), [&](const Kernel::Point_3& p) { samples.push_back(p); });
   }
   return samples;
 }
@@ -98,6 +106,29 @@ double hausdorff_distance(const TriMesh& a, const TriMesh& b, double spacing) {
   const Tree second_tree(second.begin(), second.end());
   const double forth = largest_distance2(samples_of(a, first, spacing), second_tree, 0);
   return std::sqrt(largest_distance2(samples_of(b, second, spacing), first_tree, forth));
+}
+
+SurfaceDeviation surface_deviation(const TriMesh& a, const TriMesh& b, double spacing) {
+  if (!(spacing > 0)) throw Error("spacing is not positive", "surface deviation", "above 0");
+  const Triangles from = triangles_of(a, "a");
+  const Triangles to = triangles_of(b, "b");
+  const Tree tree(to.begin(), to.end());
+  SurfaceDeviation result;
+  double area = 0, squares = 0;
+  for (const Kernel::Triangle_3& t : from) {
+    const int n = cuts(t, spacing);
+    const double weight = std::sqrt(t.squared_area()) / (static_cast<double>(n) * n);
+    visit_pieces(t, n, [&](const Kernel::Point_3& p) {
+      const double d2 = tree.squared_distance(p);
+      area += weight;
+      squares += weight * d2;
+      result.mean += weight * std::sqrt(d2);
+      result.max = std::max(result.max, std::sqrt(d2));
+    });
+  }
+  result.rms = std::sqrt(squares / area);
+  result.mean /= area;
+  return result;
 }
 
 }  // namespace geoprior

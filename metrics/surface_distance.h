@@ -18,4 +18,14 @@ namespace geoprior {
 ///                 that is not positive
 double hausdorff_distance(const TriMesh& a, const TriMesh& b, double spacing);
 
+/// How far points of one surface are from another, over its area.
+struct SurfaceDeviation {
+  double rms = 0, mean = 0, max = 0;  ///< m
+};
+
+/// Distances of surface `a` from surface `b`, weighted by the area of `a`: taken at the centres of
+/// the pieces when the triangles are cut into ones with edges of at most `spacing`. Not symmetric.
+/// @throws Error   as `hausdorff_distance`
+SurfaceDeviation surface_deviation(const TriMesh& a, const TriMesh& b, double spacing);
+
 }  // namespace geoprior

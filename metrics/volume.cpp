@@ -33,6 +33,25 @@ double region_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
   return sum / 6;
 }
 
+Eigen::Vector3d volume_centroid(const TriMesh& mesh) {
+  if (mesh.vertex_count() == 0) throw Error("no volume", "volume_centroid", "a closed mesh");
+  // About a point of the mesh for round-off. A tetrahedron (0, a, b, c) has its centroid at (a + b
+  // + c) / 4.
+  const Eigen::RowVector3d origin = mesh.V.row(0);
+  double volume6 = 0;
+  Eigen::RowVector3d moment24 = Eigen::RowVector3d::Zero();
+  for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
+    const Eigen::RowVector3d a = mesh.V.row(mesh.F(t, 0)) - origin;
+    const Eigen::RowVector3d b = mesh.V.row(mesh.F(t, 1)) - origin;
+    const Eigen::RowVector3d c = mesh.V.row(mesh.F(t, 2)) - origin;
+    const double v = a.dot(b.cross(c));
+    volume6 += v;
+    moment24 += v * (a + b + c);
+  }
+  if (volume6 == 0) throw Error("no volume", "volume_centroid", "a closed mesh");
+  return (origin + moment24 / (4 * volume6)).transpose();
+}
+
 double relative_change(double before, double after) {
   if (before == 0 && after == 0) return 0;
   if (before == 0) throw Error("relative change of a quantity that was 0", "", "a non-zero value");

@@ -15,6 +15,12 @@ namespace geoprior {
 double region_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
                      const JointRegion& region);
 
+/// Integral of the position over the volume of a closed, outward oriented mesh, divided by the
+/// volume (m): the centre of mass of a homogeneous body. With the density rho and gravity g its
+/// potential energy is -rho V g.centroid.
+/// @throws Error  when the mesh encloses no volume
+Eigen::Vector3d volume_centroid(const TriMesh& mesh);
+
 /// (after - before) / before; 0 when both are 0.
 /// @throws Error  when only `before` is 0
 double relative_change(double before, double after);

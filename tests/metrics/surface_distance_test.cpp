@@ -68,5 +68,22 @@ TEST(HausdorffDistance, RefusesWhatItCannotMeasure) {
   EXPECT_THROW(hausdorff_distance(broken, plane, 0.1), Error);
 }
 
+TEST(SurfaceDeviation, OfTiltedPlanesIsTheAnalyticMean) {
+  // Plane z = 0 against z = x / 10 on [-1/2, 1/2] (the centred rectangle): the distance from (x, y,
+  // 0) is |x| / sqrt(101), so mean 1/4 and RMS 1 / (2 sqrt 3) of 1 / sqrt(101).
+  const TriMesh plane = sheets::rectangle(1, 1, 4, 4).mesh();
+  TriMesh tilted = sheets::rectangle(2, 2, 4, 4).mesh();
+  const Eigen::RowVector3d middle =
+      (plane.V.colwise().minCoeff() + plane.V.colwise().maxCoeff()) / 2;
+  const Eigen::RowVector3d other =
+      (tilted.V.colwise().minCoeff() + tilted.V.colwise().maxCoeff()) / 2;
+  tilted.V.rowwise() += middle - other;
+  tilted.V.col(2) = (tilted.V.col(0).array() - middle.x()) / 10;
+  const SurfaceDeviation d = surface_deviation(plane, tilted, 0.01);
+  EXPECT_NEAR(d.mean, 0.25 / std::sqrt(101.0), 1e-4);
+  EXPECT_NEAR(d.rms, 1 / (2 * std::sqrt(3.0)) / std::sqrt(101.0), 1e-4);
+  EXPECT_LE(d.max, 0.5 / std::sqrt(101.0) + 1e-12);
+}
+
 }  // namespace
 }  // namespace geoprior

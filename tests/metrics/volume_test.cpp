@@ -91,6 +91,16 @@ TEST(RegionVolume, DoesNotChangeUnderARigidMotion) {
   EXPECT_NEAR(relative_change(rest, region_volume(moved, rig.mesh.F, region)), 0, 1e-10);
 }
 
+TEST(VolumeCentroid, OfABoxAndOfTwoSpheres) {
+  const Eigen::Vector3d c = volume_centroid(shapes::box({1, 2, 3}, {2, 4, 7}));
+  EXPECT_LT((c - Eigen::Vector3d(1.5, 3, 5)).norm(), 1e-14);
+  // Equal spheres: half way between, whatever their tessellation's volume is.
+  const TriMesh two =
+      shapes::together(shapes::sphere(0.3, {0, 0, 0}, 3), shapes::sphere(0.3, {0, 0, 2}, 3));
+  EXPECT_LT((volume_centroid(two) - Eigen::Vector3d(0, 0, 1)).norm(), 1e-14);
+  EXPECT_THROW(volume_centroid(TriMesh{}), Error);
+}
+
 TEST(RelativeChange, IsRelativeToTheFirstAndRefusesZero) {
   EXPECT_DOUBLE_EQ(relative_change(2, 1.5), -0.25);
   EXPECT_DOUBLE_EQ(relative_change(0, 0), 0);
