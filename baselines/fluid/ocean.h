@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/mesh.h"
 #include "core/method.h"
@@ -34,8 +35,6 @@ struct OceanOptions {
   std::optional<double> amplitude;  ///< significant wave height to scale to (m); as the spectrum
   double mean_level = 0;            ///< z of the rest surface (m)
   int tiles = 1;                    ///< the patch repeated this many times along x and y
-  double duration = 2;              ///< s
-  double frame_interval = 1.0 / 25;
 };
 void describe(OptionVisitor& v, OceanOptions& options);
 
@@ -89,9 +88,11 @@ double ocean_spectrum(const OceanOptions& options, const Eigen::Vector2d& k);
 /// Angular frequency of waves of wave number k (rad/m): w^2 = g k tanh(k H).
 double ocean_frequency(const OceanOptions& options, double k);
 
-/// Frames "surface" with point array "velocity" at multiples of the interval, from 0 to the
-/// duration. Diagnostics: `significant_height` (4 standard deviations of the patch, m),
-/// `folded_triangles` (of the surface, turned over by choppiness).
-std::unique_ptr<Process> make_ocean(const OceanOptions& options);
+/// Frames at the times given: the part "surface" (triangles, point array "velocity" [m/s]); the
+/// part "samples" (grid of the patch's N x N samples, arrays "height" [m] and "rate" [m/s], its
+/// time derivative); the table "sea" (depth, gravity, wind direction, variance that the spectrum
+/// expects). Diagnostic: `folded_triangles` (of the surface, turned over by choppiness).
+/// @param times  strictly increasing (s)
+std::unique_ptr<Process> make_ocean(const OceanOptions& options, std::vector<double> times);
 
 }  // namespace geoprior

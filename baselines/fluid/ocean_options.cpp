@@ -12,7 +12,6 @@ namespace {
 
 constexpr int kMostSamples = 4096;
 constexpr int kMostVerticesAlong = 8192;
-constexpr int kMostFrames = 1000000;
 
 void require(bool holds, const char* option, double value, const std::string& where,
              const std::string& allowed) {
@@ -56,9 +55,6 @@ void describe(OptionVisitor& v, OceanOptions& o) {
            .min = 0});
   v.value("mean_level", o.mean_level, {.doc = "z of the rest surface", .unit = "m"});
   v.value("tiles", o.tiles, {.doc = "patches along x and y", .min = 1, .max = 64});
-  v.value("duration", o.duration, {.doc = "time of the last frame", .unit = "s", .min = 0});
-  v.value("frame_interval", o.frame_interval,
-          {.doc = "time between frames", .unit = "s", .min = 1e-6});
 }
 
 void require_valid(const OceanOptions& o, const std::string& where) {
@@ -82,12 +78,8 @@ void require_valid(const OceanOptions& o, const std::string& where) {
   positive("fetch", o.fetch);
   positive("depth", o.depth);
   positive("gravity", o.gravity);
-  positive("frame_interval", o.frame_interval);
   not_negative("choppiness", o.choppiness);
   not_negative("smallest_wave", o.smallest_wave);
-  not_negative("duration", o.duration);
-  require(o.duration / o.frame_interval < kMostFrames, "duration", o.duration, where,
-          "fewer than " + std::to_string(kMostFrames) + " frames");
   if (o.amplitude) not_negative("amplitude", *o.amplitude);
   finite("wind_direction_deg", o.wind_direction_deg);
   finite("mean_level", o.mean_level);

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <cstring>
 
 #include "baselines/fluid/ocean.h"
@@ -6,17 +5,6 @@
 
 namespace geoprior {
 namespace {
-
-/// Frames at 0, interval, …, the last not after the duration (but for round-off).
-int frame_count(const OceanOptions& options) {
-  constexpr double kRoundOff = 1e-9;
-  return static_cast<int>(std::floor(options.duration / options.frame_interval + kRoundOff)) + 1;
-}
-
-double significant_height(const Eigen::VectorXd& heights) {
-  const double mean = heights.mean();
-  return 4 * std::sqrt((heights.array() - mean).square().mean());
-}
 
 double folded_triangles(const TriMesh& mesh) {
   int folded = 0;
@@ -30,16 +18,17 @@ double folded_triangles(const TriMesh& mesh) {
 
 class OceanProcess final : public Process {
  public:
-  explicit OceanProcess(const OceanOptions& options) : options_(options) {
+  OceanProcess(const OceanOptions& options, std::vector<double> times)
+      : options_(options), times_(std::move(times)) {
     require_valid(options_, "ocean");
   }
 
   void run(FrameSink& sink, RunContext& context, const std::optional<State>& resume) override {
     const Ocean ocean(options_, context.seed());
-    const int count = frame_count(options_);
+    const int count = static_cast<int>(times_.size());
     for (int i = resume ? frame_in(*resume) : 0; i < count; ++i) {
       if (context.stop_requested()) return;
-      sink.frame(frame(ocean, i * options_.frame_interval, context));
+      sink.frame(frame(ocean, times_[static_cast<std::size_t>(i)], context));
       context.progress(static_cast<double>(i + 1) / count);
       sink.checkpoint(state_of(i + 1));
     }
@@ -59,7 +48,7 @@ class OceanProcess final : public Process {
     return next_frame;
   }
 
-  static Frame frame(const Ocean& ocean, double time, RunContext& context) {
+  [[nodiscard]] Frame frame(const Ocean& ocean, double time, RunContext& context) const {
     Frame frame;
     frame.parameter = time;
     Eigen::MatrixX3d velocity;
@@ -67,23 +56,47 @@ class OceanProcess final : public Process {
     {
       const Phase phase(context, "synthesis");
       mesh = ocean.surface(time, &velocity);
-      frame.diagnostics["significant_height"] = significant_height(ocean.heights(time));
+      frame.parts["samples"] = samples(ocean, time);
     }
     frame.diagnostics["folded_triangles"] = folded_triangles(mesh);
     Part& part = frame.parts["surface"];
     part.points = std::move(mesh.V);
     part.triangles = std::move(mesh.F);
     part.arrays.push_back({"velocity", "m/s", NamedArray::On::points, std::move(velocity)});
+    frame.tables["sea"] = sea(ocean);
     return frame;
   }
 
+  [[nodiscard]] Part samples(const Ocean& ocean, double time) const {
+    const double spacing = options_.size / options_.samples;
+    Part grid;
+    grid.kind = Part::Kind::grid;
+    grid.grid_size = {options_.samples, options_.samples, 1};
+    grid.grid_origin = {0, 0, options_.mean_level};
+    grid.grid_spacing = {spacing, spacing, 1};
+    grid.arrays.push_back({"height", "m", NamedArray::On::points, ocean.heights(time)});
+    grid.arrays.push_back({"rate", "m/s", NamedArray::On::points, ocean.velocities(time).col(2)});
+    return grid;
+  }
+
+  [[nodiscard]] FrameTable sea(const Ocean& ocean) const {
+    FrameTable table;
+    table.columns = {"depth [m]", "gravity [m/s^2]", "wind_direction [deg]",
+                     "expected_variance [m^2]"};
+    table.rows.resize(1, 4);
+    table.rows << options_.depth, options_.gravity, options_.wind_direction_deg,
+        ocean.expected_variance();
+    return table;
+  }
+
   OceanOptions options_;
+  std::vector<double> times_;
 };
 
 }  // namespace
 
-std::unique_ptr<Process> make_ocean(const OceanOptions& options) {
-  return std::make_unique<OceanProcess>(options);
+std::unique_ptr<Process> make_ocean(const OceanOptions& options, std::vector<double> times) {
+  return std::make_unique<OceanProcess>(options, std::move(times));
 }
 
 }  // namespace geoprior
