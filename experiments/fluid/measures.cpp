@@ -1,0 +1,214 @@
+#include "experiments/fluid/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/mesh.h"
+#include "metrics/dam_break.h"
+#include "metrics/volume.h"
+
+namespace geoprior {
+namespace {
+
+TriMesh mesh_of(const Part& part) { return {part.points, part.triangles}; }
+
+ContentKey key_of(const Part& part) {
+  ContentKey key;
+  key.add_matrix(part.points);
+  key.add_matrix(part.triangles);
+  return key;
+}
+
+ContentKey key_of(const Part& a, const Part& b) {
+  ContentKey key = key_of(a);
+  key.add_matrix(b.points);
+  key.add_matrix(b.triangles);
+  return key;
+}
+
+LiquidMeasures measure(const FluidScene& scene, const Part& surface) {
+  LiquidMeasures m;
+  const TriMesh mesh = mesh_of(surface);
+  m.closed = closedness(mesh);
+  if (mesh.triangle_count() == 0) return m;
+  m.top = mesh.V.col(2).maxCoeff();
+  if (m.closed.defects() == 0) {
+    m.volume = signed_volume(mesh.V, mesh.F);
+    const double density = scene.tank ? scene.tank->density : 1000;
+    if (*m.volume != 0) {
+      m.potential_energy = -density * *m.volume * scene.gravity.dot(volume_centroid(mesh));
+    }
+  }
+  if (scene.gauges) m.columns = columns(mesh, *scene.gauges);
+  return m;
+}
+
+SurfaceDeviation deviation(Memo<SurfaceDeviation, 8>& memo, const FluidScene& scene, const Part& a,
+                           const Part& b) {
+  return memo.get(key_of(a, b), [&] {
+    return surface_deviation(mesh_of(a), mesh_of(b), std::max(scene.cell / 2, 1e-9));
+  });
+}
+
+/// 1 for gauges in whose square lies a vertex that a feature moved.
+std::vector<char> pasted_gauges(const ColumnGrid& grid, const Part& surface) {
+  std::vector<char> pasted(static_cast<std::size_t>(grid.count()), 0);
+  const NamedArray* feature = find_array(surface, "feature");
+  if (feature == nullptr) return pasted;
+  for (Eigen::Index v = 0; v < surface.points.rows(); ++v) {
+    if (feature->values(v, 0) == 0) continue;
+    const Eigen::Vector2d at =
+        (surface.points.row(v).head<2>().transpose() - grid.origin) / grid.spacing;
+    const int i = static_cast<int>(std::floor(at.x())), j = static_cast<int>(std::floor(at.y()));
+    if (i < 0 || j < 0 || i >= grid.nx || j >= grid.ny) continue;
+    pasted[static_cast<std::size_t>(grid.index(i, j))] = 1;
+  }
+  return pasted;
+}
+
+/// Pasted gauges with a neighbour that is not.
+std::vector<char> seam_gauges(const ColumnGrid& grid, const std::vector<char>& pasted) {
+  std::vector<char> seam(pasted.size(), 0);
+  const auto is_pasted = [&](int i, int j) {
+    return pasted[static_cast<std::size_t>(grid.index(i, j))] != 0;
+  };
+  for (int j = 1; j + 1 < grid.ny; ++j) {
+    for (int i = 1; i + 1 < grid.nx; ++i) {
+      if (!is_pasted(i, j)) continue;
+      const bool border = !is_pasted(i - 1, j) || !is_pasted(i + 1, j) || !is_pasted(i, j - 1) ||
+                          !is_pasted(i, j + 1);
+      if (border) seam[static_cast<std::size_t>(grid.index(i, j))] = 1;
+    }
+  }
+  return seam;
+}
+
+/// What a frame of the sequence shows to the gauges.
+struct GaugeFrame {
+  Eigen::VectorXd heights, target;
+  std::vector<char> seam;
+};
+
+GaugeFrame gauge_frame(const FluidScene& scene, const FrameSequence& frames, std::size_t i,
+                       bool at_seam) {
+  GaugeFrame gauge;
+  const auto surface = frames.part(i, "surface");
+  if (!surface) return gauge;
+  gauge.heights = columns(mesh_of(*surface), *scene.gauges).top;
+  if (!at_seam) return gauge;
+  gauge.seam = seam_gauges(*scene.gauges, pasted_gauges(*scene.gauges, *surface));
+  const SurfaceSequence& target = *scene.sculpt.target;
+  const int frame = target.nearest_frame(frames.parameter(i));
+  gauge.target = columns(target.frame(frame).mesh, *scene.gauges).top;
+  return gauge;
+}
+
+Eigen::VectorXd only(const Eigen::VectorXd& values, const std::vector<char>& where) {
+  Eigen::VectorXd kept = values;
+  for (Eigen::Index i = 0; i < kept.size(); ++i) {
+    if (where[static_cast<std::size_t>(i)] == 0) {
+      kept[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return kept;
+}
+
+}  // namespace
+
+const Part& surface_part(const Frame& frame) {
+  const auto found = frame.parts.find("surface");
+  if (found == frame.parts.end() || found->second.kind != Part::Kind::triangles) {
+    throw Error("has no surface", "frame at " + std::to_string(frame.parameter) + " s",
+                "a part \"surface\" of triangles");
+  }
+  return found->second;
+}
+
+const NamedArray* find_array(const Part& part, const std::string& name) {
+  for (const NamedArray& array : part.arrays) {
+    if (array.name == name) return &array;
+  }
+  return nullptr;
+}
+
+LiquidMeasures liquid_measures(FluidMemo& memo, const FluidScene& scene, const Part& surface) {
+  return memo.surface.get(key_of(surface), [&] { return measure(scene, surface); });
+}
+
+SurfaceDeviation deviation_from(FluidMemo& memo, const FluidScene& scene, const Frame& frame,
+                                const Frame& reference) {
+  return deviation(memo.forth, scene, surface_part(frame), surface_part(reference));
+}
+
+SurfaceDeviation deviation_of_reference(FluidMemo& memo, const FluidScene& scene,
+                                        const Frame& frame, const Frame& reference) {
+  return deviation(memo.back, scene, surface_part(reference), surface_part(frame));
+}
+
+std::optional<DamMeasures> dam_measures(FluidMemo& memo, const FluidScene& scene,
+                                        const Frame& frame) {
+  const std::optional<double> a = scene.dam_width();
+  if (!a) return {};
+  const LiquidMeasures m = liquid_measures(memo, scene, surface_part(frame));
+  if (!m.columns) return {};
+  DamMeasures dam;
+  const double rate = std::sqrt(scene.gravity.norm() / *a);
+  dam.front_time = frame.parameter * std::numbers::sqrt2 * rate;
+  dam.height_time = frame.parameter * rate;
+  const double front = dam_front(*m.columns, *scene.gauges, scene.tank->cell / 2);
+  dam.front = (front - scene.tank->origin.x()) / *a;
+  dam.height = dam_height(*m.columns, *scene.gauges) / (2 * *a);
+  return dam;
+}
+
+std::optional<SeaState> sea_state(const Frame& frame) {
+  const auto grid = frame.parts.find("samples");
+  const auto table = frame.tables.find("sea");
+  if (grid == frame.parts.end() || table == frame.tables.end()) return {};
+  const Part& samples = grid->second;
+  const NamedArray* height = find_array(samples, "height");
+  const NamedArray* rate = find_array(samples, "rate");
+  if (height == nullptr || rate == nullptr) return {};
+  const Eigen::Index nx = samples.grid_size[0], ny = samples.grid_size[1];
+  const auto row = table->second.rows.row(0);
+  SeaState sea;
+  sea.patch = {static_cast<double>(nx) * samples.grid_spacing.x(),
+               static_cast<double>(ny) * samples.grid_spacing.y(), row[1], row[0]};
+  const double wind = row[2] * std::numbers::pi / 180;
+  sea.wind = {std::cos(wind), std::sin(wind)};
+  sea.expected_variance = row[3];
+  sea.heights = height->values.reshaped(nx, ny);
+  sea.rates = rate->values.reshaped(nx, ny);
+  return sea;
+}
+
+SecondDifference second_difference(const FluidScene& scene, const FrameSequence& frames,
+                                   bool at_seam) {
+  SecondDifference result;
+  if (!scene.gauges || frames.size() < 3 || (at_seam && !scene.sculpt.target)) return result;
+  GaugeFrame before = gauge_frame(scene, frames, 0, at_seam);
+  GaugeFrame now = gauge_frame(scene, frames, 1, at_seam);
+  double pasted = 0, target = 0;
+  for (std::size_t i = 2; i < frames.size(); ++i) {
+    GaugeFrame after = gauge_frame(scene, frames, i, at_seam);
+    if (before.heights.size() == 0 || now.heights.size() == 0 || after.heights.size() == 0) {
+      return {};
+    }
+    const Eigen::VectorXd middle = at_seam ? only(now.heights, now.seam) : now.heights;
+    pasted = std::max(pasted, largest_second_difference(before.heights, middle, after.heights));
+    if (at_seam) {
+      target = std::max(target, largest_second_difference(before.target, only(now.target, now.seam),
+                                                          after.target));
+    }
+    before = std::move(now);
+    now = std::move(after);
+  }
+  result.pasted = pasted;
+  if (at_seam) result.target = target;
+  return result;
+}
+
+}  // namespace geoprior

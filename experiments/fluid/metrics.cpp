@@ -1,0 +1,294 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "experiments/fluid/measures.h"
+#include "experiments/fluid/topic.h"
+#include "metrics/dam_break.h"
+#include "metrics/self_contact.h"
+
+namespace geoprior {
+namespace {
+
+// Runs of one build are equal bit for bit; tolerances are for other compilers and processors. A
+// splash is chaotic: what is measured of it there may differ by what another seed would do.
+constexpr Tolerance kSmooth{1e-9, 1e-3};
+constexpr Tolerance kChaotic{1e-6, 0.1};
+constexpr Tolerance kCount{2, 0.1};
+constexpr Tolerance kExact{0, 0};
+constexpr Tolerance kRoundOff{1e-7, 0};
+
+using SharedMemo = std::shared_ptr<FluidMemo>;
+using OfFrame = std::function<Value(const FluidScene&, const Frame&)>;
+using OfPair = std::function<Value(const FluidScene&, const Frame&, const Frame&)>;
+using OfSequence = std::function<Value(const FluidScene&, const FrameSequence&)>;
+
+const FluidScene& fluid(const Scene& scene) { return dynamic_cast<const FluidScene&>(scene); }
+
+/// Adds rows to the table.
+class Rows {
+ public:
+  explicit Rows(std::vector<MetricEntry>& table) : table_(table) {}
+
+  void frame(const char* name, const char* unit, const char* definition, Direction direction,
+             Tolerance tolerance, OfFrame measure) {
+    MetricEntry& e = add(name, unit, definition, direction, tolerance);
+    e.of_frame = [measure = std::move(measure)](const Scene& scene, const Frame& frame,
+                                                const Frame*) {
+      return measure(fluid(scene), frame);
+    };
+  }
+  void pair(const char* name, const char* unit, const char* definition, Direction direction,
+            Tolerance tolerance, OfPair measure) {
+    MetricEntry& e = add(name, unit, definition, direction, tolerance);
+    e.needs_reference = true;
+    e.reference_parts = {"surface"};
+    e.of_frame = [measure = std::move(measure)](const Scene& scene, const Frame& frame,
+                                                const Frame* reference) -> Value {
+      if (reference == nullptr) return {};
+      return measure(fluid(scene), frame, *reference);
+    };
+  }
+  void sequence(const char* name, const char* unit, const char* definition, Direction direction,
+                Tolerance tolerance, OfSequence measure) {
+    MetricEntry& e = add(name, unit, definition, direction, tolerance);
+    e.of_sequence = [measure = std::move(measure)](const Scene& scene,
+                                                   const FrameSequence& frames) {
+      return measure(fluid(scene), frames);
+    };
+  }
+
+  /// Of the last row.
+  void target(double value) { table_.back().target = value; }
+
+ private:
+  MetricEntry& add(const char* name, const char* unit, const char* definition, Direction direction,
+                   Tolerance tolerance) {
+    MetricEntry& e = table_.emplace_back();
+    e.name = name;
+    e.unit = unit;
+    e.definition = definition;
+    e.direction = direction;
+    e.tolerance = tolerance;
+    return e;
+  }
+
+  std::vector<MetricEntry>& table_;
+};
+
+void add_surface(Rows rows, const SharedMemo& memo) {
+  const auto read = [memo](auto get) {
+    return [memo, get](const FluidScene& scene, const Frame& frame) -> Value {
+      return get(liquid_measures(*memo, scene, surface_part(frame)));
+    };
+  };
+  using M = const LiquidMeasures&;
+  rows.frame("volume", "m^3", "volume that the surface encloses; absent when it is not closed",
+             Direction::none, kChaotic, read([](M m) { return m.volume; }));
+  rows.frame("potential_energy", "J",
+             "of the enclosed liquid above z = 0; absent when the surface is not closed",
+             Direction::none, kChaotic, read([](M m) { return m.potential_energy; }));
+  rows.frame("border_edges", "1", "edges of one triangle only: 0 on a closed surface",
+             Direction::none, kExact, read([](M m) -> Value { return m.closed.border_edges; }));
+  rows.frame(
+      "manifold_defects", "1",
+      "edges of three or more triangles or of two that are oppositely oriented, and vertices "
+      "where two sheets touch",
+      Direction::lower_is_better, kExact, read([](M m) -> Value {
+        return m.closed.crowded_edges + m.closed.turned_edges + m.closed.pinched_vertices;
+      }));
+  rows.frame("components", "1", "connected pieces of the surface", Direction::none, kCount,
+             read([](M m) -> Value { return m.closed.components; }));
+  rows.frame("top", "m", "height of the highest point", Direction::none, kChaotic,
+             read([](M m) -> Value { return m.top; }));
+  rows.frame("triangles", "1", "triangles of the surface", Direction::none, kCount,
+             [](const FluidScene&, const Frame& frame) -> Value {
+               return static_cast<double>(surface_part(frame).triangles.rows());
+             });
+  rows.frame("intersecting_pairs", "1",
+             "pairs of triangles that intersect, of surfaces that features were pasted into",
+             Direction::lower_is_better, kCount,
+             [](const FluidScene&, const Frame& frame) -> Value {
+               const Part& surface = surface_part(frame);
+               if (find_array(surface, "feature") == nullptr) return {};
+               return intersecting_pairs(surface.points, surface.triangles);
+             });
+}
+
+void add_dam_break(Rows rows, const SharedMemo& memo) {
+  const auto read = [memo](auto get) {
+    return [memo, get](const FluidScene& scene, const Frame& frame) -> Value {
+      const std::optional<DamMeasures> dam = dam_measures(*memo, scene, frame);
+      if (!dam) return {};
+      const double value = get(*dam);
+      return std::isfinite(value) ? Value(value) : Value();
+    };
+  };
+  using D = const DamMeasures&;
+  rows.frame("dam_front", "1",
+             "place of the surge front, x / a: where the mean column is deeper than half a cell; "
+             "scenes with one block of water at the wall",
+             Direction::none, kChaotic, read([](D d) { return d.front; }));
+  rows.frame("dam_height", "1", "height of the water at the wall over that of the block",
+             Direction::none, kChaotic, read([](D d) { return d.height; }));
+  rows.frame("dam_front_error", "1",
+             "dam_front over the one that Martin and Moyce measured at that time, minus 1",
+             Direction::closer_to_target, kChaotic, read([](D d) {
+               return d.front / interpolate(measured_dam_front(), d.front_time) - 1;
+             }));
+  rows.frame("dam_height_error", "1",
+             "dam_height minus the one that Martin and Moyce measured at that time, in heights of "
+             "the block",
+             Direction::closer_to_target, kChaotic, read([](D d) {
+               return d.height - interpolate(measured_dam_height(), d.height_time);
+             }));
+}
+
+void add_comparison(Rows rows, const SharedMemo& memo) {
+  rows.pair("distance_rms", "m",
+            "RMS distance of the surface from the reference's, both ways, the larger",
+            Direction::lower_is_better, kChaotic,
+            [memo](const FluidScene& s, const Frame& f, const Frame& r) -> Value {
+              return std::max(deviation_from(*memo, s, f, r).rms,
+                              deviation_of_reference(*memo, s, f, r).rms);
+            });
+  rows.pair("distance_max", "m", "Hausdorff distance of the surface and the reference's",
+            Direction::lower_is_better, kChaotic,
+            [memo](const FluidScene& s, const Frame& f, const Frame& r) -> Value {
+              return std::max(deviation_from(*memo, s, f, r).max,
+                              deviation_of_reference(*memo, s, f, r).max);
+            });
+  const auto compare = [memo](auto get) {
+    return [memo, get](const FluidScene& s, const Frame& f, const Frame& r) -> Value {
+      const LiquidMeasures a = liquid_measures(*memo, s, surface_part(f));
+      const LiquidMeasures b = liquid_measures(*memo, s, surface_part(r));
+      if (!a.columns || !b.columns) return {};
+      return get(compare_columns(a.columns->top, b.columns->top));
+    };
+  };
+  rows.pair("height_rms", "m", "RMS difference of the highest points at wave gauges a cell apart",
+            Direction::lower_is_better, kChaotic,
+            compare([](const ColumnComparison& c) -> Value { return c.rms; }));
+  rows.pair("height_correlation", "1", "correlation of the highest points at the gauges",
+            Direction::higher_is_better, {0.05, 0},
+            compare([](const ColumnComparison& c) -> Value { return c.correlation; }));
+  rows.pair("volume_change", "1", "volume over the reference's, minus 1",
+            Direction::closer_to_target, {1e-4, 0.1},
+            [memo](const FluidScene& s, const Frame& f, const Frame& r) -> Value {
+              const Value a = liquid_measures(*memo, s, surface_part(f)).volume;
+              const Value b = liquid_measures(*memo, s, surface_part(r)).volume;
+              if (!a || !b || *b == 0) return {};
+              return *a / *b - 1;
+            });
+}
+
+/// Largest |V - V0| / V0 of the frames; absent when a frame is not closed or liquid is poured in.
+Value volume_drift(FluidMemo& memo, const FluidScene& scene, const FrameSequence& frames) {
+  if (!scene.tank || !scene.tank->sources.empty()) return {};
+  Value first;
+  double drift = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const auto surface = frames.part(i, "surface");
+    if (!surface) return {};
+    const Value volume = liquid_measures(memo, scene, *surface).volume;
+    if (!volume || (first && *first == 0)) return {};
+    if (!first) first = volume;
+    drift = std::max(drift, std::abs(*volume / *first - 1));
+  }
+  return first ? Value(drift) : Value();
+}
+
+void add_time(Rows rows, const SharedMemo& memo) {
+  rows.sequence("volume_drift", "1",
+                "largest change of the enclosed volume from the first frame's, relative",
+                Direction::lower_is_better, kChaotic,
+                [memo](const FluidScene& scene, const FrameSequence& frames) {
+                  return volume_drift(*memo, scene, frames);
+                });
+  rows.sequence("second_difference", "m",
+                "largest second difference in time of the heights at the gauges, a frame apart",
+                Direction::lower_is_better, kChaotic,
+                [](const FluidScene& scene, const FrameSequence& frames) {
+                  return second_difference(scene, frames, false).pasted;
+                });
+  rows.sequence("seam_jitter", "1",
+                "second_difference where the seams of features pass, over that of the target alone "
+                "at the same gauges and times",
+                Direction::lower_is_better, kChaotic,
+                [](const FluidScene& scene, const FrameSequence& frames) -> Value {
+                  const SecondDifference d = second_difference(scene, frames, true);
+                  if (!d.pasted || !d.target || *d.target == 0) return {};
+                  return *d.pasted / *d.target;
+                });
+}
+
+/// Largest error of any mode in any three frames in a row.
+Value sea_dispersion(const FrameSequence& frames) {
+  Eigen::MatrixXcd modes[3];
+  Value worst;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::optional<SeaState> sea = sea_state(*frames.frame(i));
+    if (!sea) return {};
+    modes[0] = std::move(modes[1]);
+    modes[1] = std::move(modes[2]);
+    modes[2] = fourier_modes(sea->heights);
+    if (i < 2) continue;
+    const double interval = (frames.parameter(i) - frames.parameter(i - 2)) / 2;
+    const DispersionError error =
+        dispersion_error(modes[0], modes[1], modes[2], interval, sea->patch);
+    if (error.modes > 0) worst = std::max(worst.value_or(0), error.max);
+  }
+  return worst;
+}
+
+void add_sea(Rows rows) {
+  const auto read = [](auto get) {
+    return [get](const FluidScene&, const Frame& frame) -> Value {
+      const std::optional<SeaState> sea = sea_state(frame);
+      return sea ? get(*sea) : Value();
+    };
+  };
+  using S = const SeaState&;
+  rows.frame("significant_wave_height", "m", "4 standard deviations of the heights of an ocean",
+             Direction::none, kSmooth, read([](S s) -> Value {
+               return 4 * std::sqrt(moments(s.heights.reshaped()).variance);
+             }));
+  rows.frame("variance_ratio", "1",
+             "variance of an ocean's heights over what its spectrum's modes carry on average",
+             Direction::closer_to_target, kSmooth, read([](S s) -> Value {
+               if (s.expected_variance == 0) return {};
+               return moments(s.heights.reshaped()).variance / s.expected_variance;
+             }));
+  rows.target(1);
+  rows.frame("kurtosis", "1", "of an ocean's heights; 3 for a Gaussian sea", Direction::none,
+             kSmooth, read([](S s) -> Value { return moments(s.heights.reshaped()).kurtosis; }));
+  rows.frame("downwind_share", "1", "share of the variance in waves that run with the wind",
+             Direction::none, kSmooth, read([](S s) -> Value {
+               return share_running_along(fourier_modes(s.heights), fourier_modes(s.rates), s.wind,
+                                          s.patch);
+             }));
+  rows.sequence(
+      "dispersion_error", "1",
+      "largest relative error of a mode's frequency against sqrt(g k tanh(k H)), from "
+      "three frames in a row",
+      Direction::lower_is_better, kRoundOff,
+      [](const FluidScene&, const FrameSequence& frames) { return sea_dispersion(frames); });
+}
+
+}  // namespace
+
+std::vector<MetricEntry> fluid_metrics() {
+  const auto memo = std::make_shared<FluidMemo>();
+  std::vector<MetricEntry> table;
+  const Rows rows(table);
+  add_surface(rows, memo);
+  add_dam_break(rows, memo);
+  add_comparison(rows, memo);
+  add_time(rows, memo);
+  add_sea(rows);
+  return table;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "baselines/fluid/injected_sequence.h"
+#include "baselines/fluid/tank.h"
+#include "experiments/fluid/scene_options.h"
+#include "experiments/topic.h"
+#include "metrics/liquid_columns.h"
+#include "solvers/fluid/sculpting.h"
+
+namespace geoprior {
+
+/// A tank to simulate, or animations, a target and edits, or several of these: what the fluid
+/// methods are given and the fluid metrics are measured on.
+class FluidScene final : public Scene {
+ public:
+  std::optional<Tank> tank;
+  std::shared_ptr<const InjectedSequence> injected;  ///< with its truth, or null
+  SculptScene sculpt;
+  double duration = 1, frame_interval = 0.04;  ///< s
+  Eigen::Vector3d gravity{0, 0, -9.81};
+  /// Where wave gauges stand: over the tank, else over the first frame of target or source.
+  std::optional<ColumnGrid> gauges;
+  double cell = 0;  ///< length that distances are compared with: the tank's h, or the mean edge (m)
+  std::vector<std::filesystem::path> input_files;
+  std::vector<std::string> load_warnings;
+
+  /// @throws Error  naming the method and the missing table
+  [[nodiscard]] const Tank& require_tank(const std::string& who) const;
+
+  /// Width a of the water column of a dam break: one box of water against the lower x side of a
+  /// tank without solids and sources; absent for other scenes.
+  [[nodiscard]] std::optional<double> dam_width() const;
+
+  [[nodiscard]] std::vector<double> parameters() const override { return {}; }
+  [[nodiscard]] std::string parameter_name() const override { return "time"; }
+  [[nodiscard]] std::string parameter_unit() const override { return "s"; }
+  [[nodiscard]] std::vector<std::filesystem::path> inputs() const override { return input_files; }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return load_warnings; }
+  [[nodiscard]] std::map<std::string, double> facts() const override;
+};
+
+/// Bytes of memory that a simulation may take: four fifths of the machine's.
+double simulation_memory_limit();
+
+/// @param folder  of the experiment file, against which relative files are tried first
+/// @throws Error  naming key or file, and place
+std::shared_ptr<FluidScene> load_fluid_scene(const FluidSceneOptions& options,
+                                             const std::filesystem::path& folder);
+
+}  // namespace geoprior

@@ -1,0 +1,23 @@
+#include "experiments/fluid/topic.h"
+
+#include "experiments/fluid/scene.h"
+
+namespace geoprior {
+
+Topic fluid_topic() {
+  Topic topic;
+  topic.name = "fluid";
+  topic.summary = "features are cut from liquid animations and pasted into others (thesis 3.3)";
+  topic.default_scene = [] { return std::make_unique<TypedOptions<FluidSceneOptions>>(); };
+  topic.load = [](const OptionSet& set, const std::filesystem::path& folder) {
+    return load_fluid_scene(dynamic_cast<const TypedOptions<FluidSceneOptions>&>(set).options,
+                            folder);
+  };
+  topic.methods = fluid_methods();
+  topic.metrics = fluid_metrics();
+  topic.view.direction = {0.6, -1, 0.5};
+  topic.view.up = {0, 0, 1};
+  return topic;
+}
+
+}  // namespace geoprior
