@@ -1,0 +1,100 @@
+#include "solvers/fluid/surface_graph.h"
+
+#include <algorithm>
+#include <string>
+
+#include "core/error.h"
+#include "core/parallel.h"
+
+namespace geoprior {
+namespace {
+
+constexpr std::size_t kBlock = 2048;
+
+void copy_vertices(const TriMesh& mesh, SurfaceGraph& g) {
+  const auto n = static_cast<std::size_t>(mesh.vertex_count());
+  g.x.resize(n);
+  for (std::size_t v = 0; v < n; ++v) {
+    g.x[v] = mesh.V.row(static_cast<Eigen::Index>(v)).transpose();
+    if (!g.x[v].allFinite()) {
+      throw Error("position is not finite", "vertex " + std::to_string(v), "finite coordinates");
+    }
+  }
+}
+
+void copy_triangles(const TriMesh& mesh, SurfaceGraph& g) {
+  const auto n = mesh.vertex_count();
+  g.triangle.resize(static_cast<std::size_t>(mesh.triangle_count()));
+  g.corner_offset.assign(static_cast<std::size_t>(n) + 1, 0);
+  for (std::size_t t = 0; t < g.triangle.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const int v = mesh.F(static_cast<Eigen::Index>(t), k);
+      if (v < 0 || v >= n) {
+        throw Error("no vertex " + std::to_string(v), "triangle " + std::to_string(t),
+                    "0 to " + std::to_string(n - 1));
+      }
+      g.triangle[t][static_cast<std::size_t>(k)] = v;
+      ++g.corner_offset[static_cast<std::size_t>(v) + 1];
+    }
+  }
+}
+
+/// Counting sort of the corners by vertex.
+void sort_corners(SurfaceGraph& g) {
+  for (std::size_t v = 1; v < g.corner_offset.size(); ++v)
+    g.corner_offset[v] += g.corner_offset[v - 1];
+  g.corner.resize(3 * g.triangle.size());
+  std::vector<int> next(g.corner_offset.begin(), g.corner_offset.end() - 1);
+  for (std::size_t t = 0; t < g.triangle.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = static_cast<std::size_t>(g.triangle[t][k]);
+      g.corner[static_cast<std::size_t>(next[v]++)] = static_cast<int>(3 * t + k);
+    }
+  }
+}
+
+/// Every triangle around v leads from one neighbour to the next: the ring is those led from, and at
+/// a border also those only led to. A neighbour met twice is no manifold.
+void collect_ring(SurfaceGraph& g, int v) {
+  const auto i = static_cast<std::size_t>(v);
+  int* const begin = g.ring.data() + 2 * g.corner_offset[i];
+  int* end = begin;
+  bool closed = !g.corners(v).empty();
+  for (const int c : g.corners(v)) {
+    const auto& t = g.triangle[static_cast<std::size_t>(c / 3)];
+    const int from = t[static_cast<std::size_t>((c + 1) % 3)];
+    if (std::find(begin, end, from) != end) {
+      closed = false;
+    } else {
+      *end++ = from;
+    }
+  }
+  int* const led_from = end;
+  for (const int c : g.corners(v)) {
+    const auto& t = g.triangle[static_cast<std::size_t>(c / 3)];
+    const int to = t[static_cast<std::size_t>((c + 2) % 3)];
+    if (std::find(begin, led_from, to) != led_from) continue;
+    closed = false;
+    if (std::find(led_from, end, to) == end) *end++ = to;
+  }
+  g.ring_size[i] = static_cast<int>(end - begin);
+  g.border[i] = closed ? 0 : 1;
+}
+
+}  // namespace
+
+SurfaceGraph surface_graph(const TriMesh& mesh) {
+  SurfaceGraph g;
+  copy_vertices(mesh, g);
+  copy_triangles(mesh, g);
+  sort_corners(g);
+  g.ring.resize(2 * g.corner.size());
+  g.ring_size.resize(g.x.size());
+  g.border.resize(g.x.size());
+  parallel_blocks(g.x.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) collect_ring(g, static_cast<int>(v));
+  });
+  return g;
+}
+
+}  // namespace geoprior
