@@ -178,31 +178,38 @@ void update(Reader& reader, const std::filesystem::path& file) {
   }
 }
 
-void read_parameter(vtkDataSet& data, double* parameter, const std::string& where) {
-  if (parameter == nullptr) return;
+std::optional<double> time_value(vtkDataSet& data) {
   vtkDataArray* time = data.GetFieldData()->GetArray("TimeValue");
-  if (time == nullptr || time->GetNumberOfTuples() < 1) {
-    throw Error("has no field array TimeValue", where);
-  }
-  *parameter = time->GetComponent(0, 0);
+  if (time == nullptr || time->GetNumberOfTuples() < 1) return std::nullopt;
+  return time->GetComponent(0, 0);
 }
 
 }  // namespace
 
 Part read_vtk_part(const std::filesystem::path& file, double* parameter) {
+  std::optional<double> time;
+  Part part = read_vtk_part(file, time);
+  if (parameter != nullptr) {
+    if (!time) throw Error("has no field array TimeValue", file.string());
+    *parameter = *time;
+  }
+  return part;
+}
+
+Part read_vtk_part(const std::filesystem::path& file, std::optional<double>& parameter) {
   const std::string where = file.string();
   const std::string extension = file.extension().string();
   if (!std::filesystem::is_regular_file(file)) throw Error("is no file", where);
   if (extension == ".vti") {
     vtkNew<vtkXMLImageDataReader> reader;
     update(*reader.Get(), file);
-    read_parameter(*reader->GetOutput(), parameter, where);
+    parameter = time_value(*reader->GetOutput());
     return from_image(*reader->GetOutput());
   }
   if (extension == ".vtp") {
     vtkNew<vtkXMLPolyDataReader> reader;
     update(*reader.Get(), file);
-    read_parameter(*reader->GetOutput(), parameter, where);
+    parameter = time_value(*reader->GetOutput());
     return from_poly_data(*reader->GetOutput(), where);
   }
   throw Error("has the extension '" + extension + "'", where, ".vtp, .vti");
