@@ -9,8 +9,8 @@
 #include "baselines/paper/pop_filter.h"
 #include "baselines/paper/remesh.h"
 #include "baselines/paper/sizing.h"
-#include "baselines/paper/state_bytes.h"
 #include "core/error.h"
+#include "core/state_bytes.h"
 
 namespace geoprior {
 namespace {

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "baselines/paper/obstacle_shape.h"
-#include "baselines/paper/state_bytes.h"
 #include "core/error.h"
+#include "core/state_bytes.h"
 
 namespace geoprior {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "baselines/paper/state_bytes.h"
+#include "core/state_bytes.h"
 #include "solvers/paper/structure.h"
 
 namespace geoprior {
