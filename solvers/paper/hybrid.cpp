@@ -119,16 +119,17 @@ std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, ShellState& s
     yield_at_apexes(sheet.material, options_.weakening_radius, mesh_.singular_vertices, curvature_,
                     state, structure_);
   }
-  const RulingEditor looker = editor();
+  RulingEditor looker = editor();
+  folds_ = fold_angles(state, mesh_);
+  for (Ruling& ruling : structure_.rulings) ++ruling.age_frames;
+  count_flat_frames(folds_, options_, looker);
   return group_demands(find_demands(sheet, state, curvature_, mesh_, looker, options_), state.mesh,
                        options_.group_angle_deg);
 }
 
-bool HybridMesher::track(const ShellState& state, const std::vector<double>& folds, bool at_rest,
-                         RulingEditor& editor) {
-  const bool refined = refine_rulings(folds, options_, editor);
-  const bool retired = retire_rulings(folds, options_, editor);
-  if (refined || retired || !at_rest) return refined || retired;
+bool HybridMesher::track(const ShellState& state, bool at_rest, RulingEditor& editor) {
+  const bool refined = refine_rulings(folds_, options_, editor);
+  if (refined || !at_rest) return refined;
   return turn_cylinders(state, curvature_, mesh_, options_, editor);
 }
 
@@ -138,10 +139,16 @@ PropagationReport HybridMesher::edit(const ShellState& state,
                                      std::uint64_t seed) {
   PropagationReport total;
   RulingEditor pen = editor();
-  std::vector<double> folds = fold_angles(state, mesh_);
-  if (tracking) total.changed = track(state, folds, groups.empty(), pen);
-  if (groups.empty()) return total;
+  if (tracking) total.changed = track(state, groups.empty(), pen);
+  if (!groups.empty()) resolve(state, groups, seed, pen, total);
+  if (tracking && retire_rulings(total.changed, options_, pen)) total.changed = true;
+  return total;
+}
+
+void HybridMesher::resolve(const ShellState& state, const std::vector<DemandGroup>& groups,
+                           std::uint64_t seed, RulingEditor& pen, PropagationReport& total) {
   const PatternLocator locator(state.mesh);
+  std::vector<double> folds = folds_;
   for (const DemandGroup& group : groups) {
     // Once rulings have gone, the folds belong to others.
     if (total.changed) folds.clear();
@@ -155,7 +162,6 @@ PropagationReport HybridMesher::edit(const ShellState& state,
     total.new_singular_points += report.new_singular_points;
     total.changed |= report.changed;
   }
-  return total;
 }
 
 HybridMesher::Snapshot HybridMesher::snapshot(const ShellState& state) const {
@@ -181,7 +187,6 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& /*stepper*/, ShellSta
   std::vector<DemandGroup> groups;
   {
     const Phase phase(context, "analyse");
-    for (Ruling& ruling : structure_.rulings) ++ruling.age_frames;
     groups = analyse(sheet, state);
   }
   const Snapshot before = snapshot(state);

@@ -46,11 +46,12 @@ class HybridMesher final : public SheetMesher {
   [[nodiscard]] RulingEditor editor();
   void remesh();
   [[nodiscard]] std::vector<DemandGroup> analyse(const Sheet& sheet, ShellState& state);
-  bool track(const ShellState& state, const std::vector<double>& folds, bool at_rest,
-             RulingEditor& editor);
+  bool track(const ShellState& state, bool at_rest, RulingEditor& editor);
   [[nodiscard]] PropagationReport edit(const ShellState& state,
                                        const std::vector<DemandGroup>& groups, bool tracking,
                                        std::uint64_t seed);
+  void resolve(const ShellState& state, const std::vector<DemandGroup>& groups, std::uint64_t seed,
+               RulingEditor& pen, PropagationReport& total);
   bool try_change(const Sheet& sheet, const std::vector<DemandGroup>& groups, bool tracking,
                   int effort, const Snapshot& before, ShellState& state, RunContext& context);
   void keep(const Sheet& sheet, int effort, ShellState& state, RunContext& context);
@@ -65,6 +66,7 @@ class HybridMesher final : public SheetMesher {
   RulingMesh mesh_;
   CurvatureFit fit_;
   Eigen::MatrixX3d curvature_;  ///< of each triangle, at the end of the frame's steps
+  std::vector<double> folds_;   ///< of each ruling, likewise (rad)
   Pattern pattern_;
   std::vector<Eigen::Vector2d> anchors_;
   std::optional<IsometryProjector> projector_;

@@ -18,6 +18,8 @@ using Eigen::Vector2d;
 constexpr double kRadians = std::numbers::pi / 180;
 /// Turns smaller than this are not worth a new mesh.
 constexpr double kLeastTurnDegrees = 1;
+/// Part of all rulings that must be superfluous to be worth a new mesh of their own.
+constexpr double kWorthAMesh = 0.25;
 
 int third_vertex(const Eigen::MatrixX3i& triangles, int f, int a, int b) {
   for (int k = 0; k < 3; ++k) {
@@ -133,6 +135,42 @@ double opening(const PaperStructure& structure, int singular_point, int ruling,
   return ahead + behind;
 }
 
+bool is_idle(const Ruling& ruling, const HybridOptions& options) {
+  return ruling.unbent_frames >= options.flat_frames;
+}
+
+/// Marks the rulings of the cylinders that are flat all over.
+std::vector<bool> flat_cylinders(const PaperStructure& structure, const HybridOptions& options) {
+  std::vector<bool> bent(structure.pieces.size(), false);
+  for (std::size_t i = 0; i < bent.size(); ++i) {
+    bent[i] = structure.pieces[i].kind != PaperPiece::Kind::cylinder;
+  }
+  for (const Ruling& r : structure.rulings) {
+    if (r.piece >= 0 && !is_idle(r, options)) bent[static_cast<std::size_t>(r.piece)] = true;
+  }
+  std::vector<bool> marked(structure.rulings.size(), false);
+  for (std::size_t i = 0; i < marked.size(); ++i) {
+    const int piece = structure.rulings[i].piece;
+    marked[i] = piece >= 0 && !bent[static_cast<std::size_t>(piece)];
+  }
+  return marked;
+}
+
+/// Marks what is flat of the rulings of singular points, one after another, as long as no more than
+/// a right angle stays open.
+void mark_idle_rays(const PaperStructure& structure, const HybridOptions& options,
+                    std::vector<bool>& gone) {
+  for (std::size_t i = 0; i < gone.size(); ++i) {
+    const Ruling& r = structure.rulings[i];
+    if (gone[i] || !is_idle(r, options) || !(r.singular_a || r.singular_b)) continue;
+    const auto may_open = [&](const std::optional<int>& point) {
+      return !point ||
+             opening(structure, *point, static_cast<int>(i), gone) <= std::numbers::pi / 2;
+    };
+    gone[i] = may_open(r.singular_a) && may_open(r.singular_b);
+  }
+}
+
 }  // namespace
 
 std::vector<double> fold_angles(const ShellState& state, const RulingMesh& mesh) {
@@ -211,38 +249,33 @@ bool refine_rulings(const std::vector<double>& folds, const HybridOptions& optio
   return refined;
 }
 
-bool retire_rulings(const std::vector<double>& folds, const HybridOptions& options,
-                    RulingEditor& editor) {
+void count_flat_frames(const std::vector<double>& folds, const HybridOptions& options,
+                       RulingEditor& editor) {
   PaperStructure& structure = editor.structure();
   const double flat = options.flat_curvature * options.seeding_distance;
-  std::vector<bool> gone(structure.rulings.size(), false);
+  const double sharp = options.refine_angle_deg * kRadians;
   for (std::size_t i = 0; i < folds.size(); ++i) {
     int& frames = structure.rulings[i].unbent_frames;
     frames = std::abs(folds[i]) < flat ? frames + 1 : 0;
   }
-  const auto unbent = [&](int r) {
-    return structure.rulings[static_cast<std::size_t>(r)].unbent_frames >= options.flat_frames;
-  };
   for (const PaperPiece& piece : structure.pieces) {
-    if (piece.kind == PaperPiece::Kind::cylinder &&
-        std::all_of(piece.rulings.begin(), piece.rulings.end(), unbent)) {
-      for (const int r : piece.rulings) gone[static_cast<std::size_t>(r)] = true;
-    }
-  }
-  for (std::size_t s = 0; s < structure.singular_points.size(); ++s) {
-    for (const int r : structure.rulings_at(static_cast<int>(s))) {
-      const Ruling& ruling = structure.rulings[static_cast<std::size_t>(r)];
-      if (!unbent(r) || gone[static_cast<std::size_t>(r)]) continue;
-      bool free = true;
-      for (const auto& end : {ruling.singular_a, ruling.singular_b}) {
-        if (end && opening(structure, *end, r, gone) > std::numbers::pi / 2) free = false;
+    for (std::size_t k = 0; k < piece.rulings.size(); ++k) {
+      if (std::abs(folds[static_cast<std::size_t>(piece.rulings[k])]) < sharp) continue;
+      for (const std::size_t beside : {k - 1, k + 1}) {
+        if (beside >= piece.rulings.size()) continue;
+        structure.rulings[static_cast<std::size_t>(piece.rulings[beside])].unbent_frames = 0;
       }
-      if (!free) continue;
-      gone[static_cast<std::size_t>(r)] = true;
-      break;
     }
   }
-  if (std::none_of(gone.begin(), gone.end(), [](bool b) { return b; })) return false;
+}
+
+bool retire_rulings(bool remeshed_anyway, const HybridOptions& options, RulingEditor& editor) {
+  const PaperStructure& structure = editor.structure();
+  std::vector<bool> gone = flat_cylinders(structure, options);
+  mark_idle_rays(structure, options, gone);
+  const auto count = std::count(gone.begin(), gone.end(), true);
+  const double least = remeshed_anyway ? 1 : kWorthAMesh * static_cast<double>(gone.size());
+  if (count == 0 || static_cast<double>(count) < least) return false;
   editor.remove(gone);
   return true;
 }

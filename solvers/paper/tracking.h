@@ -26,11 +26,16 @@ bool turn_cylinders(const ShellState& state, const Eigen::MatrixX3d& curvature,
 bool refine_rulings(const std::vector<double>& folds, const HybridOptions& options,
                     RulingEditor& editor);
 
-/// Counts for how long each ruling has been flat (folded by less than kappa_0 times the seeding
-/// distance), and removes: cylinders all of whose rulings have been for `flat_frames`; and rulings
-/// of singular points that have been, one a point and frame, as long as no more than a right angle
-/// stays open beside them. Returns true when anything went.
-bool retire_rulings(const std::vector<double>& folds, const HybridOptions& options,
-                    RulingEditor& editor);
+/// Counts for how long each ruling has been flat: folded by less than kappa_0 times the seeding
+/// distance. A ruling next to one of its piece that refinement would put it beside counts as bent,
+/// or it would come and go.
+void count_flat_frames(const std::vector<double>& folds, const HybridOptions& options,
+                       RulingEditor& editor);
+
+/// Removes what has been flat for `flat_frames`: cylinders all of whose rulings have been, and
+/// rulings of singular points, as long as no more than a right angle stays open beside them. Flat
+/// rulings do no harm but cost: unless the sheet is `remeshed_anyway`, they wait until they are a
+/// quarter of all. Returns true when any went.
+bool retire_rulings(bool remeshed_anyway, const HybridOptions& options, RulingEditor& editor);
 
 }  // namespace geoprior

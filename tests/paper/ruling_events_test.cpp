@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -180,6 +181,82 @@ TEST(Tracking, TurnsRulingsTowardsThoseOfTheBentSheetNotFasterThanItsRate) {
     EXPECT_GT(turned, 1);
     EXPECT_LE(turned, s.options.tracking_rate_deg + 1e-6);
   }
+}
+
+/// A fan of rays about the middle of the sheet, flat but for those that a test folds.
+struct FanSheet : EventSheet {
+  std::vector<double> folds;
+
+  FanSheet() {
+    SingularPoint point;
+    point.position.setZero();
+    structure.singular_points.push_back(point);
+    RulingEditor pen = editor();
+    fill_fan(0, options, pen);
+    lay_flat();
+    folds.assign(structure.rulings.size(), 0);
+  }
+  void wait(int frames) {
+    RulingEditor pen = editor();
+    for (int k = 0; k < frames; ++k) count_flat_frames(folds, options, pen);
+  }
+  bool retire(bool remeshed_anyway) {
+    RulingEditor pen = editor();
+    return retire_rulings(remeshed_anyway, options, pen);
+  }
+  /// Largest angle between neighbouring rays.
+  [[nodiscard]] double widest_sector() const {
+    std::vector<double> angles;
+    for (const int r : structure.rulings_at(0)) {
+      const Vector2d& end = structure.rulings[static_cast<std::size_t>(r)].b;
+      angles.push_back(std::atan2(end.y(), end.x()));
+    }
+    double widest = angles.front() + 2 * std::numbers::pi - angles.back();
+    for (std::size_t k = 1; k < angles.size(); ++k) {
+      widest = std::max(widest, angles[k] - angles[k - 1]);
+    }
+    return widest;
+  }
+};
+
+/// Rays at most a right angle apart hold the apex; all others go in one frame, once they have been
+/// flat for `flat_frames`, and not before.
+TEST(Tracking, RemovesAFlatFanAtOnceDownToRightAngles) {
+  FanSheet s;
+  const std::size_t before = s.structure.rulings.size();
+  s.wait(s.options.flat_frames - 1);
+  EXPECT_FALSE(s.retire(true));
+  s.wait(1);
+  EXPECT_TRUE(s.retire(false));
+  EXPECT_LE(s.structure.rulings.size(), before / 2);
+  EXPECT_LE(s.widest_sector(), std::numbers::pi / 2 + 1e-9);
+  s.folds.assign(s.structure.rulings.size(), 0);
+  EXPECT_FALSE(s.retire(true));
+}
+
+/// One flat ray of many does not make a new mesh, but goes with the next one.
+TEST(Tracking, AFlatRayWaitsForANewMesh) {
+  FanSheet s;
+  s.folds.assign(s.folds.size(), 5 * kDegree);
+  s.folds[3] = 0;
+  const std::size_t before = s.structure.rulings.size();
+  s.wait(s.options.flat_frames);
+  EXPECT_FALSE(s.retire(false));
+  EXPECT_EQ(s.structure.rulings.size(), before);
+  EXPECT_TRUE(s.retire(true));
+  EXPECT_EQ(s.structure.rulings.size(), before - 1);
+}
+
+/// Beside a fold beyond the refinement angle a ray would be put back as soon as it is gone.
+TEST(Tracking, KeepsAFlatRayThatRefinementWouldPutBack) {
+  FanSheet s;
+  const PaperPiece& cone = s.structure.pieces.at(0);
+  ASSERT_EQ(cone.kind, PaperPiece::Kind::cone);
+  s.folds.assign(s.folds.size(), 5 * kDegree);
+  s.folds[static_cast<std::size_t>(cone.rulings[2])] = 0;
+  s.folds[static_cast<std::size_t>(cone.rulings[3])] = (s.options.refine_angle_deg + 1) * kDegree;
+  s.wait(2 * s.options.flat_frames);
+  EXPECT_FALSE(s.retire(true));
 }
 
 TEST(PlasticApex, YieldsOnlyWhereTheConeBendsBeyondTheYieldCurvature) {
