@@ -3,11 +3,13 @@
 #include <functional>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "experiments/fluid/measures.h"
 #include "experiments/fluid/topic.h"
 #include "metrics/dam_break.h"
 #include "metrics/self_contact.h"
+#include "metrics/slosh.h"
 
 namespace geoprior {
 namespace {
@@ -200,12 +202,42 @@ Value volume_drift(FluidMemo& memo, const FluidScene& scene, const FrameSequence
   return first ? Value(drift) : Value();
 }
 
+/// Frequency of the first standing wave against linear theory, for one half space of water that
+/// starts tilted in a closed tank.
+Value slosh_frequency_error(FluidMemo& memo, const FluidScene& scene, const FrameSequence& frames) {
+  if (!scene.tank || !scene.tank->solids.empty() || !scene.tank->sources.empty()) return {};
+  const std::vector<LiquidVolume>& volumes = scene.tank->volumes;
+  if (volumes.size() != 1 || volumes.front().shape.kind != LiquidShape::Kind::half_space) return {};
+  std::vector<double> swing;
+  double depth = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const auto surface = frames.part(i, "surface");
+    if (!surface) return {};
+    const LiquidMeasures m = liquid_measures(memo, scene, *surface);
+    if (!m.columns) return {};
+    swing.push_back(slosh_amplitude(*m.columns, *scene.gauges));
+    if (i == 0) depth = m.columns->depth.mean();
+  }
+  const double measured = crossing_frequency(frames.parameters(), swing);
+  const double length = scene.tank->cells.x() * scene.tank->cell;
+  const double expected = slosh_frequency(length, depth, scene.gravity.norm());
+  if (measured == 0 || expected == 0) return {};
+  return std::abs(measured / expected - 1);
+}
+
 void add_time(Rows rows, const SharedMemo& memo) {
   rows.sequence("volume_drift", "1",
                 "largest change of the enclosed volume from the first frame's, relative",
                 Direction::lower_is_better, kChaotic,
                 [memo](const FluidScene& scene, const FrameSequence& frames) {
                   return volume_drift(*memo, scene, frames);
+                });
+  rows.sequence("slosh_frequency_error", "1",
+                "error of the frequency of the first standing wave along x against sqrt(g k tanh(k "
+                "H)), k = pi / L; scenes with one tilted half space of water",
+                Direction::lower_is_better, {5e-3, 0},
+                [memo](const FluidScene& scene, const FrameSequence& frames) {
+                  return slosh_frequency_error(*memo, scene, frames);
                 });
   rows.sequence("second_difference", "m",
                 "largest second difference in time of the heights at the gauges, a frame apart",
