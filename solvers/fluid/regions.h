@@ -19,7 +19,10 @@ enum class ThresholdKind { automatic, given };
 struct SegmentationOptions {
   CurvatureOptions curvature;
   MaskOptions mask;
-  std::optional<double> cell;  ///< h, unit of lengths below (m); default: mean edge of a frame
+  /// h, the unit of what follows (m): the scale of the details looked at. Default: the mean edge of
+  /// a frame. The same h gives the same regions on a finer mesh: the curvature is then smoothed in
+  /// (h / mean edge)^2 times as many passes.
+  std::optional<double> cell;
   ThresholdKind thresholds = ThresholdKind::automatic;
   double high = 0.12;  ///< seeds: |H| h above this (given)
   double low = 0.04;   ///< grown through |H| h above this (given)
@@ -94,6 +97,7 @@ class Segmenter {
   SegmentationOptions options_;
   Thresholds thresholds_;
   double cell_ = 0;
+  CurvatureOptions curvature_;  ///< with the passes that the cell asks for
   Walls walls_;
   std::vector<std::string> warnings_;
 };

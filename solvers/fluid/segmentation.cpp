@@ -131,7 +131,7 @@ SegmentedFrame Segmenter::segment(const SurfaceFrame& frame, int frame_index) co
   }
   Canvas c;
   c.graph = surface_graph(frame.mesh);
-  c.shape = surface_shape(c.graph, options_.curvature);
+  c.shape = surface_shape(c.graph, curvature_);
   c.components = surface_components(c.graph);
   c.roles = component_roles(c.components, options_);
   if (c.roles.inside_out) turn_over(c.shape);

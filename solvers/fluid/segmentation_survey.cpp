@@ -9,6 +9,7 @@ namespace geoprior {
 namespace {
 
 constexpr int kMostFrames = 16;
+constexpr int kMostPasses = 200;
 constexpr double kFlatRadius = 0.25;  // of the scene's diagonal: larger radii of curvature are flat
 constexpr std::size_t kMostSamples = 20'000;  // of |H| h in a frame
 
@@ -19,9 +20,10 @@ struct Survey {
   Eigen::AlignedBox3d box;
 };
 
-void survey_frame(const SurfaceFrame& frame, const SegmentationOptions& options, Survey& survey) {
+void survey_frame(const SurfaceFrame& frame, const SegmentationOptions& options,
+                  const CurvatureOptions& curvature_options, Survey& survey) {
   const SurfaceGraph graph = surface_graph(frame.mesh);
-  const SurfaceShape shape = surface_shape(graph, options.curvature);
+  const SurfaceShape shape = surface_shape(graph, curvature_options);
   const SurfaceComponents components = surface_components(graph);
   const ComponentRoles roles = component_roles(components, options);
   const float outward = roles.inside_out ? -1 : 1;
@@ -44,6 +46,13 @@ double mean_edge(const TriMesh& mesh) {
       sum += (mesh.V.row(mesh.F(t, (k + 1) % 3)) - mesh.V.row(mesh.F(t, k))).norm();
   }
   return sum / (3 * static_cast<double>(mesh.F.rows()));
+}
+
+/// Passes that smooth over the same distance when edges are `ratio` times shorter: it grows with
+/// the square root of the passes. Coarser meshes are smoothed no less than asked for.
+int passes_for(int passes, double ratio) {
+  const double needed = passes * std::max(1.0, ratio * ratio);
+  return static_cast<int>(std::lround(std::min<double>(needed, std::max(passes, kMostPasses))));
 }
 
 Eigen::AlignedBox3d box_of(const MaskBox& given) {
@@ -82,25 +91,29 @@ std::vector<std::vector<float>> free_surface(const Survey& survey, const Walls& 
 }  // namespace
 
 Segmenter::Segmenter(const SurfaceSequence& sequence, const SegmentationOptions& options)
-    : options_(options) {
+    : options_(options), curvature_(options.curvature) {
   Survey survey;
   const int count = sequence.frame_count();
   const int looked_at = std::min(count, kMostFrames);
-  cell_ = options.cell.value_or(0);
   for (int i = 0; i < looked_at; ++i) {
     // Evenly, first and last included.
     const int f =
         looked_at == 1 ? 0 : static_cast<int>(static_cast<long>(i) * (count - 1) / (looked_at - 1));
     const SurfaceFrame frame = sequence.frame(f);
     if (frame.mesh.triangle_count() == 0) continue;
-    survey_frame(frame, options, survey);
-    if (cell_ <= 0) cell_ = mean_edge(frame.mesh);
+    if (survey.samples.empty()) {
+      const double edge = mean_edge(frame.mesh);
+      cell_ = options.cell.value_or(edge);
+      if (!(cell_ > 0 && edge > 0))
+        throw Error("edges have no length", sequence.name(), "a mesh of positive size");
+      curvature_.smoothing = passes_for(options.curvature.smoothing, cell_ / edge);
+    }
+    survey_frame(frame, options, curvature_, survey);
   }
   if (survey.samples.empty()) {
     throw Error("all " + std::to_string(looked_at) + " frames looked at are empty", sequence.name(),
                 "a frame with triangles");
   }
-  if (!(cell_ > 0)) throw Error("edges have no length", sequence.name(), "a mesh of positive size");
   walls_ = walls_of(survey, options.mask, cell_);
   if (options.thresholds == ThresholdKind::given) {
     thresholds_ = {options.high, options.low};
