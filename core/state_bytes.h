@@ -26,6 +26,12 @@ class StateWriter {
     number(m.cols());
     append(m.data(), static_cast<std::size_t>(m.size()) * sizeof(typename Derived::Scalar));
   }
+  /// Of types without pointers: fixed-size vectors and matrices.
+  template <class T>
+  void items(const std::vector<T>& list) {
+    number(list.size());
+    append(list.data(), list.size() * sizeof(T));
+  }
   void bytes(const State& state) {
     number(state.size());
     append(state.data(), state.size());
@@ -60,6 +66,14 @@ class StateReader {
     const auto cols = number<Eigen::Index>();
     m.resize(rows, cols);
     copy(m.data(), static_cast<std::size_t>(m.size()) * sizeof(typename Derived::Scalar));
+  }
+  template <class T>
+  void items(std::vector<T>& list) {
+    const auto count = number<std::size_t>();
+    if (count > (state_.size() - at_) / sizeof(T))
+      throw Error("ends early", "checkpoint", "an unharmed one");
+    list.resize(count);
+    copy(list.data(), count * sizeof(T));
   }
   [[nodiscard]] State bytes() {
     State result(number<std::size_t>());

@@ -1,0 +1,79 @@
+#include "baselines/fluid/advection.h"
+
+#include <algorithm>
+
+#include "baselines/fluid/mac_grid_sampler.h"
+#include "core/parallel.h"
+
+namespace geoprior {
+namespace {
+
+constexpr std::size_t kParticleBlock = 4096;
+/// Distance from walls and solids that particles keep (cells): enough for round-off.
+constexpr float kClearance = 1e-3F;
+
+/// New place after `step` = dt / h, all lengths in cells.
+Eigen::Vector3f runge_kutta(const FaceSampler& velocity, const Eigen::Vector3f& x, float step) {
+  const Eigen::Vector3f k1 = velocity(x);
+  const Eigen::Vector3f k2 = velocity(x + (0.5F * step) * k1);
+  const Eigen::Vector3f k3 = velocity(x + (0.75F * step) * k2);
+  return x + (step / 9) * (2 * k1 + 3 * k2 + 4 * k3);
+}
+
+/// Out of solids: along the gradient as far as the distance says; twice, because the distance is
+/// linear only near its samples.
+Eigen::Vector3f push_out(const GridSampler& distance, float per_metre, Eigen::Vector3f x) {
+  for (int pass = 0; pass < 2; ++pass) {
+    Eigen::Vector3f gradient;
+    const float d = distance.with_gradient(x, gradient) * per_metre;
+    if (d >= kClearance) break;
+    const float length = gradient.norm();
+    if (!(length * per_metre > 1e-4F)) break;
+    x += (kClearance - d) / length * gradient;
+  }
+  return x;
+}
+
+/// Into the domain; true when the place is beyond the open side.
+bool keep_inside(const Eigen::Vector3i& cells, const std::optional<OpenSide>& open,
+                 Eigen::Vector3f& x) {
+  if (open) {
+    const float at = x[open->axis];
+    if (open->upper ? at > static_cast<float>(cells[open->axis]) : at < 0) return true;
+  }
+  for (int a = 0; a < 3; ++a) {
+    x[a] = std::clamp(x[a], kClearance, static_cast<float>(cells[a]) - kClearance);
+  }
+  return false;
+}
+
+}  // namespace
+
+void advect_particles(const MacGrid& velocity, double dt, const ScalarGrid* solids,
+                      const std::optional<OpenSide>& open, LiquidParticles& particles,
+                      std::vector<std::uint8_t>& left) {
+  const FaceSampler sampler(velocity);
+  const std::optional<GridSampler> distance =
+      solids != nullptr ? std::optional<GridSampler>(*solids) : std::nullopt;
+  const auto cell = static_cast<float>(velocity.shape.cell);
+  const auto per_metre = static_cast<float>(1 / velocity.shape.cell);
+  const auto step = static_cast<float>(dt / velocity.shape.cell);
+  const Eigen::Vector3i cells = velocity.shape.cells;
+  left.assign(particles.size(), 0);
+  parallel_blocks(particles.size(), kParticleBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      Eigen::Vector3f x = runge_kutta(sampler, particles.position[p] * per_metre, step);
+      if (keep_inside(cells, open, x)) {
+        left[p] = 1;
+        continue;
+      }
+      if (distance) {
+        x = push_out(*distance, per_metre, x);
+        left[p] = keep_inside(cells, open, x) ? 1 : 0;
+      }
+      particles.position[p] = x * cell;
+    }
+  });
+}
+
+}  // namespace geoprior

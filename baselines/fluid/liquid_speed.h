@@ -1,0 +1,15 @@
+#pragma once
+
+#include "baselines/fluid/particles.h"
+#include "baselines/fluid/tank.h"
+
+namespace geoprior {
+
+/// Largest speed of a particle (m/s).
+/// @throws Error  when a velocity is not finite; names `time`
+double fastest_particle(const LiquidParticles& particles, double time);
+
+/// Bound of the speed of a solid's points: of its centre plus that of its turn (m/s).
+double fastest_point(const PlacedSolid& solid);
+
+}  // namespace geoprior
