@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "core/surface_sequence.h"
+
+namespace geoprior {
+
+/// One frame on disk.
+struct FrameFile {
+  std::filesystem::path file;
+  int number = 0;   ///< in its name, or in the list of a .pvd
+  double time = 0;  ///< s
+};
+
+/// Mesh files as an animated surface: every frame is read and repaired when it is asked for.
+class MeshSequence final : public SurfaceSequence {
+ public:
+  /// @param y_up   the files have y up: (x, y, z) becomes (x, -z, y)
+  /// @param scale  metres a unit of the files, velocities too
+  /// @throws Error  when times do not increase strictly (names the files)
+  MeshSequence(std::vector<FrameFile> files, bool y_up, double scale, std::string name);
+
+  [[nodiscard]] int frame_count() const override { return static_cast<int>(files_.size()); }
+  [[nodiscard]] double time(int frame) const override { return file_at(frame).time; }
+  /// Safe from several threads.
+  [[nodiscard]] SurfaceFrame frame(int frame) const override;
+  [[nodiscard]] std::string name() const override { return name_; }
+
+  /// What was repaired in the frames read so far: each kind once, with the first frame that had it.
+  [[nodiscard]] std::vector<std::string> notes() const;
+
+ private:
+  [[nodiscard]] const FrameFile& file_at(int frame) const;
+
+  std::vector<FrameFile> files_;
+  bool y_up_;
+  double scale_;
+  std::string name_;
+  mutable std::mutex mutex_;
+  mutable std::map<std::string, int> first_frame_;  ///< of each kind of note
+};
+
+}  // namespace geoprior

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace geoprior {
+
+/// A frame's file before its time is settled.
+struct FoundFile {
+  std::filesystem::path file;
+  int number = 0;              ///< in its name, or in the list of a .pvd
+  std::optional<double> time;  ///< s, that a .pvd says
+};
+
+/// The files that a path means, in order; what the search noticed.
+struct FoundFiles {
+  std::vector<FoundFile> files;
+  std::vector<std::string> warnings;
+  std::optional<std::filesystem::path> collection;  ///< the .pvd that was read
+};
+
+/// Numbered files ("wave_%04d.ply": exactly so many digits, or more without a leading zero; "%d":
+/// any), in order of number.
+/// @throws Error  for a pattern without or with two numbers, or that nothing matches (says what is
+///                there)
+FoundFiles find_pattern(const std::filesystem::path& pattern);
+/// Whether `find_pattern` would find anything.
+bool matches_any(const std::filesystem::path& pattern);
+
+/// The numbered meshes of a folder; `part` chooses between several ("surface_0000.vtp" is of the
+/// part surface). Times come from the .pvd of that name beside the folder, which runs have.
+FoundFiles find_in_folder(const std::filesystem::path& folder, const std::string& part);
+
+/// The files of a ParaView collection, in order of time; of the name `part` where it has several.
+/// @throws Error  naming file and byte: no XML, no collection, a time that is no number
+FoundFiles find_in_pvd(const std::filesystem::path& file, const std::string& part);
+
+}  // namespace geoprior

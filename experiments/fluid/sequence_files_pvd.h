@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace geoprior {
+
+/// One line of a ParaView collection.
+struct PvdDataSet {
+  double time = 0;
+  std::string name;            ///< of the part, or empty
+  std::filesystem::path file;  ///< beside the collection, or absolute
+};
+
+/// @throws Error  naming file and byte: no XML, no collection, no file name, no finite time
+std::vector<PvdDataSet> read_pvd(const std::filesystem::path& file);
+std::vector<PvdDataSet> parse_pvd(std::string_view text, const std::filesystem::path& file);
+
+}  // namespace geoprior
