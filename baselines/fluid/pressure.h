@@ -15,7 +15,8 @@ struct PressureOptions {
   PressurePreconditioner preconditioner = PressurePreconditioner::multigrid;
   double tolerance = 1e-5;  ///< largest residual relative to the largest right-hand side
   int max_iterations = 400;
-  double smallest_theta = 0.01;  ///< ghost-fluid fraction is clamped to this
+  /// Ghost-fluid fraction is clamped to this: moves a surface by at most this share of a cell.
+  double smallest_theta = 0.01;
 };
 void describe(OptionVisitor& v, PressureOptions& options);
 
