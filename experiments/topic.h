@@ -12,6 +12,8 @@
 #include "core/frame.h"
 #include "core/method.h"
 #include "core/options.h"
+#include "experiments/frame_sequence.h"
+#include "experiments/runner/figure_view.h"
 
 namespace geoprior {
 
@@ -94,16 +96,20 @@ struct MetricEntry {
   /// Value at one frame; absent where it has no meaning. `reference` is the frame of equal
   /// parameter of the variant that the experiment names as reference, or null.
   std::function<std::optional<double>(const Scene&, const Frame&, const Frame* reference)> of_frame;
-  /// One value a variant, from all of its frames in order of parameter.
-  std::function<std::optional<double>(const Scene&, const std::vector<Frame>&)> of_sequence;
+  /// One value a variant, from all of its frames in order of parameter. They may have to be read
+  /// from the disk: go through them once (FrameSequence).
+  std::function<std::optional<double>(const Scene&, const FrameSequence&)> of_sequence;
   bool needs_reference = false;  ///< skipped for variants without one
+  /// Parts and tables of the reference frame that are looked at: others are not read. Empty: all.
+  std::vector<std::string> reference_parts = {};
 };
 
-/// What is drawn when the experiment file does not say.
-struct ViewDefaults {
-  std::string part = "surface";
-  std::array<double, 3> direction{0, 0, 1};  ///< from the target to the eye
-  std::array<double, 3> up{0, 1, 0};
+/// One row of a topic's table of diagnostics: what only a method can know of a frame (iterations,
+/// residual, evaluations), under one name for all methods.
+struct DiagnosticEntry {
+  std::string name;        ///< snake_case, as in Frame::diagnostics
+  std::string unit;        ///< "1" for a count or a ratio
+  std::string definition;  ///< one line
 };
 
 /// Everything the runner knows of a topic: one instance each, listed in ONE table
@@ -118,7 +124,9 @@ struct Topic {
   std::function<std::shared_ptr<Scene>(const OptionSet&, const std::filesystem::path& folder)> load;
   std::vector<MethodEntry> methods;
   std::vector<MetricEntry> metrics;
-  ViewDefaults view;
+  std::vector<DiagnosticEntry> diagnostics;
+  /// What is drawn where the experiment file does not say.
+  FigureView view;
 };
 
 /// The topics of the program. Tests add theirs.

@@ -52,6 +52,7 @@ BlessedRun run_without_clock(const CommandContext& context, const std::string& i
   say(tinted("running " + run.experiment.id + (quick ? " (quick)" : ""), Tint::faint));
   ExecuteRequest request;
   request.timing = false;
+  request.only_declared = true;
   request.resume = find_unfinished_run(run.experiment).has_value();
   request.show_progress = isatty(STDERR_FILENO) == 1;
   ExecuteResult result = execute(run.experiment, context.topics, request);

@@ -29,4 +29,35 @@ std::vector<MethodEntry> paper_methods() {
   };
 }
 
+std::vector<DiagnosticEntry> paper_diagnostics() {
+  return {
+      // Of every method.
+      {"triangles", "1", "triangles of the mesh"},
+      {"vertices", "1", "vertices of the mesh"},
+      {"substeps", "1", "time steps of the frame"},
+      {"newton_iterations", "1", "linear solves of its steps"},
+      {"halvings", "1", "times a step was halved because Newton's iteration did not converge"},
+      {"factor_nonzeros", "1", "non-zeros of the factor of the last step's system"},
+      {"handle_work", "J", "work done on the sheet by the prescribed handles since the start"},
+      // Of the adaptive mesh.
+      {"splits", "1", "edges split by the frame's remeshing"},
+      {"collapses", "1", "edges collapsed by it"},
+      {"flips", "1", "edges flipped by it"},
+      {"pop_filter_steps", "1", "steps that take back the pop of the remeshing"},
+      // Of the hybrid.
+      {"flats", "1", "planar pieces"},
+      {"cylinders", "1", "cylindrical pieces"},
+      {"cones", "1", "conical pieces"},
+      {"rulings", "1", "rulings of all pieces"},
+      {"singular_points", "1", "singular points"},
+      {"new_rulings", "1", "rulings inserted in the frame"},
+      {"new_singular_points", "1", "singular points inserted in the frame"},
+      {"rejected_changes", "1", "changes of the structure given up since the start"},
+      {"remeshed", "1", "1 when the frame changed the structure, else 0"},
+      {"projection_iterations", "1", "iterations of the projection to isometry"},
+      {"strain_before", "1", "largest principal Green strain of a triangle before it, in modulus"},
+      {"strain_after", "1", "the same after it"},
+  };
+}
+
 }  // namespace geoprior

@@ -4,6 +4,23 @@
 #include "experiments/paper/scene.h"
 
 namespace geoprior {
+namespace {
+
+/// The pieces of the hybrid coloured, on white paper; what a method does not have is not drawn.
+FigureView paper_view() {
+  FigureView view;
+  view.direction = {0.5, -1, 0.7};
+  view.up = {0, 0, 1};
+  view.color_by = "kind";
+  view.classes = {"flat", "cylinder", "cone"};
+  view.shading = FigureView::Shading::flat;
+  view.material = FigureView::Material::paper;
+  view.edges = true;
+  view.overlays = {"rulings", "singular_points", "handles"};
+  return view;
+}
+
+}  // namespace
 
 Topic paper_topic() {
   Topic topic;
@@ -16,8 +33,8 @@ Topic paper_topic() {
   };
   topic.methods = paper_methods();
   topic.metrics = paper_metrics();
-  topic.view.direction = {0.5, -1, 0.7};
-  topic.view.up = {0, 0, 1};
+  topic.diagnostics = paper_diagnostics();
+  topic.view = paper_view();
   return topic;
 }
 

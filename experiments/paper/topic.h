@@ -9,5 +9,7 @@ Topic paper_topic();
 
 /// The methods of the topic: experiments/paper/methods.cpp.
 std::vector<MethodEntry> paper_methods();
+/// What they alone can know of a frame.
+std::vector<DiagnosticEntry> paper_diagnostics();
 
 }  // namespace geoprior

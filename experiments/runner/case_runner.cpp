@@ -7,12 +7,17 @@
 #include "experiments/runner/frames_text.h"
 #include "experiments/runner/measure.h"
 #include "experiments/runner/run_folder.h"
+#include "experiments/runner/scene_place.h"
 #include "experiments/runner/sha256.h"
 #include "experiments/runner/stop.h"
 
 namespace geoprior {
 
 namespace {
+
+/// Frames of a variant that are kept in memory for the metrics of the sequence; the others are read
+/// back.
+constexpr std::size_t kMostKept = std::size_t{256} << 20;
 
 const MethodEntry& method_of(const Topic& topic, const std::string& name) {
   std::string allowed;
@@ -122,14 +127,17 @@ CaseRunner::CaseRunner(const Experiment& experiment, const CaseSpec& spec, const
       topic_(topic),
       recorder_(recorder),
       state_(state),
-      progress_(progress) {}
+      progress_(progress),
+      kept_(kMostKept) {}
 
 void CaseRunner::load(const OptionSet& options, std::vector<StoredFile> inputs) {
   const auto begin = std::chrono::steady_clock::now();
   try {
     scene_ = topic_.load(options, experiment_.file.parent_path());
   } catch (const Error& error) {
-    throw Error(error.what(), experiment_.file.string() + ": scene of case '" + spec_.name + "'");
+    const std::string place = place_of_scene_key(spec_.scene_places, error.what());
+    throw Error(error.what(), (place.empty() ? experiment_.file.string() : place) +
+                                  ": scene of case '" + spec_.name + "'");
   }
   journal::CaseLine line;
   line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -180,12 +188,13 @@ std::optional<Frame> CaseRunner::reference_frame(const VariantSpec& variant, dou
   const VariantRecord& record = state_of(*reference).record;
   const int index = frame_of_parameter(record.frames, parameter);
   if (index < 0) return std::nullopt;
-  return recorder_.read_frame(record, static_cast<std::size_t>(index));
+  return recorder_.read_frame(record, static_cast<std::size_t>(index), reference_parts(topic_));
 }
 
 void CaseRunner::record_frame(const VariantSpec& variant, Frame frame,
                               const journal::Numbers& seconds) {
   const std::size_t index = state_of(variant).record.frames.size();
+  if (only_declared_) require_declared(topic_, frame, variant.method);
   journal::FrameLine line;
   line.place = place(variant);
   line.index = index;
@@ -196,7 +205,7 @@ void CaseRunner::record_frame(const VariantSpec& variant, Frame frame,
   line.diagnostics = frame.diagnostics;
   line.timing = seconds;
   recorder_.add(line);
-  if (has_sequence_metrics(topic_)) kept_[index] = std::move(frame);
+  if (has_sequence_metrics(topic_)) kept_.keep(index, std::move(frame));
 }
 
 bool CaseRunner::run_poses(const VariantSpec& variant, PoseMethod& method, TimedContext& context) {
@@ -237,14 +246,8 @@ void CaseRunner::finish(const VariantSpec& variant, journal::EndLine line) {
   const VariantRecord& record = state_of(variant).record;
   // The metrics of a sequence have no meaning on a part of it.
   if (has_sequence_metrics(topic_) && line.error.empty()) {
-    std::vector<Frame> frames;
-    for (std::size_t i = 0; i < record.frames.size(); ++i) {
-      const auto kept = kept_.find(i);
-      frames.push_back(kept != kept_.end() ? std::move(kept->second)
-                                           : recorder_.read_frame(record, i));
-    }
-    kept_.clear();
-    line.summary = measure_sequence(topic_, *scene_, std::move(frames));
+    line.summary = measure_sequence(topic_, *scene_, RecordedFrames(recorder_, record, kept_));
+    kept_ = KeptFrames(kMostKept);
   }
   recorder_.write_collection(line.place);
   recorder_.add(line);
@@ -252,7 +255,7 @@ void CaseRunner::finish(const VariantSpec& variant, journal::EndLine line) {
 
 bool CaseRunner::run_variant(const VariantSpec& variant) {
   progress_.begin(experiment_.id + " " + spec_.name + "/" + variant.name);
-  kept_.clear();
+  kept_ = KeptFrames(kMostKept);
   MethodEntry::Instance& instance = prepare(variant, true);
   TimedContext context(spec_.seed, [this](double done) { progress_.fraction(done); });
   journal::EndLine end;
@@ -269,6 +272,9 @@ bool CaseRunner::run_variant(const VariantSpec& variant) {
   if (!end.error.empty()) {
     progress_.say("variant '" + variant.name + "' of case '" + spec_.name + "' failed after " +
                   frames_text(state_of(variant).record.frames.size()) + ": " + end.error);
+    for (const std::string& warning : state_.case_of(spec_.name).record.warnings) {
+      progress_.say("  the scene's warning may be why: " + warning);
+    }
   }
   finish(variant, std::move(end));
   progress_.end();

@@ -8,6 +8,7 @@
 #include "experiments/runner/benchmark.h"
 #include "experiments/runner/execute.h"
 #include "experiments/runner/progress.h"
+#include "experiments/runner/recorded_frames.h"
 #include "experiments/runner/recorder.h"
 #include "experiments/runner/run_context.h"
 #include "experiments/runner/run_state.h"
@@ -29,6 +30,8 @@ class CaseRunner {
   /// @param options  the scene's, run references replaced
   /// @param inputs   runs that stand among them
   bool run(const OptionSet& options, std::vector<StoredFile> inputs, bool timing);
+  /// Makes a diagnostic that the topic's table lacks an error.
+  void require_declared_diagnostics() { only_declared_ = true; }
 
  private:
   [[nodiscard]] journal::Place place(const VariantSpec& variant) const {
@@ -59,7 +62,8 @@ class CaseRunner {
   Progress& progress_;
   std::shared_ptr<Scene> scene_;
   std::map<std::string, MethodEntry::Instance> prepared_;  ///< by variant, kept for the benchmark
-  std::map<std::size_t, Frame> kept_;  ///< frames of the current variant, for sequence metrics
+  bool only_declared_ = false;
+  KeptFrames kept_;  ///< of the current variant, for sequence metrics
 };
 
 /// Variants ordered so that a reference precedes those that compare with it; otherwise as given.

@@ -141,6 +141,7 @@ bool run_case(const Experiment& experiment, const CaseSpec& spec, const std::vec
   const ResolvedScene scene = resolve_run_inputs(experiment, spec, topics, request, chain);
   if (scene.stopped) return false;
   CaseRunner runner(experiment, spec, topic_of(experiment, topics), recorder, state, progress);
+  if (request.only_declared) runner.require_declared_diagnostics();
   bool complete = false;
   with_threads(spec.threads,
                [&] { complete = runner.run(*scene.options, scene.inputs, request.timing); });

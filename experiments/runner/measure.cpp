@@ -19,6 +19,13 @@ const MetricEntry* find_metric(const Topic& topic, const std::string& name) {
   return nullptr;
 }
 
+const DiagnosticEntry* find_diagnostic(const Topic& topic, const std::string& name) {
+  for (const DiagnosticEntry& diagnostic : topic.diagnostics) {
+    if (diagnostic.name == name) return &diagnostic;
+  }
+  return nullptr;
+}
+
 template <class Of>
 std::map<std::string, double> values_of(const Topic& topic, const std::string& where, Of of) {
   std::map<std::string, double> values;
@@ -81,13 +88,23 @@ std::map<std::string, double> measure_frame(const Topic& topic, const Scene& sce
 }
 
 std::map<std::string, double> measure_sequence(const Topic& topic, const Scene& scene,
-                                               std::vector<Frame> frames) {
-  std::stable_sort(frames.begin(), frames.end(),
-                   [](const Frame& a, const Frame& b) { return a.parameter < b.parameter; });
+                                               const FrameSequence& frames) {
   return values_of(topic, "", [&](const MetricEntry& metric) -> std::optional<double> {
     if (!metric.of_sequence) return std::nullopt;
     return metric.of_sequence(scene, frames);
   });
+}
+
+void require_declared(const Topic& topic, const Frame& frame, const std::string& method) {
+  for (const auto& [name, value] : frame.diagnostics) {
+    if (find_diagnostic(topic, name) != nullptr) continue;
+    std::string declared;
+    for (const DiagnosticEntry& entry : topic.diagnostics) {
+      declared += (declared.empty() ? "" : ", ") + entry.name;
+    }
+    throw Error("method '" + method + "' has a diagnostic '" + name + "' without unit and meaning",
+                "table of diagnostics of topic '" + topic.name + "'", declared);
+  }
 }
 
 bool has_sequence_metrics(const Topic& topic) {
@@ -98,6 +115,16 @@ bool has_sequence_metrics(const Topic& topic) {
 bool has_reference_metrics(const Topic& topic) {
   return std::any_of(topic.metrics.begin(), topic.metrics.end(),
                      [](const MetricEntry& metric) { return metric.needs_reference; });
+}
+
+std::optional<std::set<std::string>> reference_parts(const Topic& topic) {
+  std::set<std::string> parts;
+  for (const MetricEntry& metric : topic.metrics) {
+    if (!metric.needs_reference) continue;
+    if (metric.reference_parts.empty()) return std::nullopt;
+    parts.insert(metric.reference_parts.begin(), metric.reference_parts.end());
+  }
+  return parts;
 }
 
 void summarise(const Topic& topic, VariantRecord& variant) {
@@ -112,6 +139,12 @@ void summarise(const Topic& topic, VariantRecord& variant) {
   for (auto& [name, column] : variant.metrics) {
     describe_column(name, column);
     summarise_column(name, column, variant);
+  }
+  for (auto& [name, column] : variant.diagnostics) {
+    if (const DiagnosticEntry* diagnostic = find_diagnostic(topic, name)) {
+      column.unit = diagnostic->unit;
+      column.definition = diagnostic->definition;
+    }
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,15 +21,20 @@ int frame_of_parameter(const std::vector<FrameRecord>& frames, double parameter)
 std::map<std::string, double> measure_frame(const Topic& topic, const Scene& scene,
                                             const Frame& frame, const Frame* reference);
 
-/// Values of the topic's sequence metrics. `frames` is sorted by parameter.
+/// Values of the topic's sequence metrics.
 std::map<std::string, double> measure_sequence(const Topic& topic, const Scene& scene,
-                                               std::vector<Frame> frames);
+                                               const FrameSequence& frames);
+
+/// @throws Error  naming a diagnostic of the frame that is not in the topic's table
+void require_declared(const Topic& topic, const Frame& frame, const std::string& method);
 
 bool has_sequence_metrics(const Topic& topic);
 bool has_reference_metrics(const Topic& topic);
+/// What the metrics look at in a reference frame; absent: all of it.
+std::optional<std::set<std::string>> reference_parts(const Topic& topic);
 
 /// Adds "<metric>.max", ".min", ".median" and ".last" to the summary, and unit, definition and
-/// direction from the topic's table to every column.
+/// direction from the topic's tables to every column.
 void summarise(const Topic& topic, VariantRecord& variant);
 
 }  // namespace geoprior

@@ -75,7 +75,8 @@ Column column_of(const CaseRecord& in, const VariantRecord& variant, const std::
     return {"s", timing_values(variant, name.substr(7), where), false};
   if (name.starts_with("diagnostic:")) {
     const auto found = variant.diagnostics.find(name.substr(11));
-    if (found != variant.diagnostics.end()) return {"", found->second, false};
+    if (found != variant.diagnostics.end())
+      return {found->second.unit, found->second.values, false};
     throw Error("there is no diagnostic '" + name.substr(11) + "'", where,
                 key_list(variant.diagnostics));
   }

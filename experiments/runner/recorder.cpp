@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <set>
 
 #include "core/error.h"
 #include "experiments/formats/atomic_file.h"
@@ -179,25 +178,27 @@ std::optional<State> Recorder::prepare_resume(const journal::Place& place, bool 
   return read_checkpoint(*checkpoint);
 }
 
-Frame Recorder::read_frame(const VariantRecord& variant, std::size_t index) const {
+Frame Recorder::read_frame(const VariantRecord& variant, std::size_t index,
+                           const std::optional<std::set<std::string>>& parts) const {
   const FrameRecord& record = variant.frames.at(index);
   Frame frame;
   frame.parameter = record.parameter;
   for (const StoredFile& file : record.files) {
     const fs::path path = folder_ / file.name;
+    const std::string name = without_number(path);
+    if (parts && !parts->contains(name)) continue;
     if (sha256_of_file(path) != file.sha256) {
       throw Error("is damaged: its checksum is not the recorded one", path.string());
     }
-    const std::string name = without_number(path);
     if (path.extension() == ".csv") {
       frame.tables[name] = table_from_csv(read_whole_file(path), path.string());
     } else {
       frame.parts[name] = read_vtk_part(path);
     }
   }
-  for (const auto& [name, values] : variant.diagnostics) {
-    if (index < values.size() && !std::isnan(values[index])) {
-      frame.diagnostics[name] = values[index];
+  for (const auto& [name, column] : variant.diagnostics) {
+    if (index < column.values.size() && !std::isnan(column.values[index])) {
+      frame.diagnostics[name] = column.values[index];
     }
   }
   return frame;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <set>
 #include <string>
 
 #include "core/frame.h"
@@ -39,7 +41,11 @@ class Recorder {
   std::optional<State> prepare_resume(const journal::Place& place, bool is_process);
 
   /// Reads a frame back: equal, bit by bit, to the one that was recorded.
-  [[nodiscard]] Frame read_frame(const VariantRecord& variant, std::size_t index) const;
+  /// @param parts  only these of its parts and tables; absent: all. Those it has not are left out
+  /// @throws Error  naming a file that is missing or damaged
+  [[nodiscard]] Frame read_frame(
+      const VariantRecord& variant, std::size_t index,
+      const std::optional<std::set<std::string>>& parts = std::nullopt) const;
 
  private:
   StoredFile write(const std::filesystem::path& relative, std::string_view bytes);

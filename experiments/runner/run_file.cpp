@@ -90,8 +90,10 @@ void write_numbers(H5Group& group, const VariantRecord& variant) {
          {{"unit", value.unit}, {"definition", value.definition}, {"direction", value.direction}}});
   }
   H5Group diagnostics = group.create_group("diagnostics");
-  for (const auto& [name, values] : variant.diagnostics) {
-    diagnostics.write_array(name, {{values.size()}, values, {}});
+  for (const auto& [name, column] : variant.diagnostics) {
+    diagnostics.write_array(name, {{column.values.size()},
+                                   column.values,
+                                   {{"unit", column.unit}, {"definition", column.definition}}});
   }
   H5Group timing = group.create_group("timing");
   for (const auto& [phase, seconds] : variant.timing) {

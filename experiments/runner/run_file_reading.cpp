@@ -104,7 +104,10 @@ void read_numbers(const H5Group& group, VariantRecord& variant) {
   }
   const H5Group diagnostics = group.open_group("diagnostics");
   for (const std::string& name : diagnostics.children()) {
-    variant.diagnostics[name] = diagnostics.read_array(name).values;
+    H5Array array = diagnostics.read_array(name);
+    // Empty in runs that were written before the topics had tables of diagnostics.
+    variant.diagnostics[name] = {array.attributes["unit"], array.attributes["definition"],
+                                 std::move(array.values)};
   }
   const H5Group timing = group.open_group("timing");
   for (const std::string& phase : timing.children()) {

@@ -83,15 +83,18 @@ void require_writable(const fs::path& folder) {
 
 fs::path folder_to_resume(const Experiment& experiment, const ExecuteRequest& request) {
   if (request.out) {
-    if (is_empty_or_absent(*request.out)) return *request.out;
     if (!fs::exists(*request.out / "journal.jsonl")) {
-      throw Error("is no run that could be resumed: it has no journal.jsonl",
-                  request.out->string());
+      throw Error("is no run that could be resumed: it has no journal.jsonl", request.out->string(),
+                  "the folder of a run; without --resume a new one begins there");
     }
     return *request.out;
   }
   const std::vector<fs::path> folders = folders_of(experiment);
-  return folders.empty() ? new_default_folder(experiment) : folders.front();
+  if (folders.empty()) {
+    throw Error("there is no run of '" + experiment.id + "' with this specification to resume",
+                (runs_root() / experiment.id).string(), "a run without --resume");
+  }
+  return folders.front();
 }
 
 /// Whether every input file is what it was when the run read it. Runs that were inputs have their

@@ -26,6 +26,12 @@ struct MetricColumn {
   std::vector<double> values;  ///< one a frame; NaN where the metric has no value
 };
 
+struct DiagnosticColumn {
+  std::string unit;  ///< empty, as the definition, where the topic's table has no such name
+  std::string definition;
+  std::vector<double> values;  ///< one a frame; NaN where absent
+};
+
 struct SummaryValue {
   double value = 0;
   std::string unit;
@@ -46,7 +52,7 @@ struct VariantRecord {
   std::map<std::string, MetricColumn> metrics;
   std::map<std::string, SummaryValue>
       summary;  ///< sequence metrics, and max/median of frame metrics as "<name>.max"
-  std::map<std::string, std::vector<double>> diagnostics;  ///< one value a frame, NaN where absent
+  std::map<std::string, DiagnosticColumn> diagnostics;
   /// Phase: [frame][repetition] seconds. "load", "prepare" and "finish" (of a process: after its
   /// last frame) have one row.
   std::map<std::string, std::vector<std::vector<double>>> timing;

@@ -115,7 +115,7 @@ void RunState::apply(const journal::FrameLine& line) {
   for (const auto& [name, value] : line.metrics)
     put(record.metrics[name].values, line.index, value);
   for (const auto& [name, value] : line.diagnostics) {
-    put(record.diagnostics[name], line.index, value);
+    put(record.diagnostics[name].values, line.index, value);
   }
   for (const auto& [phase, seconds] : line.timing) put(record.timing[phase], line.index, seconds);
 }
@@ -144,7 +144,7 @@ void RunState::apply(const journal::ResumeLine& line) {
   cut(
       record.metrics, line.frames, [](MetricColumn & c) -> auto& { return c.values; });
   cut(
-      record.diagnostics, line.frames, [](std::vector<double> & c) -> auto& { return c; });
+      record.diagnostics, line.frames, [](DiagnosticColumn & c) -> auto& { return c.values; });
   for (auto it = record.timing.begin(); it != record.timing.end();) {
     if (it->second.size() > line.frames) it->second.resize(line.frames);
     it = it->second.empty() ? record.timing.erase(it) : std::next(it);
@@ -161,7 +161,7 @@ void RunState::apply(const journal::EndLine& line) {
     column.values.resize(state.record.frames.size(), kAbsent);
   }
   for (auto& [name, column] : state.record.diagnostics) {
-    column.resize(state.record.frames.size(), kAbsent);
+    column.values.resize(state.record.frames.size(), kAbsent);
   }
   for (auto& [phase, rows] : state.record.timing) {
     rows.resize(state.record.frames.size(), {kAbsent});

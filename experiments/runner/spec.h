@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/runner/figure_view.h"
 #include "experiments/topic.h"
 
 namespace geoprior {
@@ -31,6 +32,8 @@ struct CaseSpec {
   int threads = 0;  ///< 0: all
   std::shared_ptr<const OptionSet> scene;
   std::string scene_json;  ///< resolved
+  /// "file:line:column" of every key below [scene], by its dotted path ("scene.handles.0.keys").
+  std::map<std::string, std::string> scene_places;
   std::vector<VariantSpec> variants;
 };
 
@@ -75,34 +78,6 @@ struct StudySpec {
   std::string finer = "smaller";   ///< of "order": whether smaller x (a step) or "larger" x (a
                                    ///< count) is the finer discretisation
   std::string of;                  ///< of "within-spread": the variant that is the yardstick
-};
-
-/// A plane that cuts the part: figure_view.section = { origin = [x, y, z], normal = [x, y, z] }.
-/// Metres; the eye is on the side of the normal that the picture's direction is on.
-struct SectionView {
-  std::array<double, 3> origin{0, 0, 0};
-  std::array<double, 3> normal{0, 0, 1};
-};
-
-/// How the picture of the experiment is drawn. Positions in metres; absent: fitted to the part.
-struct FigureView {
-  std::optional<double> at_parameter;  ///< frame drawn; absent: the last
-  std::vector<double> parameters;      ///< further columns/rows, when more than one frame is drawn
-  std::string part = "surface";
-  std::optional<std::string> color_by;  ///< array of the part; absent: plain material
-  std::vector<std::string> classes;     ///< of `color_by`: the names of its integers 0, 1, …
-  std::string shading = "smooth";       ///< "smooth", "flat": one tone a triangle
-  std::string material = "clay";        ///< "clay", "paper": an open sheet with two sides
-  bool edges = false;                   ///< the triangles' edges as thin lines
-  std::optional<std::array<double, 3>> target;
-  std::array<double, 3> direction{0, 0, 1};  ///< from the target to the eye
-  std::array<double, 3> up{0, 1, 0};
-  std::optional<double> height_m;      ///< height of the view (parallel projection)
-  std::optional<SectionView> section;  ///< adds a row with the cut, overlaps of the solid in red
-  std::vector<std::string> overlays;   ///< further parts drawn over `part` ("rulings", "strokes")
-  std::vector<std::string> variants;   ///< empty: all
-  std::vector<std::string> cases;      ///< empty: all
-  std::vector<std::string> metrics;    ///< curves of metrics.svg; empty: all that vary
 };
 
 struct Experiment {

@@ -222,41 +222,26 @@ std::map<std::string, Tolerance> read_tolerances(const TomlNode& root, const Top
 }
 
 FigureView read_figure_view(const TomlNode& root, const Topic& topic) {
-  FigureViewTable table;
-  table.part = topic.view.part;
-  table.direction = topic.view.direction;
-  table.up = topic.view.up;
-  FigureView view;
+  FigureViewTable table(topic.view);
+  FigureView& view = table.view;
   if (const TomlNode* node = root.find("figure_view")) {
+    // The topic's classes are those of its own array.
+    if (node->find("color_by") != nullptr) view.classes.clear();
     TomlNode plain = *node;
     plain.erase("at");
     read_options(plain, "figure_view", table);
-    read_at(node->find("at"), table.at_parameter, nullptr);
+    read_at(node->find("at"), view.at_parameter, nullptr);
     if (!table.target.empty() && table.target.size() != 3) {
       throw Error("has " + std::to_string(table.target.size()) + " elements",
                   place_of(*node, "target"), "an array of 3 numbers");
     }
-    if (!table.classes.empty() && !table.color_by) {
+    if (view.color_by && view.color_by->empty()) view.color_by.reset();
+    if (!view.classes.empty() && !view.color_by) {
       throw Error("names the values of no array", place_of(*node, "classes"), "with `color_by`");
     }
   }
-  view.at_parameter = table.at_parameter;
-  view.parameters = table.parameters;
-  view.part = table.part;
-  view.color_by = table.color_by;
-  view.classes = table.classes;
-  view.shading = text_of(table.shading);
-  view.material = text_of(table.material);
-  view.edges = table.edges;
+  view.target.reset();
   if (table.target.size() == 3) view.target = {table.target[0], table.target[1], table.target[2]};
-  view.direction = table.direction;
-  view.up = table.up;
-  view.height_m = table.height_m;
-  view.section = table.section;
-  view.overlays = table.overlays;
-  view.variants = table.variants;
-  view.cases = table.cases;
-  view.metrics = table.metrics;
   return view;
 }
 

@@ -31,6 +31,16 @@ std::shared_ptr<const OptionSet> read_set(std::unique_ptr<OptionSet> set, const 
   return set;
 }
 
+/// Notes where a node and all below it are written.
+void add_places(const TomlNode& node, const std::string& path,
+                std::map<std::string, std::string>& places) {
+  places[path] = node.place;
+  for (std::size_t i = 0; i < node.items.size(); ++i) {
+    const bool is_table = node.kind == TomlNode::Kind::table;
+    add_places(node.items[i], path + "." + (is_table ? node.keys[i] : std::to_string(i)), places);
+  }
+}
+
 VariantTable read_variant_table(const TomlNode& node) {
   TomlNode plain = node;
   plain.erase("options");
@@ -138,6 +148,9 @@ CaseSpec resolve_case(const SweptCase& swept, const Topic& topic,
   result.threads = values.threads;
   result.scene = read_set(topic.default_scene(), swept.root.find("scene"), swept.root.place,
                           "scene", result.scene_json);
+  if (const TomlNode* scene = swept.root.find("scene")) {
+    add_places(*scene, "scene", result.scene_places);
+  }
   const auto runs = [](const std::vector<std::string>& names, const std::string& name) {
     return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
   };

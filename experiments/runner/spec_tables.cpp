@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 4> kStudyKinds{"exponent", "order", "spre
                                                       "within-spread"};
 constexpr std::array<std::string_view, 2> kFiner{"smaller", "larger"};
 constexpr std::array<std::string_view, 2> kShadings{"smooth", "flat"};
-constexpr std::array<std::string_view, 2> kMaterials{"clay", "paper"};
+constexpr std::array<std::string_view, 3> kMaterials{"clay", "paper", "water"};
 
 template <class Enum, std::size_t N>
 std::string name_of(Enum x, const std::array<std::string_view, N>& names) {
@@ -29,8 +29,6 @@ std::string text_of(Reduction x) { return name_of(x, kReductions); }
 std::string text_of(OfReduction x) { return name_of(x, kOfReductions); }
 std::string text_of(StudyKind x) { return name_of(x, kStudyKinds); }
 std::string text_of(Finer x) { return name_of(x, kFiner); }
-std::string text_of(Shading x) { return name_of(x, kShadings); }
-std::string text_of(Material x) { return name_of(x, kMaterials); }
 
 void describe(OptionVisitor& v, HeaderTable& t) {
   v.value("title", t.title, {.doc = "what is shown, one line", .required = true});
@@ -115,18 +113,19 @@ void describe(OptionVisitor& v, SectionView& t) {
   v.value("normal", t.normal, {.doc = "across the plane"});
 }
 
-void describe(OptionVisitor& v, FigureViewTable& t) {
+void describe(OptionVisitor& v, FigureViewTable& table) {
+  FigureView& t = table.view;
   v.value("at_parameter", t.at_parameter, {.doc = "frame that is drawn; absent: the last"});
   v.value("parameters", t.parameters, {.doc = "several frames, side by side"});
   v.value("part", t.part, {.doc = "part of the frames"});
-  v.value("color_by", t.color_by, {.doc = "array of the part; absent: plain material"});
+  v.value("color_by", t.color_by, {.doc = "array of the part; \"\": plain material"});
   v.value("classes", t.classes,
           {.doc = "names of the integers 0, 1, … in `color_by`: a legend instead of a scale"});
   describe_choice(v, "shading", t.shading, kShadings, {.doc = "flat: one tone a triangle"});
   describe_choice(v, "material", t.material, kMaterials,
                   {.doc = "of what has no colour; paper: white, the back side darker"});
   v.value("edges", t.edges, {.doc = "edges of the triangles as thin lines"});
-  v.value("target", t.target, {.doc = "point looked at; absent: fitted", .unit = "m"});
+  v.value("target", table.target, {.doc = "point looked at; absent: fitted", .unit = "m"});
   v.value("direction", t.direction, {.doc = "from the target to the eye"});
   v.value("up", t.up, {.doc = "upward in the picture"});
   v.value("height_m", t.height_m,

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/options.h"
@@ -84,27 +85,13 @@ struct ToleranceTable {
   double relative = 0;
 };
 
-enum class Shading { smooth, flat };
-enum class Material { clay, paper };
-
+/// The members of FigureView, of which `target` may be absent.
 struct FigureViewTable {
-  std::optional<double> at_parameter;
-  std::vector<double> parameters;
-  std::string part;
-  std::optional<std::string> color_by;
-  std::vector<std::string> classes;
-  Shading shading = Shading::smooth;
-  Material material = Material::clay;
-  bool edges = false;
+  explicit FigureViewTable(FigureView defaults = {}) : view(std::move(defaults)) {
+    if (view.target) target.assign(view.target->begin(), view.target->end());
+  }
+  FigureView view;
   std::vector<double> target;
-  std::array<double, 3> direction{0, 0, 1};
-  std::array<double, 3> up{0, 1, 0};
-  std::optional<double> height_m;
-  std::optional<SectionView> section;
-  std::vector<std::string> overlays;
-  std::vector<std::string> variants;
-  std::vector<std::string> cases;
-  std::vector<std::string> metrics;
 };
 
 void describe(OptionVisitor& v, HeaderTable& t);
@@ -123,7 +110,5 @@ std::string text_of(Reduction x);
 std::string text_of(OfReduction x);
 std::string text_of(StudyKind x);
 std::string text_of(Finer x);
-std::string text_of(Shading x);
-std::string text_of(Material x);
 
 }  // namespace geoprior

@@ -178,14 +178,15 @@ VertexDistance reference_distance(const Measured& m, const Measured& reference) 
   return vertex_distance(m.posed, reference.posed, vertices);
 }
 
-Value second_difference(const Scene& scene, const std::vector<Frame>& frames) {
+Value second_difference(const Scene& scene, const FrameSequence& frames) {
   std::vector<Eigen::MatrixX3d> positions;
-  std::vector<double> parameters;
-  for (const Frame& frame : frames) parameters.push_back(frame.parameter);
+  const std::vector<double> parameters = frames.parameters();
   const auto& skinning = dynamic_cast<const SkinningScene&>(scene);
   if (frames.size() < 3 || !equally_spaced(parameters) || skinning.regions.empty())
     return std::nullopt;
-  for (const Frame& frame : frames) positions.push_back(in_bone_frame(measured(scene, frame)));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    positions.push_back(in_bone_frame(measured(scene, *frames.frame(i))));
+  }
   return second_difference_max(positions, parameters,
                                region_vertices(skinning.regions.front(), skinning.rig.mesh.F));
 }

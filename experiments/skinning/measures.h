@@ -61,6 +61,6 @@ Value rest_identity(const Measured& m);
 std::optional<RingRatio> mid_ring(const Measured& m);
 VertexDistance reference_distance(const Measured& m, const Measured& reference);
 /// Absent for fewer than three frames, unequal steps or no region.
-Value second_difference(const Scene& scene, const std::vector<Frame>& frames);
+Value second_difference(const Scene& scene, const FrameSequence& frames);
 
 }  // namespace geoprior

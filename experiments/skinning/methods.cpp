@@ -136,4 +136,19 @@ std::vector<MethodEntry> skinning_methods() {
   };
 }
 
+std::vector<DiagnosticEntry> skinning_diagnostics() {
+  return {
+      {"evaluations_per_vertex", "1", "bone fields sampled, over the vertices"},
+      {"iterations", "1", "steps of the projection"},
+      {"field_error_rms", "1",
+       "root mean square of |field - target| over the vertices that neither stopped in contact nor "
+       "were smoothed"},
+      {"field_error_max", "1", "largest such |field - target|"},
+      {"stopped_fraction", "1", "share of the vertices that stopped in contact"},
+      {"unfinished_fraction", "1", "share of the vertices that ran out of iterations"},
+      {"contact_gap_max", "1",
+       "largest difference of two bones' fields at a vertex stopped in contact, after smoothing"},
+  };
+}
+
 }  // namespace geoprior

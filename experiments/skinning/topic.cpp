@@ -15,6 +15,7 @@ Topic skinning_topic() {
   };
   topic.methods = skinning_methods();
   topic.metrics = skinning_metrics();
+  topic.diagnostics = skinning_diagnostics();
   return topic;
 }
 

@@ -10,5 +10,6 @@ Topic skinning_topic();
 /// The tables behind it: experiments/skinning/methods.cpp and experiments/skinning/metrics.cpp.
 std::vector<MethodEntry> skinning_methods();
 std::vector<MetricEntry> skinning_metrics();
+std::vector<DiagnosticEntry> skinning_diagnostics();
 
 }  // namespace geoprior

@@ -116,11 +116,23 @@ Picture draw_cell(const FigureCell& cell, bool is_section, const FigureView& vie
   return draw_panel(parts, window, style, layout.panel_width, layout.panel_height);
 }
 
+PanelStyle::Material panel_material(FigureView::Material material) {
+  switch (material) {
+    case FigureView::Material::paper:
+      return PanelStyle::Material::paper;
+    case FigureView::Material::water:
+      return PanelStyle::Material::water;
+    case FigureView::Material::clay:
+      break;
+  }
+  return PanelStyle::Material::clay;
+}
+
 PanelStyle panel_style(const std::vector<FigureRow>& rows, const FigureView& view) {
   PanelStyle style;
-  style.flat = view.shading == "flat";
+  style.flat = view.shading == FigureView::Shading::flat;
   style.edges = view.edges;
-  if (view.material == "paper") style.material = PanelStyle::Material::paper;
+  style.material = panel_material(view.material);
   if (view.color_by) {
     const std::vector<const Part*> parts = all_parts(rows, false);
     style.scale = view.classes.empty() ? make_color_scale(all_parts(rows, true), *view.color_by)

@@ -18,6 +18,7 @@
 namespace geoprior::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -49,13 +50,36 @@ TEST_F(Execute, RecordsPosesMetricsAndTimes) {
   EXPECT_EQ(polygon.summary.at("largest_radius_error").value,
             polygon.summary.at("radius_error.max").value);
   EXPECT_EQ(polygon.metrics.at("radius_error").values.size(), 4U);
-  EXPECT_THAT(polygon.diagnostics.at("evaluations"), ElementsAre(24, 24, 24, 24));
+  EXPECT_THAT(polygon.diagnostics.at("evaluations").values, ElementsAre(24, 24, 24, 24));
   EXPECT_EQ(polygon.timing.at("solve").size(), 4U);
   EXPECT_EQ(polygon.timing.at("solve").front().size(), 3U);
   EXPECT_EQ(polygon.timing.at("rim").front().size(), 3U);
   EXPECT_EQ(polygon.timing.at("prepare").size(), 1U);
   ASSERT_EQ(result.record.cases.front().ratios.size(), 1U);
   EXPECT_EQ(result.record.cases.front().ratios.front().of, "polygon");
+}
+
+TEST_F(Execute, RecordsDiagnosticsWithUnitAndMeaning) {
+  run(load(circle()), out());
+  const RunRecord read = read_run_file(out() / "run.h5");
+  const DiagnosticColumn& column = variant_of(read, "polygon").diagnostics.at("evaluations");
+  EXPECT_EQ(column.unit, "1");
+  EXPECT_EQ(column.definition, "points of the rim");
+  EXPECT_EQ(column.values.size(), 4U);
+}
+
+TEST_F(Execute, ADiagnosticThatIsNotDeclaredIsAnErrorOfTestsAndHasNoUnitElsewhere) {
+  std::vector<Topic> topics = toy::topics();
+  for (Topic& topic : topics) topic.diagnostics.clear();
+  const Experiment experiment = load_experiment(circle(), topics, {});
+  ExecuteRequest request;
+  request.out = out();
+  request.only_declared = true;
+  EXPECT_THAT(error_of([&] { execute(experiment, topics, request); }),
+              AllOf(HasSubstr("'evaluations'"), HasSubstr("topic 'toy-circle'")));
+  request.only_declared = false;
+  const ExecuteResult result = execute(experiment, topics, request);
+  EXPECT_EQ(variant_of(result.record, "polygon").diagnostics.at("evaluations").unit, "");
 }
 
 TEST_F(Execute, RunsReferencesFirstAndComparesEqualParameters) {

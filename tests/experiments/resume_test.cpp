@@ -36,8 +36,10 @@ class Resume : public RunTest {
 
   /// Starts the run as a program and sends it a signal once `frames` frames are logged.
   int interrupt(const fs::path& file, std::size_t frames, int number) {
-    ToyProgram program({"run", file.string(), "--no-pictures", "--out", out().string(), "--resume"},
-                       log());
+    std::vector<std::string> command{"run", file.string(), "--no-pictures", "--out",
+                                     out().string()};
+    if (fs::exists(journal())) command.emplace_back("--resume");
+    ToyProgram program(command, log());
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(120);
     while (count_lines(journal(), "frame") < frames) {
       if (std::chrono::steady_clock::now() > deadline) throw Error("no frames: " + text_of(log()));
@@ -200,6 +202,19 @@ TEST_F(Resume, OfAFolderThatIsNoRunIsRefused) {
   fs::create_directories(out());
   std::ofstream(out() / "precious") << "data";
   EXPECT_THAT(error_of([&] { run(load(circle()), out(), true); }), HasSubstr("journal.jsonl"));
+}
+
+TEST_F(Resume, OfNothingIsRefusedAndMakesNoFolder) {
+  const auto file = circle();
+  EXPECT_THAT(error_of([&] { run(load(file), out(), true); }), HasSubstr("no run that could be"));
+  EXPECT_FALSE(fs::exists(out()));
+  ExecuteRequest request;
+  request.resume = true;
+  EXPECT_THAT(error_of([&] { execute(load(file), toy::topics(), request); }),
+              HasSubstr("there is no run of 'toy-circle/disc'"));
+  ToyProgram program({"run", file.string(), "--no-pictures", "--out", out().string(), "--resume"},
+                     log());
+  EXPECT_EQ(program.wait(), 2) << text_of(log());
 }
 
 TEST_F(Resume, TwoProgramsNeverWriteOneRun) {

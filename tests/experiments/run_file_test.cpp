@@ -37,7 +37,7 @@ VariantRecord sample_variant(const std::string& name) {
   variant.metrics["overlap_volume"] = {
       "m^3", "∫max(0, w−1)", "lower_is_better", {kNan, 0.1, 1e-300}};
   variant.summary["overlap_volume.max"] = {0.1, "m^3", "Largest.", "lower_is_better"};
-  variant.diagnostics["iterations"] = {3, kNan, kInfinity};
+  variant.diagnostics["iterations"] = {"1", "until ∆ < 1e−6", {3, kNan, kInfinity}};
   variant.timing["solve"] = {{0.25, 0.5}, {1, 2}, {3, kNan}};
   variant.timing["a/b 100%"] = {{1.5}};
   variant.events = {{0.5, "crossing", {1, 2, 3}, 0.25, 0.125}, {0.75, "", {0, 0, 0}, 0, 0}};
@@ -102,7 +102,9 @@ std::string dump(const VariantRecord& v) {
   for (const auto& [name, s] : v.summary) {
     text += name + s.unit + s.definition + s.direction + numbers({s.value});
   }
-  for (const auto& [name, values] : v.diagnostics) text += name + numbers(values);
+  for (const auto& [name, c] : v.diagnostics) {
+    text += name + c.unit + c.definition + numbers(c.values);
+  }
   for (const auto& [phase, rows] : v.timing) {
     text += phase;
     for (const auto& row : rows) text += numbers(row);

@@ -72,6 +72,7 @@ ExecuteResult RunTest::run(const Experiment& experiment, const fs::path& out, bo
   ExecuteRequest request;
   request.out = out;
   request.resume = resume;
+  request.only_declared = true;
   return execute(experiment, toy::topics(), request);
 }
 

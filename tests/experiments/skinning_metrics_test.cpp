@@ -122,7 +122,7 @@ TEST_F(BentTube, PopsAreSeenAndRigidMotionIsNot) {
   std::vector<Frame> frames;
   for (std::size_t i = 0; i < 6; ++i) frames.push_back(posed(i));
   const auto pops = [&](const std::vector<Frame>& sequence) {
-    return metrics.at("second_difference_max").of_sequence(scene, sequence);
+    return metrics.at("second_difference_max").of_sequence(scene, FramesInMemory(sequence));
   };
   const double smooth = pops(frames).value();
   // The pull of the blended ring is about r (30 degrees)^2 / 4; rigid ends would add 0.5 m times

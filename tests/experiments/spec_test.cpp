@@ -280,12 +280,35 @@ TEST_F(Spec, FigureViewHasClassesOfItsColours) {
       "[figure_view]\ncolor_by = \"kind\"\nclasses = [\"flat\", \"cone\"]\nshading = \"flat\"\n"
       "material = \"paper\"\nedges = true\n"));
   EXPECT_THAT(e.view.classes, ElementsAre("flat", "cone"));
-  EXPECT_EQ(e.view.shading, "flat");
-  EXPECT_EQ(e.view.material, "paper");
+  EXPECT_EQ(e.view.shading, FigureView::Shading::flat);
+  EXPECT_EQ(e.view.material, FigureView::Material::paper);
   EXPECT_TRUE(e.view.edges);
   EXPECT_THAT(error_of(disc_with("[figure_view]\nclasses = [\"flat\"]\n")),
               HasSubstr("the values of no array"));
   EXPECT_THAT(error_of(disc_with("[figure_view]\nmaterial = \"wood\"\n")), HasSubstr("clay"));
+}
+
+TEST_F(Spec, FigureViewBeginsWithThatOfTheTopic) {
+  for (Topic& topic : topics_) {
+    topic.view.color_by = "kind";
+    topic.view.classes = {"flat", "cone"};
+    topic.view.material = FigureView::Material::paper;
+    topic.view.overlays = {"rulings"};
+    topic.view.target = {1, 2, 3};
+  }
+  const auto view_of = [&](const std::string& lines) { return load(disc_with(lines)).view; };
+  const FigureView plain = view_of("");
+  EXPECT_EQ(plain.color_by, "kind");
+  EXPECT_THAT(plain.classes, ElementsAre("flat", "cone"));
+  EXPECT_EQ(plain.material, FigureView::Material::paper);
+  EXPECT_THAT(plain.overlays, ElementsAre("rulings"));
+  EXPECT_EQ(plain.target, (std::array<double, 3>{1, 2, 3}));
+  const FigureView other = view_of("[figure_view]\ncolor_by = \"speed\"\noverlays = []\n");
+  EXPECT_EQ(other.color_by, "speed");
+  EXPECT_TRUE(other.classes.empty()) << "those are of another array";
+  EXPECT_TRUE(other.overlays.empty());
+  EXPECT_EQ(other.material, FigureView::Material::paper);
+  EXPECT_FALSE(view_of("[figure_view]\ncolor_by = \"\"\n").color_by);
 }
 
 /// The topic of the experiment in the documentation of the file format, as far as it needs one.

@@ -300,9 +300,10 @@ std::vector<MetricEntry> pendulum_metrics() {
                       {},
                       {},
                       false};
-  largest.of_sequence = [](const Scene& s, const std::vector<Frame>& frames) {
+  largest.of_sequence = [](const Scene& s, const FrameSequence& frames) {
     double e = 0;
-    for (const Frame& f : frames) e = std::max(e, angle_error(s, f));
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      e = std::max(e, angle_error(s, *frames.frame(i)));
     return std::optional<double>(e);
   };
   MetricEntry apart{"distance_to_reference",
@@ -318,6 +319,7 @@ std::vector<MetricEntry> pendulum_metrics() {
     if (r == nullptr) return std::nullopt;
     return (f.parts.at("bob").points.row(0) - r->parts.at("bob").points.row(0)).norm();
   };
+  apart.reference_parts = {"bob"};
   return {error, largest, apart};
 }
 
@@ -344,6 +346,7 @@ Topic pendulum_topic() {
       pendulum_method("closed-form", false, "the exact solution", Scheme::closed_form),
       pendulum_method("explicit-euler", true, "first order, gains energy", Scheme::explicit_euler)};
   topic.metrics = pendulum_metrics();
+  topic.diagnostics = {{"samples", "1", "of the sound so far"}};
   topic.view.part = "rod";
   return topic;
 }

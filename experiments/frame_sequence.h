@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/frame.h"
+
+namespace geoprior {
+
+/// The frames of one variant, in order of parameter, as the metrics of a sequence see them.
+///
+/// A long simulation does not fit in memory: what is not there is read from the run's files when it
+/// is asked for, so a metric goes once through the sequence and holds what it needs of a few frames
+/// at a time. What it holds stays valid. Not to be used by several threads at once.
+class FrameSequence {
+ public:
+  virtual ~FrameSequence() = default;
+  [[nodiscard]] virtual std::size_t size() const = 0;
+  [[nodiscard]] virtual double parameter(std::size_t i) const = 0;
+  /// The frame, never null; the last few that were asked for are remembered.
+  [[nodiscard]] virtual std::shared_ptr<const Frame> frame(std::size_t i) const = 0;
+  /// One part of a frame, null when it has none of that name: of a frame that is not in memory only
+  /// this file is read, and it is not remembered.
+  [[nodiscard]] virtual std::shared_ptr<const Part> part(std::size_t i,
+                                                         const std::string& name) const = 0;
+
+  [[nodiscard]] std::vector<double> parameters() const {
+    std::vector<double> all;
+    for (std::size_t i = 0; i < size(); ++i) all.push_back(parameter(i));
+    return all;
+  }
+};
+
+/// The part of a frame that lives as long as the frame; null when there is none of that name.
+inline std::shared_ptr<const Part> part_of(const std::shared_ptr<const Frame>& frame,
+                                           const std::string& name) {
+  const auto found = frame->parts.find(name);
+  if (found == frame->parts.end()) return nullptr;
+  return {frame, &found->second};
+}
+
+/// Frames that are all in memory, sorted by parameter already.
+class FramesInMemory final : public FrameSequence {
+ public:
+  explicit FramesInMemory(const std::vector<Frame>& frames) {
+    for (const Frame& frame : frames) frames_.push_back(std::make_shared<const Frame>(frame));
+  }
+  [[nodiscard]] std::size_t size() const override { return frames_.size(); }
+  [[nodiscard]] double parameter(std::size_t i) const override { return frames_.at(i)->parameter; }
+  [[nodiscard]] std::shared_ptr<const Frame> frame(std::size_t i) const override {
+    return frames_.at(i);
+  }
+  [[nodiscard]] std::shared_ptr<const Part> part(std::size_t i,
+                                                 const std::string& name) const override {
+    return part_of(frames_.at(i), name);
+  }
+
+ private:
+  std::vector<std::shared_ptr<const Frame>> frames_;
+};
+
+}  // namespace geoprior

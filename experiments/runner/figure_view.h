@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace geoprior {
+
+/// A plane that cuts the part: figure_view.section = { origin = [x, y, z], normal = [x, y, z] }.
+/// Metres; the eye is on the side of the normal that the picture's direction is on.
+struct SectionView {
+  std::array<double, 3> origin{0, 0, 0};
+  std::array<double, 3> normal{0, 0, 1};
+};
+
+/// How the picture of a run is drawn: what the experiment file says, over what its topic says.
+/// Positions in metres; absent: fitted to the part.
+struct FigureView {
+  enum class Shading { smooth, flat };
+  enum class Material { clay, paper, water };
+
+  std::optional<double> at_parameter;  ///< frame drawn; absent: the last
+  std::vector<double> parameters;      ///< further columns/rows, when more than one frame is drawn
+  std::string part = "surface";
+  std::optional<std::string> color_by;  ///< array of the part; absent: plain material
+  std::vector<std::string> classes;     ///< of `color_by`: the names of its integers 0, 1, …
+  Shading shading = Shading::smooth;    ///< flat: one tone a triangle
+  Material material =
+      Material::clay;  ///< paper: an open sheet with two sides; water: reflects a sky
+  bool edges = false;  ///< the triangles' edges as thin lines
+  std::optional<std::array<double, 3>> target;
+  std::array<double, 3> direction{0, 0, 1};  ///< from the target to the eye
+  std::array<double, 3> up{0, 1, 0};
+  std::optional<double> height_m;      ///< height of the view (parallel projection)
+  std::optional<SectionView> section;  ///< adds a row with the cut, overlaps of the solid in red
+  std::vector<std::string> overlays;   ///< further parts drawn over `part` ("rulings", "strokes")
+  std::vector<std::string> variants;   ///< empty: all
+  std::vector<std::string> cases;      ///< empty: all
+  std::vector<std::string> metrics;    ///< curves of metrics.svg; empty: all that vary
+};
+
+}  // namespace geoprior
