@@ -181,23 +181,23 @@ void mark_outside(MapRaster& raster) {
   }
 }
 
-bool sample_covered(const MapRaster& raster, const Eigen::Vector2d& uv, int channel,
-                    double& value) {
+std::optional<double> height_at(const HeightRaster& raster, const Eigen::Vector2d& uv) {
   const int n = raster.resolution;
   const Eigen::Array2d g = (uv.array() / raster.extent + 0.5) * n - 0.5;
-  if (!(g >= 0).all() || !(g <= n - 1).all()) return false;
-  const int i = std::min(static_cast<int>(g.x()), n - 2), j = std::min(static_cast<int>(g.y()), n - 2);
+  if (!(g >= 0).all() || !(g <= n - 1).all()) return {};
+  const int i = std::min(static_cast<int>(g.x()), n - 2);
+  const int j = std::min(static_cast<int>(g.y()), n - 2);
   const double s = g.x() - i, t = g.y() - j;
-  value = 0;
+  double height = 0;
   for (int b = 0; b < 2; ++b) {
     for (int a = 0; a < 2; ++a) {
       const std::size_t at = texel(n, i + a, j + b);
-      if (raster.covered[at] != 1) return false;
-      value += (a == 0 ? 1 - s : s) * (b == 0 ? 1 - t : t) *
-               static_cast<double>(raster.value[at][channel]);
+      if (raster.known[at] != 1) return {};
+      height += (a == 0 ? 1 - s : s) * (b == 0 ? 1 - t : t) *
+                static_cast<double>(raster.height[at]);
     }
   }
-  return true;
+  return height;
 }
 
 }  // namespace geoprior

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "solvers/fluid/feature.h"
@@ -43,8 +44,15 @@ void fill_uncovered(MapRaster& raster);
 /// Marks (2) the texels not covered that are connected with the map's edge; holes stay 0.
 void mark_outside(MapRaster& raster);
 
-/// Bilinear value of one channel at (u, v), clamped to the map's edge; nothing when a texel around
-/// is not covered.
-bool sample_covered(const MapRaster& raster, const Eigen::Vector2d& uv, int channel, double& value);
+/// Heights over a map's plane where they are known.
+struct HeightRaster {
+  int resolution = 0;
+  double extent = 0;  ///< m
+  std::vector<float> height;
+  std::vector<char> known;  ///< 1
+};
+
+/// Bilinear height at (u, v); nothing where a texel around it is not known.
+std::optional<double> height_at(const HeightRaster& raster, const Eigen::Vector2d& uv);
 
 }  // namespace geoprior
