@@ -104,11 +104,12 @@ void build(CommandLine& line) {
   add_command(line, "list", "experiments, topics, methods and metrics");
   CLI::App* describe = add_command(
       line, "describe",
-      "options of a method or a topic, keys of an experiment file, meaning of a metric");
+      "options of a method or a topic, keys of an experiment file, meaning of a number");
   describe
       ->add_option(
           "name", line.described,
-          "method, topic, metric, topic/method, or the word experiment (the keys of its file)")
+          "method, topic, metric or diagnostic, with topic/ before it if need be, or the word "
+          "experiment (the keys of its file)")
       ->required();
   describe->add_flag("--markdown", line.markdown, "a table for the documentation, on stdout");
   add_run(line);

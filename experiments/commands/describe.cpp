@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 /// One thing that has a name and perhaps options.
 struct Described {
-  std::string kind;   ///< "method", "topic", "metric", "experiment"
+  std::string kind;   ///< "method", "topic", "metric", "diagnostic", "experiment"
   std::string title;  ///< "skinning/implicit"
   std::vector<std::pair<std::string, std::string>> facts;
   std::string options_place;  ///< "[scene]", "options of a [[variant]]"
@@ -25,18 +25,15 @@ struct Described {
 };
 
 std::vector<OptionRow> rows_of(OptionSet& set) {
-  OptionLister lister;
-  set.visit(lister);
-  return lister.rows();
+  return list_options([&](OptionVisitor& visitor) { set.visit(visitor); });
 }
 
 /// A table of an experiment file: the members of its struct, then those of free form.
 template <class Table>
 Described file_table(const std::string& name, const std::vector<OptionRow>& free_form = {}) {
   Table table;
-  OptionLister lister;
-  describe(lister, table);
-  std::vector<OptionRow> rows = lister.rows();
+  std::vector<OptionRow> rows =
+      list_options([&](OptionVisitor& visitor) { describe(visitor, table); });
   rows.insert(rows.end(), free_form.begin(), free_form.end());
   return {"experiment", name, {}, name, rows};
 }
@@ -53,11 +50,15 @@ Described describe_method(const Topic& topic, const MethodEntry& method) {
 
 Described describe_topic(const Topic& topic) {
   Described result{"topic", topic.name, {{"summary", topic.summary}}, "[scene]", {}};
-  std::string methods, metrics;
+  std::string methods, metrics, diagnostics;
   for (const auto& m : topic.methods) methods += (methods.empty() ? "" : ", ") + m.name;
   for (const auto& m : topic.metrics) metrics += (metrics.empty() ? "" : ", ") + m.name;
   result.facts.emplace_back("methods", methods);
+  for (const auto& d : topic.diagnostics) {
+    diagnostics += (diagnostics.empty() ? "" : ", ") + d.name;
+  }
   result.facts.emplace_back("metrics", metrics);
+  result.facts.emplace_back("diagnostics", diagnostics);
   result.options = rows_of(*topic.default_scene());
   return result;
 }
@@ -75,6 +76,14 @@ Described describe_metric(const Topic& topic, const MetricEntry& metric) {
   }
   if (metric.needs_reference) result.facts.emplace_back("needs", "a variant with `reference`");
   return result;
+}
+
+Described describe_diagnostic(const Topic& topic, const DiagnosticEntry& entry) {
+  return {"diagnostic",
+          topic.name + "/" + entry.name,
+          {{"definition", entry.definition}, {"unit", entry.unit}, {"of", "a frame"}},
+          "",
+          {}};
 }
 
 std::vector<Described> experiment_tables() {
@@ -117,6 +126,9 @@ std::vector<Described> find_described(const std::vector<Topic>& topics, const st
     for (const MetricEntry& metric : topic.metrics) {
       if (matches(topic, metric.name)) found.push_back(describe_metric(topic, metric));
     }
+    for (const DiagnosticEntry& entry : topic.diagnostics) {
+      if (matches(topic, entry.name)) found.push_back(describe_diagnostic(topic, entry));
+    }
   }
   if (found.empty()) throw Error("unknown name '" + name + "'", "", allowed_names(name, names));
   return found;
@@ -132,7 +144,8 @@ Json json_of(const Described& described) {
                                {"default", row.default_value},
                                {"range", row.range},
                                {"unit", row.unit},
-                               {"doc", row.doc}});
+                               {"doc", row.doc},
+                               {"when", row.when}});
   }
   return json;
 }
@@ -140,7 +153,7 @@ Json json_of(const Described& described) {
 void say_described(const Described& described) {
   say(tinted(described.title, Tint::strong) + "  " + tinted(described.kind, Tint::faint));
   for (const auto& [key, text] : described.facts) say("  " + key + ": " + text);
-  if (described.kind == "metric") return;
+  if (described.kind == "metric" || described.kind == "diagnostic") return;
   if (described.options.empty()) {
     say("  no options");
     return;
@@ -149,7 +162,7 @@ void say_described(const Described& described) {
   std::vector<std::vector<std::string>> rows{
       {"key", "type", "default", "range", "unit", "meaning"}};
   for (const OptionRow& row : described.options) {
-    rows.push_back({row.key, row.type, row.default_value, row.range, row.unit, row.doc});
+    rows.push_back({row.key, row.type, row.default_value, row.range, row.unit, row.meaning()});
   }
   say_table(rows, "    ");
 }

@@ -1,15 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "core/options.h"
-#include "experiments/runner/option_values.h"
 
 namespace geoprior {
-
-class OptionLister;
-extern template class OptionValues<OptionLister>;
 
 /// One option as `geoprior describe` and the documentation show it.
 struct OptionRow {
@@ -19,36 +16,20 @@ struct OptionRow {
   std::string range;          ///< "at least 0", or the names of a choice
   std::string unit;
   std::string doc;
+  std::string when = {};  ///< "kind = disc | svg": there under these tags only; "" for always
+
+  /// `doc`, preceded by `when` in brackets.
+  [[nodiscard]] std::string meaning() const;
 };
 
-/// Lists the options that `describe` walks, with the values they have as defaults. Lists without
-/// elements are given one and tables that are absent are walked, so the struct is changed: hand in
-/// a copy.
-class OptionLister final : public OptionValues<OptionLister> {
- public:
-  [[nodiscard]] const std::vector<OptionRow>& rows() const { return rows_; }
-
-  void choice(std::string_view key, int& index, std::span<const std::string_view> names,
-              const OptionInfo& info) override;
-  void group(std::string_view key, const OptionInfo& info,
-             const std::function<void()>& inside) override;
-  void optional_group(std::string_view key, bool& present, const OptionInfo& info,
-                      const std::function<void()>& inside) override;
-  void list(std::string_view key, std::size_t count, const OptionInfo& info,
-            const std::function<void(std::size_t)>& resize,
-            const std::function<void(std::size_t)>& inside) override;
-
- private:
-  friend OptionValues<OptionLister>;
-  template <class T>
-  void visit_value(std::string_view key, T& x, const OptionInfo& info);
-  void add(std::string_view key, std::string type, std::string default_value,
-           const OptionInfo& info);
-  void walk(const std::string& key, const std::function<void()>& inside);
-
-  std::vector<OptionRow> rows_;
-  std::string prefix_;
-};
+/// The options that `describe` walks, with the values they have as defaults: the members under
+/// every tag of a tagged choice, those of tables that are absent, and those of one element of every
+/// list. The struct behind `describe` is changed by that: hand in a copy.
+///
+/// Two choices of one table are varied one at a time, the other at its default: a key that needs
+/// two tags other than the defaults at once is found when the second tag is itself selected by the
+/// first.
+std::vector<OptionRow> list_options(const std::function<void(OptionVisitor&)>& describe);
 
 /// A Markdown table of the rows, for the documentation.
 std::string markdown_table(const std::vector<OptionRow>& rows);

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -170,19 +171,80 @@ TEST(OptionToml, SyntaxErrorNamesTheLine) {
   EXPECT_THAT(error_of("real = 1\nflag = = 2"), HasSubstr("file.toml:2:"));
 }
 
+std::vector<std::string> keys_of(const std::vector<OptionRow>& rows) {
+  std::vector<std::string> keys;
+  for (const OptionRow& row : rows) keys.push_back(row.key);
+  return keys;
+}
+
 TEST(OptionListing, ListsEveryKeyWithDefaultRangeAndUnit) {
   Everything options;
-  OptionLister lister;
-  describe(lister, options);
-  std::vector<std::string> keys;
-  for (const OptionRow& row : lister.rows()) keys.push_back(row.key);
-  EXPECT_THAT(keys, testing::IsSupersetOf({"real", "shape", "inner.weight", "maybe_inner.weight",
-                                           "inners[].weight", "size"}));
-  EXPECT_EQ(lister.rows()[0].default_value, "1.5");
-  EXPECT_EQ(lister.rows()[0].range, "at least 0");
-  EXPECT_EQ(lister.rows()[0].unit, "m");
-  EXPECT_THAT(markdown_table(lister.rows()),
-              HasSubstr("| `real` | number | `1.5` | at least 0 | m"));
+  const std::vector<OptionRow> rows = list_options([&](OptionVisitor& v) { describe(v, options); });
+  EXPECT_THAT(keys_of(rows),
+              testing::IsSupersetOf({"real", "shape", "inner.weight", "maybe_inner.weight",
+                                     "inners[].weight", "size"}));
+  EXPECT_EQ(rows[0].default_value, "1.5");
+  EXPECT_EQ(rows[0].range, "at least 0");
+  EXPECT_EQ(rows[0].unit, "m");
+  EXPECT_THAT(markdown_table(rows), HasSubstr("| `real` | number | `1.5` | at least 0 | m"));
+  for (const OptionRow& row : rows) EXPECT_EQ(row.when, "") << row.key;
+}
+
+/// Tags select members, one of them a tag itself.
+struct Tagged {
+  enum class Kind { ball, box, none };
+  enum class Corners { sharp, rounded };
+  Kind kind = Kind::box;
+  Corners corners = Corners::sharp;
+  double radius = 1, width = 2, bevel = 0.1, mass = 3;
+};
+void describe(OptionVisitor& v, Tagged& o) {
+  static constexpr std::array<std::string_view, 3> kKinds{"ball", "box", "none"};
+  static constexpr std::array<std::string_view, 2> kCorners{"sharp", "rounded"};
+  describe_choice(v, "kind", o.kind, kKinds, {.doc = "of body"});
+  if (o.kind == Tagged::Kind::ball) v.value("radius", o.radius, {.doc = "half as wide"});
+  if (o.kind == Tagged::Kind::box) {
+    v.value("width", o.width, {.doc = "of the box"});
+    describe_choice(v, "corners", o.corners, kCorners, {.doc = "of the box"});
+    if (o.corners == Tagged::Corners::rounded) v.value("bevel", o.bevel, {.doc = "radius"});
+  }
+  if (o.kind != Tagged::Kind::none) v.value("mass", o.mass, {.doc = "how heavy", .unit = "kg"});
+}
+struct Bodies {
+  Tagged first;
+  std::vector<Tagged> others;
+};
+void describe(OptionVisitor& v, Bodies& o) {
+  describe_group(v, "first", o.first, {.doc = "a body"});
+  describe_list(v, "others", o.others, {.doc = "bodies"});
+}
+
+TEST(OptionListing, ListsTheMembersOfEveryTagAndNamesTheTags) {
+  Bodies options;
+  options.first.kind = Tagged::Kind::none;
+  const std::vector<OptionRow> rows = list_options([&](OptionVisitor& v) { describe(v, options); });
+  // What a default tag selects comes first, the rest where it is walked.
+  EXPECT_THAT(keys_of(rows),
+              testing::ElementsAre("first", "first.kind", "first.radius", "first.width",
+                                   "first.corners", "first.bevel", "first.mass", "others",
+                                   "others[].kind", "others[].width", "others[].corners",
+                                   "others[].radius", "others[].bevel", "others[].mass"));
+  const std::map<std::string, std::string> when{{"kind", ""},
+                                                {"radius", "kind = ball"},
+                                                {"width", "kind = box"},
+                                                {"corners", "kind = box"},
+                                                {"bevel", "kind = box, corners = rounded"},
+                                                {"mass", "kind = ball | box"}};
+  for (const OptionRow& row : rows) {
+    const std::size_t dot = row.key.find('.');
+    if (dot == std::string::npos) continue;
+    EXPECT_EQ(row.when, when.at(row.key.substr(dot + 1))) << row.key;
+  }
+  EXPECT_EQ(rows[1].default_value, "\"none\"");
+  EXPECT_EQ(rows[8].default_value, "\"box\"");
+  EXPECT_EQ(rows[7].default_value, "[]");
+  EXPECT_EQ(rows[2].meaning(), "[kind = ball] half as wide");
+  EXPECT_EQ(options.first.kind, Tagged::Kind::none) << "choices are left as they were";
 }
 
 TEST(TomlTree, BareWordsAreTextsAndEverythingElseIsToml) {
