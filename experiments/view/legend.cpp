@@ -98,10 +98,36 @@ const NamedPart* find_overlay(const std::vector<FigureRow>& rows, const std::str
 
 }  // namespace
 
+namespace {
+
+/// Beside the bar, or centred above it where the picture is too narrow: the bar is then moved, and
+/// its new top returned.
+int draw_bar_title(Picture& picture, const ColorScale& scale, int length, int& left, int top,
+                   int thickness) {
+  constexpr int kGap = 40;
+  constexpr int kMargin = 20;
+  std::string title = display_name(scale.array);
+  if (!scale.unit.empty() && scale.unit != "1") title += " [" + scale.unit + "]";
+  if (text_width(title, kStyle) <= left - kGap - kMargin) {
+    draw_text(picture, title, left - kGap, top + thickness - 4, Align::right, kStyle);
+    return top;
+  }
+  TextStyle style = kStyle;
+  while (style.size_px > 12 && text_width(title, style) > picture.width - 2 * kMargin) {
+    --style.size_px;
+  }
+  draw_text(picture, title, picture.width / 2, top + thickness - 4, Align::center, style);
+  left = (picture.width - length) / 2;
+  return top + kGap;
+}
+
+}  // namespace
+
 void draw_scalar_bar(Picture& picture, const ColorScale& scale, int top) {
   constexpr int kThickness = 28;
   const int length = std::min(1000, picture.width / 2);
-  const int left = (picture.width - length) / 2 + picture.width / 12;
+  int left = (picture.width - length) / 2 + picture.width / 12;
+  top = draw_bar_title(picture, scale, length, left, top, kThickness);
   for (int x = 0; x < length; ++x) {
     picture.fill_rectangle(left + x, top, 1, kThickness,
                            to_rgb(color_at((x + 0.5) / length, scale.diverging)));
@@ -121,9 +147,6 @@ void draw_scalar_bar(Picture& picture, const ColorScale& scale, int top) {
     picture.fill_rectangle(x - 1, top + kThickness, 2, 8, kStyle.color);
     draw_text(picture, tick_label(v, step), x, top + kThickness + 40, Align::center, kStyle);
   }
-  std::string title = display_name(scale.array);
-  if (!scale.unit.empty() && scale.unit != "1") title += " [" + scale.unit + "]";
-  draw_text(picture, title, left - 40, top + kThickness - 4, Align::right, kStyle);
 }
 
 OverlayColors overlay_colors(const std::vector<FigureRow>& rows,

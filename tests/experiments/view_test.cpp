@@ -355,6 +355,27 @@ TEST(Cells, ObstaclesComeWithTheFrameAndDoNotMoveTheWindow) {
   EXPECT_TRUE(rows[0].cells[0].overlays.empty());
 }
 
+TEST(ScalarBar, TitleStaysInsideANarrowPicture) {
+  ColorScale scale;
+  scale.array = "curvature_of_the_reference_surface";
+  scale.unit = "1/m";
+  for (const int width : {360, 540, 900, 2400}) {
+    Picture picture(width, 160);
+    draw_scalar_bar(picture, scale, 14);
+    int left = width, right = 0;
+    for (int y = 0; y < picture.height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        if (picture.at(x, y) == Rgb{255, 255, 255}) continue;
+        left = std::min(left, x);
+        right = std::max(right, x);
+      }
+    }
+    EXPECT_GE(left, 8) << width;
+    EXPECT_LE(right, width - 9) << width;
+    EXPECT_GT(right - left, width / 2) << "title and bar are there";
+  }
+}
+
 TEST(Legend, BreaksIntoLinesThatFitTheFigure) {
   std::vector<LegendEntry> entries;
   for (const char* name : {"Flat", "Cylinder", "Cone", "Rulings", "Singular points", "Handles"}) {
@@ -377,7 +398,7 @@ TEST(Legend, BreaksIntoLinesThatFitTheFigure) {
 
 TEST(Legend, ExplainsTheClassesAndOverlaysThatSomePanelHas) {
   FigureView view;
-  view.color_by = "kind";
+  view.color_by = std::make_optional<std::string>("kind");
   view.classes = {"flat", "cone"};
   view.overlays = {"rulings", "singular_points"};
   FigureRow row;
