@@ -128,7 +128,11 @@ def draw_metric(axes, case, name, names, look):
             style["linestyle"] = "none"
         axes.plot(variant.parameter, values, label=display_name(variant.name),
                   markevery=mark_every(values.size), markeredgewidth=0, **style)
-    if needs_log(scaled):
+    if not any(values[np.isfinite(values)].any() for values in scaled):
+        # Nothing to scale an axis by: the zero, and room above it.
+        axes.set_ylim(-0.1, 1)
+        axes.set_yticks([0])
+    elif needs_log(scaled):
         set_log_axis(axes, scaled)
     else:
         low, high = axes.get_ylim()

@@ -7,7 +7,7 @@ import numpy as np
 import plots
 from report_html import details, escape, png_figure, svg_figure, table
 from tables import event_counts, failures, metric_rows, phase_rows, timing_rows
-from wording import display_name, interval, number, with_unit
+from wording import display_name, interval, labelled, number, unit_symbol, with_unit
 
 
 def meta_line(run):
@@ -160,10 +160,12 @@ def diagnostics(run):
     for case in run.cases:
         rows = []
         for variant in case.variants:
-            for name, values in variant.diagnostics.items():
-                finite = values[np.isfinite(values)]
+            for name, diagnostic in variant.diagnostics.items():
+                finite = diagnostic.values[np.isfinite(diagnostic.values)]
+                label = labelled(display_name(name), unit_symbol(diagnostic.unit))
                 if finite.size:
-                    rows.append([escape(display_name(variant.name)), escape(display_name(name)),
+                    rows.append([escape(display_name(variant.name)),
+                                 f'<span title="{escape(diagnostic.definition)}">{escape(label)}</span>',
                                  *(number(float(f(finite))) for f in (np.min, np.median, np.max))])
         if rows:
             blocks += [case_heading(run, case),

@@ -27,6 +27,14 @@ class Metric:
 
 
 @dataclass
+class Diagnostic:
+    """What only the method knows, one value a frame."""
+    values: np.ndarray
+    unit: str
+    definition: str
+
+
+@dataclass
 class Variant:
     name: str
     method: str
@@ -38,7 +46,7 @@ class Variant:
     parameter: np.ndarray
     metrics: dict[str, Metric]
     summary: dict[str, Metric]
-    diagnostics: dict[str, np.ndarray]
+    diagnostics: dict[str, Diagnostic]
     timing: dict[str, np.ndarray]  # phase: frames x repetitions, seconds
     events: np.ndarray
     frames: list[tuple[int, str, str]]  # index, name, sha256
@@ -153,6 +161,12 @@ def read_metrics(group):
     return out
 
 
+def read_diagnostic(data):
+    # Runs written before the topics had tables of diagnostics say neither unit nor meaning.
+    return Diagnostic(data[()], text(data.attrs.get("unit", "")),
+                      text(data.attrs.get("definition", "")))
+
+
 def read_variant(name, group):
     attrs = group.attrs
     return Variant(
@@ -160,7 +174,7 @@ def read_variant(name, group):
         reference=text(attrs.get("reference", "")), options=read_json(attrs["options"]),
         status=text(attrs["status"]), error=text(attrs.get("error", "")), parameter=group["parameter"][()],
         metrics=read_metrics(group["metrics"]), summary=read_metrics(group["summary"]),
-        diagnostics={unquote(n): group["diagnostics"][n][()] for n in group["diagnostics"]},
+        diagnostics={unquote(n): read_diagnostic(d) for n, d in group["diagnostics"].items()},
         timing={unquote(n): np.atleast_2d(group["timing"][n][()]) for n in group["timing"]},
         events=group["events"][()],
         frames=[(int(f["frame"]), text(f["name"]), text(f["sha256"])) for f in group["frames"][()]],

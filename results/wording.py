@@ -14,10 +14,18 @@ PREFIXES = {
 }
 
 
+# Words of names that are written otherwise than with small letters, or than the name can be.
+WORDS = {
+    "dcone": "d-cone", "rms": "RMS", "p05": "(5 %)", "p95": "(95 %)", "hausdorff": "Hausdorff",
+    "gauss": "Gauss", "dirichlet": "Dirichlet",
+}
+
+
 def display_name(name):
-    """`dual-quaternion` as `Dual quaternion`."""
-    words = name.replace("_", " ").replace("-", " ")
-    return words[:1].upper() + words[1:]
+    """`dual-quaternion` as `Dual quaternion`, `dcone_count` as `d-cone count`."""
+    words = name.replace("_", " ").replace("-", " ").split(" ")
+    first = WORDS.get(words[0], words[0][:1].upper() + words[0][1:])
+    return " ".join([first, *(WORDS.get(word, word) for word in words[1:])])
 
 
 def unit_symbol(unit):

@@ -56,7 +56,10 @@ def add_variant(parent, index, name, overlap, seconds):
     add_metric(summary, "overlap_excess.max", np.nanmax(overlap), "m^3", "lower_is_better")
     add_metric(summary, "volume_change.min", -0.09 * (index + 1), "1", "closer_to_target")
     add_metric(summary, "rest_identity", 1e-16, "1", "lower_is_better")
-    group.create_group("diagnostics")["iterations"] = np.array([1.0, np.nan, 7.0])
+    diagnostics = group.create_group("diagnostics")
+    diagnostics["iterations"] = np.array([1.0, np.nan, 7.0])  # of a run before units were stored
+    diagnostics["work_done"] = np.array([0.0, 0.5, 2.0])
+    diagnostics["work_done"].attrs.update(unit="J", definition="Since the <start>.")
     group.create_group("timing")["solve"] = seconds * np.ones((3, 4))
     group["events"] = np.array(
         [(0.5, b"hit", (0, 0, 0), 1.0, 0.1)] * (2 * index),
@@ -182,6 +185,12 @@ class RunTest(unittest.TestCase):
             self.assertTrue(expected in text, expected)
         self.assertTrue("<b>0.00200</b>" in text)  # the best overlap, in cm³, is marked
 
+    def test_report_gives_unit_and_meaning_of_diagnostics(self):
+        report.main([str(self.folder), "--out", str(self.folder / "report.html")])
+        page = (self.folder / "report.html").read_text(encoding="utf-8")
+        self.assertIn('<span title="Since the &lt;start&gt;.">Work done [J]</span>', page)
+        self.assertIn('<span title="">Iterations</span>', page)
+
     def test_several_runs_have_contents_and_a_comparison(self):
         other = self.folder / "other"
         other.mkdir()
@@ -217,6 +226,19 @@ class RunTest(unittest.TestCase):
         svg = (self.folder / "metrics.svg").read_text(encoding="utf-8")
         self.assertEqual(svg, plots.figures(runfile.read_run(self.folder))["metrics"])
         ElementTree.fromstring(svg)
+
+    def test_a_metric_that_is_zero_throughout_has_a_readable_axis(self):
+        case = runfile.read_run(self.folder).cases[0]
+        for variant in case.variants:
+            variant.metrics["overlap_excess"].values[:] = 0
+        figure, axes = plots.plt.subplots()
+        names = [v.name for v in case.variants]
+        look = {n: {} for n in names}
+        plots.draw_metric(axes, case, "overlap_excess", names, look)
+        self.assertEqual(list(axes.get_yticks()), [0])
+        low, high = axes.get_ylim()
+        self.assertTrue(-0.5 < low < 0 < 0.5 < high, (low, high))
+        plots.plt.close(figure)
 
     def test_figure_view_selects_the_curves(self):
         run = runfile.read_run(self.folder)
@@ -277,6 +299,12 @@ class WordingTest(unittest.TestCase):
                                 (1.5e-9, "1.50·10⁻⁹"), (float("nan"), "–"), (0.0, "0"),
                                 (0.99999, "1.00"), (123.456, "123"), (1.2345e9, "1.23·10⁹")]:
             self.assertEqual(wording.number(value), expected)
+
+    def test_names_are_written_as_one_reads_them(self):
+        for name, read in {"dcone_count": "d-cone count", "isometry_rms": "Isometry RMS",
+                           "dual-quaternion": "Dual quaternion", "x": "X", "": "",
+                           "area_ratio_p95": "Area ratio (95 %)"}.items():
+            self.assertEqual(wording.display_name(name), read)
 
     def test_units_take_the_step_that_reads_easily(self):
         self.assertEqual(wording.with_unit(0.00312, "s"), "3.12 ms")
