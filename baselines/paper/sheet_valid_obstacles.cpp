@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "baselines/paper/sheet_checks.h"
+#include "baselines/paper/sheet_start.h"
 #include "core/error.h"
 
 namespace geoprior::sheet_checks {
@@ -37,18 +38,18 @@ void require_shape(const Obstacle& obstacle, const std::string& where) {
   }
 }
 
-/// Looks for a point of the flat start that lies deeper than `tolerance` in an obstacle: squares of
-/// the pattern are divided until the distance at their centre, which changes no faster than the
-/// place, excludes them.
+/// Looks for a point of the flat start that is nearer than `limit` to an obstacle: squares of the
+/// pattern are divided until the distance at their centre, which changes no faster than the place,
+/// excludes them.
 class StartSearch {
  public:
-  StartSearch(const Sheet& sheet, const Obstacle& obstacle, double tolerance)
-      : sheet_(sheet), at_start_(obstacle, 0), tolerance_(tolerance) {}
+  StartSearch(const Sheet& sheet, const Obstacle& obstacle, double limit)
+      : sheet_(sheet), at_start_(obstacle, 0), limit_(limit) {}
 
-  [[nodiscard]] std::optional<Eigen::Vector2d> deep_point() const {
+  [[nodiscard]] std::optional<Eigen::Vector2d> near_point() const {
     Eigen::Vector2d low = sheet_.pattern.border.front(), high = low;
     for (const Eigen::Vector2d& p : sheet_.pattern.border) {
-      if (distance(p) < -tolerance_) return p;
+      if (distance(p) < limit_) return p;
       low = low.cwiseMin(p);
       high = high.cwiseMax(p);
     }
@@ -65,8 +66,8 @@ class StartSearch {
   [[nodiscard]] std::optional<Eigen::Vector2d> search(const Eigen::Vector2d& centre, double half,
                                                       int depth) const {
     const double here = distance(centre);
-    if (here - std::sqrt(2.0) * half > -tolerance_) return std::nullopt;
-    if (here < -tolerance_ && contains(sheet_.pattern, centre)) return centre;
+    if (here - std::sqrt(2.0) * half > limit_) return std::nullopt;
+    if (here < limit_ && contains(sheet_.pattern, centre)) return centre;
     if (depth == kDepth) return std::nullopt;
     for (const double du : {-0.5, 0.5}) {
       for (const double dv : {-0.5, 0.5}) {
@@ -80,7 +81,7 @@ class StartSearch {
 
   const Sheet& sheet_;
   ObstacleAt at_start_;
-  double tolerance_;
+  double limit_;
 };
 
 }  // namespace
@@ -92,7 +93,7 @@ void require_obstacles(const Sheet& sheet, const std::string& where) {
     const std::string at =
         where + "." + std::to_string(i) + (obstacle.name.empty() ? "" : " '" + obstacle.name + "'");
     require_shape(obstacle, at);
-    const auto deep = StartSearch(sheet, obstacle, tolerance).deep_point();
+    const auto deep = start_nearer_than(sheet, obstacle, -tolerance);
     if (!deep) continue;
     std::ostringstream problem;
     problem << "contains the start of the sheet at the pattern point (" << deep->x() << ", "
@@ -102,3 +103,12 @@ void require_obstacles(const Sheet& sheet, const std::string& where) {
 }
 
 }  // namespace geoprior::sheet_checks
+
+namespace geoprior {
+
+std::optional<Eigen::Vector2d> start_nearer_than(const Sheet& sheet, const Obstacle& obstacle,
+                                                 double distance) {
+  return sheet_checks::StartSearch(sheet, obstacle, distance).near_point();
+}
+
+}  // namespace geoprior

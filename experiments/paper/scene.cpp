@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <system_error>
 
+#include "baselines/paper/sheet_start.h"
 #include "core/error.h"
 #include "experiments/keyframes.h"
 #include "experiments/paper/pulled_apart.h"
@@ -91,6 +93,24 @@ Pattern polygon_pattern(const std::vector<PatternPointOptions>& points) {
   return pattern;
 }
 
+/// The waves of the start may dip into an obstacle that the flat sheet only touches.
+void warn_of_waves(PaperScene& scene) {
+  const Sheet& sheet = scene.sheet;
+  if (sheet.imperfection <= 0) return;
+  for (std::size_t i = 0; i < sheet.obstacles.size(); ++i) {
+    const Obstacle& obstacle = sheet.obstacles[i];
+    const auto near = start_nearer_than(sheet, obstacle, sheet.imperfection);
+    if (!near) continue;
+    std::ostringstream text;
+    text << "scene.obstacles." << i << (obstacle.name.empty() ? "" : " '" + obstacle.name + "'")
+         << " is nearer to the flat start of the sheet than its waves are high"
+         << " (scene.imperfection = " << sheet.imperfection << " m), at the pattern point ("
+         << near->x() << ", " << near->y() << ") m: they begin inside of it and are pushed out; "
+         << "move one of them " << sheet.imperfection << " m away, or set imperfection = 0";
+    scene.load_warnings.push_back(text.str());
+  }
+}
+
 Pattern make_pattern(const PatternOptions& options, const fs::path& folder,
                      std::vector<fs::path>& files) {
   switch (options.kind) {
@@ -156,6 +176,7 @@ std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
   if (const auto worst = worst_pulled_apart(scene->sheet, kStretch)) {
     scene->load_warnings.push_back(warning_text(scene->sheet, *worst, "scene"));
   }
+  warn_of_waves(*scene);
   return scene;
 }
 

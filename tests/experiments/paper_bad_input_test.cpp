@@ -133,6 +133,33 @@ TEST_F(BadSheet, NamesTheObstacleThatContainsTheStart) {
               AllOf(HasSubstr("scene.obstacles.0 'ball'"), HasSubstr("contains the start")));
 }
 
+TEST_F(BadSheet, NamesTheLineOfTheKeyThatTheSceneRefuses) {
+  // Lines 1 to 4 are the title, the topic, [scene] and the duration, 5 is the pattern.
+  EXPECT_THAT(refusal(kRectangle +
+                      "handles = [\n  { points = [{ u = 0, v = 0 }], keys = [{ t = 0 }] },\n"
+                      "  { name = \"b\", points = [{ u = 0, v = 0.06 }], keys = [{ t = 0 }] },\n"
+                      "]\n"),
+              AllOf(HasSubstr("bad.toml:8:"), HasSubstr("scene.handles.1 'b'.points.0")));
+  EXPECT_THAT(refusal(kRectangle + "\n[[scene.obstacles]]\nkind = \"plane\"\naxis = [0, 0, 0]\n"),
+              HasSubstr("bad.toml:9:"));
+}
+
+TEST_F(BadSheet, IsWarnedOfWhereWavesOfTheStartDipIntoAnObstacle) {
+  const auto warnings = [&](const std::string& lines) {
+    const fs::path file = experiment(kRectangle + lines);
+    const auto record = run_paper(file).record.cases.front().warnings;
+    fs::remove_all(folder() / "out");
+    return record;
+  };
+  const std::string table = "obstacles = [{ kind = \"plane\", name = \"table\" }]\n";
+  const auto dipping = warnings(table);
+  ASSERT_EQ(dipping.size(), 1U);
+  EXPECT_THAT(dipping[0], AllOf(HasSubstr("scene.obstacles.0 'table'"),
+                                HasSubstr("scene.imperfection = 0.0001 m")));
+  EXPECT_TRUE(warnings(table + "imperfection = 0\n").empty());
+  EXPECT_TRUE(warnings("obstacles = [{ kind = \"plane\", centre = [0, 0, -0.001] }]\n").empty());
+}
+
 TEST_F(BadSheet, NamesShapesThatContradictThemselves) {
   EXPECT_THAT(refusal(kRectangle + "handles = [{ segment = [0, 0, 1], keys = [{ t = 0 }] }]\n"),
               AllOf(HasSubstr("scene.handles.0.segment: has 3 numbers"), HasSubstr("allowed: 4")));

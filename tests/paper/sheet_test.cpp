@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "baselines/paper/sheet_start.h"
 #include "core/error.h"
 
 namespace geoprior {
@@ -227,6 +228,19 @@ TEST(RequireValid, RefusesAnObstacleThatContainsTheStart) {
   EXPECT_THAT(refusal(sheet), HasSubstr("contains the start")) << "the corners stick out";
   sheet.obstacles[0].radius = 0.19;
   EXPECT_EQ(refusal(sheet), "accepted");
+}
+
+// A plane under the sheet: its distance is the sheet's height, whatever the point.
+TEST(Sheet, KnowsWhetherItsStartIsNearAnObstacle) {
+  Sheet sheet = valid_sheet();
+  Obstacle table;
+  table.kind = Obstacle::Kind::plane;
+  table.centre = {0, 0, -2e-4};
+  EXPECT_TRUE(start_nearer_than(sheet, table, 2.01e-4));
+  EXPECT_FALSE(start_nearer_than(sheet, table, 1.99e-4));
+  table.centre.z() = 0;
+  EXPECT_TRUE(start_nearer_than(sheet, table, 1e-9));
+  EXPECT_FALSE(start_nearer_than(sheet, table, -1e-9));
 }
 
 // A wire thinner than any sampling of the sheet that one would choose by hand.
