@@ -18,10 +18,11 @@ Float4 to_float4(const Eigen::Vector3d& v) {
 
 /// The rigid motion of a bone: scale and shear are dropped about the image of its head, as in the
 /// dual quaternions that the solve starts from.
-Eigen::Isometry3d bone_motion(const BoneField& field, const Pose& pose) {
-  const Eigen::Affine3d& transform = pose[static_cast<std::size_t>(field.bone.joint)];
-  Eigen::Isometry3d rigid = rigid_part(transform);
-  rigid.translation() = transform * field.bone.head - rigid.linear() * field.bone.head;
+Eigen::Isometry3d bone_motion(const FieldBone& bone, const Eigen::Affine3d& transform,
+                              const Eigen::Matrix3d& rotation) {
+  Eigen::Isometry3d rigid = Eigen::Isometry3d::Identity();
+  rigid.linear() = rotation;
+  rigid.translation() = transform * bone.head - rigid.linear() * bone.head;
   return rigid;
 }
 
@@ -62,9 +63,12 @@ FieldComposition::FieldComposition(std::vector<BoneField> fields,
 }
 
 void FieldComposition::set_pose(const Pose& pose) {
+  rotations_.resize(pose.size());
+  for (std::size_t j = 0; j < pose.size(); ++j) rotations_[j] = rigid_part(pose[j]).linear();
   for (std::size_t b = 0; b < fields_.size(); ++b) {
     const BoneField& field = fields_[b];
-    const Eigen::Isometry3d rigid = bone_motion(field, pose);
+    const auto joint = static_cast<std::size_t>(field.bone.joint);
+    const Eigen::Isometry3d rigid = bone_motion(field.bone, pose[joint], rotations_[joint]);
     const Eigen::Isometry3d inverse = rigid.inverse();
     to_rest_[b] = inverse;
     // An exact field has grid coordinates in metres.

@@ -54,6 +54,9 @@ class FieldComposition {
   /// Moves the fields. `pose` holds one transform a joint; parts that are not rigid are dropped.
   void set_pose(const Pose& pose);
 
+  /// Rotations of the joints in that pose.
+  [[nodiscard]] const std::vector<Eigen::Matrix3d>& rotations() const { return rotations_; }
+
   /// Bones whose box meets the axis-aligned box [low, high]; writes their indices to `bones`
   /// (room for `bone_count`) and returns how many.
   int bones_near(Float4 low, Float4 high, int* bones) const;
@@ -117,6 +120,7 @@ class FieldComposition {
   SupportKind support_;
   std::vector<std::uint8_t> same_part_;  // bones x bones
   std::vector<int> parent_;
+  std::vector<Eigen::Matrix3d> rotations_;  // by joint
   std::vector<PosedBone> posed_;
   std::vector<Eigen::Isometry3d> to_rest_;  // exact evaluation
 };

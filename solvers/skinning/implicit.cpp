@@ -100,7 +100,7 @@ struct ImplicitSkinning::Impl {
   }
 
   void start(const Pose& pose, Eigen::MatrixX3d& posed);
-  void turn_normals(const Pose& pose);
+  void turn_normals();
   void fit(RunContext& context);
   void smooth(int diffusion, int passes);
   void finish(Eigen::MatrixX3d& posed);
@@ -128,12 +128,12 @@ void ImplicitSkinning::Impl::start(const Pose& pose, Eigen::MatrixX3d& posed) {
     state.start[s] = row_of(posed, state.vertex[s]);
   }
   state.position = state.start;
-  turn_normals(pose);
+  turn_normals();
 }
 
-void ImplicitSkinning::Impl::turn_normals(const Pose& pose) {
-  for (std::size_t j = 0; j < pose.size(); ++j) {
-    const Eigen::Matrix3f turn = rigid_part(pose[j]).linear().cast<float>();
+void ImplicitSkinning::Impl::turn_normals() {
+  for (std::size_t j = 0; j < field.rotations().size(); ++j) {
+    const Eigen::Matrix3f turn = field.rotations()[j].cast<float>();
     for (int k = 0; k < 3; ++k) {
       rotation[3 * j + static_cast<std::size_t>(k)] =
           Float4{turn(0, k), turn(1, k), turn(2, k), 0.0F};
