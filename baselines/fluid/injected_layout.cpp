@@ -10,9 +10,9 @@ namespace {
 using Item = InjectedSequence::Item;
 using Shape = InjectedSequence::Shape;
 
-constexpr double kLane = 20;    // width of a lane in cells
+constexpr double kLane = 24;    // width of a lane in cells
 constexpr double kLength = 64;  // of the pool in cells
-constexpr int kRingsInALane = 3;
+constexpr int kRingsInALane = 2;
 constexpr double kGravity = -9.81;  // m/s^2
 
 /// Draws the features; lengths below are in cells of resolution 1, times in frames.
@@ -64,7 +64,7 @@ class Layout {
     bump.amplitude = between(2.2, 3.2) * o_.cell;
   }
 
-  /// The second bump runs towards the first and ends five sigmas before it, which then grows.
+  /// The second bump runs towards the first and ends 6.5 sigmas before it, which then grows.
   void add_merge(int lane) {
     const double frames = o_.frames;
     const double sigma = 2.8;
@@ -76,7 +76,7 @@ class Layout {
     still.gain = 1.2 * o_.cell;
     const int end = still.grows_at, first = still.id;
     Item& runner = add(Shape::bump, 0.05 * frames, end);
-    const double travel = 44 - 20 - 5.5 * sigma;
+    const double travel = 44 - 20 - 6.5 * sigma;
     runner.at = at(44, (lane + 0.5) * kLane, 0);
     runner.velocity.x() = -speed(travel / std::max(runner.end - 1 - runner.begin, 1));
     runner.width = sigma * o_.cell;
@@ -86,7 +86,7 @@ class Layout {
 
   void add_ring(int index, int lane) {
     const double frames = o_.frames;
-    const double x = 12 + 20 * (index % kRingsInALane);
+    const double x = 16 + 32 * (index % kRingsInALane);
     const double y = (lane + 0.5) * kLane;
     const int begin = static_cast<int>(between(0.35, 0.55) * frames);
     if (index < o_.drops) add_falling_drop(x, y, begin);

@@ -6,8 +6,6 @@
 #include <numbers>
 #include <tuple>
 
-#include "solvers/fluid/tracking_motion.h"
-
 namespace geoprior {
 namespace {
 
@@ -27,14 +25,14 @@ class EventFinder {
  public:
   EventFinder(std::span<const Region> regions, std::span<const double> times, double cell,
               const TrackingOptions& options, const std::vector<Track>& tracks,
-              const std::vector<int>& successor)
+              const std::vector<int>& successor, const RegionMotions& motions)
       : regions_(regions),
         times_(times),
         cell_(cell),
         options_(options),
         tracks_(tracks),
         successor_(successor),
-        motions_(region_motions(regions, times, successor, options)),
+        motions_(motions),
         track_of_(regions.size(), 0),
         begins_(regions.size(), 0),
         offset_(times.size() + 1, 0) {
@@ -63,12 +61,14 @@ class EventFinder {
   [[nodiscard]] double time_of(int r) const {
     return times_[static_cast<std::size_t>(region(r).frame)];
   }
-  /// Way of a region over dt, by its past if that is known (m).
+  /// Way of a region over dt (m).
   [[nodiscard]] Eigen::Vector3d way(int r, double dt) const {
     const auto i = static_cast<std::size_t>(r);
-    const auto& velocity = motions_.from_past[i] ? motions_.from_past[i] : motions_.from_future[i];
-    if (!velocity) return Eigen::Vector3d::Zero();
-    return predicted(region(r), *velocity, dt, options_) - region(r).centre;
+    // The better known of both: a track's first region has no past, its last no future.
+    const RegionMotion& past = motions_.from_past[i];
+    const RegionMotion& future = motions_.from_future[i];
+    const bool by_past = past.velocity_variance <= future.velocity_variance;
+    return predicted(region(r), by_past ? past : future, dt, options_) - region(r).centre;
   }
   /// Best region of `frame` that `suits` and overlaps with r, which moves if `moves_other` is not
   /// set; -1: none.
@@ -153,7 +153,7 @@ class EventFinder {
   const TrackingOptions& options_;
   const std::vector<Track>& tracks_;
   const std::vector<int>& successor_;
-  RegionMotions motions_;
+  const RegionMotions& motions_;
   std::vector<int> track_of_;  // id
   std::vector<char> begins_;
   std::vector<int> offset_;  // of the frames in regions_
@@ -182,8 +182,9 @@ double support_overlap(const Region& a, const Region& b, const Eigen::Vector3d& 
 std::vector<TrackEvent> track_events(std::span<const Region> regions, std::span<const double> times,
                                      double cell, const TrackingOptions& options,
                                      const std::vector<Track>& tracks,
-                                     const std::vector<int>& successor) {
-  return EventFinder(regions, times, cell, options, tracks, successor).events();
+                                     const std::vector<int>& successor,
+                                     const RegionMotions& motions) {
+  return EventFinder(regions, times, cell, options, tracks, successor, motions).events();
 }
 
 }  // namespace geoprior

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "solvers/fluid/tracking.h"
+#include "solvers/fluid/tracking_motion.h"
 
 namespace geoprior {
 
@@ -20,7 +20,8 @@ namespace geoprior {
 std::vector<TrackEvent> track_events(std::span<const Region> regions, std::span<const double> times,
                                      double cell, const TrackingOptions& options,
                                      const std::vector<Track>& tracks,
-                                     const std::vector<int>& successor);
+                                     const std::vector<int>& successor,
+                                     const RegionMotions& motions);
 
 /// Share of the smaller support that the other one covers, a cube around included, after `a` has
 /// moved by `shift` (m); supports have cubes of two cells.

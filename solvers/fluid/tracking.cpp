@@ -124,7 +124,7 @@ void describe(OptionVisitor& v, TrackingOptions& o) {
           {.doc = "c_new, a chi-squared value", .min = 0, .max = 1e6});
   v.value("gap_cost", o.gap_cost, {.doc = "for each frame skipped", .min = 0, .max = 1e6});
   v.value("largest_speed", o.largest_speed,
-          {.doc = "gate for regions of unknown motion; default: from the data",
+          {.doc = "of links; default: none, and the spread of unknown motions is from the data",
            .unit = "m/s",
            .min = 0,
            .max = 1e6});
@@ -150,15 +150,16 @@ TrackResult track_regions(const std::vector<Region>& regions, const std::vector<
   std::vector<int> successor(regions.size(), -1);
   // Paths tell how regions move, and motions tell the paths: a few rounds settle both.
   for (int round = 0; round < kMostRounds; ++round) {
-    const RegionMotions motions = region_motions(regions, times, successor, options);
-    result.links = candidate_links(regions, times, cell, options, motions, speeds);
+    const RegionMotions motions = region_motions(regions, times, cell, options, speeds, successor);
+    result.links = candidate_links(regions, times, cell, options, motions);
     std::vector<int> next = assign(regions, result.links, options);
     const bool settled = next == successor;
     successor = std::move(next);
     if (settled) break;
   }
   result.tracks = tracks_of(regions, successor);
-  result.events = track_events(regions, times, cell, options, result.tracks, successor);
+  result.events = track_events(regions, times, cell, options, result.tracks, successor,
+                               region_motions(regions, times, cell, options, speeds, successor));
   return result;
 }
 

@@ -20,8 +20,9 @@ struct TrackingOptions {
   double sigma_volume = 0.3;  ///< of ln(volume ratio), isolated only
   double new_path_cost = 10;  ///< c_new, a chi-squared value
   double gap_cost = 1;        ///< added for each frame skipped
-  std::optional<double> largest_speed;  ///< gate (m/s); default: from the data
-  bool ballistic = true;                ///< isolated regions are predicted with gravity
+  std::optional<double>
+      largest_speed;      ///< gate of links (m/s); default: motions' spread from the data
+  bool ballistic = true;  ///< isolated regions are predicted with gravity
   std::array<double, 3> gravity{0, 0, -9.81};
   double overlap_for_event = 0.3;  ///< share of overlap that makes a split or merge
   double cause_delay = 0.25;  ///< "causes": a wave begins at most this long after a drop ends (s)

@@ -52,49 +52,49 @@ double size_cost(const Region& a, const Region& b, const TrackingOptions& option
   return cost;
 }
 
-/// Squared error of the predictions known (their mean), else none.
-std::optional<double> prediction_error(const Region& a, const Region& b,
-                                       const std::optional<Eigen::Vector3d>& from_past,
-                                       const std::optional<Eigen::Vector3d>& from_future, double dt,
-                                       const TrackingOptions& options) {
-  double sum = 0, count = 0;
-  if (from_past) {
-    sum += (b.centre - predicted(a, *from_past, dt, options)).squaredNorm();
-    ++count;
-  }
-  if (from_future) {
-    sum += (a.centre - predicted(b, *from_future, -dt, options)).squaredNorm();
-    ++count;
-  }
-  if (count == 0) return std::nullopt;
-  return sum / count;
+/// Cost of finding `seen` (m) where `motion` leads.
+double prediction_cost(const Region& from, const RegionMotion& motion, const Eigen::Vector3d& seen,
+                       double dt, int gap, double variance, const TrackingOptions& options) {
+  const double s = gap * variance + motion.variance(dt);
+  return (seen - predicted(from, motion, dt, options)).squaredNorm() / s +
+         std::min(3 * std::log(s / (2 * variance)), options.new_path_cost / 2);
 }
 
 }  // namespace
 
 GateSpeeds gate_speeds(std::span<const Region> regions, std::span<const double> times, double cell,
                        const TrackingOptions& options) {
-  if (options.largest_speed) return {*options.largest_speed, *options.largest_speed};
   const FrameIndex index(regions, times.size());
+  const auto nearest = [&](const Region& a, int frame) {
+    int best = -1;
+    double least = 0;
+    for (const int j : index.window(frame, a.centre.x(), 1e300)) {
+      const Region& b = regions[static_cast<std::size_t>(j)];
+      if (b.kind != a.kind || size_cost(a, b, options) > options.new_path_cost) continue;
+      const double d = (b.centre - a.centre).squaredNorm();
+      if (best >= 0 && d >= least) continue;
+      least = d;
+      best = j;
+    }
+    return best;
+  };
   std::array<std::vector<double>, 2> needed;
   double interval = 0;
-  for (const Region& a : regions) {
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    const Region& a = regions[i];
     if (a.frame + 1 >= static_cast<int>(times.size())) break;
     const auto f = static_cast<std::size_t>(a.frame);
     const double dt = times[f + 1] - times[f];
     interval = interval == 0 ? dt : std::min(interval, dt);
-    double nearest = -1;
-    for (const int j : index.window(a.frame + 1, a.centre.x(), 1e300)) {
-      const Region& b = regions[static_cast<std::size_t>(j)];
-      if (b.kind != a.kind || size_cost(a, b, options) > options.new_path_cost) continue;
-      const double d = (b.centre - a.centre).norm() / dt;
-      if (nearest < 0 || d < nearest) nearest = d;
-    }
-    if (nearest >= 0) needed[a.kind == RegionKind::isolated ? 0 : 1].push_back(nearest);
+    const int j = nearest(a, a.frame + 1);
+    if (j < 0 || nearest(regions[static_cast<std::size_t>(j)], a.frame) != static_cast<int>(i))
+      continue;
+    const double way = (regions[static_cast<std::size_t>(j)].centre - a.centre).norm();
+    needed[a.kind == RegionKind::isolated ? 0 : 1].push_back(way / dt);
   }
   GateSpeeds result{};
   for (std::size_t k = 0; k < 2; ++k) {
-    result[k] = interval > 0 ? 4 * cell / interval : 0;
+    result[k] = interval > 0 ? 4 * cell / interval : cell;
     if (needed[k].empty()) continue;
     const auto at = needed[k].begin() + static_cast<std::ptrdiff_t>(needed[k].size() * 9 / 10);
     std::nth_element(needed[k].begin(), at, needed[k].end());
@@ -105,41 +105,33 @@ GateSpeeds gate_speeds(std::span<const Region> regions, std::span<const double> 
 
 std::vector<PathLink> candidate_links(std::span<const Region> regions,
                                       std::span<const double> times, double cell,
-                                      const TrackingOptions& options, const RegionMotions& motions,
-                                      const GateSpeeds& speeds) {
+                                      const TrackingOptions& options,
+                                      const RegionMotions& motions) {
   const FrameIndex index(regions, times.size());
   std::vector<PathLink> links;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const Region& a = regions[i];
-    const double speed = speeds[a.kind == RegionKind::isolated ? 0 : 1];
+    const double variance = centre_variance(a, cell, options);
     for (int g = 1; g <= options.largest_gap; ++g) {
       const int frame = a.frame + g;
       if (frame >= static_cast<int>(times.size())) break;
       const double dt =
           times[static_cast<std::size_t>(frame)] - times[static_cast<std::size_t>(a.frame)];
-      const double known =
-          g * square(options.sigma_centre * cell) + square(options.sigma_size) * a.area;
-      const double unknown = known + square(speed * dt / 3);
-      // No region further than this from where it stays or is predicted can cost less than c_new.
-      const double drift =
-          motions.from_past[i]
-              ? (predicted(a, *motions.from_past[i], dt, options) - a.centre).norm()
-              : 0.0;
-      const double reach = drift + 1.5 * std::sqrt(options.new_path_cost * unknown) + speed * dt;
-      for (const int to : index.window(frame, a.centre.x(), reach)) {
+      const RegionMotion& past = motions.from_past[i];
+      // The mean of two terms, neither below 3 ln(1/2), is under c_new: so is either under twice.
+      const double reach =
+          std::sqrt((2 * options.new_path_cost + 6) * (g * variance + past.variance(dt)));
+      const double x = predicted(a, past, dt, options).x();
+      for (const int to : index.window(frame, x, reach)) {
         const auto j = static_cast<std::size_t>(to);
         const Region& b = regions[j];
         if (b.kind != a.kind) continue;
-        double cost = (g - 1) * options.gap_cost;
-        const std::optional<double> error =
-            prediction_error(a, b, motions.from_past[i], motions.from_future[j], dt, options);
-        if (error) {
-          cost += *error / known;
-        } else {
-          const double way = (b.centre - a.centre).squaredNorm();
-          if (way > square(speed * dt) + known) continue;
-          cost += way / unknown + 3 * std::log(unknown / known);
-        }
+        if (options.largest_speed && (b.centre - a.centre).norm() > *options.largest_speed * dt)
+          continue;
+        const double ahead = prediction_cost(a, past, b.centre, dt, g, variance, options);
+        const double back = prediction_cost(b, motions.from_future[j], a.centre, -dt, g,
+                                            centre_variance(b, cell, options), options);
+        double cost = 0.5 * (ahead + back) + (g - 1) * options.gap_cost;
         if (cost >= options.new_path_cost) continue;
         cost += size_cost(a, b, options);
         if (cost < options.new_path_cost) links.push_back({static_cast<int>(i), to, cost});

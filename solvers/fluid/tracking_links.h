@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -8,25 +7,20 @@
 
 namespace geoprior {
 
-/// Speeds (m/s) beyond which regions of a kind are not linked while their motion is unknown:
-/// isolated, differential.
-using GateSpeeds = std::array<double, 2>;
-
-/// The option, or one and a half times the speed that nine in ten regions need to be the nearest
-/// region of their kind and size in the next frame; at least four cells a frame.
+/// One and a half times the speed of nine in ten pairs of regions of successive frames that are
+/// each other's nearest of their kind and about their size; at least four cells a frame.
 GateSpeeds gate_speeds(std::span<const Region> regions, std::span<const double> times, double cell,
                        const TrackingOptions& options);
 
 /// Links between regions of one kind, up to `largest_gap` frames apart, with their costs
-///   |c_j - prediction|^2 / s^2 + 6 ln(s / s_known) + ln(A_j / A_i)^2 / sigma_A^2
-///     + ln(V_j / V_i)^2 / sigma_V^2 + (g - 1) gap_cost,
-/// s_known^2 = g (sigma_c h)^2 + sigma_size^2 A. Where motions are known, s = s_known and the first
-/// term is the mean of the errors of the prediction forwards from i and backwards from j; else the
-/// prediction is to stay, and s^2 grows by a third of the way that the gate speed allows, squared.
-/// Links that cost more than a new path are left out.
+///   mean of |c - prediction|^2 / s^2 + 6 ln(s / s_1)   forwards from i and backwards from j
+///     + ln(A_j / A_i)^2 / sigma_A^2 + ln(V_j / V_i)^2 / sigma_V^2 + (g - 1) gap_cost,
+/// s^2 = g s_1^2 / 2 + the prediction's variance, s_1^2 = (sigma_c h)^2 + sigma_size^2 A: twice the
+/// negative logarithm of a likelihood, whose second part counts for c_new / 2 at most, so that
+/// motions that are not known yet do not forbid links. Links that cost more than a new path are
+/// left out, and those faster than `largest_speed` when that is given.
 std::vector<PathLink> candidate_links(std::span<const Region> regions,
                                       std::span<const double> times, double cell,
-                                      const TrackingOptions& options, const RegionMotions& motions,
-                                      const GateSpeeds& speeds);
+                                      const TrackingOptions& options, const RegionMotions& motions);
 
 }  // namespace geoprior

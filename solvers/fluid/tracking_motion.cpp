@@ -3,7 +3,7 @@
 namespace geoprior {
 namespace {
 
-constexpr int kMostOthers = 3;
+constexpr int kMostOthers = 5;
 
 Eigen::Vector3d fall(const Region& region, double dt, const TrackingOptions& options) {
   if (region.kind != RegionKind::isolated || !options.ballistic) return Eigen::Vector3d::Zero();
@@ -11,31 +11,53 @@ Eigen::Vector3d fall(const Region& region, double dt, const TrackingOptions& opt
 }
 
 /// @param next  the way along the path: successors or predecessors
-std::optional<Eigen::Vector3d> fitted_velocity(std::span<const Region> regions,
-                                               std::span<const double> times, std::size_t i,
-                                               const std::vector<int>& next,
-                                               const TrackingOptions& options) {
+RegionMotion fitted_motion(std::span<const Region> regions, std::span<const double> times,
+                           double cell, const TrackingOptions& options, double speed,
+                           const std::vector<int>& next, std::size_t i) {
   const Region& here = regions[i];
-  if (here.kind == RegionKind::isolated && here.has_velocity) return here.velocity;
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  double weight = 0;
+  RegionMotion motion;
+  const double variance = centre_variance(here, cell, options);
+  if (here.kind == RegionKind::isolated && here.has_velocity) {
+    motion.position = here.centre;
+    motion.velocity = here.velocity;
+    motion.position_variance = variance;
+    return motion;
+  }
+  // Normal equations of position and velocity, times the variance of a centre.
+  double n = 1, t = 0, tt = variance / (speed * speed / 9);
+  Eigen::Vector3d sum = here.centre, moment = Eigen::Vector3d::Zero();
   int other = next[i];
   for (int k = 0; k < kMostOthers && other >= 0; ++k) {
     const Region& there = regions[static_cast<std::size_t>(other)];
     const double dt =
         times[static_cast<std::size_t>(there.frame)] - times[static_cast<std::size_t>(here.frame)];
-    moment += dt * (there.centre - here.centre - fall(here, dt, options));
-    weight += dt * dt;
+    const Eigen::Vector3d x = there.centre - fall(here, dt, options);
+    n += 1;
+    t += dt;
+    tt += dt * dt;
+    sum += x;
+    moment += dt * x;
     other = next[static_cast<std::size_t>(other)];
   }
-  if (weight <= 0) return std::nullopt;
-  return moment / weight;
+  const double det = n * tt - t * t;
+  motion.position = (tt * sum - t * moment) / det;
+  motion.velocity = (n * moment - t * sum) / det;
+  motion.position_variance = variance * tt / det;
+  motion.covariance = -variance * t / det;
+  motion.velocity_variance = variance * n / det;
+  return motion;
 }
 
 }  // namespace
 
+double centre_variance(const Region& region, double cell, const TrackingOptions& options) {
+  const double centre = options.sigma_centre * cell;
+  return 0.5 * (centre * centre + options.sigma_size * options.sigma_size * region.area);
+}
+
 RegionMotions region_motions(std::span<const Region> regions, std::span<const double> times,
-                             const std::vector<int>& successor, const TrackingOptions& options) {
+                             double cell, const TrackingOptions& options, const GateSpeeds& speeds,
+                             const std::vector<int>& successor) {
   std::vector<int> predecessor(successor.size(), -1);
   for (std::size_t i = 0; i < successor.size(); ++i) {
     if (successor[i] >= 0)
@@ -43,15 +65,18 @@ RegionMotions region_motions(std::span<const Region> regions, std::span<const do
   }
   RegionMotions motions;
   for (std::size_t i = 0; i < regions.size(); ++i) {
-    motions.from_past.push_back(fitted_velocity(regions, times, i, predecessor, options));
-    motions.from_future.push_back(fitted_velocity(regions, times, i, successor, options));
+    const double speed = speeds[regions[i].kind == RegionKind::isolated ? 0 : 1];
+    motions.from_past.push_back(
+        fitted_motion(regions, times, cell, options, speed, predecessor, i));
+    motions.from_future.push_back(
+        fitted_motion(regions, times, cell, options, speed, successor, i));
   }
   return motions;
 }
 
-Eigen::Vector3d predicted(const Region& region, const Eigen::Vector3d& velocity, double dt,
+Eigen::Vector3d predicted(const Region& region, const RegionMotion& motion, double dt,
                           const TrackingOptions& options) {
-  return region.centre + dt * velocity + fall(region, dt, options);
+  return motion.position + dt * motion.velocity + fall(region, dt, options);
 }
 
 }  // namespace geoprior

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -8,20 +8,42 @@
 
 namespace geoprior {
 
-/// Velocities of the regions as their paths tell them, without the link that is being judged.
-struct RegionMotions {
-  std::vector<std::optional<Eigen::Vector3d>> from_past, from_future;  ///< m/s, at the region
+/// Speeds (m/s) that regions of a kind hardly exceed: isolated, differential.
+using GateSpeeds = std::array<double, 2>;
+
+/// Where a region is heading, as its path tells: position and velocity at its time, with their
+/// variances (the same along all axes).
+struct RegionMotion {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
+  double position_variance = 0, covariance = 0, velocity_variance = 0;
+
+  /// Of the position at dt (s) from the region's time.
+  [[nodiscard]] double variance(double dt) const {
+    return position_variance + 2 * dt * covariance + dt * dt * velocity_variance;
+  }
 };
 
-/// A straight line (a parabola under gravity for isolated regions) through the region and up to
-/// three others of its path on one side. Isolated regions that come with a velocity keep it: the
-/// surface of a wave does not move with the wave, so others do not.
+/// Motions without the link that is being judged: from the regions before on the path, or after.
+struct RegionMotions {
+  std::vector<RegionMotion> from_past, from_future;
+};
+
+/// Variance of a region's centre (m^2): half of (sigma_c h)^2 + sigma_size^2 A, so that a centre
+/// and one that tells where it should be differ by all of it.
+double centre_variance(const Region& region, double cell, const TrackingOptions& options);
+
+/// Straight line (a parabola under gravity for isolated regions) through the region and up to five
+/// others of its path on one side, by least squares; a third of the gate speed is the prior
+/// deviation of the velocity. Isolated regions that come with a velocity keep it; differential ones
+/// do not, since the water of a wave does not move with the wave.
 /// @param successor  of every region, -1 at the end of a path
 RegionMotions region_motions(std::span<const Region> regions, std::span<const double> times,
-                             const std::vector<int>& successor, const TrackingOptions& options);
+                             double cell, const TrackingOptions& options, const GateSpeeds& speeds,
+                             const std::vector<int>& successor);
 
-/// Where a region will be (dt > 0) or was (m).
-Eigen::Vector3d predicted(const Region& region, const Eigen::Vector3d& velocity, double dt,
+/// Position at dt (s) from the region's time: dt < 0 is before.
+Eigen::Vector3d predicted(const Region& region, const RegionMotion& motion, double dt,
                           const TrackingOptions& options);
 
 }  // namespace geoprior
