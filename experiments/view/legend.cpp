@@ -42,6 +42,20 @@ std::string tick_label(double value, double step) {
   return text.data();
 }
 
+/// The finest step whose labels do not touch on a bar of that length.
+double fitting_tick_step(double low, double high, int length) {
+  constexpr int kBetween = 20;
+  for (double range = high - low;; range *= 2) {
+    const double step = tick_step(range);
+    // Labels of multiples of the step are longest at the ends or beside zero.
+    const int width =
+        std::max({text_width(tick_label(std::ceil(low / step) * step, step), kStyle),
+                  text_width(tick_label(std::floor(high / step) * step, step), kStyle),
+                  text_width(tick_label(low < 0 ? -step : step, step), kStyle)});
+    if (step / (high - low) * length >= width + kBetween || range > 8 * (high - low)) return step;
+  }
+}
+
 void draw_pointed_end(Picture& picture, int x, int y, int height, int sign, Rgb color) {
   const int length = height * 3 / 4;
   for (int i = 0; i < length; ++i) {
@@ -139,7 +153,7 @@ void draw_scalar_bar(Picture& picture, const ColorScale& scale, int top) {
     draw_pointed_end(picture, left + length, top, kThickness, 1,
                      to_rgb(color_at(1, scale.diverging)));
   }
-  const double step = tick_step(scale.high - scale.low);
+  const double step = fitting_tick_step(scale.low, scale.high, length);
   for (double v = std::ceil(scale.low / step - 1e-9) * step; v <= scale.high + 1e-9 * step;
        v += step) {
     const int x =
