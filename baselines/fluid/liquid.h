@@ -28,7 +28,7 @@ struct LiquidOptions {
   int max_substeps = 32;  ///< of a frame; a frame that needs more ends the run with an Error
   /// `density` moves particles, without changing their velocity, so that their density stays even.
   VolumeCorrection volume_correction = VolumeCorrection::density;
-  double volume_rate = 10;  ///< 1/s: deviations of density decay at this rate
+  double volume_rate = 30;  ///< 1/s: deviations of density decay at this rate
   bool reseed = true;       ///< keep 3 … 2 x particles_per_cell particles in a full cell
   PressureOptions pressure;
   LiquidSurfaceOptions surface;

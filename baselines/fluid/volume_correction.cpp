@@ -133,8 +133,6 @@ void liquid_distance(const ScalarGrid& density, const ScalarGrid* rest, const Gr
 
 void density_target(const ScalarGrid& density, const ScalarGrid* rest, const ScalarGrid& distance,
                     double strength, double bound, ScalarGrid& target) {
-  // A kernel half full at the surface that counts this much holds twice its particles.
-  constexpr float kCrowded = 1.25F;
   target.size = distance.size;
   target.values.resize(distance.values.size());
   std::vector<char> inside(distance.values.size());
@@ -147,7 +145,7 @@ void density_target(const ScalarGrid& density, const ScalarGrid* rest, const Sca
     for (std::size_t c = begin; c < end; ++c) {
       const float full = rest != nullptr ? rest->values[c] : 1.0F;
       const float ratio = full < kSmallestRest ? 1.0F : density.values[c] / full;
-      const float excess = inside[c] != 0 ? ratio - 1 : std::max(ratio - kCrowded, 0.0F);
+      const float excess = inside[c] != 0 ? ratio - 1 : std::max(ratio - 1, 0.0F);
       target.values[c] = distance.values[c] < 0 ? std::clamp(factor * excess, -most, most) : 0.0F;
     }
   });

@@ -25,8 +25,8 @@ void liquid_distance(const ScalarGrid& density, const ScalarGrid* rest, const Gr
                      ScalarGrid& distance);
 
 /// Divergence of a displacement that brings the density back (1): `strength` times the deviation,
-/// bounded by ±`bound`; in cells whose neighbourhood is liquid, where the deviation is no part of
-/// the surface. Elsewhere only crowding beyond what a surface can have counts.
+/// bounded by ±`bound`. A lack of particles counts only in cells whose 26 neighbours are liquid:
+/// elsewhere it may be the surface.
 /// Source: Kugelstadt et al. 2019 (positions corrected, momentum untouched); the clamp is ours.
 void density_target(const ScalarGrid& density, const ScalarGrid* rest, const ScalarGrid& distance,
                     double strength, double bound, ScalarGrid& target);

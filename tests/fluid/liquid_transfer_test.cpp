@@ -1,0 +1,200 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "baselines/fluid/mac_grid_sampler.h"
+#include "baselines/fluid/transfer.h"
+#include "core/parallel.h"
+#include "tests/fluid/liquid_fixture.h"
+
+namespace geoprior {
+namespace {
+
+using testing::grid_of;
+using testing::momentum;
+using testing::scattered;
+
+constexpr double kCell = 0.1;
+
+/// Particles to grid and back.
+struct RoundTrip {
+  GridShape shape;
+  MacGrid grid;
+  std::array<std::vector<char>, 3> touched;
+  ScalarGrid density;
+  explicit RoundTrip(const GridShape& s) : shape(s), grid(s) {}
+  void run(LiquidParticles& particles, bool affine) {
+    if (affine && particles.affine.empty())
+      particles.affine.assign(particles.size(), Eigen::Matrix3f::Zero());
+    sort_by_cell(shape, particles);
+    ParticleToGrid(shape).gather(particles, 8, grid, touched, density);
+    grid_to_particles(grid, 0, affine, particles);
+  }
+};
+
+std::size_t cell_of(const GridShape& shape, const Eigen::Vector3f& x) {
+  const Eigen::Vector3i at = (x / static_cast<float>(shape.cell)).array().floor().cast<int>();
+  return shape.index(at.x(), at.y(), at.z());
+}
+
+TEST(LiquidSort, ParticlesOfACellStandTogetherInTheOrderTheyCame) {
+  const GridShape shape = grid_of({7, 5, 6}, kCell);
+  LiquidParticles particles = scattered(3000, {0, 0, 0}, {0.7, 0.5, 0.6}, 1);
+  for (std::size_t p = 0; p < particles.size(); ++p)
+    particles.velocity[p].x() = static_cast<float>(p);  // the place it came from
+  sort_by_cell(shape, particles);
+  ASSERT_EQ(particles.cell_begin.size(), shape.cell_count() + 1);
+  EXPECT_EQ(particles.cell_begin.back(), 3000U);
+  for (std::size_t c = 0; c < shape.cell_count(); ++c) {
+    for (std::uint32_t p = particles.cell_begin[c]; p < particles.cell_begin[c + 1]; ++p) {
+      EXPECT_EQ(cell_of(shape, particles.position[p]), c);
+      if (p == particles.cell_begin[c]) continue;
+      EXPECT_LT(particles.velocity[p - 1].x(), particles.velocity[p].x());
+    }
+  }
+}
+
+TEST(LiquidSort, ParticlesOutsideCountToTheNearestCell) {
+  const GridShape shape = grid_of({4, 4, 4}, kCell);
+  LiquidParticles particles;
+  particles.position = {{9, 9, 9}, {-1, -1, -1}};
+  particles.velocity.assign(2, Eigen::Vector3f::Zero());
+  sort_by_cell(shape, particles);
+  EXPECT_EQ(particles.cell_begin[1], 1U);
+  EXPECT_EQ(particles.cell_begin[63], 1U);
+  EXPECT_EQ(particles.position[1].x(), 9);
+}
+
+TEST(LiquidTransfer, UniformVelocityIsReproducedEverywhere) {
+  RoundTrip trip(grid_of({6, 6, 6}, kCell));
+  LiquidParticles particles = scattered(2000, {0, 0, 0}, {0.6, 0.6, 0.6}, 2);
+  const Eigen::Vector3f u(1.5F, -2, 0.25F);
+  for (Eigen::Vector3f& v : particles.velocity) v = u;
+  trip.run(particles, false);
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t i = 0; i < trip.touched[a].size(); ++i) {
+      if (trip.touched[a][i] == 0) continue;
+      EXPECT_NEAR(trip.grid.face[a].values[i], u[static_cast<int>(a)], 1e-5);
+    }
+  }
+  for (const Eigen::Vector3f& v : particles.velocity) EXPECT_LT((v - u).norm(), 1e-5F);
+}
+
+// The kernel is a partition of unity, folded at walls: nothing of a particle is lost.
+TEST(LiquidTransfer, DensitySumsToTheNumberOfParticles) {
+  RoundTrip trip(grid_of({6, 5, 4}, kCell));
+  LiquidParticles particles = scattered(2000, {0, 0, 0}, {0.6, 0.5, 0.4}, 3);
+  trip.run(particles, false);
+  double sum = 0;
+  for (const float d : trip.density.values) sum += static_cast<double>(d);
+  EXPECT_NEAR(sum * 8, 2000, 2e-3);
+}
+
+TEST(LiquidTransfer, PicAndApicKeepMomentum) {
+  for (const bool affine : {false, true}) {
+    RoundTrip trip(grid_of({8, 8, 8}, kCell));
+    LiquidParticles particles = scattered(1500, {0.2, 0.2, 0.2}, {0.6, 0.6, 0.6}, 4);
+    const Eigen::Vector3d before = momentum(particles);
+    trip.run(particles, affine);
+    EXPECT_LT((momentum(particles) - before).norm(), 1e-3) << affine;
+    // Each particle alone does lose its own velocity.
+    EXPECT_LT(testing::kinetic(particles), 1500);
+  }
+}
+
+// Jiang et al. 2015, proposition 5.5: velocity and gradient that the grid gives particles, given
+// back to the grid, have its angular momentum. (C of PIC is 0: it keeps less.)
+TEST(LiquidTransfer, ApicKeepsTheAngularMomentumOfASpinningBallPicDoesNot) {
+  const Eigen::Vector3d centre(0.8, 0.8, 0.8);
+  const auto grid_spin = [&](const RoundTrip& trip, const LiquidParticles& particles) {
+    // Each particle stands for its share of the mass of the faces around it.
+    double spin = 0;
+    for (std::size_t p = 0; p < particles.size(); ++p) {
+      const Eigen::Vector3f x = particles.position[p] / static_cast<float>(kCell);
+      const CellSample s(x, trip.shape.cells);
+      for (int a = 0; a < 2; ++a) {
+        const AxisSample &sx = s.along(0, a), &sy = s.along(1, a), &sz = s.along(2, a);
+        for (int c = 0; c < 8; ++c) {
+          const int dx = c % 2, dy = c / 2 % 2, dz = c / 4;
+          const float w = (dx != 0 ? sx.fraction : 1 - sx.fraction) *
+                          (dy != 0 ? sy.fraction : 1 - sy.fraction) *
+                          (dz != 0 ? sz.fraction : 1 - sz.fraction);
+          const Eigen::Vector3d at(sx.low + dx + (a == 0 ? 0 : 0.5),
+                                   sy.low + dy + (a == 1 ? 0 : 0.5), 0);
+          const double u =
+              trip.grid.face[static_cast<std::size_t>(a)](sx.low + dx, sy.low + dy, sz.low + dz);
+          const double arm = a == 0 ? -(at.y() * kCell - centre.y()) : at.x() * kCell - centre.x();
+          spin += static_cast<double>(w) * arm * u;
+        }
+      }
+    }
+    return spin;
+  };
+  std::array<double, 2> kept{};
+  for (const bool affine : {false, true}) {
+    LiquidParticles particles;
+    for (const LiquidParticles all = scattered(6000, {0.5, 0.5, 0.5}, {1.1, 1.1, 1.1}, 5);
+         const Eigen::Vector3f& x : all.position) {
+      const Eigen::Vector3d r = x.cast<double>() - centre;
+      if (r.norm() > 0.25) continue;
+      particles.position.push_back(x);
+      particles.velocity.push_back(Eigen::Vector3d(-r.y(), r.x(), 0).cast<float>());
+    }
+    RoundTrip trip(grid_of({16, 16, 16}, kCell));
+    trip.run(particles, affine);
+    const double before = grid_spin(trip, particles);
+    for (int n = 0; n < 10; ++n) trip.run(particles, affine);
+    kept[affine ? 1 : 0] = grid_spin(trip, particles) / before;
+  }
+  EXPECT_NEAR(kept[1], 1, 1e-4);
+  EXPECT_LT(kept[0], 0.7);
+}
+
+// C_p = sum u grad N is exact for a linear field, and so is what particles give back.
+TEST(LiquidTransfer, ApicReproducesALinearVelocity) {
+  RoundTrip trip(grid_of({8, 8, 8}, kCell));
+  Eigen::Matrix3f gradient;
+  gradient << 1, 2, -1, 0.5F, -2, 3, 4, 0, 1;
+  LiquidParticles particles = scattered(3000, {0.1, 0.1, 0.1}, {0.7, 0.7, 0.7}, 6);
+  for (std::size_t p = 0; p < particles.size(); ++p)
+    particles.velocity[p] = gradient * particles.position[p];
+  particles.affine.assign(particles.size(), gradient);
+  trip.run(particles, true);
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    EXPECT_LT((particles.velocity[p] - gradient * particles.position[p]).norm(), 1e-4F);
+    EXPECT_LT((particles.affine[p] - gradient).norm(), 1e-3F);
+  }
+}
+
+// FLIP with a fraction of 0 adds the change of the grid: no change, no loss.
+TEST(LiquidTransfer, KeptVelocityPlusFieldIsTheFlipUpdate) {
+  const GridShape shape = grid_of({6, 6, 6}, kCell);
+  LiquidParticles particles = scattered(500, {0, 0, 0}, {0.6, 0.6, 0.6}, 7);
+  const std::vector<Eigen::Vector3f> before = particles.velocity;
+  MacGrid field(shape);
+  for (float& u : field.face[2].values) u = -3;
+  grid_to_particles(field, 0.5F, false, particles);
+  for (std::size_t p = 0; p < before.size(); ++p)
+    EXPECT_LT((particles.velocity[p] - (0.5F * before[p] + Eigen::Vector3f(0, 0, -3))).norm(),
+              1e-6F);
+}
+
+TEST(LiquidTransfer, SameBytesWithOneAndTwoThreads) {
+  std::array<RoundTrip, 2> trip{RoundTrip(grid_of({20, 20, 20}, kCell)),
+                                RoundTrip(grid_of({20, 20, 20}, kCell))};
+  std::array<LiquidParticles, 2> particles;
+  for (int t = 0; t < 2; ++t) {
+    const auto i = static_cast<std::size_t>(t);
+    particles[i] = scattered(60000, {0, 0, 0}, {2, 2, 2}, 8);
+    with_threads(t + 1, [&] { trip[i].run(particles[i], true); });
+  }
+  for (std::size_t a = 0; a < 3; ++a)
+    EXPECT_EQ(trip[0].grid.face[a].values, trip[1].grid.face[a].values);
+  EXPECT_EQ(trip[0].density.values, trip[1].density.values);
+  EXPECT_EQ(0, std::memcmp(particles[0].affine.data(), particles[1].affine.data(),
+                           particles[0].size() * sizeof(Eigen::Matrix3f)));
+}
+
+}  // namespace
+}  // namespace geoprior
