@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 
 #include "core/error.h"
@@ -116,6 +117,49 @@ Eigen::VectorXd only(const Eigen::VectorXd& values, const std::vector<char>& whe
   return kept;
 }
 
+/// Objects of one frame by the track of their vertices.
+std::vector<TrackedObject> tracked_objects(const Part& surface, const NamedArray& track,
+                                           const NamedArray& kind) {
+  struct Sum {
+    TrackedObject object;
+    double area = 0;
+  };
+  std::map<int, Sum> sums;
+  const Eigen::VectorXd areas = triangle_areas(surface.points, surface.triangles);
+  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
+    for (int c = 0; c < 3; ++c) {
+      const int v = surface.triangles(t, c);
+      const int id = static_cast<int>(track.values(v, 0));
+      if (id == 0) continue;
+      const Eigen::Vector3d x = surface.points.row(v);
+      const auto [at, is_new] = sums.try_emplace(id);
+      TrackedObject& object = at->second.object;
+      if (is_new) object.box_min = object.box_max = x;
+      object.id = id;
+      object.kind = static_cast<int>(kind.values(v, 0));
+      object.box_min = object.box_min.cwiseMin(x);
+      object.box_max = object.box_max.cwiseMax(x);
+      object.centre += areas[t] * x;
+      at->second.area += areas[t];
+    }
+  }
+  std::vector<TrackedObject> objects;
+  for (auto& [id, sum] : sums) {
+    if (sum.area > 0) sum.object.centre /= sum.area;
+    objects.push_back(sum.object);
+  }
+  return objects;
+}
+
+TrackedFrames true_objects(const InjectedSequence& injected) {
+  TrackedFrames frames(static_cast<std::size_t>(injected.frame_count()));
+  for (const InjectedTruth& truth : injected.truth()) {
+    frames[static_cast<std::size_t>(truth.frame)].push_back(
+        {truth.id, truth.isolated ? 1 : 2, truth.centre, truth.box_min, truth.box_max});
+  }
+  return frames;
+}
+
 }  // namespace
 
 const Part& surface_part(const Frame& frame) {
@@ -209,6 +253,27 @@ SecondDifference second_difference(const FluidScene& scene, const FrameSequence&
   result.pasted = pasted;
   if (at_seam) result.target = target;
   return result;
+}
+
+std::optional<TrackingScores> scores_against_truth(const FluidScene& scene,
+                                                   const FrameSequence& frames) {
+  if (!scene.injected) return {};
+  const TrackedFrames truth = true_objects(*scene.injected);
+  TrackedFrames found;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const auto surface = frames.part(i, "surface");
+    if (!surface) return {};
+    const NamedArray* track = find_array(*surface, "track");
+    const NamedArray* kind = find_array(*surface, "kind");
+    if (track == nullptr || kind == nullptr) return {};
+    found.push_back(tracked_objects(*surface, *track, *kind));
+  }
+  if (found.size() != truth.size()) return {};
+  TrackingScoreOptions options;
+  options.similarity = TrackSimilarity::distance;
+  // Half of the reach is a match.
+  options.reach = 8 * scene.injected->cell() * scene.injected_resolution;
+  return tracking_scores(truth, found, options);
 }
 
 }  // namespace geoprior

@@ -10,6 +10,7 @@
 #include "metrics/closedness.h"
 #include "metrics/liquid_columns.h"
 #include "metrics/surface_distance.h"
+#include "metrics/tracking_scores.h"
 #include "metrics/wave_modes.h"
 
 namespace geoprior {
@@ -71,5 +72,11 @@ struct SecondDifference {
 };
 SecondDifference second_difference(const FluidScene& scene, const FrameSequence& frames,
                                    bool at_seam);
+
+/// Tracks that the frames show (point arrays "track" and "kind" of the surface: area-weighted
+/// centre and box of the vertices of a track) against the scene's injected truth. A match is within
+/// four cells. Absent without a truth or without tracks.
+std::optional<TrackingScores> scores_against_truth(const FluidScene& scene,
+                                                   const FrameSequence& frames);
 
 }  // namespace geoprior

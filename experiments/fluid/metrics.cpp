@@ -309,6 +309,37 @@ void add_sea(Rows rows) {
       [](const FluidScene&, const FrameSequence& frames) { return sea_dispersion(frames); });
 }
 
+void add_tracking(Rows rows) {
+  using T = const TrackingScores&;
+  const auto add = [&](const char* name, const char* definition, Direction direction,
+                       Tolerance tolerance, auto get) {
+    rows.sequence(name, "1", definition, direction, tolerance,
+                  [get](const FluidScene& scene, const FrameSequence& frames) -> Value {
+                    const auto scores = scores_against_truth(scene, frames);
+                    return scores ? Value(get(*scores)) : Value();
+                  });
+  };
+  constexpr Direction kHigh = Direction::higher_is_better;
+  constexpr Direction kLow = Direction::lower_is_better;
+  constexpr Tolerance kShare{0.02, 0};
+  add("idf1", "identity F1 of the tracks against the injected truth (Ristani et al. 2016)", kHigh,
+      kShare, [](T t) { return t.idf1; });
+  add("mota", "accuracy 1 - (misses + false alarms + switches) / true objects", kHigh, kShare,
+      [](T t) { return t.mota; });
+  add("hota", "higher-order tracking accuracy (Luiten et al. 2021)", kHigh, kShare,
+      [](T t) { return t.hota; });
+  add("track_precision", "share of the objects found that are true", kHigh, kShare,
+      [](T t) { return t.precision; });
+  add("track_recall", "share of the true objects that are found", kHigh, kShare,
+      [](T t) { return t.recall; });
+  add("track_fragments", "times that a true track's matches stop and begin again", kLow, kExact,
+      [](T t) { return double(t.fragments); });
+  add("track_switches", "times that a true track's match changes to another track", kLow, kExact,
+      [](T t) { return double(t.switches); });
+  add("lifetime_error", "mean error of a track's first and last frame together (frames)", kLow,
+      {0.5, 0}, [](T t) { return t.lifetime_error; });
+}
+
 }  // namespace
 
 std::vector<MetricEntry> fluid_metrics() {
@@ -320,6 +351,7 @@ std::vector<MetricEntry> fluid_metrics() {
   add_comparison(rows, memo);
   add_time(rows, memo);
   add_sea(rows);
+  add_tracking(rows);
   return table;
 }
 

@@ -145,6 +145,7 @@ void load_sources(const FluidSceneOptions& options, Loading& loading) {
   };
   if (options.injected) {
     loading.scene.injected = std::make_shared<InjectedSequence>(*options.injected);
+    loading.scene.injected_resolution = options.injected->resolution;
     sculpt.sources["injected"] = loading.scene.injected;
   }
   for (std::size_t i = 0; i < options.sequences.size(); ++i) {

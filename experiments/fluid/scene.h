@@ -22,6 +22,7 @@ class FluidScene final : public Scene {
  public:
   std::optional<Tank> tank;
   std::shared_ptr<const InjectedSequence> injected;  ///< with its truth, or null
+  int injected_resolution = 1;                       ///< its lattice nodes per cell
   SculptScene sculpt;
   double duration = 1, frame_interval = 0.04;  ///< s
   Eigen::Vector3d gravity{0, 0, -9.81};

@@ -17,6 +17,7 @@ Topic fluid_topic() {
   topic.metrics = fluid_metrics();
   topic.view.direction = {0.6, -1, 0.5};
   topic.view.up = {0, 0, 1};
+  topic.view.material = FigureView::Material::water;
   return topic;
 }
 
