@@ -14,6 +14,7 @@
 #include <array>
 
 #include "experiments/view/drawable.h"
+#include "experiments/view/water.h"
 
 namespace geoprior {
 namespace {
@@ -111,6 +112,9 @@ vtkSmartPointer<vtkActor> main_actor(const Part& part, const ViewWindow& window,
   if (colored) apply(*style.scale, actor);
   const bool thin = part.kind == Part::Kind::lines || part.kind == Part::Kind::points;
   set_material(style, colored, thin, actor);
+  if (style.material == PanelStyle::Material::water && surface) {
+    shade_as_water(actor, window, colored);
+  }
   if (style.edges && surface) show_edges(pixels_per_pixel, actor);
   return actor;
 }

@@ -38,7 +38,7 @@ struct PanelParts {
 };
 
 struct PanelStyle {
-  enum class Material { clay, paper };
+  enum class Material { clay, paper, water };
   std::optional<ColorScale> scale;  ///< parts that have its array are coloured; absent: plain
   bool flat = false;                ///< one tone a triangle
   bool edges = false;               ///< edges of the triangles as thin lines
