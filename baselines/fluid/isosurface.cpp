@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +14,32 @@ namespace {
 constexpr std::size_t kLayers = 2;  ///< layers of nodes of a parallel block
 /// Vertices keep this share of an edge off its ends: no two coincide, no triangle degenerates.
 constexpr double kEndMargin = 0.01;
+/// Cells by which the nodes of the field's border move inwards, to make room for the layer of
+/// outside nodes that closes the surface there.
+constexpr double kBorderRoom = 0.02;
+
+/// The field with a layer of outside nodes around it; where the border is inside, the surface
+/// passes midway.
+ScalarGrid padded(const ScalarGrid& nodes) {
+  const Eigen::Vector3i inner = nodes.size, outer = inner.array() + 2;
+  ScalarGrid result(outer, 0);
+  parallel_blocks(static_cast<std::size_t>(outer.z()), kLayers,
+                  [&](std::size_t begin, std::size_t end) {
+                    for (int k = static_cast<int>(begin); k < static_cast<int>(end); ++k)
+                      for (int j = 0; j < outer.y(); ++j) {
+                        const int jn = std::clamp(j - 1, 0, inner.y() - 1),
+                                  kn = std::clamp(k - 1, 0, inner.z() - 1);
+                        const bool beyond = jn != j - 1 || kn != k - 1;
+                        const float* from = nodes.values.data() + nodes.index(0, jn, kn);
+                        float* to = result.values.data() + result.index(0, j, k);
+                        for (int i = 0; i < outer.x(); ++i) {
+                          const int in = std::clamp(i - 1, 0, inner.x() - 1);
+                          to[i] = beyond || in != i - 1 ? std::abs(from[in]) : from[in];
+                        }
+                      }
+                  });
+  return result;
+}
 
 /// Where the vertices of a node's three upward edges are numbered.
 struct NodeVertices {
@@ -28,7 +55,7 @@ struct NodeVertices {
 class Contour {
  public:
   Contour(const ScalarGrid& nodes, const Eigen::Vector3d& origin, double cell)
-      : nodes_(nodes), origin_(origin), cell_(cell), size_(nodes.size) {
+      : nodes_(padded(nodes)), origin_(origin), cell_(cell), size_(nodes_.size) {
     const auto nx = static_cast<std::size_t>(size_.x());
     stride_ = {1, nx, nx * static_cast<std::size_t>(size_.y())};
     for (std::size_t c = 0; c < 8; ++c)
@@ -61,10 +88,6 @@ class Contour {
                     [&](std::size_t begin, std::size_t end) {
                       for (std::size_t k = begin; k < end; ++k) body(static_cast<int>(k));
                     });
-  }
-  [[nodiscard]] bool on_border(int i, int j, int k) const {
-    return i == 0 || j == 0 || k == 0 || i + 1 == size_.x() || j + 1 == size_.y() ||
-           k + 1 == size_.z();
   }
   void mark_inside() {
     inside_.assign(nodes_.values.size(), 0);
@@ -105,11 +128,12 @@ class Contour {
     first_vertex_[static_cast<std::size_t>(k) + 1] = vertices;
     first_triangle_[static_cast<std::size_t>(k) + 1] = triangles;
   }
-  /// A node of the border is outside, at a value just above 0 where the field says liquid: the
-  /// surface then closes on the border.
-  [[nodiscard]] double value(int i, int j, int k) const {
-    const double v = nodes_(i, j, k);
-    return on_border(i, j, k) ? std::max(v, 0.0) : v;
+  /// Coordinate of a node of the padded field in cells of the field.
+  [[nodiscard]] double coordinate(int i, int axis) const {
+    const int last = size_[axis] - 1;
+    if (i == 0) return 0;
+    if (i == last) return last - 2;
+    return std::clamp<double>(i - 1, kBorderRoom, last - 2 - kBorderRoom);
   }
   void place_vertices(int k, TriMesh& mesh) {
     for (int j = 0; j < size_.y(); ++j)
@@ -119,11 +143,13 @@ class Contour {
         std::int32_t v = node.first;
         for (int a = 0; a < 3; ++a) {
           if (((node.crossed >> a) & 1) == 0) continue;
-          const double here = value(i, j, k),
-                       there = value(i + (a == 0), j + (a == 1), k + (a == 2));
-          const double t = here / (here - there);
-          Eigen::Vector3d x(i, j, k);
-          x[a] += t > kEndMargin ? std::min(t, 1 - kEndMargin) : kEndMargin;
+          const double here = nodes_(i, j, k),
+                       there = nodes_(i + (a == 0), j + (a == 1), k + (a == 2));
+          const double crossing = here / (here - there);
+          const double t = crossing > kEndMargin ? std::min(crossing, 1 - kEndMargin) : kEndMargin;
+          Eigen::Vector3d x(coordinate(i, 0), coordinate(j, 1), coordinate(k, 2));
+          const int next = (a == 0 ? i : a == 1 ? j : k) + 1;
+          x[a] += t * (coordinate(next, a) - x[a]);
           mesh.V.row(v++) = (origin_ + cell_ * x).transpose();
         }
       }
@@ -146,7 +172,7 @@ class Contour {
       }
   }
 
-  const ScalarGrid& nodes_;
+  ScalarGrid nodes_;  ///< padded
   Eigen::Vector3d origin_;
   double cell_;
   Eigen::Vector3i size_;
@@ -161,7 +187,7 @@ class Contour {
 }  // namespace
 
 TriMesh isosurface(const ScalarGrid& nodes, const Eigen::Vector3d& origin, double cell) {
-  if (nodes.size.minCoeff() < 3) return {};
+  if (nodes.size.minCoeff() < 2) return {};
   return Contour(nodes, origin, cell).run();
 }
 

@@ -43,10 +43,12 @@ ScalarGrid liquid_field(const GridShape& shape, const LiquidParticles& particles
 void meet_solids(const GridShape& shape, const SolidFractions& solids, const GridShape& field_shape,
                  ScalarGrid& field);
 
-/// Level set 0 of a field at grid nodes as a closed, outward oriented 2-manifold (marching cubes
-/// whose table separates the ambiguous faces alike from both sides). The field's border counts as
-/// outside, so that the surface is closed there too. Vertices in a fixed order for any thread
-/// count.
+/// Level set 0 of a field at grid nodes as a closed, outward oriented 2-manifold for any field
+/// (marching cubes whose table separates the ambiguous faces alike from both sides). Beyond the
+/// border is outside: liquid that reaches it is closed there, a hundredth of a cell inside.
+/// Vertices keep a hundredth of an edge off the nodes. A value of 0 is outside. Vertices in a fixed
+/// order for any thread count.
+/// Source: Lorensen and Cline 1987; for the ambiguous faces see isosurface_table.h.
 /// @param origin, cell  of node (0, 0, 0) and between nodes (m)
 TriMesh isosurface(const ScalarGrid& nodes, const Eigen::Vector3d& origin, double cell);
 
