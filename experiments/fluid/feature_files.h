@@ -23,5 +23,6 @@ std::vector<Feature> read_feature_library(const std::filesystem::path& file);
 
 /// Checks what both of the above check. `where` names file or method.
 void require_valid(const Feature& feature, const std::string& where);
+void require_valid(const std::vector<Feature>& features, const std::string& where);
 
 }  // namespace geoprior

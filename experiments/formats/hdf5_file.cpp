@@ -1,5 +1,6 @@
 #include "experiments/formats/hdf5_file.h"
 
+#include <atomic>
 #include <vector>
 
 #include "core/error.h"
@@ -92,6 +93,14 @@ std::string decoded(std::string_view name) {
   return out;
 }
 
+std::vector<std::byte> image_of(hid_t file, const std::string& name) {
+  check(H5Fflush(file, H5F_SCOPE_LOCAL), "cannot be written", name);
+  const ssize_t size = check(H5Fget_file_image(file, nullptr, 0), "cannot be written", name);
+  std::vector<std::byte> image(static_cast<std::size_t>(size));
+  check(H5Fget_file_image(file, image.data(), image.size()), "cannot be written", name);
+  return image;
+}
+
 herr_t collect_link(hid_t, const char* name, const H5L_info_t*, void* client) {
   static_cast<std::vector<std::string>*>(client)->push_back(decoded(name));
   return 0;
@@ -181,7 +190,10 @@ H5File H5File::create() {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "cannot be made", name);
   constexpr std::size_t kGrowth = 1 << 20;
   check(H5Pset_fapl_core(access, kGrowth, false), "cannot be made", name);
-  Handle id(H5Fcreate("in-memory.h5", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
+  // HDF5 refuses a name that is open already, although nothing goes to the disk.
+  static std::atomic<unsigned> count{0};
+  const std::string unique = "in-memory-" + std::to_string(count++) + ".h5";
+  Handle id(H5Fcreate(unique.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
             "cannot be made", name);
   return {id.give_up(), name};
 }
@@ -213,13 +225,10 @@ H5Group H5File::root() const {
   return {id.give_up(), where};
 }
 
+std::vector<std::byte> H5File::bytes() const { return image_of(id_, name_); }
+
 void H5File::save(const std::filesystem::path& file) const {
-  check(H5Fflush(id_, H5F_SCOPE_LOCAL), "cannot be written", file.string());
-  const ssize_t size =
-      check(H5Fget_file_image(id_, nullptr, 0), "cannot be written", file.string());
-  std::string image(static_cast<std::size_t>(size), '\0');
-  check(H5Fget_file_image(id_, image.data(), image.size()), "cannot be written", file.string());
-  write_file_atomically(file, image);
+  write_file_atomically(file, std::span<const std::byte>(image_of(id_, file.string())));
 }
 
 }  // namespace geoprior

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -27,6 +29,14 @@ struct H5Array {
   std::map<std::string, std::string> attributes;
 };
 
+/// A large data set of numbers with its extents, rows first: float, double, std::int32_t or
+/// std::int64_t.
+template <class T>
+struct H5Block {
+  std::vector<std::size_t> extents;
+  std::vector<T> values;
+};
+
 /// An open group of a file. Names are percent-encoded where HDF5 does not allow them (`/`).
 ///
 /// The library's own printing of errors is off; every failure throws Error with the file, the place
@@ -41,6 +51,8 @@ class H5Group {
 
   H5Group create_group(std::string_view name);
   [[nodiscard]] H5Group open_group(std::string_view name) const;
+  /// "file: /group", for messages.
+  [[nodiscard]] const std::string& place() const { return place_; }
   [[nodiscard]] bool has(std::string_view name) const;
   /// Names of the groups and data sets inside, sorted.
   [[nodiscard]] std::vector<std::string> children() const;
@@ -64,6 +76,15 @@ class H5Group {
   /// zlib. `values` are row by row.
   void write_matrix(std::string_view name, const std::vector<std::string>& columns,
                     const std::vector<double>& values);
+  /// A data set in chunks of one entry of the first extent, shuffled and compressed by zlib;
+  /// without the time at which it was made, so that equal values give equal bytes.
+  template <class T>
+  void write_block(std::string_view name, const std::vector<std::size_t>& extents,
+                   std::span<const T> values);
+  /// @throws Error  when the data set has another rank, or says to be larger than what the file
+  ///                holds of it can be
+  template <class T>
+  [[nodiscard]] H5Block<T> read_block(std::string_view name, std::size_t rank) const;
   /// Columns of equal length become one compound data set.
   void write_table(std::string_view name, const std::vector<H5Column>& columns);
   /// Reads the columns of these names; the alternatives that `columns` hold say the types.
@@ -93,6 +114,8 @@ class H5File {
   ~H5File();
 
   [[nodiscard]] H5Group root() const;
+  /// The whole of a created file. Groups should be closed before.
+  [[nodiscard]] std::vector<std::byte> bytes() const;
   /// Writes a created file: temporary + fsync + rename. Groups should be closed before.
   /// @throws Error  naming the file and the system's reason
   void save(const std::filesystem::path& file) const;
