@@ -18,6 +18,8 @@ namespace oiio = OIIO;
 
 constexpr std::array<const char*, 4> kChannels{"R", "G", "B", "A"};
 constexpr const char* kPrefix = "geoprior:";
+/// OpenImageIO writes the time of day unless it is given one: equal maps must be equal bytes.
+constexpr const char* kNoDate = "1970:01:01 00:00:00";
 
 /// Numbers as texts, because a header's floats would lose digits.
 std::string text_of(std::span<const double> numbers) {
@@ -35,6 +37,7 @@ oiio::ImageSpec header_of(const Feature& feature, std::size_t frame) {
   spec.channelnames.assign(kChannels.begin(), kChannels.end());
   spec.alpha_channel = 3;
   spec.attribute("compression", "zip");
+  spec.attribute("DateTime", kNoDate);
   const auto put = [&](const char* name, std::span<const double> numbers) {
     spec.attribute(std::string(kPrefix) + name, text_of(numbers));
   };

@@ -223,6 +223,8 @@ TEST_F(ExrMaps, GiveTheFeatureBackBitForBit) {
     files.push_back(write(picture.name, text_of(picture.bytes)));
   expect_equal(read_exr_maps(files), ripple());
   EXPECT_EQ(exr_maps(ripple(), "wake")[1].bytes, pictures[1].bytes);
+  // Not the time of day, which would make each export another file.
+  EXPECT_NE(text_of(pictures[0].bytes).find("1970:01:01 00:00:00"), std::string_view::npos);
 }
 
 TEST_F(ExrMaps, RefuseWhatIsNoMap) {
