@@ -33,6 +33,8 @@ SequenceSidecar parse_sidecar(std::string_view text, const std::string& name) {
     json = Json::parse(text);
   } catch (const Json::parse_error& e) {
     throw Error("is no valid JSON", name + ", byte " + std::to_string(e.byte));
+  } catch (const Json::exception&) {
+    throw Error("holds a number that is too large", name);
   }
   if (!json.is_object()) throw Error("is no JSON object", name);
   SequenceSidecar sidecar;

@@ -120,6 +120,12 @@ TEST(Fuzz, GltfReaderAcceptsOrThrowsError) {
 }
 TEST(Fuzz, BvhReaderAcceptsOrThrowsError) { run(".bvh", fuzz_bvh); }
 TEST(Fuzz, TomlReadersAcceptOrThrowError) { run(".toml", fuzz_toml); }
+TEST(Fuzz, ObjReaderAcceptsOrThrowsError) { run(".obj", fuzz_obj); }
+TEST(Fuzz, PlyReaderAcceptsOrThrowsError) { run(".ply", fuzz_ply); }
+TEST(Fuzz, OffReaderAcceptsOrThrowsError) { run(".off", fuzz_off); }
+TEST(Fuzz, CollectionReaderAcceptsOrThrowsError) { run(".pvd", fuzz_pvd); }
+TEST(Fuzz, SidecarReaderAcceptsOrThrowsError) { run(".json", fuzz_sidecar); }
+TEST(Fuzz, EditListReaderAcceptsOrThrowsError) { run(".toml", fuzz_edits); }
 
 }  // namespace
 }  // namespace geoprior::test

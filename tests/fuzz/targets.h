@@ -9,5 +9,12 @@ namespace geoprior::test {
 void fuzz_gltf(const std::uint8_t* data, std::size_t size);
 void fuzz_bvh(const std::uint8_t* data, std::size_t size);
 void fuzz_toml(const std::uint8_t* data, std::size_t size);
+// Meshes are repaired too, as the frames of a sequence are.
+void fuzz_obj(const std::uint8_t* data, std::size_t size);
+void fuzz_ply(const std::uint8_t* data, std::size_t size);
+void fuzz_off(const std::uint8_t* data, std::size_t size);
+void fuzz_pvd(const std::uint8_t* data, std::size_t size);
+void fuzz_sidecar(const std::uint8_t* data, std::size_t size);
+void fuzz_edits(const std::uint8_t* data, std::size_t size);
 
 }  // namespace geoprior::test
