@@ -139,10 +139,11 @@ struct ShellElements::Impl {
   std::vector<LocalHinge> hinges;
   std::vector<double> coefficients;  ///< R of each element, by columns
   std::vector<PlasticRows> plastic;  ///< T of each element
+  CurvatureFit fit;
 
-  void add_element(const ShellMesh& mesh, const CurvatureFit& fit, int t, double bending_stiffness,
-                   BendingModel model, double hinge_calibration);
-  int add_hinges(const ShellMesh& mesh, const CurvatureFit& fit, int t, Element& element);
+  void add_element(const ShellMesh& mesh, int t, double bending_stiffness, BendingModel model,
+                   double hinge_calibration);
+  int add_hinges(const ShellMesh& mesh, int t, Element& element);
   void membrane(const Element& element, const Eigen::Vector3d* p, Order order, Local& out,
                 Rows& rows) const;
   [[nodiscard]] double bending(std::size_t index, double stiffness, const Eigen::Vector3d& rest,
@@ -152,8 +153,7 @@ struct ShellElements::Impl {
 
 /// Appends the hinges and the vertices they touch; returns the vertices that the triangle's own
 /// hinges touch.
-int ShellElements::Impl::add_hinges(const ShellMesh& mesh, const CurvatureFit& fit, int t,
-                                    Element& element) {
+int ShellElements::Impl::add_hinges(const ShellMesh& mesh, int t, Element& element) {
   element.first_node = static_cast<int>(nodes.size());
   element.first_hinge = static_cast<int>(hinges.size());
   for (int k = 0; k < 3; ++k) nodes.push_back(mesh.triangles(t, k));
@@ -177,14 +177,13 @@ int ShellElements::Impl::add_hinges(const ShellMesh& mesh, const CurvatureFit& f
   return own_nodes;
 }
 
-void ShellElements::Impl::add_element(const ShellMesh& mesh, const CurvatureFit& fit, int t,
-                                      double bending_stiffness, BendingModel model,
-                                      double hinge_calibration) {
+void ShellElements::Impl::add_element(const ShellMesh& mesh, int t, double bending_stiffness,
+                                      BendingModel model, double hinge_calibration) {
   const auto i = static_cast<std::size_t>(t);
   Element element;
   element.area = fit.area[i];
   element.gradient = shape_gradients(mesh, t, element.area);
-  const int own_nodes = add_hinges(mesh, fit, t, element);
+  const int own_nodes = add_hinges(mesh, t, element);
   element.fit_hinges = static_cast<int>(fit.terms[i].size());
   element.nodes = static_cast<int>(nodes.size()) - element.first_node;
   Root rows;
@@ -224,11 +223,13 @@ ShellElements::ShellElements(const ShellMesh& mesh, const PaperMaterial& materia
   impl->poisson_ratio = material.poisson_ratio;
   impl->weakening = material.weakening;
   impl->root = plate_root(material.poisson_ratio);
-  const CurvatureFit fit = fit_curvature(mesh.pattern, mesh.triangles);
+  impl->fit = fit_curvature(mesh.pattern, mesh.triangles);
   for (int t = 0; t < mesh.triangle_count(); ++t)
-    impl->add_element(mesh, fit, t, material.bending_stiffness(), bending, hinge_calibration);
+    impl->add_element(mesh, t, material.bending_stiffness(), bending, hinge_calibration);
   impl_ = std::move(impl);
 }
+
+const CurvatureFit& ShellElements::curvature_fit() const { return impl_->fit; }
 
 int ShellElements::size() const { return static_cast<int>(impl_->elements.size()); }
 

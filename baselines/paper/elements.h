@@ -7,6 +7,7 @@
 
 #include "baselines/paper/shell_state.h"
 #include "baselines/paper/stepper.h"
+#include "core/curvature_fit.h"
 
 namespace geoprior {
 
@@ -39,6 +40,8 @@ class ShellElements {
                 double hinge_calibration);
 
   [[nodiscard]] int size() const;
+  /// From which bending is computed.
+  [[nodiscard]] const CurvatureFit& curvature_fit() const;
   /// Vertices that an element depends on; the first three are those of its triangle.
   [[nodiscard]] std::span<const int> nodes(int element) const;
 

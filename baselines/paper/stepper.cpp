@@ -100,6 +100,10 @@ Eigen::MatrixX3d ShellStepper::elastic_forces(const ShellState& state) const {
   return impl_->of(state).elastic_forces(state);
 }
 
+Eigen::MatrixX3d ShellStepper::shape_operators(const ShellState& state) const {
+  return geoprior::shape_operators(impl_->of(state).elements().curvature_fit(), state.x);
+}
+
 long ShellStepper::factor_nonzeros() const {
   return impl_->dynamics ? impl_->dynamics->factor_nonzeros() : 0;
 }
