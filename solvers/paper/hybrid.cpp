@@ -35,12 +35,21 @@ constexpr int kRemeshedIterations = 2;
 constexpr int kLastIterations = 40;
 constexpr int kRetryIterations = 10;
 /// Principal strain after the projection beyond which a change of the structure is taken back; the
-/// next frame tries again, with another draw. Only when the unchanged structure is strained as well
-/// are there more attempts in the same frame, and the best of all stays.
+/// next frame tries again, with another draw.
 constexpr double kAcceptedStrain = 2e-3;
+/// Strain of the unchanged structure that is not left to the next frame: half of what isometry
+/// allows (1e-2 anywhere, RMS 1e-3). Hundreds of iterations and more attempts follow, and the best
+/// of all stays. They take the sheet to an isometric shape that is not in equilibrium, and the
+/// handles feel it: strain that the elastic steps can still release must not come here.
+constexpr double kUrgentStrain = 5e-3;
+constexpr double kUrgentRms = 5e-4;
 constexpr int kAttempts = 4;
 /// How far a new singular point is moved out of the sheet, in seeding distances.
 constexpr double kDent = 0.05;
+
+bool urgent(const ProjectionReport& projection) {
+  return projection.strain_after > kUrgentStrain || projection.strain_rms > kUrgentRms;
+}
 
 /// Mean normal of the triangles about a vertex.
 Eigen::RowVector3d vertex_normal(const ShellState& state, int vertex) {
@@ -98,7 +107,6 @@ void HybridMesher::remesh() {
       {options_.flat_size, options_.ruling_parts, kLeastPart * options_.seeding_distance});
   derive_pieces(structure_, pattern_, mesh_);
   assert(broken_invariants(structure_, pattern_, mesh_.mesh).empty());
-  fit_ = fit_curvature(mesh_.mesh.pattern, mesh_.mesh.triangles);
   projector_.reset();
   meshed_ = true;
 }
@@ -113,8 +121,9 @@ ShellState HybridMesher::start(const Sheet& sheet, RunContext& context) {
 }
 
 /// Where the simulated sheet asks for rulings; singular points yield on the way.
-std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, ShellState& state) {
-  curvature_ = shape_operators(fit_, state.x);
+std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, const ShellStepper& stepper,
+                                               ShellState& state) {
+  curvature_ = stepper.shape_operators(state);
   if (options_.stepper.plasticity) {
     yield_at_apexes(sheet.material, options_.weakening_radius, mesh_.singular_vertices, curvature_,
                     state, structure_);
@@ -165,20 +174,19 @@ void HybridMesher::resolve(const ShellState& state, const std::vector<DemandGrou
 }
 
 HybridMesher::Snapshot HybridMesher::snapshot(const ShellState& state) const {
-  return {structure_, mesh_, fit_, state, events_, projection_};
+  return {structure_, mesh_, state, events_, projection_};
 }
 
 void HybridMesher::restore(const Snapshot& before, ShellState& state) {
   structure_ = before.structure;
   mesh_ = before.mesh;
-  fit_ = before.fit;
   state = before.state;
   events_ = before.events;
   projection_ = before.projection;
   projector_.reset();
 }
 
-bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& /*stepper*/, ShellState& state,
+bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
                          RunContext& context) {
   if (!meshed_) {
     take_scene(sheet);
@@ -187,18 +195,18 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& /*stepper*/, ShellSta
   std::vector<DemandGroup> groups;
   {
     const Phase phase(context, "analyse");
-    groups = analyse(sheet, state);
+    groups = analyse(sheet, stepper, state);
   }
   const Snapshot before = snapshot(state);
   if (try_change(sheet, groups, options_.tracking, kRemeshedIterations, before, state, context)) {
     return true;
   }
-  // Wait for the next frame, unless this one is strained without a change.
+  // Wait for the next frame, unless this one is strained too much without a change.
   const Snapshot tried = snapshot(state);
   const bool changed = events_.changed;
   if (changed) restore(before, state);
   keep(sheet, 1, state, context);
-  if (!options_.projection || projection_.strain_after <= kAcceptedStrain) return false;
+  if (!options_.projection || !urgent(projection_)) return false;
   return last_resort(sheet, groups, before, changed ? &tried : nullptr, state, context);
 }
 
@@ -236,7 +244,7 @@ bool HybridMesher::last_resort(const Sheet& sheet, const std::vector<DemandGroup
                                const Snapshot& before, const Snapshot* tried, ShellState& state,
                                RunContext& context) {
   keep(sheet, kLastIterations, state, context);
-  if (projection_.strain_after <= kAcceptedStrain || tried == nullptr) return false;
+  if (!urgent(projection_) || tried == nullptr) return false;
   Snapshot best = snapshot(state);
   const auto improve = [&](const Snapshot& other) {
     if (other.projection.strain_after < best.projection.strain_after) best = other;
@@ -270,8 +278,8 @@ void HybridMesher::project(const Sheet& sheet, int effort, ShellState& state, Ru
   const Phase phase(context, "project");
   std::vector<bool> held = held_vertices(sheet, state.mesh, state.time, context.seed());
   if (!projector_ || projector_->held() != held) projector_.emplace(state.mesh, held);
-  projection_ = projector_->project(
-      state, {effort * options_.projection_iterations, options_.projection_strain});
+  projection_ = projector_->project(state, {effort * options_.projection_iterations,
+                                            options_.projection_strain, kAcceptedStrain});
 }
 
 void HybridMesher::annotate(const ShellState& state, Frame& frame) const {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "baselines/paper/sheet_process.h"
-#include "core/curvature_fit.h"
 #include "solvers/paper/hybrid.h"
 #include "solvers/paper/isometry_projection.h"
 #include "solvers/paper/propagation.h"
@@ -34,7 +33,6 @@ class HybridMesher final : public SheetMesher {
   struct Snapshot {
     PaperStructure structure;
     RulingMesh mesh;
-    CurvatureFit fit;
     ShellState state;
     PropagationReport events;
     ProjectionReport projection;
@@ -45,7 +43,8 @@ class HybridMesher final : public SheetMesher {
   void take_scene(const Sheet& sheet);
   [[nodiscard]] RulingEditor editor();
   void remesh();
-  [[nodiscard]] std::vector<DemandGroup> analyse(const Sheet& sheet, ShellState& state);
+  [[nodiscard]] std::vector<DemandGroup> analyse(const Sheet& sheet, const ShellStepper& stepper,
+                                                 ShellState& state);
   bool track(const ShellState& state, bool at_rest, RulingEditor& editor);
   [[nodiscard]] PropagationReport edit(const ShellState& state,
                                        const std::vector<DemandGroup>& groups, bool tracking,
@@ -64,7 +63,6 @@ class HybridMesher final : public SheetMesher {
   HybridOptions options_;
   PaperStructure structure_;
   RulingMesh mesh_;
-  CurvatureFit fit_;
   Eigen::MatrixX3d curvature_;  ///< of each triangle, at the end of the frame's steps
   std::vector<double> folds_;   ///< of each ruling, likewise (rad)
   Pattern pattern_;

@@ -8,14 +8,16 @@
 namespace geoprior {
 
 struct ProjectionOptions {
-  int iterations = 4;    ///< most linear solves
-  double strain = 1e-4;  ///< largest principal strain at which it stops
+  int iterations = 4;     ///< most linear solves
+  double strain = 1e-4;   ///< largest principal strain at which it stops
+  double admissible = 0;  ///< strain under which it also stops when it hardly gains any more
 };
 
 struct ProjectionReport {
   int iterations = 0;
   double strain_before = 0;  ///< largest principal Green strain of a triangle, in modulus
   double strain_after = 0;
+  double strain_rms = 0;  ///< after it: root mean square by area of the Frobenius norm
 };
 
 /// Moves a sheet to a nearby isometric image of its pattern (the developability of thesis 3.2.1).
