@@ -55,7 +55,7 @@ void shape_at(const SurfaceGraph& g, const std::vector<Cotangents>& cot, std::si
     const double to_next = next.squaredNorm(), to_last = last.squaredNorm();
     bend -= cot[t].cot[(k + 2) % 3] * next + cot[t].cot[(k + 1) % 3] * last;
     area += mixed_area(cot[t], k, to_next, to_last);
-    if (to_next > 0 && to_last > 0) normal += next.cross(last) / (to_next * to_last);
+    normal += next.cross(last);  // by area: the normals of slivers are noise
   }
   const double length = normal.norm();
   shape.normal[v] = length > 0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d::Zero();

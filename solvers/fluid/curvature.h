@@ -21,7 +21,7 @@ void describe(OptionVisitor& v, CurvatureOptions& options);
 /// crests (1/R on a sphere of liquid), negative in troughs. Vertices on a border get 0.
 ///
 /// Cotangent: H = n . sum_j (cot a_ij + cot b_ij)(x_i - x_j) / (4 A_i), with the mixed area A and
-/// the normal n that is exact on spheres (Max 1999). Jet: a quadric through two rings. Smoothing
+/// the normal n weighted by area. Jet: a quadric through two rings. Smoothing
 /// averages the integrals of H, so that the tiny areas of contoured meshes, where the error of H is
 /// largest, weigh least; it narrows peaks of a few edges' width.
 /// Sources: Meyer et al. 2003 (cotangent); Cazals and Pouget 2005 (jet); thesis 3.3.1.
