@@ -109,6 +109,7 @@ void HybridMesher::remesh() {
   assert(broken_invariants(structure_, pattern_, mesh_.mesh).empty());
   projector_.reset();
   meshed_ = true;
+  ++meshes_made_;
 }
 
 ShellState HybridMesher::start(const Sheet& sheet, RunContext& context) {
@@ -192,6 +193,7 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
     take_scene(sheet);
     remesh();
   }
+  meshes_made_ = 0;
   std::vector<DemandGroup> groups;
   {
     const Phase phase(context, "analyse");
@@ -288,6 +290,7 @@ void HybridMesher::annotate(const ShellState& state, Frame& frame) const {
   frame.diagnostics["new_singular_points"] = events_.new_singular_points;
   frame.diagnostics["rejected_changes"] = rejected_;
   frame.diagnostics["remeshed"] = events_.changed ? 1 : 0;
+  frame.diagnostics["meshes_made"] = meshes_made_;
   frame.diagnostics["projection_iterations"] = projection_.iterations;
   frame.diagnostics["strain_before"] = projection_.strain_before;
   frame.diagnostics["strain_after"] = projection_.strain_after;

@@ -72,7 +72,8 @@ class HybridMesher final : public SheetMesher {
   bool meshed_ = false;      ///< false after `load`, until the mesh is made again
   PropagationReport events_;
   ProjectionReport projection_;
-  int rejected_ = 0;  ///< changes of the structure that the sheet could not follow, so far
+  int meshes_made_ = 0;  ///< in this frame, of changes taken back too
+  int rejected_ = 0;     ///< changes of the structure that the sheet could not follow, so far
 };
 
 }  // namespace geoprior
