@@ -110,6 +110,7 @@ class Repair {
     if (before.border == 0) return;
     Weld welded = weld_by_position(frame_.mesh);
     if (welded.mesh.vertex_count() == frame_.mesh.vertex_count()) return;
+    if (welded.mesh.triangle_count() == 0) return;  // all were points: not for us to judge
     std::vector<Side> sides = sorted_sides(welded.mesh.F);
     const EdgeCounts after = count_edges(sides);
     if (after.border >= before.border || after.crowded > before.crowded) return;

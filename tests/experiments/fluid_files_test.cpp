@@ -347,6 +347,13 @@ TEST(MeshRepair, WeldsTheCornersOfATriangleSoup) {
   EXPECT_NO_THROW(require_closed_manifold(frame.mesh, "the test", "frame"));
 }
 
+// Welding would leave nothing.
+TEST(MeshRepair, KeepsTrianglesThatArePoints) {
+  SurfaceFrame frame = frame_of({Eigen::MatrixX3d::Zero(3, 3), Eigen::RowVector3i(0, 1, 2)});
+  repaired(frame);
+  EXPECT_EQ(frame.mesh.triangle_count(), 1);
+}
+
 TEST(MeshRepair, KeepsBubblesInward) {
   TriMesh both = octahedron(5);
   const TriMesh bubble = octahedron(1);
