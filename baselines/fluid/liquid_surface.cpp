@@ -13,6 +13,9 @@ namespace geoprior {
 namespace {
 
 constexpr std::size_t kLayers = 2;  ///< layers of nodes of a parallel block
+/// Cells off a solid where the liquid beside it is looked up: particles stay half a cell off, and a
+/// cell further the field is deep.
+constexpr float kReadOff = 1.5F;
 
 template <class Body>
 void for_layers(int layers, const Body& body) {
@@ -129,7 +132,7 @@ void meet_solids(const GridShape& shape, const SolidFractions& solids, const Gri
           const float length = g.norm();
           // On the medial axis of two solids the normal is undefined: the field stays.
           if (length > 0.1F * h) {
-            const Eigen::Vector3f moved = x + (h - d) / h / length * g;
+            const Eigen::Vector3f moved = x + (kReadOff - d / h) / length * g;
             value = std::min(value, trilinear(old, moved * nodes_per_cell));
           }
         }

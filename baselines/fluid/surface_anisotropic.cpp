@@ -16,8 +16,9 @@ constexpr int kFewestNeighbours = 25;  ///< N_epsilon: a kernel with fewer is a 
 constexpr float kLonelySize = 0.5F;    ///< k_n: its size
 /// Variance along an axis of a full ball of radius 1 with the weights 1 - r^3.
 constexpr float kBallVariance = 0.15F;
-/// Slope of the density across a flat surface is 315 / (256 R): the field's units become metres.
-constexpr float kMetresPerDensity = 256.0F / 315.0F;
+/// The field is moved out by this share of R, so that a flat surface of jittered particles lies
+/// where it does: the smoothing of places draws it inwards. Measured on a pool.
+constexpr float kDrawnInwards = 0.40F;
 
 /// A particle as a kernel: its density at x is `height` (1 - |G (x - place)|^2)^3.
 struct Kernel {
@@ -115,25 +116,28 @@ Kernel kernel_of(const Neighbourhood& around, const Eigen::Vector3f& x, float ra
   return kernel;
 }
 
-/// Kernels of the particles in cells near air; those of others have no height.
+/// Kernels of all particles; those whose neighbours fill the kernel's reach are balls in place.
 std::vector<Kernel> make_kernels(const GridShape& shape, const LiquidParticles& particles,
-                                 float radius, double wider) {
+                                 float radius) {
   const double volume =
       std::pow(shape.cell, 3) / particles_of_full_cell(shape, particles);  // of a particle
   const auto ball_height =
       static_cast<float>(volume * 315 / (64 * std::numbers::pi * std::pow(radius, 3)));
-  // As far as a node looks for kernels whose own look for air was mixed.
-  const auto around = node_surroundings(shape, particles, shape, 2 * wider);
+  const double reach = static_cast<double>(radius) / shape.cell;
+  // Seen from the cells' lower corners; a cell further covers the particles inside.
+  const auto around = node_surroundings(shape, particles, shape, reach + 1);
+  const Eigen::Matrix3f ball = Eigen::Matrix3f::Identity() / radius;
   std::vector<Kernel> kernels(particles.size());
   const auto nx = static_cast<std::size_t>(shape.cells.x()),
              ny = static_cast<std::size_t>(shape.cells.y());
   parallel_blocks(shape.cell_count(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const std::size_t i = c % nx, j = c / nx % ny, k = c / (nx * ny);
-      if (around[i + (nx + 1) * (j + (ny + 1) * k)] != NodeSurroundings::mixed) continue;
+      const bool full = around[i + (nx + 1) * (j + (ny + 1) * k)] == NodeSurroundings::full;
       for (std::size_t p = particles.cell_begin[c]; p < particles.cell_begin[c + 1]; ++p)
-        kernels[p] = kernel_of(neighbourhood(shape, particles, p, radius), particles.position[p],
-                               radius, ball_height);
+        kernels[p] = full ? Kernel{particles.position[p], ball, ball_height}
+                          : kernel_of(neighbourhood(shape, particles, p, radius),
+                                      particles.position[p], radius, ball_height);
     }
   });
   return kernels;
@@ -145,12 +149,12 @@ ScalarGrid anisotropic_field(const GridShape& shape, const LiquidParticles& part
                              const LiquidSurfaceOptions& options, const GridShape& field_shape) {
   const double reach = options.kernel_radius * options.particle_radius;  // in cells
   const auto radius = static_cast<float>(reach * shape.cell);
-  const float metres = kMetresPerDensity * radius;
   // Smoothing moves a place by up to 0.4 R towards the liquid.
   const double wider = 1.4 * reach;
-  const std::vector<Kernel> kernels = make_kernels(shape, particles, radius, wider);
-  const auto around = node_surroundings(shape, particles, field_shape, wider);
-  ScalarGrid field(field_shape.cells + Eigen::Vector3i::Ones(), 0.5F * metres);
+  const std::vector<Kernel> kernels = make_kernels(shape, particles, radius);
+  const auto around = node_surroundings(shape, particles, field_shape, reach);
+  const FlatSurfaceProfile profile(FlatSurfaceProfile::Measure::density);
+  ScalarGrid field(field_shape.cells + Eigen::Vector3i::Ones(), radius * (1 - kDrawnInwards));
   const auto node_value = [&](const Eigen::Vector3d& x) {
     float density = 0;
     const Eigen::Vector3f at = x.cast<float>();
@@ -162,8 +166,9 @@ ScalarGrid anisotropic_field(const GridShape& shape, const LiquidParticles& part
         if (s > 0) density += kernels[p].height * s * s * s;
       }
     });
-    return metres * (0.5F - std::min(density, 1.0F));
+    return radius * (profile.distance(density) - kDrawnInwards);
   };
+  const float inside = -radius * (FlatSurfaceProfile::kDeepest + kDrawnInwards);
   const auto rows = static_cast<std::size_t>(field.size.y());
   parallel_blocks(rows * static_cast<std::size_t>(field.size.z()), 16,
                   [&](std::size_t begin, std::size_t end) {
@@ -171,7 +176,7 @@ ScalarGrid anisotropic_field(const GridShape& shape, const LiquidParticles& part
                       const auto j = static_cast<int>(w % rows), k = static_cast<int>(w / rows);
                       for (int i = 0; i < field.size.x(); ++i) {
                         const std::size_t n = field.index(i, j, k);
-                        if (around[n] == NodeSurroundings::full) field.values[n] = -0.5F * metres;
+                        if (around[n] == NodeSurroundings::full) field.values[n] = inside;
                         if (around[n] == NodeSurroundings::mixed)
                           field.values[n] = node_value(field_shape.cell * Eigen::Vector3d(i, j, k));
                       }

@@ -95,10 +95,10 @@ float radius_share(float eigenvalue) {
   return gamma * (gamma * (gamma - 3) + 3);
 }
 
-/// Field over the kernel radius from the sums; r = r_p / R.
-float value_of(const Sums& sums, float r) {
+/// |x - xbar| - r_p over R from the sums, plus r = r_p / R where r_p did not shrink.
+float mean_offset(const Sums& sums, float r) {
   const float weight = total(sums.weight);
-  if (!(weight > 1e-12F)) return 1 - r;
+  if (!(weight > 1e-12F)) return 1;
   Eigen::Vector3f mean, slope;
   Eigen::Matrix3f moment;
   for (int a = 0; a < 3; ++a) {
@@ -112,7 +112,7 @@ float value_of(const Sums& sums, float r) {
   // grad xbar = 6 / W sum of (y_i - ybar) g y_i^T in units of R; its symmetric part.
   const Eigen::Matrix3f gradient =
       6 / weight * (moment - 0.5F * (mean * slope.transpose() + slope * mean.transpose()));
-  return mean.norm() - r * radius_share(largest_eigenvalue(gradient));
+  return mean.norm() + r * (1 - radius_share(largest_eigenvalue(gradient)));
 }
 
 }  // namespace
@@ -124,7 +124,9 @@ ScalarGrid zhu_bridson_field(const GridShape& shape, const LiquidParticles& part
   const auto r = static_cast<float>(1 / options.kernel_radius);
   const auto around = node_surroundings(shape, particles, field_shape, reach);
   const ParticlePlaces places = split(particles);
-  ScalarGrid field(field_shape.cells + Eigen::Vector3i::Ones(), radius * (1 - r));
+  const FlatSurfaceProfile profile(FlatSurfaceProfile::Measure::mean_offset);
+  const float at_surface = profile.distance(r);
+  ScalarGrid field(field_shape.cells + Eigen::Vector3i::Ones(), radius * (1 - at_surface));
   const double step = field_shape.cell / shape.cell;
   const auto node_value = [&](int i, const CellRange& rows, const CellRange& layers, int j, int k) {
     const CellRange columns = cells_in_reach(i * step, reach, shape.cells.x());
@@ -140,8 +142,9 @@ ScalarGrid zhu_bridson_field(const GridShape& shape, const LiquidParticles& part
                  particles.cell_begin[row + static_cast<std::size_t>(columns.begin)],
                  particles.cell_begin[row + static_cast<std::size_t>(columns.end)]);
       }
-    return radius * value_of(sums, r);
+    return radius * (profile.distance(mean_offset(sums, r)) - at_surface);
   };
+  const float inside = radius * (profile.distance(0) - at_surface);
   const auto rows = static_cast<std::size_t>(field.size.y());
   parallel_blocks(rows * static_cast<std::size_t>(field.size.z()), 16,
                   [&](std::size_t begin, std::size_t end) {
@@ -151,7 +154,7 @@ ScalarGrid zhu_bridson_field(const GridShape& shape, const LiquidParticles& part
                                       z = cells_in_reach(k * step, reach, shape.cells.z());
                       for (int i = 0; i < field.size.x(); ++i) {
                         const std::size_t n = field.index(i, j, k);
-                        if (around[n] == NodeSurroundings::full) field.values[n] = -radius * r;
+                        if (around[n] == NodeSurroundings::full) field.values[n] = inside;
                         if (around[n] == NodeSurroundings::mixed)
                           field.values[n] = node_value(i, y, z, j, k);
                       }
