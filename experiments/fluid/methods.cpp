@@ -41,4 +41,39 @@ std::vector<MethodEntry> fluid_methods() {
   };
 }
 
+std::vector<DiagnosticEntry> fluid_diagnostics() {
+  return {
+      // Of a simulation.
+      {"particles", "1", "particles of the liquid"},
+      {"particle_volume", "m^3", "particles over particles_per_cell, in cells"},
+      {"surface_volume", "m^3", "volume that the recorded surface encloses"},
+      {"liquid_volume", "m^3", "volume of the liquid cells that the last substep projected"},
+      {"substeps", "1", "time steps of the frame"},
+      {"cfl", "1", "cells that the fastest particle crossed in the longest of them"},
+      {"pressure_iterations", "1", "iterations of the pressure solver in the frame"},
+      {"pressure_converged", "1", "0 when a solve stopped at its largest number of iterations"},
+      {"max_divergence", "1/s", "largest divergence of a liquid cell after the last projection"},
+      {"kinetic_energy", "J", "of the particles"},
+      {"potential_energy", "J", "of the particles above the origin"},
+      {"momentum_x", "kg m/s", "of the particles"},
+      {"momentum_y", "kg m/s", "of the particles"},
+      {"momentum_z", "kg m/s", "of the particles"},
+      // Of an ocean.
+      {"folded_triangles", "1", "triangles turned over by choppiness"},
+      // Of an extraction.
+      {"regions", "1", "regions of the frame"},
+      {"tracks", "1", "features of the whole animation"},
+      {"masked_share", "1", "share of the vertices that lie at walls and solids"},
+      // Of a paste.
+      {"lifted_features", "1", "features taken from their animations"},
+      {"feature_bytes", "B", "memory that they take"},
+      {"target_vertices", "1", "vertices of the target's frame"},
+      {"displaced_vertices", "1", "vertices of the result that a map moved"},
+      {"added_triangles", "1", "triangles more than the target has"},
+      {"features", "1", "features that are there in the frame"},
+      {"added_volume", "m^3", "integral of the displacements along the normal"},
+      {"min_jacobian", "1", "smallest det(I + grad d) of the maps: 0 or less where they fold"},
+  };
+}
+
 }  // namespace geoprior

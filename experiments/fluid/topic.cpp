@@ -15,6 +15,7 @@ Topic fluid_topic() {
   };
   topic.methods = fluid_methods();
   topic.metrics = fluid_metrics();
+  topic.diagnostics = fluid_diagnostics();
   topic.view.direction = {0.6, -1, 0.5};
   topic.view.up = {0, 0, 1};
   topic.view.material = FigureView::Material::water;
