@@ -14,7 +14,7 @@ namespace geoprior {
 namespace {
 
 constexpr double kCotangentLimit = 20;
-constexpr double kSmallestMass = 0.01;      ///< of the mean mass
+constexpr double kSmallestMass = 0.01;       ///< of the mean mass
 constexpr double kSmallestCotangent = 0.02;  ///< of harmonic coordinates: positive weights
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
@@ -22,8 +22,8 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 /// The part of a mesh that the bed of a region depends on, with its own vertex numbers: first those
 /// that move, then the ring around them (rows of L too), then the ring around that.
 struct Patch {
-  std::vector<int> vertices;              ///< of the mesh
-  int moving = 0, with_ring = 0;          ///< how many move; and their ring
+  std::vector<int> vertices;      ///< of the mesh
+  int moving = 0, with_ring = 0;  ///< how many move; and their ring
   std::vector<std::array<int, 3>> triangles;
 };
 
@@ -116,7 +116,7 @@ Eigen::Vector3d position(const TriMesh& mesh, const Patch& patch, int local) {
 
 /// Cotangent weights (rows of the vertices that move and their ring) and masses.
 struct Laplacian {
-  SparseMatrix L;       ///< with_ring x vertices
+  SparseMatrix L;        ///< with_ring x vertices
   Eigen::VectorXd mass;  ///< with_ring
 };
 
@@ -126,7 +126,8 @@ Laplacian laplacian_of(const TriMesh& mesh, const Patch& patch, double smallest,
   Eigen::VectorXd mass = Eigen::VectorXd::Zero(patch.with_ring);
   for (const auto& tri : patch.triangles) {
     for (int k = 0; k < 3; ++k) {
-      const int a = tri[static_cast<std::size_t>(k)], b = tri[static_cast<std::size_t>((k + 1) % 3)],
+      const int a = tri[static_cast<std::size_t>(k)],
+                b = tri[static_cast<std::size_t>((k + 1) % 3)],
                 c = tri[static_cast<std::size_t>((k + 2) % 3)];
       const Eigen::Vector3d ab = position(mesh, patch, b) - position(mesh, patch, a);
       const Eigen::Vector3d ac = position(mesh, patch, c) - position(mesh, patch, a);

@@ -123,17 +123,17 @@ MapRaster rasterise(const MapPatch& patch, int resolution, double extent, const 
   raster.value.assign(count, Value::Zero());
   raster.covered.assign(count, 0);
   const auto in_texels = [&](int v) -> Eigen::Vector2d {
-    return (patch.uv[static_cast<std::size_t>(v)] / extent).array() * resolution +
-           0.5 * resolution;
+    return (patch.uv[static_cast<std::size_t>(v)] / extent).array() * resolution + 0.5 * resolution;
   };
   for (const auto& f : patch.triangles) {
     Triangle t{in_texels(f[0]), in_texels(f[1]), in_texels(f[2]), 0};
     t.area = (t.b - t.a).x() * (t.c - t.a).y() - (t.b - t.a).y() * (t.c - t.a).x();
     if (t.area <= 0) continue;
-    draw(t,
-         {&patch.value[static_cast<std::size_t>(f[0])], &patch.value[static_cast<std::size_t>(f[1])],
-          &patch.value[static_cast<std::size_t>(f[2])]},
-         rule, raster);
+    draw(
+        t,
+        {&patch.value[static_cast<std::size_t>(f[0])], &patch.value[static_cast<std::size_t>(f[1])],
+         &patch.value[static_cast<std::size_t>(f[2])]},
+        rule, raster);
   }
   return raster;
 }
@@ -193,8 +193,8 @@ std::optional<double> height_at(const HeightRaster& raster, const Eigen::Vector2
     for (int a = 0; a < 2; ++a) {
       const std::size_t at = texel(n, i + a, j + b);
       if (raster.known[at] != 1) return {};
-      height += (a == 0 ? 1 - s : s) * (b == 0 ? 1 - t : t) *
-                static_cast<double>(raster.height[at]);
+      height +=
+          (a == 0 ? 1 - s : s) * (b == 0 ? 1 - t : t) * static_cast<double>(raster.height[at]);
     }
   }
   return height;

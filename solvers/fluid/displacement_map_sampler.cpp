@@ -29,7 +29,9 @@ std::vector<Contribution> contributions(const Feature& feature, double time) {
   const auto after = std::upper_bound(times.begin(), times.end(), time);
   const int last = feature.frame_count() - 1;
   const int i = std::clamp(static_cast<int>(after - times.begin()) - 1, 0, last);
-  const auto frame = [&](int k) { return &feature.maps[static_cast<std::size_t>(std::clamp(k, 0, last))]; };
+  const auto frame = [&](int k) {
+    return &feature.maps[static_cast<std::size_t>(std::clamp(k, 0, last))];
+  };
   const double t0 = times[static_cast<std::size_t>(i)];
   if (i == last || time <= t0) return {{frame(i), 1.0F}};
   const double s = (time - t0) / (times[static_cast<std::size_t>(i) + 1] - t0);

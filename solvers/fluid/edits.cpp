@@ -73,10 +73,9 @@ Eigen::Isometry3d placement_at(const Feature& feature, double time) {
                         .slerp(s, Eigen::Quaterniond(q.linear()))
                         .normalized()
                         .toRotationMatrix();
-  result.translation() = p.translation() +
-                         (3 * s2 - 2 * s3) * (q.translation() - p.translation()) +
-                         dt * ((s3 - 2 * s2 + s) * velocity_at(feature, i) +
-                               (s3 - s2) * velocity_at(feature, i + 1));
+  result.translation() =
+      p.translation() + (3 * s2 - 2 * s3) * (q.translation() - p.translation()) +
+      dt * ((s3 - 2 * s2 + s) * velocity_at(feature, i) + (s3 - s2) * velocity_at(feature, i + 1));
   return result;
 }
 
@@ -91,9 +90,8 @@ Eigen::Affine3d world_edit(const Feature& feature, const Edit& edit, const Eigen
   result.rotate(Eigen::AngleAxisd(edit.turn_deg * std::numbers::pi / 180, up));
   if (edit.mirror) {
     const Eigen::Vector3d normal = up.cross(first.linear().col(0)).normalized();
-    result.linear() = (result.linear() *
-                       (Eigen::Matrix3d::Identity() - 2 * normal * normal.transpose()))
-                          .eval();
+    result.linear() =
+        (result.linear() * (Eigen::Matrix3d::Identity() - 2 * normal * normal.transpose())).eval();
   }
   result.translate(-pivot);
   return result;
@@ -109,8 +107,8 @@ Eigen::Vector3d edited_centre(const Feature& feature, const Edit& edit, double s
     if (edit.pivot_x) pivot.x() = *edit.pivot_x;
     if (edit.pivot_y) pivot.y() = *edit.pivot_y;
     const Eigen::Vector3d scale(edit.scale[0], edit.scale[1], edit.scale[2]);
-    centre = pivot + first.linear() * (scale.asDiagonal() *
-                                       (first.linear().transpose() * (centre - pivot)));
+    centre = pivot + first.linear() *
+                         (scale.asDiagonal() * (first.linear().transpose() * (centre - pivot)));
   }
   return world * centre;
 }

@@ -84,8 +84,9 @@ void require_valid(const Edit& edit) {
     require(edit.box[0] <= edit.box[3] && edit.box[1] <= edit.box[4] && edit.box[2] <= edit.box[5],
             "the box is inside out", "x0 <= x1, y0 <= y1, z0 <= z1");
   }
-  require(edit.interval.empty() || (edit.interval.size() == 2 && edit.interval[0] <= edit.interval[1]),
-          "the interval is not two increasing numbers", "t0 <= t1");
+  require(
+      edit.interval.empty() || (edit.interval.size() == 2 && edit.interval[0] <= edit.interval[1]),
+      "the interval is not two increasing numbers", "t0 <= t1");
   require(edit.speed > 0, "the speed is not positive", "> 0; to hold a frame use retime");
   for (const double s : edit.scale) require(s > 0, "a scale is not positive", "> 0; see mirror");
   for (std::size_t i = 1; i < edit.trajectory.size(); ++i) {

@@ -11,8 +11,8 @@ std::string where_of(const Edit& edit) { return "edit '" + edit.name + "'"; }
 
 bool meets(const FeatureSummary& feature, const Edit& edit) {
   if (feature.times.empty() || feature.largest_area < edit.smallest_area) return false;
-  if (edit.interval.size() == 2 && (feature.times.front() > edit.interval[1] ||
-                                    feature.times.back() < edit.interval[0])) {
+  if (edit.interval.size() == 2 &&
+      (feature.times.front() > edit.interval[1] || feature.times.back() < edit.interval[0])) {
     return false;
   }
   if (edit.box.size() != 6) return true;

@@ -209,8 +209,8 @@ ExponentialMap exponential_map(std::span<const Eigen::Vector3d> positions,
   std::array<int, 3> corners{};
   for (std::size_t k = 0; k < 3; ++k) {
     const int v = triangles[static_cast<std::size_t>(triangle)][k];
-    corners[k] = static_cast<int>(
-        std::lower_bound(near.vertices.begin(), near.vertices.end(), v) - near.vertices.begin());
+    corners[k] = static_cast<int>(std::lower_bound(near.vertices.begin(), near.vertices.end(), v) -
+                                  near.vertices.begin());
   }
   // Vertex normals weighted by nearness in the triangle: smooth as the anchor moves.
   Eigen::Matrix3d edges;

@@ -142,8 +142,7 @@ Feature isolated_feature(std::vector<Piece>& pieces, const Extraction& extractio
     // In a gap: the mesh of the frame before, carried along the path.
     const Piece& piece = pieces[next];
     const bool own = piece.region->frame == times[i].frame;
-    const Eigen::Vector3d origin =
-        own ? feature.placement[i].translation() : piece.region->centre;
+    const Eigen::Vector3d origin = own ? feature.placement[i].translation() : piece.region->centre;
     TriMesh mesh = piece.lifted.mesh;
     mesh.V.rowwise() -= origin.transpose();
     feature.meshes.push_back(std::move(mesh));
@@ -202,15 +201,14 @@ std::vector<Feature> lift_tracks(const SurfaceSequence& sequence, const Extracti
                                  const Labeller& labeller, const MapOptions& options,
                                  const std::vector<int>& ids, RunContext& context) {
   const std::vector<const Track*> tracks = wanted_tracks(extraction, ids);
-  std::vector<std::vector<Piece>> pieces = lift_pieces(
-      sequence, extraction, labeller, tracks, options.border * extraction.cell, context);
+  std::vector<std::vector<Piece>> pieces = lift_pieces(sequence, extraction, labeller, tracks,
+                                                       options.border * extraction.cell, context);
   std::vector<Feature> result;
   if (context.stop_requested()) return result;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
-    Feature feature =
-        tracks[t]->kind == RegionKind::isolated
-            ? isolated_feature(pieces[t], extraction, options)
-            : differential_feature(pieces[t], extraction, options, tracks[t]->id);
+    Feature feature = tracks[t]->kind == RegionKind::isolated
+                          ? isolated_feature(pieces[t], extraction, options)
+                          : differential_feature(pieces[t], extraction, options, tracks[t]->id);
     pieces[t] = {};
     feature.id = tracks[t]->id;
     feature.kind = tracks[t]->kind;

@@ -11,8 +11,8 @@
 namespace geoprior {
 namespace {
 
-constexpr double kSteep = 0.2;        ///< n.z of a bed that is no graph over its plane
-constexpr double kSteepShare = 0.01;  ///< of the area, that is let pass
+constexpr double kSteep = 0.2;             ///< n.z of a bed that is no graph over its plane
+constexpr double kSteepShare = 0.01;       ///< of the area, that is let pass
 constexpr int kDistance = 3, kHeight = 4;  ///< channels after the displacement
 
 /// A patch in the axes of its moving frame.
@@ -142,8 +142,8 @@ LiftedFrame lifted(const MapRaster& raster, double border) {
 
 /// Heights of the surface over the bed along z: the ablation. The highest sheet counts.
 void use_heights(const LiftPatch& patch, const PlacedPatch& placed, MapRaster& raster) {
-  MapRaster top = rasterise(map_patch(patch, placed, true), raster.resolution, raster.extent,
-                            {kHeight});
+  MapRaster top =
+      rasterise(map_patch(patch, placed, true), raster.resolution, raster.extent, {kHeight});
   for (std::size_t i = 0; i < raster.value.size(); ++i) {
     const bool both = top.covered[i] == 1 && raster.covered[i] == 1;
     raster.value[i].head<2>() = 0;

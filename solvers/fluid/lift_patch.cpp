@@ -90,8 +90,7 @@ std::vector<double> distance_from_region(const TriMesh& mesh, const FrameLabels&
 LiftPatch lift_patch(const SurfaceFrame& frame, const FrameLabels& labels, const Region& region,
                      double border) {
   const TriMesh& mesh = frame.mesh;
-  const std::vector<double> distance =
-      distance_from_region(mesh, labels, {region.label}, border);
+  const std::vector<double> distance = distance_from_region(mesh, labels, {region.label}, border);
   std::vector<char> inside(distance.size());
   for (std::size_t v = 0; v < inside.size(); ++v) inside[v] = distance[v] < kFar ? 1 : 0;
   const Eigen::MatrixX3d bed = unfolded_base(mesh, inside);

@@ -44,8 +44,7 @@ Projection project(const WorkMesh& mesh, const EditedFrame& frame, double half, 
       const bool over = low.x() <= half && low.y() <= half && high.x() >= -half &&
                         high.y() >= -half && low.z() <= anchor_w + reach &&
                         high.z() >= anchor_w - reach;
-      const double area =
-          (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+      const double area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
       result.side[t] = !over ? Side::outside : turn * area > 0 ? Side::facing : Side::averted;
     }
   });
@@ -78,8 +77,8 @@ class Components {
 
 /// What lies under a projected map, connected with the anchor.
 struct Footprint {
-  std::vector<char> inside;              ///< of the vertices
-  std::vector<Eigen::Vector3d> normal;   ///< area weighted, not unit
+  std::vector<char> inside;             ///< of the vertices
+  std::vector<Eigen::Vector3d> normal;  ///< area weighted, not unit
   double steep_share = 0;
 };
 
@@ -104,8 +103,7 @@ Footprint footprint(const WorkMesh& mesh, const Projection& projection, const Pa
     if (n.dot(z) < std::sqrt(0.5) * size) steep += size;
   }
   result.steep_share = area > 0 ? steep / area : 0;
-  const int home =
-      components.root(mesh.triangles[static_cast<std::size_t>(anchor.triangle)][0]);
+  const int home = components.root(mesh.triangles[static_cast<std::size_t>(anchor.triangle)][0]);
   result.inside.assign(mesh.x.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (projection.side[t] != Side::facing) continue;
@@ -193,13 +191,13 @@ std::string metres(double x) {
 }
 
 [[noreturn]] void refuse_coarse(const std::string& who, double mean, double limit) {
-  throw Error("the target is too coarse for the map: its edges measure " + metres(mean), who,
-              "edges of about " + metres(limit) + " under the map (its own scale), or refine = true");
+  throw Error(
+      "the target is too coarse for the map: its edges measure " + metres(mean), who,
+      "edges of about " + metres(limit) + " under the map (its own scale), or refine = true");
 }
 
 [[noreturn]] void refuse_large(const std::string& who, std::size_t triangles, int allowed) {
-  throw Error("the refined target would have more than " + std::to_string(triangles) +
-                  " triangles",
+  throw Error("the refined target would have more than " + std::to_string(triangles) + " triangles",
               who, "max_triangles, " + std::to_string(allowed) + ", or more refine_texels");
 }
 
@@ -209,7 +207,8 @@ double mean_edge(const WorkMesh& mesh, const Covered& covered, const Displacemen
   int count = 0;
   for (const auto& f : mesh.triangles) {
     if (!covered.holds(f, map)) continue;
-    for (std::size_t k = 0; k < 3; ++k) sum += (covered.uv(f[k]) - covered.uv(f[(k + 1) % 3])).norm();
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += (covered.uv(f[k]) - covered.uv(f[(k + 1) % 3])).norm();
     count += 3;
   }
   return count > 0 ? sum / count : 0;
@@ -221,7 +220,8 @@ std::size_t triangles_needed(const WorkMesh& mesh, const std::vector<int>& candi
   double needed = static_cast<double>(mesh.triangles.size());
   for (const int t : candidates) {
     const auto& f = mesh.triangles[static_cast<std::size_t>(t)];
-    const Eigen::Vector2d u = covered.uv(f[1]) - covered.uv(f[0]), w = covered.uv(f[2]) - covered.uv(f[0]);
+    const Eigen::Vector2d u = covered.uv(f[1]) - covered.uv(f[0]),
+                          w = covered.uv(f[2]) - covered.uv(f[0]);
     needed += std::abs(u.x() * w.y() - u.y() * w.x()) / (limit * limit);
   }
   return static_cast<std::size_t>(std::min(needed, 1e15));
@@ -235,8 +235,8 @@ MapCoordinates locate(const WorkMesh& mesh, const EditedFrame& frame,
   if (options.mapping == MappingKind::exponential) return unrolled(mesh, frame, map, anchor);
   const Eigen::Vector3d z = frame.placement.linear().col(2).normalized();
   const double anchor_w = (frame.placement.inverse() * anchor.position).z();
-  const Projection projection = project(mesh, frame, 0.5 * map.extent(), anchor_w,
-                                        options.projection_reach * map.extent());
+  const Projection projection =
+      project(mesh, frame, 0.5 * map.extent(), anchor_w, options.projection_reach * map.extent());
   const Footprint under = footprint(mesh, projection, anchor, z);
   if (options.mapping == MappingKind::automatic && under.steep_share > kSteepShare) {
     return unrolled(mesh, frame, map, anchor);
@@ -293,7 +293,8 @@ void refine_under_map(WorkMesh& mesh, const DisplacementSampler& map, const Past
     if (splitter.empty()) return;
     const int first = mesh.vertex_count();
     candidates = splitter.apply(mesh);
-    if (mesh.triangles.size() > allowed) refuse_large(who, std::max(needed, allowed), options.max_triangles);
+    if (mesh.triangles.size() > allowed)
+      refuse_large(who, std::max(needed, allowed), options.max_triangles);
     add_middles(splitter.parents(), first, places);
     for (MapCoordinates* other : others) add_middles(splitter.parents(), first, *other);
     covered.extend(mesh.vertex_count());

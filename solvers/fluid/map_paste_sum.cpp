@@ -39,8 +39,7 @@ Displaced displacements(const PlacedMap& placed) {
     for (std::size_t i = begin; i < end; ++i) {
       const DisplacementSampler::Value value = placed.map.at(placed.places.uv[i]);
       const double factor = placed.frame.fade * placed.places.weight[i];
-      result.shift[i] =
-          axes_of(placed, placed.frame, i) * (factor * value.head<3>()).matrix();
+      result.shift[i] = axes_of(placed, placed.frame, i) * (factor * value.head<3>()).matrix();
       result.alpha[i] = factor * value[3];
     }
   });
@@ -85,9 +84,10 @@ std::vector<Eigen::Vector3d> displacement_rates(const WorkMesh& mesh, const Plac
         const Eigen::Vector3d x = mesh.x[v] + instant.time * mesh.velocity[v];
         // Over a curved target the map slides by what its centre moves in its own axes.
         const Eigen::Vector2d uv =
-            projected ? Eigen::Vector2d((instant.frame.placement.inverse() * x).head<2>())
-                      : Eigen::Vector2d(placed.places.uv[i] -
-                                        (inverse * instant.frame.placement.translation()).head<2>());
+            projected
+                ? Eigen::Vector2d((instant.frame.placement.inverse() * x).head<2>())
+                : Eigen::Vector2d(placed.places.uv[i] -
+                                  (inverse * instant.frame.placement.translation()).head<2>());
         const DisplacementSampler::Value value = instant.map.at(uv);
         return axes_of(placed, instant.frame, i) *
                (instant.frame.fade * placed.places.weight[i] * value.head<3>()).matrix();

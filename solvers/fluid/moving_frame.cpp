@@ -62,8 +62,8 @@ Eigen::Vector3d across(const Eigen::Vector3d& direction, const Eigen::Vector3d& 
 }
 
 /// The longest axis of all frames together, across the mean normal.
-Eigen::Vector3d longest_axis(const std::vector<FrameSample>& samples,
-                             const Eigen::Vector3d& normal, const Eigen::Vector3d& way) {
+Eigen::Vector3d longest_axis(const std::vector<FrameSample>& samples, const Eigen::Vector3d& normal,
+                             const Eigen::Vector3d& way) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const FrameSample& s : samples) sum += s.covariance;
   const Eigen::Matrix3d flat = Eigen::Matrix3d::Identity() - normal * normal.transpose();

@@ -8,8 +8,8 @@ namespace geoprior {
 
 /// What is known of a feature in one of its frames.
 struct FrameSample {
-  int frame = 0;    ///< of the animation, increasing
-  double time = 0;  ///< s
+  int frame = 0;                                         ///< of the animation, increasing
+  double time = 0;                                       ///< s
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();      ///< on the bed (m)
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();     ///< mean of the bed, unit
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the area (m^2)

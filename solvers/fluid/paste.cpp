@@ -69,8 +69,7 @@ std::vector<PlacedMap::Instant> instants_about(const Present& present, double ti
   for (const double shift : {-half, half}) {
     const auto frame = edited_frame(feature, present.insertion->edit, time + shift, up);
     const EditedFrame& used = frame ? *frame : present.frame;
-    result.push_back(
-        {frame ? shift : 0.0, used, DisplacementSampler(feature, used.source_time)});
+    result.push_back({frame ? shift : 0.0, used, DisplacementSampler(feature, used.source_time)});
   }
   if (result[0].time == result[1].time) result.clear();
   return result;
@@ -193,12 +192,12 @@ void add_isolated(const Present& present, double time, const Eigen::Vector3d& up
   const TriMesh mesh = isolated_at(feature, present.frame);
   const Eigen::Vector3d velocity = centre_velocity(present, time, up);
   std::vector<int> of_target, of_mesh;
-  if (present.insertion->edit.unite &&
-      unite_mesh(mesh, velocity, result, of_target, of_mesh)) {
+  if (present.insertion->edit.unite && unite_mesh(mesh, velocity, result, of_target, of_mesh)) {
     std::vector<int> ids;
     for (std::size_t v = 0; v < of_target.size(); ++v) {
-      ids.push_back(of_target[v] >= 0 ? report.vertex_feature[static_cast<std::size_t>(of_target[v])]
-                                      : feature.id);
+      ids.push_back(of_target[v] >= 0
+                        ? report.vertex_feature[static_cast<std::size_t>(of_target[v])]
+                        : feature.id);
     }
     report.vertex_feature = std::move(ids);
     return;

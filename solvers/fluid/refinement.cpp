@@ -54,7 +54,8 @@ class Parts {
 
 /// @param m  middles of the edges after each corner, or -1
 void split(const std::array<int, 3>& f, const std::array<int, 3>& m, Parts& parts) {
-  const auto marked = static_cast<int>(std::count_if(m.begin(), m.end(), [](int v) { return v >= 0; }));
+  const auto marked =
+      static_cast<int>(std::count_if(m.begin(), m.end(), [](int v) { return v >= 0; }));
   if (marked == 3) {
     for (std::size_t k = 0; k < 3; ++k) parts.add(f[k], m[k], m[(k + 2) % 3]);
     parts.add(m[0], m[1], m[2]);

@@ -26,24 +26,31 @@ struct SculptScene {
 
 /// Frames of the first source as it is, labelled: part "surface" with point arrays "curvature"
 /// [1/m], "label" (1 … region of the frame), "track" (feature id, 0: bed), "kind" (0 bed, 1
-/// isolated, 2 differential), "velocity" when known; part "maps" none; table "regions" (label,
-/// track, kind, centre, area, volume); last: table "tracks", table "events". Diagnostics: regions,
-/// tracks, masked share. Labels are known at once, tracks after the last frame: frames are pushed
-/// then.
+/// isolated, 2 differential), "velocity" when known; table "regions" (label, track, kind, centre,
+/// area, volume); in the last frame: tables "tracks", "events". Diagnostics: "regions", "tracks",
+/// "masked_share". Tracks are known after the last frame: frames are pushed then. Events of kind
+/// "warning: …" say what was noticed. Resumes by frame: segmentation is repeated, frames are not.
 struct ExtractOptions {
   ExtractionOptions extraction;
 };
 void describe(OptionVisitor& v, ExtractOptions& options);
+/// @throws Error  for a scene without a source
 std::unique_ptr<Process> make_extract(const SculptScene& scene, const ExtractOptions& options);
 
-/// Lifts the edited features out of their sources and pastes them into the target, frame by frame:
-/// part "surface" with "velocity" when known, "feature" (id of the feature that moved the vertex,
-/// 0); diagnostics of PasteReport. Phases "segment", "track", "lift", "paste".
+/// Lifts the edited features out of their sources and pastes them into the target (its frame
+/// nearest in time), frame by frame: part "surface" with "velocity" when known (0 for a still
+/// mesh), "feature" (id of the feature that moved the vertex most, 0); table "insertions" (what is
+/// there at this time). Diagnostics: those of PasteReport, and of the work: "lifted_features",
+/// "feature_bytes", "target_vertices". Phases "segment", "track", "lift", "paste". Events of kind
+/// "warning: …" once for each thing noticed. Resumes by frame: features are lifted again.
 struct SculptOptions {
   ExtractionOptions extraction;
   PasteOptions paste;
 };
 void describe(OptionVisitor& v, SculptOptions& options);
+/// @throws Error  when the scene has no target, no times or no edits, an edit is not valid or names
+/// a source that is not there; `run` throws for ids that do not exist, and for edits that lie off
+/// the target at all of the times
 std::unique_ptr<Process> make_sculpt(const SculptScene& scene, const SculptOptions& options);
 
 }  // namespace geoprior

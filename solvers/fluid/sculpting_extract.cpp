@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <map>
+
+#include "core/error.h"
+#include "solvers/fluid/sculpting.h"
+#include "solvers/fluid/sculpting_state.h"
+
+namespace geoprior {
+namespace {
+
+/// What is kept of a frame until the tracks are known.
+struct Kept {
+  Eigen::VectorXf curvature;
+  std::vector<int> label;
+  double masked_share = 0;
+};
+
+int kind_number(RegionKind kind) { return kind == RegionKind::isolated ? 1 : 2; }
+
+class ExtractProcess final : public Process {
+ public:
+  ExtractProcess(std::shared_ptr<const SurfaceSequence> source, const ExtractOptions& options)
+      : source_(std::move(source)), options_(options) {}
+
+  void run(FrameSink& sink, RunContext& context, const std::optional<State>& resume) override {
+    SculptState state = resume ? SculptState::of(*resume) : SculptState{};
+    std::vector<Kept> kept(static_cast<std::size_t>(source_->frame_count()));
+    const auto keep = [&](int i, const SurfaceFrame&, const SegmentedFrame& segmented) {
+      Kept& k = kept[static_cast<std::size_t>(i)];
+      k.curvature = segmented.curvature.cast<float>();
+      k.label = segmented.label;
+      const auto masked = std::count(segmented.masked.begin(), segmented.masked.end(), char{1});
+      k.masked_share = segmented.masked.empty() ? 0
+                                                : static_cast<double>(masked) /
+                                                      static_cast<double>(segmented.masked.size());
+    };
+    const Extraction extraction = extract_regions(*source_, options_.extraction, context, keep);
+    if (context.stop_requested()) return;
+    for (const std::string& w : extraction.warnings) state.warn(w, w, 0, sink);
+    const std::vector<int> track_of = tracks_of(extraction);
+    const int count = source_->frame_count();
+    for (int i = state.next_frame; i < count && !context.stop_requested(); ++i) {
+      Frame frame = labelled(i, extraction, track_of, kept[static_cast<std::size_t>(i)]);
+      if (i + 1 == count) add_tracks(extraction, frame);
+      sink.frame(std::move(frame));
+      state.next_frame = i + 1;
+      sink.checkpoint(state.bytes());
+      context.progress(static_cast<double>(i + 1) / count);
+    }
+  }
+
+ private:
+  /// Track id of every region, 0 for none.
+  static std::vector<int> tracks_of(const Extraction& extraction) {
+    std::vector<int> result(extraction.regions.size(), 0);
+    for (const Track& track : extraction.tracking.tracks) {
+      for (const int r : track.regions) result[static_cast<std::size_t>(r)] = track.id;
+    }
+    return result;
+  }
+
+  Frame labelled(int i, const Extraction& extraction, const std::vector<int>& track_of,
+                 const Kept& kept) const {
+    SurfaceFrame source = source_->frame(i);
+    Frame frame;
+    frame.parameter = source.time;
+    const Eigen::Index n = source.mesh.V.rows();
+    Eigen::VectorXd label(n), track = Eigen::VectorXd::Zero(n), kind = Eigen::VectorXd::Zero(n);
+    std::vector<std::vector<double>> rows;
+    std::map<int, std::pair<int, int>> of_label;  // track and kind
+    for (std::size_t r = 0; r < extraction.regions.size(); ++r) {
+      const Region& region = extraction.regions[r];
+      if (region.frame != i) continue;
+      of_label[region.label] = {track_of[r], kind_number(region.kind)};
+      rows.push_back({static_cast<double>(region.label), static_cast<double>(track_of[r]),
+                      static_cast<double>(kind_number(region.kind)), region.centre.x(),
+                      region.centre.y(), region.centre.z(), region.area, region.volume});
+    }
+    for (Eigen::Index v = 0; v < n; ++v) {
+      label[v] = kept.label[static_cast<std::size_t>(v)];
+      const auto found = of_label.find(kept.label[static_cast<std::size_t>(v)]);
+      if (found == of_label.end()) continue;
+      track[v] = found->second.first;
+      kind[v] = found->second.second;
+    }
+    Part& surface = frame.parts["surface"];
+    surface.points = std::move(source.mesh.V);
+    surface.triangles = std::move(source.mesh.F);
+    const auto on = NamedArray::On::points;
+    surface.arrays.push_back({"curvature", "1/m", on, kept.curvature.cast<double>()});
+    surface.arrays.push_back({"label", "1", on, label});
+    surface.arrays.push_back({"track", "1", on, track});
+    surface.arrays.push_back({"kind", "1", on, kind});
+    if (source.velocity.rows() == n && n > 0) {
+      surface.arrays.push_back({"velocity", "m/s", on, source.velocity});
+    }
+    frame.tables["regions"] = table({"label [1]", "track [1]", "kind [1]", "x [m]", "y [m]",
+                                     "z [m]", "area [m^2]", "volume [m^3]"},
+                                    rows);
+    frame.diagnostics["regions"] = static_cast<double>(rows.size());
+    frame.diagnostics["tracks"] = static_cast<double>(extraction.tracking.tracks.size());
+    frame.diagnostics["masked_share"] = kept.masked_share;
+    return frame;
+  }
+
+  static FrameTable table(const std::vector<std::string>& columns,
+                          const std::vector<std::vector<double>>& rows) {
+    FrameTable result;
+    result.columns = columns;
+    result.rows.resize(static_cast<Eigen::Index>(rows.size()),
+                       static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        result.rows(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = rows[r][c];
+      }
+    }
+    return result;
+  }
+
+  static void add_tracks(const Extraction& extraction, Frame& frame) {
+    std::vector<std::vector<double>> tracks, events;
+    for (const Track& track : extraction.tracking.tracks) {
+      const auto region = [&](int r) { return extraction.regions[static_cast<std::size_t>(r)]; };
+      double largest = 0;
+      for (const int r : track.regions) largest = std::max(largest, region(r).area);
+      const auto time = [&](int r) {
+        return extraction.times[static_cast<std::size_t>(region(r).frame)];
+      };
+      tracks.push_back({static_cast<double>(track.id), static_cast<double>(kind_number(track.kind)),
+                        time(track.regions.front()), time(track.regions.back()),
+                        static_cast<double>(track.regions.size()), largest});
+    }
+    for (const TrackEvent& e : extraction.tracking.events) {
+      events.push_back({static_cast<double>(e.kind),
+                        extraction.times[static_cast<std::size_t>(e.frame)],
+                        static_cast<double>(e.from), static_cast<double>(e.to)});
+    }
+    frame.tables["tracks"] = table(
+        {"track [1]", "kind [1]", "begin [s]", "end [s]", "regions [1]", "largest_area [m^2]"},
+        tracks);
+    frame.tables["events"] = table({"kind [1]", "time [s]", "from [1]", "to [1]"}, events);
+  }
+
+  std::shared_ptr<const SurfaceSequence> source_;
+  ExtractOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Process> make_extract(const SculptScene& scene, const ExtractOptions& options) {
+  if (scene.sources.empty() || scene.sources.begin()->second == nullptr) {
+    throw Error("there is nothing to extract features from", "scene", "a source");
+  }
+  return std::make_unique<ExtractProcess>(scene.sources.begin()->second, options);
+}
+
+}  // namespace geoprior
