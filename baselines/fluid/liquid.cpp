@@ -58,6 +58,7 @@ struct Liquid::Data {
   bool solids_move = false;
 
   double time = 0;
+  double last_dt = 0;  ///< of the step before; 0: none
   std::uint64_t steps = 0;
   std::int64_t balance = 0;  ///< particles that reseeding added minus those it removed
   std::int64_t removed = 0;
@@ -221,9 +222,11 @@ PressureReport Liquid::Data::correct_volume(double dt) {
   return report;
 }
 
+/// Gravity, then the projection. Velocities live in the middle of steps (leapfrog), so that gravity
+/// acts for half of the step before and half of this one: a falling drop is exact.
 PressureReport Liquid::Data::project(double dt) {
   for (int a = 0; a < 3; ++a) {
-    const auto gain = static_cast<float>(tank.gravity[a] * dt);
+    const auto gain = static_cast<float>(tank.gravity[a] * 0.5 * (last_dt + dt));
     if (gain == 0) continue;
     for (float& u : velocity.face[static_cast<std::size_t>(a)].values) u += gain;
   }
@@ -341,6 +344,7 @@ LiquidStepReport Liquid::step(double dt_max, RunContext& context) {
     d.sorter.sort(d.shape, d.particles);
   }
   d.time += dt;
+  d.last_dt = dt;
   ++d.steps;
   return report;
 }
@@ -357,6 +361,7 @@ State Liquid::save() const {
   const Data& d = *data_;
   StateWriter out;
   out.number(d.time);
+  out.number(d.last_dt);
   out.number(d.steps);
   out.number(d.balance);
   out.number(d.removed);
@@ -370,6 +375,7 @@ void Liquid::load(const State& state) {
   Data& d = *data_;
   StateReader in(state);
   d.time = in.number<double>();
+  d.last_dt = in.number<double>();
   d.steps = in.number<std::uint64_t>();
   d.balance = in.number<std::int64_t>();
   d.removed = in.number<std::int64_t>();
@@ -384,8 +390,8 @@ void Liquid::load(const State& state) {
 
 TriMesh Liquid::surface(Eigen::MatrixX3d* velocity) const {
   GridShape grid;
-  const ScalarGrid field =
-      liquid_field(data_->shape, data_->particles, data_->options.surface, grid);
+  ScalarGrid field = liquid_field(data_->shape, data_->particles, data_->options.surface, grid);
+  if (!data_->tank.solids.empty()) meet_solids(data_->shape, data_->solids, grid, field);
   TriMesh mesh = isosurface(field, grid.origin, grid.cell);
   if (velocity != nullptr) *velocity = surface_velocity(data_->velocity, mesh.V);
   return mesh;

@@ -19,7 +19,9 @@ enum class VolumeCorrection { none, density };
 /// Every substep: particles to grid (transfer.h), distance of the liquid from the particles'
 /// density (volume_correction.h), gravity, projection (pressure.h), continuation beyond the liquid
 /// (extrapolation.h), grid to particles, advection (advection.h). Particles that no liquid cell is
-/// near fall freely. No viscosity, no surface tension; walls and solids are free slip.
+/// near fall freely. No viscosity, no surface tension; walls and solids are free slip. Velocities
+/// are those half a step before the positions (leapfrog): gravity is of second order in time, the
+/// splitting of advection and pressure of first, which damps eddies at large steps.
 struct LiquidOptions {
   TransferKind transfer = TransferKind::flip;
   double pic_fraction = 0.03;  ///< alpha: share of PIC in the FLIP update

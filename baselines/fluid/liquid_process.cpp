@@ -6,6 +6,7 @@
 
 #include "baselines/fluid/liquid.h"
 #include "baselines/fluid/liquid_parts.h"
+#include "baselines/fluid/transfer.h"
 #include "core/error.h"
 #include "core/state_bytes.h"
 
@@ -32,20 +33,19 @@ void add(FrameReport& frame, const LiquidStepReport& step, double cell) {
 }
 
 /// Energy and momentum of the particles, each with an equal share of a full cell's mass.
-void measure_particles(const Tank& tank, int per_cell, const LiquidParticles& particles,
-                       std::map<std::string, double>& out) {
+void measure_particles(const Tank& tank, int per_cell, const GridShape& shape,
+                       const LiquidParticles& particles, std::map<std::string, double>& out) {
   Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
-  double kinetic = 0, potential = 0;
+  double potential = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const Eigen::Vector3d v = particles.velocity[p].cast<double>();
     momentum += v;
-    kinetic += 0.5 * v.squaredNorm();
     potential -= tank.gravity.dot(tank.origin + particles.position[p].cast<double>());
   }
   const double volume = std::pow(tank.cell, 3) / per_cell, mass = tank.density * volume;
   out["particles"] = static_cast<double>(particles.size());
   out["particle_volume"] = volume * static_cast<double>(particles.size());
-  out["kinetic_energy"] = mass * kinetic;
+  out["kinetic_energy"] = mass * kinetic_energy(shape, particles);
   out["potential_energy"] = mass * potential;
   out["momentum_x"] = mass * momentum.x();
   out["momentum_y"] = mass * momentum.y();
@@ -119,7 +119,7 @@ class LiquidProcess final : public Process {
     if (!tank_.solids.empty()) frame.parts["solids"] = solids_part(tank_, liquid.solids());
     if (options_.record_particles)
       frame.parts["particles"] = particles_part(tank_, liquid.particles());
-    measure_particles(tank_, options_.particles_per_cell, liquid.particles(), d);
+    measure_particles(tank_, options_.particles_per_cell, liquid.shape(), liquid.particles(), d);
     d["substeps"] = report.substeps;
     d["cfl"] = report.cfl;
     d["pressure_iterations"] = report.iterations;

@@ -178,6 +178,21 @@ void ParticleToGrid::gather(const LiquidParticles& particles, int particles_per_
   for (float& d : density.values) d *= scale;
 }
 
+namespace {
+
+/// Beyond the last centre of an axis the interpolant is constant: a slope there would carry a
+/// velocity to the wall that no particle has, and energy with it.
+void flatten_at_walls(const Eigen::Vector3f& x, const Eigen::Vector3i& cells,
+                      Eigen::Matrix3f& gradient) {
+  for (int b = 0; b < 3; ++b) {
+    if (x[b] > 0.5F && x[b] < static_cast<float>(cells[b]) - 0.5F) continue;
+    for (int a = 0; a < 3; ++a)
+      if (a != b) gradient(a, b) = 0;
+  }
+}
+
+}  // namespace
+
 void grid_to_particles(const MacGrid& field, float keep, bool affine, LiquidParticles& particles) {
   const FaceSampler sampler(field);
   const auto per_metre = static_cast<float>(1 / field.shape.cell);
@@ -193,8 +208,35 @@ void grid_to_particles(const MacGrid& field, float keep, bool affine, LiquidPart
         v[a] = keep * v[a] + c.value(fx, fy, fz);
         if (affine) particles.affine[p].row(a) = c.gradient(fx, fy, fz).transpose() * per_metre;
       }
+      if (affine) flatten_at_walls(particles.position[p] * per_metre, cells, particles.affine[p]);
     }
   });
+}
+
+double kinetic_energy(const GridShape& shape, const LiquidParticles& particles) {
+  const auto per_metre = static_cast<float>(1 / shape.cell);
+  const double h2 = shape.cell * shape.cell;
+  std::vector<double> sums((particles.size() + kParticleBlock - 1) / kParticleBlock, 0.0);
+  parallel_blocks(particles.size(), kParticleBlock, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t p = begin; p < end; ++p) {
+      sum += static_cast<double>(particles.velocity[p].squaredNorm());
+      if (particles.affine.empty()) continue;
+      const CellSample s(particles.position[p] * per_metre, shape.cells);
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) {
+          // Second moment of the two weights of an axis.
+          const auto f = static_cast<double>(s.along(b, a).fraction);
+          const auto c = static_cast<double>(particles.affine[p](a, b));
+          sum += h2 * f * (1 - f) * c * c;
+        }
+      }
+    }
+    sums[begin / kParticleBlock] = sum;
+  });
+  double total = 0;
+  for (const double sum : sums) total += sum;
+  return 0.5 * total;
 }
 
 }  // namespace geoprior

@@ -39,4 +39,8 @@ class ParticleToGrid {
 /// ((1 - a) du + a u, keep 1 - a). With `affine` C_p = sum_i field_i grad N_i(x_p) as well.
 void grid_to_particles(const MacGrid& field, float keep, bool affine, LiquidParticles& particles);
 
+/// Kinetic energy of particles of unit mass (m^2/s^2): sum of v^2 / 2 and, with velocity gradients,
+/// of what these carry to the grid, (1/2) sum_i N_i (C (x_i - x_p))^2.
+double kinetic_energy(const GridShape& shape, const LiquidParticles& particles);
+
 }  // namespace geoprior

@@ -82,12 +82,6 @@ inline Eigen::Vector3d centre_of(const LiquidParticles& particles) {
   return sum / static_cast<double>(particles.size());
 }
 
-inline double kinetic(const LiquidParticles& particles) {
-  double sum = 0;
-  for (const Eigen::Vector3f& v : particles.velocity) sum += 0.5 * v.cast<double>().squaredNorm();
-  return sum;
-}
-
 /// Steps up to a time.
 inline void run_until(Liquid& liquid, double until, double dt_most = 1.0 / 30) {
   RunContext context;
