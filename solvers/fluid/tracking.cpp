@@ -147,7 +147,7 @@ TrackResult track_regions(const std::vector<Region>& regions, const std::vector<
   require_ordered(regions, times);
   TrackResult result;
   const GateSpeeds speeds = gate_speeds(regions, times, cell, options);
-  std::vector<int> successor(regions.size(), -1);
+  std::vector<int> successor = first_paths(regions, times, cell, options, speeds);
   // Paths tell how regions move, and motions tell the paths: a few rounds settle both.
   for (int round = 0; round < kMostRounds; ++round) {
     const RegionMotions motions = region_motions(regions, times, cell, options, speeds, successor);

@@ -52,6 +52,10 @@ double size_cost(const Region& a, const Region& b, const TrackingOptions& option
   return cost;
 }
 
+bool is_too_fast(const Region& a, const Region& b, double dt, const TrackingOptions& options) {
+  return options.largest_speed && (b.centre - a.centre).norm() > *options.largest_speed * dt;
+}
+
 /// Cost of finding `seen` (m) where `motion` leads.
 double prediction_cost(const Region& from, const RegionMotion& motion, const Eigen::Vector3d& seen,
                        double dt, int gap, double variance, const TrackingOptions& options) {
@@ -103,6 +107,47 @@ GateSpeeds gate_speeds(std::span<const Region> regions, std::span<const double> 
   return result;
 }
 
+std::vector<int> first_paths(std::span<const Region> regions, std::span<const double> times,
+                             double cell, const TrackingOptions& options,
+                             const GateSpeeds& speeds) {
+  const FrameIndex index(regions, times.size());
+  std::vector<int> successor(regions.size(), -1), predecessor(regions.size(), -1);
+  std::vector<PathLink> links;
+  std::size_t first_open = 0;  // regions before it are too old to be linked
+  for (int frame = 1; frame < static_cast<int>(times.size()); ++frame) {
+    links.clear();
+    while (first_open < regions.size() && regions[first_open].frame < frame - options.largest_gap)
+      ++first_open;
+    for (std::size_t i = first_open; i < regions.size() && regions[i].frame < frame; ++i) {
+      if (successor[i] >= 0) continue;
+      const Region& a = regions[i];
+      const int g = frame - a.frame;
+      const double dt =
+          times[static_cast<std::size_t>(frame)] - times[static_cast<std::size_t>(a.frame)];
+      const double variance = centre_variance(a, cell, options);
+      const RegionMotion past =
+          region_motion(regions, times, cell, options, speeds, predecessor, i);
+      const double reach =
+          std::sqrt((options.new_path_cost + 3) * (g * variance + past.variance(dt)));
+      for (const int to : index.window(frame, predicted(a, past, dt, options).x(), reach)) {
+        const Region& b = regions[static_cast<std::size_t>(to)];
+        if (b.kind != a.kind || is_too_fast(a, b, dt, options)) continue;
+        const double cost = prediction_cost(a, past, b.centre, dt, g, variance, options) +
+                            (g - 1) * options.gap_cost + size_cost(a, b, options);
+        if (cost < options.new_path_cost) links.push_back({static_cast<int>(i), to, cost});
+      }
+    }
+    const std::vector<int> chosen =
+        cover_by_paths(static_cast<int>(regions.size()), links, options.new_path_cost);
+    for (const PathLink& link : links) {
+      if (chosen[static_cast<std::size_t>(link.from)] != link.to) continue;
+      successor[static_cast<std::size_t>(link.from)] = link.to;
+      predecessor[static_cast<std::size_t>(link.to)] = link.from;
+    }
+  }
+  return successor;
+}
+
 std::vector<PathLink> candidate_links(std::span<const Region> regions,
                                       std::span<const double> times, double cell,
                                       const TrackingOptions& options,
@@ -125,9 +170,7 @@ std::vector<PathLink> candidate_links(std::span<const Region> regions,
       for (const int to : index.window(frame, x, reach)) {
         const auto j = static_cast<std::size_t>(to);
         const Region& b = regions[j];
-        if (b.kind != a.kind) continue;
-        if (options.largest_speed && (b.centre - a.centre).norm() > *options.largest_speed * dt)
-          continue;
+        if (b.kind != a.kind || is_too_fast(a, b, dt, options)) continue;
         const double ahead = prediction_cost(a, past, b.centre, dt, g, variance, options);
         const double back = prediction_cost(b, motions.from_future[j], a.centre, -dt, g,
                                             centre_variance(b, cell, options), options);

@@ -12,6 +12,13 @@ namespace geoprior {
 GateSpeeds gate_speeds(std::span<const Region> regions, std::span<const double> times, double cell,
                        const TrackingOptions& options);
 
+/// First paths, frame after frame: the best assignment of its regions to the paths that are open,
+/// by the costs below looking forwards only. What a path has done tells where it goes on, which is
+/// how drops that pass each other are told apart.
+/// @return  successor of every region, -1 at the end of a path
+std::vector<int> first_paths(std::span<const Region> regions, std::span<const double> times,
+                             double cell, const TrackingOptions& options, const GateSpeeds& speeds);
+
 /// Links between regions of one kind, up to `largest_gap` frames apart, with their costs
 ///   mean of |c - prediction|^2 / s^2 + 6 ln(s / s_1)   forwards from i and backwards from j
 ///     + ln(A_j / A_i)^2 / sigma_A^2 + ln(V_j / V_i)^2 / sigma_V^2 + (g - 1) gap_cost,

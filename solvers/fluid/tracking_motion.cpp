@@ -10,11 +10,18 @@ Eigen::Vector3d fall(const Region& region, double dt, const TrackingOptions& opt
   return 0.5 * dt * dt * Eigen::Vector3d(options.gravity.data());
 }
 
-/// @param next  the way along the path: successors or predecessors
-RegionMotion fitted_motion(std::span<const Region> regions, std::span<const double> times,
-                           double cell, const TrackingOptions& options, double speed,
+}  // namespace
+
+double centre_variance(const Region& region, double cell, const TrackingOptions& options) {
+  const double centre = options.sigma_centre * cell;
+  return 0.5 * (centre * centre + options.sigma_size * options.sigma_size * region.area);
+}
+
+RegionMotion region_motion(std::span<const Region> regions, std::span<const double> times,
+                           double cell, const TrackingOptions& options, const GateSpeeds& speeds,
                            const std::vector<int>& next, std::size_t i) {
   const Region& here = regions[i];
+  const double speed = speeds[here.kind == RegionKind::isolated ? 0 : 1];
   RegionMotion motion;
   const double variance = centre_variance(here, cell, options);
   if (here.kind == RegionKind::isolated && here.has_velocity) {
@@ -48,13 +55,6 @@ RegionMotion fitted_motion(std::span<const Region> regions, std::span<const doub
   return motion;
 }
 
-}  // namespace
-
-double centre_variance(const Region& region, double cell, const TrackingOptions& options) {
-  const double centre = options.sigma_centre * cell;
-  return 0.5 * (centre * centre + options.sigma_size * options.sigma_size * region.area);
-}
-
 RegionMotions region_motions(std::span<const Region> regions, std::span<const double> times,
                              double cell, const TrackingOptions& options, const GateSpeeds& speeds,
                              const std::vector<int>& successor) {
@@ -65,11 +65,10 @@ RegionMotions region_motions(std::span<const Region> regions, std::span<const do
   }
   RegionMotions motions;
   for (std::size_t i = 0; i < regions.size(); ++i) {
-    const double speed = speeds[regions[i].kind == RegionKind::isolated ? 0 : 1];
     motions.from_past.push_back(
-        fitted_motion(regions, times, cell, options, speed, predecessor, i));
+        region_motion(regions, times, cell, options, speeds, predecessor, i));
     motions.from_future.push_back(
-        fitted_motion(regions, times, cell, options, speed, successor, i));
+        region_motion(regions, times, cell, options, speeds, successor, i));
   }
   return motions;
 }

@@ -33,11 +33,16 @@ struct RegionMotions {
 /// and one that tells where it should be differ by all of it.
 double centre_variance(const Region& region, double cell, const TrackingOptions& options);
 
-/// Straight line (a parabola under gravity for isolated regions) through the region and up to five
+/// Straight line (a parabola under gravity for isolated regions) through region i and up to five
 /// others of its path on one side, by least squares; a third of the gate speed is the prior
 /// deviation of the velocity. Isolated regions that come with a velocity keep it; differential ones
 /// do not, since the water of a wave does not move with the wave.
-/// @param successor  of every region, -1 at the end of a path
+/// @param next  the way along the path: successors or predecessors, -1 at its end
+RegionMotion region_motion(std::span<const Region> regions, std::span<const double> times,
+                           double cell, const TrackingOptions& options, const GateSpeeds& speeds,
+                           const std::vector<int>& next, std::size_t i);
+
+/// Of all regions, on both sides.
 RegionMotions region_motions(std::span<const Region> regions, std::span<const double> times,
                              double cell, const TrackingOptions& options, const GateSpeeds& speeds,
                              const std::vector<int>& successor);
