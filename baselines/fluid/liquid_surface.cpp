@@ -16,6 +16,7 @@ constexpr std::size_t kLayers = 2;  ///< layers of nodes of a parallel block
 /// Cells off a solid where the liquid beside it is looked up: particles stay half a cell off, and a
 /// cell further the field is deep.
 constexpr float kReadOff = 1.5F;
+constexpr float kOnWall = 1e-3F;  ///< cells: as near as this, a node of the border is on a wall
 
 template <class Body>
 void for_layers(int layers, const Body& body) {
@@ -81,6 +82,10 @@ float trilinear(const ScalarGrid& grid, const Eigen::Vector3f& x) {
   return low + t.z() * (high - low);
 }
 
+bool on_border(const ScalarGrid& grid, const Eigen::Vector3i& node) {
+  return node.minCoeff() == 0 || (node.array() + 1 == grid.size.array()).any();
+}
+
 /// Gradient of the distance at a node of the simulation's grid, in metres per node.
 Eigen::Vector3f gradient(const ScalarGrid& d, const Eigen::Vector3f& x) {
   Eigen::Vector3f g;
@@ -136,7 +141,9 @@ void meet_solids(const GridShape& shape, const SolidFractions& solids, const Gri
             value = std::min(value, trilinear(old, moved * nodes_per_cell));
           }
         }
-        value = std::max(value, -d);
+        // On a wall of the domain the contour closes by itself, with sharper ribs.
+        const bool on_wall = on_border(field, {i, j, k}) && d > -kOnWall * h;
+        if (!on_wall) value = std::max(value, -d);
       }
   });
 }

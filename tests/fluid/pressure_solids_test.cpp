@@ -16,8 +16,10 @@ TEST(PressureSolids, APistonPushesTheLiquidAheadOfIt) {
   TankSolid piston;
   piston.shape.centre = {0.2, 0.125, 0.5};
   piston.shape.half_size = {0.2 + 1.0 / 64, 1, 2};  // its front cuts cells
-  piston.motion = Trajectory{
-      {{0, {0, 0, 0}, {}}, {2, {0.5, 0, 0}, {}}, {4, {1, 0, 0}, {}}, {6, {1.5, 0, 0}, {}}}};
+  piston.motion = Trajectory{{{.time = 0, .shift = {0, 0, 0}},
+                              {.time = 2, .shift = {0.5, 0, 0}},
+                              {.time = 4, .shift = {1, 0, 0}},
+                              {.time = 6, .shift = {1.5, 0, 0}}}};
   tank.solids = {piston};
   const GridShape shape = shape_of(tank);
   const double time = 2, dt = 1e-3;
@@ -60,7 +62,7 @@ TEST(PressureSolids, ABallThatMovesWithTheLiquidLeavesItAlone) {
   ball.shape.kind = LiquidShape::Kind::sphere;
   ball.shape.centre = {0.5, 0.5, 0.5};
   ball.shape.radius = 0.18;
-  ball.motion = Trajectory{{{0, {0, 0, 0}, {}}, {1, {0.1, 0, 0.05}, {}}}};
+  ball.motion = Trajectory{{{.time = 0, .shift = {0, 0, 0}}, {.time = 1, .shift = {0.1, 0, 0.05}}}};
   tank.solids = {ball};
   const GridShape shape = shape_of(tank);
   const SolidFractions solids = fractions_of(tank, 0.5);

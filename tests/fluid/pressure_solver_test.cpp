@@ -26,7 +26,10 @@ struct Pool {
     ball.shape.kind = LiquidShape::Kind::sphere;
     ball.shape.centre = {0.3, 0.35, 0.21};
     ball.shape.radius = 0.17;
-    TankSolid box{"box", {}, Trajectory{{{0, {0, 0, 0}, {}}, {1, {0.4, 0.1, 0}, {}}}}};
+    TankSolid box{
+        "box",
+        {},
+        Trajectory{{{.time = 0, .shift = {0, 0, 0}}, {.time = 1, .shift = {0.4, 0.1, 0}}}}};
     box.shape.centre = {0.7, 0.6, 0.3};
     box.shape.half_size = {0.08, 0.11, 0.3};
     tank.solids = {ball, box};
