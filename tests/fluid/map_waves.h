@@ -8,6 +8,7 @@
 #include "core/random.h"
 #include "core/surface_sequence.h"
 #include "solvers/fluid/lift.h"
+#include "solvers/fluid/paste.h"
 
 namespace geoprior::waves {
 
