@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
+#include <cstdint>
 #include <utility>
 
 #include "core/error.h"
@@ -29,8 +29,12 @@ std::vector<Side> sorted_sides(const Eigen::MatrixX3i& F) {
       sides.push_back({std::min(a, b), std::max(a, b), static_cast<int>(t), a < b});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  const auto edge = [](const Side& s) {
+    return static_cast<std::uint64_t>(s.low) << 32U | static_cast<std::uint32_t>(s.high);
+  };
+  std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) {
+    const std::uint64_t of_a = edge(a), of_b = edge(b);
+    return of_a != of_b ? of_a < of_b : a.triangle < b.triangle;
   });
   return sides;
 }
@@ -107,7 +111,7 @@ class Repair {
 
   void weld() {
     const EdgeCounts before = count_edges(sides_);
-    if (before.border == 0) return;
+    if (before.border == 0 || !border_has_doubles()) return;
     Weld welded = weld_by_position(frame_.mesh);
     if (welded.mesh.vertex_count() == frame_.mesh.vertex_count()) return;
     if (welded.mesh.triangle_count() == 0) return;  // all were points: not for us to judge
@@ -190,6 +194,23 @@ class Repair {
   }
 
  private:
+  /// Whether two vertices of the border share a position: only they can close edges. Spares most
+  /// open surfaces the weld of all vertices.
+  [[nodiscard]] bool border_has_doubles() const {
+    std::vector<std::array<double, 3>> positions;
+    std::vector<char> seen(static_cast<std::size_t>(frame_.mesh.vertex_count()), 0);
+    for_each_edge(sides_, [&](std::size_t i, std::size_t j) {
+      if (j - i != 1) return;
+      for (const int v : {sides_[i].low, sides_[i].high}) {
+        if (std::exchange(seen[static_cast<std::size_t>(v)], 1) != 0) continue;
+        const Eigen::RowVector3d x = frame_.mesh.V.row(v);
+        positions.push_back({x.x(), x.y(), x.z()});
+      }
+    });
+    std::sort(positions.begin(), positions.end());
+    return std::adjacent_find(positions.begin(), positions.end()) != positions.end();
+  }
+
   static std::string edge_name(const Side& side) {
     return std::to_string(side.low) + "-" + std::to_string(side.high);
   }
