@@ -45,8 +45,11 @@ struct MapOptions {
   double texel = 0.5;  ///< at most this (h)
   int max_resolution = 256;
   int min_resolution = 32;
-  bool vector_map = true;       ///< false: heights along the base normal only (ablation)
-  double border = 3;            ///< width over which alpha falls to 0, outside the region (h)
+  bool vector_map = true;  ///< false: heights along the base normal only (ablation)
+  /// Width outside the region over which alpha falls to 0 and the bed is made (h). The bed goes on
+  /// with the surface's slope at its end: three cells would leave a quarter of a small splash
+  /// there.
+  double border = 6;
   double margin = 1.2;          ///< extent of the map relative to the region's
   int smoothing_window = 7;     ///< frames, Savitzky-Golay (order 2) of the placement
   double base_smoothing = 0.5;  ///< of the base in time: weight of the mean of its neighbours

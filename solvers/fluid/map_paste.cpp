@@ -214,7 +214,7 @@ double mean_edge(const WorkMesh& mesh, const Covered& covered, const Displacemen
   return count > 0 ? sum / count : 0;
 }
 
-/// Triangles that pieces of a map's size would need: told before the memory is taken.
+/// Estimate of the triangles needed, for the message: triangles count with all of their area.
 std::size_t triangles_needed(const WorkMesh& mesh, const std::vector<int>& candidates,
                              const Covered& covered, double limit) {
   double needed = static_cast<double>(mesh.triangles.size());
@@ -279,7 +279,6 @@ void refine_under_map(WorkMesh& mesh, const DisplacementSampler& map, const Past
   }
   const std::size_t needed = triangles_needed(mesh, candidates, covered, limit);
   const auto allowed = static_cast<std::size_t>(options.max_triangles);
-  // Large triangles count with all of their area, so only a clear excess is refused beforehand.
   while (!candidates.empty()) {
     EdgeSplitter splitter(mesh.vertex_count());
     for (const int t : candidates) {
