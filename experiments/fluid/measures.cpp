@@ -171,13 +171,6 @@ const Part& surface_part(const Frame& frame) {
   return found->second;
 }
 
-const NamedArray* find_array(const Part& part, const std::string& name) {
-  for (const NamedArray& array : part.arrays) {
-    if (array.name == name) return &array;
-  }
-  return nullptr;
-}
-
 LiquidMeasures liquid_measures(FluidMemo& memo, const FluidScene& scene, const Part& surface) {
   return memo.surface.get(key_of(surface), [&] { return measure(scene, surface); });
 }

@@ -5,6 +5,7 @@
 
 #include "core/frame.h"
 #include "experiments/fluid/scene.h"
+#include "experiments/frame_arrays.h"
 #include "experiments/frame_sequence.h"
 #include "experiments/memo.h"
 #include "metrics/closedness.h"
@@ -21,7 +22,6 @@ using Value = std::optional<double>;
 
 /// @throws Error  when the frame has no part "surface" of triangles
 const Part& surface_part(const Frame& frame);
-const NamedArray* find_array(const Part& part, const std::string& name);
 
 /// Everything that is read off one surface.
 struct LiquidMeasures {

@@ -93,13 +93,6 @@ Color color_at(double t, bool diverging) {
 
 Color class_color(std::size_t index) { return kClasses[index % kClasses.size()]; }
 
-const NamedArray* find_array(const Part& part, const std::string& name) {
-  for (const NamedArray& array : part.arrays) {
-    if (array.name == name) return &array;
-  }
-  return nullptr;
-}
-
 Eigen::VectorXd scalars(const NamedArray& array) {
   return array.values.cols() == 1 ? Eigen::VectorXd(array.values.col(0))
                                   : Eigen::VectorXd(array.values.rowwise().norm());

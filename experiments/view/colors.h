@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/frame.h"
+#include "experiments/frame_arrays.h"
 #include "experiments/view/picture.h"
 
 namespace geoprior {
@@ -29,9 +30,6 @@ struct ColorScale {
   bool below = false;  ///< some values lie under `low` and take its colour
   bool above = false;
 };
-
-/// The array of that name; null when the part has none.
-const NamedArray* find_array(const Part& part, const std::string& name);
 
 /// One number an element: the value, or the length of a vector.
 Eigen::VectorXd scalars(const NamedArray& array);
