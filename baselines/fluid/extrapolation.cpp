@@ -32,35 +32,53 @@ struct FaceGrid {
   }
 };
 
+/// Whether a row has a known face.
+std::vector<char> rows_with_known(const FaceGrid& grid, const std::vector<char>& known) {
+  std::vector<char> any(known.size() / grid.stride[1]);
+  for (std::size_t r = 0; r < any.size(); ++r) {
+    char all = 0;
+    for (std::size_t i = 0; i < grid.stride[1]; ++i)
+      all = static_cast<char>(all | known[r * grid.stride[1] + i]);
+    any[r] = all;
+  }
+  return any;
+}
+
+/// Of a row: 1 where a face is unknown and one beside it known.
+void mark_front(std::size_t n, const char* at, const std::array<const char*, 4>& rows,
+                std::vector<char>& beside) {
+  for (std::size_t i = 0; i < n; ++i)
+    beside[i] = static_cast<char>(rows[0][i] | rows[1][i] | rows[2][i] | rows[3][i]);
+  for (std::size_t i = 1; i < n; ++i) beside[i] = static_cast<char>(beside[i] | at[i - 1]);
+  for (std::size_t i = 0; i + 1 < n; ++i) beside[i] = static_cast<char>(beside[i] | at[i + 1]);
+  for (std::size_t i = 0; i < n; ++i) beside[i] = static_cast<char>(beside[i] & ~at[i] & 1);
+}
+
 /// Unknown faces beside a known one, in order.
 void first_front(const FaceGrid& grid, const std::vector<char>& known,
                  std::vector<std::uint32_t>& front) {
   front.clear();
-  const auto nx = static_cast<std::size_t>(grid.size.x());
+  const std::size_t nx = grid.stride[1];
+  const auto ny = static_cast<std::size_t>(grid.size.y()),
+             nz = static_cast<std::size_t>(grid.size.z());
+  const std::vector<char> any = rows_with_known(grid, known);
   std::vector<char> beside(nx);
-  for (int k = 0; k < grid.size.z(); ++k) {
-    for (int j = 0; j < grid.size.y(); ++j) {
-      const std::size_t row = static_cast<std::size_t>(j) * grid.stride[1] +
-                              static_cast<std::size_t>(k) * grid.stride[2];
-      const char* at = known.data() + row;
-      const char* low_y = j > 0 ? at - grid.stride[1] : at;
-      const char* high_y = j + 1 < grid.size.y() ? at + grid.stride[1] : at;
-      const char* low_z = k > 0 ? at - grid.stride[2] : at;
-      const char* high_z = k + 1 < grid.size.z() ? at + grid.stride[2] : at;
-      char any = 0;
-      for (std::size_t i = 0; i < nx; ++i) {
-        beside[i] = static_cast<char>(low_y[i] | high_y[i] | low_z[i] | high_z[i]);
+  for (std::size_t k = 0; k < nz; ++k) {
+    for (std::size_t j = 0; j < ny; ++j) {
+      const std::size_t row = j + ny * k;
+      // Beyond the border the row itself stands in.
+      const std::array<std::size_t, 4> around{j > 0 ? row - 1 : row, j + 1 < ny ? row + 1 : row,
+                                              k > 0 ? row - ny : row, k + 1 < nz ? row + ny : row};
+      char reached = any[row];
+      std::array<const char*, 4> rows{};
+      for (std::size_t r = 0; r < 4; ++r) {
+        reached = static_cast<char>(reached | any[around[r]]);
+        rows[r] = known.data() + around[r] * nx;
       }
-      for (std::size_t i = 1; i < nx; ++i) beside[i] = static_cast<char>(beside[i] | at[i - 1]);
-      for (std::size_t i = 0; i + 1 < nx; ++i) beside[i] = static_cast<char>(beside[i] | at[i + 1]);
-      for (std::size_t i = 0; i < nx; ++i) {
-        beside[i] = static_cast<char>(beside[i] & ~at[i] & 1);
-        any = static_cast<char>(any | beside[i]);
-      }
-      if (any == 0) continue;
-      for (std::size_t i = 0; i < nx; ++i) {
-        if (beside[i] != 0) front.push_back(static_cast<std::uint32_t>(row + i));
-      }
+      if (reached == 0) continue;
+      mark_front(nx, known.data() + row * nx, rows, beside);
+      for (std::size_t i = 0; i < nx; ++i)
+        if (beside[i] != 0) front.push_back(static_cast<std::uint32_t>(row * nx + i));
     }
   }
 }

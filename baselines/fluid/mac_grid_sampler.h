@@ -84,8 +84,9 @@ class GridSampler {
   }
   /// @param x  in sample distances from sample (0, 0, 0)
   [[nodiscard]] float operator()(const Eigen::Vector3f& x) const {
-    Eigen::Vector3f unused;
-    return with_gradient(x, unused);
+    const AxisSample sx = axis_sample(x.x(), size_.x()), sy = axis_sample(x.y(), size_.y()),
+                     sz = axis_sample(x.z(), size_.z());
+    return corners(sx, sy, sz).value(sx.fraction, sy.fraction, sz.fraction);
   }
   /// Also the gradient, per sample distance.
   float with_gradient(const Eigen::Vector3f& x, Eigen::Vector3f& gradient) const {

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "baselines/fluid/mac_grid_sampler.h"
+#include "baselines/fluid/velocity_batch.h"
 #include "core/parallel.h"
 
 namespace geoprior {
@@ -191,24 +192,51 @@ void flatten_at_walls(const Eigen::Vector3f& x, const Eigen::Vector3i& cells,
   }
 }
 
+void take_with_gradient(const MacGrid& field, float keep, std::size_t begin, std::size_t end,
+                        LiquidParticles& particles) {
+  const FaceSampler sampler(field);
+  const auto per_metre = static_cast<float>(1 / field.shape.cell);
+  const Eigen::Vector3i& cells = field.shape.cells;
+  for (std::size_t p = begin; p < end; ++p) {
+    const Eigen::Vector3f x = particles.position[p] * per_metre;
+    const CellSample s(x, cells);
+    Eigen::Vector3f& v = particles.velocity[p];
+    Eigen::Matrix3f& gradient = particles.affine[p];
+    for (int a = 0; a < 3; ++a) {
+      const CornerValues c = sampler.corners(s, a);
+      const float fx = s.along(0, a).fraction, fy = s.along(1, a).fraction,
+                  fz = s.along(2, a).fraction;
+      v[a] = keep * v[a] + c.value(fx, fy, fz);
+      gradient.row(a) = c.gradient(fx, fy, fz).transpose() * per_metre;
+    }
+    flatten_at_walls(x, cells, gradient);
+  }
+}
+
+void take(const MacGrid& field, float keep, std::size_t begin, std::size_t end,
+          LiquidParticles& particles) {
+  const BatchSampler sampler(field);
+  const auto per_metre = static_cast<float>(1 / field.shape.cell);
+  for (std::size_t first = begin; first < end; first += kBatch) {
+    BatchPoints x, u;
+    load_batch(particles.position, first, end, per_metre, x);
+    sampler.sample(x, u);
+    for (std::size_t p = first; p < std::min(first + kBatch, end); ++p) {
+      const std::size_t l = p - first;
+      const Eigen::Vector3f change(u.x[0][l], u.x[1][l], u.x[2][l]);
+      particles.velocity[p] = keep * particles.velocity[p] + change;
+    }
+  }
+}
+
 }  // namespace
 
 void grid_to_particles(const MacGrid& field, float keep, bool affine, LiquidParticles& particles) {
-  const FaceSampler sampler(field);
-  const auto per_metre = static_cast<float>(1 / field.shape.cell);
-  const Eigen::Vector3i cells = field.shape.cells;
   parallel_blocks(particles.size(), kParticleBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
-      const CellSample s(particles.position[p] * per_metre, cells);
-      Eigen::Vector3f& v = particles.velocity[p];
-      for (int a = 0; a < 3; ++a) {
-        const CornerValues c = sampler.corners(s, a);
-        const float fx = s.along(0, a).fraction, fy = s.along(1, a).fraction,
-                    fz = s.along(2, a).fraction;
-        v[a] = keep * v[a] + c.value(fx, fy, fz);
-        if (affine) particles.affine[p].row(a) = c.gradient(fx, fy, fz).transpose() * per_metre;
-      }
-      if (affine) flatten_at_walls(particles.position[p] * per_metre, cells, particles.affine[p]);
+    if (affine) {
+      take_with_gradient(field, keep, begin, end, particles);
+    } else {
+      take(field, keep, begin, end, particles);
     }
   });
 }
