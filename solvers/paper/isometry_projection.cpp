@@ -305,8 +305,6 @@ ProjectionReport IsometryProjector::project(ShellState& state, const ProjectionO
     const bool converged = better && damping <= start && merit > (1 - kLeastGain) * before;
     if (converged && report.strain_after <= options.admissible) break;
   }
-  // Three corners share each triangle's area: the masses add up to that of the pattern.
-  report.strain_rms = std::sqrt(merit / impl_->mass.sum());
   if (report.iterations > 0) impl_->calm(state, start);
   return report;
 }

@@ -17,7 +17,6 @@ struct ProjectionReport {
   int iterations = 0;
   double strain_before = 0;  ///< largest principal Green strain of a triangle, in modulus
   double strain_after = 0;
-  double strain_rms = 0;  ///< after it: root mean square by area of the Frobenius norm
 };
 
 /// Moves a sheet to a nearby isometric image of its pattern (the developability of thesis 3.2.1).
