@@ -11,12 +11,14 @@
 namespace geoprior {
 namespace {
 
-/// Bytes of every cell: velocity, its copy and weights (3 x 3 faces), fractions and velocities of
-/// solids (6 faces), four node or cell grids, marks; and of every unknown of the pressure.
-constexpr double kBytesPerCell = 4 * (9 + 6 + 4) + 3 * 4;
+/// Bytes of every cell: four velocities and sums of two numbers a face (3 faces a cell), fractions
+/// and velocities of solids and their resting copy, eight node or cell grids; marks of faces thrice
+/// and of cells; and of every unknown of the pressure.
+constexpr double kBytesPerCell = 4 * (4 * 3 + 2 * 3 + 4 * 3 + 8) + 3 * 3 + 4;
 constexpr double kBytesPerLiquidCell = 5 * 8 + 4 * 12 * 8 / 7.0;
-/// Bytes of a particle: position, velocity and affine matrix, twice while they are sorted.
-constexpr double kBytesPerParticle = 2 * (12 + 12 + 36);
+/// Bytes of a particle: position, velocity and affine matrix, twice while they are sorted; its cell
+/// and two places in the order.
+constexpr double kBytesPerParticle = 2 * (12 + 12 + 36) + 3 * 4;
 
 std::string text(double value) {
   char buffer[32];
