@@ -25,7 +25,8 @@ int Tank::frame_count() const {
 double Tank::frame_time(int frame) const { return frame * frame_interval; }
 
 double PlacedSolid::distance_at(const Eigen::Vector3d& x) const {
-  return (*distance)(placement.inverse() * x);
+  // The inverse of a rigid placement, without forming it for every point.
+  return (*distance)(placement.linear().transpose() * (x - placement.translation()));
 }
 
 Eigen::Vector3d PlacedSolid::velocity_at(const Eigen::Vector3d& x) const {

@@ -57,6 +57,16 @@ TEST(PressureSurface, StillWaterStaysStillWhereverItsSurfaceLies) {
   }
 }
 
+TEST(PressureSurface, AnOpenTopHoldsAPressureOfZeroOnTheBorder) {
+  // Brimful: p = rho g (H - z) with H the domain's height.
+  Tank tank;
+  tank.cells = {6, 6, 10};
+  tank.cell = 0.1;
+  const Rest rest = project_rest(tank, 1.0, 0.02);
+  EXPECT_LE(rest.largest_speed, 2e-6);
+  EXPECT_LE(rest.largest_pressure_error, 1e-5 * kDensity * kGravity);
+}
+
 TEST(PressureSurface, StillWaterStaysStillAroundABallAndASlantedFloor) {
   // Area fractions multiply both sides of the balance on a face: they do not disturb the rest.
   Tank tank;
