@@ -54,6 +54,7 @@ std::vector<DiagnosticEntry> paper_diagnostics() {
       {"new_singular_points", "1", "singular points inserted in the frame"},
       {"rejected_changes", "1", "changes of the structure given up since the start"},
       {"remeshed", "1", "1 when the frame changed the structure, else 0"},
+      {"meshes_made", "1", "meshes made in the frame, those of changes taken back too"},
       {"projection_iterations", "1", "iterations of the projection to isometry"},
       {"strain_before", "1", "largest principal Green strain of a triangle before it, in modulus"},
       {"strain_after", "1", "the same after it"},
