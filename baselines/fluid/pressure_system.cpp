@@ -35,17 +35,13 @@ void PressureSystem::resize_coefficients() {
 void PressureSystem::number_cells(const Eigen::Vector3i& grid,
                                   const std::vector<std::uint8_t>& marked) {
   size = grid;
-  const auto nx = static_cast<std::size_t>(size.x()), ny = static_cast<std::size_t>(size.y()),
-             nz = static_cast<std::size_t>(size.z()), layer = nx * ny;
-  const std::vector<std::int32_t> first = first_numbers(layer, nz, marked);
+  const std::size_t layer = static_cast<std::size_t>(size.x()) * static_cast<std::size_t>(size.y()),
+                    layers = static_cast<std::size_t>(size.z());
+  const std::vector<std::int32_t> first = first_numbers(layer, layers, marked);
   n = first.back() - 1;
-  const auto entries = static_cast<std::size_t>(n) + 2;
-  number.resize(layer * nz);
-  cell.assign(entries, 0);
-  for (auto* table : {&lower, &upper})
-    for (auto& values : *table) values.assign(entries, 0);
-  by_colour.resize(static_cast<std::size_t>(n));
-  parallel_blocks(nz, 4, [&](std::size_t begin, std::size_t end) {
+  number.resize(layer * layers);
+  cell.assign(static_cast<std::size_t>(n) + 2, 0);
+  parallel_blocks(layers, 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       std::int32_t next = first[k];
       for (std::size_t i = k * layer; i < (k + 1) * layer; ++i) {
@@ -54,35 +50,50 @@ void PressureSystem::number_cells(const Eigen::Vector3i& grid,
       }
     }
   });
-  std::vector<std::int32_t> evens(nz + 1, 0);
+  find_neighbours(first);
+  sort_by_colour(first);
+}
+
+/// @param first  number of the first unknown of every layer z = k, and n + 1
+void PressureSystem::find_neighbours(const std::vector<std::int32_t>& first) {
+  const auto nx = static_cast<std::size_t>(size.x()), ny = static_cast<std::size_t>(size.y()),
+             nz = static_cast<std::size_t>(size.z()), layer = nx * ny;
+  for (auto* table : {&lower, &upper})
+    for (auto& values : *table) values.assign(cell.size(), 0);
   parallel_blocks(nz, 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto from = static_cast<std::size_t>(first[k]),
-                 to = static_cast<std::size_t>(first[k + 1]);
-      std::int32_t count = 0;
-      for (std::size_t c = from; c < to; ++c) {
-        const auto at = static_cast<std::size_t>(cell[c]), row = at / nx, i = at - row * nx,
-                   j = row - k * ny;
+    for (std::size_t k = begin; k < end; ++k)
+      for (auto c = static_cast<std::size_t>(first[k]); c < static_cast<std::size_t>(first[k + 1]);
+           ++c) {
+        const auto at = static_cast<std::size_t>(cell[c]), j = at / nx - k * ny;
         lower[0][c] = j > 0 ? number[at - nx] : 0;
         upper[0][c] = j + 1 < ny ? number[at + nx] : 0;
         lower[1][c] = k > 0 ? number[at - layer] : 0;
         upper[1][c] = k + 1 < nz ? number[at + layer] : 0;
-        count += ((i + j + k) & 1) == 0;
       }
-      evens[k + 1] = count;
-    }
+  });
+}
+
+void PressureSystem::sort_by_colour(const std::vector<std::int32_t>& first) {
+  const auto nx = static_cast<std::size_t>(size.x()), ny = static_cast<std::size_t>(size.y()),
+             nz = static_cast<std::size_t>(size.z());
+  const auto is_odd = [&](std::int32_t c, std::size_t k) {
+    const auto at = static_cast<std::size_t>(cell[static_cast<std::size_t>(c)]), row = at / nx;
+    return (((at - row * nx) + (row - k * ny) + k) & 1) != 0;
+  };
+  std::vector<std::int32_t> evens(nz + 1, 0);
+  parallel_blocks(nz, 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      for (std::int32_t c = first[k]; c < first[k + 1]; ++c) evens[k + 1] += !is_odd(c, k);
   });
   for (std::size_t k = 0; k < nz; ++k) evens[k + 1] += evens[k];
   even = evens[nz];
+  by_colour.resize(static_cast<std::size_t>(n));
   parallel_blocks(nz, 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       auto next_even = static_cast<std::size_t>(evens[k]);
       auto next_odd = static_cast<std::size_t>(even + first[k] - 1 - evens[k]);
-      for (auto c = first[k]; c < first[k + 1]; ++c) {
-        const auto at = static_cast<std::size_t>(cell[static_cast<std::size_t>(c)]), row = at / nx;
-        const std::size_t parity = ((at - row * nx) + (row - k * ny) + k) & 1;
-        by_colour[parity == 0 ? next_even++ : next_odd++] = c;
-      }
+      for (std::int32_t c = first[k]; c < first[k + 1]; ++c)
+        by_colour[is_odd(c, k) ? next_odd++ : next_even++] = c;
     }
   });
 }

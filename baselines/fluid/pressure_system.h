@@ -31,7 +31,6 @@ struct PressureSystem {
   /// for the coefficients, links 0.
   void number_cells(const Eigen::Vector3i& grid, const std::vector<std::uint8_t>& marked);
   void resize_coefficients();
-
   /// Off-diagonal part of row c times -1.
   template <class Real>
   [[nodiscard]] Real neighbours(const Real* x, std::size_t c) const {
@@ -45,6 +44,10 @@ struct PressureSystem {
   }
   /// out = A x.
   void multiply(const std::vector<double>& x, std::vector<double>& out) const;
+
+ private:
+  void find_neighbours(const std::vector<std::int32_t>& first);
+  void sort_by_colour(const std::vector<std::int32_t>& first);
 };
 
 constexpr std::size_t kPressureBlock = 4096;  ///< unknowns of a parallel block
