@@ -135,10 +135,10 @@ struct Liquid::Data {
 };
 
 void Liquid::Data::place_solids(double at, double dt) {
-  const bool first = rest.values.empty();
+  const bool first = solids.distance.values.empty();
   if (!first && !solids_move) return;
   sampler.sample(placed(at, dt), solids);
-  if (tank.solids.empty() && !first) return;
+  if (tank.solids.empty()) return;
   rest = rest_density(solids, shape);
   resting.open = solids.open;
   resting.distance = solids.distance;
@@ -166,15 +166,15 @@ void Liquid::Data::fill() {
 }
 
 void Liquid::Data::pour() {
-  std::size_t added = 0;
   for (std::size_t s = 0; s < tank.sources.size(); ++s) {
     const LiquidSource& source = tank.sources[s];
     if (time < source.from || time >= source.until) continue;
     set_velocity_inside(shape, source_shapes[s], source.velocity, particles);
-    added += fill_shape(shape, source_shapes[s], source.velocity, solids_or_null(), true, rule(),
-                        particles);
+    const std::size_t added = fill_shape(shape, source_shapes[s], source.velocity, solids_or_null(),
+                                         true, rule(), particles);
+    // Sorted before the next source asks which cells are empty.
+    if (added > 0) sorter.sort(shape, particles);
   }
-  if (added > 0) sorter.sort(shape, particles);
 }
 
 /// Grid velocity of particles that were just put there or loaded.
@@ -382,6 +382,9 @@ void Liquid::load(const State& state) {
   in.items(d.particles.position);
   in.items(d.particles.velocity);
   in.items(d.particles.affine);
+  const std::size_t n = d.particles.size();
+  if (d.particles.velocity.size() != n || d.particles.affine.size() != (d.affine() ? n : 0))
+    throw Error("particles of another kind of transfer", "checkpoint", "one of the same options");
   // Particles were sorted when they were saved, and the sort is stable.
   d.sorter.sort(d.shape, d.particles);
   d.place_solids(d.time, d.tank.frame_interval);

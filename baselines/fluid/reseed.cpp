@@ -176,9 +176,11 @@ Uneven find_uneven(const ScalarGrid& distance, const LiquidParticles& particles,
 
 }  // namespace
 
-bool reseed(const MacGrid& velocity, const ScalarGrid& distance, const SeedRule& rule,
+bool reseed(const MacGrid& velocity, const ScalarGrid& distance, const SeedRule& filling,
             std::int64_t& balance, LiquidParticles& particles) {
   const GridShape& shape = velocity.shape;
+  SeedRule rule = filling;
+  rule.seed ^= 0xA0761D6478BD642FULL;  // not the numbers that a source of this step drew
   const Uneven uneven = find_uneven(distance, particles, rule.particles_per_cell, balance);
   if (uneven.cells.empty()) return false;
   const FaceSampler sampler(velocity);

@@ -22,8 +22,7 @@ struct SeedRule {
 /// as many boxes as particles, chosen at random when there are more, get one each. Particles
 /// outside the shape, the domain or in a solid are left out.
 /// @param solids  distances at nodes, or null
-/// @param only_empty  skips cells that hold particles (they must be sorted) and those of an earlier
-///                    call in the same step
+/// @param only_empty  skips cells that hold particles, which must be sorted by cell
 /// @return  number of particles appended
 std::size_t fill_shape(const GridShape& shape, const ShapeDistance& body,
                        const Eigen::Vector3d& velocity, const ScalarGrid* solids, bool only_empty,

@@ -281,6 +281,28 @@ TEST(LiquidProcess, AHarmedCheckpointIsRefused) {
   EXPECT_THROW(liquid.load(state), Error);
 }
 
+TEST(LiquidProcess, ACheckpointOfAnotherTransferIsRefused) {
+  LiquidOptions apic;
+  apic.transfer = TransferKind::apic;
+  const Liquid from(column_tank(8), LiquidOptions{}, 1);
+  Liquid to(column_tank(8), apic, 1);
+  EXPECT_THROW(to.load(from.save()), Error);
+}
+
+// Two spouts over the same cells fill them once: 27 cells of 8 particles.
+TEST(LiquidSource, SourcesThatOverlapFillACellOnce) {
+  Tank tank = tank_of({8, 8, 8}, 0.125);
+  tank.gravity.setZero();
+  LiquidSource source;
+  source.shape = box_between({0.25, 0.25, 0.25}, {0.625, 0.625, 0.625});
+  source.until = 1;
+  tank.sources = {source, source};
+  Liquid liquid(tank, LiquidOptions{}, 1);
+  RunContext context;
+  liquid.step(0.01, context);
+  EXPECT_EQ(liquid.particles().size(), 27U * 8);
+}
+
 // A paddle that pushes liquid: particles in front of it have its speed, none is behind its face.
 TEST(LiquidProcess, AMovingSolidPushesLiquid) {
   Tank tank = tank_of({32, 4, 16}, 1.0 / 32);
