@@ -273,8 +273,8 @@ void HybridMesher::project(const Sheet& sheet, int effort, ShellState& state, Ru
   const Phase phase(context, "project");
   std::vector<bool> held = held_vertices(sheet, state.mesh, state.time, context.seed());
   if (!projector_ || projector_->held() != held) projector_.emplace(state.mesh, held);
-  projection_ = projector_->project(state, {effort * options_.projection_iterations,
-                                            options_.projection_strain, kAcceptedStrain});
+  projection_ = projector_->project(
+      state, {effort * options_.projection_iterations, options_.projection_strain});
 }
 
 void HybridMesher::annotate(const ShellState& state, Frame& frame) const {

@@ -23,9 +23,6 @@ constexpr double kDampingDown = 0.1;
 /// Longest move of a vertex in one iteration, in mean edge lengths: beyond it the linearisation
 /// says nothing.
 constexpr double kLongestMove = 0.3;
-/// Where the strain is admissible, an iteration with no more than the first damping that takes less
-/// than this part off the merit is the last: what remains is what the held vertices force.
-constexpr double kLeastGain = 0.05;
 
 struct Triangle {
   std::array<int, 3> vertices;
@@ -300,10 +297,7 @@ ProjectionReport IsometryProjector::project(ShellState& state, const ProjectionO
   double mu = start;
   while (report.iterations < options.iterations && report.strain_after > options.strain) {
     ++report.iterations;
-    const double damping = mu, before = merit;
-    const bool better = impl_->iterate(state, mu, merit, report.strain_after);
-    const bool converged = better && damping <= start && merit > (1 - kLeastGain) * before;
-    if (converged && report.strain_after <= options.admissible) break;
+    impl_->iterate(state, mu, merit, report.strain_after);
   }
   if (report.iterations > 0) impl_->calm(state, start);
   return report;

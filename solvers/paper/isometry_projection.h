@@ -8,9 +8,8 @@
 namespace geoprior {
 
 struct ProjectionOptions {
-  int iterations = 4;     ///< most linear solves
-  double strain = 1e-4;   ///< largest principal strain at which it stops
-  double admissible = 0;  ///< strain under which it also stops when it hardly gains any more
+  int iterations = 4;    ///< most linear solves
+  double strain = 1e-4;  ///< largest principal strain at which it stops
 };
 
 struct ProjectionReport {

@@ -67,25 +67,6 @@ TEST(IsometryProjection, LeavesHeldVerticesAndRigidMotionsAlone) {
   EXPECT_LE((state.v.rowwise() - Eigen::RowVector3d(1, -2, 3)).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-/// The border of the roll is held 1 % farther apart along the rulings: no isometric image. Beneath
-/// the admissible strain the projection then ends once it has come to within a few per cent of what
-/// a hundred iterations reach.
-TEST(IsometryProjection, EndsWhereTheHeldVerticesLeaveNoMoreToGain) {
-  ShellState state = rolled(0.05);
-  std::vector<bool> held;
-  for (int i = 0; i < state.mesh.vertex_count(); ++i) {
-    held.push_back(std::abs(state.mesh.pattern(i, 1)) > 0.099);
-  }
-  state.x.col(1) *= 1.01;
-  ShellState patient = state;
-  IsometryProjector projector(state.mesh, held);
-  const ProjectionReport early = projector.project(state, {100, 1e-6, 1});
-  const ProjectionReport late = projector.project(patient, {100, 1e-6});
-  EXPECT_EQ(late.iterations, 100);
-  EXPECT_LE(early.iterations, 10);
-  EXPECT_NEAR(early.strain_after, late.strain_after, 0.05 * late.strain_after);
-}
-
 TEST(IsometryProjection, NeverAddsKineticEnergy) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     ShellState state = rolled(0.05);
