@@ -1,5 +1,6 @@
 #include "baselines/fluid/liquid.h"
 #include "baselines/fluid/ocean.h"
+#include "experiments/fluid/extract_files.h"
 #include "experiments/fluid/scene.h"
 #include "experiments/fluid/topic.h"
 #include "solvers/fluid/sculpting.h"
@@ -25,11 +26,12 @@ std::vector<MethodEntry> fluid_methods() {
           [](const S& scene, const OceanOptions& options, RunContext&) {
             return make_ocean(options, scene.sculpt.times);
           }),
-      method_entry<S, ExtractOptions>(
-          "extract", false, "finds the space-time features of an animation and tracks them",
+      method_entry<S, StoredExtractOptions>(
+          "extract", false,
+          "finds the space-time features of an animation, tracks them and can store them",
           "thesis 3.3.1; Manteaux et al. 2016",
-          [](const S& scene, const ExtractOptions& options, RunContext&) {
-            return make_extract(scene.sculpt, options);
+          [](const S& scene, const StoredExtractOptions& options, RunContext&) {
+            return make_extract(scene.sculpt, options.extract, feature_files(options));
           }),
       method_entry<S, SculptOptions>(
           "sculpt", false,
@@ -64,9 +66,12 @@ std::vector<DiagnosticEntry> fluid_diagnostics() {
       {"regions", "1", "regions of the frame"},
       {"tracks", "1", "features of the whole animation"},
       {"masked_share", "1", "share of the vertices that lie at walls and solids"},
-      // Of a paste.
+      // Of what was lifted, by an extraction or for a paste.
       {"lifted_features", "1", "features taken from their animations"},
       {"feature_bytes", "B", "memory that they take"},
+      {"feature_file_bytes", "B", "files that they are stored in: the library, and pictures"},
+      {"sequence_bytes", "B", "memory that positions and triangles of the animation take"},
+      // Of a paste.
       {"target_vertices", "1", "vertices of the target's frame"},
       {"displaced_vertices", "1", "vertices of the result that a map moved"},
       {"added_triangles", "1", "triangles more than the target has"},

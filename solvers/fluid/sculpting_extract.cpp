@@ -2,6 +2,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "solvers/fluid/lifted_frames.h"
 #include "solvers/fluid/sculpting.h"
 #include "solvers/fluid/sculpting_state.h"
 
@@ -13,20 +14,31 @@ struct Kept {
   Eigen::VectorXf curvature;
   std::vector<int> label;
   double masked_share = 0;
+  double bytes = 0;  ///< of the mesh
+};
+
+/// What `lift` adds to the frames.
+struct Lifted {
+  std::vector<Feature> features;
+  std::vector<Artifact> files;
+  const Feature* shown = nullptr;  ///< its map is recorded; may be null
+  std::map<std::string, double> diagnostics;
 };
 
 int kind_number(RegionKind kind) { return kind == RegionKind::isolated ? 1 : 2; }
 
 class ExtractProcess final : public Process {
  public:
-  ExtractProcess(std::shared_ptr<const SurfaceSequence> source, const ExtractOptions& options)
-      : source_(std::move(source)), options_(options) {}
+  ExtractProcess(std::shared_ptr<const SurfaceSequence> source, const ExtractOptions& options,
+                 FeatureFiles files)
+      : source_(std::move(source)), options_(options), files_(std::move(files)) {}
 
   void run(FrameSink& sink, RunContext& context, const std::optional<State>& resume) override {
     SculptState state = resume ? SculptState::of(*resume) : SculptState{};
     std::vector<Kept> kept(static_cast<std::size_t>(source_->frame_count()));
-    const auto keep = [&](int i, const SurfaceFrame&, const SegmentedFrame& segmented) {
+    const auto keep = [&](int i, const SurfaceFrame& source, const SegmentedFrame& segmented) {
       Kept& k = kept[static_cast<std::size_t>(i)];
+      k.bytes = mesh_bytes(source.mesh);
       k.curvature = segmented.curvature.cast<float>();
       k.label = segmented.label;
       const auto masked = std::count(segmented.masked.begin(), segmented.masked.end(), char{1});
@@ -37,12 +49,24 @@ class ExtractProcess final : public Process {
     const Extraction extraction = extract_regions(*source_, options_.extraction, context, keep);
     if (context.stop_requested()) return;
     for (const std::string& w : extraction.warnings) state.warn(w, w, 0, sink);
+    Lifted lifted;
+    if (options_.lift) lift(extraction, kept, lifted, context);
+    if (context.stop_requested()) return;
     const std::vector<int> track_of = tracks_of(extraction);
     const int count = source_->frame_count();
     for (int i = state.next_frame; i < count && !context.stop_requested(); ++i) {
       Frame frame = labelled(i, extraction, track_of, kept[static_cast<std::size_t>(i)]);
+      frame.diagnostics.merge(std::map(lifted.diagnostics));
+      if (lifted.shown != nullptr) {
+        frame.parts["map"] = map_part(*lifted.shown, extraction.times[static_cast<std::size_t>(i)]);
+      }
       if (i + 1 == count) add_tracks(extraction, frame);
+      if (i + 1 == count && options_.lift) add_features(extraction, kept, lifted, frame);
       sink.frame(std::move(frame));
+      // Before the last checkpoint: a run that goes on after it has them, one before makes them.
+      if (i + 1 == count) {
+        for (Artifact& file : lifted.files) sink.artifact(std::move(file));
+      }
       state.next_frame = i + 1;
       sink.checkpoint(state.bytes());
       context.progress(static_cast<double>(i + 1) / count);
@@ -57,6 +81,32 @@ class ExtractProcess final : public Process {
       for (const int r : track.regions) result[static_cast<std::size_t>(r)] = track.id;
     }
     return result;
+  }
+
+  void lift(const Extraction& extraction, const std::vector<Kept>& kept, Lifted& lifted,
+            RunContext& context) const {
+    lifted.features = lift_features(*source_, extraction, options_.extraction, {}, context);
+    if (context.stop_requested()) return;
+    lifted.shown = shown_map(lifted.features, options_.map_feature);
+    if (files_) {
+      const Phase phase(context, "store");
+      lifted.files = files_(lifted.features);
+    }
+    double features = 0, files = 0, sequence = 0;
+    for (const Feature& f : lifted.features) features += static_cast<double>(f.bytes());
+    for (const Artifact& file : lifted.files) files += static_cast<double>(file.bytes.size());
+    for (const Kept& k : kept) sequence += k.bytes;
+    lifted.diagnostics = {{"lifted_features", static_cast<double>(lifted.features.size())},
+                          {"feature_bytes", features},
+                          {"feature_file_bytes", files},
+                          {"sequence_bytes", sequence}};
+  }
+
+  static void add_features(const Extraction& extraction, const std::vector<Kept>& kept,
+                           const Lifted& lifted, Frame& frame) {
+    std::vector<double> bytes;
+    for (const Kept& k : kept) bytes.push_back(k.bytes);
+    frame.tables["features"] = feature_table(lifted.features, extraction.times, bytes);
   }
 
   Frame labelled(int i, const Extraction& extraction, const std::vector<int>& track_of,
@@ -143,15 +193,17 @@ class ExtractProcess final : public Process {
 
   std::shared_ptr<const SurfaceSequence> source_;
   ExtractOptions options_;
+  FeatureFiles files_;
 };
 
 }  // namespace
 
-std::unique_ptr<Process> make_extract(const SculptScene& scene, const ExtractOptions& options) {
+std::unique_ptr<Process> make_extract(const SculptScene& scene, const ExtractOptions& options,
+                                      FeatureFiles files) {
   if (scene.sources.empty() || scene.sources.begin()->second == nullptr) {
     throw Error("there is nothing to extract features from", "scene", "a source");
   }
-  return std::make_unique<ExtractProcess>(scene.sources.begin()->second, options);
+  return std::make_unique<ExtractProcess>(scene.sources.begin()->second, options, std::move(files));
 }
 
 }  // namespace geoprior
