@@ -22,17 +22,17 @@ struct Pool {
   explicit Pool(int n) {
     tank.cells = {n, n + 1, n - 1};
     tank.cell = 1.0 / n;
-    TankSolid ball{"ball", {}, std::nullopt};
+    tank.solids.resize(2);
+    TankSolid& ball = tank.solids[0];
+    ball.name = "ball";
     ball.shape.kind = LiquidShape::Kind::sphere;
     ball.shape.centre = {0.3, 0.35, 0.21};
     ball.shape.radius = 0.17;
-    TankSolid box{
-        "box",
-        {},
-        Trajectory{{{.time = 0, .shift = {0, 0, 0}}, {.time = 1, .shift = {0.4, 0.1, 0}}}}};
+    TankSolid& box = tank.solids[1];
+    box.name = "box";
+    box.motion = Trajectory{{{.time = 0, .shift = {0, 0, 0}}, {.time = 1, .shift = {0.4, 0.1, 0}}}};
     box.shape.centre = {0.7, 0.6, 0.3};
     box.shape.half_size = {0.08, 0.11, 0.3};
-    tank.solids = {ball, box};
     shape = shape_of(tank);
     solids = fractions_of(tank, 0.3);
     distance = at_centres(shape, [](const Eigen::Vector3d& x) {
