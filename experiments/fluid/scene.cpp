@@ -132,8 +132,12 @@ std::shared_ptr<const SurfaceSequence> make_target(const TargetOptions& options,
       mesh.V = (mesh.V * turn.transpose()).rowwise() + to_vector(options.move).transpose();
       return still(std::move(mesh), options.file);
     }
+    case TargetKind::injected:
+      if (scene.injected) return scene.injected;
+      throw Error("the scene has no injected animation", "scene.target.kind",
+                  "a table scene.injected beside it");
   }
-  throw Error("unknown kind of target", "scene.target", "sequence, mesh, ocean");
+  throw Error("unknown kind of target", "scene.target", "sequence, mesh, ocean, injected");
 }
 
 void load_sources(const FluidSceneOptions& options, Loading& loading) {

@@ -83,9 +83,11 @@ void describe(OptionVisitor& v, LibraryOptions& options) {
 }
 
 void describe(OptionVisitor& v, TargetOptions& options) {
-  static constexpr std::array<std::string_view, 3> kKinds{"sequence", "mesh", "ocean"};
-  describe_choice(v, "kind", options.kind, kKinds,
-                  {.doc = "sequence: an animation; mesh: one still surface; ocean: procedural"});
+  static constexpr std::array<std::string_view, 4> kKinds{"sequence", "mesh", "ocean", "injected"};
+  describe_choice(
+      v, "kind", options.kind, kKinds,
+      {.doc = "sequence: an animation; mesh: one still surface; ocean: procedural; injected: "
+              "the scene's made animation"});
   switch (options.kind) {
     case TargetKind::sequence:
       describe(v, options.sequence);
@@ -100,6 +102,8 @@ void describe(OptionVisitor& v, TargetOptions& options) {
     case TargetKind::ocean:
       describe_group(v, "ocean", options.ocean, {.doc = "spectrum and patch"});
       v.value("ocean_seed", options.ocean_seed, {.doc = "of its waves", .min = 0});
+      break;
+    case TargetKind::injected:
       break;
   }
 }

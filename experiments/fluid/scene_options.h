@@ -81,7 +81,7 @@ struct LibraryOptions {
 };
 void describe(OptionVisitor& v, LibraryOptions& options);
 
-enum class TargetKind { sequence, mesh, ocean };
+enum class TargetKind { sequence, mesh, ocean, injected };
 
 /// `target`: what features are pasted into.
 struct TargetOptions {

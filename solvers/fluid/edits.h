@@ -31,8 +31,9 @@ struct Edit {
   std::vector<double> ids;  ///< of features; empty: by box and size below
   std::vector<double>
       box;  ///< x0 y0 z0 x1 y1 z1 that holds the feature's centre at some time; empty: any
-  std::vector<double> interval;            ///< t0 t1 in which it lives; empty: any
-  double smallest_area = 0;                ///< largest area in time at least this (m^2)
+  std::vector<double> interval;  ///< t0 t1 in which it lives; empty: any
+  double smallest_area = 0;      ///< largest area in time at least this (m^2)
+  bool cut = false;  ///< the source is the target: the features are taken out of it first
   std::array<double, 3> move{0, 0, 0};     ///< m
   double turn_deg = 0;                     ///< about the up axis, through the pivot
   std::optional<double> pivot_x, pivot_y;  ///< default: the feature's first centre

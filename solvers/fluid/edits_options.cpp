@@ -17,6 +17,9 @@ void describe_selection(OptionVisitor& v, Edit& o) {
           {.doc = "t0 t1 in which the feature lives for some time; none: any", .unit = "s"});
   v.value("smallest_area", o.smallest_area,
           {.doc = "largest area in time at least this", .unit = "m^2", .min = 0, .max = 1e12});
+  v.value("cut", o.cut,
+          {.doc = "the source is the target: its bed is put back under the features, drops are "
+                  "removed, before anything is pasted"});
 }
 
 void describe_space(OptionVisitor& v, Edit& o) {

@@ -41,6 +41,26 @@ std::vector<Edit> named_edits(const SculptScene& scene) {
   return edits;
 }
 
+/// What is taken out of the target before features are pasted into it.
+struct Cut {
+  Extraction extraction;  ///< of the source that is the target
+  std::set<int> ids;
+};
+
+/// @throws Error  when an edit cuts out of an animation that is not the target
+void require_cuts_target(const SculptScene& scene, const Edit& edit) {
+  const auto source = scene.sources.find(edit.source);
+  const SurfaceSequence& target = *scene.target;
+  bool same = source != scene.sources.end() && source->second->name() == target.name() &&
+              source->second->frame_count() == target.frame_count();
+  for (int f = 0; same && f < target.frame_count(); ++f) {
+    same = source->second->time(f) == target.time(f);
+  }
+  if (same) return;
+  throw Error("cuts features out of '" + edit.source + "', which is not the target",
+              "edit '" + edit.name + "'", "the same animation as source and target, or no cut");
+}
+
 /// A warning without its time: what makes it the same one again.
 std::string without_time(const std::string& text) {
   const std::size_t at = text.find(" at ");
@@ -59,12 +79,16 @@ class SculptProcess final : public Process {
   SculptProcess(const SculptScene& scene, const SculptOptions& options)
       : scene_(scene), options_(options) {
     scene_.edits = named_edits(scene);
+    for (const Edit& edit : scene_.edits) {
+      if (edit.cut) require_cuts_target(scene_, edit);
+    }
   }
 
   void run(FrameSink& sink, RunContext& context, const std::optional<State>& resume) override {
     SculptState state = resume ? SculptState::of(*resume) : SculptState{};
     std::map<std::string, std::vector<Feature>> lifted;
-    const std::vector<Insertion> insertions = make_insertions(lifted, state, sink, context);
+    Cut cut;
+    const std::vector<Insertion> insertions = make_insertions(lifted, cut, state, sink, context);
     if (context.stop_requested()) return;
     require_on_target(insertions, state, sink);
     double bytes = 0, features = 0;
@@ -75,7 +99,7 @@ class SculptProcess final : public Process {
     const auto count = static_cast<int>(scene_.times.size());
     for (int i = state.next_frame; i < count && !context.stop_requested(); ++i) {
       Frame frame =
-          pasted(insertions, scene_.times[static_cast<std::size_t>(i)], state, sink, context);
+          pasted(insertions, cut, scene_.times[static_cast<std::size_t>(i)], state, sink, context);
       frame.diagnostics["lifted_features"] = features;
       frame.diagnostics["feature_bytes"] = bytes;
       sink.frame(std::move(frame));
@@ -88,7 +112,7 @@ class SculptProcess final : public Process {
  private:
   /// Features that the edits select from one source, lifted when it is a sequence.
   std::map<std::string, std::vector<int>> lift_source(const std::string& source,
-                                                      std::vector<Feature>& features,
+                                                      std::vector<Feature>& features, Cut& cut,
                                                       SculptState& state, FrameSink& sink,
                                                       RunContext& context) const {
     const auto library = scene_.libraries.find(source);
@@ -110,6 +134,7 @@ class SculptProcess final : public Process {
       if (edit.source != source) continue;
       selected[edit.name] = select_features(of_length(summaries, edit), edit);
       ids.insert(selected[edit.name].begin(), selected[edit.name].end());
+      if (edit.cut) cut.ids.insert(selected[edit.name].begin(), selected[edit.name].end());
     }
     if (library != scene_.libraries.end()) {
       for (const Feature& f : library->second) {
@@ -118,6 +143,10 @@ class SculptProcess final : public Process {
     } else {
       features = lift_features(*scene_.sources.at(source), extraction, options_.extraction,
                                {ids.begin(), ids.end()}, context);
+    }
+    // Only one source is the target.
+    if (!cut.ids.empty() && cut.extraction.segmenter == nullptr) {
+      cut.extraction = std::move(extraction);
     }
     return selected;
   }
@@ -136,12 +165,13 @@ class SculptProcess final : public Process {
   }
 
   std::vector<Insertion> make_insertions(std::map<std::string, std::vector<Feature>>& lifted,
-                                         SculptState& state, FrameSink& sink,
+                                         Cut& cut, SculptState& state, FrameSink& sink,
                                          RunContext& context) const {
     std::map<std::string, std::map<std::string, std::vector<int>>> selected;
     for (const Edit& edit : scene_.edits) {
       if (selected.contains(edit.source)) continue;
-      selected[edit.source] = lift_source(edit.source, lifted[edit.source], state, sink, context);
+      selected[edit.source] =
+          lift_source(edit.source, lifted[edit.source], cut, state, sink, context);
       if (context.stop_requested()) return {};
     }
     std::vector<Insertion> insertions;
@@ -200,9 +230,14 @@ class SculptProcess final : public Process {
            std::to_string(p.z()) + ")";
   }
 
-  Frame pasted(const std::vector<Insertion>& insertions, double time, SculptState& state,
-               FrameSink& sink, RunContext& context) const {
-    const SurfaceFrame target = target_at(time);
+  Frame pasted(const std::vector<Insertion>& insertions, const Cut& cut, double time,
+               SculptState& state, FrameSink& sink, RunContext& context) const {
+    SurfaceFrame target = target_at(time);
+    if (!cut.ids.empty()) {
+      const Phase phase(context, "cut");
+      target = without_feature(target, scene_.target->nearest_frame(time), cut.extraction,
+                               options_.extraction, {cut.ids.begin(), cut.ids.end()});
+    }
     PasteReport report;
     SurfaceFrame result;
     {
