@@ -41,6 +41,9 @@ constexpr int kRetryIterations = 10;
 /// back: see docs/methods/paper.md, What was found.
 constexpr double kAcceptedStrain = 2e-3;
 constexpr int kAttempts = 4;
+/// Strain that is left even so is given as much time as it takes, within reason.
+constexpr double kUnacceptableStrain = 5e-3;
+constexpr int kPatientIterations = 200;
 /// How far a new singular point is moved out of the sheet, in seeding distances.
 constexpr double kDent = 0.05;
 
@@ -252,6 +255,9 @@ bool HybridMesher::last_resort(const Sheet& sheet, const std::vector<DemandGroup
     improve(snapshot(state));
   }
   restore(best, state);
+  if (projection_.strain_after > kUnacceptableStrain) {
+    project(sheet, kPatientIterations, state, context);
+  }
   return events_.changed;
 }
 

@@ -1,9 +1,9 @@
+#include "core/trajectory.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
-
-#include "core/trajectory.h"
 
 namespace geoprior {
 namespace {
