@@ -14,14 +14,26 @@ struct SectionView {
   std::array<double, 3> normal{0, 0, 1};
 };
 
+/// A row of another part over the others: figure_view.above = { part = "surface", … }.
+struct RowAbove {
+  std::string part = "surface";
+  std::optional<std::string> color_by;
+  std::vector<std::string> classes;
+  std::array<double, 3> direction{0, 0, 1};
+  std::array<double, 3> up{0, 1, 0};
+  std::optional<double> height_m;
+};
+
 /// How the picture of a run is drawn: what the experiment file says, over what its topic says.
 /// Positions in metres; absent: fitted to the part.
 struct FigureView {
   enum class Shading { smooth, flat };
   enum class Material { clay, paper, water };
+  enum class Across { variants, states };
 
   std::optional<double> at_parameter;  ///< frame drawn; absent: the last
   std::vector<double> parameters;      ///< further columns/rows, when more than one frame is drawn
+  Across across = Across::variants;    ///< what stands side by side; the others are rows
   std::string part = "surface";
   std::optional<std::string> color_by;  ///< array of the part; absent: plain material
   std::vector<std::string> classes;     ///< of `color_by`: the names of its integers 0, 1, …
@@ -34,6 +46,7 @@ struct FigureView {
   std::array<double, 3> up{0, 1, 0};
   std::optional<double> height_m;      ///< height of the view (parallel projection)
   std::optional<SectionView> section;  ///< adds a row with the cut, overlaps of the solid in red
+  std::optional<RowAbove> above;       ///< with a camera and colours of its own
   std::vector<std::string> overlays;   ///< further parts drawn over `part` ("rulings", "strokes")
   std::vector<std::string> variants;   ///< empty: all
   std::vector<std::string> cases;      ///< empty: all

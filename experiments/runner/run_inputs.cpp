@@ -57,16 +57,28 @@ std::optional<InputRun> find_or_make(const Experiment& input, const std::vector<
   return InputRun{made.folder, std::move(made.record)};
 }
 
-void require_variant(const RunRecord& record, const RunReference& reference,
-                     const std::string& text) {
+const VariantRecord& require_variant(const RunRecord& record, const RunReference& reference,
+                                     const std::string& text) {
   std::string allowed;
   for (const CaseRecord& one : record.cases) {
     for (const VariantRecord& variant : one.variants) {
-      if (one.name == reference.case_name && variant.name == reference.variant) return;
+      if (one.name == reference.case_name && variant.name == reference.variant) return variant;
       allowed += (allowed.empty() ? "" : ", ") + one.name + "/" + variant.name;
     }
   }
   throw Error("the run has no such case or variant", "input \"" + text + "\"", allowed);
+}
+
+fs::path require_artifact(const VariantRecord& variant, const std::string& name,
+                          const std::string& text) {
+  std::string allowed;
+  for (const StoredFile& file : variant.artifacts) {
+    const std::string known = fs::path(file.name).filename().string();
+    if (known == name) return file.name;
+    allowed += (allowed.empty() ? "" : ", ") + known;
+  }
+  throw Error("the variant has no such artifact", "input \"" + text + "\"",
+              allowed.empty() ? "none: it left no artifacts" : allowed);
 }
 
 }  // namespace
@@ -75,16 +87,20 @@ bool is_run_reference(const std::string& text) { return text.starts_with(kPrefix
 
 RunReference parse_run_reference(const std::string& text) {
   std::vector<std::string> parts;
-  std::istringstream in(text.substr(kPrefix.size()));
+  const std::size_t hash = std::min(text.find('#'), text.size());
+  const std::string place = text.substr(kPrefix.size(), hash - kPrefix.size());
+  std::istringstream in(place);
   for (std::string part; std::getline(in, part, '/');) parts.push_back(part);
   const bool named = std::none_of(parts.begin(), parts.end(),
                                   [](const std::string& part) { return part.empty(); });
-  if (!named || parts.size() < 3 || parts.size() > 4 || text.ends_with('/')) {
+  if (!named || parts.size() < 3 || parts.size() > 4 || place.ends_with('/') ||
+      text.ends_with('#')) {
     throw Error("no reference to a run: \"" + text + "\"", "",
                 "\"run:<topic>/<experiment>/<variant>\" or "
-                "\"run:<topic>/<experiment>/<case>/<variant>\"");
+                "\"run:<topic>/<experiment>/<case>/<variant>\", and \"#<file>\" for an artifact");
   }
   RunReference reference;
+  if (hash < text.size()) reference.artifact = text.substr(hash + 1);
   reference.experiment_id = parts[0] + "/" + parts[1];
   if (parts.size() == 4) reference.case_name = parts[2];
   reference.variant = parts.back();
@@ -95,7 +111,7 @@ ResolvedScene resolve_run_inputs(const Experiment& experiment, const CaseSpec& s
                                  const std::vector<Topic>& topics, const ExecuteRequest& request,
                                  const std::vector<std::string>& chain) {
   ResolvedScene resolved;
-  const auto frames_of = [&](const std::string& text) -> std::string {
+  const auto file_of_run = [&](const std::string& text) -> std::string {
     if (!is_run_reference(text) || resolved.stopped) return text;
     const RunReference reference = parse_run_reference(text);
     if (std::find(chain.begin(), chain.end(), reference.experiment_id) != chain.end()) {
@@ -111,12 +127,15 @@ ResolvedScene resolve_run_inputs(const Experiment& experiment, const CaseSpec& s
       resolved.stopped = true;
       return text;
     }
-    require_variant(run->record, reference, text);
+    const VariantRecord& variant = require_variant(run->record, reference, text);
     resolved.inputs.push_back({text, run->record.content_sha256});
+    if (!reference.artifact.empty()) {
+      return (run->folder / require_artifact(variant, reference.artifact, text)).string();
+    }
     return (run->folder / "frames" / reference.case_name / reference.variant).string();
   };
   std::shared_ptr<OptionSet> copy = topic_of(experiment, topics).default_scene();
-  copy_options(*spec.scene, *copy, frames_of);
+  copy_options(*spec.scene, *copy, file_of_run);
   resolved.options = std::move(copy);
   return resolved;
 }

@@ -16,6 +16,7 @@ constexpr std::array<std::string_view, 4> kStudyKinds{"exponent", "order", "spre
 constexpr std::array<std::string_view, 2> kFiner{"smaller", "larger"};
 constexpr std::array<std::string_view, 2> kShadings{"smooth", "flat"};
 constexpr std::array<std::string_view, 3> kMaterials{"clay", "paper", "water"};
+constexpr std::array<std::string_view, 2> kAcross{"variants", "states"};
 
 template <class Enum, std::size_t N>
 std::string name_of(Enum x, const std::array<std::string_view, N>& names) {
@@ -113,10 +114,22 @@ void describe(OptionVisitor& v, SectionView& t) {
   v.value("normal", t.normal, {.doc = "across the plane"});
 }
 
+void describe(OptionVisitor& v, RowAbove& t) {
+  v.value("part", t.part, {.doc = "part of the frames"});
+  v.value("color_by", t.color_by, {.doc = "array of the part; absent: plain material"});
+  v.value("classes", t.classes, {.doc = "names of the integers 0, 1, … in `color_by`"});
+  v.value("direction", t.direction, {.doc = "towards the eye"});
+  v.value("up", t.up, {.doc = "upward in the picture"});
+  v.value("height_m", t.height_m,
+          {.doc = "height of the view; absent: fitted", .unit = "m", .min = 1e-12});
+}
+
 void describe(OptionVisitor& v, FigureViewTable& table) {
   FigureView& t = table.view;
   v.value("at_parameter", t.at_parameter, {.doc = "frame that is drawn; absent: the last"});
-  v.value("parameters", t.parameters, {.doc = "several frames, side by side"});
+  v.value("parameters", t.parameters, {.doc = "several frames"});
+  describe_choice(v, "across", t.across, kAcross,
+                  {.doc = "what stands side by side; states: the frames, a row a variant"});
   v.value("part", t.part, {.doc = "part of the frames"});
   v.value("color_by", t.color_by, {.doc = "array of the part; \"\": plain material"});
   v.value("classes", t.classes,
@@ -132,6 +145,7 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
           {.doc = "height of the view; absent: fitted", .unit = "m", .min = 1e-12});
   describe_group(v, "section", t.section,
                  {.doc = "adds a row with the part cut by a plane, overlaps of the solid in red"});
+  describe_group(v, "above", t.above, {.doc = "a further row, of another part, on top"});
   v.value("overlays", t.overlays,
           {.doc = "further parts drawn over `part`: lines thin, points as balls"});
   v.value("variants", t.variants, {.doc = "absent: all"});

@@ -102,6 +102,7 @@ void describe(OptionVisitor& v, StudyTable& t);
 void describe(OptionVisitor& v, TimingTable& t);
 void describe(OptionVisitor& v, ToleranceTable& t);
 void describe(OptionVisitor& v, SectionView& t);
+void describe(OptionVisitor& v, RowAbove& t);
 void describe(OptionVisitor& v, FigureViewTable& t);
 
 /// The texts of the enumerators, as files have them.

@@ -112,6 +112,8 @@ vtkSmartPointer<vtkActor> main_actor(const Part& part, const ViewWindow& window,
   if (colored) apply(*style.scale, actor);
   const bool thin = part.kind == Part::Kind::lines || part.kind == Part::Kind::points;
   set_material(style, colored, thin, actor);
+  // A map is no shape: its colours are those of the bar.
+  if (colored && part.kind == Part::Kind::grid) actor->GetProperty()->LightingOff();
   if (style.material == PanelStyle::Material::water && surface) {
     shade_as_water(actor, window, colored);
   }

@@ -142,14 +142,15 @@ FigureCell make_cell(const CaseRecord& c, const std::string& variant_name,
 }
 
 /// Splits columns evenly into as few rows as the limit allows.
-std::vector<std::vector<std::string>> wrap(const std::vector<std::string>& variants) {
-  const std::size_t rows = (variants.size() + kMostColumns - 1) / kMostColumns;
-  const std::size_t columns = rows == 0 ? 0 : (variants.size() + rows - 1) / rows;
-  std::vector<std::vector<std::string>> out;
-  for (std::size_t i = 0; i < variants.size(); i += columns) {
-    const auto begin = variants.begin() + static_cast<std::ptrdiff_t>(i);
+template <class T>
+std::vector<std::vector<T>> wrap(const std::vector<T>& columns) {
+  const std::size_t rows = (columns.size() + kMostColumns - 1) / kMostColumns;
+  const std::size_t width = rows == 0 ? 0 : (columns.size() + rows - 1) / rows;
+  std::vector<std::vector<T>> out;
+  for (std::size_t i = 0; i < columns.size(); i += width) {
+    const auto begin = columns.begin() + static_cast<std::ptrdiff_t>(i);
     out.emplace_back(begin,
-                     begin + static_cast<std::ptrdiff_t>(std::min(columns, variants.size() - i)));
+                     begin + static_cast<std::ptrdiff_t>(std::min(width, columns.size() - i)));
   }
   return out;
 }
@@ -160,6 +161,65 @@ std::vector<std::optional<double>> wanted_parameters(const FigureView& view) {
   for (const double p : view.parameters) wanted.emplace_back(p);
   if (wanted.empty()) wanted.emplace_back(std::nullopt);
   return wanted;
+}
+
+/// One state that is drawn of a case.
+struct DrawnState {
+  std::optional<double> wanted;
+  std::optional<double> parameter;  ///< what the label gives
+  std::string label;
+};
+
+/// A quick run is shorter: what lies beyond it is its last frame, once.
+std::vector<DrawnState> drawn_states(const CaseRecord& c, const FigureView& view) {
+  std::vector<DrawnState> states;
+  std::set<std::string> known;
+  for (const std::optional<double>& wanted : wanted_parameters(view)) {
+    const std::optional<double> parameter = state_of(c, wanted);
+    const std::string label = state_label(c, parameter);
+    if (known.insert(label).second) states.push_back({wanted, parameter, label});
+  }
+  return states;
+}
+
+using Variants = std::vector<std::string>;
+
+/// Variants side by side, a row a state.
+std::vector<FigureRow> rows_of_states(const CaseRecord& c, const Variants& variants,
+                                      const FigureView& view, const fs::path& folder) {
+  std::vector<FigureRow> rows;
+  const auto blocks = wrap(variants);
+  for (const DrawnState& state : drawn_states(c, view)) {
+    for (const Variants& block : blocks) {
+      FigureRow row;
+      row.label = state.label;
+      row.has_headings = blocks.size() > 1;
+      for (const std::string& variant : block) {
+        row.cells.push_back(make_cell(c, variant, state.wanted, state.parameter, view, folder));
+      }
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+/// States side by side, a row a variant. Headings in every row: cases have other states.
+std::vector<FigureRow> rows_of_variants(const CaseRecord& c, const Variants& variants,
+                                        const FigureView& view, const fs::path& folder) {
+  std::vector<FigureRow> rows;
+  for (const std::string& variant : variants) {
+    for (const std::vector<DrawnState>& block : wrap(drawn_states(c, view))) {
+      FigureRow row;
+      if (variants.size() > 1) row.label = display_name(variant);
+      row.has_headings = true;
+      for (const DrawnState& state : block) {
+        row.cells.push_back(make_cell(c, variant, state.wanted, state.parameter, view, folder));
+        row.cells.back().label = state.label;
+      }
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
 }
 
 }  // namespace
@@ -184,26 +244,17 @@ std::string with_unit(double value, const std::string& unit) {
 std::vector<FigureRow> collect_cells(const RunRecord& record, const fs::path& run_folder,
                                      const FigureView& view) {
   const auto cases = choose(view.cases, case_names(record), "figure_view.cases");
-  const auto blocks = wrap(choose(view.variants, variant_names(record), "figure_view.variants"));
+  const Variants variants = choose(view.variants, variant_names(record), "figure_view.variants");
   std::vector<FigureRow> rows;
   for (const CaseRecord& c : record.cases) {
     if (std::find(cases.begin(), cases.end(), c.name) == cases.end()) continue;
-    std::set<std::string> states;
-    for (const std::optional<double>& parameter : wanted_parameters(view)) {
-      // A quick run is shorter: what lies beyond it is its last frame, once.
-      const std::optional<double> state = state_of(c, parameter);
-      if (!states.insert(state_label(c, state)).second) continue;
-      for (const auto& block : blocks) {
-        if (rows.size() == kMostRows) return rows;
-        FigureRow row;
-        row.label = state_label(c, state);
-        if (cases.size() > 1) row.label += (row.label.empty() ? "" : ", ") + c.name;
-        row.has_headings = rows.empty() || blocks.size() > 1;
-        for (const std::string& variant : block) {
-          row.cells.push_back(make_cell(c, variant, parameter, state, view, run_folder));
-        }
-        rows.push_back(std::move(row));
-      }
+    const bool states_across = view.across == FigureView::Across::states;
+    for (FigureRow& row : states_across ? rows_of_variants(c, variants, view, run_folder)
+                                        : rows_of_states(c, variants, view, run_folder)) {
+      if (rows.size() == kMostRows) return rows;
+      if (cases.size() > 1) row.label += (row.label.empty() ? "" : ", ") + c.name;
+      row.has_headings = row.has_headings || rows.empty();
+      rows.push_back(std::move(row));
     }
   }
   return rows;

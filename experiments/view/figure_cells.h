@@ -18,7 +18,7 @@ struct NamedPart {
 
 /// One panel of a figure before it is drawn: a variant in one state.
 struct FigureCell {
-  std::string label;         ///< of the variant
+  std::string label;         ///< of the variant, or of the state when states stand side by side
   std::optional<Part> part;  ///< absent: the variant has no such frame (it failed, or was left out)
   std::string note = "no frame";  ///< stands in place of the part
   std::vector<NamedPart> overlays;
@@ -28,14 +28,14 @@ struct FigureCell {
 /// Panels side by side.
 struct FigureRow {
   std::string label;         ///< the state ("angle 90°") and, in a sweep, the case
-  bool has_headings = true;  ///< variants are named over it: not when the row above has the same
+  bool has_headings = true;  ///< cells are named over it: not when the row above has the same
   std::vector<FigureCell> cells;
 };
 
 /// Which states are drawn, loaded from the run's files: variants as columns (wrapped past six),
-/// parameters and cases as rows (at most eight). The frame nearest to a wanted parameter is taken,
-/// and the label gives the parameter it really has;
-/// parameters with the same nearest frame make one row.
+/// parameters and cases as rows (at most eight), or with `across` parameters as columns and
+/// variants as rows. The frame nearest to a wanted parameter is taken, and the label gives the
+/// parameter it really has; parameters with the same nearest frame make one row.
 /// @throws Error  naming the variant, case or part that the run does not have, or a damaged file
 std::vector<FigureRow> collect_cells(const RunRecord& record,
                                      const std::filesystem::path& run_folder,

@@ -141,18 +141,86 @@ PanelStyle panel_style(const std::vector<FigureRow>& rows, const FigureView& vie
   return style;
 }
 
-Picture draw_figure(const std::vector<FigureRow>& rows, const FigureView& view) {
-  const ViewWindow window = fit_window(all_parts(rows, true), view);
-  const PanelStyle style = panel_style(rows, view);
-  const OverlayColors colors = overlay_colors(rows, view.overlays);
-  const std::vector<LegendEntry> legend = legend_entries(rows, view);
-  const bool has_bar = style.scale && style.scale->classes.empty();
-  const std::vector<DrawnRow> lines = drawn_rows(rows, view.section.has_value());
-  Layout layout = make_layout(lines, window);
-  layout.height += has_bar ? kBarHeight : legend_height(legend, layout.width);
-  Picture picture(layout.width, layout.height);
-  int y = kMargin;
-  for (const DrawnRow& line : lines) {
+/// Rows of one part, under one camera and one colour range, with their bar or legend.
+struct Block {
+  FigureView view;
+  std::vector<FigureRow> rows;
+  std::vector<DrawnRow> lines;
+  ViewWindow window;
+  PanelStyle style;
+  OverlayColors colors;
+  std::vector<LegendEntry> legend;
+  Layout layout;
+
+  [[nodiscard]] bool has_bar() const { return style.scale && style.scale->classes.empty(); }
+};
+
+Block make_block(const RunRecord& record, const fs::path& folder, const FigureView& view) {
+  Block block;
+  block.view = view;
+  block.rows = collect_cells(record, folder, view);
+  if (block.rows.empty() || all_parts(block.rows, false).empty()) {
+    throw Error("the run has no frames to draw", folder.string());
+  }
+  return block;
+}
+
+/// After the rows are where they stay.
+void lay_out(Block& block) {
+  block.window = fit_window(all_parts(block.rows, true), block.view);
+  block.style = panel_style(block.rows, block.view);
+  block.colors = overlay_colors(block.rows, block.view.overlays);
+  block.legend = legend_entries(block.rows, block.view);
+  block.lines = drawn_rows(block.rows, block.view.section.has_value());
+  block.layout = make_layout(block.lines, block.window);
+  block.layout.height +=
+      block.has_bar() ? kBarHeight : legend_height(block.legend, block.layout.width);
+}
+
+FigureView view_above(const FigureView& view) {
+  FigureView above = view;
+  above.part = view.above->part;
+  above.color_by = view.above->color_by;
+  above.classes = view.above->classes;
+  above.direction = view.above->direction;
+  above.up = view.above->up;
+  above.height_m = view.above->height_m;
+  above.target.reset();
+  above.section.reset();
+  above.overlays.clear();
+  above.above.reset();
+  return above;
+}
+
+/// Whether two rows name their cells alike.
+bool same_headings(const FigureRow& a, const FigureRow& b) {
+  return std::equal(
+      a.cells.begin(), a.cells.end(), b.cells.begin(), b.cells.end(),
+      [](const FigureCell& one, const FigureCell& other) { return one.label == other.label; });
+}
+
+/// What is drawn, from top to bottom. With two blocks every row says what it shows.
+std::vector<Block> make_blocks(const RunRecord& record, const fs::path& folder,
+                               const FigureView& view) {
+  std::vector<Block> blocks;
+  if (view.above) blocks.push_back(make_block(record, folder, view_above(view)));
+  blocks.push_back(make_block(record, folder, view));
+  if (view.above && same_headings(blocks.front().rows.back(), blocks.back().rows.front())) {
+    blocks.back().rows.front().has_headings = false;
+  }
+  for (Block& block : blocks) {
+    for (FigureRow& row : block.rows) {
+      if (blocks.size() == 1) continue;
+      row.label = display_name(block.view.part) + (row.label.empty() ? "" : ", ") + row.label;
+    }
+    lay_out(block);
+  }
+  return blocks;
+}
+
+void draw_block(Picture& picture, const Block& block, int y) {
+  const Layout& layout = block.layout;
+  for (const DrawnRow& line : block.lines) {
     if (line.has_headings) y += kHeading;
     int x = layout.left;
     for (const FigureCell& cell : line.row->cells) {
@@ -160,17 +228,34 @@ Picture draw_figure(const std::vector<FigureRow>& rows, const FigureView& view) 
         draw_text(picture, cell.label, x + layout.panel_width / 2, y - 20, Align::center,
                   fitted(cell.label, kHeadingStyle, layout.panel_width));
       }
-      picture.paste(draw_cell(cell, line.is_section, view, window, style, colors, layout), x, y);
+      picture.paste(draw_cell(cell, line.is_section, block.view, block.window, block.style,
+                              block.colors, layout),
+                    x, y);
       x += layout.panel_width + kGap;
     }
     draw_text(picture, line.label, kMargin + kRowLabel / 2, y + layout.panel_height / 2,
               Align::center, fitted(line.label, kRowStyle, layout.panel_height));
     y += layout.panel_height + kGap;
   }
-  if (has_bar) {
-    draw_scalar_bar(picture, *style.scale, y + kGap);
+  if (block.has_bar()) {
+    draw_scalar_bar(picture, *block.style.scale, y + kGap);
   } else {
-    draw_legend(picture, legend, y + kGap);
+    draw_legend(picture, block.legend, y + kGap);
+  }
+}
+
+Picture draw_figure(const std::vector<Block>& blocks) {
+  int width = 0;
+  int height = 0;
+  for (const Block& block : blocks) {
+    width = std::max(width, block.layout.width);
+    height += block.layout.height;
+  }
+  Picture picture(width, height);
+  int y = kMargin;
+  for (const Block& block : blocks) {
+    draw_block(picture, block, y);
+    y += block.layout.height;
   }
   return picture;
 }
@@ -179,12 +264,9 @@ Picture draw_figure(const std::vector<FigureRow>& rows, const FigureView& view) 
 
 void render_run(const fs::path& run_folder, const FigureView& view) {
   const RunRecord record = read_run_file(run_folder / "run.h5");
-  const std::vector<FigureRow> rows = collect_cells(record, run_folder, view);
-  if (rows.empty() || all_parts(rows, false).empty()) {
-    throw Error("the run has no frames to draw", run_folder.string());
-  }
+  const std::vector<Block> blocks = make_blocks(record, run_folder, view);
   const Display display;
-  write_png(draw_figure(rows, view), run_folder / "figure.png");
+  write_png(draw_figure(blocks), run_folder / "figure.png");
 }
 
 }  // namespace geoprior

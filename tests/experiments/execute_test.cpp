@@ -302,7 +302,10 @@ class FollowerScene final : public Scene {
   }
   [[nodiscard]] std::string parameter_name() const override { return "index"; }
   [[nodiscard]] std::string parameter_unit() const override { return "1"; }
-  [[nodiscard]] std::vector<fs::path> inputs() const override { return {}; }
+  [[nodiscard]] std::vector<fs::path> inputs() const override {
+    if (!options.second || !options.second->ends_with(".wav")) return {};
+    return {*options.second};
+  }
 };
 
 class Follower final : public PoseMethod {
@@ -385,6 +388,26 @@ TEST_F(Inputs, AreMadeWhenMissingAndFoundAgain) {
   run_file(file, folder() / "again");
   EXPECT_EQ(fs::last_write_time(*input / "run.h5"), made);
   EXPECT_EQ(std::distance(fs::directory_iterator(input->parent_path()), {}), 1);
+}
+
+TEST_F(Inputs, MayBeAnArtifact) {
+  (void)pendulum();
+  const auto scene = [](const std::string& file) {
+    return "input = \"run:toy-pendulum/swing/exact\"\n"
+           "second = \"run:toy-pendulum/swing/exact#" +
+           file + "\"";
+  };
+  const ExecuteResult result = run_file(follower("f", scene("swing.wav")), out());
+  const auto input = find_run(load(folder() / "experiments/toy-pendulum/swing.toml"));
+  ASSERT_TRUE(input.has_value());
+  const std::string hash = sha256_of_file(*input / "artifacts/default/exact/swing.wav");
+  EXPECT_EQ(std::count_if(result.record.inputs.begin(), result.record.inputs.end(),
+                          [&](const StoredFile& file) { return file.sha256 == hash; }),
+            1);
+  EXPECT_THAT(error_of([&] { run_file(follower("g", scene("song.wav")), folder() / "g"); }),
+              HasSubstr("allowed: swing.wav"));
+  EXPECT_THAT(error_of([&] { run_file(follower("h", scene("")), folder() / "h"); }),
+              HasSubstr("#<file>"));
 }
 
 TEST_F(Inputs, NamingAVariantThatIsNotThereIsAnError) {
