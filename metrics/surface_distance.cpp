@@ -6,12 +6,14 @@
 #include <CGAL/Simple_cartesian.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
+#include "core/parallel.h"
 
 namespace geoprior {
 namespace {
@@ -96,6 +98,54 @@ double largest_distance2(const std::vector<Kernel::Point_3>& samples, const Tree
   return so_far;
 }
 
+/// Triangles of a surface, to be found again by their exact corners, in any order.
+class CommonTriangles {
+ public:
+  explicit CommonTriangles(const Triangles& triangles) {
+    for (const Kernel::Triangle_3& t : triangles) corners_.push_back(corners_of(t));
+    std::sort(corners_.begin(), corners_.end());
+  }
+  [[nodiscard]] bool contains(const Kernel::Triangle_3& t) const {
+    return std::binary_search(corners_.begin(), corners_.end(), corners_of(t));
+  }
+
+ private:
+  using Corners = std::array<std::array<double, 3>, 3>;
+  static Corners corners_of(const Kernel::Triangle_3& t) {
+    Corners corners;
+    for (int k = 0; k < 3; ++k) corners[std::size_t(k)] = {t[k].x(), t[k].y(), t[k].z()};
+    std::sort(corners.begin(), corners.end());
+    return corners;
+  }
+  std::vector<Corners> corners_;
+};
+
+/// Sums over pieces, weighted by area.
+struct PieceSums {
+  double area = 0, distances = 0, squares = 0, largest2 = 0;
+
+  void add(const Kernel::Triangle_3& t, double spacing, const Tree& tree) {
+    const int n = cuts(t, spacing);
+    const double weight = std::sqrt(t.squared_area()) / (static_cast<double>(n) * n);
+    visit_pieces(t, n, [&](const Kernel::Point_3& p) {
+      const double d2 = tree.squared_distance(p);
+      area += weight;
+      squares += weight * d2;
+      distances += weight * std::sqrt(d2);
+      largest2 = std::max(largest2, d2);
+    });
+  }
+  void add(const PieceSums& other) {
+    area += other.area;
+    squares += other.squares;
+    distances += other.distances;
+    largest2 = std::max(largest2, other.largest2);
+  }
+};
+
+/// Triangles of a block that one thread measures.
+constexpr std::size_t kBlock = 256;
+
 }  // namespace
 
 double hausdorff_distance(const TriMesh& a, const TriMesh& b, double spacing) {
@@ -112,23 +162,25 @@ SurfaceDeviation surface_deviation(const TriMesh& a, const TriMesh& b, double sp
   if (!(spacing > 0)) throw Error("spacing is not positive", "surface deviation", "above 0");
   const Triangles from = triangles_of(a, "a");
   const Triangles to = triangles_of(b, "b");
-  const Tree tree(to.begin(), to.end());
-  SurfaceDeviation result;
-  double area = 0, squares = 0;
-  for (const Kernel::Triangle_3& t : from) {
-    const int n = cuts(t, spacing);
-    const double weight = std::sqrt(t.squared_area()) / (static_cast<double>(n) * n);
-    visit_pieces(t, n, [&](const Kernel::Point_3& p) {
-      const double d2 = tree.squared_distance(p);
-      area += weight;
-      squares += weight * d2;
-      result.mean += weight * std::sqrt(d2);
-      result.max = std::max(result.max, std::sqrt(d2));
-    });
-  }
-  result.rms = std::sqrt(squares / area);
-  result.mean /= area;
-  return result;
+  const CommonTriangles common(to);
+  Tree tree(to.begin(), to.end());
+  tree.build();
+  tree.accelerate_distance_queries();
+  std::vector<PieceSums> sums((from.size() + kBlock - 1) / kBlock);
+  parallel_blocks(from.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    PieceSums& block = sums[begin / kBlock];
+    for (std::size_t t = begin; t < end; ++t) {
+      if (common.contains(from[t])) {
+        block.area += std::sqrt(from[t].squared_area());
+      } else {
+        block.add(from[t], spacing, tree);
+      }
+    }
+  });
+  PieceSums total;
+  for (const PieceSums& block : sums) total.add(block);
+  return {std::sqrt(total.squares / total.area), total.distances / total.area,
+          std::sqrt(total.largest2)};
 }
 
 }  // namespace geoprior

@@ -24,7 +24,8 @@ struct SurfaceDeviation {
 };
 
 /// Distances of surface `a` from surface `b`, weighted by the area of `a`: taken at the centres of
-/// the pieces when the triangles are cut into ones with edges of at most `spacing`. Not symmetric.
+/// the pieces when the triangles are cut into ones with edges of at most `spacing`. Triangles that
+/// `b` has too, corner for corner, are at distance 0. Not symmetric.
 /// @throws Error   as `hausdorff_distance`
 SurfaceDeviation surface_deviation(const TriMesh& a, const TriMesh& b, double spacing);
 

@@ -85,5 +85,26 @@ TEST(SurfaceDeviation, OfTiltedPlanesIsTheAnalyticMean) {
   EXPECT_LE(d.max, 0.5 / std::sqrt(101.0) + 1e-12);
 }
 
+TEST(SurfaceDeviation, TrianglesInCommonCountWithDistanceZero) {
+  // Half of a square is lifted by 0.1 m as a whole: the RMS of 0 and 0.1 in equal parts, however
+  // the triangles that stayed are numbered.
+  const TriMesh square = sheets::rectangle(1, 1, 2, 2).mesh();
+  TriMesh a, b;
+  a.V.resize(12, 3);
+  a.V << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0,  //
+      3, 0, 0, 4, 0, 0, 4, 1, 0, 3, 0, 0, 4, 1, 0, 3, 1, 0;
+  a.F.resize(4, 3);
+  a.F << 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11;
+  b = a;
+  b.V.bottomRows(6).col(2).setConstant(0.1);
+  b.F.row(0) << 2, 0, 1;
+  b.F.row(1).swap(b.F.row(3));
+  const SurfaceDeviation d = surface_deviation(a, b, 0.05);
+  EXPECT_NEAR(d.rms, 0.1 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(d.mean, 0.05, 1e-12);
+  EXPECT_NEAR(d.max, 0.1, 1e-12);
+  EXPECT_EQ(surface_deviation(square, square, 0.05).max, 0);
+}
+
 }  // namespace
 }  // namespace geoprior
