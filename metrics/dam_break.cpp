@@ -47,6 +47,14 @@ double mean_depth(const Columns& columns, const ColumnGrid& grid, int i) {
   return sum / grid.ny;
 }
 
+/// Of probes at any x, in the rows of the grid.
+double mean_depth_at(const TriMesh& mesh, const ColumnGrid& grid, double x) {
+  ColumnGrid row = grid;
+  row.origin.x() = x - grid.spacing / 2;
+  row.nx = 1;
+  return mean_depth(columns(mesh, row), row, 0);
+}
+
 }  // namespace
 
 std::span<const DamBreakPoint> measured_dam_front() { return kFront; }
@@ -61,16 +69,19 @@ double interpolate(std::span<const DamBreakPoint> points, double time) {
   return kNone;
 }
 
-double dam_front(const Columns& columns, const ColumnGrid& grid, double threshold) {
-  for (int i = grid.nx - 1; i >= 0; --i) {
-    const double depth = mean_depth(columns, grid, i);
-    if (!(depth > threshold)) continue;
-    const double x = grid.probe(i, 0).x();
-    if (i + 1 >= grid.nx) return x;
-    const double beyond = mean_depth(columns, grid, i + 1);
-    return x + grid.spacing * (depth - threshold) / (depth - beyond);
+double dam_front(const TriMesh& mesh, const Columns& columns, const ColumnGrid& grid,
+                 double threshold) {
+  int last = grid.nx - 1;
+  while (last >= 0 && !(mean_depth(columns, grid, last) > threshold)) --last;
+  if (last < 0) return kNone;
+  double deep = grid.probe(last, 0).x();
+  // The next probe is shallow; behind the last one the grid ends.
+  double shallow = deep + (last + 1 < grid.nx ? 1 : 0.5) * grid.spacing;
+  while (shallow - deep > grid.spacing / 1000) {
+    const double x = (deep + shallow) / 2;
+    (mean_depth_at(mesh, grid, x) > threshold ? deep : shallow) = x;
   }
-  return kNone;
+  return deep;
 }
 
 double dam_height(const Columns& columns, const ColumnGrid& grid) {

@@ -21,9 +21,13 @@ std::span<const DamBreakPoint> measured_dam_height();
 /// Value at a time, linear between the points; NaN outside.
 double interpolate(std::span<const DamBreakPoint> points, double time);
 
-/// Place of the front (m): the largest x of a probe whose column, averaged over y, is deeper than
-/// `threshold`; interpolated between the probes. NaN when no column is.
-double dam_front(const Columns& columns, const ColumnGrid& grid, double threshold);
+/// Place of the front (m): the largest x at which the column of a closed surface, averaged over the
+/// rows of the grid, is deeper than `threshold`. NaN when no probe's column is.
+///
+/// Bracketed by the grid's probes, then bisected to a thousandth of its spacing: a block's upright
+/// face lies where it is, not half a spacing beside it.
+double dam_front(const TriMesh& mesh, const Columns& columns, const ColumnGrid& grid,
+                 double threshold);
 
 /// Depth of the column in the row of probes of smallest x, averaged over y (m).
 double dam_height(const Columns& columns, const ColumnGrid& grid);

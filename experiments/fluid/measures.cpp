@@ -44,6 +44,9 @@ LiquidMeasures measure(const FluidScene& scene, const Part& surface) {
     }
   }
   if (scene.gauges) m.columns = columns(mesh, *scene.gauges);
+  if (m.columns && scene.dam_width()) {
+    m.dam_front = dam_front(mesh, *m.columns, *scene.gauges, scene.tank->cell / 2);
+  }
   return m;
 }
 
@@ -195,8 +198,7 @@ std::optional<DamMeasures> dam_measures(FluidMemo& memo, const FluidScene& scene
   const double rate = std::sqrt(scene.gravity.norm() / *a);
   dam.front_time = frame.parameter * std::numbers::sqrt2 * rate;
   dam.height_time = frame.parameter * rate;
-  const double front = dam_front(*m.columns, *scene.gauges, scene.tank->cell / 2);
-  dam.front = (front - scene.tank->origin.x()) / *a;
+  dam.front = (m.dam_front - scene.tank->origin.x()) / *a;
   dam.height = dam_height(*m.columns, *scene.gauges) / (2 * *a);
   return dam;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -30,6 +31,7 @@ struct LiquidMeasures {
   Value potential_energy;  ///< J above z = 0, of closed surfaces
   double top = 0;          ///< highest point (m)
   std::optional<Columns> columns;
+  double dam_front = std::numeric_limits<double>::quiet_NaN();  ///< m, of a dam break's scene
 };
 
 /// Values that the metrics of a frame share.

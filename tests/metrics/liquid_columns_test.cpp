@@ -72,9 +72,25 @@ TEST(DamBreak, FrontAndHeightOfABlockOfWater) {
   const TriMesh block = shapes::box({0, 0, 0}, {0.43, 0.2, 0.1});
   const ColumnGrid grid{{0, 0}, 0.02, 50, 10};
   const Columns c = columns(block, grid);
-  EXPECT_NEAR(dam_front(c, grid, 0.01), 0.43, grid.spacing);
+  EXPECT_NEAR(dam_front(block, c, grid, 0.01), 0.43, grid.spacing / 1000);
   EXPECT_NEAR(dam_height(c, grid), 0.1, 1e-15);
-  EXPECT_TRUE(std::isnan(dam_front(c, grid, 0.2)));
+  EXPECT_TRUE(std::isnan(dam_front(block, c, grid, 0.2)));
+}
+
+// The face of a block stands anywhere between two probes, the water may reach the far wall, and a
+// wedge of 0.1 m to 0 over 1 m is 0.025 m deep at x = 0.75.
+TEST(DamBreak, FrontDoesNotDependOnWhereTheProbesStand) {
+  const ColumnGrid grid{{0, 0}, 0.02, 50, 10};
+  const double within = grid.spacing / 1000;
+  for (const double front : {0.411, 0.42, 0.429, 0.995, 1.0}) {
+    const TriMesh block = shapes::box({0, 0, 0}, {front, 0.2, 0.1});
+    EXPECT_NEAR(dam_front(block, columns(block, grid), grid, 0.01), front, within);
+  }
+  TriMesh wedge = shapes::box({0, 0, 0}, {1, 0.2, 0.1});
+  for (Eigen::Index v = 0; v < wedge.V.rows(); ++v) {
+    if (wedge.V(v, 0) == 1 && wedge.V(v, 2) > 0) wedge.V(v, 2) = 0;
+  }
+  EXPECT_NEAR(dam_front(wedge, columns(wedge, grid), grid, 0.025), 0.75, within);
 }
 
 TEST(DamBreak, MeasuredCurvesAreMonotone) {
