@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(libraries geoprior_flags geoprior_core geoprior_metrics geoprior_skinning_baselines geoprior_skinning
-  geoprior_paper_baselines geoprior_paper geoprior_fluid_baselines geoprior_fluid)
+  geoprior_paper_baselines geoprior_paper geoprior_fluid_baselines geoprior_fluid geoprior_details_baselines geoprior_details)
 set_target_properties(geoprior_flags PROPERTIES EXPORT_NAME flags)
 # Eigen aligns fixed-size types (a quaternion, an affine transform) by the instruction set even when
 # EIGEN_MAX_ALIGN_BYTES is given, so the layout of our types is that of the set the libraries were built for.

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "baselines/details/detail_mesh.h"
+
+namespace geoprior {
+
+/// How many details each patch of the surface should have now: as many as at rest, times the factor
+/// by which its area has grown.
+///
+/// Patches are groups of faces around evenly chosen details; target(P) = n0(P) A(P) / A0(P), so the
+/// density of details stays what it was, a motion that returns asks for what there was, and a
+/// surface at rest asks for nothing. Which faces make a patch never changes.
+class AreaBudget {
+ public:
+  AreaBudget() = default;
+  /// Patches of about `details_per_patch` details of `original`, at rest.
+  AreaBudget(const DetailMesh& original, int details_per_patch);
+
+  /// Measures the areas, and counts the details whose target weight is not 0.
+  void update(const DetailMesh& details);
+  [[nodiscard]] int patch_count() const { return static_cast<int>(rest_area_.size()); }
+  [[nodiscard]] int patch_of_face(int face) const { return patch_[static_cast<std::size_t>(face)]; }
+  [[nodiscard]] int patch_of(const SurfacePoint& at) const { return patch_of_face(at.face); }
+  /// Details that the patch lacks (negative: has too many).
+  [[nodiscard]] double deficit(int patch) const {
+    const auto p = static_cast<std::size_t>(patch);
+    return target_[p] - count_[p];
+  }
+  /// Counts a detail that came (+1) or goes (-1).
+  void add(int patch, int change) { count_[static_cast<std::size_t>(patch)] += change; }
+  [[nodiscard]] double total_target() const;
+
+ private:
+  std::vector<int> patch_;              ///< per face
+  std::vector<int> face_begin_, face_;  ///< faces of a patch
+  std::vector<double> rest_area_, rest_count_, target_, count_;
+};
+
+}  // namespace geoprior

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "baselines/details/detail_mesh.h"
+#include "core/options.h"
+#include "solvers/details/local_chart.h"
+
+namespace geoprior {
+
+/// Pair correlation of details by distance along M_d, the histogram that thesis 2.2.2 proposes as
+/// an extension.
+struct PairCorrelationOptions {
+  double radius = 3;       ///< largest distance in mean edges of the original
+  int bins = 24;           ///< of the distance
+  double bandwidth = 0.1;  ///< sigma of the Gaussian kernel in mean edges
+};
+void describe(OptionVisitor& v, PairCorrelationOptions& options);
+
+/// Estimates g(r) = (1 / (N rho)) sum_i sum_{j != i} k_sigma(r - d(i, j)) / (dA_i(r) / dr), with
+/// the annulus dA_i(r) / dr = 2 pi r: distances are those of a local chart, in which the plane is
+/// laid out. Ghosts and fading details do not count.
+class PairCorrelation {
+ public:
+  PairCorrelation() = default;
+  PairCorrelation(double mean_edge, const PairCorrelationOptions& options);
+
+  /// The whole pattern. `stride` > 1 takes every stride-th detail as centre.
+  [[nodiscard]] Eigen::VectorXd of(const DetailMesh& details, int stride = 1);
+  /// Adds one centre's contribution of a distance: a row of the sum above.
+  void add(double distance, Eigen::VectorXd& into) const;
+  /// Distances from a point of triangle `t` to the details around (m), up to the radius.
+  void distances(const DetailMesh& details, int t, const Eigen::Vector3d& barycentric,
+                 std::vector<double>& into);
+  [[nodiscard]] int bins() const { return static_cast<int>(radius_of_bin_.size()); }
+  [[nodiscard]] double reach() const { return reach_; }
+
+ private:
+  double reach_ = 0, sigma_ = 0;
+  Eigen::VectorXd radius_of_bin_;
+  LocalChart chart_;
+};
+
+}  // namespace geoprior

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "baselines/details/detail_mesh.h"
+#include "core/options.h"
+
+namespace geoprior {
+
+/// Which triangles of three details of the original the table holds (thesis 2.2.2: all of them).
+struct TripletOptions {
+  double radius = 3;          ///< R: largest edge of a triplet in mean edges of M_d
+  bool all = false;           ///< all triplets whatever their size (at most 400 details)
+  bool interior_only = true;  ///< only triplets with a detail strictly inside
+  int cells = 128;            ///< of the grid along either key
+  int cell_capacity = 24;     ///< triplets kept in a cell, drawn at random among those met
+  int max_sources = 4000;     ///< details whose surroundings are searched, evenly spread over all
+  int interior_capacity = 8;  ///< details inside; triplets with more are left out
+};
+void describe(OptionVisitor& v, TripletOptions& options);
+
+/// A detail inside a triplet.
+struct TripletInterior {
+  int detail = 0;
+  Eigen::Vector3f barycentric = Eigen::Vector3f::Zero();
+};
+
+/// Answer of a query: the corners of the triplet in the order in which its edges fit best.
+struct TripletMatch {
+  int triplet = 0;
+  std::array<int, 3> order{0, 1, 2};  ///< corner of the triplet for corner k of the triangle
+  double edge_difference = 0;         ///< L1 distance of the edge lengths (m)
+};
+
+/// The set T of the thesis: triangles of three details, sorted into a grid over
+/// u = sqrt(area / largest area) and v = smallest angle / 60 degrees, so that a query costs the
+/// same for any number of details.
+class TripletTable {
+ public:
+  TripletTable() = default;
+  /// @throws Error  for `all` with more than 400 details
+  TripletTable(const DetailMesh& original, const TripletOptions& options, std::uint64_t seed);
+
+  /// Closest triplets to a triangle with edges |01|, |12|, |20| (m) among those that hold 1 …
+  /// `max_interior` details: cells in growing rings around its keys, one ring beyond the first that
+  /// holds any, there by L1 difference of edge lengths over the six permutations of the corners.
+  /// @return  up to `count`, best first; empty when no triplet qualifies
+  void closest(const std::array<double, 3>& edges, int max_interior, int count,
+               std::vector<TripletMatch>& into) const;
+  [[nodiscard]] std::span<const TripletInterior> interior(int triplet) const;
+  [[nodiscard]] const std::array<int, 3>& corners(int triplet) const;
+
+  [[nodiscard]] int size() const { return static_cast<int>(entry_.size()); }
+  [[nodiscard]] std::int64_t met() const { return met_; }  ///< triplets enumerated
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  struct Entry {
+    std::array<int, 3> corner;
+    std::array<float, 3> edge;
+    std::int32_t interior_begin;
+    std::int32_t interior_count;
+  };
+  friend class TripletBuilder;
+  void search_cell(int iu, int iv, const std::array<double, 3>& edges, int max_interior, int count,
+                   std::vector<TripletMatch>& into) const;
+
+  int cells_ = 0;
+  double largest_area_ = 0;
+  std::vector<int> cell_begin_;
+  std::vector<Entry> entry_;
+  std::vector<TripletInterior> interior_;
+  std::int64_t met_ = 0;
+};
+
+}  // namespace geoprior
