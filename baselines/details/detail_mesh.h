@@ -64,6 +64,11 @@ enum class LengthRule {
   geodesic  ///< length of the section of the surface by the plane of the chord and the mean normal
 };
 
+/// Measures the edges of M_d along the surface; where a section does not arrive (at a border, over
+/// a fold), by its chord. The lengths of three sections may violate the triangle inequality on a
+/// strongly curved surface; such a triangle counts as one of no area.
+void measure_sections(DetailMesh& details);
+
 /// Moves the surface to `V`, and its details with it; measures the edges and flips to Delaunay.
 /// @return  number of flips
 int move_surface(DetailMesh& details, const Eigen::MatrixX3d& V, LengthRule rule);

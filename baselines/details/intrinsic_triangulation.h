@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -14,13 +15,15 @@ namespace geoprior {
 struct TriangulationReport {
   int vertices = 0;
   int triangles = 0;
-  int euler = 0;               ///< V - E + F; equal to that of the surface when it covers it
-  int border_edges = 0;        ///< edges with one triangle
-  int broken_links = 0;        ///< half-edges whose twin does not point back or has other ends
-  int broken_vertices = 0;     ///< vertices whose triangles are not one fan (or that have none)
-  int repeated_edges = 0;      ///< pairs of vertices joined by more than one edge, or loops
-  int broken_triangles = 0;    ///< lengths that violate the triangle inequality, or unequal twins
-  int not_delaunay = 0;        ///< interior edges whose opposite angles sum to more than pi + 1e-9
+  int euler = 0;             ///< V - E + F; equal to that of the surface when it covers it
+  int border_edges = 0;      ///< edges with one triangle
+  int broken_links = 0;      ///< half-edges whose twin does not point back or has other ends
+  int broken_vertices = 0;   ///< vertices whose triangles are not one fan (or that have none)
+  int repeated_edges = 0;    ///< pairs of vertices joined by more than one edge, or loops
+  int broken_triangles = 0;  ///< lengths that violate the triangle inequality, or unequal twins
+  int not_delaunay = 0;  ///< interior edges whose opposite angles sum to more than pi + 1e-8 …
+  int blocked = 0;  ///< … and those of them whose flip would join two vertices twice (not counted
+                    ///< in not_delaunay)
   double worst_angle_sum = 0;  ///< largest sum of opposite angles (rad)
   [[nodiscard]] bool manifold() const {
     return broken_links + broken_vertices + repeated_edges + broken_triangles == 0;
@@ -111,22 +114,24 @@ class IntrinsicTriangulation {
   void load(StateReader& in);
 
  private:
-  struct Quad;
+  struct Diagonal;
   [[nodiscard]] static std::size_t index(int i) { return static_cast<std::size_t>(i); }
-  [[nodiscard]] Quad unfold(int h) const;
+  [[nodiscard]] Diagonal other_diagonal(int h) const;
   [[nodiscard]] double cotangent(int h) const;
   [[nodiscard]] bool delaunay(int h) const;
-  void set_triangle(int t, std::array<int, 3> corner, std::array<double, 3> length,
-                    std::array<int, 3> twin);
+  void set_triangle(int t, const std::array<int, 3>& corner, const std::array<double, 3>& length,
+                    const std::array<int, 3>& twin);
   void refresh_outgoing(int t);
   int settle(std::vector<int>& stack);
+  void push_edges(int t, std::vector<int>& stack) const;
+  void link(std::span<const std::array<int, 3>> triangles);
   int new_triangle();
   int new_vertex();
   void free_triangle(int t);
-  void free_vertex(int v);
-  bool merge_three(int v);
+  [[nodiscard]] int degree(int v) const;
+  bool flip_down_to_three(int v, std::vector<int>& touched);
+  bool merge_three(int v, std::vector<int>& touched);
   [[nodiscard]] bool can_collapse(int h) const;
-  int link_neighbours(std::span<const std::array<int, 3>> triangles);
 
   std::vector<int> origin_;      ///< per half-edge; -1: free triangle
   std::vector<int> twin_;        ///< per half-edge
@@ -137,6 +142,7 @@ class IntrinsicTriangulation {
   std::vector<int> free_triangles_, free_vertices_;
   int live_triangles_ = 0;
   std::int64_t refused_flips_ = 0;
+  std::vector<int> stack_;  ///< edges to look at
 };
 
 }  // namespace geoprior

@@ -1,0 +1,111 @@
+#include "baselines/details/detail_mesh.h"
+
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <utility>
+
+#include "tests/details/detail_scenes.h"
+
+namespace geoprior {
+namespace {
+
+using namespace detail_scenes;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Vertices =
+    CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>>;
+using Edges = std::set<std::pair<int, int>>;
+
+Edges edges_of(const DetailMesh& d) {
+  Edges edges;
+  for (const auto& t : d.mesh.triangles())
+    for (std::size_t k = 0; k < 3; ++k) edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
+  return edges;
+}
+
+/// The edges of CGAL's triangulation of the sites, ghosts included.
+Edges cgal_edges(const DetailMesh& d) {
+  CGAL::Delaunay_triangulation_2<Kernel, Vertices> delaunay;
+  for (int i = 0; i < d.site_slots(); ++i) {
+    if (d.kind[static_cast<std::size_t>(i)] == SiteKind::empty) continue;
+    const Eigen::Vector3d& p = d.position[static_cast<std::size_t>(i)];
+    delaunay.insert({p.x(), p.y()})->info() = i;
+  }
+  Edges edges;
+  for (auto e = delaunay.finite_edges_begin(); e != delaunay.finite_edges_end(); ++e) {
+    const int a = e->first->vertex((e->second + 1) % 3)->info();
+    const int b = e->first->vertex((e->second + 2) % 3)->info();
+    edges.insert(std::minmax(a, b));
+  }
+  return edges;
+}
+
+void expect_sound(const DetailMesh& d) {
+  const TriangulationReport report = d.mesh.check();
+  EXPECT_TRUE(report.manifold());
+  EXPECT_EQ(report.not_delaunay, 0) << report.worst_angle_sum;
+  EXPECT_EQ(report.blocked, 0);
+  EXPECT_EQ(report.euler, d.surface->euler);
+}
+
+TEST(DetailMesh, InThePlaneItIsCgalsDelaunayTriangulation) {
+  for (const int cells : {1, 7, 40}) {
+    const TriMesh mesh = shapes::square(cells);
+    const DetailMesh d = build_detail_mesh(mesh, random_details(mesh, 400, 3));
+    expect_sound(d);
+    EXPECT_EQ(d.detail_count(), 400);
+    EXPECT_EQ(d.ghost_count(), 4 * cells);  // the border, and nothing else
+    EXPECT_EQ(edges_of(d), cgal_edges(d)) << cells;
+  }
+}
+
+TEST(DetailMesh, StretchedInThePlaneItStaysCgals) {
+  const TriMesh mesh = shapes::square(10);
+  DetailMesh d = build_detail_mesh(mesh, random_details(mesh, 300, 4));
+  const auto motion = stretch(mesh, 10, 3);
+  for (int frame = 1; frame <= 10; ++frame) {
+    EXPECT_GT(move_surface(d, motion->positions(frame), LengthRule::chord), 0);
+    expect_sound(d);
+    EXPECT_EQ(edges_of(d), cgal_edges(d)) << frame;
+  }
+}
+
+TEST(DetailMesh, InsertionAndRemovalInThePlaneStayCgals) {
+  const TriMesh mesh = shapes::square(10);
+  DetailMesh d = build_detail_mesh(mesh, random_details(mesh, 200, 5));
+  RandomStream random(5, "changes");
+  for (int i = 0; i < 400; ++i) {
+    if (random.uniform() < 0.5) {
+      int t = 0;
+      do {
+        t = static_cast<int>(random.below(static_cast<std::uint32_t>(d.mesh.triangle_slots())));
+      } while (!d.mesh.triangle_alive(t));
+      Eigen::Vector3d b(0.1 + random.uniform(), 0.1 + random.uniform(), 0.1 + random.uniform());
+      insert_detail(d, t, b / b.sum(), Detail{});
+    } else {
+      int site = 0;
+      do {
+        site = static_cast<int>(random.below(static_cast<std::uint32_t>(d.site_slots())));
+      } while (!d.is_detail(site));
+      remove_detail(d, site);
+    }
+  }
+  expect_sound(d);
+  EXPECT_EQ(edges_of(d), cgal_edges(d));
+}
+
+TEST(DetailMesh, ASphereIsCoveredWithoutGhosts) {
+  const TriMesh mesh = shapes::sphere(5);
+  const DetailMesh d = build_detail_mesh(mesh, even_details(mesh, 300, 1));
+  expect_sound(d);
+  EXPECT_EQ(d.ghost_count(), 0);
+  // Closed and of genus 0: 2 n - 4 triangles, 3 n - 6 edges.
+  EXPECT_EQ(d.mesh.triangle_count(), 596);
+  EXPECT_EQ(edges_of(d).size(), 894u);
+}
+
+}  // namespace
+}  // namespace geoprior
