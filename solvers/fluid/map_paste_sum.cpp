@@ -1,6 +1,7 @@
 #include "solvers/fluid/map_paste_sum.h"
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -77,22 +78,25 @@ std::vector<Eigen::Vector3d> displacement_rates(const WorkMesh& mesh, const Plac
   rates.resize(placed.places.vertex.size());
   const bool projected = placed.places.axes.empty();
   const Eigen::Affine3d inverse = placed.frame.placement.inverse();
+  const std::array<Eigen::Affine3d, 2> inverses{before.frame.placement.inverse(),
+                                                after.frame.placement.inverse()};
   parallel_blocks(rates.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto v = static_cast<std::size_t>(placed.places.vertex[i]);
-      const auto shift = [&](const PlacedMap::Instant& instant) -> Eigen::Vector3d {
+      const auto shift = [&](std::size_t k) -> Eigen::Vector3d {
+        const PlacedMap::Instant& instant = placed.instants[k];
         const Eigen::Vector3d x = mesh.x[v] + instant.time * mesh.velocity[v];
         // Over a curved target the map slides by what its centre moves in its own axes.
         const Eigen::Vector2d uv =
             projected
-                ? Eigen::Vector2d((instant.frame.placement.inverse() * x).head<2>())
+                ? Eigen::Vector2d((inverses[k] * x).head<2>())
                 : Eigen::Vector2d(placed.places.uv[i] -
                                   (inverse * instant.frame.placement.translation()).head<2>());
         const DisplacementSampler::Value value = instant.map.at(uv);
         return axes_of(placed, instant.frame, i) *
                (instant.frame.fade * placed.places.weight[i] * value.head<3>()).matrix();
       };
-      rates[i] = (shift(after) - shift(before)) / (after.time - before.time);
+      rates[i] = (shift(1) - shift(0)) / (after.time - before.time);
     }
   });
   return rates;
