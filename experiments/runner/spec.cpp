@@ -92,6 +92,7 @@ Json sweep_tables(const TomlNode& root, bool quick) {
   for (const TomlNode& node : tables_of(root, "sweep")) {
     TomlNode kept = node;
     if (const TomlNode* reduced = node.find("quick_values"); reduced != nullptr && quick) {
+      if (reduced->items.empty()) continue;
       const TomlNode values = *reduced;
       kept.set("values", values);
       kept.erase("names");
@@ -100,6 +101,19 @@ Json sweep_tables(const TomlNode& root, bool quick) {
     list.push_back(json_of(kept));
   }
   return list;
+}
+
+/// Takes cases that are not made out of the table's `cases`; false when that leaves none.
+bool keep_cases(Json& table, const std::vector<CaseSpec>& cases) {
+  if (!table.contains("cases")) return true;
+  Json kept = Json::array();
+  for (const Json& name : table["cases"]) {
+    const bool made = std::any_of(cases.begin(), cases.end(),
+                                  [&](const CaseSpec& one) { return name == one.name; });
+    if (made) kept.push_back(name);
+  }
+  table["cases"] = kept;
+  return !kept.empty();
 }
 
 Json resolved_json(const TomlNode& root, const Experiment& experiment, const HeaderTable& header,
@@ -125,13 +139,14 @@ Json resolved_json(const TomlNode& root, const Experiment& experiment, const Hea
   for (const char* key : {"claim", "study"}) {
     Json kept = Json::array();
     for (const TomlNode& node : tables_of(root, key)) {
-      const Json table = json_of(node);
+      Json table = json_of(node);
       const auto left_out = [&](const char* member) {
         return table.contains(member) && has(names.dropped, table[member].get<std::string>());
       };
       const std::string metric = table.value("metric", "");
       const bool no_study = metric.starts_with("study:") && !has(names.studies, metric.substr(6));
-      if (!left_out("variant") && !left_out("of") && !no_study) kept.push_back(table);
+      const bool no_case = !keep_cases(table, experiment.cases);
+      if (!left_out("variant") && !left_out("of") && !no_study && !no_case) kept.push_back(table);
     }
     json[key] = kept;
   }
@@ -151,15 +166,19 @@ void keep_only(std::vector<std::string>& names, const std::vector<std::string>& 
   std::erase_if(names, [&](const std::string& name) { return has(dropped, name); });
 }
 
-KnownNames known_names(const TomlNode& root, const std::vector<std::string>& selected,
-                       const std::vector<SweptCase>& cases) {
+KnownNames known_names(const TomlNode& root, const std::vector<std::string>& selected, bool quick) {
   KnownNames names;
   for (const TomlNode& node : tables_of(root, "variant")) {
     const std::string& name = node.find("name")->text;
     const bool runs = selected.empty() || has(selected, name);
     (runs ? names.variants : names.dropped).push_back(name);
   }
-  for (const SweptCase& swept : cases) names.cases.push_back(swept.name);
+  for (const SweptCase& swept : expand_sweeps(root, quick)) names.cases.push_back(swept.name);
+  if (!quick) return names;
+  // What is claimed of cases that only the full version has is no mistake of the file.
+  for (const SweptCase& swept : expand_sweeps(root, false)) {
+    if (!has(names.cases, swept.name)) names.cases.push_back(swept.name);
+  }
   return names;
 }
 
@@ -175,7 +194,8 @@ void drop_sweeps(TomlNode& root, const std::vector<std::string>& dropped) {
   });
 }
 
-/// Forgets cases that `drop_sweeps` took away; what was only about them goes too.
+/// Forgets cases that `drop_sweeps` took away or that only the full version has; what was only
+/// about them goes too.
 template <class Specs>
 void drop_cases(Specs& specs, const std::vector<CaseSpec>& cases) {
   std::erase_if(specs, [&](auto& spec) {
@@ -233,7 +253,7 @@ Experiment load_experiment(const std::filesystem::path& file, const std::vector<
   experiment.quick = request.quick || header.size == RunSize::quick;
   const Topic& topic = topic_named(topics, header.topic, root);
 
-  KnownNames names = known_names(root, selected, expand_sweeps(root, experiment.quick));
+  KnownNames names = known_names(root, selected, experiment.quick);
   drop_sweeps(root, names.dropped);
   for (const SweptCase& swept : expand_sweeps(root, experiment.quick)) {
     CaseSpec made = resolve_case(swept, topic, selected);

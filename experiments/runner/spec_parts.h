@@ -46,7 +46,7 @@ std::vector<std::string> select_variants(const TomlNode& root,
 struct KnownNames {
   std::vector<std::string> variants;  ///< those that run
   std::vector<std::string> dropped;   ///< those that --variant left out
-  std::vector<std::string> cases;
+  std::vector<std::string> cases;     ///< of this version, and those that only the full one has
   std::vector<std::string> studies;
 };
 

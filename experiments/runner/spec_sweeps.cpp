@@ -54,7 +54,8 @@ std::string value_text(const TomlNode& value, std::size_t index) {
 std::vector<TomlNode> values_of(const TomlNode& table, const char* key, bool required) {
   const TomlNode* node = table.find(key);
   if (node == nullptr && !required) return {};
-  if (node == nullptr || node->kind != TomlNode::Kind::array || node->items.empty()) {
+  const bool no_array = node == nullptr || node->kind != TomlNode::Kind::array;
+  if (no_array || (required && node->items.empty())) {
     throw Error(node == nullptr ? "is missing" : "has no values",
                 (node == nullptr ? table : *node).place + ": sweep." + key, "an array of values");
   }
@@ -99,7 +100,7 @@ Sweep read_sweep(const TomlNode& node, bool quick) {
     throw Error(std::to_string(sweep.table.names.size()) + " names", node.place + ": sweep.names",
                 std::to_string(full.size()) + ", one a value");
   }
-  sweep.values = quick && !reduced.empty() ? reduced : full;
+  sweep.values = quick && node.find("quick_values") != nullptr ? reduced : full;
   const std::string& key = sweep.table.key;
   sweep.names = value_names(sweep, full, key.substr(key.rfind('.') + 1));
   return sweep;

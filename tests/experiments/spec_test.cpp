@@ -115,6 +115,26 @@ TEST_F(Spec, QuickOverridesKeysAndSweepValues) {
   EXPECT_NE(full.hash, quick.hash);
 }
 
+TEST_F(Spec, QuickVersionLeavesOutWhatOnlyTheFullOneHas) {
+  const std::string claim =
+      "[[claim]]\ntext = \"a\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = 1\n";
+  const std::string text = toy::disc_experiment() + kSweep + claim +
+                           "cases = [\"segments=8\", \"segments=32\"]\n" + claim +
+                           "cases = [\"segments=32\"]\n" +
+                           "[[sweep]]\nkey = \"seed\"\nvalues = [4]\nquick_values = []\n";
+  EXPECT_EQ(load(text).claims.size(), 2U);
+  const Experiment quick = load(text, sized(true));
+  EXPECT_THAT(case_names(quick), ElementsAre("default", "segments=8"));
+  ASSERT_EQ(quick.claims.size(), 1U);
+  EXPECT_THAT(quick.claims[0].cases, ElementsAre("segments=8"));
+  // What a run writes down of itself can be read again.
+  const Experiment again = load(quick.resolved_toml);
+  EXPECT_EQ(case_names(again), case_names(quick));
+  EXPECT_EQ(again.claims.size(), 1U);
+  EXPECT_THAT(error_of(text + claim + "cases = [\"segments=9\"]\n", sized(true)),
+              HasSubstr("segments=9"));
+}
+
 TEST_F(Spec, SetOverridesWithTomlValuesAndBareWords) {
   const Experiment e =
       load(toy::disc_experiment(),
