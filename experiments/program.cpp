@@ -38,6 +38,7 @@ struct CommandLine {
   CheckRequest check;
   BlessRequest bless;
   RenderRequest render;
+  VideoRequest video;
   ReportRequest report;
   ExportRequest exported;
 };
@@ -86,6 +87,14 @@ void add_views(CommandLine& line) {
   CLI::App* render = add_command(line, "render", "draw figure.png of a run");
   render->add_option("run", line.render.run, what)->required();
   render->add_option("--view", line.render.view, "experiment whose [figure_view] is drawn instead");
+  CLI::App* video = add_command(line, "video", "draw every frame of a run; a video with ffmpeg");
+  video->add_option("run", line.video.run, what)->required();
+  video->add_option("--view", line.video.view, "experiment whose [figure_view] is drawn instead");
+  video->add_option("--fps", line.video.frames_per_second, "frames a second")
+      ->check(CLI::Range(1.0, 120.0))
+      ->capture_default_str();
+  video->add_option("--out", line.video.out, "folder; absent: video in the run's")
+      ->type_name("DIR");
   CLI::App* report = add_command(line, "report", "one HTML page about one or several runs");
   report->add_option("run", line.report.runs, what + "; none: the newest of every experiment");
   report->add_option("--out", line.report.out, "the page")->type_name("FILE");
@@ -127,6 +136,7 @@ int dispatch(CommandLine& line, const std::vector<Topic>& topics) {
   if (command == "check") return check_command(context, line.check);
   if (command == "bless") return bless_command(context, line.bless);
   if (command == "render") return render_command(context, line.render);
+  if (command == "video") return video_command(context, line.video);
   if (command == "report") return report_command(context, line.report);
   return export_command(context, line.exported);
 }

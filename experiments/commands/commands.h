@@ -48,6 +48,13 @@ struct RenderRequest {
   std::optional<std::string> view;  ///< experiment file whose [figure_view] is drawn
 };
 
+struct VideoRequest {
+  std::string run;
+  std::optional<std::string> view;
+  std::optional<std::string> out;
+  double frames_per_second = 25;
+};
+
 struct ReportRequest {
   std::vector<std::string> runs;  ///< empty: the newest run of every experiment
   std::optional<std::string> out;
@@ -65,6 +72,7 @@ int run_command(const CommandContext& context, const RunRequest& request);
 int check_command(const CommandContext& context, const CheckRequest& request);
 int bless_command(const CommandContext& context, const BlessRequest& request);
 int render_command(const CommandContext& context, const RenderRequest& request);
+int video_command(const CommandContext& context, const VideoRequest& request);
 int report_command(const CommandContext& context, const ReportRequest& request);
 int export_command(const CommandContext& context, const ExportRequest& request);
 

@@ -6,26 +6,56 @@
 #include "experiments/commands/console.h"
 #include "experiments/commands/pictures.h"
 #include "experiments/runner/run_folder.h"
+#include "experiments/runner/stop.h"
 #include "experiments/view/view.h"
 
 namespace geoprior {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// The view of another experiment, or the one that the run was recorded with.
+FigureView view_of(const fs::path& run_folder, const std::optional<std::string>& experiment,
+                   const std::vector<Topic>& topics) {
+  if (experiment) return load_experiment(experiment_file(*experiment), topics, {}).view;
+  const fs::path file = run_folder / "run.h5";
+  return figure_view_of(read_run_file(file).experiment_toml, file.string(), topics);
+}
+
+}  // namespace
+
 int render_command(const CommandContext& context, const RenderRequest& request) {
   const fs::path folder = run_folder_of(request.run);
-  FigureView view;
-  if (request.view) {
-    view = load_experiment(experiment_file(*request.view), context.topics, {}).view;
-  } else {
-    const fs::path file = folder / "run.h5";
-    view = figure_view_of(read_run_file(file).experiment_toml, file.string(), context.topics);
-  }
-  render_run(folder, view);
+  render_run(folder, view_of(folder, request.view, context.topics));
   const fs::path figure = folder / "figure.png";
   say("picture  " + figure.string());
   if (context.json) print_json({{"run", folder.string()}, {"figure", figure.string()}});
   return done;
+}
+
+int video_command(const CommandContext& context, const VideoRequest& request) {
+  const fs::path folder = run_folder_of(request.run);
+  VideoOptions options;
+  options.frames_per_second = request.frames_per_second;
+  options.out = request.out ? fs::path(*request.out) : folder / "video";
+  install_stop_handler();
+  const Video video = make_video(folder, view_of(folder, request.view, context.topics), options);
+  say("frames   " + std::to_string(video.frames) + " in " + options.out.string());
+  if (video.stopped) {
+    say("stopped before the last frame: no video");
+  } else if (video.file) {
+    say("video    " + video.file->string());
+  } else {
+    say("no video: ffmpeg is not on the PATH (apt-get install ffmpeg); the frames are there");
+  }
+  if (context.json) {
+    nlohmann::ordered_json result{{"run", folder.string()}, {"frames", video.frames}};
+    result["out"] = options.out.string();
+    result["video"] = video.file ? nlohmann::ordered_json(video.file->string()) : nullptr;
+    print_json(result);
+  }
+  return video.stopped ? wrong_use : done;
 }
 
 int report_command(const CommandContext& context, const ReportRequest& request) {

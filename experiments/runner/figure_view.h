@@ -14,14 +14,17 @@ struct SectionView {
   std::array<double, 3> normal{0, 0, 1};
 };
 
-/// A row of another part over the others: figure_view.above = { part = "surface", … }.
+/// A row of another part, or of an input, over the others: figure_view.above = { part = … }.
 struct RowAbove {
   std::string part = "surface";
+  std::optional<std::string> input;  ///< "run:…" of the scene: its frames; absent: this run's
+  std::string label;                 ///< absent: the part's name
   std::optional<std::string> color_by;
   std::vector<std::string> classes;
   std::array<double, 3> direction{0, 0, 1};
   std::array<double, 3> up{0, 1, 0};
   std::optional<double> height_m;
+  std::vector<std::string> overlays;
 };
 
 /// How the picture of a run is drawn: what the experiment file says, over what its topic says.
@@ -35,8 +38,10 @@ struct FigureView {
   std::vector<double> parameters;      ///< further columns/rows, when more than one frame is drawn
   Across across = Across::variants;    ///< what stands side by side; the others are rows
   std::string part = "surface";
+  std::string label;                    ///< of the rows, when others are above; absent: the part's
   std::optional<std::string> color_by;  ///< array of the part; absent: plain material
   std::vector<std::string> classes;     ///< of `color_by`: the names of its integers 0, 1, …
+  bool identities = false;              ///< the integers of `color_by` tell things apart, 0 is none
   Shading shading = Shading::smooth;    ///< flat: one tone a triangle
   Material material =
       Material::clay;  ///< paper: an open sheet with two sides; water: reflects a sky
@@ -51,6 +56,7 @@ struct FigureView {
   std::vector<std::string> variants;   ///< empty: all
   std::vector<std::string> cases;      ///< empty: all
   std::vector<std::string> metrics;    ///< curves of metrics.svg; empty: all that vary
+  int contact_sheet = 0;               ///< frames of contact-sheet.png; 0: none is drawn
 };
 
 }  // namespace geoprior

@@ -38,17 +38,29 @@ std::string short_hash(const Experiment& experiment) {
   return experiment.hash.substr(0, kShortHash);
 }
 
-/// Folders of the experiment and its hash, newest first (their names begin with the time).
-std::vector<fs::path> folders_of(const Experiment& experiment) {
+/// Folders of an experiment whose names hold `text`, newest first (names begin with the time).
+std::vector<fs::path> folders_of(const std::string& experiment_id, const std::string& text) {
   std::vector<fs::path> folders;
   std::error_code code;
-  const std::string hash = short_hash(experiment);
-  for (const auto& entry : fs::directory_iterator(runs_root() / experiment.id, code)) {
+  for (const auto& entry : fs::directory_iterator(runs_root() / experiment_id, code)) {
     const std::string name = entry.path().filename().string();
-    if (name.find("-" + hash) != std::string::npos) folders.push_back(entry.path());
+    if (name.find(text) != std::string::npos) folders.push_back(entry.path());
   }
   std::sort(folders.begin(), folders.end(), std::greater<>());
   return folders;
+}
+
+std::vector<fs::path> folders_of(const Experiment& experiment) {
+  return folders_of(experiment.id, "-" + short_hash(experiment));
+}
+
+bool has_content(const fs::path& folder, const std::string& content_sha256) {
+  const fs::path file = folder / "run.h5";
+  try {
+    return fs::exists(file) && read_run_file(file).content_sha256 == content_sha256;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 bool is_finished(const fs::path& folder, const std::string& hash) {
@@ -158,6 +170,15 @@ std::optional<fs::path> find_run(const Experiment& experiment) {
     if (is_finished(folder, experiment.hash) && has_unchanged_inputs(folder)) return folder;
   }
   return std::nullopt;
+}
+
+fs::path find_run_of_content(const std::string& experiment_id, const std::string& content_sha256) {
+  for (const fs::path& folder : folders_of(experiment_id, "-")) {
+    if (has_content(folder, content_sha256)) return folder;
+  }
+  throw Error("the run of '" + experiment_id + "' with content " +
+                  content_sha256.substr(0, kShortHash) + " is no longer there",
+              (runs_root() / experiment_id).string(), "geoprior run " + experiment_id);
 }
 
 std::optional<fs::path> find_unfinished_run(const Experiment& experiment) {

@@ -27,6 +27,11 @@ std::filesystem::path open_run_folder(const Experiment& experiment, const Execut
 /// absolute.
 std::string input_name(const std::filesystem::path& file);
 
+/// The newest run of an experiment with that `content_sha256`.
+/// @throws Error  when there is none below runs_root()
+std::filesystem::path find_run_of_content(const std::string& experiment_id,
+                                          const std::string& content_sha256);
+
 /// The newest folder of the experiment that an interrupted run of the same hash left.
 std::optional<std::filesystem::path> find_unfinished_run(const Experiment& experiment);
 

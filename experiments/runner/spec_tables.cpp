@@ -116,12 +116,16 @@ void describe(OptionVisitor& v, SectionView& t) {
 
 void describe(OptionVisitor& v, RowAbove& t) {
   v.value("part", t.part, {.doc = "part of the frames"});
+  v.value("input", t.input,
+          {.doc = "a \"run:…\" of the scene whose frames these are; absent: this run's"});
+  v.value("label", t.label, {.doc = "of the row; absent: the part's name"});
   v.value("color_by", t.color_by, {.doc = "array of the part; absent: plain material"});
   v.value("classes", t.classes, {.doc = "names of the integers 0, 1, … in `color_by`"});
   v.value("direction", t.direction, {.doc = "towards the eye"});
   v.value("up", t.up, {.doc = "upward in the picture"});
   v.value("height_m", t.height_m,
           {.doc = "height of the view; absent: fitted", .unit = "m", .min = 1e-12});
+  v.value("overlays", t.overlays, {.doc = "further parts drawn over `part`"});
 }
 
 void describe(OptionVisitor& v, FigureViewTable& table) {
@@ -131,9 +135,12 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
   describe_choice(v, "across", t.across, kAcross,
                   {.doc = "what stands side by side; states: the frames, a row a variant"});
   v.value("part", t.part, {.doc = "part of the frames"});
+  v.value("label", t.label, {.doc = "of the rows below `above`; absent: the part's name"});
   v.value("color_by", t.color_by, {.doc = "array of the part; \"\": plain material"});
   v.value("classes", t.classes,
           {.doc = "names of the integers 0, 1, … in `color_by`: a legend instead of a scale"});
+  v.value("identities", t.identities,
+          {.doc = "the integers of `color_by` tell things apart and 0 is none: a colour each"});
   describe_choice(v, "shading", t.shading, kShadings, {.doc = "flat: one tone a triangle"});
   describe_choice(v, "material", t.material, kMaterials,
                   {.doc = "of what has no colour; paper: white, the back side darker"});
@@ -151,6 +158,9 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
   v.value("variants", t.variants, {.doc = "absent: all"});
   v.value("cases", t.cases, {.doc = "absent: all"});
   v.value("metrics", t.metrics, {.doc = "curves of metrics.svg; absent: all that vary"});
+  v.value(
+      "contact_sheet", t.contact_sheet,
+      {.doc = "frames of contact-sheet.png, evenly spaced; 0: none is drawn", .min = 0, .max = 48});
 }
 
 }  // namespace geoprior

@@ -40,12 +40,13 @@ constexpr double kLift = 0.002;               ///< of overlays, towards the eye
 vtkSmartPointer<vtkLookupTable> to_lookup_table(const ColorScale& scale) {
   auto table = vtkSmartPointer<vtkLookupTable>::New();
   constexpr int kColors = 256;
-  const int count = scale.classes.empty() ? kColors : static_cast<int>(scale.classes.size());
+  const bool numbers = scale.palette.empty();
+  const int count = numbers ? kColors : static_cast<int>(scale.palette.size());
   table->SetNumberOfTableValues(count);
   table->SetRange(scale.low, scale.high);
   for (int i = 0; i < count; ++i) {
-    const Color color = scale.classes.empty() ? color_at(i / (kColors - 1.0), scale.diverging)
-                                              : class_color(static_cast<std::size_t>(i));
+    const Color color = numbers ? color_at(i / (kColors - 1.0), scale.diverging)
+                                : scale.palette[static_cast<std::size_t>(i)];
     table->SetTableValue(i, color[0], color[1], color[2]);
   }
   table->SetNanColor(0.6, 0.6, 0.6, 1);
@@ -72,7 +73,7 @@ void apply(const ColorScale& scale, vtkActor* actor) {
   mapper->ScalarVisibilityOn();
   mapper->SetLookupTable(to_lookup_table(scale));
   mapper->UseLookupTableScalarRangeOn();
-  mapper->SetInterpolateScalarsBeforeMapping(scale.classes.empty() ? 1 : 0);
+  mapper->SetInterpolateScalarsBeforeMapping(scale.palette.empty() ? 1 : 0);
 }
 
 void set_material(const PanelStyle& style, bool colored, bool thin, vtkActor* actor) {
@@ -115,10 +116,21 @@ vtkSmartPointer<vtkActor> main_actor(const Part& part, const ViewWindow& window,
   // A map is no shape: its colours are those of the bar.
   if (colored && part.kind == Part::Kind::grid) actor->GetProperty()->LightingOff();
   if (style.material == PanelStyle::Material::water && surface) {
-    shade_as_water(actor, window, colored);
+    const bool has_ground = colored && !style.scale->palette.empty();
+    const Tint tint = has_ground ? Tint::but_ground : colored ? Tint::all : Tint::none;
+    shade_as_water(actor, window, tint, has_ground ? style.scale->palette.front() : Color{});
   }
   if (style.edges && surface) show_edges(pixels_per_pixel, actor);
   return actor;
+}
+
+/// A solid thing beside the part (a hull): painted, lit as clay is.
+void set_solid_material(vtkProperty* material) {
+  material->SetInterpolationToFlat();
+  material->SetAmbient(0.30);
+  material->SetDiffuse(0.75);
+  material->SetSpecular(0.12);
+  material->SetSpecularPower(22);
 }
 
 vtkSmartPointer<vtkActor> overlay_actor(const PanelOverlay& overlay, const ViewWindow& window) {
@@ -134,6 +146,7 @@ vtkSmartPointer<vtkActor> overlay_actor(const PanelOverlay& overlay, const ViewW
   material->SetDiffuse(points ? 0.75 : 0.4);
   material->SetSpecular(points ? 0.25 : 0.0);
   material->SetSpecularPower(30);
+  if (overlay.part->kind == Part::Kind::triangles) set_solid_material(material);
   return actor;
 }
 

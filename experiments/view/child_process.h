@@ -1,9 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace geoprior {
+
+/// Path of a program in the folders of PATH, then in /usr/bin.
+std::optional<std::string> find_program(const std::string& name);
 
 struct ChildResult {
   int exit_code = 0;   ///< 127 when the program could not be started, 128 + n after signal n

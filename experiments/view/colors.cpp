@@ -45,6 +45,16 @@ constexpr std::array<Color, 8> kClasses{{{0.900, 0.880, 0.830},
                                          {0.850, 0.430, 0.300},
                                          {0.450, 0.450, 0.500}}};
 
+// The first as water.cpp shades a surface seen from above; the others far from it.
+constexpr std::array<Color, 7> kOnWater{{{0.215, 0.480, 0.560},
+                                         {0.985, 0.850, 0.260},
+                                         {0.945, 0.440, 0.180},
+                                         {0.830, 0.450, 0.700},
+                                         {0.500, 0.840, 0.480},
+                                         {0.960, 0.930, 0.860},
+                                         {0.560, 0.330, 0.760}}};
+static_assert(kIdentityColors < kOnWater.size() && kIdentityColors < kClasses.size());
+
 Color interpolate(std::span<const Color> map, double t) {
   const double position = std::clamp(t, 0.0, 1.0) * static_cast<double>(map.size() - 1);
   const auto index = std::min(static_cast<std::size_t>(position), map.size() - 2);
@@ -91,7 +101,13 @@ Color color_at(double t, bool diverging) {
   return diverging ? interpolate(kDiverging, t) : interpolate(kSequential, t);
 }
 
-Color class_color(std::size_t index) { return kClasses[index % kClasses.size()]; }
+Palette class_palette(std::size_t count, bool on_water) {
+  Palette palette;
+  for (std::size_t i = 0; i < count; ++i) {
+    palette.push_back(on_water ? kOnWater[i % kOnWater.size()] : kClasses[i % kClasses.size()]);
+  }
+  return palette;
+}
 
 Eigen::VectorXd scalars(const NamedArray& array) {
   return array.values.cols() == 1 ? Eigen::VectorXd(array.values.col(0))
@@ -130,10 +146,11 @@ ColorScale make_color_scale(const std::vector<const Part*>& parts, const std::st
 }
 
 ColorScale make_class_scale(const std::vector<const Part*>& parts, const std::string& name,
-                            const std::vector<std::string>& classes) {
+                            const std::vector<std::string>& classes, bool on_water) {
   ColorScale scale;
   scale.array = name;
   scale.classes = classes;
+  scale.palette = class_palette(classes.size(), on_water);
   scale.low = -0.5;
   scale.high = static_cast<double>(classes.size()) - 0.5;
   std::string unit;
@@ -142,6 +159,30 @@ ColorScale make_class_scale(const std::vector<const Part*>& parts, const std::st
     throw Error("the array '" + name + "' has the value " + rounded_text(x), "figure_view.classes",
                 "0 to " + std::to_string(classes.size() - 1));
   }
+  return scale;
+}
+
+ColorScale make_identity_scale(const std::vector<const Part*>& parts, const std::string& name,
+                               bool on_water) {
+  constexpr double kMost = 1e6;
+  std::string unit;
+  double most = 0;
+  for (const double x : finite_values(parts, name, unit)) {
+    if (x != std::floor(x) || x < 0 || x > kMost) {
+      throw Error("the array '" + name + "' has the value " + rounded_text(x),
+                  "figure_view.identities", "integers from 0 on");
+    }
+    most = std::max(most, x);
+  }
+  ColorScale scale;
+  scale.array = name;
+  const Palette cycle = class_palette(kIdentityColors + 1, on_water);
+  scale.palette.push_back(cycle.front());
+  for (std::size_t i = 1; static_cast<double>(i) <= most; ++i) {
+    scale.palette.push_back(cycle[1 + (i - 1) % kIdentityColors]);
+  }
+  scale.low = -0.5;
+  scale.high = static_cast<double>(scale.palette.size()) - 0.5;
   return scale;
 }
 

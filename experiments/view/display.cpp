@@ -17,27 +17,13 @@
 #include <string>
 
 #include "core/error.h"
+#include "experiments/view/child_process.h"
 
 namespace geoprior {
 namespace {
 
 constexpr auto kStartTimeout = std::chrono::seconds(20);
 const std::string kInstall = "apt-get install xvfb libgl1-mesa-dri";
-
-/// Path of Xvfb; found before the fork, because a forked child of a threaded program may only call
-/// async-signal-safe functions.
-std::optional<std::string> find_xvfb() {
-  const char* path = std::getenv("PATH");
-  std::string folders = path != nullptr ? path : "";
-  folders += ":/usr/bin";
-  for (std::size_t begin = 0; begin <= folders.size();) {
-    const std::size_t end = std::min(folders.find(':', begin), folders.size());
-    const std::string file = folders.substr(begin, end - begin) + "/Xvfb";
-    if (::access(file.c_str(), X_OK) == 0) return file;
-    begin = end + 1;
-  }
-  return std::nullopt;
-}
 
 /// Whether the X server named by DISPLAY answers. libX11 is loaded at run time: VTK brings it along
 /// and nothing else here needs its headers.
@@ -138,7 +124,9 @@ class Display::Server {
 };
 
 Display::Display() {
-  if (const auto xvfb = find_xvfb()) {
+  // Found before the fork: a forked child of a threaded program may only call async-signal-safe
+  // functions.
+  if (const auto xvfb = find_program("Xvfb")) {
     server_ = std::make_unique<Server>(*xvfb);
   } else if (!user_display_answers()) {
     throw Error("no display to draw on: Xvfb is not installed", "render", kInstall);

@@ -14,6 +14,7 @@ const TextStyle kStyle{26, {40, 40, 40}, false, false};
 
 using Color = std::array<double, 3>;
 constexpr std::array<Color, 3> kLines{{{0.13, 0.16, 0.26}, {0.55, 0.26, 0.10}, {0.10, 0.42, 0.36}}};
+constexpr std::array<Color, 2> kSolids{{{0.80, 0.30, 0.20}, {0.93, 0.90, 0.84}}};
 constexpr std::array<Color, 3> kPoints{
     {{0.82, 0.08, 0.08}, {0.10, 0.22, 0.62}, {0.42, 0.12, 0.52}}};
 
@@ -82,8 +83,12 @@ constexpr int kLineHeight = 52;
 constexpr int kSideMargin = 20;
 
 int entry_width(const LegendEntry& entry) {
+  if (entry.label.empty()) return kMarkWidth;
   return kMarkWidth + kMarkGap + text_width(entry.label, kStyle);
 }
+
+/// Marks without a label belong to the entry that follows.
+int gap_after(const LegendEntry& entry) { return entry.label.empty() ? kMarkGap / 2 : kEntryGap; }
 
 void draw_mark(Picture& picture, const LegendEntry& entry, int x, int top) {
   const Rgb color = to_rgb(entry.color);
@@ -108,6 +113,28 @@ const NamedPart* find_overlay(const std::vector<FigureRow>& rows, const std::str
     }
   }
   return nullptr;
+}
+
+LegendEntry::Mark mark_of(const Part& overlay) {
+  switch (overlay.kind) {
+    case Part::Kind::points:
+      return LegendEntry::Mark::ball;
+    case Part::Kind::triangles:
+      return LegendEntry::Mark::area;
+    default:
+      return LegendEntry::Mark::line;
+  }
+}
+
+/// "No track", and the colours that tracks take in turn.
+std::vector<LegendEntry> identity_entries(const std::string& array, bool on_water) {
+  std::vector<LegendEntry> entries;
+  for (const auto& color : class_palette(kIdentityColors + 1, on_water)) {
+    entries.push_back({"", color, LegendEntry::Mark::area});
+  }
+  entries.front().label = "No " + array;
+  entries.back().label = "One colour a " + array;
+  return entries;
 }
 
 }  // namespace
@@ -168,11 +195,20 @@ OverlayColors overlay_colors(const std::vector<FigureRow>& rows,
   OverlayColors colors;
   std::size_t lines = 0;
   std::size_t points = 0;
+  std::size_t solids = 0;
   for (const std::string& name : overlays) {
     const NamedPart* overlay = find_overlay(rows, name);
     if (overlay == nullptr) continue;
-    colors[name] = overlay->part.kind == Part::Kind::points ? kPoints[points++ % kPoints.size()]
-                                                            : kLines[lines++ % kLines.size()];
+    switch (overlay->part.kind) {
+      case Part::Kind::points:
+        colors[name] = kPoints[points++ % kPoints.size()];
+        break;
+      case Part::Kind::triangles:
+        colors[name] = kSolids[solids++ % kSolids.size()];
+        break;
+      default:
+        colors[name] = kLines[lines++ % kLines.size()];
+    }
   }
   return colors;
 }
@@ -180,23 +216,27 @@ OverlayColors overlay_colors(const std::vector<FigureRow>& rows,
 std::vector<LegendEntry> legend_entries(const std::vector<FigureRow>& rows,
                                         const FigureView& view) {
   std::vector<LegendEntry> entries;
-  if (view.classes.empty()) return entries;
+  if (view.classes.empty() && !view.identities) return entries;
   bool colored = false;
   for (const FigureRow& row : rows) {
     for (const FigureCell& cell : row.cells) {
       colored = colored || (cell.part && find_array(*cell.part, *view.color_by) != nullptr);
     }
   }
-  for (std::size_t i = 0; colored && i < view.classes.size(); ++i) {
-    entries.push_back({display_name(view.classes[i]), class_color(i), LegendEntry::Mark::area});
+  const bool on_water = view.material == FigureView::Material::water;
+  if (colored && view.identities) {
+    entries = identity_entries(*view.color_by, on_water);
+  } else if (colored) {
+    const Palette palette = class_palette(view.classes.size(), on_water);
+    for (std::size_t i = 0; i < view.classes.size(); ++i) {
+      entries.push_back({display_name(view.classes[i]), palette[i], LegendEntry::Mark::area});
+    }
   }
   const OverlayColors colors = overlay_colors(rows, view.overlays);
   for (const std::string& name : view.overlays) {
     const NamedPart* overlay = find_overlay(rows, name);
     if (overlay == nullptr) continue;
-    const bool points = overlay->part.kind == Part::Kind::points;
-    entries.push_back({display_name(name), colors.at(name),
-                       points ? LegendEntry::Mark::ball : LegendEntry::Mark::line});
+    entries.push_back({display_name(name), colors.at(name), mark_of(overlay->part)});
   }
   return entries;
 }
@@ -206,7 +246,8 @@ std::vector<std::vector<LegendEntry>> legend_lines(const std::vector<LegendEntry
   std::vector<std::vector<LegendEntry>> lines;
   int used = 0;
   for (const LegendEntry& entry : entries) {
-    const int with_this = used + kEntryGap + entry_width(entry);
+    const int gap = used == 0 ? 0 : gap_after(lines.back().back());
+    const int with_this = used + gap + entry_width(entry);
     const bool fits = !lines.empty() && with_this <= width - 2 * kSideMargin;
     if (!fits) lines.emplace_back();
     used = fits ? with_this : entry_width(entry);
@@ -221,14 +262,14 @@ int legend_height(const std::vector<LegendEntry>& entries, int width) {
 
 void draw_legend(Picture& picture, const std::vector<LegendEntry>& entries, int top) {
   for (const std::vector<LegendEntry>& line : legend_lines(entries, picture.width)) {
-    int width = -kEntryGap;
-    for (const LegendEntry& entry : line) width += entry_width(entry) + kEntryGap;
+    int width = -gap_after(line.back());
+    for (const LegendEntry& entry : line) width += entry_width(entry) + gap_after(entry);
     int x = (picture.width - width) / 2;
     for (const LegendEntry& entry : line) {
       draw_mark(picture, entry, x, top);
       draw_text(picture, entry.label, x + kMarkWidth + kMarkGap, top + kMarkHeight - 5, Align::left,
                 kStyle);
-      x += entry_width(entry) + kEntryGap;
+      x += entry_width(entry) + gap_after(entry);
     }
     top += kLineHeight;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "experiments/runner/run_record.h"
 #include "experiments/runner/spec.h"
@@ -8,9 +9,27 @@
 namespace geoprior {
 
 /// Draws figure.png of a run: variants side by side, one camera, one colour range, labels, scalar
-/// bar with unit. Needs no display: starts a virtual X server of its own when there is none. Throws
-/// Error naming what is missing.
+/// bar with unit; and contact-sheet.png where the view asks for one. Needs no display: starts a
+/// virtual X server of its own when there is none. Throws Error naming what is missing.
 void render_run(const std::filesystem::path& run_folder, const FigureView& view);
+
+struct VideoOptions {
+  double frames_per_second = 25;
+  std::filesystem::path out;  ///< folder of frame_0000.png … and video.mp4
+};
+
+struct Video {
+  int frames = 0;
+  std::optional<std::filesystem::path> file;  ///< absent: ffmpeg is not installed, or stopped
+  bool stopped = false;                       ///< Ctrl-C
+};
+
+/// Draws every frame as render_run draws its states, variants side by side, all under one camera
+/// and one colour range (those of eight frames, evenly spaced), and lets ffmpeg make a video of
+/// them. A file is there whole or not at all.
+/// @throws Error  when there is nothing to draw, or with the message of ffmpeg
+Video make_video(const std::filesystem::path& run_folder, const FigureView& view,
+                 const VideoOptions& options);
 
 /// Writes every frame of every variant below `out` as obj, ply or one animated glb a variant.
 void export_run(const std::filesystem::path& run_folder, const std::string& format,

@@ -43,12 +43,25 @@ constexpr const char* kShader = R"(
   fragOutput0 = vec4(min(water, vec3(1.0)), fragOutput0.a);
 )";
 
+std::string tint_code(Tint tint, const Eigen::Vector3d& ground) {
+  switch (tint) {
+    case Tint::none:
+      return "";
+    case Tint::all:
+      return "body = mix(body, diffuseColor, 0.72);";
+    case Tint::but_ground:
+      break;
+  }
+  return "body = mix(body, diffuseColor, 0.86 * smoothstep(0.0, 0.3, distance(diffuseColor, " +
+         vec3(ground) + ")));";
+}
+
 }  // namespace
 
-void shade_as_water(vtkActor* actor, const ViewWindow& window, bool colored) {
+void shade_as_water(vtkActor* actor, const ViewWindow& window, Tint tint,
+                    const std::array<double, 3>& ground) {
   std::string code = kShader;
-  const std::string tint = colored ? "body = mix(body, diffuseColor, 0.72);" : "";
-  code.replace(code.find("TINT"), 4, tint);
+  code.replace(code.find("TINT"), 4, tint_code(tint, {ground[0], ground[1], ground[2]}));
   const std::string to_world = "  mat3 toWorld = mat3(" + vec3(window.right) + ", " +
                                vec3(window.up) + ", " + vec3(window.direction) + ");\n";
   actor->GetShaderProperty()->AddFragmentShaderReplacement(
