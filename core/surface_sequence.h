@@ -12,7 +12,8 @@ namespace geoprior {
 struct SurfaceFrame {
   double time = 0;  ///< s
   TriMesh mesh;
-  Eigen::MatrixX3d velocity;  ///< one row per vertex (m/s), or no rows: unknown
+  Eigen::MatrixX3d velocity;       ///< one row per vertex (m/s), or no rows: unknown
+  std::vector<std::string> notes;  ///< what was repaired when it was read
 };
 
 /// An animated surface, read frame by frame: a sequence need not fit into memory.

@@ -85,10 +85,10 @@ void require_memory(const Tank& tank, int particles_per_cell, double limit,
   const double needed = memory_estimate(tank, particles_per_cell);
   const std::string grid = std::to_string(tank.cells.x()) + " x " + std::to_string(tank.cells.y()) +
                            " x " + std::to_string(tank.cells.z()) + " cells";
-  if (cells > 2e9) throw Error(grid, where + ".cells", "at most 2e9 cells");
+  const std::string problem = grid + " need about " + in_gigabytes(needed);
   if (needed > limit)
-    throw Error(grid + " need about " + in_gigabytes(needed), where + ".cells",
-                "a grid that fits into " + in_gigabytes(limit));
+    throw Error(problem, where + ".cells", "a grid that fits into " + in_gigabytes(limit));
+  if (cells > 2e9) throw Error(problem, where + ".cells", "at most 2e9 cells");
 }
 
 Eigen::AlignedBox3d moved_bounds(const PlacedSolid& solid) {

@@ -47,23 +47,7 @@ SurfaceFrame MeshSequence::frame(int frame) const {
   out.mesh.V = in_metres_z_up(read.mesh.V, y_up_, scale_);
   out.mesh.F = std::move(read.mesh.F);
   out.velocity = in_metres_z_up(read.velocity, y_up_, scale_);
-  std::vector<std::string> notes;
-  repair(out, file.file.string(), notes);
-  const std::scoped_lock lock(mutex_);
-  for (const std::string& note : notes) {
-    const auto [found, is_new] = first_frame_.emplace(note, frame);
-    if (!is_new) found->second = std::min(found->second, frame);
-  }
-  return out;
-}
-
-std::vector<std::string> MeshSequence::notes() const {
-  const std::scoped_lock lock(mutex_);
-  std::vector<std::string> out;
-  for (const auto& [note, frame] : first_frame_) {
-    out.push_back(file_at(frame).file.filename().string() + ": " + note +
-                  (frame_count() > 1 ? " (further frames are not named)" : ""));
-  }
+  repair(out, file.file.string(), out.notes);
   return out;
 }
 

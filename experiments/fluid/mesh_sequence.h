@@ -1,8 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -27,22 +25,16 @@ class MeshSequence final : public SurfaceSequence {
 
   [[nodiscard]] int frame_count() const override { return static_cast<int>(files_.size()); }
   [[nodiscard]] double time(int frame) const override { return file_at(frame).time; }
-  /// Safe from several threads.
   [[nodiscard]] SurfaceFrame frame(int frame) const override;
   [[nodiscard]] std::string name() const override { return name_; }
-
-  /// What was repaired in the frames read so far: each kind once, with the first frame that had it.
-  [[nodiscard]] std::vector<std::string> notes() const;
-
- private:
+  /// @throws Error  when there is no such frame
   [[nodiscard]] const FrameFile& file_at(int frame) const;
 
+ private:
   std::vector<FrameFile> files_;
   bool y_up_;
   double scale_;
   std::string name_;
-  mutable std::mutex mutex_;
-  mutable std::map<std::string, int> first_frame_;  ///< of each kind of note
 };
 
 }  // namespace geoprior

@@ -155,8 +155,13 @@ void load_sources(const FluidSceneOptions& options, Loading& loading) {
   for (std::size_t i = 0; i < options.sequences.size(); ++i) {
     const NamedSequenceOptions& o = options.sequences[i];
     require_new(o.name, "scene.sequences." + std::to_string(i) + ".name");
-    sculpt.sources[o.name] = open_sequence(o.sequence, loading.folder, loading.scene.load_warnings,
-                                           loading.scene.input_files);
+    const auto sequence = open_sequence(o.sequence, loading.folder, loading.scene.load_warnings,
+                                        loading.scene.input_files);
+    if (sequence->frame_count() == 1) {
+      loading.scene.load_warnings.push_back(o.sequence.path +
+                                            ": has one frame: nothing is tracked through time");
+    }
+    sculpt.sources[o.name] = sequence;
   }
   for (std::size_t i = 0; i < options.libraries.size(); ++i) {
     const LibraryOptions& o = options.libraries[i];
@@ -168,24 +173,46 @@ void load_sources(const FluidSceneOptions& options, Loading& loading) {
   }
 }
 
+/// @param place  of the edit: key of the scene, or file
+void require_edit(const std::vector<Edit>& edits, std::size_t i, const SculptScene& sculpt,
+                  const std::string& place) {
+  const Edit& edit = edits[i];
+  try {
+    require_valid(edit);
+  } catch (const Error& e) {
+    throw Error(e.what(), place);
+  }
+  const auto same_name = [&](const Edit& other) { return other.name == edit.name; };
+  const auto end = edits.begin() + static_cast<std::ptrdiff_t>(i);
+  if (!edit.name.empty() && std::any_of(edits.begin(), end, same_name)) {
+    throw Error("the name '" + edit.name + "' is taken", place + ".name", "a name of its own");
+  }
+  if (sculpt.sources.count(edit.source) + sculpt.libraries.count(edit.source) > 0) return;
+  // The only source need not be named.
+  if (edit.source.empty() && sculpt.sources.size() + sculpt.libraries.size() == 1) return;
+  std::string known;
+  for (const auto& [name, sequence] : sculpt.sources) known += (known.empty() ? "" : ", ") + name;
+  for (const auto& [name, features] : sculpt.libraries) known += (known.empty() ? "" : ", ") + name;
+  throw Error("edit '" + edit.name + "' takes features from '" + edit.source + "'",
+              place + ".source", known.empty() ? "a sequence or library of the scene" : known);
+}
+
 void load_edits(const FluidSceneOptions& options, Loading& loading) {
   SculptScene& sculpt = loading.scene.sculpt;
   sculpt.edits = options.edits;
+  std::string list;
   if (options.edit_list) {
     const fs::path file = find_file(*options.edit_list, loading.folder, "scene.edit_list");
     loading.scene.input_files.push_back(file);
     const std::vector<Edit> more = read_edit_list(file);
     sculpt.edits.insert(sculpt.edits.end(), more.begin(), more.end());
+    list = file.string();
   }
-  std::string known;
-  for (const auto& [name, sequence] : sculpt.sources) known += (known.empty() ? "" : ", ") + name;
-  for (const auto& [name, features] : sculpt.libraries) known += (known.empty() ? "" : ", ") + name;
   for (std::size_t i = 0; i < sculpt.edits.size(); ++i) {
-    const Edit& edit = sculpt.edits[i];
-    if (sculpt.sources.count(edit.source) + sculpt.libraries.count(edit.source) > 0) continue;
-    throw Error("edit '" + edit.name + "' takes features from '" + edit.source + "'",
-                "scene.edits." + std::to_string(i) + ".source",
-                known.empty() ? "a sequence or library of the scene" : known);
+    const std::size_t in_scene = options.edits.size();
+    require_edit(sculpt.edits, i, sculpt,
+                 i < in_scene ? "scene.edits." + std::to_string(i)
+                              : list + ": edit." + std::to_string(i - in_scene));
   }
 }
 
@@ -218,8 +245,13 @@ void place_gauges(FluidScene& scene) {
 }  // namespace
 
 const Tank& FluidScene::require_tank(const std::string& who) const {
-  if (tank) return *tank;
-  throw Error(who + " has nothing to simulate", "scene.tank", "a table that gives the tank");
+  if (!tank) {
+    throw Error(who + " has nothing to simulate", "scene.tank", "a table that gives the tank");
+  }
+  if (tank->volumes.empty() && tank->sources.empty()) {
+    throw Error(who + " has no liquid to simulate", "scene.tank", "volumes or sources");
+  }
+  return *tank;
 }
 
 std::map<std::string, double> FluidScene::facts() const {
@@ -267,7 +299,10 @@ std::shared_ptr<FluidScene> load_fluid_scene(const FluidSceneOptions& options,
   for (int i = 0; i < frames; ++i) {
     scene->sculpt.times.push_back(options.start + i * options.frame_interval);
   }
-  if (options.tank) scene->tank = make_tank(*options.tank, options, loading);
+  if (options.tank) {
+    scene->tank = make_tank(*options.tank, options, loading);
+    require_valid(*scene->tank, 1, simulation_memory_limit(), "scene.tank");
+  }
   load_sources(options, loading);
   if (options.target) scene->sculpt.target = make_target(*options.target, loading);
   load_edits(options, loading);

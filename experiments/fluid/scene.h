@@ -32,7 +32,7 @@ class FluidScene final : public Scene {
   std::vector<std::filesystem::path> input_files;
   std::vector<std::string> load_warnings;
 
-  /// @throws Error  naming the method and the missing table
+  /// @throws Error  naming the method: without the table, or without volumes and sources in it
   [[nodiscard]] const Tank& require_tank(const std::string& who) const;
 
   /// Width a of the water column of a dam break: one box of water against the lower x side of a

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string_view>
 
 #include "core/error.h"
@@ -57,12 +58,19 @@ void select(FoundFiles& found, const SequenceOptions& options, const std::string
 }
 
 /// Reads the first, the middle and the last frame: what is wrong with one is mostly wrong with all.
-void probe(const SurfaceSequence& sequence) {
+/// What was repaired is told once, by the first that had it.
+void probe(const MeshSequence& sequence, std::vector<std::string>& warnings) {
   const int last = sequence.frame_count() - 1;
+  std::set<std::string> told;
   int before = -1;
   for (const int i : {0, last / 2, last}) {
-    if (i != before) static_cast<void>(sequence.frame(i));
+    if (i == before) continue;
     before = i;
+    for (const std::string& note : sequence.frame(i).notes) {
+      if (!told.insert(note).second) continue;
+      warnings.push_back(sequence.file_at(i).file.filename().string() + ": " + note +
+                         (last > 0 ? " (further frames are not named)" : ""));
+    }
   }
 }
 
@@ -114,16 +122,8 @@ std::shared_ptr<SurfaceSequence> open_sequence(const SequenceOptions& options,
                     (options.up == UpAxis::from_sidecar && sidecar.y_up.value_or(false));
   const double scale = options.scale.value_or(sidecar.scale.value_or(1));
   auto sequence = std::make_shared<MeshSequence>(std::move(files), y_up, scale, name);
-  probe(*sequence);
-  for (std::string& note : sequence->notes()) warnings.push_back(std::move(note));
+  probe(*sequence, warnings);
   return sequence;
-}
-
-void require_frames(const SurfaceSequence& sequence, int at_least, const std::string& who) {
-  if (sequence.frame_count() >= at_least) return;
-  throw Error("has " + std::to_string(sequence.frame_count()) + " frame" +
-                  (sequence.frame_count() == 1 ? "" : "s") + ", too few for " + who,
-              sequence.name(), std::to_string(at_least) + " frames or more");
 }
 
 }  // namespace geoprior

@@ -49,7 +49,4 @@ std::shared_ptr<SurfaceSequence> open_sequence(const SequenceOptions& options,
                                                std::vector<std::string>& warnings,
                                                std::vector<std::filesystem::path>& inputs);
 
-/// @throws Error  when the sequence has fewer frames than `who` needs
-void require_frames(const SurfaceSequence& sequence, int at_least, const std::string& who);
-
 }  // namespace geoprior

@@ -68,7 +68,8 @@ std::vector<int> select_features(std::span<const FeatureSummary> features, const
     }
     if (result.empty()) {
       throw Error("no feature meets its box, interval and smallest area", where_of(edit),
-                  "ids of the source: " + known_ids(features));
+                  features.empty() ? "a source with features of at least shortest_track frames"
+                                   : "ids of the source: " + known_ids(features));
     }
   }
   std::sort(result.begin(), result.end());

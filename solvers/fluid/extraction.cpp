@@ -54,6 +54,7 @@ Extraction extract_regions(
       const SurfaceFrame frame = sequence.frame(f);
       SegmentedFrame segmented = result.segmenter->segment(frame, f);
       if (each) each(f, frame, segmented);
+      warnings.add(f, frame.notes);
       warnings.add(f, segmented.warnings);
       result.regions.insert(result.regions.end(),
                             std::make_move_iterator(segmented.regions.begin()),

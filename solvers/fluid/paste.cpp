@@ -216,6 +216,7 @@ SurfaceFrame paste(const SurfaceFrame& target, const std::vector<Insertion>& ins
                    double time, const Eigen::Vector3d& up, const PasteOptions& options,
                    PasteReport* report) {
   PasteReport own;
+  for (const std::string& note : target.notes) own.warnings.push_back("target: " + note);
   const std::vector<Present> present = present_at(insertions, time, up);
   std::vector<Present> maps, meshes;
   for (const Present& p : present) {
@@ -233,6 +234,7 @@ SurfaceFrame paste(const SurfaceFrame& target, const std::vector<Insertion>& ins
     result = surface_frame(mesh, target.time);
   }
   result.time = time;
+  result.notes.clear();
   for (const Present& p : meshes) add_isolated(p, time, up, result, own);
   own.features += static_cast<int>(meshes.size());
   own.added_triangles = result.mesh.triangle_count() - target.mesh.triangle_count();
