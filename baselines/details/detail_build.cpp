@@ -1,80 +1,15 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <numeric>
-#include <string>
 #include <utility>
 
 #include "baselines/details/detail_mesh.h"
-#include "core/error.h"
+#include "baselines/details/triangle_filler.h"
 #include "core/random.h"
 
 namespace geoprior {
 namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
-/// A triangle of a face that is being filled with details, in barycentric coordinates of the face.
-struct Piece {
-  std::array<Eigen::Vector3d, 3> corner;
-  int triangle = 0;
-  int child = -1;  ///< first of three
-};
-
-/// Coordinates of a point of the face with respect to a piece.
-Eigen::Vector3d local_coordinates(const Piece& piece, const Eigen::Vector3d& b) {
-  Eigen::Matrix3d corners;
-  corners << piece.corner[0], piece.corner[1], piece.corner[2];
-  return corners.inverse() * b;
-}
-
-/// Puts the details of one face into the triangulation, each into the piece that holds it.
-/// Vertices on the rim of a piece are moved inside by a hair: connectivity is all that is wanted.
-class FaceFiller {
- public:
-  FaceFiller(IntrinsicTriangulation& mesh, int face) : mesh_(mesh) {
-    pieces_.push_back(
-        {{Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()}, face, -1});
-  }
-
-  int insert(const Eigen::Vector3d& b) {
-    std::size_t at = 0;
-    Eigen::Vector3d local = local_coordinates(pieces_[0], b);
-    while (pieces_[at].child >= 0) {
-      const std::size_t first = index(pieces_[at].child);
-      std::size_t best = first;
-      for (std::size_t c = first; c < first + 3; ++c) {
-        const Eigen::Vector3d inside = local_coordinates(pieces_[c], b);
-        if (c == first || inside.minCoeff() > local.minCoeff()) {
-          best = c;
-          local = inside;
-        }
-      }
-      at = best;
-    }
-    local = local.cwiseMax(kInside);
-    local /= local.sum();
-    return split(at, local);
-  }
-
- private:
-  static constexpr double kInside = 1e-5;
-
-  int split(std::size_t at, const Eigen::Vector3d& local) {
-    const Piece parent = pieces_[at];
-    const Eigen::Vector3d p =
-        local[0] * parent.corner[0] + local[1] * parent.corner[1] + local[2] * parent.corner[2];
-    const int v = mesh_.insert(parent.triangle, local, false);
-    pieces_[at].child = static_cast<int>(pieces_.size());
-    const int last = mesh_.triangle_slots() - 1;  // the order that `insert` makes them in
-    pieces_.push_back({{parent.corner[0], parent.corner[1], p}, parent.triangle, -1});
-    pieces_.push_back({{parent.corner[1], parent.corner[2], p}, last - 1, -1});
-    pieces_.push_back({{parent.corner[2], parent.corner[0], p}, last, -1});
-    return v;
-  }
-
-  IntrinsicTriangulation& mesh_;
-  std::vector<Piece> pieces_;
-};
 
 /// Details become vertices n_surface, n_surface + 1, …
 void insert_details(IntrinsicTriangulation& mesh, std::span<const Detail> details,
@@ -87,7 +22,7 @@ void insert_details(IntrinsicTriangulation& mesh, std::span<const Detail> detail
   vertex.resize(details.size());
   for (std::size_t i = 0; i < order.size();) {
     const int face = details[index(order[i])].at.face;
-    FaceFiller filler(mesh, face);
+    TriangleFiller filler(mesh, face);
     for (; i < order.size() && details[index(order[i])].at.face == face; ++i)
       vertex[index(order[i])] = filler.insert(details[index(order[i])].at.barycentric);
   }

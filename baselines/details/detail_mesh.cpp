@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baselines/details/triangle_filler.h"
 #include "core/parallel.h"
 
 namespace geoprior {
@@ -109,27 +110,32 @@ SurfacePoint surface_point_in(const DetailMesh& d, int t, const Eigen::Vector3d&
                          *d.surface, d.x);
 }
 
-int insert_detail_at(DetailMesh& d, int t, const Eigen::Vector3d& barycentric,
-                     const SurfacePoint& at, const Detail& like) {
-  const auto corner = d.mesh.corners(t);
-  Detail born = like;
-  born.at = at;
-  born.birth = d.births++;
-  born.birth_frame = d.frame;
-  born.generation = 0;
-  for (const int c : corner)
-    if (d.is_detail(c)) born.generation = std::max(born.generation, d.site[index(c)].generation);
-  ++born.generation;
-  const int v = d.mesh.insert(t, barycentric);
-  make_room(d, v);
-  d.site[index(v)] = born;
-  d.kind[index(v)] = SiteKind::detail;
-  d.position[index(v)] = position_of(at, *d.surface, d.x);
-  return v;
+std::vector<int> insert_details(DetailMesh& d, int t, std::span<const NewDetail> born) {
+  int generation = 0;
+  for (const int c : d.mesh.corners(t))
+    if (d.is_detail(c)) generation = std::max(generation, d.site[index(c)].generation);
+  TriangleFiller filler(d.mesh, t);
+  std::vector<int> sites;
+  for (const NewDetail& one : born) {
+    const int v = filler.insert(one.barycentric);
+    make_room(d, v);
+    Detail& site = d.site[index(v)];
+    site = one.like;
+    site.at = one.at;
+    site.birth = d.births++;
+    site.birth_frame = d.frame;
+    site.generation = generation + 1;
+    d.kind[index(v)] = SiteKind::detail;
+    d.position[index(v)] = position_of(one.at, *d.surface, d.x);
+    sites.push_back(v);
+  }
+  d.mesh.flip_around(sites);
+  return sites;
 }
 
 int insert_detail(DetailMesh& d, int t, const Eigen::Vector3d& barycentric, const Detail& like) {
-  return insert_detail_at(d, t, barycentric, surface_point_in(d, t, barycentric), like);
+  const NewDetail born{barycentric, surface_point_in(d, t, barycentric), like};
+  return insert_details(d, t, {&born, 1})[0];
 }
 
 void remove_detail(DetailMesh& d, int site) {

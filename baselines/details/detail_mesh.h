@@ -73,15 +73,20 @@ void measure_sections(DetailMesh& details);
 /// @return  number of flips
 int move_surface(DetailMesh& details, const Eigen::MatrixX3d& V, LengthRule rule);
 
-/// Inserts a detail into triangle `t` of M_d at barycentric coordinates for its corners: the point
-/// of the surface near that point of the flat triangle. Weight, type, angle … are those of `like`
-/// (its `at` is ignored); birth, birth_frame and generation are set.
-/// @return  number of the site
+/// A detail to be inserted into a triangle of M_d.
+struct NewDetail {
+  Eigen::Vector3d barycentric;  ///< for the corners of the triangle, positive
+  SurfacePoint at;              ///< its place (`surface_point_in`)
+  Detail like;                  ///< weight, target, type, angle; the rest is set
+};
+
+/// Inserts details into triangle `t` of M_d, then flips to Delaunay. Birth, birth_frame and
+/// generation are set.
+/// @return  numbers of the sites
+std::vector<int> insert_details(DetailMesh& details, int t, std::span<const NewDetail> born);
+/// One detail, at the point of the surface near that point of the flat triangle.
 int insert_detail(DetailMesh& details, int t, const Eigen::Vector3d& barycentric,
                   const Detail& like);
-/// The same, with the point of the surface given.
-int insert_detail_at(DetailMesh& details, int t, const Eigen::Vector3d& barycentric,
-                     const SurfacePoint& at, const Detail& like);
 /// Where `insert_detail` would put it.
 SurfacePoint surface_point_in(const DetailMesh& details, int t, const Eigen::Vector3d& barycentric);
 

@@ -245,6 +245,19 @@ int IntrinsicTriangulation::flip_to_delaunay() {
   return settle(stack_);
 }
 
+int IntrinsicTriangulation::flip_around(std::span<const int> vertices) {
+  stack_.clear();
+  for (const int v : vertices) {
+    const int start = out_[index(v)];
+    for (int h = start; h >= 0;) {
+      push_edges(h / 3, stack_);
+      h = twin_[index(previous(h))];
+      if (h == start) break;
+    }
+  }
+  return settle(stack_);
+}
+
 int IntrinsicTriangulation::insert(int t, const Eigen::Vector3d& barycentric, bool flips) {
   const auto [a, b, c] = corners(t);
   const auto edge = [&](int k) {

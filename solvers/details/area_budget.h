@@ -12,7 +12,9 @@ namespace geoprior {
 ///
 /// Patches are groups of faces around evenly chosen details; target(P) = n0(P) A(P) / A0(P), so the
 /// density of details stays what it was, a motion that returns asks for what there was, and a
-/// surface at rest asks for nothing. Which faces make a patch never changes.
+/// surface at rest asks for nothing. Which faces make a patch never changes. Faces farther than
+/// three mean edges from any detail at rest are bare: they belong to no patch (-1), ask for nothing
+/// and take nothing.
 class AreaBudget {
  public:
   AreaBudget() = default;
@@ -22,18 +24,19 @@ class AreaBudget {
   /// Measures the areas, and counts the details whose target weight is not 0.
   void update(const DetailMesh& details);
   [[nodiscard]] int patch_count() const { return static_cast<int>(rest_area_.size()); }
-  [[nodiscard]] int patch_of_face(int face) const { return patch_[static_cast<std::size_t>(face)]; }
-  [[nodiscard]] int patch_of(const SurfacePoint& at) const { return patch_of_face(at.face); }
-  /// Details that the patch lacks (negative: has too many).
-  [[nodiscard]] double deficit(int patch) const {
-    const auto p = static_cast<std::size_t>(patch);
-    return target_[p] - count_[p];
+  [[nodiscard]] int patch_of(const SurfacePoint& at) const {
+    return patch_[static_cast<std::size_t>(at.face)];
   }
+  /// Details that the patch lacks (negative: has too many); 0 for patch -1.
+  [[nodiscard]] double deficit(int patch) const;
   /// Counts a detail that came (+1) or goes (-1).
-  void add(int patch, int change) { count_[static_cast<std::size_t>(patch)] += change; }
+  void add(int patch, int change);
   [[nodiscard]] double total_target() const;
 
  private:
+  static constexpr double kBareAfter = 3;
+  void leave_bare_faces(const DetailMesh& original);
+
   std::vector<int> patch_;              ///< per face
   std::vector<int> face_begin_, face_;  ///< faces of a patch
   std::vector<double> rest_area_, rest_count_, target_, count_;

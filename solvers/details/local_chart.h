@@ -30,6 +30,8 @@ class LocalChart {
     int vertex;
     Eigen::Vector2d at;
   };
+  static bool later(const Reached& a, const Reached& b);
+  void lay_out_ring(const IntrinsicTriangulation& mesh, int source, double radius);
   void reach(int vertex, const Eigen::Vector2d& at, double radius);
   void unfold_from(const IntrinsicTriangulation& mesh, int vertex, double radius);
 

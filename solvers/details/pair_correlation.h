@@ -28,7 +28,8 @@ class PairCorrelation {
 
   /// The whole pattern. `stride` > 1 takes every stride-th detail as centre.
   [[nodiscard]] Eigen::VectorXd of(const DetailMesh& details, int stride = 1);
-  /// Adds one centre's contribution of a distance: a row of the sum above.
+  /// Adds what one neighbour at a distance contributes to a centre: k_sigma(r - d) / (2 pi r),
+  /// per bin (1/m^2). `of` is the mean over centres, times area / number of details.
   void add(double distance, Eigen::VectorXd& into) const;
   /// Distances from a point of triangle `t` to the details around (m), up to the radius.
   void distances(const DetailMesh& details, int t, const Eigen::Vector3d& barycentric,
@@ -37,6 +38,8 @@ class PairCorrelation {
   [[nodiscard]] double reach() const { return reach_; }
 
  private:
+  static bool counts(const DetailMesh& details, int site);
+
   double reach_ = 0, sigma_ = 0;
   Eigen::VectorXd radius_of_bin_;
   LocalChart chart_;

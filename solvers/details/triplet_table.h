@@ -27,7 +27,11 @@ void describe(OptionVisitor& v, TripletOptions& options);
 /// A detail inside a triplet.
 struct TripletInterior {
   int detail = 0;
-  Eigen::Vector3f barycentric = Eigen::Vector3f::Zero();
+  std::array<float, 2> first_two{};  ///< of its barycentric coordinates; the third makes 1
+  [[nodiscard]] Eigen::Vector3d barycentric() const {
+    const double a = first_two[0], b = first_two[1];
+    return {a, b, 1 - a - b};
+  }
 };
 
 /// Answer of a query: the corners of the triplet in the order in which its edges fit best.
@@ -63,11 +67,9 @@ class TripletTable {
   struct Entry {
     std::array<int, 3> corner;
     std::array<float, 3> edge;
-    std::int32_t interior_begin;
-    std::int32_t interior_count;
+    std::int32_t interior_begin;  ///< up to that of the next entry
   };
-  friend class TripletBuilder;
-  void search_cell(int iu, int iv, const std::array<double, 3>& edges, int max_interior, int count,
+  void search_cell(int cell, const std::array<double, 3>& edges, int max_interior, int count,
                    std::vector<TripletMatch>& into) const;
 
   int cells_ = 0;

@@ -1,0 +1,73 @@
+#include "solvers/details/pair_correlation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace geoprior {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+PairCorrelation::PairCorrelation(double mean_edge, const PairCorrelationOptions& options)
+    : reach_(options.radius * mean_edge),
+      sigma_(options.bandwidth * mean_edge),
+      radius_of_bin_(options.bins) {
+  for (Eigen::Index i = 0; i < options.bins; ++i)
+    radius_of_bin_[i] = reach_ * (static_cast<double>(i) + 0.5) / options.bins;
+}
+
+void PairCorrelation::add(double distance, Eigen::VectorXd& into) const {
+  if (into.size() == 0) into = Eigen::VectorXd::Zero(bins());
+  const double scale = 1 / (std::sqrt(2 * kPi) * sigma_);
+  const double width = reach_ / bins();
+  const int first = std::max(0, static_cast<int>((distance - 4 * sigma_) / width));
+  const int last = std::min(bins() - 1, static_cast<int>((distance + 4 * sigma_) / width));
+  for (int i = first; i <= last; ++i) {
+    const double x = (radius_of_bin_[i] - distance) / sigma_;
+    into[i] += scale * std::exp(-0.5 * x * x) / (2 * kPi * radius_of_bin_[i]);
+  }
+}
+
+Eigen::VectorXd PairCorrelation::of(const DetailMesh& details, int stride) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(bins());
+  double area = 0;
+  for (int t = 0; t < details.mesh.triangle_slots(); ++t)
+    if (details.mesh.triangle_alive(t)) area += details.mesh.area(t);
+  int count = 0, centres = 0;
+  for (int i = 0; i < details.site_slots(); ++i) {
+    if (!counts(details, i)) continue;
+    if (count++ % stride != 0) continue;
+    ++centres;
+    for (const ChartPoint& p : chart_.around(details.mesh, i, reach_ + 4 * sigma_))
+      if (p.vertex != i && counts(details, p.vertex)) add(p.at.norm(), sum);
+  }
+  return centres > 0 ? Eigen::VectorXd(sum * (area / (static_cast<double>(centres) * count))) : sum;
+}
+
+bool PairCorrelation::counts(const DetailMesh& details, int site) {
+  return details.is_detail(site) && details.site[index(site)].target_weight > 0;
+}
+
+void PairCorrelation::distances(const DetailMesh& details, int t,
+                                const Eigen::Vector3d& barycentric, std::vector<double>& into) {
+  into.clear();
+  const auto corner = details.mesh.corners(t);
+  const double longest = std::max(
+      {details.mesh.length(3 * t), details.mesh.length(3 * t + 1), details.mesh.length(3 * t + 2)});
+  const auto& chart = chart_.around(details.mesh, corner[0], reach_ + 4 * sigma_ + longest);
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  for (const ChartPoint& p : chart) {
+    for (std::size_t k = 1; k < 3; ++k)
+      if (p.vertex == corner[k]) at += barycentric[static_cast<Eigen::Index>(k)] * p.at;
+  }
+  for (const ChartPoint& p : chart) {
+    const double distance = (p.at - at).norm();
+    if (distance < reach_ + 4 * sigma_ && counts(details, p.vertex)) into.push_back(distance);
+  }
+}
+
+}  // namespace geoprior

@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "solvers/details/replication_state.h"
+
+namespace geoprior {
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+bool Replication::may_fade(int site) const {
+  if (!now_.is_detail(site) || now_.site[index(site)].target_weight == 0) return false;
+  return options_.area_rule != AreaRule::budget ||
+         budget_.deficit(patch_of_site(site)) <= -(0.5 + options_.dead_band);
+}
+
+std::vector<WantingTriangle> Replication::shrunk() const {
+  const bool budget = options_.area_rule == AreaRule::budget;
+  std::vector<WantingTriangle> result;
+  for (int t = 0; t < now_.mesh.triangle_slots(); ++t) {
+    if (!now_.mesh.triangle_alive(t)) continue;
+    const auto corner = now_.mesh.corners(t);
+    if (std::none_of(corner.begin(), corner.end(), [&](int c) { return may_fade(c); })) continue;
+    const double r = ratio(t);
+    if (budget || r * options_.shrink_threshold < 1) result.push_back({r, t});
+  }
+  std::sort(result.begin(), result.end(), [](const WantingTriangle& a, const WantingTriangle& b) {
+    return std::pair(a.ratio, a.triangle) < std::pair(b.ratio, b.triangle);
+  });
+  return result;
+}
+
+/// The end of the shortest edge that goes: the younger one. -1 when a detail of the triangle fades
+/// already (that makes room), or no end may.
+int Replication::loser(int t) const {
+  int shortest = 3 * t;
+  for (int h = 3 * t; h < 3 * t + 3; ++h) {
+    const int c = now_.mesh.origin(h);
+    if (now_.is_detail(c) && now_.site[index(c)].target_weight == 0) return -1;
+    if (now_.mesh.length(h) < now_.mesh.length(shortest)) shortest = h;
+  }
+  const auto age = [&](int i) {
+    const Detail& d = now_.site[index(i)];
+    return std::tuple(d.weight, -d.generation, -d.birth);
+  };
+  const int a = now_.mesh.origin(shortest), b = now_.mesh.tip(shortest);
+  if (!may_fade(a)) return may_fade(b) ? b : -1;
+  if (!may_fade(b)) return a;
+  return age(a) < age(b) ? a : b;
+}
+
+void Replication::merge() {
+  const auto wanting = shrunk();
+  if (wanting.empty()) return;
+  use_new_marks();
+  for (const WantingTriangle& one : wanting) {
+    if (marked(one.triangle)) continue;
+    const int gone = loser(one.triangle);
+    if (gone < 0) continue;
+    for (const int c : now_.mesh.corners(one.triangle)) mark(c);
+    now_.site[index(gone)].target_weight = 0;
+    budget_.add(patch_of_site(gone), -1);
+    ++counts_.fading;
+  }
+}
+
+}  // namespace geoprior

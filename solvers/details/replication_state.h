@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "solvers/details/area_budget.h"
+#include "solvers/details/pair_correlation.h"
+#include "solvers/details/replication.h"
+#include "solvers/details/triplet_table.h"
+
+namespace geoprior {
+
+/// What a step of the replication did.
+struct ReplicationCounts {
+  int inserted = 0;
+  int revived = 0;
+  int fading = 0;
+  int flips = 0;
+  int failed_queries = 0;
+  double max_weight_change = 0;
+};
+
+/// A triangle of M_d that asks for a change, and how much.
+struct WantingTriangle {
+  double ratio = 1;  ///< area against reference area
+  int triangle = 0;
+};
+
+/// The method: `step` in the order of the header of `ReplicationOptions`.
+class Replication final : public DetailMethod {
+ public:
+  Replication(const DetailScene& scene, const ReplicationOptions& options, std::uint64_t seed);
+  void step(const Eigen::MatrixX3d& V, RunContext& context) override;
+  [[nodiscard]] const DetailMesh& details() const override { return now_; }
+  void diagnose(std::map<std::string, double>& into) const override;
+  void save(StateWriter& out) const override;
+  void load(StateReader& in) override;
+
+ private:
+  // replication.cpp
+  [[nodiscard]] double ratio(int triangle) const;
+  [[nodiscard]] int patch_of_site(int site) const;
+  void use_new_marks();
+  [[nodiscard]] bool marked(int triangle) const;
+  void mark(int site);
+  [[nodiscard]] double weight_step(const Eigen::MatrixX3d& V) const;
+  // replication_insert.cpp
+  void insert();
+  void revive();
+  [[nodiscard]] std::vector<WantingTriangle> stretched() const;
+  [[nodiscard]] double largest_deficit(int triangle) const;
+  bool fill(int triangle);
+  [[nodiscard]] std::vector<NewDetail> copy_of(const TripletMatch& match, int triangle) const;
+  [[nodiscard]] double carried_angle(const TripletMatch& match, int source, int triangle,
+                                     const SurfacePoint& at) const;
+  [[nodiscard]] bool within_budget(const std::vector<NewDetail>& born) const;
+  [[nodiscard]] double histogram_distance(int triangle, const std::vector<NewDetail>& born);
+  void measure_histogram();
+  // replication_merge.cpp
+  void merge();
+  [[nodiscard]] std::vector<WantingTriangle> shrunk() const;
+  [[nodiscard]] int loser(int triangle) const;
+  [[nodiscard]] bool may_fade(int site) const;
+
+  ReplicationOptions options_;
+  DetailMesh original_;  ///< at rest: what triplets refer to
+  DetailMesh now_;
+  TripletTable table_;
+  AreaBudget budget_;
+  PairCorrelation correlation_;
+  Eigen::VectorXd histogram_at_rest_, histogram_now_;
+  double rest_edge_ = 0;  ///< mean edge of M_d at rest (m)
+  double rest_area_ = 0;  ///< mean area of its triangles
+  ReplicationCounts counts_;
+  std::vector<int> mark_;  ///< frame mark of sites whose surroundings changed
+  int current_mark_ = 0;
+  std::vector<TripletMatch> matches_;
+  std::vector<double> distances_;
+};
+
+}  // namespace geoprior

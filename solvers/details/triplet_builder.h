@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/random.h"
+#include "solvers/details/local_chart.h"
+#include "solvers/details/triplet_table.h"
+
+namespace geoprior {
+
+/// Area and smallest angle of a triangle with edges |01|, |12|, |20|: the keys of the table.
+struct TriangleKeys {
+  double area = 0;
+  double least_angle = 0;  ///< rad
+};
+TriangleKeys keys_of(const std::array<double, 3>& edges);
+
+/// A triplet that qualifies, before the table decides whether to keep it.
+struct FoundTriplet {
+  std::array<int, 3> corner{};
+  std::array<float, 3> edge{};  ///< |01|, |12|, |20|
+  int cell = 0;
+  std::vector<TripletInterior> interior;
+};
+
+/// Enumerates the triplets whose smallest-numbered detail is a given one, in the chart around it.
+class TripletSearch {
+ public:
+  TripletSearch(const DetailMesh& original, const TripletOptions& options, double mean_edge);
+
+  /// Appends the triplets of `source` that qualify; `met` counts all.
+  void around(int source, std::vector<FoundTriplet>& into, std::int64_t& met);
+  [[nodiscard]] double largest_area() const { return largest_area_; }
+
+ private:
+  bool collect_interior(const std::array<std::size_t, 3>& corner, FoundTriplet& triplet) const;
+
+  const DetailMesh& original_;
+  TripletOptions options_;
+  double reach_ = 0;         ///< longest edge (m)
+  double largest_area_ = 0;  ///< u = 1
+  LocalChart chart_;
+  std::vector<ChartPoint> points_;  ///< details of the chart
+};
+
+/// Cell of the grid for a triangle; clamped to its rim.
+std::array<int, 2> triplet_cell(const TriangleKeys& keys, double largest_area, int cells);
+
+}  // namespace geoprior

@@ -1,0 +1,169 @@
+#include "solvers/details/triplet_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "solvers/details/triplet_builder.h"
+
+namespace geoprior {
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+constexpr std::array<std::array<int, 3>, 6> kOrders{
+    {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
+
+/// Edge of the triplet between two of its corners.
+float edge_between(const std::array<float, 3>& edge, int a, int b) {
+  return edge[index(a + b == 1 ? 0 : a + b == 3 ? 1 : 2)];
+}
+
+/// Sources whose surroundings are searched: details, evenly spread over their numbers.
+std::vector<int> sources_of(const DetailMesh& original, const TripletOptions& options) {
+  std::vector<int> details;
+  for (int i = 0; i < original.site_slots(); ++i)
+    if (original.is_detail(i)) details.push_back(i);
+  if (options.all && details.size() > 400) {
+    throw Error("all triplets of " + std::to_string(details.size()) + " details", "triplets",
+                "at most 400 details, or local triplets");
+  }
+  const auto most = index(options.max_sources);
+  if (options.all || details.size() <= most) return details;
+  std::vector<int> some;
+  for (std::size_t i = 0; i < most; ++i) some.push_back(details[i * details.size() / most]);
+  return some;
+}
+
+/// Keeps a random choice of the triplets met in every cell (reservoir sampling, Vitter 1985).
+class Reservoirs {
+ public:
+  Reservoirs(int cells, int capacity, std::uint64_t seed)
+      : capacity_(index(capacity)),
+        kept_(index(cells) * index(cells)),
+        seen_(kept_.size(), 0),
+        random_(seed, "triplets") {}
+
+  void offer(FoundTriplet& triplet) {
+    auto& cell = kept_[index(triplet.cell)];
+    const std::uint32_t seen = ++seen_[index(triplet.cell)];
+    if (cell.size() < capacity_) {
+      cell.push_back(std::move(triplet));
+      return;
+    }
+    const std::uint32_t place = random_.below(seen);
+    if (place < capacity_) cell[place] = std::move(triplet);
+  }
+  [[nodiscard]] const std::vector<std::vector<FoundTriplet>>& kept() const { return kept_; }
+
+ private:
+  std::size_t capacity_;
+  std::vector<std::vector<FoundTriplet>> kept_;
+  std::vector<std::uint32_t> seen_;
+  RandomStream random_;
+};
+
+}  // namespace
+
+TripletTable::TripletTable(const DetailMesh& original, const TripletOptions& options,
+                           std::uint64_t seed)
+    : cells_(options.cells) {
+  const double mean = mean_edge(original);
+  const std::vector<int> sources = sources_of(original, options);
+  Reservoirs reservoirs(cells_, options.cell_capacity, seed);
+  constexpr std::size_t kBatch = 64, kBlock = 4;
+  std::vector<TripletSearch> search(kBatch / kBlock, TripletSearch(original, options, mean));
+  largest_area_ = search[0].largest_area();
+  for (std::size_t first = 0; first < sources.size(); first += kBatch) {
+    const std::size_t count = std::min(kBatch, sources.size() - first);
+    std::vector<std::vector<FoundTriplet>> found(search.size());
+    std::vector<std::int64_t> met(search.size(), 0);
+    parallel_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
+      const std::size_t block = begin / kBlock;
+      for (std::size_t i = begin; i < end; ++i)
+        search[block].around(sources[first + i], found[block], met[block]);
+    });
+    for (std::size_t block = 0; block < found.size(); ++block) {
+      met_ += met[block];
+      for (FoundTriplet& triplet : found[block]) reservoirs.offer(triplet);
+    }
+  }
+  for (const auto& cell : reservoirs.kept()) {
+    cell_begin_.push_back(static_cast<int>(entry_.size()));
+    for (const FoundTriplet& triplet : cell) {
+      entry_.push_back({triplet.corner, triplet.edge, static_cast<std::int32_t>(interior_.size())});
+      interior_.insert(interior_.end(), triplet.interior.begin(), triplet.interior.end());
+    }
+  }
+  cell_begin_.push_back(static_cast<int>(entry_.size()));
+  entry_.shrink_to_fit();
+  interior_.shrink_to_fit();
+}
+
+std::span<const TripletInterior> TripletTable::interior(int triplet) const {
+  const auto begin = index(entry_[index(triplet)].interior_begin);
+  const auto end = index(triplet) + 1 < entry_.size()
+                       ? index(entry_[index(triplet) + 1].interior_begin)
+                       : interior_.size();
+  return {interior_.data() + begin, end - begin};
+}
+
+const std::array<int, 3>& TripletTable::corners(int triplet) const {
+  return entry_[index(triplet)].corner;
+}
+
+std::size_t TripletTable::bytes() const {
+  return entry_.size() * sizeof(Entry) + interior_.size() * sizeof(TripletInterior) +
+         cell_begin_.size() * sizeof(int);
+}
+
+void TripletTable::search_cell(int cell, const std::array<double, 3>& edges, int max_interior,
+                               int count, std::vector<TripletMatch>& into) const {
+  for (int e = cell_begin_[index(cell)]; e < cell_begin_[index(cell) + 1]; ++e) {
+    const auto inside = static_cast<int>(interior(e).size());
+    if (inside < 1 || inside > max_interior) continue;
+    TripletMatch best{e, {}, std::numeric_limits<double>::infinity()};
+    for (const auto& order : kOrders) {
+      double difference = 0;
+      for (int k = 0; k < 3; ++k) {
+        const auto l = index((k + 1) % 3);
+        difference +=
+            std::abs(edges[index(k)] - static_cast<double>(edge_between(
+                                           entry_[index(e)].edge, order[index(k)], order[l])));
+      }
+      if (difference < best.edge_difference) {
+        best.edge_difference = difference;
+        best.order = order;
+      }
+    }
+    const auto place = std::upper_bound(into.begin(), into.end(), best,
+                                        [](const TripletMatch& a, const TripletMatch& b) {
+                                          return a.edge_difference < b.edge_difference;
+                                        });
+    into.insert(place, best);
+    if (into.size() > index(count)) into.pop_back();
+  }
+}
+
+void TripletTable::closest(const std::array<double, 3>& edges, int max_interior, int count,
+                           std::vector<TripletMatch>& into) const {
+  into.clear();
+  if (entry_.empty() || max_interior < 1) return;
+  const auto [u, v] = triplet_cell(keys_of(edges), largest_area_, cells_);
+  int last = cells_ - 1;
+  for (int ring = 0; ring <= last; ++ring) {
+    for (int i = std::max(0, u - ring); i <= std::min(cells_ - 1, u + ring); ++i) {
+      const bool rim = i == u - ring || i == u + ring;
+      const int step = rim || ring == 0 ? 1 : 2 * ring;
+      for (int j = v - ring; j <= v + ring; j += step)
+        if (j >= 0 && j < cells_) search_cell(i * cells_ + j, edges, max_interior, count, into);
+    }
+    if (!into.empty() && last == cells_ - 1) last = std::min(ring + 1, cells_ - 1);
+  }
+}
+
+}  // namespace geoprior
