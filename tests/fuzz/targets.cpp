@@ -4,29 +4,13 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.h"
 #include "experiments/formats/gltf_reader.h"
 #include "experiments/runner/toml_tree.h"
 #include "experiments/skinning/bvh.h"
 #include "experiments/skinning/skeleton_file.h"
+#include "tests/fuzz/allow_error.h"
 
 namespace geoprior::test {
-namespace {
-
-/// Runs a reader; Error is its way to refuse.
-template <class Action>
-void allow_error(Action action) {
-  try {
-    action();
-  } catch (const Error&) {
-  }
-}
-
-std::string_view text_of(const std::uint8_t* data, std::size_t size) {
-  return {reinterpret_cast<const char*>(data), size};
-}
-
-}  // namespace
 
 void fuzz_gltf(const std::uint8_t* data, std::size_t size) {
   std::vector<std::byte> bytes(size);
