@@ -193,7 +193,6 @@ std::vector<FigureRow> rows_of_states(const CaseRecord& c, const Variants& varia
     for (const Variants& block : blocks) {
       FigureRow row;
       row.label = state.label;
-      row.has_headings = blocks.size() > 1;
       for (const std::string& variant : block) {
         row.cells.push_back(make_cell(c, variant, state.wanted, state.parameter, view, folder));
       }
@@ -203,7 +202,7 @@ std::vector<FigureRow> rows_of_states(const CaseRecord& c, const Variants& varia
   return rows;
 }
 
-/// States side by side, a row a variant. Headings in every row: cases have other states.
+/// States side by side, a row a variant.
 std::vector<FigureRow> rows_of_variants(const CaseRecord& c, const Variants& variants,
                                         const FigureView& view, const fs::path& folder) {
   std::vector<FigureRow> rows;
@@ -211,7 +210,6 @@ std::vector<FigureRow> rows_of_variants(const CaseRecord& c, const Variants& var
     for (const std::vector<DrawnState>& block : wrap(drawn_states(c, view))) {
       FigureRow row;
       if (variants.size() > 1) row.label = display_name(variant);
-      row.has_headings = true;
       for (const DrawnState& state : block) {
         row.cells.push_back(make_cell(c, variant, state.wanted, state.parameter, view, folder));
         row.cells.back().label = state.label;
@@ -222,14 +220,31 @@ std::vector<FigureRow> rows_of_variants(const CaseRecord& c, const Variants& var
   return rows;
 }
 
+/// Written in capitals wherever they stand alone.
+const std::set<std::string> kAcronyms{"apic", "flip", "jonswap", "pic", "tma"};
+
+std::string capitals(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
 }  // namespace
 
+bool same_labels(const FigureRow& a, const FigureRow& b) {
+  return std::equal(
+      a.cells.begin(), a.cells.end(), b.cells.begin(), b.cells.end(),
+      [](const FigureCell& one, const FigureCell& other) { return one.label == other.label; });
+}
+
 std::string display_name(const std::string& name) {
+  const std::size_t first = std::min(name.find_first_of("-_"), name.size());
+  const std::string word = name.substr(0, first);
   std::string text = name;
   std::replace(text.begin(), text.end(), '-', ' ');
   std::replace(text.begin(), text.end(), '_', ' ');
   if (!text.empty()) {
     text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    if (kAcronyms.contains(word)) text.replace(0, first, capitals(word));
   }
   return text;
 }
@@ -253,7 +268,7 @@ std::vector<FigureRow> collect_cells(const RunRecord& record, const fs::path& ru
                                         : rows_of_states(c, variants, view, run_folder)) {
       if (rows.size() == kMostRows) return rows;
       if (cases.size() > 1) row.label += (row.label.empty() ? "" : ", ") + c.name;
-      row.has_headings = row.has_headings || rows.empty();
+      row.has_headings = rows.empty() || !same_labels(rows.back(), row);
       rows.push_back(std::move(row));
     }
   }

@@ -41,7 +41,10 @@ std::vector<FigureRow> collect_cells(const RunRecord& record,
                                      const std::filesystem::path& run_folder,
                                      const FigureView& view);
 
-/// "dual-quaternion" as "Dual quaternion".
+/// Whether two rows name their cells alike.
+bool same_labels(const FigureRow& a, const FigureRow& b);
+
+/// "dual-quaternion" as "Dual quaternion", "flip" as "FLIP".
 std::string display_name(const std::string& name);
 
 /// "90°", "0.25 s", "12": a parameter with its unit.

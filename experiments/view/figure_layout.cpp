@@ -199,13 +199,6 @@ std::optional<FigureBlock> make_block_above(const RunRecord& record, const fs::p
   return make_block(read_run_file(source / "run.h5"), source, above);
 }
 
-/// Whether two rows name their cells alike.
-bool same_headings(const FigureRow& a, const FigureRow& b) {
-  return std::equal(
-      a.cells.begin(), a.cells.end(), b.cells.begin(), b.cells.end(),
-      [](const FigureCell& one, const FigureCell& other) { return one.label == other.label; });
-}
-
 int block_height(const FigureBlock& block, const Layout& layout) {
   return layout.height +
          (has_bar(block.look) ? kBarHeight : legend_height(block.look.legend, layout.width));
@@ -244,7 +237,7 @@ std::vector<FigureBlock> make_blocks(const RunRecord& record, const fs::path& fo
   }
   blocks.push_back(make_block(record, folder, view));
   if (blocks.size() == 1) return blocks;
-  if (same_headings(blocks.front().rows.back(), blocks.back().rows.front())) {
+  if (same_labels(blocks.front().rows.back(), blocks.back().rows.front())) {
     blocks.back().rows.front().has_headings = false;
   }
   for (FigureBlock& block : blocks) {

@@ -35,7 +35,7 @@ constexpr const char* kShader = R"(
   float towards = max(dot(mirrored, sun), 0.0);
   float glint = 0.9 * pow(towards, 220.0) + 0.16 * pow(towards, 14.0);
   float lit = 0.62 + 0.38 * max(dot(waterNormal, sun), 0.0);
-  vec3 deep = vec3(0.035, 0.225, 0.325);
+  vec3 deep = vec3(0.05, 0.265, 0.365);
   vec3 thin = vec3(0.29, 0.63, 0.68);
   vec3 body = mix(thin, deep, pow(facing, 1.3)) * (0.80 + 0.20 * up.z);
   TINT
@@ -52,7 +52,10 @@ std::string tint_code(Tint tint, const Eigen::Vector3d& ground) {
     case Tint::but_ground:
       break;
   }
-  return "body = mix(body, diffuseColor, 0.86 * smoothstep(0.0, 0.3, distance(diffuseColor, " +
+  // The waves of a tinted place stay visible: its paint is as light or dark as the water was.
+  return "float relief = clamp(dot(body, vec3(1.0)) / 1.15, 0.55, 1.2);\n"
+         "  body = mix(body, diffuseColor * relief, 0.82 * smoothstep(0.0, 0.3, "
+         "distance(diffuseColor, " +
          vec3(ground) + ")));";
 }
 
