@@ -46,7 +46,8 @@ std::vector<Feature> lift_features(const SurfaceSequence& sequence, const Extrac
                                    RunContext& context);
 
 /// The animation without a feature: its bed is put back under a differential one, an isolated one
-/// is removed.
+/// is removed. In a frame that a wave's track misses, though it goes on later, the bed is made
+/// where the frames before and after have it: its map is interpolated there too.
 SurfaceFrame without_feature(const SurfaceFrame& frame, int frame_index,
                              const Extraction& extraction, const ExtractionOptions& options,
                              const std::vector<int>& ids);

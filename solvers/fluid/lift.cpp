@@ -160,6 +160,44 @@ const Region* region_in_frame(const Extraction& extraction, const Track& track, 
   return nullptr;
 }
 
+/// Regions of a track before and after a frame that it misses; none when it is not alive.
+std::vector<const Region*> regions_around(const Extraction& extraction, const Track& track,
+                                          int frame) {
+  const Region* before = nullptr;
+  const Region* after = nullptr;
+  for (const int r : track.regions) {
+    const Region& region = extraction.regions[static_cast<std::size_t>(r)];
+    if (region.frame < frame) before = &region;
+    if (region.frame > frame && after == nullptr) after = &region;
+  }
+  if (before == nullptr || after == nullptr) return {};
+  return {before, after};
+}
+
+/// A wave that a frame's segmentation has missed: bed where it was before or will be after, carried
+/// along its path, gets label `label`. False when no vertex is there.
+bool label_missed(const SurfaceFrame& frame, int index, const Extraction& extraction,
+                  const std::vector<const Region*>& around, int label, FrameLabels& labels) {
+  const Region& before = *around[0];
+  const Region& after = *around[1];
+  const double share =
+      static_cast<double>(index - before.frame) / static_cast<double>(after.frame - before.frame);
+  const Eigen::Vector3d centre = before.centre + share * (after.centre - before.centre);
+  bool any = false;
+  for (Eigen::Index v = 0; v < frame.mesh.V.rows(); ++v) {
+    const auto i = static_cast<std::size_t>(v);
+    if (labels.label[i] != 0 || (!labels.masked.empty() && labels.masked[i] != 0)) continue;
+    const Eigen::Vector3d x = frame.mesh.V.row(v).transpose() - centre;
+    const bool there = std::any_of(around.begin(), around.end(), [&](const Region* region) {
+      return touches_support(region->support, support_cube(x + region->centre, extraction.cell));
+    });
+    if (!there) continue;
+    labels.label[i] = label;
+    any = true;
+  }
+  return any;
+}
+
 Labeller labeller_of(const Extraction& extraction) {
   return [&extraction](const SurfaceFrame& frame, int index) {
     SegmentedFrame segmented = extraction.segmenter->segment(frame, index);
@@ -257,13 +295,29 @@ SurfaceFrame without_feature(const SurfaceFrame& frame, int frame_index,
                              const Extraction& extraction, const ExtractionOptions& options,
                              const std::vector<int>& ids) {
   std::vector<Region> regions;
+  std::vector<std::vector<const Region*>> missed;
   for (const Track* track : wanted_tracks(extraction, ids)) {
     const Region* region = region_in_frame(extraction, *track, frame_index);
-    if (region != nullptr) regions.push_back(*region);
+    if (region != nullptr) {
+      regions.push_back(*region);
+    } else if (track->kind == RegionKind::differential) {
+      auto around = regions_around(extraction, *track, frame_index);
+      if (!around.empty()) missed.push_back(std::move(around));
+    }
   }
-  if (regions.empty()) return frame;
-  return without_regions(frame, labeller_of(extraction)(frame, frame_index), regions,
-                         options.map.border * extraction.cell);
+  if (regions.empty() && missed.empty()) return frame;
+  FrameLabels labels = labeller_of(extraction)(frame, frame_index);
+  int label =
+      labels.label.empty() ? 0 : *std::max_element(labels.label.begin(), labels.label.end());
+  for (const auto& around : missed) {
+    Region region;
+    region.frame = frame_index;
+    region.label = ++label;
+    if (label_missed(frame, frame_index, extraction, around, label, labels)) {
+      regions.push_back(region);
+    }
+  }
+  return without_regions(frame, labels, regions, options.map.border * extraction.cell);
 }
 
 std::vector<FeatureSummary> track_summaries(const Extraction& extraction, int shortest) {

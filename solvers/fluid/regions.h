@@ -63,6 +63,11 @@ constexpr std::int64_t support_key(std::int64_t i, std::int64_t j, std::int64_t 
   return (i << 42) + (j << 21) + k;
 }
 
+/// Key of the cube (edge 2 h) that holds a point. @param cell  h (m)
+std::int64_t support_cube(const Eigen::Vector3d& x, double cell);
+/// Whether a region's support has the cube or one of the 26 around it.
+bool touches_support(const std::vector<std::int64_t>& support, std::int64_t cube);
+
 /// A frame with every vertex labelled: 0 bed, 1 … region.
 struct SegmentedFrame {
   Eigen::VectorXd curvature;  ///< H (1/m)

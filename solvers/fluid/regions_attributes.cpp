@@ -7,13 +7,6 @@
 namespace geoprior {
 namespace {
 
-std::int64_t cube_of(const Eigen::Vector3d& x, double cell) {
-  const auto index = [&](double c) {
-    return static_cast<std::int64_t>(std::clamp(std::floor(c / (2 * cell)), -1e6, 1e6));
-  };
-  return support_key(index(x.x()), index(x.y()), index(x.z()));
-}
-
 void add_vertex(const SurfaceGraph& graph, const SurfaceShape& shape, std::size_t v, double cell,
                 Region& region) {
   const Eigen::Vector3d& x = graph.x[v];
@@ -24,7 +17,7 @@ void add_vertex(const SurfaceGraph& graph, const SurfaceShape& shape, std::size_
   region.crest_share += shape.curvature[v] > 0 ? a : 0;
   region.box_min = region.box_min.cwiseMin(x);
   region.box_max = region.box_max.cwiseMax(x);
-  const std::int64_t key = cube_of(x, cell);
+  const std::int64_t key = support_cube(x, cell);
   if (region.support.empty() || region.support.back() != key) region.support.push_back(key);
 }
 
@@ -43,6 +36,24 @@ void finish(Region& region) {
 }
 
 }  // namespace
+
+std::int64_t support_cube(const Eigen::Vector3d& x, double cell) {
+  const auto index = [&](double c) {
+    return static_cast<std::int64_t>(std::clamp(std::floor(c / (2 * cell)), -1e6, 1e6));
+  };
+  return support_key(index(x.x()), index(x.y()), index(x.z()));
+}
+
+bool touches_support(const std::vector<std::int64_t>& support, std::int64_t cube) {
+  for (std::int64_t i = -1; i <= 1; ++i) {
+    for (std::int64_t j = -1; j <= 1; ++j) {
+      const std::int64_t low = cube + support_key(i, j, -1);
+      const auto it = std::lower_bound(support.begin(), support.end(), low);
+      if (it != support.end() && *it <= low + 2) return true;
+    }
+  }
+  return false;
+}
 
 std::vector<Region> region_attributes(const SurfaceGraph& graph, const SurfaceShape& shape,
                                       const std::vector<int>& label, int count,

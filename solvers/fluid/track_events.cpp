@@ -9,17 +9,6 @@
 namespace geoprior {
 namespace {
 
-bool has_near(const std::vector<std::int64_t>& support, std::int64_t key) {
-  for (std::int64_t i = -1; i <= 1; ++i) {
-    for (std::int64_t j = -1; j <= 1; ++j) {
-      const std::int64_t low = key + support_key(i, j, -1);
-      const auto it = std::lower_bound(support.begin(), support.end(), low);
-      if (it != support.end() && *it <= low + 2) return true;
-    }
-  }
-  return false;
-}
-
 /// Looks for events at the ends of tracks.
 class EventFinder {
  public:
@@ -175,7 +164,8 @@ double support_overlap(const Region& a, const Region& b, const Eigen::Vector3d& 
   const std::vector<std::int64_t>& small = a_smaller ? a.support : b.support;
   const std::vector<std::int64_t>& large = a_smaller ? b.support : a.support;
   std::size_t shared = 0;
-  for (const std::int64_t key : small) shared += has_near(large, a_smaller ? key + by : key - by);
+  for (const std::int64_t key : small)
+    shared += touches_support(large, a_smaller ? key + by : key - by);
   return static_cast<double>(shared) / static_cast<double>(small.size());
 }
 

@@ -10,6 +10,7 @@
 #include "solvers/fluid/paste.h"
 #include "tests/core/shapes.h"
 #include "tests/fluid/map_waves.h"
+#include "tests/fluid/sculpting_fixture.h"
 
 namespace geoprior {
 namespace {
@@ -268,6 +269,31 @@ TEST(MapLift, DropsComeOutWhole) {
   EXPECT_EQ(without_regions(frames[0], source.labels[0], {source.extraction.regions[0]}, 0.3)
                 .mesh.triangle_count(),
             0);
+}
+
+TEST(MapLift, CutsAWaveOutOfAFrameThatItsTrackMisses) {
+  // The hill of frame 8, 0.14 m high, is cut out with its region and, its region forgotten, with
+  // those of frames 7 and 9, which are 0.01 m lower and higher: the same bed but for their rims.
+  const auto sequence = sculpting::splash();
+  RunContext context;
+  const ExtractionOptions options;
+  Extraction extraction = extract_regions(*sequence, options, context);
+  const auto hill =
+      std::find_if(extraction.tracking.tracks.begin(), extraction.tracking.tracks.end(),
+                   [](const Track& track) { return track.kind == RegionKind::differential; });
+  ASSERT_NE(hill, extraction.tracking.tracks.end());
+  const SurfaceFrame frame = sequence->frame(8);
+  const TriMesh known = without_feature(frame, 8, extraction, options, {hill->id}).mesh;
+  ASSERT_EQ(std::erase_if(
+                hill->regions,
+                [&](int r) { return extraction.regions[static_cast<std::size_t>(r)].frame == 8; }),
+            1U);
+  const TriMesh missed = without_feature(frame, 8, extraction, options, {hill->id}).mesh;
+  EXPECT_GT((frame.mesh.V - known.V).rowwise().norm().maxCoeff(), 0.1);
+  EXPECT_LT((missed.V - known.V).rowwise().norm().maxCoeff(), 0.01);
+  // Before its first frame there is nothing to cut.
+  EXPECT_EQ(without_feature(sequence->frame(1), 1, extraction, options, {hill->id}).mesh.V,
+            sequence->frame(1).mesh.V);
 }
 
 }  // namespace
