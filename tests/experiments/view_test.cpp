@@ -12,9 +12,13 @@
 #include <numbers>
 #include <string>
 
+#include "experiments/runner/stop.h"
+#include "experiments/view/child_process.h"
 #include "experiments/view/colors.h"
 #include "experiments/view/display.h"
 #include "experiments/view/figure_cells.h"
+#include "experiments/view/figure_layout.h"
+#include "experiments/view/frame_times.h"
 #include "experiments/view/legend.h"
 #include "experiments/view/panel.h"
 #include "experiments/view/section.h"
@@ -165,6 +169,8 @@ TEST(Names, AreWrittenForReaders) {
   EXPECT_EQ(with_unit(90, "deg"), "90\u00b0");
   EXPECT_EQ(with_unit(0.25, "s"), "0.25 s");
   EXPECT_EQ(with_unit(3, "1"), "3");
+  EXPECT_EQ(display_name("flip-uncorrected"), "FLIP uncorrected");
+  EXPECT_EQ(display_name("pictures"), "Pictures") << "no acronym, though it begins like one";
 }
 
 TEST(Display, IsOursAndEndsWithItsObject) {
@@ -484,6 +490,160 @@ TEST(Cells, NearestFrameIsTakenAndLabelledWithItsOwnParameter) {
   ASSERT_EQ(rows[0].cells.size(), 2u);
   EXPECT_EQ(rows[0].cells[1].label, "Second box");
   EXPECT_DOUBLE_EQ(rows[0].cells[0].part->points.col(0).maxCoeff(), 1.1);
+}
+
+TEST(Cells, StatesStandSideBySideWhenTheViewSaysAcross) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  FigureView view;
+  view.parameters = {0, 45, 90, 180};  // 180 is nearest to 90, which is there
+  view.across = FigureView::Across::states;
+  const auto rows = collect_cells(record, folder.path, view);
+  ASSERT_EQ(rows.size(), 2u) << "a row a variant";
+  EXPECT_EQ(rows[1].label, "Second box");
+  ASSERT_EQ(rows[1].cells.size(), 3u);
+  EXPECT_EQ(rows[1].cells[2].label, "Angle 90\u00b0");
+  EXPECT_DOUBLE_EQ(rows[1].cells[1].part->points.col(0).maxCoeff(), 1.1);
+  EXPECT_TRUE(rows[0].has_headings);
+}
+
+TEST(Blocks, ARowAboveHasItsOwnPartCameraAndLabel) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  FigureView view;
+  view.parameters = {0, 90};
+  view.across = FigureView::Across::states;
+  view.label = "Heights";
+  view.color_by = "height";
+  view.variants = {"first-box"};
+  view.above = RowAbove{};
+  view.above->label = "Input";
+  view.above->direction = {0, -1, 0};
+  view.above->up = {0, 0, 1};
+  const auto blocks = make_blocks(record, folder.path, view);
+  ASSERT_EQ(blocks.size(), 2u);
+  EXPECT_EQ(blocks[0].rows[0].label, "Input");
+  EXPECT_EQ(blocks[1].rows[0].label, "Heights");
+  EXPECT_NEAR(blocks[0].look.window.direction.y(), -1, 1e-12);
+  EXPECT_NEAR(blocks[1].look.window.direction.z(), 1, 1e-12);
+  EXPECT_FALSE(blocks[0].look.style.scale) << "coloured in the row below alone";
+  EXPECT_TRUE(blocks[1].look.style.scale);
+  EXPECT_TRUE(blocks[0].rows[0].has_headings);
+  EXPECT_FALSE(blocks[1].rows[0].has_headings) << "the same states stand over it already";
+}
+
+TEST(Blocks, ARowAboveOfAnInputIsTakenFromTheRunOfThatContent) {
+  const TestFolder folder;
+  const fs::path input = folder.path / "runs/test/boxes/20250101T000000Z-00000000";
+  make_fake_run(input);
+  const fs::path own = folder.path / "own";
+  RunRecord record = make_fake_run(own);
+  record.inputs = {{"run:test/boxes/second-box", std::string(64, 'b')}};
+  ::setenv("GEOPRIOR_RUNS", (folder.path / "runs").c_str(), 1);
+  FigureView view;
+  view.at_parameter = 45;
+  view.above = RowAbove{};
+  view.above->input = "run:test/boxes/second-box";
+  const auto blocks = make_blocks(record, own, view);
+  ASSERT_EQ(blocks.size(), 2u);
+  ASSERT_EQ(blocks[0].rows.at(0).cells.size(), 1u);
+  EXPECT_EQ(blocks[0].rows[0].cells[0].label, "Second box");
+  record.inputs[0].sha256 = std::string(64, 'c');
+  EXPECT_THAT(test::error_of([&] { make_blocks(record, own, view); }),
+              HasSubstr("no longer there"));
+  record.inputs.clear();
+  EXPECT_EQ(make_blocks(record, own, view).size(), 1u) << "made of files: no run to show";
+  ::unsetenv("GEOPRIOR_RUNS");
+}
+
+TEST(ColorScale, IdentitiesTakeColoursInTurnAndLeaveTheFirstToNone) {
+  Eigen::VectorXd ids = Eigen::VectorXd::Zero(8);
+  ids[3] = kIdentityColors + 1;
+  const Part part = with_values("track", ids);
+  const ColorScale scale = make_identity_scale({&part}, "track", true);
+  ASSERT_EQ(scale.palette.size(), kIdentityColors + 2);
+  EXPECT_EQ(scale.palette.front(), class_palette(1, true).front());
+  EXPECT_EQ(scale.palette[1], scale.palette[kIdentityColors + 1]);
+  EXPECT_NE(scale.palette[1], scale.palette[2]);
+  EXPECT_NE(scale.palette[1], scale.palette[0]);
+  ids[3] = 0.5;
+  const Part broken = with_values("track", ids);
+  EXPECT_THAT(test::error_of([&] { make_identity_scale({&broken}, "track", true); }),
+              HasSubstr("0.5"));
+}
+
+TEST(FrameTimes, AreEvenlyChosenWithTheFirstAndTheLast) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  EXPECT_EQ(frame_parameters(record, {}), (std::vector<double>{0, 45, 90}));
+  EXPECT_EQ(evenly_chosen({0, 1, 2, 3, 4, 5, 6, 7, 8}, 3), (std::vector<double>{0, 4, 8}));
+  EXPECT_EQ(evenly_chosen({0, 1}, 12), (std::vector<double>{0, 1}));
+  EXPECT_EQ(evenly_chosen({0, 1, 2}, 1), (std::vector<double>{2}));
+}
+
+TEST(Render, DrawsAContactSheetWhereTheViewAsksForOne) {
+  const TestFolder folder;
+  make_fake_run(folder.path);
+  FigureView view;
+  view.variants = {"first-box"};
+  render_run(folder.path, view);
+  EXPECT_FALSE(fs::exists(folder.path / "contact-sheet.png"));
+  view.contact_sheet = 3;
+  render_run(folder.path, view);
+  EXPECT_EQ(read_whole_file(folder.path / "contact-sheet.png").substr(1, 3), "PNG");
+}
+
+/// Puts a folder first on the PATH, for as long as it lives.
+class PathOf {
+ public:
+  explicit PathOf(const fs::path& folder) : old_(std::getenv("PATH")) {
+    ::setenv("PATH", (folder.string() + ":" + old_).c_str(), 1);
+  }
+  ~PathOf() { ::setenv("PATH", old_.c_str(), 1); }
+  PathOf(const PathOf&) = delete;
+  PathOf& operator=(const PathOf&) = delete;
+
+ private:
+  std::string old_;
+};
+
+/// A program named ffmpeg that runs `script`; its last argument is $file.
+void make_ffmpeg(const fs::path& folder, const std::string& script) {
+  write_file_atomically(folder / "ffmpeg",
+                        std::string_view("#!/bin/sh\nfor file; do :; done\n" + script + "\n"));
+  fs::permissions(folder / "ffmpeg", fs::perms::owner_all);
+}
+
+TEST(Video, HasAPictureAFrameAndIsWholeOrAbsent) {
+  const TestFolder folder;
+  make_fake_run(folder.path / "run");
+  const PathOf path(folder.path);
+  FigureView view;
+  view.variants = {"first-box"};
+  make_ffmpeg(folder.path, "echo half > \"$file\"; echo no encoder >&2; exit 1");
+  const fs::path out = folder.path / "50% video";
+  EXPECT_THAT(test::error_of([&] {
+                make_video(folder.path / "run", view, {25, out});
+              }),
+              HasSubstr("no encoder"));
+  EXPECT_TRUE(fs::exists(out / "frame_0002.png"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(out), {}), 3) << "three frames, no half video";
+  make_ffmpeg(folder.path, "echo \"$@\" > \"$file\"");
+  const Video video = make_video(folder.path / "run", view, {25, out});
+  EXPECT_EQ(video.frames, 3);
+  ASSERT_EQ(video.file, out / "video.mp4");
+  EXPECT_THAT(read_whole_file(out / "video.mp4"), HasSubstr("50%% video/frame_%04d.png"));
+}
+
+TEST(Video, IsLeftOutAfterCtrlC) {
+  const TestFolder folder;
+  make_fake_run(folder.path);
+  request_stop();
+  const Video video = make_video(folder.path, {}, {25, folder.path / "video"});
+  clear_stop();
+  EXPECT_TRUE(video.stopped);
+  EXPECT_EQ(video.frames, 0);
+  EXPECT_FALSE(video.file);
 }
 
 }  // namespace
