@@ -72,6 +72,43 @@ void number_sites(DetailMesh& result, std::span<const Detail> details,
   result.mesh.renumber(number);
 }
 
+bool has_ghost(const DetailMesh& d, int t) {
+  const auto corner = d.mesh.corners(t);
+  return std::any_of(corner.begin(), corner.end(), [&](int c) { return !d.is_detail(c); });
+}
+
+/// Half a detail in every triangle; in one with ghosts the density of the details beside it, for
+/// its own area says how densely the border is sampled (at most half a detail).
+void set_rest_densities(DetailMesh& d) {
+  std::vector<double> around(d.site.size(), 0);  // area of the triangles of a detail
+  std::vector<int> count(d.site.size(), 0);
+  double all = 0;
+  for (int t = 0; t < d.mesh.triangle_slots(); ++t) {
+    if (!d.mesh.triangle_alive(t)) continue;
+    const auto corner = d.mesh.corners(t);
+    const double area = d.mesh.area(t);
+    all += area;
+    d.mesh.set_density(t, area > 0 ? 0.5 / area : 0);
+    if (has_ghost(d, t)) continue;
+    for (const int c : corner) {
+      around[index(c)] += area;
+      ++count[index(c)];
+    }
+  }
+  const double mean = 0.5 * d.mesh.triangle_count() / all;
+  for (int t = 0; t < d.mesh.triangle_slots(); ++t) {
+    if (!d.mesh.triangle_alive(t) || !has_ghost(d, t)) continue;
+    double sum = 0;
+    int terms = 0;
+    for (const int c : d.mesh.corners(t)) {
+      if (count[index(c)] == 0) continue;
+      sum += 0.5 * count[index(c)] / around[index(c)];
+      ++terms;
+    }
+    d.mesh.set_density(t, std::min(d.mesh.density(t), terms > 0 ? sum / terms : mean));
+  }
+}
+
 }  // namespace
 
 DetailMesh build_detail_mesh(std::shared_ptr<const SurfaceTopology> surface,
@@ -95,11 +132,7 @@ DetailMesh build_detail_mesh(std::shared_ptr<const SurfaceTopology> surface,
     result.position.push_back(position_of(d.at, *result.surface, x));
   result.mesh.measure(result.position);
   result.mesh.flip_to_delaunay();
-  for (int t = 0; t < result.mesh.triangle_slots(); ++t) {
-    if (!result.mesh.triangle_alive(t)) continue;
-    const double area = result.mesh.area(t);
-    result.mesh.set_density(t, area > 0 ? 0.5 / area : 0);
-  }
+  set_rest_densities(result);
   return result;
 }
 

@@ -165,12 +165,19 @@ double change_weights(DetailMesh& d, double most) {
   return largest;
 }
 
+bool among_details(const DetailMesh& d, int h) {
+  const auto apex_is_detail = [&](int half) {
+    return half >= 0 && d.is_detail(d.mesh.origin(IntrinsicTriangulation::previous(half)));
+  };
+  return d.is_detail(d.mesh.origin(h)) && d.is_detail(d.mesh.tip(h)) && apex_is_detail(h) &&
+         apex_is_detail(d.mesh.twin(h));
+}
+
 double mean_edge(const DetailMesh& d) {
   double sum = 0;
   std::int64_t count = 0;
   for (int h = 0; h < 3 * d.mesh.triangle_slots(); ++h) {
-    if (d.mesh.origin(h) < 0 || d.mesh.twin(h) > h) continue;
-    if (!d.is_detail(d.mesh.origin(h)) || !d.is_detail(d.mesh.tip(h))) continue;
+    if (d.mesh.origin(h) < 0 || d.mesh.twin(h) > h || !among_details(d, h)) continue;
     sum += d.mesh.length(h);
     ++count;
   }

@@ -48,7 +48,8 @@ struct DetailMesh {
 /// details whose cells in the geodesic Voronoi diagram touch; in the plane it is the Delaunay
 /// triangulation. A vertex whose removal would change the topology stays as a ghost, so that the
 /// result is a manifold that covers the surface whatever the number of details. Lengths are chords
-/// at rest; the density of each triangle is 1 / (2 area): half a detail per triangle.
+/// at rest; the density of each triangle is 1 / (2 area), half a detail per triangle, except that a
+/// triangle with ghosts takes the density of the details beside it.
 ///
 /// @param details  valid (`require_valid`), not two in one place
 /// @throws Error   when triangles become degenerate (names the detail)
@@ -98,7 +99,12 @@ void remove_detail(DetailMesh& details, int site);
 /// @return  largest change of a weight
 double change_weights(DetailMesh& details, double most);
 
-/// Mean length of the edges of M_d between two details, whatever their weights (m); 0 without any.
+/// True for a half-edge whose two triangles have details at all corners. Near a border, ghosts
+/// decide which edges there are, and their spacing changes with the motion: such edges say nothing
+/// of the details.
+bool among_details(const DetailMesh& details, int half_edge);
+
+/// Mean length of the edges of M_d among details, whatever their weights (m); 0 without any.
 double mean_edge(const DetailMesh& details);
 
 /// Triangles of M_d with every site taken out that is no detail of weight above `weight`: the

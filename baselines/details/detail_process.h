@@ -39,7 +39,8 @@ using DetailMethodFactory =
 /// - "detail_mesh" (triangles): M_d; the points are those of "details" in the same order, then
 ///   ghosts; point array "ghost" (0 or 1), cell array "density" [1/m^2] (carried, see
 ///   IntrinsicTriangulation). An edge of M_d joins two points that share a triangle; metrics of
-///   spacing leave out edges with a ghost;
+///   spacing take the edges whose two triangles have no ghost (`among_details`): near a border the
+///   ghosts, whose spacing changes with the motion, decide which edges there are;
 /// - "visible_mesh" (triangles): the same points, the triangulation of the details of weight above
 ///   1/2 and the ghosts: the spacing that one sees.
 ///

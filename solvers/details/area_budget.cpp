@@ -123,14 +123,19 @@ void AreaBudget::leave_bare_faces(const DetailMesh& original) {
   }
 }
 
-void AreaBudget::update(const DetailMesh& details) {
+void AreaBudget::update(const DetailMesh& details, double lead_growing, double lead_shrinking) {
   target_.resize(rest_area_.size());
+  if (area_.empty()) area_ = rest_area_;
   parallel_blocks(rest_area_.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       double area = 0;
       for (int i = face_begin_[p]; i < face_begin_[p + 1]; ++i)
         area += area_of_face(face_[index(i)], *details.surface, details.x);
-      target_[p] = rest_area_[p] > 0 ? rest_count_[p] * area / rest_area_[p] : 0;
+      const double change = area - area_[p];
+      const double ahead =
+          std::max(0.0, area + (change > 0 ? lead_growing : lead_shrinking) * change);
+      target_[p] = rest_area_[p] > 0 ? rest_count_[p] * ahead / rest_area_[p] : 0;
+      area_[p] = area;
     }
   });
   count_.assign(rest_area_.size(), 0);

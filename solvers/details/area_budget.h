@@ -1,6 +1,6 @@
 #pragma once
 
-#include <span>
+#include <utility>
 #include <vector>
 
 #include "baselines/details/detail_mesh.h"
@@ -21,8 +21,9 @@ class AreaBudget {
   /// Patches of about `details_per_patch` details of `original`, at rest.
   AreaBudget(const DetailMesh& original, int details_per_patch);
 
-  /// Measures the areas, and counts the details whose target weight is not 0.
-  void update(const DetailMesh& details);
+  /// Measures the areas, and counts the details whose target weight is not 0. Targets are those of
+  /// some frames ahead, by the change of the area since the last call.
+  void update(const DetailMesh& details, double lead_growing = 0, double lead_shrinking = 0);
   [[nodiscard]] int patch_count() const { return static_cast<int>(rest_area_.size()); }
   [[nodiscard]] int patch_of(const SurfacePoint& at) const {
     return patch_[static_cast<std::size_t>(at.face)];
@@ -32,6 +33,9 @@ class AreaBudget {
   /// Counts a detail that came (+1) or goes (-1).
   void add(int patch, int change);
   [[nodiscard]] double total_target() const;
+  /// Areas of the last update: all that the next one depends on.
+  [[nodiscard]] const std::vector<double>& areas() const { return area_; }
+  void set_areas(std::vector<double> areas) { area_ = std::move(areas); }
 
  private:
   static constexpr double kBareAfter = 3;
@@ -39,7 +43,7 @@ class AreaBudget {
 
   std::vector<int> patch_;              ///< per face
   std::vector<int> face_begin_, face_;  ///< faces of a patch
-  std::vector<double> rest_area_, rest_count_, target_, count_;
+  std::vector<double> rest_area_, rest_count_, area_, target_, count_;
 };
 
 }  // namespace geoprior

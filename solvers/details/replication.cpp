@@ -73,7 +73,8 @@ void Replication::step(const Eigen::MatrixX3d& V, RunContext& context) {
   }
   {
     const Phase phase(context, "insert");
-    budget_.update(now_);
+    const double frames = options_.anticipate ? 1 / options_.weight_rate : 0;
+    budget_.update(now_, frames / 4, 3 * frames / 4);
     if (options_.area_rule == AreaRule::budget) revive();
     insert();
   }
@@ -105,11 +106,16 @@ void Replication::diagnose(std::map<std::string, double>& into) const {
   into["table_bytes"] = static_cast<double>(table_.bytes());
 }
 
-void Replication::save(StateWriter& out) const { now_.save(out); }
+void Replication::save(StateWriter& out) const {
+  now_.save(out);
+  out.items(budget_.areas());
+}
 
 void Replication::load(StateReader& in) {
   now_.load(in);
-  budget_.update(now_);
+  std::vector<double> areas;
+  in.items(areas);
+  budget_.set_areas(std::move(areas));
 }
 
 std::unique_ptr<DetailMethod> make_replication(const DetailScene& scene,

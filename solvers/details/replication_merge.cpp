@@ -17,6 +17,20 @@ bool Replication::may_fade(int site) const {
          budget_.deficit(patch_of_site(site)) <= -(0.5 + options_.dead_band);
 }
 
+/// Mean ratio of the triangles around a detail: small where details crowd.
+double Replication::room_of(int site) const {
+  const int start = now_.mesh.outgoing(site);
+  double sum = 0;
+  int count = 0;
+  for (int h = start; h >= 0;) {
+    sum += ratio(h / 3);
+    ++count;
+    h = now_.mesh.twin(IntrinsicTriangulation::previous(h));
+    if (h == start) break;
+  }
+  return sum / count;
+}
+
 std::vector<WantingTriangle> Replication::shrunk() const {
   const bool budget = options_.area_rule == AreaRule::budget;
   std::vector<WantingTriangle> result;
@@ -24,8 +38,8 @@ std::vector<WantingTriangle> Replication::shrunk() const {
     if (!now_.mesh.triangle_alive(t)) continue;
     const auto corner = now_.mesh.corners(t);
     if (std::none_of(corner.begin(), corner.end(), [&](int c) { return may_fade(c); })) continue;
-    const double r = ratio(t);
-    if (budget || r * options_.shrink_threshold < 1) result.push_back({r, t});
+    const int gone = budget || ratio(t) * options_.shrink_threshold < 1 ? loser(t) : -1;
+    if (gone >= 0) result.push_back({room_of(gone), t});
   }
   std::sort(result.begin(), result.end(), [](const WantingTriangle& a, const WantingTriangle& b) {
     return std::pair(a.ratio, a.triangle) < std::pair(b.ratio, b.triangle);
@@ -44,7 +58,7 @@ int Replication::loser(int t) const {
   }
   const auto age = [&](int i) {
     const Detail& d = now_.site[index(i)];
-    return std::tuple(d.weight, -d.generation, -d.birth);
+    return std::tuple(d.weight, room_of(i), -d.birth);
   };
   const int a = now_.mesh.origin(shortest), b = now_.mesh.tip(shortest);
   if (!may_fade(a)) return may_fade(b) ? b : -1;

@@ -44,6 +44,10 @@ void describe(OptionVisitor& v, ReplicationOptions& options) {
           {.doc = "budget: details of a patch at rest", .min = 1});
   v.value("dead_band", options.dead_band,
           {.doc = "budget: a patch acts when off by more than 1/2 + this", .min = 0, .max = 10});
+  v.value(
+      "anticipate", options.anticipate,
+      {.doc = "budget: patches ask for what they need K / 4 frames ahead when they grow, 3 K / 4 "
+              "when they shrink, K = 1 / weight_rate"});
   v.value("max_insertions", options.max_insertions,
           {.doc = "most details inserted in a frame; absent: no limit", .min = 1});
   describe_choice(v, "weight_law", options.weight_law, kWeightLaws,
