@@ -72,40 +72,12 @@ void number_sites(DetailMesh& result, std::span<const Detail> details,
   result.mesh.renumber(number);
 }
 
-bool has_ghost(const DetailMesh& d, int t) {
-  const auto corner = d.mesh.corners(t);
-  return std::any_of(corner.begin(), corner.end(), [&](int c) { return !d.is_detail(c); });
-}
-
-/// Half a detail in every triangle; in one with ghosts the density of the details beside it, for
-/// its own area says how densely the border is sampled (at most half a detail).
+/// Every triangle holds what it has now.
 void set_rest_densities(DetailMesh& d) {
-  std::vector<double> around(d.site.size(), 0);  // area of the triangles of a detail
-  std::vector<int> count(d.site.size(), 0);
-  double all = 0;
   for (int t = 0; t < d.mesh.triangle_slots(); ++t) {
     if (!d.mesh.triangle_alive(t)) continue;
-    const auto corner = d.mesh.corners(t);
     const double area = d.mesh.area(t);
-    all += area;
-    d.mesh.set_density(t, area > 0 ? 0.5 / area : 0);
-    if (has_ghost(d, t)) continue;
-    for (const int c : corner) {
-      around[index(c)] += area;
-      ++count[index(c)];
-    }
-  }
-  const double mean = 0.5 * d.mesh.triangle_count() / all;
-  for (int t = 0; t < d.mesh.triangle_slots(); ++t) {
-    if (!d.mesh.triangle_alive(t) || !has_ghost(d, t)) continue;
-    double sum = 0;
-    int terms = 0;
-    for (const int c : d.mesh.corners(t)) {
-      if (count[index(c)] == 0) continue;
-      sum += 0.5 * count[index(c)] / around[index(c)];
-      ++terms;
-    }
-    d.mesh.set_density(t, std::min(d.mesh.density(t), terms > 0 ? sum / terms : mean));
+    d.mesh.set_density(t, area > 0 ? details_of(d, t) / area : 0);
   }
 }
 

@@ -165,6 +165,12 @@ double change_weights(DetailMesh& d, double most) {
   return largest;
 }
 
+double details_of(const DetailMesh& d, int t) {
+  int corners = 0;
+  for (const int c : d.mesh.corners(t)) corners += d.is_detail(c) ? 1 : 0;
+  return std::max(corners, 1) / 6.0;
+}
+
 bool among_details(const DetailMesh& d, int h) {
   const auto apex_is_detail = [&](int half) {
     return half >= 0 && d.is_detail(d.mesh.origin(IntrinsicTriangulation::previous(half)));

@@ -48,8 +48,7 @@ struct DetailMesh {
 /// details whose cells in the geodesic Voronoi diagram touch; in the plane it is the Delaunay
 /// triangulation. A vertex whose removal would change the topology stays as a ghost, so that the
 /// result is a manifold that covers the surface whatever the number of details. Lengths are chords
-/// at rest; the density of each triangle is 1 / (2 area), half a detail per triangle, except that a
-/// triangle with ghosts takes the density of the details beside it.
+/// at rest; the density of each triangle is `details_of` it / area.
 ///
 /// @param details  valid (`require_valid`), not two in one place
 /// @throws Error   when triangles become degenerate (names the detail)
@@ -98,6 +97,10 @@ void remove_detail(DetailMesh& details, int site);
 /// removed.
 /// @return  largest change of a weight
 double change_weights(DetailMesh& details, double most);
+
+/// Details that a triangle of M_d holds: a sixth for each corner that is a detail, so that a detail
+/// with six triangles counts as one (one sixth for a triangle of ghosts alone).
+double details_of(const DetailMesh& details, int triangle);
 
 /// True for a half-edge whose two triangles have details at all corners. Near a border, ghosts
 /// decide which edges there are, and their spacing changes with the motion: such edges say nothing

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/state_bytes.h"
+#include "solvers/details/local_density.h"
 #include "solvers/details/replication_state.h"
 
 namespace geoprior {
@@ -13,6 +14,9 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Centres that stand for all in the histogram of a frame.
 constexpr int kHistogramCentres = 512;
+
+/// Averages over neighbours of the density: over some twenty details.
+constexpr int kDensityRounds = 2;
 
 }  // namespace
 
@@ -29,12 +33,14 @@ Replication::Replication(const DetailScene& scene, const ReplicationOptions& opt
     if (original_.mesh.triangle_alive(t)) area += original_.mesh.area(t);
   rest_area_ = area / original_.mesh.triangle_count();
   correlation_ = PairCorrelation(rest_edge_, options.pair_correlation);
+  if (options_.area_rule == AreaRule::budget) smooth_densities(now_, kDensityRounds);
   if (options_.histogram) histogram_at_rest_ = correlation_.of(original_);
 }
 
 double Replication::ratio(int t) const {
   const double area = now_.mesh.area(t);
-  return options_.area_rule == AreaRule::mean ? area / rest_area_ : 2 * now_.mesh.density(t) * area;
+  return options_.area_rule == AreaRule::mean ? area / rest_area_
+                                              : now_.mesh.density(t) * area / details_of(now_, t);
 }
 
 int Replication::patch_of_site(int site) const {

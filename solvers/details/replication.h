@@ -14,7 +14,8 @@ namespace geoprior {
 enum class AreaRule {
   own,    ///< against its own initial area, carried through flips (the thesis)
   mean,   ///< against the mean initial area of all triangles
-  budget  ///< as `own`, but only while its patch has fewer details than its area asks for
+  budget  ///< against the density around it at rest, and only while its patch has fewer (to
+          ///< shrink: more) details than its area asks for
 };
 
 /// What a weight may change by in a frame.

@@ -17,25 +17,32 @@ bool Replication::may_fade(int site) const {
          budget_.deficit(patch_of_site(site)) <= -(0.5 + options_.dead_band);
 }
 
-/// Mean ratio of the triangles around a detail: small where details crowd.
+bool Replication::has_ghost(int t) const {
+  const auto corner = now_.mesh.corners(t);
+  return std::any_of(corner.begin(), corner.end(), [&](int c) { return !now_.is_detail(c); });
+}
+
+/// Mean ratio of the triangles among details around one: small where details crowd.
 double Replication::room_of(int site) const {
   const int start = now_.mesh.outgoing(site);
   double sum = 0;
   int count = 0;
   for (int h = start; h >= 0;) {
-    sum += ratio(h / 3);
-    ++count;
+    if (!has_ghost(h / 3)) {
+      sum += ratio(h / 3);
+      ++count;
+    }
     h = now_.mesh.twin(IntrinsicTriangulation::previous(h));
     if (h == start) break;
   }
-  return sum / count;
+  return count > 0 ? sum / count : 1;
 }
 
 std::vector<WantingTriangle> Replication::shrunk() const {
   const bool budget = options_.area_rule == AreaRule::budget;
   std::vector<WantingTriangle> result;
   for (int t = 0; t < now_.mesh.triangle_slots(); ++t) {
-    if (!now_.mesh.triangle_alive(t)) continue;
+    if (!now_.mesh.triangle_alive(t) || has_ghost(t)) continue;
     const auto corner = now_.mesh.corners(t);
     if (std::none_of(corner.begin(), corner.end(), [&](int c) { return may_fade(c); })) continue;
     const int gone = budget || ratio(t) * options_.shrink_threshold < 1 ? loser(t) : -1;

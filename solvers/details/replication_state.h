@@ -61,6 +61,7 @@ class Replication final : public DetailMethod {
   // replication_merge.cpp
   void merge();
   [[nodiscard]] std::vector<WantingTriangle> shrunk() const;
+  [[nodiscard]] bool has_ghost(int triangle) const;
   [[nodiscard]] double room_of(int site) const;
   [[nodiscard]] int loser(int triangle) const;
   [[nodiscard]] bool may_fade(int site) const;
