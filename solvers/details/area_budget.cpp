@@ -156,6 +156,18 @@ void AreaBudget::add(int patch, int change) {
   if (patch >= 0) count_[index(patch)] += change;
 }
 
+int AreaBudget::short_of(double limit) const {
+  int count = 0;
+  for (std::size_t p = 0; p < target_.size(); ++p) count += target_[p] - count_[p] >= limit ? 1 : 0;
+  return count;
+}
+
+int AreaBudget::over(double limit) const {
+  int count = 0;
+  for (std::size_t p = 0; p < target_.size(); ++p) count += count_[p] - target_[p] >= limit ? 1 : 0;
+  return count;
+}
+
 double AreaBudget::total_target() const {
   return std::accumulate(target_.begin(), target_.end(), 0.0);
 }

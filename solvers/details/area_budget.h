@@ -32,6 +32,9 @@ class AreaBudget {
   [[nodiscard]] double deficit(int patch) const;
   /// Counts a detail that came (+1) or goes (-1).
   void add(int patch, int change);
+  /// Patches that lack at least so many details, or have at least so many too many.
+  [[nodiscard]] int short_of(double limit) const;
+  [[nodiscard]] int over(double limit) const;
   [[nodiscard]] double total_target() const;
   /// Areas of the last update: all that the next one depends on.
   [[nodiscard]] const std::vector<double>& areas() const { return area_; }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/error.h"
+#include "core/parallel.h"
 #include "core/state_bytes.h"
 #include "solvers/details/local_density.h"
 #include "solvers/details/replication_state.h"
@@ -14,6 +14,10 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Centres that stand for all in the histogram of a frame.
 constexpr int kHistogramCentres = 512;
+
+bool comes_later(const WantingTriangle& a, const WantingTriangle& b) {
+  return a.rank > b.rank || (a.rank == b.rank && a.triangle > b.triangle);
+}
 
 /// Averages over neighbours of the density: over some twenty details.
 constexpr int kDensityRounds = 2;
@@ -43,8 +47,43 @@ double Replication::ratio(int t) const {
                                               : now_.mesh.density(t) * area / details_of(now_, t);
 }
 
-int Replication::patch_of_site(int site) const {
-  return budget_.patch_of(now_.site[index(site)].at);
+void Replication::find_needs() {
+  need_.assign(now_.site.size(), Need::nothing);
+  if (options_.area_rule != AreaRule::budget) return;
+  parallel_blocks(need_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (now_.kind[i] == SiteKind::empty) continue;
+      const double deficit = budget_.deficit(budget_.patch_of(now_.site[i].at));
+      if (deficit >= limit()) need_[i] = Need::more;
+      if (deficit <= -limit()) need_[i] = Need::fewer;
+    }
+  });
+}
+
+bool Replication::any_corner(int t, Need need) const {
+  const auto corner = now_.mesh.corners(t);
+  return std::any_of(corner.begin(), corner.end(),
+                     [&](int c) { return index(c) < need_.size() && need_[index(c)] == need; });
+}
+
+/// Ranks all triangles in parallel, and gathers those that want something.
+void Replication::rate_triangles(const std::function<double(int)>& rank) {
+  rank_.assign(index(now_.mesh.triangle_slots()), kNotWanting);
+  parallel_blocks(rank_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      if (now_.mesh.triangle_alive(static_cast<int>(t))) rank_[t] = rank(static_cast<int>(t));
+  });
+  wanting_.clear();
+  for (std::size_t t = 0; t < rank_.size(); ++t)
+    if (rank_[t] < kNotWanting) wanting_.push_back({rank_[t], static_cast<int>(t)});
+  std::make_heap(wanting_.begin(), wanting_.end(), comes_later);
+}
+
+int Replication::next_wanting() {
+  std::pop_heap(wanting_.begin(), wanting_.end(), comes_later);
+  const int t = wanting_.back().triangle;
+  wanting_.pop_back();
+  return t;
 }
 
 void Replication::use_new_marks() { ++current_mark_; }
@@ -82,6 +121,7 @@ void Replication::step(const Eigen::MatrixX3d& V, RunContext& context) {
     const double frames = options_.anticipate ? 1 / options_.weight_rate : 0;
     budget_.update(now_, frames / 4, 3 * frames / 4);
     if (options_.area_rule == AreaRule::budget) revive();
+    find_needs();
     insert();
   }
   {

@@ -23,13 +23,12 @@ void Replication::revive() {
   for (int i = 0; i < now_.site_slots(); ++i) {
     const Detail& d = now_.site[index(i)];
     if (!now_.is_detail(i) || d.target_weight > 0) continue;
-    if (budget_.deficit(patch_of_site(i)) >= 0.5 + options_.dead_band)
-      fading.emplace_back(-d.weight, i);
+    if (budget_.deficit(patch_of_site(i)) >= limit()) fading.emplace_back(-d.weight, i);
   }
   std::sort(fading.begin(), fading.end());
   for (const auto& [weight, i] : fading) {
     const int patch = patch_of_site(i);
-    if (budget_.deficit(patch) < 0.5 + options_.dead_band) continue;
+    if (budget_.deficit(patch) < limit()) continue;
     now_.site[index(i)].target_weight = 1;
     budget_.add(patch, 1);
     ++counts_.revived;
@@ -43,31 +42,28 @@ double Replication::largest_deficit(int t) const {
   return largest;
 }
 
-std::vector<WantingTriangle> Replication::stretched() const {
+void Replication::find_stretched() {
   const bool budget = options_.area_rule == AreaRule::budget;
-  std::vector<WantingTriangle> result;
-  for (int t = 0; t < now_.mesh.triangle_slots(); ++t) {
-    if (!now_.mesh.triangle_alive(t)) continue;
-    if (budget && largest_deficit(t) < 0.5 + options_.dead_band) continue;
+  const double threshold = budget ? 0 : options_.stretch_threshold;
+  rate_triangles([&](int t) {
+    if (budget && !any_corner(t, Need::more)) return kNotWanting;
     const double r = ratio(t);
-    if (budget || r > options_.stretch_threshold) result.push_back({r, t});
-  }
-  std::sort(result.begin(), result.end(), [](const WantingTriangle& a, const WantingTriangle& b) {
-    return std::pair(-a.ratio, a.triangle) < std::pair(-b.ratio, b.triangle);
+    return r > threshold ? -r : kNotWanting;
   });
-  return result;
 }
 
 void Replication::insert() {
-  const auto wanting = stretched();
-  if (wanting.empty()) return;
+  find_stretched();
+  if (wanting_.empty()) return;
   if (options_.histogram) measure_histogram();
   use_new_marks();
-  for (const WantingTriangle& one : wanting) {
+  while (!wanting_.empty()) {
     if (options_.max_insertions && counts_.inserted >= *options_.max_insertions) return;
+    const int t = next_wanting();
     // A triangle that an insertion of this frame rewrote has a corner that is marked.
-    if (!now_.mesh.triangle_alive(one.triangle) || marked(one.triangle)) continue;
-    fill(one.triangle);
+    if (!now_.mesh.triangle_alive(t) || marked(t)) continue;
+    fill(t);
+    if (options_.area_rule == AreaRule::budget && budget_.short_of(limit()) == 0) return;
   }
 }
 
@@ -76,7 +72,7 @@ bool Replication::fill(int t) {
   int room = options_.triplets.interior_capacity;
   if (budget) {
     const double deficit = largest_deficit(t);
-    if (deficit < 0.5 + options_.dead_band) return false;  // met by an insertion of this frame
+    if (deficit < limit()) return false;  // met by an insertion of this frame
     room = std::min(room, std::max(1, static_cast<int>(deficit + 0.5)));
   }
   const std::array<double, 3> edges{now_.mesh.length(3 * t), now_.mesh.length(3 * t + 1),
@@ -113,8 +109,7 @@ bool Replication::within_budget(const std::vector<NewDetail>& born) const {
     const auto before =
         std::count_if(born.begin(), born.begin() + static_cast<std::ptrdiff_t>(i),
                       [&](const NewDetail& other) { return budget_.patch_of(other.at) == patch; });
-    if (budget_.deficit(patch) - static_cast<double>(before) < 0.5 + options_.dead_band)
-      return false;
+    if (budget_.deficit(patch) - static_cast<double>(before) < limit()) return false;
   }
   return true;
 }

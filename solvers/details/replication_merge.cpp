@@ -13,8 +13,7 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 bool Replication::may_fade(int site) const {
   if (!now_.is_detail(site) || now_.site[index(site)].target_weight == 0) return false;
-  return options_.area_rule != AreaRule::budget ||
-         budget_.deficit(patch_of_site(site)) <= -(0.5 + options_.dead_band);
+  return options_.area_rule != AreaRule::budget || budget_.deficit(patch_of_site(site)) <= -limit();
 }
 
 bool Replication::has_ghost(int t) const {
@@ -38,20 +37,14 @@ double Replication::room_of(int site) const {
   return count > 0 ? sum / count : 1;
 }
 
-std::vector<WantingTriangle> Replication::shrunk() const {
+void Replication::find_shrunk() {
   const bool budget = options_.area_rule == AreaRule::budget;
-  std::vector<WantingTriangle> result;
-  for (int t = 0; t < now_.mesh.triangle_slots(); ++t) {
-    if (!now_.mesh.triangle_alive(t) || has_ghost(t)) continue;
-    const auto corner = now_.mesh.corners(t);
-    if (std::none_of(corner.begin(), corner.end(), [&](int c) { return may_fade(c); })) continue;
-    const int gone = budget || ratio(t) * options_.shrink_threshold < 1 ? loser(t) : -1;
-    if (gone >= 0) result.push_back({room_of(gone), t});
-  }
-  std::sort(result.begin(), result.end(), [](const WantingTriangle& a, const WantingTriangle& b) {
-    return std::pair(a.ratio, a.triangle) < std::pair(b.ratio, b.triangle);
+  rate_triangles([&](int t) {
+    if ((budget && !any_corner(t, Need::fewer)) || has_ghost(t)) return kNotWanting;
+    if (!budget && ratio(t) * options_.shrink_threshold >= 1) return kNotWanting;
+    const int gone = loser(t);
+    return gone >= 0 ? room_of(gone) : kNotWanting;
   });
-  return result;
 }
 
 /// The end of the shortest edge that goes: the younger one. -1 when a detail of the triangle fades
@@ -74,17 +67,18 @@ int Replication::loser(int t) const {
 }
 
 void Replication::merge() {
-  const auto wanting = shrunk();
-  if (wanting.empty()) return;
+  find_shrunk();
   use_new_marks();
-  for (const WantingTriangle& one : wanting) {
-    if (marked(one.triangle)) continue;
-    const int gone = loser(one.triangle);
+  while (!wanting_.empty()) {
+    const int t = next_wanting();
+    if (marked(t)) continue;
+    const int gone = loser(t);
     if (gone < 0) continue;
-    for (const int c : now_.mesh.corners(one.triangle)) mark(c);
+    for (const int c : now_.mesh.corners(t)) mark(c);
     now_.site[index(gone)].target_weight = 0;
     budget_.add(patch_of_site(gone), -1);
     ++counts_.fading;
+    if (options_.area_rule == AreaRule::budget && budget_.over(limit()) == 0) return;
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -22,11 +24,14 @@ struct ReplicationCounts {
   double max_weight_change = 0;
 };
 
-/// A triangle of M_d that asks for a change, and how much.
+/// A triangle of M_d that asks for a change. The least rank comes first; ties by number.
 struct WantingTriangle {
-  double ratio = 1;  ///< area against reference area
+  double rank = 0;
   int triangle = 0;
 };
+
+/// What the patch of a site asks for.
+enum class Need : signed char { fewer = -1, nothing = 0, more = 1 };
 
 /// The method: `step` in the order of the header of `ReplicationOptions`.
 class Replication final : public DetailMethod {
@@ -41,7 +46,15 @@ class Replication final : public DetailMethod {
  private:
   // replication.cpp
   [[nodiscard]] double ratio(int triangle) const;
-  [[nodiscard]] int patch_of_site(int site) const;
+  [[nodiscard]] int patch_of_site(int site) const {
+    return budget_.patch_of(now_.site[static_cast<std::size_t>(site)].at);
+  }
+  /// A patch acts when it is off by this many details.
+  [[nodiscard]] double limit() const { return 0.5 + options_.dead_band; }
+  void find_needs();
+  [[nodiscard]] bool any_corner(int triangle, Need need) const;
+  void rate_triangles(const std::function<double(int)>& rank);
+  int next_wanting();
   void use_new_marks();
   [[nodiscard]] bool marked(int triangle) const;
   void mark(int site);
@@ -49,7 +62,7 @@ class Replication final : public DetailMethod {
   // replication_insert.cpp
   void insert();
   void revive();
-  [[nodiscard]] std::vector<WantingTriangle> stretched() const;
+  void find_stretched();
   [[nodiscard]] double largest_deficit(int triangle) const;
   bool fill(int triangle);
   [[nodiscard]] std::vector<NewDetail> copy_of(const TripletMatch& match, int triangle) const;
@@ -60,7 +73,7 @@ class Replication final : public DetailMethod {
   void measure_histogram();
   // replication_merge.cpp
   void merge();
-  [[nodiscard]] std::vector<WantingTriangle> shrunk() const;
+  void find_shrunk();
   [[nodiscard]] bool has_ghost(int triangle) const;
   [[nodiscard]] double room_of(int site) const;
   [[nodiscard]] int loser(int triangle) const;
@@ -78,6 +91,10 @@ class Replication final : public DetailMethod {
   ReplicationCounts counts_;
   std::vector<int> mark_;  ///< frame mark of sites whose surroundings changed
   int current_mark_ = 0;
+  static constexpr double kNotWanting = std::numeric_limits<double>::infinity();
+  std::vector<Need> need_;                ///< of the patches of the sites
+  std::vector<double> rank_;              ///< of triangles
+  std::vector<WantingTriangle> wanting_;  ///< a heap
   std::vector<TripletMatch> matches_;
   std::vector<double> distances_;
 };
