@@ -1,6 +1,8 @@
+#include "core/freed_memory.h"
 #include "experiments/program.h"
 #include "experiments/topic.h"
 
 int main(int argc, char** argv) {
+  geoprior::keep_freed_memory();
   return geoprior::run_program(argc, argv, geoprior::all_topics());
 }

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <set>
 
 #include "core/error.h"
-#include "core/parallel.h"
 #include "solvers/fluid/lift.h"
 #include "solvers/fluid/sculpting_state.h"
 
@@ -76,18 +74,6 @@ double distance_beside(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& po
   return (away - away.dot(up) * up).norm();
 }
 
-/// Frames pasted at a time: each is on its own, so that all threads have one.
-constexpr std::size_t kBatch = 4;
-
-/// A frame of the target, then of the result.
-struct Pasted {
-  double time = 0;  ///< s
-  SurfaceFrame surface;
-  double target_vertices = 0;
-  PasteReport report;
-  std::exception_ptr error;
-};
-
 class SculptProcess final : public Process {
  public:
   SculptProcess(const SculptScene& scene, const SculptOptions& options)
@@ -111,18 +97,15 @@ class SculptProcess final : public Process {
       features += static_cast<double>(entry.second.size());
     }
     const auto count = static_cast<int>(scene_.times.size());
-    while (state.next_frame < count && !context.stop_requested()) {
-      for (Pasted& p : pasted(insertions, cut, state.next_frame, context)) {
-        if (p.error) std::rethrow_exception(p.error);
-        if (context.stop_requested()) return;
-        Frame frame = recorded(std::move(p), insertions, state, sink);
-        frame.diagnostics["lifted_features"] = features;
-        frame.diagnostics["feature_bytes"] = bytes;
-        sink.frame(std::move(frame));
-        ++state.next_frame;
-        sink.checkpoint(state.bytes());
-        context.progress(static_cast<double>(state.next_frame) / count);
-      }
+    for (int i = state.next_frame; i < count && !context.stop_requested(); ++i) {
+      Frame frame =
+          pasted(insertions, cut, scene_.times[static_cast<std::size_t>(i)], state, sink, context);
+      frame.diagnostics["lifted_features"] = features;
+      frame.diagnostics["feature_bytes"] = bytes;
+      sink.frame(std::move(frame));
+      state.next_frame = i + 1;
+      sink.checkpoint(state.bytes());
+      context.progress(static_cast<double>(i + 1) / count);
     }
   }
 
@@ -247,65 +230,37 @@ class SculptProcess final : public Process {
            std::to_string(p.z()) + ")";
   }
 
-  /// The next frames, pasted side by side. One that cannot be is the last, with its error: those
-  /// before it are recorded first.
-  [[nodiscard]] std::vector<Pasted> pasted(const std::vector<Insertion>& insertions, const Cut& cut,
-                                           int first, RunContext& context) const {
-    const std::size_t left = scene_.times.size() - static_cast<std::size_t>(first);
-    std::vector<Pasted> batch(std::min(kBatch, left));
-    for (std::size_t k = 0; k < batch.size(); ++k) {
-      Pasted& p = batch[k];
-      p.time = scene_.times[static_cast<std::size_t>(first) + k];
-      try {
-        p.surface = target_without(cut, p.time, context);
-      } catch (...) {
-        p.error = std::current_exception();
-        batch.resize(k + 1);
-      }
-    }
-    const Phase phase(context, "paste");
-    parallel_blocks(batch.size(), 1, [&](std::size_t begin, std::size_t) {
-      Pasted& p = batch[begin];
-      if (p.error) return;
-      try {
-        p.target_vertices = static_cast<double>(p.surface.mesh.V.rows());
-        p.surface = paste(p.surface, insertions, p.time, scene_.up, options_.paste, &p.report);
-      } catch (...) {
-        p.error = std::current_exception();
-      }
-    });
-    return batch;
-  }
-
-  [[nodiscard]] SurfaceFrame target_without(const Cut& cut, double time,
-                                            RunContext& context) const {
+  Frame pasted(const std::vector<Insertion>& insertions, const Cut& cut, double time,
+               SculptState& state, FrameSink& sink, RunContext& context) const {
     SurfaceFrame target = target_at(time);
-    if (cut.ids.empty()) return target;
-    const Phase phase(context, "cut");
-    return without_feature(target, scene_.target->nearest_frame(time), cut.extraction,
-                           options_.extraction, {cut.ids.begin(), cut.ids.end()});
-  }
-
-  Frame recorded(Pasted p, const std::vector<Insertion>& insertions, SculptState& state,
-                 FrameSink& sink) const {
-    const PasteReport& report = p.report;
-    for (const std::string& w : report.warnings) state.warn(w, without_time(w), p.time, sink);
+    if (!cut.ids.empty()) {
+      const Phase phase(context, "cut");
+      target = without_feature(target, scene_.target->nearest_frame(time), cut.extraction,
+                               options_.extraction, {cut.ids.begin(), cut.ids.end()});
+    }
+    PasteReport report;
+    SurfaceFrame result;
+    {
+      const Phase phase(context, "paste");
+      result = paste(target, insertions, time, scene_.up, options_.paste, &report);
+    }
+    for (const std::string& w : report.warnings) state.warn(w, without_time(w), time, sink);
     Frame frame;
-    frame.parameter = p.time;
-    frame.tables["insertions"] = present(insertions, p.time);
+    frame.parameter = time;
+    frame.tables["insertions"] = present(insertions, time);
     Part& surface = frame.parts["surface"];
-    const Eigen::Index n = p.surface.mesh.V.rows();
-    surface.points = std::move(p.surface.mesh.V);
-    surface.triangles = std::move(p.surface.mesh.F);
-    if (p.surface.velocity.rows() == n && n > 0) {
-      surface.arrays.push_back({"velocity", "m/s", NamedArray::On::points, p.surface.velocity});
+    const Eigen::Index n = result.mesh.V.rows();
+    surface.points = std::move(result.mesh.V);
+    surface.triangles = std::move(result.mesh.F);
+    if (result.velocity.rows() == n && n > 0) {
+      surface.arrays.push_back({"velocity", "m/s", NamedArray::On::points, result.velocity});
     }
     Eigen::VectorXd feature(n);
     for (Eigen::Index v = 0; v < n; ++v) {
       feature[v] = report.vertex_feature[static_cast<std::size_t>(v)];
     }
     surface.arrays.push_back({"feature", "1", NamedArray::On::points, feature});
-    frame.diagnostics["target_vertices"] = p.target_vertices;
+    frame.diagnostics["target_vertices"] = static_cast<double>(target.mesh.V.rows());
     frame.diagnostics["displaced_vertices"] = report.displaced_vertices;
     frame.diagnostics["added_triangles"] = report.added_triangles;
     frame.diagnostics["features"] = report.features;
