@@ -104,6 +104,7 @@ AreaBudget::AreaBudget(const DetailMesh& original, int details_per_patch) {
     if (patch_[f] >= 0) rest_area_[index(patch_[f])] += original.surface->rest_area[f];
   for (int i = 0; i < original.site_slots(); ++i)
     if (original.is_detail(i)) ++rest_count_[index(patch_of(original.site[index(i)].at))];
+  count(original);
   update(original);
 }
 
@@ -138,12 +139,13 @@ void AreaBudget::update(const DetailMesh& details, double lead_growing, double l
       area_[p] = area;
     }
   });
+}
+
+void AreaBudget::count(const DetailMesh& details) {
   count_.assign(rest_area_.size(), 0);
   for (int i = 0; i < details.site_slots(); ++i) {
     const Detail& d = details.site[index(i)];
-    if (!details.is_detail(i) || d.target_weight == 0) continue;
-    const int p = patch_of(d.at);
-    if (p >= 0) ++count_[index(p)];
+    if (details.is_detail(i) && d.target_weight > 0) add(patch_of(d.at), 1);
   }
 }
 
@@ -154,18 +156,6 @@ double AreaBudget::deficit(int patch) const {
 
 void AreaBudget::add(int patch, int change) {
   if (patch >= 0) count_[index(patch)] += change;
-}
-
-int AreaBudget::short_of(double limit) const {
-  int count = 0;
-  for (std::size_t p = 0; p < target_.size(); ++p) count += target_[p] - count_[p] >= limit ? 1 : 0;
-  return count;
-}
-
-int AreaBudget::over(double limit) const {
-  int count = 0;
-  for (std::size_t p = 0; p < target_.size(); ++p) count += count_[p] - target_[p] >= limit ? 1 : 0;
-  return count;
 }
 
 double AreaBudget::total_target() const {

@@ -21,9 +21,11 @@ class AreaBudget {
   /// Patches of about `details_per_patch` details of `original`, at rest.
   AreaBudget(const DetailMesh& original, int details_per_patch);
 
-  /// Measures the areas, and counts the details whose target weight is not 0. Targets are those of
-  /// some frames ahead, by the change of the area since the last call.
+  /// Measures the areas. Targets are those of some frames ahead, by the change of the area since
+  /// the last call.
   void update(const DetailMesh& details, double lead_growing = 0, double lead_shrinking = 0);
+  /// Counts the details whose target weight is not 0; `add` keeps the count from then on.
+  void count(const DetailMesh& details);
   [[nodiscard]] int patch_count() const { return static_cast<int>(rest_area_.size()); }
   [[nodiscard]] int patch_of(const SurfacePoint& at) const {
     return patch_[static_cast<std::size_t>(at.face)];
@@ -32,9 +34,6 @@ class AreaBudget {
   [[nodiscard]] double deficit(int patch) const;
   /// Counts a detail that came (+1) or goes (-1).
   void add(int patch, int change);
-  /// Patches that lack at least so many details, or have at least so many too many.
-  [[nodiscard]] int short_of(double limit) const;
-  [[nodiscard]] int over(double limit) const;
   [[nodiscard]] double total_target() const;
   /// Areas of the last update: all that the next one depends on.
   [[nodiscard]] const std::vector<double>& areas() const { return area_; }

@@ -1,6 +1,9 @@
 #include "solvers/details/replication.h"
 
 #include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <utility>
 
 #include "core/parallel.h"
 #include "core/state_bytes.h"
@@ -31,6 +34,7 @@ Replication::Replication(const DetailScene& scene, const ReplicationOptions& opt
       now_(original_),
       table_(original_, options.triplets, seed),
       budget_(original_, options.patch_details) {
+  find_all_patches();
   rest_edge_ = mean_edge(original_);
   double area = 0;
   for (int t = 0; t < original_.mesh.triangle_slots(); ++t)
@@ -47,43 +51,79 @@ double Replication::ratio(int t) const {
                                               : now_.mesh.density(t) * area / details_of(now_, t);
 }
 
+void Replication::find_patches(std::span<const int> sites) {
+  patch_of_site_.resize(now_.site.size(), -1);
+  for (const int i : sites) patch_of_site_[index(i)] = budget_.patch_of(now_.site[index(i)].at);
+}
+
+void Replication::find_all_patches() {
+  std::vector<int> all;
+  for (int i = 0; i < now_.site_slots(); ++i)
+    if (now_.kind[index(i)] != SiteKind::empty) all.push_back(i);
+  find_patches(all);
+}
+
 void Replication::find_needs() {
   need_.assign(now_.site.size(), Need::nothing);
   if (options_.area_rule != AreaRule::budget) return;
-  parallel_blocks(need_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  for (std::size_t i = 0; i < need_.size(); ++i) {
+    const double deficit = budget_.deficit(patch_of_site_[i]);
+    if (deficit >= limit()) need_[i] = Need::more;
+    if (deficit <= -limit()) need_[i] = Need::fewer;
+  }
+}
+
+/// Patch of the first corner whose patch has the need; -1 when none has. Rules without a budget
+/// know one patch, 0, which always has.
+int Replication::patch_in_need(int t, Need need) const {
+  if (options_.area_rule != AreaRule::budget) return 0;
+  for (const int c : now_.mesh.corners(t))
+    if (index(c) < need_.size() && need_[index(c)] == need) return patch_of_site(c);
+  return -1;
+}
+
+/// Ranks all triangles in parallel, and gathers those that want something by their patches.
+void Replication::rank_triangles(Need need, const std::function<double(int)>& rank) {
+  rank_.assign(index(now_.mesh.triangle_slots()), kNotWanting);
+  patch_of_triangle_.resize(rank_.size());
+  parallel_blocks(rank_.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (now_.kind[i] == SiteKind::empty) continue;
-      const double deficit = budget_.deficit(budget_.patch_of(now_.site[i].at));
-      if (deficit >= limit()) need_[i] = Need::more;
-      if (deficit <= -limit()) need_[i] = Need::fewer;
+      const int t = static_cast<int>(i);
+      if (!now_.mesh.triangle_alive(t)) continue;
+      patch_of_triangle_[i] = patch_in_need(t, need);
+      if (patch_of_triangle_[i] >= 0) rank_[i] = rank(t);
     }
   });
+  std::vector<int> begin(index(budget_.patch_count()) + 2, 0);
+  const auto each_wanting = [&](const auto& visit) {
+    for (std::size_t i = 0; i < rank_.size(); ++i) {
+      if (rank_[i] < kNotWanting)
+        visit(WantingTriangle{rank_[i], static_cast<int>(i), patch_of_triangle_[i]});
+    }
+  };
+  each_wanting([&](const WantingTriangle& one) { ++begin[index(one.patch) + 1]; });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  wanting_.resize(index(begin.back()));
+  each_wanting(
+      [&](const WantingTriangle& one) { wanting_[index(begin[index(one.patch)]++)] = one; });
 }
 
-bool Replication::any_corner(int t, Need need) const {
-  const auto corner = now_.mesh.corners(t);
-  return std::any_of(corner.begin(), corner.end(),
-                     [&](int c) { return index(c) < need_.size() && need_[index(c)] == need; });
-}
-
-/// Ranks all triangles in parallel, and gathers those that want something.
-void Replication::rate_triangles(const std::function<double(int)>& rank) {
-  rank_.assign(index(now_.mesh.triangle_slots()), kNotWanting);
-  parallel_blocks(rank_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t)
-      if (now_.mesh.triangle_alive(static_cast<int>(t))) rank_[t] = rank(static_cast<int>(t));
-  });
-  wanting_.clear();
-  for (std::size_t t = 0; t < rank_.size(); ++t)
-    if (rank_[t] < kNotWanting) wanting_.push_back({rank_[t], static_cast<int>(t)});
-  std::make_heap(wanting_.begin(), wanting_.end(), comes_later);
-}
-
-int Replication::next_wanting() {
-  std::pop_heap(wanting_.begin(), wanting_.end(), comes_later);
-  const int t = wanting_.back().triangle;
-  wanting_.pop_back();
-  return t;
+/// Calls `act` for the triangles of each patch, least rank first, while the patch has the need.
+void Replication::act_in_order(Need need, const std::function<void(int)>& act) {
+  const bool budget = options_.area_rule == AreaRule::budget;
+  for (auto first = wanting_.begin(); first != wanting_.end();) {
+    const int patch = first->patch;
+    const auto next = std::find_if(first, wanting_.end(),
+                                   [&](const WantingTriangle& one) { return one.patch != patch; });
+    std::make_heap(first, next, comes_later);
+    for (auto end = next; end != first; --end) {
+      const double missing = budget_.deficit(patch) * static_cast<double>(need);
+      if (budget && missing < limit()) break;
+      std::pop_heap(first, end, comes_later);
+      act(std::prev(end)->triangle);
+    }
+    first = next;
+  }
 }
 
 void Replication::use_new_marks() { ++current_mark_; }
@@ -120,8 +160,8 @@ void Replication::step(const Eigen::MatrixX3d& V, RunContext& context) {
     const Phase phase(context, "insert");
     const double frames = options_.anticipate ? 1 / options_.weight_rate : 0;
     budget_.update(now_, frames / 4, 3 * frames / 4);
-    if (options_.area_rule == AreaRule::budget) revive();
     find_needs();
+    if (options_.area_rule == AreaRule::budget) revive();
     insert();
   }
   {
@@ -162,6 +202,9 @@ void Replication::load(StateReader& in) {
   std::vector<double> areas;
   in.items(areas);
   budget_.set_areas(std::move(areas));
+  budget_.count(now_);
+  patch_of_site_.clear();
+  find_all_patches();
 }
 
 std::unique_ptr<DetailMethod> make_replication(const DetailScene& scene,

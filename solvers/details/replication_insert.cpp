@@ -14,16 +14,14 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 /// that has enough.
 constexpr int kTries = 4;
 
-bool mirrored(const std::array<int, 3>& order) { return (order[1] - order[0] + 3) % 3 != 1; }
-
 }  // namespace
 
 void Replication::revive() {
   std::vector<std::pair<double, int>> fading;
   for (int i = 0; i < now_.site_slots(); ++i) {
+    if (need_[index(i)] != Need::more || !now_.is_detail(i)) continue;
     const Detail& d = now_.site[index(i)];
-    if (!now_.is_detail(i) || d.target_weight > 0) continue;
-    if (budget_.deficit(patch_of_site(i)) >= limit()) fading.emplace_back(-d.weight, i);
+    if (d.target_weight == 0) fading.emplace_back(-d.weight, i);
   }
   std::sort(fading.begin(), fading.end());
   for (const auto& [weight, i] : fading) {
@@ -42,29 +40,20 @@ double Replication::largest_deficit(int t) const {
   return largest;
 }
 
-void Replication::find_stretched() {
-  const bool budget = options_.area_rule == AreaRule::budget;
-  const double threshold = budget ? 0 : options_.stretch_threshold;
-  rate_triangles([&](int t) {
-    if (budget && !any_corner(t, Need::more)) return kNotWanting;
+void Replication::insert() {
+  const double threshold = options_.area_rule == AreaRule::budget ? 0 : options_.stretch_threshold;
+  rank_triangles(Need::more, [&](int t) {
     const double r = ratio(t);
     return r > threshold ? -r : kNotWanting;
   });
-}
-
-void Replication::insert() {
-  find_stretched();
   if (wanting_.empty()) return;
   if (options_.histogram) measure_histogram();
   use_new_marks();
-  while (!wanting_.empty()) {
+  act_in_order(Need::more, [&](int t) {
     if (options_.max_insertions && counts_.inserted >= *options_.max_insertions) return;
-    const int t = next_wanting();
     // A triangle that an insertion of this frame rewrote has a corner that is marked.
-    if (!now_.mesh.triangle_alive(t) || marked(t)) continue;
-    fill(t);
-    if (options_.area_rule == AreaRule::budget && budget_.short_of(limit()) == 0) return;
-  }
+    if (now_.mesh.triangle_alive(t) && !marked(t)) fill(t);
+  });
 }
 
 bool Replication::fill(int t) {
@@ -95,7 +84,9 @@ bool Replication::fill(int t) {
   }
   if (chosen.empty()) return false;
   for (const int c : now_.mesh.corners(t)) mark(c);
-  for (const int site : insert_details(now_, t, chosen)) {
+  const std::vector<int> sites = insert_details(now_, t, chosen);
+  find_patches(sites);
+  for (const int site : sites) {
     mark(site);
     budget_.add(patch_of_site(site), 1);
     ++counts_.inserted;
@@ -144,7 +135,7 @@ double Replication::carried_angle(const TripletMatch& match, int source, int t,
       now_.position[index(now_.mesh.origin(3 * t))] - position_of(at, *now_.surface, now_.x);
   const double is = tangent_angle(at.face, towards, *now_.surface, now_.x);
   const double offset = from.tangent_angle - was;
-  return is + (mirrored(match.order) ? -offset : offset);
+  return is + (match.mirrored ? -offset : offset);
 }
 
 double Replication::histogram_distance(int t, const std::vector<NewDetail>& born) {

@@ -37,16 +37,6 @@ double Replication::room_of(int site) const {
   return count > 0 ? sum / count : 1;
 }
 
-void Replication::find_shrunk() {
-  const bool budget = options_.area_rule == AreaRule::budget;
-  rate_triangles([&](int t) {
-    if ((budget && !any_corner(t, Need::fewer)) || has_ghost(t)) return kNotWanting;
-    if (!budget && ratio(t) * options_.shrink_threshold >= 1) return kNotWanting;
-    const int gone = loser(t);
-    return gone >= 0 ? room_of(gone) : kNotWanting;
-  });
-}
-
 /// The end of the shortest edge that goes: the younger one. -1 when a detail of the triangle fades
 /// already (that makes room), or no end may.
 int Replication::loser(int t) const {
@@ -66,20 +56,25 @@ int Replication::loser(int t) const {
   return age(a) < age(b) ? a : b;
 }
 
+void Replication::fade_one_of(int t) {
+  const int gone = marked(t) ? -1 : loser(t);
+  if (gone < 0) return;
+  for (const int c : now_.mesh.corners(t)) mark(c);
+  now_.site[index(gone)].target_weight = 0;
+  budget_.add(patch_of_site(gone), -1);
+  ++counts_.fading;
+}
+
 void Replication::merge() {
-  find_shrunk();
-  use_new_marks();
-  while (!wanting_.empty()) {
-    const int t = next_wanting();
-    if (marked(t)) continue;
+  const bool budget = options_.area_rule == AreaRule::budget;
+  rank_triangles(Need::fewer, [&](int t) {
+    if (has_ghost(t)) return kNotWanting;
+    if (!budget && ratio(t) * options_.shrink_threshold >= 1) return kNotWanting;
     const int gone = loser(t);
-    if (gone < 0) continue;
-    for (const int c : now_.mesh.corners(t)) mark(c);
-    now_.site[index(gone)].target_weight = 0;
-    budget_.add(patch_of_site(gone), -1);
-    ++counts_.fading;
-    if (options_.area_rule == AreaRule::budget && budget_.over(limit()) == 0) return;
-  }
+    return gone >= 0 ? room_of(gone) : kNotWanting;
+  });
+  use_new_marks();
+  act_in_order(Need::fewer, [&](int t) { fade_one_of(t); });
 }
 
 }  // namespace geoprior

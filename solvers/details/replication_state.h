@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,12 @@ struct ReplicationCounts {
   double max_weight_change = 0;
 };
 
-/// A triangle of M_d that asks for a change. The least rank comes first; ties by number.
+/// A triangle of M_d that asks for a change, for the sake of a patch. The least rank comes first;
+/// ties by number.
 struct WantingTriangle {
   double rank = 0;
   int triangle = 0;
+  int patch = 0;
 };
 
 /// What the patch of a site asks for.
@@ -47,14 +50,16 @@ class Replication final : public DetailMethod {
   // replication.cpp
   [[nodiscard]] double ratio(int triangle) const;
   [[nodiscard]] int patch_of_site(int site) const {
-    return budget_.patch_of(now_.site[static_cast<std::size_t>(site)].at);
+    return patch_of_site_[static_cast<std::size_t>(site)];
   }
+  void find_patches(std::span<const int> sites);
+  void find_all_patches();
   /// A patch acts when it is off by this many details.
   [[nodiscard]] double limit() const { return 0.5 + options_.dead_band; }
   void find_needs();
-  [[nodiscard]] bool any_corner(int triangle, Need need) const;
-  void rate_triangles(const std::function<double(int)>& rank);
-  int next_wanting();
+  [[nodiscard]] int patch_in_need(int triangle, Need need) const;
+  void rank_triangles(Need need, const std::function<double(int)>& rank);
+  void act_in_order(Need need, const std::function<void(int)>& act);
   void use_new_marks();
   [[nodiscard]] bool marked(int triangle) const;
   void mark(int site);
@@ -62,7 +67,6 @@ class Replication final : public DetailMethod {
   // replication_insert.cpp
   void insert();
   void revive();
-  void find_stretched();
   [[nodiscard]] double largest_deficit(int triangle) const;
   bool fill(int triangle);
   [[nodiscard]] std::vector<NewDetail> copy_of(const TripletMatch& match, int triangle) const;
@@ -73,7 +77,7 @@ class Replication final : public DetailMethod {
   void measure_histogram();
   // replication_merge.cpp
   void merge();
-  void find_shrunk();
+  void fade_one_of(int triangle);
   [[nodiscard]] bool has_ghost(int triangle) const;
   [[nodiscard]] double room_of(int site) const;
   [[nodiscard]] int loser(int triangle) const;
@@ -92,9 +96,11 @@ class Replication final : public DetailMethod {
   std::vector<int> mark_;  ///< frame mark of sites whose surroundings changed
   int current_mark_ = 0;
   static constexpr double kNotWanting = std::numeric_limits<double>::infinity();
-  std::vector<Need> need_;                ///< of the patches of the sites
-  std::vector<double> rank_;              ///< of triangles
-  std::vector<WantingTriangle> wanting_;  ///< a heap
+  std::vector<Need> need_;  ///< of the patches of the sites
+  std::vector<int> patch_of_site_;
+  std::vector<double> rank_;  ///< of triangles
+  std::vector<int> patch_of_triangle_;
+  std::vector<WantingTriangle> wanting_;  ///< by patch; those of a patch become a heap
   std::vector<TripletMatch> matches_;
   std::vector<double> distances_;
 };

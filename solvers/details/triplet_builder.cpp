@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace geoprior {
 namespace {
@@ -23,6 +24,16 @@ TriangleKeys keys_of(const std::array<double, 3>& edges) {
   const double area = 0.25 * std::sqrt(std::max(0.0, s));
   // Opposite to the shortest edge.
   return {area, std::atan2(4 * area, e[1] * e[1] + e[2] * e[2] - e[0] * e[0])};
+}
+
+std::array<std::size_t, 3> corners_by_edges(const std::array<double, 3>& edges) {
+  std::array<std::size_t, 3> sorted{0, 1, 2};
+  std::sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(edges[a], a) < std::pair(edges[b], b);
+  });
+  // Edge e joins corners e and e + 1; edges a and b meet in a corner.
+  const auto meet = [](std::size_t a, std::size_t b) { return b == (a + 1) % 3 ? b : a; };
+  return {meet(sorted[2], sorted[0]), meet(sorted[0], sorted[1]), meet(sorted[1], sorted[2])};
 }
 
 std::array<int, 2> triplet_cell(const TriangleKeys& keys, double largest_area, int cells) {
@@ -54,10 +65,10 @@ bool TripletSearch::collect_interior(const std::array<std::size_t, 3>& corner,
                         c = points_[corner[2]].at - a;
   const double inverse = 1 / cross(b, c);
   triplet.interior.clear();
-  for (std::size_t i = 1; i < points_.size(); ++i) {
+  for (std::size_t i = 0; i < points_.size(); ++i) {
     const Eigen::Vector2d p = points_[i].at - a;
     const double wb = cross(p, c) * inverse, wc = cross(b, p) * inverse, wa = 1 - wb - wc;
-    if (wa < kInside || wb < kInside || wc < kInside || i == corner[1] || i == corner[2]) continue;
+    if (wa < kInside || wb < kInside || wc < kInside) continue;  // corners too
     if (static_cast<int>(triplet.interior.size()) == options_.interior_capacity) return false;
     triplet.interior.push_back(
         {points_[i].vertex, {static_cast<float>(wa), static_cast<float>(wb)}});
@@ -81,10 +92,18 @@ void TripletSearch::around(int source, std::vector<FoundTriplet>& into, std::int
       const TriangleKeys keys = keys_of(edges);
       const double longest = std::max({edges[0], edges[1], edges[2]});
       if (!(keys.area > 1e-4 * longest * longest)) continue;  // a needle: no query looks like it
-      if (!collect_interior({0, j, k}, triplet)) continue;
-      triplet.corner = {source, points_[j].vertex, points_[k].vertex};
-      triplet.edge = {static_cast<float>(edges[0]), static_cast<float>(edges[1]),
-                      static_cast<float>(edges[2])};
+      const auto order = corners_by_edges(edges);
+      const std::array<std::size_t, 3> ends{0, j, k};
+      const std::array<std::size_t, 3> corner{ends[order[0]], ends[order[1]], ends[order[2]]};
+      if (!collect_interior(corner, triplet)) continue;
+      std::array<double, 3> sorted = edges;
+      std::sort(sorted.begin(), sorted.end());
+      for (std::size_t c = 0; c < 3; ++c) {
+        triplet.corner[c] = points_[corner[c]].vertex;
+        triplet.edge[c] = static_cast<float>(sorted[c]);
+      }
+      triplet.clockwise = cross(points_[corner[1]].at - points_[corner[0]].at,
+                                points_[corner[2]].at - points_[corner[0]].at) < 0;
       const auto cell = triplet_cell(keys, largest_area_, options_.cells);
       triplet.cell = cell[0] * options_.cells + cell[1];
       into.push_back(triplet);

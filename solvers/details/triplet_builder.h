@@ -20,7 +20,8 @@ TriangleKeys keys_of(const std::array<double, 3>& edges);
 /// A triplet that qualifies, before the table decides whether to keep it.
 struct FoundTriplet {
   std::array<int, 3> corner{};
-  std::array<float, 3> edge{};  ///< |01|, |12|, |20|
+  std::array<float, 3> edge{};  ///< |01| <= |12| <= |20|
+  bool clockwise = false;       ///< corners, seen from outside
   int cell = 0;
   std::vector<TripletInterior> interior;
 };
@@ -44,6 +45,10 @@ class TripletSearch {
   LocalChart chart_;
   std::vector<ChartPoint> points_;  ///< details of the chart
 };
+
+/// Corners of a triangle with edges |01|, |12|, |20| in the order in which its edges are sorted:
+/// the shortest joins the first two, the longest the last and the first.
+std::array<std::size_t, 3> corners_by_edges(const std::array<double, 3>& edges);
 
 /// Cell of the grid for a triangle; clamped to its rim.
 std::array<int, 2> triplet_cell(const TriangleKeys& keys, double largest_area, int cells);

@@ -15,14 +15,6 @@ namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-constexpr std::array<std::array<int, 3>, 6> kOrders{
-    {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
-
-/// Edge of the triplet between two of its corners.
-float edge_between(const std::array<float, 3>& edge, int a, int b) {
-  return edge[index(a + b == 1 ? 0 : a + b == 3 ? 1 : 2)];
-}
-
 /// Sources whose surroundings are searched: details, evenly spread over their numbers.
 std::vector<int> sources_of(const DetailMesh& original, const TripletOptions& options) {
   std::vector<int> details;
@@ -95,7 +87,8 @@ TripletTable::TripletTable(const DetailMesh& original, const TripletOptions& opt
   for (const auto& cell : reservoirs.kept()) {
     cell_begin_.push_back(static_cast<int>(entry_.size()));
     for (const FoundTriplet& triplet : cell) {
-      entry_.push_back({triplet.corner, triplet.edge, static_cast<std::int32_t>(interior_.size())});
+      entry_.push_back({triplet.corner, triplet.edge, static_cast<std::int32_t>(interior_.size()),
+                        triplet.clockwise});
       interior_.insert(interior_.end(), triplet.interior.begin(), triplet.interior.end());
     }
   }
@@ -121,31 +114,21 @@ std::size_t TripletTable::bytes() const {
          cell_begin_.size() * sizeof(int);
 }
 
-void TripletTable::search_cell(int cell, const std::array<double, 3>& edges, int max_interior,
+void TripletTable::search_cell(int cell, const std::array<double, 3>& sorted, int max_interior,
                                int count, std::vector<TripletMatch>& into) const {
   for (int e = cell_begin_[index(cell)]; e < cell_begin_[index(cell) + 1]; ++e) {
     const auto inside = static_cast<int>(interior(e).size());
     if (inside < 1 || inside > max_interior) continue;
-    TripletMatch best{e, {}, std::numeric_limits<double>::infinity()};
-    for (const auto& order : kOrders) {
-      double difference = 0;
-      for (int k = 0; k < 3; ++k) {
-        const auto l = index((k + 1) % 3);
-        difference +=
-            std::abs(edges[index(k)] - static_cast<double>(edge_between(
-                                           entry_[index(e)].edge, order[index(k)], order[l])));
-      }
-      if (difference < best.edge_difference) {
-        best.edge_difference = difference;
-        best.order = order;
-      }
-    }
-    const auto place = std::upper_bound(into.begin(), into.end(), best,
-                                        [](const TripletMatch& a, const TripletMatch& b) {
-                                          return a.edge_difference < b.edge_difference;
-                                        });
-    into.insert(place, best);
-    if (into.size() > index(count)) into.pop_back();
+    double difference = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      difference += std::abs(sorted[k] - static_cast<double>(entry_[index(e)].edge[k]));
+    const bool full = into.size() == index(count);
+    if (full && difference >= into.back().edge_difference) continue;
+    if (full) into.pop_back();
+    const auto place = std::upper_bound(
+        into.begin(), into.end(), difference,
+        [](double d, const TripletMatch& other) { return d < other.edge_difference; });
+    into.insert(place, TripletMatch{e, {}, false, difference});
   }
 }
 
@@ -153,6 +136,8 @@ void TripletTable::closest(const std::array<double, 3>& edges, int max_interior,
                            std::vector<TripletMatch>& into) const {
   into.clear();
   if (entry_.empty() || max_interior < 1) return;
+  std::array<double, 3> sorted = edges;
+  std::sort(sorted.begin(), sorted.end());
   const auto [u, v] = triplet_cell(keys_of(edges), largest_area_, cells_);
   int last = cells_ - 1;
   for (int ring = 0; ring <= last; ++ring) {
@@ -160,9 +145,19 @@ void TripletTable::closest(const std::array<double, 3>& edges, int max_interior,
       const bool rim = i == u - ring || i == u + ring;
       const int step = rim || ring == 0 ? 1 : 2 * ring;
       for (int j = v - ring; j <= v + ring; j += step)
-        if (j >= 0 && j < cells_) search_cell(i * cells_ + j, edges, max_interior, count, into);
+        if (j >= 0 && j < cells_) search_cell(i * cells_ + j, sorted, max_interior, count, into);
     }
     if (!into.empty() && last == cells_ - 1) last = std::min(ring + 1, cells_ - 1);
+  }
+  // Edges in sorted order fit best of all six ways: corner k of the triplets, whose edges are
+  // sorted, goes to corner by_edges[k] of the triangle.
+  const auto by_edges = corners_by_edges(edges);
+  std::array<int, 3> order{};
+  for (std::size_t k = 0; k < 3; ++k) order[by_edges[k]] = static_cast<int>(k);
+  const bool odd = (order[1] - order[0] + 3) % 3 != 1;
+  for (TripletMatch& match : into) {
+    match.order = order;
+    match.mirrored = entry_[index(match.triplet)].clockwise != odd;
   }
 }
 

@@ -38,6 +38,7 @@ struct TripletInterior {
 struct TripletMatch {
   int triplet = 0;
   std::array<int, 3> order{0, 1, 2};  ///< corner of the triplet for corner k of the triangle
+  bool mirrored = false;              ///< the triplet is laid on the triangle as in a mirror
   double edge_difference = 0;         ///< L1 distance of the edge lengths (m)
 };
 
@@ -66,10 +67,11 @@ class TripletTable {
  private:
   struct Entry {
     std::array<int, 3> corner;
-    std::array<float, 3> edge;
+    std::array<float, 3> edge;    ///< |01| <= |12| <= |20|
     std::int32_t interior_begin;  ///< up to that of the next entry
+    bool clockwise;
   };
-  void search_cell(int cell, const std::array<double, 3>& edges, int max_interior, int count,
+  void search_cell(int cell, const std::array<double, 3>& sorted, int max_interior, int count,
                    std::vector<TripletMatch>& into) const;
 
   int cells_ = 0;
