@@ -28,6 +28,11 @@ double kahan_area(double a, double b, double c) {
   return 0.25 * std::sqrt(std::max(0.0, s));
 }
 
+/// cot a + cot b = sin(a + b) / (sin a sin b), and 1 + cot^2 = 1 / sin^2: a bound on the angle.
+bool opposite_angles_fit(double cot_a, double cot_b) {
+  return cot_a + cot_b >= -kAngleSlack * (1 + std::max(cot_a * cot_a, cot_b * cot_b));
+}
+
 }  // namespace
 
 /// The diagonal that a flip would make.
@@ -143,9 +148,7 @@ double IntrinsicTriangulation::cotangent(int h) const {
 }
 
 bool IntrinsicTriangulation::delaunay(int h) const {
-  const double a = cotangent(h), b = cotangent(twin_[index(h)]);
-  // cot a + cot b = sin(a + b) / (sin a sin b), and 1 + cot^2 = 1 / sin^2: a bound on the angle.
-  return a + b >= -kAngleSlack * (1 + std::max(a * a, b * b));
+  return opposite_angles_fit(cotangent(h), cotangent(twin_[index(h)]));
 }
 
 IntrinsicTriangulation::Diagonal IntrinsicTriangulation::other_diagonal(int h) const {
@@ -230,13 +233,22 @@ int IntrinsicTriangulation::settle(std::vector<int>& stack) {
 }
 
 int IntrinsicTriangulation::flip_to_delaunay() {
+  cotangents_.resize(length_.size());
+  parallel_blocks(density_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t h = 3 * begin; h < 3 * end; h += 3) {
+      if (origin_[h] < 0) continue;
+      const double a = length_[h], b = length_[h + 1], c = length_[h + 2];
+      const double scale = 1 / std::max(4 * kahan_area(a, b, c), 1e-300);
+      cotangents_[h] = (b * b + c * c - a * a) * scale;
+      cotangents_[h + 1] = (c * c + a * a - b * b) * scale;
+      cotangents_[h + 2] = (a * a + b * b - c * c) * scale;
+    }
+  });
   std::vector<char> wanting(density_.size(), 0);
   parallel_blocks(density_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      if (origin_[3 * t] < 0) continue;
-      for (std::size_t h = 3 * t; h < 3 * t + 3; ++h) {
-        if (twin_[h] > static_cast<int>(h) && !delaunay(static_cast<int>(h))) wanting[t] = 1;
-      }
+    for (std::size_t h = 3 * begin; h < 3 * end; ++h) {
+      if (origin_[h] < 0 || twin_[h] < static_cast<int>(h)) continue;
+      if (!opposite_angles_fit(cotangents_[h], cotangents_[index(twin_[h])])) wanting[h / 3] = 1;
     }
   });
   stack_.clear();

@@ -144,7 +144,8 @@ class IntrinsicTriangulation {
   std::vector<int> free_triangles_, free_vertices_;
   int live_triangles_ = 0;
   std::int64_t refused_flips_ = 0;
-  std::vector<int> stack_;  ///< edges to look at
+  std::vector<int> stack_;          ///< edges to look at
+  std::vector<double> cotangents_;  ///< scratch, per half-edge
 };
 
 }  // namespace geoprior

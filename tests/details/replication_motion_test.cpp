@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cstdlib>
+
+#include "core/parallel.h"
+#include "solvers/details/replication.h"
+#include "tests/details/detail_scenes.h"
+
+namespace geoprior {
+namespace {
+
+using namespace detail_scenes;
+
+/// A surface that wanders: every frame a random axis is stretched or squeezed a little, with a
+/// falloff around a random point; a pull to the rest shape keeps it from wandering off.
+class RandomMotion {
+ public:
+  RandomMotion(const TriMesh& rest, std::uint64_t seed)
+      : rest_(rest.V), now_(rest.V), random_(seed, "motion") {}
+
+  const Eigen::MatrixX3d& next() {
+    const auto pick = random_.below(static_cast<std::uint32_t>(now_.rows()));
+    const Eigen::RowVector3d centre = now_.row(pick);
+    Eigen::RowVector3d axis(random_.normal(), random_.normal(), random_.normal());
+    axis.normalize();
+    const double amount = 0.12 * (2 * random_.uniform() - 1), radius = 0.3 + random_.uniform();
+    for (Eigen::Index v = 0; v < now_.rows(); ++v) {
+      const Eigen::RowVector3d d = now_.row(v) - centre;
+      const double fall = std::exp(-d.squaredNorm() / (radius * radius));
+      now_.row(v) += amount * fall * d.dot(axis) * axis;
+    }
+    now_ += 0.03 * (rest_ - now_);
+    return now_;
+  }
+
+ private:
+  Eigen::MatrixX3d rest_, now_;
+  RandomStream random_;
+};
+
+void expect_invariants(const DetailMesh& d, int frame) {
+  const TriangulationReport report = d.mesh.check();
+  ASSERT_TRUE(report.manifold()) << "frame " << frame;
+  ASSERT_EQ(report.not_delaunay, 0) << "frame " << frame << ", " << report.worst_angle_sum;
+  ASSERT_EQ(report.blocked, 0) << "frame " << frame;
+  ASSERT_EQ(report.euler, d.surface->euler) << "frame " << frame;
+  for (int i = 0; i < d.site_slots(); ++i) {
+    const Detail& site = d.site[static_cast<std::size_t>(i)];
+    ASSERT_EQ(d.mesh.vertex_alive(i), d.kind[static_cast<std::size_t>(i)] != SiteKind::empty);
+    if (!d.is_detail(i)) continue;
+    ASSERT_GE(site.weight, 0);
+    ASSERT_LE(site.weight, 1);
+    ASSERT_GE(site.at.barycentric.minCoeff(), 0);
+    ASSERT_NEAR(site.at.barycentric.sum(), 1, 1e-9);
+  }
+}
+
+/// 1 x 300 steps; with GEOPRIOR_LONG_TESTS set, 10 x 2,000.
+void wander(const TriMesh& mesh, int details, const ReplicationOptions& options) {
+  const bool is_long = std::getenv("GEOPRIOR_LONG_TESTS") != nullptr;
+  for (std::uint64_t seed = 1; seed <= (is_long ? 10 : 1); ++seed) {
+    const auto s = scene(mesh, even_details(mesh, details, seed), stretch(mesh, 1, 1.01));
+    const auto method = make_replication(s, options, seed);
+    RandomMotion motion(mesh, seed);
+    RunContext context;
+    int changes = 0;
+    for (int frame = 1; frame <= (is_long ? 2000 : 300); ++frame) {
+      method->step(motion.next(), context);
+      ASSERT_NO_FATAL_FAILURE(expect_invariants(method->details(), frame));
+      std::map<std::string, double> d;
+      method->diagnose(d);
+      changes += static_cast<int>(d["inserted"] + d["fading"] + d["flips"]);
+    }
+    EXPECT_GT(changes, 1000);
+  }
+}
+
+TEST(ReplicationMotion, TheMeshStaysDelaunayAndManifoldOnASphere) {
+  wander(shapes::sphere(4), 300, {});
+}
+
+TEST(ReplicationMotion, TheMeshStaysDelaunayAndManifoldOnAnOpenSurface) {
+  wander(shapes::square(20), 200, {});
+}
+
+TEST(ReplicationMotion, TheMeshStaysDelaunayAndManifoldByTheThresholdRules) {
+  ReplicationOptions options;
+  options.area_rule = AreaRule::own;
+  options.stretch_threshold = options.shrink_threshold = 1.4;
+  wander(shapes::sphere(4), 300, options);
+}
+
+TEST(ReplicationMotion, DetailsReturnWithTheSurface) {
+  const TriMesh mesh = shapes::square(30);
+  const auto s = scene(mesh, even_details(mesh, 600, 2), stretch(mesh, 60, 2));
+  const auto method = make_replication(s, {}, 1);
+  RunContext context;
+  for (int round = 0; round < 5; ++round) {
+    for (int frame = 1; frame <= 60; ++frame) method->step(s.motion->positions(frame), context);
+    for (int frame = 59; frame >= 0; --frame) method->step(s.motion->positions(frame), context);
+    // What fades at the turn needs ten frames of rest to be gone.
+    for (int frame = 0; frame < 12; ++frame) method->step(mesh.V, context);
+    EXPECT_NEAR(method->details().detail_count(), 600, 18) << round;
+  }
+  // At rest nothing happens any more.
+  const auto before = method->details().mesh.triangles();
+  for (int frame = 0; frame < 20; ++frame) {
+    method->step(mesh.V, context);
+    std::map<std::string, double> d;
+    method->diagnose(d);
+    for (const char* event : {"inserted", "revived", "fading", "flips", "max_weight_change"})
+      EXPECT_EQ(d[event], 0) << event;
+  }
+  EXPECT_EQ(method->details().mesh.triangles(), before);
+}
+
+State state_after(const DetailScene& s, const ReplicationOptions& options, int threads) {
+  StateWriter out;
+  with_threads(threads, [&] {
+    const auto method = make_replication(s, options, 1);
+    RunContext context;
+    for (int frame = 1; frame < s.motion->frame_count(); ++frame)
+      method->step(s.motion->positions(frame), context);
+    method->save(out);
+  });
+  return out.take();
+}
+
+TEST(ReplicationMotion, OneThreadAndTwoMakeTheSameBytes) {
+  const TriMesh mesh = shapes::sphere(5);
+  const auto s = scene(mesh, even_details(mesh, 6000, 1), inflate(mesh, 20, 1.5));
+  for (const bool histogram : {false, true}) {
+    ReplicationOptions options;
+    options.histogram = histogram;
+    EXPECT_TRUE(state_after(s, options, 1) == state_after(s, options, 2)) << histogram;
+  }
+}
+
+}  // namespace
+}  // namespace geoprior
