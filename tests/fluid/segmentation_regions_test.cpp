@@ -37,7 +37,7 @@ SegmentationOptions given(double high, double low) {
 }
 
 SegmentedFrame segmented(const TriMesh& mesh, const SegmentationOptions& options) {
-  return Segmenter(still(mesh), options).segment({0, mesh, {}}, 0);
+  return Segmenter(still(mesh), options).segment({0, mesh, {}, {}}, 0);
 }
 
 bool warns(const std::vector<std::string>& warnings, const std::string& text) {

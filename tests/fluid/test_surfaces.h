@@ -91,7 +91,7 @@ inline void append(const TriMesh& part, TriMesh& whole) {
 }
 
 inline StoredSequence still(const TriMesh& mesh) {
-  return StoredSequence({SurfaceFrame{0, mesh, {}}}, "still");
+  return StoredSequence({SurfaceFrame{0, mesh, {}, {}}}, "still");
 }
 
 }  // namespace geoprior::surfaces
