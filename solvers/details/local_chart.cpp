@@ -28,6 +28,12 @@ Eigen::Vector2d unfold(const Eigen::Vector2d& p, const Eigen::Vector2d& q, doubl
   return p + x * e + y * Eigen::Vector2d(-e.y(), e.x());
 }
 
+/// Whether the origin lies on the right of p -> q, where the triangle to be unfolded does not.
+bool source_on_right(const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
+  const double cross = p.x() * q.y() - p.y() * q.x();
+  return cross < 1e-12 * (p.squaredNorm() + q.squaredNorm());
+}
+
 }  // namespace
 
 void LocalChart::reach(int vertex, const Eigen::Vector2d& at, double radius) {
@@ -77,8 +83,11 @@ void LocalChart::unfold_from(const IntrinsicTriangulation& mesh, int vertex, dou
     const double up = mesh.length(h), uq = mesh.length(back);
     const double pq = mesh.length(IntrinsicTriangulation::next(h));
     const bool has_p = stamp_[index(p)] == round_, has_q = stamp_[index(q)] == round_;
-    if (has_p && !has_q) reach(q, unfold(at, placed_[index(p)], uq, pq), radius);
-    if (has_q && !has_p) reach(p, unfold(placed_[index(q)], at, pq, up), radius);
+    // Only away from the source: the front would fold back where placed points disagree a little.
+    if (has_p && !has_q && source_on_right(at, placed_[index(p)]))
+      reach(q, unfold(at, placed_[index(p)], uq, pq), radius);
+    if (has_q && !has_p && source_on_right(placed_[index(q)], at))
+      reach(p, unfold(placed_[index(q)], at, pq, up), radius);
     h = mesh.twin(back);
     if (h == start) break;
   }

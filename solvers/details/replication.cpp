@@ -40,6 +40,7 @@ Replication::Replication(const DetailScene& scene, const ReplicationOptions& opt
   for (int t = 0; t < original_.mesh.triangle_slots(); ++t)
     if (original_.mesh.triangle_alive(t)) area += original_.mesh.area(t);
   rest_area_ = area / original_.mesh.triangle_count();
+  area_per_detail_ = area / original_.detail_count();
   correlation_ = PairCorrelation(rest_edge_, options.pair_correlation);
   if (options_.area_rule == AreaRule::budget) smooth_densities(now_, kDensityRounds);
   if (options_.histogram) histogram_at_rest_ = correlation_.of(original_);

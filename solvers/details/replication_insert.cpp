@@ -139,15 +139,14 @@ double Replication::carried_angle(const TripletMatch& match, int source, int t,
 }
 
 double Replication::histogram_distance(int t, const std::vector<NewDetail>& born) {
-  // With k more centres, each pair (new, old) seen from both ends.
   Eigen::VectorXd rows = Eigen::VectorXd::Zero(correlation_.bins());
   for (const NewDetail& one : born) {
     correlation_.distances(now_, t, one.barycentric, distances_);
     for (const double r : distances_) correlation_.add(r, rows);
   }
+  // The mean over centres with k more of them; a pair of a new and an old detail counts at both.
   const double n = now_.detail_count(), k = static_cast<double>(born.size());
-  const double area_per_detail = 1 / (std::sqrt(3.0) / 2 * rest_edge_ * rest_edge_);
-  const Eigen::VectorXd after = (n * histogram_now_ + 2 / area_per_detail * rows) / (n + k);
+  const Eigen::VectorXd after = (n * histogram_now_ + 2 * area_per_detail_ * rows) / (n + k);
   return (after - histogram_at_rest_).lpNorm<1>();
 }
 

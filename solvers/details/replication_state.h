@@ -90,8 +90,9 @@ class Replication final : public DetailMethod {
   AreaBudget budget_;
   PairCorrelation correlation_;
   Eigen::VectorXd histogram_at_rest_, histogram_now_;
-  double rest_edge_ = 0;  ///< mean edge of M_d at rest (m)
-  double rest_area_ = 0;  ///< mean area of its triangles
+  double rest_edge_ = 0;        ///< mean edge of M_d at rest (m)
+  double rest_area_ = 0;        ///< mean area of its triangles
+  double area_per_detail_ = 0;  ///< at rest
   ReplicationCounts counts_;
   std::vector<int> mark_;  ///< frame mark of sites whose surroundings changed
   int current_mark_ = 0;

@@ -5,9 +5,11 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <utility>
 
+#include "core/procedural.h"
 #include "tests/details/detail_scenes.h"
 
 namespace geoprior {
@@ -105,6 +107,82 @@ TEST(DetailMesh, ASphereIsCoveredWithoutGhosts) {
   // Closed and of genus 0: 2 n - 4 triangles, 3 n - 6 edges.
   EXPECT_EQ(d.mesh.triangle_count(), 596);
   EXPECT_EQ(edges_of(d).size(), 894u);
+}
+
+/// Torus of radii 1 and 0.3 with 3 n x n vertices.
+TriMesh torus(int n) {
+  TriMesh mesh;
+  mesh.V.resize(3 * n * n, 3);
+  mesh.F.resize(6 * n * n, 3);
+  const double turn = 6.283185307179586;
+  for (int i = 0; i < 3 * n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const double u = turn * i / (3 * n), v = turn * j / n, r = 1 + 0.3 * std::cos(v);
+      mesh.V.row(i * n + j) << r * std::cos(u), r * std::sin(u), 0.3 * std::sin(v);
+      const int a = i * n + j, b = (i + 1) % (3 * n) * n + j, c = i * n + (j + 1) % n;
+      const int d = (i + 1) % (3 * n) * n + (j + 1) % n;
+      mesh.F.row(2 * a) << a, b, d;
+      mesh.F.row(2 * a + 1) << a, d, c;
+    }
+  }
+  return mesh;
+}
+
+TEST(DetailMesh, TooFewDetailsForTheTopologyAreHeldByGhosts) {
+  // A closed triangulation without repeated edges needs 4 vertices on a sphere (Euler), 7 on a
+  // torus (Moebius 1886); where the cells of the details are no discs, ghosts make up for it.
+  for (const int count : {3, 5, 12}) {
+    const DetailMesh tube = build_detail_mesh(two_bone_cylinder({}).mesh,
+                                              random_details(two_bone_cylinder({}).mesh, count, 2));
+    const DetailMesh ring = build_detail_mesh(torus(16), random_details(torus(16), count, 2));
+    for (const DetailMesh* d : {&tube, &ring}) {
+      const TriangulationReport report = d->mesh.check();
+      EXPECT_TRUE(report.manifold());
+      EXPECT_EQ(report.euler, d == &tube ? 2 : 0);
+      EXPECT_EQ(d->detail_count(), count);
+      EXPECT_GE(d->detail_count() + d->ghost_count(), d == &tube ? 4 : 7);
+      EXPECT_LT(d->ghost_count(), 16);
+    }
+  }
+}
+
+TEST(DetailMesh, VisibleTrianglesAreThoseOfTheVisibleDetails) {
+  const TriMesh mesh = shapes::square(10);
+  auto details = random_details(mesh, 200, 6), visible = details;
+  for (std::size_t i = 0; i < details.size(); i += 3) details[i].weight = 0.2;
+  visible.clear();
+  for (const Detail& d : details)
+    if (d.weight > 0.5) visible.push_back(d);
+  const DetailMesh all = build_detail_mesh(mesh, details), few = build_detail_mesh(mesh, visible);
+  // Compared by place, since the numbers differ.
+  const auto places = [](const DetailMesh& d, const std::vector<std::array<int, 3>>& triangles) {
+    std::set<std::array<double, 4>> edges;
+    for (const auto& t : triangles) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        Eigen::Vector3d p = d.position[static_cast<std::size_t>(t[k])];
+        Eigen::Vector3d q = d.position[static_cast<std::size_t>(t[(k + 1) % 3])];
+        if (std::pair(q.x(), q.y()) < std::pair(p.x(), p.y())) std::swap(p, q);
+        edges.insert({p.x(), p.y(), q.x(), q.y()});
+      }
+    }
+    return edges;
+  };
+  EXPECT_EQ(places(all, visible_triangles(all, 0.5)), places(few, few.mesh.triangles()));
+}
+
+TEST(DetailMesh, SectionsMeasureAlongTheSurface) {
+  // On a unit sphere the geodesic of a chord c is 2 asin(c / 2).
+  const TriMesh mesh = shapes::sphere(6);
+  DetailMesh d = build_detail_mesh(mesh, even_details(mesh, 60, 1));
+  measure_sections(d);
+  for (int h = 0; h < 3 * d.mesh.triangle_slots(); ++h) {
+    if (!d.mesh.triangle_alive(h / 3)) continue;
+    const double chord = (d.position[static_cast<std::size_t>(d.mesh.origin(h))] -
+                          d.position[static_cast<std::size_t>(d.mesh.tip(h))])
+                             .norm();
+    // The facets of the sphere lie up to 2e-4 inside.
+    EXPECT_NEAR(d.mesh.length(h), 2 * std::asin(chord / 2), 1e-3);
+  }
 }
 
 }  // namespace

@@ -56,9 +56,9 @@ void expect_invariants(const DetailMesh& d, int frame) {
   }
 }
 
-/// 1 x 300 steps; with GEOPRIOR_LONG_TESTS set, 10 x 2,000.
+/// 1 x 300 steps; with GEOPRIOR_LONG set, 10 x 2,000.
 void wander(const TriMesh& mesh, int details, const ReplicationOptions& options) {
-  const bool is_long = std::getenv("GEOPRIOR_LONG_TESTS") != nullptr;
+  const bool is_long = std::getenv("GEOPRIOR_LONG") != nullptr;
   for (std::uint64_t seed = 1; seed <= (is_long ? 10 : 1); ++seed) {
     const auto s = scene(mesh, even_details(mesh, details, seed), stretch(mesh, 1, 1.01));
     const auto method = make_replication(s, options, seed);
@@ -76,15 +76,15 @@ void wander(const TriMesh& mesh, int details, const ReplicationOptions& options)
   }
 }
 
-TEST(ReplicationMotion, TheMeshStaysDelaunayAndManifoldOnASphere) {
+TEST(ReplicationMotion, LongMotionKeepsTheMeshDelaunayAndManifoldOnASphere) {
   wander(shapes::sphere(4), 300, {});
 }
 
-TEST(ReplicationMotion, TheMeshStaysDelaunayAndManifoldOnAnOpenSurface) {
+TEST(ReplicationMotion, LongMotionKeepsTheMeshDelaunayAndManifoldOnAnOpenSurface) {
   wander(shapes::square(20), 200, {});
 }
 
-TEST(ReplicationMotion, TheMeshStaysDelaunayAndManifoldByTheThresholdRules) {
+TEST(ReplicationMotion, LongMotionKeepsTheMeshDelaunayAndManifoldByThresholds) {
   ReplicationOptions options;
   options.area_rule = AreaRule::own;
   options.stretch_threshold = options.shrink_threshold = 1.4;
