@@ -213,21 +213,29 @@ void IntrinsicTriangulation::push_edges(int t, std::vector<int>& stack) const {
 int IntrinsicTriangulation::settle(std::vector<int>& stack) {
   // Lawson's argument bounds the flips in exact arithmetic; the limit stands against round-off.
   const int limit = 64 * live_triangles_ + 4096;
-  int flips = 0;
-  while (!stack.empty() && flips < limit) {
+  int flips = 0, flips_at_retry = 0;
+  refused_.clear();
+  while (flips < limit) {
+    if (stack.empty()) {
+      // What stood in the way of a refused flip may have been flipped itself since.
+      if (refused_.empty() || flips == flips_at_retry) break;
+      flips_at_retry = flips;
+      stack.swap(refused_);
+    }
     const int h = stack.back();
     stack.pop_back();
     if (origin_[index(h)] < 0) continue;
     const int g = twin_[index(h)];
     if (g < 0 || delaunay(h)) continue;
     if (!flip(h)) {
-      ++refused_flips_;
+      refused_.push_back(h);
       continue;
     }
     ++flips;
     push_edges(h / 3, stack);
     push_edges(g / 3, stack);
   }
+  refused_flips_ += static_cast<std::int64_t>(refused_.size());
   stack.clear();
   return flips;
 }

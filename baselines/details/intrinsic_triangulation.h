@@ -145,6 +145,7 @@ class IntrinsicTriangulation {
   int live_triangles_ = 0;
   std::int64_t refused_flips_ = 0;
   std::vector<int> stack_;          ///< edges to look at
+  std::vector<int> refused_;        ///< edges whose flips were refused
   std::vector<double> cotangents_;  ///< scratch, per half-edge
 };
 

@@ -153,6 +153,7 @@ double Replication::weight_step(const Eigen::MatrixX3d& V) const {
 void Replication::step(const Eigen::MatrixX3d& V, RunContext& context) {
   counts_ = {};
   const double most = weight_step(V);
+  const std::int64_t refused = now_.mesh.refused_flips();
   {
     const Phase phase(context, "move");
     counts_.flips = move_surface(now_, V, options_.lengths);
@@ -171,6 +172,8 @@ void Replication::step(const Eigen::MatrixX3d& V, RunContext& context) {
   }
   const Phase phase(context, "weights");
   counts_.max_weight_change = change_weights(now_, most);
+  // An insertion or a removal may have cleared the way for a flip that was refused before it.
+  if (now_.mesh.refused_flips() != refused) counts_.flips += now_.mesh.flip_to_delaunay();
 }
 
 void Replication::measure_histogram() {
