@@ -91,6 +91,12 @@ TEST(ReplicationMotion, LongMotionKeepsTheMeshDelaunayAndManifoldByThresholds) {
   wander(shapes::sphere(4), 300, options);
 }
 
+TEST(ReplicationMotion, LongMotionKeepsTheMeshDelaunayAndManifoldInLengthsAlongTheSurface) {
+  ReplicationOptions options;
+  options.lengths = LengthRule::geodesic;
+  wander(shapes::sphere(4), 300, options);
+}
+
 TEST(ReplicationMotion, DetailsReturnWithTheSurface) {
   const TriMesh mesh = shapes::square(30);
   const auto s = scene(mesh, even_details(mesh, 600, 2), stretch(mesh, 60, 2));
