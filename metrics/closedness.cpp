@@ -50,6 +50,15 @@ class Sets {
   std::vector<int> parent_;
 };
 
+/// Vertices joined by common triangles.
+Sets vertex_sets(const TriMesh& mesh) {
+  Sets vertices(static_cast<std::size_t>(mesh.vertex_count()));
+  for (int t = 0; t < mesh.F.rows(); ++t) {
+    for (int c = 1; c < 3; ++c) vertices.join(mesh.F(t, c), mesh.F(t, 0));
+  }
+  return vertices;
+}
+
 int corner_of(const Eigen::MatrixX3i& F, int triangle, int vertex) {
   for (int c = 0; c < 3; ++c) {
     if (F(triangle, c) == vertex) return 3 * triangle + c;
@@ -101,14 +110,9 @@ Closedness closedness(const TriMesh& mesh) {
     }
   }
   result.pinched_vertices = pinched(mesh.F, mesh.vertex_count(), corners);
-  Sets vertices(static_cast<std::size_t>(mesh.vertex_count()));
+  Sets vertices = vertex_sets(mesh);
   std::vector<char> used(static_cast<std::size_t>(mesh.vertex_count()), 0);
-  for (int t = 0; t < mesh.F.rows(); ++t) {
-    for (int c = 0; c < 3; ++c) {
-      used[static_cast<std::size_t>(mesh.F(t, c))] = 1;
-      vertices.join(mesh.F(t, c), mesh.F(t, 0));
-    }
-  }
+  for (const int v : mesh.F.reshaped()) used[static_cast<std::size_t>(v)] = 1;
   int used_count = 0;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     if (used[static_cast<std::size_t>(v)] == 0) continue;
@@ -117,6 +121,29 @@ Closedness closedness(const TriMesh& mesh) {
   }
   result.euler_characteristic = used_count - edges + mesh.triangle_count();
   return result;
+}
+
+Eigen::MatrixX3i largest_component(const TriMesh& mesh) {
+  Sets vertices = vertex_sets(mesh);
+  std::vector<int> count(static_cast<std::size_t>(mesh.vertex_count()), 0);
+  int largest = -1;
+  for (int t = 0; t < mesh.F.rows(); ++t) {
+    const int set = vertices.find(mesh.F(t, 0));
+    ++count[static_cast<std::size_t>(set)];
+  }
+  for (int t = 0; t < mesh.F.rows(); ++t) {
+    const int set = vertices.find(mesh.F(t, 0));
+    if (largest < 0 ||
+        count[static_cast<std::size_t>(set)] > count[static_cast<std::size_t>(largest)]) {
+      largest = set;
+    }
+  }
+  Eigen::MatrixX3i kept(largest < 0 ? 0 : count[static_cast<std::size_t>(largest)], 3);
+  Eigen::Index next = 0;
+  for (int t = 0; t < mesh.F.rows(); ++t) {
+    if (vertices.find(mesh.F(t, 0)) == largest) kept.row(next++) = mesh.F.row(t);
+  }
+  return kept;
 }
 
 }  // namespace geoprior

@@ -21,4 +21,8 @@ struct Closedness {
 /// Every mesh is allowed, the empty one too (it has no defect). Isolated vertices do not count.
 Closedness closedness(const TriMesh& mesh);
 
+/// Triangles of the component with the most of them (the first of several); vertices keep their
+/// numbers.
+Eigen::MatrixX3i largest_component(const TriMesh& mesh);
+
 }  // namespace geoprior

@@ -57,33 +57,35 @@ SurfaceDeviation deviation(Memo<SurfaceDeviation, 8>& memo, const FluidScene& sc
   });
 }
 
-/// 1 for gauges in whose square lies a vertex that a feature moved.
-std::vector<char> pasted_gauges(const ColumnGrid& grid, const Part& surface) {
-  std::vector<char> pasted(static_cast<std::size_t>(grid.count()), 0);
+enum class GaugeCover : char { unknown, bed, pasted };
+
+/// What the vertices of the bed in a gauge's square say: pasted when a feature moved one of them,
+/// unknown when there is none.
+std::vector<GaugeCover> gauge_cover(const ColumnGrid& grid, const Part& surface,
+                                    const Eigen::MatrixX3i& bed) {
+  std::vector<GaugeCover> cover(static_cast<std::size_t>(grid.count()), GaugeCover::unknown);
   const NamedArray* feature = find_array(surface, "feature");
-  if (feature == nullptr) return pasted;
-  for (Eigen::Index v = 0; v < surface.points.rows(); ++v) {
-    if (feature->values(v, 0) == 0) continue;
+  if (feature == nullptr) return cover;
+  for (const int v : bed.reshaped()) {
     const Eigen::Vector2d at =
         (surface.points.row(v).head<2>().transpose() - grid.origin) / grid.spacing;
     const int i = static_cast<int>(std::floor(at.x())), j = static_cast<int>(std::floor(at.y()));
     if (i < 0 || j < 0 || i >= grid.nx || j >= grid.ny) continue;
-    pasted[static_cast<std::size_t>(grid.index(i, j))] = 1;
+    GaugeCover& here = cover[static_cast<std::size_t>(grid.index(i, j))];
+    here = std::max(here, feature->values(v, 0) == 0 ? GaugeCover::bed : GaugeCover::pasted);
   }
-  return pasted;
+  return cover;
 }
 
-/// Pasted gauges with a neighbour that is not.
-std::vector<char> seam_gauges(const ColumnGrid& grid, const std::vector<char>& pasted) {
-  std::vector<char> seam(pasted.size(), 0);
-  const auto is_pasted = [&](int i, int j) {
-    return pasted[static_cast<std::size_t>(grid.index(i, j))] != 0;
-  };
+/// Pasted gauges beside one that is bed.
+std::vector<char> seam_gauges(const ColumnGrid& grid, const std::vector<GaugeCover>& cover) {
+  std::vector<char> seam(cover.size(), 0);
+  const auto at = [&](int i, int j) { return cover[static_cast<std::size_t>(grid.index(i, j))]; };
   for (int j = 1; j + 1 < grid.ny; ++j) {
     for (int i = 1; i + 1 < grid.nx; ++i) {
-      if (!is_pasted(i, j)) continue;
-      const bool border = !is_pasted(i - 1, j) || !is_pasted(i + 1, j) || !is_pasted(i, j - 1) ||
-                          !is_pasted(i, j + 1);
+      if (at(i, j) != GaugeCover::pasted) continue;
+      const auto beside = {at(i - 1, j), at(i + 1, j), at(i, j - 1), at(i, j + 1)};
+      const bool border = std::count(beside.begin(), beside.end(), GaugeCover::bed) > 0;
       if (border) seam[static_cast<std::size_t>(grid.index(i, j))] = 1;
     }
   }
@@ -101,12 +103,18 @@ GaugeFrame gauge_frame(const FluidScene& scene, const FrameSequence& frames, std
   GaugeFrame gauge;
   const auto surface = frames.part(i, "surface");
   if (!surface) return gauge;
-  gauge.heights = columns(mesh_of(*surface), *scene.gauges).top;
-  if (!at_seam) return gauge;
-  gauge.seam = seam_gauges(*scene.gauges, pasted_gauges(*scene.gauges, *surface));
+  if (!at_seam) {
+    gauge.heights = columns(mesh_of(*surface), *scene.gauges).top;
+    return gauge;
+  }
+  // Drops have no seam: they fly through the gauges of both.
+  const auto bed_of = [](const TriMesh& mesh) { return TriMesh{mesh.V, largest_component(mesh)}; };
+  const TriMesh bed = bed_of(mesh_of(*surface));
+  gauge.heights = columns(bed, *scene.gauges).top;
+  gauge.seam = seam_gauges(*scene.gauges, gauge_cover(*scene.gauges, *surface, bed.F));
   const SurfaceSequence& target = *scene.sculpt.target;
   const int frame = target.nearest_frame(frames.parameter(i));
-  gauge.target = columns(target.frame(frame).mesh, *scene.gauges).top;
+  gauge.target = columns(bed_of(target.frame(frame).mesh), *scene.gauges).top;
   return gauge;
 }
 

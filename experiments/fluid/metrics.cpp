@@ -246,8 +246,8 @@ void add_time(Rows rows, const SharedMemo& memo) {
                   return second_difference(scene, frames, false).pasted;
                 });
   rows.sequence("seam_jitter", "1",
-                "second_difference where the seams of features pass, over that of the target alone "
-                "at the same gauges and times",
+                "second_difference of the largest piece of the surface where the seams of features "
+                "pass, over that of the target alone at the same gauges and times",
                 Direction::lower_is_better, kChaotic,
                 [](const FluidScene& scene, const FrameSequence& frames) -> Value {
                   const SecondDifference d = second_difference(scene, frames, true);

@@ -49,5 +49,14 @@ TEST(Closedness, FindsTwoBoxesThatShareAnEdgeOrACorner) {
   EXPECT_EQ(pinched.pinched_vertices, 1);
 }
 
+TEST(LargestComponent, IsTheOneWithTheMostTriangles) {
+  const TriMesh sphere = shapes::sphere(1, {0, 0, 0}, 1);
+  const TriMesh box = shapes::box({5, 0, 0}, {6, 1, 1});
+  const TriMesh both = shapes::together(box, sphere);
+  const Eigen::MatrixX3i kept = largest_component(both);
+  EXPECT_EQ(kept, both.F.bottomRows(sphere.F.rows()));
+  EXPECT_EQ(largest_component(TriMesh{}).rows(), 0);
+}
+
 }  // namespace
 }  // namespace geoprior
