@@ -2,12 +2,14 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "experiments/fluid/measures.h"
 #include "experiments/fluid/topic.h"
 #include "metrics/dam_break.h"
+#include "metrics/seam.h"
 #include "metrics/self_contact.h"
 #include "metrics/slosh.h"
 
@@ -108,6 +110,21 @@ void add_surface(Rows rows, const SharedMemo& memo) {
   rows.frame("triangles", "1", "triangles of the surface", Direction::none, kCount,
              [](const FluidScene&, const Frame& frame) -> Value {
                return static_cast<double>(surface_part(frame).triangles.rows());
+             });
+  rows.frame("seam_angle", "deg",
+             "largest angle between the normals of two triangles on both sides of the border of "
+             "what features moved",
+             Direction::lower_is_better, kChaotic,
+             [](const FluidScene&, const Frame& frame) -> Value {
+               const Part& surface = surface_part(frame);
+               const NamedArray* feature = find_array(surface, "feature");
+               if (feature == nullptr) return {};
+               std::vector<char> moved(static_cast<std::size_t>(surface.points.rows()));
+               for (std::size_t v = 0; v < moved.size(); ++v) {
+                 moved[v] = feature->values(static_cast<Eigen::Index>(v), 0) != 0 ? 1 : 0;
+               }
+               return largest_seam_angle({surface.points, surface.triangles}, moved) * 180 /
+                      std::numbers::pi;
              });
   rows.frame("intersecting_pairs", "1",
              "pairs of triangles that intersect, of surfaces that features were pasted into",
