@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "baselines/details/detail_process.h"
+#include "core/options.h"
+
+namespace geoprior {
+
+/// Poisson dart throwing where the surface is stretched: details stay where they are; every frame
+/// darts are thrown into the triangles of M_d that have room (circumradius above r), and one that
+/// lands on a stretched face at least r from every detail becomes a new detail of weight 0.
+///
+/// r = radius / sqrt(density at rest), so that darts go on until the stretched region is saturated.
+/// Discs of diameter r placed at random cover 0.547 of the plane when no more fits (Feder 1980):
+/// 0.547 / (pi r^2 / 4) = 0.697 / r^2 per area, which is the density at rest for
+/// radius = sqrt(0.697) = 0.834.
+///
+/// What it cannot do: it never removes a detail, so a squeezed surface stays crowded; and gaps that
+/// the pattern had on purpose (clusters) are filled once their region is stretched.
+struct DartThrowingOptions {
+  double radius = 0.834;           ///< smallest distance in units of 1 / sqrt(density at rest)
+  double stretch_threshold = 1.1;  ///< a face is stretched above this ratio of area now / at rest
+  int darts = 8;                   ///< thrown into a triangle with room, a frame
+  double weight_rate = 0.1;        ///< largest change of a weight in a frame
+  LengthRule lengths = LengthRule::chord;
+};
+void describe(OptionVisitor& v, DartThrowingOptions& options);
+
+/// The method frame by frame. Phases inside a step: "move", "insert", "weights".
+/// Diagnostics: inserted, flips, max_weight_change.
+std::unique_ptr<DetailMethod> make_dart_throwing(const DetailScene& scene,
+                                                 const DartThrowingOptions& options,
+                                                 std::uint64_t seed);
+
+/// As a process: `make_detail_process` around it.
+std::unique_ptr<Process> make_dart_throwing_process(const DetailScene& scene,
+                                                    const DartThrowingOptions& options);
+
+}  // namespace geoprior
