@@ -1,0 +1,66 @@
+#include "baselines/details/dart_throwing.h"
+#include "baselines/details/naive_stretch.h"
+#include "baselines/details/rescatter.h"
+#include "experiments/details/scene.h"
+#include "experiments/details/topic.h"
+#include "solvers/details/replication.h"
+
+namespace geoprior {
+
+std::vector<MethodEntry> details_methods() {
+  using S = DetailsScene;
+  return {
+      method_entry<S, ReplicationOptions>(
+          "self-replicating", false,
+          "details multiply where the surface is stretched and merge where it is squeezed",
+          "thesis 2.2.2; Rohmer, Hahmann and Cani 2015",
+          [](const S& scene, const ReplicationOptions& options, RunContext&) {
+            return make_replication_process(scene.scene, options);
+          }),
+      method_entry<S, NaiveStretchOptions>(
+          "naive-stretch", true, "details go where the surface goes, none comes, none leaves",
+          "what a texture does",
+          [](const S& scene, const NaiveStretchOptions& options, RunContext&) {
+            return make_naive_stretch_process(scene.scene, options);
+          }),
+      method_entry<S, RescatterOptions>(
+          "re-scatter", true, "all details are scattered anew in every frame",
+          "Poisson-disk by dart throwing: Cook 1986",
+          [](const S& scene, const RescatterOptions& options, RunContext&) {
+            return make_rescatter_process(scene.scene, options);
+          }),
+      method_entry<S, DartThrowingOptions>(
+          "dart-throwing", true, "darts thrown where the surface is stretched become details",
+          "Poisson-disk by dart throwing: Cook 1986",
+          [](const S& scene, const DartThrowingOptions& options, RunContext&) {
+            return make_dart_throwing_process(scene.scene, options);
+          }),
+  };
+}
+
+std::vector<DiagnosticEntry> details_diagnostics() {
+  return {
+      // Of every method.
+      {"details", "1", "details, visible or not"},
+      {"visible_details", "1", "details of weight above 1/2"},
+      {"ghosts", "1", "vertices of the surface that M_d keeps: along borders, around thin parts"},
+      {"mean_edge", "m", "mean edge of M_d among details"},
+      {"flips", "1", "edges of M_d flipped in the frame"},
+      {"inserted", "1", "details that came in the frame"},
+      {"removed", "1", "details that left in the frame"},
+      {"max_weight_change", "1", "largest change of a weight in the frame"},
+      // Of self-replicating details.
+      {"revived", "1", "fading details that were called back in the frame"},
+      {"fading", "1", "details that began to fade in the frame"},
+      {"refused_flips", "1", "flips that M_d refused since the start"},
+      {"failed_queries", "1", "triangles for which the table held no triplet"},
+      {"budget_target", "1", "details that the surface asks for"},
+      {"triplets", "1", "triplets in the table (first frame)"},
+      {"triplets_met", "1", "triplets that were looked at to fill it (first frame)"},
+      {"table_bytes", "B", "memory of the table (first frame)"},
+      // Of scattering.
+      {"darts", "1", "darts thrown in the frame"},
+  };
+}
+
+}  // namespace geoprior

@@ -1,0 +1,172 @@
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "experiments/details/measures.h"
+#include "experiments/details/topic.h"
+
+namespace geoprior {
+namespace {
+
+// Runs of one build are equal bit for bit; tolerances are for other compilers and processors, where
+// a tie decided otherwise changes which detail comes, and little of what is measured of all.
+constexpr Tolerance kShare{0.01, 0};
+constexpr Tolerance kCount{3, 0.05};
+constexpr Tolerance kRoundOff{1e-6, 0};
+
+using SharedMemo = std::shared_ptr<DetailsMemo>;
+using OfFrame = std::function<Value(const DetailsScene&, const Frame&)>;
+using OfSequence = std::function<Value(const DetailsScene&, const FrameSequence&)>;
+
+const DetailsScene& details(const Scene& scene) { return dynamic_cast<const DetailsScene&>(scene); }
+
+/// Adds rows to the table.
+class Rows {
+ public:
+  explicit Rows(std::vector<MetricEntry>& table) : table_(table) {}
+
+  void frame(const char* name, const char* unit, const char* definition, Direction direction,
+             Tolerance tolerance, OfFrame measure) {
+    add(name, unit, definition, direction, tolerance).of_frame =
+        [measure = std::move(measure)](const Scene& scene, const Frame& frame, const Frame*) {
+          return measure(details(scene), frame);
+        };
+  }
+  void sequence(const char* name, const char* unit, const char* definition, Direction direction,
+                Tolerance tolerance, OfSequence measure) {
+    add(name, unit, definition, direction, tolerance).of_sequence =
+        [measure = std::move(measure)](const Scene& scene, const FrameSequence& frames) {
+          return measure(details(scene), frames);
+        };
+  }
+  /// Of the last row.
+  void target(double value) { table_.back().target = value; }
+
+ private:
+  MetricEntry& add(const char* name, const char* unit, const char* definition, Direction direction,
+                   Tolerance tolerance) {
+    MetricEntry& e = table_.emplace_back();
+    e.name = name;
+    e.unit = unit;
+    e.definition = definition;
+    e.direction = direction;
+    e.tolerance = tolerance;
+    return e;
+  }
+
+  std::vector<MetricEntry>& table_;
+};
+
+constexpr Direction kLow = Direction::lower_is_better;
+constexpr Direction kTarget = Direction::closer_to_target;
+constexpr Direction kNone = Direction::none;
+
+void add_spacing(Rows rows, const SharedMemo& memo) {
+  const auto read = [memo](bool visible, auto get) {
+    return [memo, visible, get](const DetailsScene& scene, const Frame& frame) -> Value {
+      const SpacingPair pair = spacing_pair(*memo, scene, frame, visible);
+      if (!(pair.rest.mean > 0) || pair.now.edges == 0) return {};
+      return get(pair);
+    };
+  };
+  using P = const SpacingPair&;
+  const auto mean = [](P p) { return spacing_change(p.rest, p.now).mean; };
+  rows.frame("mean_edge_change", "1",
+             "relative change of the mean edge of M_d among details against rest, signed", kTarget,
+             kShare, read(false, mean));
+  rows.frame("visible_edge_change", "1",
+             "the same for the mesh of the details of weight above 1/2: what one sees", kTarget,
+             kShare, read(true, mean));
+  const auto decile = [&](const char* name, const char* definition, std::size_t k) {
+    rows.frame(name, "1", definition, kTarget, kShare,
+               read(true, [k](P p) { return spacing_change(p.rest, p.now).deciles[k]; }));
+  };
+  decile("edge_change_p10", "relative change of the edge that a tenth of the visible fall below",
+         0);
+  decile("edge_change_p50", "relative change of the median edge of the visible details", 4);
+  decile("edge_change_p90",
+         "relative change of the edge that nine tenths of the visible fall below", 8);
+  rows.frame("edge_variation", "1",
+             "standard deviation of the edges of the visible details over their mean", kLow, kShare,
+             read(true, [](P p) { return p.now.variation; }));
+  rows.frame("smallest_edge", "1",
+             "smallest edge of the visible details over the mean edge at rest",
+             Direction::higher_is_better, {0.1, 0},
+             read(true, [](P p) { return p.now.smallest / p.rest.mean; }));
+  rows.frame("outside_share", "1",
+             "share of the edges of the visible details outside 0.7 to 1.4 of the mean at rest",
+             kLow, {0.03, 0}, read(true, [](P p) { return p.now.outside; }));
+}
+
+void add_density(Rows rows) {
+  const auto ratio = [](bool visible) {
+    return [visible](const DetailsScene& scene, const Frame& frame) -> Value {
+      return details_over_wanted(scene, frame, visible);
+    };
+  };
+  rows.frame("density_ratio", "1",
+             "details over those at rest times the growth of the area under each", kTarget, kShare,
+             ratio(false));
+  rows.target(1);
+  rows.frame("visible_density_ratio", "1", "the same for details of weight above 1/2", kTarget,
+             kShare, ratio(true));
+  rows.target(1);
+  rows.frame("count_ratio", "1", "details over those at rest", kNone, kShare,
+             [](const DetailsScene& scene, const Frame& frame) -> Value {
+               return static_cast<double>(required_part(frame, "details").points.rows()) /
+                      static_cast<double>(scene.scene.details.size());
+             });
+}
+
+void add_motion(Rows rows) {
+  rows.sequence("worst_edge_change", "1", "largest magnitude of mean_edge_change over the motion",
+                kLow, kShare, [](const DetailsScene& scene, const FrameSequence& frames) {
+                  return worst_edge_change(scene, frames, false);
+                });
+  rows.sequence("worst_visible_change", "1",
+                "largest magnitude of visible_edge_change over the motion", kLow, kShare,
+                [](const DetailsScene& scene, const FrameSequence& frames) {
+                  return worst_edge_change(scene, frames, true);
+                });
+  const auto add = [&](const char* name, const char* definition, Direction direction,
+                       Tolerance tolerance, auto get) {
+    rows.sequence(name, "1", definition, direction, tolerance,
+                  [get](const DetailsScene& scene, const FrameSequence& frames) -> Value {
+                    return get(motion_measures(scene, frames));
+                  });
+  };
+  using M = const MotionMeasures&;
+  add("weight_step",
+      "largest change of a weight from one frame to the next; who is not there has 0", kLow,
+      kRoundOff, [](M m) -> Value { return m.events.largest_step; });
+  add("popping",
+      "largest displacement of a detail's tip that the deformation does not explain, over the "
+      "height of a detail",
+      kLow, kShare, [](M m) { return m.popping; });
+  add("inserted_total", "details that came over the motion", kNone, kCount,
+      [](M m) -> Value { return m.events.inserted; });
+  add("removed_total", "details that left over the motion", kNone, kCount,
+      [](M m) -> Value { return m.events.removed; });
+  add("churn", "insertions and removals that cancel each other", kLow, kCount,
+      [](M m) -> Value { return m.events.churn; });
+  add("turns", "times the number of details goes from growing to shrinking or back, by 1 % or more",
+      kNone, {1, 0}, [](M m) -> Value { return m.turns; });
+  add("events_at_rest",
+      "insertions and details that begin to fade once the surface has not moved for ten frames",
+      kLow, {0, 0}, [](M m) -> Value { return m.at_rest; });
+}
+
+}  // namespace
+
+std::vector<MetricEntry> details_metrics() {
+  const auto memo = std::make_shared<DetailsMemo>();
+  std::vector<MetricEntry> table;
+  const Rows rows(table);
+  add_spacing(rows, memo);
+  add_density(rows);
+  add_motion(rows);
+  return table;
+}
+
+}  // namespace geoprior

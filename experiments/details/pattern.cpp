@@ -1,0 +1,259 @@
+#include "experiments/details/pattern.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "baselines/details/point_grid.h"
+#include "baselines/details/surface_walk.h"
+#include "core/error.h"
+#include "core/random.h"
+#include "experiments/details/projection.h"
+#include "experiments/keyframes.h"
+
+namespace geoprior {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+/// Poisson-disk: darts for each detail that is wanted.
+constexpr int kDartsPerDetail = 400;
+/// Smallest distance in a cluster over its radius.
+constexpr double kApartInCluster = 0.25;
+
+/// The surface as what is drawn on: density per area, random places.
+class Ground {
+ public:
+  Ground(const TriMesh& surface, const DetailPatternOptions& options,
+         const Eigen::VectorXd& relative)
+      : mesh_(surface), topology_(surface), normals_(vertex_normals(surface)), density_(relative) {
+    for (Eigen::Index v = 0; v < mesh_.V.rows(); ++v) x_.emplace_back(mesh_.V.row(v).transpose());
+    mark_region(options.region);
+    const Eigen::VectorXd areas = triangle_areas(mesh_.V, mesh_.F);
+    sums_.resize(mesh_.F.rows());
+    double sum = 0;
+    for (Eigen::Index t = 0; t < mesh_.F.rows(); ++t) {
+      if (inside_[static_cast<std::size_t>(t)] != 0) {
+        area_ += areas[t];
+        sum += areas[t] * corners(static_cast<int>(t)).mean();
+      }
+      sums_[t] = sum;
+    }
+    if (!(area_ > 0)) throw Error("holds no triangle", "scene.pattern.region", "a part of it");
+    if (!(sum > 0))
+      throw Error("is 0 everywhere", "scene.pattern.density", "0 at some places only");
+    density_ *= options.count / sum;
+    sums_ /= sum;
+  }
+
+  /// A place, with probability in proportion to the density.
+  [[nodiscard]] SurfacePoint draw(RandomStream& random) const {
+    const double s = random.uniform();
+    const auto* end = sums_.data() + sums_.size() - 1;
+    const int face = static_cast<int>(std::upper_bound(sums_.data(), end, s) - sums_.data());
+    const Eigen::Vector3d rho = corners(face);
+    for (;;) {
+      const double r = std::sqrt(random.uniform()), t = random.uniform();
+      const Eigen::Vector3d b(1 - r, r * (1 - t), r * t);
+      if (random.uniform() * rho.maxCoeff() <= b.dot(rho)) return {face, b};
+    }
+  }
+  [[nodiscard]] double density(const SurfacePoint& p) const {
+    return corners(p.face).dot(p.barycentric);
+  }
+  [[nodiscard]] bool holds(const SurfacePoint& p) const {
+    return inside_[static_cast<std::size_t>(p.face)] != 0;
+  }
+  [[nodiscard]] Eigen::Vector3d position(const SurfacePoint& p) const {
+    return position_of(p, topology_, x_);
+  }
+  [[nodiscard]] Eigen::Vector3d normal(const SurfacePoint& p) const {
+    return normal_of_face(p.face, topology_, x_);
+  }
+  [[nodiscard]] double area() const { return area_; }
+  [[nodiscard]] const TriMesh& mesh() const { return mesh_; }
+  [[nodiscard]] const SurfaceTopology& topology() const { return topology_; }
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& x() const { return x_; }
+
+ private:
+  [[nodiscard]] Eigen::Vector3d corners(int face) const {
+    return {density_[mesh_.F(face, 0)], density_[mesh_.F(face, 1)], density_[mesh_.F(face, 2)]};
+  }
+
+  /// A face belongs to the region when its centre does.
+  void mark_region(const std::vector<RegionOptions>& region) {
+    inside_.assign(static_cast<std::size_t>(mesh_.F.rows()), 1);
+    for (std::size_t i = 0; i < region.size(); ++i) {
+      const Eigen::Vector3d direction = to_vector(region[i].direction);
+      if (region[i].kind != RegionKind::ball && !(direction.norm() > 0)) {
+        throw Error("has no direction", "scene.pattern.region." + std::to_string(i) + ".direction",
+                    "a vector of any length");
+      }
+      for (std::size_t t = 0; t < inside_.size(); ++t) {
+        if (is_in(region[i], direction.normalized(), static_cast<int>(t)) == region[i].outside)
+          inside_[t] = 0;
+      }
+    }
+  }
+  [[nodiscard]] bool is_in(const RegionOptions& region, const Eigen::Vector3d& direction,
+                           int face) const {
+    const SurfacePoint centre{face, Eigen::Vector3d::Constant(1.0 / 3)};
+    const Eigen::Vector3d from = position(centre) - to_vector(region.point);
+    if (region.kind == RegionKind::half_space) return from.dot(direction) >= 0;
+    if (region.kind == RegionKind::ball) return from.norm() <= region.radius;
+    const Eigen::Vector3d n = position_of(centre, normals_, mesh_.F).normalized();
+    return n.dot(direction) >= std::cos(region.angle_deg * std::numbers::pi / 180);
+  }
+
+  const TriMesh& mesh_;
+  SurfaceTopology topology_;
+  Eigen::MatrixX3d normals_;
+  std::vector<Eigen::Vector3d> x_;
+  Eigen::VectorXd density_;  ///< per vertex (1/m^2)
+  Eigen::VectorXd sums_;     ///< partial sums of the details expected on the faces, up to 1
+  std::vector<char> inside_;
+  double area_ = 0;  ///< of the region
+};
+
+using Places = std::vector<SurfacePoint>;
+
+Places uniform(const Ground& ground, int count, RandomStream& random) {
+  Places places;
+  for (int i = 0; i < count; ++i) places.push_back(ground.draw(random));
+  return places;
+}
+
+/// @param share  of the density that is asked for
+Places poisson_disk(const Ground& ground, int count, double radius, double share,
+                    RandomStream& random) {
+  const double mean = ground.area() / count;
+  PointGrid grid(radius * std::sqrt(mean), static_cast<std::size_t>(count));
+  Places places;
+  const std::int64_t darts = std::int64_t{kDartsPerDetail} * count;
+  for (std::int64_t i = 0; i < darts && std::ssize(places) < count; ++i) {
+    const SurfacePoint p = ground.draw(random);
+    const Eigen::Vector3d x = ground.position(p), n = ground.normal(p);
+    if (!grid.is_free(x, n, radius / std::sqrt(share * ground.density(p)))) continue;
+    grid.add(x, n);
+    places.push_back(p);
+  }
+  return places;
+}
+
+Places jittered_grid(const Ground& ground, const DetailPatternOptions& options,
+                     RandomStream& random) {
+  const Eigen::RowVector3d low = ground.mesh().V.colwise().minCoeff();
+  const Eigen::RowVector3d size = ground.mesh().V.colwise().maxCoeff() - low;
+  if (!(size.z() <= 1e-9 * size.norm())) {
+    throw Error("needs a flat surface", "scene.pattern.kind", "a plane of constant z");
+  }
+  if (options.density.kind != DensityKind::constant) {
+    throw Error("is the same everywhere on a grid", "scene.pattern.density", "constant");
+  }
+  const double spacing = std::sqrt(ground.area() / options.count);
+  const int nx = std::max(1, static_cast<int>(std::lround(size.x() / spacing)));
+  const int ny = std::max(1, static_cast<int>(std::lround(size.y() / spacing)));
+  const SurfaceProjector projector(ground.mesh());
+  Places places;
+  for (int j = 0; j < ny; ++j) {
+    for (int i = 0; i < nx; ++i) {
+      const double dx = options.jitter * (random.uniform() - 0.5);
+      const double dy = options.jitter * (random.uniform() - 0.5);
+      const Eigen::Vector3d x(low.x() + size.x() * (i + 0.5 + dx) / nx,
+                              low.y() + size.y() * (j + 0.5 + dy) / ny, low.z());
+      const SurfaceProjector::Nearest nearest = projector.nearest(x);
+      // Cells beside the outline of the surface, and of the region, stay empty.
+      if (nearest.distance < 1e-6 * spacing && ground.holds(nearest.point))
+        places.push_back(nearest.point);
+    }
+  }
+  return places;
+}
+
+/// Fewer than `size` where the region or a border cuts the disc.
+void add_cluster(const Ground& ground, const SurfacePoint& centre, int size, double radius,
+                 RandomStream& random, Places& places) {
+  constexpr int kTries = 100;
+  const std::size_t first = places.size();
+  for (int tries = 0; tries < kTries * size; ++tries) {
+    if (places.size() == first + static_cast<std::size_t>(size)) return;
+    const Eigen::Vector3d direction =
+        tangent_direction(centre.face, kTurn * random.uniform(), ground.topology(), ground.x());
+    const double length = radius * std::sqrt(random.uniform());
+    const SurfacePoint p = trace_straight(centre, direction, length, ground.topology(), ground.x());
+    const Eigen::Vector3d x = ground.position(p);
+    const auto is_near = [&](const SurfacePoint& q) {
+      return (ground.position(q) - x).norm() < kApartInCluster * radius;
+    };
+    const bool crowded =
+        std::any_of(places.begin() + static_cast<std::ptrdiff_t>(first), places.end(), is_near);
+    if (!crowded && ground.holds(p)) places.push_back(p);
+  }
+}
+
+Places clusters(const Ground& ground, const DetailPatternOptions& options, RandomStream& random) {
+  const double share = 1.0 / options.cluster_size;
+  const int count = std::max(1, static_cast<int>(std::lround(options.count * share)));
+  Places places;
+  for (const SurfacePoint& centre : poisson_disk(ground, count, options.radius, share, random)) {
+    const double spacing = 1 / std::sqrt(share * ground.density(centre));
+    add_cluster(ground, centre, options.cluster_size, options.cluster_radius * spacing, random,
+                places);
+  }
+  return places;
+}
+
+Places places_of(const Ground& ground, const DetailPatternOptions& options, RandomStream& random) {
+  switch (options.kind) {
+    case PatternKind::uniform:
+      return uniform(ground, options.count, random);
+    case PatternKind::poisson_disk:
+      return poisson_disk(ground, options.count, options.radius, 1, random);
+    case PatternKind::grid:
+      return jittered_grid(ground, options, random);
+    case PatternKind::clusters:
+      return clusters(ground, options, random);
+    case PatternKind::file:
+      break;
+  }
+  throw Error("is not sampled", "scene.pattern.kind", "poisson-disk, grid, uniform, clusters");
+}
+
+}  // namespace
+
+Eigen::VectorXd gradient_density(const TriMesh& surface, const DensityOptions& options) {
+  if (options.kind == DensityKind::constant) return Eigen::VectorXd::Ones(surface.V.rows());
+  const Eigen::Vector3d axis = to_vector(options.axis);
+  if (!(axis.norm() > 0)) {
+    throw Error("has no direction", "scene.pattern.density.axis", "a vector of any length");
+  }
+  const Eigen::VectorXd along = surface.V * axis.normalized();
+  const double low = along.minCoeff(), range = along.maxCoeff() - low;
+  if (!(range > 0)) return Eigen::VectorXd::Constant(along.size(), options.from);
+  return options.from + (along.array() - low) / range * (options.to - options.from);
+}
+
+std::vector<Detail> scatter(const TriMesh& surface, const DetailPatternOptions& options,
+                            const Eigen::VectorXd& relative) {
+  const Ground ground(surface, options, relative);
+  const auto seed = static_cast<std::uint64_t>(options.seed);
+  RandomStream places(seed, "places"), looks(seed, "looks");
+  std::vector<Detail> details;
+  for (const SurfacePoint& at : places_of(ground, options, places)) {
+    Detail& d = details.emplace_back();
+    d.at = at;
+    d.tangent_angle = kTurn * looks.uniform();
+    if (options.aligned) {
+      d.tangent_angle =
+          tangent_angle(at.face, to_vector(options.direction), ground.topology(), ground.x());
+    }
+    d.type = static_cast<int>(looks.below(static_cast<std::uint32_t>(options.types)));
+  }
+  if (details.size() < 3) {
+    throw Error("gives " + std::to_string(details.size()) + " details", "scene.pattern",
+                "at least 3: a higher count, a larger region");
+  }
+  return details;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,196 @@
+#include "experiments/details/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include "baselines/details/detail_process.h"
+#include "core/error.h"
+#include "experiments/details/position_file.h"
+#include "experiments/details/projection.h"
+#include "experiments/formats/vtk_files.h"
+#include "experiments/frame_arrays.h"
+#include "experiments/view/view.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file named in an experiment: absolute, relative to its folder, or to the clone's data folder.
+fs::path find_file(const std::string& name, const fs::path& folder, const std::string& where) {
+  std::string tried;
+  for (const fs::path& base : {folder, geoprior_home() / "data"}) {
+    const fs::path candidate = (base / name).lexically_normal();
+    std::error_code ignored;
+    if (fs::is_regular_file(candidate, ignored)) return candidate;
+    tried += (tried.empty() ? "" : ", ") + candidate.string();
+  }
+  throw Error("no file '" + name + "'", where, "looked for " + tried);
+}
+
+/// What loading adds to.
+struct Loading {
+  const DetailSceneOptions& options;
+  fs::path folder;
+  DetailsScene& result;
+  std::shared_ptr<const SurfaceSequence> sequence;  ///< of `motion`, or null
+
+  void load_surface() {
+    DetailScene& scene = result.scene;
+    const DetailSurfaceOptions& o = options.surface;
+    if (o.kind == DetailSurfaceKind::sequence) {
+      if (!sequence) throw Error("there is none", "scene.motion.sequence", "a mesh sequence");
+      scene.surface = sequence->frame(0).mesh;
+      scene.name = sequence->name();
+    } else if (o.kind == DetailSurfaceKind::file) {
+      load_file(o);
+    } else {
+      scene.surface = make_surface(o);
+      scene.name = "scene.surface";
+    }
+    const Eigen::VectorXd z = scene.surface.V.col(2);
+    result.planar = z.maxCoeff() - z.minCoeff() <= 1e-9 * bounding_box_diagonal(scene.surface.V);
+  }
+
+  void load_file(const DetailSurfaceOptions& o) {
+    SequenceOptions still;
+    still.path = find_file(o.file, folder, "scene.surface.file").string();
+    still.scale = o.scale;
+    still.frames_per_second = 1;
+    still.up = UpAxis::z;
+    TriMesh mesh =
+        open_sequence(still, folder, result.load_warnings, result.input_files)->frame(0).mesh;
+    mesh.V = mesh.V * to_rotation(o.turn_deg).toRotationMatrix().transpose();
+    result.scene.surface = std::move(mesh);
+    result.scene.name = still.path;
+  }
+
+  [[nodiscard]] Eigen::VectorXd density() const {
+    const DensityOptions& o = options.pattern.density;
+    const TriMesh& surface = result.scene.surface;
+    if (o.kind != DensityKind::array) return gradient_density(surface, o);
+    const std::string where = "scene.pattern.density.array";
+    const fs::path file = options.surface.file;
+    if (options.surface.kind != DetailSurfaceKind::file || file.extension() != ".vtp") {
+      throw Error("is in no file", where, "with scene.surface.file, a .vtp");
+    }
+    const Part part = read_vtk_part(find_file(file.string(), folder, "scene.surface.file"));
+    const NamedArray* array = find_array(part, o.array);
+    if (array == nullptr || array->on != NamedArray::On::points || array->values.cols() != 1) {
+      throw Error("there is no array '" + o.array + "'", where, "one number a point");
+    }
+    if (array->values.rows() != surface.V.rows()) {
+      throw Error("has " + std::to_string(array->values.rows()) + " values", where,
+                  "as many as vertices after welding: " + std::to_string(surface.V.rows()));
+    }
+    if (!array->values.allFinite() || array->values.minCoeff() < 0)
+      throw Error("has values that are no density", where, "finite, not negative");
+    return array->values.col(0);
+  }
+
+  void load_details() {
+    DetailScene& scene = result.scene;
+    const DetailPatternOptions& o = options.pattern;
+    if (o.kind == PatternKind::file) {
+      const fs::path file = find_file(o.file, folder, "scene.pattern.file");
+      result.input_files.push_back(file);
+      const double far = o.max_distance.value_or(0.01 * bounding_box_diagonal(scene.surface.V));
+      scene.details = details_of_file(file, scene.surface, far);
+      if (o.aligned) align(scene.details);
+      return;
+    }
+    const Eigen::VectorXd relative = density();
+    scene.details = scatter(scene.surface, o, relative);
+    DetailPatternOptions again = o;
+    again.seed += kResample;
+    result.resample = scatter(scene.surface, again, relative);
+    // A twentieth less is what chance explains; more is a pattern that does not fit.
+    const double share = static_cast<double>(scene.details.size()) / o.count;
+    if (share < 0.95) {
+      result.load_warnings.push_back("scene.pattern: " + std::to_string(scene.details.size()) +
+                                     " details of " + std::to_string(o.count) +
+                                     " found a place: a smaller radius, a larger region");
+    }
+  }
+
+  void align(std::vector<Detail>& details) const {
+    const TriMesh& surface = result.scene.surface;
+    const SurfaceTopology topology(surface);
+    std::vector<Eigen::Vector3d> x;
+    for (Eigen::Index v = 0; v < surface.V.rows(); ++v) x.emplace_back(surface.V.row(v));
+    const Eigen::Vector3d direction = to_vector(options.pattern.direction);
+    for (Detail& d : details) d.tangent_angle = tangent_angle(d.at.face, direction, topology, x);
+  }
+
+  void load_motion() {
+    const DetailMotionOptions& o = options.motion;
+    DetailScene& scene = result.scene;
+    if (sequence) {
+      if (!o.deform.empty() || o.drag)
+        throw Error("stands beside a sequence", "scene.motion", "sequence, or deform and drag");
+      scene.motion = motion_of_sequence(*sequence);
+      return;
+    }
+    std::vector<double> times;
+    for (int i = 0; i <= o.frames; ++i) times.push_back(o.duration * i / o.frames);
+    std::shared_ptr<const SurfaceMotion> base =
+        std::make_shared<StoredMotion>(std::vector{scene.surface.V}, std::vector{0.0});
+    if (o.drag) base = drag_handles(scene.surface, *o.drag, times);
+    scene.motion = std::make_shared<ScriptedMotion>(scene.surface, base, o.deform, times);
+  }
+
+  /// Between the seeds of the pattern and of its resample.
+  static constexpr int kResample = 1000003;
+};
+
+}  // namespace
+
+const Frame& DetailsScene::rest() const {
+  std::call_once(rest_made_, [&] {
+    rest_ =
+        detail_frame(build_detail_mesh(scene.surface, scene.details), scene.motion->parameter(0));
+  });
+  return rest_;
+}
+
+int DetailsScene::frame_of(double parameter) const {
+  int best = 0;
+  for (int i = 1; i < scene.motion->frame_count(); ++i) {
+    const auto off = [&](int k) { return std::abs(scene.motion->parameter(k) - parameter); };
+    if (off(i) < off(best)) best = i;
+  }
+  return best;
+}
+
+std::map<std::string, double> DetailsScene::facts() const {
+  const Eigen::VectorXd areas = triangle_areas(scene.surface.V, scene.surface.F);
+  return {{"vertices", static_cast<double>(scene.surface.vertex_count())},
+          {"triangles", static_cast<double>(scene.surface.triangle_count())},
+          {"area", areas.sum()},
+          {"details", static_cast<double>(scene.details.size())},
+          {"frames", static_cast<double>(scene.motion->frame_count())}};
+}
+
+std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& options,
+                                                 const fs::path& folder) {
+  auto scene = std::make_shared<DetailsScene>();
+  Loading loading{options, folder, *scene, nullptr};
+  if (options.motion.sequence) {
+    if (options.surface.kind != DetailSurfaceKind::sequence) {
+      throw Error("is not the one that moves", "scene.surface.kind",
+                  "sequence, with scene.motion.sequence");
+    }
+    loading.sequence =
+        open_sequence(*options.motion.sequence, folder, scene->load_warnings, scene->input_files);
+  }
+  loading.load_surface();
+  loading.load_details();
+  loading.load_motion();
+  scene->chosen_height = options.detail_height;
+  require_valid(scene->scene);
+  return scene;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "baselines/details/detail_scene.h"
+#include "core/frame.h"
+#include "experiments/details/scene_options.h"
+#include "experiments/topic.h"
+
+namespace geoprior {
+
+/// A surface that moves with details on it: what the methods are given and the metrics are measured
+/// on.
+class DetailsScene final : public Scene {
+ public:
+  DetailScene scene;
+  /// The same process of placing drawn anew (other seed), for noise floors; empty for details of a
+  /// file.
+  std::vector<Detail> resample;
+  std::optional<double> chosen_height;  ///< of a detail of weight 1 (m)
+  bool planar = false;                  ///< at rest, in a plane of constant z
+  std::vector<std::filesystem::path> input_files;
+  std::vector<std::string> load_warnings;
+
+  /// The frame of a method that has done nothing yet: surface and M_d at rest. Made when it is
+  /// first asked for; safe from several threads.
+  [[nodiscard]] const Frame& rest() const;
+  /// Number of the frame with that parameter.
+  [[nodiscard]] int frame_of(double parameter) const;
+
+  [[nodiscard]] std::vector<double> parameters() const override { return {}; }
+  [[nodiscard]] std::string parameter_name() const override { return "time"; }
+  [[nodiscard]] std::string parameter_unit() const override { return "s"; }
+  [[nodiscard]] std::vector<std::filesystem::path> inputs() const override { return input_files; }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return load_warnings; }
+  [[nodiscard]] std::map<std::string, double> facts() const override;
+
+ private:
+  mutable std::once_flag rest_made_;
+  mutable Frame rest_;
+};
+
+/// @param folder  of the experiment file, against which relative files are tried first
+/// @throws Error  naming key or file, and place
+std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& options,
+                                                 const std::filesystem::path& folder);
+
+}  // namespace geoprior

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+#include "experiments/details/deformation.h"
+#include "experiments/details/handle_drag.h"
+#include "experiments/details/pattern.h"
+#include "experiments/details/surfaces.h"
+#include "experiments/fluid/sequence_files.h"
+
+namespace geoprior {
+
+/// `motion`: how the surface moves. Operations, on top of what handles drag; or a sequence.
+struct DetailMotionOptions {
+  int frames = 240;     ///< after the first, which is the surface at rest
+  double duration = 1;  ///< s
+  std::vector<DeformationOptions> deform;
+  std::optional<HandleDragOptions> drag;
+  std::optional<SequenceOptions> sequence;  ///< instead of all above
+};
+void describe(OptionVisitor& v, DetailMotionOptions& options);
+
+/// `[scene]` of a details experiment.
+struct DetailSceneOptions {
+  DetailSurfaceOptions surface;
+  DetailPatternOptions pattern;
+  DetailMotionOptions motion;
+  std::optional<double> detail_height;  ///< of a detail of weight 1 (m)
+};
+void describe(OptionVisitor& v, DetailSceneOptions& options);
+
+}  // namespace geoprior

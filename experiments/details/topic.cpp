@@ -1,0 +1,25 @@
+#include "experiments/details/topic.h"
+
+#include "experiments/details/scene.h"
+
+namespace geoprior {
+
+Topic details_topic() {
+  Topic topic;
+  topic.name = "details";
+  topic.summary = "details on a surface keep their spacing while it is deformed (thesis 2.2.2)";
+  topic.default_scene = [] { return std::make_unique<TypedOptions<DetailSceneOptions>>(); };
+  topic.load = [](const OptionSet& set, const std::filesystem::path& folder) {
+    return load_details_scene(dynamic_cast<const TypedOptions<DetailSceneOptions>&>(set).options,
+                              folder);
+  };
+  topic.methods = details_methods();
+  topic.metrics = details_metrics();
+  topic.diagnostics = details_diagnostics();
+  topic.view.direction = {0, 0, 1};
+  topic.view.up = {0, 1, 0};
+  topic.view.overlays = {"details"};
+  return topic;
+}
+
+}  // namespace geoprior
