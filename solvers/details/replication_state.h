@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "solvers/details/area_budget.h"
+#include "baselines/details/area_budget.h"
 #include "solvers/details/pair_correlation.h"
 #include "solvers/details/replication.h"
 #include "solvers/details/triplet_table.h"

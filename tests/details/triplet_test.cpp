@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "baselines/details/area_budget.h"
 #include "core/error.h"
-#include "solvers/details/area_budget.h"
 #include "solvers/details/local_chart.h"
 #include "solvers/details/pair_correlation.h"
 #include "solvers/details/triplet_table.h"

@@ -1,4 +1,4 @@
-#include "solvers/details/area_budget.h"
+#include "baselines/details/area_budget.h"
 
 #include <algorithm>
 #include <cmath>
