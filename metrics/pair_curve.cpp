@@ -13,9 +13,9 @@ namespace geoprior {
 namespace {
 
 constexpr std::size_t kSourcesPerBlock = 32;
-constexpr double kTail = 4;            // sigmas after which the kernel is cut
-constexpr int kCellsPerSigma = 8;      // of the histograms of distances
-constexpr double kSampleSigmas = 1.5;  // edge of the triangles whose area counts at their middle
+constexpr double kTail = 4;          // sigmas after which the kernel is cut
+constexpr int kCellsPerSigma = 8;    // of the histograms of distances
+constexpr double kSampleSigmas = 3;  // edge of the triangles whose area counts at their middle
 
 /// Amounts by distance; each is shared by the two nearest cells, in proportion.
 class Histogram {
@@ -134,9 +134,8 @@ class PairCount {
         if (j == i) continue;
         tally.pairs.add(within.distance(layout_[j]) / unit_, weight_[i] * weight_[j]);
       }
-      const auto& c = surface_.corners(f);
-      const double longest =
-          std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
+      const auto& [c, length, unused] = surface_.triangle(f);
+      const double longest = std::max({length[0], length[1], length[2]});
       add_area(within, c[0], c[1], c[2], longest, share, tally.area);
     }
   }

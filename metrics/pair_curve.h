@@ -10,8 +10,8 @@ namespace geoprior {
 
 /// How a pair-correlation function is estimated. Lengths are in units of the spacing given.
 struct PairCurveOptions {
-  double reach = 4;        ///< largest distance r
-  int bins = 40;           ///< radii at which g is given: the middles of as many equal intervals
+  double reach = 3;        ///< largest distance r
+  int bins = 30;           ///< radii at which g is given: the middles of as many equal intervals
   double bandwidth = 0.1;  ///< sigma of the Gaussian kernel
   int sources = 2000;      ///< details from which distances are measured, evenly spread over the
                            ///< rows; all when there are not more

@@ -13,18 +13,16 @@ namespace {
 /// Corners a, b of an edge with the triangle to the left, and the distances there: the centre of
 /// the circle through which the front comes, to the right of the edge.
 /// @return  whether there is one; distances of two different ways round may have none
-bool centre_behind(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double at_a, double at_b,
-                   Eigen::Vector2d& centre) {
-  const Eigen::Vector2d edge = b - a;
-  const double squared = edge.squaredNorm();
-  if (!(squared > 0)) return false;
-  const double length = std::sqrt(squared);
-  const double along = (at_a * at_a - at_b * at_b + squared) / (2 * length);
+bool centre_behind(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double length, double at_a,
+                   double at_b, Eigen::Vector2d& centre) {
+  if (!(at_a + at_b < std::numeric_limits<double>::infinity()) || !(length > 0)) return false;
+  const double squared = length * length, inverse = 1 / length;
+  const double along = (at_a * at_a - at_b * at_b + squared) * (0.5 * inverse);
   const double depth_squared = at_a * at_a - along * along;
   // A source on the line of the edge has depth 0 up to round-off.
   if (!(depth_squared >= -1e-12 * (squared + at_a * at_a))) return false;
   const double depth = std::sqrt(std::max(0., depth_squared));
-  const Eigen::Vector2d e = edge / length;
+  const Eigen::Vector2d e = inverse * (b - a);
   centre = a + along * e + depth * Eigen::Vector2d(e.y(), -e.x());
   return true;
 }
@@ -41,6 +39,23 @@ bool passes_between(const Eigen::Vector2d& centre, const Eigen::Vector2d& point,
   return cross_product(way, a - centre) >= -slack && cross_product(way, b - centre) <= slack;
 }
 
+UnfoldedSurface::Triangle lay_out(const TriMesh& mesh, int f) {
+  const Eigen::RowVector3d u = mesh.V.row(mesh.F(f, 1)) - mesh.V.row(mesh.F(f, 0));
+  const Eigen::RowVector3d v = mesh.V.row(mesh.F(f, 2)) - mesh.V.row(mesh.F(f, 0));
+  const double length = u.norm(), along = length > 0 ? v.dot(u) / length : 0;
+  const double height = std::sqrt(std::max(0., v.squaredNorm() - along * along));
+  UnfoldedSurface::Triangle t;
+  t.corner = {Eigen::Vector2d(0, 0), Eigen::Vector2d(length, 0), Eigen::Vector2d(along, height)};
+  for (std::size_t c = 0; c < 3; ++c) t.length[c] = (t.corner[(c + 1) % 3] - t.corner[c]).norm();
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Eigen::Vector2d next = t.corner[(c + 1) % 3] - t.corner[c];
+    const Eigen::Vector2d last = t.corner[(c + 2) % 3] - t.corner[c];
+    const double product = t.length[c] * t.length[(c + 2) % 3];
+    t.cosine[c] = product > 0 ? next.dot(last) / product : 0;
+  }
+  return t;
+}
+
 }  // namespace
 
 UnfoldedSurface::UnfoldedSurface(TriMesh surface) : mesh_(std::move(surface)) {
@@ -53,13 +68,9 @@ UnfoldedSurface::UnfoldedSurface(TriMesh surface) : mesh_(std::move(surface)) {
     if (corner.minCoeff() < 0 || corner.maxCoeff() >= mesh_.vertex_count()) {
       throw Error("a corner is no vertex", "triangle " + std::to_string(f));
     }
-    const Eigen::RowVector3d u = mesh_.V.row(corner(1)) - mesh_.V.row(corner(0));
-    const Eigen::RowVector3d v = mesh_.V.row(corner(2)) - mesh_.V.row(corner(0));
-    const double length = u.norm(), along = length > 0 ? v.dot(u) / length : 0;
-    const double height = std::sqrt(std::max(0., v.squaredNorm() - along * along));
-    corners_.push_back(
-        {Eigen::Vector2d(0, 0), Eigen::Vector2d(length, 0), Eigen::Vector2d(along, height)});
-    const double longest = std::max({length, v.norm(), (v - u).norm()});
+    triangles_.push_back(lay_out(mesh_, f));
+    const auto& length = triangles_.back().length;
+    const double longest = std::max({length[0], length[1], length[2]});
     for (const int c : corner) {
       ++face_offset_[static_cast<std::size_t>(c) + 1];
       double& known = longest_edge_[static_cast<std::size_t>(c)];
@@ -78,7 +89,7 @@ UnfoldedSurface::UnfoldedSurface(TriMesh surface) : mesh_(std::move(surface)) {
 }
 
 Eigen::Vector2d UnfoldedSurface::layout(const SurfacePlace& place) const {
-  const auto& corner = corners(place.face);
+  const auto& corner = triangle(place.face).corner;
   return place.barycentric(1) * corner[1] + place.barycentric(2) * corner[2];
 }
 
@@ -133,31 +144,38 @@ void SurfaceFront::offer(int vertex, double distance) {
   std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
 }
 
-void SurfaceFront::cross(int face) {
-  const auto& corner = surface_.corners(face);
-  const auto at = [&](std::size_t c) {
-    return distance_[static_cast<std::size_t>(surface_.mesh().F(face, static_cast<int>(c)))];
-  };
-  for (std::size_t c = 0; c < 3; ++c) {  // into corner c, across the edge (a, b) that faces it
+void SurfaceFront::cross(int face, std::size_t from, double distance) {
+  const UnfoldedSurface::Triangle& t = surface_.triangle(face);
+  for (std::size_t k = 1; k < 3; ++k) {  // into corner c, across the edge (a, b) that faces it
+    const std::size_t c = (from + k) % 3, other = (from + 3 - k) % 3;
     const std::size_t a = (c + 1) % 3, b = (c + 2) % 3;
-    double way =
-        std::min(at(a) + (corner[a] - corner[c]).norm(), at(b) + (corner[b] - corner[c]).norm());
+    const int vertex = surface_.mesh().F(face, static_cast<int>(c));
+    const double edge = t.length[k == 1 ? from : c];
+    const double known = distance_[static_cast<std::size_t>(vertex)];
+    offer(vertex, distance + edge);
+    // A straight way across the edge to c meets the edge (from, c) at an angle of at most that at
+    // c. By the law of cosines it is then no shorter than the one to `from`, unless c is very near.
+    if (known <= distance && edge <= 2 * (distance - edge) * t.cosine[c]) continue;
+    const double there =
+        distance_[static_cast<std::size_t>(surface_.mesh().F(face, static_cast<int>(other)))];
     Eigen::Vector2d centre;
-    if (at(a) < kFar && at(b) < kFar && centre_behind(corner[a], corner[b], at(a), at(b), centre) &&
-        passes_between(centre, corner[c], corner[a], corner[b])) {
-      way = std::min(way, (corner[c] - centre).norm());
+    if (centre_behind(t.corner[a], t.corner[b], t.length[a], a == from ? distance : there,
+                      a == from ? there : distance, centre) &&
+        passes_between(centre, t.corner[c], t.corner[a], t.corner[b])) {
+      offer(vertex, (t.corner[c] - centre).norm());
     }
-    if (way < kFar) offer(surface_.mesh().F(face, static_cast<int>(c)), way);
   }
 }
 
-void SurfaceFront::visit(int vertex) {
+void SurfaceFront::visit(int vertex, double distance) {
   for (const int f : surface_.faces_of(vertex)) {
     if (is_reached_[static_cast<std::size_t>(f)] == 0) {
       is_reached_[static_cast<std::size_t>(f)] = 1;
       reached_.push_back(f);
     }
-    cross(f);
+    std::size_t from = 0;
+    while (surface_.mesh().F(f, static_cast<int>(from)) != vertex) ++from;
+    cross(f, from, distance);
   }
 }
 
@@ -172,7 +190,7 @@ void SurfaceFront::spread(const SurfacePlace& source, double reach) {
   is_reached_[static_cast<std::size_t>(source_face_)] = 1;
   reached_.push_back(source_face_);
   for (std::size_t c = 0; c < 3; ++c) {
-    const Eigen::Vector2d& corner = surface_.corners(source_face_)[c];
+    const Eigen::Vector2d& corner = surface_.triangle(source_face_).corner[c];
     offer(surface_.mesh().F(source_face_, static_cast<int>(c)), (corner - source_layout_).norm());
   }
   while (!heap_.empty()) {
@@ -182,13 +200,14 @@ void SurfaceFront::spread(const SurfacePlace& source, double reach) {
     if (distance != distance_[static_cast<std::size_t>(vertex)]) continue;
     // A triangle with a point within the reach has its corners at most an edge beyond, and those
     // get their distances across edges that end at most another one beyond.
-    if (distance <= reach_ + 2 * surface_.longest_edge(vertex)) visit(vertex);
+    if (distance <= reach_ + 2 * surface_.longest_edge(vertex)) visit(vertex, distance);
   }
 }
 
 SurfaceFront::Within SurfaceFront::within(int face) const {
+  const UnfoldedSurface::Triangle& t = surface_.triangle(face);
   Within w;
-  w.corner_ = surface_.corners(face);
+  w.corner_ = t.corner;
   w.has_source_ = face == source_face_;
   w.source_ = source_layout_;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -197,9 +216,8 @@ SurfaceFront::Within SurfaceFront::within(int face) const {
   }
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t d = (c + 1) % 3;
-    w.crosses_[c] =
-        w.at_corner_[c] < kFar && w.at_corner_[d] < kFar &&
-        centre_behind(w.corner_[c], w.corner_[d], w.at_corner_[c], w.at_corner_[d], w.centre_[c]);
+    w.crosses_[c] = centre_behind(t.corner[c], t.corner[d], t.length[c], w.at_corner_[c],
+                                  w.at_corner_[d], w.centre_[c]);
   }
   return w;
 }

@@ -25,8 +25,13 @@ class UnfoldedSurface {
   explicit UnfoldedSurface(TriMesh surface);
 
   [[nodiscard]] const TriMesh& mesh() const { return mesh_; }
-  [[nodiscard]] const std::array<Eigen::Vector2d, 3>& corners(int face) const {
-    return corners_[static_cast<std::size_t>(face)];
+  struct Triangle {
+    std::array<Eigen::Vector2d, 3> corner;
+    std::array<double, 3> length;  ///< of edge (c, c + 1) (m)
+    std::array<double, 3> cosine;  ///< of the angle at corner c
+  };
+  [[nodiscard]] const Triangle& triangle(int face) const {
+    return triangles_[static_cast<std::size_t>(face)];
   }
   [[nodiscard]] Eigen::Vector2d layout(const SurfacePlace& place) const;
   [[nodiscard]] Eigen::Vector3d position(const SurfacePlace& place) const;
@@ -40,9 +45,9 @@ class UnfoldedSurface {
 
  private:
   TriMesh mesh_;
-  std::vector<std::array<Eigen::Vector2d, 3>> corners_;  ///< of the triangles
-  std::vector<int> face_offset_, face_;                  ///< triangles of the vertices
-  std::vector<double> longest_edge_;                     ///< of the vertices
+  std::vector<Triangle> triangles_;
+  std::vector<int> face_offset_, face_;  ///< triangles of the vertices
+  std::vector<double> longest_edge_;     ///< of the vertices
 };
 
 /// Distances along a surface from one place, up to a reach.
@@ -89,8 +94,8 @@ class SurfaceFront {
  private:
   void clear();
   void offer(int vertex, double distance);
-  void cross(int face);
-  void visit(int vertex);
+  void visit(int vertex, double distance);
+  void cross(int face, std::size_t from, double distance);
 
   static constexpr double kFar = std::numeric_limits<double>::infinity();
   const UnfoldedSurface& surface_;
