@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+
+#include "baselines/details/detail_process.h"
+#include "core/options.h"
+
+namespace geoprior {
+
+/// Delaunay refinement (Chew 1989; farthest-point insertion): details stay where they are; new ones
+/// come at circumcentres of triangles of M_d - the points farthest from all details around -,
+/// walked to over M_d and put on the surface, largest circumradius first.
+///
+/// A density rho asks for the equilateral lattice of edge 1.075 / sqrt(rho) and circumradius
+/// 0.620 / sqrt(rho). A detail comes where the circumradius exceeds `circumradius` times that one
+/// and its patch of the surface has fewer details than the density at rest times its area; in a
+/// patch with more, one end of an edge shorter than `shortest_edge` times the lattice's fades, the
+/// shortest edges first. Patches and their numbers are those of the thesis' method (`AreaBudget`):
+/// the two differ in where details come and which ones go. No two changes of a kind share a vertex
+/// in a frame. Details come with weight 0 and leave at weight 0.
+///
+/// What it cannot do: it knows distances alone; every gap that the pattern had on purpose (between
+/// clusters) is filled first once its patch is stretched.
+struct DelaunayRefinementOptions {
+  double circumradius = 1;   ///< least circumradius filled, in units of the lattice's
+  double shortest_edge = 1;  ///< edges below may lose an end, in units of the lattice's
+  int patch_details = 48;    ///< details of a patch at rest
+  double dead_band = 0.1;    ///< a patch acts when off by more than 1/2 + this
+  bool anticipate = true;    ///< patches ask ahead, as `ReplicationOptions::anticipate`
+  double weight_rate = 0.1;  ///< largest change of a weight in a frame
+  LengthRule lengths = LengthRule::chord;
+};
+void describe(OptionVisitor& v, DelaunayRefinementOptions& options);
+
+/// The method frame by frame. Phases inside a step: "move", "budget", "merge", "insert",
+/// "weights". Diagnostics: inserted, revived, fading (started in the frame), flips, refused_flips,
+/// max_weight_change.
+std::unique_ptr<DetailMethod> make_delaunay_refinement(const DetailScene& scene,
+                                                       const DelaunayRefinementOptions& options);
+
+/// As a process: `make_detail_process` around it.
+std::unique_ptr<Process> make_delaunay_refinement_process(const DetailScene& scene,
+                                                          const DelaunayRefinementOptions& options);
+
+}  // namespace geoprior

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "baselines/details/area_budget.h"
+#include "baselines/details/detail_mesh.h"
+#include "baselines/details/rest_density.h"
+
+namespace geoprior {
+
+/// Edge of the equilateral lattice with one point per unit area, sqrt(2 / sqrt(3)), and the
+/// circumradius of its triangles, edge / sqrt(3): what a density asks for, in units of
+/// 1 / sqrt(density).
+inline constexpr double kLatticeEdge = 1.0745699318235418;
+inline constexpr double kLatticeRadius = 0.6204032394013997;
+/// Per site: 1 / sqrt(density at rest) (m); infinity where the surface is bare.
+std::vector<double> spacing_of_sites(const DetailMesh& details, const RestDensity& density);
+
+/// Mean over the corners of triangle `t` with finite spacing; infinity without one.
+double spacing_of(const DetailMesh& details, int t, const std::vector<double>& spacing);
+
+/// A point of M_d.
+struct MeshPoint {
+  int triangle = 0;
+  Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();  ///< not negative
+};
+
+/// Circumcentre of a triangle, walked to over the edges of M_d, triangles unfolded on the way;
+/// absent when it lies beyond a border.
+std::optional<MeshPoint> circumcentre(const IntrinsicTriangulation& mesh, int t);
+
+/// Three moves that keep the number of details of every patch near its budget: a patch acts when it
+/// is off by 1/2 + `dead_band` or more. Patches and numbers are those of the thesis' method with
+/// its budget, so that what differs is where details come and which ones go. Nothing
+/// comes or goes where the surface is bare.
+class DensityMoves {
+ public:
+  /// Frames ahead for which patches ask, as the thesis' method does; see `AreaBudget::update`.
+  struct Lead {
+    double growing = 0, shrinking = 0;
+  };
+
+  /// @param details  with the density at rest; all references are kept
+  DensityMoves(DetailMesh& details, const RestDensity& density, AreaBudget& budget,
+               double dead_band);
+  /// To be called at the start of every frame: counts details, measures areas.
+  void measure(const Lead& lead);
+
+  /// Details that fade where some are lacking turn back, the largest weights first.
+  /// @return  number of details
+  int revive();
+  /// Lets one end fade of edges that are crowded: the shortest in units of the lattice's first, up
+  /// to `most` of it; no two share a vertex. The end goes that has the shorter other edges. To be
+  /// called before details are inserted.
+  /// @return  number of details
+  int fade_shortest_edges(double most);
+  /// Details of weight 0 at circumcentres of triangles that lack details around: the largest
+  /// circumradius in units of the lattice's first, down to `least` of it; no two share a vertex.
+  /// @return  number of details
+  int insert_at_circumcentres(double least);
+
+ private:
+  [[nodiscard]] double deficit(int site) const;
+  [[nodiscard]] bool lacks(int triangle) const;
+  [[nodiscard]] bool may_fade(int site) const;
+  [[nodiscard]] double second_edge(int site, int but) const;
+  [[nodiscard]] bool touched(int triangle) const;
+  void touch(int triangle);
+  bool insert_near(int triangle, double least);
+
+  DetailMesh& now_;
+  const RestDensity& density_;
+  AreaBudget& budget_;
+  double limit_;
+  std::vector<double> spacing_;
+  std::vector<char> touched_;
+};
+
+}  // namespace geoprior
