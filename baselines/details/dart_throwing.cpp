@@ -40,6 +40,7 @@ class DartThrowing final : public DetailMethod {
         density_(now_) {}
 
   void step(const Eigen::MatrixX3d& V, RunContext& context) override {
+    const std::int64_t refused = now_.mesh.refused_flips();
     {
       const Phase phase(context, "move");
       flips_ = move_surface(now_, V, options_.lengths);
@@ -50,6 +51,8 @@ class DartThrowing final : public DetailMethod {
     }
     const Phase phase(context, "weights");
     max_weight_change_ = change_weights(now_, options_.weight_rate);
+    // An insertion may have cleared the way for a flip that was refused before it.
+    if (now_.mesh.refused_flips() != refused) flips_ += now_.mesh.flip_to_delaunay();
   }
 
   [[nodiscard]] const DetailMesh& details() const override { return now_; }
