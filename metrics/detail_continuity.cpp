@@ -134,7 +134,7 @@ int turns(std::span<const double> values, double least) {
 }
 
 double largest_pop(const TriMesh& surface, const AnchoredDetails& before,
-                   const AnchoredDetails& now, double height) {
+                   const AnchoredDetails& now, double height, DetailExtent extent) {
   if (!(height > 0)) throw Error("height " + std::to_string(height), "largest pop", "positive");
   require_anchors(before);
   require_anchors(now);
@@ -145,7 +145,12 @@ double largest_pop(const TriMesh& surface, const AnchoredDetails& before,
     double pop = std::abs(w1 - w0) * height;
     if (was >= 0 && is >= 0) {
       const Foot a = foot_of(surface, normals, before, was), b = foot_of(surface, normals, now, is);
-      pop = (std::max(w0, w1) * (b.x - a.x) + height * (w1 * b.n - w0 * a.n)).norm();
+      const Eigen::Vector3d slide = std::max(w0, w1) * (b.x - a.x);
+      if (extent == DetailExtent::tip) {
+        pop = (slide + height * (w1 * b.n - w0 * a.n)).norm();
+      } else {
+        pop += slide.norm() + height * std::min(w0, w1) * (b.n - a.n).norm();
+      }
     }
     largest = std::max(largest, pop);
   });

@@ -50,7 +50,14 @@ struct AnchoredDetails {
   Eigen::MatrixX3d barycentric;  ///< n x 3
 };
 
-/// Largest displacement of a detail's tip between two frames that the deformation does not
+/// Where the points of a drawn detail are that move most.
+enum class DetailExtent {
+  tip,    ///< on the normal at the anchor, `height` above it: spikes
+  around  ///< up to `height` from the anchor in any direction: the rim of a hole (`height` its
+          ///< radius), the vertices of an instanced mesh (the distance of the farthest)
+};
+
+/// Largest displacement of a drawn detail's points between two frames that the deformation does not
 /// explain (m): popping.
 ///
 /// A detail of weight w stands on the surface with its tip at x + w h n, n the surface's
@@ -60,14 +67,19 @@ struct AnchoredDetails {
 /// displaces the tip by |w' - w| h. A detail that slides by d displaces its tip by about d, times
 /// the larger of its weights, because one of weight 0 is not seen.
 ///
-/// For details that are drawn otherwise, draw both sets on the surface of now and take
-/// `hausdorff_distance` of the two drawings.
+/// `around`: the rim of a hole grows in the direction of a slide too, and a tilt by the angle a
+/// moves it by 2 w h sin(a / 2): the three add up, which bounds every point of the detail.
+///
+/// Not seen: a detail that turns about its normal; what drawing itself does, as holes that make
+/// room for each other or that are not cut while they are tiny. For these draw both sets on the
+/// surface of now and take `hausdorff_distance` of the two drawings.
 ///
 /// @param surface     of now (m)
 /// @param before,now  anchors on it
 /// @param height      of a detail of weight 1 (m), positive
 /// @throws Error      on an anchor without a triangle, or as `detail_changes`
 double largest_pop(const TriMesh& surface, const AnchoredDetails& before,
-                   const AnchoredDetails& now, double height);
+                   const AnchoredDetails& now, double height,
+                   DetailExtent extent = DetailExtent::tip);
 
 }  // namespace geoprior

@@ -104,6 +104,38 @@ TEST(LargestPop, OfGrowthIsTheChangeOfHeightAndOfASlideItsLength) {
   EXPECT_EQ(pop(one(0, here), one(0, there)), 0);
 }
 
+// The rim of a hole of radius 0.2: growth by 0.1 moves it by 0.02 everywhere, a slide of 0.03 seen
+// at weight 1/2 by 0.015; on the side ahead both add.
+TEST(LargestPop, OfAHoleIsThatOfItsRim) {
+  const TriMesh m = flat_triangle(1);
+  const Eigen::RowVector3d here(0.5, 0.25, 0.25), there(0.5 - 0.03, 0.25 + 0.03, 0.25);
+  const auto pop = [&](const Stored& a, const Stored& b) {
+    return largest_pop(m, a.anchored(), b.anchored(), 0.2, DetailExtent::around);
+  };
+  EXPECT_NEAR(pop(one(0.4, here), one(0.5, here)), 0.02, 1e-15);
+  EXPECT_NEAR(pop(one(0.5, here), one(0.5, there)), 0.015, 1e-15);
+  EXPECT_NEAR(pop(one(0.5, here), one(0.4, there)), 0.035, 1e-15);
+  const Stored nothing{{}, {}, {}, Eigen::MatrixX3d(0, 3)};
+  EXPECT_NEAR(pop(nothing, one(0.1, here)), 0.02, 1e-15);
+  EXPECT_EQ(pop(one(0.8, here), one(0.8, here)), 0);
+}
+
+// Over a ridge of two triangles at a right angle, vertex normals turn from that of the slope at the
+// far vertices to the bisector on the ridge: by 45 degrees.
+TEST(LargestPop, OfATiltIsTheChordOfItsAngle) {
+  TriMesh m;
+  m.V.resize(4, 3);
+  m.V << 0, -1, 0, 0, 1, 0, 1, 0, -1, -1, 0, -1;
+  m.F.resize(2, 3);
+  m.F << 0, 2, 1, 0, 1, 3;
+  const double w = 1e-3;  // a short slide counts little against the tilt of a tall detail
+  const Stored ridge = one(w, {0.5, 0, 0.5}), slope = one(w, {0, 1, 0});
+  const double tilt = 2 * std::sin(std::numbers::pi / 8), slide = std::sqrt(2.);
+  const double height = 1000;
+  EXPECT_NEAR(largest_pop(m, ridge.anchored(), slope.anchored(), height, DetailExtent::around),
+              w * slide + w * height * tilt, 1e-12);
+}
+
 TEST(DetailContinuity, NamesWhatIsWrong) {
   const Stored twice{{1, 1}, {1, 1}, {}, {}};
   EXPECT_THROW(detail_changes(twice.state(), twice.state()), Error);
