@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "baselines/details/hole_mesh.h"
+
+namespace geoprior {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Sets of vertices that are joined by edges; a set is named by its smallest vertex.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  int of(int v) {
+    while (parent_[at(v)] != v) {
+      parent_[at(v)] = parent_[at(parent_[at(v)])];
+      v = parent_[at(v)];
+    }
+    return v;
+  }
+  void join(int a, int b) {
+    a = of(a);
+    b = of(b);
+    parent_[at(std::max(a, b))] = std::min(a, b);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+}  // namespace
+
+std::vector<int> HoleMesh::hole_of_vertices() const {
+  std::vector<int> inside(x_.size(), -1);
+  for (std::size_t v = 0; v < x_.size(); ++v) {
+    for (int e = first_[v]; e >= 0; e = entry_[index(e)].next) {
+      const auto& [hole, place, next] = entry_[index(e)];
+      if (place.norm() < hole_[index(hole)].radius) inside[v] = hole;
+    }
+  }
+  return inside;
+}
+
+/// Every hole in one piece, and what remains too: of several pieces the largest stays what it is
+/// (a chart that folds on a rough surface leaves single vertices behind).
+void HoleMesh::keep_whole(std::vector<int>& inside) const {
+  Sets pieces(x_.size()), whole(x_.size());
+  for (const auto& c : corner_) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = c[k], b = c[(k + 1) % 3];
+      if (inside[index(a)] == inside[index(b)]) pieces.join(a, b);
+      whole.join(a, b);
+    }
+  }
+  std::vector<int> size(x_.size(), 0);
+  for (int v = 0; v < static_cast<int>(x_.size()); ++v) ++size[index(pieces.of(v))];
+  // The largest piece of each hole, and of each connected surface.
+  std::vector<int> largest(hole_.size() + x_.size(), -1);
+  const auto owner = [&](int v) {
+    const int hole = inside[index(v)];
+    return hole >= 0 ? index(hole) : hole_.size() + index(whole.of(v));
+  };
+  for (int v = 0; v < static_cast<int>(x_.size()); ++v) {
+    int& best = largest[owner(v)];
+    if (pieces.of(v) == v && (best < 0 || size[index(v)] > size[index(best)])) best = v;
+  }
+  std::vector<int> corrected(x_.size(), -2);  // of strays: what they become
+  for (const auto& c : corner_) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const auto& [v, w] :
+           {std::pair(c[k], c[(k + 1) % 3]), std::pair(c[(k + 1) % 3], c[k])}) {
+        if (inside[index(v)] == inside[index(w)] || largest[owner(v)] == pieces.of(v)) continue;
+        int& to = corrected[index(pieces.of(v))];
+        to = std::max(to, inside[index(v)] >= 0 ? -1 : inside[index(w)]);
+      }
+    }
+  }
+  std::vector<int> result = inside;
+  for (int v = 0; v < static_cast<int>(x_.size()); ++v)
+    if (const int to = corrected[index(pieces.of(v))]; to > -2) result[index(v)] = to;
+  inside = std::move(result);
+}
+
+/// Share of the way from a vertex in a hole to one outside where the distance is the radius.
+double HoleMesh::place_of_border(int in, int out, int hole) const {
+  const Entry *a = entry(in, hole), *b = entry(out, hole);
+  double t = 0.5;
+  if (a != nullptr && b != nullptr) {
+    const Eigen::Vector2d e = b->at - a->at;
+    const double radius = hole_[index(hole)].radius;
+    const double half = a->at.dot(e), c = a->at.squaredNorm() - radius * radius;
+    const double root = half * half - e.squaredNorm() * c;
+    if (root > 0) t = (std::sqrt(root) - half) / e.squaredNorm();
+  }
+  return std::clamp(t, 1e-3, 1 - 1e-3);
+}
+
+HoledMesh HoleMesh::cut() {
+  std::vector<int> inside = hole_of_vertices();
+  keep_whole(inside);
+  HoledMesh cut;
+  cut.x = x_;
+  cut.normal = normal_;
+  cut.hole.assign(x_.size(), -1);
+  cut.scale.assign(x_.size(), 0);
+  std::vector<std::array<int, 3>> border(corner_.size(), {-1, -1, -1});
+  const auto border_vertex = [&](int t, std::size_t k) {
+    int& vertex = border[index(t)][k];
+    if (vertex >= 0) return vertex;
+    int in = corner_[index(t)][k], out = corner_[index(t)][(k + 1) % 3];
+    if (inside[index(in)] < 0) std::swap(in, out);
+    const int hole = inside[index(in)];
+    const double s = place_of_border(in, out, hole);
+    vertex = static_cast<int>(cut.x.size());
+    cut.x.push_back((1 - s) * x_[index(in)] + s * x_[index(out)]);
+    cut.normal.push_back(
+        ((1 - s) * normal_[index(in)] + s * normal_[index(out)]).stableNormalized());
+    cut.hole.push_back(hole_[index(hole)].number);
+    cut.scale.push_back(std::sqrt(length2(in, out)));
+    if (const int g = across_[index(t)][k]; g >= 0) {
+      const int first = corner_[index(t)][(k + 1) % 3];
+      for (std::size_t j = 0; j < 3; ++j)
+        if (across_[index(g)][j] == t && corner_[index(g)][j] == first)
+          border[index(g)][j] = vertex;
+    }
+    return vertex;
+  };
+  for (int t = 0; t < static_cast<int>(corner_.size()); ++t) {
+    const auto& c = corner_[index(t)];
+    const auto in = [&](std::size_t k) { return inside[index(c[k % 3])] >= 0; };
+    const int count = in(0) + in(1) + in(2);
+    if (count == 3) continue;
+    if (count == 0) {
+      cut.triangle.push_back(c);
+      continue;
+    }
+    std::size_t k = 0;  // the corner that differs from the other two
+    while (in(k) == in(k + 1) || in(k) == in(k + 2)) ++k;
+    const int p = border_vertex(t, k), q = border_vertex(t, (k + 2) % 3);
+    const int b = c[(k + 1) % 3], d = c[(k + 2) % 3];
+    if (count == 2) {
+      cut.triangle.push_back({c[k], p, q});
+    } else if ((cut.x[index(p)] - cut.x[index(d)]).norm() <
+               (cut.x[index(b)] - cut.x[index(q)]).norm()) {
+      cut.triangle.insert(cut.triangle.end(), {{p, b, d}, {p, d, q}});
+    } else {
+      cut.triangle.insert(cut.triangle.end(), {{p, b, q}, {b, d, q}});
+    }
+  }
+  return cut;
+}
+
+}  // namespace geoprior
