@@ -1,10 +1,12 @@
 #include "experiments/details/measures.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "core/mesh.h"
@@ -12,6 +14,8 @@
 
 namespace geoprior {
 namespace {
+
+constexpr const char* kParts = "surface, details, detail_mesh, visible_mesh";
 
 const NamedArray& required_array(const Part& part, const char* name) {
   const NamedArray* array = find_array(part, name);
@@ -73,14 +77,124 @@ struct FrameState {
   int still = 0;  ///< frames that the surface has not moved for
 };
 
-FrameState state_of(const FrameSequence& frames, std::size_t i) {
-  const auto surface = frames.part(i, "surface");
-  const auto details = frames.part(i, "details");
-  if (!surface || !details) {
-    throw Error("has no surface with details", "frame " + std::to_string(i),
-                "parts \"surface\" and \"details\"");
+std::vector<SurfacePlace> places_of(const std::vector<Detail>& details) {
+  std::vector<SurfacePlace> places;
+  for (const Detail& d : details) places.push_back({d.at.face, d.at.barycentric});
+  return places;
+}
+
+std::vector<SurfacePlace> visible_places(const Part& part) {
+  const FrameDetails details(part);
+  std::vector<SurfacePlace> places;
+  for (std::size_t i = 0; i < details.face.size(); ++i) {
+    if (!(details.weight[i] > 0.5)) continue;
+    const auto b = details.barycentric.row(static_cast<Eigen::Index>(i));
+    places.push_back({details.face[i], b.transpose()});
   }
-  return {surface, FrameDetails(*details), 0};
+  return places;
+}
+
+PairCurve curve_of(DetailsMemo& memo, const DetailsScene& scene, const Part& surface,
+                   const std::vector<SurfacePlace>& places, double unit) {
+  ContentKey key;
+  key.add_matrix(surface.points);
+  key.add_matrix(surface.triangles);
+  for (const SurfacePlace& p : places) {
+    key.add(static_cast<std::uint64_t>(p.face));
+    key.add_matrix(p.barycentric);
+  }
+  return memo.curves.get(key, [&] {
+    PairCurveMask mask;
+    mask.region = scene.region;
+    PairCurveOptions options;
+    options.reach = 3;
+    options.bins = 30;
+    options.sources = 1000;
+    return pair_curve({surface.points, surface.triangles}, places, unit, options, mask);
+  });
+}
+
+PairAtRest pairs_at_rest(DetailsMemo& memo, const DetailsScene& scene) {
+  const Part& surface = required_part(scene.rest(), "surface");
+  const Part& mesh = required_part(scene.rest(), "detail_mesh");
+  ContentKey key;
+  key.add_matrix(surface.points);
+  key.add_matrix(mesh.points);
+  return memo.pairs_at_rest.get(key, [&] {
+    PairAtRest rest;
+    rest.unit = spacing_of(mesh, 0).mean;
+    if (!(rest.unit > 0)) return rest;
+    const auto curve = [&](const std::vector<Detail>& details) {
+      return curve_of(memo, scene, surface, places_of(details), rest.unit);
+    };
+    std::vector<PairCurve> process{curve(scene.scene.details)};
+    rest.curve = process.front();
+    for (const auto& resample : scene.resamples) process.push_back(curve(resample));
+    if (process.size() > 1) rest.noise = pair_curve_noise(process).mean;
+    return rest;
+  });
+}
+
+/// The sequence itself, and what some of its frames hold.
+ContentKey key_of(const FrameSequence& frames) {
+  constexpr std::size_t kLooked = 8;
+  ContentKey key;
+  key.add(reinterpret_cast<std::uintptr_t>(&frames));
+  key.add(frames.size());
+  for (std::size_t i = 0; i < kLooked && frames.size() > 0; ++i) {
+    const auto part = frames.part((frames.size() - 1) * i / (kLooked - 1), "details");
+    if (!part) continue;
+    key.add_matrix(part->points);
+    for (const NamedArray& array : part->arrays) key.add_matrix(array.values);
+  }
+  return key;
+}
+
+std::shared_ptr<const Part> required_part(const FrameSequence& frames, std::size_t i,
+                                          const char* name) {
+  auto part = frames.part(i, name);
+  if (part) return part;
+  throw Error(std::string("has no part '") + name + "'", "frame " + std::to_string(i), kParts);
+}
+
+FrameState state_of(const FrameSequence& frames, std::size_t i) {
+  const auto details = required_part(frames, i, "details");
+  return {required_part(frames, i, "surface"), FrameDetails(*details), 0};
+}
+
+double worst_edge_change(const DetailsScene& scene, const FrameSequence& frames, const char* mesh) {
+  std::vector<DetailSpacing> spacings{spacing_of(required_part(scene.rest(), mesh), 0)};
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    spacings.push_back(spacing_of(*required_part(frames, i, mesh), 0));
+  if (!(spacings.front().mean > 0)) return 0;
+  return std::abs(worst_mean_change(spacings).change);
+}
+
+MotionMeasures measure_motion(const DetailsScene& scene, const FrameSequence& frames) {
+  constexpr int kStillAfter = 10;
+  MotionMeasures m;
+  if (frames.size() == 0) return m;
+  m.worst_edge_change = worst_edge_change(scene, frames, "detail_mesh");
+  m.worst_visible_change = worst_edge_change(scene, frames, "visible_mesh");
+  const double height = height_of(scene);
+  std::vector<DetailChanges> changes;
+  FrameState before = state_of(frames, 0);
+  std::vector<double> counts{static_cast<double>(before.details.birth.size())};
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    FrameState now = state_of(frames, i);
+    counts.push_back(static_cast<double>(now.details.birth.size()));
+    changes.push_back(detail_changes(before.details.state(), now.details.state()));
+    const double pop = largest_pop({now.surface->points, now.surface->triangles},
+                                   before.details.anchored(), now.details.anchored(), height);
+    m.popping = std::max(m.popping.value_or(0), pop / height);
+    if (now.surface->points == before.surface->points) now.still = before.still + 1;
+    if (now.still > kStillAfter)
+      m.at_rest = m.at_rest.value_or(0) + now.details.events_since(before.details);
+    before = std::move(now);
+  }
+  m.events = detail_events(changes);
+  m.turns = turns(counts, std::max(1.0, 0.01 * counts.front()));
+  return m;
 }
 
 }  // namespace
@@ -89,8 +203,7 @@ const Part& required_part(const Frame& frame, const char* name) {
   const auto found = frame.parts.find(name);
   if (found != frame.parts.end()) return found->second;
   throw Error(std::string("has no part '") + name + "'",
-              "frame at " + std::to_string(frame.parameter) + " s",
-              "surface, details, detail_mesh, visible_mesh");
+              "frame at " + std::to_string(frame.parameter) + " s", kParts);
 }
 
 DetailSpacing spacing_of(const Part& mesh, double reference) {
@@ -127,41 +240,25 @@ double details_over_wanted(const DetailsScene& scene, const Frame& frame, bool v
   return density_ratio(static_cast<int>(count), faces, areas(scene.rest()), areas(frame));
 }
 
-Value worst_edge_change(const DetailsScene& scene, const FrameSequence& frames, bool visible) {
-  const char* name = visible ? "visible_mesh" : "detail_mesh";
-  std::vector<DetailSpacing> spacings{spacing_of(required_part(scene.rest(), name), 0)};
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const auto mesh = frames.part(i, name);
-    if (!mesh) return {};
-    spacings.push_back(spacing_of(*mesh, 0));
-  }
-  if (!(spacings.front().mean > 0)) return {};
-  return std::abs(worst_mean_change(spacings).change);
+std::optional<PairMeasures> pair_measures(DetailsMemo& memo, const DetailsScene& scene,
+                                          const Frame& frame) {
+  if (!scene.measures_pairs(frame.parameter)) return {};
+  const Part& now = required_part(frame, "surface");
+  const PairAtRest rest = pairs_at_rest(memo, scene);
+  if (!(rest.unit > 0)) return {};
+  const auto distance = [&](const std::vector<SurfacePlace>& places) {
+    return pair_curve_distance(curve_of(memo, scene, now, places, rest.unit), rest.curve);
+  };
+  PairMeasures m;
+  m.distance = distance(visible_places(required_part(frame, "details")));
+  m.naive = distance(places_of(scene.scene.details));
+  m.noise = rest.noise;
+  return m;
 }
 
-MotionMeasures motion_measures(const DetailsScene& scene, const FrameSequence& frames) {
-  constexpr int kStillAfter = 10;
-  MotionMeasures m;
-  if (frames.size() == 0) return m;
-  const double height = height_of(scene);
-  std::vector<DetailChanges> changes;
-  FrameState before = state_of(frames, 0);
-  std::vector<double> counts{static_cast<double>(before.details.birth.size())};
-  for (std::size_t i = 1; i < frames.size(); ++i) {
-    FrameState now = state_of(frames, i);
-    counts.push_back(static_cast<double>(now.details.birth.size()));
-    changes.push_back(detail_changes(before.details.state(), now.details.state()));
-    const double pop = largest_pop({now.surface->points, now.surface->triangles},
-                                   before.details.anchored(), now.details.anchored(), height);
-    m.popping = std::max(m.popping.value_or(0), pop / height);
-    if (now.surface->points == before.surface->points) now.still = before.still + 1;
-    if (now.still > kStillAfter)
-      m.at_rest = m.at_rest.value_or(0) + now.details.events_since(before.details);
-    before = std::move(now);
-  }
-  m.events = detail_events(changes);
-  m.turns = turns(counts, std::max(1.0, 0.01 * counts.front()));
-  return m;
+MotionMeasures motion_measures(DetailsMemo& memo, const DetailsScene& scene,
+                               const FrameSequence& frames) {
+  return memo.motions.get(key_of(frames), [&] { return measure_motion(scene, frames); });
 }
 
 }  // namespace geoprior

@@ -11,6 +11,7 @@
 #include "experiments/memo.h"
 #include "metrics/detail_continuity.h"
 #include "metrics/detail_spacing.h"
+#include "metrics/pair_curve.h"
 
 namespace geoprior {
 
@@ -24,9 +25,29 @@ const Part& required_part(const Frame& frame, const char* name);
 /// Lengths of the edges of "detail_mesh" or "visible_mesh".
 DetailSpacing spacing_of(const Part& mesh, double reference);
 
-/// Values that the metrics of a frame share.
+/// What happened to the details over a motion.
+struct MotionMeasures {
+  double worst_edge_change = 0;     ///< largest magnitude of the change of the mean edge
+  double worst_visible_change = 0;  ///< of that of the visible details
+  DetailEvents events;
+  int turns = 0;               ///< of the number of details, by 1 % of the first or more
+  Value popping;               ///< largest, over the height of a detail
+  std::optional<int> at_rest;  ///< insertions and details that begin to fade while nothing moves
+};
+
+/// Pair correlation of a scene's pattern before anything moves.
+struct PairAtRest {
+  PairCurve curve;
+  double unit = 0;  ///< mean edge (m); 0: without edges
+  Value noise;      ///< mean distance between independent patterns of the process
+};
+
+/// Values that several metrics share.
 struct DetailsMemo {
   Memo<DetailSpacing, 16> spacing;
+  Memo<PairCurve, 64> curves;
+  Memo<PairAtRest, 16> pairs_at_rest;
+  Memo<MotionMeasures, 4> motions;
 };
 
 /// Spacing of all details ("detail_mesh") or of those that one sees ("visible_mesh"), in the frame
@@ -40,18 +61,19 @@ SpacingPair spacing_pair(DetailsMemo& memo, const DetailsScene& scene, const Fra
 /// Details over how many the surface asks for.
 double details_over_wanted(const DetailsScene& scene, const Frame& frame, bool visible);
 
-/// The largest change of the mean edge over a motion, in magnitude.
-Value worst_edge_change(const DetailsScene& scene, const FrameSequence& frames, bool visible);
-
-/// What happened to the details over a motion.
-struct MotionMeasures {
-  DetailEvents events;
-  int turns = 0;               ///< of the number of details, by 1 % of the first or more
-  Value popping;               ///< largest, over the height of a detail
-  std::optional<int> at_rest;  ///< insertions and details that begin to fade while nothing moves
+/// Pair correlation of the visible details against that of the original, in units of its mean edge.
+/// Absent but in the frames that the scene chooses: it costs more than what it judges.
+struct PairMeasures {
+  double distance = 0;  ///< of the curve to that of the original
+  double naive = 0;     ///< of the curve of the original details, carried along
+  Value noise;          ///< mean distance between independent patterns of the process, at rest
 };
+std::optional<PairMeasures> pair_measures(DetailsMemo& memo, const DetailsScene& scene,
+                                          const Frame& frame);
+
 /// Frames count as at rest once the surface has not moved for ten frames: weights that change by a
 /// tenth a frame are then done.
-MotionMeasures motion_measures(const DetailsScene& scene, const FrameSequence& frames);
+MotionMeasures motion_measures(DetailsMemo& memo, const DetailsScene& scene,
+                               const FrameSequence& frames);
 
 }  // namespace geoprior

@@ -119,24 +119,47 @@ void add_density(Rows rows) {
              });
 }
 
-void add_motion(Rows rows) {
-  rows.sequence("worst_edge_change", "1", "largest magnitude of mean_edge_change over the motion",
-                kLow, kShare, [](const DetailsScene& scene, const FrameSequence& frames) {
-                  return worst_edge_change(scene, frames, false);
-                });
-  rows.sequence("worst_visible_change", "1",
-                "largest magnitude of visible_edge_change over the motion", kLow, kShare,
-                [](const DetailsScene& scene, const FrameSequence& frames) {
-                  return worst_edge_change(scene, frames, true);
-                });
+void add_pairs(Rows rows, const SharedMemo& memo) {
+  const auto read = [memo](auto get) {
+    return [memo, get](const DetailsScene& scene, const Frame& frame) -> Value {
+      const auto pairs = pair_measures(*memo, scene, frame);
+      return pairs ? get(*pairs) : Value();
+    };
+  };
+  using P = const PairMeasures&;
+  rows.frame("pair_distance", "1",
+             "L1 distance of the pair correlation of the visible details to that of the original, "
+             "along the surface, in the frames that scene.pair_frames chooses",
+             kLow, {0.05, 0}, read([](P p) -> Value { return p.distance; }));
+  rows.frame("pair_distance_naive", "1",
+             "the same of the original details carried along: what doing nothing gives", kNone,
+             kShare, read([](P p) -> Value { return p.naive; }));
+  rows.frame("pair_noise", "1",
+             "mean distance between the pair correlations of independent patterns of the process "
+             "at rest: no distance below it means anything",
+             kNone, kShare, read([](P p) { return p.noise; }));
+  rows.frame("pair_distance_ratio", "1",
+             "pair_distance over pair_distance_naive; absent where doing nothing is no further off "
+             "than twice pair_noise",
+             kLow, {0.05, 0}, read([](P p) -> Value {
+               if (!(p.naive > 2 * p.noise.value_or(0))) return {};
+               return p.distance / p.naive;
+             }));
+}
+
+void add_motion(Rows rows, const SharedMemo& memo) {
   const auto add = [&](const char* name, const char* definition, Direction direction,
                        Tolerance tolerance, auto get) {
     rows.sequence(name, "1", definition, direction, tolerance,
-                  [get](const DetailsScene& scene, const FrameSequence& frames) -> Value {
-                    return get(motion_measures(scene, frames));
+                  [memo, get](const DetailsScene& scene, const FrameSequence& frames) -> Value {
+                    return get(motion_measures(*memo, scene, frames));
                   });
   };
   using M = const MotionMeasures&;
+  add("worst_edge_change", "largest magnitude of mean_edge_change over the motion", kLow, kShare,
+      [](M m) -> Value { return m.worst_edge_change; });
+  add("worst_visible_change", "largest magnitude of visible_edge_change over the motion", kLow,
+      kShare, [](M m) -> Value { return m.worst_visible_change; });
   add("weight_step",
       "largest change of a weight from one frame to the next; who is not there has 0", kLow,
       kRoundOff, [](M m) -> Value { return m.events.largest_step; });
@@ -165,7 +188,8 @@ std::vector<MetricEntry> details_metrics() {
   const Rows rows(table);
   add_spacing(rows, memo);
   add_density(rows);
-  add_motion(rows);
+  add_pairs(rows, memo);
+  add_motion(rows, memo);
   return table;
 }
 

@@ -26,9 +26,11 @@ class Ground {
  public:
   Ground(const TriMesh& surface, const DetailPatternOptions& options,
          const Eigen::VectorXd& relative)
-      : mesh_(surface), topology_(surface), normals_(vertex_normals(surface)), density_(relative) {
+      : mesh_(surface),
+        topology_(surface),
+        density_(relative),
+        inside_(faces_of_region(surface, options.region)) {
     for (Eigen::Index v = 0; v < mesh_.V.rows(); ++v) x_.emplace_back(mesh_.V.row(v).transpose());
-    mark_region(options.region);
     const Eigen::VectorXd areas = triangle_areas(mesh_.V, mesh_.F);
     sums_.resize(mesh_.F.rows());
     double sum = 0;
@@ -80,34 +82,8 @@ class Ground {
     return {density_[mesh_.F(face, 0)], density_[mesh_.F(face, 1)], density_[mesh_.F(face, 2)]};
   }
 
-  /// A face belongs to the region when its centre does.
-  void mark_region(const std::vector<RegionOptions>& region) {
-    inside_.assign(static_cast<std::size_t>(mesh_.F.rows()), 1);
-    for (std::size_t i = 0; i < region.size(); ++i) {
-      const Eigen::Vector3d direction = to_vector(region[i].direction);
-      if (region[i].kind != RegionKind::ball && !(direction.norm() > 0)) {
-        throw Error("has no direction", "scene.pattern.region." + std::to_string(i) + ".direction",
-                    "a vector of any length");
-      }
-      for (std::size_t t = 0; t < inside_.size(); ++t) {
-        if (is_in(region[i], direction.normalized(), static_cast<int>(t)) == region[i].outside)
-          inside_[t] = 0;
-      }
-    }
-  }
-  [[nodiscard]] bool is_in(const RegionOptions& region, const Eigen::Vector3d& direction,
-                           int face) const {
-    const SurfacePoint centre{face, Eigen::Vector3d::Constant(1.0 / 3)};
-    const Eigen::Vector3d from = position(centre) - to_vector(region.point);
-    if (region.kind == RegionKind::half_space) return from.dot(direction) >= 0;
-    if (region.kind == RegionKind::ball) return from.norm() <= region.radius;
-    const Eigen::Vector3d n = position_of(centre, normals_, mesh_.F).normalized();
-    return n.dot(direction) >= std::cos(region.angle_deg * std::numbers::pi / 180);
-  }
-
   const TriMesh& mesh_;
   SurfaceTopology topology_;
-  Eigen::MatrixX3d normals_;
   std::vector<Eigen::Vector3d> x_;
   Eigen::VectorXd density_;  ///< per vertex (1/m^2)
   Eigen::VectorXd sums_;     ///< partial sums of the details expected on the faces, up to 1
@@ -219,7 +195,36 @@ Places places_of(const Ground& ground, const DetailPatternOptions& options, Rand
   throw Error("is not sampled", "scene.pattern.kind", "poisson-disk, grid, uniform, clusters");
 }
 
+bool is_in(const RegionOptions& region, const Eigen::Vector3d& direction, const Eigen::Vector3d& x,
+           const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d from = x - to_vector(region.point);
+  if (region.kind == RegionKind::half_space) return from.dot(direction) >= 0;
+  if (region.kind == RegionKind::ball) return from.norm() <= region.radius;
+  return normal.dot(direction) >= std::cos(region.angle_deg * std::numbers::pi / 180);
+}
+
 }  // namespace
+
+std::vector<char> faces_of_region(const TriMesh& surface,
+                                  const std::vector<RegionOptions>& region) {
+  const Eigen::MatrixX3d normals = vertex_normals(surface);
+  std::vector<char> inside(static_cast<std::size_t>(surface.F.rows()), 1);
+  for (std::size_t i = 0; i < region.size(); ++i) {
+    Eigen::Vector3d direction = to_vector(region[i].direction);
+    if (region[i].kind != RegionKind::ball && !(direction.norm() > 0)) {
+      throw Error("has no direction", "scene.pattern.region." + std::to_string(i) + ".direction",
+                  "a vector of any length");
+    }
+    direction.normalize();
+    for (std::size_t t = 0; t < inside.size(); ++t) {
+      const SurfacePoint centre{static_cast<int>(t), Eigen::Vector3d::Constant(1.0 / 3)};
+      const Eigen::Vector3d x = position_of(centre, surface.V, surface.F);
+      const Eigen::Vector3d n = position_of(centre, normals, surface.F).normalized();
+      if (is_in(region[i], direction, x, n) == region[i].outside) inside[t] = 0;
+    }
+  }
+  return inside;
+}
 
 Eigen::VectorXd gradient_density(const TriMesh& surface, const DensityOptions& options) {
   if (options.kind == DensityKind::constant) return Eigen::VectorXd::Ones(surface.V.rows());

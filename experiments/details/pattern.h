@@ -59,6 +59,10 @@ void describe(OptionVisitor& v, DetailPatternOptions& options);
 /// @throws Error  for an axis without direction, or densities that are 0 at both ends
 Eigen::VectorXd gradient_density(const TriMesh& surface, const DensityOptions& options);
 
+/// A flag a triangle: whether its centre meets all conditions.
+/// @throws Error  naming the key: a direction that is none
+std::vector<char> faces_of_region(const TriMesh& surface, const std::vector<RegionOptions>& region);
+
 /// Details of a sampled pattern. Same surface, options and seed: same details.
 ///
 /// - uniform: places drawn with the density, independently (a Poisson process of fixed number).

@@ -93,6 +93,7 @@ struct Loading {
   void load_details() {
     DetailScene& scene = result.scene;
     const DetailPatternOptions& o = options.pattern;
+    result.region = faces_of_region(scene.surface, o.region);
     if (o.kind == PatternKind::file) {
       const fs::path file = find_file(o.file, folder, "scene.pattern.file");
       result.input_files.push_back(file);
@@ -103,9 +104,11 @@ struct Loading {
     }
     const Eigen::VectorXd relative = density();
     scene.details = scatter(scene.surface, o, relative);
-    DetailPatternOptions again = o;
-    again.seed += kResample;
-    result.resample = scatter(scene.surface, again, relative);
+    for (int i = 1; i <= kResamples; ++i) {
+      DetailPatternOptions again = o;
+      again.seed += i * kSeedStep;
+      result.resamples.push_back(scatter(scene.surface, again, relative));
+    }
     // A twentieth less is what chance explains; more is a pattern that does not fit.
     const double share = static_cast<double>(scene.details.size()) / o.count;
     if (share < 0.95) {
@@ -141,8 +144,8 @@ struct Loading {
     scene.motion = std::make_shared<ScriptedMotion>(scene.surface, base, o.deform, times);
   }
 
-  /// Between the seeds of the pattern and of its resample.
-  static constexpr int kResample = 1000003;
+  static constexpr int kResamples = 3;
+  static constexpr int kSeedStep = 1000003;  ///< between the seeds of the pattern and of these
 };
 
 }  // namespace
@@ -155,13 +158,15 @@ const Frame& DetailsScene::rest() const {
   return rest_;
 }
 
-int DetailsScene::frame_of(double parameter) const {
-  int best = 0;
-  for (int i = 1; i < scene.motion->frame_count(); ++i) {
-    const auto off = [&](int k) { return std::abs(scene.motion->parameter(k) - parameter); };
-    if (off(i) < off(best)) best = i;
+bool DetailsScene::measures_pairs(double parameter) const {
+  const int last = scene.motion->frame_count() - 1;
+  for (int i = 1; i <= pair_frames; ++i) {
+    const auto frame = static_cast<int>(std::lround(static_cast<double>(last) * i / pair_frames));
+    // Recorded parameters went through text.
+    if (std::abs(scene.motion->parameter(frame) - parameter) <= 1e-9 * std::abs(parameter))
+      return true;
   }
-  return best;
+  return false;
 }
 
 std::map<std::string, double> DetailsScene::facts() const {
@@ -189,6 +194,7 @@ std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& optio
   loading.load_details();
   loading.load_motion();
   scene->chosen_height = options.detail_height;
+  scene->pair_frames = options.pair_frames;
   require_valid(scene->scene);
   return scene;
 }

@@ -20,9 +20,11 @@ namespace geoprior {
 class DetailsScene final : public Scene {
  public:
   DetailScene scene;
-  /// The same process of placing drawn anew (other seed), for noise floors; empty for details of a
+  /// The same process of placing drawn anew (other seeds), for noise floors; none for details of a
   /// file.
-  std::vector<Detail> resample;
+  std::vector<std::vector<Detail>> resamples;
+  std::vector<char> region;             ///< a flag a triangle: where the pattern is
+  int pair_frames = 4;                  ///< at which the pair correlation is measured
   std::optional<double> chosen_height;  ///< of a detail of weight 1 (m)
   bool planar = false;                  ///< at rest, in a plane of constant z
   std::vector<std::filesystem::path> input_files;
@@ -31,8 +33,8 @@ class DetailsScene final : public Scene {
   /// The frame of a method that has done nothing yet: surface and M_d at rest. Made when it is
   /// first asked for; safe from several threads.
   [[nodiscard]] const Frame& rest() const;
-  /// Number of the frame with that parameter.
-  [[nodiscard]] int frame_of(double parameter) const;
+  /// Whether the pair correlation is measured in the frame with that parameter.
+  [[nodiscard]] bool measures_pairs(double parameter) const;
 
   [[nodiscard]] std::vector<double> parameters() const override { return {}; }
   [[nodiscard]] std::string parameter_name() const override { return "time"; }

@@ -21,6 +21,9 @@ void describe(OptionVisitor& v, DetailSceneOptions& options) {
           {.doc = "of a detail of weight 1, for popping; absent: half of the mean edge of M_d",
            .unit = "m",
            .min = 1e-9});
+  v.value("pair_frames", options.pair_frames,
+          {.doc = "frames, evenly over the motion, at which the pair correlation is measured",
+           .min = 1});
 }
 
 }  // namespace geoprior

@@ -29,6 +29,7 @@ struct DetailSceneOptions {
   DetailPatternOptions pattern;
   DetailMotionOptions motion;
   std::optional<double> detail_height;  ///< of a detail of weight 1 (m)
+  int pair_frames = 4;                  ///< at which the pair correlation is measured
 };
 void describe(OptionVisitor& v, DetailSceneOptions& options);
 

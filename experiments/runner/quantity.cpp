@@ -30,12 +30,13 @@ double reduced(std::vector<double> values, const std::string& how) {
   if (how == "min") return *std::min_element(values.begin(), values.end());
   if (how == "median") return median(values);
   if (how == "p95") return quantile(values, 0.95);
+  if (how == "p99") return quantile(values, 0.99);
   if (how == "last") return values.back();
   const double sum = std::accumulate(values.begin(), values.end(), 0.0);
   if (how == "sum") return sum;
   if (how == "mean") return sum / static_cast<double>(values.size());
   throw Error("unknown reduction '" + how + "'", "reduce",
-              "max, min, median, p95, mean, sum, last");
+              "max, min, median, p95, p99, mean, sum, last");
 }
 
 std::size_t frame_at(const CaseRecord& in, const VariantRecord& variant, double parameter) {

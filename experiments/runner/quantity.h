@@ -15,7 +15,7 @@ struct Quantity {
 };
 
 /// Value of a metric, "timing:<phase>" (median over repetitions) or "diagnostic:<name>" of a
-/// variant: at one parameter, or reduced over the frames ("max", "min", "median", "p95",
+/// variant: at one parameter, or reduced over the frames ("max", "min", "median", "p95", "p99",
 /// "mean", "sum", "last"; frames without a value are left out). Metrics of a sequence have one
 /// value and take neither.
 ///

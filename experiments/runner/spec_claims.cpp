@@ -180,7 +180,7 @@ std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
     require_metric(table.quantity, topic, place_of(node, "quantity"), {});
     if (table.reduce == Reduction::every) {
       throw Error("a study needs one value a case", place_of(node, "reduce"),
-                  "max, min, median, p95, mean, sum, last");
+                  "max, min, median, p95, p99, mean, sum, last");
     }
     const bool slope = table.kind == StudyKind::exponent || table.kind == StudyKind::order;
     if (slope && !table.against) {

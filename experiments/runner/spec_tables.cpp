@@ -7,10 +7,10 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kSizes{"full", "quick"};
 constexpr std::array<std::string_view, 5> kComparisons{"<=", "<", ">=", ">", "=="};
-constexpr std::array<std::string_view, 8> kReductions{"max",  "min", "median", "p95",
+constexpr std::array<std::string_view, 9> kReductions{"max",  "min", "median", "p95",  "p99",
                                                       "mean", "sum", "last",   "every"};
-constexpr std::array<std::string_view, 8> kOfReductions{"same", "max",  "min", "median",
-                                                        "p95",  "mean", "sum", "last"};
+constexpr std::array<std::string_view, 9> kOfReductions{"same", "max",  "min", "median", "p95",
+                                                        "p99",  "mean", "sum", "last"};
 constexpr std::array<std::string_view, 4> kStudyKinds{"exponent", "order", "spread",
                                                       "within-spread"};
 constexpr std::array<std::string_view, 2> kFiner{"smaller", "larger"};

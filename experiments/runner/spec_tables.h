@@ -41,8 +41,8 @@ struct SweepTable {
 };
 
 enum class Comparison { less_equal, less, greater_equal, greater, equal };
-enum class Reduction { max, min, median, p95, mean, sum, last, every };
-enum class OfReduction { same, max, min, median, p95, mean, sum, last };
+enum class Reduction { max, min, median, p95, p99, mean, sum, last, every };
+enum class OfReduction { same, max, min, median, p95, p99, mean, sum, last };
 
 struct ClaimTable {
   std::string text;
