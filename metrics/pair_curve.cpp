@@ -126,7 +126,7 @@ class PairCount {
   void measure(std::size_t i, double share, SurfaceFront& front, Tally& tally) const {
     front.spread(place_[i], reach_ * unit_);
     for (const int f : front.faces()) {
-      if (!counts(f)) continue;
+      if (!counts(f) || front.is_beyond(f, reach_ * unit_)) continue;
       const SurfaceFront::Within within = front.within(f);
       for (std::size_t k = offset_[static_cast<std::size_t>(f)];
            k < offset_[static_cast<std::size_t>(f) + 1]; ++k) {

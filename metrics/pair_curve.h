@@ -23,7 +23,8 @@ struct PairCurveOptions {
 struct PairCurve {
   Eigen::VectorXd radius;  ///< in units of the spacing
   Eigen::VectorXd g;       ///< 1 at radii that no two points of the surface are apart
-  Eigen::VectorXd error;   ///< standard error of g for independent points
+  Eigen::VectorXd error;   ///< standard error of g for independent points; somewhat larger (by a
+                           ///< tenth on an animal's body) where annuli differ from place to place
   double step = 0;         ///< between radii
   int sources = 0;
 };
@@ -49,8 +50,8 @@ struct PairCurveMask {
 /// curves of a motion in the unit of its first frame. A detail pattern of varying density has g
 /// above 1 by the variance of that density: compare it with itself, not with 1.
 ///
-/// Cost: proportional to sources x (triangles + details within the reach). The same bytes for any
-/// number of threads.
+/// Cost: proportional to sources x (triangles + details within the reach); triangles larger than
+/// the kernel count as several. The same bytes for any number of threads.
 ///
 /// @param surface  any triangle mesh (m)
 /// @param details  places on it

@@ -204,6 +204,16 @@ void SurfaceFront::spread(const SurfacePlace& source, double reach) {
   }
 }
 
+bool SurfaceFront::is_beyond(int face, double distance) const {
+  if (face == source_face_) return false;
+  const auto& length = surface_.triangle(face).length;
+  const auto at = [&](int c) {
+    return distance_[static_cast<std::size_t>(surface_.mesh().F(face, c))];
+  };
+  const double farthest = std::max({at(0), at(1), at(2)});
+  return farthest - std::max({length[0], length[1], length[2]}) >= distance;
+}
+
 SurfaceFront::Within SurfaceFront::within(int face) const {
   const UnfoldedSurface::Triangle& t = surface_.triangle(face);
   Within w;

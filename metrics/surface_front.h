@@ -88,6 +88,9 @@ class SurfaceFront {
     bool has_source_ = false;
     Eigen::Vector2d source_;
   };
+  /// Whether no point of a triangle is nearer than `distance` (m), by its corners; a triangle that
+  /// was not reached is.
+  [[nodiscard]] bool is_beyond(int face, double distance) const;
   /// Infinite distances in a triangle that was not reached.
   [[nodiscard]] Within within(int face) const;
 

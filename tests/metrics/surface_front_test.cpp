@@ -94,6 +94,24 @@ TEST(SurfaceFront, UnfoldsTheFacesOfACube) {
   EXPECT_NEAR(along(front, surface, side), 2, 1e-9);
 }
 
+// A triangle without height between two others: vertex 4 lies on the edge (0, 1).
+TEST(SurfaceFront, CrossesATriangleWithoutArea) {
+  TriMesh mesh;
+  mesh.V.resize(5, 3);
+  mesh.V << 0, 0, 0, 1, 0, 0, 0.5, 1, 0, 0.5, -1, 0, 0.5, 0, 0;
+  mesh.F.resize(4, 3);
+  mesh.F << 0, 4, 2, 4, 1, 2, 0, 1, 4, 0, 3, 1;
+  const UnfoldedSurface surface(mesh);
+  SurfaceFront front(surface);
+  for (const SurfacePlace& a : sampled::uniform(mesh, 20, 1)) {
+    front.spread(a, 4);
+    for (const SurfacePlace& b : sampled::uniform(mesh, 20, 2)) {
+      const double d = (surface.position(a) - surface.position(b)).norm();
+      EXPECT_NEAR(along(front, surface, b), d, 1e-7);
+    }
+  }
+}
+
 // Around the inner corner of an L the shortest way is two straight legs. Behind the corner the
 // front is long (the header says why; measured: 1.4 %), never short; before it, exact.
 TEST(SurfaceFront, GoesAroundACorner) {
