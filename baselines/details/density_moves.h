@@ -15,6 +15,9 @@ namespace geoprior {
 /// 1 / sqrt(density).
 inline constexpr double kLatticeEdge = 1.0745699318235418;
 inline constexpr double kLatticeRadius = 0.6204032394013997;
+/// A point farther than three such edges from all details lies on a bare part of the surface.
+inline constexpr double kBareRadius = 3 * kLatticeEdge;
+
 /// Per site: 1 / sqrt(density at rest) (m); infinity where the surface is bare.
 std::vector<double> spacing_of_sites(const DetailMesh& details, const RestDensity& density);
 
