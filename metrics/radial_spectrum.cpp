@@ -61,6 +61,26 @@ struct Bin {
   std::complex<double> axis = 0;
 };
 
+std::vector<Bin> in_bins(const std::vector<Row>& rows, const Eigen::Vector2d& size,
+                         const RadialSpectrumOptions& options) {
+  std::vector<Bin> bins(static_cast<std::size_t>(options.bins));
+  const double width = options.highest / options.bins;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    for (std::size_t i = 0; i < rows[k].power.size(); ++i) {
+      const std::complex<double> f(static_cast<double>(k) / size.x(),
+                                   (rows[k].first + static_cast<double>(i)) / size.y());
+      const auto b = static_cast<std::size_t>(std::abs(f) / width);
+      if (b >= bins.size()) continue;
+      const double power = rows[k].power[i];
+      ++bins[b].count;
+      bins[b].power += power;
+      bins[b].squares += power * power;
+      bins[b].axis += power * (f * f) / std::norm(f);
+    }
+  }
+  return bins;
+}
+
 RadialSpectrum summary(const std::vector<Bin>& bins, double step) {
   RadialSpectrum s;
   const auto n = static_cast<Eigen::Index>(bins.size());
@@ -106,22 +126,7 @@ RadialSpectrum radial_spectrum(const Eigen::MatrixX2d& points, const Eigen::Vect
       }
     }
   });
-  std::vector<Bin> bins(static_cast<std::size_t>(options.bins));
-  const double width = options.highest / options.bins;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    for (std::size_t i = 0; i < rows[k].power.size(); ++i) {
-      const std::complex<double> f(static_cast<double>(k) / size.x(),
-                                   (rows[k].first + static_cast<double>(i)) / size.y());
-      const auto b = static_cast<std::size_t>(std::abs(f) / width);
-      if (b >= bins.size()) continue;
-      const double power = rows[k].power[i];
-      ++bins[b].count;
-      bins[b].power += power;
-      bins[b].squares += power * power;
-      bins[b].axis += power * (f * f) / std::norm(f);
-    }
-  }
-  return summary(bins, width);
+  return summary(in_bins(rows, size, options), options.highest / options.bins);
 }
 
 double radial_spectrum_distance(const RadialSpectrum& a, const RadialSpectrum& b) {
