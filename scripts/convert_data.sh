@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Converts the models of Debian's assimp-testmodels that the experiments use into data/ (ignored by
+# Puts the models of Debian's assimp-testmodels and libcgal-demo that the experiments use into data/ (ignored by
 # git). Idempotent: what is there and newer than its source is left alone. Needs no network.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -69,3 +69,6 @@ unpack() {
 }
 
 unpack data/meshes/bunny00.off bunny.off
+unpack data/meshes/diplodocus.off diplodocus.off
+unpack data/meshes/bear.off bear.off
+unpack data/meshes/dino.off dinosaur.off

@@ -1,6 +1,8 @@
 #include "baselines/details/dart_throwing.h"
+#include "baselines/details/delaunay_refinement.h"
 #include "baselines/details/naive_stretch.h"
 #include "baselines/details/rescatter.h"
+#include "experiments/details/drawing.h"
 #include "experiments/details/scene.h"
 #include "experiments/details/topic.h"
 #include "solvers/details/replication.h"
@@ -15,25 +17,31 @@ std::vector<MethodEntry> details_methods() {
           "details multiply where the surface is stretched and merge where it is squeezed",
           "thesis 2.2.2; Rohmer, Hahmann and Cani 2015",
           [](const S& scene, const ReplicationOptions& options, RunContext&) {
-            return make_replication_process(scene.scene, options);
+            return with_drawing(make_replication_process(scene.scene, options), scene);
           }),
       method_entry<S, NaiveStretchOptions>(
           "naive-stretch", true, "details go where the surface goes, none comes, none leaves",
           "what a texture does",
           [](const S& scene, const NaiveStretchOptions& options, RunContext&) {
-            return make_naive_stretch_process(scene.scene, options);
+            return with_drawing(make_naive_stretch_process(scene.scene, options), scene);
           }),
       method_entry<S, RescatterOptions>(
           "re-scatter", true, "all details are scattered anew in every frame",
           "Poisson-disk by dart throwing: Cook 1986",
           [](const S& scene, const RescatterOptions& options, RunContext&) {
-            return make_rescatter_process(scene.scene, options);
+            return with_drawing(make_rescatter_process(scene.scene, options), scene);
           }),
       method_entry<S, DartThrowingOptions>(
           "dart-throwing", true, "darts thrown where the surface is stretched become details",
           "Poisson-disk by dart throwing: Cook 1986",
           [](const S& scene, const DartThrowingOptions& options, RunContext&) {
-            return make_dart_throwing_process(scene.scene, options);
+            return with_drawing(make_dart_throwing_process(scene.scene, options), scene);
+          }),
+      method_entry<S, DelaunayRefinementOptions>(
+          "delaunay-refinement", true, "details come at the points farthest from all others",
+          "Chew 1989",
+          [](const S& scene, const DelaunayRefinementOptions& options, RunContext&) {
+            return with_drawing(make_delaunay_refinement_process(scene.scene, options), scene);
           }),
   };
 }

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "experiments/details/position_file.h"
 #include "experiments/details/projection.h"
+#include "experiments/formats/mesh_file.h"
 #include "experiments/formats/vtk_files.h"
 #include "experiments/frame_arrays.h"
 #include "experiments/view/view.h"
@@ -118,6 +119,14 @@ struct Loading {
     }
   }
 
+  void load_drawing() {
+    result.drawing = options.drawing;
+    if (!options.drawing || options.drawing->look.kind != DrawnKind::mesh) return;
+    if (options.drawing->look.instance.shape != InstanceShape::given) return;
+    result.input_files.push_back(find_file(options.drawing->file, folder, "scene.drawing.file"));
+    result.instance = read_mesh_file(result.input_files.back()).mesh;
+  }
+
   void align(std::vector<Detail>& details) const {
     const TriMesh& surface = result.scene.surface;
     const SurfaceTopology topology(surface);
@@ -158,15 +167,24 @@ const Frame& DetailsScene::rest() const {
   return rest_;
 }
 
-bool DetailsScene::measures_pairs(double parameter) const {
+bool DetailsScene::is_one_of(int count, double parameter) const {
   const int last = scene.motion->frame_count() - 1;
-  for (int i = 1; i <= pair_frames; ++i) {
-    const auto frame = static_cast<int>(std::lround(static_cast<double>(last) * i / pair_frames));
+  for (int i = 1; i <= count; ++i) {
+    const auto frame = static_cast<int>(std::lround(static_cast<double>(last) * i / count));
     // Recorded parameters went through text.
     if (std::abs(scene.motion->parameter(frame) - parameter) <= 1e-9 * std::abs(parameter))
       return true;
   }
   return false;
+}
+
+bool DetailsScene::measures_pairs(double parameter) const {
+  return is_one_of(pair_frames, parameter);
+}
+
+bool DetailsScene::is_drawn(double parameter) const {
+  if (!drawing) return false;
+  return parameter == scene.motion->parameter(0) || is_one_of(drawing->frames, parameter);
 }
 
 std::map<std::string, double> DetailsScene::facts() const {
@@ -195,6 +213,7 @@ std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& optio
   loading.load_motion();
   scene->chosen_height = options.detail_height;
   scene->pair_frames = options.pair_frames;
+  loading.load_drawing();
   require_valid(scene->scene);
   return scene;
 }

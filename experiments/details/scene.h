@@ -23,8 +23,10 @@ class DetailsScene final : public Scene {
   /// The same process of placing drawn anew (other seeds), for noise floors; none for details of a
   /// file.
   std::vector<std::vector<Detail>> resamples;
-  std::vector<char> region;             ///< a flag a triangle: where the pattern is
-  int pair_frames = 4;                  ///< at which the pair correlation is measured
+  std::vector<char> region;  ///< a flag a triangle: where the pattern is
+  int pair_frames = 4;       ///< at which the pair correlation is measured
+  std::optional<DetailDrawingOptions> drawing;
+  TriMesh instance;                     ///< mesh of a detail, when the drawing takes one of a file
   std::optional<double> chosen_height;  ///< of a detail of weight 1 (m)
   bool planar = false;                  ///< at rest, in a plane of constant z
   std::vector<std::filesystem::path> input_files;
@@ -35,6 +37,7 @@ class DetailsScene final : public Scene {
   [[nodiscard]] const Frame& rest() const;
   /// Whether the pair correlation is measured in the frame with that parameter.
   [[nodiscard]] bool measures_pairs(double parameter) const;
+  [[nodiscard]] bool is_drawn(double parameter) const;
 
   [[nodiscard]] std::vector<double> parameters() const override { return {}; }
   [[nodiscard]] std::string parameter_name() const override { return "time"; }
@@ -44,6 +47,9 @@ class DetailsScene final : public Scene {
   [[nodiscard]] std::map<std::string, double> facts() const override;
 
  private:
+  /// Whether the frame is one of `count`, evenly over the motion without its first.
+  [[nodiscard]] bool is_one_of(int count, double parameter) const;
+
   mutable std::once_flag rest_made_;
   mutable Frame rest_;
 };

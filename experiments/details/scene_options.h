@@ -6,6 +6,7 @@
 
 #include "core/options.h"
 #include "experiments/details/deformation.h"
+#include "experiments/details/drawing.h"
 #include "experiments/details/handle_drag.h"
 #include "experiments/details/pattern.h"
 #include "experiments/details/surfaces.h"
@@ -30,6 +31,7 @@ struct DetailSceneOptions {
   DetailMotionOptions motion;
   std::optional<double> detail_height;  ///< of a detail of weight 1 (m)
   int pair_frames = 4;                  ///< at which the pair correlation is measured
+  std::optional<DetailDrawingOptions> drawing;
 };
 void describe(OptionVisitor& v, DetailSceneOptions& options);
 

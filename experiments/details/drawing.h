@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "baselines/details/detail_drawing.h"
+#include "core/method.h"
+#include "core/options.h"
+
+namespace geoprior {
+
+class DetailsScene;
+
+/// `drawing`: details as geometry, in some of the recorded frames.
+struct DetailDrawingOptions {
+  int frames = 1;  ///< beside the first, evenly over the motion
+  DrawingOptions look;
+  std::string file;  ///< of the mesh that is put onto the surface: kind mesh, shape given
+};
+void describe(OptionVisitor& v, DetailDrawingOptions& options);
+
+/// The process with a part "drawn" in the frames that the scene's `drawing` chooses: the surface
+/// with spikes or meshes on it, or with holes in it. Point array "kind": 0 the surface, 1 details
+/// of the scene, 2 details that were born since. Without a `drawing` the process itself.
+std::unique_ptr<Process> with_drawing(std::unique_ptr<Process> process, const DetailsScene& scene);
+
+}  // namespace geoprior
