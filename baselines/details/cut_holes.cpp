@@ -106,9 +106,7 @@ CutSurface cut_holes(const SurfaceTopology& surface, std::span<const Eigen::Vect
     mesh.add(static_cast<int>(i), charts[i]);
   }
   mesh.refine(options.segments);
-  HoledMesh cut = mesh.cut();
-  tidy_borders(cut);
-  result.drawn = compact(cut);
+  result.drawn = compact(mesh.cut());
   return result;
 }
 

@@ -99,50 +99,74 @@ double HoleMesh::place_of_border(int in, int out, int hole) const {
   return std::clamp(t, 1e-3, 1 - 1e-3);
 }
 
+/// Border vertices on the edges of triangles, made when they are first met.
+class HoleMesh::BorderVertices {
+ public:
+  BorderVertices(const HoleMesh& mesh, const std::vector<int>& inside, HoledMesh& cut)
+      : mesh_(mesh), inside_(inside), cut_(cut), made_(mesh.corner_.size(), {-1, -1, -1}) {}
+
+  int on_edge(int t, std::size_t k) {
+    if (const int vertex = made_[index(t)][k]; vertex >= 0) return vertex;
+    int in = mesh_.corner_[index(t)][k], out = mesh_.corner_[index(t)][(k + 1) % 3];
+    const int first = out;
+    if (inside_[index(in)] < 0) std::swap(in, out);
+    const int hole = inside_[index(in)];
+    const double s = mesh_.place_of_border(in, out, hole);
+    const int vertex = static_cast<int>(cut_.x.size());
+    cut_.x.push_back((1 - s) * mesh_.x_[index(in)] + s * mesh_.x_[index(out)]);
+    cut_.normal.push_back(
+        ((1 - s) * mesh_.normal_[index(in)] + s * mesh_.normal_[index(out)]).stableNormalized());
+    cut_.hole.push_back(mesh_.hole_[index(hole)].number);
+    made_[index(t)][k] = vertex;
+    if (const int g = mesh_.across_[index(t)][k]; g >= 0) {
+      for (std::size_t j = 0; j < 3; ++j)
+        if (mesh_.across_[index(g)][j] == t && mesh_.corner_[index(g)][j] == first)
+          made_[index(g)][j] = vertex;
+    }
+    return vertex;
+  }
+
+ private:
+  const HoleMesh& mesh_;
+  const std::vector<int>& inside_;
+  HoledMesh& cut_;
+  std::vector<std::array<int, 3>> made_;
+};
+
 HoledMesh HoleMesh::cut() {
-  std::vector<int> inside = hole_of_vertices();
+  std::vector<int> inside = hole_of_vertices(), on_border(x_.size(), -1);
   keep_whole(inside);
+  snap_to_borders(inside, on_border);
   HoledMesh cut;
   cut.x = x_;
   cut.normal = normal_;
   cut.hole.assign(x_.size(), -1);
-  cut.scale.assign(x_.size(), 0);
-  std::vector<std::array<int, 3>> border(corner_.size(), {-1, -1, -1});
-  const auto border_vertex = [&](int t, std::size_t k) {
-    int& vertex = border[index(t)][k];
-    if (vertex >= 0) return vertex;
-    int in = corner_[index(t)][k], out = corner_[index(t)][(k + 1) % 3];
-    if (inside[index(in)] < 0) std::swap(in, out);
-    const int hole = inside[index(in)];
-    const double s = place_of_border(in, out, hole);
-    vertex = static_cast<int>(cut.x.size());
-    cut.x.push_back((1 - s) * x_[index(in)] + s * x_[index(out)]);
-    cut.normal.push_back(
-        ((1 - s) * normal_[index(in)] + s * normal_[index(out)]).stableNormalized());
-    cut.hole.push_back(hole_[index(hole)].number);
-    cut.scale.push_back(std::sqrt(length2(in, out)));
-    if (const int g = across_[index(t)][k]; g >= 0) {
-      const int first = corner_[index(t)][(k + 1) % 3];
-      for (std::size_t j = 0; j < 3; ++j)
-        if (across_[index(g)][j] == t && corner_[index(g)][j] == first)
-          border[index(g)][j] = vertex;
-    }
-    return vertex;
-  };
+  for (std::size_t v = 0; v < x_.size(); ++v)
+    if (on_border[v] >= 0) cut.hole[v] = hole_[index(on_border[v])].number;
+  BorderVertices border(*this, inside, cut);
   for (int t = 0; t < static_cast<int>(corner_.size()); ++t) {
     const auto& c = corner_[index(t)];
     const auto in = [&](std::size_t k) { return inside[index(c[k % 3])] >= 0; };
-    const int count = in(0) + in(1) + in(2);
-    if (count == 3) continue;
-    if (count == 0) {
+    const auto out = [&](std::size_t k) { return !in(k) && on_border[index(c[k % 3])] < 0; };
+    const int ins = in(0) + in(1) + in(2), outs = out(0) + out(1) + out(2);
+    if (outs == 0) continue;
+    if (ins == 0) {
       cut.triangle.push_back(c);
       continue;
     }
-    std::size_t k = 0;  // the corner that differs from the other two
-    while (in(k) == in(k + 1) || in(k) == in(k + 2)) ++k;
-    const int p = border_vertex(t, k), q = border_vertex(t, (k + 2) % 3);
+    std::size_t k = 0;
+    if (ins + outs == 2) {  // one corner on the border, one on either side
+      while (!in(k)) ++k;
+      const std::size_t l = k + (out(k + 1) ? 1 : 2);
+      auto piece = c;
+      piece[k] = border.on_edge(t, l == k + 1 ? k : l % 3);
+      cut.triangle.push_back(piece);
+      continue;
+    }
+    while (in(k) == in(k + 1) || in(k) == in(k + 2)) ++k;  // differs from the other two
+    const int p = border.on_edge(t, k), q = border.on_edge(t, (k + 2) % 3);
     const int b = c[(k + 1) % 3], d = c[(k + 2) % 3];
-    if (count == 2) {
+    if (ins == 2) {
       cut.triangle.push_back({c[k], p, q});
     } else if ((cut.x[index(p)] - cut.x[index(d)]).norm() <
                (cut.x[index(b)] - cut.x[index(q)]).norm()) {

@@ -14,8 +14,7 @@ namespace geoprior {
 struct HoledMesh {
   std::vector<Eigen::Vector3d> x;
   std::vector<Eigen::Vector3d> normal;
-  std::vector<int> hole;      ///< of each vertex: whose border it lies on; -1: on none
-  std::vector<double> scale;  ///< of a border vertex: length of the edge that it cuts (m)
+  std::vector<int> hole;  ///< of each vertex: whose border it lies on; -1: on none
   std::vector<std::array<int, 3>> triangle;
 };
 
@@ -25,7 +24,9 @@ struct HoledMesh {
 /// Refinement is bisection of longest edges (Rivara 1984): it keeps the surface as it is, leaves no
 /// hanging vertices, and no angle becomes smaller than half the smallest one. The cut is that of
 /// marching triangles: a vertex is inside a hole or not, an edge between the two has one border
-/// vertex, at the radius; that gives a manifold whatever the numbers.
+/// vertex, at the radius; that gives a manifold whatever the numbers. Vertices close to the border
+/// are moved onto it first, where the surface stays a manifold and no triangle turns over: that
+/// keeps needles away.
 class HoleMesh {
  public:
   HoleMesh(const SurfaceTopology& surface, std::span<const Eigen::Vector3d> x,
@@ -47,6 +48,8 @@ class HoleMesh {
     double radius = 0;
     double longest = 0;
   };
+  class BorderVertices;
+  class Snapper;
   [[nodiscard]] static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] const Entry* entry(int vertex, int hole) const;
   void add_entry(int vertex, int hole, const Eigen::Vector2d& at);
@@ -61,6 +64,8 @@ class HoleMesh {
   void keep_whole(std::vector<int>& inside) const;
   [[nodiscard]] double place_of_border(int in, int out, int hole) const;
 
+  void snap_to_borders(std::vector<int>& inside, std::vector<int>& on_border);  // hole_snap.cpp
+
   std::vector<Eigen::Vector3d> x_, normal_;
   std::vector<int> first_;  ///< entry of each vertex; -1: none
   std::vector<Entry> entry_;
@@ -68,10 +73,5 @@ class HoleMesh {
   std::vector<int> touched_;  ///< faces in charts
   std::vector<std::array<int, 3>> corner_, across_;
 };
-
-/// Takes short edges and needles off the borders of holes by collapses that keep the mesh a
-/// manifold of the same topology: a vertex next to a border goes onto it, close border vertices
-/// become one.
-void tidy_borders(HoledMesh& mesh);
 
 }  // namespace geoprior
