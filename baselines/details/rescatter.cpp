@@ -161,7 +161,7 @@ class Rescatter final : public DetailMethod {
 void describe(OptionVisitor& v, RescatterOptions& options) {
   v.value(
       "radius", options.radius,
-      {.doc = "smallest distance in units of 1 / sqrt(density at rest)", .min = 0, .max = 0.83});
+      {.doc = "smallest distance in units of 1 / sqrt(density at rest)", .min = 0.1, .max = 0.83});
   v.value("darts_per_detail", options.darts_per_detail,
           {.doc = "after so many darts a frame has fewer details", .min = 1, .max = 100000});
 }
