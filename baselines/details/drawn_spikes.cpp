@@ -83,7 +83,12 @@ class SpikeDrawer {
         distance_(rings_.size()),
         on_surface_(rings_.size()),
         point_(rings_.size() * static_cast<std::size_t>(options.sectors) + 2),
-        normal_(point_.size()) {}
+        normal_(point_.size()) {
+    for (int k = 0; k < options.sectors; ++k) {
+      const double angle = 2 * std::numbers::pi * k / options.sectors;
+      ray_.emplace_back(std::cos(angle), std::sin(angle));
+    }
+  }
 
   [[nodiscard]] std::size_t vertices() const { return point_.size(); }
   [[nodiscard]] std::size_t triangles() const { return triangles_.size(); }
@@ -98,8 +103,7 @@ class SpikeDrawer {
     const auto sectors = static_cast<std::size_t>(options_.sectors);
     Eigen::Vector3d bottom = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < sectors; ++k) {
-      rays_.trace(2 * std::numbers::pi * static_cast<double>(k) / options_.sectors, distance_,
-                  on_surface_);
+      rays_.trace(ray_[k], distance_, on_surface_);
       for (std::size_t j = 0; j < rings_.size(); ++j)
         point_[j * sectors + k] = on_surface_[j] + rings_[j].height * up + rings_[j].lean * ahead;
       bottom += point_[(rings_.size() - 1) * sectors + k];
@@ -136,6 +140,7 @@ class SpikeDrawer {
   std::vector<Ring> rings_;
   std::vector<std::array<int, 3>> triangles_;
   SurfaceRays rays_;
+  std::vector<Eigen::Vector2d> ray_;
   std::vector<double> distance_;
   std::vector<Eigen::Vector3d> on_surface_;
   std::vector<Eigen::Vector3d> point_, normal_;

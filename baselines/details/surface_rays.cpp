@@ -51,9 +51,8 @@ void SurfaceRays::start(const SurfacePoint& at, const Eigen::Vector3d& tangent) 
     corner_[k] = {tangent_.dot(c[k] - origin_), across.dot(c[k] - origin_)};
 }
 
-void SurfaceRays::trace(double angle, std::span<const double> distance,
+void SurfaceRays::trace(const Eigen::Vector2d& ray, std::span<const double> distance,
                         std::span<Eigen::Vector3d> points) const {
-  const Eigen::Vector2d ray(std::cos(angle), std::sin(angle));
   const auto& f = surface_.face[static_cast<std::size_t>(face_)];
   std::array<double, 3> side;
   for (std::size_t k = 0; k < 3; ++k) side[k] = cross(ray, corner_[k]);

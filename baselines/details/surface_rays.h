@@ -26,16 +26,16 @@ class SurfaceRays {
   SurfaceRays(const SurfaceTopology& surface, std::span<const Eigen::Vector3d> x)
       : surface_(surface), x_(x) {}
 
-  /// @param tangent  direction of angle 0; its part in the plane of the face counts
+  /// @param tangent  its part in the plane of the face counts
   void start(const SurfacePoint& at, const Eigen::Vector3d& tangent);
   /// Corners of the point's face in the plane, the point at 0.
   [[nodiscard]] const std::array<Eigen::Vector2d, 3>& corners() const { return corner_; }
   [[nodiscard]] const Eigen::Vector3d& tangent() const { return tangent_; }
   [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
 
-  /// Points at increasing distances along the ray of an angle (counter-clockwise seen from
-  /// outside); beyond a border, the last point before it.
-  void trace(double angle, std::span<const double> distance,
+  /// Points at increasing distances along a ray; beyond a border, the last point before it.
+  /// @param ray  unit vector in the plane: (1, 0) runs along the tangent, (0, 1) to its left
+  void trace(const Eigen::Vector2d& ray, std::span<const double> distance,
              std::span<Eigen::Vector3d> points) const;
 
  private:
