@@ -30,7 +30,7 @@ struct SpikeOptions {
   double height = 0.8;  ///< of weight 1, in the drawing's unit of length
   double lean = 0.6;    ///< thorn: its tip is that share of the height off, along the tangent
   WeightScales weight_scales = WeightScales::size;
-  int sectors = 10;  ///< rays
+  int sectors = 12;  ///< rays
   int rings = 4;     ///< between foot and tip
 };
 void describe(OptionVisitor& v, SpikeOptions& options);
