@@ -105,7 +105,9 @@ CutSurface cut_holes(const SurfaceTopology& surface, std::span<const Eigen::Vect
     result.radius[i] = charts[i].radius;
     mesh.add(static_cast<int>(i), charts[i]);
   }
-  mesh.refine(options.segments);
+  mesh.refine(options.segments, least);
+  for (std::size_t i = 0, added = 0; i < n; ++i)
+    if (result.radius[i] > 0) result.radius[i] = mesh.radius(static_cast<int>(added++));
   result.drawn = compact(mesh.cut());
   return result;
 }

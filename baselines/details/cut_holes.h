@@ -17,10 +17,11 @@ namespace geoprior {
 /// more from the smaller one,
 ///   r_i = R_i - o R_j^2 / (R_i^2 + R_j^2),   o = R_i + R_j - spacing d_ij,
 /// so that a hole that begins to open next to a large one changes nothing at a jump. A hole that
-/// would reach a border of the surface, or around a part thinner than itself, is shrunk to fit.
-/// What is left below `least` is not cut.
+/// would reach a border of the surface, another hole over a ridge or a fold, or around a part
+/// thinner than itself, is shrunk until what is cut out is a disc of its own. What is left below
+/// `least` is not cut.
 struct HoleOptions {
-  int segments = 32;      ///< of a border, about
+  int segments = 40;      ///< of a border, about
   double spacing = 0.85;  ///< largest sum of two radii in units of the distance of the anchors
   double least = 0.04;    ///< holes are cut above this share of the radius
 };

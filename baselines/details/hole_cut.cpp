@@ -85,6 +85,38 @@ void HoleMesh::keep_whole(std::vector<int>& inside) const {
   inside = std::move(result);
 }
 
+/// Holes that share a vertex or an edge with another, reach the border of the surface, or are no
+/// discs: the Euler characteristic of their vertices with all edges and triangles between them is
+/// not 1.
+std::vector<char> HoleMesh::holes_in_trouble(const std::vector<int>& inside) const {
+  std::vector<char> trouble(hole_.size(), 0);
+  std::vector<int> euler(hole_.size(), 0);
+  for (std::size_t v = 0; v < x_.size(); ++v) {
+    const int hole = inside[v];
+    if (hole < 0) continue;
+    ++euler[index(hole)];
+    for (int e = first_[v]; e >= 0; e = entry_[index(e)].next) {
+      const auto& [other, place, next] = entry_[index(e)];
+      if (other != hole && place.norm() < hole_[index(other)].radius)
+        trouble[index(hole)] = trouble[index(other)] = 1;
+    }
+  }
+  for (std::size_t t = 0; t < corner_.size(); ++t) {
+    const auto& c = corner_[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = inside[index(c[k])], b = inside[index(c[(k + 1) % 3])];
+      if (a < 0) continue;
+      if (b >= 0 && a != b) trouble[index(a)] = trouble[index(b)] = 1;
+      if (across_[t][k] < 0) trouble[index(a)] = 1;
+      if (a == b && c[k] < c[(k + 1) % 3]) --euler[index(a)];
+      if (k == 0 && a == b && inside[index(c[2])] == a) ++euler[index(a)];
+    }
+  }
+  for (std::size_t i = 0; i < hole_.size(); ++i)
+    if (euler[i] != 1) trouble[i] = 1;
+  return trouble;
+}
+
 /// Share of the way from a vertex in a hole to one outside where the distance is the radius.
 double HoleMesh::place_of_border(int in, int out, int hole) const {
   const Entry *a = entry(in, hole), *b = entry(out, hole);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace geoprior {
 
@@ -58,6 +60,7 @@ bool HoleMesh::crossed_by(int t, int hole) const {
     u[k] = e->at;
   }
   const double radius = hole_[index(hole)].radius;
+  if (radius == 0) return false;  // given up
   if (std::max({u[0].norm(), u[1].norm(), u[2].norm()}) < radius) return false;
   int left = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -140,15 +143,34 @@ void HoleMesh::bisect(int t, std::vector<int>& changed) {
   }
 }
 
-void HoleMesh::refine(int segments) {
-  for (Hole& hole : hole_) hole.longest = 1.5 * 2 * std::numbers::pi * hole.radius / segments;
-  std::vector<int> stack(touched_.rbegin(), touched_.rend());
+void HoleMesh::refine_borders(int segments, std::vector<int> stack) {
+  // The border cuts triangles of longest edge h, halved again and again, about every h / 2.
+  for (Hole& hole : hole_) hole.longest = 2.1 * 2 * std::numbers::pi * hole.radius / segments;
   while (!stack.empty()) {
     const int t = stack.back();
     stack.pop_back();
     if (!too_large(t)) continue;
     stack.push_back(t);
     bisect(t, stack);
+  }
+}
+
+void HoleMesh::refine(int segments, double least) {
+  std::vector<int> look_at(touched_.rbegin(), touched_.rend());
+  for (bool settled = false; !settled;) {
+    settled = true;
+    refine_borders(segments, std::move(look_at));
+    std::vector<int> inside = hole_of_vertices();
+    keep_whole(inside);
+    const std::vector<char> trouble = holes_in_trouble(inside);
+    for (std::size_t i = 0; i < hole_.size(); ++i) {
+      if (trouble[i] == 0 || hole_[i].radius == 0) continue;
+      settled = false;
+      hole_[i].radius *= 0.9;
+      if (hole_[i].radius < least) hole_[i].radius = 0;
+    }
+    look_at.resize(corner_.size());
+    std::iota(look_at.begin(), look_at.end(), 0);
   }
 }
 

@@ -33,8 +33,13 @@ class HoleMesh {
            std::span<const Eigen::Vector3d> normals);
 
   void add(int hole, const HoleChart& chart);
-  /// Until triangles that a border crosses have edges of at most 2 pi radius / segments x 1.5.
-  void refine(int segments);
+  /// Refines until triangles that a border crosses have edges of at most
+  /// 2 pi radius / segments x 2.1. Then holes that meet another one or go around a part of the
+  /// surface, so that what would be cut out is no disc of its own, are shrunk until it is.
+  /// @param least  holes that become smaller are given up (m)
+  void refine(int segments, double least);
+  /// Radius of the hole added as the i-th; 0: given up.
+  [[nodiscard]] double radius(int i) const { return hole_[index(i)].radius; }
   [[nodiscard]] HoledMesh cut();
 
  private:
@@ -60,8 +65,11 @@ class HoleMesh {
   int add_middle(int a, int b);
   int halve(int t, int edge, int middle);
   void bisect(int t, std::vector<int>& changed);
+  void refine_borders(int segments, std::vector<int> stack);
+  /// The hole that each vertex lies in; the last of several.
   [[nodiscard]] std::vector<int> hole_of_vertices() const;
   void keep_whole(std::vector<int>& inside) const;
+  [[nodiscard]] std::vector<char> holes_in_trouble(const std::vector<int>& inside) const;
   [[nodiscard]] double place_of_border(int in, int out, int hole) const;
 
   void snap_to_borders(std::vector<int>& inside, std::vector<int>& on_border);  // hole_snap.cpp
