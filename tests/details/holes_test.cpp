@@ -130,7 +130,7 @@ TEST(Holes, BorderLiesAtTheRadius) {
 TEST(Holes, ShrinkWhereTheyAreClose) {
   for (const int levels : {2, 4, 6}) {
     const TriMesh sphere = shapes::sphere(levels);
-    for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const std::uint64_t seed : {1, 2}) {
       auto anchors = anchors_at(detail_scenes::random_details(sphere, 400, seed));
       RandomStream random(seed, "weights");
       for (DrawnAnchor& a : anchors) a.weight = random.uniform();
@@ -199,6 +199,17 @@ TEST(Holes, DoNotCutAThinPartInTwo) {
   EXPECT_EQ(holes_of(after), 1);
   EXPECT_LT(after.radius[0], std::numbers::pi * 0.1);
   EXPECT_GT(after.radius[0], 0.6 * std::numbers::pi * 0.1);
+}
+
+/// A disc of thickness 0.04 with a sharp rim: near in space, the two sides are far apart along the
+/// surface, but for the rim, over which holes would meet. Radii up to 4 thicknesses.
+TEST(Holes, StayApartOverASharpRim) {
+  TriMesh disc = shapes::sphere(4);
+  disc.V.col(2) *= 0.02;
+  auto anchors = anchors_at(detail_scenes::random_details(disc, 300, 4));
+  const CutSurface after = cut(disc, anchors, 0.16);
+  expect_holes(disc, after);
+  EXPECT_GT(holes_of(after), 80);
 }
 
 TEST(Holes, AreNotCutForTinyWeights) {
