@@ -64,7 +64,7 @@ struct FrameDetails {
   }
 };
 
-/// Height of a detail of weight 1 (m).
+/// Height of a detail of weight 1 (m); 0 when nothing says it.
 double height_of(const DetailsScene& scene) {
   if (scene.chosen_height) return *scene.chosen_height;
   return spacing_of(required_part(scene.rest(), "detail_mesh"), 0).mean / 2;
@@ -162,11 +162,11 @@ FrameState state_of(const FrameSequence& frames, std::size_t i) {
   return {required_part(frames, i, "surface"), FrameDetails(*details), 0};
 }
 
-double worst_edge_change(const DetailsScene& scene, const FrameSequence& frames, const char* mesh) {
+Value worst_edge_change(const DetailsScene& scene, const FrameSequence& frames, const char* mesh) {
   std::vector<DetailSpacing> spacings{spacing_of(required_part(scene.rest(), mesh), 0)};
   for (std::size_t i = 0; i < frames.size(); ++i)
     spacings.push_back(spacing_of(*required_part(frames, i, mesh), 0));
-  if (!(spacings.front().mean > 0)) return 0;
+  if (!(spacings.front().mean > 0)) return {};
   return std::abs(worst_mean_change(spacings).change);
 }
 
@@ -184,9 +184,11 @@ MotionMeasures measure_motion(const DetailsScene& scene, const FrameSequence& fr
     FrameState now = state_of(frames, i);
     counts.push_back(static_cast<double>(now.details.birth.size()));
     changes.push_back(detail_changes(before.details.state(), now.details.state()));
-    const double pop = largest_pop({now.surface->points, now.surface->triangles},
-                                   before.details.anchored(), now.details.anchored(), height);
-    m.popping = std::max(m.popping.value_or(0), pop / height);
+    if (height > 0) {
+      const double pop = largest_pop({now.surface->points, now.surface->triangles},
+                                     before.details.anchored(), now.details.anchored(), height);
+      m.popping = std::max(m.popping.value_or(0), pop / height);
+    }
     if (now.surface->points == before.surface->points) now.still = before.still + 1;
     if (now.still > kStillAfter)
       m.at_rest = m.at_rest.value_or(0) + now.details.events_since(before.details);

@@ -27,8 +27,8 @@ DetailSpacing spacing_of(const Part& mesh, double reference);
 
 /// What happened to the details over a motion.
 struct MotionMeasures {
-  double worst_edge_change = 0;     ///< largest magnitude of the change of the mean edge
-  double worst_visible_change = 0;  ///< of that of the visible details
+  Value worst_edge_change;     ///< largest magnitude of the change of the mean edge
+  Value worst_visible_change;  ///< of that of the visible details
   DetailEvents events;
   int turns = 0;               ///< of the number of details, by 1 % of the first or more
   Value popping;               ///< largest, over the height of a detail

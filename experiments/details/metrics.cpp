@@ -157,9 +157,9 @@ void add_motion(Rows rows, const SharedMemo& memo) {
   };
   using M = const MotionMeasures&;
   add("worst_edge_change", "largest magnitude of mean_edge_change over the motion", kLow, kShare,
-      [](M m) -> Value { return m.worst_edge_change; });
+      [](M m) { return m.worst_edge_change; });
   add("worst_visible_change", "largest magnitude of visible_edge_change over the motion", kLow,
-      kShare, [](M m) -> Value { return m.worst_visible_change; });
+      kShare, [](M m) { return m.worst_visible_change; });
   add("weight_step",
       "largest change of a weight from one frame to the next; who is not there has 0", kLow,
       kRoundOff, [](M m) -> Value { return m.events.largest_step; });

@@ -22,7 +22,7 @@ void require_size(double area, double edge) {
   // Two triangles of a square of one edge.
   const double triangles = 2 * area / (edge * edge);
   if (triangles <= kMostTriangles) return;
-  throw Error("asks for " + std::to_string(static_cast<long long>(triangles)) + " triangles",
+  throw Error("asks for " + std::to_string(std::llround(triangles)) + " triangles",
               "scene.surface.edge", "at most ten million: longer edges");
 }
 
