@@ -24,12 +24,14 @@ struct Ring {
   double lean;
 };
 
-/// Height above the surface at share `u` of the way from foot to tip; below 0 the profile goes on
-/// in a straight line.
+/// Ring at share `u` of the rings from foot to tip; below 0 the profile goes on in a straight line.
 Ring profile_at(SpikeProfile profile, double u, double lean) {
   switch (profile) {
-    case SpikeProfile::cone:
-      return {1 - u, u, 0};
+    case SpikeProfile::cone: {
+      // Rings crowd at the tip, where smooth shading would round it.
+      const double s = u < 0 ? 1 - u : (1 - u) * (1 - u);
+      return {s, 1 - s, 0};
+    }
     case SpikeProfile::dome: {
       if (u < 0) return {1 - u, 2 * u, 0};
       const double s = std::cos(0.5 * std::numbers::pi * u);

@@ -36,7 +36,8 @@ Eigen::Vector2d unfold_corner(const Eigen::Vector2d& a, const Eigen::Vector2d& b
 void SurfaceRays::start(const SurfacePoint& at, const Eigen::Vector3d& tangent) {
   // A hair inside its face: from a corner or an edge a ray would have no way out that is certain.
   const double hair = 1e-7;
-  const Eigen::Vector3d b = (at.barycentric.array() + hair) / (1 + 3 * hair);
+  Eigen::Vector3d b = at.barycentric.cwiseMax(0.0).array() + hair;
+  b /= b.sum();
   const auto& f = surface_.face[static_cast<std::size_t>(at.face)];
   std::array<Eigen::Vector3d, 3> c;
   for (std::size_t k = 0; k < 3; ++k) c[k] = x_[static_cast<std::size_t>(f[k])];
