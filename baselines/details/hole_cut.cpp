@@ -131,13 +131,53 @@ double HoleMesh::place_of_border(int in, int out, int hole) const {
   return std::clamp(t, 1e-3, 1 - 1e-3);
 }
 
-/// Border vertices on the edges of triangles, made when they are first met.
-class HoleMesh::BorderVertices {
+/// Cuts triangle by triangle; border vertices are made when they are first met.
+class HoleMesh::TriangleCutter {
  public:
-  BorderVertices(const HoleMesh& mesh, const std::vector<int>& inside, HoledMesh& cut)
-      : mesh_(mesh), inside_(inside), cut_(cut), made_(mesh.corner_.size(), {-1, -1, -1}) {}
+  TriangleCutter(const HoleMesh& mesh, const std::vector<int>& inside,
+                 const std::vector<int>& on_border, HoledMesh& cut)
+      : mesh_(mesh),
+        inside_(inside),
+        on_border_(on_border),
+        cut_(cut),
+        made_(mesh.corner_.size(), {-1, -1, -1}) {}
 
-  int on_edge(int t, std::size_t k) {
+  /// What is kept of a triangle: all of it, a piece, or two.
+  void cut(int t) {
+    const auto& c = mesh_.corner_[index(t)];
+    const auto in = [&](std::size_t k) { return inside_[index(c[k % 3])] >= 0; };
+    const auto out = [&](std::size_t k) { return !in(k) && on_border_[index(c[k % 3])] < 0; };
+    const int ins = in(0) + in(1) + in(2), outs = out(0) + out(1) + out(2);
+    if (outs == 0) return;
+    std::size_t k = 0;
+    if (ins == 0) {
+      cut_.triangle.push_back(c);
+    } else if (ins + outs == 2) {  // one corner on the border, one on either side
+      while (!in(k)) ++k;
+      auto piece = c;
+      piece[k] = border_vertex(t, out(k + 1) ? k : (k + 2) % 3);
+      cut_.triangle.push_back(piece);
+    } else {
+      while (in(k) == in(k + 1) || in(k) == in(k + 2)) ++k;  // differs from the other two
+      const int p = border_vertex(t, k), q = border_vertex(t, (k + 2) % 3);
+      if (ins == 2)
+        cut_.triangle.push_back({c[k], p, q});
+      else
+        add_quadrilateral(p, c[(k + 1) % 3], c[(k + 2) % 3], q);
+    }
+  }
+
+ private:
+  void add_quadrilateral(int a, int b, int c, int d) {
+    const auto& x = cut_.x;
+    if ((x[index(a)] - x[index(c)]).norm() < (x[index(b)] - x[index(d)]).norm())
+      cut_.triangle.insert(cut_.triangle.end(), {{a, b, c}, {a, c, d}});
+    else
+      cut_.triangle.insert(cut_.triangle.end(), {{a, b, d}, {b, c, d}});
+  }
+
+  /// On edge `k` of triangle `t`.
+  int border_vertex(int t, std::size_t k) {
     if (const int vertex = made_[index(t)][k]; vertex >= 0) return vertex;
     int in = mesh_.corner_[index(t)][k], out = mesh_.corner_[index(t)][(k + 1) % 3];
     const int first = out;
@@ -158,9 +198,8 @@ class HoleMesh::BorderVertices {
     return vertex;
   }
 
- private:
   const HoleMesh& mesh_;
-  const std::vector<int>& inside_;
+  const std::vector<int>&inside_, &on_border_;
   HoledMesh& cut_;
   std::vector<std::array<int, 3>> made_;
 };
@@ -175,38 +214,8 @@ HoledMesh HoleMesh::cut() {
   cut.hole.assign(x_.size(), -1);
   for (std::size_t v = 0; v < x_.size(); ++v)
     if (on_border[v] >= 0) cut.hole[v] = hole_[index(on_border[v])].number;
-  BorderVertices border(*this, inside, cut);
-  for (int t = 0; t < static_cast<int>(corner_.size()); ++t) {
-    const auto& c = corner_[index(t)];
-    const auto in = [&](std::size_t k) { return inside[index(c[k % 3])] >= 0; };
-    const auto out = [&](std::size_t k) { return !in(k) && on_border[index(c[k % 3])] < 0; };
-    const int ins = in(0) + in(1) + in(2), outs = out(0) + out(1) + out(2);
-    if (outs == 0) continue;
-    if (ins == 0) {
-      cut.triangle.push_back(c);
-      continue;
-    }
-    std::size_t k = 0;
-    if (ins + outs == 2) {  // one corner on the border, one on either side
-      while (!in(k)) ++k;
-      const std::size_t l = k + (out(k + 1) ? 1 : 2);
-      auto piece = c;
-      piece[k] = border.on_edge(t, l == k + 1 ? k : l % 3);
-      cut.triangle.push_back(piece);
-      continue;
-    }
-    while (in(k) == in(k + 1) || in(k) == in(k + 2)) ++k;  // differs from the other two
-    const int p = border.on_edge(t, k), q = border.on_edge(t, (k + 2) % 3);
-    const int b = c[(k + 1) % 3], d = c[(k + 2) % 3];
-    if (ins == 2) {
-      cut.triangle.push_back({c[k], p, q});
-    } else if ((cut.x[index(p)] - cut.x[index(d)]).norm() <
-               (cut.x[index(b)] - cut.x[index(q)]).norm()) {
-      cut.triangle.insert(cut.triangle.end(), {{p, b, d}, {p, d, q}});
-    } else {
-      cut.triangle.insert(cut.triangle.end(), {{p, b, q}, {b, d, q}});
-    }
-  }
+  TriangleCutter cutter(*this, inside, on_border, cut);
+  for (int t = 0; t < static_cast<int>(corner_.size()); ++t) cutter.cut(t);
   return cut;
 }
 

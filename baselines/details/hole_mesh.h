@@ -53,7 +53,7 @@ class HoleMesh {
     double radius = 0;
     double longest = 0;
   };
-  class BorderVertices;
+  class TriangleCutter;
   class Snapper;
   [[nodiscard]] static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] const Entry* entry(int vertex, int hole) const;
