@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/topology.h"
 #include "experiments/keyframes.h"
 
 namespace geoprior {
@@ -103,11 +104,25 @@ Eigen::Vector3d moved(const Eigen::Vector3d& x, const Stage& s) {
   return x;
 }
 
+/// Normals averaged over the neighbours of each vertex, `times` times: the field then varies less
+/// than the surface, and an offset along it folds later.
+Eigen::MatrixX3d smoothed_normals(const TriMesh& mesh, int times) {
+  Eigen::MatrixX3d normals = vertex_normals(mesh);
+  const VertexGraph rings = one_rings(mesh.F, mesh.vertex_count());
+  for (int i = 0; i < times; ++i) {
+    Eigen::MatrixX3d mean = normals;
+    for (int v = 0; v < mesh.vertex_count(); ++v)
+      for (const int w : rings.of(v)) mean.row(v) += normals.row(w);
+    normals = mean.rowwise().normalized();
+  }
+  return normals;
+}
+
 /// Steps along the normals until the area of the triangles that take part is `factor` times as
 /// large: outwards in steps of a hundredth of the size, then by bisection.
-Eigen::MatrixX3d inflated(const TriMesh& mesh, const Eigen::VectorXd& share, double factor,
-                          const std::string& where) {
-  const Eigen::MatrixX3d along = vertex_normals(mesh).array().colwise() * share.array();
+Eigen::MatrixX3d inflated(const TriMesh& mesh, const Eigen::VectorXd& share, int smooth,
+                          double factor, const std::string& where) {
+  const Eigen::MatrixX3d along = smoothed_normals(mesh, smooth).array().colwise() * share.array();
   Eigen::VectorXd takes_part(mesh.F.rows());
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
     const bool any = share[mesh.F(t, 0)] + share[mesh.F(t, 1)] + share[mesh.F(t, 2)] > 0;
@@ -195,11 +210,12 @@ void describe(OptionVisitor& v, AmountKey& key) {
 void describe(OptionVisitor& v, DeformationOptions& options) {
   static constexpr std::array<std::string_view, 6> kKinds{"stretch", "scale", "inflate",
                                                           "squeeze", "twist", "bend"};
-  describe_choice(v, "kind", options.kind, kKinds,
-                  {.doc = "stretch: factor along axis, cross, from, to, ramp; scale: factor about "
-                          "centre; inflate: factor of the area, along normals; squeeze: factor of "
-                          "the distance from axis, from, to; twist: degrees about axis, from, to; "
-                          "bend: degrees of axis towards side, from, to"});
+  describe_choice(
+      v, "kind", options.kind, kKinds,
+      {.doc = "stretch: factor along axis, cross, from, to, ramp; scale: factor about "
+              "centre; inflate: factor of the area, along normals, smooth; squeeze: factor of "
+              "the distance from axis, from, to; twist: degrees about axis, from, to; "
+              "bend: degrees of axis towards side, from, to"});
   describe_list(v, "keys", options.keys,
                 {.doc = "how much at times that increase, linear between"});
   v.value("centre", options.centre, {.doc = "of the operation and of its falloff", .unit = "m"});
@@ -215,6 +231,10 @@ void describe(OptionVisitor& v, DeformationOptions& options) {
             {.doc = "across, the surface is multiplied by factor^-cross", .min = -1, .max = 1});
     v.value("ramp", options.ramp,
             {.doc = "share of from … to in which it sets in and out", .min = 0, .max = 1});
+  }
+  if (options.kind == Kind::inflate) {
+    v.value("smooth", options.smooth,
+            {.doc = "times that its normals are averaged over neighbours", .min = 0, .max = 10000});
   }
   if (options.kind == Kind::bend) v.value("side", options.side, {.doc = "towards which it bends"});
   v.value("radius", options.radius,
@@ -260,7 +280,8 @@ Eigen::MatrixX3d ScriptedMotion::positions(int frame) const {
     if (identity) continue;
     const Eigen::VectorXd& share = falloff_[i];
     if (operations_[i].kind == Kind::inflate) {
-      now.V = inflated(now, share, stage.value, place(i) + ", frame " + std::to_string(frame));
+      now.V = inflated(now, share, operations_[i].smooth, stage.value,
+                       place(i) + ", frame " + std::to_string(frame));
       continue;
     }
     for (Eigen::Index v = 0; v < now.V.rows(); ++v) {

@@ -27,7 +27,8 @@ void describe(OptionVisitor& v, AmountKey& key);
 ///   as long, what is beyond moves along; across the axis the surface is multiplied by value^-cross
 ///   (0: it stays, 1/2: a tube keeps its volume, 1: a plane its area);
 /// - scale: about the centre, by the factor `value`;
-/// - inflate: along the normals until the area is `value` times what it was before;
+/// - inflate: along the normals until the area is `value` times what it was before; the normals are
+///   averaged `smooth` times over the neighbours, or hollows fold;
 /// - squeeze: distances from the axis multiplied by `value`, fully in the middle of `from` … `to`;
 /// - twist: about the axis, by 0 at `from` to `value` degrees at `to`;
 /// - bend: the axis becomes an arc between `from` and `to`, `value` degrees towards `side`.
@@ -42,6 +43,7 @@ struct DeformationOptions {
   std::array<double, 3> side{0, 0, 1};  ///< of a bend
   double cross = 0;                     ///< of a stretch
   std::optional<double> from, to;       ///< along the axis from the centre (m)
+  int smooth = 0;                       ///< of an inflation
   double ramp = 0.5;                    ///< of a stretch: share of from … to in which it sets in
   std::optional<double> radius;         ///< of the falloff (m)
 };

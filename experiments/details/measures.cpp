@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/mesh.h"
 #include "experiments/frame_arrays.h"
+#include "metrics/radial_spectrum.h"
 
 namespace geoprior {
 namespace {
@@ -112,6 +113,29 @@ PairCurve curve_of(DetailsMemo& memo, const DetailsScene& scene, const Part& sur
     options.sources = 1000;
     return pair_curve({surface.points, surface.triangles}, places, unit, options, mask);
   });
+}
+
+/// A rectangle in a plane of constant z with edges along x and y.
+bool fills_rectangle(const Part& surface) {
+  const Eigen::RowVector3d size =
+      surface.points.colwise().maxCoeff() - surface.points.colwise().minCoeff();
+  if (size.z() > 1e-9 * size.norm()) return false;
+  const double area = triangle_areas(surface.points, surface.triangles).sum();
+  return std::abs(area - size.x() * size.y()) <= 1e-6 * area;
+}
+
+RadialSpectrum spectrum_of(const Part& plane, const std::vector<SurfacePlace>& places,
+                           double unit) {
+  Eigen::MatrixX2d points(static_cast<Eigen::Index>(places.size()), 2);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    points.row(static_cast<Eigen::Index>(i)) =
+        position_of(SurfacePoint{places[i].face, places[i].barycentric}, plane.points,
+                    plane.triangles)
+            .head<2>();
+  }
+  const Eigen::Vector2d low = plane.points.leftCols<2>().colwise().minCoeff();
+  const Eigen::Vector2d high = plane.points.leftCols<2>().colwise().maxCoeff();
+  return radial_spectrum(points, low, high, unit);
 }
 
 PairAtRest pairs_at_rest(DetailsMemo& memo, const DetailsScene& scene) {
@@ -255,6 +279,32 @@ std::optional<PairMeasures> pair_measures(DetailsMemo& memo, const DetailsScene&
   m.distance = distance(visible_places(required_part(frame, "details")));
   m.naive = distance(places_of(scene.scene.details));
   m.noise = rest.noise;
+  return m;
+}
+
+std::optional<SpectrumMeasures> spectrum_measures(const DetailsScene& scene, const Frame& frame) {
+  const Part& surface = required_part(frame, "surface");
+  if (!scene.measures_pairs(frame.parameter) || !fills_rectangle(surface)) return {};
+  const double unit = spacing_of(required_part(scene.rest(), "detail_mesh"), 0).mean;
+  if (!(unit > 0)) return {};
+  const Part& rest = required_part(scene.rest(), "surface");
+  if (!fills_rectangle(rest)) return {};
+  const RadialSpectrum original = spectrum_of(rest, places_of(scene.scene.details), unit);
+  const RadialSpectrum now =
+      spectrum_of(surface, visible_places(required_part(frame, "details")), unit);
+  SpectrumMeasures m;
+  m.distance = radial_spectrum_distance(now, original);
+  // The ring of a pattern that keeps its distance is near 1 cycle a spacing; beyond, few agree.
+  constexpr double kBeyondRing = 1.2;
+  const Eigen::VectorXd weight =
+      (now.frequency.array() < kBeyondRing)
+          .select(now.count.cast<double>(), Eigen::VectorXd::Zero(now.count.size()));
+  m.elongation = now.elongation.dot(weight) / weight.sum();
+  for (const auto& resample : scene.resamples) {
+    const double distance =
+        radial_spectrum_distance(spectrum_of(rest, places_of(resample), unit), original);
+    m.noise = m.noise.value_or(0) + distance / static_cast<double>(scene.resamples.size());
+  }
   return m;
 }
 

@@ -71,6 +71,14 @@ struct PairMeasures {
 std::optional<PairMeasures> pair_measures(DetailsMemo& memo, const DetailsScene& scene,
                                           const Frame& frame);
 
+/// Radial power spectrum of the visible details of a plane, in the same frames. Absent elsewhere.
+struct SpectrumMeasures {
+  double distance = 0;    ///< to that of the original
+  Value noise;            ///< mean distance between independent patterns of the process, at rest
+  double elongation = 0;  ///< mean up to the ring of the spacing: how much one axis is preferred
+};
+std::optional<SpectrumMeasures> spectrum_measures(const DetailsScene& scene, const Frame& frame);
+
 /// Frames count as at rest once the surface has not moved for ten frames: weights that change by a
 /// tenth a frame are then done.
 MotionMeasures motion_measures(DetailsMemo& memo, const DetailsScene& scene,

@@ -1,5 +1,6 @@
 #include "baselines/details/dart_throwing.h"
 #include "baselines/details/delaunay_refinement.h"
+#include "baselines/details/lloyd_relaxation.h"
 #include "baselines/details/naive_stretch.h"
 #include "baselines/details/rescatter.h"
 #include "experiments/details/drawing.h"
@@ -43,6 +44,12 @@ std::vector<MethodEntry> details_methods() {
           [](const S& scene, const DelaunayRefinementOptions& options, RunContext&) {
             return with_drawing(make_delaunay_refinement_process(scene.scene, options), scene);
           }),
+      method_entry<S, LloydRelaxationOptions>(
+          "lloyd", true, "details slide to the centroids of their Voronoi cells in every frame",
+          "Lloyd 1982; Du, Faber and Gunzburger 1999",
+          [](const S& scene, const LloydRelaxationOptions& options, RunContext&) {
+            return with_drawing(make_lloyd_relaxation_process(scene.scene, options), scene);
+          }),
   };
 }
 
@@ -66,6 +73,9 @@ std::vector<DiagnosticEntry> details_diagnostics() {
       {"triplets", "1", "triplets in the table (first frame)"},
       {"triplets_met", "1", "triplets that were looked at to fill it (first frame)"},
       {"table_bytes", "B", "memory of the table (first frame)"},
+      // Of relaxation.
+      {"mean_slide", "m", "mean way that the relaxation moved details in the frame"},
+      {"max_slide", "m", "largest such way"},
       // Of scattering.
       {"darts", "1", "darts thrown in the frame"},
   };

@@ -147,6 +147,27 @@ void add_pairs(Rows rows, const SharedMemo& memo) {
              }));
 }
 
+void add_spectrum(Rows rows) {
+  const auto read = [](auto get) {
+    return [get](const DetailsScene& scene, const Frame& frame) -> Value {
+      const auto spectrum = spectrum_measures(scene, frame);
+      return spectrum ? get(*spectrum) : Value();
+    };
+  };
+  using S = const SpectrumMeasures&;
+  rows.frame("spectrum_distance", "1",
+             "integral of the difference of the radial power spectrum of the visible details and "
+             "that of the original, in planes, in the frames that scene.pair_frames chooses",
+             kLow, {0.1, 0}, read([](S s) -> Value { return s.distance; }));
+  rows.frame("spectrum_noise", "1",
+             "mean of the same between the original and independent patterns of its process", kNone,
+             kShare, read([](S s) { return s.noise; }));
+  rows.frame("spectrum_elongation", "1",
+             "how much of the power lies along one axis, mean up to 1.2 cycles a spacing: 0 for a "
+             "pattern without direction, 1 for lines",
+             kLow, {0.05, 0}, read([](S s) -> Value { return s.elongation; }));
+}
+
 void add_motion(Rows rows, const SharedMemo& memo) {
   const auto add = [&](const char* name, const char* definition, Direction direction,
                        Tolerance tolerance, auto get) {
@@ -189,6 +210,7 @@ std::vector<MetricEntry> details_metrics() {
   add_spacing(rows, memo);
   add_density(rows);
   add_pairs(rows, memo);
+  add_spectrum(rows);
   add_motion(rows, memo);
   return table;
 }

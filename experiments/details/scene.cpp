@@ -51,8 +51,6 @@ struct Loading {
       scene.surface = make_surface(o);
       scene.name = "scene.surface";
     }
-    const Eigen::VectorXd z = scene.surface.V.col(2);
-    result.planar = z.maxCoeff() - z.minCoeff() <= 1e-9 * bounding_box_diagonal(scene.surface.V);
   }
 
   void load_file(const DetailSurfaceOptions& o) {

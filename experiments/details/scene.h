@@ -28,7 +28,6 @@ class DetailsScene final : public Scene {
   std::optional<DetailDrawingOptions> drawing;
   TriMesh instance;                     ///< mesh of a detail, when the drawing takes one of a file
   std::optional<double> chosen_height;  ///< of a detail of weight 1 (m)
-  bool planar = false;                  ///< at rest, in a plane of constant z
   std::vector<std::filesystem::path> input_files;
   std::vector<std::string> load_warnings;
 

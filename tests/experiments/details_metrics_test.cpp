@@ -116,6 +116,24 @@ TEST_F(DetailsMetrics, PairCorrelationOfDoingNothingHasRatioOne) {
   EXPECT_FALSE(value("pair_distance", detail_frame(details_at(1.25), 1)));
 }
 
+// A scaled rectangle has the spectrum of the original at other frequencies, and no axis more than
+// it had; stretched to twice its length, the power goes to the other axis.
+TEST_F(DetailsMetrics, SpectrumShowsSpacingAndDirection) {
+  const Frame scaled = detail_frame(details_at(kGrowth), 2);
+  EXPECT_GT(value("spectrum_distance", scaled).value(),
+            1.5 * value("spectrum_noise", scaled).value());
+  DetailMesh details = details_at(1);
+  Eigen::MatrixX3d V = scene.scene.surface.V;
+  V.col(0) *= 2;
+  move_surface(details, V, LengthRule::chord);
+  const Frame stretched = detail_frame(details, 2);
+  EXPECT_GT(value("spectrum_elongation", stretched).value(),
+            1.5 * value("spectrum_elongation", scaled).value());
+  V.col(2) = V.col(0).cwiseProduct(V.col(0));
+  move_surface(details, V, LengthRule::chord);
+  EXPECT_FALSE(value("spectrum_distance", detail_frame(details, 2))) << "no plane";
+}
+
 // Invisible details are not there for who looks.
 TEST_F(DetailsMetrics, PairCorrelationIsOfVisibleDetails) {
   DetailMesh details = details_at(kGrowth);

@@ -56,7 +56,6 @@ TEST_F(DetailsScenes, DefaultsToThousandDetailsOnASquareMetre) {
   EXPECT_EQ(s->scene.details.size(), 1000U);
   EXPECT_NEAR(triangle_areas(s->scene.surface.V, s->scene.surface.F).sum(), 1, 1e-12);
   EXPECT_EQ(s->scene.motion->frame_count(), 241);
-  EXPECT_TRUE(s->planar);
   EXPECT_EQ(s->resamples.size(), 3U);
   EXPECT_NE(s->resamples[0][0].at.barycentric, s->scene.details[0].at.barycentric);
 }
@@ -73,7 +72,6 @@ TEST_F(DetailsScenes, ReadSurfacesInTheirUnitAndTurnThem) {
       "surface = { kind = \"file\", file = \"cm.obj\", scale = 0.01, turn_deg = [90, 0, 0] }\n"
       "pattern = { kind = \"uniform\", count = 10 }\n");
   EXPECT_NEAR((s->scene.surface.V.row(2) - Eigen::RowVector3d(1, 0, 1)).norm(), 0, 1e-12);
-  EXPECT_FALSE(s->planar);
   ASSERT_EQ(s->inputs().size(), 1U);
   EXPECT_EQ(s->inputs()[0].filename(), "cm.obj");
 }
