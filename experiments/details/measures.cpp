@@ -110,7 +110,7 @@ PairCurve curve_of(DetailsMemo& memo, const DetailsScene& scene, const Part& sur
     PairCurveOptions options;
     options.reach = 3;
     options.bins = 30;
-    options.sources = 1000;
+    options.sources = scene.pair_sources;
     return pair_curve({surface.points, surface.triangles}, places, unit, options, mask);
   });
 }
@@ -135,6 +135,9 @@ RadialSpectrum spectrum_of(const Part& plane, const std::vector<SurfacePlace>& p
   }
   const Eigen::Vector2d low = plane.points.leftCols<2>().colwise().minCoeff();
   const Eigen::Vector2d high = plane.points.leftCols<2>().colwise().maxCoeff();
+  // A detail on the border may be off by round-off.
+  points = points.cwiseMax(low.transpose().replicate(points.rows(), 1))
+               .cwiseMin(high.transpose().replicate(points.rows(), 1));
   return radial_spectrum(points, low, high, unit);
 }
 

@@ -211,6 +211,7 @@ std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& optio
   loading.load_motion();
   scene->chosen_height = options.detail_height;
   scene->pair_frames = options.pair_frames;
+  scene->pair_sources = options.pair_sources;
   loading.load_drawing();
   require_valid(scene->scene);
   return scene;

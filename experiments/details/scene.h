@@ -25,6 +25,7 @@ class DetailsScene final : public Scene {
   std::vector<std::vector<Detail>> resamples;
   std::vector<char> region;  ///< a flag a triangle: where the pattern is
   int pair_frames = 4;       ///< at which the pair correlation is measured
+  int pair_sources = 1000;   ///< details that distances are then measured from
   std::optional<DetailDrawingOptions> drawing;
   TriMesh instance;                     ///< mesh of a detail, when the drawing takes one of a file
   std::optional<double> chosen_height;  ///< of a detail of weight 1 (m)

@@ -24,6 +24,8 @@ void describe(OptionVisitor& v, DetailSceneOptions& options) {
   v.value("pair_frames", options.pair_frames,
           {.doc = "frames, evenly over the motion, at which the pair correlation is measured",
            .min = 1});
+  v.value("pair_sources", options.pair_sources,
+          {.doc = "details, evenly spread, that distances are then measured from", .min = 2});
   describe_group(v, "drawing", options.drawing,
                  {.doc = "details as geometry in some frames; absent: in none"});
 }

@@ -31,6 +31,7 @@ struct DetailSceneOptions {
   DetailMotionOptions motion;
   std::optional<double> detail_height;  ///< of a detail of weight 1 (m)
   int pair_frames = 4;                  ///< at which the pair correlation is measured
+  int pair_sources = 1000;              ///< details that distances are then measured from
   std::optional<DetailDrawingOptions> drawing;
 };
 void describe(OptionVisitor& v, DetailSceneOptions& options);
