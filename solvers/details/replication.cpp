@@ -46,11 +46,12 @@ Replication::Replication(const DetailScene& scene, const ReplicationOptions& opt
   if (options_.histogram) histogram_at_rest_ = correlation_.of(original_);
 }
 
-double Replication::ratio(int t) const {
-  const double area = now_.mesh.area(t);
-  return options_.area_rule == AreaRule::mean ? area / rest_area_
-                                              : now_.mesh.density(t) * area / details_of(now_, t);
+double Replication::wanted_area(int t) const {
+  return options_.area_rule == AreaRule::mean ? rest_area_
+                                              : details_of(now_, t) / now_.mesh.density(t);
 }
+
+double Replication::ratio(int t) const { return now_.mesh.area(t) / wanted_area(t); }
 
 void Replication::find_patches(std::span<const int> sites) {
   patch_of_site_.resize(now_.site.size(), -1);

@@ -32,7 +32,8 @@ enum class WeightLaw {
 /// share a vertex: the most similar triangle of three details of the original (area, smallest
 /// angle, then edge lengths) says where inside details lie, and they are copied by barycentric
 /// coordinates with weight 0. In triangles with A' < A_ref / tau_c one detail of the shortest edge
-/// fades, and leaves M_d at weight 0. Weights move to their targets at a limited rate.
+/// fades, the closest two first, and leaves M_d at weight 0. Weights move to their targets at a
+/// limited rate.
 ///
 /// What it cannot do: it knows positions, not pictures; the plain method makes patterns with
 /// structure beyond neighbours (clusters) more uniform; `histogram` counters that.

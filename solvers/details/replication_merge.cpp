@@ -37,6 +37,15 @@ double Replication::room_of(int site) const {
   return count > 0 ? sum / count : 1;
 }
 
+/// Square of the shortest edge over the area that the triangle should have: small where two details
+/// are close. The smallest triangles are slivers as often, which say nothing of distances: in their
+/// order the pattern ends farther from the original.
+double Replication::crowding(int t) const {
+  const double shortest =
+      std::min({now_.mesh.length(3 * t), now_.mesh.length(3 * t + 1), now_.mesh.length(3 * t + 2)});
+  return shortest * shortest / wanted_area(t);
+}
+
 /// The end of the shortest edge that goes: the younger one. -1 when a detail of the triangle fades
 /// already (that makes room), or no end may.
 int Replication::loser(int t) const {
@@ -70,8 +79,7 @@ void Replication::merge() {
   rank_triangles(Need::fewer, [&](int t) {
     if (has_ghost(t)) return kNotWanting;
     if (!budget && ratio(t) * options_.shrink_threshold >= 1) return kNotWanting;
-    const int gone = loser(t);
-    return gone >= 0 ? room_of(gone) : kNotWanting;
+    return loser(t) >= 0 ? crowding(t) : kNotWanting;
   });
   use_new_marks();
   act_in_order(Need::fewer, [&](int t) { fade_one_of(t); });

@@ -48,6 +48,7 @@ class Replication final : public DetailMethod {
 
  private:
   // replication.cpp
+  [[nodiscard]] double wanted_area(int triangle) const;
   [[nodiscard]] double ratio(int triangle) const;
   [[nodiscard]] int patch_of_site(int site) const {
     return patch_of_site_[static_cast<std::size_t>(site)];
@@ -79,6 +80,7 @@ class Replication final : public DetailMethod {
   void merge();
   void fade_one_of(int triangle);
   [[nodiscard]] bool has_ghost(int triangle) const;
+  [[nodiscard]] double crowding(int triangle) const;
   [[nodiscard]] double room_of(int site) const;
   [[nodiscard]] int loser(int triangle) const;
   [[nodiscard]] bool may_fade(int site) const;
