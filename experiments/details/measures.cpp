@@ -11,7 +11,6 @@
 #include "core/error.h"
 #include "core/mesh.h"
 #include "experiments/frame_arrays.h"
-#include "metrics/radial_spectrum.h"
 
 namespace geoprior {
 namespace {
@@ -141,13 +140,40 @@ RadialSpectrum spectrum_of(const Part& plane, const std::vector<SurfacePlace>& p
   return radial_spectrum(points, low, high, unit);
 }
 
+/// The ring of a pattern that keeps its distance is near 1 cycle a spacing; beyond, few agree.
+double elongation_of(const RadialSpectrum& spectrum) {
+  constexpr double kBeyondRing = 1.2;
+  const Eigen::VectorXd weight =
+      (spectrum.frequency.array() < kBeyondRing)
+          .select(spectrum.count.cast<double>(), Eigen::VectorXd::Zero(spectrum.count.size()));
+  return spectrum.elongation.dot(weight) / weight.sum();
+}
+
+ContentKey key_of(const Frame& rest) {
+  ContentKey key;
+  key.add_matrix(required_part(rest, "surface").points);
+  key.add_matrix(required_part(rest, "detail_mesh").points);
+  return key;
+}
+
+SpectrumAtRest spectrum_at_rest(DetailsMemo& memo, const DetailsScene& scene, double unit) {
+  return memo.spectra_at_rest.get(key_of(scene.rest()), [&] {
+    const Part& plane = required_part(scene.rest(), "surface");
+    SpectrumAtRest rest;
+    rest.spectrum = spectrum_of(plane, places_of(scene.scene.details), unit);
+    for (const auto& resample : scene.resamples) {
+      const double distance =
+          radial_spectrum_distance(spectrum_of(plane, places_of(resample), unit), rest.spectrum);
+      rest.noise = rest.noise.value_or(0) + distance / static_cast<double>(scene.resamples.size());
+    }
+    return rest;
+  });
+}
+
 PairAtRest pairs_at_rest(DetailsMemo& memo, const DetailsScene& scene) {
   const Part& surface = required_part(scene.rest(), "surface");
   const Part& mesh = required_part(scene.rest(), "detail_mesh");
-  ContentKey key;
-  key.add_matrix(surface.points);
-  key.add_matrix(mesh.points);
-  return memo.pairs_at_rest.get(key, [&] {
+  return memo.pairs_at_rest.get(key_of(scene.rest()), [&] {
     PairAtRest rest;
     rest.unit = spacing_of(mesh, 0).mean;
     if (!(rest.unit > 0)) return rest;
@@ -285,30 +311,29 @@ std::optional<PairMeasures> pair_measures(DetailsMemo& memo, const DetailsScene&
   return m;
 }
 
-std::optional<SpectrumMeasures> spectrum_measures(const DetailsScene& scene, const Frame& frame) {
+std::optional<SpectrumMeasures> spectrum_measures(DetailsMemo& memo, const DetailsScene& scene,
+                                                  const Frame& frame) {
+  constexpr Eigen::Index kMostDetails = 5000;
   const Part& surface = required_part(frame, "surface");
-  if (!scene.measures_pairs(frame.parameter) || !fills_rectangle(surface)) return {};
+  const Part& details = required_part(frame, "details");
+  if (!scene.measures_pairs(frame.parameter) || details.points.rows() > kMostDetails) return {};
+  if (!fills_rectangle(surface) || !fills_rectangle(required_part(scene.rest(), "surface")))
+    return {};
   const double unit = spacing_of(required_part(scene.rest(), "detail_mesh"), 0).mean;
   if (!(unit > 0)) return {};
-  const Part& rest = required_part(scene.rest(), "surface");
-  if (!fills_rectangle(rest)) return {};
-  const RadialSpectrum original = spectrum_of(rest, places_of(scene.scene.details), unit);
-  const RadialSpectrum now =
-      spectrum_of(surface, visible_places(required_part(frame, "details")), unit);
-  SpectrumMeasures m;
-  m.distance = radial_spectrum_distance(now, original);
-  // The ring of a pattern that keeps its distance is near 1 cycle a spacing; beyond, few agree.
-  constexpr double kBeyondRing = 1.2;
-  const Eigen::VectorXd weight =
-      (now.frequency.array() < kBeyondRing)
-          .select(now.count.cast<double>(), Eigen::VectorXd::Zero(now.count.size()));
-  m.elongation = now.elongation.dot(weight) / weight.sum();
-  for (const auto& resample : scene.resamples) {
-    const double distance =
-        radial_spectrum_distance(spectrum_of(rest, places_of(resample), unit), original);
-    m.noise = m.noise.value_or(0) + distance / static_cast<double>(scene.resamples.size());
-  }
-  return m;
+  const SpectrumAtRest rest = spectrum_at_rest(memo, scene, unit);
+  ContentKey key = key_of(scene.rest());
+  key.add_matrix(surface.points);
+  key.add_matrix(details.points);
+  key.add_matrix(required_array(details, "weight").values);
+  return memo.spectra.get(key, [&] {
+    const RadialSpectrum now = spectrum_of(surface, visible_places(details), unit);
+    SpectrumMeasures m;
+    m.distance = radial_spectrum_distance(now, rest.spectrum);
+    m.noise = rest.noise;
+    m.elongation = elongation_of(now);
+    return m;
+  });
 }
 
 MotionMeasures motion_measures(DetailsMemo& memo, const DetailsScene& scene,

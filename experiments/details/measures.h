@@ -12,6 +12,7 @@
 #include "metrics/detail_continuity.h"
 #include "metrics/detail_spacing.h"
 #include "metrics/pair_curve.h"
+#include "metrics/radial_spectrum.h"
 
 namespace geoprior {
 
@@ -42,11 +43,27 @@ struct PairAtRest {
   Value noise;      ///< mean distance between independent patterns of the process
 };
 
+/// Radial power spectrum of the visible details of a plane, in the frames that the scene chooses
+/// for pairs.
+struct SpectrumMeasures {
+  double distance = 0;    ///< to that of the original
+  Value noise;            ///< mean distance of independent patterns of the process, at rest
+  double elongation = 0;  ///< mean up to the ring of the spacing: how much one axis is preferred
+};
+
+/// The spectrum before anything moves.
+struct SpectrumAtRest {
+  RadialSpectrum spectrum;
+  Value noise;
+};
+
 /// Values that several metrics share.
 struct DetailsMemo {
   Memo<DetailSpacing, 16> spacing;
   Memo<PairCurve, 64> curves;
   Memo<PairAtRest, 16> pairs_at_rest;
+  Memo<SpectrumMeasures, 16> spectra;
+  Memo<SpectrumAtRest, 16> spectra_at_rest;
   Memo<MotionMeasures, 4> motions;
 };
 
@@ -71,13 +88,10 @@ struct PairMeasures {
 std::optional<PairMeasures> pair_measures(DetailsMemo& memo, const DetailsScene& scene,
                                           const Frame& frame);
 
-/// Radial power spectrum of the visible details of a plane, in the same frames. Absent elsewhere.
-struct SpectrumMeasures {
-  double distance = 0;    ///< to that of the original
-  Value noise;            ///< mean distance between independent patterns of the process, at rest
-  double elongation = 0;  ///< mean up to the ring of the spacing: how much one axis is preferred
-};
-std::optional<SpectrumMeasures> spectrum_measures(const DetailsScene& scene, const Frame& frame);
+/// Absent where the surface is no rectangle, or the details are more than 5,000: the cost grows
+/// with the square of their number.
+std::optional<SpectrumMeasures> spectrum_measures(DetailsMemo& memo, const DetailsScene& scene,
+                                                  const Frame& frame);
 
 /// Frames count as at rest once the surface has not moved for ten frames: weights that change by a
 /// tenth a frame are then done.

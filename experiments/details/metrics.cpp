@@ -147,17 +147,18 @@ void add_pairs(Rows rows, const SharedMemo& memo) {
              }));
 }
 
-void add_spectrum(Rows rows) {
-  const auto read = [](auto get) {
-    return [get](const DetailsScene& scene, const Frame& frame) -> Value {
-      const auto spectrum = spectrum_measures(scene, frame);
+void add_spectrum(Rows rows, const SharedMemo& memo) {
+  const auto read = [memo](auto get) {
+    return [memo, get](const DetailsScene& scene, const Frame& frame) -> Value {
+      const auto spectrum = spectrum_measures(*memo, scene, frame);
       return spectrum ? get(*spectrum) : Value();
     };
   };
   using S = const SpectrumMeasures&;
   rows.frame("spectrum_distance", "1",
              "integral of the difference of the radial power spectrum of the visible details and "
-             "that of the original, in planes, in the frames that scene.pair_frames chooses",
+             "that of the original, in planes of at most 5,000 details, in the frames that "
+             "scene.pair_frames chooses",
              kLow, {0.1, 0}, read([](S s) -> Value { return s.distance; }));
   rows.frame("spectrum_noise", "1",
              "mean of the same between the original and independent patterns of its process", kNone,
@@ -210,7 +211,7 @@ std::vector<MetricEntry> details_metrics() {
   add_spacing(rows, memo);
   add_density(rows);
   add_pairs(rows, memo);
-  add_spectrum(rows);
+  add_spectrum(rows, memo);
   add_motion(rows, memo);
   return table;
 }
