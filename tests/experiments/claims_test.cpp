@@ -75,6 +75,7 @@ TEST(Claims, ReductionsAndFramesPickTheirValue) {
   EXPECT_EQ(value("error", {}, "sum"), 8);
   // numpy.quantile([1, 2, 5], 0.95) = 2 + 0.9 (5 - 2)
   EXPECT_NEAR(value("error", {}, "p95"), 4.7, 1e-14);
+  EXPECT_NEAR(value("error", {}, "p99"), 4.94, 1e-14);
   EXPECT_NEAR(value("timing:solve", {}, "p95"), 0.47, 1e-14) << "of the frames' medians";
   EXPECT_EQ(value("error", 45, "max"), 5);
   EXPECT_EQ(value("whole", {}, "max"), 7);
