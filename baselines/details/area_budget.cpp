@@ -1,6 +1,7 @@
 #include "baselines/details/area_budget.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -79,6 +80,30 @@ FaceDistances face_distances(const DetailMesh& d, const std::vector<int>& source
   return result;
 }
 
+/// Mean of the three shortest edges of a detail to others: its spacing, also at the rim of a
+/// pattern, whose other edges span bare surface.
+double near_spacing(const DetailMesh& d, int site) {
+  std::array<double, 3> shortest;
+  shortest.fill(std::numeric_limits<double>::infinity());
+  const int start = d.mesh.outgoing(site);
+  for (int h = start; h >= 0;) {
+    if (d.is_detail(d.mesh.tip(h)) && d.mesh.length(h) < shortest[2]) {
+      shortest[2] = d.mesh.length(h);
+      std::sort(shortest.begin(), shortest.end());
+    }
+    h = d.mesh.twin(IntrinsicTriangulation::previous(h));
+    if (h == start) break;
+  }
+  double sum = 0;
+  int known = 0;
+  for (const double length : shortest) {
+    if (!std::isfinite(length)) continue;
+    sum += length;
+    ++known;
+  }
+  return known > 0 ? sum / known : 0;
+}
+
 }  // namespace
 
 AreaBudget::AreaBudget(const DetailMesh& original, int details_per_patch) {
@@ -112,11 +137,16 @@ void AreaBudget::leave_bare_faces(const DetailMesh& original) {
   std::vector<int> all;
   for (int i = 0; i < original.site_slots(); ++i)
     if (original.is_detail(i)) all.push_back(i);
-  const double reach = kBareAfter * mean_edge(original);
-  const FaceDistances from_details = face_distances(original, all, reach);
+  const double mean = mean_edge(original);
+  std::vector<double> reach;
+  for (const int i : all) reach.push_back(kBareAfter * std::max(mean, near_spacing(original, i)));
+  const double largest = all.empty() ? 0 : *std::max_element(reach.begin(), reach.end());
+  const FaceDistances from_details = face_distances(original, all, largest);
   const std::vector<int> nearest_seed = patch_;
-  for (std::size_t f = 0; f < patch_.size(); ++f)
-    if (!(from_details.distance[f] <= reach)) patch_[f] = -1;
+  for (std::size_t f = 0; f < patch_.size(); ++f) {
+    const int nearest = from_details.nearest[f];
+    if (nearest < 0 || from_details.distance[f] > reach[index(nearest)]) patch_[f] = -1;
+  }
   for (const int i : all) {
     // A face larger than the reach still holds its details.
     const std::size_t f = index(original.site[index(i)].at.face);

@@ -12,9 +12,9 @@ namespace geoprior {
 ///
 /// Patches are groups of faces around evenly chosen details; target(P) = n0(P) A(P) / A0(P), so the
 /// density of details stays what it was, a motion that returns asks for what there was, and a
-/// surface at rest asks for nothing. Which faces make a patch never changes. Faces farther than
-/// three mean edges from any detail at rest are bare: they belong to no patch (-1), ask for nothing
-/// and take nothing.
+/// surface at rest asks for nothing. Which faces make a patch never changes. Faces far
+/// from any detail at rest (one and a half times the spacing there, or the mean edge if that is
+/// more) are bare: they belong to no patch (-1), ask for nothing and take nothing.
 class AreaBudget {
  public:
   AreaBudget() = default;
@@ -40,7 +40,7 @@ class AreaBudget {
   void set_areas(std::vector<double> areas) { area_ = std::move(areas); }
 
  private:
-  static constexpr double kBareAfter = 3;
+  static constexpr double kBareAfter = 1.5;
   void leave_bare_faces(const DetailMesh& original);
 
   std::vector<int> patch_;              ///< per face

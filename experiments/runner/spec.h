@@ -55,8 +55,8 @@ struct ClaimSpec {
   std::optional<std::string> known_shortfall;
   std::optional<double> at_parameter;  ///< at = { angle_deg = 90 }; the frame must exist
   std::string at_key;  ///< "angle_deg": parameter name and unit, compared with the scene's
-  /// "max", "min", "median", "p95", "p99", "mean", "sum", "last" over the frames, when there is no `at`;
-  /// "every": the claim must hold at each frame, and the one nearest to failing is recorded.
+  /// "max", "min", "median", "p95", "p99", "mean", "sum", "last" over the frames, when there is no
+  /// `at`; "every": the claim must hold at each frame, and the one nearest to failing is recorded.
   std::string reduce = "max";
   std::optional<std::string> of_reduce;  ///< of the other side; absent: as `reduce`
   std::vector<std::string> cases;        ///< empty: every case

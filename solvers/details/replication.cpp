@@ -25,6 +25,17 @@ bool comes_later(const WantingTriangle& a, const WantingTriangle& b) {
 /// Averages over neighbours of the density: over some twenty details.
 constexpr int kDensityRounds = 2;
 
+/// Between two details, so the distance of the nearest two (m).
+double shortest_edge(const DetailMesh& d) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int h = 0; h < 3 * d.mesh.triangle_slots(); ++h) {
+    if (!d.mesh.triangle_alive(h / 3)) continue;
+    if (d.is_detail(d.mesh.origin(h)) && d.is_detail(d.mesh.tip(h)))
+      shortest = std::min(shortest, d.mesh.length(h));
+  }
+  return std::isfinite(shortest) ? shortest : 0;
+}
+
 }  // namespace
 
 Replication::Replication(const DetailScene& scene, const ReplicationOptions& options,
@@ -36,6 +47,7 @@ Replication::Replication(const DetailScene& scene, const ReplicationOptions& opt
       budget_(original_, options.patch_details) {
   find_all_patches();
   rest_edge_ = mean_edge(original_);
+  least_gap_ = 0.5 * shortest_edge(original_);
   double area = 0;
   for (int t = 0; t < original_.mesh.triangle_slots(); ++t)
     if (original_.mesh.triangle_alive(t)) area += original_.mesh.area(t);

@@ -75,7 +75,7 @@ bool Replication::fill(int t) {
   double best = std::numeric_limits<double>::infinity();
   for (const TripletMatch& match : matches_) {
     std::vector<NewDetail> born = copy_of(match, t);
-    if (budget && !within_budget(born)) continue;
+    if ((budget && !within_budget(born)) || strays(t, born) || crowds(t, born)) continue;
     const double distance = options_.histogram ? histogram_distance(t, born) : 0;
     if (distance >= best) continue;
     best = distance;
@@ -105,6 +105,45 @@ bool Replication::within_budget(const std::vector<NewDetail>& born) const {
   return true;
 }
 
+/// Whether a copy landed where the flat triangle does not have it: nearer to a corner than half of
+/// its distance there, or farther by a quarter of the longest edge. That is so where a triangle
+/// spans surface that it does not follow (bare, or bent within it): copies of many of its places
+/// would land on one.
+bool Replication::strays(int t, const std::vector<NewDetail>& born) const {
+  const double e01 = now_.mesh.length(3 * t), e12 = now_.mesh.length(3 * t + 1),
+               e20 = now_.mesh.length(3 * t + 2);
+  const double most = 0.25 * std::max({e01, e12, e20});
+  const auto corner = now_.mesh.corners(t);
+  return std::any_of(born.begin(), born.end(), [&](const NewDetail& one) {
+    const Eigen::Vector3d p = position_of(one.at, *now_.surface, now_.x);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const Eigen::Vector3d v = one.barycentric - Eigen::Vector3d::Unit(k);
+      const double flat = std::sqrt(std::max(
+          0.0, -(e12 * e12 * v[1] * v[2] + e20 * e20 * v[2] * v[0] + e01 * e01 * v[0] * v[1])));
+      const double is = (p - now_.position[index(corner[static_cast<std::size_t>(k)])]).norm();
+      if (is < 0.5 * flat || is > flat + most) return true;
+    }
+    return false;
+  });
+}
+
+/// Whether a copy is nearer to a detail around the triangle than half of the nearest two of the
+/// original.
+bool Replication::crowds(int t, const std::vector<NewDetail>& born) {
+  if (least_gap_ <= 0) return false;
+  const auto near = [&](int site) {
+    return now_.is_detail(site) && std::any_of(born.begin(), born.end(), [&](const NewDetail& one) {
+             const Eigen::Vector3d p = position_of(one.at, *now_.surface, now_.x);
+             return (p - now_.position[index(site)]).norm() < least_gap_;
+           });
+  };
+  for (const int c : now_.mesh.corners(t)) {
+    now_.mesh.neighbours(c, around_);
+    if (near(c) || std::any_of(around_.begin(), around_.end(), near)) return true;
+  }
+  return false;
+}
+
 std::vector<NewDetail> Replication::copy_of(const TripletMatch& match, int t) const {
   std::vector<NewDetail> born;
   for (const TripletInterior& inside : table_.interior(match.triplet)) {
@@ -122,18 +161,30 @@ std::vector<NewDetail> Replication::copy_of(const TripletMatch& match, int t) co
   return born;
 }
 
-/// The tangent keeps its angle to the direction of the first corner (mirrored where the triplet
-/// is).
+/// The tangent keeps its angle to that of the first corner that is a detail (mirrored where the
+/// triplet is), so that aligned patterns stay aligned; without one, that to the first corner's
+/// direction.
 double Replication::carried_angle(const TripletMatch& match, int source, int t,
                                   const SurfacePoint& at) const {
   const Detail& from = original_.site[index(source)];
-  const int from_corner = table_.corners(match.triplet)[index(match.order[0])];
-  const double was = tangent_angle(
-      from.at.face, original_.position[index(from_corner)] - original_.position[index(source)],
-      *original_.surface, original_.x);
-  const Eigen::Vector3d towards =
-      now_.position[index(now_.mesh.origin(3 * t))] - position_of(at, *now_.surface, now_.x);
-  const double is = tangent_angle(at.face, towards, *now_.surface, now_.x);
+  const auto corner_now = now_.mesh.corners(t);
+  const auto corner_then = table_.corners(match.triplet);
+  const auto tangent = [](const DetailMesh& d, int site) {
+    const Detail& s = d.site[index(site)];
+    return tangent_direction(s.at.face, s.tangent_angle, *d.surface, d.x);
+  };
+  Eigen::Vector3d then = original_.position[index(corner_then[index(match.order[0])])] -
+                         original_.position[index(source)];
+  Eigen::Vector3d now =
+      now_.position[index(corner_now[0])] - position_of(at, *now_.surface, now_.x);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!now_.is_detail(corner_now[k])) continue;
+    then = tangent(original_, corner_then[index(match.order[k])]);
+    now = tangent(now_, corner_now[k]);
+    break;
+  }
+  const double was = tangent_angle(from.at.face, then, *original_.surface, original_.x);
+  const double is = tangent_angle(at.face, now, *now_.surface, now_.x);
   const double offset = from.tangent_angle - was;
   return is + (match.mirrored ? -offset : offset);
 }

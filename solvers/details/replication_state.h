@@ -71,6 +71,8 @@ class Replication final : public DetailMethod {
   [[nodiscard]] double largest_deficit(int triangle) const;
   bool fill(int triangle);
   [[nodiscard]] std::vector<NewDetail> copy_of(const TripletMatch& match, int triangle) const;
+  [[nodiscard]] bool strays(int triangle, const std::vector<NewDetail>& born) const;
+  [[nodiscard]] bool crowds(int triangle, const std::vector<NewDetail>& born);
   [[nodiscard]] double carried_angle(const TripletMatch& match, int source, int triangle,
                                      const SurfacePoint& at) const;
   [[nodiscard]] bool within_budget(const std::vector<NewDetail>& born) const;
@@ -94,6 +96,7 @@ class Replication final : public DetailMethod {
   Eigen::VectorXd histogram_at_rest_, histogram_now_;
   double rest_edge_ = 0;        ///< mean edge of M_d at rest (m)
   double rest_area_ = 0;        ///< mean area of its triangles
+  double least_gap_ = 0;        ///< half of the distance of the nearest two at rest (m)
   double area_per_detail_ = 0;  ///< at rest
   ReplicationCounts counts_;
   std::vector<int> mark_;  ///< frame mark of sites whose surroundings changed
@@ -106,6 +109,7 @@ class Replication final : public DetailMethod {
   std::vector<WantingTriangle> wanting_;  ///< by patch; those of a patch become a heap
   std::vector<TripletMatch> matches_;
   std::vector<double> distances_;
+  std::vector<int> around_;
 };
 
 }  // namespace geoprior
