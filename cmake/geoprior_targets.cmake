@@ -21,18 +21,6 @@ if(GEOPRIOR_SANITIZE)
   target_link_options(geoprior_warnings INTERFACE -fsanitize=address,undefined)
 endif()
 
-# geoprior_precompile(target [headers...]): the headers of most files, and more. Files still include what they use:
-# the presets that precompile nothing (debug, sanitize) say when one does not.
-function(geoprior_precompile target)
-  if(NOT GEOPRIOR_PRECOMPILE)
-    return()
-  endif()
-  target_precompile_headers(${target} PRIVATE
-    <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory> <numbers> <optional> <set>
-    <span> <string> <string_view> <utility> <vector> <Eigen/Geometry> ${ARGN})
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
-endfunction()
-
 # geoprior_library(name SOURCES... [PUBLIC libs] [PRIVATE libs]): a static library `geoprior_<name>`, alias geoprior::<name>.
 function(geoprior_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
@@ -43,7 +31,6 @@ function(geoprior_library name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/geoprior>)
   target_link_libraries(geoprior_${name}
     PUBLIC geoprior_flags ${arg_PUBLIC} PRIVATE $<BUILD_INTERFACE:geoprior_warnings> ${arg_PRIVATE})
-  geoprior_precompile(geoprior_${name})
 endfunction()
 
 # geoprior_test(name SOURCES... LIBS...): one GoogleTest executable a topic, its tests discovered one by one.
@@ -54,6 +41,5 @@ function(geoprior_test name)
   target_compile_definitions(test_${name} PRIVATE
     GEOPRIOR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" GEOPRIOR_BINARY_DIR="${PROJECT_BINARY_DIR}")
   target_link_libraries(test_${name} PRIVATE ${arg_LIBS} geoprior_warnings GTest::gtest GTest::gmock GTest::gtest_main)
-  geoprior_precompile(test_${name} <gmock/gmock.h> <gtest/gtest.h>)
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300)
 endfunction()
