@@ -30,6 +30,8 @@ class AreaBudget {
   [[nodiscard]] int patch_of(const SurfacePoint& at) const {
     return patch_[static_cast<std::size_t>(at.face)];
   }
+  /// Some faces are in no patch.
+  [[nodiscard]] bool leaves_bare() const { return leaves_bare_; }
   /// Details that the patch lacks (negative: has too many); 0 for patch -1.
   [[nodiscard]] double deficit(int patch) const;
   /// Counts a detail that came (+1) or goes (-1).
@@ -43,6 +45,7 @@ class AreaBudget {
   static constexpr double kBareAfter = 1.5;
   void leave_bare_faces(const DetailMesh& original);
 
+  bool leaves_bare_ = false;
   std::vector<int> patch_;              ///< per face
   std::vector<int> face_begin_, face_;  ///< faces of a patch
   std::vector<double> rest_area_, rest_count_, area_, target_, count_;

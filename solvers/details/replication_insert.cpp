@@ -48,6 +48,7 @@ void Replication::insert() {
   });
   if (wanting_.empty()) return;
   if (options_.histogram) measure_histogram();
+  near_.reset();
   use_new_marks();
   act_in_order(Need::more, [&](int t) {
     if (options_.max_insertions && counts_.inserted >= *options_.max_insertions) return;
@@ -75,7 +76,7 @@ bool Replication::fill(int t) {
   double best = std::numeric_limits<double>::infinity();
   for (const TripletMatch& match : matches_) {
     std::vector<NewDetail> born = copy_of(match, t);
-    if ((budget && !within_budget(born)) || strays(t, born) || crowds(t, born)) continue;
+    if ((budget && !within_budget(born)) || strays(t, born) || crowds(born)) continue;
     const double distance = options_.histogram ? histogram_distance(t, born) : 0;
     if (distance >= best) continue;
     best = distance;
@@ -88,6 +89,9 @@ bool Replication::fill(int t) {
   find_patches(sites);
   for (const int site : sites) {
     mark(site);
+    if (near_)
+      near_->add(now_.position[index(site)],
+                 normal_of_face(now_.site[index(site)].at.face, *now_.surface, now_.x));
     budget_.add(patch_of_site(site), 1);
     ++counts_.inserted;
   }
@@ -105,41 +109,52 @@ bool Replication::within_budget(const std::vector<NewDetail>& born) const {
   return true;
 }
 
-/// Whether a copy landed where the flat triangle does not have it: nearer to a corner than half of
-/// its distance there, or farther by a quarter of the longest edge. That is so where a triangle
-/// spans surface that it does not follow (bare, or bent within it): copies of many of its places
-/// would land on one.
+/// Whether a copy landed where the flat triangle does not have it: off the triangle's plane by a
+/// quarter of its shortest edge, or with a distance to a corner that is not half to one and a half
+/// of that in the triangle (to a quarter of the shortest edge). That is so where a triangle spans
+/// surface that it does not follow (bare, or bent within it): copies of many of its places would
+/// land on one.
 bool Replication::strays(int t, const std::vector<NewDetail>& born) const {
   const double e01 = now_.mesh.length(3 * t), e12 = now_.mesh.length(3 * t + 1),
                e20 = now_.mesh.length(3 * t + 2);
-  const double most = 0.25 * std::max({e01, e12, e20});
+  const double least = 0.25 * std::min({e01, e12, e20});
   const auto corner = now_.mesh.corners(t);
   return std::any_of(born.begin(), born.end(), [&](const NewDetail& one) {
     const Eigen::Vector3d p = position_of(one.at, *now_.surface, now_.x);
+    Eigen::Vector3d on_plane = Eigen::Vector3d::Zero();
+    for (Eigen::Index k = 0; k < 3; ++k)
+      on_plane += one.barycentric[k] * now_.position[index(corner[static_cast<std::size_t>(k)])];
+    if ((p - on_plane).norm() > least) return true;
     for (Eigen::Index k = 0; k < 3; ++k) {
       const Eigen::Vector3d v = one.barycentric - Eigen::Vector3d::Unit(k);
       const double flat = std::sqrt(std::max(
           0.0, -(e12 * e12 * v[1] * v[2] + e20 * e20 * v[2] * v[0] + e01 * e01 * v[0] * v[1])));
       const double is = (p - now_.position[index(corner[static_cast<std::size_t>(k)])]).norm();
-      if (is < 0.5 * flat || is > flat + most) return true;
+      if (is < 0.5 * flat || is > 1.5 * flat + least) return true;
     }
     return false;
   });
 }
 
-/// Whether a copy is nearer to a detail around the triangle than half of the nearest two of the
-/// original.
-bool Replication::crowds(int t, const std::vector<NewDetail>& born) {
-  if (least_gap_ <= 0) return false;
-  const auto near = [&](int site) {
-    return now_.is_detail(site) && std::any_of(born.begin(), born.end(), [&](const NewDetail& one) {
-             const Eigen::Vector3d p = position_of(one.at, *now_.surface, now_.x);
-             return (p - now_.position[index(site)]).norm() < least_gap_;
-           });
-  };
-  for (const int c : now_.mesh.corners(t)) {
-    now_.mesh.neighbours(c, around_);
-    if (near(c) || std::any_of(around_.begin(), around_.end(), near)) return true;
+/// Whether a copy is nearer to another detail than half of the nearest two of the original. Asked
+/// only where the original leaves surface bare: triangles that span it overlap the pattern, so that
+/// what is near in space need not be near in M_d.
+bool Replication::crowds(const std::vector<NewDetail>& born) {
+  if (!budget_.leaves_bare() || least_gap_ <= 0) return false;
+  if (!near_) {
+    near_.emplace(least_gap_, now_.site.size());
+    near_->add_details(now_);
+  }
+  std::vector<Eigen::Vector3d> places;
+  for (const NewDetail& one : born) {
+    const Eigen::Vector3d p = position_of(one.at, *now_.surface, now_.x);
+    const auto too_near = [&](const Eigen::Vector3d& other) {
+      return (p - other).norm() < least_gap_;
+    };
+    if (std::any_of(places.begin(), places.end(), too_near)) return true;
+    places.push_back(p);
+    if (!near_->is_free(p, normal_of_face(one.at.face, *now_.surface, now_.x), least_gap_))
+      return true;
   }
   return false;
 }

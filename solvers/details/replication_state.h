@@ -4,11 +4,13 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "baselines/details/area_budget.h"
+#include "baselines/details/point_grid.h"
 #include "solvers/details/pair_correlation.h"
 #include "solvers/details/replication.h"
 #include "solvers/details/triplet_table.h"
@@ -72,7 +74,7 @@ class Replication final : public DetailMethod {
   bool fill(int triangle);
   [[nodiscard]] std::vector<NewDetail> copy_of(const TripletMatch& match, int triangle) const;
   [[nodiscard]] bool strays(int triangle, const std::vector<NewDetail>& born) const;
-  [[nodiscard]] bool crowds(int triangle, const std::vector<NewDetail>& born);
+  [[nodiscard]] bool crowds(const std::vector<NewDetail>& born);
   [[nodiscard]] double carried_angle(const TripletMatch& match, int source, int triangle,
                                      const SurfacePoint& at) const;
   [[nodiscard]] bool within_budget(const std::vector<NewDetail>& born) const;
@@ -109,7 +111,7 @@ class Replication final : public DetailMethod {
   std::vector<WantingTriangle> wanting_;  ///< by patch; those of a patch become a heap
   std::vector<TripletMatch> matches_;
   std::vector<double> distances_;
-  std::vector<int> around_;
+  std::optional<PointGrid> near_;  ///< details of this frame, when surface is bare
 };
 
 }  // namespace geoprior

@@ -206,5 +206,65 @@ TEST(Replication, NewbornsCarryTypeAndLineage) {
   EXPECT_GT(born, 150);
 }
 
+TEST(Replication, AlignedTangentsStayAligned) {
+  // All tangents along -y on a sheet that is stretched along x: so are those of the newborns, as
+  // far as those of the first details are (they keep an angle in triangles that are sheared).
+  const TriMesh mesh = shapes::square(20);
+  std::vector<Eigen::Vector3d> x;
+  for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) x.emplace_back(mesh.V.row(v).transpose());
+  const SurfaceTopology surface(mesh);
+  const Eigen::Vector3d down(0, -1, 0);
+  auto details = even_details(mesh, 300, 1);
+  for (Detail& d : details) d.tangent_angle = tangent_angle(d.at.face, down, surface, x);
+  const auto s = scene(mesh, details, stretch(mesh, 60, 2));
+  const auto method = make_replication(s, {}, 1);
+  follow(*method, *s.motion);
+  const DetailMesh& d = method->details();
+  double worst_first = 1, worst_born = 1;
+  for (int i = 0; i < d.site_slots(); ++i) {
+    if (!d.is_detail(i)) continue;
+    const Detail& site = d.site[static_cast<std::size_t>(i)];
+    const double along =
+        tangent_direction(site.at.face, site.tangent_angle, *d.surface, d.x).dot(down);
+    double& worst = site.generation > 0 ? worst_born : worst_first;
+    worst = std::min(worst, along);
+  }
+  EXPECT_GT(worst_first, 0.8);
+  EXPECT_GT(worst_born, worst_first - 0.15);
+}
+
+TEST(Replication, TheRimOfAPatternStaysAndNothingStacks) {
+  // Details on the upper cap of a sphere that grows to twice the area. Triangles of M_d span the
+  // bare rest: copies in them stay within one and a half spacings (and a face) of the rim, and
+  // apart.
+  const TriMesh mesh = shapes::sphere(5);
+  std::vector<Detail> details = even_details(mesh, 1200, 1);
+  std::erase_if(details,
+                [&](const Detail& d) { return position_of(d.at, mesh.V, mesh.F).z() < 0.4; });
+  const auto s = scene(mesh, details, inflate(mesh, 120, 2));
+  const auto method = make_replication(s, {}, 1);
+  const auto nearest_two = [](const DetailMesh& d) {
+    double nearest = 1;
+    for (int i = 0; i < d.site_slots(); ++i)
+      for (int j = 0; j < i; ++j)
+        if (d.is_detail(i) && d.is_detail(j))
+          nearest = std::min(nearest, (d.position[static_cast<std::size_t>(i)] -
+                                       d.position[static_cast<std::size_t>(j)])
+                                          .norm());
+    return nearest;
+  };
+  const double at_rest = nearest_two(method->details());
+  const double edge = mean_edge(method->details());
+  follow(*method, *s.motion);
+  const DetailMesh& d = method->details();
+  const double lowest = std::sin(std::asin(0.4) - 2.2 * edge) * std::sqrt(2.0);
+  for (int i = 0; i < d.site_slots(); ++i)
+    if (d.is_detail(i)) {
+      EXPECT_GT(d.position[static_cast<std::size_t>(i)].z(), lowest);
+    }
+  EXPECT_GE(nearest_two(d), 0.5 * at_rest);
+  EXPECT_GT(d.detail_count(), 1.9 * static_cast<double>(details.size()));
+}
+
 }  // namespace
 }  // namespace geoprior
