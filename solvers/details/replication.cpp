@@ -98,6 +98,10 @@ int Replication::patch_in_need(int t, Need need) const {
 
 /// Ranks all triangles in parallel, and gathers those that want something by their patches.
 void Replication::rank_triangles(Need need, const std::function<double(int)>& rank) {
+  wanting_.clear();
+  if (options_.area_rule == AreaRule::budget &&
+      std::find(need_.begin(), need_.end(), need) == need_.end())
+    return;
   rank_.assign(index(now_.mesh.triangle_slots()), kNotWanting);
   patch_of_triangle_.resize(rank_.size());
   parallel_blocks(rank_.size(), 4096, [&](std::size_t begin, std::size_t end) {
