@@ -73,6 +73,7 @@ bool Replication::fill(int t) {
     return false;
   }
   std::vector<NewDetail> chosen;
+  const TripletMatch* copied = nullptr;
   double best = std::numeric_limits<double>::infinity();
   for (const TripletMatch& match : matches_) {
     std::vector<NewDetail> born = copy_of(match, t);
@@ -81,9 +82,11 @@ bool Replication::fill(int t) {
     if (distance >= best) continue;
     best = distance;
     chosen = std::move(born);
+    copied = &match;
     if (!options_.histogram) break;
   }
   if (chosen.empty()) return false;
+  carry_tangents(*copied, t, chosen);
   for (const int c : now_.mesh.corners(t)) mark(c);
   const std::vector<int> sites = insert_details(now_, t, chosen);
   find_patches(sites);
@@ -170,10 +173,16 @@ std::vector<NewDetail> Replication::copy_of(const TripletMatch& match, int t) co
     one.like = original_.site[index(inside.detail)];
     one.like.weight = 0;
     one.like.target_weight = 1;
-    one.like.tangent_angle = carried_angle(match, inside.detail, t, one.at);
     born.push_back(one);
   }
   return born;
+}
+
+void Replication::carry_tangents(const TripletMatch& match, int t,
+                                 std::vector<NewDetail>& born) const {
+  const auto inside = table_.interior(match.triplet);
+  for (std::size_t i = 0; i < born.size(); ++i)
+    born[i].like.tangent_angle = carried_angle(match, inside[i].detail, t, born[i].at);
 }
 
 /// The tangent keeps its angle to that of the first corner that is a detail (mirrored where the

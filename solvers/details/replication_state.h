@@ -75,6 +75,7 @@ class Replication final : public DetailMethod {
   [[nodiscard]] std::vector<NewDetail> copy_of(const TripletMatch& match, int triangle) const;
   [[nodiscard]] bool strays(int triangle, const std::vector<NewDetail>& born) const;
   [[nodiscard]] bool crowds(const std::vector<NewDetail>& born);
+  void carry_tangents(const TripletMatch& match, int triangle, std::vector<NewDetail>& born) const;
   [[nodiscard]] double carried_angle(const TripletMatch& match, int source, int triangle,
                                      const SurfacePoint& at) const;
   [[nodiscard]] bool within_budget(const std::vector<NewDetail>& born) const;
