@@ -113,7 +113,12 @@ AreaBudget::AreaBudget(const DetailMesh& original, int details_per_patch) {
       face_distances(original, seeds_of(original, hops), std::numeric_limits<double>::infinity())
           .nearest;
   leave_bare_faces(original);
-  leaves_bare_ = std::find(patch_.begin(), patch_.end(), -1) != patch_.end();
+  double bare = 0, all = 0;
+  for (std::size_t f = 0; f < patch_.size(); ++f) {
+    all += original.surface->rest_area[f];
+    if (patch_[f] < 0) bare += original.surface->rest_area[f];
+  }
+  leaves_bare_ = bare > kBareShare * all;
   int patches = 0;
   for (const int p : patch_) patches = std::max(patches, p + 1);
   face_begin_.assign(index(patches) + 1, 0);

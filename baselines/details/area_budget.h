@@ -30,7 +30,8 @@ class AreaBudget {
   [[nodiscard]] int patch_of(const SurfacePoint& at) const {
     return patch_[static_cast<std::size_t>(at.face)];
   }
-  /// Some faces are in no patch.
+  /// The pattern covers a part of the surface: more than a hundredth of it is in no patch (gaps of
+  /// a pattern that covers all are less).
   [[nodiscard]] bool leaves_bare() const { return leaves_bare_; }
   /// Details that the patch lacks (negative: has too many); 0 for patch -1.
   [[nodiscard]] double deficit(int patch) const;
@@ -43,6 +44,7 @@ class AreaBudget {
 
  private:
   static constexpr double kBareAfter = 1.5;
+  static constexpr double kBareShare = 0.01;
   void leave_bare_faces(const DetailMesh& original);
 
   bool leaves_bare_ = false;
