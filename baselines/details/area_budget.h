@@ -1,6 +1,5 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "baselines/details/detail_mesh.h"
@@ -39,8 +38,8 @@ class AreaBudget {
   void add(int patch, int change);
   [[nodiscard]] double total_target() const;
   /// Areas of the last update: all that the next one depends on.
-  [[nodiscard]] const std::vector<double>& areas() const { return area_; }
-  void set_areas(std::vector<double> areas) { area_ = std::move(areas); }
+  void save(StateWriter& out) const { out.items(area_); }
+  void load(StateReader& in) { in.items(area_); }
 
  private:
   static constexpr double kBareAfter = 1.5;

@@ -2,8 +2,8 @@
 
 #include <memory>
 
+#include "baselines/details/density_moves.h"
 #include "baselines/details/detail_process.h"
-#include "core/options.h"
 
 namespace geoprior {
 
@@ -21,16 +21,7 @@ namespace geoprior {
 ///
 /// What it cannot do: it knows distances alone; every gap that the pattern had on purpose (between
 /// clusters) is filled first once its patch is stretched.
-struct DelaunayRefinementOptions {
-  double circumradius = 1;   ///< least circumradius filled, in units of the lattice's
-  double shortest_edge = 1;  ///< edges below may lose an end, in units of the lattice's
-  int patch_details = 48;    ///< details of a patch at rest
-  double dead_band = 0.1;    ///< a patch acts when off by more than 1/2 + this
-  bool anticipate = true;    ///< patches ask ahead, as `ReplicationOptions::anticipate`
-  double weight_rate = 0.1;  ///< largest change of a weight in a frame
-  LengthRule lengths = LengthRule::chord;
-};
-void describe(OptionVisitor& v, DelaunayRefinementOptions& options);
+struct DelaunayRefinementOptions : DensityMoveOptions {};
 
 /// The method frame by frame. Phases inside a step: "move", "budget", "merge", "insert",
 /// "weights". Diagnostics: inserted, revived, fading (started in the frame), flips, refused_flips,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -237,6 +238,47 @@ int DensityMoves::insert_at_circumcentres(double least) {
   for (const auto& [minus_rank, t] : order)
     if (!touched(t) && lacks(t) && insert_near(t, least)) ++inserted;
   return inserted;
+}
+
+DensityChanges DensityMoves::keep_number(const DensityMoveOptions& options, RunContext& context) {
+  DensityChanges changes;
+  {
+    const Phase phase(context, "budget");
+    const double frames = options.anticipate ? 1 / options.weight_rate : 0;
+    measure({frames / 4, 3 * frames / 4});
+    changes.revived = revive();
+  }
+  {
+    const Phase phase(context, "merge");
+    changes.fading = fade_shortest_edges(options.shortest_edge);
+  }
+  const Phase phase(context, "insert");
+  changes.inserted = insert_at_circumcentres(options.circumradius);
+  return changes;
+}
+
+void DensityChanges::diagnose(std::map<std::string, double>& into) const {
+  into["inserted"] = inserted;
+  into["revived"] = revived;
+  into["fading"] = fading;
+}
+
+void describe(OptionVisitor& v, DensityMoveOptions& options) {
+  static constexpr std::array<std::string_view, 2> kLengths{"chord", "geodesic"};
+  v.value("circumradius", options.circumradius,
+          {.doc = "least circumradius that is filled, in units of the lattice's", .min = 0});
+  v.value("shortest_edge", options.shortest_edge,
+          {.doc = "edges below may lose an end, in units of the lattice's", .min = 0});
+  v.value("patch_details", options.patch_details, {.doc = "details of a patch at rest", .min = 1});
+  v.value("dead_band", options.dead_band,
+          {.doc = "a patch acts when off by more than 1/2 + this", .min = 0, .max = 10});
+  v.value("anticipate", options.anticipate,
+          {.doc = "patches ask for what they need K / 4 frames ahead when they grow, 3 K / 4 when "
+                  "they shrink, K = 1 / weight_rate"});
+  v.value("weight_rate", options.weight_rate,
+          {.doc = "largest change of a weight in a frame", .min = 1e-3, .max = 1});
+  describe_choice(v, "lengths", options.lengths, kLengths,
+                  {.doc = "edges of M_d: distance of their ends, or along the surface"});
 }
 
 }  // namespace geoprior

@@ -1,12 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "baselines/details/area_budget.h"
 #include "baselines/details/detail_mesh.h"
 #include "baselines/details/rest_density.h"
+#include "core/context.h"
+#include "core/options.h"
 
 namespace geoprior {
 
@@ -33,6 +37,24 @@ struct MeshPoint {
 /// Circumcentre of a triangle, walked to over the edges of M_d, triangles unfolded on the way;
 /// absent when it lies beyond a border.
 std::optional<MeshPoint> circumcentre(const IntrinsicTriangulation& mesh, int t);
+
+/// Options of the methods that keep their number of details by `DensityMoves`.
+struct DensityMoveOptions {
+  double circumradius = 1;   ///< least circumradius filled, in units of the lattice's
+  double shortest_edge = 1;  ///< edges below may lose an end, in units of the lattice's
+  int patch_details = 48;    ///< details of a patch at rest
+  double dead_band = 0.1;    ///< a patch acts when off by more than 1/2 + this
+  bool anticipate = true;    ///< patches ask ahead, as `ReplicationOptions::anticipate`
+  double weight_rate = 0.1;  ///< largest change of a weight in a frame
+  LengthRule lengths = LengthRule::chord;
+};
+void describe(OptionVisitor& v, DensityMoveOptions& options);
+
+/// What the moves of a frame did: numbers of details.
+struct DensityChanges {
+  int inserted = 0, revived = 0, fading = 0;
+  void diagnose(std::map<std::string, double>& into) const;
+};
 
 /// Three moves that keep the number of details of every patch near its budget: a patch acts when it
 /// is off by 1/2 + `dead_band` or more. Patches and numbers are those of the thesis' method with
@@ -63,6 +85,8 @@ class DensityMoves {
   /// circumradius in units of the lattice's first, down to `least` of it; no two share a vertex.
   /// @return  number of details
   int insert_at_circumcentres(double least);
+  /// All of them, as a frame needs them. Phases: "budget", "merge", "insert".
+  DensityChanges keep_number(const DensityMoveOptions& options, RunContext& context);
 
  private:
   [[nodiscard]] double deficit(int site) const;

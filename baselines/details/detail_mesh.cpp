@@ -79,23 +79,28 @@ void DetailMesh::load(StateReader& in) {
   frame = in.number<int>();
 }
 
+void measure_edges(DetailMesh& d, LengthRule rule) {
+  if (rule == LengthRule::geodesic)
+    measure_sections(d);
+  else
+    d.mesh.measure(d.position);
+}
+
+bool surface_differs(const DetailMesh& d, const Eigen::MatrixX3d& V) {
+  for (std::size_t v = 0; v < d.x.size(); ++v)
+    if (d.x[v] != V.row(static_cast<Eigen::Index>(v)).transpose()) return true;
+  return false;
+}
+
 int move_surface(DetailMesh& d, const Eigen::MatrixX3d& V, LengthRule rule) {
   ++d.frame;
-  const auto same = [&] {
-    for (std::size_t v = 0; v < d.x.size(); ++v)
-      if (d.x[v] != V.row(static_cast<Eigen::Index>(v)).transpose()) return false;
-    return true;
-  };
-  if (same()) return 0;  // at rest nothing is measured anew, so that nothing changes
+  if (!surface_differs(d, V)) return 0;  // nothing is measured anew, so that nothing changes
   parallel_blocks(d.x.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       d.x[v] = V.row(static_cast<Eigen::Index>(v)).transpose();
   });
   place_sites(d);
-  if (rule == LengthRule::geodesic)
-    measure_sections(d);
-  else
-    d.mesh.measure(d.position);
+  measure_edges(d, rule);
   return d.mesh.flip_to_delaunay();
 }
 

@@ -68,6 +68,11 @@ enum class LengthRule {
 /// a fold), by its chord. The lengths of three sections may violate the triangle inequality on a
 /// strongly curved surface; such a triangle counts as one of no area.
 void measure_sections(DetailMesh& details);
+/// Measures the edges of M_d by the rule.
+void measure_edges(DetailMesh& details, LengthRule rule);
+
+/// False when the surface stands at `V` already.
+bool surface_differs(const DetailMesh& details, const Eigen::MatrixX3d& V);
 
 /// Moves the surface to `V`, and its details with it; measures the edges and flips to Delaunay.
 /// @return  number of flips

@@ -1,13 +1,10 @@
 #include "baselines/details/lloyd_relaxation.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "baselines/details/density_moves.h"
 #include "baselines/details/voronoi_cell.h"
 #include "core/parallel.h"
 
@@ -30,12 +27,12 @@ class LloydRelaxation final : public DetailMethod {
 
   void step(const Eigen::MatrixX3d& V, RunContext& context) override {
     const std::int64_t refused = now_.mesh.refused_flips();
-    const bool moved = moves(V);
+    const bool moved = surface_differs(now_, V);
     {
       const Phase phase(context, "move");
       flips_ = move_surface(now_, V, options_.lengths);
     }
-    keep_number(context);
+    changes_ = moves_.keep_number(options_, context);
     slide_.assign(now_.site.size(), 0);
     if (moved) {
       const Phase phase(context, "relax");
@@ -50,9 +47,7 @@ class LloydRelaxation final : public DetailMethod {
 
   [[nodiscard]] const DetailMesh& details() const override { return now_; }
   void diagnose(std::map<std::string, double>& into) const override {
-    into["inserted"] = inserted_;
-    into["revived"] = revived_;
-    into["fading"] = fading_;
+    changes_.diagnose(into);
     into["flips"] = flips_;
     into["refused_flips"] = static_cast<double>(now_.mesh.refused_flips());
     into["max_weight_change"] = max_weight_change_;
@@ -66,13 +61,11 @@ class LloydRelaxation final : public DetailMethod {
   }
   void save(StateWriter& out) const override {
     now_.save(out);
-    out.items(budget_.areas());
+    budget_.save(out);
   }
   void load(StateReader& in) override {
     now_.load(in);
-    std::vector<double> areas;
-    in.items(areas);
-    budget_.set_areas(std::move(areas));
+    budget_.load(in);
   }
 
  private:
@@ -82,27 +75,6 @@ class LloydRelaxation final : public DetailMethod {
     double tangent_angle = 0;
     double length = 0;  ///< 0: it stays
   };
-
-  [[nodiscard]] bool moves(const Eigen::MatrixX3d& V) const {
-    for (std::size_t v = 0; v < now_.x.size(); ++v)
-      if (now_.x[v] != V.row(static_cast<Eigen::Index>(v)).transpose()) return true;
-    return false;
-  }
-
-  void keep_number(RunContext& context) {
-    {
-      const Phase phase(context, "budget");
-      const double frames = options_.anticipate ? 1 / options_.weight_rate : 0;
-      moves_.measure({frames / 4, 3 * frames / 4});
-      revived_ = moves_.revive();
-    }
-    {
-      const Phase phase(context, "merge");
-      fading_ = moves_.fade_shortest_edges(options_.shortest_edge);
-    }
-    const Phase phase(context, "insert");
-    inserted_ = moves_.insert_at_circumcentres(options_.circumradius);
-  }
 
   [[nodiscard]] Slide slide_of(int site, const std::vector<double>& spacing,
                                CellChart& chart) const {
@@ -142,10 +114,7 @@ class LloydRelaxation final : public DetailMethod {
       now_.position[i] = position_of(slides[i].to, *now_.surface, now_.x);
       slide_[i] += slides[i].length;
     }
-    if (options_.lengths == LengthRule::geodesic)
-      measure_sections(now_);
-    else
-      now_.mesh.measure(now_.position);
+    measure_edges(now_, options_.lengths);
     flips_ += now_.mesh.flip_to_delaunay();
   }
 
@@ -164,7 +133,8 @@ class LloydRelaxation final : public DetailMethod {
   RestDensity density_;
   AreaBudget budget_;
   DensityMoves moves_;
-  int inserted_ = 0, revived_ = 0, fading_ = 0, flips_ = 0;
+  DensityChanges changes_;
+  int flips_ = 0;
   double max_weight_change_ = 0;
   std::vector<double> slide_;  ///< per site, of the last frame (m)
 };
@@ -172,25 +142,11 @@ class LloydRelaxation final : public DetailMethod {
 }  // namespace
 
 void describe(OptionVisitor& v, LloydRelaxationOptions& options) {
-  static constexpr std::array<std::string_view, 2> kLengths{"chord", "geodesic"};
   v.value("iterations", options.iterations,
           {.doc = "of a frame in which the surface moves", .min = 0, .max = 1000});
   v.value("relaxation", options.relaxation,
           {.doc = "part of the way to the centroid", .min = 0, .max = 2});
-  v.value("circumradius", options.circumradius,
-          {.doc = "least circumradius that is filled, in units of the lattice's", .min = 0});
-  v.value("shortest_edge", options.shortest_edge,
-          {.doc = "edges below may lose an end, in units of the lattice's", .min = 0});
-  v.value("patch_details", options.patch_details, {.doc = "details of a patch at rest", .min = 1});
-  v.value("dead_band", options.dead_band,
-          {.doc = "a patch acts when off by more than 1/2 + this", .min = 0, .max = 10});
-  v.value("anticipate", options.anticipate,
-          {.doc = "patches ask for what they need K / 4 frames ahead when they grow, 3 K / 4 when "
-                  "they shrink, K = 1 / weight_rate"});
-  v.value("weight_rate", options.weight_rate,
-          {.doc = "largest change of a weight in a frame", .min = 1e-3, .max = 1});
-  describe_choice(v, "lengths", options.lengths, kLengths,
-                  {.doc = "edges of M_d: distance of their ends, or along the surface"});
+  describe(v, static_cast<DensityMoveOptions&>(options));
 }
 
 std::unique_ptr<DetailMethod> make_lloyd_relaxation(const DetailScene& scene,

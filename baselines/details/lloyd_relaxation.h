@@ -2,8 +2,8 @@
 
 #include <memory>
 
+#include "baselines/details/density_moves.h"
 #include "baselines/details/detail_process.h"
-#include "core/options.h"
 
 namespace geoprior {
 
@@ -21,18 +21,12 @@ namespace geoprior {
 /// What it cannot do: details do not stay where they were on the surface; a pattern at random
 /// becomes a lattice with faults, whose mean edge is shorter than that of the original at equal
 /// density; clusters dissolve. Nothing slides while the surface stands still.
-struct LloydRelaxationOptions {
-  int iterations = 4;        ///< of a frame in which the surface moves
-  double relaxation = 1;     ///< part of the way to the centroid
-  double circumradius = 1;   ///< least circumradius filled, in units of the lattice's
-  double shortest_edge = 1;  ///< edges below may lose an end, in units of the lattice's
-  int patch_details = 48;    ///< details of a patch at rest
-  /// A patch acts when off by more than 1/2 + this; a detail that slides over its rim changes two
-  /// by one.
-  double dead_band = 0.5;
-  bool anticipate = true;    ///< patches ask ahead, as `ReplicationOptions::anticipate`
-  double weight_rate = 0.1;  ///< largest change of a weight in a frame
-  LengthRule lengths = LengthRule::chord;
+struct LloydRelaxationOptions : DensityMoveOptions {
+  /// A detail that slides over the rim of a patch changes two by one: a wider dead band.
+  LloydRelaxationOptions() { dead_band = 0.5; }
+
+  int iterations = 4;     ///< of a frame in which the surface moves
+  double relaxation = 1;  ///< part of the way to the centroid
 };
 void describe(OptionVisitor& v, LloydRelaxationOptions& options);
 

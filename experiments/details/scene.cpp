@@ -19,18 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file named in an experiment: absolute, relative to its folder, or to the clone's data folder.
-fs::path find_file(const std::string& name, const fs::path& folder, const std::string& where) {
-  std::string tried;
-  for (const fs::path& base : {folder, geoprior_home() / "data"}) {
-    const fs::path candidate = (base / name).lexically_normal();
-    std::error_code ignored;
-    if (fs::is_regular_file(candidate, ignored)) return candidate;
-    tried += (tried.empty() ? "" : ", ") + candidate.string();
-  }
-  throw Error("no file '" + name + "'", where, "looked for " + tried);
-}
-
 /// What loading adds to.
 struct Loading {
   const DetailSceneOptions& options;
@@ -55,7 +43,7 @@ struct Loading {
 
   void load_file(const DetailSurfaceOptions& o) {
     SequenceOptions still;
-    still.path = find_file(o.file, folder, "scene.surface.file").string();
+    still.path = find_file(o.file, folder, "data", "scene.surface.file").string();
     still.scale = o.scale;
     still.frames_per_second = 1;
     still.up = UpAxis::z;
@@ -75,7 +63,7 @@ struct Loading {
     if (options.surface.kind != DetailSurfaceKind::file || file.extension() != ".vtp") {
       throw Error("is in no file", where, "with scene.surface.file, a .vtp");
     }
-    const Part part = read_vtk_part(find_file(file.string(), folder, "scene.surface.file"));
+    const Part part = read_vtk_part(find_file(file.string(), folder, "data", "scene.surface.file"));
     const NamedArray* array = find_array(part, o.array);
     if (array == nullptr || array->on != NamedArray::On::points || array->values.cols() != 1) {
       throw Error("there is no array '" + o.array + "'", where, "one number a point");
@@ -94,7 +82,7 @@ struct Loading {
     const DetailPatternOptions& o = options.pattern;
     result.region = faces_of_region(scene.surface, o.region);
     if (o.kind == PatternKind::file) {
-      const fs::path file = find_file(o.file, folder, "scene.pattern.file");
+      const fs::path file = find_file(o.file, folder, "data", "scene.pattern.file");
       result.input_files.push_back(file);
       const double far = o.max_distance.value_or(0.01 * bounding_box_diagonal(scene.surface.V));
       scene.details = details_of_file(file, scene.surface, far);
@@ -121,7 +109,8 @@ struct Loading {
     result.drawing = options.drawing;
     if (!options.drawing || options.drawing->look.kind != DrawnKind::mesh) return;
     if (options.drawing->look.instance.shape != InstanceShape::given) return;
-    result.input_files.push_back(find_file(options.drawing->file, folder, "scene.drawing.file"));
+    result.input_files.push_back(
+        find_file(options.drawing->file, folder, "data", "scene.drawing.file"));
     result.instance = read_mesh_file(result.input_files.back()).mesh;
   }
 

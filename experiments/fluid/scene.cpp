@@ -17,18 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file named in an experiment: absolute, relative to its folder, or to the clone's data folder.
-fs::path find_file(const std::string& name, const fs::path& folder, const std::string& where) {
-  std::string tried;
-  for (const fs::path& base : {folder, geoprior_home() / "data"}) {
-    const fs::path candidate = (base / name).lexically_normal();
-    std::error_code ignored;
-    if (fs::is_regular_file(candidate, ignored)) return candidate;
-    tried += (tried.empty() ? "" : ", ") + candidate.string();
-  }
-  throw Error("no file '" + name + "'", where, "looked for " + tried);
-}
-
 /// What loading adds to.
 struct Loading {
   fs::path folder;
@@ -36,7 +24,7 @@ struct Loading {
 
   TriMesh read_mesh(const std::string& file, double scale, const std::string& where) {
     SequenceOptions still;
-    still.path = find_file(file, folder, where).string();
+    still.path = find_file(file, folder, "data", where).string();
     still.scale = scale;
     still.frames_per_second = 1;
     return open_sequence(still, folder, scene.load_warnings, scene.input_files)->frame(0).mesh;
@@ -167,7 +155,7 @@ void load_sources(const FluidSceneOptions& options, Loading& loading) {
     const LibraryOptions& o = options.libraries[i];
     const std::string where = "scene.libraries." + std::to_string(i);
     require_new(o.name, where + ".name");
-    const fs::path file = find_file(o.path, loading.folder, where + ".path");
+    const fs::path file = find_file(o.path, loading.folder, "data", where + ".path");
     loading.scene.input_files.push_back(file);
     sculpt.libraries[o.name] = read_feature_library(file);
   }
@@ -202,7 +190,7 @@ void load_edits(const FluidSceneOptions& options, Loading& loading) {
   sculpt.edits = options.edits;
   std::string list;
   if (options.edit_list) {
-    const fs::path file = find_file(*options.edit_list, loading.folder, "scene.edit_list");
+    const fs::path file = find_file(*options.edit_list, loading.folder, "data", "scene.edit_list");
     loading.scene.input_files.push_back(file);
     const std::vector<Edit> more = read_edit_list(file);
     sculpt.edits.insert(sculpt.edits.end(), more.begin(), more.end());

@@ -68,18 +68,6 @@ Obstacle make_obstacle(const ObstacleOptions& options, const std::string& where)
   return obstacle;
 }
 
-/// A file named in an experiment: absolute, or relative to its folder or to experiments/paper.
-fs::path find_pattern_file(const std::string& name, const fs::path& folder) {
-  std::string tried;
-  for (const fs::path& base : {folder, geoprior_home() / "experiments" / "paper"}) {
-    const fs::path candidate = (base / name).lexically_normal();
-    std::error_code ignored;
-    if (fs::is_regular_file(candidate, ignored)) return candidate;
-    tried += (tried.empty() ? "" : ", ") + candidate.string();
-  }
-  throw Error("no file '" + name + "'", "scene.pattern.file", "looked for " + tried);
-}
-
 /// Corners in the order of the file, either way round: errors number them so.
 Pattern polygon_pattern(const std::vector<PatternPointOptions>& points) {
   Pattern pattern, mirrored;
@@ -121,7 +109,7 @@ Pattern make_pattern(const PatternOptions& options, const fs::path& folder,
     case PatternKind::polygon:
       return polygon_pattern(options.points);
     case PatternKind::svg: {
-      files.push_back(find_pattern_file(options.file, folder));
+      files.push_back(find_file(options.file, folder, "experiments/paper", "scene.pattern.file"));
       Pattern pattern = read_svg_pattern(files.back(), options.svg);
       require_simple(pattern, "scene.pattern.file: " + files.back().string());
       return pattern;

@@ -45,4 +45,16 @@ fs::path geoprior_home() {
   return *home;
 }
 
+fs::path find_file(const std::string& name, const fs::path& folder, const fs::path& of_clone,
+                   const std::string& where) {
+  std::string tried;
+  for (const fs::path& base : {folder, geoprior_home() / of_clone}) {
+    const fs::path candidate = (base / name).lexically_normal();
+    std::error_code ignored;
+    if (fs::is_regular_file(candidate, ignored)) return candidate;
+    tried += (tried.empty() ? "" : ", ") + candidate.string();
+  }
+  throw Error("no file '" + name + "'", where, "looked for " + tried);
+}
+
 }  // namespace geoprior

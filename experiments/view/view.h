@@ -38,6 +38,13 @@ void export_run(const std::filesystem::path& run_folder, const std::string& form
 /// Root of the clone: where experiments/ and results/ are found, above the executable.
 std::filesystem::path geoprior_home();
 
+/// A file named in an experiment: absolute, relative to the folder of the experiment's file, or to
+/// a folder of the clone ("data").
+/// @param where  key that names it, for the message
+/// @throws Error  naming the places looked at
+std::filesystem::path find_file(const std::string& name, const std::filesystem::path& folder,
+                                const std::filesystem::path& of_clone, const std::string& where);
+
 /// Runs results/<script>.py with Debian's Python; throws Error with its message on failure, naming
 /// what to install.
 void run_python(const std::string& script, const std::vector<std::string>& arguments);

@@ -215,14 +215,12 @@ void Replication::diagnose(std::map<std::string, double>& into) const {
 
 void Replication::save(StateWriter& out) const {
   now_.save(out);
-  out.items(budget_.areas());
+  budget_.save(out);
 }
 
 void Replication::load(StateReader& in) {
   now_.load(in);
-  std::vector<double> areas;
-  in.items(areas);
-  budget_.set_areas(std::move(areas));
+  budget_.load(in);
   budget_.count(now_);
   patch_of_site_.clear();
   find_all_patches();
