@@ -9,11 +9,15 @@
 #include <vector>
 
 #include "baselines/paper/dense.h"
-#include "baselines/paper/shell_system.h"
-#include "baselines/paper/sparse_cholesky.h"
-#include "baselines/paper/stepper.h"
+#include "models/paper/cholmod_cholesky.h"
+#include "models/paper/eigen_cholesky.h"
+#include "models/paper/shell_system.h"
+#include "models/paper/sparse_cholesky.h"
+#include "models/paper/stepper.h"
+#include "models/paper/supernodal_cholesky.h"
+#include "models/paper/uniform_mesh.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 /// A square metre whose left and right edges approach each other.
@@ -39,7 +43,7 @@ struct Bent {
   explicit Bent(int triangles, LinearSolver solver = LinearSolver::automatic) {
     sheet = bent_sheet();
     state = resting_state(sheet,
-                          uniform_mesh(sheet.pattern, triangles, DenseLayout::structured,
+                          uniform_mesh(sheet.pattern, triangles, UniformLayout::structured,
                                        handle_points(sheet, 0.05), 1),
                           1);
     StepperOptions options;
@@ -161,4 +165,4 @@ BENCHMARK(paper_step)->Apply(every_solver);
 BENCHMARK(paper_set_mesh)->Arg(300)->Apply(small_and_large);
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

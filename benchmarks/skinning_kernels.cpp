@@ -21,12 +21,12 @@
 
 #include "baselines/skinning/delta_mush.h"
 #include "baselines/skinning/dual_quaternion.h"
-#include "baselines/skinning/lanes.h"
 #include "baselines/skinning/linear_blend.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "models/skinning/lanes.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 constexpr int kJoints = 60;
@@ -190,4 +190,4 @@ BENCHMARK(skin_dual_quaternion)->Arg(18000)->Arg(1000000)->Arg(4000000)->UseReal
 BENCHMARK(skin_delta_mush)->Arg(18000)->Arg(1000000)->UseRealTime();
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -2,15 +2,15 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set(libraries geoprior_flags geoprior_core geoprior_metrics geoprior_skinning_baselines geoprior_skinning
-  geoprior_paper_baselines geoprior_paper geoprior_fluid_baselines geoprior_fluid geoprior_details_baselines geoprior_details)
+get_property(libraries GLOBAL PROPERTY GEOPRIOR_TOPIC_LIBRARIES)
+list(PREPEND libraries geoprior_flags geoprior_core geoprior_metrics)
 set_target_properties(geoprior_flags PROPERTIES EXPORT_NAME flags)
 # Eigen aligns fixed-size types (a quaternion, an affine transform) by the instruction set even when
 # EIGEN_MAX_ALIGN_BYTES is given, so the layout of our types is that of the set the libraries were built for.
 target_compile_options(geoprior_flags INTERFACE $<INSTALL_INTERFACE:-march=${GEOPRIOR_ARCH}>)
 install(TARGETS ${libraries} EXPORT geoprior_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT geoprior_targets NAMESPACE geoprior:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/geoprior)
-foreach(room core metrics baselines solvers)
+foreach(room core metrics models baselines solvers)
   install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/geoprior FILES_MATCHING PATTERN "*.h")
 endforeach()
 configure_package_config_file(cmake/geoprior-config.cmake.in ${PROJECT_BINARY_DIR}/geoprior-config.cmake

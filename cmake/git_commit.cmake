@@ -5,7 +5,7 @@
 set(commit "unknown")
 set(difference "")
 # What the program is compiled from; experiment files and documents are no part of it.
-set(compiled CMakeLists.txt cmake core baselines solvers metrics experiments ":(exclude)*.toml")
+set(compiled CMakeLists.txt cmake core metrics models baselines solvers testbed experiments ":(exclude)*.toml")
 find_program(GIT git)
 if(GIT)
   execute_process(COMMAND ${GIT} -C ${SOURCE} rev-parse HEAD

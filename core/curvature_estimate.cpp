@@ -70,7 +70,7 @@ class Patch {
   void grow() {
     const std::size_t last = triangles_.size();
     for (; next_ < last; ++next_)
-      for (const int h : (*of_triangle_)[static_cast<std::size_t>(triangles_[next_])]) add(h);
+      for (const int h : (*of_triangle_)[triangles_[next_]]) add(h);
     ++rings_;
   }
   [[nodiscard]] const Few& edges() const { return edges_; }
@@ -80,7 +80,7 @@ class Patch {
  private:
   void add(int index) {
     if (index < 0 || edges_.has(index)) return;
-    const Hinge& h = (*hinges_)[static_cast<std::size_t>(index)];
+    const Hinge& h = (*hinges_)[index];
     Few vertices = vertices_;
     for (const int v : {h.a, h.b, h.c, h.d})
       if (!vertices.has(v)) vertices.push_back(v);
@@ -116,8 +116,8 @@ Eigen::Matrix3d affine_frame(const Eigen::MatrixX2d& pattern, const Patch& patch
 
 /// Jump at edge i of a patch, to be multiplied with S as (uu, sqrt2 uv, vv).
 Eigen::Vector3d mandel_jump(const std::vector<Hinge>& hinges, const Patch& patch, Eigen::Index i) {
-  const int edge = patch.edges()[static_cast<std::size_t>(i)];
-  const Eigen::Vector3d& jump = hinges[static_cast<std::size_t>(edge)].jump;
+  const int edge = patch.edges()[i];
+  const Eigen::Vector3d& jump = hinges[edge].jump;
   return {jump[0], jump[1] / kRoot2, jump[2]};
 }
 
@@ -165,7 +165,7 @@ Columns3 folds(const Eigen::MatrixX2d& pattern, const std::vector<Hinge>& hinges
                const Patch& patch) {
   Columns3 coefficients(3, static_cast<Eigen::Index>(patch.edges().size()));
   for (Eigen::Index i = 0; i < coefficients.cols(); ++i) {
-    const Hinge& h = hinges[static_cast<std::size_t>(patch.edges()[static_cast<std::size_t>(i)])];
+    const Hinge& h = hinges[patch.edges()[i]];
     const Eigen::Vector2d edge = (pattern.row(h.b) - pattern.row(h.a)).normalized();
     const Eigen::Vector2d across(-edge.y(), edge.x());
     const Eigen::Vector3d fold = mandel(across * across.transpose());

@@ -36,7 +36,7 @@ Eigen::Vector3d slope_rise(const Eigen::MatrixX2d& pattern, int a, int b, int c)
 }
 
 std::vector<double> pattern_areas(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX3i& F) {
-  std::vector<double> area(static_cast<std::size_t>(F.rows()));
+  std::vector<double> area(F.rows());
   for (Eigen::Index t = 0; t < F.rows(); ++t) {
     const Eigen::RowVector2d p = pattern.row(F(t, 0));
     const Eigen::RowVector2d e = pattern.row(F(t, 1)) - p, f = pattern.row(F(t, 2)) - p;
@@ -47,7 +47,7 @@ std::vector<double> pattern_areas(const Eigen::MatrixX2d& pattern, const Eigen::
       throw Error(twice < 0 ? "triangle turned over in the pattern"
                             : "triangle without area in the pattern",
                   "triangle " + std::to_string(t), "counter-clockwise triangles");
-    area[static_cast<std::size_t>(t)] = twice / 2;
+    area[t] = twice / 2;
   }
   return area;
 }
@@ -60,7 +60,7 @@ std::vector<Hinge> find_hinges(const Eigen::MatrixX3i& F,
     int low, high, triangle, corner;
   };
   std::vector<Side> sides;
-  sides.reserve(static_cast<std::size_t>(3 * F.rows()));
+  sides.reserve(3 * F.rows());
   for (int t = 0; t < static_cast<int>(F.rows()); ++t)
     for (int k = 0; k < 3; ++k) {
       const auto [low, high] = std::minmax(F(t, k), F(t, (k + 1) % 3));
@@ -69,7 +69,7 @@ std::vector<Hinge> find_hinges(const Eigen::MatrixX3i& F,
   std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
     return std::tie(p.low, p.high, p.triangle) < std::tie(q.low, q.high, q.triangle);
   });
-  std::vector<std::array<int, 3>> other(static_cast<std::size_t>(F.rows()), {-1, -1, -1});
+  std::vector<std::array<int, 3>> other(F.rows(), {-1, -1, -1});
   for (std::size_t i = 0; i < sides.size();) {
     std::size_t end = i + 1;
     while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high)
@@ -80,23 +80,21 @@ std::vector<Hinge> find_hinges(const Eigen::MatrixX3i& F,
                   "edge " + std::to_string(p.low) + "-" + std::to_string(p.high),
                   "one or two triangles of opposite direction at an edge");
     if (end - i == 2) {
-      other[static_cast<std::size_t>(p.triangle)][static_cast<std::size_t>(p.corner)] =
-          3 * q.triangle + q.corner;
-      other[static_cast<std::size_t>(q.triangle)][static_cast<std::size_t>(q.corner)] =
-          3 * p.triangle + p.corner;
+      other[p.triangle][p.corner] = 3 * q.triangle + q.corner;
+      other[q.triangle][q.corner] = 3 * p.triangle + p.corner;
     }
     i = end;
   }
   std::vector<Hinge> hinges;
-  of_triangle.assign(static_cast<std::size_t>(F.rows()), {-1, -1, -1});
+  of_triangle.assign(F.rows(), {-1, -1, -1});
   for (int t = 0; t < static_cast<int>(F.rows()); ++t)
     for (int k = 0; k < 3; ++k) {
-      const int opposite = other[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)];
+      const int opposite = other[t][k];
       if (opposite < 0 || opposite / 3 < t) continue;
       const int right = opposite / 3, corner = opposite % 3;
       const int index = static_cast<int>(hinges.size());
-      of_triangle[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)] = index;
-      of_triangle[static_cast<std::size_t>(right)][static_cast<std::size_t>(corner)] = index;
+      of_triangle[t][k] = index;
+      of_triangle[right][corner] = index;
       hinges.push_back({F(t, k), F(t, (k + 1) % 3), t, right, F(t, (k + 2) % 3),
                         F(right, (corner + 2) % 3), Eigen::Vector3d::Zero()});
     }
@@ -140,14 +138,14 @@ struct Assembly {
     const Eigen::Vector2d edge = pattern.row(b) - pattern.row(a);
     const Eigen::Vector2d normal(-edge.y(), edge.x());
     const Eigen::Vector3d dyad = mandel(normal * normal.transpose()) / (edge.norm() * fit.area[t]);
-    const int index = of_triangle[t][static_cast<std::size_t>(k)];
+    const int index = of_triangle[t][k];
     if (index < 0) {
       const Eigen::Vector3d rise = slope_rise(pattern, a, b, triangles(triangle, (k + 2) % 3));
       for (const auto& term : estimates[t].terms)
         add(sum, term.hinge, dyad * rise.dot(term.coefficient));
       return;
     }
-    const Hinge& h = fit.hinges[static_cast<std::size_t>(index)];
+    const Hinge& h = fit.hinges[index];
     add(sum, index, dyad / 2);
     const Eigen::Vector3d beta =
         (slope_rise(pattern, h.a, h.b, h.c) - slope_rise(pattern, h.b, h.a, h.d)) / 2;
@@ -155,7 +153,7 @@ struct Assembly {
     const auto [first, second] = sources_of(h);
     const double share = (h.left == triangle ? 1.0 : -1.0) / (first == second ? 1 : 2);
     const auto add_source = [&](int source) {
-      for (const auto& term : estimates[static_cast<std::size_t>(source)].terms)
+      for (const auto& term : estimates[source].terms)
         add(sum, term.hinge, dyad * (share * beta.dot(term.coefficient)));
     };
     add_source(first);
@@ -166,11 +164,9 @@ struct Assembly {
   /// only, else the one of the smaller reach, twice.
   [[nodiscard]] std::array<int, 2> sources_of(const Hinge& h) const {
     const auto reach = [&](int t) {
-      const CurvatureEstimate& e = estimates[static_cast<std::size_t>(t)];
+      const CurvatureEstimate& e = estimates[t];
       if (e.rank < 3) return 100;
-      return e.terms.size() == 3 && fit.own[static_cast<std::size_t>(t)] == 3
-                 ? 0
-                 : static_cast<int>(e.terms.size());
+      return e.terms.size() == 3 && fit.own[t] == 3 ? 0 : static_cast<int>(e.terms.size());
     };
     const int left = reach(h.left), right = reach(h.right);
     if (left == 0 && right == 0) return {h.left, h.right};
@@ -182,7 +178,7 @@ struct Assembly {
     std::array<int, CurvatureFit::kMostVertices> vertices{};
     auto end = vertices.begin();
     for (const auto& term : sum) {
-      const Hinge& h = fit.hinges[static_cast<std::size_t>(term.hinge)];
+      const Hinge& h = fit.hinges[term.hinge];
       for (const int v : {h.a, h.b, h.c, h.d}) {
         if (std::find(vertices.begin(), end, v) != end) continue;
         if (end == vertices.end()) return false;
@@ -243,8 +239,7 @@ Eigen::MatrixX3d shape_operators(const CurvatureFit& fit, const Eigen::MatrixX3d
   Eigen::MatrixX3d S = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(fit.terms.size()), 3);
   for (std::size_t t = 0; t < fit.terms.size(); ++t)
     for (const CurvatureFit::Term& term : fit.terms[t])
-      S.row(static_cast<Eigen::Index>(t)) +=
-          term.coefficient.transpose() * angle[static_cast<std::size_t>(term.hinge)];
+      S.row(static_cast<Eigen::Index>(t)) += term.coefficient.transpose() * angle[term.hinge];
   return S;
 }
 

@@ -54,7 +54,7 @@ TriMesh surface_of_revolution(const Profile& profile, int segments) {
   mesh.V.row(0) << profile.first_pole, 0, 0;
   Eigen::Index row = 1;
   for (int i = 0; i < rings; ++i) {
-    const Eigen::Vector2d& ring = profile.rings[static_cast<std::size_t>(i)];
+    const Eigen::Vector2d& ring = profile.rings[i];
     for (int k = 0; k < segments; ++k) {
       const double angle = 2 * std::numbers::pi * (k + 0.5 * (i % 2)) / segments;
       mesh.V.row(row++) << ring.x(), ring.y() * std::cos(angle), ring.y() * std::sin(angle);

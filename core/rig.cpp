@@ -20,8 +20,7 @@ int Skeleton::index_of(std::string_view name) const {
 std::vector<std::vector<int>> Skeleton::children() const {
   std::vector<std::vector<int>> result(joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j) {
-    if (joints[j].parent >= 0)
-      result[static_cast<std::size_t>(joints[j].parent)].push_back(static_cast<int>(j));
+    if (joints[j].parent >= 0) result[joints[j].parent].push_back(static_cast<int>(j));
   }
   return result;
 }
@@ -77,7 +76,7 @@ Pose pose_from_rotations(const Skeleton& skeleton, const std::vector<JointRotati
   const auto n = static_cast<std::size_t>(skeleton.size());
   std::vector<Eigen::Quaterniond> local(n, Eigen::Quaterniond::Identity());
   for (const JointRotation& r : rotations) {
-    auto& q = local.at(static_cast<std::size_t>(r.joint));
+    auto& q = local.at(r.joint);
     q = q * r.rotation.normalized();
   }
   Pose pose(n);
@@ -86,7 +85,7 @@ Pose pose_from_rotations(const Skeleton& skeleton, const std::vector<JointRotati
     Eigen::Affine3d about_head = Eigen::Affine3d::Identity();
     about_head.linear() = local[j].toRotationMatrix();
     about_head.translation() = joint.head - about_head.linear() * joint.head;
-    pose[j] = joint.parent >= 0 ? pose[static_cast<std::size_t>(joint.parent)] * about_head
+    pose[j] = joint.parent >= 0 ? pose[joint.parent] * about_head
                                 : Eigen::Translation3d(root_translation) * about_head;
   }
   return pose;

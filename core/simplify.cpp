@@ -57,7 +57,7 @@ class Simplifier {
 
  private:
   [[nodiscard]] Eigen::Vector3d corner(int triangle, int k) const {
-    return positions_[static_cast<std::size_t>(F_(triangle, k))];
+    return positions_[F_(triangle, k)];
   }
   [[nodiscard]] std::vector<int> ring(int v) const;
   [[nodiscard]] bool on_border(int a) const;
@@ -83,7 +83,7 @@ Simplifier::Simplifier(const TriMesh& mesh) : F_(mesh.F) {
   quadrics_.assign(n, Quadric::Zero());
   fans_.resize(n);
   version_.assign(n, -1);
-  triangle_lives_.assign(static_cast<std::size_t>(F_.rows()), true);
+  triangle_lives_.assign(F_.rows(), true);
   for (std::size_t v = 0; v < n; ++v)
     positions_.emplace_back(mesh.V.row(static_cast<Eigen::Index>(v)));
   for (int t = 0; t < mesh.triangle_count(); ++t) {
@@ -116,7 +116,7 @@ Simplifier::Simplifier(const TriMesh& mesh) : F_(mesh.F) {
 
 std::vector<int> Simplifier::ring(int v) const {
   std::vector<int> neighbours;
-  for (const int t : fans_[static_cast<std::size_t>(v)]) {
+  for (const int t : fans_[v]) {
     for (int k = 0; k < 3; ++k) {
       if (F_(t, k) != v) neighbours.push_back(F_(t, k));
     }
@@ -127,9 +127,7 @@ std::vector<int> Simplifier::ring(int v) const {
 }
 
 /// A vertex of an inner fan has as many triangles as neighbours.
-bool Simplifier::on_border(int v) const {
-  return ring(v).size() != fans_[static_cast<std::size_t>(v)].size();
-}
+bool Simplifier::on_border(int v) const { return ring(v).size() != fans_[v].size(); }
 
 /// The point of least error for the edge: the minimum of the summed quadric where that is well
 /// determined and near the edge, else the best of both ends and the middle.
@@ -170,7 +168,7 @@ bool Simplifier::keeps_manifold(const Collapse& c) const {
   std::set_intersection(ring_a.begin(), ring_a.end(), ring_b.begin(), ring_b.end(),
                         std::back_inserter(common));
   std::size_t shared_triangles = 0;
-  for (const int t : fans_[static_cast<std::size_t>(c.keep)]) {
+  for (const int t : fans_[c.keep]) {
     for (int k = 0; k < 3; ++k) shared_triangles += F_(t, k) == c.drop ? 1 : 0;
   }
   if (common.size() != shared_triangles) return false;
@@ -184,7 +182,7 @@ bool Simplifier::keeps_shape(const Collapse& c) const {
   double worst_before = 1, worst_after = 1;
   for (const int v : {c.keep, c.drop}) {
     const int other = v == c.keep ? c.drop : c.keep;
-    for (const int t : fans_[static_cast<std::size_t>(v)]) {
+    for (const int t : fans_[v]) {
       if (F_(t, 0) == other || F_(t, 1) == other || F_(t, 2) == other) continue;
       std::array<Eigen::Vector3d, 3> p{corner(t, 0), corner(t, 1), corner(t, 2)};
       const Eigen::Vector3d before = (p[1] - p[0]).cross(p[2] - p[0]);
@@ -210,9 +208,9 @@ void Simplifier::apply(const Collapse& c) {
   for (const int t : fans_[drop]) {
     const bool dies = F_(t, 0) == c.keep || F_(t, 1) == c.keep || F_(t, 2) == c.keep;
     if (dies) {
-      triangle_lives_[static_cast<std::size_t>(t)] = false;
+      triangle_lives_[t] = false;
       for (int k = 0; k < 3; ++k) {
-        if (F_(t, k) != c.drop) std::erase(fans_[static_cast<std::size_t>(F_(t, k))], t);
+        if (F_(t, k) != c.drop) std::erase(fans_[F_(t, k)], t);
       }
       continue;
     }
@@ -243,8 +241,8 @@ TriMesh Simplifier::result() const {
   mesh.F.resize(std::count(triangle_lives_.begin(), triangle_lives_.end(), true), 3);
   Eigen::Index row = 0;
   for (int t = 0; t < static_cast<int>(F_.rows()); ++t) {
-    if (!triangle_lives_[static_cast<std::size_t>(t)]) continue;
-    for (int k = 0; k < 3; ++k) mesh.F(row, k) = index[static_cast<std::size_t>(F_(t, k))];
+    if (!triangle_lives_[t]) continue;
+    for (int k = 0; k < 3; ++k) mesh.F(row, k) = index[F_(t, k)];
     ++row;
   }
   return mesh;

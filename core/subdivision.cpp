@@ -38,7 +38,7 @@ struct EdgeTable {
 
 EdgeTable edge_table(const Eigen::MatrixX3i& F) {
   EdgeTable table;
-  table.of.resize(static_cast<std::size_t>(F.rows()));
+  table.of.resize(F.rows());
   std::unordered_map<std::uint64_t, int> index;
   index.reserve(static_cast<std::size_t>(F.rows()) * 2);
   for (int t = 0; t < static_cast<int>(F.rows()); ++t) {
@@ -46,7 +46,7 @@ EdgeTable edge_table(const Eigen::MatrixX3i& F) {
       const int a = F(t, k), b = F(t, (k + 1) % 3);
       const auto [it, is_new] = index.emplace(edge_key(a, b), static_cast<int>(table.edges.size()));
       if (is_new) table.edges.push_back({a, b});
-      EdgeInfo& edge = table.edges[static_cast<std::size_t>(it->second)];
+      EdgeInfo& edge = table.edges[it->second];
       const std::size_t side = edge.triangle[0] < 0 ? 0 : 1;
       if (edge.triangle[side] >= 0 || (side == 1 && edge.a == a)) {
         throw Error("subdivision needs a manifold mesh of consistent orientation",
@@ -55,7 +55,7 @@ EdgeTable edge_table(const Eigen::MatrixX3i& F) {
       }
       edge.triangle[side] = t;
       edge.opposite[side] = F(t, (k + 2) % 3);
-      table.of[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)] = it->second;
+      table.of[t][k] = it->second;
     }
   }
   return table;
@@ -97,16 +97,16 @@ void split_triangles(const Eigen::MatrixX3i& F, const EdgeTable& table,
   const auto add = [&](int parent, int a, int b, int c) {
     rows.emplace_back(a, b, c);
     result.parent.push_back(parent);
-    result.quartered.push_back(quartered[static_cast<std::size_t>(parent)]);
+    result.quartered.push_back(quartered[parent]);
   };
   for (int t = 0; t < static_cast<int>(F.rows()); ++t) {
     std::array<int, 3> mid{};
     for (std::size_t k = 0; k < 3; ++k) {
-      const int e = table.of[static_cast<std::size_t>(t)][k];
-      mid[k] = table.edges[static_cast<std::size_t>(e)].midpoint;
+      const int e = table.of[t][k];
+      mid[k] = table.edges[e].midpoint;
     }
     const int a = F(t, 0), b = F(t, 1), c = F(t, 2);
-    if (quartered[static_cast<std::size_t>(t)]) {
+    if (quartered[t]) {
       add(t, a, mid[0], mid[2]);
       add(t, mid[0], b, mid[1]);
       add(t, mid[2], mid[1], c);
@@ -132,21 +132,21 @@ void split_triangles(const Eigen::MatrixX3i& F, const EdgeTable& table,
 /// Rows of old vertices: smoothed where every triangle around is quartered, else kept.
 void old_vertex_rows(const Eigen::MatrixX3i& F, int vertex_count,
                      const std::vector<bool>& quartered, std::vector<Triplet>& entries) {
-  std::vector<bool> moves(static_cast<std::size_t>(vertex_count), true);
-  std::vector<int> triangles(static_cast<std::size_t>(vertex_count), 0);
+  std::vector<bool> moves(vertex_count, true);
+  std::vector<int> triangles(vertex_count, 0);
   for (Eigen::Index t = 0; t < F.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const auto v = static_cast<std::size_t>(F(t, k));
       ++triangles[v];
-      if (!quartered[static_cast<std::size_t>(t)]) moves[v] = false;
+      if (!quartered[t]) moves[v] = false;
     }
   }
   const VertexGraph rings = one_rings(F, vertex_count);
   for (int v = 0; v < vertex_count; ++v) {
     const std::span<const int> ring = rings.of(v);
     const auto n = static_cast<int>(ring.size());
-    const int count = triangles[static_cast<std::size_t>(v)];
-    if (!moves[static_cast<std::size_t>(v)] || n < 2 || count < n - 1) {
+    const int count = triangles[v];
+    if (!moves[v] || n < 2 || count < n - 1) {
       entries.emplace_back(v, v, 1.0);  // outside the region, or where several borders meet
     } else if (count < n) {
       // The ring of a border vertex starts and ends on the border.
@@ -164,9 +164,8 @@ void old_vertex_rows(const Eigen::MatrixX3i& F, int vertex_count,
 
 void new_vertex_row(const EdgeInfo& edge, const std::vector<bool>& quartered,
                     std::vector<Triplet>& entries) {
-  const bool smooth = edge.triangle[1] >= 0 &&
-                      quartered[static_cast<std::size_t>(edge.triangle[0])] &&
-                      quartered[static_cast<std::size_t>(edge.triangle[1])];
+  const bool smooth =
+      edge.triangle[1] >= 0 && quartered[edge.triangle[0]] && quartered[edge.triangle[1]];
   entries.emplace_back(edge.midpoint, edge.a, smooth ? 0.375 : 0.5);
   entries.emplace_back(edge.midpoint, edge.b, smooth ? 0.375 : 0.5);
   if (!smooth) return;
@@ -177,15 +176,14 @@ void new_vertex_row(const EdgeInfo& edge, const std::vector<bool>& quartered,
 /// The region and every triangle that shares a vertex with it.
 std::vector<bool> grown(const Eigen::MatrixX3i& F, int vertex_count,
                         const std::vector<bool>& region) {
-  std::vector<bool> touched(static_cast<std::size_t>(vertex_count), false);
+  std::vector<bool> touched(vertex_count, false);
   for (Eigen::Index t = 0; t < F.rows(); ++t) {
-    for (int k = 0; k < 3 && region[static_cast<std::size_t>(t)]; ++k)
-      touched[static_cast<std::size_t>(F(t, k))] = true;
+    for (int k = 0; k < 3 && region[t]; ++k) touched[F(t, k)] = true;
   }
   std::vector<bool> result = region;
   for (Eigen::Index t = 0; t < F.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
-      if (touched[static_cast<std::size_t>(F(t, k))]) result[static_cast<std::size_t>(t)] = true;
+      if (touched[F(t, k)]) result[t] = true;
     }
   }
   return result;
@@ -217,9 +215,8 @@ Subdivision loop_subdivision(const Eigen::MatrixX3i& F, int vertex_count,
   std::vector<Triplet> entries;
   old_vertex_rows(F, vertex_count, quartered, entries);
   for (EdgeInfo& edge : table.edges) {
-    const bool split = std::any_of(edge.triangle.begin(), edge.triangle.end(), [&](int t) {
-      return t >= 0 && quartered[static_cast<std::size_t>(t)];
-    });
+    const bool split = std::any_of(edge.triangle.begin(), edge.triangle.end(),
+                                   [&](int t) { return t >= 0 && quartered[t]; });
     if (!split) continue;
     edge.midpoint = vertex_count + static_cast<int>(result.split_edge.size());
     result.split_edge.push_back({edge.a, edge.b});
@@ -240,8 +237,7 @@ RefinedRig loop_subdivide_region(const RiggedMesh& rig, const std::vector<bool>&
   RefinedRig result;
   result.rig = rig;
   std::vector<bool> wanted =
-      region.empty() ? std::vector<bool>(static_cast<std::size_t>(rig.mesh.triangle_count()), true)
-                     : region;
+      region.empty() ? std::vector<bool>(rig.mesh.triangle_count(), true) : region;
   for (int step = 0; step < steps; ++step) {
     const TriMesh& mesh = result.rig.mesh;
     std::vector<bool> refine = wanted;
@@ -249,8 +245,7 @@ RefinedRig loop_subdivide_region(const RiggedMesh& rig, const std::vector<bool>&
       refine = grown(mesh.F, mesh.vertex_count(), refine);
     Subdivision made = loop_subdivision(mesh.F, mesh.vertex_count(), refine);
     std::vector<bool> inherited;
-    for (const int parent : made.parent)
-      inherited.push_back(wanted[static_cast<std::size_t>(parent)]);
+    for (const int parent : made.parent) inherited.push_back(wanted[parent]);
     result.rig = apply(result.rig, made);
     wanted = std::move(inherited);
     result.steps.push_back(std::move(made));
@@ -261,7 +256,7 @@ RefinedRig loop_subdivide_region(const RiggedMesh& rig, const std::vector<bool>&
 SplitSubdivision subdivide_split(const TriMesh& split, const std::vector<int>& welded_of_split,
                                  const Eigen::MatrixX3i& welded_triangles, const Subdivision& step,
                                  const Eigen::MatrixX3d& welded_positions) {
-  const auto welded = [&](int v) { return welded_of_split[static_cast<std::size_t>(v)]; };
+  const auto welded = [&](int v) { return welded_of_split[v]; };
   for (Eigen::Index t = 0; t < std::max(split.F.rows(), welded_triangles.rows()); ++t) {
     bool same = t < split.F.rows() && t < welded_triangles.rows();
     for (int k = 0; same && k < 3; ++k) same = welded(split.F(t, k)) == welded_triangles(t, k);
@@ -280,7 +275,7 @@ SplitSubdivision subdivide_split(const TriMesh& split, const std::vector<int>& w
       return split.F(parent, 2);
     };
     if (corner < old_count) return of_welded(corner);
-    const auto& edge = step.split_edge[static_cast<std::size_t>(corner - old_count)];
+    const auto& edge = step.split_edge[corner - old_count];
     const int a = of_welded(edge[0]), b = of_welded(edge[1]);
     const auto next = static_cast<int>(result.welded_of_split.size());
     const auto [it, is_new] = midpoint_of.emplace(edge_key(a, b), next);
@@ -292,13 +287,11 @@ SplitSubdivision subdivide_split(const TriMesh& split, const std::vector<int>& w
   };
   result.mesh.F.resize(step.F.rows(), 3);
   for (Eigen::Index t = 0; t < step.F.rows(); ++t) {
-    for (int k = 0; k < 3; ++k)
-      result.mesh.F(t, k) = split_vertex(step.parent[static_cast<std::size_t>(t)], step.F(t, k));
+    for (int k = 0; k < 3; ++k) result.mesh.F(t, k) = split_vertex(step.parent[t], step.F(t, k));
   }
   result.mesh.V.resize(static_cast<Eigen::Index>(result.welded_of_split.size()), 3);
   for (Eigen::Index v = 0; v < result.mesh.V.rows(); ++v)
-    result.mesh.V.row(v) =
-        welded_positions.row(result.welded_of_split[static_cast<std::size_t>(v)]);
+    result.mesh.V.row(v) = welded_positions.row(result.welded_of_split[v]);
   return result;
 }
 

@@ -33,12 +33,8 @@ StoredSequence::StoredSequence(std::vector<SurfaceFrame> frames, std::string nam
   }
 }
 
-double StoredSequence::time(int frame) const {
-  return frames_.at(static_cast<std::size_t>(frame)).time;
-}
+double StoredSequence::time(int frame) const { return frames_.at(frame).time; }
 
-SurfaceFrame StoredSequence::frame(int frame) const {
-  return frames_.at(static_cast<std::size_t>(frame));
-}
+SurfaceFrame StoredSequence::frame(int frame) const { return frames_.at(frame); }
 
 }  // namespace geoprior

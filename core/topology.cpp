@@ -75,7 +75,7 @@ VertexGraph one_rings(const Eigen::MatrixX3i& F, int vertex_count) {
   std::vector<std::vector<DirectedEdge>> fans(n);  // per vertex: the edges opposite to it
   for (Eigen::Index t = 0; t < F.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
-      fans[static_cast<std::size_t>(F(t, k))].push_back({F(t, (k + 1) % 3), F(t, (k + 2) % 3)});
+      fans[F(t, k)].push_back({F(t, (k + 1) % 3), F(t, (k + 2) % 3)});
     }
   }
   VertexGraph graph;
@@ -122,10 +122,10 @@ std::vector<Edge> non_manifold_edges(const Eigen::MatrixX3i& F) {
 }
 
 std::vector<bool> boundary_vertices(const Eigen::MatrixX3i& F, int vertex_count) {
-  std::vector<bool> on_boundary(static_cast<std::size_t>(vertex_count), false);
+  std::vector<bool> on_boundary(vertex_count, false);
   for (const Edge& e : boundary_edges(F)) {
-    on_boundary[static_cast<std::size_t>(e[0])] = true;
-    on_boundary[static_cast<std::size_t>(e[1])] = true;
+    on_boundary[e[0]] = true;
+    on_boundary[e[1]] = true;
   }
   return on_boundary;
 }
@@ -152,22 +152,20 @@ Weld weld_by_position(const TriMesh& split) {
   std::unordered_map<std::array<std::uint64_t, 3>, int, PositionHash> seen;
   for (int v = 0; v < split.vertex_count(); ++v) {
     std::array<std::uint64_t, 3> key{};
-    for (int k = 0; k < 3; ++k)
-      key[static_cast<std::size_t>(k)] = std::bit_cast<std::uint64_t>(split.V(v, k) + 0.0);
+    for (int k = 0; k < 3; ++k) key[k] = std::bit_cast<std::uint64_t>(split.V(v, k) + 0.0);
     const auto [it, is_new] = seen.emplace(key, static_cast<int>(weld.split_of_welded.size()));
     if (is_new) weld.split_of_welded.push_back(v);
     weld.welded_of_split.push_back(it->second);
   }
   weld.mesh.V.resize(static_cast<Eigen::Index>(weld.split_of_welded.size()), 3);
   for (Eigen::Index v = 0; v < weld.mesh.V.rows(); ++v) {
-    weld.mesh.V.row(v) = split.V.row(weld.split_of_welded[static_cast<std::size_t>(v)]);
+    weld.mesh.V.row(v) = split.V.row(weld.split_of_welded[v]);
   }
   weld.mesh.F.resize(split.F.rows(), 3);
   Eigen::Index kept = 0;
   for (Eigen::Index t = 0; t < split.F.rows(); ++t) {
     Eigen::RowVector3i f;
-    for (int k = 0; k < 3; ++k)
-      f(k) = weld.welded_of_split[static_cast<std::size_t>(split.F(t, k))];
+    for (int k = 0; k < 3; ++k) f(k) = weld.welded_of_split[split.F(t, k)];
     if (f(0) != f(1) && f(1) != f(2) && f(2) != f(0)) weld.mesh.F.row(kept++) = f;
   }
   weld.mesh.F.conservativeResize(kept, 3);

@@ -1,6 +1,6 @@
 #include "core/freed_memory.h"
-#include "experiments/program.h"
-#include "experiments/topic.h"
+#include "testbed/program.h"
+#include "testbed/topic.h"
 
 int main(int argc, char** argv) {
   geoprior::keep_freed_memory();

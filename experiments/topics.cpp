@@ -1,13 +1,28 @@
-#include "experiments/details/topic.h"
-#include "experiments/fluid/topic.h"
-#include "experiments/paper/topic.h"
-#include "experiments/skinning/topic.h"
-#include "experiments/topic.h"
+#include "testbed/topic.h"
+
+/// Every topic of the program, in the order in which they are listed: one line each. CMake has the
+/// other line, and says by GEOPRIOR_HAS_<name> which of them this program was built with.
+#define GEOPRIOR_TOPICS(TOPIC) \
+  TOPIC(skinning)              \
+  TOPIC(paper)                 \
+  TOPIC(fluid)                 \
+  TOPIC(details)
+
+/// What experiments/<name> defines.
+#define GEOPRIOR_DECLARE(name) \
+  namespace geoprior::name {   \
+  Topic make_topic();          \
+  }
+GEOPRIOR_TOPICS(GEOPRIOR_DECLARE)
 
 namespace geoprior {
 
 std::vector<Topic> all_topics() {
-  return {skinning_topic(), paper_topic(), fluid_topic(), details_topic()};
+  std::vector<Topic> topics;
+#define GEOPRIOR_ADD(name) \
+  if constexpr (GEOPRIOR_HAS_##name) topics.push_back(name::make_topic());
+  GEOPRIOR_TOPICS(GEOPRIOR_ADD)
+  return topics;
 }
 
 }  // namespace geoprior

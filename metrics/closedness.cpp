@@ -38,13 +38,12 @@ class Sets {
   explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
   int find(int x) {
     auto& p = parent_;
-    while (p[static_cast<std::size_t>(x)] != x) {
-      x = p[static_cast<std::size_t>(x)] =
-          p[static_cast<std::size_t>(p[static_cast<std::size_t>(x)])];
+    while (p[x] != x) {
+      x = p[x] = p[p[x]];
     }
     return x;
   }
-  void join(int a, int b) { parent_[static_cast<std::size_t>(find(a))] = find(b); }
+  void join(int a, int b) { parent_[find(a)] = find(b); }
 
  private:
   std::vector<int> parent_;
@@ -68,8 +67,8 @@ int corner_of(const Eigen::MatrixX3i& F, int triangle, int vertex) {
 
 /// Vertices whose corners are not all joined across common edges.
 int pinched(const Eigen::MatrixX3i& F, int vertex_count, Sets& corners) {
-  std::vector<int> fan(static_cast<std::size_t>(vertex_count), -1);
-  std::vector<char> counted(static_cast<std::size_t>(vertex_count), 0);
+  std::vector<int> fan(vertex_count, -1);
+  std::vector<char> counted(vertex_count, 0);
   int count = 0;
   for (int t = 0; t < F.rows(); ++t) {
     for (int c = 0; c < 3; ++c) {
@@ -111,11 +110,11 @@ Closedness closedness(const TriMesh& mesh) {
   }
   result.pinched_vertices = pinched(mesh.F, mesh.vertex_count(), corners);
   Sets vertices = vertex_sets(mesh);
-  std::vector<char> used(static_cast<std::size_t>(mesh.vertex_count()), 0);
-  for (const int v : mesh.F.reshaped()) used[static_cast<std::size_t>(v)] = 1;
+  std::vector<char> used(mesh.vertex_count(), 0);
+  for (const int v : mesh.F.reshaped()) used[v] = 1;
   int used_count = 0;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    if (used[static_cast<std::size_t>(v)] == 0) continue;
+    if (used[v] == 0) continue;
     ++used_count;
     if (vertices.find(v) == v) ++result.components;
   }
@@ -125,20 +124,19 @@ Closedness closedness(const TriMesh& mesh) {
 
 Eigen::MatrixX3i largest_component(const TriMesh& mesh) {
   Sets vertices = vertex_sets(mesh);
-  std::vector<int> count(static_cast<std::size_t>(mesh.vertex_count()), 0);
+  std::vector<int> count(mesh.vertex_count(), 0);
   int largest = -1;
   for (int t = 0; t < mesh.F.rows(); ++t) {
     const int set = vertices.find(mesh.F(t, 0));
-    ++count[static_cast<std::size_t>(set)];
+    ++count[set];
   }
   for (int t = 0; t < mesh.F.rows(); ++t) {
     const int set = vertices.find(mesh.F(t, 0));
-    if (largest < 0 ||
-        count[static_cast<std::size_t>(set)] > count[static_cast<std::size_t>(largest)]) {
+    if (largest < 0 || count[set] > count[largest]) {
       largest = set;
     }
   }
-  Eigen::MatrixX3i kept(largest < 0 ? 0 : count[static_cast<std::size_t>(largest)], 3);
+  Eigen::MatrixX3i kept(largest < 0 ? 0 : count[largest], 3);
   Eigen::Index next = 0;
   for (int t = 0; t < mesh.F.rows(); ++t) {
     if (vertices.find(mesh.F(t, 0)) == largest) kept.row(next++) = mesh.F.row(t);

@@ -97,9 +97,8 @@ Ring ring_of(double radius_in_spacings) {
   Ring ring{};
   for (int k = 0; k < kRing; ++k) {
     const double angle = 2 * kPi * k / kRing;
-    ring[static_cast<std::size_t>(k)] = {
-        static_cast<int>(std::lround(radius_in_spacings * std::cos(angle))),
-        static_cast<int>(std::lround(radius_in_spacings * std::sin(angle)))};
+    ring[k] = {static_cast<int>(std::lround(radius_in_spacings * std::cos(angle))),
+               static_cast<int>(std::lround(radius_in_spacings * std::sin(angle)))};
   }
   return ring;
 }

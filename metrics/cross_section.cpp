@@ -59,16 +59,7 @@ Eigen::Vector3d any_orthogonal(const Eigen::Vector3d& n) {
 
 PosedHinge pose_hinge(const JointRegion& region, const JointRegion::Hinge& hinge,
                       const Eigen::MatrixX3i& F, const Eigen::MatrixX3d& rest, const Pose& pose) {
-  PosedHinge p{hinge,
-               pose[static_cast<std::size_t>(hinge.proximal_joint)],
-               pose[static_cast<std::size_t>(hinge.joint)],
-               {},
-               {},
-               {},
-               {},
-               1,
-               false,
-               {}};
+  PosedHinge p{hinge, pose[hinge.proximal_joint], pose[hinge.joint], {}, {}, {}, {}, 1, false, {}};
   p.head = p.distal_transform * hinge.head;
   const Eigen::Vector3d m =
       p.distal_transform.linear() * hinge.distal - p.proximal_transform.linear() * hinge.proximal;
@@ -168,10 +159,10 @@ double outer_share(int k, int n) {
 /// may be the next finger's); NaN where there is none.
 template <class Seen>
 std::vector<double> radial_profile(const std::vector<Segment>& segments, int n, const Seen& seen) {
-  std::vector<double> rho(static_cast<std::size_t>(n), kNone);
+  std::vector<double> rho(n, kNone);
   for (int k = 0; k < n; ++k) {
     const Eigen::Vector2d dir = direction(k, n);
-    double& nearest = rho[static_cast<std::size_t>(k)];
+    double& nearest = rho[k];
     for (const Segment& segment : segments) {
       const double a = dir.x() * segment.a.y() - dir.y() * segment.a.x();
       const double b = dir.x() * segment.b.y() - dir.y() * segment.b.x();
@@ -190,7 +181,7 @@ Eigen::Vector2d profile_centroid(const std::vector<double>& rho) {
   Eigen::Vector2d moment = Eigen::Vector2d::Zero();
   double area = 0;
   for (int k = 0; k < n; ++k) {
-    const double r = rho[static_cast<std::size_t>(k)];
+    const double r = rho[k];
     if (std::isnan(r)) return Eigen::Vector2d::Zero();
     moment += r * r * r / 3 * direction(k, n);
     area += r * r / 2;
@@ -241,14 +232,14 @@ HalfArea half_area(const ProfilePair& p, double outer_weight, double inner_weigh
 /// Distance along each direction to the posed bisector plane, on the inner side.
 std::vector<double> bisector_limit(const PosedHinge& hinge, const PlaneFrame& posed, double side,
                                    int n) {
-  std::vector<double> limit(static_cast<std::size_t>(n), std::numeric_limits<double>::infinity());
+  std::vector<double> limit(n, std::numeric_limits<double>::infinity());
   if (!hinge.has_halves) return limit;
   for (int k = 0; k < n; ++k) {
     if (outer_share(k, n) > 0) continue;
     const Eigen::Vector2d d = direction(k, n);
     const double slope = side * hinge.bisector.dot(d.x() * posed.u + d.y() * posed.v);
     const double distance = side * hinge.bisector.dot(posed.centre - hinge.head);
-    if (slope < -1e-9) limit[static_cast<std::size_t>(k)] = std::max(distance, 0.0) / -slope;
+    if (slope < -1e-9) limit[k] = std::max(distance, 0.0) / -slope;
   }
   return limit;
 }
@@ -272,8 +263,7 @@ SectionRatio bone_section(const Surface& surface, const PosedHinge& hinge, doubl
   rest.v = rest.n.cross(rest.u);
   rest.centre = hinge.rest.head + s * rest.n;
   const auto seen = [&](int, const Segment& segment) {
-    return !hinge.has_halves ||
-           hinge.chain[static_cast<std::size_t>(segment.slot)].is_distal() == is_distal;
+    return !hinge.has_halves || hinge.chain[segment.slot].is_distal() == is_distal;
   };
   const Eigen::Vector2d centroid = profile_centroid(
       radial_profile(cut(surface.region, surface.F, surface.rest, hinge, side * s, rest), n, seen));
@@ -318,7 +308,7 @@ void add_wedge_sections(const Surface& surface, const PosedHinge& hinge, int ind
   };
   const int n = surface.options.directions;
   const auto seen = [&](int k, const Segment& segment) {
-    return outer_share(k, n) > 0 && hinge.chain[static_cast<std::size_t>(segment.slot)].is_outer;
+    return outer_share(k, n) > 0 && hinge.chain[segment.slot].is_outer;
   };
   for (int w = 0; w < surface.options.wedge_planes; ++w) {
     const double f = (w + 0.5) / surface.options.wedge_planes;
@@ -328,7 +318,7 @@ void add_wedge_sections(const Surface& surface, const PosedHinge& hinge, int ind
     const ProfilePair profiles{
         radial_profile(cut(surface.region, surface.F, surface.rest, hinge, 0, rest), n, seen),
         radial_profile(cut(surface.region, surface.F, surface.posed, hinge, 0, posed), n, seen),
-        std::vector<double>(static_cast<std::size_t>(n), std::numeric_limits<double>::infinity())};
+        std::vector<double>(n, std::numeric_limits<double>::infinity())};
     SectionRatio section;
     section.hinge = index;
     section.place = SectionRatio::Place::wedge;

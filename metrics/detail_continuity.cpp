@@ -52,7 +52,7 @@ void match(const DetailsOfFrame& before, const DetailsOfFrame& now, const Visit&
 }
 
 double weight_of(const DetailsOfFrame& details, int row) {
-  return row < 0 ? 0 : details.weight[static_cast<std::size_t>(row)];
+  return row < 0 ? 0 : details.weight[row];
 }
 
 /// A point of the surface with its normal.
@@ -62,7 +62,7 @@ struct Foot {
 
 Foot foot_of(const TriMesh& surface, const Eigen::MatrixX3d& normals,
              const AnchoredDetails& details, int row) {
-  const int f = details.face[static_cast<std::size_t>(row)];
+  const int f = details.face[row];
   if (f < 0 || f >= surface.F.rows()) {
     throw Error("no triangle " + std::to_string(f), "detail " + std::to_string(row),
                 "0 to " + std::to_string(surface.F.rows()) + " excluded");

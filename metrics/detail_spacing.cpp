@@ -35,9 +35,7 @@ double relative(double now, double original) { return (now - original) / origina
 std::vector<std::pair<int, int>> edges_among_details(const Eigen::MatrixX3i& triangles,
                                                      std::span<const char> ghosts) {
   if (!ghosts.empty()) require_points(triangles, ghosts.size());
-  const auto ghost = [&](int v) {
-    return !ghosts.empty() && ghosts[static_cast<std::size_t>(v)] != 0;
-  };
+  const auto ghost = [&](int v) { return !ghosts.empty() && ghosts[v] != 0; };
   // Each half-edge as (lower, higher, whether it runs downwards): an edge of two triangles has one
   // of either kind. Triangles with a ghost are not looked at, so their edges lack a partner.
   std::vector<std::tuple<int, int, int>> halves;
@@ -79,7 +77,7 @@ DetailSpacing detail_spacing(const Eigen::MatrixX3d& positions, const Eigen::Mat
   for (const double length : lengths) variance += (length - s.mean) * (length - s.mean) / n;
   s.variation = s.mean > 0 ? std::sqrt(variance) / s.mean : 0;
   s.smallest = lengths.front();
-  for (int k = 1; k <= 9; ++k) s.deciles[static_cast<std::size_t>(k - 1)] = decile(lengths, k);
+  for (int k = 1; k <= 9; ++k) s.deciles[k - 1] = decile(lengths, k);
   const double unit = reference > 0 ? reference : s.mean;
   const auto outside = std::count_if(lengths.begin(), lengths.end(), [&](double length) {
     return length < 0.7 * unit || length > 1.4 * unit;

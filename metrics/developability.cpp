@@ -47,8 +47,8 @@ Stars stars_of(const TriMesh& mesh, const Eigen::MatrixX3d& normal) {
       const double angle = angle_between(to_next, to_last);
       stars.angle(v) += angle;
       stars.area(v) += to_next.cross(to_last).norm() / 6;
-      stars.normals[static_cast<std::size_t>(v)] += angle * outer;
-      stars.interior[static_cast<std::size_t>(v)] = !border[static_cast<std::size_t>(v)];
+      stars.normals[v] += angle * outer;
+      stars.interior[v] = !border[v];
     }
   }
   return stars;
@@ -65,8 +65,8 @@ GreatCircles great_circles(const Stars& stars) {
                        Eigen::MatrixX3d::Zero(stars.angle.size(), 3)};
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   for (Eigen::Index v = 0; v < stars.angle.size(); ++v) {
-    if (!stars.interior[static_cast<std::size_t>(v)]) continue;
-    solver.compute(stars.normals[static_cast<std::size_t>(v)]);
+    if (!stars.interior[v]) continue;
+    solver.compute(stars.normals[v]);
     circles.energy(v) = std::max(solver.eigenvalues()(0), 0.0);  // round-off below zero
     circles.axis.row(v) = solver.eigenvectors().col(0).transpose();
   }
@@ -76,7 +76,7 @@ GreatCircles great_circles(const Stars& stars) {
 Eigen::VectorXd defects(const Stars& stars) {
   Eigen::VectorXd defect = Eigen::VectorXd::Zero(stars.angle.size());
   for (Eigen::Index v = 0; v < defect.size(); ++v) {
-    if (stars.interior[static_cast<std::size_t>(v)]) {
+    if (stars.interior[v]) {
       defect(v) = 2 * std::numbers::pi - stars.angle(v);
     }
   }
@@ -91,15 +91,15 @@ double thinness(const TriMesh& mesh, const Eigen::MatrixX3d& normal, const Stars
     for (int k = 0; k < 3; ++k) {
       const int v = mesh.F(t, k);
       if (std::abs(normal.row(t).dot(circles.axis.row(v))) > sine) {
-        thin[static_cast<std::size_t>(v)] = false;
+        thin[v] = false;
       }
     }
   }
   double all = 0;
   double held = 0;
   for (Eigen::Index v = 0; v < stars.area.size(); ++v) {
-    if (stars.interior[static_cast<std::size_t>(v)]) all += stars.area(v);
-    if (thin[static_cast<std::size_t>(v)]) held += stars.area(v);
+    if (stars.interior[v]) all += stars.area(v);
+    if (thin[v]) held += stars.area(v);
   }
   return all > 0 ? held / all : 1.0;
 }

@@ -18,7 +18,7 @@ VertexDistance vertex_distance(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d
   double sum = 0;
   double largest = 0;
   for (Eigen::Index k = 0; k < n; ++k) {
-    const Eigen::Index v = vertices.empty() ? k : vertices[static_cast<std::size_t>(k)];
+    const Eigen::Index v = vertices.empty() ? k : vertices[k];
     const double distance2 = (a.row(v) - b.row(v)).squaredNorm();
     sum += distance2;
     largest = std::max(largest, distance2);

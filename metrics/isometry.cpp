@@ -57,7 +57,7 @@ IsometrySummary isometry(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX3d
   flat.leftCols<2>() = pattern;
   const Eigen::VectorXd area = triangle_areas(flat, triangles);
   if (!(area.sum() > 0)) throw Error("no triangles with an area", "isometry", "at least one");
-  std::vector<int> all(static_cast<std::size_t>(triangles.rows()));
+  std::vector<int> all(triangles.rows());
   std::iota(all.begin(), all.end(), 0);
   const Eigen::ArrayX2d strain = (singular_values(flat, x, triangles, all).array() - 1).abs();
   IsometrySummary summary;

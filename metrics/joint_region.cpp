@@ -48,7 +48,7 @@ double median(std::vector<double> values) {
 
 /// Direction and length of the bone of a joint; by its tail, else by the mean of its children.
 std::optional<Eigen::Vector3d> bone_vector(const Skeleton& skeleton, int joint) {
-  const Joint& j = skeleton.joints[static_cast<std::size_t>(joint)];
+  const Joint& j = skeleton.joints[joint];
   if (j.tail) return *j.tail - j.head;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int count = 0;
@@ -67,7 +67,7 @@ JointRegion::Hinge bones_of_joint(const Skeleton& skeleton, int joint,
     throw Error("joint index " + std::to_string(joint) + " does not exist", "joint region",
                 "0 to " + std::to_string(skeleton.size() - 1));
   }
-  const Joint& j = skeleton.joints[static_cast<std::size_t>(joint)];
+  const Joint& j = skeleton.joints[joint];
   if (j.parent < 0) {
     throw Error("the joint has no parent to turn against", "joint '" + j.name + "'",
                 "joints below the root");
@@ -76,7 +76,7 @@ JointRegion::Hinge bones_of_joint(const Skeleton& skeleton, int joint,
   hinge.joint = joint;
   hinge.proximal_joint = j.parent;
   hinge.head = j.head;
-  const Eigen::Vector3d back = skeleton.joints[static_cast<std::size_t>(j.parent)].head - j.head;
+  const Eigen::Vector3d back = skeleton.joints[j.parent].head - j.head;
   const Eigen::Vector3d along = bone_vector(skeleton, joint).value_or(-back);
   if (back.norm() < 1e-12 && along.norm() < 1e-12) {
     throw Error("neither the joint nor its parent has a bone", "joint '" + j.name + "'",
@@ -109,8 +109,7 @@ double local_radius(const RiggedMesh& rig, const JointRegion::Hinge& hinge) {
   const double radius = near.empty() ? 0.0 : median(enough ? std::move(blended) : std::move(near));
   if (radius <= 0) {
     throw Error("the joint has no skin around it",
-                "joint '" + rig.skeleton.joints[static_cast<std::size_t>(hinge.joint)].name + "'",
-                "a joint inside the mesh");
+                "joint '" + rig.skeleton.joints[hinge.joint].name + "'", "a joint inside the mesh");
   }
   return radius;
 }
@@ -132,7 +131,7 @@ Band limit_reach(JointRegion::Hinge& hinge, const Skeleton& skeleton,
   const double full = extent * hinge.radius;
   bool child_turns = false;
   for (const int j : joints) {
-    child_turns |= skeleton.joints[static_cast<std::size_t>(j)].parent == hinge.joint;
+    child_turns |= skeleton.joints[j].parent == hinge.joint;
   }
   const bool parent_turns = holds_joint(joints, hinge.proximal_joint);
   const Band band{parent_turns ? hinge.proximal_reach : full,
@@ -150,11 +149,11 @@ bool in_band(const JointRegion::Hinge& hinge, const Band& band, const Eigen::Vec
 /// Joints of sibling limbs (the next finger, the other leg): below a parent of a hinge, but not
 /// below the hinge. A helper joint that lies on the parent's bone (twist joints) is the limb's own.
 std::vector<bool> sibling_joints(const Skeleton& skeleton, const JointRegion& region) {
-  std::vector<bool> sibling(static_cast<std::size_t>(skeleton.size()), false);
+  std::vector<bool> sibling(skeleton.size(), false);
   for (int j = 0; j < skeleton.size(); ++j) {
-    const Joint& joint = skeleton.joints[static_cast<std::size_t>(j)];
-    if (joint.parent >= 0 && sibling[static_cast<std::size_t>(joint.parent)]) {
-      sibling[static_cast<std::size_t>(j)] = true;
+    const Joint& joint = skeleton.joints[j];
+    if (joint.parent >= 0 && sibling[joint.parent]) {
+      sibling[j] = true;
       continue;
     }
     bool turns = false;
@@ -162,24 +161,23 @@ std::vector<bool> sibling_joints(const Skeleton& skeleton, const JointRegion& re
     for (const JointRegion::Hinge& h : region.hinges) {
       turns |= h.joint == j;
       if (joint.parent != h.proximal_joint) continue;
-      const Eigen::Vector3d& near =
-          skeleton.joints[static_cast<std::size_t>(h.proximal_joint)].head;
+      const Eigen::Vector3d& near = skeleton.joints[h.proximal_joint].head;
       beside |= distance_to_segment(joint.head, near, h.head) > h.radius;
     }
-    sibling[static_cast<std::size_t>(j)] = beside && !turns;
+    sibling[j] = beside && !turns;
   }
   return sibling;
 }
 
 /// Joints that no hinge separates move as one: the hinge's joint, or root, that leads each.
 std::vector<int> rigid_groups(const Skeleton& skeleton, const JointRegion& region) {
-  std::vector<int> group(static_cast<std::size_t>(skeleton.size()));
+  std::vector<int> group(skeleton.size());
   for (int j = 0; j < skeleton.size(); ++j) {
-    const int parent = skeleton.joints[static_cast<std::size_t>(j)].parent;
+    const int parent = skeleton.joints[j].parent;
     const bool turns = std::any_of(region.hinges.begin(), region.hinges.end(),
                                    [&](const JointRegion::Hinge& h) { return h.joint == j; });
     const bool leads = turns || parent < 0;
-    group[static_cast<std::size_t>(j)] = leads ? j : group[static_cast<std::size_t>(parent)];
+    group[j] = leads ? j : group[parent];
   }
   return group;
 }
@@ -188,7 +186,7 @@ std::vector<int> rigid_groups(const Skeleton& skeleton, const JointRegion& regio
 double rigidity(const SkinWeights& weights, int v, const std::vector<int>& group) {
   std::map<int, double> sum;
   for (SkinWeights::InnerIterator it(weights, v); it; ++it) {
-    sum[group[static_cast<std::size_t>(it.col())]] += it.value();
+    sum[group[it.col()]] += it.value();
   }
   double largest = 0;
   for (const auto& [joint, weight] : sum) largest = std::max(largest, weight);
@@ -205,14 +203,14 @@ std::vector<VertexRole> vertex_roles(const RiggedMesh& rig, const JointRegion& r
                                      const std::vector<Band>& bands) {
   const std::vector<bool> sibling = sibling_joints(rig.skeleton, region);
   const std::vector<int> group = rigid_groups(rig.skeleton, region);
-  std::vector<VertexRole> roles(static_cast<std::size_t>(rig.mesh.vertex_count()));
+  std::vector<VertexRole> roles(rig.mesh.vertex_count());
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
     double foreign = 0;
     for (SkinWeights::InnerIterator it(rig.weights, v); it; ++it) {
-      if (sibling[static_cast<std::size_t>(it.col())]) foreign += it.value();
+      if (sibling[it.col()]) foreign += it.value();
     }
     const bool blended = rigidity(rig.weights, v, group) < kRigidEnough;
-    VertexRole& role = roles[static_cast<std::size_t>(v)];
+    VertexRole& role = roles[v];
     const Eigen::Vector3d x = row(rig.mesh.V, v);
     for (std::size_t h = 0; h < region.hinges.size(); ++h) {
       const JointRegion::Hinge& hinge = region.hinges[h];
@@ -248,8 +246,8 @@ Neighbours triangle_neighbours(const Eigen::MatrixX3i& F) {
     const Side& a = sides[i - 1];
     const Side& b = sides[i];
     if (a.low != b.low || a.high != b.high) continue;
-    neighbours[static_cast<std::size_t>(a.triangle)][static_cast<std::size_t>(a.edge)] = b.triangle;
-    neighbours[static_cast<std::size_t>(b.triangle)][static_cast<std::size_t>(b.edge)] = a.triangle;
+    neighbours[a.triangle][a.edge] = b.triangle;
+    neighbours[b.triangle][b.edge] = a.triangle;
   }
   return neighbours;
 }
@@ -259,14 +257,14 @@ template <class Enter>
 std::vector<int> flood(const Neighbours& neighbours, std::vector<int> stack,
                        std::vector<bool>& seen, const Enter& enter) {
   std::vector<int> found;
-  for (const int t : stack) seen[static_cast<std::size_t>(t)] = true;
+  for (const int t : stack) seen[t] = true;
   while (!stack.empty()) {
     const int t = stack.back();
     stack.pop_back();
     found.push_back(t);
-    for (const int n : neighbours[static_cast<std::size_t>(t)]) {
-      if (n < 0 || seen[static_cast<std::size_t>(n)] || !enter(n)) continue;
-      seen[static_cast<std::size_t>(n)] = true;
+    for (const int n : neighbours[t]) {
+      if (n < 0 || seen[n] || !enter(n)) continue;
+      seen[n] = true;
       stack.push_back(n);
     }
   }
@@ -281,7 +279,7 @@ std::vector<int> seeds(const RiggedMesh& rig, const JointRegion& region,
     int best = -1;
     double best_distance = std::numeric_limits<double>::infinity();
     for (int t = 0; t < rig.mesh.triangle_count(); ++t) {
-      if (!candidate[static_cast<std::size_t>(t)]) continue;
+      if (!candidate[t]) continue;
       const Eigen::Vector3d centre =
           (row(rig.mesh.V, rig.mesh.F(t, 0)) + row(rig.mesh.V, rig.mesh.F(t, 1)) +
            row(rig.mesh.V, rig.mesh.F(t, 2))) /
@@ -293,7 +291,7 @@ std::vector<int> seeds(const RiggedMesh& rig, const JointRegion& region,
     }
     if (best < 0) {
       throw Error("no skin of its own lies near the joint",
-                  "joint '" + rig.skeleton.joints[static_cast<std::size_t>(hinge.joint)].name + "'",
+                  "joint '" + rig.skeleton.joints[hinge.joint].name + "'",
                   "a joint inside the mesh, with weights");
     }
     if (!holds_joint(found, best)) found.push_back(best);
@@ -314,12 +312,12 @@ void absorb_islands(const TriMesh& mesh, const Neighbours& neighbours,
   for (std::size_t t = 0; t < region.size(); ++t) {
     if (!region[t]) continue;
     for (const int n : neighbours[t]) {
-      if (n < 0 || seen[static_cast<std::size_t>(n)]) continue;
+      if (n < 0 || seen[n]) continue;
       const std::vector<int> patch = flood(neighbours, {n}, seen, [](int) { return true; });
       double patch_area = 0;
       for (const int p : patch) patch_area += area(p);
       if (patch_area > kIslandShare * region_area) continue;
-      for (const int p : patch) in_region[static_cast<std::size_t>(p)] = true;
+      for (const int p : patch) in_region[p] = true;
     }
   }
 }
@@ -332,7 +330,7 @@ std::vector<std::vector<int>> trace_loops(const Eigen::MatrixX3i& F, const Neigh
     if (!in_region[t]) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const int n = neighbours[t][k];
-      if (n >= 0 && in_region[static_cast<std::size_t>(n)]) continue;
+      if (n >= 0 && in_region[n]) continue;
       const auto i = static_cast<Eigen::Index>(t);
       const auto e = static_cast<Eigen::Index>(k);
       next.emplace(F(i, e), F(i, (e + 1) % 3));
@@ -384,21 +382,20 @@ JointRegion make_joint_region(const RiggedMesh& rig, const std::string& name,
     region.hinges.push_back(hinge);
   }
   const std::vector<VertexRole> roles = vertex_roles(rig, region, bands);
-  std::vector<bool> candidate(static_cast<std::size_t>(rig.mesh.triangle_count()));
+  std::vector<bool> candidate(rig.mesh.triangle_count());
   for (int t = 0; t < rig.mesh.triangle_count(); ++t) {
     bool own = true;
     bool near = false;
     for (int k = 0; k < 3; ++k) {
-      const VertexRole& role = roles[static_cast<std::size_t>(rig.mesh.F(t, k))];
+      const VertexRole& role = roles[rig.mesh.F(t, k)];
       own &= role.own;
       near |= role.near;
     }
-    candidate[static_cast<std::size_t>(t)] = own && near;
+    candidate[t] = own && near;
   }
   const Neighbours neighbours = triangle_neighbours(rig.mesh.F);
   std::vector<bool> in_region(candidate.size(), false);
-  flood(neighbours, seeds(rig, region, candidate), in_region,
-        [&](int t) { return candidate[static_cast<std::size_t>(t)]; });
+  flood(neighbours, seeds(rig, region, candidate), in_region, [&](int t) { return candidate[t]; });
   absorb_islands(rig.mesh, neighbours, in_region);
   for (std::size_t t = 0; t < in_region.size(); ++t) {
     if (in_region[t]) region.triangles.push_back(static_cast<int>(t));

@@ -58,13 +58,11 @@ std::vector<int> least_cost(const Eigen::MatrixXd& cost) {
 }  // namespace
 
 std::vector<int> optimal_assignment(const Eigen::MatrixXd& value) {
-  if (value.rows() == 0 || value.cols() == 0)
-    return std::vector<int>(static_cast<std::size_t>(value.rows()), -1);
+  if (value.rows() == 0 || value.cols() == 0) return std::vector<int>(value.rows(), -1);
   if (value.rows() <= value.cols()) return least_cost(-value);
   const std::vector<int> row_of = least_cost(-value.transpose());
-  std::vector<int> column_of(static_cast<std::size_t>(value.rows()), -1);
-  for (std::size_t c = 0; c < row_of.size(); ++c)
-    column_of[static_cast<std::size_t>(row_of[c])] = static_cast<int>(c);
+  std::vector<int> column_of(value.rows(), -1);
+  for (std::size_t c = 0; c < row_of.size(); ++c) column_of[row_of[c]] = static_cast<int>(c);
   return column_of;
 }
 

@@ -166,19 +166,18 @@ OverlapVolume integrate_strip(StripBuffers& b, int first_column, int columns,
 }
 
 std::vector<Corner> project(const Eigen::MatrixX3d& V, const ColumnGrid& grid) {
-  std::vector<Corner> corners(static_cast<std::size_t>(V.rows()));
+  std::vector<Corner> corners(V.rows());
   for (Eigen::Index v = 0; v < V.rows(); ++v) {
-    corners[static_cast<std::size_t>(v)] = {(V(v, grid.x_axis) - grid.x0) / grid.spacing,
-                                            (V(v, grid.y_axis) - grid.y0) / grid.spacing,
-                                            V(v, grid.z_axis), static_cast<int>(v)};
+    corners[v] = {(V(v, grid.x_axis) - grid.x0) / grid.spacing,
+                  (V(v, grid.y_axis) - grid.y0) / grid.spacing, V(v, grid.z_axis),
+                  static_cast<int>(v)};
   }
   return corners;
 }
 
 std::array<Corner, 3> corners_of(const std::vector<Corner>& corners, const Eigen::MatrixX3i& F,
                                  Eigen::Index t) {
-  return {corners[static_cast<std::size_t>(F(t, 0))], corners[static_cast<std::size_t>(F(t, 1))],
-          corners[static_cast<std::size_t>(F(t, 2))]};
+  return {corners[F(t, 0)], corners[F(t, 1)], corners[F(t, 2)]};
 }
 
 /// Triangles that reach each strip of rows, in order of index.
@@ -186,14 +185,14 @@ std::vector<std::vector<int>> triangles_of_strips(const std::vector<Corner>& cor
                                                   const Eigen::MatrixX3i& F,
                                                   const ColumnGrid& grid) {
   const int strips = (grid.height + kRowsOfStrip - 1) / kRowsOfStrip;
-  std::vector<std::vector<int>> of_strip(static_cast<std::size_t>(strips));
+  std::vector<std::vector<int>> of_strip(strips);
   for (Eigen::Index t = 0; t < F.rows(); ++t) {
     const std::array<Corner, 3> c = corners_of(corners, F, t);
     const auto [low, high] = std::minmax({c[0].x, c[1].x, c[2].x});
     const RowRange rows = rows_of(c, grid.height);
     if (high < 0 || low > grid.width - 1 || rows.first > rows.last) continue;
     for (int s = rows.first / kRowsOfStrip; s <= rows.last / kRowsOfStrip; ++s) {
-      of_strip[static_cast<std::size_t>(s)].push_back(static_cast<int>(t));
+      of_strip[s].push_back(static_cast<int>(t));
     }
   }
   return of_strip;
@@ -260,7 +259,7 @@ OverlapStudy overlap_study(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
 Eigen::AlignedBox3d joint_box(const JointRegion& region, const Pose& pose) {
   Eigen::AlignedBox3d box;
   for (const JointRegion::Hinge& hinge : region.hinges) {
-    const Eigen::Vector3d centre = pose[static_cast<std::size_t>(hinge.joint)] * hinge.head;
+    const Eigen::Vector3d centre = pose[hinge.joint] * hinge.head;
     const Eigen::Vector3d reach = Eigen::Vector3d::Constant((region.extent + 1) * hinge.radius);
     box.extend(centre - reach);
     box.extend(centre + reach);

@@ -100,13 +100,13 @@ class PairCount {
       place_.push_back(details[i]);
       layout_.push_back(surface.layout(details[i]));
       weight_.push_back(weight);
-      ++offset_[static_cast<std::size_t>(details[i].face) + 1];
+      ++offset_[details[i].face + 1];
     }
     for (std::size_t f = 1; f < offset_.size(); ++f) offset_[f] += offset_[f - 1];
     row_.resize(place_.size());
     std::vector<std::size_t> next(offset_.begin(), offset_.end() - 1);
     for (std::size_t i = 0; i < place_.size(); ++i) {
-      row_[next[static_cast<std::size_t>(place_[i].face)]++] = i;
+      row_[next[place_[i].face]++] = i;
     }
   }
 
@@ -128,8 +128,7 @@ class PairCount {
     for (const int f : front.faces()) {
       if (!counts(f) || front.is_beyond(f, reach_ * unit_)) continue;
       const SurfaceFront::Within within = front.within(f);
-      for (std::size_t k = offset_[static_cast<std::size_t>(f)];
-           k < offset_[static_cast<std::size_t>(f) + 1]; ++k) {
+      for (std::size_t k = offset_[f]; k < offset_[f + 1]; ++k) {
         const std::size_t j = row_[k];
         if (j == i) continue;
         tally.pairs.add(within.distance(layout_[j]) / unit_, weight_[i] * weight_[j]);
@@ -141,9 +140,7 @@ class PairCount {
   }
 
  private:
-  [[nodiscard]] bool counts(int face) const {
-    return region_.empty() || region_[static_cast<std::size_t>(face)] != 0;
-  }
+  [[nodiscard]] bool counts(int face) const { return region_.empty() || region_[face] != 0; }
 
   /// Area of a triangle at the distance of its middle, quartered until it is small; parts that are
   /// out of reach are not looked into.

@@ -63,7 +63,7 @@ struct Bin {
 
 std::vector<Bin> in_bins(const std::vector<Row>& rows, const Eigen::Vector2d& size,
                          const RadialSpectrumOptions& options) {
-  std::vector<Bin> bins(static_cast<std::size_t>(options.bins));
+  std::vector<Bin> bins(options.bins);
   const double width = options.highest / options.bins;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     for (std::size_t i = 0; i < rows[k].power.size(); ++i) {
@@ -91,7 +91,7 @@ RadialSpectrum summary(const std::vector<Bin>& bins, double step) {
   s.anisotropy.setZero(n);
   s.elongation.setZero(n);
   for (Eigen::Index b = 0; b < n; ++b) {
-    const Bin& bin = bins[static_cast<std::size_t>(b)];
+    const Bin& bin = bins[b];
     s.frequency(b) = step * (static_cast<double>(b) + 0.5);
     s.count(b) = bin.count;
     if (!(bin.power > 0)) continue;

@@ -46,7 +46,7 @@ double largest_seam_angle(const TriMesh& mesh, const std::vector<char>& marked) 
                 std::to_string(mesh.vertex_count()) + ", one a vertex");
   }
   const auto is_marked = [&](int t) {
-    const auto at = [&](int c) { return marked[static_cast<std::size_t>(mesh.F(t, c))] != 0; };
+    const auto at = [&](int c) { return marked[mesh.F(t, c)] != 0; };
     return at(0) || at(1) || at(2);
   };
   const std::vector<Side> sides = sorted_sides(mesh);

@@ -19,7 +19,7 @@ using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, int>;
 class TrianglePairs {
  public:
   TrianglePairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F) : F_(F) {
-    points_.reserve(static_cast<std::size_t>(V.rows()));
+    points_.reserve(V.rows());
     for (Eigen::Index v = 0; v < V.rows(); ++v) {
       if (!V.row(v).allFinite()) {
         throw Error("coordinate is not finite", "vertex " + std::to_string(v), "finite numbers");
@@ -49,9 +49,7 @@ class TrianglePairs {
   }
 
  private:
-  [[nodiscard]] const Kernel::Point_3& point(int t, int k) const {
-    return points_[static_cast<std::size_t>(F_(t, k % 3))];
-  }
+  [[nodiscard]] const Kernel::Point_3& point(int t, int k) const { return points_[F_(t, k % 3)]; }
   [[nodiscard]] Kernel::Triangle_3 triangle(int t) const {
     return {point(t, 0), point(t, 1), point(t, 2)};
   }
@@ -113,14 +111,11 @@ int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F) {
 
 int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
                        const JointRegion& region) {
-  std::vector<bool> inside(static_cast<std::size_t>(F.rows()), false);
-  for (const int t : region.triangles) inside[static_cast<std::size_t>(t)] = true;
+  std::vector<bool> inside(F.rows(), false);
+  for (const int t : region.triangles) inside[t] = true;
   int count = 0;
-  TrianglePairs(V, F).each(
-      [&](int a, int b) {
-        return inside[static_cast<std::size_t>(a)] || inside[static_cast<std::size_t>(b)];
-      },
-      [&](int, int) { ++count; });
+  TrianglePairs(V, F).each([&](int a, int b) { return inside[a] || inside[b]; },
+                           [&](int, int) { ++count; });
   return count;
 }
 

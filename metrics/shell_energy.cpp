@@ -56,7 +56,7 @@ double bending_energy(const CurvatureFit& fit, const Eigen::MatrixX3d& x,
   const Eigen::MatrixX3d elastic = S - rest_curvature;
   double energy = 0;
   for (Eigen::Index t = 0; t < elastic.rows(); ++t) {
-    energy += fit.area[static_cast<std::size_t>(t)] *
+    energy += fit.area[t] *
               isotropic_form(elastic(t, 0), elastic(t, 1), elastic(t, 2), plate.poisson_ratio);
   }
   return energy * plate.bending / 2;

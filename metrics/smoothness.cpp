@@ -38,7 +38,7 @@ double second_difference_max(const std::vector<Eigen::MatrixX3d>& positions,
     const Eigen::Index n =
         vertices.empty() ? now.rows() : static_cast<Eigen::Index>(vertices.size());
     for (Eigen::Index k = 0; k < n; ++k) {
-      const Eigen::Index v = vertices.empty() ? k : vertices[static_cast<std::size_t>(k)];
+      const Eigen::Index v = vertices.empty() ? k : vertices[k];
       largest2 = std::max(largest2, (after.row(v) - 2 * now.row(v) + before.row(v)).squaredNorm());
     }
   }

@@ -28,7 +28,7 @@ Triangles triangles_of(const TriMesh& mesh, const char* which) {
     throw Error("coordinate is not finite", std::string("surface ") + which, "finite numbers");
   }
   Triangles triangles;
-  triangles.reserve(static_cast<std::size_t>(mesh.F.rows()));
+  triangles.reserve(mesh.F.rows());
   const auto point = [&](int v) {
     return Kernel::Point_3(mesh.V(v, 0), mesh.V(v, 1), mesh.V(v, 2));
   };
@@ -69,10 +69,10 @@ void visit_pieces(const Kernel::Triangle_3& t, int n, const Visit& visit) {
 std::vector<Kernel::Point_3> samples_of(const TriMesh& mesh, const Triangles& triangles,
                                         double spacing) {
   std::vector<Kernel::Point_3> samples;
-  std::vector<bool> used(static_cast<std::size_t>(mesh.V.rows()), false);
-  for (const int v : mesh.F.reshaped()) used[static_cast<std::size_t>(v)] = true;
+  std::vector<bool> used(mesh.V.rows(), false);
+  for (const int v : mesh.F.reshaped()) used[v] = true;
   for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
-    if (!used[static_cast<std::size_t>(v)]) continue;
+    if (!used[v]) continue;
     samples.emplace_back(mesh.V(v, 0), mesh.V(v, 1), mesh.V(v, 2));
   }
   for (const Kernel::Triangle_3& t : triangles) {

@@ -72,18 +72,18 @@ UnfoldedSurface::UnfoldedSurface(TriMesh surface) : mesh_(std::move(surface)) {
     const auto& length = triangles_.back().length;
     const double longest = std::max({length[0], length[1], length[2]});
     for (const int c : corner) {
-      ++face_offset_[static_cast<std::size_t>(c) + 1];
-      double& known = longest_edge_[static_cast<std::size_t>(c)];
+      ++face_offset_[c + 1];
+      double& known = longest_edge_[c];
       known = std::max(known, longest);
     }
   }
   for (std::size_t v = 0; v < vertices; ++v) face_offset_[v + 1] += face_offset_[v];
-  face_.resize(static_cast<std::size_t>(face_offset_.back()));
+  face_.resize(face_offset_.back());
   std::vector<int> next(face_offset_.begin(), face_offset_.end() - 1);
   for (int f = 0; f < mesh_.triangle_count(); ++f) {
     for (const int c : mesh_.F.row(f)) {
-      int& at = next[static_cast<std::size_t>(c)];
-      face_[static_cast<std::size_t>(at++)] = f;
+      int& at = next[c];
+      face_[at++] = f;
     }
   }
 }
@@ -102,8 +102,8 @@ Eigen::Vector3d UnfoldedSurface::position(const SurfacePlace& place) const {
 }
 
 std::span<const int> UnfoldedSurface::faces_of(int vertex) const {
-  const int begin = face_offset_[static_cast<std::size_t>(vertex)];
-  const int end = face_offset_[static_cast<std::size_t>(vertex) + 1];
+  const int begin = face_offset_[vertex];
+  const int end = face_offset_[vertex + 1];
   return {face_.data() + begin, static_cast<std::size_t>(end - begin)};
 }
 
@@ -124,15 +124,15 @@ SurfaceFront::SurfaceFront(const UnfoldedSurface& surface)
       is_reached_(static_cast<std::size_t>(surface.mesh().triangle_count()), 0) {}
 
 void SurfaceFront::clear() {
-  for (const int v : touched_) distance_[static_cast<std::size_t>(v)] = kFar;
-  for (const int f : reached_) is_reached_[static_cast<std::size_t>(f)] = 0;
+  for (const int v : touched_) distance_[v] = kFar;
+  for (const int f : reached_) is_reached_[f] = 0;
   touched_.clear();
   reached_.clear();
   heap_.clear();
 }
 
 void SurfaceFront::offer(int vertex, double distance) {
-  double& known = distance_[static_cast<std::size_t>(vertex)];
+  double& known = distance_[vertex];
   // Less than round-off is no news: triangles around a vertex could exchange it for ever.
   if (!(distance < known - 1e-12 * reach_)) return;
   const double chord = (surface_.mesh().V.row(vertex).transpose() - source_).norm();
@@ -151,13 +151,12 @@ void SurfaceFront::cross(int face, std::size_t from, double distance) {
     const std::size_t a = (c + 1) % 3, b = (c + 2) % 3;
     const int vertex = surface_.mesh().F(face, static_cast<int>(c));
     const double edge = t.length[k == 1 ? from : c];
-    const double known = distance_[static_cast<std::size_t>(vertex)];
+    const double known = distance_[vertex];
     offer(vertex, distance + edge);
     // A straight way across the edge to c meets the edge (from, c) at an angle of at most that at
     // c. By the law of cosines it is then no shorter than the one to `from`, unless c is very near.
     if (known <= distance && edge <= 2 * (distance - edge) * t.cosine[c]) continue;
-    const double there =
-        distance_[static_cast<std::size_t>(surface_.mesh().F(face, static_cast<int>(other)))];
+    const double there = distance_[surface_.mesh().F(face, static_cast<int>(other))];
     Eigen::Vector2d centre;
     if (centre_behind(t.corner[a], t.corner[b], t.length[a], a == from ? distance : there,
                       a == from ? there : distance, centre) &&
@@ -169,8 +168,8 @@ void SurfaceFront::cross(int face, std::size_t from, double distance) {
 
 void SurfaceFront::visit(int vertex, double distance) {
   for (const int f : surface_.faces_of(vertex)) {
-    if (is_reached_[static_cast<std::size_t>(f)] == 0) {
-      is_reached_[static_cast<std::size_t>(f)] = 1;
+    if (is_reached_[f] == 0) {
+      is_reached_[f] = 1;
       reached_.push_back(f);
     }
     std::size_t from = 0;
@@ -187,7 +186,7 @@ void SurfaceFront::spread(const SurfacePlace& source, double reach) {
   source_layout_ = surface_.layout(source);
   source_ = surface_.position(source);
   reach_ = reach;
-  is_reached_[static_cast<std::size_t>(source_face_)] = 1;
+  is_reached_[source_face_] = 1;
   reached_.push_back(source_face_);
   for (std::size_t c = 0; c < 3; ++c) {
     const Eigen::Vector2d& corner = surface_.triangle(source_face_).corner[c];
@@ -197,7 +196,7 @@ void SurfaceFront::spread(const SurfacePlace& source, double reach) {
     std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
     const auto [distance, vertex] = heap_.back();
     heap_.pop_back();
-    if (distance != distance_[static_cast<std::size_t>(vertex)]) continue;
+    if (distance != distance_[vertex]) continue;
     // A triangle with a point within the reach has its corners at most an edge beyond, and those
     // get their distances across edges that end at most another one beyond.
     if (distance <= reach_ + 2 * surface_.longest_edge(vertex)) visit(vertex, distance);
@@ -207,9 +206,7 @@ void SurfaceFront::spread(const SurfacePlace& source, double reach) {
 bool SurfaceFront::is_beyond(int face, double distance) const {
   if (face == source_face_) return false;
   const auto& length = surface_.triangle(face).length;
-  const auto at = [&](int c) {
-    return distance_[static_cast<std::size_t>(surface_.mesh().F(face, c))];
-  };
+  const auto at = [&](int c) { return distance_[surface_.mesh().F(face, c)]; };
   const double farthest = std::max({at(0), at(1), at(2)});
   return farthest - std::max({length[0], length[1], length[2]}) >= distance;
 }
@@ -222,7 +219,7 @@ SurfaceFront::Within SurfaceFront::within(int face) const {
   w.source_ = source_layout_;
   for (std::size_t c = 0; c < 3; ++c) {
     const int vertex = surface_.mesh().F(face, static_cast<int>(c));
-    w.at_corner_[c] = distance_[static_cast<std::size_t>(vertex)];
+    w.at_corner_[c] = distance_[vertex];
   }
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t d = (c + 1) % 3;

@@ -30,16 +30,12 @@ class UnfoldedSurface {
     std::array<double, 3> length;  ///< of edge (c, c + 1) (m)
     std::array<double, 3> cosine;  ///< of the angle at corner c
   };
-  [[nodiscard]] const Triangle& triangle(int face) const {
-    return triangles_[static_cast<std::size_t>(face)];
-  }
+  [[nodiscard]] const Triangle& triangle(int face) const { return triangles_[face]; }
   [[nodiscard]] Eigen::Vector2d layout(const SurfacePlace& place) const;
   [[nodiscard]] Eigen::Vector3d position(const SurfacePlace& place) const;
   [[nodiscard]] std::span<const int> faces_of(int vertex) const;
   /// Longest edge of the triangles around a vertex (m).
-  [[nodiscard]] double longest_edge(int vertex) const {
-    return longest_edge_[static_cast<std::size_t>(vertex)];
-  }
+  [[nodiscard]] double longest_edge(int vertex) const { return longest_edge_[vertex]; }
   /// @throws Error  on a place that is on no triangle
   void require(const SurfacePlace& place) const;
 

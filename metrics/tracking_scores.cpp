@@ -50,7 +50,7 @@ std::vector<int> numbers_of(const std::vector<TrackedObject>& frame, const std::
                   "every id once a frame");
     }
     numbers.push_back(n);
-    ++length[static_cast<std::size_t>(n)];
+    ++length[n];
   }
   return numbers;
 }
@@ -120,14 +120,14 @@ void clear_scores(const Comparison& c, const TrackedFrames& truth, const Tracked
     Eigen::MatrixXd value = frame.similarity.array() + 10;  // the most matches before the best
     for (std::size_t i = 0; i < frame.truth.size(); ++i) {
       for (std::size_t j = 0; j < frame.found.size(); ++j) {
-        if (following[static_cast<std::size_t>(frame.truth[i])].before == frame.found[j])
+        if (following[frame.truth[i]].before == frame.found[j])
           value(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) += 1e4;
       }
     }
     const std::vector<int> column = matched(frame, value, threshold);
     for (Following& track : following) track.before = -1;
     for (std::size_t i = 0; i < column.size(); ++i) {
-      Following& track = following[static_cast<std::size_t>(frame.truth[i])];
+      Following& track = following[frame.truth[i]];
       if (column[i] < 0) {
         track.interrupted = track.last >= 0;
         continue;
@@ -159,7 +159,7 @@ std::vector<std::pair<int, int>> lifetimes(const Comparison& c, bool of_truth) {
                                           {-1, -1});
   for (std::size_t f = 0; f < c.frames.size(); ++f) {
     for (const int n : of_truth ? c.frames[f].truth : c.frames[f].found) {
-      auto& [first, last] = result[static_cast<std::size_t>(n)];
+      auto& [first, last] = result[n];
       if (first < 0) first = static_cast<int>(f);
       last = static_cast<int>(f);
     }
@@ -184,7 +184,7 @@ void identity_scores(const Comparison& c, double threshold, TrackingScores& s) {
   double both = 0, error = 0, pairs = 0;
   for (std::size_t t = 0; t < partner.size(); ++t) {
     if (partner[t] < 0 || common(static_cast<Eigen::Index>(t), partner[t]) <= 0) continue;
-    const auto& found = found_life[static_cast<std::size_t>(partner[t])];
+    const auto& found = found_life[partner[t]];
     both += common(static_cast<Eigen::Index>(t), partner[t]);
     error +=
         std::abs(true_life[t].first - found.first) + std::abs(true_life[t].second - found.second);
@@ -208,16 +208,13 @@ Eigen::MatrixXd track_alignment(const Comparison& c) {
     for (Eigen::Index i = 0; i < S.rows(); ++i) {
       for (Eigen::Index j = 0; j < S.cols(); ++j) {
         const double all = row(i) + column(j) - S(i, j);
-        if (all > 0)
-          common(frame.truth[static_cast<std::size_t>(i)],
-                 frame.found[static_cast<std::size_t>(j)]) += S(i, j) / all;
+        if (all > 0) common(frame.truth[i], frame.found[j]) += S(i, j) / all;
       }
     }
   }
   for (Eigen::Index t = 0; t < common.rows(); ++t) {
     for (Eigen::Index k = 0; k < common.cols(); ++k)
-      common(t, k) /= c.true_length[static_cast<std::size_t>(t)] +
-                      c.found_length[static_cast<std::size_t>(k)] - common(t, k);
+      common(t, k) /= c.true_length[t] + c.found_length[k] - common(t, k);
   }
   return common;
 }
@@ -233,22 +230,19 @@ void higher_order_scores(const Comparison& c, TrackingScores& s) {
       Eigen::MatrixXd value(frame.similarity.rows(), frame.similarity.cols());
       for (Eigen::Index i = 0; i < value.rows(); ++i) {
         for (Eigen::Index j = 0; j < value.cols(); ++j)
-          value(i, j) = 1e3 +
-                        alignment(frame.truth[static_cast<std::size_t>(i)],
-                                  frame.found[static_cast<std::size_t>(j)]) +
+          value(i, j) = 1e3 + alignment(frame.truth[i], frame.found[j]) +
                         1e-3 * frame.similarity(i, j);  // the most matches before the best
       }
       const std::vector<int> column = matched(frame, value, threshold);
       for (std::size_t i = 0; i < column.size(); ++i) {
         if (column[i] < 0) continue;
         ++matches;
-        ++together[{frame.truth[i], frame.found[static_cast<std::size_t>(column[i])]}];
+        ++together[{frame.truth[i], frame.found[column[i]]}];
       }
     }
     double association = 0;
     for (const auto& [pair, count] : together) {
-      const int all = c.true_length[static_cast<std::size_t>(pair.first)] +
-                      c.found_length[static_cast<std::size_t>(pair.second)] - count;
+      const int all = c.true_length[pair.first] + c.found_length[pair.second] - count;
       association += static_cast<double>(count) * count / all;
     }
     const double nothing = s.true_objects + s.found_objects == 0 ? 1 : 0;

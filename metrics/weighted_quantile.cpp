@@ -16,7 +16,7 @@ double weighted_quantile(const Eigen::VectorXd& values, const Eigen::VectorXd& w
                     " weights",
                 "weighted quantile", "equal numbers, at least one");
   }
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(values.size()));
+  std::vector<Eigen::Index> order(values.size());
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](Eigen::Index a, Eigen::Index b) { return values(a) < values(b); });

@@ -6,15 +6,13 @@
 #include <string_view>
 #include <vector>
 
-#include "baselines/details/point_grid.h"
 #include "baselines/details/rest_density.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "models/details/point_grid.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// A dart in a triangle of M_d that hit nothing so far.
 struct Dart {
@@ -73,7 +71,7 @@ class DartThrowing final : public DetailMethod {
   [[nodiscard]] bool has_room(int t) const {
     double least = std::numeric_limits<double>::infinity();
     for (const int c : now_.mesh.corners(t))
-      least = std::min(least, radius_at(now_.site[index(c)].at.face));
+      least = std::min(least, radius_at(now_.site[c].at.face));
     return circumradius(now_.mesh, t) > least;
   }
 
@@ -98,7 +96,7 @@ class DartThrowing final : public DetailMethod {
   }
 
   [[nodiscard]] std::vector<Dart> triangles_with_room() const {
-    std::vector<char> room(index(now_.mesh.triangle_slots()), 0);
+    std::vector<char> room(now_.mesh.triangle_slots(), 0);
     parallel_blocks(room.size(), 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t)
         room[t] = now_.mesh.triangle_alive(static_cast<int>(t)) && has_room(static_cast<int>(t));
@@ -133,7 +131,7 @@ class DartThrowing final : public DetailMethod {
       const NewDetail born{dart.barycentric, dart.at,
                            newborn_like_neighbour(now_, dart.triangle, dart.barycentric, dart.at)};
       const int site = insert_details(now_, dart.triangle, {&born, 1})[0];
-      grid.add(now_.position[index(site)], normal_of_face(dart.at.face, *now_.surface, now_.x));
+      grid.add(now_.position[site], normal_of_face(dart.at.face, *now_.surface, now_.x));
       ++inserted_;
     }
   }
@@ -176,4 +174,4 @@ std::unique_ptr<Process> make_dart_throwing_process(const DetailScene& scene,
   });
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

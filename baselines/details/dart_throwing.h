@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <memory>
 
-#include "baselines/details/detail_process.h"
 #include "core/options.h"
+#include "models/details/detail_process.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Poisson dart throwing where the surface is stretched: details stay where they are; every frame
 /// darts are thrown into the triangles of M_d that have room (circumradius above r), and one that
@@ -38,4 +38,4 @@ std::unique_ptr<DetailMethod> make_dart_throwing(const DetailScene& scene,
 std::unique_ptr<Process> make_dart_throwing_process(const DetailScene& scene,
                                                     const DartThrowingOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

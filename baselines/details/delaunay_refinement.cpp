@@ -1,6 +1,6 @@
 #include "baselines/details/delaunay_refinement.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 class DelaunayRefinement final : public DetailMethod {
@@ -67,4 +67,4 @@ std::unique_ptr<Process> make_delaunay_refinement_process(
   });
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "baselines/details/density_moves.h"
-#include "baselines/details/detail_process.h"
+#include "models/details/detail_process.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Delaunay refinement (Chew 1989; farthest-point insertion): details stay where they are; new ones
 /// come at circumcentres of triangles of M_d - the points farthest from all details around -,
@@ -33,4 +33,4 @@ std::unique_ptr<DetailMethod> make_delaunay_refinement(const DetailScene& scene,
 std::unique_ptr<Process> make_delaunay_refinement_process(const DetailScene& scene,
                                                           const DelaunayRefinementOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

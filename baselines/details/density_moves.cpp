@@ -10,10 +10,8 @@
 
 #include "core/parallel.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// A new vertex keeps this much away from the rim of its triangle (barycentric).
 constexpr double kInside = 1e-3;
@@ -79,8 +77,8 @@ double spacing_of(const DetailMesh& d, int t, const std::vector<double>& spacing
   double sum = 0;
   int known = 0;
   for (const int c : d.mesh.corners(t)) {
-    if (!std::isfinite(spacing[index(c)])) continue;
-    sum += spacing[index(c)];
+    if (!std::isfinite(spacing[c])) continue;
+    sum += spacing[c];
     ++known;
   }
   return known > 0 ? sum / known : std::numeric_limits<double>::infinity();
@@ -119,7 +117,7 @@ void DensityMoves::measure(const Lead& lead) {
 }
 
 double DensityMoves::deficit(int site) const {
-  return budget_.deficit(budget_.patch_of(now_.site[index(site)].at));
+  return budget_.deficit(budget_.patch_of(now_.site[site].at));
 }
 
 bool DensityMoves::lacks(int t) const {
@@ -128,36 +126,36 @@ bool DensityMoves::lacks(int t) const {
 }
 
 void DensityMoves::touch(int t) {
-  for (const int c : now_.mesh.corners(t)) touched_[index(c)] = 1;
+  for (const int c : now_.mesh.corners(t)) touched_[c] = 1;
 }
 
 /// A triangle that an insertion rewrote has the new vertex, which counts as touched.
 bool DensityMoves::touched(int t) const {
   const auto corner = now_.mesh.corners(t);
-  return std::any_of(corner.begin(), corner.end(),
-                     [&](int c) { return index(c) >= touched_.size() || touched_[index(c)] != 0; });
+  return std::any_of(corner.begin(), corner.end(), [&](int c) {
+    return static_cast<std::size_t>(c) >= touched_.size() || touched_[c] != 0;
+  });
 }
 
 int DensityMoves::revive() {
   std::vector<std::pair<double, int>> fading;
   for (int i = 0; i < now_.site_slots(); ++i) {
-    const Detail& d = now_.site[index(i)];
+    const Detail& d = now_.site[i];
     if (now_.is_detail(i) && d.target_weight == 0) fading.emplace_back(-d.weight, i);
   }
   std::sort(fading.begin(), fading.end());
   int revived = 0;
   for (const auto& [weight, i] : fading) {
     if (deficit(i) < limit_) continue;
-    now_.site[index(i)].target_weight = 1;
-    budget_.add(budget_.patch_of(now_.site[index(i)].at), 1);
+    now_.site[i].target_weight = 1;
+    budget_.add(budget_.patch_of(now_.site[i].at), 1);
     ++revived;
   }
   return revived;
 }
 
 bool DensityMoves::may_fade(int site) const {
-  return now_.is_detail(site) && now_.site[index(site)].target_weight > 0 &&
-         deficit(site) <= -limit_;
+  return now_.is_detail(site) && now_.site[site].target_weight > 0 && deficit(site) <= -limit_;
 }
 
 /// Shortest edge of a site to another detail than `but`.
@@ -180,8 +178,7 @@ int DensityMoves::fade_shortest_edges(double most) {
     if (a < 0 || now_.mesh.twin(h) > h) continue;
     const int b = now_.mesh.tip(h);
     if (!may_fade(a) || !may_fade(b)) continue;
-    const double length =
-        2 * now_.mesh.length(h) / (kLatticeEdge * (spacing_[index(a)] + spacing_[index(b)]));
+    const double length = 2 * now_.mesh.length(h) / (kLatticeEdge * (spacing_[a] + spacing_[b]));
     if (length < most) order.emplace_back(length, h);
   }
   std::sort(order.begin(), order.end());
@@ -189,14 +186,14 @@ int DensityMoves::fade_shortest_edges(double most) {
   int faded = 0;
   for (const auto& [length, h] : order) {
     const int a = now_.mesh.origin(h), b = now_.mesh.tip(h);
-    if (ended[index(a)] != 0 || ended[index(b)] != 0 || !may_fade(a) || !may_fade(b)) continue;
+    if (ended[a] != 0 || ended[b] != 0 || !may_fade(a) || !may_fade(b)) continue;
     const auto crowding = [&](int site, int other) {
-      return std::tuple(second_edge(site, other), -now_.site[index(site)].birth);
+      return std::tuple(second_edge(site, other), -now_.site[site].birth);
     };
     const int gone = crowding(a, b) < crowding(b, a) ? a : b;
-    ended[index(a)] = ended[index(b)] = 1;
-    now_.site[index(gone)].target_weight = 0;
-    budget_.add(budget_.patch_of(now_.site[index(gone)].at), -1);
+    ended[a] = ended[b] = 1;
+    now_.site[gone].target_weight = 0;
+    budget_.add(budget_.patch_of(now_.site[gone].at), -1);
     ++faded;
   }
   return faded;
@@ -216,13 +213,13 @@ bool DensityMoves::insert_near(int t, double least) {
   touch(place->triangle);
   const NewDetail born{b, at, newborn_like_neighbour(now_, place->triangle, b, at)};
   const int site = insert_details(now_, place->triangle, {&born, 1})[0];
-  if (index(site) < touched_.size()) touched_[index(site)] = 1;
+  if (static_cast<std::size_t>(site) < touched_.size()) touched_[site] = 1;
   budget_.add(patch, 1);
   return true;
 }
 
 int DensityMoves::insert_at_circumcentres(double least) {
-  std::vector<double> rank(index(now_.mesh.triangle_slots()), 0);
+  std::vector<double> rank(now_.mesh.triangle_slots(), 0);
   parallel_blocks(rank.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const int t = static_cast<int>(i);
@@ -281,4 +278,4 @@ void describe(OptionVisitor& v, DensityMoveOptions& options) {
                   {.doc = "edges of M_d: distance of their ends, or along the surface"});
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "baselines/details/area_budget.h"
-#include "baselines/details/detail_mesh.h"
 #include "baselines/details/rest_density.h"
 #include "core/context.h"
 #include "core/options.h"
+#include "models/details/area_budget.h"
+#include "models/details/detail_mesh.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Edge of the equilateral lattice with one point per unit area, sqrt(2 / sqrt(3)), and the
 /// circumradius of its triangles, edge / sqrt(3): what a density asks for, in units of
@@ -44,7 +44,7 @@ struct DensityMoveOptions {
   double shortest_edge = 1;  ///< edges below may lose an end, in units of the lattice's
   int patch_details = 48;    ///< details of a patch at rest
   double dead_band = 0.1;    ///< a patch acts when off by more than 1/2 + this
-  bool anticipate = true;    ///< patches ask ahead, as `ReplicationOptions::anticipate`
+  bool anticipate = true;    ///< patches ask ahead, as `SelfReplicatingOptions::anticipate`
   double weight_rate = 0.1;  ///< largest change of a weight in a frame
   LengthRule lengths = LengthRule::chord;
 };
@@ -105,4 +105,4 @@ class DensityMoves {
   std::vector<char> touched_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -8,10 +8,8 @@
 #include "baselines/details/voronoi_cell.h"
 #include "core/parallel.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Details that move towards each other by this part of a height do not turn a triangle over.
 constexpr double kLargestSlide = 0.25;
@@ -80,13 +78,13 @@ class LloydRelaxation final : public DetailMethod {
                                CellChart& chart) const {
     chart.lay_out(now_, site);
     const VoronoiCell cell = chart.cell(now_, spacing);
-    if (!(cell.reach <= kBareRadius * spacing[index(site)])) return {};
+    if (!(cell.reach <= kBareRadius * spacing[site])) return {};
     Eigen::Vector2d way = options_.relaxation * cell.centroid;
     const double most = kLargestSlide * chart.least_height();
     if (way.norm() > most) way *= most / way.norm();
     const auto place = chart.point_at(way);
     if (!place || !(way.norm() > 0)) return {};
-    const Detail& from = now_.site[index(site)];
+    const Detail& from = now_.site[site];
     Slide slide;
     slide.to = surface_point_in(now_, place->triangle, place->barycentric);
     slide.length = way.norm();
@@ -123,7 +121,7 @@ class LloydRelaxation final : public DetailMethod {
     for (int t = 0; t < now_.mesh.triangle_slots(); ++t) {
       if (!now_.mesh.triangle_alive(t)) continue;
       double sum = 0;
-      for (const int c : now_.mesh.corners(t)) sum += density_.at(now_.site[index(c)].at.face);
+      for (const int c : now_.mesh.corners(t)) sum += density_.at(now_.site[c].at.face);
       now_.mesh.set_density(t, sum / 3);
     }
   }
@@ -162,4 +160,4 @@ std::unique_ptr<Process> make_lloyd_relaxation_process(const DetailScene& scene,
   });
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "baselines/details/density_moves.h"
-#include "baselines/details/detail_process.h"
+#include "models/details/detail_process.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Lloyd relaxation on the surface (Lloyd 1982; Du, Faber, Gunzburger 1999): details come at
 /// circumcentres and fade at short edges as in Delaunay refinement, and in every frame in which the
@@ -41,4 +41,4 @@ std::unique_ptr<DetailMethod> make_lloyd_relaxation(const DetailScene& scene,
 std::unique_ptr<Process> make_lloyd_relaxation_process(const DetailScene& scene,
                                                        const LloydRelaxationOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 class NaiveStretch final : public DetailMethod {
@@ -47,4 +47,4 @@ std::unique_ptr<Process> make_naive_stretch_process(const DetailScene& scene,
   });
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "baselines/details/detail_process.h"
 #include "core/options.h"
+#include "models/details/detail_process.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Naive stretch: details go where the surface goes, none comes, none leaves. What every other
 /// method is compared with: nothing pops, and the spacing follows the stretch (a factor s along one
@@ -23,4 +23,4 @@ std::unique_ptr<DetailMethod> make_naive_stretch(const DetailScene& scene,
 std::unique_ptr<Process> make_naive_stretch_process(const DetailScene& scene,
                                                     const NaiveStretchOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -5,15 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include "baselines/details/point_grid.h"
 #include "baselines/details/rest_density.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "models/details/point_grid.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Darts of a batch that share a random stream.
 constexpr std::size_t kBlock = 256;
@@ -107,7 +105,7 @@ class Rescatter final : public DetailMethod {
   [[nodiscard]] std::vector<Detail> scatter() {
     const std::vector<double> sums = partial_sums();
     const auto wanted = static_cast<std::size_t>(std::max(3.0, std::round(sums.back())));
-    const std::size_t most = wanted * index(options_.darts_per_detail);
+    const std::size_t most = wanted * static_cast<std::size_t>(options_.darts_per_detail);
     PointGrid grid(options_.radius * density_.mean_spacing(), wanted);
     std::vector<Detail> scattered;
     std::vector<Dart> batch(std::max(wanted, kBlock));
@@ -179,4 +177,4 @@ std::unique_ptr<Process> make_rescatter_process(const DetailScene& scene,
   });
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <memory>
 
-#include "baselines/details/detail_process.h"
 #include "core/options.h"
+#include "models/details/detail_process.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Re-scatter: every frame all details are thrown away and scattered anew on the deformed surface
 /// at the density they had at rest (Poisson-disk by dart throwing, seeded per frame), and M_d is
@@ -33,4 +33,4 @@ std::unique_ptr<DetailMethod> make_rescatter(const DetailScene& scene,
 std::unique_ptr<Process> make_rescatter_process(const DetailScene& scene,
                                                 const RescatterOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -6,10 +6,8 @@
 #include <queue>
 #include <tuple>
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Averages over neighbours: with the star itself, triangles within three edges.
 constexpr int kRounds = 2;
@@ -28,8 +26,8 @@ std::vector<Surroundings> stars(const DetailMesh& d) {
     if (std::any_of(corner.begin(), corner.end(), [&](int c) { return !d.is_detail(c); })) continue;
     const double area = d.mesh.area(t);
     for (const int c : corner) {
-      star[index(c)].details += 0.5;
-      star[index(c)].area += area;
+      star[c].details += 0.5;
+      star[c].area += area;
     }
   }
   return star;
@@ -41,11 +39,11 @@ std::vector<double> density_of_sites(const DetailMesh& d) {
   for (int round = 0; round < kRounds; ++round) {
     std::vector<Surroundings> sum = here;
     for (int i = 0; i < d.site_slots(); ++i) {
-      if (d.kind[index(i)] == SiteKind::empty) continue;
+      if (d.kind[i] == SiteKind::empty) continue;
       d.mesh.neighbours(i, neighbours);
       for (const int j : neighbours) {
-        sum[index(i)].details += here[index(j)].details;
-        sum[index(i)].area += here[index(j)].area;
+        sum[i].details += here[j].details;
+        sum[i].area += here[j].area;
       }
     }
     here = std::move(sum);
@@ -82,8 +80,8 @@ void RestDensity::spread(const DetailMesh& d, const std::vector<double>& of_site
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> queue;
   for (int i = 0; i < d.site_slots(); ++i) {
     if (!d.is_detail(i)) continue;
-    const int face = d.site[index(i)].at.face;
-    queue.emplace((centre_of(face, d) - d.position[index(i)]).norm(), face, i);
+    const int face = d.site[i].at.face;
+    queue.emplace((centre_of(face, d) - d.position[i]).norm(), face, i);
   }
   const double mean = mean_edge(d);
   const double reach = mean > 0 ? kBareAfter * mean : std::numeric_limits<double>::infinity();
@@ -91,12 +89,12 @@ void RestDensity::spread(const DetailMesh& d, const std::vector<double>& of_site
   while (!queue.empty()) {
     const auto [distance, face, site] = queue.top();
     queue.pop();
-    if (done[index(face)] != 0) continue;
-    done[index(face)] = 1;
-    density_[index(face)] = of_site[index(site)];
+    if (done[face] != 0) continue;
+    done[face] = 1;
+    density_[face] = of_site[site];
     const Eigen::Vector3d centre = centre_of(face, d);
-    for (const int next : d.surface->across[index(face)]) {
-      if (next < 0 || done[index(next)] != 0) continue;
+    for (const int next : d.surface->across[face]) {
+      if (next < 0 || done[next] != 0) continue;
       const double there = distance + (centre_of(next, d) - centre).norm();
       if (there <= reach) queue.emplace(there, next, site);
     }
@@ -119,7 +117,7 @@ double RestDensity::spacing(int face) const {
 }
 
 double RestDensity::stretch(int face, const DetailMesh& now) {
-  return area_of_face(face, *now.surface, now.x) / now.surface->rest_area[index(face)];
+  return area_of_face(face, *now.surface, now.x) / now.surface->rest_area[face];
 }
 
 double RestDensity::expected(const DetailMesh& now) const {
@@ -138,7 +136,7 @@ Detail newborn_like_neighbour(const DetailMesh& d, int t, const Eigen::Vector3d&
     const double b = barycentric[static_cast<Eigen::Index>(k)];
     if (!d.is_detail(corner[k]) || b <= nearest) continue;
     nearest = b;
-    const Detail& like = d.site[index(corner[k])];
+    const Detail& like = d.site[corner[k]];
     born.type = like.type;
     const Eigen::Vector3d tangent =
         tangent_direction(like.at.face, like.tangent_angle, *d.surface, d.x);
@@ -156,4 +154,4 @@ double circumradius(const IntrinsicTriangulation& mesh, int t) {
   return mesh.length(3 * t) * mesh.length(3 * t + 1) * mesh.length(3 * t + 2) / (4 * area);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

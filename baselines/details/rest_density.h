@@ -3,9 +3,9 @@
 #include <limits>
 #include <vector>
 
-#include "baselines/details/detail_mesh.h"
+#include "models/details/detail_mesh.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// How many details per area each face of the surface had at rest: what the baselines restore.
 ///
@@ -17,7 +17,7 @@ class RestDensity {
  public:
   explicit RestDensity(const DetailMesh& original);
 
-  [[nodiscard]] double at(int face) const { return density_[static_cast<std::size_t>(face)]; }
+  [[nodiscard]] double at(int face) const { return density_[face]; }
   /// 1 / sqrt(density) (m); infinity on a bare face.
   [[nodiscard]] double spacing(int face) const;
   /// Area now over area at rest.
@@ -44,4 +44,4 @@ Detail newborn_like_neighbour(const DetailMesh& details, int t, const Eigen::Vec
 /// Circumradius of a triangle of M_d from its lengths (m); infinity for one of no area.
 double circumradius(const IntrinsicTriangulation& mesh, int t);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -5,10 +5,8 @@
 #include <limits>
 #include <numbers>
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -105,7 +103,7 @@ void CellChart::cut_by_neighbours(const DetailMesh& d) {
 }
 
 VoronoiCell CellChart::cell(const DetailMesh& d, const std::vector<double>& spacing) {
-  const double most = 2 * kBareRadius * spacing[index(site_)];
+  const double most = 2 * kBareRadius * spacing[site_];
   corner_ = {{{-most, -most}, -1}, {{most, -most}, -1}, {{most, most}, -1}, {{-most, most}, -1}};
   cut_by_neighbours(d);
   return integrate(spacing);
@@ -114,7 +112,7 @@ VoronoiCell CellChart::cell(const DetailMesh& d, const std::vector<double>& spac
 /// Density between corners is linear, that of a corner the mean over the details it is equally near
 /// to; a fan of triangles around the detail.
 VoronoiCell CellChart::integrate(const std::vector<double>& spacing) const {
-  const auto density = [&](int site) { return 1 / (spacing[index(site)] * spacing[index(site)]); };
+  const auto density = [&](int site) { return 1 / (spacing[site] * spacing[site]); };
   const auto weight = [&](std::size_t k) {
     double sum = density(site_);
     int known = 1;
@@ -158,4 +156,4 @@ std::optional<MeshPoint> CellChart::point_at(const Eigen::Vector2d& place) const
   return {};
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

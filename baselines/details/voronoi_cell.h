@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "baselines/details/density_moves.h"
-#include "baselines/details/detail_mesh.h"
+#include "models/details/detail_mesh.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Cell of a detail in the Voronoi diagram on the surface, laid out in the plane around it.
 struct VoronoiCell {
@@ -58,4 +58,4 @@ class CellChart {
   std::vector<int> around_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::details

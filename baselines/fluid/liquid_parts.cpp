@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 TriMesh box_mesh(const LiquidShape& shape) {
@@ -32,7 +32,7 @@ TriMesh revolved(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis,
   mesh.V.resize(rings * kAround + 2, 3);
   mesh.F.resize(2 * kAround * rings, 3);
   for (int r = 0; r < rings; ++r) {
-    const Eigen::Vector2d& at = profile[static_cast<std::size_t>(r)];
+    const Eigen::Vector2d& at = profile[r];
     for (int s = 0; s < kAround; ++s) {
       const double angle = 2 * std::numbers::pi * s / kAround;
       mesh.V.row(r * kAround + s) =
@@ -135,4 +135,4 @@ Part particles_part(const Tank& tank, const LiquidParticles& particles) {
   return part;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -2,11 +2,11 @@
 
 #include <span>
 
-#include "baselines/fluid/particles.h"
-#include "baselines/fluid/tank.h"
 #include "core/frame.h"
+#include "models/fluid/particles.h"
+#include "models/fluid/tank.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// The tank's solids as triangles to look at; cell array "solid": their index. A half space has
 /// none.
@@ -16,4 +16,4 @@ Part solids_part(const Tank& tank, std::span<const PlacedSolid> placed);
 /// Particles as points with their velocity, in world coordinates.
 Part particles_part(const Tank& tank, const LiquidParticles& particles);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

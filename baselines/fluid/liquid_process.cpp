@@ -1,16 +1,17 @@
+#include "baselines/fluid/liquid_process.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
-#include "baselines/fluid/liquid.h"
 #include "baselines/fluid/liquid_parts.h"
-#include "baselines/fluid/transfer.h"
 #include "core/error.h"
 #include "core/state_bytes.h"
+#include "models/fluid/transfer.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 /// What the substeps of a frame left.
@@ -139,4 +140,4 @@ std::unique_ptr<Process> make_liquid(const Tank& tank, const LiquidOptions& opti
   return std::make_unique<LiquidProcess>(tank, options);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 double fastest_particle(const LiquidParticles& particles, double time) {
   constexpr std::size_t kBlock = 16384;
@@ -45,4 +45,4 @@ double fastest_point(const PlacedSolid& solid) {
   return linear + angular * reach.norm();
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

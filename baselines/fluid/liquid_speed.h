@@ -1,9 +1,9 @@
 #pragma once
 
-#include "baselines/fluid/particles.h"
-#include "baselines/fluid/tank.h"
+#include "models/fluid/particles.h"
+#include "models/fluid/tank.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// Largest speed of a particle (m/s).
 /// @throws Error  when a velocity is not finite; names `time`
@@ -12,4 +12,4 @@ double fastest_particle(const LiquidParticles& particles, double time);
 /// Bound of the speed of a solid's points: of its centre plus that of its turn (m/s).
 double fastest_point(const PlacedSolid& solid);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

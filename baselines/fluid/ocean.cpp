@@ -1,16 +1,23 @@
 #include "baselines/fluid/ocean.h"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <complex>
 #include <cstdlib>
+#include <cstring>
 #include <numbers>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "baselines/fluid/ocean_transform.h"
+#include "core/error.h"
 #include "core/parallel.h"
 #include "core/random.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using Complex = std::complex<double>;
@@ -216,4 +223,294 @@ TriMesh Ocean::surface(double time, Eigen::MatrixX3d* velocity) const {
   return mesh;
 }
 
-}  // namespace geoprior
+namespace {
+
+constexpr int kMostSamples = 4096;
+constexpr int kMostVerticesAlong = 8192;
+
+void require(bool holds, const char* option, double value, const std::string& where,
+             const std::string& allowed) {
+  if (holds) return;
+  throw Error(std::string(option) + " is " + std::to_string(value), where, allowed);
+}
+
+}  // namespace
+
+void describe(OptionVisitor& v, OceanOptions& o) {
+  static constexpr std::array<std::string_view, 4> kSpectra{"phillips", "pierson-moskowitz",
+                                                            "jonswap", "tma"};
+  static constexpr std::array<std::string_view, 4> kSpreadings{"none", "cosine-squared",
+                                                               "mitsuyasu", "one-sided"};
+  describe_choice(v, "spectrum", o.spectrum, kSpectra, {.doc = "S(omega)"});
+  describe_choice(v, "spreading", o.spreading, kSpreadings,
+                  {.doc = "D(theta): all directions; 2/pi cos^2; cos^2s(theta/2); downwind half"});
+  v.value(
+      "samples", o.samples,
+      {.doc = "N, along each edge of the patch, a power of two", .min = 4, .max = kMostSamples});
+  v.value("size", o.size, {.doc = "L, edge of the patch", .unit = "m", .min = 1e-6, .max = 1e7});
+  v.value("wind_speed", o.wind_speed,
+          {.doc = "U, 10 m above the sea", .unit = "m/s", .min = 1e-3, .max = 200});
+  v.value("wind_direction_deg", o.wind_direction_deg,
+          {.doc = "where it blows to, from +x towards +y", .unit = "deg"});
+  v.value("fetch", o.fetch,
+          {.doc = "F, distance over which it blows (jonswap, tma)", .unit = "m", .min = 1e-3});
+  v.value("peak_enhancement", o.peak_enhancement,
+          {.doc = "gamma (jonswap, tma)", .min = 1, .max = 20});
+  v.value("depth", o.depth, {.doc = "H", .unit = "m", .min = 1e-6});
+  v.value("gravity", o.gravity, {.doc = "g", .unit = "m/s^2", .min = 1e-6});
+  v.value("choppiness", o.choppiness,
+          {.doc = "lambda, scale of the horizontal displacement", .min = 0, .max = 10});
+  v.value("smallest_wave", o.smallest_wave,
+          {.doc = "length s of waves that are damped by 1/e, shorter ones more",
+           .unit = "m",
+           .min = 0});
+  v.value("amplitude", o.amplitude,
+          {.doc = "significant wave height to scale to; absent: as the spectrum says",
+           .unit = "m",
+           .min = 0});
+  v.value("mean_level", o.mean_level, {.doc = "z of the rest surface", .unit = "m"});
+  v.value("tiles", o.tiles, {.doc = "patches along x and y", .min = 1, .max = 64});
+}
+
+void require_valid(const OceanOptions& o, const std::string& where) {
+  require(o.samples >= 4 && o.samples <= kMostSamples &&
+              std::has_single_bit(static_cast<unsigned>(o.samples)),
+          "samples", o.samples, where, "a power of two, 4 to " + std::to_string(kMostSamples));
+  require(o.tiles >= 1 && o.samples * static_cast<long>(o.tiles) <= kMostVerticesAlong, "tiles",
+          o.tiles, where,
+          "1 or more, samples * tiles at most " + std::to_string(kMostVerticesAlong));
+  const auto positive = [&](const char* option, double value) {
+    require(std::isfinite(value) && value > 0, option, value, where, "positive");
+  };
+  const auto not_negative = [&](const char* option, double value) {
+    require(std::isfinite(value) && value >= 0, option, value, where, "0 or more");
+  };
+  const auto finite = [&](const char* option, double value) {
+    require(std::isfinite(value), option, value, where, "finite");
+  };
+  positive("size", o.size);
+  positive("wind_speed", o.wind_speed);
+  positive("fetch", o.fetch);
+  positive("depth", o.depth);
+  positive("gravity", o.gravity);
+  not_negative("choppiness", o.choppiness);
+  not_negative("smallest_wave", o.smallest_wave);
+  if (o.amplitude) not_negative("amplitude", *o.amplitude);
+  finite("wind_direction_deg", o.wind_direction_deg);
+  finite("mean_level", o.mean_level);
+  require(std::isfinite(o.peak_enhancement) && o.peak_enhancement >= 1, "peak_enhancement",
+          o.peak_enhancement, where, "1 or more");
+}
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kPhillipsAlpha = 8.1e-3;
+constexpr double kOnTheJump = 1e-12;
+
+double square(double x) { return x * x; }
+
+/// dw/dk of w^2 = g k tanh(k H).
+double group_velocity(double k, double omega, const OceanOptions& o) {
+  const double kh = k * o.depth;
+  const double t = std::tanh(kh);
+  return o.gravity / (2 * omega) * (t + kh * (1 - t * t));
+}
+
+/// Peak of a sea that the wind has raised as high as it can: 0.87 g/U of Pierson and Moskowitz, at
+/// which 4 beta (w0/w)^4 = 5 puts it.
+constexpr double kDevelopedOmega = 0.87;
+constexpr double kDevelopedBeta = 1.291;
+
+/// X = g F / U^2.
+double dimensionless_fetch(const OceanOptions& o) {
+  return o.gravity * o.fetch / square(o.wind_speed);
+}
+
+double peak_frequency(const OceanOptions& o) {
+  const double scale = o.gravity / o.wind_speed;
+  if (o.spectrum == SpectrumKind::jonswap || o.spectrum == SpectrumKind::tma) {
+    return 2 * kPi * 3.5 * scale * std::pow(dimensionless_fetch(o), -0.33);
+  }
+  return kDevelopedOmega * std::pow(4 * kDevelopedBeta / 5, 0.25) * scale;
+}
+
+/// alpha g^2 / w^5 exp(-beta (w0/w)^4).
+double alpha_beta(double omega, double alpha, double beta, double omega0, double g) {
+  return alpha * square(g) / std::pow(omega, 5) * std::exp(-beta * square(square(omega0 / omega)));
+}
+
+double jonswap(double omega, const OceanOptions& o) {
+  const double alpha = 0.076 * std::pow(dimensionless_fetch(o), -0.22);
+  const double peak = peak_frequency(o);
+  const double sigma = omega <= peak ? 0.07 : 0.09;
+  const double bell = std::exp(-square((omega - peak) / (sigma * peak)) / 2);
+  return alpha_beta(omega, alpha, 1.25, peak, o.gravity) * std::pow(o.peak_enhancement, bell);
+}
+
+/// Kitaigorodskii's factor: the spectrum keeps its shape in k, not in w, when the water gets
+/// shallow: (k^-3 dk/dw) over the same in deep water.
+double depth_factor(double k, double depth) {
+  const double kh = k * depth;
+  if (kh > 20) return 1;
+  return square(std::tanh(kh)) / (1 + 2 * kh / std::sinh(2 * kh));
+}
+
+/// Integral of P over the directions, per k dk: F(k) with m0 = int F(k) k dk.
+double omnidirectional(double k, double omega, const OceanOptions& o) {
+  if (o.spectrum == SpectrumKind::phillips) {
+    const double longest = square(o.wind_speed) / o.gravity;
+    return kPhillipsAlpha / 2 * std::exp(-1 / square(k * longest)) / square(square(k));
+  }
+  double s = 0;
+  if (o.spectrum == SpectrumKind::pierson_moskowitz) {
+    s = alpha_beta(omega, kPhillipsAlpha, kDevelopedBeta,
+                   kDevelopedOmega * o.gravity / o.wind_speed, o.gravity);
+  } else {
+    s = jonswap(omega, o);
+    if (o.spectrum == SpectrumKind::tma) s *= depth_factor(k, o.depth);
+  }
+  return s * group_velocity(k, omega, o) / k;
+}
+
+/// D(theta) = G(s) cos^2s(theta/2), G = Gamma(s + 1) / (2 sqrt(pi) Gamma(s + 1/2)).
+double mitsuyasu(double cosine, double omega, const OceanOptions& o) {
+  const double peak = peak_frequency(o);
+  const double s = 11.5 * std::pow(o.wind_speed * peak / o.gravity, -2.5) *
+                   std::pow(omega / peak, omega <= peak ? 5 : -2.5);
+  // Stirling's series where the Gamma function would overflow; relative error 4e-8 at s = 50.
+  const double ratio =
+      s > 50 ? std::sqrt(s + 0.25 + 1 / (32 * s)) : std::tgamma(s + 1) / std::tgamma(s + 0.5);
+  return ratio / (2 * std::sqrt(kPi)) * std::pow(std::max(0.0, (1 + cosine) / 2), s);
+}
+
+/// D(theta), integral 1 over the circle.
+double spreading(double cosine, double omega, const OceanOptions& o) {
+  switch (o.spreading) {
+    case SpreadingKind::none:
+      return 1 / (2 * kPi);
+    case SpreadingKind::cosine_squared:
+      return cosine > 0 ? 2 / kPi * square(cosine) : 0;
+    case SpreadingKind::mitsuyasu:
+      return mitsuyasu(cosine, omega, o);
+    case SpreadingKind::one_sided:
+      // Half of the value on the jump, so that sums over a grid of modes do not lose its column.
+      if (std::abs(cosine) < kOnTheJump) return 1 / (2 * kPi);
+      return cosine > 0 ? 1 / kPi : 0;
+  }
+  return 0;
+}
+
+}  // namespace
+
+double ocean_frequency(const OceanOptions& options, double k) {
+  return std::sqrt(options.gravity * k * std::tanh(k * options.depth));
+}
+
+double ocean_spectrum(const OceanOptions& options, const Eigen::Vector2d& k) {
+  const double length = k.norm();
+  if (!(length > 0)) return 0;
+  const double omega = ocean_frequency(options, length);
+  const double angle = options.wind_direction_deg * kPi / 180;
+  const double cosine =
+      std::clamp(k.dot(Eigen::Vector2d(std::cos(angle), std::sin(angle))) / length, -1.0, 1.0);
+  const double damping = std::exp(-square(length * options.smallest_wave / (2 * kPi)));
+  return omnidirectional(length, omega, options) * spreading(cosine, omega, options) * damping;
+}
+
+namespace {
+
+double folded_triangles(const TriMesh& mesh) {
+  int folded = 0;
+  for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
+    const Eigen::RowVector3d a = mesh.V.row(mesh.F(t, 0));
+    const Eigen::RowVector3d u = mesh.V.row(mesh.F(t, 1)) - a, v = mesh.V.row(mesh.F(t, 2)) - a;
+    if (!(u.x() * v.y() - u.y() * v.x() > 0)) ++folded;
+  }
+  return folded;
+}
+
+class OceanProcess final : public Process {
+ public:
+  OceanProcess(const OceanOptions& options, std::vector<double> times)
+      : options_(options), times_(std::move(times)) {
+    require_valid(options_, "ocean");
+  }
+
+  void run(FrameSink& sink, RunContext& context, const std::optional<State>& resume) override {
+    const Ocean ocean(options_, context.seed());
+    const int count = static_cast<int>(times_.size());
+    for (int i = resume ? frame_in(*resume) : 0; i < count; ++i) {
+      if (context.stop_requested()) return;
+      sink.frame(frame(ocean, times_[i], context));
+      context.progress(static_cast<double>(i + 1) / count);
+      sink.checkpoint(state_of(i + 1));
+    }
+  }
+
+ private:
+  static State state_of(int next_frame) {
+    State state(sizeof next_frame);
+    std::memcpy(state.data(), &next_frame, sizeof next_frame);
+    return state;
+  }
+
+  static int frame_in(const State& state) {
+    int next_frame = 0;
+    if (state.size() != sizeof next_frame) throw Error("is no state of an ocean", "checkpoint");
+    std::memcpy(&next_frame, state.data(), sizeof next_frame);
+    return next_frame;
+  }
+
+  [[nodiscard]] Frame frame(const Ocean& ocean, double time, RunContext& context) const {
+    Frame frame;
+    frame.parameter = time;
+    Eigen::MatrixX3d velocity;
+    TriMesh mesh;
+    {
+      const Phase phase(context, "synthesis");
+      mesh = ocean.surface(time, &velocity);
+      frame.parts["samples"] = samples(ocean, time);
+    }
+    frame.diagnostics["folded_triangles"] = folded_triangles(mesh);
+    Part& part = frame.parts["surface"];
+    part.points = std::move(mesh.V);
+    part.triangles = std::move(mesh.F);
+    part.arrays.push_back({"velocity", "m/s", NamedArray::On::points, std::move(velocity)});
+    frame.tables["sea"] = sea(ocean);
+    return frame;
+  }
+
+  [[nodiscard]] Part samples(const Ocean& ocean, double time) const {
+    const double spacing = options_.size / options_.samples;
+    Part grid;
+    grid.kind = Part::Kind::grid;
+    grid.grid_size = {options_.samples, options_.samples, 1};
+    grid.grid_origin = {0, 0, options_.mean_level};
+    grid.grid_spacing = {spacing, spacing, 1};
+    grid.arrays.push_back({"height", "m", NamedArray::On::points, ocean.heights(time)});
+    grid.arrays.push_back({"rate", "m/s", NamedArray::On::points, ocean.velocities(time).col(2)});
+    return grid;
+  }
+
+  [[nodiscard]] FrameTable sea(const Ocean& ocean) const {
+    FrameTable table;
+    table.columns = {"depth [m]", "gravity [m/s^2]", "wind_direction [deg]",
+                     "expected_variance [m^2]"};
+    table.rows.resize(1, 4);
+    table.rows << options_.depth, options_.gravity, options_.wind_direction_deg,
+        ocean.expected_variance();
+    return table;
+  }
+
+  OceanOptions options_;
+  std::vector<double> times_;
+};
+
+}  // namespace
+
+std::unique_ptr<Process> make_ocean(const OceanOptions& options, std::vector<double> times) {
+  return std::make_unique<OceanProcess>(options, std::move(times));
+}
+
+}  // namespace geoprior::fluid

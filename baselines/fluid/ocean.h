@@ -10,7 +10,7 @@
 #include "core/method.h"
 #include "core/options.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 enum class SpectrumKind { phillips, pierson_moskowitz, jonswap, tma };
 /// Share D(theta) of the directions, theta from the wind, integral 1. `none`: all alike, 1/(2 pi);
@@ -95,4 +95,4 @@ double ocean_frequency(const OceanOptions& options, double k);
 /// @param times  strictly increasing (s)
 std::unique_ptr<Process> make_ocean(const OceanOptions& options, std::vector<double> times);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

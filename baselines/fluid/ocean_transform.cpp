@@ -5,7 +5,7 @@
 #include <mutex>
 #include <new>
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 /// FFTW's planner is one for the process and not safe to enter twice; executing plans is.
@@ -51,4 +51,4 @@ InverseTransform::Field InverseTransform::field(std::complex<double>* coefficien
   return out;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -3,7 +3,7 @@
 #include <complex>
 #include <memory>
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// Sums of waves on an N x N grid: real field from half of its Fourier coefficients,
 /// f(x) = sum over k of c(k) e^{i k x}, c(-k) = conj(c(k)).
@@ -34,4 +34,4 @@ class InverseTransform {
   void* plan_;  ///< fftw_plan; this header does not include FFTW's
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -11,8 +11,9 @@
 #include "baselines/paper/sizing.h"
 #include "core/error.h"
 #include "core/state_bytes.h"
+#include "models/paper/uniform_mesh.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 /// Edge length of the first mesh, over the largest allowed: splits and collapses both stay away.
@@ -37,7 +38,7 @@ class AdaptiveMesher final : public SheetMesher {
     return resting_state(
         sheet,
         uniform_mesh(sheet.pattern, std::max(2, static_cast<int>(std::lround(triangles))),
-                     DenseLayout::equilateral, handle_points(sheet, edge), context.seed()),
+                     UniformLayout::equilateral, handle_points(sheet, edge), context.seed()),
         context.seed());
   }
 
@@ -129,4 +130,4 @@ std::unique_ptr<Process> make_adaptive_sheet(const Sheet& sheet, const AdaptiveO
                                         std::make_unique<AdaptiveMesher>(options));
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

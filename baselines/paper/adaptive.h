@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "baselines/paper/sheet_process.h"
+#include "models/paper/sheet_process.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// What the size of triangles answers to; an edge is as long as the shortest of these allows.
 ///
@@ -33,4 +33,4 @@ void describe(OptionVisitor& v, AdaptiveOptions& options);
 
 std::unique_ptr<Process> make_adaptive_sheet(const Sheet& sheet, const AdaptiveOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -6,8 +6,9 @@
 #include <utility>
 
 #include "core/error.h"
+#include "models/paper/uniform_mesh.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 constexpr std::array<std::string_view, 4> kLayoutNames{"automatic", "structured", "equilateral",
@@ -53,41 +54,9 @@ void describe(OptionVisitor& v, DenseOptions& options) {
   describe_group(v, "stepper", options.stepper, {.doc = "time stepping"});
 }
 
-std::vector<Eigen::Vector2d> handle_points(const Sheet& sheet, double edge) {
-  const double tolerance = 1e-9 * width(sheet.pattern);
-  const auto on_border = [&](const Eigen::Vector2d& p) {
-    return nearest_on_border(sheet.pattern, p).distance <= tolerance;
-  };
-  std::vector<Eigen::Vector2d> points;
-  for (const Handle& handle : sheet.handles) {
-    const std::vector<Eigen::Vector2d> anchors = handle.anchors();
-    points.insert(points.end(), anchors.begin(), anchors.end());
-    if (!handle.segment) continue;
-    const auto& [a, b] = *handle.segment;
-    if (on_border(a) && on_border((a + b) / 2) && on_border(b)) continue;
-    const auto pieces = static_cast<int>(std::ceil((b - a).norm() / edge));
-    for (int i = 1; i < pieces; ++i) points.emplace_back(a + (b - a) * i / pieces);
-  }
-  return points;
-}
-
-ShellState resting_state(const Sheet& sheet, ShellMesh mesh, std::uint64_t seed) {
-  ShellState state;
-  state.mesh = std::move(mesh);
-  const int n = state.mesh.vertex_count(), m = state.mesh.triangle_count();
-  state.x.resize(n, 3);
-  for (int i = 0; i < n; ++i) {
-    state.x.row(i) = sheet.rest_place(state.mesh.pattern.row(i), seed);
-  }
-  state.v = Eigen::MatrixX3d::Zero(n, 3);
-  state.plastic_curvature = Eigen::MatrixX3d::Zero(m, 3);
-  state.damage = Eigen::VectorXd::Zero(m);
-  return state;
-}
-
 std::unique_ptr<Process> make_dense_sheet(const Sheet& sheet, const DenseOptions& options) {
   return std::make_unique<SheetProcess>(sheet, options.stepper,
                                         std::make_unique<UniformMesher>(options));
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

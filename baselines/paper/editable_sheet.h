@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "baselines/paper/shell_state.h"
+#include "models/paper/shell_state.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// A sheet whose triangulation changes: triangles with their neighbours, and the three local
 /// operations, each of which carries the state along.
@@ -91,19 +91,13 @@ class EditableSheet {
   void collapse(int v, int w);
 
  private:
-  [[nodiscard]] int corner(int triangle, int k) const {
-    return triangles_[static_cast<std::size_t>(triangle)].vertex[static_cast<std::size_t>(k)];
-  }
-  [[nodiscard]] int across(int triangle, int k) const {
-    return triangles_[static_cast<std::size_t>(triangle)].neighbour[static_cast<std::size_t>(k)];
-  }
+  [[nodiscard]] int corner(int triangle, int k) const { return triangles_[triangle].vertex[k]; }
+  [[nodiscard]] int across(int triangle, int k) const { return triangles_[triangle].neighbour[k]; }
   [[nodiscard]] int corner_of(int triangle, int v) const {
-    const auto& t = triangles_[static_cast<std::size_t>(triangle)].vertex;
+    const auto& t = triangles_[triangle].vertex;
     return t[0] == v ? 0 : t[1] == v ? 1 : 2;
   }
-  [[nodiscard]] const Eigen::Vector2d& point(int v) const {
-    return vertices_[static_cast<std::size_t>(v)].pattern;
-  }
+  [[nodiscard]] const Eigen::Vector2d& point(int v) const { return vertices_[v].pattern; }
   [[nodiscard]] double twice_area(int triangle) const;
   [[nodiscard]] double altitude_ratio(int a, int b, int c) const;
   [[nodiscard]] double strain(int a, int b) const;
@@ -121,7 +115,7 @@ class EditableSheet {
 
 template <class Visit>
 bool EditableSheet::around(int v, Visit&& visit) const {
-  const int first = vertices_[static_cast<std::size_t>(v)].triangle;
+  const int first = vertices_[v].triangle;
   if (first < 0) return false;
   // Clockwise to the border, or once around.
   int begin = first, next = first;
@@ -139,4 +133,4 @@ bool EditableSheet::around(int v, Visit&& visit) const {
   return false;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "baselines/paper/elements.h"
-#include "baselines/paper/planar.h"
-#include "baselines/paper/transfer.h"
+#include "models/paper/elements.h"
+#include "models/paper/pattern_locator.h"
+#include "models/paper/planar.h"
+#include "models/paper/transfer.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Order = ShellElements::Order;
@@ -67,11 +68,11 @@ Relaxation::Relaxation(const Sheet& sheet, const StepperOptions& options, const 
   const PatternLocator locator(before.mesh);
   const int n = state.mesh.vertex_count();
   load_ = Eigen::MatrixX3d::Zero(n, 3);
-  unknown_.assign(static_cast<std::size_t>(n), -1);
+  unknown_.assign(n, -1);
   for (int v = 0; v < n; ++v) {
-    if (!changed[static_cast<std::size_t>(v)]) continue;
+    if (!changed[v]) continue;
     if (std::binary_search(held.begin(), held.end(), v)) continue;
-    unknown_[static_cast<std::size_t>(v)] = unknowns_++;
+    unknown_[v] = unknowns_++;
     const PatternLocator::Place place = locator.locate(state.mesh.pattern.row(v));
     for (int k = 0; k < 3; ++k) {
       load_.row(v) -=
@@ -81,8 +82,7 @@ Relaxation::Relaxation(const Sheet& sheet, const StepperOptions& options, const 
   stay_ = kStay * sheet.material.area_density * area;
   for (int e = 0; e < elements_.size(); ++e) {
     const auto nodes = elements_.nodes(e);
-    if (std::any_of(nodes.begin(), nodes.end(),
-                    [&](int v) { return unknown_[static_cast<std::size_t>(v)] >= 0; })) {
+    if (std::any_of(nodes.begin(), nodes.end(), [&](int v) { return unknown_[v] >= 0; })) {
       active_.push_back(e);
     }
   }
@@ -96,7 +96,7 @@ double Relaxation::objective(const Eigen::MatrixX3d& x) const {
     sum += local.membrane + local.bending;
   }
   for (int v = 0; v < state_.mesh.vertex_count(); ++v) {
-    if (unknown_[static_cast<std::size_t>(v)] < 0) continue;
+    if (unknown_[v] < 0) continue;
     const Eigen::RowVector3d d = x.row(v) - start_.row(v);
     sum += 0.5 * stay_[v] * d.squaredNorm() - load_.row(v).dot(d);
   }
@@ -112,12 +112,12 @@ void Relaxation::assemble(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient,
     elements_.evaluate(e, state_, x, Order::hessian, local);
     const auto nodes = elements_.nodes(e);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const int row = unknown_[static_cast<std::size_t>(nodes[i])];
+      const int row = unknown_[nodes[i]];
       if (row < 0) continue;
       const auto at = static_cast<Eigen::Index>(3 * i);
       gradient.segment<3>(3 * row) += local.gradient.segment<3>(at);
       for (std::size_t j = 0; j < nodes.size(); ++j) {
-        const int column = unknown_[static_cast<std::size_t>(nodes[j])];
+        const int column = unknown_[nodes[j]];
         if (column < 0) continue;
         for (int p = 0; p < 3; ++p) {
           for (int q = 0; q < 3; ++q) {
@@ -129,7 +129,7 @@ void Relaxation::assemble(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient,
     }
   }
   for (int v = 0; v < state_.mesh.vertex_count(); ++v) {
-    const int row = unknown_[static_cast<std::size_t>(v)];
+    const int row = unknown_[v];
     if (row < 0) continue;
     gradient.segment<3>(3 * row) +=
         (stay_[v] * (x.row(v) - start_.row(v)) - load_.row(v)).transpose();
@@ -152,7 +152,7 @@ bool Relaxation::step(Eigen::MatrixX3d& x) const {
   for (int halving = 0; halving <= kHalvings; ++halving, share /= 2) {
     Eigen::MatrixX3d moved = x;
     for (int v = 0; v < state_.mesh.vertex_count(); ++v) {
-      const int row = unknown_[static_cast<std::size_t>(v)];
+      const int row = unknown_[v];
       if (row >= 0) moved.row(v) -= share * move.segment<3>(3 * row).transpose();
     }
     if (!(objective(moved) <= here - 1e-4 * share * slope)) continue;
@@ -175,4 +175,4 @@ int filter_pops(const Sheet& sheet, const StepperOptions& options, const ShellSt
   return steps;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

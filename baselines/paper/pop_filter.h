@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "baselines/paper/sheet.h"
-#include "baselines/paper/stepper.h"
+#include "models/paper/sheet.h"
+#include "models/paper/stepper.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Removes the jump in elastic force that remeshing leaves (Narain, Pfaff, O'Brien 2013, the pop
 /// filter): moves the vertices with other triangles than before to where the elastic forces are
@@ -22,4 +22,4 @@ int filter_pops(const Sheet& sheet, const StepperOptions& options, const ShellSt
                 const Eigen::MatrixX3d& forces, const std::vector<bool>& changed,
                 const std::vector<int>& held, ShellState& state);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

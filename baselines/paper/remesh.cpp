@@ -7,9 +7,9 @@
 #include <tuple>
 
 #include "baselines/paper/editable_sheet.h"
-#include "baselines/paper/planar.h"
+#include "models/paper/planar.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Kind = EditableSheet::Kind;
@@ -49,9 +49,7 @@ class Remesher {
 
  private:
   void classify(const Sheet& sheet);
-  [[nodiscard]] const EditableSheet::Vertex& vertex(int v) const {
-    return mesh_.vertices()[static_cast<std::size_t>(v)];
-  }
+  [[nodiscard]] const EditableSheet::Vertex& vertex(int v) const { return mesh_.vertices()[v]; }
   [[nodiscard]] double length(int a, int b) const {
     return metric_length(vertex(b).pattern - vertex(a).pattern, vertex(a).size, vertex(b).size);
   }
@@ -83,8 +81,8 @@ void Remesher::classify(const Sheet& sheet) {
   for (const EditableSheet::Triangle& t : mesh_.triangles()) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (t.neighbour[k] >= 0) continue;
-      vertices[static_cast<std::size_t>(t.vertex[k])].kind = Kind::side;
-      vertices[static_cast<std::size_t>(t.vertex[(k + 1) % 3])].kind = Kind::side;
+      vertices[t.vertex[k]].kind = Kind::side;
+      vertices[t.vertex[(k + 1) % 3]].kind = Kind::side;
     }
   }
   std::vector<Vector2d> fixed = sheet.pattern.border;
@@ -107,7 +105,7 @@ template <class Test>
 std::vector<Edge> Remesher::edges(Test&& test) const {
   std::vector<Edge> result;
   for (int t = 0; t < static_cast<int>(mesh_.triangles().size()); ++t) {
-    const EditableSheet::Triangle& triangle = mesh_.triangles()[static_cast<std::size_t>(t)];
+    const EditableSheet::Triangle& triangle = mesh_.triangles()[t];
     if (triangle.vertex[0] < 0) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       if (triangle.neighbour[k] > t) continue;
@@ -244,4 +242,4 @@ RemeshReport remesh(const Sheet& sheet, const std::vector<SizeTensor>& sizes, Sh
   return report;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "baselines/paper/sheet.h"
 #include "baselines/paper/sizing.h"
+#include "models/paper/sheet.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// What one remeshing did.
 struct RemeshReport {
@@ -27,4 +27,4 @@ struct RemeshReport {
 /// @param sizes   of its vertices
 RemeshReport remesh(const Sheet& sheet, const std::vector<SizeTensor>& sizes, ShellState& state);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

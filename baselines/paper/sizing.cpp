@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
-#include "baselines/paper/planar.h"
-#include "baselines/paper/triangle_neighbours.h"
+#include "models/paper/planar.h"
+#include "models/paper/triangle_neighbours.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Eigen::Matrix2d;
@@ -54,7 +54,7 @@ class SizingField {
   SizingField(const ShellState& state, const std::vector<Obstacle>& obstacles,
               const SizingOptions& options);
   [[nodiscard]] SizeTensor of_triangle(int f) const;
-  [[nodiscard]] double twice_area(int f) const { return twice_area_[static_cast<std::size_t>(f)]; }
+  [[nodiscard]] double twice_area(int f) const { return twice_area_[f]; }
 
  private:
   /// The edge from `a` to `b` as its triangle `left` has it.
@@ -73,7 +73,7 @@ class SizingField {
     Gradient d;
     d.col(0) = b - a;
     d.col(1) = c - a;
-    return d * inverse_[static_cast<std::size_t>(f)];
+    return d * inverse_[f];
   }
 
   const ShellState& state_;
@@ -121,7 +121,7 @@ void SizingField::build_triangles() {
 /// Weights of Max 1999, which make the normals of a sphere exact on any triangulation: weights by
 /// area alone overestimated curvature by a quarter on irregular meshes.
 void SizingField::build_normals() {
-  smooth_.assign(static_cast<std::size_t>(state_.mesh.vertex_count()), Vector3d::Zero());
+  smooth_.assign(state_.mesh.vertex_count(), Vector3d::Zero());
   for (int f = 0; f < state_.mesh.triangle_count(); ++f) {
     for (int k = 0; k < 3; ++k) {
       const int v = state_.mesh.triangles(f, k);
@@ -129,9 +129,7 @@ void SizingField::build_normals() {
           (pattern(state_.mesh.triangles(f, (k + 2) % 3)) - pattern(v)).squaredNorm();
       const double after =
           (pattern(state_.mesh.triangles(f, (k + 1) % 3)) - pattern(v)).squaredNorm();
-      smooth_[static_cast<std::size_t>(v)] += twice_area_[static_cast<std::size_t>(f)] /
-                                              (before * after) *
-                                              normal_[static_cast<std::size_t>(f)];
+      smooth_[v] += twice_area_[f] / (before * after) * normal_[f];
     }
   }
   for (Vector3d& n : smooth_) {
@@ -148,7 +146,7 @@ std::vector<SizingField::Hinge> SizingField::hinges() const {
   result.reserve(2 * across.size());
   for (int f = 0; f < static_cast<int>(F.rows()); ++f) {
     for (int k = 0; k < 3; ++k) {
-      const int g = across[static_cast<std::size_t>(f)][static_cast<std::size_t>(k)];
+      const int g = across[f][k];
       if (g > f) result.push_back({F(f, k), F(f, (k + 1) % 3), f, g});
     }
   }
@@ -192,7 +190,7 @@ SizeTensor SizingField::of_triangle(int f) const {
   const auto i = static_cast<std::size_t>(f);
   const int a = state_.mesh.triangles(f, 0), b = state_.mesh.triangles(f, 1),
             c = state_.mesh.triangles(f, 2);
-  const auto normal = [&](int v) { return smooth_[static_cast<std::size_t>(v)]; };
+  const auto normal = [&](int v) { return smooth_[v]; };
   const auto square = [](const auto& m, double unit) -> Matrix2d {
     return m.transpose() * m / (unit * unit);
   };
@@ -248,4 +246,4 @@ std::vector<SizeTensor> sizing_tensors(const ShellState& state,
   return sum;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

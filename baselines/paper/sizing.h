@@ -6,7 +6,7 @@
 
 #include "baselines/paper/adaptive.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Sizing tensor at a vertex (1/m^2): an edge e of the pattern is as long as it should be when
 /// e' M e = 1.
@@ -37,4 +37,4 @@ std::vector<SizeTensor> sizing_tensors(const ShellState& state,
                                        const std::vector<Obstacle>& obstacles,
                                        const SizingOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <utility>
 
-#include "baselines/skinning/lanes.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/topology.h"
+#include "models/skinning/lanes.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 using lanes::Double4;
@@ -95,7 +95,7 @@ void DeltaMush::build_rings(const RiggedMesh& rig, bool pin_border) {
   const std::vector<bool> border = boundary_vertices(rig.mesh.F, rig.mesh.vertex_count());
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
     const std::size_t size = rings.of(v).size();
-    const bool stays = size == 0 || (pin_border && border[static_cast<std::size_t>(v)]);
+    const bool stays = size == 0 || (pin_border && border[v]);
     pull_.push_back(stays ? 0 : options_.step / static_cast<double>(size));
   }
 }
@@ -197,11 +197,11 @@ void DeltaMush::deform(const Pose& pose, Eigen::MatrixX3d& posed) {
         posed.row(row) = s + d.x * frame.t + d.y * frame.b + d.z * frame.n;
       } else {
         const Point& d = rest_offset_[v];
-        const auto& T = pose[static_cast<std::size_t>(strongest_joint_[v])];
+        const auto& T = pose[strongest_joint_[v]];
         posed.row(row) = s + T.linear() * Eigen::Vector3d(d.x, d.y, d.z);
       }
     }
   });
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

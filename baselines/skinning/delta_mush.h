@@ -8,7 +8,7 @@
 #include "core/options.h"
 #include "core/rig.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 struct DeltaMushOptions {
   int iterations = 20;      ///< smoothing passes, at rest and posed alike
@@ -77,4 +77,4 @@ class DeltaMush {
   std::vector<Point> next_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -4,13 +4,13 @@
 #include <Eigen/LU>
 #include <array>
 
-#include "baselines/skinning/lanes.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "models/skinning/lanes.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 using lanes::Double4;
@@ -132,4 +132,4 @@ void DualQuaternionBlend::deform(const Pose& pose, Eigen::MatrixX3d& posed) cons
   });
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -2,10 +2,10 @@
 
 #include <Eigen/Core>
 
-#include "baselines/skinning/influences.h"
 #include "core/rig.h"
+#include "models/skinning/influences.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Dual quaternion linear blending: v' = (b / |b|) v (b / |b|)*, b = sum_j w_j s_j q_j.
 ///
@@ -47,4 +47,4 @@ class DualQuaternionBlend {
   std::vector<Eigen::Vector3d> heads_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -1,12 +1,12 @@
 #include "baselines/skinning/linear_blend.h"
 
-#include "baselines/skinning/lanes.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "models/skinning/lanes.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 using lanes::Double4;
@@ -101,4 +101,4 @@ void LinearBlend::deform(const Pose& pose, Eigen::MatrixX3d& posed) const {
   });
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

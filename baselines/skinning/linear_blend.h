@@ -2,10 +2,10 @@
 
 #include <Eigen/Core>
 
-#include "baselines/skinning/influences.h"
 #include "core/rig.h"
+#include "models/skinning/influences.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Linear blend skinning: v' = (sum_j w_j T_j) v.
 ///
@@ -32,4 +32,4 @@ class LinearBlend {
   PackedInfluences influences_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

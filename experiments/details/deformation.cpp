@@ -9,9 +9,9 @@
 
 #include "core/error.h"
 #include "core/topology.h"
-#include "experiments/keyframes.h"
+#include "testbed/keyframes.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using Kind = DeformationKind;
@@ -267,9 +267,7 @@ ScriptedMotion::ScriptedMotion(TriMesh rest, std::shared_ptr<const SurfaceMotion
   }
 }
 
-double ScriptedMotion::parameter(int frame) const {
-  return parameters_.at(static_cast<std::size_t>(frame));
-}
+double ScriptedMotion::parameter(int frame) const { return parameters_.at(frame); }
 
 Eigen::MatrixX3d ScriptedMotion::positions(int frame) const {
   const double t = parameter(frame);
@@ -292,4 +290,4 @@ Eigen::MatrixX3d ScriptedMotion::positions(int frame) const {
   return now.V;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

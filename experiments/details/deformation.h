@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "baselines/details/detail_scene.h"
 #include "core/options.h"
+#include "models/details/detail_scene.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 enum class DeformationKind { stretch, scale, inflate, squeeze, twist, bend };
 
@@ -74,4 +74,4 @@ class ScriptedMotion final : public SurfaceMotion {
   std::vector<Eigen::VectorXd> falloff_;  ///< of each operation, per vertex
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::details

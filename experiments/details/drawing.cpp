@@ -5,9 +5,9 @@
 
 #include "experiments/details/measures.h"
 #include "experiments/details/scene.h"
-#include "experiments/frame_arrays.h"
+#include "testbed/frame_arrays.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 enum DrawnClass { kSurface = 0, kOriginal = 1, kBorn = 2 };
@@ -105,4 +105,4 @@ std::unique_ptr<Process> with_drawing(std::unique_ptr<Process> process, const De
   return std::make_unique<DrawnProcess>(std::move(process), scene);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

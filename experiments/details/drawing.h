@@ -3,11 +3,11 @@
 #include <memory>
 #include <string>
 
-#include "baselines/details/detail_drawing.h"
 #include "core/method.h"
 #include "core/options.h"
+#include "models/details/detail_drawing.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 class DetailsScene;
 
@@ -24,4 +24,4 @@ void describe(OptionVisitor& v, DetailDrawingOptions& options);
 /// of the scene, 2 details that were born since. Without a `drawing` the process itself.
 std::unique_ptr<Process> with_drawing(std::unique_ptr<Process> process, const DetailsScene& scene);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/trajectory.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;
@@ -46,7 +46,7 @@ std::string place(std::size_t i) { return "scene.motion.drag.handles." + std::to
 std::vector<Handle> handles_of(const TriMesh& rest, const HandleDragOptions& options) {
   if (options.handles.empty()) throw Error("has no handles", "scene.motion.drag", "at least one");
   std::vector<Handle> handles;
-  std::vector<int> owner(static_cast<std::size_t>(rest.V.rows()), -1);
+  std::vector<int> owner(rest.V.rows(), -1);
   std::size_t held = 0;
   for (std::size_t i = 0; i < options.handles.size(); ++i) {
     const HandleBallOptions& o = options.handles[i];
@@ -55,7 +55,7 @@ std::vector<Handle> handles_of(const TriMesh& rest, const HandleDragOptions& opt
     if (!o.keys.empty()) handle.motion = to_trajectory(o.keys, place(i) + ".keys");
     for (Eigen::Index v = 0; v < rest.V.rows(); ++v) {
       if ((rest.V.row(v).transpose() - handle.centre).norm() > o.radius) continue;
-      int& other = owner[static_cast<std::size_t>(v)];
+      int& other = owner[v];
       if (other >= 0) {
         throw Error(
             "holds vertex " + std::to_string(v) + " as well as handle " + std::to_string(other),
@@ -137,4 +137,4 @@ std::shared_ptr<const SurfaceMotion> drag_handles(const TriMesh& rest,
   return std::make_shared<StoredMotion>(std::move(frames), times);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "baselines/details/detail_scene.h"
 #include "core/options.h"
-#include "experiments/keyframes.h"
+#include "models/details/detail_scene.h"
+#include "testbed/keyframes.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Vertices that are held and moved: those in a ball at rest.
 struct HandleBallOptions {
@@ -37,4 +37,4 @@ std::shared_ptr<const SurfaceMotion> drag_handles(const TriMesh& rest,
                                                   const HandleDragOptions& options,
                                                   const std::vector<double>& times);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -10,9 +10,9 @@
 
 #include "core/error.h"
 #include "core/mesh.h"
-#include "experiments/frame_arrays.h"
+#include "testbed/frame_arrays.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 constexpr const char* kParts = "surface, details, detail_mesh, visible_mesh";
@@ -26,7 +26,7 @@ const NamedArray& required_array(const Part& part, const char* name) {
 template <class T>
 std::vector<T> column(const Part& part, const char* name) {
   const Eigen::MatrixXd& values = required_array(part, name).values;
-  std::vector<T> out(static_cast<std::size_t>(values.rows()));
+  std::vector<T> out(values.rows());
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = static_cast<T>(values(static_cast<Eigen::Index>(i), 0));
   return out;
@@ -341,4 +341,4 @@ MotionMeasures motion_measures(DetailsMemo& memo, const DetailsScene& scene,
   return memo.motions.get(key_of(frames), [&] { return measure_motion(scene, frames); });
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -7,14 +7,14 @@
 
 #include "core/frame.h"
 #include "experiments/details/scene.h"
-#include "experiments/frame_sequence.h"
-#include "experiments/memo.h"
 #include "metrics/detail_continuity.h"
 #include "metrics/detail_spacing.h"
 #include "metrics/pair_curve.h"
 #include "metrics/radial_spectrum.h"
+#include "testbed/frame_sequence.h"
+#include "testbed/memo.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// What the rows of the table of metrics (metrics.cpp) read: quantities of one frame or of a
 /// motion, absent where they have no meaning.
@@ -98,4 +98,4 @@ std::optional<SpectrumMeasures> spectrum_measures(DetailsMemo& memo, const Detai
 MotionMeasures motion_measures(DetailsMemo& memo, const DetailsScene& scene,
                                const FrameSequence& frames);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -6,19 +6,19 @@
 #include "experiments/details/drawing.h"
 #include "experiments/details/scene.h"
 #include "experiments/details/topic.h"
-#include "solvers/details/replication.h"
+#include "solvers/details/self_replicating.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
-std::vector<MethodEntry> details_methods() {
+std::vector<MethodEntry> methods() {
   using S = DetailsScene;
   return {
-      method_entry<S, ReplicationOptions>(
+      method_entry<S, SelfReplicatingOptions>(
           "self-replicating", false,
           "details multiply where the surface is stretched and merge where it is squeezed",
           "thesis 2.2.2; Rohmer, Hahmann and Cani 2015",
-          [](const S& scene, const ReplicationOptions& options, RunContext&) {
-            return with_drawing(make_replication_process(scene.scene, options), scene);
+          [](const S& scene, const SelfReplicatingOptions& options, RunContext&) {
+            return with_drawing(make_self_replicating_process(scene.scene, options), scene);
           }),
       method_entry<S, NaiveStretchOptions>(
           "naive-stretch", true, "details go where the surface goes, none comes, none leaves",
@@ -53,7 +53,7 @@ std::vector<MethodEntry> details_methods() {
   };
 }
 
-std::vector<DiagnosticEntry> details_diagnostics() {
+std::vector<DiagnosticEntry> diagnostics() {
   return {
       // Of every method.
       {"details", "1", "details, visible or not"},
@@ -81,4 +81,4 @@ std::vector<DiagnosticEntry> details_diagnostics() {
   };
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

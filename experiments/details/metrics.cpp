@@ -6,7 +6,7 @@
 #include "experiments/details/measures.h"
 #include "experiments/details/topic.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 // Runs of one build are equal bit for bit; tolerances are for other compilers and processors, where
@@ -204,7 +204,7 @@ void add_motion(Rows rows, const SharedMemo& memo) {
 
 }  // namespace
 
-std::vector<MetricEntry> details_metrics() {
+std::vector<MetricEntry> metrics() {
   const auto memo = std::make_shared<DetailsMemo>();
   std::vector<MetricEntry> table;
   const Rows rows(table);
@@ -216,4 +216,4 @@ std::vector<MetricEntry> details_metrics() {
   return table;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "baselines/details/detail_scene.h"
 #include "core/options.h"
+#include "models/details/detail_scene.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 enum class PatternKind { poisson_disk, grid, uniform, clusters, file };
 enum class DensityKind { constant, gradient, array };
@@ -80,4 +80,4 @@ std::vector<char> faces_of_region(const TriMesh& surface, const std::vector<Regi
 std::vector<Detail> scatter(const TriMesh& surface, const DetailPatternOptions& options,
                             const Eigen::VectorXd& relative);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

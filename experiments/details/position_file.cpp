@@ -12,10 +12,10 @@
 
 #include "core/error.h"
 #include "experiments/details/projection.h"
-#include "experiments/formats/mesh_file.h"
-#include "experiments/formats/text_lines.h"
+#include "testbed/formats/mesh_file.h"
+#include "testbed/formats/text_lines.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 namespace fs = std::filesystem;
@@ -156,4 +156,4 @@ std::vector<Detail> details_of_file(const fs::path& file, const TriMesh& surface
   return details;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "baselines/details/detail_scene.h"
+#include "models/details/detail_scene.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Details at the positions of a file: each at the nearest point of the surface.
 ///
@@ -21,4 +21,4 @@ namespace geoprior {
 std::vector<Detail> details_of_file(const std::filesystem::path& file, const TriMesh& surface,
                                     double max_distance);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

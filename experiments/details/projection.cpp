@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;
@@ -59,4 +59,4 @@ SurfaceProjector::Nearest SurfaceProjector::nearest(const Eigen::Vector3d& x) co
       (at - x).norm()};
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "baselines/details/detail_scene.h"
+#include "models/details/detail_scene.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Nearest points of a surface in space, by a tree of boxes (CGAL). Points on a shared edge belong
 /// to one of its triangles.
@@ -27,4 +27,4 @@ class SurfaceProjector {
   std::unique_ptr<Tree> tree_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::details

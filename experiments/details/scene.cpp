@@ -5,16 +5,16 @@
 #include <system_error>
 #include <utility>
 
-#include "baselines/details/detail_process.h"
 #include "core/error.h"
 #include "experiments/details/position_file.h"
 #include "experiments/details/projection.h"
-#include "experiments/formats/mesh_file.h"
-#include "experiments/formats/vtk_files.h"
-#include "experiments/frame_arrays.h"
-#include "experiments/view/view.h"
+#include "models/details/detail_process.h"
+#include "testbed/formats/mesh_file.h"
+#include "testbed/formats/vtk_files.h"
+#include "testbed/frame_arrays.h"
+#include "testbed/home.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 namespace fs = std::filesystem;
@@ -206,4 +206,4 @@ std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& optio
   return scene;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

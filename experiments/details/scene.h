@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "baselines/details/detail_scene.h"
 #include "core/frame.h"
 #include "experiments/details/scene_options.h"
-#include "experiments/topic.h"
+#include "models/details/detail_scene.h"
+#include "testbed/topic.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// A surface that moves with details on it: what the methods are given and the metrics are measured
 /// on.
@@ -59,4 +59,4 @@ class DetailsScene final : public Scene {
 std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& options,
                                                  const std::filesystem::path& folder);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

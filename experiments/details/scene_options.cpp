@@ -1,6 +1,6 @@
 #include "experiments/details/scene_options.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 void describe(OptionVisitor& v, DetailMotionOptions& options) {
   v.value("frames", options.frames,
@@ -30,4 +30,4 @@ void describe(OptionVisitor& v, DetailSceneOptions& options) {
                  {.doc = "details as geometry in some frames; absent: in none"});
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

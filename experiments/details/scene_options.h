@@ -10,9 +10,9 @@
 #include "experiments/details/handle_drag.h"
 #include "experiments/details/pattern.h"
 #include "experiments/details/surfaces.h"
-#include "experiments/fluid/sequence_files.h"
+#include "testbed/formats/sequence_files.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// `motion`: how the surface moves. Operations, on top of what handles drag; or a sequence.
 struct DetailMotionOptions {
@@ -36,4 +36,4 @@ struct DetailSceneOptions {
 };
 void describe(OptionVisitor& v, DetailSceneOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -11,7 +11,7 @@
 #include "core/procedural.h"
 #include "core/subdivision.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 constexpr double kMostTriangles = 1e7;
@@ -194,4 +194,4 @@ TriMesh make_surface(const DetailSurfaceOptions& options) {
   }
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -6,7 +6,7 @@
 #include "core/mesh.h"
 #include "core/options.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// The smooth surface under the details: procedural, or of a file.
 enum class DetailSurfaceKind { plane, sphere, torus, capsule, blob, file, sequence };
@@ -47,4 +47,4 @@ TriMesh blob_surface(double radius, double bumps, double edge);
 /// @throws Error  for a kind that is none, or more than ten million triangles
 TriMesh make_surface(const DetailSurfaceOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

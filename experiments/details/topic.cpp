@@ -2,9 +2,9 @@
 
 #include "experiments/details/scene.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
-Topic details_topic() {
+Topic make_topic() {
   Topic topic;
   topic.name = "details";
   topic.summary = "details on a surface keep their spacing while it is deformed (thesis 2.2.2)";
@@ -13,13 +13,13 @@ Topic details_topic() {
     return load_details_scene(dynamic_cast<const TypedOptions<DetailSceneOptions>&>(set).options,
                               folder);
   };
-  topic.methods = details_methods();
-  topic.metrics = details_metrics();
-  topic.diagnostics = details_diagnostics();
+  topic.methods = methods();
+  topic.metrics = metrics();
+  topic.diagnostics = diagnostics();
   topic.view.direction = {0, 0, 1};
   topic.view.up = {0, 1, 0};
   topic.view.overlays = {"details"};
   return topic;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

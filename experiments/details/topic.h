@@ -1,14 +1,14 @@
 #pragma once
 
-#include "experiments/topic.h"
+#include "testbed/topic.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// "details": details on a surface that is deformed, which multiply and merge (thesis 2.2.2).
-Topic details_topic();
+Topic make_topic();
 
-std::vector<MethodEntry> details_methods();
-std::vector<MetricEntry> details_metrics();
-std::vector<DiagnosticEntry> details_diagnostics();
+std::vector<MethodEntry> methods();
+std::vector<MetricEntry> metrics();
+std::vector<DiagnosticEntry> diagnostics();
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -1,11 +1,11 @@
 #include "experiments/fluid/edit_list.h"
 
 #include "core/error.h"
-#include "experiments/formats/atomic_file.h"
-#include "experiments/runner/option_toml.h"
-#include "experiments/runner/toml_tree.h"
+#include "testbed/formats/atomic_file.h"
+#include "testbed/runner/option_toml.h"
+#include "testbed/runner/toml_tree.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 struct EditList {
@@ -38,4 +38,4 @@ std::vector<Edit> read_edit_list(const std::filesystem::path& file) {
   return parse_edit_list(read_whole_file(file), file.string());
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

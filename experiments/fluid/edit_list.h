@@ -7,7 +7,7 @@
 
 #include "solvers/fluid/edits.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// An edit list is a TOML file of [[edit]] tables with the keys of `Edit`:
 ///
@@ -22,4 +22,4 @@ namespace geoprior {
 std::vector<Edit> read_edit_list(const std::filesystem::path& file);
 std::vector<Edit> parse_edit_list(std::string_view text, const std::string& name);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

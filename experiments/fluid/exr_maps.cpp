@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "experiments/fluid/feature_files.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 namespace oiio = OIIO;
@@ -132,8 +132,7 @@ class Picture {
     map.displacement.resize(texels, 3);
     map.alpha.resize(texels);
     for (int c = 0; c < 4; ++c) {
-      const auto at = static_cast<std::size_t>(
-          input_->spec().channelindex(kChannels[static_cast<std::size_t>(c)]));
+      const auto at = static_cast<std::size_t>(input_->spec().channelindex(kChannels[c]));
       for (Eigen::Index p = 0; p < texels; ++p) {
         const Eigen::Index row = map_row(static_cast<int>(p / n), n);
         const float value = pixels[static_cast<std::size_t>(p) * width + at];
@@ -199,4 +198,4 @@ Feature read_exr_maps(const std::vector<std::filesystem::path>& files) {
   return feature;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

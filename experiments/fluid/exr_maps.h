@@ -7,7 +7,7 @@
 #include "core/frame.h"
 #include "solvers/fluid/feature.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// The maps of a differential feature as OpenEXR pictures, one a frame: float32 channels R, G, B
 /// (displacement along x, y, z of the moving frame, m) and A (alpha, not multiplied into the
@@ -23,4 +23,4 @@ std::vector<Artifact> exr_maps(const Feature& feature, const std::string& stem);
 ///                entries missing
 Feature read_exr_maps(const std::vector<std::filesystem::path>& files);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

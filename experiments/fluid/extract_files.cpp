@@ -6,7 +6,7 @@
 #include "experiments/fluid/exr_maps.h"
 #include "experiments/fluid/feature_files.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 void describe(OptionVisitor& v, StoredExtractOptions& options) {
   describe(v, options.extract);
@@ -28,4 +28,4 @@ FeatureFiles feature_files(const StoredExtractOptions& options) {
   };
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

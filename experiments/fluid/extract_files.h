@@ -1,8 +1,8 @@
 #pragma once
 
-#include "solvers/fluid/sculpting.h"
+#include "solvers/fluid/extract.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// Options of the method "extract": the solver's, and what is written of lifted features.
 struct StoredExtractOptions {
@@ -16,4 +16,4 @@ void describe(OptionVisitor& v, StoredExtractOptions& options);
 /// (exr_maps.h).
 FeatureFiles feature_files(const StoredExtractOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -7,7 +7,7 @@
 
 #include "solvers/fluid/feature.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// A library of features: one HDF5 file (docs/file-formats.md), read with h5py as well.
 ///
@@ -25,4 +25,4 @@ std::vector<Feature> read_feature_library(const std::filesystem::path& file);
 void require_valid(const Feature& feature, const std::string& where);
 void require_valid(const std::vector<Feature>& features, const std::string& where);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

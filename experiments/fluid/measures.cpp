@@ -11,7 +11,7 @@
 #include "metrics/dam_break.h"
 #include "metrics/volume.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 TriMesh mesh_of(const Part& part) { return {part.points, part.triangles}; }
@@ -63,7 +63,7 @@ enum class GaugeCover : char { unknown, bed, pasted };
 /// unknown when there is none.
 std::vector<GaugeCover> gauge_cover(const ColumnGrid& grid, const Part& surface,
                                     const Eigen::MatrixX3i& bed) {
-  std::vector<GaugeCover> cover(static_cast<std::size_t>(grid.count()), GaugeCover::unknown);
+  std::vector<GaugeCover> cover(grid.count(), GaugeCover::unknown);
   const NamedArray* feature = find_array(surface, "feature");
   if (feature == nullptr) return cover;
   for (const int v : bed.reshaped()) {
@@ -71,7 +71,7 @@ std::vector<GaugeCover> gauge_cover(const ColumnGrid& grid, const Part& surface,
         (surface.points.row(v).head<2>().transpose() - grid.origin) / grid.spacing;
     const int i = static_cast<int>(std::floor(at.x())), j = static_cast<int>(std::floor(at.y()));
     if (i < 0 || j < 0 || i >= grid.nx || j >= grid.ny) continue;
-    GaugeCover& here = cover[static_cast<std::size_t>(grid.index(i, j))];
+    GaugeCover& here = cover[grid.index(i, j)];
     here = std::max(here, feature->values(v, 0) == 0 ? GaugeCover::bed : GaugeCover::pasted);
   }
   return cover;
@@ -80,13 +80,13 @@ std::vector<GaugeCover> gauge_cover(const ColumnGrid& grid, const Part& surface,
 /// Pasted gauges beside one that is bed.
 std::vector<char> seam_gauges(const ColumnGrid& grid, const std::vector<GaugeCover>& cover) {
   std::vector<char> seam(cover.size(), 0);
-  const auto at = [&](int i, int j) { return cover[static_cast<std::size_t>(grid.index(i, j))]; };
+  const auto at = [&](int i, int j) { return cover[grid.index(i, j)]; };
   for (int j = 1; j + 1 < grid.ny; ++j) {
     for (int i = 1; i + 1 < grid.nx; ++i) {
       if (at(i, j) != GaugeCover::pasted) continue;
       const auto beside = {at(i - 1, j), at(i + 1, j), at(i, j - 1), at(i, j + 1)};
       const bool border = std::count(beside.begin(), beside.end(), GaugeCover::bed) > 0;
-      if (border) seam[static_cast<std::size_t>(grid.index(i, j))] = 1;
+      if (border) seam[grid.index(i, j)] = 1;
     }
   }
   return seam;
@@ -121,7 +121,7 @@ GaugeFrame gauge_frame(const FluidScene& scene, const FrameSequence& frames, std
 Eigen::VectorXd only(const Eigen::VectorXd& values, const std::vector<char>& where) {
   Eigen::VectorXd kept = values;
   for (Eigen::Index i = 0; i < kept.size(); ++i) {
-    if (where[static_cast<std::size_t>(i)] == 0) {
+    if (where[i] == 0) {
       kept[i] = std::numeric_limits<double>::quiet_NaN();
     }
   }
@@ -165,7 +165,7 @@ std::vector<TrackedObject> tracked_objects(const Part& surface, const NamedArray
 TrackedFrames true_objects(const InjectedSequence& injected) {
   TrackedFrames frames(static_cast<std::size_t>(injected.frame_count()));
   for (const InjectedTruth& truth : injected.truth()) {
-    frames[static_cast<std::size_t>(truth.frame)].push_back(
+    frames[truth.frame].push_back(
         {truth.id, truth.isolated ? 1 : 2, truth.centre, truth.box_min, truth.box_max});
   }
   return frames;
@@ -279,4 +279,4 @@ std::optional<TrackingScores> scores_against_truth(const FluidScene& scene,
   return tracking_scores(truth, found, options);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -6,16 +6,16 @@
 
 #include "core/frame.h"
 #include "experiments/fluid/scene.h"
-#include "experiments/frame_arrays.h"
-#include "experiments/frame_sequence.h"
-#include "experiments/memo.h"
 #include "metrics/closedness.h"
 #include "metrics/liquid_columns.h"
 #include "metrics/surface_distance.h"
 #include "metrics/tracking_scores.h"
 #include "metrics/wave_modes.h"
+#include "testbed/frame_arrays.h"
+#include "testbed/frame_sequence.h"
+#include "testbed/memo.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// What the rows of the fluid metric table (metrics.cpp) read: quantities of one frame or sequence,
 /// absent where they have no meaning.
@@ -81,4 +81,4 @@ SecondDifference second_difference(const FluidScene& scene, const FrameSequence&
 std::optional<TrackingScores> scores_against_truth(const FluidScene& scene,
                                                    const FrameSequence& frames);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -1,13 +1,15 @@
 #include "baselines/fluid/liquid.h"
+#include "baselines/fluid/liquid_process.h"
 #include "baselines/fluid/ocean.h"
 #include "experiments/fluid/extract_files.h"
 #include "experiments/fluid/scene.h"
 #include "experiments/fluid/topic.h"
-#include "solvers/fluid/sculpting.h"
+#include "solvers/fluid/extract.h"
+#include "solvers/fluid/sculpt.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
-std::vector<MethodEntry> fluid_methods() {
+std::vector<MethodEntry> methods() {
   using S = FluidScene;
   return {
       method_entry<S, LiquidOptions>(
@@ -43,7 +45,7 @@ std::vector<MethodEntry> fluid_methods() {
   };
 }
 
-std::vector<DiagnosticEntry> fluid_diagnostics() {
+std::vector<DiagnosticEntry> diagnostics() {
   return {
       // Of a simulation.
       {"particles", "1", "particles of the liquid"},
@@ -81,4 +83,4 @@ std::vector<DiagnosticEntry> fluid_diagnostics() {
   };
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

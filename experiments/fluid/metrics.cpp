@@ -13,7 +13,7 @@
 #include "metrics/self_contact.h"
 #include "metrics/slosh.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 // Runs of one build are equal bit for bit; tolerances are for other compilers and processors. A
@@ -119,7 +119,7 @@ void add_surface(Rows rows, const SharedMemo& memo) {
                const Part& surface = surface_part(frame);
                const NamedArray* feature = find_array(surface, "feature");
                if (feature == nullptr) return {};
-               std::vector<char> moved(static_cast<std::size_t>(surface.points.rows()));
+               std::vector<char> moved(surface.points.rows());
                for (std::size_t v = 0; v < moved.size(); ++v) {
                  moved[v] = feature->values(static_cast<Eigen::Index>(v), 0) != 0 ? 1 : 0;
                }
@@ -359,7 +359,7 @@ void add_tracking(Rows rows) {
 
 }  // namespace
 
-std::vector<MetricEntry> fluid_metrics() {
+std::vector<MetricEntry> metrics() {
   const auto memo = std::make_shared<FluidMemo>();
   std::vector<MetricEntry> table;
   const Rows rows(table);
@@ -372,4 +372,4 @@ std::vector<MetricEntry> fluid_metrics() {
   return table;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -7,7 +7,7 @@
 #include "baselines/fluid/ocean.h"
 #include "core/surface_sequence.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// A procedural ocean as an animation: each frame is made when it is asked for.
 class OceanSequence final : public SurfaceSequence {
@@ -16,9 +16,7 @@ class OceanSequence final : public SurfaceSequence {
   OceanSequence(const OceanOptions& options, std::uint64_t seed, std::vector<double> times)
       : ocean_(options, seed), times_(std::move(times)) {}
   [[nodiscard]] int frame_count() const override { return static_cast<int>(times_.size()); }
-  [[nodiscard]] double time(int frame) const override {
-    return times_.at(static_cast<std::size_t>(frame));
-  }
+  [[nodiscard]] double time(int frame) const override { return times_.at(frame); }
   [[nodiscard]] SurfaceFrame frame(int frame) const override {
     SurfaceFrame made;
     made.time = time(frame);
@@ -32,4 +30,4 @@ class OceanSequence final : public SurfaceSequence {
   std::vector<double> times_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

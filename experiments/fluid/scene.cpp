@@ -10,9 +10,9 @@
 #include "experiments/fluid/edit_list.h"
 #include "experiments/fluid/feature_files.h"
 #include "experiments/fluid/ocean_sequence.h"
-#include "experiments/view/view.h"
+#include "testbed/home.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 namespace fs = std::filesystem;
@@ -69,8 +69,8 @@ Tank make_tank(const TankOptions& options, const FluidSceneOptions& all, Loading
   tank.origin = to_vector(options.origin);
   tank.cell = options.cell;
   for (int axis = 0; axis < 3; ++axis) {
-    tank.cells[axis] = cells_along(options.size[static_cast<std::size_t>(axis)], options.cell,
-                                   where + ".size." + std::to_string(axis));
+    tank.cells[axis] =
+        cells_along(options.size[axis], options.cell, where + ".size." + std::to_string(axis));
   }
   tank.gravity = to_vector(all.gravity);
   tank.density = options.density;
@@ -298,4 +298,4 @@ std::shared_ptr<FluidScene> load_fluid_scene(const FluidSceneOptions& options,
   return scene;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "baselines/fluid/injected_sequence.h"
-#include "baselines/fluid/tank.h"
 #include "experiments/fluid/scene_options.h"
-#include "experiments/topic.h"
 #include "metrics/liquid_columns.h"
-#include "solvers/fluid/sculpting.h"
+#include "models/fluid/injected_sequence.h"
+#include "models/fluid/tank.h"
+#include "solvers/fluid/sculpt_scene.h"
+#include "testbed/topic.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// A tank to simulate, or animations, a target and edits, or several of these: what the fluid
 /// methods are given and the fluid metrics are measured on.
@@ -55,4 +55,4 @@ double simulation_memory_limit();
 std::shared_ptr<FluidScene> load_fluid_scene(const FluidSceneOptions& options,
                                              const std::filesystem::path& folder);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

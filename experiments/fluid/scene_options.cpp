@@ -1,6 +1,6 @@
 #include "experiments/fluid/scene_options.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr double kSmallest = 1e-9;
@@ -124,4 +124,4 @@ void describe(OptionVisitor& v, FluidSceneOptions& options) {
   v.value("edit_list", options.edit_list, {.doc = "TOML file of further edits"});
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

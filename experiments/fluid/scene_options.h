@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "baselines/fluid/injected_sequence.h"
 #include "baselines/fluid/ocean.h"
-#include "baselines/fluid/tank.h"
 #include "core/options.h"
-#include "experiments/fluid/sequence_files.h"
-#include "experiments/keyframes.h"
+#include "models/fluid/injected_sequence.h"
+#include "models/fluid/tank.h"
 #include "solvers/fluid/edits.h"
+#include "testbed/formats/sequence_files.h"
+#include "testbed/keyframes.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// A body: a tagged choice, `kind` selects which of the others are described.
 struct LiquidShapeOptions {
@@ -113,4 +113,4 @@ struct FluidSceneOptions {
 };
 void describe(OptionVisitor& v, FluidSceneOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

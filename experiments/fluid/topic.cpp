@@ -2,9 +2,9 @@
 
 #include "experiments/fluid/scene.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
-Topic fluid_topic() {
+Topic make_topic() {
   Topic topic;
   topic.name = "fluid";
   topic.summary = "features are cut from liquid animations and pasted into others (thesis 3.3)";
@@ -13,13 +13,13 @@ Topic fluid_topic() {
     return load_fluid_scene(dynamic_cast<const TypedOptions<FluidSceneOptions>&>(set).options,
                             folder);
   };
-  topic.methods = fluid_methods();
-  topic.metrics = fluid_metrics();
-  topic.diagnostics = fluid_diagnostics();
+  topic.methods = methods();
+  topic.metrics = metrics();
+  topic.diagnostics = diagnostics();
   topic.view.direction = {0.6, -1, 0.5};
   topic.view.up = {0, 0, 1};
   topic.view.material = FigureView::Material::water;
   return topic;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -2,14 +2,14 @@
 
 #include <vector>
 
-#include "experiments/topic.h"
+#include "testbed/topic.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
-Topic fluid_topic();
-std::vector<MethodEntry> fluid_methods();
-std::vector<MetricEntry> fluid_metrics();
+Topic make_topic();
+std::vector<MethodEntry> methods();
+std::vector<MetricEntry> metrics();
 /// What the methods alone can know of a frame.
-std::vector<DiagnosticEntry> fluid_diagnostics();
+std::vector<DiagnosticEntry> diagnostics();
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "baselines/paper/pattern.h"
-#include "baselines/paper/transfer.h"
 #include "core/error.h"
 #include "experiments/paper/scene.h"
 #include "metrics/buckled_sector.h"
@@ -19,8 +17,11 @@
 #include "metrics/shell_energy.h"
 #include "metrics/surface_distance.h"
 #include "metrics/weighted_quantile.h"
+#include "models/paper/pattern.h"
+#include "models/paper/pattern_locator.h"
+#include "models/paper/transfer.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 constexpr double kSamplesAcross = 32;      // of the Hausdorff distance, along the pattern's width
@@ -231,4 +232,4 @@ double hausdorff_ratio(const SheetFrame& f, const SheetFrame& reference) {
          across;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -3,16 +3,16 @@
 #include <memory>
 #include <optional>
 
-#include "baselines/paper/sheet.h"
 #include "core/curvature_fit.h"
 #include "core/frame.h"
-#include "experiments/memo.h"
-#include "experiments/topic.h"
 #include "metrics/developability.h"
 #include "metrics/isometry.h"
 #include "metrics/pattern_mesh.h"
+#include "models/paper/sheet.h"
+#include "testbed/memo.h"
+#include "testbed/topic.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// What the rows of the paper metric table (metrics.cpp) read: quantities of one frame of one
 /// scene, absent where they have no meaning.
@@ -77,4 +77,4 @@ Value ring_sector(const SheetFrame& f);
 /// Hausdorff distance of the two surfaces over the width of the pattern.
 double hausdorff_ratio(const SheetFrame& f, const SheetFrame& reference);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

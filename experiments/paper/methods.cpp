@@ -4,9 +4,9 @@
 #include "experiments/paper/topic.h"
 #include "solvers/paper/hybrid.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
-std::vector<MethodEntry> paper_methods() {
+std::vector<MethodEntry> methods() {
   using S = PaperScene;
   return {
       method_entry<S, DenseOptions>("dense", true, "shell elements on one uniform mesh",
@@ -29,7 +29,7 @@ std::vector<MethodEntry> paper_methods() {
   };
 }
 
-std::vector<DiagnosticEntry> paper_diagnostics() {
+std::vector<DiagnosticEntry> diagnostics() {
   return {
       // Of every method.
       {"triangles", "1", "triangles of the mesh"},
@@ -61,4 +61,4 @@ std::vector<DiagnosticEntry> paper_diagnostics() {
   };
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -8,7 +8,7 @@
 
 #include "experiments/paper/measures.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 // Runs of one build are equal bit for bit; tolerances are for other compilers and processors.
@@ -211,7 +211,7 @@ void add_comparisons(std::vector<MetricEntry>& table) {
 
 }  // namespace
 
-std::vector<MetricEntry> paper_metrics() {
+std::vector<MetricEntry> metrics() {
   std::vector<MetricEntry> table;
   const SurfaceRows rows(table, std::make_shared<SheetMemo>());
   add_isometry(rows);
@@ -224,4 +224,4 @@ std::vector<MetricEntry> paper_metrics() {
   return table;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

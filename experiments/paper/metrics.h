@@ -2,11 +2,11 @@
 
 #include <vector>
 
-#include "experiments/topic.h"
+#include "testbed/topic.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// The metric table of the topic.
-std::vector<MetricEntry> paper_metrics();
+std::vector<MetricEntry> metrics();
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

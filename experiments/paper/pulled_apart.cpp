@@ -4,7 +4,7 @@
 #include <sstream>
 #include <vector>
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 /// A point of the pattern that a handle moves.
@@ -111,4 +111,4 @@ std::string warning_text(const Sheet& sheet, const PulledApart& worst, const std
   return text.str();
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
-#include "baselines/paper/sheet.h"
+#include "models/paper/sheet.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Two points that moving handles hold farther apart in space than the pattern has them.
 struct PulledApart {
@@ -26,4 +26,4 @@ inline constexpr int kTimesBetween = 31;
 /// What a reader of the scene's file should know.
 std::string warning_text(const Sheet& sheet, const PulledApart& worst, const std::string& where);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -5,13 +5,13 @@
 #include <sstream>
 #include <system_error>
 
-#include "baselines/paper/sheet_start.h"
 #include "core/error.h"
-#include "experiments/keyframes.h"
 #include "experiments/paper/pulled_apart.h"
-#include "experiments/view/view.h"
+#include "models/paper/sheet_valid.h"
+#include "testbed/home.h"
+#include "testbed/keyframes.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 namespace fs = std::filesystem;
@@ -168,4 +168,4 @@ std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
   return scene;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

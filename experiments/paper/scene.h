@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "baselines/paper/sheet.h"
 #include "experiments/paper/scene_options.h"
-#include "experiments/topic.h"
+#include "models/paper/sheet.h"
+#include "testbed/topic.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// A sheet, what moves it and what is in its way: what every paper method is given and every paper
 /// metric is measured on.
@@ -38,4 +38,4 @@ Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern);
 std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
                                              const std::filesystem::path& folder);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -1,6 +1,6 @@
 #include "experiments/paper/scene_options.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 constexpr double kLargest = 1e6;
@@ -138,4 +138,4 @@ void describe(OptionVisitor& v, PaperSceneOptions& options) {
   v.value("substeps", options.substeps, {.doc = "time steps of a frame", .min = 1, .max = 100000});
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

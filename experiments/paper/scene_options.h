@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "baselines/paper/sheet.h"
 #include "core/options.h"
-#include "experiments/keyframes.h"
 #include "experiments/paper/svg_pattern.h"
+#include "models/paper/sheet.h"
+#include "testbed/keyframes.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// A point of the pattern (m).
 struct PatternPointOptions {
@@ -99,4 +99,4 @@ struct PaperSceneOptions {
 void describe(OptionVisitor& v, PaperMaterial& options);
 void describe(OptionVisitor& v, PaperSceneOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -74,4 +74,4 @@ void flatten_arc(const SvgArc& arc, double tolerance, std::vector<Eigen::Vector2
   out.push_back(arc.to);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

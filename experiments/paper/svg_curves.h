@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Appends the end points of chords that stay within `tolerance` of a cubic Bezier curve that
 /// starts at `p0`; `p0` itself is not appended.
@@ -23,4 +23,4 @@ struct SvgArc {
 /// equal ends nothing (SVG 1.1, F.6.2).
 void flatten_arc(const SvgArc& arc, double tolerance, std::vector<Eigen::Vector2d>& out);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "experiments/paper/svg_curves.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 /// Characters of path data and where the reader stands.
@@ -210,4 +210,4 @@ std::vector<Eigen::Vector2d> flatten_svg_path(std::string_view d, double toleran
   return PathReader(d, tolerance, where).read();
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

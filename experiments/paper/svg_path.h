@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// The closed outline that SVG path data draws, with curves flattened to chords.
 ///
@@ -21,4 +21,4 @@ namespace geoprior {
 std::vector<Eigen::Vector2d> flatten_svg_path(std::string_view d, double tolerance,
                                               const std::string& where);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/error.h"
-#include "experiments/formats/atomic_file.h"
 #include "experiments/paper/svg_path.h"
+#include "testbed/formats/atomic_file.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 // The keys of the scene that errors name.
@@ -102,4 +102,4 @@ Pattern read_svg_pattern(const std::filesystem::path& file, const SvgPatternOpti
   return pattern;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "baselines/paper/pattern.h"
+#include "models/paper/pattern.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// How a path of an SVG drawing becomes a pattern.
 struct SvgPatternOptions {
@@ -23,4 +23,4 @@ struct SvgPatternOptions {
 ///                around it, malformed XML or path data
 Pattern read_svg_pattern(const std::filesystem::path& file, const SvgPatternOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

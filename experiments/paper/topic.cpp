@@ -3,7 +3,7 @@
 #include "experiments/paper/metrics.h"
 #include "experiments/paper/scene.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 /// The pieces of the hybrid coloured, on white paper; what a method does not have is not drawn.
@@ -22,7 +22,7 @@ FigureView paper_view() {
 
 }  // namespace
 
-Topic paper_topic() {
+Topic make_topic() {
   Topic topic;
   topic.name = "paper";
   topic.summary = "a sheet of paper bends and crumples between handles (thesis 3.2)";
@@ -31,11 +31,11 @@ Topic paper_topic() {
     return load_paper_scene(dynamic_cast<const TypedOptions<PaperSceneOptions>&>(set).options,
                             folder);
   };
-  topic.methods = paper_methods();
-  topic.metrics = paper_metrics();
-  topic.diagnostics = paper_diagnostics();
+  topic.methods = methods();
+  topic.metrics = metrics();
+  topic.diagnostics = diagnostics();
   topic.view = paper_view();
   return topic;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

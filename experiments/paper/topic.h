@@ -1,15 +1,15 @@
 #pragma once
 
-#include "experiments/topic.h"
+#include "testbed/topic.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Crumpled paper: simulations of a sheet that handles and obstacles deform (thesis 3.2).
-Topic paper_topic();
+Topic make_topic();
 
 /// The methods of the topic: experiments/paper/methods.cpp.
-std::vector<MethodEntry> paper_methods();
+std::vector<MethodEntry> methods();
 /// What they alone can know of a frame.
-std::vector<DiagnosticEntry> paper_diagnostics();
+std::vector<DiagnosticEntry> diagnostics();
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "experiments/formats/atomic_file.h"
+#include "testbed/formats/atomic_file.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 /// A word of the file for a message, shortened.
@@ -110,7 +110,7 @@ void parse_hierarchy(Words& words, BvhMotion& motion, int& columns) {
   begin_joint();
   while (!open.empty()) {
     const std::string_view word = words.next("OFFSET, CHANNELS, JOINT, End Site or }");
-    BvhJoint& joint = motion.joints[static_cast<std::size_t>(open.back())];
+    BvhJoint& joint = motion.joints[open.back()];
     if (word == "OFFSET") {
       joint.offset = words.vector();
     } else if (word == "CHANNELS") {
@@ -167,7 +167,7 @@ Eigen::Vector3d rest_bone(const BvhMotion& motion, int joint) {
   for (const BvhJoint& child : motion.joints) {
     if (child.parent == joint) sum += child.offset;
   }
-  const auto& end = motion.joints[static_cast<std::size_t>(joint)].end_site;
+  const auto& end = motion.joints[joint].end_site;
   return end ? Eigen::Vector3d(sum + *end) : sum;
 }
 
@@ -247,10 +247,8 @@ BvhRetarget::BvhRetarget(const BvhMotion& motion, const SkeletonFile& skeleton, 
   for (const Joint& joint : joints) ours.push_back(joint.head);
   std::vector<Eigen::Vector3d> theirs;
   for (const BvhJoint& joint : motion.joints) {
-    theirs.push_back(
-        joint.parent < 0
-            ? joint.offset
-            : Eigen::Vector3d(theirs[static_cast<std::size_t>(joint.parent)] + joint.offset));
+    theirs.push_back(joint.parent < 0 ? joint.offset
+                                      : Eigen::Vector3d(theirs[joint.parent] + joint.offset));
   }
   const double height = root_height(theirs);
   if (height > 0 && root_height(ours) > 0) scale_ = root_height(ours) / height;
@@ -270,8 +268,7 @@ Pose BvhRetarget::pose(int frame) const {
     const auto p = static_cast<std::size_t>(std::max(joint.parent, 0));
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     if (driver_[j] >= 0) {
-      rotation =
-          (state.rotation[static_cast<std::size_t>(driver_[j])] * align_[j]).toRotationMatrix();
+      rotation = (state.rotation[driver_[j]] * align_[j]).toRotationMatrix();
     } else if (joint.parent >= 0) {
       rotation = pose[p].linear();
     }
@@ -284,4 +281,4 @@ Pose BvhRetarget::pose(int frame) const {
   return pose;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -8,7 +8,7 @@
 
 #include "experiments/skinning/skeleton_file.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 struct BvhChannel {
   bool is_rotation = true;
@@ -70,4 +70,4 @@ class BvhRetarget {
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  ///< where the motion's root counts as at rest
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -1,6 +1,8 @@
 #include "experiments/skinning/characters.h"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "core/error.h"
@@ -8,10 +10,10 @@
 #include "core/simplify.h"
 #include "core/subdivision.h"
 #include "core/topology.h"
-#include "experiments/view/view.h"
 #include "metrics/joint_region.h"
+#include "testbed/home.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 namespace fs = std::filesystem;
@@ -21,7 +23,7 @@ namespace fs = std::filesystem;
 void drop_degenerate(TriMesh& split, const std::vector<int>& welded) {
   Eigen::Index kept = 0;
   for (Eigen::Index f = 0; f < split.F.rows(); ++f) {
-    const auto w = [&](int k) { return welded[static_cast<std::size_t>(split.F(f, k))]; };
+    const auto w = [&](int k) { return welded[split.F(f, k)]; };
     if (w(0) == w(1) || w(1) == w(2) || w(2) == w(0)) continue;
     if (kept != f) split.F.row(kept) = Eigen::RowVector3i(split.F.row(f));
     ++kept;
@@ -33,19 +35,18 @@ void drop_degenerate(TriMesh& split, const std::vector<int>& welded) {
 SkinWeights weld_weights(const SkinWeights& split, const Weld& weld, std::string& warning) {
   const auto n = static_cast<std::size_t>(weld.mesh.vertex_count());
   std::vector<double> copies(n, 0);
-  for (const int w : weld.welded_of_split) copies[static_cast<std::size_t>(w)] += 1;
+  for (const int w : weld.welded_of_split) copies[w] += 1;
   std::vector<Eigen::Triplet<double>> triplets;
   for (int v = 0; v < split.rows(); ++v) {
-    const int w = weld.welded_of_split[static_cast<std::size_t>(v)];
+    const int w = weld.welded_of_split[v];
     for (SkinWeights::InnerIterator it(split, v); it; ++it)
-      triplets.emplace_back(w, static_cast<int>(it.col()),
-                            it.value() / copies[static_cast<std::size_t>(w)]);
+      triplets.emplace_back(w, static_cast<int>(it.col()), it.value() / copies[w]);
   }
   SkinWeights welded(weld.mesh.vertex_count(), split.cols());
   welded.setFromTriplets(triplets.begin(), triplets.end());
   int differing = 0;
   for (int v = 0; v < split.rows(); ++v) {
-    const int w = weld.welded_of_split[static_cast<std::size_t>(v)];
+    const int w = weld.welded_of_split[v];
     const Eigen::SparseVector<double> difference =
         Eigen::SparseVector<double>(split.row(v).transpose()) -
         Eigen::SparseVector<double>(welded.row(w).transpose());
@@ -62,20 +63,18 @@ SkinWeights weld_weights(const SkinWeights& split, const Weld& weld, std::string
 /// weight has no namesake.
 std::optional<SkinWeights> rename_columns(const SkinWeights& weights, const Skeleton& from,
                                           const Skeleton& to, std::string& missing) {
-  std::vector<int> column(static_cast<std::size_t>(from.size()), -1);
+  std::vector<int> column(from.size(), -1);
   for (int i = 0; i < from.size(); ++i) {
     for (int j = 0; j < to.size(); ++j) {
-      if (to.joints[static_cast<std::size_t>(j)].name ==
-          from.joints[static_cast<std::size_t>(i)].name)
-        column[static_cast<std::size_t>(i)] = j;
+      if (to.joints[j].name == from.joints[i].name) column[i] = j;
     }
   }
   std::vector<Eigen::Triplet<double>> triplets;
   for (int v = 0; v < weights.rows(); ++v) {
     for (SkinWeights::InnerIterator it(weights, v); it; ++it) {
-      const int j = column[static_cast<std::size_t>(it.col())];
+      const int j = column[it.col()];
       if (j < 0) {
-        missing = from.joints[static_cast<std::size_t>(it.col())].name;
+        missing = from.joints[it.col()].name;
         return std::nullopt;
       }
       triplets.emplace_back(v, j, it.value());
@@ -169,7 +168,7 @@ void load_file(const CharacterOptions& options, const fs::path& file, const fs::
 }
 
 std::vector<int> identity(int n) {
-  std::vector<int> result(static_cast<std::size_t>(n));
+  std::vector<int> result(n);
   std::iota(result.begin(), result.end(), 0);
   return result;
 }
@@ -193,12 +192,12 @@ void take_procedural(const CharacterOptions& options, RiggedMesh rig, const fs::
 /// Triangles of the skin about the named joints; empty for "all".
 std::vector<bool> marks_of(const RefineOptions& options, const RiggedMesh& rig) {
   if (options.region.empty() || options.region == std::vector<std::string>{"all"}) return {};
-  std::vector<bool> marks(static_cast<std::size_t>(rig.mesh.triangle_count()), false);
+  std::vector<bool> marks(rig.mesh.triangle_count(), false);
   std::vector<int> joints;
   for (const std::string& name : options.region) joints.push_back(rig.skeleton.index_of(name));
   const std::vector<Eigen::Vector3d> no_axes(joints.size(), Eigen::Vector3d::Zero());
   const JointRegion region = make_joint_region(rig, "refined", joints, no_axes, options.extent);
-  for (const int f : region.triangles) marks[static_cast<std::size_t>(f)] = true;
+  for (const int f : region.triangles) marks[f] = true;
   return marks;
 }
 
@@ -284,4 +283,70 @@ fs::path find_input(const std::string& name, const fs::path& folder) {
   throw Error("no such file", name, "one of " + list);
 }
 
-}  // namespace geoprior
+void describe(OptionVisitor& v, RefineOptions& options) {
+  v.value("region", options.region,
+          {.doc = "joints whose skin is refined, as one region; [\"all\"]: the whole mesh"});
+  v.value("levels", options.levels, {.doc = "steps of Loop subdivision", .min = 0, .max = 5});
+  v.value("extent", options.extent,
+          {.doc = "half length of a joint's region along its bones, in local radii",
+           .min = 0.1,
+           .max = 20});
+}
+
+void describe(OptionVisitor& v, CylinderOptions& options) {
+  v.value("radius", options.radius, {.doc = "r", .unit = "m", .min = 1e-6});
+  v.value("half_length", options.half_length,
+          {.doc = "from the joint to either end of the straight part", .unit = "m", .min = 1e-6});
+  v.value("cap_height", options.cap_height,
+          {.doc = "half axis of the end caps along the bone; 0: flat", .unit = "m", .min = 0});
+  v.value("segments", options.segments, {.doc = "vertices of a ring", .min = 3, .max = 100000});
+  v.value("rings_per_half", options.rings_per_half,
+          {.doc = "rings on one side of the joint", .min = 1, .max = 100000});
+  v.value(
+      "ramp_width", options.ramp_width,
+      {.doc = "length over which the weights pass from bone to bone", .unit = "m", .min = 1e-9});
+}
+
+void describe(OptionVisitor& v, FingerOptions& options) {
+  v.value("hand_length", options.hand_length,
+          {.doc = "stump of the hand before the first joint", .unit = "m", .min = 1e-6});
+  v.value("phalanx_length", options.phalanx_length,
+          {.doc = "proximal, middle, distal", .unit = "m", .min = 1e-6});
+  std::vector<double> radius(options.radius.begin(), options.radius.end());
+  v.value("radius", radius,
+          {.doc = "at the base of each phalanx and at the tip: four numbers",
+           .unit = "m",
+           .min = 1e-6});
+  if (radius.size() != options.radius.size())
+    throw Error(std::to_string(radius.size()) + " numbers", "scene.finger.radius", "4");
+  std::copy(radius.begin(), radius.end(), options.radius.begin());
+  v.value("segments", options.segments, {.doc = "vertices of a ring", .min = 3, .max = 100000});
+  v.value("ramp_width", options.ramp_width,
+          {.doc = "of the weights about a joint, in local radii", .min = 1e-6, .max = 10});
+  v.value("ring_spacing", options.ring_spacing,
+          {.doc = "distance of rings in edge lengths of a ring", .min = 0.01, .max = 100});
+}
+
+void describe(OptionVisitor& v, CharacterOptions& options) {
+  static constexpr std::array<std::string_view, 3> kWeights{"file-or-heat", "file", "heat"};
+  v.value("character", options.character,
+          {.doc = "\"human\", \"cylinder\", \"finger\", or a .glb or .gltf file"});
+  v.value("mesh", options.mesh,
+          {.doc = "name of the file's mesh; absent: all meshes of its first skin, else all"});
+  v.value("skeleton", options.skeleton,
+          {.doc = "skeleton file that overrides the file's hierarchy"});
+  v.value("unit_m", options.unit_m,
+          {.doc = "metres for one unit of the file", .unit = "m", .min = 1e-9, .max = 1e9});
+  describe_choice(v, "weights", options.weights, kWeights,
+                  {.doc = "weights of the file, or by bone heat diffusion"});
+  describe_group(v, "heat", options.heat, {.doc = "bone heat diffusion"});
+  describe_group(v, "cylinder", options.cylinder, {.doc = "shape of character = \"cylinder\""});
+  describe_group(v, "finger", options.finger, {.doc = "shape of character = \"finger\""});
+  v.value("simplify_to", options.simplify_to,
+          {.doc = "collapse edges until so many vertices are left (heat weights), before refining",
+           .min = 4});
+  describe_list(v, "refine", options.refine,
+                {.doc = "Loop subdivision of the whole mesh or of regions, in order"});
+}
+
+}  // namespace geoprior::skinning

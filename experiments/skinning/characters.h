@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "baselines/skinning/heat_weights.h"
 #include "core/options.h"
 #include "core/procedural.h"
-#include "experiments/formats/gltf_reader.h"
 #include "experiments/skinning/skeleton_file.h"
+#include "models/skinning/heat_weights.h"
+#include "testbed/formats/gltf_reader.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 enum class WeightSource { file_or_heat, file, heat };
 
@@ -67,4 +67,4 @@ std::filesystem::path find_input(const std::string& name, const std::filesystem:
 std::filesystem::path data_folder();
 std::filesystem::path test_models_folder();
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

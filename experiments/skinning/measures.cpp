@@ -9,7 +9,7 @@
 #include "metrics/smoothness.h"
 #include "metrics/volume.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 constexpr double kGlobalSpacings = 768;  // columns along the diagonal of a whole body
@@ -80,7 +80,7 @@ Eigen::MatrixX3d in_bone_frame(const Measured& m) {
       dominant = it.col();
     }
     const Eigen::Vector3d x = m.posed.row(v).transpose();
-    local.row(v) = (back[static_cast<std::size_t>(dominant)] * x).transpose();
+    local.row(v) = (back[dominant] * x).transpose();
   }
   return local;
 }
@@ -168,8 +168,7 @@ std::optional<RingRatio> mid_ring(const Measured& m) {
   const std::vector<int> ring =
       find_mid_ring(hinge, m.mesh().V, region_vertices(*m.region(), m.mesh().F));
   if (ring.empty()) return std::nullopt;
-  return ring_radius_ratio(m.mesh().V, hinge.head, m.posed,
-                           m.pose[static_cast<std::size_t>(hinge.joint)] * hinge.head, ring);
+  return ring_radius_ratio(m.mesh().V, hinge.head, m.posed, m.pose[hinge.joint] * hinge.head, ring);
 }
 
 VertexDistance reference_distance(const Measured& m, const Measured& reference) {
@@ -191,4 +190,4 @@ Value second_difference(const Scene& scene, const FrameSequence& frames) {
                                region_vertices(skinning.regions.front(), skinning.rig.mesh.F));
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

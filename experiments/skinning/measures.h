@@ -4,15 +4,15 @@
 #include <vector>
 
 #include "core/frame.h"
-#include "experiments/memo.h"
 #include "experiments/skinning/scene.h"
 #include "metrics/cross_section.h"
 #include "metrics/distance.h"
 #include "metrics/distortion.h"
 #include "metrics/mid_ring.h"
 #include "metrics/overlap_volume.h"
+#include "testbed/memo.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// What the rows of the skinning metric table (metrics.cpp) read: quantities of one frame of one
 /// scene, absent where they have no meaning.
@@ -63,4 +63,4 @@ VertexDistance reference_distance(const Measured& m, const Measured& reference);
 /// Absent for fewer than three frames, unequal steps or no region.
 Value second_difference(const Scene& scene, const FrameSequence& frames);
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

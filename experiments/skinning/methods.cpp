@@ -7,7 +7,7 @@
 #include "solvers/skinning/implicit.h"
 #include "solvers/skinning/implicit_options.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 /// Linear and dual quaternion blending have nothing to choose.
@@ -32,7 +32,7 @@ Part input_part(const SkinningScene& scene, const Eigen::MatrixX3d& posed) {
   Part part;
   part.points.resize(scene.input_mesh.V.rows(), 3);
   for (Eigen::Index v = 0; v < part.points.rows(); ++v) {
-    part.points.row(v) = posed.row(scene.welded_of_input[static_cast<std::size_t>(v)]);
+    part.points.row(v) = posed.row(scene.welded_of_input[v]);
   }
   part.triangles = scene.input_mesh.F;
   return part;
@@ -106,7 +106,7 @@ class SkinningMethod final : public PoseMethod {
 
 }  // namespace
 
-std::vector<MethodEntry> skinning_methods() {
+std::vector<MethodEntry> methods() {
   using S = SkinningScene;
   return {
       method_entry<S, NoOptions>("linear-blend", true, "weighted mean of the bones' transforms",
@@ -136,7 +136,7 @@ std::vector<MethodEntry> skinning_methods() {
   };
 }
 
-std::vector<DiagnosticEntry> skinning_diagnostics() {
+std::vector<DiagnosticEntry> diagnostics() {
   return {
       {"evaluations_per_vertex", "1", "bone fields sampled, over the vertices"},
       {"iterations", "1", "steps of the projection"},
@@ -151,4 +151,4 @@ std::vector<DiagnosticEntry> skinning_diagnostics() {
   };
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -9,7 +9,7 @@
 #include "experiments/skinning/measures.h"
 #include "experiments/skinning/topic.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 MetricEntry entry(std::string name, std::string unit, std::string definition, Direction direction,
@@ -208,7 +208,7 @@ void add_reference_metrics(std::vector<MetricEntry>& table) {
 
 }  // namespace
 
-std::vector<MetricEntry> skinning_metrics() {
+std::vector<MetricEntry> metrics() {
   const auto shared = std::make_shared<Shared>();
   std::vector<MetricEntry> table;
   add_volume_metrics(table, shared);
@@ -220,4 +220,4 @@ std::vector<MetricEntry> skinning_metrics() {
   return table;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

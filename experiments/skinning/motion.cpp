@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "experiments/skinning/bvh.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 double at_fraction(double from, double to, int i, int count) {
@@ -39,7 +39,7 @@ Motion make_ramp(const MotionOptions& options, const Skeleton& skeleton) {
       motion.turned_joints.push_back(joint);
       motion.turned_axes.push_back(axis);
     } else {
-      motion.turned_axes[static_cast<std::size_t>(known - motion.turned_joints.begin())].setZero();
+      motion.turned_axes[known - motion.turned_joints.begin()].setZero();
     }
   }
   for (int i = 0; i < options.frames; ++i) {
@@ -81,7 +81,7 @@ Motion make_poses(const MotionOptions& options, const Skeleton& skeleton,
     const auto it = std::find(known.begin(), known.end(), name);
     if (it == known.end()) throw Error("no pose '" + name + "'", file.string(), list_of(known));
     std::vector<JointRotation> rotations;
-    for (const JointAngle& angle : poses[static_cast<std::size_t>(it - known.begin())].angles) {
+    for (const JointAngle& angle : poses[it - known.begin()].angles) {
       try {
         rotations.push_back(joint_rotation(skeleton, angle));
       } catch (const Error& e) {
@@ -105,10 +105,10 @@ Pose convert_pose(const Pose& pose, const Character& character) {
     const auto it = std::find_if(from.joints.begin(), from.joints.end(),
                                  [&](const Joint& other) { return other.name == joint.name; });
     if (it != from.joints.end()) {
-      result[j] = pose[static_cast<std::size_t>(it - from.joints.begin())];
+      result[j] = pose[it - from.joints.begin()];
       result[j].translation() *= character.unit_m;
     } else if (joint.parent >= 0) {
-      result[j] = result[static_cast<std::size_t>(joint.parent)];
+      result[j] = result[joint.parent];
     }
   }
   return result;
@@ -244,4 +244,4 @@ Motion make_motion(const MotionOptions& options, const Character& character,
   throw Error("unknown kind of motion", "scene.motion", "ramp, poses, clip, bvh");
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -8,7 +8,7 @@
 #include "core/options.h"
 #include "experiments/skinning/characters.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 enum class MotionKind { ramp, poses, clip, bvh };
 
@@ -65,4 +65,4 @@ struct Motion {
 Motion make_motion(const MotionOptions& options, const Character& character,
                    const std::filesystem::path& folder);
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

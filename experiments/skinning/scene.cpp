@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "core/topology.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 /// A joint whose region is measured, and the axis it bends about (zero when there is no single
@@ -31,9 +31,7 @@ std::vector<Hinge> hinges_of(const SkinningSceneOptions& options, const Skeleton
     hinges.push_back({joint, axis_of(joint)});
   }
   // A root has no bone on its near side: it turns the whole body and has no region.
-  std::erase_if(hinges, [&](const Hinge& h) {
-    return skeleton.joints[static_cast<std::size_t>(h.joint)].parent < 0;
-  });
+  std::erase_if(hinges, [&](const Hinge& h) { return skeleton.joints[h.joint].parent < 0; });
   return hinges;
 }
 
@@ -42,9 +40,7 @@ std::vector<std::vector<Hinge>> group_neighbours(const std::vector<Hinge>& hinge
                                                  const Skeleton& skeleton) {
   std::vector<std::size_t> group(hinges.size());
   for (std::size_t i = 0; i < hinges.size(); ++i) group[i] = i;
-  const auto parent = [&](std::size_t i) {
-    return skeleton.joints[static_cast<std::size_t>(hinges[i].joint)].parent;
-  };
+  const auto parent = [&](std::size_t i) { return skeleton.joints[hinges[i].joint].parent; };
   for (std::size_t i = 0; i < hinges.size(); ++i) {
     for (std::size_t k = 0; k < hinges.size(); ++k) {
       if (parent(i) != hinges[k].joint) continue;
@@ -68,8 +64,7 @@ std::vector<JointRegion> make_regions(const SkinningSceneOptions& options, const
     std::vector<int> joints;
     std::vector<Eigen::Vector3d> axes;
     for (const Hinge& h : group) {
-      name +=
-          (name.empty() ? "" : "+") + rig.skeleton.joints[static_cast<std::size_t>(h.joint)].name;
+      name += (name.empty() ? "" : "+") + rig.skeleton.joints[h.joint].name;
       joints.push_back(h.joint);
       axes.push_back(h.axis);
     }
@@ -107,7 +102,7 @@ const Pose& SkinningScene::pose_at(double parameter) const {
     throw Error("the motion has no frame at " + parameter_label + " " + std::to_string(parameter),
                 "scene", std::to_string(frame_parameter.size()) + " frames of the motion");
   }
-  return frame_pose[static_cast<std::size_t>(it - frame_parameter.begin())];
+  return frame_pose[it - frame_parameter.begin()];
 }
 
 std::shared_ptr<SkinningScene> load_skinning_scene(const SkinningSceneOptions& options,
@@ -129,4 +124,4 @@ std::shared_ptr<SkinningScene> load_skinning_scene(const SkinningSceneOptions& o
   return scene;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

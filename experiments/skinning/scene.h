@@ -9,10 +9,10 @@
 #include "core/rig.h"
 #include "experiments/skinning/characters.h"
 #include "experiments/skinning/motion.h"
-#include "experiments/topic.h"
 #include "metrics/joint_region.h"
+#include "testbed/topic.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// `[scene]` of a skinning experiment: a character (its members stand at the top level), a motion,
 /// and the joints whose regions are measured.
@@ -59,4 +59,4 @@ class SkinningScene final : public Scene {
 std::shared_ptr<SkinningScene> load_skinning_scene(const SkinningSceneOptions& options,
                                                    const std::filesystem::path& folder);
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "experiments/formats/atomic_file.h"
+#include "testbed/formats/atomic_file.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 std::string place(const std::string& name, const toml::source_region& source) {
@@ -218,7 +218,7 @@ std::vector<NamedPose> read_pose_file(const std::filesystem::path& file) {
 
 Eigen::Vector3d joint_axis(const Skeleton& skeleton, const std::string& joint,
                            const std::string& axis) {
-  const Joint& found = skeleton.joints[static_cast<std::size_t>(skeleton.index_of(joint))];
+  const Joint& found = skeleton.joints[skeleton.index_of(joint)];
   const auto it = found.axes.find(axis);
   if (it != found.axes.end()) return it->second;
   std::string names;
@@ -233,4 +233,4 @@ JointRotation joint_rotation(const Skeleton& skeleton, const JointAngle& angle) 
   return {skeleton.index_of(angle.joint), Eigen::Quaterniond(Eigen::AngleAxisd(radians, axis))};
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

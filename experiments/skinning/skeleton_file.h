@@ -8,7 +8,7 @@
 
 #include "core/rig.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// A skeleton authored for a mesh, and how motion capture drives it.
 ///
@@ -64,4 +64,4 @@ JointRotation joint_rotation(const Skeleton& skeleton, const JointAngle& angle);
 Eigen::Vector3d joint_axis(const Skeleton& skeleton, const std::string& joint,
                            const std::string& axis);
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

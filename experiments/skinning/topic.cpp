@@ -2,9 +2,9 @@
 
 #include "experiments/skinning/scene.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
-Topic skinning_topic() {
+Topic make_topic() {
   Topic topic;
   topic.name = "skinning";
   topic.summary = "a character's skin follows its skeleton (thesis 3.1)";
@@ -13,10 +13,10 @@ Topic skinning_topic() {
     return load_skinning_scene(dynamic_cast<const TypedOptions<SkinningSceneOptions>&>(set).options,
                                folder);
   };
-  topic.methods = skinning_methods();
-  topic.metrics = skinning_metrics();
-  topic.diagnostics = skinning_diagnostics();
+  topic.methods = methods();
+  topic.metrics = metrics();
+  topic.diagnostics = diagnostics();
   return topic;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -1,15 +1,15 @@
 #pragma once
 
-#include "experiments/topic.h"
+#include "testbed/topic.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Skinning: pose methods on a rigged character and a motion (thesis 3.1).
-Topic skinning_topic();
+Topic make_topic();
 
 /// The tables behind it: experiments/skinning/methods.cpp and experiments/skinning/metrics.cpp.
-std::vector<MethodEntry> skinning_methods();
-std::vector<MetricEntry> skinning_metrics();
-std::vector<DiagnosticEntry> skinning_diagnostics();
+std::vector<MethodEntry> methods();
+std::vector<MetricEntry> metrics();
+std::vector<DiagnosticEntry> diagnostics();
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

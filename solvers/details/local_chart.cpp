@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 constexpr double kTurn = 6.283185307179586;
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 double angle_at_start(const IntrinsicTriangulation& mesh, int h) {
   const double b = mesh.length(h), c = mesh.length(IntrinsicTriangulation::previous(h));
@@ -37,11 +35,11 @@ bool source_on_right(const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
 }  // namespace
 
 void LocalChart::reach(int vertex, const Eigen::Vector2d& at, double radius) {
-  if (stamp_[index(vertex)] == round_) return;
+  if (stamp_[vertex] == round_) return;
   const double distance = at.norm();
   if (distance > radius) return;
-  stamp_[index(vertex)] = round_;
-  placed_[index(vertex)] = at;
+  stamp_[vertex] = round_;
+  placed_[vertex] = at;
   queue_.push_back({distance, vertex, at});
   std::push_heap(queue_.begin(), queue_.end(), later);
 }
@@ -76,18 +74,18 @@ void LocalChart::lay_out_ring(const IntrinsicTriangulation& mesh, int source, do
 
 void LocalChart::unfold_from(const IntrinsicTriangulation& mesh, int vertex, double radius) {
   const int start = mesh.outgoing(vertex);
-  const Eigen::Vector2d at = placed_[index(vertex)];
+  const Eigen::Vector2d at = placed_[vertex];
   for (int h = start; h >= 0;) {
     const int back = IntrinsicTriangulation::previous(h);
     const int p = mesh.tip(h), q = mesh.origin(back);
     const double up = mesh.length(h), uq = mesh.length(back);
     const double pq = mesh.length(IntrinsicTriangulation::next(h));
-    const bool has_p = stamp_[index(p)] == round_, has_q = stamp_[index(q)] == round_;
+    const bool has_p = stamp_[p] == round_, has_q = stamp_[q] == round_;
     // Only away from the source: the front would fold back where placed points disagree a little.
-    if (has_p && !has_q && source_on_right(at, placed_[index(p)]))
-      reach(q, unfold(at, placed_[index(p)], uq, pq), radius);
-    if (has_q && !has_p && source_on_right(placed_[index(q)], at))
-      reach(p, unfold(placed_[index(q)], at, pq, up), radius);
+    if (has_p && !has_q && source_on_right(at, placed_[p]))
+      reach(q, unfold(at, placed_[p], uq, pq), radius);
+    if (has_q && !has_p && source_on_right(placed_[q], at))
+      reach(p, unfold(placed_[q], at, pq, up), radius);
     h = mesh.twin(back);
     if (h == start) break;
   }
@@ -95,13 +93,13 @@ void LocalChart::unfold_from(const IntrinsicTriangulation& mesh, int vertex, dou
 
 const std::vector<ChartPoint>& LocalChart::around(const IntrinsicTriangulation& mesh, int source,
                                                   double radius) {
-  stamp_.resize(index(mesh.vertex_slots()), 0);
-  placed_.resize(index(mesh.vertex_slots()));
+  stamp_.resize(mesh.vertex_slots(), 0);
+  placed_.resize(mesh.vertex_slots());
   ++round_;
   points_.clear();
   queue_.clear();
-  stamp_[index(source)] = round_;
-  placed_[index(source)] = Eigen::Vector2d::Zero();
+  stamp_[source] = round_;
+  placed_[source] = Eigen::Vector2d::Zero();
   points_.push_back({source, Eigen::Vector2d::Zero()});
   lay_out_ring(mesh, source, radius);
   while (!queue_.empty()) {
@@ -114,4 +112,4 @@ const std::vector<ChartPoint>& LocalChart::around(const IntrinsicTriangulation& 
   return points_;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "baselines/details/intrinsic_triangulation.h"
+#include "models/details/intrinsic_triangulation.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// A vertex laid out in the plane around a source.
 struct ChartPoint {
@@ -42,4 +42,4 @@ class LocalChart {
   int round_ = 0;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::details

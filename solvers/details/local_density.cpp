@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 bool has_ghost(const DetailMesh& d, int t) {
   const auto corner = d.mesh.corners(t);
@@ -19,8 +17,8 @@ std::vector<double> star_areas(const DetailMesh& d) {
   for (int t = 0; t < d.mesh.triangle_slots(); ++t) {
     if (!d.mesh.triangle_alive(t) || has_ghost(d, t)) continue;
     for (const int c : d.mesh.corners(t)) {
-      area[index(c)] += d.mesh.area(t);
-      count[index(c)] += 0.5;
+      area[c] += d.mesh.area(t);
+      count[c] += 0.5;
     }
   }
   for (std::size_t i = 0; i < area.size(); ++i)
@@ -33,17 +31,17 @@ std::vector<double> averaged(const DetailMesh& d, const std::vector<double>& val
   std::vector<double> result(value.size(), 0);
   std::vector<int> ring;
   for (int i = 0; i < d.site_slots(); ++i) {
-    if (d.kind[index(i)] == SiteKind::empty) continue;
+    if (d.kind[i] == SiteKind::empty) continue;
     d.mesh.neighbours(i, ring);
     ring.push_back(i);
     double sum = 0;
     int known = 0;
     for (const int j : ring) {
-      if (!(value[index(j)] > 0)) continue;
-      sum += value[index(j)];
+      if (!(value[j] > 0)) continue;
+      sum += value[j];
       ++known;
     }
-    if (known > 0) result[index(i)] = sum / known;
+    if (known > 0) result[i] = sum / known;
   }
   return result;
 }
@@ -58,12 +56,12 @@ void smooth_densities(DetailMesh& d, int rounds) {
     double sum = 0;
     int known = 0;
     for (const int c : d.mesh.corners(t)) {
-      if (!(area[index(c)] > 0)) continue;
-      sum += area[index(c)];
+      if (!(area[c] > 0)) continue;
+      sum += area[c];
       ++known;
     }
     if (known > 0) d.mesh.set_density(t, known / sum);
   }
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "baselines/details/detail_mesh.h"
+#include "models/details/detail_mesh.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Gives every triangle of M_d the density of details around it in place of its own: that of a
 /// detail is (number of triangles / 2) / area over its star (triangles with ghosts left out), then
@@ -11,4 +11,4 @@ namespace geoprior {
 /// sampling of a border does not matter.
 void smooth_densities(DetailMesh& details, int rounds);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

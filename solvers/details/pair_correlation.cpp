@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
@@ -49,7 +47,7 @@ Eigen::VectorXd PairCorrelation::of(const DetailMesh& details, int stride) {
 }
 
 bool PairCorrelation::counts(const DetailMesh& details, int site) {
-  return details.is_detail(site) && details.site[index(site)].target_weight > 0;
+  return details.is_detail(site) && details.site[site].target_weight > 0;
 }
 
 void PairCorrelation::distances(const DetailMesh& details, int t,
@@ -70,4 +68,4 @@ void PairCorrelation::distances(const DetailMesh& details, int t,
   }
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -3,11 +3,11 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "baselines/details/detail_mesh.h"
 #include "core/options.h"
+#include "models/details/detail_mesh.h"
 #include "solvers/details/local_chart.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Pair correlation of details by distance along M_d, the histogram that thesis 2.2.2 proposes as
 /// an extension.
@@ -45,4 +45,4 @@ class PairCorrelation {
   LocalChart chart_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -111,4 +111,4 @@ void TripletSearch::around(int source, std::vector<FoundTriplet>& into, std::int
   }
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

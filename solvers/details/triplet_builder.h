@@ -8,7 +8,7 @@
 #include "solvers/details/local_chart.h"
 #include "solvers/details/triplet_table.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Area and smallest angle of a triangle with edges |01|, |12|, |20|: the keys of the table.
 struct TriangleKeys {
@@ -53,4 +53,4 @@ std::array<std::size_t, 3> corners_by_edges(const std::array<double, 3>& edges);
 /// Cell of the grid for a triangle; clamped to its rim.
 std::array<int, 2> triplet_cell(const TriangleKeys& keys, double largest_area, int cells);
 
-}  // namespace geoprior
+}  // namespace geoprior::details

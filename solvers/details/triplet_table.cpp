@@ -10,10 +10,8 @@
 #include "core/parallel.h"
 #include "solvers/details/triplet_builder.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Sources whose surroundings are searched: details, evenly spread over their numbers.
 std::vector<int> sources_of(const DetailMesh& original, const TripletOptions& options) {
@@ -24,7 +22,7 @@ std::vector<int> sources_of(const DetailMesh& original, const TripletOptions& op
     throw Error("all triplets of " + std::to_string(details.size()) + " details", "triplets",
                 "at most 400 details, or local triplets");
   }
-  const auto most = index(options.max_sources);
+  const auto most = static_cast<std::size_t>(options.max_sources);
   if (options.all || details.size() <= most) return details;
   std::vector<int> some;
   for (std::size_t i = 0; i < most; ++i) some.push_back(details[i * details.size() / most]);
@@ -35,14 +33,14 @@ std::vector<int> sources_of(const DetailMesh& original, const TripletOptions& op
 class Reservoirs {
  public:
   Reservoirs(int cells, int capacity, std::uint64_t seed)
-      : capacity_(index(capacity)),
-        kept_(index(cells) * index(cells)),
+      : capacity_(static_cast<std::size_t>(capacity)),
+        kept_(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells)),
         seen_(kept_.size(), 0),
         random_(seed, "triplets") {}
 
   void offer(FoundTriplet& triplet) {
-    auto& cell = kept_[index(triplet.cell)];
-    const std::uint32_t seen = ++seen_[index(triplet.cell)];
+    auto& cell = kept_[triplet.cell];
+    const std::uint32_t seen = ++seen_[triplet.cell];
     if (cell.size() < capacity_) {
       cell.push_back(std::move(triplet));
       return;
@@ -98,15 +96,15 @@ TripletTable::TripletTable(const DetailMesh& original, const TripletOptions& opt
 }
 
 std::span<const TripletInterior> TripletTable::interior(int triplet) const {
-  const auto begin = index(entry_[index(triplet)].interior_begin);
-  const auto end = index(triplet) + 1 < entry_.size()
-                       ? index(entry_[index(triplet) + 1].interior_begin)
+  const auto begin = static_cast<std::size_t>(entry_[triplet].interior_begin);
+  const auto end = static_cast<std::size_t>(triplet) + 1 < entry_.size()
+                       ? static_cast<std::size_t>(entry_[triplet + 1].interior_begin)
                        : interior_.size();
   return {interior_.data() + begin, end - begin};
 }
 
 const std::array<int, 3>& TripletTable::corners(int triplet) const {
-  return entry_[index(triplet)].corner;
+  return entry_[triplet].corner;
 }
 
 std::size_t TripletTable::bytes() const {
@@ -116,13 +114,13 @@ std::size_t TripletTable::bytes() const {
 
 void TripletTable::search_cell(int cell, const std::array<double, 3>& sorted, int max_interior,
                                int count, std::vector<TripletMatch>& into) const {
-  for (int e = cell_begin_[index(cell)]; e < cell_begin_[index(cell) + 1]; ++e) {
+  for (int e = cell_begin_[cell]; e < cell_begin_[cell + 1]; ++e) {
     const auto inside = static_cast<int>(interior(e).size());
     if (inside < 1 || inside > max_interior) continue;
     double difference = 0;
     for (std::size_t k = 0; k < 3; ++k)
-      difference += std::abs(sorted[k] - static_cast<double>(entry_[index(e)].edge[k]));
-    const bool full = into.size() == index(count);
+      difference += std::abs(sorted[k] - static_cast<double>(entry_[e].edge[k]));
+    const bool full = into.size() == static_cast<std::size_t>(count);
     if (full && difference >= into.back().edge_difference) continue;
     if (full) into.pop_back();
     const auto place = std::upper_bound(
@@ -157,8 +155,8 @@ void TripletTable::closest(const std::array<double, 3>& edges, int max_interior,
   const bool odd = (order[1] - order[0] + 3) % 3 != 1;
   for (TripletMatch& match : into) {
     match.order = order;
-    match.mirrored = entry_[index(match.triplet)].clockwise != odd;
+    match.mirrored = entry_[match.triplet].clockwise != odd;
   }
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "baselines/details/detail_mesh.h"
 #include "core/options.h"
+#include "models/details/detail_mesh.h"
 
-namespace geoprior {
+namespace geoprior::details {
 
 /// Which triangles of three details of the original the table holds (thesis 2.2.2: all of them).
 struct TripletOptions {
@@ -82,4 +82,4 @@ class TripletTable {
   std::int64_t met_ = 0;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/topology.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr double kCotangentLimit = 20;
@@ -29,9 +29,9 @@ struct Patch {
 
 /// Marks with 2 the vertices on a border of the mesh: those stay, and L has no row for them.
 std::vector<char> marks_of(const TriMesh& mesh, const std::vector<char>& inside) {
-  std::vector<char> marks(static_cast<std::size_t>(mesh.vertex_count()), 0);
+  std::vector<char> marks(mesh.vertex_count(), 0);
   for (const Edge& e : boundary_edges(mesh.F)) {
-    for (const int v : e) marks[static_cast<std::size_t>(v)] = 2;
+    for (const int v : e) marks[v] = 2;
   }
   for (std::size_t v = 0; v < marks.size(); ++v) {
     if (inside[v] != 0 && marks[v] == 0) marks[v] = 1;
@@ -45,12 +45,12 @@ void grow(const TriMesh& mesh, Patch& patch, std::vector<int>& local) {
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
     bool touches = false;
     for (int k = 0; k < 3; ++k) {
-      const int id = local[static_cast<std::size_t>(mesh.F(t, k))];
+      const int id = local[mesh.F(t, k)];
       touches |= id >= 0 && id < before;
     }
     if (!touches) continue;
     for (int k = 0; k < 3; ++k) {
-      int& id = local[static_cast<std::size_t>(mesh.F(t, k))];
+      int& id = local[mesh.F(t, k)];
       if (id >= 0) continue;
       id = static_cast<int>(patch.vertices.size());
       patch.vertices.push_back(mesh.F(t, k));
@@ -71,9 +71,7 @@ Patch patch_of(const TriMesh& mesh, const std::vector<char>& marks) {
   patch.with_ring = static_cast<int>(patch.vertices.size());
   grow(mesh, patch, local);
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
-    const std::array<int, 3> tri{local[static_cast<std::size_t>(mesh.F(t, 0))],
-                                 local[static_cast<std::size_t>(mesh.F(t, 1))],
-                                 local[static_cast<std::size_t>(mesh.F(t, 2))]};
+    const std::array<int, 3> tri{local[mesh.F(t, 0)], local[mesh.F(t, 1)], local[mesh.F(t, 2)]};
     if (tri[0] >= 0 && tri[1] >= 0 && tri[2] >= 0) patch.triangles.push_back(tri);
   }
   return patch;
@@ -84,25 +82,24 @@ void require_held(const TriMesh& mesh, const std::vector<char>& marks) {
   std::vector<int> parent(marks.size());
   for (std::size_t v = 0; v < parent.size(); ++v) parent[v] = static_cast<int>(v);
   const auto root = [&](int v) {
-    while (parent[static_cast<std::size_t>(v)] != v) {
-      parent[static_cast<std::size_t>(v)] =
-          parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(v)])];
-      v = parent[static_cast<std::size_t>(v)];
+    while (parent[v] != v) {
+      parent[v] = parent[parent[v]];
+      v = parent[v];
     }
     return v;
   };
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
     const int a = root(mesh.F(t, 0)), b = root(mesh.F(t, 1));
-    parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    parent[std::max(a, b)] = std::min(a, b);
     const int c = root(mesh.F(t, 2)), d = std::min(a, b);
-    parent[static_cast<std::size_t>(std::max(c, d))] = std::min(c, d);
+    parent[std::max(c, d)] = std::min(c, d);
   }
   std::vector<char> held(marks.size(), 0);
   for (std::size_t v = 0; v < marks.size(); ++v) {
-    if (marks[v] != 1) held[static_cast<std::size_t>(root(static_cast<int>(v)))] = 1;
+    if (marks[v] != 1) held[root(static_cast<int>(v))] = 1;
   }
   for (std::size_t v = 0; v < marks.size(); ++v) {
-    if (held[static_cast<std::size_t>(root(static_cast<int>(v)))] == 0) {
+    if (held[root(static_cast<int>(v))] == 0) {
       throw Error("the region covers its whole component: no bed can be put under it",
                   "vertex " + std::to_string(v),
                   "regions that leave a vertex of every component outside");
@@ -111,7 +108,7 @@ void require_held(const TriMesh& mesh, const std::vector<char>& marks) {
 }
 
 Eigen::Vector3d position(const TriMesh& mesh, const Patch& patch, int local) {
-  return mesh.V.row(patch.vertices[static_cast<std::size_t>(local)]).transpose();
+  return mesh.V.row(patch.vertices[local]).transpose();
 }
 
 /// Cotangent weights (rows of the vertices that move and their ring) and masses.
@@ -126,9 +123,7 @@ Laplacian laplacian_of(const TriMesh& mesh, const Patch& patch, double smallest,
   Eigen::VectorXd mass = Eigen::VectorXd::Zero(patch.with_ring);
   for (const auto& tri : patch.triangles) {
     for (int k = 0; k < 3; ++k) {
-      const int a = tri[static_cast<std::size_t>(k)],
-                b = tri[static_cast<std::size_t>((k + 1) % 3)],
-                c = tri[static_cast<std::size_t>((k + 2) % 3)];
+      const int a = tri[k], b = tri[(k + 1) % 3], c = tri[(k + 2) % 3];
       const Eigen::Vector3d ab = position(mesh, patch, b) - position(mesh, patch, a);
       const Eigen::Vector3d ac = position(mesh, patch, c) - position(mesh, patch, a);
       const double twice_area = ab.cross(ac).norm();
@@ -211,7 +206,7 @@ Eigen::MatrixXd biharmonic(const TriMesh& mesh, const std::vector<char>& marks,
   Eigen::VectorXd weights = laplacian.mass.cwiseInverse();
   for (int i = 0; i < patch.with_ring; ++i) {
     // A border's row holds the pull of the missing side: it says nothing of curvature.
-    const auto v = static_cast<std::size_t>(patch.vertices[static_cast<std::size_t>(i)]);
+    const auto v = static_cast<std::size_t>(patch.vertices[i]);
     if (marks[v] == 2) weights[i] = 0;
   }
   weights /= weights.maxCoeff();
@@ -226,7 +221,7 @@ Eigen::MatrixXd biharmonic(const TriMesh& mesh, const std::vector<char>& marks,
 Eigen::MatrixX3d placed(const TriMesh& mesh, const Patch& patch, const Eigen::MatrixXd& x) {
   Eigen::MatrixX3d result = mesh.V;
   for (int i = 0; i < patch.moving; ++i) {
-    result.row(patch.vertices[static_cast<std::size_t>(i)]) = x.row(i);
+    result.row(patch.vertices[i]) = x.row(i);
   }
   return result;
 }
@@ -267,4 +262,4 @@ Eigen::MatrixX3d unfolded_base(const TriMesh& mesh, const std::vector<char>& ins
   return placed(mesh, patch, x);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

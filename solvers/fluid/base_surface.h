@@ -4,7 +4,7 @@
 
 #include "core/mesh.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// The smooth bed under a region: vertices of `inside` move so that the bi-Laplacian of their
 /// positions vanishes, L M^-1 L x = 0, the rest stays (two rings of it are the boundary condition:
@@ -25,4 +25,4 @@ Eigen::MatrixX3d base_under(const TriMesh& mesh, const std::vector<char>& inside
 /// ones (weights positive: no folds for a convex region). Heights stay.
 Eigen::MatrixX3d unfolded_base(const TriMesh& mesh, const std::vector<char>& inside);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

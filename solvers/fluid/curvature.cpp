@@ -1,13 +1,19 @@
 #include "solvers/fluid/curvature.h"
 
+#include <CGAL/Monge_via_jet_fitting.h>
+#include <CGAL/Simple_cartesian.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <vector>
 
 #include "core/parallel.h"
 
-namespace geoprior {
+#define CGAL_EIGEN3_ENABLED 1
+
+namespace geoprior::fluid {
 namespace {
 
 constexpr std::size_t kBlock = 1024;
@@ -20,9 +26,9 @@ struct Cotangents {
 };
 
 Cotangents cotangents(const SurfaceGraph& g, const std::array<int, 3>& t, double limit) {
-  const Eigen::Vector3d& a = g.x[static_cast<std::size_t>(t[0])];
-  const Eigen::Vector3d& b = g.x[static_cast<std::size_t>(t[1])];
-  const Eigen::Vector3d& c = g.x[static_cast<std::size_t>(t[2])];
+  const Eigen::Vector3d& a = g.x[t[0]];
+  const Eigen::Vector3d& b = g.x[t[1]];
+  const Eigen::Vector3d& c = g.x[t[2]];
   const Eigen::Vector3d ab = b - a, bc = c - b, ca = a - c;
   const double twice = ab.cross(bc).norm();
   Cotangents result;
@@ -50,8 +56,8 @@ void shape_at(const SurfaceGraph& g, const std::vector<Cotangents>& cot, std::si
   for (const int c : g.corners(static_cast<int>(v))) {
     const auto t = static_cast<std::size_t>(c / 3), k = static_cast<std::size_t>(c % 3);
     const auto& vertices = g.triangle[t];
-    const Eigen::Vector3d next = g.x[static_cast<std::size_t>(vertices[(k + 1) % 3])] - g.x[v];
-    const Eigen::Vector3d last = g.x[static_cast<std::size_t>(vertices[(k + 2) % 3])] - g.x[v];
+    const Eigen::Vector3d next = g.x[vertices[(k + 1) % 3]] - g.x[v];
+    const Eigen::Vector3d last = g.x[vertices[(k + 2) % 3]] - g.x[v];
     const double to_next = next.squaredNorm(), to_last = last.squaredNorm();
     bend -= cot[t].cot[(k + 2) % 3] * next + cot[t].cot[(k + 1) % 3] * last;
     area += mixed_area(cot[t], k, to_next, to_last);
@@ -122,4 +128,60 @@ Eigen::VectorXd mean_curvature(const TriMesh& mesh, const CurvatureOptions& opti
                                            static_cast<Eigen::Index>(shape.curvature.size()));
 }
 
-}  // namespace geoprior
+namespace {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using Fit = CGAL::Monge_via_jet_fitting<Kernel, Kernel>;
+
+constexpr std::size_t kFewestPoints = 6;  // coefficients of a quadric
+constexpr std::size_t kMostRings = 4;
+
+/// The vertex, then its rings until they are two and at least `kFewestPoints` + 1 points.
+void collect(const SurfaceGraph& g, int v, std::vector<int>& points) {
+  points.assign(1, v);
+  std::size_t begin = 0;
+  for (std::size_t ring = 0; ring < kMostRings; ++ring) {
+    if (ring >= 2 && points.size() > kFewestPoints) return;
+    const std::size_t end = points.size();
+    for (; begin < end; ++begin) {
+      for (const int n : g.neighbours(points[begin])) {
+        if (std::find(points.begin(), points.end(), n) == points.end()) points.push_back(n);
+      }
+    }
+  }
+}
+
+double fitted(const SurfaceGraph& g, const std::vector<int>& indices, const Eigen::Vector3d& n,
+              std::vector<Kernel::Point_3>& points) {
+  if (indices.size() <= kFewestPoints || n.isZero()) return 0;
+  points.clear();
+  for (const int i : indices) {
+    const Eigen::Vector3d& x = g.x[i];
+    points.emplace_back(x.x(), x.y(), x.z());
+  }
+  Fit fit;
+  Fit::Monge_form form = fit(points.begin(), points.end(), 2, 2);
+  form.comply_wrt_given_normal(Kernel::Vector_3(n.x(), n.y(), n.z()));
+  // The form is z = (k1 x^2 + k2 y^2) / 2 along the normal: crests bend away from it.
+  const double H = -(form.principal_curvatures(0) + form.principal_curvatures(1)) / 2;
+  return std::isfinite(H) ? H : 0;
+}
+
+}  // namespace
+
+std::vector<double> jet_curvature(const SurfaceGraph& g,
+                                  const std::vector<Eigen::Vector3d>& normals) {
+  std::vector<double> H(g.x.size(), 0.0);
+  parallel_blocks(H.size(), 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<int> indices;
+    std::vector<Kernel::Point_3> points;
+    for (std::size_t v = begin; v < end; ++v) {
+      if (g.border[v] != 0) continue;
+      collect(g, static_cast<int>(v), indices);
+      H[v] = fitted(g, indices, normals[v], points);
+    }
+  });
+  return H;
+}
+
+}  // namespace geoprior::fluid

@@ -6,7 +6,7 @@
 #include "core/options.h"
 #include "solvers/fluid/surface_graph.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 enum class CurvatureKind { cotangent, jet };
 
@@ -40,4 +40,4 @@ SurfaceShape surface_shape(const SurfaceGraph& graph, const CurvatureOptions& op
 std::vector<double> jet_curvature(const SurfaceGraph& graph,
                                   const std::vector<Eigen::Vector3d>& normals);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

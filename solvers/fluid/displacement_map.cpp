@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using Value = MapPatch::Value;
@@ -123,17 +123,13 @@ MapRaster rasterise(const MapPatch& patch, int resolution, double extent, const 
   raster.value.assign(count, Value::Zero());
   raster.covered.assign(count, 0);
   const auto in_texels = [&](int v) -> Eigen::Vector2d {
-    return (patch.uv[static_cast<std::size_t>(v)] / extent).array() * resolution + 0.5 * resolution;
+    return (patch.uv[v] / extent).array() * resolution + 0.5 * resolution;
   };
   for (const auto& f : patch.triangles) {
     Triangle t{in_texels(f[0]), in_texels(f[1]), in_texels(f[2]), 0};
     t.area = (t.b - t.a).x() * (t.c - t.a).y() - (t.b - t.a).y() * (t.c - t.a).x();
     if (t.area <= 0) continue;
-    draw(
-        t,
-        {&patch.value[static_cast<std::size_t>(f[0])], &patch.value[static_cast<std::size_t>(f[1])],
-         &patch.value[static_cast<std::size_t>(f[2])]},
-        rule, raster);
+    draw(t, {&patch.value[f[0]], &patch.value[f[1]], &patch.value[f[2]]}, rule, raster);
   }
   return raster;
 }
@@ -200,4 +196,4 @@ std::optional<double> height_at(const HeightRaster& raster, const Eigen::Vector2
   return height;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

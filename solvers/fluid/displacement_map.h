@@ -7,7 +7,7 @@
 
 #include "solvers/fluid/feature.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// A surface patch with a place in a map and values that vary linearly over its triangles.
 struct MapPatch {
@@ -55,4 +55,4 @@ struct HeightRaster {
 /// Bilinear height at (u, v); nothing where a texel around it is not known.
 std::optional<double> height_at(const HeightRaster& raster, const Eigen::Vector2d& uv);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr std::size_t kRowsPerBlock = 16;
@@ -29,16 +29,14 @@ std::vector<Contribution> contributions(const Feature& feature, double time) {
   const auto after = std::upper_bound(times.begin(), times.end(), time);
   const int last = feature.frame_count() - 1;
   const int i = std::clamp(static_cast<int>(after - times.begin()) - 1, 0, last);
-  const auto frame = [&](int k) {
-    return &feature.maps[static_cast<std::size_t>(std::clamp(k, 0, last))];
-  };
-  const double t0 = times[static_cast<std::size_t>(i)];
+  const auto frame = [&](int k) { return &feature.maps[std::clamp(k, 0, last)]; };
+  const double t0 = times[i];
   if (i == last || time <= t0) return {{frame(i), 1.0F}};
-  const double s = (time - t0) / (times[static_cast<std::size_t>(i) + 1] - t0);
+  const double s = (time - t0) / (times[i + 1] - t0);
   const std::array<double, 4> w = catmull_rom(s);
   std::vector<Contribution> result;
   for (int k = 0; k < 4; ++k) {
-    result.push_back({frame(i - 1 + k), static_cast<float>(w[static_cast<std::size_t>(k)])});
+    result.push_back({frame(i - 1 + k), static_cast<float>(w[k])});
   }
   return result;
 }
@@ -97,7 +95,7 @@ DisplacementSampler::Value DisplacementSampler::at(const Eigen::Vector2d& uv) co
     const Texel* row = texels_.data() + padded(i - 1, row_index);
     const Value sum = wx[0] * row[0].cast<double>() + wx[1] * row[1].cast<double>() +
                       wx[2] * row[2].cast<double>() + wx[3] * row[3].cast<double>();
-    result += wy[static_cast<std::size_t>(b)] * sum;
+    result += wy[b] * sum;
   }
   return result;
 }
@@ -137,4 +135,4 @@ double DisplacementSampler::min_jacobian(double fade) const {
   return *std::min_element(smallest.begin(), smallest.end());
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

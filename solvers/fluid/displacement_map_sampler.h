@@ -5,7 +5,7 @@
 
 #include "solvers/fluid/feature.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// Displacements times alpha of a differential feature at one source time, to be looked up.
 ///
@@ -42,4 +42,4 @@ class DisplacementSampler {
   std::vector<int> table_;     ///< occupied texels below and left of each (N + 1 squared)
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

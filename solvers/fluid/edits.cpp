@@ -4,9 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/error.h"
 #include "core/trajectory.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 /// Times this close to the ends of a feature's life are inside it (s).
@@ -174,4 +175,219 @@ std::optional<EditedFrame> edited_frame(const Feature& feature, const Edit& edit
   return result;
 }
 
-}  // namespace geoprior
+namespace {
+
+constexpr double kFar = 1e6;  // m, s
+
+void describe_selection(OptionVisitor& v, Edit& o) {
+  v.value("name", o.name, {.doc = "what messages call the edit"});
+  v.value("source", o.source, {.doc = "sequence or library of the scene the features come from"});
+  v.value("ids", o.ids, {.doc = "ids of features; none: selected by what follows", .min = 1});
+  v.value("box", o.box,
+          {.doc = "x0 y0 z0 x1 y1 z1 that holds the feature's centre at some time; none: any",
+           .unit = "m"});
+  v.value("interval", o.interval,
+          {.doc = "t0 t1 in which the feature lives for some time; none: any", .unit = "s"});
+  v.value("smallest_area", o.smallest_area,
+          {.doc = "largest area in time at least this", .unit = "m^2", .min = 0, .max = 1e12});
+  v.value("cut", o.cut,
+          {.doc = "the source is the target: its bed is put back under the features, drops are "
+                  "removed, before anything is pasted"});
+}
+
+void describe_space(OptionVisitor& v, Edit& o) {
+  v.value("move", o.move, {.doc = "translation", .unit = "m"});
+  v.value("turn_deg", o.turn_deg,
+          {.doc = "rotation about the up axis through the pivot",
+           .unit = "deg",
+           .min = -3600,
+           .max = 3600});
+  v.value("pivot_x", o.pivot_x, {.doc = "default: the feature's first centre", .unit = "m"});
+  v.value("pivot_y", o.pivot_y, {.doc = "default: the feature's first centre", .unit = "m"});
+  v.value("scale", o.scale,
+          {.doc = "along the feature's own axes: path, across, up", .min = 1e-3, .max = 1e3});
+  v.value("scale_path", o.scale_path, {.doc = "the path is scaled too, about the pivot"});
+  v.value("mirror", o.mirror, {.doc = "across the upright plane of the feature's first x axis"});
+  v.value("froude", o.froude,
+          {.doc = "scale the path too and let time run sqrt(scale) slower: omega^2 = g k is kept"});
+}
+
+void describe_time(OptionVisitor& v, Edit& o) {
+  v.value("start", o.start,
+          {.doc = "target time of the feature's first frame; default: its own", .unit = "s"});
+  v.value("speed", o.speed, {.doc = "of the feature's clock", .min = 1e-3, .max = 1e3});
+  describe_list(v, "retime", o.retime,
+                {.doc = "target times and the source times shown then, instead of start and speed "
+                        "(monotone cubic)"});
+  describe_list(v, "trajectory", o.trajectory,
+                {.doc = "positions of the feature's centre at times; the fine motion stays"});
+  v.value("fade_in", o.fade_in,
+          {.doc = "time over which a map grows (quintic)", .unit = "s", .min = 0, .max = kFar});
+  v.value("fade_out", o.fade_out,
+          {.doc = "time over which a map vanishes (quintic)", .unit = "s", .min = 0, .max = kFar});
+}
+
+}  // namespace
+
+void describe(OptionVisitor& v, EditKey& o) {
+  v.value("t", o.t, {.doc = "on the target's clock", .unit = "s", .required = true});
+  v.value("position", o.position,
+          {.doc = "of the feature's centre", .unit = "m", .required = true});
+}
+
+void describe(OptionVisitor& v, TimeKey& o) {
+  v.value("target", o.target, {.doc = "target time", .unit = "s", .required = true});
+  v.value("source", o.source, {.doc = "source time shown then", .unit = "s", .required = true});
+}
+
+void describe(OptionVisitor& v, Edit& o) {
+  describe_selection(v, o);
+  describe_space(v, o);
+  describe_time(v, o);
+  v.value("volume_lock", o.volume_lock, {.doc = "the pasted map adds no volume"});
+  v.value("unite", o.unite,
+          {.doc = "isolated features: exact union with the target instead of overlap"});
+}
+
+void require_valid(const Edit& edit) {
+  const std::string where = "edit '" + edit.name + "'";
+  const auto require = [&](bool holds, const char* problem, const char* allowed) {
+    if (!holds) throw Error(problem, where, allowed);
+  };
+  require(edit.box.empty() || edit.box.size() == 6, "the box is not six numbers",
+          "x0 y0 z0 x1 y1 z1");
+  if (edit.box.size() == 6) {
+    require(edit.box[0] <= edit.box[3] && edit.box[1] <= edit.box[4] && edit.box[2] <= edit.box[5],
+            "the box is inside out", "x0 <= x1, y0 <= y1, z0 <= z1");
+  }
+  require(
+      edit.interval.empty() || (edit.interval.size() == 2 && edit.interval[0] <= edit.interval[1]),
+      "the interval is not two increasing numbers", "t0 <= t1");
+  require(edit.speed > 0, "the speed is not positive", "> 0; to hold a frame use retime");
+  for (const double s : edit.scale) require(s > 0, "a scale is not positive", "> 0; see mirror");
+  for (std::size_t i = 1; i < edit.trajectory.size(); ++i) {
+    require(edit.trajectory[i - 1].t < edit.trajectory[i].t,
+            "times of the trajectory do not increase", "strictly increasing t");
+  }
+  for (std::size_t i = 1; i < edit.retime.size(); ++i) {
+    const TimeKey &a = edit.retime[i - 1], &b = edit.retime[i];
+    require(a.target < b.target, "target times of the retiming do not increase",
+            "strictly increasing target");
+    require(a.source <= b.source, "source times of the retiming decrease",
+            "source times that never decrease");
+  }
+}
+
+namespace {
+
+std::string where_of(const Edit& edit) { return "edit '" + edit.name + "'"; }
+
+bool meets(const FeatureSummary& feature, const Edit& edit) {
+  if (feature.times.empty() || feature.largest_area < edit.smallest_area) return false;
+  if (edit.interval.size() == 2 &&
+      (feature.times.front() > edit.interval[1] || feature.times.back() < edit.interval[0])) {
+    return false;
+  }
+  if (edit.box.size() != 6) return true;
+  return std::any_of(feature.centres.begin(), feature.centres.end(), [&](const Eigen::Vector3d& c) {
+    for (int k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      if (c[k] < edit.box[i] || c[k] > edit.box[i + 3]) return false;
+    }
+    return true;
+  });
+}
+
+std::string known_ids(std::span<const FeatureSummary> features) {
+  if (features.empty()) return "none: the source has no features";
+  std::string text;
+  constexpr std::size_t kShown = 40;
+  for (std::size_t i = 0; i < std::min(features.size(), kShown); ++i) {
+    text += (i == 0 ? "" : ", ") + std::to_string(features[i].id);
+  }
+  if (features.size() > kShown) {
+    text += ", and " + std::to_string(features.size() - kShown) + " more";
+  }
+  return text;
+}
+
+}  // namespace
+
+FeatureSummary summary_of(const Feature& feature) {
+  FeatureSummary result{feature.id, feature.times, {}, 0};
+  for (const Eigen::Isometry3d& p : feature.placement) result.centres.push_back(p.translation());
+  for (const double area : feature.area) result.largest_area = std::max(result.largest_area, area);
+  return result;
+}
+
+std::vector<int> select_features(std::span<const FeatureSummary> features, const Edit& edit) {
+  require_valid(edit);
+  std::vector<int> result;
+  for (const double id : edit.ids) {
+    const auto found = std::find_if(features.begin(), features.end(), [&](const FeatureSummary& f) {
+      return static_cast<double>(f.id) == id;
+    });
+    if (found == features.end()) {
+      const bool whole = id == std::floor(id) && std::abs(id) < 1e9;
+      throw Error("there is no feature " +
+                      (whole ? std::to_string(static_cast<long>(id)) : std::to_string(id)),
+                  where_of(edit), known_ids(features));
+    }
+    result.push_back(found->id);
+  }
+  if (edit.ids.empty()) {
+    for (const FeatureSummary& f : features) {
+      if (meets(f, edit)) result.push_back(f.id);
+    }
+    if (result.empty()) {
+      throw Error("no feature meets its box, interval and smallest area", where_of(edit),
+                  features.empty() ? "a source with features of at least shortest_track frames"
+                                   : "ids of the source: " + known_ids(features));
+    }
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+namespace {
+
+double slope_after(const std::vector<TimeKey>& keys, std::size_t i) {
+  return (keys[i + 1].source - keys[i].source) / (keys[i + 1].target - keys[i].target);
+}
+
+/// Slope of the cubic at a key: the mean of the slopes beside it weighted by time, limited to three
+/// times the smaller one, which keeps a cubic monotone (Fritsch and Carlson 1980).
+double slope_at(const std::vector<TimeKey>& keys, std::size_t i) {
+  if (keys.size() < 2) return 1;
+  if (i == 0) return slope_after(keys, 0);
+  if (i + 1 == keys.size()) return slope_after(keys, i - 1);
+  const double before = slope_after(keys, i - 1), after = slope_after(keys, i);
+  if (before * after <= 0) return 0;
+  const double dt_before = keys[i].target - keys[i - 1].target;
+  const double dt_after = keys[i + 1].target - keys[i].target;
+  const double mean = (before * dt_before + after * dt_after) / (dt_before + dt_after);
+  const double limit = 3 * std::min(std::abs(before), std::abs(after));
+  return std::clamp(mean, -limit, limit);
+}
+
+}  // namespace
+
+double retimed(const std::vector<TimeKey>& keys, double target_time) {
+  if (keys.empty()) return target_time;
+  const std::size_t last = keys.size() - 1;
+  if (target_time <= keys[0].target) {
+    return keys[0].source + slope_at(keys, 0) * (target_time - keys[0].target);
+  }
+  if (target_time >= keys[last].target) {
+    return keys[last].source + slope_at(keys, last) * (target_time - keys[last].target);
+  }
+  std::size_t i = 0;
+  while (keys[i + 1].target <= target_time) ++i;
+  const double dt = keys[i + 1].target - keys[i].target;
+  const double s = (target_time - keys[i].target) / dt, s2 = s * s, s3 = s2 * s;
+  return keys[i].source + (3 * s2 - 2 * s3) * (keys[i + 1].source - keys[i].source) +
+         dt * ((s3 - 2 * s2 + s) * slope_at(keys, i) + (s3 - s2) * slope_at(keys, i + 1));
+}
+
+}  // namespace geoprior::fluid

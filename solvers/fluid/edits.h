@@ -9,7 +9,7 @@
 #include "core/options.h"
 #include "solvers/fluid/feature.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 struct EditKey {
   double t = 0;                             ///< on the target's clock (s)
@@ -90,4 +90,4 @@ FeatureSummary summary_of(const Feature& feature);
 /// @throws Error  for an id that does not exist (names those that do), or a selection of nothing
 std::vector<int> select_features(std::span<const FeatureSummary> features, const Edit& edit);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

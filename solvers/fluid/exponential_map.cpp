@@ -6,7 +6,7 @@
 #include <numeric>
 #include <queue>
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 /// The surface near the anchor, with its own vertex numbers (ascending in the old ones).
@@ -24,7 +24,7 @@ Neighbourhood within_ball(std::span<const Eigen::Vector3d> positions,
   Neighbourhood near;
   std::vector<int> local(positions.size(), -1);
   const auto is_near = [&](int v) {
-    return (positions[static_cast<std::size_t>(v)] - anchor).squaredNorm() <= radius * radius;
+    return (positions[v] - anchor).squaredNorm() <= radius * radius;
   };
   std::vector<std::size_t> kept;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -33,7 +33,7 @@ Neighbourhood within_ball(std::span<const Eigen::Vector3d> positions,
       continue;
     }
     kept.push_back(t);
-    for (const int v : f) local[static_cast<std::size_t>(v)] = 0;
+    for (const int v : f) local[v] = 0;
   }
   for (std::size_t v = 0; v < local.size(); ++v) {
     if (local[v] < 0) continue;
@@ -43,9 +43,7 @@ Neighbourhood within_ball(std::span<const Eigen::Vector3d> positions,
   }
   for (const std::size_t t : kept) {
     const auto& f = triangles[t];
-    near.triangles.push_back({local[static_cast<std::size_t>(f[0])],
-                              local[static_cast<std::size_t>(f[1])],
-                              local[static_cast<std::size_t>(f[2])]});
+    near.triangles.push_back({local[f[0]], local[f[1]], local[f[2]]});
   }
   return near;
 }
@@ -53,16 +51,16 @@ Neighbourhood within_ball(std::span<const Eigen::Vector3d> positions,
 void add_rings(Neighbourhood& near) {
   near.offset.assign(near.vertices.size() + 1, 0);
   for (const auto& f : near.triangles) {
-    for (const int v : f) near.offset[static_cast<std::size_t>(v) + 1] += 2;
+    for (const int v : f) near.offset[v + 1] += 2;
   }
   std::partial_sum(near.offset.begin(), near.offset.end(), near.offset.begin());
-  near.neighbours.resize(static_cast<std::size_t>(near.offset.back()));
+  near.neighbours.resize(near.offset.back());
   std::vector<int> next(near.offset.begin(), near.offset.end() - 1);
   for (const auto& f : near.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
-      int& at = next[static_cast<std::size_t>(f[k])];
-      near.neighbours[static_cast<std::size_t>(at++)] = f[(k + 1) % 3];
-      near.neighbours[static_cast<std::size_t>(at++)] = f[(k + 2) % 3];
+      int& at = next[f[k]];
+      near.neighbours[at++] = f[(k + 1) % 3];
+      near.neighbours[at++] = f[(k + 2) % 3];
     }
   }
 }
@@ -70,10 +68,9 @@ void add_rings(Neighbourhood& near) {
 void add_normals(Neighbourhood& near) {
   near.normal.assign(near.x.size(), Eigen::Vector3d::Zero());
   for (const auto& f : near.triangles) {
-    const Eigen::Vector3d& a = near.x[static_cast<std::size_t>(f[0])];
-    const Eigen::Vector3d n = (near.x[static_cast<std::size_t>(f[1])] - a)
-                                  .cross(near.x[static_cast<std::size_t>(f[2])] - a);
-    for (const int v : f) near.normal[static_cast<std::size_t>(v)] += n;
+    const Eigen::Vector3d& a = near.x[f[0]];
+    const Eigen::Vector3d n = (near.x[f[1]] - a).cross(near.x[f[2]] - a);
+    for (const int v : f) near.normal[v] += n;
   }
   for (Eigen::Vector3d& n : near.normal) n.normalize();
 }
@@ -105,7 +102,7 @@ class Unrolling {
     while (!queue_.empty()) {
       const auto [distance, v] = queue_.top();
       queue_.pop();
-      if (settled_[static_cast<std::size_t>(v)] != 0) continue;
+      if (settled_[v] != 0) continue;
       settle(v);
       if (distance <= radius_) expand(v);
     }
@@ -131,8 +128,8 @@ class Unrolling {
   }
 
   [[nodiscard]] std::span<const int> ring(int v) const {
-    const auto begin = static_cast<std::size_t>(near_.offset[static_cast<std::size_t>(v)]);
-    const auto end = static_cast<std::size_t>(near_.offset[static_cast<std::size_t>(v) + 1]);
+    const auto begin = static_cast<std::size_t>(near_.offset[v]);
+    const auto end = static_cast<std::size_t>(near_.offset[v + 1]);
     return {near_.neighbours.data() + begin, end - begin};
   }
 
@@ -208,21 +205,21 @@ ExponentialMap exponential_map(std::span<const Eigen::Vector3d> positions,
   add_normals(near);
   std::array<int, 3> corners{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const int v = triangles[static_cast<std::size_t>(triangle)][k];
+    const int v = triangles[triangle][k];
     corners[k] = static_cast<int>(std::lower_bound(near.vertices.begin(), near.vertices.end(), v) -
                                   near.vertices.begin());
   }
   // Vertex normals weighted by nearness in the triangle: smooth as the anchor moves.
   Eigen::Matrix3d edges;
   for (int k = 0; k < 3; ++k) {
-    edges.col(k) = near.x[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
+    edges.col(k) = near.x[corners[k]];
   }
   const Eigen::Vector3d flat = (edges.col(1) - edges.col(0)).cross(edges.col(2) - edges.col(0));
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d b = edges.col((k + 1) % 3) - anchor, c = edges.col((k + 2) % 3) - anchor;
     const double weight = std::max(0.0, b.cross(c).dot(flat));
-    normal += weight * near.normal[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
+    normal += weight * near.normal[corners[k]];
   }
   normal = normal.squaredNorm() > 0 ? normal.normalized() : flat.normalized();
   Unrolling unrolling(near, radius);
@@ -231,4 +228,4 @@ ExponentialMap exponential_map(std::span<const Eigen::Vector3d> positions,
   return unrolling.result();
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

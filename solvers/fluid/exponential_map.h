@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// Discrete exponential map: surface points by direction and distance from an anchor, unrolled into
 /// the anchor's tangent plane, and the anchor's axes transported to every vertex.
@@ -36,4 +36,4 @@ ExponentialMap exponential_map(std::span<const Eigen::Vector3d> positions,
 /// `axes` turned on the shortest way so that the third column is the unit vector `normal`.
 Eigen::Matrix3d turned_to(const Eigen::Matrix3d& axes, const Eigen::Vector3d& normal);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -3,7 +3,7 @@
 #include <map>
 #include <utility>
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 /// Warnings of frames, each once with the frames it was met in.
@@ -68,4 +68,4 @@ Extraction extract_regions(
   return result;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -11,7 +11,7 @@
 #include "solvers/fluid/regions.h"
 #include "solvers/fluid/tracking.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// Space-time features of any surface animation. Thesis 3.3.1.
 struct ExtractionOptions {
@@ -52,4 +52,4 @@ SurfaceFrame without_feature(const SurfaceFrame& frame, int frame_index,
                              const Extraction& extraction, const ExtractionOptions& options,
                              const std::vector<int>& ids);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -9,7 +9,7 @@
 #include "core/options.h"
 #include "solvers/fluid/tracking.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// One frame of a differential feature: vector displacements of an N x N map over the base surface,
 /// in the axes of the feature's moving frame, x fastest; texel (i, j) is at
@@ -56,4 +56,4 @@ struct MapOptions {
 };
 void describe(OptionVisitor& v, MapOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -10,7 +10,7 @@
 #include "solvers/fluid/base_surface.h"
 #include "solvers/fluid/lift_maps.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 /// Frames read at a time; each is then worked on by itself.
@@ -78,7 +78,7 @@ std::vector<std::vector<Piece>> lift_pieces(const SurfaceSequence& sequence,
   std::map<int, std::vector<Piece>> by_frame;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     for (const int r : tracks[t]->regions) {
-      const Region& region = extraction.regions[static_cast<std::size_t>(r)];
+      const Region& region = extraction.regions[r];
       by_frame[region.frame].push_back({t, &region, {}});
     }
   }
@@ -127,13 +127,13 @@ Feature isolated_feature(std::vector<Piece>& pieces, const Extraction& extractio
   for (const Piece& piece : pieces) {
     FrameSample sample;
     sample.frame = piece.region->frame;
-    sample.time = extraction.times[static_cast<std::size_t>(sample.frame)];
+    sample.time = extraction.times[sample.frame];
     sample.centre = piece.region->centre;
     samples.push_back(sample);
   }
   std::vector<FrameTime> times;
   for (int f = samples.front().frame; f <= samples.back().frame; ++f) {
-    times.push_back({f, extraction.times[static_cast<std::size_t>(f)]});
+    times.push_back({f, extraction.times[f]});
   }
   feature.placement = moving_centres(samples, times, options.smoothing_window);
   for (std::size_t i = 0, next = 0; i < times.size(); ++i) {
@@ -154,7 +154,7 @@ Feature isolated_feature(std::vector<Piece>& pieces, const Extraction& extractio
 
 const Region* region_in_frame(const Extraction& extraction, const Track& track, int frame) {
   for (const int r : track.regions) {
-    const Region& region = extraction.regions[static_cast<std::size_t>(r)];
+    const Region& region = extraction.regions[r];
     if (region.frame == frame) return &region;
   }
   return nullptr;
@@ -166,7 +166,7 @@ std::vector<const Region*> regions_around(const Extraction& extraction, const Tr
   const Region* before = nullptr;
   const Region* after = nullptr;
   for (const int r : track.regions) {
-    const Region& region = extraction.regions[static_cast<std::size_t>(r)];
+    const Region& region = extraction.regions[r];
     if (region.frame < frame) before = &region;
     if (region.frame > frame && after == nullptr) after = &region;
   }
@@ -226,7 +226,7 @@ SurfaceFrame without_vertices(const SurfaceFrame& frame, const std::vector<char>
   result.mesh.F.resize(frame.mesh.F.rows(), 3);
   for (Eigen::Index t = 0; t < frame.mesh.F.rows(); ++t) {
     Eigen::RowVector3i f;
-    for (int k = 0; k < 3; ++k) f[k] = local[static_cast<std::size_t>(frame.mesh.F(t, k))];
+    for (int k = 0; k < 3; ++k) f[k] = local[frame.mesh.F(t, k)];
     if (f.minCoeff() >= 0) result.mesh.F.row(kept++) = f;
   }
   result.mesh.F.conservativeResize(kept, 3);
@@ -327,8 +327,8 @@ std::vector<FeatureSummary> track_summaries(const Extraction& extraction, int sh
     FeatureSummary summary;
     summary.id = track.id;
     for (const int r : track.regions) {
-      const Region& region = extraction.regions[static_cast<std::size_t>(r)];
-      summary.times.push_back(extraction.times[static_cast<std::size_t>(region.frame)]);
+      const Region& region = extraction.regions[r];
+      summary.times.push_back(extraction.times[region.frame]);
       summary.centres.push_back(region.centre);
       summary.largest_area = std::max(summary.largest_area, region.area);
     }
@@ -337,4 +337,4 @@ std::vector<FeatureSummary> track_summaries(const Extraction& extraction, int sh
   return result;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -7,7 +7,7 @@
 #include "solvers/fluid/extraction.h"
 #include "solvers/fluid/lift_patch.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// Labels of a frame: what its segmentation said when the tracks were made. Called from several
 /// threads.
@@ -28,4 +28,4 @@ SurfaceFrame without_regions(const SurfaceFrame& frame, const FrameLabels& label
 /// `shortest` frames.
 std::vector<FeatureSummary> track_summaries(const Extraction& extraction, int shortest);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

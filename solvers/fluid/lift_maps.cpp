@@ -8,7 +8,7 @@
 #include "solvers/fluid/displacement_map.h"
 #include "solvers/fluid/exponential_map.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr double kSteep = 0.2;             ///< n.z of a bed that is no graph over its plane
@@ -40,9 +40,7 @@ PlacedPatch place(const LiftPatch& patch, const Eigen::Isometry3d& frame) {
 double steep_share(const LiftPatch& patch, const Eigen::Vector3d& z) {
   double all = 0, steep = 0;
   for (const auto& f : patch.triangles) {
-    const auto corner = [&](std::size_t k) {
-      return patch.bed[static_cast<std::size_t>(f[k])].cast<double>().eval();
-    };
+    const auto corner = [&](std::size_t k) { return patch.bed[f[k]].cast<double>().eval(); };
     const Eigen::Vector3d n = (corner(1) - corner(0)).cross(corner(2) - corner(0));
     all += n.norm();
     if (n.dot(z) <= kSteep * n.norm()) steep += n.norm();
@@ -56,7 +54,7 @@ int nearest_triangle(const LiftPatch& patch, const PlacedPatch& placed) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (const int v : patch.triangles[t]) middle += placed.bed[static_cast<std::size_t>(v)] / 3;
+    for (const int v : patch.triangles[t]) middle += placed.bed[v] / 3;
     if (middle.squaredNorm() >= least) continue;
     least = middle.squaredNorm();
     best = static_cast<int>(t);
@@ -67,9 +65,9 @@ int nearest_triangle(const LiftPatch& patch, const PlacedPatch& placed) {
 /// Coordinates by geodesics, displacements in transported axes.
 void unroll(const LiftPatch& patch, PlacedPatch& placed) {
   const int triangle = nearest_triangle(patch, placed);
-  const auto& f = patch.triangles[static_cast<std::size_t>(triangle)];
+  const auto& f = patch.triangles[triangle];
   Eigen::Vector3d anchor = Eigen::Vector3d::Zero();
-  for (const int v : f) anchor += placed.bed[static_cast<std::size_t>(v)] / 3;
+  for (const int v : f) anchor += placed.bed[v] / 3;
   const ExponentialMap map =
       exponential_map(placed.bed, patch.triangles, triangle, anchor, Eigen::Matrix3d::Identity(),
                       std::numeric_limits<double>::max());
@@ -103,9 +101,8 @@ MapPatch map_patch(const LiftPatch& patch, const PlacedPatch& placed, bool by_su
     result.uv.push_back(by_surface ? Eigen::Vector2d(placed.surface[v].head<2>()) : placed.uv[v]);
   }
   for (const auto& f : patch.triangles) {
-    const bool placed_all = std::all_of(f.begin(), f.end(), [&](int v) {
-      return result.uv[static_cast<std::size_t>(v)].allFinite();
-    });
+    const bool placed_all =
+        std::all_of(f.begin(), f.end(), [&](int v) { return result.uv[v].allFinite(); });
     if (placed_all) result.triangles.push_back(f);
   }
   return result;
@@ -129,9 +126,9 @@ LiftedFrame lifted(const MapRaster& raster, double border) {
   frame.map.alpha.resize(count);
   frame.bed = {raster.resolution, raster.extent, {}, raster.covered};
   for (Eigen::Index i = 0; i < count; ++i) {
-    const auto& value = raster.value[static_cast<std::size_t>(i)];
+    const auto& value = raster.value[i];
     frame.map.displacement.row(i) = value.head<3>().matrix().transpose();
-    const bool outside = raster.covered[static_cast<std::size_t>(i)] == 2;
+    const bool outside = raster.covered[i] == 2;
     frame.map.alpha[i] =
         outside ? 0.0F
                 : static_cast<float>(smooth_fall(static_cast<double>(value[kDistance]) / border));
@@ -231,7 +228,7 @@ Timeline timeline_of(const std::vector<LiftPatch>& patches, const std::vector<do
   Timeline line;
   std::size_t next = 0;
   for (int f = patches.front().sample.frame; f <= patches.back().sample.frame; ++f) {
-    line.times.push_back({f, times[static_cast<std::size_t>(f)]});
+    line.times.push_back({f, times[f]});
     const bool has = patches[next].sample.frame == f;
     line.patch.push_back(has ? static_cast<int>(next) : -1);
     if (has) ++next;
@@ -315,4 +312,4 @@ Feature feature_of_patches(std::vector<LiftPatch> patches, const std::vector<dou
   return feature;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -5,7 +5,7 @@
 #include "solvers/fluid/feature.h"
 #include "solvers/fluid/lift_patch.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// Maps, extent and moving frames of a differential feature from its patches.
 ///
@@ -22,4 +22,4 @@ namespace geoprior {
 Feature feature_of_patches(std::vector<LiftPatch> patches, const std::vector<double>& times,
                            double cell, const MapOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -9,7 +9,7 @@
 #include "solvers/fluid/base_surface.h"
 #include "solvers/fluid/surface_graph.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -18,7 +18,7 @@ Eigen::Vector3d row(const Eigen::MatrixX3d& V, int v) { return V.row(v).transpos
 
 bool touches(const TriMesh& mesh, Eigen::Index t, const std::vector<double>& distance) {
   for (int k = 0; k < 3; ++k) {
-    if (distance[static_cast<std::size_t>(mesh.F(t, k))] < kFar) return true;
+    if (distance[mesh.F(t, k)] < kFar) return true;
   }
   return false;
 }
@@ -33,7 +33,7 @@ FrameSample bed_sample(const TriMesh& mesh, const Eigen::MatrixX3d& bed,
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
     int inside = 0;
     for (int k = 0; k < 3; ++k) {
-      inside += label[static_cast<std::size_t>(mesh.F(t, k))] == wanted ? 1 : 0;
+      inside += label[mesh.F(t, k)] == wanted ? 1 : 0;
     }
     if (inside == 0) continue;
     if (sample.area == 0) origin = row(bed, mesh.F(t, 0));
@@ -61,13 +61,13 @@ FrameSample bed_sample(const TriMesh& mesh, const Eigen::MatrixX3d& bed,
 std::vector<double> distance_from_region(const TriMesh& mesh, const FrameLabels& labels,
                                          const std::vector<int>& wanted, double reach) {
   const SurfaceGraph graph = surface_graph(mesh);
-  std::vector<double> distance(static_cast<std::size_t>(graph.size()), kFar);
+  std::vector<double> distance(graph.size(), kFar);
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   for (int v = 0; v < graph.size(); ++v) {
-    const int label = labels.label[static_cast<std::size_t>(v)];
+    const int label = labels.label[v];
     if (label == 0 || std::find(wanted.begin(), wanted.end(), label) == wanted.end()) continue;
-    distance[static_cast<std::size_t>(v)] = 0;
+    distance[v] = 0;
     queue.emplace(0.0, v);
   }
   while (!queue.empty()) {
@@ -104,15 +104,14 @@ LiftPatch lift_patch(const SurfaceFrame& frame, const FrameLabels& labels, const
     std::array<int, 3> triangle{};
     for (int k = 0; k < 3; ++k) {
       const int v = mesh.F(t, k);
-      int& id = local[static_cast<std::size_t>(v)];
+      int& id = local[v];
       if (id < 0) {
         id = static_cast<int>(patch.surface.size());
         patch.surface.push_back((row(mesh.V, v) - patch.sample.centre).cast<float>());
         patch.bed.push_back((row(bed, v) - patch.sample.centre).cast<float>());
-        patch.distance.push_back(
-            static_cast<float>(std::min(distance[static_cast<std::size_t>(v)], border)));
+        patch.distance.push_back(static_cast<float>(std::min(distance[v], border)));
       }
-      triangle[static_cast<std::size_t>(k)] = id;
+      triangle[k] = id;
     }
     patch.triangles.push_back(triangle);
   }
@@ -132,20 +131,17 @@ TriMesh isolated_mesh(const TriMesh& mesh, const FrameLabels& labels, int label)
   }
   std::vector<Eigen::Index> kept;
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
-    if (local[static_cast<std::size_t>(mesh.F(t, 0))] >= 0 &&
-        local[static_cast<std::size_t>(mesh.F(t, 1))] >= 0 &&
-        local[static_cast<std::size_t>(mesh.F(t, 2))] >= 0) {
+    if (local[mesh.F(t, 0)] >= 0 && local[mesh.F(t, 1)] >= 0 && local[mesh.F(t, 2)] >= 0) {
       kept.push_back(t);
     }
   }
   result.F.resize(static_cast<Eigen::Index>(kept.size()), 3);
   for (std::size_t i = 0; i < kept.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
-      result.F(static_cast<Eigen::Index>(i), k) =
-          local[static_cast<std::size_t>(mesh.F(kept[i], k))];
+      result.F(static_cast<Eigen::Index>(i), k) = local[mesh.F(kept[i], k)];
     }
   }
   return result;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

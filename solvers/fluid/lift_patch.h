@@ -7,7 +7,7 @@
 #include "solvers/fluid/moving_frame.h"
 #include "solvers/fluid/regions.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// A region of one frame over its bed: the surface, the bed under it, distances from the region.
 /// Single precision, relative to the sample's centre: many are kept at once.
@@ -37,4 +37,4 @@ LiftPatch lift_patch(const SurfaceFrame& frame, const FrameLabels& labels, const
 /// Triangles of an isolated region, in coordinates of the world.
 TriMesh isolated_mesh(const TriMesh& mesh, const FrameLabels& labels, int label);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

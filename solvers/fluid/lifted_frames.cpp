@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 double total_area(const Feature& feature) {
@@ -84,4 +84,4 @@ FrameTable feature_table(const std::vector<Feature>& features, const std::vector
   return table;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

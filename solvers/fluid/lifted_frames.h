@@ -6,7 +6,7 @@
 #include "core/frame.h"
 #include "solvers/fluid/feature.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// The differential feature to be shown: the one of this id, else the one whose regions add up to
 /// the largest area over its frames. Null when none is differential and no id is asked for.
@@ -29,4 +29,4 @@ double mesh_bytes(const TriMesh& mesh);
 FrameTable feature_table(const std::vector<Feature>& features, const std::vector<double>& times,
                          const std::vector<double>& frame_bytes);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "solvers/fluid/exponential_map.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr std::size_t kBlock = 4096;
@@ -37,9 +38,9 @@ Projection project(const WorkMesh& mesh, const EditedFrame& frame, double half, 
   parallel_blocks(mesh.triangles.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const auto& f = mesh.triangles[t];
-      const Eigen::Vector3d& a = result.local[static_cast<std::size_t>(f[0])];
-      const Eigen::Vector3d& b = result.local[static_cast<std::size_t>(f[1])];
-      const Eigen::Vector3d& c = result.local[static_cast<std::size_t>(f[2])];
+      const Eigen::Vector3d& a = result.local[f[0]];
+      const Eigen::Vector3d& b = result.local[f[1]];
+      const Eigen::Vector3d& c = result.local[f[2]];
       const Eigen::Array3d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
       const bool over = low.x() <= half && low.y() <= half && high.x() >= -half &&
                         high.y() >= -half && low.z() <= anchor_w + reach &&
@@ -71,7 +72,7 @@ class Components {
   }
 
  private:
-  int& at(int v) { return parent_[static_cast<std::size_t>(v)]; }
+  int& at(int v) { return parent_[v]; }
   std::vector<int> parent_;
 };
 
@@ -91,10 +92,9 @@ Footprint footprint(const WorkMesh& mesh, const Projection& projection, const Pa
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (projection.side[t] == Side::outside) continue;
     const auto& f = mesh.triangles[t];
-    const Eigen::Vector3d& a = mesh.x[static_cast<std::size_t>(f[0])];
-    const Eigen::Vector3d n = (mesh.x[static_cast<std::size_t>(f[1])] - a)
-                                  .cross(mesh.x[static_cast<std::size_t>(f[2])] - a);
-    for (const int v : f) result.normal[static_cast<std::size_t>(v)] += n;
+    const Eigen::Vector3d& a = mesh.x[f[0]];
+    const Eigen::Vector3d n = (mesh.x[f[1]] - a).cross(mesh.x[f[2]] - a);
+    for (const int v : f) result.normal[v] += n;
     if (projection.side[t] == Side::averted) continue;
     components.join(f[0], f[1]);
     components.join(f[1], f[2]);
@@ -103,13 +103,13 @@ Footprint footprint(const WorkMesh& mesh, const Projection& projection, const Pa
     if (n.dot(z) < std::sqrt(0.5) * size) steep += size;
   }
   result.steep_share = area > 0 ? steep / area : 0;
-  const int home = components.root(mesh.triangles[static_cast<std::size_t>(anchor.triangle)][0]);
+  const int home = components.root(mesh.triangles[anchor.triangle][0]);
   result.inside.assign(mesh.x.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (projection.side[t] != Side::facing) continue;
     const auto& f = mesh.triangles[t];
     if (components.root(f[0]) != home) continue;
-    for (const int v : f) result.inside[static_cast<std::size_t>(v)] = 1;
+    for (const int v : f) result.inside[v] = 1;
   }
   return result;
 }
@@ -158,22 +158,20 @@ class Covered {
   Covered(const MapCoordinates& places, int vertex_count)
       : places_(places), slot_(static_cast<std::size_t>(vertex_count), -1) {
     for (std::size_t i = 0; i < places.vertex.size(); ++i) {
-      slot_[static_cast<std::size_t>(places.vertex[i])] = static_cast<int>(i);
+      slot_[places.vertex[i]] = static_cast<int>(i);
     }
   }
   void extend(int vertex_count) {
     const auto first = static_cast<int>(slot_.size());
-    slot_.resize(static_cast<std::size_t>(vertex_count), -1);
+    slot_.resize(vertex_count, -1);
     for (std::size_t i = places_.vertex.size(); i-- > 0 && places_.vertex[i] >= first;) {
-      slot_[static_cast<std::size_t>(places_.vertex[i])] = static_cast<int>(i);
+      slot_[places_.vertex[i]] = static_cast<int>(i);
     }
   }
-  [[nodiscard]] const Eigen::Vector2d& uv(int v) const {
-    return places_.uv[static_cast<std::size_t>(slot_[static_cast<std::size_t>(v)])];
-  }
+  [[nodiscard]] const Eigen::Vector2d& uv(int v) const { return places_.uv[slot_[v]]; }
   [[nodiscard]] bool holds(const std::array<int, 3>& f, const DisplacementSampler& map) const {
     for (const int v : f) {
-      if (slot_[static_cast<std::size_t>(v)] < 0) return false;
+      if (slot_[v] < 0) return false;
     }
     const Eigen::Vector2d &a = uv(f[0]), &b = uv(f[1]), &c = uv(f[2]);
     return map.occupied(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));
@@ -219,7 +217,7 @@ std::size_t triangles_needed(const WorkMesh& mesh, const std::vector<int>& candi
                              const Covered& covered, double limit) {
   double needed = static_cast<double>(mesh.triangles.size());
   for (const int t : candidates) {
-    const auto& f = mesh.triangles[static_cast<std::size_t>(t)];
+    const auto& f = mesh.triangles[t];
     const Eigen::Vector2d u = covered.uv(f[1]) - covered.uv(f[0]),
                           w = covered.uv(f[2]) - covered.uv(f[0]);
     needed += std::abs(u.x() * w.y() - u.y() * w.x()) / (limit * limit);
@@ -282,7 +280,7 @@ void refine_under_map(WorkMesh& mesh, const DisplacementSampler& map, const Past
   while (!candidates.empty()) {
     EdgeSplitter splitter(mesh.vertex_count());
     for (const int t : candidates) {
-      const auto& f = mesh.triangles[static_cast<std::size_t>(t)];
+      const auto& f = mesh.triangles[t];
       if (!covered.holds(f, map)) continue;
       for (std::size_t k = 0; k < 3; ++k) {
         const int a = f[k], b = f[(k + 1) % 3];
@@ -300,4 +298,93 @@ void refine_under_map(WorkMesh& mesh, const DisplacementSampler& map, const Past
   }
 }
 
-}  // namespace geoprior
+namespace {
+
+constexpr std::size_t kBlock = 4096;
+
+struct Hit {
+  double distance = std::numeric_limits<double>::infinity();
+  int triangle = -1;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+};
+
+struct Corners {
+  Eigen::Vector3d a, b, c;
+};
+
+Corners corners(const WorkMesh& mesh, std::size_t t) {
+  const auto& f = mesh.triangles[t];
+  return {mesh.x[f[0]], mesh.x[f[1]], mesh.x[f[2]]};
+}
+
+/// Closest hit over all triangles; of equal ones the first.
+template <class Test>
+Hit nearest_hit(const WorkMesh& mesh, const Test& test) {
+  std::vector<Hit> best((mesh.triangles.size() + kBlock - 1) / kBlock);
+  parallel_blocks(mesh.triangles.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    Hit hit;
+    for (std::size_t t = begin; t < end; ++t) test(t, hit);
+    best[begin / kBlock] = hit;
+  });
+  Hit result;
+  for (const Hit& hit : best) {
+    if (hit.distance < result.distance) result = hit;
+  }
+  return result;
+}
+
+/// Point of a triangle nearest to p. Source: Ericson 2005, Real-Time Collision Detection, 5.1.5.
+Eigen::Vector3d nearest_point(const Corners& t, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return t.a;
+  const Eigen::Vector3d bp = p - t.b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return t.b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return t.a + d1 / (d1 - d3) * ab;
+  const Eigen::Vector3d cp = p - t.c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return t.c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return t.a + d2 / (d2 - d6) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    return t.b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t.c - t.b);
+  }
+  const double sum = va + vb + vc;
+  return sum > 0 ? Eigen::Vector3d(t.a + ab * (vb / sum) + ac * (vc / sum)) : t.a;
+}
+
+}  // namespace
+
+std::optional<PasteAnchor> find_anchor(const WorkMesh& mesh, const Eigen::Vector3d& centre,
+                                       const Eigen::Vector3d& up, double reach) {
+  const Eigen::Vector3d e1 = up.unitOrthogonal(), e2 = up.cross(e1);
+  const auto along = [&](std::size_t t, Hit& hit) {
+    const Corners f = corners(mesh, t);
+    const Eigen::Vector3d a = f.a - centre, b = f.b - centre, c = f.c - centre;
+    const double ax = a.dot(e1), ay = a.dot(e2), bx = b.dot(e1), by = b.dot(e2), cx = c.dot(e1),
+                 cy = c.dot(e2);
+    const double wa = bx * cy - by * cx, wb = cx * ay - cy * ax, wc = ax * by - ay * bx;
+    const double sum = wa + wb + wc;  // twice the area as seen from above; < 0 from below
+    if (!(sum > 0) || wa < 0 || wb < 0 || wc < 0) return;
+    const Eigen::Vector3d p = (wa * a + wb * b + wc * c) / sum;
+    const double distance = std::abs(p.dot(up));
+    if (distance < hit.distance) hit = {distance, static_cast<int>(t), centre + p};
+  };
+  const Hit above = nearest_hit(mesh, along);
+  if (above.triangle >= 0) return PasteAnchor{above.triangle, above.position};
+  const auto anywhere = [&](std::size_t t, Hit& hit) {
+    const Corners f = corners(mesh, t);
+    if ((f.b - f.a).cross(f.c - f.a).dot(up) <= 0) return;
+    const Eigen::Vector3d p = nearest_point(f, centre);
+    const double distance = (p - centre).norm();
+    if (distance < hit.distance) hit = {distance, static_cast<int>(t), p};
+  };
+  const Hit beside = nearest_hit(mesh, anywhere);
+  if (beside.triangle < 0 || beside.distance > reach) return {};
+  return PasteAnchor{beside.triangle, beside.position};
+}
+
+}  // namespace geoprior::fluid

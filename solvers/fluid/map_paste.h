@@ -10,7 +10,7 @@
 #include "solvers/fluid/paste.h"
 #include "solvers/fluid/refinement.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// A point of the target that a map hangs on.
 struct PasteAnchor {
@@ -46,4 +46,4 @@ void refine_under_map(WorkMesh& mesh, const DisplacementSampler& map, const Past
                       const std::string& who, MapCoordinates& places,
                       const std::vector<MapCoordinates*>& others);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

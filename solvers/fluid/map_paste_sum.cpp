@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr std::size_t kBlock = 2048;
@@ -24,7 +24,7 @@ std::vector<Eigen::Vector3d> spread(const PlacedMap& placed,
                                     std::size_t vertices) {
   std::vector<Eigen::Vector3d> all(vertices, Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < shift.size(); ++i) {
-    all[static_cast<std::size_t>(placed.places.vertex[i])] = shift[i];
+    all[placed.places.vertex[i]] = shift[i];
   }
   return all;
 }
@@ -123,4 +123,4 @@ double swept_volume(const WorkMesh& mesh, const std::vector<Eigen::Vector3d>& sh
   return total / 6;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

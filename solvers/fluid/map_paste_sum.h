@@ -5,7 +5,7 @@
 
 #include "solvers/fluid/map_paste.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// A differential feature at a time of the target, and its neighbouring times for rates.
 struct PlacedMap {
@@ -42,4 +42,4 @@ std::vector<Eigen::Vector3d> displacement_rates(const WorkMesh& mesh, const Plac
 /// grows outwards: exact for closed surfaces, and for open ones whose border stays.
 double swept_volume(const WorkMesh& mesh, const std::vector<Eigen::Vector3d>& shift);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr float kFacing = 0.95F;       // cosine of about 18 degrees
@@ -91,4 +91,4 @@ bool is_masked(const Walls& walls, const Eigen::Vector3d& x, const Eigen::Vector
          });
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

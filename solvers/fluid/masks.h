@@ -7,7 +7,7 @@
 
 #include "core/options.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 struct MaskBox {
   std::array<double, 3> low{0, 0, 0}, high{1, 1, 1};  ///< corners (m)
@@ -51,4 +51,4 @@ Wall infer_walls(std::span<const std::vector<WallSample>> frames, double cell);
 bool is_masked(const Walls& walls, const Eigen::Vector3d& x, const Eigen::Vector3d& normal,
                double band, double cell);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

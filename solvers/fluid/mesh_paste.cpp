@@ -1,8 +1,17 @@
 #include "solvers/fluid/mesh_paste.h"
 
-#include <algorithm>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <CGAL/Polygon_mesh_processing/orientation.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
 
-namespace geoprior {
+#include <algorithm>
+#include <map>
+
+#include "core/topology.h"
+
+namespace geoprior::fluid {
 
 TriMesh isolated_at(const Feature& feature, const EditedFrame& frame) {
   const auto& times = feature.times;
@@ -31,4 +40,114 @@ void insert_mesh(const TriMesh& mesh, const Eigen::Vector3d& velocity, SurfaceFr
   target.velocity.bottomRows(mesh.V.rows()).rowwise() = velocity.transpose();
 }
 
-}  // namespace geoprior
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+namespace pmp = CGAL::Polygon_mesh_processing;
+using Position = std::array<double, 3>;
+
+/// False when a triangle does not fit (non-manifold).
+bool build(const TriMesh& from, Mesh& to) {
+  std::vector<Mesh::Vertex_index> ids;
+  for (Eigen::Index v = 0; v < from.V.rows(); ++v) {
+    ids.push_back(to.add_vertex({from.V(v, 0), from.V(v, 1), from.V(v, 2)}));
+  }
+  for (Eigen::Index t = 0; t < from.F.rows(); ++t) {
+    const auto id = [&](int k) { return ids[from.F(t, k)]; };
+    if (to.add_face(id(0), id(1), id(2)) == Mesh::null_face()) return false;
+  }
+  return true;
+}
+
+bool is_solid(const Mesh& mesh) {
+  return CGAL::is_closed(mesh) && !pmp::does_self_intersect(mesh) && pmp::does_bound_a_volume(mesh);
+}
+
+std::map<Position, int> by_position(const TriMesh& mesh) {
+  std::map<Position, int> result;
+  for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
+    result.emplace(Position{mesh.V(v, 0), mesh.V(v, 1), mesh.V(v, 2)}, static_cast<int>(v));
+  }
+  return result;
+}
+
+TriMesh mesh_of(const Mesh& from) {
+  TriMesh result;
+  std::vector<int> ids(from.num_vertices() + from.number_of_removed_vertices(), -1);
+  result.V.resize(static_cast<Eigen::Index>(from.number_of_vertices()), 3);
+  int next = 0;
+  for (const auto v : from.vertices()) {
+    const auto& p = from.point(v);
+    result.V.row(next) << p.x(), p.y(), p.z();
+    ids[v] = next++;
+  }
+  result.F.resize(static_cast<Eigen::Index>(from.number_of_faces()), 3);
+  Eigen::Index t = 0;
+  for (const auto f : from.faces()) {
+    int k = 0;
+    for (const auto v : from.vertices_around_face(from.halfedge(f))) {
+      result.F(t, k++) = ids[v];
+    }
+    ++t;
+  }
+  return result;
+}
+
+int found(const std::map<Position, int>& at, const TriMesh& mesh, Eigen::Index v) {
+  const auto it = at.find({mesh.V(v, 0), mesh.V(v, 1), mesh.V(v, 2)});
+  return it == at.end() ? -1 : it->second;
+}
+
+/// Velocities of vertices that were there before; means of these around the others.
+Eigen::MatrixX3d carried(const TriMesh& mesh, const Eigen::MatrixX3d& before,
+                         const Eigen::Vector3d& velocity, const std::vector<int>& of_target,
+                         const std::vector<int>& of_mesh) {
+  Eigen::MatrixX3d result = Eigen::MatrixX3d::Zero(mesh.V.rows(), 3);
+  const VertexGraph rings = one_rings(mesh.F, mesh.vertex_count());
+  const auto known = [&](std::size_t v) { return of_target[v] >= 0 || of_mesh[v] >= 0; };
+  const auto row = [&](std::size_t v) -> Eigen::RowVector3d {
+    return of_target[v] >= 0 ? Eigen::RowVector3d(before.row(of_target[v])) : velocity.transpose();
+  };
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const auto i = static_cast<std::size_t>(v);
+    if (known(i)) {
+      result.row(v) = row(i);
+      continue;
+    }
+    int count = 0;
+    for (const int w : rings.of(v)) {
+      if (!known(static_cast<std::size_t>(w))) continue;
+      result.row(v) += row(static_cast<std::size_t>(w));
+      ++count;
+    }
+    if (count > 0) result.row(v) /= count;
+  }
+  return result;
+}
+
+}  // namespace
+
+bool unite_mesh(const TriMesh& mesh, const Eigen::Vector3d& velocity, SurfaceFrame& target,
+                std::vector<int>& of_target, std::vector<int>& of_mesh) {
+  Mesh a, b, united;
+  if (!build(target.mesh, a) || !build(mesh, b) || !is_solid(a) || !is_solid(b)) return false;
+  if (!pmp::corefine_and_compute_union(a, b, united)) return false;
+  SurfaceFrame result;
+  result.time = target.time;
+  result.mesh = mesh_of(united);
+  const std::map<Position, int> in_target = by_position(target.mesh), in_mesh = by_position(mesh);
+  of_target.clear();
+  of_mesh.clear();
+  for (Eigen::Index v = 0; v < result.mesh.V.rows(); ++v) {
+    of_target.push_back(found(in_target, result.mesh, v));
+    of_mesh.push_back(of_target.back() >= 0 ? -1 : found(in_mesh, result.mesh, v));
+  }
+  if (target.velocity.rows() == target.mesh.V.rows()) {
+    result.velocity = carried(result.mesh, target.velocity, velocity, of_target, of_mesh);
+  }
+  target = std::move(result);
+  return true;
+}
+
+}  // namespace geoprior::fluid

@@ -4,7 +4,7 @@
 #include "solvers/fluid/edits.h"
 #include "solvers/fluid/feature.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// Mesh of an isolated feature in the target: that of the nearest frame, carried along the path;
 /// outward oriented after a mirror too.
@@ -21,4 +21,4 @@ void insert_mesh(const TriMesh& mesh, const Eigen::Vector3d& velocity, SurfaceFr
 bool unite_mesh(const TriMesh& mesh, const Eigen::Vector3d& velocity, SurfaceFrame& target,
                 std::vector<int>& of_target, std::vector<int>& of_mesh);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

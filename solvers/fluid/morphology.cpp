@@ -5,7 +5,7 @@
 
 #include "solvers/fluid/regions.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -21,7 +21,7 @@ void Morphology::spread(std::vector<char>& set, char from, double radius) {
   heap_.clear();
   touched_.clear();
   const auto relax = [&](int v, double base) {
-    const Eigen::Vector3d& x = graph_.x[static_cast<std::size_t>(v)];
+    const Eigen::Vector3d& x = graph_.x[v];
     for (const int n : graph_.neighbours(v)) {
       const auto j = static_cast<std::size_t>(n);
       if (active_[j] == 0 || set[j] == from) continue;
@@ -40,11 +40,11 @@ void Morphology::spread(std::vector<char>& set, char from, double radius) {
     std::pop_heap(heap_.begin(), heap_.end(), later);
     const Reached r = heap_.back();
     heap_.pop_back();
-    if (r.distance == distance_[static_cast<std::size_t>(r.vertex)]) relax(r.vertex, r.distance);
+    if (r.distance == distance_[r.vertex]) relax(r.vertex, r.distance);
   }
   for (const int v : touched_) {
-    set[static_cast<std::size_t>(v)] = from;
-    distance_[static_cast<std::size_t>(v)] = kFar;
+    set[v] = from;
+    distance_[v] = kFar;
   }
 }
 
@@ -76,7 +76,7 @@ void Morphology::fill_holes(std::vector<char>& set, const std::vector<double>& a
       }
     }
     if (!surrounded || !touches || total > largest) continue;
-    for (const int v : part) set[static_cast<std::size_t>(v)] = 1;
+    for (const int v : part) set[v] = 1;
   }
 }
 
@@ -96,4 +96,4 @@ std::vector<char> erode(const TriMesh& mesh, const std::vector<char>& set, doubl
   return result;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

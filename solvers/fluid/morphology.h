@@ -4,7 +4,7 @@
 
 #include "solvers/fluid/surface_graph.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// Vertex sets of one surface grown and shrunk by metric radii. Vertices that are not `active` are
 /// in no set: they neither grow nor bound anything, distances do not run through them.
@@ -35,4 +35,4 @@ class Morphology {
   std::vector<int> touched_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 /// A feature travels when its way is longer than this share of its size.
@@ -45,7 +45,7 @@ Fit fit_at(const std::vector<FrameSample>& samples, const FrameTime& at, int win
   // About a sample's value: constants pass without round-off.
   const Eigen::Vector3d origin = quantity(*used.front());
   for (Eigen::Index i = 0; i < m; ++i) {
-    const FrameSample& s = *used[static_cast<std::size_t>(i)];
+    const FrameSample& s = *used[i];
     for (Eigen::Index k = 0; k < terms; ++k) {
       A(i, k) = std::pow((s.time - at.time) / unit, static_cast<double>(k));
     }
@@ -149,4 +149,4 @@ std::vector<Eigen::Isometry3d> moving_centres(const std::vector<FrameSample>& sa
   return result;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// What is known of a feature in one of its frames.
 struct FrameSample {
@@ -35,4 +35,4 @@ std::vector<Eigen::Isometry3d> moving_frames(const std::vector<FrameSample>& sam
 std::vector<Eigen::Isometry3d> moving_centres(const std::vector<FrameSample>& samples,
                                               const std::vector<FrameTime>& times, int window);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -1,16 +1,18 @@
 #include "solvers/fluid/paste.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <set>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
 #include "solvers/fluid/map_paste_sum.h"
 #include "solvers/fluid/mesh_paste.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 /// Two edits overlap where both maps are at least this opaque.
@@ -98,7 +100,7 @@ void add(const PlacedMap& placed, const Displaced& displaced, int number,
     }
     if (displaced.alpha[i] < kOverlapAlpha) continue;
     const int other = sums.edit[v];
-    if (other >= 0 && all[static_cast<std::size_t>(other)].insertion->edit.name != name) {
+    if (other >= 0 && all[other].insertion->edit.name != name) {
       overlaps.emplace(other, number);
     }
     sums.edit[v] = number;
@@ -134,8 +136,7 @@ void warn_of_overlaps(const std::set<std::pair<int, int>>& overlaps,
                       const std::vector<PlacedMap>& placed, double time, PasteReport& report) {
   std::set<std::pair<std::string, std::string>> names;
   for (const auto& [a, b] : overlaps) {
-    names.insert(std::minmax(placed[static_cast<std::size_t>(a)].insertion->edit.name,
-                             placed[static_cast<std::size_t>(b)].insertion->edit.name));
+    names.insert(std::minmax(placed[a].insertion->edit.name, placed[b].insertion->edit.name));
   }
   for (const auto& [a, b] : names) {
     report.warnings.push_back("edits '" + a + "' and '" + b + "' overlap at " + at_time(time) +
@@ -154,7 +155,7 @@ void displace(const std::vector<PlacedMap>& placed, double time, WorkMesh& mesh,
     add(placed[k], displaced, static_cast<int>(k), placed, sums, overlaps);
     const std::vector<Eigen::Vector3d> rates = displacement_rates(mesh, placed[k]);
     for (std::size_t i = 0; i < rates.size(); ++i) {
-      rate[static_cast<std::size_t>(placed[k].places.vertex[i])] += rates[i];
+      rate[placed[k].places.vertex[i]] += rates[i];
     }
     report.min_jacobian =
         std::min(report.min_jacobian, placed[k].map.min_jacobian(placed[k].frame.fade));
@@ -195,9 +196,7 @@ void add_isolated(const Present& present, double time, const Eigen::Vector3d& up
   if (present.insertion->edit.unite && unite_mesh(mesh, velocity, result, of_target, of_mesh)) {
     std::vector<int> ids;
     for (std::size_t v = 0; v < of_target.size(); ++v) {
-      ids.push_back(of_target[v] >= 0
-                        ? report.vertex_feature[static_cast<std::size_t>(of_target[v])]
-                        : feature.id);
+      ids.push_back(of_target[v] >= 0 ? report.vertex_feature[of_target[v]] : feature.id);
     }
     report.vertex_feature = std::move(ids);
     return;
@@ -207,7 +206,7 @@ void add_isolated(const Present& present, double time, const Eigen::Vector3d& up
                               ": target or feature is open or cuts itself; inserted instead");
   }
   insert_mesh(mesh, velocity, result);
-  report.vertex_feature.resize(static_cast<std::size_t>(result.mesh.V.rows()), feature.id);
+  report.vertex_feature.resize(result.mesh.V.rows(), feature.id);
 }
 
 }  // namespace
@@ -225,7 +224,7 @@ SurfaceFrame paste(const SurfaceFrame& target, const std::vector<Insertion>& ins
   SurfaceFrame result;
   if (maps.empty()) {
     result = target;
-    own.vertex_feature.assign(static_cast<std::size_t>(target.mesh.V.rows()), 0);
+    own.vertex_feature.assign(target.mesh.V.rows(), 0);
   } else {
     WorkMesh mesh = work_mesh(target);
     const std::vector<PlacedMap> placed = place_maps(maps, time, up, options, mesh, own);
@@ -242,4 +241,30 @@ SurfaceFrame paste(const SurfaceFrame& target, const std::vector<Insertion>& ins
   return result;
 }
 
-}  // namespace geoprior
+namespace {
+
+constexpr std::array<std::string_view, 3> kMappings{"automatic", "projection", "exponential"};
+
+}  // namespace
+
+void describe(OptionVisitor& v, PasteOptions& o) {
+  describe_choice(v, "mapping", o.mapping, kMappings,
+                  {.doc = "how target vertices find their place in a map: along its normal, along "
+                          "geodesics, or by how steep the target is"});
+  v.value("refine", o.refine, {.doc = "split target edges too long for the texels of a map"});
+  v.value(
+      "refine_texels", o.refine_texels,
+      {.doc = "longest edge of the target under a map", .unit = "texels", .min = 0.1, .max = 100});
+  v.value("projection_reach", o.projection_reach,
+          {.doc = "how far along the normal the target may lie from a map's plane",
+           .unit = "extents",
+           .min = 0.01,
+           .max = 1000});
+  v.value("max_triangles", o.max_triangles,
+          {.doc = "a refined target larger than this is refused", .min = 1});
+  v.value(
+      "velocity", o.velocity,
+      {.doc = "rates of the displacements are added to the target's velocity when it is known"});
+}
+
+}  // namespace geoprior::fluid

@@ -7,7 +7,7 @@
 #include "solvers/fluid/edits.h"
 #include "solvers/fluid/feature.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// How target vertices find their place in a map: along the map's normal (water, whose waves must
 /// not turn the map), along geodesics from the anchor (a curved still mesh), or by the target:
@@ -57,4 +57,4 @@ SurfaceFrame paste(const SurfaceFrame& target, const std::vector<Insertion>& ins
                    double time, const Eigen::Vector3d& up, const PasteOptions& options,
                    PasteReport* report = nullptr);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

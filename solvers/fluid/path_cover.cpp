@@ -15,7 +15,7 @@
 // into parts (with links between consecutive frames only, at least one a pair of frames), each a
 // minimum-cost flow of its own.
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr double kUnit = 1e-4;  // of costs, which are integers in the flow
@@ -48,9 +48,9 @@ std::vector<Gain> gains_of(int nodes, const std::vector<PathLink>& links, double
 }
 
 int root_of(std::vector<int>& parent, int i) {
-  while (parent[static_cast<std::size_t>(i)] != i) {
-    int& p = parent[static_cast<std::size_t>(i)];
-    p = parent[static_cast<std::size_t>(p)];
+  while (parent[i] != i) {
+    int& p = parent[i];
+    p = parent[p];
     i = p;
   }
   return i;
@@ -63,17 +63,17 @@ std::vector<std::vector<Gain>> parts_of(int nodes, const std::vector<Gain>& gain
   std::iota(parent.begin(), parent.end(), 0);
   for (const Gain& g : gains) {
     const int a = root_of(parent, g.from), b = root_of(parent, nodes + g.to);
-    parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    parent[std::max(a, b)] = std::min(a, b);
   }
   std::vector<int> part_of(parent.size(), -1);
   std::vector<std::vector<Gain>> parts;
   for (const Gain& g : gains) {
-    int& part = part_of[static_cast<std::size_t>(root_of(parent, g.from))];
+    int& part = part_of[root_of(parent, g.from)];
     if (part < 0) {
       part = static_cast<int>(parts.size());
       parts.emplace_back();
     }
-    parts[static_cast<std::size_t>(part)].push_back(g);
+    parts[part].push_back(g);
   }
   return parts;
 }
@@ -117,7 +117,7 @@ void solve_part(const std::vector<Gain>& part, std::vector<int>& successor) {
   if (simplex.run() != simplex.OPTIMAL) throw Error("the flow has no solution", "path cover");
   for (std::size_t i = 0; i < part.size(); ++i) {
     if (simplex.flow(lemon::SmartDigraph::arcFromId(static_cast<int>(i))) > 0)
-      successor[static_cast<std::size_t>(part[i].from)] = part[i].to;
+      successor[part[i].from] = part[i].to;
   }
 }
 
@@ -125,10 +125,10 @@ void solve_part(const std::vector<Gain>& part, std::vector<int>& successor) {
 
 std::vector<int> cover_by_paths(int nodes, const std::vector<PathLink>& links,
                                 double new_path_cost) {
-  std::vector<int> successor(static_cast<std::size_t>(std::max(nodes, 0)), -1);
+  std::vector<int> successor(std::max(nodes, 0), -1);
   for (const std::vector<Gain>& part : parts_of(nodes, gains_of(nodes, links, new_path_cost))) {
     if (part.size() == 1) {
-      successor[static_cast<std::size_t>(part[0].from)] = part[0].to;
+      successor[part[0].from] = part[0].to;
     } else {
       solve_part(part, successor);
     }
@@ -136,4 +136,4 @@ std::vector<int> cover_by_paths(int nodes, const std::vector<PathLink>& links,
   return successor;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr std::uint64_t kFree = ~std::uint64_t{0};
@@ -44,9 +44,7 @@ class Parts {
   }
 
  private:
-  [[nodiscard]] const Eigen::Vector3d& at(int v) const {
-    return mesh_.x[static_cast<std::size_t>(v)];
-  }
+  [[nodiscard]] const Eigen::Vector3d& at(int v) const { return mesh_.x[v]; }
   WorkMesh& mesh_;
   std::vector<int>& changed_;
   std::size_t next_ = 0;
@@ -86,7 +84,7 @@ WorkMesh work_mesh(const SurfaceFrame& frame) {
       mesh.velocity[v] = frame.velocity.row(static_cast<Eigen::Index>(v));
     }
   }
-  mesh.triangles.resize(static_cast<std::size_t>(frame.mesh.F.rows()));
+  mesh.triangles.resize(frame.mesh.F.rows());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto i = static_cast<Eigen::Index>(t);
     mesh.triangles[t] = {frame.mesh.F(i, 0), frame.mesh.F(i, 1), frame.mesh.F(i, 2)};
@@ -110,8 +108,7 @@ SurfaceFrame surface_frame(const WorkMesh& mesh, double time) {
   frame.mesh.F.resize(static_cast<Eigen::Index>(mesh.triangles.size()), 3);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
-      frame.mesh.F(static_cast<Eigen::Index>(t), k) =
-          mesh.triangles[t][static_cast<std::size_t>(k)];
+      frame.mesh.F(static_cast<Eigen::Index>(t), k) = mesh.triangles[t][k];
     }
   }
   return frame;
@@ -167,7 +164,7 @@ std::vector<int> EdgeSplitter::apply(WorkMesh& mesh) const {
   for (std::size_t t = 0; t < count; ++t) {
     const std::array<int, 3> f = mesh.triangles[t];
     std::array<char, 3> mark{};
-    for (std::size_t k = 0; k < 3; ++k) mark[k] = touched[static_cast<std::size_t>(f[k])];
+    for (std::size_t k = 0; k < 3; ++k) mark[k] = touched[f[k]];
     if (mark[0] + mark[1] + mark[2] < 2) continue;
     std::array<int, 3> middles{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -181,4 +178,4 @@ std::vector<int> EdgeSplitter::apply(WorkMesh& mesh) const {
   return changed;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -7,7 +7,7 @@
 
 #include "core/surface_sequence.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// A surface while features are pasted into it: positions and triangles side by side in memory.
 struct WorkMesh {
@@ -48,4 +48,4 @@ class EdgeSplitter {
   std::vector<int> values_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -12,7 +12,7 @@
 #include "solvers/fluid/curvature.h"
 #include "solvers/fluid/masks.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 enum class ThresholdKind { automatic, given };
 
@@ -113,4 +113,4 @@ class Segmenter {
 std::vector<char> dilate(const TriMesh& mesh, const std::vector<char>& set, double radius);
 std::vector<char> erode(const TriMesh& mesh, const std::vector<char>& set, double radius);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

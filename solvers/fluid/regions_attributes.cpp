@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 void add_vertex(const SurfaceGraph& graph, const SurfaceShape& shape, std::size_t v, double cell,
@@ -58,7 +58,7 @@ bool touches_support(const std::vector<std::int64_t>& support, std::int64_t cube
 std::vector<Region> region_attributes(const SurfaceGraph& graph, const SurfaceShape& shape,
                                       const std::vector<int>& label, int count,
                                       const Eigen::MatrixX3d& velocity, double cell) {
-  std::vector<Region> regions(static_cast<std::size_t>(count));
+  std::vector<Region> regions(count);
   for (std::size_t r = 0; r < regions.size(); ++r) {
     regions[r].label = static_cast<int>(r) + 1;
     regions[r].has_velocity = velocity.rows() > 0;
@@ -67,7 +67,7 @@ std::vector<Region> region_attributes(const SurfaceGraph& graph, const SurfaceSh
   }
   for (std::size_t v = 0; v < label.size(); ++v) {
     if (label[v] == 0) continue;
-    Region& region = regions[static_cast<std::size_t>(label[v]) - 1];
+    Region& region = regions[label[v] - 1];
     add_vertex(graph, shape, v, cell, region);
     if (region.has_velocity)
       region.velocity += shape.area[v] * velocity.row(static_cast<Eigen::Index>(v)).transpose();
@@ -75,11 +75,11 @@ std::vector<Region> region_attributes(const SurfaceGraph& graph, const SurfaceSh
   for (Region& region : regions) finish(region);
   for (std::size_t v = 0; v < label.size(); ++v) {
     if (label[v] == 0) continue;
-    Region& region = regions[static_cast<std::size_t>(label[v]) - 1];
+    Region& region = regions[label[v] - 1];
     const Eigen::Vector3d d = graph.x[v] - region.centre;
     if (region.area > 0) region.covariance += shape.area[v] / region.area * d * d.transpose();
   }
   return regions;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

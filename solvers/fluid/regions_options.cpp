@@ -3,7 +3,7 @@
 
 #include "solvers/fluid/regions.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr std::array<std::string_view, 2> kThresholdNames{"automatic", "given"};
@@ -49,4 +49,4 @@ void describe(OptionVisitor& v, SegmentationOptions& o) {
   v.value("handles", o.handles, {.doc = "isolated components may have handles (torn crowns)"});
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -7,7 +7,7 @@
 #include "solvers/fluid/regions_attributes.h"
 #include "solvers/fluid/segmentation_roles.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 /// One frame on its way: the graph, its shape, and what of it may be in a differential region.
@@ -52,7 +52,7 @@ int label_parts(const Canvas& c, const std::vector<char>& set, double smallest, 
     seen[s] = 1;
     double area = 0;
     for (std::size_t i = 0; i < part.size(); ++i) {
-      area += c.shape.area[static_cast<std::size_t>(part[i])];
+      area += c.shape.area[part[i]];
       for (const int n : c.graph.neighbours(part[i])) {
         const auto j = static_cast<std::size_t>(n);
         if (set[j] == 0 || seen[j] != 0) continue;
@@ -61,7 +61,7 @@ int label_parts(const Canvas& c, const std::vector<char>& set, double smallest, 
       }
     }
     if (area < smallest) continue;
-    for (const int v : part) label[static_cast<std::size_t>(v)] = next;
+    for (const int v : part) label[v] = next;
     ++next;
   }
   return next;
@@ -83,7 +83,7 @@ void warn(const Canvas& c, std::vector<std::string>& warnings) {
 std::vector<double> masked_shares(const Canvas& c, const std::vector<char>& masked) {
   std::vector<double> share(c.components.list.size(), 0.0);
   for (std::size_t v = 0; v < masked.size(); ++v) {
-    if (masked[v] != 0) share[static_cast<std::size_t>(c.components.of_vertex[v])] += 1;
+    if (masked[v] != 0) share[c.components.of_vertex[v]] += 1;
   }
   for (std::size_t i = 0; i < share.size(); ++i) share[i] /= c.components.list[i].vertices;
   return share;
@@ -102,7 +102,7 @@ std::vector<int> label_drops(const Canvas& c, const std::vector<char>& masked, d
     drops.push_back(static_cast<int>(i));
   }
   for (std::size_t v = 0; v < label.size(); ++v) {
-    const int l = label_of[static_cast<std::size_t>(c.components.of_vertex[v])];
+    const int l = label_of[c.components.of_vertex[v]];
     if (l > 0) label[v] = l;
   }
   return drops;
@@ -140,7 +140,7 @@ SegmentedFrame Segmenter::segment(const SurfaceFrame& frame, int frame_index) co
   for (std::size_t v = 0; v < n; ++v) {
     result.masked[v] =
         is_masked(walls_, c.graph.x[v], c.shape.normal[v], options_.mask.band * cell_, cell_);
-    const auto role = c.roles.role[static_cast<std::size_t>(c.components.of_vertex[v])];
+    const auto role = c.roles.role[c.components.of_vertex[v]];
     c.active[v] = role == ComponentRole::bed && result.masked[v] == 0;
   }
 
@@ -159,8 +159,8 @@ SegmentedFrame Segmenter::segment(const SurfaceFrame& frame, int frame_index) co
   result.regions = region_attributes(c.graph, c.shape, result.label, count, frame.velocity, cell_);
   for (Region& region : result.regions) region.frame = frame_index;
   for (std::size_t i = 0; i < drops.size(); ++i) {
-    Region& region = result.regions[static_cast<std::size_t>(waves) + i];
-    const SurfaceComponent& drop = c.components.list[static_cast<std::size_t>(drops[i])];
+    Region& region = result.regions[waves + i];
+    const SurfaceComponent& drop = c.components.list[drops[i]];
     region.kind = RegionKind::isolated;
     region.volume = std::abs(drop.volume);
     region.centre = drop.centre;
@@ -170,4 +170,4 @@ SegmentedFrame Segmenter::segment(const SurfaceFrame& frame, int frame_index) co
   return result;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

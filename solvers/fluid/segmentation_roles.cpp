@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 ComponentRoles component_roles(const SurfaceComponents& components,
                                const SegmentationOptions& options) {
@@ -28,4 +28,4 @@ ComponentRoles component_roles(const SurfaceComponents& components,
   return result;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -5,7 +5,7 @@
 #include "solvers/fluid/regions.h"
 #include "solvers/fluid/surface_components.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 enum class ComponentRole { bed, drop, bubble };
 
@@ -19,4 +19,4 @@ struct ComponentRoles {
 ComponentRoles component_roles(const SurfaceComponents& components,
                                const SegmentationOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

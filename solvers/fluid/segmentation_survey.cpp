@@ -5,7 +5,7 @@
 #include "solvers/fluid/segmentation_roles.h"
 #include "solvers/fluid/segmentation_thresholds.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr int kMostFrames = 16;
@@ -33,7 +33,7 @@ void survey_frame(const SurfaceFrame& frame, const SegmentationOptions& options,
     survey.box.extend(graph.x[v]);
     samples[v] = {graph.x[v].cast<float>(), outward * shape.normal[v].cast<float>(),
                   static_cast<float>(shape.area[v])};
-    const auto role = roles.role[static_cast<std::size_t>(components.of_vertex[v])];
+    const auto role = roles.role[components.of_vertex[v]];
     const bool bed = role == ComponentRole::bed && graph.border[v] == 0;
     curvature[v] = bed ? static_cast<float>(std::abs(shape.curvature[v])) : -1.0F;
   }
@@ -124,4 +124,4 @@ Segmenter::Segmenter(const SurfaceSequence& sequence, const SegmentationOptions&
                                      warnings_);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr double kCalm = 0.06;  // 90th percentile of s; splashes and wakes lie above 0.043
@@ -13,7 +13,7 @@ constexpr double kCalm = 0.06;  // 90th percentile of s; splashes and wakes lie 
 float quantile(std::vector<float>& values, double share) {
   const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[static_cast<std::size_t>(k)];
+  return values[k];
 }
 
 double noise_level(std::vector<float> s, double factor) {
@@ -30,15 +30,15 @@ double otsu_of_logarithm(const std::vector<float>& s) {
   std::array<double, kBins> count{};
   for (const float value : s) {
     const double at = (std::log(std::max<double>(value, 1e-4)) - low) / (high - low) * kBins;
-    count[static_cast<std::size_t>(std::clamp(static_cast<int>(at), 0, kBins - 1))] += 1;
+    count[std::clamp(static_cast<int>(at), 0, kBins - 1)] += 1;
   }
   double total = 0;
-  for (int i = 0; i < kBins; ++i) total += i * count[static_cast<std::size_t>(i)];
+  for (int i = 0; i < kBins; ++i) total += i * count[i];
   double below = 0, sum_below = 0, best = -1;
   int split = kBins / 2;
   for (int i = 0; i + 1 < kBins; ++i) {
-    below += count[static_cast<std::size_t>(i)];
-    sum_below += i * count[static_cast<std::size_t>(i)];
+    below += count[i];
+    sum_below += i * count[i];
     const double above = static_cast<double>(s.size()) - below;
     if (below == 0 || above == 0) continue;
     const double gap = sum_below / below - (total - sum_below) / above;
@@ -89,4 +89,4 @@ Thresholds automatic_thresholds(std::span<const std::vector<float>> frames, doub
   return result;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

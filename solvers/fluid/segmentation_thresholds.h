@@ -6,7 +6,7 @@
 
 #include "solvers/fluid/regions.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// Thresholds on s = |H| h from samples of the free surface, frame by frame.
 ///
@@ -21,4 +21,4 @@ Thresholds automatic_thresholds(std::span<const std::vector<float>> frames, doub
                                 const SegmentationOptions& options,
                                 std::vector<std::string>& warnings);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

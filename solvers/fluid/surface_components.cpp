@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 /// Labels the part that holds `start` and counts its vertices and edges.
@@ -10,15 +10,15 @@ void flood(const SurfaceGraph& g, int start, int label, SurfaceComponents& resul
            std::vector<int>& queue) {
   SurfaceComponent& component = result.list.emplace_back();
   queue.assign(1, start);
-  result.of_vertex[static_cast<std::size_t>(start)] = label;
+  result.of_vertex[start] = label;
   std::size_t half_edges = 0;
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const auto v = static_cast<std::size_t>(queue[i]);
     component.closed = component.closed && g.border[v] == 0;
     half_edges += g.neighbours(queue[i]).size();
     for (const int n : g.neighbours(queue[i])) {
-      if (result.of_vertex[static_cast<std::size_t>(n)] >= 0) continue;
-      result.of_vertex[static_cast<std::size_t>(n)] = label;
+      if (result.of_vertex[n] >= 0) continue;
+      result.of_vertex[n] = label;
       queue.push_back(n);
     }
   }
@@ -33,19 +33,18 @@ SurfaceComponents surface_components(const SurfaceGraph& g) {
   result.of_vertex.assign(g.x.size(), -1);
   std::vector<int> queue, start;
   for (int v = 0; v < g.size(); ++v) {
-    if (result.of_vertex[static_cast<std::size_t>(v)] >= 0) continue;
+    if (result.of_vertex[v] >= 0) continue;
     start.push_back(v);
     flood(g, v, static_cast<int>(start.size()) - 1, result, queue);
   }
   // Moments about a point of the component: far from the origin they would cancel.
   for (const auto& t : g.triangle) {
-    const int label = result.of_vertex[static_cast<std::size_t>(t[0])];
-    SurfaceComponent& component = result.list[static_cast<std::size_t>(label)];
-    const Eigen::Vector3d& origin =
-        g.x[static_cast<std::size_t>(start[static_cast<std::size_t>(label)])];
-    const Eigen::Vector3d a = g.x[static_cast<std::size_t>(t[0])] - origin;
-    const Eigen::Vector3d b = g.x[static_cast<std::size_t>(t[1])] - origin;
-    const Eigen::Vector3d c = g.x[static_cast<std::size_t>(t[2])] - origin;
+    const int label = result.of_vertex[t[0]];
+    SurfaceComponent& component = result.list[label];
+    const Eigen::Vector3d& origin = g.x[start[label]];
+    const Eigen::Vector3d a = g.x[t[0]] - origin;
+    const Eigen::Vector3d b = g.x[t[1]] - origin;
+    const Eigen::Vector3d c = g.x[t[2]] - origin;
     const Eigen::Vector3d twice = (b - a).cross(c - a);
     const double volume = a.dot(b.cross(c)) / 6;
     ++component.euler;
@@ -57,9 +56,9 @@ SurfaceComponents surface_components(const SurfaceGraph& g) {
   for (std::size_t c = 0; c < result.list.size(); ++c) {
     SurfaceComponent& component = result.list[c];
     if (component.volume != 0) component.centre /= component.volume;
-    component.centre += g.x[static_cast<std::size_t>(start[c])];
+    component.centre += g.x[start[c]];
   }
   return result;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -5,7 +5,7 @@
 
 #include "solvers/fluid/surface_graph.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// A connected part of a surface.
 struct SurfaceComponent {
@@ -25,4 +25,4 @@ struct SurfaceComponents {
 
 SurfaceComponents surface_components(const SurfaceGraph& graph);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr std::size_t kBlock = 2048;
@@ -24,7 +24,7 @@ void copy_vertices(const TriMesh& mesh, SurfaceGraph& g) {
 
 void copy_triangles(const TriMesh& mesh, SurfaceGraph& g) {
   const auto n = mesh.vertex_count();
-  g.triangle.resize(static_cast<std::size_t>(mesh.triangle_count()));
+  g.triangle.resize(mesh.triangle_count());
   g.corner_offset.assign(static_cast<std::size_t>(n) + 1, 0);
   for (std::size_t t = 0; t < g.triangle.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
@@ -33,8 +33,8 @@ void copy_triangles(const TriMesh& mesh, SurfaceGraph& g) {
         throw Error("no vertex " + std::to_string(v), "triangle " + std::to_string(t),
                     "0 to " + std::to_string(n - 1));
       }
-      g.triangle[t][static_cast<std::size_t>(k)] = v;
-      ++g.corner_offset[static_cast<std::size_t>(v) + 1];
+      g.triangle[t][k] = v;
+      ++g.corner_offset[v + 1];
     }
   }
 }
@@ -48,7 +48,7 @@ void sort_corners(SurfaceGraph& g) {
   for (std::size_t t = 0; t < g.triangle.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto v = static_cast<std::size_t>(g.triangle[t][k]);
-      g.corner[static_cast<std::size_t>(next[v]++)] = static_cast<int>(3 * t + k);
+      g.corner[next[v]++] = static_cast<int>(3 * t + k);
     }
   }
 }
@@ -61,8 +61,8 @@ void collect_ring(SurfaceGraph& g, int v) {
   int* end = begin;
   bool closed = !g.corners(v).empty();
   for (const int c : g.corners(v)) {
-    const auto& t = g.triangle[static_cast<std::size_t>(c / 3)];
-    const int from = t[static_cast<std::size_t>((c + 1) % 3)];
+    const auto& t = g.triangle[c / 3];
+    const int from = t[(c + 1) % 3];
     if (std::find(begin, end, from) != end) {
       closed = false;
     } else {
@@ -71,8 +71,8 @@ void collect_ring(SurfaceGraph& g, int v) {
   }
   int* const led_from = end;
   for (const int c : g.corners(v)) {
-    const auto& t = g.triangle[static_cast<std::size_t>(c / 3)];
-    const int to = t[static_cast<std::size_t>((c + 2) % 3)];
+    const auto& t = g.triangle[c / 3];
+    const int to = t[(c + 2) % 3];
     if (std::find(begin, led_from, to) != led_from) continue;
     closed = false;
     if (std::find(led_from, end, to) == end) *end++ = to;
@@ -97,4 +97,4 @@ SurfaceGraph surface_graph(const TriMesh& mesh) {
   return g;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

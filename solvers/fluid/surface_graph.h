@@ -7,7 +7,7 @@
 
 #include "core/mesh.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// A triangle mesh as the extraction walks it: positions and triangles side by side in memory, and
 /// for every vertex its corners and its ring. Any mesh is taken; what is not a manifold shows as
@@ -36,4 +36,4 @@ struct SurfaceGraph {
 /// @throws Error  on a vertex that is not finite or an index out of range (named)
 SurfaceGraph surface_graph(const TriMesh& mesh);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <tuple>
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 /// Looks for events at the ends of tracks.
@@ -26,10 +26,10 @@ class EventFinder {
         begins_(regions.size(), 0),
         offset_(times.size() + 1, 0) {
     for (std::size_t t = 0; t < tracks.size(); ++t) {
-      for (const int r : tracks[t].regions) track_of_[static_cast<std::size_t>(r)] = tracks[t].id;
-      begins_[static_cast<std::size_t>(tracks[t].regions.front())] = 1;
+      for (const int r : tracks[t].regions) track_of_[r] = tracks[t].id;
+      begins_[tracks[t].regions.front()] = 1;
     }
-    for (const Region& r : regions) ++offset_[static_cast<std::size_t>(r.frame) + 1];
+    for (const Region& r : regions) ++offset_[r.frame + 1];
     for (std::size_t f = 0; f < times.size(); ++f) offset_[f + 1] += offset_[f];
   }
 
@@ -46,10 +46,8 @@ class EventFinder {
   }
 
  private:
-  [[nodiscard]] const Region& region(int r) const { return regions_[static_cast<std::size_t>(r)]; }
-  [[nodiscard]] double time_of(int r) const {
-    return times_[static_cast<std::size_t>(region(r).frame)];
-  }
+  [[nodiscard]] const Region& region(int r) const { return regions_[r]; }
+  [[nodiscard]] double time_of(int r) const { return times_[region(r).frame]; }
   /// Way of a region over dt (m).
   [[nodiscard]] Eigen::Vector3d way(int r, double dt) const {
     const auto i = static_cast<std::size_t>(r);
@@ -65,13 +63,10 @@ class EventFinder {
   [[nodiscard]] int best_overlap(int r, int frame, bool moves_other, const Suits& suits) const {
     int best = -1;
     double most = options_.overlap_for_event;
-    const double dt = times_[static_cast<std::size_t>(frame)] - time_of(r);
+    const double dt = times_[frame] - time_of(r);
     const Eigen::Vector3d own_way = moves_other ? Eigen::Vector3d::Zero() : way(r, dt);
-    for (int o = offset_[static_cast<std::size_t>(frame)];
-         o < offset_[static_cast<std::size_t>(frame) + 1]; ++o) {
-      if (track_of_[static_cast<std::size_t>(o)] == track_of_[static_cast<std::size_t>(r)] ||
-          !suits(o))
-        continue;
+    for (int o = offset_[frame]; o < offset_[frame + 1]; ++o) {
+      if (track_of_[o] == track_of_[r] || !suits(o)) continue;
       const double share = moves_other ? support_overlap(region(o), region(r), way(o, -dt), cell_)
                                        : support_overlap(region(r), region(o), own_way, cell_);
       if (share > most) {
@@ -88,11 +83,11 @@ class EventFinder {
     if (frame == 0) return false;
     const int from = best_overlap(first, frame - 1, true, [&](int o) {
       // A drop is no piece of a drop that merely passes, but of a wave that throws it.
-      return successor_[static_cast<std::size_t>(o)] >= 0 &&
+      return successor_[o] >= 0 &&
              (region(o).kind == RegionKind::differential || track.kind == RegionKind::isolated);
     });
     if (from < 0) return false;
-    add(TrackEventKind::split, frame, track_of_[static_cast<std::size_t>(from)], track.id);
+    add(TrackEventKind::split, frame, track_of_[from], track.id);
     return true;
   }
 
@@ -101,11 +96,10 @@ class EventFinder {
     const int frame = region(last).frame + 1;
     if (frame >= static_cast<int>(times_.size())) return;
     const int into = best_overlap(last, frame, false, [&](int o) {
-      return begins_[static_cast<std::size_t>(o)] == 0 &&
+      return begins_[o] == 0 &&
              (region(o).kind == track.kind || track.kind == RegionKind::isolated);
     });
-    if (into >= 0)
-      add(TrackEventKind::merge, frame, track.id, track_of_[static_cast<std::size_t>(into)]);
+    if (into >= 0) add(TrackEventKind::merge, frame, track.id, track_of_[into]);
   }
 
   void find_cause(const Track& wave) {
@@ -177,4 +171,4 @@ std::vector<TrackEvent> track_events(std::span<const Region> regions, std::span<
   return EventFinder(regions, times, cell, options, tracks, successor, motions).events();
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

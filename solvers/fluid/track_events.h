@@ -5,7 +5,7 @@
 
 #include "solvers/fluid/tracking_motion.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// What a path cover cannot say: where tracks touch.
 ///  - split: a track begins where a region of another, which goes on, was in the frame before;
@@ -27,4 +27,4 @@ std::vector<TrackEvent> track_events(std::span<const Region> regions, std::span<
 /// moved by `shift` (m); supports have cubes of two cells.
 double support_overlap(const Region& a, const Region& b, const Eigen::Vector3d& shift, double cell);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

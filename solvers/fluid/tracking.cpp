@@ -9,7 +9,7 @@
 #include "solvers/fluid/track_events.h"
 #include "solvers/fluid/tracking_links.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr int kMostRounds = 4;
@@ -20,19 +20,18 @@ std::vector<int> frame_by_frame(std::span<const Region> regions, const std::vect
                                 double new_path_cost) {
   std::vector<PathLink> by_target = links;
   std::stable_sort(by_target.begin(), by_target.end(), [&](const PathLink& a, const PathLink& b) {
-    return regions[static_cast<std::size_t>(a.to)].frame <
-           regions[static_cast<std::size_t>(b.to)].frame;
+    return regions[a.to].frame < regions[b.to].frame;
   });
   const int nodes = static_cast<int>(regions.size());
   std::vector<int> successor(regions.size(), -1);
   std::vector<PathLink> open;
   for (std::size_t begin = 0, end = 0; begin < by_target.size(); begin = end) {
-    const int frame = regions[static_cast<std::size_t>(by_target[begin].to)].frame;
+    const int frame = regions[by_target[begin].to].frame;
     open.clear();
     for (; end < by_target.size(); ++end) {
       const PathLink& link = by_target[end];
-      if (regions[static_cast<std::size_t>(link.to)].frame != frame) break;
-      if (successor[static_cast<std::size_t>(link.from)] < 0) open.push_back(link);
+      if (regions[link.to].frame != frame) break;
+      if (successor[link.from] < 0) open.push_back(link);
     }
     const std::vector<int> chosen = cover_by_paths(nodes, open, new_path_cost);
     for (const PathLink& link : open) {
@@ -52,8 +51,8 @@ std::vector<int> greedy(std::size_t nodes, std::vector<PathLink> links) {
   std::vector<int> successor(nodes, -1);
   std::vector<char> entered(nodes, 0);
   for (const PathLink& link : links) {
-    int& next = successor[static_cast<std::size_t>(link.from)];
-    char& taken = entered[static_cast<std::size_t>(link.to)];
+    int& next = successor[link.from];
+    char& taken = entered[link.to];
     if (next >= 0 || taken != 0) continue;
     next = link.to;
     taken = 1;
@@ -77,7 +76,7 @@ std::vector<int> assign(std::span<const Region> regions, const std::vector<PathL
 std::vector<Track> tracks_of(std::span<const Region> regions, const std::vector<int>& successor) {
   std::vector<char> entered(regions.size(), 0);
   for (const int s : successor) {
-    if (s >= 0) entered[static_cast<std::size_t>(s)] = 1;
+    if (s >= 0) entered[s] = 1;
   }
   std::vector<Track> tracks;
   for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -85,8 +84,7 @@ std::vector<Track> tracks_of(std::span<const Region> regions, const std::vector<
     Track& track = tracks.emplace_back();
     track.id = static_cast<int>(tracks.size());
     track.kind = regions[i].kind;
-    for (int r = static_cast<int>(i); r >= 0; r = successor[static_cast<std::size_t>(r)])
-      track.regions.push_back(r);
+    for (int r = static_cast<int>(i); r >= 0; r = successor[r]) track.regions.push_back(r);
   }
   return tracks;
 }
@@ -163,4 +161,4 @@ TrackResult track_regions(const std::vector<Region>& regions, const std::vector<
   return result;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -7,7 +7,7 @@
 #include "core/options.h"
 #include "solvers/fluid/regions.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 enum class AssignmentKind { flow, frame_by_frame, greedy };
 
@@ -67,4 +67,4 @@ struct TrackResult {
 TrackResult track_regions(const std::vector<Region>& regions, const std::vector<double>& times,
                           double cell, const TrackingOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 double square(double x) { return x * x; }
@@ -16,7 +16,7 @@ class FrameIndex {
     offset_.assign(frames + 1, 0);
     for (std::size_t i = 0; i < regions.size(); ++i) {
       order_[i] = static_cast<int>(i);
-      ++offset_[static_cast<std::size_t>(regions[i].frame) + 1];
+      ++offset_[regions[i].frame + 1];
     }
     for (std::size_t f = 0; f < frames; ++f) offset_[f + 1] += offset_[f];
     for (std::size_t f = 0; f < frames; ++f) {
@@ -36,9 +36,7 @@ class FrameIndex {
   }
 
  private:
-  [[nodiscard]] double x_of(int r) const {
-    return regions_[static_cast<std::size_t>(r)].centre.x();
-  }
+  [[nodiscard]] double x_of(int r) const { return regions_[r].centre.x(); }
   std::span<const Region> regions_;
   std::vector<int> order_;
   std::vector<std::ptrdiff_t> offset_;
@@ -73,7 +71,7 @@ GateSpeeds gate_speeds(std::span<const Region> regions, std::span<const double> 
     int best = -1;
     double least = 0;
     for (const int j : index.window(frame, a.centre.x(), 1e300)) {
-      const Region& b = regions[static_cast<std::size_t>(j)];
+      const Region& b = regions[j];
       if (b.kind != a.kind || size_cost(a, b, options) > options.new_path_cost) continue;
       const double d = (b.centre - a.centre).squaredNorm();
       if (best >= 0 && d >= least) continue;
@@ -91,9 +89,8 @@ GateSpeeds gate_speeds(std::span<const Region> regions, std::span<const double> 
     const double dt = times[f + 1] - times[f];
     interval = interval == 0 ? dt : std::min(interval, dt);
     const int j = nearest(a, a.frame + 1);
-    if (j < 0 || nearest(regions[static_cast<std::size_t>(j)], a.frame) != static_cast<int>(i))
-      continue;
-    const double way = (regions[static_cast<std::size_t>(j)].centre - a.centre).norm();
+    if (j < 0 || nearest(regions[j], a.frame) != static_cast<int>(i)) continue;
+    const double way = (regions[j].centre - a.centre).norm();
     needed[a.kind == RegionKind::isolated ? 0 : 1].push_back(way / dt);
   }
   GateSpeeds result{};
@@ -122,15 +119,14 @@ std::vector<int> first_paths(std::span<const Region> regions, std::span<const do
       if (successor[i] >= 0) continue;
       const Region& a = regions[i];
       const int g = frame - a.frame;
-      const double dt =
-          times[static_cast<std::size_t>(frame)] - times[static_cast<std::size_t>(a.frame)];
+      const double dt = times[frame] - times[a.frame];
       const double variance = centre_variance(a, cell, options);
       const RegionMotion past =
           region_motion(regions, times, cell, options, speeds, predecessor, i);
       const double reach =
           std::sqrt((options.new_path_cost + 3) * (g * variance + past.variance(dt)));
       for (const int to : index.window(frame, predicted(a, past, dt, options).x(), reach)) {
-        const Region& b = regions[static_cast<std::size_t>(to)];
+        const Region& b = regions[to];
         if (b.kind != a.kind || is_too_fast(a, b, dt, options)) continue;
         const double cost = prediction_cost(a, past, b.centre, dt, g, variance, options) +
                             (g - 1) * options.gap_cost + size_cost(a, b, options);
@@ -140,9 +136,9 @@ std::vector<int> first_paths(std::span<const Region> regions, std::span<const do
     const std::vector<int> chosen =
         cover_by_paths(static_cast<int>(regions.size()), links, options.new_path_cost);
     for (const PathLink& link : links) {
-      if (chosen[static_cast<std::size_t>(link.from)] != link.to) continue;
-      successor[static_cast<std::size_t>(link.from)] = link.to;
-      predecessor[static_cast<std::size_t>(link.to)] = link.from;
+      if (chosen[link.from] != link.to) continue;
+      successor[link.from] = link.to;
+      predecessor[link.to] = link.from;
     }
   }
   return successor;
@@ -160,8 +156,7 @@ std::vector<PathLink> candidate_links(std::span<const Region> regions,
     for (int g = 1; g <= options.largest_gap; ++g) {
       const int frame = a.frame + g;
       if (frame >= static_cast<int>(times.size())) break;
-      const double dt =
-          times[static_cast<std::size_t>(frame)] - times[static_cast<std::size_t>(a.frame)];
+      const double dt = times[frame] - times[a.frame];
       const RegionMotion& past = motions.from_past[i];
       // The mean of two terms, neither below 3 ln(1/2), is under c_new: so is either under twice.
       const double reach =
@@ -184,4 +179,4 @@ std::vector<PathLink> candidate_links(std::span<const Region> regions,
   return links;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

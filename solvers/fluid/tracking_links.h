@@ -5,7 +5,7 @@
 
 #include "solvers/fluid/tracking_motion.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// One and a half times the speed of nine in ten pairs of regions of successive frames that are
 /// each other's nearest of their kind and about their size; at least four cells a frame.
@@ -30,4 +30,4 @@ std::vector<PathLink> candidate_links(std::span<const Region> regions,
                                       std::span<const double> times, double cell,
                                       const TrackingOptions& options, const RegionMotions& motions);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

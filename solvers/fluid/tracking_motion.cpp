@@ -1,6 +1,6 @@
 #include "solvers/fluid/tracking_motion.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr int kMostOthers = 5;
@@ -35,16 +35,15 @@ RegionMotion region_motion(std::span<const Region> regions, std::span<const doub
   Eigen::Vector3d sum = here.centre, moment = Eigen::Vector3d::Zero();
   int other = next[i];
   for (int k = 0; k < kMostOthers && other >= 0; ++k) {
-    const Region& there = regions[static_cast<std::size_t>(other)];
-    const double dt =
-        times[static_cast<std::size_t>(there.frame)] - times[static_cast<std::size_t>(here.frame)];
+    const Region& there = regions[other];
+    const double dt = times[there.frame] - times[here.frame];
     const Eigen::Vector3d x = there.centre - fall(here, dt, options);
     n += 1;
     t += dt;
     tt += dt * dt;
     sum += x;
     moment += dt * x;
-    other = next[static_cast<std::size_t>(other)];
+    other = next[other];
   }
   const double det = n * tt - t * t;
   motion.position = (tt * sum - t * moment) / det;
@@ -60,8 +59,7 @@ RegionMotions region_motions(std::span<const Region> regions, std::span<const do
                              const std::vector<int>& successor) {
   std::vector<int> predecessor(successor.size(), -1);
   for (std::size_t i = 0; i < successor.size(); ++i) {
-    if (successor[i] >= 0)
-      predecessor[static_cast<std::size_t>(successor[i])] = static_cast<int>(i);
+    if (successor[i] >= 0) predecessor[successor[i]] = static_cast<int>(i);
   }
   RegionMotions motions;
   for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -78,4 +76,4 @@ Eigen::Vector3d predicted(const Region& region, const RegionMotion& motion, doub
   return motion.position + dt * motion.velocity + fall(region, dt, options);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -6,7 +6,7 @@
 
 #include "solvers/fluid/tracking.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 
 /// Speeds (m/s) that regions of a kind hardly exceed: isolated, differential.
 using GateSpeeds = std::array<double, 2>;
@@ -51,4 +51,4 @@ RegionMotions region_motions(std::span<const Region> regions, std::span<const do
 Eigen::Vector3d predicted(const Region& region, const RegionMotion& motion, double dt,
                           const TrackingOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "baselines/paper/planar.h"
+#include "models/paper/planar.h"
 #include "solvers/paper/mesh_edges.h"
 #include "solvers/paper/segments.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Eigen::Matrix2d;
@@ -52,7 +52,7 @@ double area(const ShellMesh& mesh, int f) {
 
 /// Direction of the rulings in a bent piece at a point; zero in a flat one.
 Vector2d ruling_direction(const PaperStructure& structure, int piece, const Vector2d& p) {
-  const PaperPiece& at = structure.pieces[static_cast<std::size_t>(piece)];
+  const PaperPiece& at = structure.pieces[piece];
   if (at.kind == PaperPiece::Kind::cylinder) return at.direction;
   if (at.kind == PaperPiece::Kind::cone) return (p - *at.apex).normalized();
   return Vector2d::Zero();
@@ -92,7 +92,7 @@ namespace {
 /// True when no ruling runs along the triangle and none is near: its curvature is then that of the
 /// ground, not of the fold beside it.
 bool inside_flat_cell(const RulingMesh& mesh, const MeshEdges& edges, int f) {
-  const auto cell = [&](int g) { return mesh.cell[static_cast<std::size_t>(g)]; };
+  const auto cell = [&](int g) { return mesh.cell[g]; };
   for (int k = 0; k < 3; ++k) {
     const MeshEdges::Edge& e = edges.of(f, k);
     const int next = e.left == f ? e.right : e.left;
@@ -153,7 +153,7 @@ void demand_of_bent_rulings(const Sheet& sheet, const ShellState& state,
     const Ruling& ruling = editor.structure().rulings[r];
     const Vector2d d = (ruling.b - ruling.a).normalized();
     for (int f = 0; f < state.mesh.triangle_count(); ++f) {
-      Demand& demand = demands[static_cast<std::size_t>(f)];
+      Demand& demand = demands[f];
       if (demand.weight > bent.shortening ||
           !(state.mesh.triangles.row(f).array() == bent.sharpest).any()) {
         continue;
@@ -174,13 +174,12 @@ std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
                                  const RulingEditor& editor, const HybridOptions& options) {
   const int m = state.mesh.triangle_count();
   const MeshEdges edges(state.mesh.triangles);
-  std::vector<Demand> demands(static_cast<std::size_t>(m));
+  std::vector<Demand> demands(m);
   for (int f = 0; f < m; ++f) {
-    Demand& demand = demands[static_cast<std::size_t>(f)];
+    Demand& demand = demands[f];
     const Vector2d p = centroid(state.mesh, f);
     const Eigen::Vector3d S = curvature.row(f);
-    const Vector2d ruling =
-        ruling_direction(editor.structure(), mesh.piece[static_cast<std::size_t>(f)], p);
+    const Vector2d ruling = ruling_direction(editor.structure(), mesh.piece[f], p);
     const bool bent = !ruling.isZero();
     const Compression c = compression(state, f);
     const bool served =
@@ -212,41 +211,39 @@ std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const
   for (std::size_t f = 0; f < demands.size(); ++f) {
     if (demands[f].weight > 0) order.push_back(static_cast<int>(f));
   }
-  const auto strength = [&](int f) {
-    return demands[static_cast<std::size_t>(f)].weight * area(mesh, f);
-  };
+  const auto strength = [&](int f) { return demands[f].weight * area(mesh, f); };
   std::stable_sort(order.begin(), order.end(),
                    [&](int f, int g) { return strength(f) > strength(g); });
   std::vector<bool> taken(demands.size(), false);
   std::vector<DemandGroup> groups;
   for (const int seed : order) {
-    if (taken[static_cast<std::size_t>(seed)]) continue;
-    const Demand& first = demands[static_cast<std::size_t>(seed)];
+    if (taken[seed]) continue;
+    const Demand& first = demands[seed];
     DemandGroup group;
     group.bent_ground = first.bent_ground;
     group.by_bending = first.by_bending;
     group.triangles.push_back(seed);
-    taken[static_cast<std::size_t>(seed)] = true;
+    taken[seed] = true;
     const double limit = first.bent_ground ? group_angle : std::max(group_angle, kFlatGroupAngle);
     Matrix2d sum = Matrix2d::Zero();
     for (std::size_t k = 0; k < group.triangles.size(); ++k) {
       const int f = group.triangles[k];
-      const Vector2d& d = demands[static_cast<std::size_t>(f)].direction;
+      const Vector2d& d = demands[f].direction;
       sum += strength(f) * d * d.transpose();
       group.strength += strength(f);
-      group.excess = std::max(group.excess, demands[static_cast<std::size_t>(f)].excess);
+      group.excess = std::max(group.excess, demands[f].excess);
       group.centre += strength(f) * centroid(mesh, f);
       for (int corner = 0; corner < 3; ++corner) {
         const MeshEdges::Edge& e = edges.of(f, corner);
         const int next = e.left == f ? e.right : e.left;
-        if (next < 0 || taken[static_cast<std::size_t>(next)]) continue;
-        const Demand& other = demands[static_cast<std::size_t>(next)];
+        if (next < 0 || taken[next]) continue;
+        const Demand& other = demands[next];
         if (other.weight <= 0 || other.bent_ground != first.bent_ground ||
             other.by_bending != first.by_bending ||
             line_angle(other.direction, first.direction) > limit) {
           continue;
         }
-        taken[static_cast<std::size_t>(next)] = true;
+        taken[next] = true;
         group.triangles.push_back(next);
       }
     }
@@ -268,4 +265,4 @@ std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const
   return groups;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

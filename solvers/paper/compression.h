@@ -3,13 +3,13 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "baselines/paper/sheet.h"
-#include "baselines/paper/shell_state.h"
+#include "models/paper/sheet.h"
+#include "models/paper/shell_state.h"
 #include "solvers/paper/hybrid.h"
 #include "solvers/paper/ruling_editor.h"
 #include "solvers/paper/ruling_mesh.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// What the simulated sheet asks for in one triangle.
 struct Demand {
@@ -65,4 +65,4 @@ struct Compression {
 };
 Compression compression(const ShellState& state, int triangle);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

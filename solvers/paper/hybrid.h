@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "baselines/paper/sheet_process.h"
+#include "models/paper/sheet_process.h"
 #include "solvers/paper/structure.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 enum class CompressionTest { euler, threshold };
 
@@ -54,4 +54,4 @@ void describe(OptionVisitor& v, HybridOptions& options);
 /// Phases: "analyse", "propagate", "remesh", "project".
 std::unique_ptr<Process> make_hybrid_sheet(const Sheet& sheet, const HybridOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

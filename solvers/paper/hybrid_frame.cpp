@@ -2,14 +2,13 @@
 
 #include <utility>
 
-#include "baselines/paper/pattern.h"
+#include "models/paper/pattern.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 double kind_number(const PaperStructure& structure, int piece) {
-  return piece < 0 ? 0
-                   : static_cast<double>(structure.pieces[static_cast<std::size_t>(piece)].kind);
+  return piece < 0 ? 0 : static_cast<double>(structure.pieces[piece].kind);
 }
 
 NamedArray array(std::string name, std::string unit, NamedArray::On on, Eigen::MatrixXd values) {
@@ -28,13 +27,13 @@ Part rulings_part(const PaperStructure& structure, const RulingMesh& mesh,
   int next = 0;
   for (Eigen::Index r = 0; r < count; ++r) {
     std::vector<int> line;
-    for (const int v : mesh.ruling_paths[static_cast<std::size_t>(r)]) {
+    for (const int v : mesh.ruling_paths[r]) {
       part.points.row(next) = state.x.row(v);
       line.push_back(next++);
     }
     part.lines.push_back(std::move(line));
-    piece(r, 0) = structure.rulings[static_cast<std::size_t>(r)].piece;
-    kind(r, 0) = kind_number(structure, structure.rulings[static_cast<std::size_t>(r)].piece);
+    piece(r, 0) = structure.rulings[r].piece;
+    kind(r, 0) = kind_number(structure, structure.rulings[r].piece);
   }
   part.arrays.push_back(array("piece", "1", NamedArray::On::cells, piece));
   part.arrays.push_back(array("kind", "1", NamedArray::On::cells, kind));
@@ -48,8 +47,8 @@ Part points_part(const PaperStructure& structure, const RulingMesh& mesh, const 
   part.points.resize(count, 3);
   Eigen::MatrixXd id(count, 1), birth(count, 1), weakening(count, 1);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const SingularPoint& s = structure.singular_points[static_cast<std::size_t>(i)];
-    part.points.row(i) = state.x.row(mesh.singular_vertices[static_cast<std::size_t>(i)]);
+    const SingularPoint& s = structure.singular_points[i];
+    part.points.row(i) = state.x.row(mesh.singular_vertices[i]);
     id(i, 0) = s.id;
     birth(i, 0) = s.birth;
     weakening(i, 0) = s.weakening;
@@ -99,8 +98,8 @@ void add_structure(const PaperStructure& structure, const RulingMesh& mesh, cons
   const auto m = static_cast<Eigen::Index>(mesh.piece.size());
   Eigen::MatrixXd piece(m, 1), kind(m, 1);
   for (Eigen::Index f = 0; f < m; ++f) {
-    piece(f, 0) = mesh.piece[static_cast<std::size_t>(f)];
-    kind(f, 0) = kind_number(structure, mesh.piece[static_cast<std::size_t>(f)]);
+    piece(f, 0) = mesh.piece[f];
+    kind(f, 0) = kind_number(structure, mesh.piece[f]);
   }
   Part& surface = frame.parts["surface"];
   surface.arrays.push_back(array("piece", "1", NamedArray::On::cells, piece));
@@ -121,4 +120,4 @@ void add_structure(const PaperStructure& structure, const RulingMesh& mesh, cons
   frame.diagnostics["singular_points"] = static_cast<double>(structure.singular_points.size());
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

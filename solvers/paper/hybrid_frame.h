@@ -1,15 +1,15 @@
 #pragma once
 
-#include "baselines/paper/shell_state.h"
 #include "core/frame.h"
+#include "models/paper/shell_state.h"
 #include "solvers/paper/ruling_mesh.h"
 #include "solvers/paper/structure.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Puts the structure into a frame: parts "rulings" and "singular_points", cell arrays on
 /// "surface", tables "pieces" and "singular_points".
 void add_structure(const PaperStructure& structure, const RulingMesh& mesh, const ShellState& state,
                    Frame& frame);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

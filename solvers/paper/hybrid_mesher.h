@@ -4,14 +4,14 @@
 #include <optional>
 #include <vector>
 
-#include "baselines/paper/sheet_process.h"
+#include "models/paper/sheet_process.h"
 #include "solvers/paper/hybrid.h"
 #include "solvers/paper/isometry_projection.h"
 #include "solvers/paper/propagation.h"
 #include "solvers/paper/ruling_editor.h"
 #include "solvers/paper/ruling_mesh.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// The geometric layer as a mesher of the common loop.
 class HybridMesher final : public SheetMesher {
@@ -76,4 +76,4 @@ class HybridMesher final : public SheetMesher {
   int rejected_ = 0;     ///< changes of the structure that the sheet could not follow, so far
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -1,12 +1,13 @@
+#include "solvers/paper/invariants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "baselines/paper/planar.h"
+#include "models/paper/planar.h"
 #include "solvers/paper/ruling_mesh.h"
-#include "solvers/paper/structure.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Eigen::Vector2d;
@@ -41,8 +42,7 @@ void check_ends(const PaperStructure& structure, const Pattern& pattern, double 
     for (const auto& [end, singular] :
          {std::pair(r.a, r.singular_a), std::pair(r.b, r.singular_b)}) {
       const bool anchored =
-          singular ? (end - structure.singular_points[static_cast<std::size_t>(*singular)].position)
-                             .norm() <= same
+          singular ? (end - structure.singular_points[*singular].position).norm() <= same
                    : nearest_on_border(pattern, end).distance <= same;
       if (!anchored) {
         broken.push_back("ruling " + std::to_string(i) + " ends neither on the border nor at its " +
@@ -100,4 +100,4 @@ std::vector<std::string> broken_invariants(const PaperStructure& structure, cons
   return broken;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

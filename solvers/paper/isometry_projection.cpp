@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Eigen::Matrix2d;
@@ -36,7 +36,7 @@ struct Triangle {
 Eigen::Matrix<double, 3, 2> gradient_of_map(const Triangle& t, const Eigen::MatrixX3d& x) {
   Eigen::Matrix<double, 3, 2> F = Eigen::Matrix<double, 3, 2>::Zero();
   for (int k = 0; k < 3; ++k) {
-    F += x.row(t.vertices[static_cast<std::size_t>(k)]).transpose() * t.shape.row(k);
+    F += x.row(t.vertices[k]).transpose() * t.shape.row(k);
   }
   return F;
 }
@@ -101,7 +101,7 @@ struct IsometryProjector::Impl {
 
 /// Index of coordinate k = 0 ... 8 of a triangle among the unknowns; negative when held.
 int IsometryProjector::Impl::unknown(const Triangle& t, int k) const {
-  const int i = free_index[static_cast<std::size_t>(t.vertices[static_cast<std::size_t>(k / 3)])];
+  const int i = free_index[t.vertices[k / 3]];
   return i < 0 ? -1 : 3 * i + k % 3;
 }
 
@@ -111,7 +111,7 @@ void IsometryProjector::Impl::build(const ShellMesh& mesh) {
   for (int f = 0; f < mesh.triangle_count(); ++f) {
     Triangle t{};
     for (int k = 0; k < 3; ++k) {
-      t.vertices[static_cast<std::size_t>(k)] = mesh.triangles(f, k);
+      t.vertices[k] = mesh.triangles(f, k);
       length += (mesh.pattern.row(mesh.triangles(f, (k + 1) % 3)) -
                  mesh.pattern.row(mesh.triangles(f, k)))
                     .norm();
@@ -155,8 +155,7 @@ void IsometryProjector::Impl::build_matrix() {
     for (int c = 0; c < 9; ++c) {
       for (int r = 0; r < 9; ++r) {
         const int row = unknown(t, r), col = unknown(t, c);
-        t.place[static_cast<std::size_t>(9 * c + r)] =
-            col >= 0 && row >= col ? place(row, col) : -1;
+        t.place[9 * c + r] = col >= 0 && row >= col ? place(row, col) : -1;
       }
     }
   }
@@ -212,7 +211,7 @@ Eigen::VectorXd IsometryProjector::Impl::straining(const Eigen::MatrixX3d& x,
     const Eigen::Matrix<double, 3, 9> J = strain_derivative(t, gradient_of_map(t, x));
     Vector9 velocity;
     for (int k = 0; k < 3; ++k) {
-      velocity.segment<3>(3 * k) = v.row(t.vertices[static_cast<std::size_t>(k)]);
+      velocity.segment<3>(3 * k) = v.row(t.vertices[k]);
     }
     const Vector9 g = t.area * J.transpose() * (J * velocity);
     for (int k = 0; k < 9; ++k) {
@@ -226,8 +225,7 @@ bool IsometryProjector::Impl::factorise(double mu) {
   for (std::size_t v = 0; v < free_index.size(); ++v) {
     if (free_index[v] < 0) continue;
     for (int k = 0; k < 3; ++k) {
-      matrix.valuePtr()[diagonal[static_cast<std::size_t>(3 * free_index[v] + k)]] +=
-          mu * mass[static_cast<Eigen::Index>(v)];
+      matrix.valuePtr()[diagonal[3 * free_index[v] + k]] += mu * mass[static_cast<Eigen::Index>(v)];
     }
   }
   solver.factorize(matrix);
@@ -303,4 +301,4 @@ ProjectionReport IsometryProjector::project(ShellState& state, const ProjectionO
   return report;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

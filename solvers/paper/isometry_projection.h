@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "baselines/paper/shell_state.h"
+#include "models/paper/shell_state.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 struct ProjectionOptions {
   int iterations = 4;    ///< most linear solves
@@ -43,4 +43,4 @@ class IsometryProjector {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace geoprior {
+namespace geoprior::paper {
 
 MeshEdges::MeshEdges(const Eigen::MatrixX3i& triangles) {
   struct Side {
@@ -14,7 +14,7 @@ MeshEdges::MeshEdges(const Eigen::MatrixX3i& triangles) {
     }
   };
   std::vector<Side> sides;
-  sides.reserve(static_cast<std::size_t>(triangles.size()));
+  sides.reserve(triangles.size());
   for (int f = 0; f < triangles.rows(); ++f) {
     for (int k = 0; k < 3; ++k) {
       const int u = triangles(f, k), v = triangles(f, (k + 1) % 3);
@@ -22,14 +22,13 @@ MeshEdges::MeshEdges(const Eigen::MatrixX3i& triangles) {
     }
   }
   std::sort(sides.begin(), sides.end());
-  index_.resize(static_cast<std::size_t>(triangles.rows()));
+  index_.resize(triangles.rows());
   for (const Side& side : sides) {
     if (edges_.empty() || edges_.back().a != side.a || edges_.back().b != side.b) {
       edges_.push_back({side.a, side.b, -1, -1});
     }
     (side.forward ? edges_.back().left : edges_.back().right) = side.triangle;
-    index_[static_cast<std::size_t>(side.triangle)][static_cast<std::size_t>(side.corner)] =
-        static_cast<int>(edges_.size()) - 1;
+    index_[side.triangle][side.corner] = static_cast<int>(edges_.size()) - 1;
   }
 }
 
@@ -42,4 +41,4 @@ std::optional<int> MeshEdges::find(int u, int v) const {
   return static_cast<int>(at - edges_.begin());
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

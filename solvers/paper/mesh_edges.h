@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Edges of a triangle mesh, sorted by their vertices, with the triangles on both sides.
 class MeshEdges {
@@ -19,10 +19,7 @@ class MeshEdges {
 
   [[nodiscard]] const std::vector<Edge>& all() const { return edges_; }
   /// Edge from corner k of a triangle to its next corner.
-  [[nodiscard]] const Edge& of(int triangle, int k) const {
-    return edges_[static_cast<std::size_t>(
-        index_[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(k)])];
-  }
+  [[nodiscard]] const Edge& of(int triangle, int k) const { return edges_[index_[triangle][k]]; }
   /// Index of the edge between two vertices, in any order.
   [[nodiscard]] std::optional<int> find(int u, int v) const;
 
@@ -31,4 +28,4 @@ class MeshEdges {
   std::vector<std::array<int, 3>> index_;  ///< edges of each triangle
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -8,11 +8,11 @@
 #include <numeric>
 #include <utility>
 
-#include "baselines/paper/planar.h"
+#include "models/paper/planar.h"
 #include "solvers/paper/mesh_edges.h"
 #include "solvers/paper/segments.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Eigen::Vector2d;
@@ -22,13 +22,13 @@ class RulingSets {
  public:
   explicit RulingSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
   int root(int i) {
-    while (parent_[static_cast<std::size_t>(i)] != i) i = parent_[static_cast<std::size_t>(i)];
+    while (parent_[i] != i) i = parent_[i];
     return i;
   }
   /// The smaller index becomes the root.
   void join(int i, int j) {
     const int p = root(i), q = root(j);
-    parent_[static_cast<std::size_t>(std::max(p, q))] = std::min(p, q);
+    parent_[std::max(p, q)] = std::min(p, q);
   }
 
  private:
@@ -37,16 +37,16 @@ class RulingSets {
 
 /// Rulings on the outline of each cell, each once, sorted.
 std::vector<std::vector<int>> rulings_of_cells(const RulingMesh& mesh, const MeshEdges& edges) {
-  std::vector<std::vector<int>> result(static_cast<std::size_t>(mesh.cell_count));
+  std::vector<std::vector<int>> result(mesh.cell_count);
   for (std::size_t r = 0; r < mesh.ruling_paths.size(); ++r) {
     const std::vector<int>& path = mesh.ruling_paths[r];
     for (std::size_t k = 0; k + 1 < path.size(); ++k) {
       const auto e = edges.find(path[k], path[k + 1]);
       if (!e) continue;
-      const MeshEdges::Edge& edge = edges.all()[static_cast<std::size_t>(*e)];
+      const MeshEdges::Edge& edge = edges.all()[*e];
       for (const int f : {edge.left, edge.right}) {
         if (f < 0) continue;
-        auto& list = result[static_cast<std::size_t>(mesh.cell[static_cast<std::size_t>(f)])];
+        auto& list = result[mesh.cell[f]];
         if (list.empty() || list.back() != static_cast<int>(r)) list.push_back(static_cast<int>(r));
       }
     }
@@ -68,8 +68,8 @@ std::optional<int> common_apex(const Ruling& r, const Ruling& s) {
 std::pair<PaperPiece::Kind, std::optional<int>> kind_of_cell(const PaperStructure& structure,
                                                              const std::vector<int>& rulings) {
   if (rulings.size() != 2) return {PaperPiece::Kind::flat, std::nullopt};
-  const Ruling& r = structure.rulings[static_cast<std::size_t>(rulings[0])];
-  const Ruling& s = structure.rulings[static_cast<std::size_t>(rulings[1])];
+  const Ruling& r = structure.rulings[rulings[0]];
+  const Ruling& s = structure.rulings[rulings[1]];
   if (const auto apex = common_apex(r, s)) return {PaperPiece::Kind::cone, apex};
   const double angle = line_angle(r.b - r.a, s.b - s.a) * 180 / std::numbers::pi;
   if (is_chord(r) && is_chord(s) && angle <= kParallelDegrees) {
@@ -80,15 +80,15 @@ std::pair<PaperPiece::Kind, std::optional<int>> kind_of_cell(const PaperStructur
 
 void sort_cylinder(const PaperStructure& structure, PaperPiece& piece) {
   Vector2d sum = Vector2d::Zero();
-  const Ruling& first = structure.rulings[static_cast<std::size_t>(piece.rulings.front())];
+  const Ruling& first = structure.rulings[piece.rulings.front()];
   for (const int i : piece.rulings) {
-    const Ruling& r = structure.rulings[static_cast<std::size_t>(i)];
+    const Ruling& r = structure.rulings[i];
     const Vector2d d = r.b - r.a;
     sum += d.dot(first.b - first.a) < 0 ? Vector2d(-d) : d;
   }
   piece.direction = sum.normalized();
   const auto offset = [&](int i) {
-    const Ruling& r = structure.rulings[static_cast<std::size_t>(i)];
+    const Ruling& r = structure.rulings[i];
     return cross(piece.direction, r.a + r.b);
   };
   std::sort(piece.rulings.begin(), piece.rulings.end(),
@@ -97,10 +97,10 @@ void sort_cylinder(const PaperStructure& structure, PaperPiece& piece) {
 
 /// Counter-clockwise about the apex, beginning behind the widest gap.
 void sort_cone(const PaperStructure& structure, int apex, PaperPiece& piece) {
-  const Vector2d p = structure.singular_points[static_cast<std::size_t>(apex)].position;
+  const Vector2d p = structure.singular_points[apex].position;
   std::vector<std::pair<double, int>> angles;
   for (const int i : piece.rulings) {
-    const Ruling& r = structure.rulings[static_cast<std::size_t>(i)];
+    const Ruling& r = structure.rulings[i];
     const Vector2d d = (r.singular_a == apex ? r.b : r.a) - p;
     angles.emplace_back(std::atan2(d.y(), d.x()), i);
   }
@@ -130,10 +130,10 @@ void inherit_ids(const PaperStructure& before, std::vector<PaperPiece>& pieces, 
     pieces[i].id = -1;
     std::map<int, int> counts;
     for (const int r : pieces[i].rulings) {
-      const int old = before.rulings[static_cast<std::size_t>(r)].piece;
+      const int old = before.rulings[r].piece;
       if (old >= 0 && old < static_cast<int>(before.pieces.size()) &&
-          before.pieces[static_cast<std::size_t>(old)].kind == pieces[i].kind) {
-        ++counts[before.pieces[static_cast<std::size_t>(old)].id];
+          before.pieces[old].kind == pieces[i].kind) {
+        ++counts[before.pieces[old].id];
       }
     }
     for (const auto& [id, count] : counts) votes.push_back({count, static_cast<int>(i), id});
@@ -142,7 +142,7 @@ void inherit_ids(const PaperStructure& before, std::vector<PaperPiece>& pieces, 
                    [](const Vote& x, const Vote& y) { return x.count > y.count; });
   std::vector<int> taken;
   for (const Vote& vote : votes) {
-    int& id = pieces[static_cast<std::size_t>(vote.piece)].id;
+    int& id = pieces[vote.piece].id;
     if (id >= 0 || std::find(taken.begin(), taken.end(), vote.id) != taken.end()) continue;
     id = vote.id;
     taken.push_back(vote.id);
@@ -183,15 +183,15 @@ std::vector<Vector2d> outline(const std::vector<std::array<int, 2>>& boundary,
 
 void fill_regions(std::vector<PaperPiece>& pieces, const RulingMesh& mesh, const MeshEdges& edges) {
   std::vector<std::vector<std::array<int, 2>>> boundary(pieces.size());
-  const auto piece_of = [&](int f) { return f < 0 ? -1 : mesh.piece[static_cast<std::size_t>(f)]; };
+  const auto piece_of = [&](int f) { return f < 0 ? -1 : mesh.piece[f]; };
   for (const MeshEdges::Edge& e : edges.all()) {
     const int left = piece_of(e.left), right = piece_of(e.right);
     if (left == right) continue;
-    if (left >= 0) boundary[static_cast<std::size_t>(left)].push_back({e.a, e.b});
-    if (right >= 0) boundary[static_cast<std::size_t>(right)].push_back({e.b, e.a});
+    if (left >= 0) boundary[left].push_back({e.a, e.b});
+    if (right >= 0) boundary[right].push_back({e.b, e.a});
     if (left >= 0 && right >= 0) {
-      pieces[static_cast<std::size_t>(left)].neighbours.push_back(right);
-      pieces[static_cast<std::size_t>(right)].neighbours.push_back(left);
+      pieces[left].neighbours.push_back(right);
+      pieces[right].neighbours.push_back(left);
     }
   }
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -212,7 +212,7 @@ void fill_border_points(PaperStructure& structure, const Pattern& pattern) {
   }
   std::sort(on_border.begin(), on_border.end());
   for (const auto& [place, s] : on_border) {
-    structure.border_points[static_cast<std::size_t>(place.first)].push_back(s);
+    structure.border_points[place.first].push_back(s);
   }
 }
 
@@ -246,7 +246,7 @@ std::vector<PaperPiece> bent_pieces(const PaperStructure& structure,
       pieces.back().kind = kinds[c];
     }
     piece_of_cell[c] = at->second;
-    std::vector<int>& list = pieces[static_cast<std::size_t>(at->second)].rulings;
+    std::vector<int>& list = pieces[at->second].rulings;
     list.insert(list.end(), rulings_of_cell[c].begin(), rulings_of_cell[c].end());
   }
   for (PaperPiece& piece : pieces) {
@@ -254,7 +254,7 @@ std::vector<PaperPiece> bent_pieces(const PaperStructure& structure,
     piece.rulings.erase(std::unique(piece.rulings.begin(), piece.rulings.end()),
                         piece.rulings.end());
     if (piece.kind == PaperPiece::Kind::cone) {
-      sort_cone(structure, *apex_of[static_cast<std::size_t>(piece.rulings.front())], piece);
+      sort_cone(structure, *apex_of[piece.rulings.front()], piece);
     } else {
       sort_cylinder(structure, piece);
     }
@@ -266,7 +266,7 @@ std::vector<PaperPiece> bent_pieces(const PaperStructure& structure,
 
 void derive_pieces(PaperStructure& structure, const Pattern& pattern, RulingMesh& mesh) {
   const MeshEdges edges(mesh.mesh.triangles);
-  std::vector<int> piece_of_cell(static_cast<std::size_t>(mesh.cell_count), -1);
+  std::vector<int> piece_of_cell(mesh.cell_count, -1);
   std::vector<PaperPiece> pieces =
       bent_pieces(structure, rulings_of_cells(mesh, edges), piece_of_cell);
   inherit_ids(structure, pieces, structure.next_piece_id);
@@ -279,16 +279,16 @@ void derive_pieces(PaperStructure& structure, const Pattern& pattern, RulingMesh
   for (Ruling& r : structure.rulings) r.piece = -1;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     for (const int r : pieces[i].rulings) {
-      structure.rulings[static_cast<std::size_t>(r)].piece = static_cast<int>(i);
+      structure.rulings[r].piece = static_cast<int>(i);
     }
   }
   mesh.piece.resize(mesh.cell.size());
   for (std::size_t f = 0; f < mesh.cell.size(); ++f) {
-    mesh.piece[f] = piece_of_cell[static_cast<std::size_t>(mesh.cell[f])];
+    mesh.piece[f] = piece_of_cell[mesh.cell[f]];
   }
   fill_regions(pieces, mesh, edges);
   structure.pieces = std::move(pieces);
   fill_border_points(structure, pattern);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

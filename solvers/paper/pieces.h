@@ -3,7 +3,7 @@
 #include "solvers/paper/ruling_mesh.h"
 #include "solvers/paper/structure.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Reads the pieces off the rulings and their mesh (thesis 3.2.1, Figure 3.7): fills
 /// `structure.pieces`, `Ruling::piece`, `structure.border_points` and `mesh.piece`.
@@ -19,4 +19,4 @@ void derive_pieces(PaperStructure& structure, const Pattern& pattern, RulingMesh
 /// Largest angle between the two rulings of a strip.
 inline constexpr double kParallelDegrees = 25;
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

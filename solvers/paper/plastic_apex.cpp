@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 /// Frobenius norm of a shape operator given as uu, uv, vv.
@@ -48,4 +48,4 @@ void yield_at_apexes(const PaperMaterial& material, double radius,
   }
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

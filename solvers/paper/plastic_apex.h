@@ -3,11 +3,11 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "baselines/paper/sheet.h"
-#include "baselines/paper/shell_state.h"
+#include "models/paper/sheet.h"
+#include "models/paper/shell_state.h"
 #include "solvers/paper/structure.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Plastic yielding at singular points: what keeps a crease where it once was.
 ///
@@ -23,4 +23,4 @@ void yield_at_apexes(const PaperMaterial& material, double radius,
                      const std::vector<int>& singular_vertices, const Eigen::MatrixX3d& curvature,
                      ShellState& state, PaperStructure& structure);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

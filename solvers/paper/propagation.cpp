@@ -5,12 +5,12 @@
 #include <numbers>
 #include <utility>
 
-#include "baselines/paper/planar.h"
 #include "core/random.h"
+#include "models/paper/planar.h"
 #include "solvers/paper/segments.h"
 #include "solvers/paper/singular_point.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Eigen::Vector2d;
@@ -66,7 +66,7 @@ Candidate make_candidate(const Vector2d& seed, Vector2d d, const GroupTest& in_g
   // A ruling met at a small angle is no conflict: follow it.
   for (const RulingHit* hit : {&c.forward, &c.backward}) {
     if (hit->kind != RulingHit::Kind::ruling) continue;
-    const Ruling& r = editor.structure().rulings[static_cast<std::size_t>(hit->index)];
+    const Ruling& r = editor.structure().rulings[hit->index];
     if (line_angle(r.b - r.a, d) < group_angle) {
       d = (r.b - r.a).normalized();
       c.forward = editor.propagate(seed, d);
@@ -159,8 +159,7 @@ bool widen_nearest(const Vector2d& p, const Conflict& conflict, const HybridOpti
   const auto& points = editor.structure().singular_points;
   std::optional<int> nearest;
   for (std::size_t s = 0; s < points.size(); ++s) {
-    if (!nearest || (points[s].position - p).norm() <
-                        (points[static_cast<std::size_t>(*nearest)].position - p).norm()) {
+    if (!nearest || (points[s].position - p).norm() < (points[*nearest].position - p).norm()) {
       nearest = static_cast<int>(s);
     }
   }
@@ -178,8 +177,8 @@ std::optional<Conflict> find_conflict(const DemandGroup& group,
   conflict.crossed.assign(editor.structure().rulings.size(), false);
   for (const Candidate& c : candidates) {
     for (const int r : c.crossed) {
-      conflict.crossed[static_cast<std::size_t>(r)] = true;
-      const Ruling& ruling = editor.structure().rulings[static_cast<std::size_t>(r)];
+      conflict.crossed[r] = true;
+      const Ruling& ruling = editor.structure().rulings[r];
       if (ruling.age_frames < options.settle_frames && group.excess < kSevere) {
         return std::nullopt;
       }
@@ -278,4 +277,4 @@ PropagationReport resolve_group(const DemandGroup& group, const GroupTest& in_gr
   return report;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -9,7 +9,7 @@
 #include "solvers/paper/hybrid.h"
 #include "solvers/paper/ruling_editor.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// A candidate ruling (thesis 3.2.1, Figure 3.9): from a seed along d_perp both ways.
 struct Candidate {
@@ -59,4 +59,4 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points);
 Eigen::Vector2d point_in_hull(const std::vector<Eigen::Vector2d>& hull,
                               const Eigen::Vector3d& uniform);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -5,10 +5,10 @@
 #include <limits>
 #include <numbers>
 
-#include "baselines/paper/planar.h"
+#include "models/paper/planar.h"
 #include "solvers/paper/segments.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Eigen::Vector2d;
@@ -223,8 +223,7 @@ std::optional<Ruling> RulingEditor::chord(const Vector2d& centre, const Vector2d
 }
 
 std::optional<Ruling> RulingEditor::ray(int singular_point, const Vector2d& direction) const {
-  const Vector2d origin =
-      structure_.singular_points[static_cast<std::size_t>(singular_point)].position;
+  const Vector2d origin = structure_.singular_points[singular_point].position;
   const RulingHit hit = propagate(origin, direction, singular_point);
   if (hit.kind != RulingHit::Kind::border || !std::isfinite(hit.distance)) return std::nullopt;
   return ray_to(singular_point, snapped(hit.point));
@@ -232,7 +231,7 @@ std::optional<Ruling> RulingEditor::ray(int singular_point, const Vector2d& dire
 
 std::optional<Ruling> RulingEditor::ray_to(int singular_point, const Vector2d& end) const {
   Ruling ruling;
-  ruling.a = structure_.singular_points[static_cast<std::size_t>(singular_point)].position;
+  ruling.a = structure_.singular_points[singular_point].position;
   ruling.b = end;
   ruling.singular_a = singular_point;
   for (std::size_t s = 0; s < structure_.singular_points.size(); ++s) {
@@ -245,8 +244,7 @@ std::optional<Ruling> RulingEditor::ray_to(int singular_point, const Vector2d& e
 }
 
 std::optional<Ruling> RulingEditor::ray_between(int singular_point, int other) const {
-  return ray_to(singular_point,
-                structure_.singular_points[static_cast<std::size_t>(other)].position);
+  return ray_to(singular_point, structure_.singular_points[other].position);
 }
 
 void RulingEditor::remove(const std::vector<bool>& marked) {
@@ -257,4 +255,4 @@ void RulingEditor::remove(const std::vector<bool>& marked) {
   structure_.rulings = std::move(kept);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

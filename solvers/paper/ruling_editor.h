@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "baselines/paper/pattern.h"
+#include "models/paper/pattern.h"
 #include "solvers/paper/structure.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// What a candidate ruling runs into (thesis 3.2.1, Figure 3.9).
 struct RulingHit {
@@ -83,4 +83,4 @@ class RulingEditor {
   double same_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

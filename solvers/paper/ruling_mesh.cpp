@@ -6,12 +6,12 @@
 #include <numbers>
 #include <utility>
 
-#include "baselines/paper/planar.h"
 #include "core/error.h"
+#include "models/paper/planar.h"
 #include "solvers/paper/mesh_edges.h"
 #include "solvers/paper/segments.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Eigen::Vector2d;
@@ -54,8 +54,7 @@ std::vector<int> border_chain(const Pattern& pattern, double flat_size, double t
     // A corner is both the end of one edge and the start of the next: count it once, as the start.
     const int n = static_cast<int>(pattern.border.size());
     const int next = (near.edge + 1) % n;
-    const bool at_end =
-        (points[i] - pattern.border[static_cast<std::size_t>(next)]).norm() <= tolerance;
+    const bool at_end = (points[i] - pattern.border[next]).norm() <= tolerance;
     on_border.push_back({at_end ? next : near.edge, at_end ? 0 : near.t, static_cast<int>(i)});
   }
   std::sort(on_border.begin(), on_border.end());
@@ -64,8 +63,8 @@ std::vector<int> border_chain(const Pattern& pattern, double flat_size, double t
     const int from = on_border[i].vertex;
     const int to = on_border[(i + 1) % on_border.size()].vertex;
     chain.push_back(from);
-    const Vector2d a = points[static_cast<std::size_t>(from)];
-    const Vector2d b = points[static_cast<std::size_t>(to)];
+    const Vector2d a = points[from];
+    const Vector2d b = points[to];
     const int parts = static_cast<int>(std::ceil((b - a).norm() / flat_size - 1e-9));
     for (int k = 1; k < parts; ++k) chain.push_back(set.add(a + (b - a) * k / parts));
   }
@@ -143,13 +142,13 @@ void number_cells(RulingMesh& result) {
   }
   std::sort(walls.begin(), walls.end());
   const int m = result.mesh.triangle_count();
-  result.cell.assign(static_cast<std::size_t>(m), -1);
+  result.cell.assign(m, -1);
   result.cell_count = 0;
   std::vector<int> stack;
   for (int start = 0; start < m; ++start) {
-    if (result.cell[static_cast<std::size_t>(start)] >= 0) continue;
+    if (result.cell[start] >= 0) continue;
     const int cell = result.cell_count++;
-    result.cell[static_cast<std::size_t>(start)] = cell;
+    result.cell[start] = cell;
     stack.push_back(start);
     while (!stack.empty()) {
       const int f = stack.back();
@@ -157,9 +156,9 @@ void number_cells(RulingMesh& result) {
       for (int k = 0; k < 3; ++k) {
         const MeshEdges::Edge& e = edges.of(f, k);
         const int next = e.left == f ? e.right : e.left;
-        if (next < 0 || result.cell[static_cast<std::size_t>(next)] >= 0) continue;
+        if (next < 0 || result.cell[next] >= 0) continue;
         if (std::binary_search(walls.begin(), walls.end(), std::array<int, 2>{e.a, e.b})) continue;
-        result.cell[static_cast<std::size_t>(next)] = cell;
+        result.cell[next] = cell;
         stack.push_back(next);
       }
     }
@@ -176,7 +175,7 @@ void sort_triangles(Eigen::MatrixX3i& triangles) {
   }
   std::sort(rows.begin(), rows.end());
   for (int f = 0; f < triangles.rows(); ++f) {
-    const auto& t = rows[static_cast<std::size_t>(f)];
+    const auto& t = rows[f];
     triangles.row(f) << t[0], t[1], t[2];
   }
 }
@@ -222,16 +221,16 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
 
 std::vector<int> edge_path(const ShellMesh& mesh, const Vector2d& a, const Vector2d& b,
                            double tolerance) {
-  std::vector<Vector2d> points(static_cast<std::size_t>(mesh.vertex_count()));
+  std::vector<Vector2d> points(mesh.vertex_count());
   for (int i = 0; i < mesh.vertex_count(); ++i) {
-    points[static_cast<std::size_t>(i)] = mesh.pattern.row(i);
+    points[i] = mesh.pattern.row(i);
   }
   Ruling segment;
   segment.a = a;
   segment.b = b;
   std::vector<int> path = points_along(points, segment, tolerance);
-  if (path.size() < 2 || (points[static_cast<std::size_t>(path.front())] - a).norm() > tolerance ||
-      (points[static_cast<std::size_t>(path.back())] - b).norm() > tolerance) {
+  if (path.size() < 2 || (points[path.front()] - a).norm() > tolerance ||
+      (points[path.back()] - b).norm() > tolerance) {
     return {};
   }
   const MeshEdges edges(mesh.triangles);
@@ -241,4 +240,4 @@ std::vector<int> edge_path(const ShellMesh& mesh, const Vector2d& a, const Vecto
   return path;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -3,11 +3,11 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "baselines/paper/pattern.h"
-#include "baselines/paper/shell_state.h"
+#include "models/paper/pattern.h"
+#include "models/paper/shell_state.h"
 #include "solvers/paper/structure.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// The mesh that a structure asks for, and where the structure is in it.
 struct RulingMesh {
@@ -40,4 +40,4 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
 std::vector<int> edge_path(const ShellMesh& mesh, const Eigen::Vector2d& a,
                            const Eigen::Vector2d& b, double tolerance);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "baselines/paper/planar.h"
+#include "models/paper/planar.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 using Eigen::Vector2d;
 
@@ -35,4 +35,4 @@ double ray_angle(const Vector2d& a, const Vector2d& b) {
   return std::atan2(std::abs(cross(a, b)), a.dot(b));
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Distance of a point from a closed segment (same unit as the input).
 double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
@@ -23,4 +23,4 @@ double ray_angle(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
 /// The direction turned by +90 degrees.
 inline Eigen::Vector2d perpendicular(const Eigen::Vector2d& d) { return {-d.y(), d.x()}; }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

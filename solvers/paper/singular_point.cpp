@@ -7,7 +7,7 @@
 
 #include "solvers/paper/segments.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Eigen::Vector2d;
@@ -18,7 +18,7 @@ constexpr double kFullTurn = 2 * std::numbers::pi;
 
 /// Lines to all that the point sees, the nearest first: a far one must not come too near to them.
 void connect(int index, RulingEditor& editor) {
-  const Vector2d p = editor.structure().singular_points[static_cast<std::size_t>(index)].position;
+  const Vector2d p = editor.structure().singular_points[index].position;
   std::vector<std::pair<double, Vector2d>> targets;
   const auto& points = editor.structure().singular_points;
   for (std::size_t s = 0; s < points.size(); ++s) {
@@ -40,11 +40,10 @@ void connect(int index, RulingEditor& editor) {
 
 int fill_fan(int singular_point, const HybridOptions& options, RulingEditor& editor) {
   const double fan = options.fan_angle_deg * std::numbers::pi / 180;
-  const Vector2d p =
-      editor.structure().singular_points[static_cast<std::size_t>(singular_point)].position;
+  const Vector2d p = editor.structure().singular_points[singular_point].position;
   std::vector<double> angles;
   for (const int i : editor.structure().rulings_at(singular_point)) {
-    const Ruling& r = editor.structure().rulings[static_cast<std::size_t>(i)];
+    const Ruling& r = editor.structure().rulings[i];
     const Vector2d d = (r.singular_a == singular_point ? r.b : r.a) - p;
     angles.push_back(std::atan2(d.y(), d.x()));
   }
@@ -113,8 +112,7 @@ void add_singular_point(const Vector2d& p, double time, const Conflict& conflict
 
 bool widen_singular_point(int singular_point, const Conflict& conflict,
                           const HybridOptions& options, RulingEditor& editor) {
-  const Vector2d p =
-      editor.structure().singular_points[static_cast<std::size_t>(singular_point)].position;
+  const Vector2d p = editor.structure().singular_points[singular_point].position;
   const std::vector<bool> marked =
       rulings_in_conflict(p, singular_point, conflict, options, editor);
   if (std::none_of(marked.begin(), marked.end(), [](bool b) { return b; })) return false;
@@ -124,4 +122,4 @@ bool widen_singular_point(int singular_point, const Conflict& conflict,
   return true;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -7,7 +7,7 @@
 #include "solvers/paper/hybrid.h"
 #include "solvers/paper/ruling_editor.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Puts a singular point into the structure and rulings around it (thesis 3.2.1: "the apex of
 /// surrounding conical regions").
@@ -42,4 +42,4 @@ bool widen_singular_point(int singular_point, const Conflict& conflict,
 /// fan angle between them; returns how many.
 int fill_fan(int singular_point, const HybridOptions& options, RulingEditor& editor);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace geoprior {
+namespace geoprior::paper {
 
 std::vector<int> PaperStructure::pieces_at(int singular_point) const {
   std::vector<int> touching;
@@ -36,4 +36,4 @@ std::vector<int> PaperStructure::rulings_at(int singular_point) const {
   return result;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "baselines/paper/pattern.h"
-#include "baselines/paper/shell_state.h"
+#include "models/paper/pattern.h"
+#include "models/paper/shell_state.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// A straight line of the sheet: a segment of the pattern that stays straight in space.
 struct Ruling {
@@ -60,11 +60,4 @@ struct PaperStructure {
   [[nodiscard]] std::vector<int> rulings_at(int singular_point) const;
 };
 
-/// What the invariants say of a structure and its mesh; empty when all hold:
-/// rulings of different pieces meet only at a common apex or the border; the mesh covers the
-/// pattern exactly (areas agree to 1e-9, no triangle turned over or without area); every ruling is
-/// a path of mesh edges; every singular point is a vertex.
-std::vector<std::string> broken_invariants(const PaperStructure& structure, const Pattern& pattern,
-                                           const ShellMesh& mesh);
-
-}  // namespace geoprior
+}  // namespace geoprior::paper

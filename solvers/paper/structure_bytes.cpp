@@ -1,6 +1,6 @@
 #include "solvers/paper/structure_bytes.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 constexpr int kNone = -1;
@@ -79,4 +79,4 @@ PaperStructure read_structure(StateReader& in) {
   return structure;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -3,11 +3,11 @@
 #include "core/state_bytes.h"
 #include "solvers/paper/structure.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Everything of a structure that does not follow from its rulings and singular points, for
 /// checkpoints: these, and the kinds and ids of the pieces.
 void write_structure(const PaperStructure& structure, StateWriter& out);
 PaperStructure read_structure(StateReader& in);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "baselines/paper/planar.h"
 #include "core/curvature_fit.h"
+#include "models/paper/planar.h"
 #include "solvers/paper/mesh_edges.h"
 #include "solvers/paper/segments.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Eigen::Vector2d;
@@ -33,7 +33,7 @@ Vector2d observed_direction(const ShellState& state, const Eigen::MatrixX3d& cur
                             const RulingMesh& mesh, int piece) {
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (int f = 0; f < state.mesh.triangle_count(); ++f) {
-    if (mesh.piece[static_cast<std::size_t>(f)] != piece) continue;
+    if (mesh.piece[f] != piece) continue;
     const Vector2d a = state.mesh.pattern.row(state.mesh.triangles(f, 0));
     const Vector2d b = state.mesh.pattern.row(state.mesh.triangles(f, 1));
     const Vector2d c = state.mesh.pattern.row(state.mesh.triangles(f, 2));
@@ -59,11 +59,11 @@ double turn_between(const Vector2d& from, const Vector2d& to) {
 bool turn_piece(const PaperPiece& piece, double angle, RulingEditor& editor) {
   const std::vector<Ruling> before = editor.structure().rulings;
   std::vector<bool> marked(before.size(), false);
-  for (const int r : piece.rulings) marked[static_cast<std::size_t>(r)] = true;
+  for (const int r : piece.rulings) marked[r] = true;
   editor.remove(marked);
   const Vector2d d = Eigen::Rotation2Dd(angle) * piece.direction;
   for (const int r : piece.rulings) {
-    const Ruling& old = before[static_cast<std::size_t>(r)];
+    const Ruling& old = before[r];
     auto turned = editor.chord((old.a + old.b) / 2, d);
     if (!turned) {
       editor.structure().rulings = before;
@@ -119,8 +119,8 @@ double opening(const PaperStructure& structure, int singular_point, int ruling,
   std::vector<double> angles;
   double own = 0;
   for (const int i : structure.rulings_at(singular_point)) {
-    if (gone[static_cast<std::size_t>(i)]) continue;
-    const Ruling& r = structure.rulings[static_cast<std::size_t>(i)];
+    if (gone[i]) continue;
+    const Ruling& r = structure.rulings[i];
     const Vector2d d = r.singular_a == singular_point ? Vector2d(r.b - r.a) : Vector2d(r.a - r.b);
     const double angle = std::atan2(d.y(), d.x());
     (i == ruling ? own = angle : angles.emplace_back(angle));
@@ -146,12 +146,12 @@ std::vector<bool> flat_cylinders(const PaperStructure& structure, const HybridOp
     bent[i] = structure.pieces[i].kind != PaperPiece::Kind::cylinder;
   }
   for (const Ruling& r : structure.rulings) {
-    if (r.piece >= 0 && !is_idle(r, options)) bent[static_cast<std::size_t>(r.piece)] = true;
+    if (r.piece >= 0 && !is_idle(r, options)) bent[r.piece] = true;
   }
   std::vector<bool> marked(structure.rulings.size(), false);
   for (std::size_t i = 0; i < marked.size(); ++i) {
     const int piece = structure.rulings[i].piece;
-    marked[i] = piece >= 0 && !bent[static_cast<std::size_t>(piece)];
+    marked[i] = piece >= 0 && !bent[piece];
   }
   return marked;
 }
@@ -181,7 +181,7 @@ std::vector<double> fold_angles(const ShellState& state, const RulingMesh& mesh)
     for (std::size_t k = 0; k + 1 < path.size(); ++k) {
       const auto found = edges.find(path[k], path[k + 1]);
       if (!found) continue;
-      const MeshEdges::Edge& e = edges.all()[static_cast<std::size_t>(*found)];
+      const MeshEdges::Edge& e = edges.all()[*found];
       if (e.left < 0 || e.right < 0) continue;
       CurvatureFit::Hinge hinge{};
       hinge.a = e.a;
@@ -260,10 +260,10 @@ void count_flat_frames(const std::vector<double>& folds, const HybridOptions& op
   }
   for (const PaperPiece& piece : structure.pieces) {
     for (std::size_t k = 0; k < piece.rulings.size(); ++k) {
-      if (std::abs(folds[static_cast<std::size_t>(piece.rulings[k])]) < sharp) continue;
+      if (std::abs(folds[piece.rulings[k]]) < sharp) continue;
       for (const std::size_t beside : {k - 1, k + 1}) {
         if (beside >= piece.rulings.size()) continue;
-        structure.rulings[static_cast<std::size_t>(piece.rulings[beside])].unbent_frames = 0;
+        structure.rulings[piece.rulings[beside]].unbent_frames = 0;
       }
     }
   }
@@ -280,4 +280,4 @@ bool retire_rulings(bool remeshed_anyway, const HybridOptions& options, RulingEd
   return true;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -3,12 +3,12 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "baselines/paper/shell_state.h"
+#include "models/paper/shell_state.h"
 #include "solvers/paper/hybrid.h"
 #include "solvers/paper/ruling_editor.h"
 #include "solvers/paper/ruling_mesh.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Fold angle of the sheet at each ruling (rad, signed): mean of the dihedral angles of its edges,
 /// weighted by length.
@@ -38,4 +38,4 @@ void count_flat_frames(const std::vector<double>& folds, const HybridOptions& op
 /// quarter of all. Returns true when any went.
 bool retire_rulings(bool remeshed_anyway, const HybridOptions& options, RulingEditor& editor);
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

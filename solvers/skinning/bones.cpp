@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 struct Segment {
@@ -13,11 +13,11 @@ struct Segment {
 
 /// Where the bone of a joint ends: its tail, else the mean of its children's heads, else its head.
 Segment bone_segment(const Skeleton& skeleton, const std::vector<int>& children, int joint) {
-  const Joint& j = skeleton.joints[static_cast<std::size_t>(joint)];
+  const Joint& j = skeleton.joints[joint];
   if (j.tail) return {j.head, *j.tail};
   if (children.empty()) return {j.head, j.head};
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const int c : children) sum += skeleton.joints[static_cast<std::size_t>(c)].head;
+  for (const int c : children) sum += skeleton.joints[c].head;
   return {j.head, sum / static_cast<double>(children.size())};
 }
 
@@ -44,9 +44,9 @@ int owner_joint(const RiggedMesh& rig, int v, PartitionRule rule,
 }
 
 std::vector<std::vector<int>> clusters_of(const std::vector<int>& owner, int joints) {
-  std::vector<std::vector<int>> clusters(static_cast<std::size_t>(joints));
+  std::vector<std::vector<int>> clusters(joints);
   for (std::size_t v = 0; v < owner.size(); ++v) {
-    if (owner[v] >= 0) clusters[static_cast<std::size_t>(owner[v])].push_back(static_cast<int>(v));
+    if (owner[v] >= 0) clusters[owner[v]].push_back(static_cast<int>(v));
   }
   return clusters;
 }
@@ -79,10 +79,10 @@ BonePartition partition_bones(const RiggedMesh& rig, PartitionRule rule, double 
   const std::vector<std::vector<int>> children = rig.skeleton.children();
   std::vector<Segment> segments;
   for (int j = 0; j < joints; ++j) {
-    segments.push_back(bone_segment(rig.skeleton, children[static_cast<std::size_t>(j)], j));
+    segments.push_back(bone_segment(rig.skeleton, children[j], j));
   }
-  std::vector<bool> allowed(static_cast<std::size_t>(joints), true);
-  std::vector<int> owner(static_cast<std::size_t>(rig.mesh.vertex_count()));
+  std::vector<bool> allowed(joints, true);
+  std::vector<int> owner(rig.mesh.vertex_count());
   std::vector<std::vector<int>> clusters;
   for (bool changed = true; changed;) {
     for (std::size_t v = 0; v < owner.size(); ++v) {
@@ -98,14 +98,14 @@ BonePartition partition_bones(const RiggedMesh& rig, PartitionRule rule, double 
     }
   }
   BonePartition result;
-  std::vector<int> bone_of_joint(static_cast<std::size_t>(joints), -1);
+  std::vector<int> bone_of_joint(joints, -1);
   for (std::size_t j = 0; j < clusters.size(); ++j) {
     if (!allowed[j]) continue;
     FieldBone bone;
     bone.joint = static_cast<int>(j);
     for (int a = rig.skeleton.joints[j].parent; a >= 0 && bone.parent < 0;
-         a = rig.skeleton.joints[static_cast<std::size_t>(a)].parent) {
-      bone.parent = bone_of_joint[static_cast<std::size_t>(a)];
+         a = rig.skeleton.joints[a].parent) {
+      bone.parent = bone_of_joint[a];
     }
     bone.head = segments[j].head;
     bone.tail = segments[j].tail;
@@ -121,13 +121,13 @@ BonePartition partition_bones(const RiggedMesh& rig, PartitionRule rule, double 
     result.bones.push_back(std::move(bone));
   }
   for (const FieldBone& bone : result.bones) {
-    if (bone.parent >= 0) result.bones[static_cast<std::size_t>(bone.parent)].has_children = true;
+    if (bone.parent >= 0) result.bones[bone.parent].has_children = true;
   }
   result.bone_of_vertex.assign(owner.size(), -1);
   for (std::size_t v = 0; v < owner.size(); ++v) {
-    if (owner[v] >= 0) result.bone_of_vertex[v] = bone_of_joint[static_cast<std::size_t>(owner[v])];
+    if (owner[v] >= 0) result.bone_of_vertex[v] = bone_of_joint[owner[v]];
   }
   return result;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

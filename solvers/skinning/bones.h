@@ -6,7 +6,7 @@
 #include "core/rig.h"
 #include "solvers/skinning/implicit_options.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// A bone that has skin of its own: one field is fitted to it.
 struct FieldBone {
@@ -45,4 +45,4 @@ double segment_parameter(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
 double segment_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                         const Eigen::Vector3d& b);
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

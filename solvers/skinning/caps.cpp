@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 using Series = Eigen::Matrix<double, 5, 1>;  ///< 1, cos, sin, cos 2, sin 2
@@ -62,8 +62,8 @@ Series fit_radius(const Ring& ring) {
   Eigen::MatrixXd rows(n, 5);
   Eigen::VectorXd values(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    rows.row(i) = basis(ring.azimuth[static_cast<std::size_t>(i)]).transpose();
-    values(i) = ring.radius[static_cast<std::size_t>(i)];
+    rows.row(i) = basis(ring.azimuth[i]).transpose();
+    values(i) = ring.radius[i];
   }
   return rows.colPivHouseholderQr().solve(values);
 }
@@ -102,4 +102,4 @@ CapSamples dome_cap(const BoneEnd& end, const std::vector<Eigen::Vector3d>& skin
   return cap;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

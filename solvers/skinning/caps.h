@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Points with unit outward normals that close a bone's field beyond one of its joints.
 struct CapSamples {
@@ -31,4 +31,4 @@ CapSamples point_cap(const BoneEnd& end, double distance);
 /// @param pole  distance of the dome from the joint on the axis (m)
 CapSamples dome_cap(const BoneEnd& end, const std::vector<Eigen::Vector3d>& skin, double pole);
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

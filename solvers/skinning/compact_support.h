@@ -4,7 +4,7 @@
 
 #include "solvers/skinning/implicit_options.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Field value and its derivative with respect to s = d / r.
 struct SupportValue {
@@ -38,4 +38,4 @@ inline SupportValue compact_support(SupportKind kind, double s) {
   return {s * (s2 * (-0.1875 * s2 + 0.625) - 0.9375) + 0.5, -0.9375 * one_minus * one_minus};
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -5,7 +5,7 @@
 
 #include "solvers/skinning/compact_support.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 /// At most this many positive fields are composed at one point; a body has a handful.
@@ -42,7 +42,7 @@ std::vector<std::uint8_t> body_parts(const std::vector<int>& parent,
   }
   for (std::size_t v = 0; v < bone_of_vertex.size(); ++v) {
     for (const int w : graph.of(static_cast<int>(v))) {
-      const int a = bone_of_vertex[v], b = bone_of_vertex[static_cast<std::size_t>(w)];
+      const int a = bone_of_vertex[v], b = bone_of_vertex[w];
       if (a >= 0 && b >= 0) join(a, b);
     }
   }
@@ -148,8 +148,8 @@ FieldComposition::Composed FieldComposition::compose(std::span<const Sampled> fi
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const Sampled& child = fields[i];
     if (child.f > result.value) result = {child.f, child.gradient, child.bone};
-    const JointOperator& op = operators_[static_cast<std::size_t>(child.bone)];
-    const int parent = parent_[static_cast<std::size_t>(child.bone)];
+    const JointOperator& op = operators_[child.bone];
+    const int parent = parent_[child.bone];
     if (parent < 0 || op.is_union()) continue;
     for (std::size_t j = 0; j < i; ++j) {  // parents come before children
       const Sampled& up = fields[j];
@@ -206,7 +206,7 @@ float FieldComposition::rest_value(Float4 rest, int bone) const {
 }
 
 Float4 FieldComposition::carry(int bone, Float4 rest) const {
-  return turn(bone, rest) + posed_[static_cast<std::size_t>(bone)].translation;
+  return turn(bone, rest) + posed_[bone].translation;
 }
 
 float FieldComposition::difference(Float4 p, int a, int b) const {
@@ -214,4 +214,4 @@ float FieldComposition::difference(Float4 p, int a, int b) const {
   return (sample_bone(a, p, sa) ? sa.f : 0.0F) - (sample_bone(b, p, sb) ? sb.f : 0.0F);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -12,7 +12,7 @@
 #include "solvers/skinning/operators.h"
 #include "solvers/skinning/sampling.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// The field of one bone, in the rest pose: samples, HRBF and, unless evaluated exactly, its cache.
 struct BoneField {
@@ -74,15 +74,13 @@ class FieldComposition {
 
   /// A rest direction turned with a bone.
   [[nodiscard]] Float4 turn(int bone, Float4 direction) const {
-    const PosedBone& posed = posed_[static_cast<std::size_t>(bone)];
+    const PosedBone& posed = posed_[bone];
     return posed.rotation[0] * splat(direction[0]) + posed.rotation[1] * splat(direction[1]) +
            posed.rotation[2] * splat(direction[2]);
   }
 
   /// Whether one bone is the other's parent.
-  [[nodiscard]] bool share_joint(int a, int b) const {
-    return parent_[static_cast<std::size_t>(a)] == b || parent_[static_cast<std::size_t>(b)] == a;
-  }
+  [[nodiscard]] bool share_joint(int a, int b) const { return parent_[a] == b || parent_[b] == a; }
 
   [[nodiscard]] int bone_count() const { return static_cast<int>(fields_.size()); }
   [[nodiscard]] const std::vector<BoneField>& fields() const { return fields_; }
@@ -125,4 +123,4 @@ class FieldComposition {
   std::vector<Eigen::Isometry3d> to_rest_;  // exact evaluation
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

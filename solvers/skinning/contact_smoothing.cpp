@@ -2,7 +2,7 @@
 
 #include "core/parallel.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 constexpr std::size_t kSlotsPerTask = 1024;
@@ -23,7 +23,7 @@ void diffuse_slot(SkinState& state, std::size_t s) {
   float sum = state.beta[s];
   const int begin = state.ring_offset[s], end = state.ring_offset[s + 1];
   for (int j = begin; j < end; ++j) {
-    sum += state.beta[static_cast<std::size_t>(state.ring[static_cast<std::size_t>(j)])];
+    sum += state.beta[state.ring[j]];
   }
   state.next_beta[s] = sum / static_cast<float>(end - begin + 1);
 }
@@ -35,7 +35,7 @@ void smooth_slot(SkinState& state, std::size_t s) {
   Float4 sum{};
   const int begin = state.ring_offset[s], end = state.ring_offset[s + 1];
   for (int j = begin; j < end; ++j) {
-    sum += state.position[static_cast<std::size_t>(state.ring[static_cast<std::size_t>(j)])];
+    sum += state.position[state.ring[j]];
   }
   if (begin == end) return;
   const Float4 mean = sum / splat(static_cast<float>(end - begin));
@@ -58,4 +58,4 @@ void smooth_contact(SkinState& state, int passes) {
   }
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -2,7 +2,7 @@
 
 #include "solvers/skinning/skin_state.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Spreads the contact mark: `passes` Jacobi passes of beta <- mean of the one ring and
 /// the vertex itself.
@@ -12,4 +12,4 @@ void diffuse_contact(SkinState& state, int passes);
 /// repairs the zigzag between vertices that stopped at a contact and their neighbours.
 void smooth_contact(SkinState& state, int passes);
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -5,7 +5,7 @@
 
 #include "core/parallel.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 /// Directions of a bone: principal directions of its skin across the bone, and the bone itself.
@@ -57,7 +57,7 @@ FieldCache::FieldCache(const Hrbf& field, const FieldBox& box, int grid) {
   cell_ = std::cbrt(size.prod()) / std::max(1, grid - 1);
   for (int k = 0; k < 3; ++k) {
     const int cells = std::max(1, static_cast<int>(std::ceil(size(k) / cell_ - 1e-9)));
-    size_[static_cast<std::size_t>(k)] = cells + 1;
+    size_[k] = cells + 1;
     extent_(k) = cells;
   }
   stride_j_ = size_[0];
@@ -83,4 +83,4 @@ FieldCache::FieldCache(const Hrbf& field, const FieldBox& box, int grid) {
   });
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

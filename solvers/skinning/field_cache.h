@@ -9,7 +9,7 @@
 #include "solvers/skinning/hrbf.h"
 #include "solvers/skinning/simd.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Oriented box around a bone's skin, wide enough that the field is zero outside: the skin's own
 /// bounds along the bone and the principal directions across it, and r on every side.
@@ -61,4 +61,4 @@ class FieldCache {
   double cell_ = 0;  // metres
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

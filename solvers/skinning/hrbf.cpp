@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 // Closer than this (in scaled units) the terms of a centre vanish: l^3 and l are far below
@@ -102,4 +102,4 @@ void Hrbf::evaluate(const Eigen::MatrixX3d& points, Eigen::MatrixX4d& gradient_a
   }
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Hermite radial basis function: a smooth signed distance through given points with given normals.
 ///
@@ -41,4 +41,4 @@ class Hrbf {
   double scale_ = 1;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -13,7 +13,7 @@
 #include "solvers/skinning/relaxation.h"
 #include "solvers/skinning/skin_state.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 // Passes of the authors' released code.
@@ -27,7 +27,7 @@ std::vector<JointOperator> joint_operators(const BonePartition& partition, const
   std::vector<JointOperator> operators;
   for (const JointBlend& own : options.joint_blends) (void)skeleton.index_of(own.joint);
   for (const FieldBone& bone : partition.bones) {
-    const std::string& name = skeleton.joints[static_cast<std::size_t>(bone.joint)].name;
+    const std::string& name = skeleton.joints[bone.joint].name;
     BlendKind blend = options.blend;
     OpeningPreset opening = options.opening;
     for (const JointBlend& own : options.joint_blends) {
@@ -292,4 +292,4 @@ std::size_t ImplicitSkinning::cache_bytes() const {
   return bytes;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -10,7 +10,7 @@
 #include "core/rig.h"
 #include "solvers/skinning/implicit_options.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Implicit skinning (Vaillant et al. 2013; thesis 3.1): dual quaternion skinning, corrected by a
 /// field that knows what the skin encloses.
@@ -75,4 +75,4 @@ class ImplicitSkinning {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 constexpr std::array<std::string_view, 5> kBlendNames{"union", "ricci", "gradient-controlled",
@@ -107,4 +107,4 @@ void describe(OptionVisitor& v, ImplicitOptions& o) {
   describe_solve(v, o);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -6,7 +6,7 @@
 
 #include "core/options.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// How the fields of two bones that share a joint are combined (operators.h has the equations).
 enum class BlendKind { union_max, ricci, gradient_controlled, bulge_in_contact, contact };
@@ -88,4 +88,4 @@ struct ImplicitOptions {
 };
 void describe(OptionVisitor& v, ImplicitOptions& options);
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -4,7 +4,7 @@
 
 #include "solvers/skinning/implicit_options.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Combined field value and its partial derivatives with respect to the two fields.
 struct BlendValue {
@@ -85,4 +85,4 @@ class JointOperator {
   Opening opening_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

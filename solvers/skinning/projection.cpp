@@ -8,7 +8,7 @@
 
 #include "core/parallel.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 struct Bounds {
@@ -90,7 +90,7 @@ void Projection::step_block(SkinState& state, std::size_t block) const {
   const auto count = static_cast<std::size_t>(state.active_count[block]);
   Bounds bounds;
   for (std::size_t i = begin; i < begin + count; ++i) {
-    bounds.include(state.position[static_cast<std::size_t>(state.active[i])]);
+    bounds.include(state.position[state.active[i]]);
   }
   std::array<int, kMaxFieldBones> bones;
   const int near = field_.bones_near(bounds.low, bounds.high, bones.data());
@@ -179,9 +179,7 @@ void Projection::walk_out(SkinState& state, std::size_t slot, int bone) const {
   const Float4 out =
       bone == owner ? state.outward[slot] : field_.turn(owner, normal) + field_.turn(bone, normal);
   const float length = std::sqrt(dot3(out, out));
-  const auto radius_of = [&](int b) {
-    return field_.fields()[static_cast<std::size_t>(b)].bone.radius;
-  };
+  const auto radius_of = [&](int b) { return field_.fields()[b].bone.radius; };
   const auto radius = static_cast<float>(std::min(radius_of(owner), radius_of(bone)));
   if (length > 0) state.position[slot] += out * splat(kWalk * max_step_ * radius / length);
   state.gradient[slot] = Float4{};
@@ -207,4 +205,4 @@ void Projection::stop_in_contact(SkinState& state, std::size_t slot, int bone_no
   state.position[slot] = (a + b) * 0.5F;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

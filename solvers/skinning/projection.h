@@ -4,7 +4,7 @@
 #include "solvers/skinning/implicit_options.h"
 #include "solvers/skinning/skin_state.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Marching of the vertices to their rest iso-value (thesis eq. 3.2 with its sign corrected).
 ///
@@ -64,4 +64,4 @@ class Projection {
   bool stop_on_growth_;
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

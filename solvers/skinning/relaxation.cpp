@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 constexpr std::size_t kLiveBlocksPerTask = 8;
@@ -50,8 +50,7 @@ void prepare_vertex(SkinState& state, std::size_t s) {
   const Eigen::Vector3d y = normal.cross(x);
   std::vector<Eigen::Vector2d> ring;
   for (std::size_t j = begin; j < end; ++j) {
-    const Eigen::Vector3d d =
-        to_vector(state.position[static_cast<std::size_t>(state.ring[j])] - state.position[s]);
+    const Eigen::Vector3d d = to_vector(state.position[state.ring[j]] - state.position[s]);
     ring.emplace_back(d.dot(x), d.dot(y));
   }
   std::vector<double> weight;
@@ -80,8 +79,7 @@ void relax_vertex(SkinState& state, std::size_t s, RelaxationLaw law) {
   Float4 mean{};
   for (int j = state.ring_offset[s]; j < state.ring_offset[s + 1]; ++j) {
     const auto k = static_cast<std::size_t>(j);
-    mean +=
-        splat(state.ring_weight[k]) * (state.position[static_cast<std::size_t>(state.ring[k])] - p);
+    mean += splat(state.ring_weight[k]) * (state.position[state.ring[k]] - p);
   }
   const Float4 tangential = mean - xyz(gradient) * splat(dot3(mean, gradient) / slope2);
   state.next[s] = p + tangential * splat(relaxation_share(law, gradient[3]));
@@ -118,4 +116,4 @@ void relax(SkinState& state, RelaxationLaw law) {
   });
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -2,7 +2,7 @@
 
 #include "solvers/skinning/skin_state.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Mean-value coordinates of every vertex in its one ring, in the plane normal to the FIELD's
 /// gradient at rest: w_j = (tan(a_{j-1} / 2) + tan(a_j / 2)) / r_j, normalised. With the gradient
@@ -23,4 +23,4 @@ enum class RelaxationLaw {
 /// the field's gradient. It spreads the vertices that the projection bunches together.
 void relax(SkinState& state, RelaxationLaw law);
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -9,7 +9,7 @@
 
 #include "solvers/skinning/caps.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 constexpr int kCandidatesPerSample = 40;
@@ -25,7 +25,7 @@ std::vector<int> bone_triangles(const TriMesh& mesh, const std::vector<int>& bon
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
     bool inside = true;
     for (int k = 0; k < 3; ++k) {
-      inside = inside && bone_of_vertex[static_cast<std::size_t>(mesh.F(t, k))] == bone;
+      inside = inside && bone_of_vertex[mesh.F(t, k)] == bone;
     }
     if (inside) triangles.push_back(static_cast<int>(t));
   }
@@ -157,8 +157,8 @@ CapSamples close_ends(const TriMesh& mesh, const BonePartition& partition, int b
   CapSamples caps;
   if (options.caps == CapKind::none) return caps;
   const auto close = [&](int child_index, int other_index, double direction) {
-    const FieldBone& child = partition.bones[static_cast<std::size_t>(child_index)];
-    const FieldBone& other = partition.bones[static_cast<std::size_t>(other_index)];
+    const FieldBone& child = partition.bones[child_index];
+    const FieldBone& other = partition.bones[other_index];
     const Eigen::Vector3d axis = child.tail - child.head;
     if (!(axis.norm() > 0)) return;
     const CapSamples cap =
@@ -166,7 +166,7 @@ CapSamples close_ends(const TriMesh& mesh, const BonePartition& partition, int b
     caps.points.insert(caps.points.end(), cap.points.begin(), cap.points.end());
     caps.normals.insert(caps.normals.end(), cap.normals.begin(), cap.normals.end());
   };
-  const int parent = partition.bones[static_cast<std::size_t>(bone_index)].parent;
+  const int parent = partition.bones[bone_index].parent;
   if (parent >= 0) close(bone_index, parent, -1);
   for (std::size_t b = 0; b < partition.bones.size(); ++b) {
     if (partition.bones[b].parent == bone_index) close(static_cast<int>(b), bone_index, 1);
@@ -179,7 +179,7 @@ CapSamples close_ends(const TriMesh& mesh, const BonePartition& partition, int b
 BoneSamples sample_bone(const TriMesh& mesh, const Eigen::MatrixX3d& normals,
                         const BonePartition& partition, int bone_index,
                         const SamplingOptions& options, RandomStream random) {
-  const FieldBone& bone = partition.bones[static_cast<std::size_t>(bone_index)];
+  const FieldBone& bone = partition.bones[bone_index];
   const std::vector<int> triangles = bone_triangles(mesh, partition.bone_of_vertex, bone_index);
   std::vector<Candidate> candidates =
       spread(mesh, normals, triangles, options.samples * kCandidatesPerSample, random);
@@ -204,10 +204,10 @@ BoneSamples sample_bone(const TriMesh& mesh, const Eigen::MatrixX3d& normals,
   samples.points.resize(static_cast<Eigen::Index>(points.size()), 3);
   samples.normals.resize(samples.points.rows(), 3);
   for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
-    samples.points.row(i) = points[static_cast<std::size_t>(i)].transpose();
-    samples.normals.row(i) = normals_of_points[static_cast<std::size_t>(i)].transpose();
+    samples.points.row(i) = points[i].transpose();
+    samples.normals.row(i) = normals_of_points[i].transpose();
   }
   return samples;
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -7,7 +7,7 @@
 #include "solvers/skinning/bones.h"
 #include "solvers/skinning/implicit_options.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Points and unit outward normals to which the field of one bone is fitted.
 struct BoneSamples {
@@ -31,4 +31,4 @@ BoneSamples sample_bone(const TriMesh& mesh, const Eigen::MatrixX3d& normals,
                         const BonePartition& partition, int bone, const SamplingOptions& options,
                         RandomStream random);
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Four floats in one register (x, y, z and one more): the unit in which the per-frame passes work.
 /// A vector extension of GCC and Clang, so the same source serves every instruction set.
@@ -17,4 +17,4 @@ inline float dot3(Float4 a, Float4 b) {
 /// First three components; the fourth set to zero.
 inline Float4 xyz(Float4 a) { return Float4{a[0], a[1], a[2], 0.0F}; }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 /// Spreads the lowest 20 bits of x over every third bit.
@@ -41,19 +41,19 @@ SkinState::SkinState(const RiggedMesh& rig, const VertexGraph& graph,
   const std::vector<std::uint64_t> codes = morton_codes(rig.mesh.V);
   vertex.resize(n);
   std::iota(vertex.begin(), vertex.end(), 0);
-  const auto bone_of = [&](int v) { return bone_of_vertex[static_cast<std::size_t>(v)]; };
+  const auto bone_of = [&](int v) { return bone_of_vertex[v]; };
   std::stable_sort(vertex.begin(), vertex.end(), [&](int a, int b) {
     if (bone_of(a) != bone_of(b)) return bone_of(a) < bone_of(b);
-    return codes[static_cast<std::size_t>(a)] < codes[static_cast<std::size_t>(b)];
+    return codes[a] < codes[b];
   });
   std::vector<int> slot_of(n);
   for (std::size_t s = 0; s < n; ++s) {
-    slot_of[static_cast<std::size_t>(vertex[s])] = static_cast<int>(s);
+    slot_of[vertex[s]] = static_cast<int>(s);
   }
   ring_offset.push_back(0);
   for (std::size_t s = 0; s < n; ++s) {
     owner.push_back(bone_of(vertex[s]));
-    for (const int w : graph.of(vertex[s])) ring.push_back(slot_of[static_cast<std::size_t>(w)]);
+    for (const int w : graph.of(vertex[s])) ring.push_back(slot_of[w]);
     ring_offset.push_back(static_cast<int>(ring.size()));
   }
   influence_offset.push_back(0);
@@ -101,7 +101,7 @@ void SkinState::activate() {
 }
 
 void SkinState::drop_dead_blocks() {
-  std::erase_if(live_blocks, [&](int b) { return active_count[static_cast<std::size_t>(b)] == 0; });
+  std::erase_if(live_blocks, [&](int b) { return active_count[b] == 0; });
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -8,7 +8,7 @@
 #include "solvers/skinning/bones.h"
 #include "solvers/skinning/simd.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 
 /// Why a vertex no longer moves.
 enum class VertexStop : std::uint8_t {
@@ -70,4 +70,4 @@ struct SkinState {
   void drop_dead_blocks();
 };
 
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -11,7 +11,7 @@ int main() {
   const geoprior::RiggedMesh rig = geoprior::two_bone_cylinder(options);
   const Eigen::AngleAxisd twist(std::numbers::pi / 2, rig.skeleton.joints[1].axes.at("twist"));
   Eigen::MatrixX3d posed;
-  geoprior::DualQuaternionBlend(rig).deform(
+  geoprior::skinning::DualQuaternionBlend(rig).deform(
       geoprior::pose_from_rotations(rig.skeleton, {{1, Eigen::Quaterniond(twist)}}), posed);
   const double radius = posed.row(geoprior::mid_ring(options).front()).norm();
   std::printf("mid-ring radius %.9f m\n", radius);

@@ -20,13 +20,13 @@ class LastFrame final : public geoprior::FrameSink {
 }  // namespace
 
 int main() {
-  geoprior::Sheet sheet;
-  sheet.pattern = geoprior::rectangle_pattern(0.2, 0.1);
+  geoprior::paper::Sheet sheet;
+  sheet.pattern = geoprior::paper::rectangle_pattern(0.2, 0.1);
   sheet.imperfection = 0;
   sheet.duration = sheet.frame_interval;
   geoprior::RunContext context;
   LastFrame sink;
-  geoprior::make_hybrid_sheet(sheet, {})->run(sink, context, std::nullopt);
+  geoprior::paper::make_hybrid_sheet(sheet, {})->run(sink, context, std::nullopt);
 
   // n steps of dt under g: v_k = k dt g, so x_n = g dt^2 n (n + 1) / 2.
   const int n = sheet.substeps;

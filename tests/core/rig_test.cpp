@@ -159,9 +159,8 @@ TEST(Procedural, FingerIsClosedAndCurlsTowardsThePalm) {
   EXPECT_GT(signed_volume(finger.mesh.V, finger.mesh.F), 0);
   std::vector<JointRotation> curl;
   for (int j = 1; j < 4; ++j)
-    curl.push_back(
-        {j, Eigen::Quaterniond(Eigen::AngleAxisd(
-                0.5, finger.skeleton.joints[static_cast<std::size_t>(j)].axes.at("flexion")))});
+    curl.push_back({j, Eigen::Quaterniond(
+                           Eigen::AngleAxisd(0.5, finger.skeleton.joints[j].axes.at("flexion")))});
   const Eigen::Vector3d tip =
       pose_from_rotations(finger.skeleton, curl)[3] * *finger.skeleton.joints[3].tail;
   EXPECT_LT(tip.z(), -0.02);

@@ -60,7 +60,7 @@ TEST(LoopSubdivision, ReproducesThePlane) {
   const Eigen::MatrixX3d V = step.stencil * mesh.V;
   const std::vector<bool> border = boundary_vertices(mesh.F, mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    if (border[static_cast<std::size_t>(v)]) continue;
+    if (border[v]) continue;
     EXPECT_LE((V.row(v) - mesh.V.row(v)).norm(), 1e-15) << v;
   }
   EXPECT_EQ(boundary_edges(step.F).size(), 48U);  // 24 border edges, halved
@@ -125,11 +125,11 @@ TEST(LoopSubdivision, RepeatedRefinementOfARegionMakesNoSlivers) {
   EXPECT_NO_THROW(require_closed_manifold(refined.rig.mesh, "test", ""));
 
   TriMesh mesh = rig.mesh;
-  std::vector<bool> halved(static_cast<std::size_t>(mesh.triangle_count()), false);
+  std::vector<bool> halved(mesh.triangle_count(), false);
   std::vector<double> angles;
   for (const Subdivision& step : refined.steps) {
     std::vector<int> children(halved.size(), 0);
-    for (const int parent : step.parent) ++children[static_cast<std::size_t>(parent)];
+    for (const int parent : step.parent) ++children[parent];
     std::vector<bool> next;
     for (const int parent : step.parent) {
       const auto p = static_cast<std::size_t>(parent);
@@ -153,13 +153,13 @@ TEST(LoopSubdivision, SplitMeshesFollowTheirWeldedOne) {
   TriMesh split = rig.mesh;
   std::vector<int> welded_of_split;
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) welded_of_split.push_back(v);
-  std::vector<int> copy(static_cast<std::size_t>(rig.mesh.vertex_count()), -1);
+  std::vector<int> copy(rig.mesh.vertex_count(), -1);
   for (Eigen::Index t = 0; t < split.F.rows(); ++t) {
     double y = 0;
     for (int k = 0; k < 3; ++k) y += rig.mesh.V(rig.mesh.F(t, k), 1);
     if (y < 0) continue;
     for (int k = 0; k < 3; ++k) {
-      int& c = copy[static_cast<std::size_t>(split.F(t, k))];
+      int& c = copy[split.F(t, k)];
       if (c < 0) {
         c = static_cast<int>(welded_of_split.size());
         welded_of_split.push_back(split.F(t, k));
@@ -169,7 +169,7 @@ TEST(LoopSubdivision, SplitMeshesFollowTheirWeldedOne) {
   }
   split.V.resize(static_cast<Eigen::Index>(welded_of_split.size()), 3);
   for (Eigen::Index v = 0; v < split.V.rows(); ++v)
-    split.V.row(v) = rig.mesh.V.row(welded_of_split[static_cast<std::size_t>(v)]);
+    split.V.row(v) = rig.mesh.V.row(welded_of_split[v]);
 
   const Subdivision step =
       loop_subdivision(rig.mesh.F, rig.mesh.vertex_count(), right_of(rig.mesh, 0.0));
@@ -187,8 +187,7 @@ TEST(LoopSubdivision, SplitMeshesFollowTheirWeldedOne) {
   EXPECT_GT(open.size(), boundary_edges(split.F).size());
   std::multiset<std::set<int>> seam;
   for (const Edge& e : open) {
-    seam.insert({followed.welded_of_split[static_cast<std::size_t>(e[0])],
-                 followed.welded_of_split[static_cast<std::size_t>(e[1])]});
+    seam.insert({followed.welded_of_split[e[0]], followed.welded_of_split[e[1]]});
   }
   for (const std::set<int>& edge : seam) EXPECT_EQ(seam.count(edge), 2U);
   split.F.row(0).reverseInPlace();

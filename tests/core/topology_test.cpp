@@ -87,10 +87,10 @@ TEST(Topology, RingOfABorderVertexStartsAndEndsOnTheBorder) {
   const VertexGraph rings = one_rings(mesh.F, mesh.vertex_count());
   const std::vector<bool> border = boundary_vertices(mesh.F, mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    if (!border[static_cast<std::size_t>(v)]) continue;
+    if (!border[v]) continue;
     const auto ring = rings.of(v);
-    EXPECT_TRUE(border[static_cast<std::size_t>(ring.front())]) << v;
-    EXPECT_TRUE(border[static_cast<std::size_t>(ring.back())]) << v;
+    EXPECT_TRUE(border[ring.front()]) << v;
+    EXPECT_TRUE(border[ring.back()]) << v;
     for (std::size_t i = 0; i + 1 < ring.size(); ++i) {
       const Eigen::RowVector3d a = mesh.V.row(ring[i]) - mesh.V.row(v);
       const Eigen::RowVector3d b = mesh.V.row(ring[i + 1]) - mesh.V.row(v);
@@ -115,7 +115,7 @@ TEST(Topology, WeldMergesSeamsAndKeepsTheOrder) {
   EXPECT_EQ(weld.mesh.vertex_count(), 6);
   EXPECT_NO_THROW(require_closed_manifold(weld.mesh, "test", ""));
   for (int v = 0; v < 24; ++v) {
-    const int w = weld.welded_of_split[static_cast<std::size_t>(v)];
+    const int w = weld.welded_of_split[v];
     EXPECT_EQ((weld.mesh.V.row(w) - split.V.row(v)).norm(), 0);
   }
   for (std::size_t w = 1; w < 6; ++w)

@@ -9,7 +9,7 @@
 #include "tests/details/baseline_runs.h"
 #include "tests/details/random_motion.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using namespace detail_scenes;
@@ -64,7 +64,7 @@ TEST_P(BaselineMotion, BareSurfaceStaysBare) {
   const double lowest = std::sin(std::asin(0.4) - 4 * edge) * std::sqrt(2.0);
   for (int i = 0; i < d.site_slots(); ++i)
     if (d.is_detail(i)) {
-      EXPECT_GT(d.position[static_cast<std::size_t>(i)].z(), lowest);
+      EXPECT_GT(d.position[i].z(), lowest);
     }
   EXPECT_LT(d.detail_count(), 2.4 * static_cast<double>(details.size()));
 }
@@ -80,4 +80,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "baselines/details/detail_process.h"
 #include "core/parallel.h"
 #include "metrics/detail_spacing.h"
+#include "models/details/detail_process.h"
 #include "tests/details/detail_scenes.h"
 
-namespace geoprior::detail_scenes {
+namespace geoprior::details::detail_scenes {
 
 /// Steps the method through the motion of the scene.
 inline void run_through(DetailMethod& method, const DetailScene& s) {
@@ -110,4 +110,4 @@ inline void expect_resumed_run_is_the_same(const std::function<std::unique_ptr<P
   }
 }
 
-}  // namespace geoprior::detail_scenes
+}  // namespace geoprior::details::detail_scenes

@@ -7,7 +7,7 @@
 #include "baselines/details/rest_density.h"
 #include "tests/details/baseline_runs.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using namespace detail_scenes;
@@ -39,9 +39,8 @@ TEST(DartThrowing, KeepsTheMinimumDistanceAndOldDetails) {
   const DetailMesh& d = method->details();
   EXPECT_GE(least_distance_of_newborn(d, density), 0.834 - 1e-9);
   for (int i = 0; i < 600; ++i) {
-    EXPECT_EQ(d.site[static_cast<std::size_t>(i)].birth, i);
-    EXPECT_EQ(d.site[static_cast<std::size_t>(i)].at.face,
-              s.details[static_cast<std::size_t>(i)].at.face);
+    EXPECT_EQ(d.site[i].birth, i);
+    EXPECT_EQ(d.site[i].at.face, s.details[i].at.face);
   }
   expect_sound(d);
 }
@@ -111,4 +110,4 @@ TEST(DartThrowing, SameForAnyThreadCountAndAfterAStop) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::details

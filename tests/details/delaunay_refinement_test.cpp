@@ -8,7 +8,7 @@
 #include "baselines/details/naive_stretch.h"
 #include "tests/details/baseline_runs.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using namespace detail_scenes;
@@ -18,8 +18,7 @@ Eigen::Vector3d place_of(const MeshPoint& p, const DetailMesh& d) {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   const auto corner = d.mesh.corners(p.triangle);
   for (std::size_t k = 0; k < 3; ++k)
-    x += p.barycentric[static_cast<Eigen::Index>(k)] *
-         d.position[static_cast<std::size_t>(corner[k])];
+    x += p.barycentric[static_cast<Eigen::Index>(k)] * d.position[corner[k]];
   return x;
 }
 
@@ -39,11 +38,11 @@ TEST(Circumcentre, IsTheCentreOfTheEmptyCircleInThePlane) {
     const Eigen::Vector3d x = place_of(*place, d);
     const double radius = circumradius(d.mesh, t);
     for (const int c : d.mesh.corners(t)) {
-      EXPECT_NEAR((d.position[static_cast<std::size_t>(c)] - x).norm(), radius, 1e-7 * radius);
+      EXPECT_NEAR((d.position[c] - x).norm(), radius, 1e-7 * radius);
     }
     double nearest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < d.site_slots(); ++i)
-      nearest = std::min(nearest, (d.position[static_cast<std::size_t>(i)] - x).norm());
+      nearest = std::min(nearest, (d.position[i] - x).norm());
     EXPECT_NEAR(nearest, radius, 1e-7 * radius);
   }
   EXPECT_GT(found, 500);
@@ -184,4 +183,4 @@ TEST(DelaunayRefinement, SameForAnyThreadCountAndAfterAStop) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -1,4 +1,4 @@
-#include "baselines/details/detail_mesh.h"
+#include "models/details/detail_mesh.h"
 
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -12,7 +12,7 @@
 #include "core/procedural.h"
 #include "tests/details/detail_scenes.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using namespace detail_scenes;
@@ -32,8 +32,8 @@ Edges edges_of(const DetailMesh& d) {
 Edges cgal_edges(const DetailMesh& d) {
   CGAL::Delaunay_triangulation_2<Kernel, Vertices> delaunay;
   for (int i = 0; i < d.site_slots(); ++i) {
-    if (d.kind[static_cast<std::size_t>(i)] == SiteKind::empty) continue;
-    const Eigen::Vector3d& p = d.position[static_cast<std::size_t>(i)];
+    if (d.kind[i] == SiteKind::empty) continue;
+    const Eigen::Vector3d& p = d.position[i];
     delaunay.insert({p.x(), p.y()})->info() = i;
   }
   Edges edges;
@@ -159,8 +159,8 @@ TEST(DetailMesh, VisibleTrianglesAreThoseOfTheVisibleDetails) {
     std::set<std::array<double, 4>> edges;
     for (const auto& t : triangles) {
       for (std::size_t k = 0; k < 3; ++k) {
-        Eigen::Vector3d p = d.position[static_cast<std::size_t>(t[k])];
-        Eigen::Vector3d q = d.position[static_cast<std::size_t>(t[(k + 1) % 3])];
+        Eigen::Vector3d p = d.position[t[k]];
+        Eigen::Vector3d q = d.position[t[(k + 1) % 3]];
         if (std::pair(q.x(), q.y()) < std::pair(p.x(), p.y())) std::swap(p, q);
         edges.insert({p.x(), p.y(), q.x(), q.y()});
       }
@@ -177,13 +177,11 @@ TEST(DetailMesh, SectionsMeasureAlongTheSurface) {
   measure_sections(d);
   for (int h = 0; h < 3 * d.mesh.triangle_slots(); ++h) {
     if (!d.mesh.triangle_alive(h / 3)) continue;
-    const double chord = (d.position[static_cast<std::size_t>(d.mesh.origin(h))] -
-                          d.position[static_cast<std::size_t>(d.mesh.tip(h))])
-                             .norm();
+    const double chord = (d.position[d.mesh.origin(h)] - d.position[d.mesh.tip(h)]).norm();
     // The facets of the sphere lie up to 2e-4 inside.
     EXPECT_NEAR(d.mesh.length(h), 2 * std::asin(chord / 2), 1e-3);
   }
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::details

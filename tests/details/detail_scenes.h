@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "baselines/details/detail_scene.h"
 #include "core/random.h"
+#include "models/details/detail_scene.h"
 #include "tests/core/shapes.h"
 
-namespace geoprior::detail_scenes {
+namespace geoprior::details::detail_scenes {
 
 /// A point of the surface, uniform by area. `sums` are partial sums of the areas of the faces.
 inline SurfacePoint uniform_point(const Eigen::VectorXd& sums, RandomStream& random) {
@@ -33,7 +33,7 @@ inline Eigen::VectorXd area_sums(const TriMesh& mesh) {
 inline std::vector<Detail> random_details(const TriMesh& mesh, int count, std::uint64_t seed) {
   RandomStream random(seed, "details");
   const Eigen::VectorXd sums = area_sums(mesh);
-  std::vector<Detail> details(static_cast<std::size_t>(count));
+  std::vector<Detail> details(count);
   for (Detail& d : details) d.at = uniform_point(sums, random);
   return details;
 }
@@ -111,4 +111,4 @@ inline DetailScene scene(const TriMesh& mesh, std::vector<Detail> details,
   return {mesh, std::move(details), std::move(motion), "scene"};
 }
 
-}  // namespace geoprior::detail_scenes
+}  // namespace geoprior::details::detail_scenes

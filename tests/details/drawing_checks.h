@@ -5,14 +5,14 @@
 #include <set>
 #include <vector>
 
-#include "baselines/details/surface_walk.h"
 #include "core/mesh.h"
 #include "core/topology.h"
+#include "models/details/surface_walk.h"
 
-namespace geoprior::drawing_checks {
+namespace geoprior::details::drawing_checks {
 
 inline std::vector<Eigen::Vector3d> points_of(const TriMesh& mesh) {
-  std::vector<Eigen::Vector3d> x(static_cast<std::size_t>(mesh.V.rows()));
+  std::vector<Eigen::Vector3d> x(mesh.V.rows());
   for (std::size_t v = 0; v < x.size(); ++v) x[v] = mesh.V.row(static_cast<Eigen::Index>(v));
   return x;
 }
@@ -32,8 +32,8 @@ inline int euler(const TriMesh& mesh) { return SurfaceTopology(mesh).euler; }
 
 /// Number of border loops: every border vertex of a manifold has one edge that leaves it.
 inline int border_loops(const TriMesh& mesh) {
-  std::vector<int> next(static_cast<std::size_t>(mesh.V.rows()), -1);
-  for (const Edge& e : boundary_edges(mesh.F)) next[static_cast<std::size_t>(e[0])] = e[1];
+  std::vector<int> next(mesh.V.rows(), -1);
+  for (const Edge& e : boundary_edges(mesh.F)) next[e[0]] = e[1];
   int loops = 0;
   for (std::size_t v = 0; v < next.size(); ++v) {
     if (next[v] < 0) continue;
@@ -43,4 +43,4 @@ inline int border_loops(const TriMesh& mesh) {
   return loops;
 }
 
-}  // namespace geoprior::drawing_checks
+}  // namespace geoprior::details::drawing_checks

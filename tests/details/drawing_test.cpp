@@ -5,16 +5,16 @@
 #include <numbers>
 #include <string>
 
-#include "baselines/details/detail_drawing.h"
-#include "baselines/details/detail_process.h"
-#include "baselines/details/surface_rays.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "models/details/detail_drawing.h"
+#include "models/details/detail_process.h"
+#include "models/details/surface_rays.h"
 #include "tests/core/shapes.h"
 #include "tests/details/detail_scenes.h"
 #include "tests/details/drawing_checks.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using namespace drawing_checks;
@@ -301,4 +301,4 @@ TEST(Drawing, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "baselines/details/cut_holes.h"
 #include "core/parallel.h"
+#include "models/details/cut_holes.h"
 #include "tests/core/shapes.h"
 #include "tests/details/detail_scenes.h"
 #include "tests/details/drawing_checks.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using namespace drawing_checks;
@@ -94,8 +94,7 @@ TEST(Holes, TakeTheAreaOfCapsFromASphere) {
     Eigen::Index nearest = 0;
     (sphere.V * axis).maxCoeff(&nearest);
     const int face = topology.faces_of(static_cast<int>(nearest))[0];
-    anchors[static_cast<std::size_t>(i)].at =
-        walk_to_nearest({face, {0.4, 0.3, 0.3}}, axis, topology, x);
+    anchors[i].at = walk_to_nearest({face, {0.4, 0.3, 0.3}}, axis, topology, x);
   }
   for (const double r : {0.1, 0.3, 0.6}) {
     const CutSurface after = cut(sphere, anchors, r);
@@ -116,8 +115,7 @@ TEST(Holes, BorderLiesAtTheRadius) {
     if (i < 0) continue;
     ++border;
     const Eigen::Vector3d p = after.drawn.mesh.V.row(static_cast<Eigen::Index>(v));
-    const Eigen::Vector3d centre =
-        position_of(anchors[static_cast<std::size_t>(i)].at, square.V, square.F);
+    const Eigen::Vector3d centre = position_of(anchors[i].at, square.V, square.F);
     // A border vertex keeps 1/1000 of its edge from a vertex; edges there are below the radius.
     EXPECT_NEAR((p - centre).norm(), 0.04, 1e-3 * 0.04);
   }
@@ -242,4 +240,4 @@ TEST(Holes, AreTheSameForAnyThreadCount) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::details

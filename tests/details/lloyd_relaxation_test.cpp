@@ -8,7 +8,7 @@
 #include "baselines/details/voronoi_cell.h"
 #include "tests/details/baseline_runs.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using namespace detail_scenes;
@@ -56,8 +56,7 @@ TEST(VoronoiCell, OfALatticeIsItsHexagon) {
   CellChart chart;
   int inside = 0;
   for (int i = 0; i < d.site_slots(); ++i) {
-    if (!d.is_detail(i) || box.to_border(d.position[static_cast<std::size_t>(i)]) < 1.6 * edge)
-      continue;
+    if (!d.is_detail(i) || box.to_border(d.position[i]) < 1.6 * edge) continue;
     ++inside;
     chart.lay_out(d, i);
     const VoronoiCell cell = chart.cell(d, std::vector<double>(spacing.size(), spacing[0]));
@@ -77,7 +76,7 @@ TEST(VoronoiCell, CentroidLeansToTheDenserSide) {
   const double edge = (box.right - box.left) / 9;
   CellChart chart;
   for (int i = 0; i < d.site_slots(); ++i) {
-    const Eigen::Vector3d& p = d.position[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d& p = d.position[i];
     if (!d.is_detail(i) || box.to_border(p) < 1.6 * edge) continue;
     std::vector<double> spacing;
     for (const Eigen::Vector3d& q : d.position)
@@ -88,8 +87,8 @@ TEST(VoronoiCell, CentroidLeansToTheDenserSide) {
     ASSERT_TRUE(place);
     Eigen::Vector3d there = Eigen::Vector3d::Zero();
     for (Eigen::Index k = 0; k < 3; ++k)
-      there += place->barycentric[k] * d.position[static_cast<std::size_t>(d.mesh.origin(
-                                           3 * place->triangle + static_cast<int>(k)))];
+      there += place->barycentric[k] *
+               d.position[d.mesh.origin(3 * place->triangle + static_cast<int>(k))];
     EXPECT_NEAR((there - p).norm(), centroid.norm(), 1e-9 * edge);
     EXPECT_GT(there.x() - p.x(), 0.1 * edge);
     EXPECT_NEAR(there.y(), p.y(), 1e-9 * edge);
@@ -144,7 +143,7 @@ TEST(LloydRelaxation, NoTriangleTurnsOver) {
     const DetailMesh& d = method->details();
     double area = 0;
     for (const auto& t : d.mesh.triangles()) {
-      const auto at = [&](std::size_t k) { return d.position[static_cast<std::size_t>(t[k])]; };
+      const auto at = [&](std::size_t k) { return d.position[t[k]]; };
       const double twice = (at(1) - at(0)).cross(at(2) - at(0)).z();
       EXPECT_GT(twice, -1e-12);
       area += twice / 2;
@@ -168,7 +167,7 @@ TEST(LloydRelaxation, KeepsDetailsAtTheBorder) {
   const double share = 1 - (1 - 2 * strip / width) * (1 - 2 * strip / height);
   int within = 0;
   for (int i = 0; i < d.site_slots(); ++i)
-    if (d.is_detail(i) && box.to_border(d.position[static_cast<std::size_t>(i)]) < strip) ++within;
+    if (d.is_detail(i) && box.to_border(d.position[i]) < strip) ++within;
   EXPECT_NEAR(within / (share * d.detail_count()), 1, 0.15);
 }
 
@@ -189,7 +188,7 @@ TEST(LloydRelaxation, KeepsAnUnevenDensity) {
       0.5 * (s.motion->positions(40).col(0).minCoeff() + s.motion->positions(40).col(0).maxCoeff());
   int left = 0;
   for (int i = 0; i < d.site_slots(); ++i)
-    if (d.is_detail(i) && d.position[static_cast<std::size_t>(i)].x() < now) ++left;
+    if (d.is_detail(i) && d.position[i].x() < now) ++left;
   EXPECT_NEAR(static_cast<double>(left) / d.detail_count(), 0.8, 0.03);
 }
 
@@ -241,4 +240,4 @@ TEST(LloydRelaxation, SameForAnyThreadCountAndAfterAStop) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::details

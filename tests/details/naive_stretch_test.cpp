@@ -1,10 +1,10 @@
 #include "baselines/details/naive_stretch.h"
 
-#include "baselines/details/point_grid.h"
 #include "baselines/details/rest_density.h"
+#include "models/details/point_grid.h"
 #include "tests/details/baseline_runs.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using namespace detail_scenes;
@@ -104,7 +104,7 @@ TEST(PointGrid, FindsWhatASearchOfAllPointsFinds) {
     int nearest = -1;
     for (std::size_t k = 0; k < points.size(); ++k) {
       const double r = (points[k] - p).norm();
-      if (r < radius && (nearest < 0 || r < (points[static_cast<std::size_t>(nearest)] - p).norm()))
+      if (r < radius && (nearest < 0 || r < (points[nearest] - p).norm()))
         nearest = static_cast<int>(k);
     }
     EXPECT_EQ(grid.nearest(p, Eigen::Vector3d::UnitZ(), radius), nearest);
@@ -115,4 +115,4 @@ TEST(PointGrid, FindsWhatASearchOfAllPointsFinds) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::details

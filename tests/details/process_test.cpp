@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
-#include "baselines/details/detail_process.h"
 #include "core/error.h"
-#include "solvers/details/replication.h"
+#include "models/details/detail_process.h"
+#include "solvers/details/self_replicating.h"
 #include "tests/details/detail_scenes.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using namespace detail_scenes;
@@ -34,7 +34,7 @@ TEST(DetailProcess, FramesHoldWhatMetricsRead) {
   const DetailScene s = stretched_square(20);
   Collector sink;
   RunContext context;
-  make_replication_process(s, {})->run(sink, context, {});
+  make_self_replicating_process(s, {})->run(sink, context, {});
   ASSERT_EQ(sink.frames.size(), 21u);
   for (const Frame& f : sink.frames) {
     const Part& details = f.parts.at("details");
@@ -60,12 +60,12 @@ TEST(DetailProcess, FramesHoldWhatMetricsRead) {
 TEST(DetailProcess, AResumedRunMakesTheSameFrames) {
   const DetailScene s = stretched_square(20);
   for (const bool histogram : {false, true}) {
-    ReplicationOptions options;
+    SelfReplicatingOptions options;
     options.histogram = histogram;
     Collector whole, rest;
     RunContext context;
-    make_replication_process(s, options)->run(whole, context, {});
-    make_replication_process(s, options)->run(rest, context, whole.states[9]);
+    make_self_replicating_process(s, options)->run(whole, context, {});
+    make_self_replicating_process(s, options)->run(rest, context, whole.states[9]);
     ASSERT_EQ(rest.frames.size(), 11u);
     for (std::size_t i = 0; i < rest.frames.size(); ++i) {
       const Frame &a = whole.frames[i + 10], &b = rest.frames[i];
@@ -88,7 +88,7 @@ TEST(DetailProcess, FramesBeforeABadOneStay) {
   Collector sink;
   RunContext context;
   try {
-    make_replication_process(s, {})->run(sink, context, {});
+    make_self_replicating_process(s, {})->run(sink, context, {});
     FAIL() << "no Error";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("scene, frame 3: triangle"), std::string::npos)
@@ -98,4 +98,4 @@ TEST(DetailProcess, FramesBeforeABadOneStay) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::details

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstdint>
 
-#include "baselines/details/detail_mesh.h"
 #include "core/mesh.h"
 #include "core/random.h"
+#include "models/details/detail_mesh.h"
 
-namespace geoprior::detail_scenes {
+namespace geoprior::details::detail_scenes {
 
 /// A surface that wanders: every frame a random axis is stretched or squeezed a little, with a
 /// falloff around a random point; a pull to the rest shape keeps it from wandering off.
@@ -47,8 +47,8 @@ inline void expect_invariants(const DetailMesh& d, int frame) {
   ASSERT_EQ(report.blocked, 0) << "frame " << frame;
   ASSERT_EQ(report.euler, d.surface->euler) << "frame " << frame;
   for (int i = 0; i < d.site_slots(); ++i) {
-    const Detail& site = d.site[static_cast<std::size_t>(i)];
-    ASSERT_EQ(d.mesh.vertex_alive(i), d.kind[static_cast<std::size_t>(i)] != SiteKind::empty);
+    const Detail& site = d.site[i];
+    ASSERT_EQ(d.mesh.vertex_alive(i), d.kind[i] != SiteKind::empty);
     if (!d.is_detail(i)) continue;
     ASSERT_GE(site.weight, 0);
     ASSERT_LE(site.weight, 1);
@@ -57,4 +57,4 @@ inline void expect_invariants(const DetailMesh& d, int frame) {
   }
 }
 
-}  // namespace geoprior::detail_scenes
+}  // namespace geoprior::details::detail_scenes

@@ -7,7 +7,7 @@
 #include "baselines/details/rest_density.h"
 #include "tests/details/baseline_runs.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using namespace detail_scenes;
@@ -109,4 +109,4 @@ TEST(Rescatter, SameForAnyThreadCountAndAfterAStop) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::details

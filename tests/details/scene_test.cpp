@@ -4,11 +4,11 @@
 #include <limits>
 #include <string>
 
-#include "baselines/details/detail_scene.h"
 #include "core/error.h"
+#include "models/details/detail_scene.h"
 #include "tests/details/detail_scenes.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using namespace detail_scenes;
@@ -101,8 +101,8 @@ TEST(DetailScene, AMotionStartsAtRest) {
 TEST(DetailScene, ASequenceWhoseTopologyChangesIsNamed) {
   std::vector<SurfaceFrame> frames(3);
   for (int i = 0; i < 3; ++i) {
-    frames[static_cast<std::size_t>(i)].time = i;
-    frames[static_cast<std::size_t>(i)].mesh = shapes::square(4);
+    frames[i].time = i;
+    frames[i].mesh = shapes::square(4);
   }
   EXPECT_EQ(motion_of_sequence(StoredSequence(frames, "clip"))->frame_count(), 3);
   frames[2].mesh.F.row(3).swap(frames[2].mesh.F.row(4));
@@ -126,4 +126,4 @@ TEST(DetailScene, ADeformationThatInvertsATriangleIsNamed) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::details

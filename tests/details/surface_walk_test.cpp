@@ -1,4 +1,4 @@
-#include "baselines/details/surface_walk.h"
+#include "models/details/surface_walk.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/details/detail_scenes.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using namespace detail_scenes;
@@ -70,4 +70,4 @@ TEST(SurfaceWalk, TangentAnglesAreInverse) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::details

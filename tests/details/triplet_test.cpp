@@ -3,21 +3,19 @@
 #include <algorithm>
 #include <set>
 
-#include "baselines/details/area_budget.h"
 #include "core/error.h"
+#include "models/details/area_budget.h"
 #include "solvers/details/local_chart.h"
 #include "solvers/details/pair_correlation.h"
 #include "solvers/details/triplet_table.h"
 #include "tests/details/detail_scenes.h"
 
-namespace geoprior {
+namespace geoprior::details {
 namespace {
 
 using namespace detail_scenes;
 
-Eigen::Vector3d at(const DetailMesh& d, int site) {
-  return d.position[static_cast<std::size_t>(site)];
-}
+Eigen::Vector3d at(const DetailMesh& d, int site) { return d.position[site]; }
 
 TEST(LocalChart, InThePlaneItIsAnIsometry) {
   const TriMesh mesh = shapes::square(12);
@@ -90,8 +88,7 @@ TEST(TripletTable, ATripletFindsItselfInAnyOrderOfItsCorners) {
       ASSERT_EQ(found.size(), 1u);
       EXPECT_LT(found[0].edge_difference, 1e-6);
       const auto& same = table.corners(found[0].triplet);
-      for (std::size_t k = 0; k < 3; ++k)
-        EXPECT_EQ(same[static_cast<std::size_t>(found[0].order[k])], corner[k]);
+      for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(same[found[0].order[k]], corner[k]);
       // Mirrored exactly when the corners of the query run clockwise in the plane.
       const Eigen::Vector3d u = at(d, corner[1]) - at(d, corner[0]);
       const Eigen::Vector3d v = at(d, corner[2]) - at(d, corner[0]);
@@ -137,4 +134,4 @@ TEST(PairCorrelation, OfAPoissonProcessIsOne) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::details

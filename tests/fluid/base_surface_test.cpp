@@ -6,7 +6,7 @@
 #include "tests/core/shapes.h"
 #include "tests/fluid/map_waves.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using waves::tank;
@@ -90,7 +90,7 @@ TEST(BaseSurface, UnfoldsWhatIsMuchLongerThanItsBed) {
   const auto upside_down = [&](const Eigen::MatrixX3d& V) {
     int count = 0;
     for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
-      if (inside[static_cast<std::size_t>(mesh.F(t, 0))] == 0) continue;
+      if (inside[mesh.F(t, 0)] == 0) continue;
       const Eigen::Vector3d a = V.row(mesh.F(t, 0)), b = V.row(mesh.F(t, 1)),
                             c = V.row(mesh.F(t, 2));
       count += (b - a).cross(c - a).z() <= 0 ? 1 : 0;
@@ -103,7 +103,7 @@ TEST(BaseSurface, UnfoldsWhatIsMuchLongerThanItsBed) {
 
 TEST(BaseSurface, RefusesARegionWithoutABed) {
   const TriMesh sphere = shapes::sphere(2);
-  const std::vector<char> all(static_cast<std::size_t>(sphere.vertex_count()), 1);
+  const std::vector<char> all(sphere.vertex_count(), 1);
   try {
     base_under(sphere, all);
     FAIL() << "a closed component has nothing that holds it";
@@ -115,7 +115,7 @@ TEST(BaseSurface, RefusesARegionWithoutABed) {
 
 TEST(BaseSurface, HoldsTheBorderOfAnOpenMesh) {
   TriMesh mesh = shapes::square(20);
-  std::vector<char> inside(static_cast<std::size_t>(mesh.vertex_count()), 0);
+  std::vector<char> inside(mesh.vertex_count(), 0);
   for (std::size_t v = 0; v < inside.size(); ++v) {
     inside[v] = mesh.V(static_cast<Eigen::Index>(v), 0) < 0.5 ? 1 : 0;
   }
@@ -124,4 +124,4 @@ TEST(BaseSurface, HoldsTheBorderOfAnOpenMesh) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

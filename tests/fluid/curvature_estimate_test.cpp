@@ -5,7 +5,7 @@
 #include "solvers/fluid/curvature.h"
 #include "tests/fluid/test_surfaces.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using Exact = std::function<double(const Eigen::Vector3d&)>;
@@ -184,4 +184,4 @@ TEST(MeanCurvature, IsTheSameForOneThreadAndTwo) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

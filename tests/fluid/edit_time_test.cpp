@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "solvers/fluid/edits.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
@@ -236,4 +236,4 @@ TEST(EditSelection, RefusesEditsWithoutMeaning) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

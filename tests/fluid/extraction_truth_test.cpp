@@ -2,21 +2,20 @@
 
 #include <algorithm>
 
-#include "baselines/fluid/injected_sequence.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/topology.h"
 #include "metrics/tracking_scores.h"
+#include "models/fluid/injected_sequence.h"
 #include "solvers/fluid/extraction.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 TrackedFrames truth_of(const InjectedSequence& sequence) {
   TrackedFrames frames(static_cast<std::size_t>(sequence.frame_count()));
   for (const InjectedTruth& t : sequence.truth()) {
-    frames[static_cast<std::size_t>(t.frame)].push_back(
-        {t.id, t.isolated ? 1 : 0, t.centre, t.box_min, t.box_max});
+    frames[t.frame].push_back({t.id, t.isolated ? 1 : 0, t.centre, t.box_min, t.box_max});
   }
   return frames;
 }
@@ -26,10 +25,9 @@ TrackedFrames found_in(const Extraction& extraction, int shortest) {
   for (const Track& track : extraction.tracking.tracks) {
     if (static_cast<int>(track.regions.size()) < shortest) continue;
     for (const int r : track.regions) {
-      const Region& region = extraction.regions[static_cast<std::size_t>(r)];
-      frames[static_cast<std::size_t>(region.frame)].push_back(
-          {track.id, region.kind == RegionKind::isolated ? 1 : 0, region.centre, region.box_min,
-           region.box_max});
+      const Region& region = extraction.regions[r];
+      frames[region.frame].push_back({track.id, region.kind == RegionKind::isolated ? 1 : 0,
+                                      region.centre, region.box_min, region.box_max});
     }
   }
   return frames;
@@ -98,7 +96,7 @@ TEST(Extraction, FindsWhatCausedTheWaves) {
     }
     for (const Track& track : extraction.tracking.tracks) {
       const int r = at_end ? track.regions.back() : track.regions.front();
-      const Region& region = extraction.regions[static_cast<std::size_t>(r)];
+      const Region& region = extraction.regions[r];
       if (region.frame == seen->frame && (region.centre - seen->centre).norm() < 0.06)
         return track.id;
     }
@@ -212,4 +210,4 @@ TEST(InjectedSequence, IsTheSameForASeedAndRefusesNonsense) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "baselines/fluid/advection.h"
-#include "baselines/fluid/extrapolation.h"
-#include "baselines/fluid/transfer.h"
-#include "baselines/fluid/volume_correction.h"
+#include "models/fluid/advection.h"
+#include "models/fluid/extrapolation.h"
+#include "models/fluid/transfer.h"
+#include "models/fluid/volume_correction.h"
 #include "tests/fluid/liquid_fixture.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using testing::grid_of;
@@ -21,7 +21,7 @@ constexpr double kPi = std::numbers::pi;
 template <class Field>
 void sample_field(const Field& field, MacGrid& grid) {
   for (int a = 0; a < 3; ++a) {
-    ScalarGrid& face = grid.face[static_cast<std::size_t>(a)];
+    ScalarGrid& face = grid.face[a];
     for (int k = 0; k < face.size.z(); ++k) {
       for (int j = 0; j < face.size.y(); ++j) {
         for (int i = 0; i < face.size.x(); ++i) {
@@ -58,7 +58,7 @@ TEST(LiquidAdvection, RungeKuttaIsOfThirdOrder) {
     particles.velocity = {Eigen::Vector3f::Zero()};
     const int steps = n == 0 ? 3 : 6;
     for (int s = 0; s < steps; ++s) advect(grid, kPi / 2 / steps, particles);
-    error[static_cast<std::size_t>(n)] =
+    error[n] =
         static_cast<double>((particles.position[0] - Eigen::Vector3f(0.5F, 0.9F, 0.01F)).norm());
   }
   EXPECT_NEAR(std::log2(error[0] / error[1]), 3, 0.2);
@@ -269,4 +269,4 @@ TEST(LiquidVolume, CrowdedLiquidIsToExpandSparseOnlyInside) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "baselines/fluid/transfer.h"
-#include "baselines/fluid/volume_correction.h"
+#include "models/fluid/transfer.h"
+#include "models/fluid/volume_correction.h"
 #include "tests/fluid/liquid_fixture.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using testing::at_rest;
@@ -119,7 +119,7 @@ TEST(LiquidMotion, PicIsFarMoreViscousThanFlipApicBetween) {
 double front(const Liquid& liquid) {
   const GridShape& shape = liquid.shape();
   const LiquidParticles& p = liquid.particles();
-  std::vector<int> count(static_cast<std::size_t>(shape.cells.x()), 0);
+  std::vector<int> count(shape.cells.x(), 0);
   for (const Eigen::Vector3f& x : p.position) {
     const auto i = static_cast<std::size_t>(static_cast<double>(x.x()) / shape.cell);
     ++count[std::min(i, count.size() - 1)];
@@ -246,4 +246,4 @@ TEST(LiquidMotion, APoolAtRestStaysNearlyAtRest) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

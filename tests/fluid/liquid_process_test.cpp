@@ -1,3 +1,5 @@
+#include "baselines/fluid/liquid_process.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -5,13 +7,13 @@
 #include <limits>
 #include <optional>
 
-#include "baselines/fluid/reseed.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/topology.h"
+#include "models/fluid/reseed.h"
 #include "tests/fluid/liquid_fixture.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using testing::at_rest;
@@ -67,7 +69,7 @@ TEST(LiquidStart, AFullCellHasItsParticlesOneInEachPart) {
   std::vector<int> count(512, 0);
   for (const Eigen::Vector3f& x : p.position) {
     const Eigen::Vector3i part = (x * 8).array().floor().cast<int>();
-    ++count[static_cast<std::size_t>(part.x() + 8 * (part.y() + 8 * part.z()))];
+    ++count[part.x() + 8 * (part.y() + 8 * part.z())];
   }
   EXPECT_EQ(std::count(count.begin(), count.end(), 1), 64);
 }
@@ -216,7 +218,7 @@ TEST(LiquidProcess, SameBytesWithOneAndTwoThreads) {
     with_threads(t + 1, [&] {
       Liquid liquid(busy_tank(), LiquidOptions{}, 7);
       run_until(liquid, 0.3, 0.04);
-      states[static_cast<std::size_t>(t)] = liquid.save();
+      states[t] = liquid.save();
     });
   }
   EXPECT_EQ(states[0], states[1]);
@@ -328,4 +330,4 @@ TEST(LiquidProcess, AMovingSolidPushesLiquid) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cstring>
 
-#include "baselines/fluid/mac_grid_sampler.h"
-#include "baselines/fluid/transfer.h"
 #include "core/parallel.h"
+#include "models/fluid/mac_grid_sampler.h"
+#include "models/fluid/transfer.h"
 #include "tests/fluid/liquid_fixture.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using testing::grid_of;
@@ -123,8 +123,7 @@ TEST(LiquidTransfer, ApicKeepsTheAngularMomentumOfASpinningBallPicDoesNot) {
                           (dz != 0 ? sz.fraction : 1 - sz.fraction);
           const Eigen::Vector3d at(sx.low + dx + (a == 0 ? 0 : 0.5),
                                    sy.low + dy + (a == 1 ? 0 : 0.5), 0);
-          const double u =
-              trip.grid.face[static_cast<std::size_t>(a)](sx.low + dx, sy.low + dy, sz.low + dz);
+          const double u = trip.grid.face[a](sx.low + dx, sy.low + dy, sz.low + dz);
           const double arm = a == 0 ? -(at.y() * kCell - centre.y()) : at.x() * kCell - centre.x();
           spin += static_cast<double>(w) * arm * u;
         }
@@ -229,4 +228,4 @@ TEST(LiquidTransfer, SameBytesWithOneAndTwoThreads) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

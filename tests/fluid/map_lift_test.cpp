@@ -10,9 +10,9 @@
 #include "solvers/fluid/paste.h"
 #include "tests/core/shapes.h"
 #include "tests/fluid/map_waves.h"
-#include "tests/fluid/sculpting_fixture.h"
+#include "tests/fluid/sculpt_fixture.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using namespace waves;
@@ -32,7 +32,7 @@ double round_trip(const Labelled& source, const MapOptions& options = {}) {
     const SurfaceFrame frame = source.sequence->frame(f), bed = source.bed(f, options);
     const SurfaceFrame pasted = paste(bed, {identity(feature)}, bed.time, kUp, {});
     require_closed_manifold(pasted.mesh, "round trip", "tank");
-    const auto& label = source.labels[static_cast<std::size_t>(f)].label;
+    const auto& label = source.labels[f].label;
     worst = std::max(worst, rms_over_region(pasted.mesh.V, frame.mesh.V, label));
   }
   return worst / source.extraction.cell;
@@ -217,7 +217,7 @@ TEST(MapLift, RefusesAFeatureThatCoversItsComponent) {
   SurfaceFrame frame;
   frame.mesh = shapes::sphere(2);
   FrameLabels labels;
-  labels.label.assign(static_cast<std::size_t>(frame.mesh.vertex_count()), 1);
+  labels.label.assign(frame.mesh.vertex_count(), 1);
   source.sequence = std::make_shared<StoredSequence>(std::vector<SurfaceFrame>{frame}, "ball");
   source.labels = {labels};
   Region region;
@@ -245,7 +245,7 @@ TEST(MapLift, DropsComeOutWhole) {
     frame.mesh = shapes::sphere(2);
     frame.mesh.V = (0.1 * frame.mesh.V).rowwise() + centre.transpose();
     FrameLabels labels;
-    labels.label.assign(static_cast<std::size_t>(frame.mesh.vertex_count()), 1);
+    labels.label.assign(frame.mesh.vertex_count(), 1);
     Region region;
     region.frame = f;
     region.label = 1;
@@ -274,7 +274,7 @@ TEST(MapLift, DropsComeOutWhole) {
 TEST(MapLift, CutsAWaveOutOfAFrameThatItsTrackMisses) {
   // The hill of frame 8, 0.14 m high, is cut out with its region and, its region forgotten, with
   // those of frames 7 and 9, which are 0.01 m lower and higher: the same bed but for their rims.
-  const auto sequence = sculpting::splash();
+  const auto sequence = sculpt_fixture::splash();
   RunContext context;
   const ExtractionOptions options;
   Extraction extraction = extract_regions(*sequence, options, context);
@@ -284,9 +284,7 @@ TEST(MapLift, CutsAWaveOutOfAFrameThatItsTrackMisses) {
   ASSERT_NE(hill, extraction.tracking.tracks.end());
   const SurfaceFrame frame = sequence->frame(8);
   const TriMesh known = without_feature(frame, 8, extraction, options, {hill->id}).mesh;
-  ASSERT_EQ(std::erase_if(
-                hill->regions,
-                [&](int r) { return extraction.regions[static_cast<std::size_t>(r)].frame == 8; }),
+  ASSERT_EQ(std::erase_if(hill->regions, [&](int r) { return extraction.regions[r].frame == 8; }),
             1U);
   const TriMesh missed = without_feature(frame, 8, extraction, options, {hill->id}).mesh;
   EXPECT_GT((frame.mesh.V - known.V).rowwise().norm().maxCoeff(), 0.1);
@@ -297,4 +295,4 @@ TEST(MapLift, CutsAWaveOutOfAFrameThatItsTrackMisses) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

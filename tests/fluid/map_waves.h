@@ -10,7 +10,7 @@
 #include "solvers/fluid/lift.h"
 #include "solvers/fluid/paste.h"
 
-namespace geoprior::waves {
+namespace geoprior::fluid::waves {
 
 /// Closed box: a top of n x n cells over [0, size]^2 at z = 0, a floor at z = -depth, sides between
 /// them. Top vertices come first, x fastest, interior ones moved in the plane by up to `jitter`
@@ -88,16 +88,14 @@ struct Labelled {
   Extraction extraction;
 
   [[nodiscard]] Labeller labeller() const {
-    return
-        [this](const SurfaceFrame&, int frame) { return labels[static_cast<std::size_t>(frame)]; };
+    return [this](const SurfaceFrame&, int frame) { return labels[frame]; };
   }
   [[nodiscard]] Feature lift(const MapOptions& options = {}) const {
     RunContext context;
     return lift_tracks(*sequence, extraction, labeller(), options, {1}, context).front();
   }
   [[nodiscard]] SurfaceFrame bed(int frame, const MapOptions& options = {}) const {
-    return without_regions(sequence->frame(frame), labels[static_cast<std::size_t>(frame)],
-                           {extraction.regions[static_cast<std::size_t>(frame)]},
+    return without_regions(sequence->frame(frame), labels[frame], {extraction.regions[frame]},
                            options.border * extraction.cell);
   }
 };
@@ -113,12 +111,12 @@ inline Labelled labelled(const TriMesh& rest, int movable, const Wave& wave, int
     frame.time = f * dt;
     frame.mesh = rest;
     FrameLabels labels;
-    labels.label.assign(static_cast<std::size_t>(rest.vertex_count()), 0);
+    labels.label.assign(rest.vertex_count(), 0);
     labels.masked.assign(labels.label.size(), 0);
     for (int v = 0; v < movable; ++v) {
       const double x = rest.V(v, 0), y = rest.V(v, 1);
       frame.mesh.V.row(v) += wave.displacement(x, y, frame.time).transpose();
-      labels.label[static_cast<std::size_t>(v)] = wave.inside(x, y, frame.time) ? 1 : 0;
+      labels.label[v] = wave.inside(x, y, frame.time) ? 1 : 0;
     }
     for (Eigen::Index v = 0; v < frame.mesh.V.rows(); ++v) {
       frame.mesh.V.row(v) = (placed * frame.mesh.V.row(v).transpose()).transpose();
@@ -163,4 +161,4 @@ inline Insertion identity(const Feature& feature) {
   return insertion;
 }
 
-}  // namespace geoprior::waves
+}  // namespace geoprior::fluid::waves

@@ -6,16 +6,15 @@
 #include "solvers/fluid/regions.h"
 #include "tests/fluid/test_surfaces.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 TriMesh flat(int n) {
   return surfaces::graph(1, n, 0.25, [](double, double) { return 0.0; });
 }
 std::vector<char> disc(const TriMesh& mesh, double radius) {
-  std::vector<char> set(static_cast<std::size_t>(mesh.vertex_count()));
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    set[static_cast<std::size_t>(v)] = mesh.V.row(v).norm() < radius;
+  std::vector<char> set(mesh.vertex_count());
+  for (int v = 0; v < mesh.vertex_count(); ++v) set[v] = mesh.V.row(v).norm() < radius;
   return set;
 }
 double area_of(const TriMesh& mesh, const std::vector<char>& set) {
@@ -53,7 +52,7 @@ TEST(Morphology, ErosionIsTheDilationOfTheComplement) {
 TEST(Morphology, OpeningShrinksAndClosingGrowsAndBothAreIdempotent) {
   const TriMesh mesh = flat(50);
   RandomStream random(3, "blobs");
-  std::vector<char> set(static_cast<std::size_t>(mesh.vertex_count()));
+  std::vector<char> set(mesh.vertex_count());
   for (char& c : set) c = random.uniform() < 0.3;
   const auto open = [&](const auto& s) { return dilate(mesh, erode(mesh, s, 0.05), 0.05); };
   const auto close = [&](const auto& s) { return erode(mesh, dilate(mesh, s, 0.05), 0.05); };
@@ -70,7 +69,7 @@ TEST(Morphology, OpeningShrinksAndClosingGrowsAndBothAreIdempotent) {
 
 TEST(Morphology, TheBorderOfTheMeshDoesNotErode) {
   const TriMesh mesh = flat(30);
-  const std::vector<char> all(static_cast<std::size_t>(mesh.vertex_count()), 1);
+  const std::vector<char> all(mesh.vertex_count(), 1);
   EXPECT_EQ(erode(mesh, all, 0.5), all);
 }
 
@@ -117,4 +116,4 @@ TEST(Morphology, FillsHolesUpToAnAreaAndNoBays) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -7,7 +7,7 @@
 #include "baselines/fluid/ocean.h"
 #include "tests/fluid/ocean_modes.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -189,4 +189,4 @@ TEST(OceanSpectrum, SmallWavesAreDampedByOneOverE) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -14,7 +14,7 @@
 #include "core/parallel.h"
 #include "tests/fluid/ocean_modes.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using Complex = std::complex<double>;
@@ -273,4 +273,4 @@ TEST(Ocean, RefusesWhatIsNoSea) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

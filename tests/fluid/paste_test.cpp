@@ -12,7 +12,7 @@
 #include "tests/core/shapes.h"
 #include "tests/fluid/map_waves.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using namespace waves;
@@ -331,12 +331,11 @@ TEST(ExponentialMap, UnrollsACylinder) {
   axes.col(0) = Eigen::Vector3d::UnitY();
   axes.col(1) = Eigen::Vector3d::UnitZ();
   axes.col(2) = Eigen::Vector3d::UnitX();
-  const Eigen::Vector3d anchor =
-      x[static_cast<std::size_t>(triangles[static_cast<std::size_t>(triangle)][0])];
+  const Eigen::Vector3d anchor = x[triangles[triangle][0]];
   const ExponentialMap map = exponential_map(x, triangles, triangle, anchor, axes, 1.2);
   double largest = 0;
   for (std::size_t i = 0; i < map.vertices.size(); ++i) {
-    const Eigen::Vector3d& p = x[static_cast<std::size_t>(map.vertices[i])];
+    const Eigen::Vector3d& p = x[map.vertices[i]];
     const Eigen::Vector2d truth(std::atan2(p.y(), p.x()), p.z());
     if (truth.norm() > 1) continue;
     largest = std::max(largest, (map.uv[i] - truth).norm());
@@ -414,4 +413,4 @@ TEST(Paste, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -8,7 +8,7 @@
 #include "metrics/optimal_assignment.h"
 #include "solvers/fluid/tracking.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 double cost_of(const std::vector<int>& successor, const std::vector<PathLink>& links,
@@ -54,7 +54,7 @@ void expect_disjoint(const std::vector<int>& successor) {
   for (std::size_t i = 0; i < successor.size(); ++i) {
     if (successor[i] < 0) continue;
     EXPECT_GT(successor[i], static_cast<int>(i));
-    char& e = entered[static_cast<std::size_t>(successor[i])];
+    char& e = entered[successor[i]];
     EXPECT_EQ(e, 0);
     e = 1;
   }
@@ -91,7 +91,7 @@ TEST(PathCover, FallsIntoAssignmentsWhenLinksSpanOneFrame) {
       }
     }
     const std::vector<int> column = optimal_assignment(gain);
-    for (int i = 0; i < kPerFrame; ++i) assigned -= gain(i, column[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < kPerFrame; ++i) assigned -= gain(i, column[i]);
   }
   const std::vector<int> successor = cover_by_paths(kFrames * kPerFrame, links, 10);
   expect_disjoint(successor);
@@ -129,7 +129,7 @@ TEST(PathCover, TenThousandNodesInOnePart) {
     for (int g = 1; g <= 3 && i + g < kNodes; ++g) links.push_back({i, i + g, 1.0 + g});
   }
   const std::vector<int> successor = cover_by_paths(kNodes, links, 10);
-  for (int i = 0; i + 1 < kNodes; ++i) ASSERT_EQ(successor[static_cast<std::size_t>(i)], i + 1);
+  for (int i = 0; i + 1 < kNodes; ++i) ASSERT_EQ(successor[i], i + 1);
 }
 
 TEST(PathCover, RefusesLinksBackInTime) {
@@ -138,4 +138,4 @@ TEST(PathCover, RefusesLinksBackInTime) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -5,10 +5,10 @@
 #include <functional>
 #include <vector>
 
-#include "baselines/fluid/pressure.h"
-#include "baselines/fluid/solid_fractions.h"
+#include "models/fluid/pressure.h"
+#include "models/fluid/solid_fractions.h"
 
-namespace geoprior::pressure_test {
+namespace geoprior::fluid::pressure_test {
 
 inline GridShape shape_of(const Tank& tank) { return {tank.cells, tank.origin, tank.cell}; }
 
@@ -55,8 +55,7 @@ inline double largest_speed(const MacGrid& velocity,
 /// Adds an acceleration to all faces for dt.
 inline void push(MacGrid& velocity, const Eigen::Vector3d& acceleration, double dt) {
   for (int a = 0; a < 3; ++a)
-    for (float& u : velocity.face[static_cast<std::size_t>(a)].values)
-      u += static_cast<float>(dt * acceleration[a]);
+    for (float& u : velocity.face[a].values) u += static_cast<float>(dt * acceleration[a]);
 }
 
-}  // namespace geoprior::pressure_test
+}  // namespace geoprior::fluid::pressure_test

@@ -2,7 +2,7 @@
 
 #include "tests/fluid/pressure_fixture.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using namespace pressure_test;
@@ -164,4 +164,4 @@ TEST(PressureSolids, OnlyFacesBesideLiquidChange) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -6,7 +6,7 @@
 #include "core/random.h"
 #include "tests/fluid/pressure_fixture.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using namespace pressure_test;
@@ -132,8 +132,7 @@ TEST_P(PressureSolverOf, AgreesWithEigenOnAnAssembledSystem) {
   EXPECT_LE(report.residual, 1e-10);
   double largest = 0;
   for (Eigen::Index c = 0; c < expected.size(); ++c)
-    largest = std::max(
-        largest, std::abs(expected[c] - solver.pressure().values[static_cast<std::size_t>(c)]));
+    largest = std::max(largest, std::abs(expected[c] - solver.pressure().values[c]));
   // Coefficients and the pressure handed out are single precision: 6e-8 times a condition of 1e1.
   EXPECT_LE(largest, 2e-6 * expected.lpNorm<Eigen::Infinity>());
 }
@@ -170,7 +169,7 @@ TEST_P(PressureSolverOf, GivesTheSameBitsForAnyNumberOfThreads) {
       solver.project(pool.solids, pool.distance, nullptr, 0.01, 1000, options, pool.velocity,
                      valid);
     });
-    results[static_cast<std::size_t>(threads - 1)] = pool.velocity.face[2].values;
+    results[threads - 1] = pool.velocity.face[2].values;
   }
   EXPECT_EQ(results[0], results[1]);
 }
@@ -221,4 +220,4 @@ TEST(PressureSolver, ReachesTheDivergenceAskedFor) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "tests/fluid/pressure_fixture.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using namespace pressure_test;
@@ -202,4 +202,4 @@ TEST(PressureSurface, RefusesATimeStepOfZero) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -4,16 +4,16 @@
 #include <numbers>
 #include <string>
 
-#include "baselines/fluid/injected_sequence.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/topology.h"
+#include "models/fluid/injected_sequence.h"
 #include "solvers/fluid/regions.h"
 #include "solvers/fluid/segmentation_thresholds.h"
 #include "solvers/fluid/surface_components.h"
 #include "tests/fluid/test_surfaces.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using surfaces::append;
@@ -65,8 +65,7 @@ TEST(Segmentation, LabelsFollowTheRegions) {
   const SegmentedFrame frame = segmented(mesh, given(0.12, 0.04));
   std::vector<double> area(frame.regions.size() + 1, 0.0);
   const std::vector<double> of_vertex = surface_shape(surface_graph(mesh), {}).area;
-  for (std::size_t v = 0; v < frame.label.size(); ++v)
-    area.at(static_cast<std::size_t>(frame.label[v])) += of_vertex[v];
+  for (std::size_t v = 0; v < frame.label.size(); ++v) area.at(frame.label[v]) += of_vertex[v];
   for (std::size_t r = 0; r < frame.regions.size(); ++r) {
     EXPECT_EQ(frame.regions[r].label, static_cast<int>(r) + 1);
     EXPECT_NEAR(area[r + 1], frame.regions[r].area, 1e-12);
@@ -233,4 +232,4 @@ TEST(Segmentation, IsTheSameForOneThreadAndTwo) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -1,4 +1,4 @@
-#include "baselines/fluid/solid_fractions.h"
+#include "models/fluid/solid_fractions.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 GridShape shape_of(const Tank& tank) { return {tank.cells, tank.origin, tank.cell}; }
@@ -118,7 +118,7 @@ TEST(SolidFractions, WallsAreClosedAndAnOpenTopIsOpen) {
       Eigen::Vector3i low(2, 3, 4), high(2, 3, 4);
       low[a] = 0;
       high[a] = 6;
-      const ScalarGrid& open = solids.open[static_cast<std::size_t>(a)];
+      const ScalarGrid& open = solids.open[a];
       EXPECT_EQ(open(low.x(), low.y(), low.z()), 0);
       EXPECT_EQ(open(high.x(), high.y(), high.z()), open_top && a == 2 ? 1 : 0);
       EXPECT_EQ(open(3, 3, 3), 1);
@@ -200,7 +200,7 @@ TEST(SolidSampler, IsTheSameForAnyNumberOfThreads) {
   tank.solids = {ball({0.5, 0.3, 0.3}, 0.2), ball({0.4, 0.6, 0.3}, 0.25)};
   std::array<SolidFractions, 2> results;
   for (const int threads : {1, 2})
-    with_threads(threads, [&] { results[static_cast<std::size_t>(threads - 1)] = sampled(tank); });
+    with_threads(threads, [&] { results[threads - 1] = sampled(tank); });
   EXPECT_EQ(results[0].open[1].values, results[1].open[1].values);
   EXPECT_EQ(results[0].distance.values, results[1].distance.values);
 }
@@ -234,4 +234,4 @@ TEST(SolidFractions, LiquidReachesIntoCutCells) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

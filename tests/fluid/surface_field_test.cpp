@@ -5,14 +5,15 @@
 #include <functional>
 #include <numbers>
 
-#include "baselines/fluid/liquid_surface.h"
-#include "baselines/fluid/solid_fractions.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/topology.h"
+#include "models/fluid/isosurface.h"
+#include "models/fluid/liquid_surface.h"
+#include "models/fluid/solid_fractions.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 using Inside = std::function<bool(const Eigen::Vector3d&)>;
@@ -124,7 +125,7 @@ TEST_P(SurfaceFieldOf, IsTheSameForAnyNumberOfThreads) {
   for (const int threads : {1, 2})
     with_threads(threads, [&] {
       GridShape grid;
-      fields[static_cast<std::size_t>(threads - 1)] =
+      fields[threads - 1] =
           liquid_field(shape, particles, {.kernel = GetParam().kernel}, grid).values;
     });
   EXPECT_EQ(fields[0], fields[1]);
@@ -282,4 +283,4 @@ TEST(SurfaceField, RefusesUnsortedParticles) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

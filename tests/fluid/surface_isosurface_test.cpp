@@ -8,27 +8,28 @@
 #include <numbers>
 #include <set>
 
-#include "baselines/fluid/isosurface_table.h"
-#include "baselines/fluid/liquid_surface.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/topology.h"
+#include "models/fluid/isosurface.h"
+#include "models/fluid/isosurface_table.h"
+#include "models/fluid/liquid_surface.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 /// The exact statement "closed, oriented 2-manifold": every directed edge once and with its
 /// opposite, and the triangles around each vertex form a single fan.
 testing::AssertionResult is_closed_manifold(const TriMesh& mesh) {
   std::set<std::array<int, 2>> directed;
-  std::vector<std::map<int, int>> link(static_cast<std::size_t>(mesh.vertex_count()));
+  std::vector<std::map<int, int>> link(mesh.vertex_count());
   for (int t = 0; t < mesh.triangle_count(); ++t)
     for (int c = 0; c < 3; ++c) {
       const int a = mesh.F(t, c), b = mesh.F(t, (c + 1) % 3), d = mesh.F(t, (c + 2) % 3);
       if (a == b) return testing::AssertionFailure() << "triangle " << t << " repeats a vertex";
       if (!directed.insert({a, b}).second)
         return testing::AssertionFailure() << "edge " << a << " -> " << b << " twice";
-      link[static_cast<std::size_t>(a)][b] = d;
+      link[a][b] = d;
     }
   for (const auto& [a, b] : directed)
     if (!directed.contains({b, a}))
@@ -159,12 +160,10 @@ TEST(SurfaceIsosurface, IsTheSameForAnyNumberOfThreads) {
   });
   std::array<TriMesh, 2> meshes;
   for (const int threads : {1, 2})
-    with_threads(threads, [&] {
-      meshes[static_cast<std::size_t>(threads - 1)] = isosurface(grid, {0, 0, 0}, 0.1);
-    });
+    with_threads(threads, [&] { meshes[threads - 1] = isosurface(grid, {0, 0, 0}, 0.1); });
   EXPECT_EQ(meshes[0].V, meshes[1].V);
   EXPECT_EQ(meshes[0].F, meshes[1].F);
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

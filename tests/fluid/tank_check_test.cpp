@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "baselines/fluid/tank.h"
 #include "core/error.h"
+#include "models/fluid/tank.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr double kPlenty = 1e11;
@@ -214,4 +214,4 @@ TEST(TankCheck, FramesAreMultiplesOfTheInterval) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "baselines/fluid/tank.h"
 #include "core/error.h"
 #include "core/random.h"
+#include "models/fluid/tank.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 /// A box of 12 triangles, or the same with its winding turned.
@@ -156,4 +156,4 @@ TEST(TankShapes, APlacedBodyMovesAndTurnsAboutItsCentre) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

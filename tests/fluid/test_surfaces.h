@@ -5,11 +5,11 @@
 #include <functional>
 #include <numbers>
 
-#include "baselines/fluid/injected_contour.h"
 #include "core/random.h"
 #include "core/surface_sequence.h"
+#include "models/fluid/injected_contour.h"
 
-namespace geoprior::surfaces {
+namespace geoprior::fluid::surfaces {
 
 /// Graph z = f(x, y) over [-a, a]^2 in n x n squares, inner vertices moved at random by up to
 /// `jitter` of the spacing, diagonals at random.
@@ -94,4 +94,4 @@ inline StoredSequence still(const TriMesh& mesh) {
   return StoredSequence({SurfaceFrame{0, mesh, {}, {}}}, "still");
 }
 
-}  // namespace geoprior::surfaces
+}  // namespace geoprior::fluid::surfaces

@@ -9,7 +9,7 @@
 #include "solvers/fluid/track_events.h"
 #include "solvers/fluid/tracking.h"
 
-namespace geoprior {
+namespace geoprior::fluid {
 namespace {
 
 constexpr double kCell = 0.02, kStep = 1.0 / 30;
@@ -137,10 +137,9 @@ TEST(Tracking, EveryRegionIsInOneTrackAndIdsFollowTheirBeginnings) {
       EXPECT_GE(track.regions.front(), last_begin);
       last_begin = track.regions.front();
       for (std::size_t k = 0; k < track.regions.size(); ++k) {
-        ++seen[static_cast<std::size_t>(track.regions[k])];
+        ++seen[track.regions[k]];
         if (k > 0) {
-          EXPECT_GT(regions[static_cast<std::size_t>(track.regions[k])].frame,
-                    regions[static_cast<std::size_t>(track.regions[k - 1])].frame);
+          EXPECT_GT(regions[track.regions[k]].frame, regions[track.regions[k - 1]].frame);
         }
       }
     }
@@ -223,4 +222,4 @@ TEST(Tracking, NothingGivesNothingAndDisorderIsAnError) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::fluid

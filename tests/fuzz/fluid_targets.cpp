@@ -1,10 +1,12 @@
 #include "experiments/fluid/edit_list.h"
-#include "experiments/fluid/sequence_files_pvd.h"
-#include "experiments/fluid/sequence_files_sidecar.h"
+#include "testbed/formats/sequence_files_pvd.h"
+#include "testbed/formats/sequence_files_sidecar.h"
 #include "tests/fuzz/allow_error.h"
 #include "tests/fuzz/targets.h"
 
 namespace geoprior::test {
+
+using namespace fluid;
 
 void fuzz_pvd(const std::uint8_t* data, std::size_t size) {
   allow_error([&] { parse_pvd(text_of(data, size), "fuzz.pvd"); });

@@ -1,5 +1,5 @@
-#include "experiments/fluid/mesh_sequence_repair.h"
-#include "experiments/formats/mesh_file.h"
+#include "testbed/formats/mesh_file.h"
+#include "testbed/formats/mesh_sequence_repair.h"
 #include "tests/fuzz/allow_error.h"
 #include "tests/fuzz/targets.h"
 

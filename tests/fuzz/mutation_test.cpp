@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "experiments/formats/atomic_file.h"
+#include "testbed/formats/atomic_file.h"
 #include "tests/fuzz/targets.h"
 
 // Seeded mutations of the files in tests/fuzz/corpus: every reader either accepts what it is given

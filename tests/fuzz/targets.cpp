@@ -4,13 +4,15 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/formats/gltf_reader.h"
-#include "experiments/runner/toml_tree.h"
 #include "experiments/skinning/bvh.h"
 #include "experiments/skinning/skeleton_file.h"
+#include "testbed/formats/gltf_reader.h"
+#include "testbed/runner/toml_tree.h"
 #include "tests/fuzz/allow_error.h"
 
 namespace geoprior::test {
+
+using namespace skinning;
 
 void fuzz_gltf(const std::uint8_t* data, std::size_t size) {
   std::vector<std::byte> bytes(size);

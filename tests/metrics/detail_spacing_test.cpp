@@ -79,7 +79,7 @@ TEST(DetailSpacing, LeavesOutEdgesWithAGhostInATriangle) {
   const int n = 8;
   Pattern p = lattice(n, 0.5, kRise, true);
   for (int v = 0; v < n * n; ++v) {
-    if (p.ghosts[static_cast<std::size_t>(v)] != 0) p.x.row(v) *= 7;
+    if (p.ghosts[v] != 0) p.x.row(v) *= 7;
   }
   const DetailSpacing s = detail_spacing(p.x, p.triangles, p.ghosts);
   const int inner = n - 2;

@@ -22,7 +22,7 @@ TriMesh star(const std::vector<Eigen::Vector3d>& neighbours) {
   m.V = Eigen::MatrixX3d::Zero(n + 1, 3);
   m.F.resize(n, 3);
   for (int i = 0; i < n; ++i) {
-    m.V.row(i + 1) = neighbours[static_cast<std::size_t>(i)].transpose();
+    m.V.row(i + 1) = neighbours[i].transpose();
     m.F.row(i) << 0, i + 1, (i + 1) % n + 1;
   }
   return m;

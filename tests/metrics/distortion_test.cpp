@@ -11,7 +11,7 @@ namespace geoprior {
 namespace {
 
 std::vector<int> all_of(const TriMesh& m) {
-  std::vector<int> triangles(static_cast<std::size_t>(m.triangle_count()));
+  std::vector<int> triangles(m.triangle_count());
   std::iota(triangles.begin(), triangles.end(), 0);
   return triangles;
 }

@@ -13,8 +13,7 @@ inline Eigen::MatrixX3d linear_blend(const RiggedMesh& rig, const Pose& pose) {
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (SkinWeights::InnerIterator it(rig.weights, v); it; ++it) {
-      sum +=
-          it.value() * (pose[static_cast<std::size_t>(it.col())] * rig.mesh.V.row(v).transpose());
+      sum += it.value() * (pose[it.col()] * rig.mesh.V.row(v).transpose());
     }
     posed.row(v) = sum.transpose();
   }

@@ -260,7 +260,7 @@ TEST(PairCurve, OfAPatternOnAPartIsMeasuredInThatPart) {
   for (int f = 0; f < mesh.triangle_count(); ++f) region.push_back((f / 2) % 30 < 15 ? 1 : 0);
   Places places;
   for (const SurfacePlace& p : sampled::uniform(mesh, 2000, 9)) {
-    if (region[static_cast<std::size_t>(p.face)] != 0) places.push_back(p);
+    if (region[p.face] != 0) places.push_back(p);
   }
   const PairCurve part = pair_curve(mesh, places, 1, {}, {{}, region});
   EXPECT_LT(((part.g.array() - 1).abs() / part.error.array()).maxCoeff(), 4);

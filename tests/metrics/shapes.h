@@ -36,8 +36,7 @@ inline TriMesh sphere(double radius, const Eigen::Vector3d& centre, int levels) 
     std::map<std::pair<int, int>, int> middle;
     const auto mid = [&](int a, int b) {
       const auto [it, is_new] = middle.emplace(std::minmax(a, b), static_cast<int>(p.size()));
-      if (is_new)
-        p.push_back((p[static_cast<std::size_t>(a)] + p[static_cast<std::size_t>(b)]).normalized());
+      if (is_new) p.push_back((p[a] + p[b]).normalized());
       return it->second;
     };
     std::vector<Eigen::Vector3i> finer;

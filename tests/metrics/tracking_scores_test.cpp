@@ -25,13 +25,13 @@ TEST(OptimalAssignment, IsTheBestOfAllPermutations) {
               columns = 1 + static_cast<int>(random.below(5));
     Eigen::MatrixXd value(rows, columns);
     for (Eigen::Index i = 0; i < value.size(); ++i) value(i) = 10 * random.uniform() - 3;
-    std::vector<int> order(static_cast<std::size_t>(std::max(rows, columns)));
+    std::vector<int> order(std::max(rows, columns));
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
     double best = -1e30;
     do {
       double sum = 0;
       for (int i = 0; i < rows; ++i) {
-        const int j = order[static_cast<std::size_t>(i)];
+        const int j = order[i];
         if (j < columns) sum += value(i, j);
       }
       best = std::max(best, sum);
@@ -40,8 +40,8 @@ TEST(OptimalAssignment, IsTheBestOfAllPermutations) {
     double sum = 0;
     int assigned = 0;
     for (int i = 0; i < rows; ++i) {
-      if (column[static_cast<std::size_t>(i)] < 0) continue;
-      sum += value(i, column[static_cast<std::size_t>(i)]);
+      if (column[i] < 0) continue;
+      sum += value(i, column[i]);
       ++assigned;
     }
     EXPECT_EQ(assigned, std::min(rows, columns));

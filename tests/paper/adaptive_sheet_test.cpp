@@ -8,12 +8,13 @@
 #include "baselines/paper/dense.h"
 #include "baselines/paper/pop_filter.h"
 #include "baselines/paper/remesh.h"
-#include "baselines/paper/transfer.h"
 #include "core/error.h"
+#include "models/paper/pattern_locator.h"
+#include "models/paper/transfer.h"
 #include "tests/paper/plane_shapes.h"
 #include "tests/paper/sheets.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 class Recording final : public FrameSink {
@@ -146,7 +147,7 @@ double pop(const Sheet& sheet, const ShellState& before, const ShellState& after
   double sum = 0;
   int count = 0;
   for (int v = 0; v < after.mesh.vertex_count(); ++v) {
-    if (!changed[static_cast<std::size_t>(v)]) continue;
+    if (!changed[v]) continue;
     const PatternLocator::Place place = locator.locate(after.mesh.pattern.row(v));
     Eigen::RowVector3d was = Eigen::RowVector3d::Zero();
     for (int k = 0; k < 3; ++k) {
@@ -160,7 +161,7 @@ double pop(const Sheet& sheet, const ShellState& before, const ShellState& after
 
 TEST(PopFilter, BringsTheElasticForcesBackToWhatTheyWere) {
   const Sheet sheet = squeezed_square();
-  ShellState before = sheets::at_rest(sheet, 300, DenseLayout::delaunay);
+  ShellState before = sheets::at_rest(sheet, 300, UniformLayout::delaunay);
   ShellStepper stepper(sheet, {}, 1);
   stepper.set_mesh(before);
   sheets::advance(stepper, before, 0.01, 100);
@@ -177,11 +178,11 @@ TEST(PopFilter, BringsTheElasticForcesBackToWhatTheyWere) {
             0.2 * pop(sheet, before, after, report.changed));
   // Vertices that remeshing left alone stay where they are.
   for (int v = 0; v < after.mesh.vertex_count(); ++v) {
-    if (!report.changed[static_cast<std::size_t>(v)]) {
+    if (!report.changed[v]) {
       EXPECT_EQ(filtered.x.row(v), after.x.row(v));
     }
   }
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

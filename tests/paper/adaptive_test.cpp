@@ -12,9 +12,10 @@
 #include "baselines/paper/remesh.h"
 #include "baselines/paper/sizing.h"
 #include "core/random.h"
+#include "models/paper/uniform_mesh.h"
 #include "tests/paper/plane_shapes.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 Sheet sheet_of(const Pattern& pattern) {
@@ -123,14 +124,15 @@ TEST(Sizing, OfACylinderIsRefineAngleTimesRadius) {
   options.aspect_min = 0.01;
   options.refine_angle = 0.4;
   options.refine_compression = 1;  // chords of the cylinder are shorter than their arcs
-  ShellState state = flat_state(uniform_mesh(sheet.pattern, 3000, DenseLayout::structured, {}, 1));
+  ShellState state =
+      flat_state(uniform_mesh(sheet.pattern, 3000, UniformLayout::structured, {}, 1));
   roll(state, 0.1, 0.3);
   const std::vector<SizeTensor> sizes = sizing_tensors(state, {}, options);
   const Eigen::Vector2d around(std::cos(0.3), std::sin(0.3)), along(-around.y(), around.x());
   const double wanted = 1 / std::pow(0.4 * 0.1, 2);
   for (int v = 0; v < state.mesh.vertex_count(); ++v) {
     if (state.mesh.pattern.row(v).cwiseAbs().maxCoeff() > 0.12) continue;
-    const SizeTensor& m = sizes[static_cast<std::size_t>(v)];
+    const SizeTensor& m = sizes[v];
     EXPECT_NEAR(around.dot(m * around), wanted, 0.1 * wanted);
     EXPECT_LT(along.dot(m * along), 0.1 * wanted);
   }
@@ -142,7 +144,8 @@ TEST(Sizing, FollowsCompressionVelocityAndObstacles) {
   options.size_min = 1e-4;
   options.size_max = 10;
   options.aspect_min = 0.01;
-  const ShellState flat = flat_state(uniform_mesh(sheet.pattern, 50, DenseLayout::delaunay, {}, 1));
+  const ShellState flat =
+      flat_state(uniform_mesh(sheet.pattern, 50, UniformLayout::delaunay, {}, 1));
   const auto size_along_u = [&](const ShellState& state, const std::vector<Obstacle>& obstacles) {
     const std::vector<SizeTensor> sizes = sizing_tensors(state, obstacles, options);
     return 1 / std::sqrt(sizes[20](0, 0));
@@ -169,7 +172,7 @@ TEST(Sizing, FollowsCompressionVelocityAndObstacles) {
 TEST(EditableSheet, SurvivesRandomOperations) {
   for (const Pattern& pattern :
        {rectangle_pattern(0.2, 0.3), disc_pattern(0.1, 24), test::ell_pattern()}) {
-    ShellState state = flat_state(uniform_mesh(pattern, 60, DenseLayout::delaunay, {}, 1));
+    ShellState state = flat_state(uniform_mesh(pattern, 60, UniformLayout::delaunay, {}, 1));
     RandomStream random(3, "operations");
     for (int f = 0; f < state.mesh.triangle_count(); ++f) {
       for (int k = 0; k < 3; ++k) state.plastic_curvature(f, k) = random.normal();
@@ -198,7 +201,7 @@ TEST(EditableSheet, SurvivesRandomOperations) {
     while (splits + flips + collapses < 400) {
       const auto t =
           static_cast<int>(random.below(static_cast<std::uint32_t>(sheet.triangles().size())));
-      if (sheet.triangles()[static_cast<std::size_t>(t)].vertex[0] < 0) continue;
+      if (sheet.triangles()[t].vertex[0] < 0) continue;
       const EditableSheet::Side side{t, static_cast<int>(random.below(3))};
       const std::uint32_t operation = random.below(3);
       if (operation == 0 && splits < 150) {
@@ -234,7 +237,7 @@ TEST(Remesh, CoarsensAFlatSheetToTheLargestSize) {
     const Sheet sheet = sheet_of(pattern);
     SizingOptions options;
     options.size_max = 0.25 * width(pattern);
-    ShellState state = flat_state(uniform_mesh(pattern, 1000, DenseLayout::delaunay, {}, 1));
+    ShellState state = flat_state(uniform_mesh(pattern, 1000, UniformLayout::delaunay, {}, 1));
     remesh(sheet, sizing_tensors(state, {}, options), state);
     expect_sound(state.mesh, pattern);
     EXPECT_LT(state.mesh.triangle_count(), 110);
@@ -248,7 +251,7 @@ TEST(Remesh, RefinesACoarseSheetToTheSizeAskedFor) {
   const Sheet sheet = sheet_of(rectangle_pattern(1, 0.7));
   SizingOptions options;
   options.size_max = 0.1;
-  ShellState state = flat_state(uniform_mesh(sheet.pattern, 4, DenseLayout::structured, {}, 1));
+  ShellState state = flat_state(uniform_mesh(sheet.pattern, 4, UniformLayout::structured, {}, 1));
   remesh(sheet, sizing_tensors(state, {}, options), state);
   expect_sound(state.mesh, sheet.pattern);
   for (const Eigen::Vector2d& e : interior_edges(state.mesh)) EXPECT_LE(e.norm(), 0.10001);
@@ -264,7 +267,7 @@ TEST(Remesh, MakesLongTrianglesAlongACylinder) {
     options.refine_angle = 0.3;
     options.refine_compression = 1;  // chords of the cylinder are shorter than their arcs
     const double radius = 0.08, size = options.refine_angle * radius;
-    ShellState state = flat_state(uniform_mesh(sheet.pattern, 400, DenseLayout::delaunay, {}, 1));
+    ShellState state = flat_state(uniform_mesh(sheet.pattern, 400, UniformLayout::delaunay, {}, 1));
     remesh_on_cylinder(sheet, options, radius, angle, 10, state);
     expect_sound(state.mesh, sheet.pattern);
     const Eigen::Vector2d around(std::cos(angle), std::sin(angle)), along(-around.y(), around.x());
@@ -287,7 +290,7 @@ TEST(Remesh, MakesLongTrianglesAlongACylinder) {
 TEST(Remesh, ChangesNothingOnceItIsDone) {
   const Sheet sheet = sheet_of(rectangle_pattern(1, 0.7));
   SizingOptions options;
-  ShellState state = flat_state(uniform_mesh(sheet.pattern, 500, DenseLayout::delaunay, {}, 1));
+  ShellState state = flat_state(uniform_mesh(sheet.pattern, 500, UniformLayout::delaunay, {}, 1));
   remesh(sheet, sizing_tensors(state, {}, options), state);
   const RemeshReport again = remesh(sheet, sizing_tensors(state, {}, options), state);
   EXPECT_FALSE(again.any());
@@ -308,7 +311,7 @@ TEST(Remesh, KeepsHandles) {
   const Sheet sheet = sheet_with_handles();
   SizingOptions options;
   ShellState state = flat_state(
-      uniform_mesh(sheet.pattern, 800, DenseLayout::delaunay, handle_points(sheet, 0.02), 1));
+      uniform_mesh(sheet.pattern, 800, UniformLayout::delaunay, handle_points(sheet, 0.02), 1));
   const auto expect_handles = [&] {
     expect_sound(state.mesh, sheet.pattern);
     for (const Handle& handle : sheet.handles) {
@@ -336,7 +339,7 @@ TEST(Remesh, KeepsHandles) {
 // A fold by a right angle: its edges must not be flipped, whatever the metric says.
 TEST(Remesh, NeverFlipsAcrossAFold) {
   const Sheet sheet = sheet_of(rectangle_pattern(0.4, 0.4));
-  ShellState state = flat_state(uniform_mesh(sheet.pattern, 128, DenseLayout::structured, {}, 1));
+  ShellState state = flat_state(uniform_mesh(sheet.pattern, 128, UniformLayout::structured, {}, 1));
   std::set<double> fold_points;
   for (int v = 0; v < state.mesh.vertex_count(); ++v) {
     const double u = state.mesh.pattern(v, 0);
@@ -345,7 +348,7 @@ TEST(Remesh, NeverFlipsAcrossAFold) {
   }
   ASSERT_GT(fold_points.size(), 4U);
   // Long sizes along u ask for edges across the fold.
-  const std::vector<SizeTensor> sizes(static_cast<std::size_t>(state.mesh.vertex_count()),
+  const std::vector<SizeTensor> sizes(state.mesh.vertex_count(),
                                       SizeTensor(Eigen::Vector2d(100, 2500).asDiagonal()));
   remesh(sheet, sizes, state);
   for (const Eigen::Vector2d& e : interior_edges(state.mesh)) EXPECT_TRUE(e.allFinite());
@@ -362,7 +365,7 @@ TEST(Remesh, IsReproducible) {
   SizingOptions options;
   const auto run = [&] {
     ShellState state = flat_state(
-        uniform_mesh(sheet.pattern, 300, DenseLayout::delaunay, handle_points(sheet, 0.03), 1));
+        uniform_mesh(sheet.pattern, 300, UniformLayout::delaunay, handle_points(sheet, 0.03), 1));
     remesh_on_cylinder(sheet, options, 0.05, 0.5, 3, state);
     return state;
   };
@@ -373,4 +376,4 @@ TEST(Remesh, IsReproducible) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -1,4 +1,4 @@
-#include "baselines/paper/contact.h"
+#include "models/paper/contact.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "tests/paper/sheets.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 constexpr std::array<Integration, 2> kIntegrations{Integration::linear, Integration::newton};
@@ -186,4 +186,4 @@ TEST(Contact, SamplesShareTheAreaOfTheSheet) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/paper/meshes.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using meshes::NamedMesh;
@@ -118,9 +118,7 @@ TEST(CurvatureFit, StaysBoundedOnRandomDelaunayMeshes) {
   for (const auto& terms : fit.terms) {
     double square = 0;
     for (const auto& term : terms)
-      square += std::pow(
-          term.coefficient.norm() * fit.hinges[static_cast<std::size_t>(term.hinge)].jump.norm(),
-          2);
+      square += std::pow(term.coefficient.norm() * fit.hinges[term.hinge].jump.norm(), 2);
     EXPECT_LT(std::sqrt(square), 12);
   }
 }
@@ -131,7 +129,7 @@ TEST(CurvatureFit, CountsOwnEdgesFirst) {
   for (std::size_t t = 0; t < fit.terms.size(); ++t) {
     EXPECT_LE(fit.terms[t].size(), static_cast<std::size_t>(CurvatureFit::kMostTerms));
     for (std::size_t i = 0; i < fit.terms[t].size(); ++i) {
-      const auto& h = fit.hinges[static_cast<std::size_t>(fit.terms[t][i].hinge)];
+      const auto& h = fit.hinges[fit.terms[t][i].hinge];
       const bool own = h.left == static_cast<int>(t) || h.right == static_cast<int>(t);
       EXPECT_EQ(own, i < static_cast<std::size_t>(fit.own[t]));
     }
@@ -172,4 +170,4 @@ TEST(CurvatureFit, NamesBadTriangles) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -1,4 +1,4 @@
-#include "baselines/paper/elements.h"
+#include "models/paper/elements.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "core/random.h"
 #include "tests/paper/meshes.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Order = ShellElements::Order;
@@ -439,10 +439,9 @@ TEST(ShellElements, NodesBeginWithTheTriangle) {
   ASSERT_EQ(elements.size(), mesh.triangle_count());
   for (int e = 0; e < elements.size(); ++e) {
     ASSERT_LE(elements.nodes(e).size(), static_cast<std::size_t>(ShellElements::kMostNodes));
-    for (int k = 0; k < 3; ++k)
-      EXPECT_EQ(elements.nodes(e)[static_cast<std::size_t>(k)], mesh.triangles(e, k));
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(elements.nodes(e)[k], mesh.triangles(e, k));
   }
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "baselines/paper/sheet.h"
 #include "core/random.h"
+#include "models/paper/sheet.h"
 #include "solvers/paper/hybrid_mesher.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 
 /// Time and shift of a handle.
 using Keys = std::vector<std::pair<double, Eigen::Vector3d>>;
@@ -162,4 +162,4 @@ inline Isometry isometry(const ShellState& state) {
   return {std::sqrt(sum / whole), largest};
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -5,9 +5,10 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "solvers/paper/invariants.h"
 #include "tests/paper/hybrid_fixture.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using ::testing::IsEmpty;
@@ -191,4 +192,4 @@ TEST(HybridProcess, GoesOnFromACheckpointAsIfItHadNotStopped) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

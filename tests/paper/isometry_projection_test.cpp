@@ -8,7 +8,7 @@
 #include "solvers/paper/ruling_editor.h"
 #include "solvers/paper/ruling_mesh.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 /// A sheet of 0.2 m by 0.2 m with upright rulings every 0.02 m, rolled on a cylinder.
@@ -34,8 +34,7 @@ ShellState rolled(double radius) {
 
 TEST(IsometryProjection, UndoesTheShorteningOfChordsInThreeSteps) {
   ShellState state = rolled(0.05);
-  IsometryProjector projector(state.mesh,
-                              std::vector<bool>(static_cast<std::size_t>(state.x.rows()), false));
+  IsometryProjector projector(state.mesh, std::vector<bool>(state.x.rows(), false));
   const Eigen::MatrixX3d before = state.x;
   // A chord over the arc s / r = 0.4 is shorter by the ratio q = sin(0.2) / 0.2: G = (q^2 - 1) / 2.
   const double q = std::sin(0.2) / 0.2;
@@ -56,7 +55,7 @@ TEST(IsometryProjection, UndoesTheShorteningOfChordsInThreeSteps) {
 
 TEST(IsometryProjection, LeavesHeldVerticesAndRigidMotionsAlone) {
   ShellState state = rolled(0.05);
-  std::vector<bool> held(static_cast<std::size_t>(state.x.rows()), false);
+  std::vector<bool> held(state.x.rows(), false);
   held[0] = held[5] = true;
   state.v.rowwise() = Eigen::RowVector3d(1, -2, 3);
   IsometryProjector projector(state.mesh, held);
@@ -88,8 +87,7 @@ TEST(IsometryProjection, NeverAddsKineticEnergy) {
     }
     const auto energy = [&] { return mass.dot(state.v.rowwise().squaredNorm()); };
     const double before = energy();
-    IsometryProjector projector(state.mesh,
-                                std::vector<bool>(static_cast<std::size_t>(state.x.rows()), false));
+    IsometryProjector projector(state.mesh, std::vector<bool>(state.x.rows(), false));
     const ProjectionReport report = projector.project(state, {6, 1e-6});
     EXPECT_LT(report.strain_after, 1e-5);
     EXPECT_LT(energy(), before);
@@ -99,7 +97,7 @@ TEST(IsometryProjection, NeverAddsKineticEnergy) {
 TEST(IsometryProjection, EndsAtALeastSquaresFitWhereNoIsometryExists) {
   ShellState state = rolled(0.05);
   // Two corners of one short side, 0.2 m apart in the pattern, pulled 0.22 m apart.
-  std::vector<bool> held(static_cast<std::size_t>(state.x.rows()), false);
+  std::vector<bool> held(state.x.rows(), false);
   held[0] = held[3] = true;
   state.x.row(0) += Eigen::RowVector3d(0, -0.01, 0);
   state.x.row(3) += Eigen::RowVector3d(0, 0.01, 0);
@@ -112,4 +110,4 @@ TEST(IsometryProjection, EndsAtALeastSquaresFitWhereNoIsometryExists) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

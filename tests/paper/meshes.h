@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "baselines/paper/shell_state.h"
 #include "core/random.h"
+#include "models/paper/shell_state.h"
 
 /// Meshes of sheets whose answer is known, for the tests of the paper topic.
-namespace geoprior::meshes {
+namespace geoprior::paper::meshes {
 
 /// Grid of `columns` x `rows` cells over [0, width] x [0, height]; diagonals all from lower left to
 /// upper right, or alternating.
@@ -87,18 +87,18 @@ inline void make_delaunay(ShellMesh& mesh) {
     for (int t = 0; t < mesh.triangle_count(); ++t)
       for (int k = 0; k < 3; ++k)
         side[{mesh.triangles(t, k), mesh.triangles(t, (k + 1) % 3)}] = {t, k};
-    std::vector<bool> touched(static_cast<std::size_t>(mesh.triangle_count()), false);
+    std::vector<bool> touched(mesh.triangle_count(), false);
     for (const auto& [edge, place] : side) {
       const auto twin = side.find({edge.second, edge.first});
       if (edge.first > edge.second || twin == side.end()) continue;
       const int t = place.first, u = twin->second.first;
-      if (touched[static_cast<std::size_t>(t)] || touched[static_cast<std::size_t>(u)]) continue;
+      if (touched[t] || touched[u]) continue;
       const int a = edge.first, b = edge.second, c = mesh.triangles(t, (place.second + 2) % 3),
                 d = mesh.triangles(u, (twin->second.second + 2) % 3);
       if (in_circle(mesh, a, b, c, d) < 1e-9 * scale) continue;
       mesh.triangles.row(t) << a, d, c;
       mesh.triangles.row(u) << d, b, c;
-      touched[static_cast<std::size_t>(t)] = touched[static_cast<std::size_t>(u)] = flipped = true;
+      touched[t] = touched[u] = flipped = true;
     }
   }
 }
@@ -112,16 +112,16 @@ inline ShellMesh delaunay(int columns, int rows, double width, double height,
   const double step_u = 0.2 * width / columns, step_v = 0.2 * height / rows;
   const double smallest = 0.3 * width / columns * height / rows;
   for (int round = 0; round < 6; ++round) {
-    std::vector<std::vector<int>> star(static_cast<std::size_t>(mesh.vertex_count()));
+    std::vector<std::vector<int>> star(mesh.vertex_count());
     for (int t = 0; t < mesh.triangle_count(); ++t)
-      for (int k = 0; k < 3; ++k) star[static_cast<std::size_t>(mesh.triangles(t, k))].push_back(t);
+      for (int k = 0; k < 3; ++k) star[mesh.triangles(t, k)].push_back(t);
     for (int v = 0; v < mesh.vertex_count(); ++v) {
       const int i = v % (columns + 1), j = v / (columns + 1);
       const Eigen::RowVector2d before = mesh.pattern.row(v);
       const double du = step_u * random.normal(), dv = step_v * random.normal();
       if (i != 0 && i != columns) mesh.pattern(v, 0) += du;
       if (j != 0 && j != rows) mesh.pattern(v, 1) += dv;
-      const auto& around = star[static_cast<std::size_t>(v)];
+      const auto& around = star[v];
       if (std::any_of(around.begin(), around.end(), [&](int t) {
             return twice_area(mesh, mesh.triangles(t, 0), mesh.triangles(t, 1),
                               mesh.triangles(t, 2)) < smallest;
@@ -228,4 +228,4 @@ inline std::vector<NamedMesh> every_kind() {
           {"cone strips", cone_strips(9, 0.2, 1, 1.5)}};
 }
 
-}  // namespace geoprior::meshes
+}  // namespace geoprior::paper::meshes

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "baselines/paper/obstacle_shape.h"
-#include "baselines/paper/sheet.h"
 #include "core/random.h"
+#include "models/paper/obstacle_shape.h"
+#include "models/paper/sheet.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Kind = Obstacle::Kind;
@@ -117,4 +117,4 @@ TEST(ObstaclePart, HasItsVerticesOnTheSurface) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -1,4 +1,4 @@
-#include "baselines/paper/pattern.h"
+#include "models/paper/pattern.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 /// What `require_simple` says, or "" when the pattern is accepted.
@@ -108,4 +108,4 @@ TEST(Pattern, NearestBorderPointIsOnTheRightEdge) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -1,4 +1,4 @@
-#include "baselines/paper/plasticity.h"
+#include "models/paper/plasticity.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "core/curvature_fit.h"
 #include "tests/paper/sheets.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 /// Rolls the sheet on a cylinder along y, of this curvature.
@@ -87,4 +87,4 @@ TEST(Plasticity, StepperCreasesOnlyWhenAskedTo) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "baselines/paper/planar.h"
 #include "core/curvature_fit.h"
+#include "models/paper/planar.h"
 #include "solvers/paper/compression.h"
+#include "solvers/paper/invariants.h"
 #include "solvers/paper/pieces.h"
 #include "solvers/paper/plastic_apex.h"
 #include "solvers/paper/propagation.h"
@@ -14,7 +15,7 @@
 #include "solvers/paper/singular_point.h"
 #include "solvers/paper/tracking.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Eigen::Vector2d;
@@ -208,7 +209,7 @@ struct FanSheet : EventSheet {
   [[nodiscard]] double widest_sector() const {
     std::vector<double> angles;
     for (const int r : structure.rulings_at(0)) {
-      const Vector2d& end = structure.rulings[static_cast<std::size_t>(r)].b;
+      const Vector2d& end = structure.rulings[r].b;
       angles.push_back(std::atan2(end.y(), end.x()));
     }
     double widest = angles.front() + 2 * std::numbers::pi - angles.back();
@@ -253,8 +254,8 @@ TEST(Tracking, KeepsAFlatRayThatRefinementWouldPutBack) {
   const PaperPiece& cone = s.structure.pieces.at(0);
   ASSERT_EQ(cone.kind, PaperPiece::Kind::cone);
   s.folds.assign(s.folds.size(), 5 * kDegree);
-  s.folds[static_cast<std::size_t>(cone.rulings[2])] = 0;
-  s.folds[static_cast<std::size_t>(cone.rulings[3])] = (s.options.refine_angle_deg + 1) * kDegree;
+  s.folds[cone.rulings[2]] = 0;
+  s.folds[cone.rulings[3]] = (s.options.refine_angle_deg + 1) * kDegree;
   s.wait(2 * s.options.flat_frames);
   EXPECT_FALSE(s.retire(true));
 }
@@ -284,4 +285,4 @@ TEST(PlasticApex, YieldsOnlyWhereTheConeBendsBeyondTheYieldCurvature) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -1,4 +1,4 @@
-#include "baselines/paper/sheet_process.h"
+#include "models/paper/sheet_process.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,10 +8,11 @@
 
 #include "baselines/paper/adaptive.h"
 #include "baselines/paper/dense.h"
-#include "baselines/paper/transfer.h"
 #include "core/error.h"
+#include "models/paper/transfer.h"
+#include "models/paper/uniform_mesh.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using ::testing::HasSubstr;
@@ -215,7 +216,7 @@ class SwitchingMesher final : public SheetMesher {
     for (const Handle& handle : sheet.handles) {
       for (const Eigen::Vector2d& p : handle.anchors()) anchors.push_back(p);
     }
-    return uniform_mesh(sheet.pattern, triangles, DenseLayout::delaunay, anchors, 1);
+    return uniform_mesh(sheet.pattern, triangles, UniformLayout::delaunay, anchors, 1);
   }
   bool switched_ = false;
 };
@@ -257,4 +258,4 @@ TEST(SheetProcess, RefusesASheetThatIsNotValid) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -1,4 +1,4 @@
-#include "baselines/paper/sheet.h"
+#include "models/paper/sheet.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "baselines/paper/sheet_start.h"
 #include "core/error.h"
+#include "models/paper/sheet_valid.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using ::testing::AllOf;
@@ -263,4 +263,4 @@ TEST(RequireValid, NamesAPatternThatIsNotSimple) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -5,10 +5,11 @@
 #include <vector>
 
 #include "baselines/paper/dense.h"
-#include "baselines/paper/stepper.h"
+#include "models/paper/stepper.h"
+#include "models/paper/uniform_mesh.h"
 
 /// Small sheets in motion, for the tests of the stepper.
-namespace geoprior::sheets {
+namespace geoprior::paper::sheets {
 
 /// A sheet without handles, obstacles, gravity or imperfection.
 inline Sheet free_sheet(double width, double height) {
@@ -29,7 +30,7 @@ inline Handle point_handle(const std::string& name, std::vector<Eigen::Vector2d>
 }
 
 inline ShellState at_rest(const Sheet& sheet, int triangles,
-                          DenseLayout layout = DenseLayout::structured) {
+                          UniformLayout layout = UniformLayout::structured) {
   return resting_state(
       sheet, uniform_mesh(sheet.pattern, triangles, layout, handle_points(sheet, 0.05), 1), 1);
 }
@@ -68,4 +69,4 @@ inline StepReport advance(ShellStepper& stepper, ShellState& state, double dt, i
   return last;
 }
 
-}  // namespace geoprior::sheets
+}  // namespace geoprior::paper::sheets

@@ -1,4 +1,4 @@
-#include "baselines/paper/stepper.h"
+#include "models/paper/stepper.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,13 +9,13 @@
 #include <limits>
 #include <numbers>
 
-#include "baselines/paper/handle_map.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "models/paper/handle_map.h"
 #include "tests/paper/sheets.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 constexpr std::array<Integration, 2> kIntegrations{Integration::linear, Integration::newton};
@@ -56,7 +56,7 @@ TEST(Stepper, FallsAsImplicitEulerDoes) {
   for (const Integration integration : kIntegrations) {
     Sheet sheet = sheets::free_sheet(0.3, 0.2);
     sheet.gravity = {1, 2, -9.81};
-    ShellState state = sheets::at_rest(sheet, 60, DenseLayout::delaunay);
+    ShellState state = sheets::at_rest(sheet, 60, UniformLayout::delaunay);
     const Eigen::MatrixX3d start = state.x;
     ShellStepper stepper = stepper_for(sheet, state, with(integration));
     const int n = 40;
@@ -71,7 +71,7 @@ TEST(Stepper, FallsAsImplicitEulerDoes) {
 TEST(Stepper, FreeFlightKeepsTheMomentum) {
   for (const Integration integration : kIntegrations) {
     const Sheet sheet = sheets::free_sheet(0.3, 0.2);
-    ShellState state = sheets::at_rest(sheet, 80, DenseLayout::delaunay);
+    ShellState state = sheets::at_rest(sheet, 80, UniformLayout::delaunay);
     RandomStream random(4, "velocities");
     for (Eigen::Index i = 0; i < state.v.size(); ++i) state.v.data()[i] = random.normal();
     ShellStepper stepper = stepper_for(sheet, state, with(integration));
@@ -414,4 +414,4 @@ TEST(Stepper, RefusesAStateOfAnotherMeshAndNoMesh) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -5,13 +5,14 @@
 
 #include <cmath>
 
-#include "baselines/paper/planar.h"
 #include "core/random.h"
+#include "models/paper/planar.h"
+#include "solvers/paper/invariants.h"
 #include "solvers/paper/pieces.h"
 #include "solvers/paper/ruling_editor.h"
 #include "solvers/paper/ruling_mesh.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Eigen::Vector2d;
@@ -83,9 +84,7 @@ TEST(Pieces, ParallelRulingsFromBorderToBorderAreOneCylinder) {
   EXPECT_EQ(sheet.structure.pieces.size(), 3U);
   EXPECT_EQ(piece.neighbours, (std::vector<int>{1, 2}));
   for (std::size_t i = 0; i + 1 < piece.rulings.size(); ++i) {
-    const auto at = [&](std::size_t k) {
-      return sheet.structure.rulings[static_cast<std::size_t>(piece.rulings[k])].a.x();
-    };
+    const auto at = [&](std::size_t k) { return sheet.structure.rulings[piece.rulings[k]].a.x(); };
     EXPECT_NEAR(std::abs(at(i + 1) - at(i)), 0.02, 1e-12);
   }
 }
@@ -246,4 +245,4 @@ TEST(Invariants, NameWhatIsBroken) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -7,25 +7,26 @@
 #include <limits>
 #include <numeric>
 
-#include "baselines/paper/shell_system.h"
-#include "baselines/paper/sparse_cholesky.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "models/paper/cholmod_cholesky.h"
+#include "models/paper/eigen_cholesky.h"
+#include "models/paper/shell_system.h"
+#include "models/paper/sparse_cholesky.h"
+#include "models/paper/supernodal_cholesky.h"
 #include "tests/paper/sheets.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 using Triangle = BlockMatrix::Triangle;
-
-std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 /// A random sheet, crumpled by a millimetre, and its system.
 struct System {
   explicit System(int triangles, Triangle triangle, Ordering ordering = Ordering::minimum_degree) {
     const Sheet sheet = sheets::free_sheet(0.3, 0.2);
-    state = sheets::at_rest(sheet, triangles, DenseLayout::delaunay);
+    state = sheets::at_rest(sheet, triangles, UniformLayout::delaunay);
     RandomStream random(7, "crumple");
     for (Eigen::Index i = 0; i < state.x.size(); ++i) {
       state.x.data()[i] += 1e-3 * (random.uniform() - 0.5);
@@ -84,7 +85,7 @@ TEST(ShellSystem, GradientIsTheDerivativeOfTheEnergy) {
     double slope = 0;
     for (Eigen::Index i = 0; i < direction.rows(); ++i) {
       direction.row(i) << random.normal(), random.normal(), random.normal();
-      slope += gradient.segment<3>(3 * s.position[at(i)]).dot(direction.row(i));
+      slope += gradient.segment<3>(3 * s.position[i]).dot(direction.row(i));
     }
     // Central differences, error h^2: at 1e-7 m both truncation and round-off are below 1e-6.
     const double h = 1e-7;
@@ -110,7 +111,7 @@ TEST(ShellSystem, ScattersTheElementsHessians) {
       const auto nodes = s.elements->nodes(e);
       for (std::size_t a = 0; a < nodes.size(); ++a) {
         for (std::size_t b = 0; b < nodes.size(); ++b) {
-          expected.block<3, 3>(3 * s.position[at(nodes[a])], 3 * s.position[at(nodes[b])]) +=
+          expected.block<3, 3>(3 * s.position[nodes[a]], 3 * s.position[nodes[b]]) +=
               2 * local.hessian.block<3, 3>(static_cast<Eigen::Index>(3 * a),
                                             static_cast<Eigen::Index>(3 * b));
         }
@@ -152,14 +153,14 @@ TEST(BlockMatrix, TakesOutHeldRowsWithoutLosingThem) {
     System s(60, triangle);
     s.fill();
     const Eigen::MatrixXd before = s.dense();
-    std::vector<char> held(at(s.matrix.nodes()), 0);
+    std::vector<char> held(s.matrix.nodes(), 0);
     held[0] = held[5] = held.back() = 1;
     std::vector<BlockMatrix::Taken> taken;
     s.matrix.take_out(held, taken);
     const Eigen::MatrixXd after = s.dense();
     for (Eigen::Index i = 0; i < after.rows(); ++i) {
       for (Eigen::Index j = 0; j < after.cols(); ++j) {
-        const bool out = held[at(i / 3)] != 0 || held[at(j / 3)] != 0;
+        const bool out = held[i / 3] != 0 || held[j / 3] != 0;
         ASSERT_EQ(after(i, j), out ? static_cast<double>(i == j) : before(i, j));
       }
     }
@@ -167,7 +168,7 @@ TEST(BlockMatrix, TakesOutHeldRowsWithoutLosingThem) {
     Eigen::VectorXd y;
     s.matrix.multiply(x, y);
     for (Eigen::Index i = 0; i < x.size(); ++i) {
-      if (held[at(i / 3)] != 0) y[i] -= x[i];
+      if (held[i / 3] != 0) y[i] -= x[i];
     }
     multiply_taken(taken, x, y);
     EXPECT_LT((y - before * x).norm(), 1e-13 * before.norm() * x.norm());
@@ -179,7 +180,7 @@ TEST(BlockMatrix, RefusesABlockOutsideItsPattern) {
   int far = 0;
   const auto near = s.graph.neighbours(0);
   while (far == 0 || std::find(near.begin(), near.end(), far) != near.end()) ++far;
-  EXPECT_THROW(static_cast<void>(s.matrix.place(s.position[0], s.position[at(far)])), Error);
+  EXPECT_THROW(static_cast<void>(s.matrix.place(s.position[0], s.position[far])), Error);
 }
 
 TEST(EliminationOrder, IsAPermutation) {
@@ -255,4 +256,4 @@ TEST(SparseCholesky, RefusesIndefiniteAndNotFinite) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

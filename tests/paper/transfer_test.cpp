@@ -1,4 +1,4 @@
-#include "baselines/paper/transfer.h"
+#include "models/paper/transfer.h"
 
 #include <gtest/gtest.h>
 
@@ -6,12 +6,14 @@
 #include <string>
 
 #include "baselines/paper/dense.h"
-#include "baselines/paper/overlap.h"
 #include "core/error.h"
 #include "core/random.h"
+#include "models/paper/overlap.h"
+#include "models/paper/pattern_locator.h"
+#include "models/paper/uniform_mesh.h"
 #include "tests/paper/plane_shapes.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 ShellState state_on(ShellMesh mesh) {
@@ -28,7 +30,7 @@ ShellState state_on(ShellMesh mesh) {
 
 /// A sheet with linear positions and velocities and a crease of random depth on a third of it.
 ShellState sample_state(const Pattern& pattern, int triangles) {
-  ShellState state = state_on(uniform_mesh(pattern, triangles, DenseLayout::delaunay, {}, 5));
+  ShellState state = state_on(uniform_mesh(pattern, triangles, UniformLayout::delaunay, {}, 5));
   Eigen::Matrix<double, 2, 3> a, b;
   a << 1, 2, -1, 0.5, 1, 3;
   b << -2, 0, 1, 4, 1, 1;
@@ -56,7 +58,7 @@ Eigen::Vector4d crease_integrals(const ShellState& state) {
 TEST(TransferState, ReproducesLinearFields) {
   for (const Pattern& pattern : {rectangle_pattern(0.2, 0.3), test::ell_pattern()}) {
     const ShellState from = sample_state(pattern, 150);
-    const ShellMesh mesh = uniform_mesh(pattern, 260, DenseLayout::equilateral, {}, 1);
+    const ShellMesh mesh = uniform_mesh(pattern, 260, UniformLayout::equilateral, {}, 1);
     const ShellState to = transfer_state(from, mesh);
     Eigen::Matrix<double, 2, 3> a, b;
     a << 1, 2, -1, 0.5, 1, 3;
@@ -74,7 +76,7 @@ TEST(TransferState, ConservesTheIntegralOfTheCreases) {
   for (const Pattern& pattern : {rectangle_pattern(0.2, 0.3), test::ell_pattern()}) {
     const ShellState from = sample_state(pattern, 150);
     const ShellState to =
-        transfer_state(from, uniform_mesh(pattern, 260, DenseLayout::equilateral, {}, 1));
+        transfer_state(from, uniform_mesh(pattern, 260, UniformLayout::equilateral, {}, 1));
     const Eigen::Vector4d before = crease_integrals(from), after = crease_integrals(to);
     EXPECT_LT((after - before).norm(), 1e-12 * before.norm());
   }
@@ -86,7 +88,7 @@ TEST(TransferState, KeepsConstantCreasesConstant) {
   from.plastic_curvature.rowwise() = Eigen::RowVector3d(10, -20, 30);
   from.damage.setConstant(2);
   const ShellState to =
-      transfer_state(from, uniform_mesh(pattern, 90, DenseLayout::structured, {}, 1));
+      transfer_state(from, uniform_mesh(pattern, 90, UniformLayout::structured, {}, 1));
   EXPECT_LT((to.plastic_curvature.rowwise() - Eigen::RowVector3d(10, -20, 30)).norm(), 1e-9);
   EXPECT_LT((to.damage.array() - 2).abs().maxCoeff(), 1e-11);
 }
@@ -102,12 +104,12 @@ TEST(TransferState, ToTheSameMeshChangesNoVertex) {
 TEST(TransferState, RefusesAVertexOutside) {
   const ShellState from = sample_state(rectangle_pattern(0.2, 0.3), 50);
   const ShellMesh larger =
-      uniform_mesh(rectangle_pattern(0.2002, 0.3), 50, DenseLayout::structured, {}, 1);
+      uniform_mesh(rectangle_pattern(0.2002, 0.3), 50, UniformLayout::structured, {}, 1);
   EXPECT_THROW(transfer_state(from, larger), Error);
 }
 
 TEST(PatternLocator, FindsTheTriangleOfEveryPoint) {
-  const ShellMesh mesh = uniform_mesh(test::ell_pattern(), 300, DenseLayout::delaunay, {}, 1);
+  const ShellMesh mesh = uniform_mesh(test::ell_pattern(), 300, UniformLayout::delaunay, {}, 1);
   const PatternLocator locator(mesh);
   RandomStream random(2, "points");
   for (int i = 0; i < 2000; ++i) {
@@ -143,11 +145,11 @@ TEST(OverlapArea, OfAHexagramIsTwoThirds) {
   PlaneTriangle a, b;
   for (int k = 0; k < 3; ++k) {
     const double t = 2.0943951023931953 * k;
-    a[static_cast<std::size_t>(k)] = {std::cos(t), std::sin(t)};
-    b[static_cast<std::size_t>(k)] = {-std::cos(t), -std::sin(t)};
+    a[k] = {std::cos(t), std::sin(t)};
+    b[k] = {-std::cos(t), -std::sin(t)};
   }
   EXPECT_NEAR(overlap_area(a, b), 2.0 / 3 * 3 * std::sqrt(3.0) / 4, 1e-14);
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

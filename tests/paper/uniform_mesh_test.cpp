@@ -1,3 +1,5 @@
+#include "models/paper/uniform_mesh.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,13 +11,13 @@
 #include "core/error.h"
 #include "tests/paper/plane_shapes.h"
 
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 struct Case {
   std::string name;
   Pattern pattern;
-  DenseLayout layout;
+  UniformLayout layout;
 };
 
 /// Without it the name of a test would list the bytes of its case, addresses included.
@@ -25,14 +27,14 @@ class UniformMesh : public ::testing::TestWithParam<Case> {};
 
 std::vector<Case> cases() {
   const Pattern sheet = rectangle_pattern(0.21, 0.297);
-  return {{"StructuredRectangle", sheet, DenseLayout::structured},
-          {"EquilateralRectangle", sheet, DenseLayout::equilateral},
-          {"DelaunayRectangle", sheet, DenseLayout::delaunay},
-          {"EquilateralDisc", disc_pattern(0.1, 40), DenseLayout::equilateral},
-          {"DelaunayDisc", disc_pattern(0.1, 40), DenseLayout::delaunay},
-          {"AutomaticEll", test::ell_pattern(), DenseLayout::automatic},
-          {"EquilateralEll", test::ell_pattern(), DenseLayout::equilateral},
-          {"DelaunayEll", test::ell_pattern(), DenseLayout::delaunay}};
+  return {{"StructuredRectangle", sheet, UniformLayout::structured},
+          {"EquilateralRectangle", sheet, UniformLayout::equilateral},
+          {"DelaunayRectangle", sheet, UniformLayout::delaunay},
+          {"EquilateralDisc", disc_pattern(0.1, 40), UniformLayout::equilateral},
+          {"DelaunayDisc", disc_pattern(0.1, 40), UniformLayout::delaunay},
+          {"AutomaticEll", test::ell_pattern(), UniformLayout::automatic},
+          {"EquilateralEll", test::ell_pattern(), UniformLayout::equilateral},
+          {"DelaunayEll", test::ell_pattern(), UniformLayout::delaunay}};
 }
 
 /// Points inside, on an edge and at a corner of a pattern.
@@ -109,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(Layouts, UniformMesh, ::testing::ValuesIn(cases()),
                          [](const auto& p) { return p.param.name; });
 
 TEST(StructuredMesh, DiagonalsAlternate) {
-  const ShellMesh mesh = uniform_mesh(rectangle_pattern(1, 1), 8, DenseLayout::structured, {}, 1);
+  const ShellMesh mesh = uniform_mesh(rectangle_pattern(1, 1), 8, UniformLayout::structured, {}, 1);
   ASSERT_EQ(mesh.triangle_count(), 8);
   // All four diagonals of a 2 x 2 grid meet at its centre or none does: valence 8 or 4.
   const int centre = 4;
@@ -118,33 +120,33 @@ TEST(StructuredMesh, DiagonalsAlternate) {
 
 TEST(StructuredMesh, MovesTheNearestVertexToAnAnchor) {
   const Pattern pattern = rectangle_pattern(1, 1);
-  const ShellMesh plain = uniform_mesh(pattern, 200, DenseLayout::structured, {}, 1);
+  const ShellMesh plain = uniform_mesh(pattern, 200, UniformLayout::structured, {}, 1);
   const ShellMesh moved =
-      uniform_mesh(pattern, 200, DenseLayout::structured, {{0.12, 0.09}, {-0.5, 0.02}}, 1);
+      uniform_mesh(pattern, 200, UniformLayout::structured, {{0.12, 0.09}, {-0.5, 0.02}}, 1);
   EXPECT_EQ(moved.triangles, plain.triangles);
   EXPECT_EQ(((moved.pattern - plain.pattern).rowwise().norm().array() > 0).count(), 2);
 }
 
 TEST(StructuredMesh, RefusesWhatIsNoUprightRectangle) {
-  EXPECT_THROW(uniform_mesh(disc_pattern(1, 8), 100, DenseLayout::structured, {}, 1), Error);
+  EXPECT_THROW(uniform_mesh(disc_pattern(1, 8), 100, UniformLayout::structured, {}, 1), Error);
 }
 
 // An upright rectangle is the only pattern that the structured layout has.
 TEST(AutomaticMesh, IsStructuredOnAnUprightRectangleOnly) {
-  const auto same = [](const Pattern& pattern, DenseLayout layout) {
-    const ShellMesh a = uniform_mesh(pattern, 200, DenseLayout::automatic, {}, 1);
+  const auto same = [](const Pattern& pattern, UniformLayout layout) {
+    const ShellMesh a = uniform_mesh(pattern, 200, UniformLayout::automatic, {}, 1);
     const ShellMesh b = uniform_mesh(pattern, 200, layout, {}, 1);
     return a.pattern == b.pattern && a.triangles == b.triangles;
   };
-  EXPECT_EQ(DenseOptions{}.layout, DenseLayout::automatic);
-  EXPECT_TRUE(same(rectangle_pattern(0.3, 0.2), DenseLayout::structured));
-  EXPECT_TRUE(same(disc_pattern(0.1, 40), DenseLayout::equilateral));
-  EXPECT_TRUE(same(test::ell_pattern(), DenseLayout::equilateral));
+  EXPECT_EQ(DenseOptions{}.layout, UniformLayout::automatic);
+  EXPECT_TRUE(same(rectangle_pattern(0.3, 0.2), UniformLayout::structured));
+  EXPECT_TRUE(same(disc_pattern(0.1, 40), UniformLayout::equilateral));
+  EXPECT_TRUE(same(test::ell_pattern(), UniformLayout::equilateral));
 }
 
 TEST(UniformMeshErrors, NameAnAnchorOutside) {
   try {
-    uniform_mesh(rectangle_pattern(1, 1), 100, DenseLayout::delaunay, {{0, 0}, {0.6, 0}}, 1);
+    uniform_mesh(rectangle_pattern(1, 1), 100, UniformLayout::delaunay, {{0, 0}, {0.6, 0}}, 1);
     FAIL() << "accepted an anchor outside the pattern";
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("anchor 1"), std::string::npos);
@@ -153,9 +155,9 @@ TEST(UniformMeshErrors, NameAnAnchorOutside) {
 
 TEST(DelaunayMesh, DependsOnTheSeedAlone) {
   const Pattern disc = disc_pattern(0.1, 40);
-  const ShellMesh a = uniform_mesh(disc, 300, DenseLayout::delaunay, {}, 1);
-  const ShellMesh b = uniform_mesh(disc, 300, DenseLayout::delaunay, {}, 1);
-  const ShellMesh c = uniform_mesh(disc, 300, DenseLayout::delaunay, {}, 2);
+  const ShellMesh a = uniform_mesh(disc, 300, UniformLayout::delaunay, {}, 1);
+  const ShellMesh b = uniform_mesh(disc, 300, UniformLayout::delaunay, {}, 1);
+  const ShellMesh c = uniform_mesh(disc, 300, UniformLayout::delaunay, {}, 2);
   EXPECT_EQ(a.pattern, b.pattern);
   EXPECT_EQ(a.triangles, b.triangles);
   EXPECT_FALSE(a.pattern.rows() == c.pattern.rows() && a.pattern == c.pattern);
@@ -164,7 +166,7 @@ TEST(DelaunayMesh, DependsOnTheSeedAlone) {
 // Interior edges of a hexagonal lattice whose rows divide the sides of the rectangle.
 TEST(EquilateralMesh, InteriorEdgesHaveOneLength) {
   const ShellMesh mesh =
-      uniform_mesh(rectangle_pattern(1, 0.9), 600, DenseLayout::equilateral, {}, 1);
+      uniform_mesh(rectangle_pattern(1, 0.9), 600, UniformLayout::equilateral, {}, 1);
   double shortest = 1, longest = 0;
   for (int f = 0; f < mesh.triangle_count(); ++f) {
     for (int k = 0; k < 3; ++k) {
@@ -179,4 +181,4 @@ TEST(EquilateralMesh, InteriorEdgesHaveOneLength) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -7,7 +7,7 @@
 #include "tests/paper/sheets.h"
 
 // The whole solver against a heavy strip clamped at one end.
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 constexpr double kLength = 0.15, kWidth = 0.03;
@@ -101,4 +101,4 @@ TEST(Cantilever, SagConvergesWithSecondOrder) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -10,7 +10,7 @@
 #include "tests/paper/sheets.h"
 
 // The whole solver against the developable cone: a disc pushed into a ring by its centre.
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 constexpr double kDisc = 0.1, kRing = 0.06, kSlope = 0.1;
@@ -57,9 +57,8 @@ Eigen::MatrixX3d first_guess(const Eigen::MatrixX2d& pattern) {
   const auto trace = [&](double scale) {
     for (int i = 0; i <= kSteps; ++i) {
       const double turn = 2 * std::numbers::pi * i / kSteps;
-      ray[static_cast<std::size_t>(i)] =
-          Eigen::Vector3d(std::cos(turn), std::sin(turn), kSlope * buckled(turn, scale))
-              .normalized();
+      ray[i] = Eigen::Vector3d(std::cos(turn), std::sin(turn), kSlope * buckled(turn, scale))
+                   .normalized();
     }
     for (std::size_t i = 1; i < arc.size(); ++i) arc[i] = arc[i - 1] + (ray[i] - ray[i - 1]).norm();
     return arc.back();
@@ -75,7 +74,7 @@ Eigen::MatrixX3d first_guess(const Eigen::MatrixX2d& pattern) {
     double angle = std::atan2(pattern(v, 1), pattern(v, 0));
     if (angle < 0) angle += 2 * std::numbers::pi;
     const auto at = std::lower_bound(arc.begin(), arc.end() - 1, angle) - arc.begin();
-    x.row(v) = pattern.row(v).norm() * ray[static_cast<std::size_t>(at)].transpose();
+    x.row(v) = pattern.row(v).norm() * ray[at].transpose();
     x(v, 2) -= kSlope * kRing;
   }
   return x;
@@ -123,4 +122,4 @@ TEST(Dcone, BuckledSectorApproachesThatOfTheInextensibleConeAsTheSheetGetsThinne
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -8,7 +8,7 @@
 #include "tests/paper/sheets.h"
 
 // The whole solver against Euler's elastica: a strip pushed end to end.
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 constexpr double kLength = 0.2, kWidth = 0.05;
@@ -126,4 +126,4 @@ TEST(Elastica, IrregularMeshesLockALittle) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -2,12 +2,12 @@
 
 #include <cmath>
 
-#include "baselines/paper/shell_dynamics.h"
+#include "models/paper/shell_dynamics.h"
 #include "tests/paper/meshes.h"
 #include "tests/paper/sheets.h"
 
 // Conservation in the motion of a free sheet.
-namespace geoprior {
+namespace geoprior::paper {
 namespace {
 
 struct Momentum {
@@ -92,4 +92,4 @@ TEST(FreeFlight, KeepsLinearMomentumAndLosesAngularMomentumAsImplicitEulerDoes) 
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::paper

@@ -9,7 +9,7 @@
 #include "core/procedural.h"
 #include "solvers/skinning/sampling.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 std::vector<Eigen::Vector3d> ring(double a, double b, int count) {
@@ -70,4 +70,4 @@ TEST(BoneSamples, HaveACapForEveryJointSharedWithAnotherBone) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::skinning

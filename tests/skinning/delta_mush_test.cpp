@@ -6,7 +6,7 @@
 #include "core/parallel.h"
 #include "tests/skinning/fixtures.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 using fixtures::cylinder_options;
@@ -153,4 +153,4 @@ TEST(DeltaMush, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::skinning

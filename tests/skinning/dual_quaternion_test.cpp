@@ -9,7 +9,7 @@
 #include "core/parallel.h"
 #include "tests/skinning/fixtures.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 using fixtures::cylinder_options;
@@ -180,4 +180,4 @@ TEST(DualQuaternionBlend, RefusesAPoseThatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::skinning

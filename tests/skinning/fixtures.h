@@ -11,7 +11,7 @@
 
 // Rigs and poses with known answers, shared by the tests of skinning.
 
-namespace geoprior::fixtures {
+namespace geoprior::skinning::fixtures {
 
 /// Two-bone cylinder, small enough for exhaustive checks; the ramp is 0.2 m wide.
 inline CylinderOptions cylinder_options() {
@@ -25,7 +25,7 @@ inline CylinderOptions cylinder_options() {
 inline Pose turned(const RiggedMesh& rig, const std::string& joint, const std::string& axis,
                    double angle) {
   const int j = rig.skeleton.index_of(joint);
-  const Eigen::Vector3d about = rig.skeleton.joints[static_cast<std::size_t>(j)].axes.at(axis);
+  const Eigen::Vector3d about = rig.skeleton.joints[j].axes.at(axis);
   return pose_from_rotations(rig.skeleton,
                              {{j, Eigen::Quaterniond(Eigen::AngleAxisd(angle, about))}});
 }
@@ -35,8 +35,7 @@ inline Pose curled(const RiggedMesh& finger, double angle) {
   std::vector<JointRotation> rotations;
   for (const char* name : {"proximal", "middle", "distal"}) {
     const int j = finger.skeleton.index_of(name);
-    const Eigen::Vector3d about =
-        finger.skeleton.joints[static_cast<std::size_t>(j)].axes.at("flexion");
+    const Eigen::Vector3d about = finger.skeleton.joints[j].axes.at("flexion");
     rotations.push_back({j, Eigen::Quaterniond(Eigen::AngleAxisd(angle, about))});
   }
   return pose_from_rotations(finger.skeleton, rotations);
@@ -75,4 +74,4 @@ inline RiggedMesh cylinder_of_many_influences(int copies) {
   return rig;
 }
 
-}  // namespace geoprior::fixtures
+}  // namespace geoprior::skinning::fixtures

@@ -1,4 +1,4 @@
-#include "baselines/skinning/heat_weights.h"
+#include "models/skinning/heat_weights.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "tests/skinning/fixtures.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 using fixtures::cylinder_options;
@@ -124,4 +124,4 @@ TEST(HeatWeights, RefusesWrongInput) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::skinning

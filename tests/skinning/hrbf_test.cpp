@@ -9,7 +9,7 @@
 #include "core/random.h"
 #include "solvers/skinning/field_cache.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 struct Sphere {
@@ -150,4 +150,4 @@ TEST(FieldCache, HasAboutTheAskedNumberOfNodesWhateverTheBox) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::skinning

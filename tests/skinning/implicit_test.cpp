@@ -12,12 +12,12 @@
 #include "metrics/joint_region.h"
 #include "metrics/overlap_volume.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 Pose bend(const RiggedMesh& rig, const std::string& joint, double degrees) {
   const int j = rig.skeleton.index_of(joint);
-  const auto& axes = rig.skeleton.joints[static_cast<std::size_t>(j)].axes;
+  const auto& axes = rig.skeleton.joints[j].axes;
   const Eigen::AngleAxisd turn(degrees * std::numbers::pi / 180, axes.at("flexion"));
   return pose_from_rotations(rig.skeleton, {{j, Eigen::Quaterniond(turn)}});
 }
@@ -168,7 +168,7 @@ TEST(ImplicitSkinning, SamplesLieOnTheSkinOrOnTheBones) {
   for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
     EXPECT_NEAR(samples.normals.row(i).norm(), 1, 1e-9);
     const double to_axis = samples.points.row(i).tail<2>().norm();  // the finger is along x
-    if (samples.is_cap[static_cast<std::size_t>(i)]) {
+    if (samples.is_cap[i]) {
       EXPECT_LE(to_axis, 1e-9);
     } else if (samples.points(i, 0) > 0.02 && samples.points(i, 0) < 0.08) {
       EXPECT_GT(to_axis, 0.006);
@@ -214,4 +214,4 @@ TEST(ImplicitSkinning, AcceptsFlatRigsAndJointsWithoutSkin) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::skinning

@@ -9,7 +9,7 @@
 #include "core/parallel.h"
 #include "tests/skinning/fixtures.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 using fixtures::cylinder_options;
@@ -26,8 +26,7 @@ Eigen::MatrixX3d linear_blend(const RiggedMesh& rig, const Pose& pose) {
 Eigen::Vector3d by_definition(const RiggedMesh& rig, const Pose& pose, int v) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (SkinWeights::InnerIterator it(rig.weights, v); it; ++it)
-    sum += it.value() *
-           (pose[static_cast<std::size_t>(it.col())] * Eigen::Vector3d(rig.mesh.V.row(v)));
+    sum += it.value() * (pose[it.col()] * Eigen::Vector3d(rig.mesh.V.row(v)));
   return sum;
 }
 
@@ -133,4 +132,4 @@ TEST(LinearBlend, RefusesWrongInput) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::skinning

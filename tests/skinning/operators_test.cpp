@@ -11,7 +11,7 @@
 #include "core/random.h"
 #include "solvers/skinning/compact_support.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 using Operator = std::function<BlendValue(double, double)>;
@@ -175,4 +175,4 @@ TEST(CompactSupport, GoesFromOneToZeroThroughAHalf) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::skinning

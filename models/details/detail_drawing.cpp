@@ -1,0 +1,151 @@
+#include "models/details/detail_drawing.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/error.h"
+
+namespace geoprior::details {
+namespace {
+
+void require_anchor(const DrawnAnchor& anchor, std::size_t i, const SurfaceTopology& surface) {
+  const std::string where = "detail " + std::to_string(i);
+  const auto& b = anchor.at.barycentric;
+  if (anchor.at.face < 0 || anchor.at.face >= surface.face_count())
+    throw Error("is off the surface: face " + std::to_string(anchor.at.face), where,
+                "0 … " + std::to_string(surface.face_count() - 1));
+  if (!b.allFinite() || b.minCoeff() < -1e-6 || std::abs(b.sum() - 1) > 1e-6)
+    throw Error("is off the surface: barycentric coordinates outside its face", where,
+                "three numbers in [0, 1] with sum 1");
+  if (!(anchor.weight >= 0 && anchor.weight <= 1))
+    throw Error("weight " + std::to_string(anchor.weight), where, "0 … 1");
+  if (!anchor.tangent.allFinite()) throw Error("tangent is not finite", where, "a direction");
+}
+
+const NamedArray& array_of(const Part& part, const std::string& name, Eigen::Index components) {
+  for (const NamedArray& array : part.arrays) {
+    if (array.name == name && array.on == NamedArray::On::points &&
+        array.values.cols() == components)
+      return array;
+  }
+  throw Error("has no point array '" + name + "'", "part 'details'",
+              std::to_string(components) + " components a point");
+}
+
+/// Those that are not drawn keep their place with weight 0, so that numbers stay.
+std::vector<DrawnAnchor> drawn_anchors(std::span<const DrawnAnchor> anchors,
+                                       const SurfaceTopology& surface, std::optional<int> type) {
+  std::vector<DrawnAnchor> drawn(anchors.begin(), anchors.end());
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    require_anchor(drawn[i], i, surface);
+    if (type && drawn[i].type != *type) drawn[i].weight = 0;
+  }
+  return drawn;
+}
+
+std::string part_name(DrawnKind kind) {
+  return kind == DrawnKind::spike ? "spikes" : kind == DrawnKind::mesh ? "instances" : "holes";
+}
+
+}  // namespace
+
+void describe(OptionVisitor& v, DrawingOptions& o) {
+  static constexpr std::array<std::string_view, 3> kKinds{"spike", "mesh", "hole"};
+  static constexpr std::array<std::string_view, 2> kUnits{"mean_edge", "metre"};
+  describe_choice(v, "kind", o.kind, kKinds, {"what a detail is drawn as"});
+  describe_choice(v, "unit", o.unit, kUnits,
+                  {"of radius and height: the mean edge of M_d at rest, or metres"});
+  v.value("radius", o.radius, {"of a detail of weight 1, in `unit`", "", 0, 1e6});
+  v.value("type", o.type, {"draws only details of this type; without: all"});
+  switch (o.kind) {
+    case DrawnKind::spike:
+      describe_group(v, "spike", o.spike, {"a procedural spike"});
+      break;
+    case DrawnKind::mesh:
+      describe_group(v, "instance", o.instance, {"a mesh put onto the surface"});
+      break;
+    case DrawnKind::hole:
+      describe_group(v, "hole", o.hole, {"a hole cut into the surface"});
+      break;
+  }
+}
+
+DrawnDetails draw_details(const SurfaceTopology& surface, std::span<const Eigen::Vector3d> x,
+                          std::span<const DrawnAnchor> anchors, const DrawingOptions& options,
+                          double mean_edge, const TriMesh& instance) {
+  const double unit = options.unit == DrawnUnit::metre ? 1.0 : mean_edge;
+  if (!(unit > 0))
+    throw Error("mean edge " + std::to_string(mean_edge), "drawing", "a positive length");
+  const auto drawn = drawn_anchors(anchors, surface, options.type);
+  const double radius = options.radius * unit;
+  switch (options.kind) {
+    case DrawnKind::spike:
+      return draw_spikes(surface, x, drawn, options.spike, radius, options.spike.height * unit);
+    case DrawnKind::hole:
+      return cut_holes(surface, x, drawn, options.hole, radius).drawn;
+    case DrawnKind::mesh:
+      break;
+  }
+  const bool given = options.instance.shape == InstanceShape::given;
+  if (given && instance.F.rows() == 0)
+    throw Error("the mesh of a detail has no triangles", "drawing", "a triangle mesh");
+  return draw_instances(surface, x, drawn, given ? instance : instance_mesh(options.instance.shape),
+                        radius, options.instance.sink);
+}
+
+DrawnDetails draw_details(const TriMesh& surface, std::span<const DrawnAnchor> anchors,
+                          const DrawingOptions& options, double mean_edge,
+                          const TriMesh& instance) {
+  std::vector<Eigen::Vector3d> x(surface.V.rows());
+  for (std::size_t v = 0; v < x.size(); ++v) x[v] = surface.V.row(static_cast<Eigen::Index>(v));
+  return draw_details(SurfaceTopology(surface), x, anchors, options, mean_edge, instance);
+}
+
+std::vector<DrawnAnchor> anchors_of(const Part& details) {
+  const auto& weight = array_of(details, "weight", 1).values;
+  const auto& type = array_of(details, "type", 1).values;
+  const auto& face = array_of(details, "face", 1).values;
+  const auto& barycentric = array_of(details, "barycentric", 3).values;
+  const auto& tangent = array_of(details, "tangent", 3).values;
+  std::vector<DrawnAnchor> anchors(details.points.rows());
+  for (std::size_t i = 0; i < anchors.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    anchors[i].at = {static_cast<int>(face(row, 0)), barycentric.row(row).transpose()};
+    anchors[i].weight = weight(row, 0);
+    anchors[i].tangent = tangent.row(row).transpose();
+    anchors[i].type = static_cast<int>(type(row, 0));
+  }
+  return anchors;
+}
+
+std::string add_drawing(Frame& frame, const DrawingOptions& options, double mean_edge,
+                        const TriMesh& instance) {
+  for (const char* needed : {"surface", "details"})
+    if (!frame.parts.contains(needed))
+      throw Error(std::string("has no part '") + needed + "'", "frame", "a frame of details");
+  const Part& surface = frame.parts.at("surface");
+  const auto anchors = anchors_of(frame.parts.at("details"));
+  DrawnDetails drawn =
+      draw_details({surface.points, surface.triangles}, anchors, options, mean_edge, instance);
+  Part part;
+  part.points = std::move(drawn.mesh.V);
+  part.triangles = std::move(drawn.mesh.F);
+  const auto number = [&](const char* name, double none, const auto& value) {
+    Eigen::MatrixXd values(part.points.rows(), 1);
+    for (Eigen::Index v = 0; v < values.rows(); ++v) {
+      const int i = drawn.detail[v];
+      values(v, 0) = i < 0 ? none : static_cast<double>(value(i));
+    }
+    part.arrays.push_back({name, "1", NamedArray::On::points, std::move(values)});
+  };
+  number("detail", -1, [](int i) { return i; });
+  number("weight", 0, [&](int i) { return anchors[i].weight; });
+  number("type", -1, [&](int i) { return anchors[i].type; });
+  part.arrays.push_back({"normal", "1", NamedArray::On::points, std::move(drawn.normals)});
+  const std::string name = part_name(options.kind);
+  frame.parts[name] = std::move(part);
+  return name;
+}
+
+}  // namespace geoprior::details

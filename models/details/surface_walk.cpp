@@ -1,0 +1,243 @@
+#include "models/details/surface_walk.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace geoprior::details {
+namespace {
+
+using Points = std::span<const Eigen::Vector3d>;
+
+std::array<Eigen::Vector3d, 3> corners_of(int face, const SurfaceTopology& surface, Points x) {
+  const auto& f = surface.face[face];
+  return {x[f[0]], x[f[1]], x[f[2]]};
+}
+
+/// Barycentric coordinates of the point of the edge a-b that is nearest to p.
+Eigen::Vector3d nearest_on_edge(const std::array<Eigen::Vector3d, 3>& c, int k,
+                                const Eigen::Vector3d& p) {
+  const int l = (k + 1) % 3;
+  const Eigen::Vector3d along = c[l] - c[k];
+  const double s = along.squaredNorm();
+  const double t = s > 0 ? std::clamp(along.dot(p - c[k]) / s, 0.0, 1.0) : 0;
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  b[k] = 1 - t;
+  b[l] = t;
+  return b;
+}
+
+Eigen::Vector3d nearest_on_triangle(const std::array<Eigen::Vector3d, 3>& c,
+                                    const Eigen::Vector3d& p) {
+  const Eigen::Vector3d normal = (c[1] - c[0]).cross(c[2] - c[0]);
+  const double s = normal.squaredNorm();
+  Eigen::Vector3d b;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d &u = c[(k + 1) % 3], &v = c[(k + 2) % 3];
+    b[static_cast<Eigen::Index>(k)] = normal.dot((v - u).cross(p - u)) / s;
+  }
+  if (b.minCoeff() >= 0) return b / b.sum();
+  double best = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d e = nearest_on_edge(c, k, p);
+    const double d = (e[0] * c[0] + e[1] * c[1] + e[2] * c[2] - p).squaredNorm();
+    if (d < best) {
+      best = d;
+      b = e;
+    }
+  }
+  return b;
+}
+
+struct Candidate {
+  SurfacePoint point;
+  double distance2 = std::numeric_limits<double>::infinity();
+};
+
+void try_face(int face, const Eigen::Vector3d& target, const SurfaceTopology& surface, Points x,
+              Candidate& best) {
+  const auto c = corners_of(face, surface, x);
+  const Eigen::Vector3d b = nearest_on_triangle(c, target);
+  const double d = (b[0] * c[0] + b[1] * c[1] + b[2] * c[2] - target).squaredNorm();
+  if (d < best.distance2 * (1 - 1e-12)) best = {{face, b}, d};
+}
+
+}  // namespace
+
+SurfaceTopology::SurfaceTopology(const TriMesh& rest)
+    : face(static_cast<std::size_t>(rest.F.rows())),
+      across(face.size(), {-1, -1, -1}),
+      corner_offset(static_cast<std::size_t>(rest.V.rows()) + 1, 0),
+      border_vertex(static_cast<std::size_t>(rest.V.rows()), 0) {
+  std::vector<std::array<int, 4>> edges;  // smaller, larger vertex, face, corner
+  for (int t = 0; t < rest.triangle_count(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = rest.F(t, k), b = rest.F(t, (k + 1) % 3);
+      face[t][k] = a;
+      edges.push_back({std::min(a, b), std::max(a, b), t, k});
+      ++corner_offset[a + 1];
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  int edge_count = 0;
+  for (std::size_t i = 0; i < edges.size(); ++edge_count) {
+    std::size_t end = i + 1;
+    while (end < edges.size() && edges[end][0] == edges[i][0] && edges[end][1] == edges[i][1])
+      ++end;
+    if (end - i == 2) {
+      const auto &a = edges[i], &b = edges[i + 1];
+      across[a[2]][a[3]] = b[2];
+      across[b[2]][b[3]] = a[2];
+    } else {
+      border_vertex[edges[i][0]] = 1;
+      border_vertex[edges[i][1]] = 1;
+    }
+    i = end;
+  }
+  for (std::size_t v = 1; v < corner_offset.size(); ++v) corner_offset[v] += corner_offset[v - 1];
+  faces_around.resize(3 * face.size());
+  std::vector<int> fill(corner_offset.begin(), corner_offset.end() - 1);
+  for (int t = 0; t < rest.triangle_count(); ++t) {
+    for (const int v : face[t]) faces_around[fill[v]++] = t;
+  }
+  const Eigen::VectorXd areas = triangle_areas(rest.V, rest.F);
+  rest_area.assign(areas.data(), areas.data() + areas.size());
+  euler = rest.vertex_count() - edge_count + rest.triangle_count();
+}
+
+int SurfaceTopology::fan_of(int vertex) const {
+  const auto faces = faces_of(vertex);
+  if (faces.empty()) return 0;
+  int count = 0;
+  for (const bool forward : {true, false}) {
+    int f = faces[0];
+    for (;;) {
+      const auto& v = face[f];
+      const std::size_t k = v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2;
+      const int g = across[f][forward ? (k + 2) % 3 : k];
+      if (forward || f != faces[0]) ++count;
+      if (g == faces[0]) return count;
+      if (g < 0 || count > static_cast<int>(faces.size())) break;
+      f = g;
+    }
+  }
+  return count;
+}
+
+double area_of_face(int face, const SurfaceTopology& surface, Points x) {
+  const auto c = corners_of(face, surface, x);
+  return 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm();
+}
+
+Eigen::Vector3d normal_of_face(int face, const SurfaceTopology& surface, Points x) {
+  const auto c = corners_of(face, surface, x);
+  return (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+}
+
+SurfacePoint walk_to_nearest(const SurfacePoint& start, const Eigen::Vector3d& target,
+                             const SurfaceTopology& surface, Points x) {
+  Candidate best;
+  try_face(start.face, target, surface, x, best);
+  for (;;) {
+    const Candidate before = best;
+    const auto& f = surface.face[before.point.face];
+    const auto& b = before.point.barycentric;
+    for (std::size_t k = 0; k < 3; ++k) {
+      // The nearest point may lie beyond an edge it touches, or anywhere around a corner.
+      if (b[static_cast<Eigen::Index>(k)] >= 1 - 1e-12) {
+        for (const int g : surface.faces_of(f[k])) try_face(g, target, surface, x, best);
+      }
+      if (b[static_cast<Eigen::Index>((k + 2) % 3)] > 1e-12) continue;
+      const int g = surface.across[before.point.face][k];
+      if (g >= 0) try_face(g, target, surface, x, best);
+    }
+    if (best.point.face == before.point.face) return best.point;
+  }
+}
+
+SurfacePoint trace_straight(const SurfacePoint& start, const Eigen::Vector3d& direction,
+                            double length, const SurfaceTopology& surface, Points x) {
+  SurfacePoint p = start;
+  // Velocity in barycentric coordinates: exact within a face.
+  const auto barycentric_velocity = [&](int face, const Eigen::Vector3d& d) {
+    const auto c = corners_of(face, surface, x);
+    const Eigen::Vector3d n = (c[1] - c[0]).cross(c[2] - c[0]);
+    const Eigen::Vector3d u = (d - n * (n.dot(d) / n.squaredNorm())).normalized();
+    Eigen::Vector3d v;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector3d edge = c[(k + 2) % 3] - c[(k + 1) % 3];
+      v[static_cast<Eigen::Index>(k)] = n.cross(edge).dot(u) / n.squaredNorm();
+    }
+    return std::pair(v, u);
+  };
+  auto [v, u] = barycentric_velocity(p.face, direction);
+  int entered = -1;
+  for (int steps = 0; steps < 100000 && length > 0; ++steps) {
+    double reach = length;
+    int out = -1;
+    for (int k = 0; k < 3; ++k) {
+      if (k == entered || !(v[k] < 0)) continue;
+      const double t = std::max(p.barycentric[k], 0.0) / -v[k];
+      if (t < reach) {
+        reach = t;
+        out = k;
+      }
+    }
+    p.barycentric = (p.barycentric + reach * v).cwiseMax(0.0);
+    p.barycentric /= p.barycentric.sum();
+    length -= reach;
+    if (out < 0) break;
+    const auto edge = static_cast<std::size_t>((out + 1) % 3);
+    const auto from = static_cast<std::size_t>(p.face);
+    const int g = surface.across[from][edge];
+    if (g < 0) break;
+    // Unfold: the angle to the common edge is kept.
+    const auto c = corners_of(p.face, surface, x);
+    const Eigen::Vector3d along = (c[(edge + 1) % 3] - c[edge]).normalized();
+    const double cosine = u.dot(along);
+    const int a = surface.face[from][edge], b = surface.face[from][(edge + 1) % 3];
+    const auto& other = surface.face[g];
+    SurfacePoint q{g, Eigen::Vector3d::Zero()};
+    int opposite = 0;
+    for (int k = 0; k < 3; ++k) {
+      const int w = other[k];
+      if (w == a)
+        q.barycentric[k] = p.barycentric[static_cast<Eigen::Index>(edge)];
+      else if (w == b)
+        q.barycentric[k] = p.barycentric[static_cast<Eigen::Index>((edge + 1) % 3)];
+      else
+        opposite = k;
+    }
+    const auto d = corners_of(g, surface, x);
+    const Eigen::Vector3d in = d[opposite] - x[a];
+    const Eigen::Vector3d across = (in - along * in.dot(along)).normalized();
+    std::tie(v, u) = barycentric_velocity(
+        g, cosine * along + std::sqrt(std::max(0.0, 1 - cosine * cosine)) * across);
+    p = q;
+    entered = opposite;
+    // The edge just crossed is the one opposite to `opposite`: leaving through it at once is
+    // round-off.
+  }
+  return p;
+}
+
+Eigen::Vector3d tangent_direction(int face, double angle, const SurfaceTopology& surface,
+                                  Points x) {
+  const auto c = corners_of(face, surface, x);
+  const Eigen::Vector3d e = (c[1] - c[0]).normalized();
+  const Eigen::Vector3d n = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+  return std::cos(angle) * e + std::sin(angle) * n.cross(e);
+}
+
+double tangent_angle(int face, const Eigen::Vector3d& direction, const SurfaceTopology& surface,
+                     Points x) {
+  const auto c = corners_of(face, surface, x);
+  const Eigen::Vector3d e = (c[1] - c[0]).normalized();
+  const Eigen::Vector3d n = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+  return std::atan2(direction.dot(n.cross(e)), direction.dot(e));
+}
+
+}  // namespace geoprior::details

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "models/fluid/mac_grid.h"
+#include "models/fluid/particles.h"
+
+namespace geoprior::fluid {
+
+/// A side of the domain through which particles leave; without one all six sides keep them.
+struct OpenSide {
+  int axis = 2;
+  bool upper = true;
+};
+
+/// Moves particles through a velocity that stands still for `dt` (Ralston's third-order
+/// Runge–Kutta, of least error bound), then puts those that entered a solid or a wall back onto its
+/// surface along the gradient of the distance.
+/// @param solids  null: only the walls of the domain
+/// @param left  1 for particles that crossed the open side, else 0
+/// Source: Ralston 1962; Bridson, Fluid Simulation, 2015, ch. 7.
+void advect_particles(const MacGrid& velocity, double dt, const ScalarGrid* solids,
+                      const std::optional<OpenSide>& open, LiquidParticles& particles,
+                      std::vector<std::uint8_t>& left);
+
+}  // namespace geoprior::fluid

@@ -1,0 +1,57 @@
+#include "models/paper/handle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace geoprior::paper {
+namespace {
+
+double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
+                           const Eigen::Vector2d& b) {
+  const Eigen::Vector2d along = b - a;
+  const double squared = along.squaredNorm();
+  const double t = squared > 0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0;
+  return (p - a - t * along).norm();
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> Handle::anchors() const {
+  if (segment) return {segment->first, segment->second};
+  if (!disc_radius || points.empty()) return points;
+  // The centre alone would not carry the orientation of the patch.
+  std::vector<Eigen::Vector2d> result{points.front()};
+  for (int i = 0; i < kDiscAnchors; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kDiscAnchors;
+    result.push_back(points.front() +
+                     *disc_radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+  }
+  return result;
+}
+
+bool Handle::covers(const Eigen::Vector2d& p, double tolerance) const {
+  if (segment) return distance_to_segment(p, segment->first, segment->second) <= tolerance;
+  if (disc_radius && !points.empty()) {
+    return (p - points.front()).norm() <= *disc_radius + tolerance;
+  }
+  return std::any_of(points.begin(), points.end(),
+                     [&](const Eigen::Vector2d& point) { return (p - point).norm() <= tolerance; });
+}
+
+bool Handle::is_active(double time) const {
+  // Sums of steps reach an end only up to round-off.
+  constexpr double kSlack = 1e-9;
+  return active.empty() || std::any_of(active.begin(), active.end(), [&](const auto& interval) {
+           return time >= interval.first - kSlack && time <= interval.second + kSlack;
+         });
+}
+
+Eigen::Vector3d Handle::target(const Eigen::Vector3d& rest, const Eigen::Vector3d& centre,
+                               double time) const {
+  if (!motion) return rest;
+  const Keyframe key = motion->at(time);
+  return centre + key.shift + key.turn * (rest - centre);
+}
+
+}  // namespace geoprior::paper

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "models/paper/sheet.h"
+#include "models/paper/shell_state.h"
+
+namespace geoprior::paper {
+
+/// Which vertices of a mesh each handle of a sheet covers, and what it does to them.
+class HandleMap {
+ public:
+  HandleMap() = default;
+  /// @throws Error  when a handle covers no vertex (names it)
+  HandleMap(const Sheet& sheet, const ShellMesh& mesh, std::uint64_t seed);
+
+  /// A vertex and where a handle wants it.
+  struct Target {
+    int vertex;
+    int handle;
+    Eigen::Vector3d place;  ///< m
+  };
+  /// Vertices prescribed at `time`, ascending. One that several handles cover belongs to the first.
+  void targets(const Sheet& sheet, double time, std::vector<Target>& out) const;
+
+  /// Adds the dead loads active at `time` to n x 3 forces (N).
+  void add_loads(const Sheet& sheet, double time, Eigen::MatrixX3d& forces) const;
+
+ private:
+  struct Covered {
+    int vertex;
+    int handle;
+    Eigen::Vector3d rest;  ///< at the start (m)
+    double share;          ///< of the handle's force
+  };
+  std::vector<Covered> covered_;         ///< by vertex, then handle
+  std::vector<Eigen::Vector3d> centre_;  ///< of each handle's anchors at the start (m)
+};
+
+}  // namespace geoprior::paper

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "models/paper/shell_state.h"
+
+namespace geoprior::paper {
+
+/// Finds triangles of a triangulated pattern by point: built once, asked often.
+class PatternLocator {
+ public:
+  explicit PatternLocator(const ShellMesh& mesh);
+  struct Place {
+    int triangle = -1;
+    Eigen::Vector3d weights;  ///< barycentric
+  };
+  /// The triangle that contains `p`, or the nearest one (weights then clamped to it).
+  [[nodiscard]] Place locate(const Eigen::Vector2d& p) const;
+
+ private:
+  [[nodiscard]] Eigen::Vector3d barycentric(int triangle, const Eigen::Vector2d& p) const;
+  [[nodiscard]] Place nearest(const Eigen::Vector2d& p) const;
+  [[nodiscard]] int column(double u) const;
+  [[nodiscard]] int row(double v) const;
+
+  Eigen::MatrixX2d pattern_;
+  Eigen::MatrixX3i triangles_;
+  Eigen::Vector2d origin_;
+  double cell_ = 1;
+  int columns_ = 1, rows_ = 1;
+  std::vector<int> offset_, items_;  ///< triangles whose boxes meet each cell of a grid
+};
+
+}  // namespace geoprior::paper

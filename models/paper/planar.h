@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace geoprior::paper {
+
+/// Side of the line from `a` to `b` on which `c` lies: +1 left, -1 right, 0 on it. Exact.
+int orientation(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c);
+
+/// True when the closed segments a b and c d have a point in common. Exact.
+bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+                   const Eigen::Vector2d& d);
+
+/// Twice the signed area of a triangle (m^2), positive when counter-clockwise.
+inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Constrained Delaunay triangulation of the inside of a closed chain of segments.
+///
+/// @param points    n x 2, no two equal
+/// @param segments  pairs of points: edges of the result; they must enclose the inside, and others
+///                  may lie in it. Segments do not cross, and no point lies inside a segment.
+/// @return          counter-clockwise triangles, in an order that the input alone decides
+/// @throws Error    when two points coincide or two segments cross (names them)
+/// Source: CGAL, 2D triangulations.
+Eigen::MatrixX3i constrained_delaunay(const Eigen::MatrixX2d& points,
+                                      const std::vector<Eigen::Vector2i>& segments);
+
+}  // namespace geoprior::paper

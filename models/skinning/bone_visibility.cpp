@@ -1,0 +1,117 @@
+#include "models/skinning/bone_visibility.h"
+
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/AABB_triangle_primitive.h>
+#include <CGAL/Simple_cartesian.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace geoprior::skinning {
+namespace {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using Triangle = Kernel::Triangle_3;
+using Primitive = CGAL::AABB_triangle_primitive<Kernel, std::vector<Triangle>::const_iterator>;
+using Traits = CGAL::AABB_traits<Kernel, Primitive>;
+
+/// Share of the segment at the vertex that is not tested: the triangles around it are there.
+constexpr double kStart = 1e-3;
+
+Kernel::Point_3 point(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
+/// Point nearest to `d` in the wedge {x a + y b, x, y >= 0} of a triangle's corner, `n` its unit
+/// normal.
+Eigen::Vector3d nearest_in_wedge(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                 const Eigen::Vector3d& n, const Eigen::Vector3d& d) {
+  const Eigen::Vector3d in_plane = d - d.dot(n) * n;
+  if (in_plane.cross(b).dot(n) >= 0 && a.cross(in_plane).dot(n) >= 0) return in_plane;
+  const Eigen::Vector3d on_a = std::max(0.0, d.dot(a) / a.squaredNorm()) * a;
+  const Eigen::Vector3d on_b = std::max(0.0, d.dot(b) / b.squaredNorm()) * b;
+  return (on_a - d).squaredNorm() < (on_b - d).squaredNorm() ? on_a : on_b;
+}
+
+}  // namespace
+
+struct InsideVisibility::Tree {
+  std::vector<Triangle> triangles;
+  CGAL::AABB_tree<Traits> tree;
+};
+
+Eigen::Vector3d Bone::nearest(const Eigen::Vector3d& p) const {
+  const Eigen::Vector3d axis = tail - head;
+  const double t = std::clamp((p - head).dot(axis) / axis.squaredNorm(), 0.0, 1.0);
+  return head + t * axis;
+}
+
+std::vector<Bone> bones_of(const Skeleton& skeleton) {
+  std::vector<Bone> bones;
+  for (int j = 0; j < skeleton.size(); ++j) {
+    const Joint& joint = skeleton.joints[j];
+    if (joint.tail) bones.push_back({j, joint.head, *joint.tail});
+  }
+  return bones;
+}
+
+InsideVisibility::InsideVisibility(const TriMesh& mesh)
+    : mesh_(mesh),
+      fan_offset_(static_cast<std::size_t>(mesh.vertex_count()) + 1, 0),
+      tree_(std::make_unique<Tree>()) {
+  for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
+    const Triangle triangle(point(mesh.V.row(mesh.F(t, 0))), point(mesh.V.row(mesh.F(t, 1))),
+                            point(mesh.V.row(mesh.F(t, 2))));
+    if (!triangle.is_degenerate()) tree_->triangles.push_back(triangle);
+  }
+  for (Eigen::Index i = 0; i < mesh.F.size(); ++i) ++fan_offset_[mesh.F.data()[i] + 1];
+  std::partial_sum(fan_offset_.begin(), fan_offset_.end(), fan_offset_.begin());
+  fan_.resize(mesh.F.size());
+  std::vector<int> next = fan_offset_;
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      int& slot = next[mesh.F(t, k)];
+      fan_[slot++] = t;
+    }
+  }
+  tree_->tree.insert(tree_->triangles.cbegin(), tree_->triangles.cend());
+  tree_->tree.build();
+}
+
+InsideVisibility::~InsideVisibility() = default;
+
+/// Whether the way starts on the inner side of the triangles around the vertex: the side of the one
+/// nearest to it; between triangles equally near (a common edge), of the one it is steepest to.
+bool InsideVisibility::leaves_inwards(int v, const Eigen::Vector3d& way) const {
+  const Eigen::Vector3d d = way.normalized();
+  double nearest = std::numeric_limits<double>::infinity();
+  double height = 1;
+  for (int i = fan_offset_[v]; i < fan_offset_[v + 1]; ++i) {
+    const int t = fan_[i];
+    const int k = mesh_.F(t, 0) == v ? 0 : (mesh_.F(t, 1) == v ? 1 : 2);
+    const Eigen::Vector3d a = mesh_.V.row(mesh_.F(t, (k + 1) % 3)) - mesh_.V.row(v);
+    const Eigen::Vector3d b = mesh_.V.row(mesh_.F(t, (k + 2) % 3)) - mesh_.V.row(v);
+    const Eigen::Vector3d n = a.cross(b);
+    if (!(n.norm() > 1e-12 * a.norm() * b.norm())) continue;
+    const Eigen::Vector3d unit = n.normalized();
+    const double distance = (d - nearest_in_wedge(a, b, unit, d)).norm();
+    const double side = d.dot(unit);
+    const bool tie = std::abs(distance - nearest) < 1e-9;
+    if (tie ? std::abs(side) > std::abs(height) : distance < nearest) height = side;
+    nearest = std::min(nearest, distance);
+  }
+  return height <= 0;
+}
+
+bool InsideVisibility::sees(int v, const Eigen::Vector3d& target) const {
+  const Eigen::Vector3d from = mesh_.V.row(v);
+  const Eigen::Vector3d way = target - from;
+  if (way.norm() == 0) return true;
+  if (!leaves_inwards(v, way)) return false;
+  const Kernel::Segment_3 segment(point(from + kStart * way), point(target));
+  return !tree_->tree.do_intersect(segment);
+}
+
+}  // namespace geoprior::skinning

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/options.h"
+#include "models/details/detail_process.h"
+#include "solvers/details/pair_correlation.h"
+#include "solvers/details/triplet_table.h"
+
+namespace geoprior::details {
+
+/// When a triangle of M_d counts as stretched or shrunk.
+enum class AreaRule {
+  own,    ///< against its own initial area, carried through flips (the thesis)
+  mean,   ///< against the mean initial area of all triangles
+  budget  ///< against the density around it at rest, and only while its patch has fewer (to
+          ///< shrink: more) details than its area asks for
+};
+
+/// What a weight may change by in a frame.
+enum class WeightLaw {
+  frame,   ///< weight_rate
+  motion,  ///< motion_rate x (largest displacement of the frame / mean edge), at most weight_rate
+};
+
+/// Self-replicating details (thesis 2.2.2): details that multiply where the surface is stretched
+/// and merge where it is squeezed, so that their spacing stays.
+///
+/// Every frame: the surface moves and details with it; the edges of M_d are measured, and flipped
+/// to Delaunay; triangles with area A' > tau A_ref are filled, most stretched first, no two that
+/// share a vertex: the most similar triangle of three details of the original (area, smallest
+/// angle, then edge lengths) says where inside details lie, and they are copied by barycentric
+/// coordinates with weight 0. In triangles with A' < A_ref / tau_c one detail of the shortest edge
+/// fades, the closest two first, and leaves M_d at weight 0. Weights move to their targets at a
+/// limited rate.
+///
+/// What it cannot do: it knows positions, not pictures; the plain method makes patterns with
+/// structure beyond neighbours (clusters) more uniform; `histogram` counters that.
+struct SelfReplicatingOptions {
+  AreaRule area_rule = AreaRule::budget;
+  double stretch_threshold = 1.75;  ///< tau, rules own and mean
+  double shrink_threshold = 1.75;   ///< tau_c, rules own and mean
+  int patch_details = 48;           ///< budget: details of a patch at rest
+  double dead_band = 0.1;           ///< budget: a patch acts when off by more than 1/2 + this
+  /// budget: patches ask for what they need some frames ahead if they go on as in the last frame,
+  /// because details take K = 1 / weight_rate frames to appear and to fade: K / 4 ahead when they
+  /// grow (a newborn is in M_d at once and visible after K / 2), 3 K / 4 when they shrink (a fading
+  /// detail is visible for K / 2 and in M_d for K).
+  bool anticipate = true;
+  std::optional<int> max_insertions;  ///< of a frame; absent: no limit
+  WeightLaw weight_law = WeightLaw::frame;
+  double weight_rate = 0.1;  ///< largest change of a weight in a frame
+  double motion_rate = 1;    ///< law motion: change of weight per mean edge of displacement
+  LengthRule lengths = LengthRule::chord;
+  bool histogram = false;  ///< choose among candidates by the pair correlation (the extension)
+  int candidates = 6;      ///< m: triplets compared by the extension
+  TripletOptions triplets;
+  PairCorrelationOptions pair_correlation;
+};
+void describe(OptionVisitor& v, SelfReplicatingOptions& options);
+
+/// The method frame by frame. Phases inside a step: "move", "insert", "merge", "weights".
+///
+/// Diagnostics: inserted, revived, fading (started in the frame), removed, flips, refused_flips,
+/// failed_queries, max_weight_change, budget_target; of the first frame also triplets,
+/// triplets_met, table_bytes.
+std::unique_ptr<DetailMethod> make_self_replicating(const DetailScene& scene,
+                                                    const SelfReplicatingOptions& options,
+                                                    std::uint64_t seed);
+
+/// As a process: `make_detail_process` around it.
+std::unique_ptr<Process> make_self_replicating_process(const DetailScene& scene,
+                                                       const SelfReplicatingOptions& options);
+
+}  // namespace geoprior::details

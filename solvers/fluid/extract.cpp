@@ -1,0 +1,218 @@
+#include "solvers/fluid/extract.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "core/error.h"
+#include "solvers/fluid/lift.h"
+#include "solvers/fluid/lifted_frames.h"
+#include "solvers/fluid/sculpt_state.h"
+
+namespace geoprior::fluid {
+
+namespace {
+
+/// What is kept of a frame until the tracks are known.
+struct Kept {
+  Eigen::VectorXf curvature;
+  std::vector<int> label;
+  double masked_share = 0;
+  double bytes = 0;  ///< of the mesh
+};
+
+/// What `lift` adds to the frames.
+struct Lifted {
+  std::vector<Feature> features;
+  std::vector<Artifact> files;
+  const Feature* shown = nullptr;  ///< its map is recorded; may be null
+  std::map<std::string, double> diagnostics;
+};
+
+int kind_number(RegionKind kind) { return kind == RegionKind::isolated ? 1 : 2; }
+
+class ExtractProcess final : public Process {
+ public:
+  ExtractProcess(std::shared_ptr<const SurfaceSequence> source, const ExtractOptions& options,
+                 FeatureFiles files)
+      : source_(std::move(source)), options_(options), files_(std::move(files)) {}
+
+  void run(FrameSink& sink, RunContext& context, const std::optional<State>& resume) override {
+    SculptState state = resume ? SculptState::of(*resume) : SculptState{};
+    std::vector<Kept> kept(source_->frame_count());
+    const auto keep = [&](int i, const SurfaceFrame& source, const SegmentedFrame& segmented) {
+      Kept& k = kept[i];
+      k.bytes = mesh_bytes(source.mesh);
+      k.curvature = segmented.curvature.cast<float>();
+      k.label = segmented.label;
+      const auto masked = std::count(segmented.masked.begin(), segmented.masked.end(), char{1});
+      k.masked_share = segmented.masked.empty() ? 0
+                                                : static_cast<double>(masked) /
+                                                      static_cast<double>(segmented.masked.size());
+    };
+    const Extraction extraction = extract_regions(*source_, options_.extraction, context, keep);
+    if (context.stop_requested()) return;
+    for (const std::string& w : extraction.warnings) state.warn(w, w, 0, sink);
+    Lifted lifted;
+    if (options_.lift) lift(extraction, kept, lifted, context);
+    if (context.stop_requested()) return;
+    const std::vector<int> track_of = tracks_of(extraction);
+    const int count = source_->frame_count();
+    for (int i = state.next_frame; i < count && !context.stop_requested(); ++i) {
+      Frame frame = labelled(i, extraction, track_of, kept[i]);
+      frame.diagnostics.merge(std::map(lifted.diagnostics));
+      if (lifted.shown != nullptr) {
+        frame.parts["map"] = map_part(*lifted.shown, extraction.times[i]);
+      }
+      if (i + 1 == count) add_tracks(extraction, frame);
+      if (i + 1 == count && options_.lift) add_features(extraction, kept, lifted, frame);
+      sink.frame(std::move(frame));
+      // Before the last checkpoint: a run that goes on after it has them, one before makes them.
+      if (i + 1 == count) {
+        for (Artifact& file : lifted.files) sink.artifact(std::move(file));
+      }
+      state.next_frame = i + 1;
+      sink.checkpoint(state.bytes());
+      context.progress(static_cast<double>(i + 1) / count);
+    }
+  }
+
+ private:
+  /// Track id of every region, 0 for none.
+  static std::vector<int> tracks_of(const Extraction& extraction) {
+    std::vector<int> result(extraction.regions.size(), 0);
+    for (const Track& track : extraction.tracking.tracks) {
+      for (const int r : track.regions) result[r] = track.id;
+    }
+    return result;
+  }
+
+  void lift(const Extraction& extraction, const std::vector<Kept>& kept, Lifted& lifted,
+            RunContext& context) const {
+    lifted.features = lift_features(*source_, extraction, options_.extraction, {}, context);
+    if (context.stop_requested()) return;
+    lifted.shown = shown_map(lifted.features, options_.map_feature);
+    if (files_) {
+      const Phase phase(context, "store");
+      lifted.files = files_(lifted.features);
+    }
+    double features = 0, files = 0, sequence = 0;
+    for (const Feature& f : lifted.features) features += static_cast<double>(f.bytes());
+    for (const Artifact& file : lifted.files) files += static_cast<double>(file.bytes.size());
+    for (const Kept& k : kept) sequence += k.bytes;
+    lifted.diagnostics = {{"lifted_features", static_cast<double>(lifted.features.size())},
+                          {"feature_bytes", features},
+                          {"feature_file_bytes", files},
+                          {"sequence_bytes", sequence}};
+  }
+
+  static void add_features(const Extraction& extraction, const std::vector<Kept>& kept,
+                           const Lifted& lifted, Frame& frame) {
+    std::vector<double> bytes;
+    for (const Kept& k : kept) bytes.push_back(k.bytes);
+    frame.tables["features"] = feature_table(lifted.features, extraction.times, bytes);
+  }
+
+  Frame labelled(int i, const Extraction& extraction, const std::vector<int>& track_of,
+                 const Kept& kept) const {
+    SurfaceFrame source = source_->frame(i);
+    Frame frame;
+    frame.parameter = source.time;
+    const Eigen::Index n = source.mesh.V.rows();
+    Eigen::VectorXd label(n), track = Eigen::VectorXd::Zero(n), kind = Eigen::VectorXd::Zero(n);
+    std::vector<std::vector<double>> rows;
+    std::map<int, std::pair<int, int>> of_label;  // track and kind
+    for (std::size_t r = 0; r < extraction.regions.size(); ++r) {
+      const Region& region = extraction.regions[r];
+      if (region.frame != i) continue;
+      of_label[region.label] = {track_of[r], kind_number(region.kind)};
+      rows.push_back({static_cast<double>(region.label), static_cast<double>(track_of[r]),
+                      static_cast<double>(kind_number(region.kind)), region.centre.x(),
+                      region.centre.y(), region.centre.z(), region.area, region.volume});
+    }
+    for (Eigen::Index v = 0; v < n; ++v) {
+      label[v] = kept.label[v];
+      const auto found = of_label.find(kept.label[v]);
+      if (found == of_label.end()) continue;
+      track[v] = found->second.first;
+      kind[v] = found->second.second;
+    }
+    Part& surface = frame.parts["surface"];
+    surface.points = std::move(source.mesh.V);
+    surface.triangles = std::move(source.mesh.F);
+    const auto on = NamedArray::On::points;
+    surface.arrays.push_back({"curvature", "1/m", on, kept.curvature.cast<double>()});
+    surface.arrays.push_back({"label", "1", on, label});
+    surface.arrays.push_back({"track", "1", on, track});
+    surface.arrays.push_back({"kind", "1", on, kind});
+    if (source.velocity.rows() == n && n > 0) {
+      surface.arrays.push_back({"velocity", "m/s", on, source.velocity});
+    }
+    frame.tables["regions"] = table({"label [1]", "track [1]", "kind [1]", "x [m]", "y [m]",
+                                     "z [m]", "area [m^2]", "volume [m^3]"},
+                                    rows);
+    frame.diagnostics["regions"] = static_cast<double>(rows.size());
+    frame.diagnostics["tracks"] = static_cast<double>(extraction.tracking.tracks.size());
+    frame.diagnostics["masked_share"] = kept.masked_share;
+    return frame;
+  }
+
+  static FrameTable table(const std::vector<std::string>& columns,
+                          const std::vector<std::vector<double>>& rows) {
+    FrameTable result;
+    result.columns = columns;
+    result.rows.resize(static_cast<Eigen::Index>(rows.size()),
+                       static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        result.rows(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = rows[r][c];
+      }
+    }
+    return result;
+  }
+
+  static void add_tracks(const Extraction& extraction, Frame& frame) {
+    std::vector<std::vector<double>> tracks, events;
+    for (const Track& track : extraction.tracking.tracks) {
+      const auto region = [&](int r) { return extraction.regions[r]; };
+      double largest = 0;
+      for (const int r : track.regions) largest = std::max(largest, region(r).area);
+      const auto time = [&](int r) { return extraction.times[region(r).frame]; };
+      tracks.push_back({static_cast<double>(track.id), static_cast<double>(kind_number(track.kind)),
+                        time(track.regions.front()), time(track.regions.back()),
+                        static_cast<double>(track.regions.size()), largest});
+    }
+    for (const TrackEvent& e : extraction.tracking.events) {
+      events.push_back({static_cast<double>(e.kind), extraction.times[e.frame],
+                        static_cast<double>(e.from), static_cast<double>(e.to)});
+    }
+    frame.tables["tracks"] = table(
+        {"track [1]", "kind [1]", "begin [s]", "end [s]", "regions [1]", "largest_area [m^2]"},
+        tracks);
+    frame.tables["events"] = table({"kind [1]", "time [s]", "from [1]", "to [1]"}, events);
+  }
+
+  std::shared_ptr<const SurfaceSequence> source_;
+  ExtractOptions options_;
+  FeatureFiles files_;
+};
+
+}  // namespace
+
+void describe(OptionVisitor& v, ExtractOptions& o) {
+  describe_group(v, "extraction", o.extraction, {.doc = "features of the source"});
+  v.value("lift", o.lift, {.doc = "lifts the features out: their maps are recorded and stored"});
+  v.value("map_feature", o.map_feature,
+          {.doc = "id of the differential feature whose map is recorded; absent: the largest",
+           .min = 1});
+}
+
+std::unique_ptr<Process> make_extract(const SculptScene& scene, const ExtractOptions& options,
+                                      FeatureFiles files) {
+  if (scene.sources.empty() || scene.sources.begin()->second == nullptr) {
+    throw Error("there is nothing to extract features from", "scene", "a source");
+  }
+  return std::make_unique<ExtractProcess>(scene.sources.begin()->second, options, std::move(files));
+}
+
+}  // namespace geoprior::fluid

@@ -1,0 +1,65 @@
+#include "testbed/commands/blessed_run.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "testbed/commands/catalogue.h"
+#include "testbed/commands/console.h"
+#include "testbed/runner/execute.h"
+#include "testbed/runner/run_folder.h"
+#include "testbed/runner/sha256.h"
+
+namespace fs = std::filesystem;
+
+namespace geoprior {
+namespace {
+
+void drop_timing(Experiment& experiment) {
+  std::vector<std::string> timed;
+  for (const StudySpec& study : experiment.studies) {
+    if (study.quantity.starts_with("timing:")) timed.push_back("study:" + study.name);
+  }
+  std::erase_if(experiment.studies,
+                [](const StudySpec& study) { return study.quantity.starts_with("timing:"); });
+  std::erase_if(experiment.claims, [&](const ClaimSpec& claim) {
+    return claim.metric.starts_with("timing:") ||
+           std::find(timed.begin(), timed.end(), claim.metric) != timed.end();
+  });
+}
+
+}  // namespace
+
+BlessedRun run_without_clock(const CommandContext& context, const std::string& id, bool quick) {
+  BlessedRun run;
+  LoadRequest load;
+  load.quick = quick;
+  run.experiment = load_experiment(experiment_file(id), context.topics, load);
+  run.topic = &topic_of(run.experiment, context.topics);
+  drop_timing(run.experiment);
+  std::optional<fs::path> folder = find_run(run.experiment);
+  if (!folder) {
+    // A run without times is not the run that `geoprior run` would make: it has a hash of its own.
+    run.experiment.hash = sha256(run.experiment.hash + " without times");
+    folder = find_run(run.experiment);
+  }
+  if (folder) {
+    run.folder = *folder;
+    run.record = read_run_file(*folder / "run.h5");
+    return run;
+  }
+  say(tinted("running " + run.experiment.id + (quick ? " (quick)" : ""), Tint::faint));
+  ExecuteRequest request;
+  request.timing = false;
+  request.only_declared = true;
+  request.resume = find_unfinished_run(run.experiment).has_value();
+  request.show_progress = isatty(STDERR_FILENO) == 1;
+  ExecuteResult result = execute(run.experiment, context.topics, request);
+  if (result.stopped) throw Error("stopped", run.experiment.id, "the same command again");
+  run.folder = result.folder;
+  run.record = std::move(result.record);
+  return run;
+}
+
+}  // namespace geoprior

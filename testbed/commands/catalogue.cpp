@@ -1,0 +1,81 @@
+#include "testbed/commands/catalogue.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "testbed/home.h"
+#include "testbed/runner/run_folder.h"
+#include "testbed/runner/toml_tree.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const TomlNode& root, const char* key) {
+  const TomlNode* node = root.find(key);
+  return node == nullptr ? std::string() : node->text;
+}
+
+std::vector<fs::path> sorted_entries(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) entries.push_back(entry.path());
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+}  // namespace
+
+std::vector<CatalogueEntry> catalogue() {
+  std::vector<CatalogueEntry> entries;
+  for (const fs::path& folder : sorted_entries(geoprior_home() / "experiments")) {
+    if (!fs::is_directory(folder)) continue;
+    for (const fs::path& file : sorted_entries(folder)) {
+      const bool experiment = file.extension() == ".toml" && !file.stem().has_extension();
+      if (!experiment) continue;
+      const std::string id = folder.filename().string() + "/" + file.stem().string();
+      const TomlNode root = parse_toml_file(file);
+      entries.push_back(
+          {id, text_of(root, "title"), text_of(root, "figure"), text_of(root, "topic"), file});
+    }
+  }
+  return entries;
+}
+
+fs::path experiment_file(const std::string& id_or_file) {
+  if (fs::is_regular_file(id_or_file)) return id_or_file;
+  const fs::path file = geoprior_home() / "experiments" / (id_or_file + ".toml");
+  if (fs::is_regular_file(file)) return file;
+  std::vector<std::string> ids;
+  for (const CatalogueEntry& entry : catalogue()) ids.push_back(entry.id);
+  throw Error("there is no experiment '" + id_or_file + "'", "", allowed_names(id_or_file, ids));
+}
+
+fs::path run_folder_of(const std::string& run) {
+  const fs::path path = run;
+  if (fs::is_regular_file(path) && path.filename() == "run.h5") {
+    return fs::absolute(path).parent_path();
+  }
+  if (fs::is_directory(path)) {
+    if (fs::is_regular_file(path / "run.h5")) return path;
+    throw Error("has no run.h5", run, "the folder of a finished run; finish it with --resume");
+  }
+  if (fs::exists(path)) {
+    throw Error("is no run", run, "a folder with run.h5, its run.h5, or an experiment");
+  }
+  std::vector<fs::path> runs;
+  for (const fs::path& folder : sorted_entries(runs_root() / run)) {
+    if (fs::is_regular_file(folder / "run.h5")) runs.push_back(folder);
+  }
+  // Runs that a check made have no picture: a run that somebody asked for comes first.
+  const auto drawn = std::find_if(runs.rbegin(), runs.rend(), [](const fs::path& folder) {
+    return fs::is_regular_file(folder / "figure.png");
+  });
+  if (drawn != runs.rend()) return *drawn;
+  if (!runs.empty()) return runs.back();
+  (void)experiment_file(run);
+  throw Error("has no finished run", run, "geoprior run " + run);
+}
+
+}  // namespace geoprior

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "testbed/runner/run_record.h"
+#include "testbed/runner/spec.h"
+#include "testbed/topic.h"
+
+namespace geoprior {
+
+/// Exit codes of the program. A run that Ctrl-C stopped ends with `wrong_use`: it has no result.
+enum ExitCode { done = 0, fell_short = 1, wrong_use = 2, internal_error = 3 };
+
+/// What every command is given.
+struct CommandContext {
+  const std::vector<Topic>& topics;
+  bool json = false;  ///< --json: results on stdout
+};
+
+/// Which experiment and how; the overrides make another experiment of the same name.
+struct ExperimentRequest {
+  std::string id_or_file;
+  LoadRequest load;
+};
+
+struct RunRequest {
+  ExperimentRequest experiment;
+  std::optional<std::string> out;
+  bool resume = false;
+  bool pictures = true;  ///< figure.png and the report, after the run
+};
+
+struct CheckRequest {
+  std::vector<std::string> ids;  ///< empty: all of the clone
+  bool quick = false;
+};
+
+struct BlessRequest {
+  std::string id;
+  std::string reason;
+  bool quick = false;
+};
+
+struct RenderRequest {
+  std::string run;
+  std::optional<std::string> view;  ///< experiment file whose [figure_view] is drawn
+};
+
+struct VideoRequest {
+  std::string run;
+  std::optional<std::string> view;
+  std::optional<std::string> out;
+  double frames_per_second = 25;
+};
+
+struct ReportRequest {
+  std::vector<std::string> runs;  ///< empty: the newest run of every experiment
+  std::optional<std::string> out;
+};
+
+struct ExportRequest {
+  std::string run;
+  std::string format;
+  std::optional<std::string> out;
+};
+
+int list_command(const CommandContext& context);
+int describe_command(const CommandContext& context, const std::string& name, bool markdown);
+int run_command(const CommandContext& context, const RunRequest& request);
+int check_command(const CommandContext& context, const CheckRequest& request);
+int bless_command(const CommandContext& context, const BlessRequest& request);
+int render_command(const CommandContext& context, const RenderRequest& request);
+int video_command(const CommandContext& context, const VideoRequest& request);
+int report_command(const CommandContext& context, const ReportRequest& request);
+int export_command(const CommandContext& context, const ExportRequest& request);
+
+}  // namespace geoprior

@@ -1,0 +1,181 @@
+#include "testbed/commands/outcome.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "testbed/commands/console.h"
+#include "testbed/runner/frames_text.h"
+#include "testbed/runner/number_text.h"
+#include "testbed/runner/timing_statistics.h"
+
+namespace geoprior {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+/// Times of all frames and repetitions.
+std::vector<double> all_times(const std::vector<std::vector<double>>& frames) {
+  std::vector<double> all;
+  for (const auto& repetitions : frames) {
+    all.insert(all.end(), repetitions.begin(), repetitions.end());
+  }
+  return all;
+}
+
+std::string time_text(double seconds) {
+  if (std::isnan(seconds)) return "-";
+  if (seconds < 1e-3) return rounded_text(1e6 * seconds, 3) + " us";
+  if (seconds < 1) return rounded_text(1e3 * seconds, 3) + " ms";
+  return rounded_text(seconds, 3) + " s";
+}
+
+/// "8.31 ms (9.42 ms)": median and 95th percentile.
+std::string times_text(const std::vector<std::vector<double>>& frames) {
+  const std::vector<double> times = all_times(frames);
+  const std::string text = time_text(median(times));
+  return times.size() < 2 ? text : text + " (" + time_text(quantile(times, 0.95)) + ")";
+}
+
+void say_case(const CaseRecord& in) {
+  std::vector<std::vector<std::string>> rows{{in.name == "default" ? "" : in.name, "unit"}};
+  std::map<std::string, std::string> metrics;
+  std::set<std::string> phases;
+  for (const VariantRecord& variant : in.variants) {
+    rows.front().push_back(variant.name);
+    for (const auto& [name, value] : variant.summary) {
+      const bool detail = name.ends_with(".last") || name.ends_with(".min");
+      if (!detail) metrics[name] = value.unit;
+    }
+    for (const auto& [phase, values] : variant.timing) phases.insert(phase);
+  }
+  for (const auto& [metric, unit] : metrics) {
+    std::vector<std::string> row{metric, unit};
+    for (const VariantRecord& variant : in.variants) {
+      const auto found = variant.summary.find(metric);
+      row.push_back(found == variant.summary.end() ? "-" : rounded_text(found->second.value));
+    }
+    rows.push_back(row);
+  }
+  for (const std::string& phase : phases) {
+    std::vector<std::string> row{"time of " + phase + ", median (p95)", ""};
+    for (const VariantRecord& variant : in.variants) {
+      const auto found = variant.timing.find(phase);
+      row.push_back(found == variant.timing.end() ? "-" : times_text(found->second));
+    }
+    rows.push_back(row);
+  }
+  say_table(rows);
+}
+
+Json variant_json(const VariantRecord& variant) {
+  Json json{{"name", variant.name},
+            {"method", variant.method},
+            {"role", variant.role},
+            {"status", variant.status},
+            {"frames", variant.frames.size()}};
+  if (!variant.error.empty()) json["error"] = variant.error;
+  json["summary"] = Json::object();
+  for (const auto& [name, value] : variant.summary) {
+    json["summary"][name] = {{"value", number(value.value)}, {"unit", value.unit}};
+  }
+  json["median_time_s"] = Json::object();
+  for (const auto& [phase, frames] : variant.timing) {
+    json["median_time_s"][phase] = number(median(all_times(frames)));
+    json["p95_time_s"][phase] = number(quantile(all_times(frames), 0.95));
+  }
+  return json;
+}
+
+}  // namespace
+
+bool all_claims_hold(const RunRecord& record) {
+  for (const ClaimRecord& claim : record.claims) {
+    if (!claim.holds) return false;
+  }
+  return true;
+}
+
+std::vector<std::string> failures(const RunRecord& record) {
+  std::vector<std::string> lines;
+  for (const CaseRecord& in : record.cases) {
+    for (const VariantRecord& variant : in.variants) {
+      if (variant.status != "failed") continue;
+      lines.push_back("variant '" + variant.name + "', case '" + in.name + "': failed after " +
+                      frames_text(variant.frames.size()) + ": " + variant.error);
+    }
+  }
+  return lines;
+}
+
+void say_claims(const RunRecord& record) {
+  for (const ClaimRecord& claim : record.claims) {
+    const std::string in = claim.case_name.empty() || claim.case_name == "default"
+                               ? ""
+                               : "  [" + claim.case_name + "]";
+    say((claim.holds ? tinted("holds      ", Tint::good) : tinted("falls short", Tint::bad)) +
+        "  " + claim.text + in);
+    say("             " + claim.detail);
+  }
+}
+
+void say_studies(const RunRecord& record) {
+  for (const StudyRecord& study : record.studies) {
+    const std::string interval = std::isnan(study.low) ? ""
+                                                       : " [" + rounded_text(study.low) + ", " +
+                                                             rounded_text(study.high) + "]";
+    say("study        " + study.name + ": " + study.kind + " of " + study.quantity + " " +
+        rounded_text(study.value) + interval);
+  }
+}
+
+void say_summary(const RunRecord& record, std::size_t most_cases) {
+  std::size_t shown = 0;
+  for (const CaseRecord& in : record.cases) {
+    if (shown++ == most_cases) {
+      say("  … and " + std::to_string(record.cases.size() - most_cases) +
+          " more cases: see the report");
+      return;
+    }
+    say_case(in);
+    say();
+  }
+}
+
+Json outcome_json(const RunRecord& record, const std::filesystem::path& folder) {
+  Json json{{"experiment", record.experiment_id},
+            {"quick", record.quick},
+            {"run", folder.string()},
+            {"spec_hash", record.spec_hash},
+            {"content_sha256", record.content_sha256}};
+  json["claims"] = Json::array();
+  for (const ClaimRecord& claim : record.claims) {
+    json["claims"].push_back({{"text", claim.text},
+                              {"case", claim.case_name},
+                              {"detail", claim.detail},
+                              {"left", number(claim.left)},
+                              {"right", number(claim.right)},
+                              {"holds", claim.holds}});
+  }
+  json["studies"] = Json::array();
+  for (const StudyRecord& study : record.studies) {
+    json["studies"].push_back({{"name", study.name},
+                               {"kind", study.kind},
+                               {"quantity", study.quantity},
+                               {"value", number(study.value)},
+                               {"low", number(study.low)},
+                               {"high", number(study.high)}});
+  }
+  json["cases"] = Json::array();
+  for (const CaseRecord& in : record.cases) {
+    Json entry{{"name", in.name}, {"variants", Json::array()}};
+    for (const VariantRecord& variant : in.variants)
+      entry["variants"].push_back(variant_json(variant));
+    json["cases"].push_back(entry);
+  }
+  return json;
+}
+
+}  // namespace geoprior

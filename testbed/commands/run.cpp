@@ -1,0 +1,99 @@
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "testbed/commands/catalogue.h"
+#include "testbed/commands/commands.h"
+#include "testbed/commands/console.h"
+#include "testbed/commands/outcome.h"
+#include "testbed/commands/pictures.h"
+#include "testbed/runner/execute.h"
+#include "testbed/runner/stop.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A word as a shell reads it back: in quotes unless it is plain.
+std::string shell_word(const std::string& word) {
+  const std::string plain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./:,@%";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+/// The command that goes on with a stopped run, as it would be typed.
+std::string resume_command(const RunRequest& request, const fs::path& folder) {
+  std::string command = "geoprior run " + shell_word(request.experiment.id_or_file);
+  for (const auto& name : request.experiment.load.variants) command += " --variant " + name;
+  for (const auto& set : request.experiment.load.sets) command += " --set " + shell_word(set);
+  if (request.experiment.load.quick) command += " --quick";
+  if (request.experiment.load.threads) {
+    command += " --threads " + std::to_string(*request.experiment.load.threads);
+  }
+  if (!request.pictures) command += " --no-pictures";
+  return command + " --out " + shell_word(folder.string()) + " --resume";
+}
+
+int report_stop(const CommandContext& context, const RunRequest& request,
+                const ExecuteResult& result) {
+  const std::string command = resume_command(request, result.folder);
+  say("stopped; go on with:  " + command);
+  if (context.json) {
+    print_json({{"stopped", true}, {"run", result.folder.string()}, {"resume", command}});
+  }
+  return wrong_use;
+}
+
+void say_outcome(const ExecuteResult& result, const Pictures& pictures) {
+  const RunRecord& record = result.record;
+  say();
+  say_summary(record);
+  say_studies(record);
+  say_claims(record);
+  if (!record.claims.empty()) say();
+  say("numbers  " + (result.folder / "run.h5").string());
+  if (pictures.figure) say("picture  " + pictures.figure->string());
+  if (pictures.report) say("report   " + pictures.report->string());
+  if (!all_claims_hold(record)) say(tinted("a claim fell short", Tint::bad));
+  for (const std::string& line : failures(record)) say(tinted(line, Tint::bad));
+}
+
+}  // namespace
+
+int run_command(const CommandContext& context, const RunRequest& request) {
+  const fs::path file = experiment_file(request.experiment.id_or_file);
+  const Experiment experiment = load_experiment(file, context.topics, request.experiment.load);
+  install_stop_handler();
+  ExecuteRequest execution;
+  if (request.out) execution.out = *request.out;
+  execution.resume = request.resume;
+  execution.show_progress = isatty(STDERR_FILENO) == 1;
+  say(tinted(experiment.id, Tint::strong) + (experiment.quick ? " (quick)" : "") + "  " +
+      experiment.title);
+  const ExecuteResult result = execute(experiment, context.topics, execution);
+  if (result.stopped) return report_stop(context, request, result);
+
+  Pictures pictures;
+  if (request.pictures) pictures = make_pictures(result.folder, experiment.view);
+  say_outcome(result, pictures);
+  if (context.json) {
+    nlohmann::ordered_json json = outcome_json(result.record, result.folder);
+    json["stopped"] = false;
+    if (pictures.figure) json["figure"] = pictures.figure->string();
+    if (pictures.report) json["report"] = pictures.report->string();
+    print_json(json);
+  }
+  if (!pictures.error.empty()) {
+    say("error: the run is complete, but its pictures are not: " + pictures.error);
+    return wrong_use;
+  }
+  const bool whole = all_claims_hold(result.record) && failures(result.record).empty();
+  return whole ? done : fell_short;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,102 @@
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "testbed/commands/catalogue.h"
+#include "testbed/commands/commands.h"
+#include "testbed/commands/console.h"
+#include "testbed/commands/pictures.h"
+#include "testbed/runner/run_folder.h"
+#include "testbed/runner/stop.h"
+#include "testbed/view/export.h"
+#include "testbed/view/render.h"
+#include "testbed/view/video.h"
+
+namespace geoprior {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The view of another experiment, or the one that the run was recorded with.
+FigureView view_of(const fs::path& run_folder, const std::optional<std::string>& experiment,
+                   const std::vector<Topic>& topics) {
+  if (experiment) return load_experiment(experiment_file(*experiment), topics, {}).view;
+  const fs::path file = run_folder / "run.h5";
+  return figure_view_of(read_run_file(file).experiment_toml, file.string(), topics);
+}
+
+}  // namespace
+
+int render_command(const CommandContext& context, const RenderRequest& request) {
+  const fs::path folder = run_folder_of(request.run);
+  render_run(folder, view_of(folder, request.view, context.topics));
+  const fs::path figure = folder / "figure.png";
+  say("picture  " + figure.string());
+  if (context.json) print_json({{"run", folder.string()}, {"figure", figure.string()}});
+  return done;
+}
+
+int video_command(const CommandContext& context, const VideoRequest& request) {
+  const fs::path folder = run_folder_of(request.run);
+  VideoOptions options;
+  options.frames_per_second = request.frames_per_second;
+  options.out = request.out ? fs::path(*request.out) : folder / "video";
+  install_stop_handler();
+  const Video video = make_video(folder, view_of(folder, request.view, context.topics), options);
+  say("frames   " + std::to_string(video.frames) + " in " + options.out.string());
+  if (video.stopped) {
+    say("stopped before the last frame: no video");
+  } else if (video.file) {
+    say("video    " + video.file->string());
+  } else {
+    say("no video: ffmpeg is not on the PATH (apt-get install ffmpeg); the frames are there");
+  }
+  if (context.json) {
+    nlohmann::ordered_json result{{"run", folder.string()}, {"frames", video.frames}};
+    result["out"] = options.out.string();
+    result["video"] = video.file ? nlohmann::ordered_json(video.file->string()) : nullptr;
+    print_json(result);
+  }
+  return video.stopped ? wrong_use : done;
+}
+
+int report_command(const CommandContext& context, const ReportRequest& request) {
+  std::vector<fs::path> folders;
+  for (const std::string& run : request.runs) folders.push_back(run_folder_of(run));
+  if (request.runs.empty()) {
+    for (const CatalogueEntry& entry : catalogue()) {
+      try {
+        folders.push_back(run_folder_of(entry.id));
+      } catch (const Error&) {
+        say(tinted(entry.id + " has no run", Tint::faint));
+      }
+    }
+  }
+  if (folders.empty()) throw Error("there are no runs", runs_root().string(), "geoprior run <id>");
+  // Damage is named before Python meets it.
+  for (const fs::path& folder : folders) (void)read_run_file(folder / "run.h5");
+  fs::path page =
+      folders.size() == 1 ? folders.front() / "report.html" : runs_root() / "report.html";
+  if (request.out) page = *request.out;
+  make_report(folders, page);
+  say("report   " + page.string());
+  if (context.json) {
+    nlohmann::ordered_json runs = nlohmann::ordered_json::array();
+    for (const fs::path& folder : folders) runs.push_back(folder.string());
+    print_json({{"report", page.string()}, {"runs", runs}});
+  }
+  return done;
+}
+
+int export_command(const CommandContext& context, const ExportRequest& request) {
+  const fs::path folder = run_folder_of(request.run);
+  const fs::path out = request.out ? fs::path(*request.out) : folder / ("export-" + request.format);
+  export_run(folder, request.format, out);
+  say("exported to " + out.string());
+  if (context.json) {
+    print_json({{"run", folder.string()}, {"format", request.format}, {"out", out.string()}});
+  }
+  return done;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,146 @@
+#include "testbed/formats/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "core/error.h"
+
+namespace geoprior {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kTemporarySuffix = ".geoprior-tmp";
+
+class Descriptor {
+ public:
+  Descriptor(const fs::path& file, int flags, mode_t mode = 0)
+      : value_(::open(file.c_str(), flags | O_CLOEXEC, mode)) {
+    if (value_ < 0) throw Error("cannot be opened: " + system_reason(errno), file.string());
+  }
+  ~Descriptor() {
+    if (value_ >= 0) ::close(value_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  [[nodiscard]] int get() const { return value_; }
+  /// Network file systems report a failed write only here.
+  void close(const fs::path& file) {
+    if (::close(std::exchange(value_, -1)) != 0) {
+      throw Error("cannot be written: " + system_reason(errno), file.string());
+    }
+  }
+
+ private:
+  int value_;
+};
+
+}  // namespace
+
+std::string system_reason(int error_number) {
+  const std::string text = std::generic_category().message(error_number);
+  switch (error_number) {
+    case ENOSPC:
+      return "disk full: " + text;
+    case EDQUOT:
+      return "disk quota used up: " + text;
+    case EFBIG:
+      return "file size limit reached: " + text;
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "not writable: " + text;
+    default:
+      return text;
+  }
+}
+
+void write_all(int descriptor, std::string_view bytes, const fs::path& file) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      throw Error("cannot be written: " + system_reason(errno), file.string());
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void flush_to_disk(const fs::path& file_or_folder) {
+  const Descriptor descriptor(file_or_folder, O_RDONLY);
+  // Some file systems refuse to flush a folder (EINVAL): they then need no flush.
+  if (::fsync(descriptor.get()) != 0 && errno != EINVAL) {
+    throw Error("cannot be flushed to the disk: " + system_reason(errno), file_or_folder.string());
+  }
+}
+
+PendingFile::PendingFile(fs::path target) : target_(std::move(target)), temporary_(target_) {
+  temporary_ += kTemporarySuffix;
+}
+
+PendingFile::~PendingFile() {
+  if (committed_) return;
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
+}
+
+void PendingFile::commit() {
+  flush_to_disk(temporary_);
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    throw Error("cannot be renamed from its temporary name: " + system_reason(errno),
+                target_.string());
+  }
+  committed_ = true;
+  const fs::path folder = target_.parent_path();
+  flush_to_disk(folder.empty() ? fs::path(".") : folder);
+}
+
+void write_file_atomically(const fs::path& file, std::string_view bytes) {
+  PendingFile pending(file);
+  {
+    Descriptor out(pending.temporary(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    write_all(out.get(), bytes, file);
+    out.close(file);
+  }
+  pending.commit();
+}
+
+void write_file_atomically(const fs::path& file, std::span<const std::byte> bytes) {
+  write_file_atomically(
+      file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+bool is_temporary_file(const fs::path& file) {
+  return file.filename().string().ends_with(kTemporarySuffix);
+}
+
+std::string read_whole_file(const fs::path& file) {
+  std::error_code code;
+  if (fs::is_directory(file, code)) throw Error("is a folder", file.string(), "a file");
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw Error("cannot be read: " + system_reason(errno), file.string());
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (in.bad()) throw Error("cannot be read: " + system_reason(errno), file.string());
+  return std::move(text).str();
+}
+
+void make_folders(const fs::path& folder) {
+  std::error_code code;
+  if (fs::is_directory(folder, code)) return;
+  const fs::path parent = folder.parent_path();
+  if (!parent.empty() && parent != folder) make_folders(parent);
+  fs::create_directory(folder, code);
+  if (code) throw Error("folder cannot be made: " + system_reason(code.value()), folder.string());
+  if (!parent.empty()) flush_to_disk(parent);
+}
+
+}  // namespace geoprior

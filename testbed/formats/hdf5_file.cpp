@@ -1,0 +1,659 @@
+#include "testbed/formats/hdf5_file.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "core/error.h"
+#include "testbed/formats/atomic_file.h"
+#include "testbed/formats/hdf5_handle.h"
+
+namespace geoprior {
+
+namespace h5 {
+
+namespace {
+
+herr_t collect_message(unsigned depth, const H5E_error2_t* entry, void* client) {
+  auto& text = *static_cast<std::string*>(client);
+  // The outermost entries repeat what we were doing; the innermost names the cause.
+  if (entry->desc != nullptr && *entry->desc != '\0') {
+    if (depth > 0) text += " <- ";
+    text += entry->desc;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void fail(const std::string& what, const std::string& where) {
+  std::string stack;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, collect_message, &stack);
+  H5Eclear2(H5E_DEFAULT);
+  throw Error(what + (stack.empty() ? "" : ": " + stack), where);
+}
+
+void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+Handle text_type(std::size_t size, const std::string& where) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "text type", where);
+  check(H5Tset_size(type, size), "text type", where);
+  check(H5Tset_cset(type, H5T_CSET_UTF8), "text type", where);
+  check(H5Tset_strpad(type, size == H5T_VARIABLE ? H5T_STR_NULLTERM : H5T_STR_NULLPAD), "text type",
+        where);
+  return type;
+}
+
+Handle space_of(const std::vector<std::size_t>& extents, const std::string& where) {
+  if (extents.empty()) return {H5Screate(H5S_SCALAR), H5Sclose, "data space", where};
+  const std::vector<hsize_t> sizes(extents.begin(), extents.end());
+  return {H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose,
+          "data space", where};
+}
+
+std::vector<std::size_t> extents_of(hid_t space, const std::string& where) {
+  const int rank = check(H5Sget_simple_extent_ndims(space), "data space", where);
+  std::vector<hsize_t> sizes(rank);
+  check(H5Sget_simple_extent_dims(space, sizes.data(), nullptr), "data space", where);
+  return {sizes.begin(), sizes.end()};
+}
+
+std::string encoded(std::string_view name) {
+  if (name == ".") return "%2E";
+  std::string out;
+  for (const char c : name) {
+    if (c == '/') {
+      out += "%2F";
+    } else if (c == '%') {
+      out += "%25";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace h5
+
+using h5::check;
+using h5::Handle;
+
+namespace {
+
+std::string decoded(std::string_view name) {
+  std::string out;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const std::string_view code = name.substr(i, 3);
+    if (code == "%2F" || code == "%25" || code == "%2E") {
+      out += code == "%2F" ? '/' : code == "%25" ? '%' : '.';
+      i += 2;
+    } else {
+      out += name[i];
+    }
+  }
+  return out;
+}
+
+std::vector<std::byte> image_of(hid_t file, const std::string& name) {
+  check(H5Fflush(file, H5F_SCOPE_LOCAL), "cannot be written", name);
+  const ssize_t size = check(H5Fget_file_image(file, nullptr, 0), "cannot be written", name);
+  std::vector<std::byte> image(size);
+  check(H5Fget_file_image(file, image.data(), image.size()), "cannot be written", name);
+  return image;
+}
+
+herr_t collect_link(hid_t, const char* name, const H5L_info_t*, void* client) {
+  static_cast<std::vector<std::string>*>(client)->push_back(decoded(name));
+  return 0;
+}
+
+}  // namespace
+
+H5Group::H5Group(H5Group&& other) noexcept
+    : id_(std::exchange(other.id_, -1)), place_(std::move(other.place_)) {}
+
+H5Group& H5Group::operator=(H5Group&& other) noexcept {
+  std::swap(id_, other.id_);
+  std::swap(place_, other.place_);
+  return *this;
+}
+
+H5Group::~H5Group() {
+  if (id_ >= 0) H5Gclose(id_);
+}
+
+std::string H5Group::at(std::string_view name) const {
+  return place_ + (place_.ends_with('/') ? "" : "/") + std::string(name);
+}
+
+H5Group H5Group::create_group(std::string_view name) {
+  const std::string where = at(name);
+  Handle id(H5Gcreate2(id_, h5::encoded(name).c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+            H5Gclose, "group cannot be made", where);
+  return {id.give_up(), where};
+}
+
+H5Group H5Group::open_group(std::string_view name) const {
+  const std::string where = at(name);
+  Handle id(H5Gopen2(id_, h5::encoded(name).c_str(), H5P_DEFAULT), H5Gclose, "group is missing",
+            where);
+  return {id.give_up(), where};
+}
+
+bool H5Group::has(std::string_view name) const {
+  return check(H5Lexists(id_, h5::encoded(name).c_str(), H5P_DEFAULT), "cannot be read", at(name)) >
+         0;
+}
+
+std::vector<std::string> H5Group::children() const {
+  std::vector<std::string> names;
+  hsize_t next = 0;
+  check(H5Literate(id_, H5_INDEX_NAME, H5_ITER_INC, &next, collect_link, &names),
+        "group cannot be listed", place_);
+  return names;
+}
+
+void H5Group::write_array(std::string_view name, const H5Array& array) {
+  const std::string where = at(name);
+  std::size_t count = 1;
+  for (const std::size_t n : array.extents) count *= n;
+  if (count != array.values.size()) throw Error("extents do not match the values", where);
+  const Handle space = h5::space_of(array.extents, where);
+  const Handle data(H5Dcreate2(id_, h5::encoded(name).c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT,
+                               H5P_DEFAULT, H5P_DEFAULT),
+                    H5Dclose, "data set cannot be made", where);
+  for (const auto& [key, text] : array.attributes) h5::write_text(data, key, text, where);
+  if (count == 0) return;
+  check(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()),
+        "data set cannot be written", where);
+}
+
+H5Array H5Group::read_array(std::string_view name) const {
+  const std::string where = at(name);
+  const Handle data(H5Dopen2(id_, h5::encoded(name).c_str(), H5P_DEFAULT), H5Dclose,
+                    "data set is missing", where);
+  const Handle space(H5Dget_space(data), H5Sclose, "data set cannot be read", where);
+  H5Array array;
+  array.extents = h5::extents_of(space, where);
+  array.attributes = h5::read_all_attributes(data, where);
+  std::size_t count = 1;
+  for (const std::size_t n : array.extents) count *= n;
+  array.values.resize(count);
+  if (count == 0) return array;
+  check(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()),
+        "data set cannot be read", where);
+  return array;
+}
+
+H5File H5File::create() {
+  h5::silence();
+  const std::string name = "new HDF5 file";
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "cannot be made", name);
+  constexpr std::size_t kGrowth = 1 << 20;
+  check(H5Pset_fapl_core(access, kGrowth, false), "cannot be made", name);
+  // HDF5 refuses a name that is open already, although nothing goes to the disk.
+  static std::atomic<unsigned> count{0};
+  const std::string unique = "in-memory-" + std::to_string(count++) + ".h5";
+  Handle id(H5Fcreate(unique.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
+            "cannot be made", name);
+  return {id.give_up(), name};
+}
+
+H5File H5File::open_for_reading(const std::filesystem::path& file) {
+  h5::silence();
+  if (!std::filesystem::is_regular_file(file)) throw Error("is no file", file.string());
+  Handle id(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
+            "is no HDF5 file, or is damaged", file.string());
+  return {id.give_up(), file.string()};
+}
+
+H5File::H5File(H5File&& other) noexcept
+    : id_(std::exchange(other.id_, -1)), name_(std::move(other.name_)) {}
+
+H5File& H5File::operator=(H5File&& other) noexcept {
+  std::swap(id_, other.id_);
+  std::swap(name_, other.name_);
+  return *this;
+}
+
+H5File::~H5File() {
+  if (id_ >= 0) H5Fclose(id_);
+}
+
+H5Group H5File::root() const {
+  const std::string where = name_ + ": /";
+  Handle id(H5Gopen2(id_, "/", H5P_DEFAULT), H5Gclose, "cannot be read", where);
+  return {id.give_up(), where};
+}
+
+std::vector<std::byte> H5File::bytes() const { return image_of(id_, name_); }
+
+void H5File::save(const std::filesystem::path& file) const {
+  write_file_atomically(file, std::span<const std::byte>(image_of(id_, file.string())));
+}
+
+using h5::check;
+using h5::Handle;
+
+namespace {
+
+void write_number(hid_t owner, std::string_view name, hid_t file_type, hid_t memory_type,
+                  const void* value, const std::string& where) {
+  const Handle space = h5::space_of({}, where);
+  const Handle attribute(
+      H5Acreate2(owner, std::string(name).c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT),
+      H5Aclose, "attribute cannot be made", where);
+  check(H5Awrite(attribute, memory_type, value), "attribute cannot be written", where);
+}
+
+Handle open_attribute(hid_t owner, std::string_view name, const std::string& where) {
+  return {H5Aopen(owner, std::string(name).c_str(), H5P_DEFAULT), H5Aclose, "attribute is missing",
+          where};
+}
+
+void read_number(hid_t owner, std::string_view name, hid_t memory_type, void* value,
+                 const std::string& where) {
+  const Handle attribute = open_attribute(owner, name, where);
+  const Handle space(H5Aget_space(attribute), H5Sclose, "attribute cannot be read", where);
+  if (!h5::extents_of(space, where).empty()) h5::fail("attribute is no single number", where);
+  check(H5Aread(attribute, memory_type, value), "attribute cannot be read", where);
+}
+
+void write_texts(hid_t owner, std::string_view name, const std::vector<std::size_t>& extents,
+                 const std::vector<const char*>& texts, const std::string& where) {
+  const Handle type = h5::text_type(H5T_VARIABLE, where);
+  const Handle space = h5::space_of(extents, where);
+  const Handle attribute(
+      H5Acreate2(owner, std::string(name).c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+      "attribute cannot be made", where);
+  if (texts.empty()) return;
+  check(H5Awrite(attribute, type, texts.data()), "attribute cannot be written", where);
+}
+
+std::vector<std::string> read_all_texts(hid_t owner, std::string_view name,
+                                        const std::string& where) {
+  const Handle attribute = open_attribute(owner, name, where);
+  const Handle file_type(H5Aget_type(attribute), H5Tclose, "attribute cannot be read", where);
+  if (H5Tget_class(file_type) != H5T_STRING || H5Tis_variable_str(file_type) <= 0) {
+    h5::fail("attribute is no text of variable length", where);
+  }
+  const Handle space(H5Aget_space(attribute), H5Sclose, "attribute cannot be read", where);
+  std::size_t count = 1;
+  for (const std::size_t n : h5::extents_of(space, where)) count *= n;
+  std::vector<char*> texts(count, nullptr);
+  if (count == 0) return {};
+  const Handle type = h5::text_type(H5T_VARIABLE, where);
+  check(H5Aread(attribute, type, texts.data()), "attribute cannot be read", where);
+  std::vector<std::string> out;
+  for (const char* text : texts) out.emplace_back(text == nullptr ? "" : text);
+  H5Dvlen_reclaim(type, space, H5P_DEFAULT, texts.data());
+  return out;
+}
+
+std::string read_one_text(hid_t owner, std::string_view name, const std::string& where) {
+  const std::vector<std::string> texts = read_all_texts(owner, name, where);
+  if (texts.size() != 1) h5::fail("attribute is no single text", where);
+  return texts.front();
+}
+
+herr_t collect_attribute(hid_t, const char* name, const H5A_info_t*, void* client) {
+  static_cast<std::vector<std::string>*>(client)->emplace_back(name);
+  return 0;
+}
+
+}  // namespace
+
+void H5Group::write_attribute(std::string_view name, const std::string& text) {
+  write_texts(id_, name, {}, {text.c_str()}, at(name));
+}
+
+void H5Group::write_attribute(std::string_view name, const std::vector<std::string>& texts) {
+  h5::write_text_list(id_, name, texts, at(name));
+}
+
+void H5Group::write_attribute(std::string_view name, double value) {
+  write_number(id_, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value, at(name));
+}
+
+void H5Group::write_attribute(std::string_view name, std::int64_t value) {
+  write_number(id_, name, H5T_STD_I64LE, H5T_NATIVE_INT64, &value, at(name));
+}
+
+void H5Group::write_attribute(std::string_view name, std::uint64_t value) {
+  write_number(id_, name, H5T_STD_U64LE, H5T_NATIVE_UINT64, &value, at(name));
+}
+
+std::string H5Group::read_text(std::string_view name) const {
+  return read_one_text(id_, name, at(name));
+}
+
+std::vector<std::string> H5Group::read_texts(std::string_view name) const {
+  return read_all_texts(id_, name, at(name));
+}
+
+double H5Group::read_double(std::string_view name) const {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  read_number(id_, name, H5T_NATIVE_DOUBLE, &value, at(name));
+  return value;
+}
+
+std::int64_t H5Group::read_int(std::string_view name) const {
+  std::int64_t value = 0;
+  read_number(id_, name, H5T_NATIVE_INT64, &value, at(name));
+  return value;
+}
+
+std::uint64_t H5Group::read_unsigned(std::string_view name) const {
+  std::uint64_t value = 0;
+  read_number(id_, name, H5T_NATIVE_UINT64, &value, at(name));
+  return value;
+}
+
+std::vector<std::string> H5Group::attributes() const {
+  std::vector<std::string> names;
+  hsize_t next = 0;
+  check(H5Aiterate2(id_, H5_INDEX_NAME, H5_ITER_INC, &next, collect_attribute, &names),
+        "attributes cannot be listed", place_);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+namespace h5 {
+
+void write_text(hid_t owner, const std::string& name, const std::string& text,
+                const std::string& where) {
+  write_texts(owner, name, {}, {text.c_str()}, where + "@" + name);
+}
+
+void write_text_list(hid_t owner, std::string_view name, const std::vector<std::string>& texts,
+                     const std::string& where) {
+  std::vector<const char*> pointers;
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  write_texts(owner, name, {texts.size()}, pointers, where);
+}
+
+std::map<std::string, std::string> read_all_attributes(hid_t owner, const std::string& where) {
+  std::vector<std::string> names;
+  hsize_t next = 0;
+  check(H5Aiterate2(owner, H5_INDEX_NAME, H5_ITER_INC, &next, collect_attribute, &names),
+        "attributes cannot be listed", where);
+  std::map<std::string, std::string> out;
+  for (const std::string& name : names) out[name] = read_one_text(owner, name, where + "@" + name);
+  return out;
+}
+
+}  // namespace h5
+
+using h5::check;
+using h5::Handle;
+
+namespace {
+
+constexpr unsigned kZlibLevel = 4;
+/// zlib makes zeros 1032 times smaller at most; what says more is damaged.
+constexpr std::size_t kLargestRatio = 1100;
+
+struct NumberType {
+  hid_t file, memory;
+};
+
+NumberType type_of(float) { return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT}; }
+NumberType type_of(double) { return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE}; }
+NumberType type_of(std::int32_t) { return {H5T_STD_I32LE, H5T_NATIVE_INT32}; }
+NumberType type_of(std::int64_t) { return {H5T_STD_I64LE, H5T_NATIVE_INT64}; }
+
+std::size_t product(const std::vector<std::size_t>& extents) {
+  std::size_t count = 1;
+  for (const std::size_t n : extents) count *= n;
+  return count;
+}
+
+/// In floating point, because the product of the extents of a damaged file overflows.
+bool can_be_stored(const std::vector<std::size_t>& extents, std::size_t bytes_of_one,
+                   std::size_t stored) {
+  double bytes = static_cast<double>(bytes_of_one);
+  for (const std::size_t n : extents) bytes *= static_cast<double>(n);
+  return bytes <= static_cast<double>(stored) * kLargestRatio;
+}
+
+}  // namespace
+
+template <class T>
+void H5Group::write_block(std::string_view name, const std::vector<std::size_t>& extents,
+                          std::span<const T> values) {
+  const std::string where = at(name);
+  if (product(extents) != values.size()) throw Error("extents do not match the values", where);
+  const Handle space = h5::space_of(extents, where);
+  const Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "layout", where);
+  check(H5Pset_obj_track_times(layout, false), "layout", where);
+  if (!values.empty()) {  // HDF5 knows no chunks without entries
+    std::vector<hsize_t> chunk(extents.begin(), extents.end());
+    if (chunk.size() > 2) chunk[0] = 1;
+    check(H5Pset_chunk(layout, static_cast<int>(chunk.size()), chunk.data()), "layout", where);
+    check(H5Pset_shuffle(layout), "layout", where);
+    check(H5Pset_deflate(layout, kZlibLevel), "layout", where);
+  }
+  const NumberType type = type_of(T());
+  const Handle data(H5Dcreate2(id_, h5::encoded(name).c_str(), type.file, space, H5P_DEFAULT,
+                               layout, H5P_DEFAULT),
+                    H5Dclose, "data set cannot be made", where);
+  if (values.empty()) return;
+  check(H5Dwrite(data, type.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        "data set cannot be written", where);
+}
+
+template <class T>
+H5Block<T> H5Group::read_block(std::string_view name, std::size_t rank) const {
+  const std::string where = at(name);
+  const Handle data(H5Dopen2(id_, h5::encoded(name).c_str(), H5P_DEFAULT), H5Dclose,
+                    "data set is missing", where);
+  const Handle space(H5Dget_space(data), H5Sclose, "data set cannot be read", where);
+  H5Block<T> block;
+  block.extents = h5::extents_of(space, where);
+  if (block.extents.size() != rank) {
+    throw Error("has " + std::to_string(block.extents.size()) + " extents", where,
+                std::to_string(rank));
+  }
+  if (!can_be_stored(block.extents, sizeof(T), H5Dget_storage_size(data))) {
+    throw Error("says to be larger than the file", where);
+  }
+  block.values.resize(product(block.extents));
+  if (block.values.empty()) return block;
+  check(H5Dread(data, type_of(T()).memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, block.values.data()),
+        "data set cannot be read", where);
+  return block;
+}
+
+#define GEOPRIOR_BLOCK(T)                                                               \
+  template void H5Group::write_block(std::string_view, const std::vector<std::size_t>&, \
+                                     std::span<const T>);                               \
+  template H5Block<T> H5Group::read_block(std::string_view, std::size_t) const
+GEOPRIOR_BLOCK(float);
+GEOPRIOR_BLOCK(double);
+GEOPRIOR_BLOCK(std::int32_t);
+GEOPRIOR_BLOCK(std::int64_t);
+#undef GEOPRIOR_BLOCK
+
+using h5::check;
+using h5::Handle;
+
+namespace {
+
+template <class... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+template <class... Visitors>
+Overloaded(Visitors...) -> Overloaded<Visitors...>;
+
+using Vector3 = std::array<double, 3>;
+
+std::size_t length(const H5Column& column) {
+  return std::visit([](const auto& values) { return values.size(); }, column.values);
+}
+
+Handle number_type(hid_t type, const std::string& where) {
+  return {H5Tcopy(type), H5Tclose, "table type", where};
+}
+
+Handle vector3_type(const std::string& where) {
+  const hsize_t three = 3;
+  return {H5Tarray_create2(H5T_IEEE_F64LE, 1, &three), H5Tclose, "table type", where};
+}
+
+/// Type of a column in the file. Memory has the same: the format's machines are little endian, as
+/// are all that this project builds on (x86-64).
+Handle column_type(const H5Column& column, const std::string& where) {
+  return std::visit(
+      Overloaded{
+          [&](const std::vector<double>&) { return number_type(H5T_IEEE_F64LE, where); },
+          [&](const std::vector<std::int64_t>&) { return number_type(H5T_STD_I64LE, where); },
+          [&](const std::vector<Vector3>&) { return vector3_type(where); },
+          [&](const std::vector<std::string>& texts) {
+            std::size_t size = 1;
+            for (const std::string& text : texts) size = std::max(size, text.size());
+            return h5::text_type(size, where);
+          },
+      },
+      column.values);
+}
+
+void pack(const H5Column& column, std::size_t offset, std::size_t stride,
+          std::vector<char>& buffer) {
+  std::visit(Overloaded{
+                 [&](const std::vector<std::string>& texts) {
+                   for (std::size_t i = 0; i < texts.size(); ++i) {
+                     std::memcpy(buffer.data() + i * stride + offset, texts[i].data(),
+                                 texts[i].size());
+                   }
+                 },
+                 [&](const auto& values) {
+                   for (std::size_t i = 0; i < values.size(); ++i) {
+                     std::memcpy(buffer.data() + i * stride + offset, &values[i], sizeof values[i]);
+                   }
+                 },
+             },
+             column.values);
+}
+
+void unpack(const std::vector<char>& buffer, std::size_t stride, std::size_t count,
+            H5Column& column) {
+  std::visit(Overloaded{
+                 [&](std::vector<std::string>& texts) {
+                   for (std::size_t i = 0; i < count; ++i) {
+                     const char* begin = buffer.data() + i * stride;
+                     texts.emplace_back(begin, strnlen(begin, stride));
+                   }
+                 },
+                 [&](auto& values) {
+                   values.resize(count);
+                   for (std::size_t i = 0; i < count; ++i) {
+                     std::memcpy(&values[i], buffer.data() + i * stride, stride);
+                   }
+                 },
+             },
+             column.values);
+}
+
+/// Type of a member of the table in the file, checked against what the caller wants.
+Handle stored_type(hid_t table, const H5Column& wanted, const std::string& where) {
+  const int index = H5Tget_member_index(table, wanted.name.c_str());
+  if (index < 0) h5::fail("table has no column '" + wanted.name + "'", where);
+  Handle type(H5Tget_member_type(table, static_cast<unsigned>(index)), H5Tclose, "table column",
+              where);
+  const H5T_class_t expected =
+      std::visit(Overloaded{
+                     [](const std::vector<double>&) { return H5T_FLOAT; },
+                     [](const std::vector<std::int64_t>&) { return H5T_INTEGER; },
+                     [](const std::vector<Vector3>&) { return H5T_ARRAY; },
+                     [](const std::vector<std::string>&) { return H5T_STRING; },
+                 },
+                 wanted.values);
+  if (H5Tget_class(type) != expected || H5Tis_variable_str(type) > 0) {
+    h5::fail("column '" + wanted.name + "' has another type", where);
+  }
+  if (expected == H5T_STRING) return type;
+  return column_type(wanted, where);
+}
+
+void read_column(hid_t data, hid_t table, std::size_t count, H5Column& column,
+                 const std::string& where) {
+  const Handle type = stored_type(table, column, where);
+  const std::size_t stride = H5Tget_size(type);
+  const Handle memory(H5Tcreate(H5T_COMPOUND, stride), H5Tclose, "table type", where);
+  check(H5Tinsert(memory, column.name.c_str(), 0, type), "table type", where);
+  std::vector<char> buffer(stride * count);
+  if (count > 0) {
+    check(H5Dread(data, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer.data()),
+          "table cannot be read", where);
+  }
+  unpack(buffer, stride, count, column);
+}
+
+}  // namespace
+
+void H5Group::write_table(std::string_view name, const std::vector<H5Column>& columns) {
+  const std::string where = at(name);
+  const std::size_t count = length(columns.front());
+  std::vector<Handle> types;
+  std::vector<std::size_t> offsets;
+  std::size_t stride = 0;
+  for (const H5Column& column : columns) {
+    if (length(column) != count) throw Error("columns of unequal length", where);
+    types.push_back(column_type(column, where));
+    offsets.push_back(stride);
+    stride += H5Tget_size(types.back());
+  }
+  const Handle table(H5Tcreate(H5T_COMPOUND, stride), H5Tclose, "table type", where);
+  std::vector<char> buffer(stride * count, '\0');
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    check(H5Tinsert(table, columns[c].name.c_str(), offsets[c], types[c]), "table type", where);
+    pack(columns[c], offsets[c], stride, buffer);
+  }
+  const Handle space = h5::space_of({count}, where);
+  const Handle data(H5Dcreate2(id_, h5::encoded(name).c_str(), table, space, H5P_DEFAULT,
+                               H5P_DEFAULT, H5P_DEFAULT),
+                    H5Dclose, "table cannot be made", where);
+  if (count == 0) return;
+  check(H5Dwrite(data, table, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer.data()),
+        "table cannot be written", where);
+}
+
+void H5Group::write_matrix(std::string_view name, const std::vector<std::string>& columns,
+                           const std::vector<double>& values) {
+  constexpr std::size_t kChunkRows = 4096;
+  const std::string where = at(name);
+  const std::size_t rows = values.size() / columns.size();
+  if (rows * columns.size() != values.size()) throw Error("a row is not whole", where);
+  const Handle space = h5::space_of({rows, columns.size()}, where);
+  const Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "layout", where);
+  if (rows > 0) {  // HDF5 knows no chunks without rows
+    const std::array<hsize_t, 2> chunk{std::min(rows, kChunkRows), columns.size()};
+    check(H5Pset_chunk(layout, 2, chunk.data()), "layout", where);
+    check(H5Pset_deflate(layout, 6), "layout", where);
+  }
+  const Handle data(H5Dcreate2(id_, h5::encoded(name).c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT,
+                               layout, H5P_DEFAULT),
+                    H5Dclose, "data set cannot be made", where);
+  h5::write_text_list(data, "columns", columns, where);
+  if (rows == 0) return;
+  check(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        "data set cannot be written", where);
+}
+
+void H5Group::read_table(std::string_view name, std::vector<H5Column>& columns) const {
+  const std::string where = at(name);
+  const Handle data(H5Dopen2(id_, h5::encoded(name).c_str(), H5P_DEFAULT), H5Dclose,
+                    "table is missing", where);
+  const Handle table(H5Dget_type(data), H5Tclose, "table cannot be read", where);
+  if (H5Tget_class(table) != H5T_COMPOUND) h5::fail("is no table", where);
+  const Handle space(H5Dget_space(data), H5Sclose, "table cannot be read", where);
+  const std::vector<std::size_t> extents = h5::extents_of(space, where);
+  if (extents.size() != 1) h5::fail("is no table", where);
+  for (H5Column& column : columns) read_column(data, table, extents[0], column, where);
+}
+
+}  // namespace geoprior

@@ -1,0 +1,172 @@
+#include "testbed/program.h"
+
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+
+#include "core/error.h"
+#include "testbed/commands/commands.h"
+#include "testbed/commands/console.h"
+#include "testbed/runner/build_info.h"
+
+namespace geoprior {
+namespace {
+
+constexpr const char* kFooter = R"(Examples:
+  geoprior list
+  geoprior run skinning/knee
+  geoprior run skinning/knee --quick --variant implicit --set variant.implicit.options.step=0.2
+  geoprior describe implicit
+  geoprior check --quick
+  geoprior bless skinning/knee --reason "sample caps by area, thesis 3.1"
+  geoprior report skinning/knee
+
+Exit codes: 0 done; 1 a check or a claim fell short; 2 wrong use, bad input, or stopped by Ctrl-C
+(the run can be resumed); 3 internal error.)";
+
+/// Everything that the command line can say.
+struct CommandLine {
+  CLI::App app{"Geometric priors beside their baselines: scenes, methods, metrics, recorded runs",
+               "geoprior"};
+  bool json = false;
+  std::string described;
+  bool markdown = false;
+  RunRequest run;
+  bool no_pictures = false;
+  CheckRequest check;
+  BlessRequest bless;
+  RenderRequest render;
+  VideoRequest video;
+  ReportRequest report;
+  ExportRequest exported;
+};
+
+CLI::App* add_command(CommandLine& line, const std::string& name, const std::string& what) {
+  CLI::App* command = line.app.add_subcommand(name, what);
+  command->add_flag("--json", line.json, "results as JSON on standard output");
+  return command;
+}
+
+void add_run(CommandLine& line) {
+  CLI::App* run = add_command(line, "run", "run an experiment and record it");
+  RunRequest& request = line.run;
+  LoadRequest& load = request.experiment.load;
+  run->add_option("experiment", request.experiment.id_or_file, "identifier or .toml file")
+      ->required();
+  run->add_option("--variant", load.variants, "run only these variants")
+      ->allow_extra_args(false)
+      ->type_name("NAME");
+  run->add_option("--set", load.sets, "override a key of the file with a TOML value")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  run->add_flag("--quick", load.quick, "the small version, as [quick] says");
+  run->add_option("--threads", load.threads, "at most so many threads; 0: all")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  run->add_option("--out", request.out, "folder of the run")->type_name("DIR");
+  run->add_flag("--resume", request.resume, "go on with an interrupted run");
+  run->add_flag("--no-pictures", line.no_pictures, "numbers only: no figure.png, no report");
+}
+
+void add_checks(CommandLine& line) {
+  CLI::App* check = add_command(line, "check", "compare runs with their reference values");
+  check->add_option("experiment", line.check.ids, "identifiers or files; none: all");
+  check->add_flag("--quick", line.check.quick, "the small versions");
+  CLI::App* bless = add_command(line, "bless", "make a run's values the reference values");
+  bless->add_option("experiment", line.bless.id, "identifier or file")->required();
+  bless->add_option("--reason", line.bless.reason, "why the new values are right")
+      ->required()
+      ->type_name("TEXT");
+  bless->add_flag("--quick", line.bless.quick, "the values of quick runs");
+}
+
+void add_views(CommandLine& line) {
+  const std::string what = "folder, run.h5, or experiment (its newest run)";
+  CLI::App* render = add_command(line, "render", "draw figure.png of a run");
+  render->add_option("run", line.render.run, what)->required();
+  render->add_option("--view", line.render.view, "experiment whose [figure_view] is drawn instead");
+  CLI::App* video = add_command(line, "video", "draw every frame of a run; a video with ffmpeg");
+  video->add_option("run", line.video.run, what)->required();
+  video->add_option("--view", line.video.view, "experiment whose [figure_view] is drawn instead");
+  video->add_option("--fps", line.video.frames_per_second, "frames a second")
+      ->check(CLI::Range(1.0, 120.0))
+      ->capture_default_str();
+  video->add_option("--out", line.video.out, "folder; absent: video in the run's")
+      ->type_name("DIR");
+  CLI::App* report = add_command(line, "report", "one HTML page about one or several runs");
+  report->add_option("run", line.report.runs, what + "; none: the newest of every experiment");
+  report->add_option("--out", line.report.out, "the page")->type_name("FILE");
+  CLI::App* exported = add_command(line, "export", "write the frames of a run for other programs");
+  exported->add_option("run", line.exported.run, what)->required();
+  exported->add_option("--format", line.exported.format, "obj, ply or glb (animated)")
+      ->required()
+      ->check(CLI::IsMember({"obj", "ply", "glb"}));
+  exported->add_option("--out", line.exported.out, "folder")->type_name("DIR");
+}
+
+void build(CommandLine& line) {
+  line.app.footer(kFooter);
+  line.app.set_version_flag("--version", version_line());
+  line.app.require_subcommand(1);
+  add_command(line, "list", "experiments, topics, methods and metrics");
+  CLI::App* describe = add_command(
+      line, "describe",
+      "options of a method or a topic, keys of an experiment file, meaning of a number");
+  describe
+      ->add_option(
+          "name", line.described,
+          "method, topic, metric or diagnostic, with topic/ before it if need be, or the word "
+          "experiment (the keys of its file)")
+      ->required();
+  describe->add_flag("--markdown", line.markdown, "a table for the documentation, on stdout");
+  add_run(line);
+  add_checks(line);
+  add_views(line);
+}
+
+int dispatch(CommandLine& line, const std::vector<Topic>& topics) {
+  const CommandContext context{topics, line.json};
+  const std::string command = line.app.get_subcommands().front()->get_name();
+  line.run.pictures = !line.no_pictures;
+  if (command == "list") return list_command(context);
+  if (command == "describe") return describe_command(context, line.described, line.markdown);
+  if (command == "run") return run_command(context, line.run);
+  if (command == "check") return check_command(context, line.check);
+  if (command == "bless") return bless_command(context, line.bless);
+  if (command == "render") return render_command(context, line.render);
+  if (command == "video") return video_command(context, line.video);
+  if (command == "report") return report_command(context, line.report);
+  return export_command(context, line.exported);
+}
+
+int fail(const char* kind, const std::string& what, int code) {
+  say(tinted(kind, Tint::bad) + what);
+  return code;
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv, const std::vector<Topic>& topics) {
+  // A file size limit (ulimit -f) shall be an error of the write that hits it, not a death.
+  ::signal(SIGXFSZ, SIG_IGN);
+  try {
+    CommandLine line;
+    build(line);
+    try {
+      line.app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return line.app.exit(error, std::cout, std::cerr) == 0 ? done : wrong_use;
+    }
+    return dispatch(line, topics);
+  } catch (const Error& error) {
+    return fail("error: ", error.what(), wrong_use);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail("error: ", error.what(), wrong_use);
+  } catch (const std::exception& error) {
+    return fail("internal error: ", error.what(), internal_error);
+  }
+}
+
+}  // namespace geoprior

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "testbed/runner/benchmark.h"
+#include "testbed/runner/execute.h"
+#include "testbed/runner/progress.h"
+#include "testbed/runner/recorded_frames.h"
+#include "testbed/runner/recorder.h"
+#include "testbed/runner/run_context.h"
+#include "testbed/runner/run_state.h"
+#include "testbed/topic.h"
+
+namespace geoprior {
+
+/// Runs the variants of one case that are not done yet, then times them.
+///
+/// An Error that a process throws after its first frame ends that variant: its frames stay, its
+/// record has the status "failed" with the message, the other variants run. Any other Error (bad
+/// input, a full disk, a metric that cannot be measured) ends the run.
+class CaseRunner {
+ public:
+  CaseRunner(const Experiment& experiment, const CaseSpec& spec, const Topic& topic,
+             Recorder& recorder, RunState& state, Progress& progress);
+
+  /// False after a stop request: the folder can be resumed.
+  /// @param options  the scene's, run references replaced
+  /// @param inputs   runs that stand among them
+  bool run(const OptionSet& options, std::vector<StoredFile> inputs, bool timing);
+  /// Makes a diagnostic that the topic's table lacks an error.
+  void require_declared_diagnostics() { only_declared_ = true; }
+
+ private:
+  [[nodiscard]] journal::Place place(const VariantSpec& variant) const {
+    return {spec_.name, variant.name};
+  }
+  VariantState& state_of(const VariantSpec& variant) { return state_.variant_of(place(variant)); }
+  void load(const OptionSet& options, std::vector<StoredFile> inputs);
+  MethodEntry::Instance& prepare(const VariantSpec& variant, bool log);
+  bool run_variant(const VariantSpec& variant);
+  bool run_poses(const VariantSpec& variant, PoseMethod& method, TimedContext& context);
+  bool run_process(const VariantSpec& variant, Process& process, TimedContext& context,
+                   journal::EndLine& end);
+  void finish(const VariantSpec& variant, journal::EndLine end);
+  void record_frame(const VariantSpec& variant, Frame frame, const journal::Numbers& seconds = {});
+  std::optional<Frame> reference_frame(const VariantSpec& variant, double parameter);
+  void log_error(const journal::Place& at, const std::string& message);
+  bool time_variants();
+  bool time_poses(std::map<std::string, Timing>& timing);
+  bool time_processes(std::map<std::string, Timing>& timing);
+
+  class Sink;
+
+  const Experiment& experiment_;
+  const CaseSpec& spec_;
+  const Topic& topic_;
+  Recorder& recorder_;
+  RunState& state_;
+  Progress& progress_;
+  std::shared_ptr<Scene> scene_;
+  std::map<std::string, MethodEntry::Instance> prepared_;  ///< by variant, kept for the benchmark
+  bool only_declared_ = false;
+  KeptFrames kept_;  ///< of the current variant, for sequence metrics
+};
+
+/// Variants ordered so that a reference precedes those that compare with it; otherwise as given.
+/// @throws Error  when they refer to each other in a circle
+std::vector<const VariantSpec*> references_first(const std::vector<VariantSpec>& variants);
+
+}  // namespace geoprior

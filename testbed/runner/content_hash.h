@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "testbed/runner/run_record.h"
+
+namespace geoprior {
+
+/// The text whose SHA-256 is `content_sha256`: frames, events, artifacts, metrics and summaries in
+/// canonical order (docs/file-formats.md); no times, no thread counts, no folders.
+std::string content_text(const RunRecord& record);
+
+std::string content_sha256(const RunRecord& record);
+
+}  // namespace geoprior

@@ -1,0 +1,243 @@
+#include "testbed/runner/execute.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "testbed/formats/atomic_file.h"
+#include "testbed/runner/case_runner.h"
+#include "testbed/runner/claims.h"
+#include "testbed/runner/content_hash.h"
+#include "testbed/runner/journal.h"
+#include "testbed/runner/measure.h"
+#include "testbed/runner/progress.h"
+#include "testbed/runner/provenance.h"
+#include "testbed/runner/recorder.h"
+#include "testbed/runner/run_file.h"
+#include "testbed/runner/run_folder.h"
+#include "testbed/runner/run_inputs.h"
+#include "testbed/runner/run_state.h"
+#include "testbed/runner/spec_json.h"
+#include "testbed/runner/stop.h"
+#include "testbed/runner/studies.h"
+
+namespace geoprior {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void require_same_specification(const std::string& recorded, const Experiment& experiment,
+                                const fs::path& folder) {
+  if (recorded == experiment.hash) return;
+  throw Error("the run has another specification than '" + experiment.id + "' has now (hash " +
+                  recorded.substr(0, 8) + ", not " + experiment.hash.substr(0, 8) +
+                  "): it cannot be resumed",
+              folder.string(),
+              "the same experiment file, --set, --variant, --quick, --threads and program version");
+}
+
+/// The record of a run that is finished already; absent when there is work left.
+std::optional<RunRecord> finished_record(const Experiment& experiment, const fs::path& folder) {
+  const fs::path file = folder / "run.h5";
+  if (!fs::exists(file)) return std::nullopt;
+  std::optional<RunRecord> record;
+  try {
+    record = read_run_file(file);
+  } catch (const Error&) {
+    // The journal has it all: a damaged run.h5 is assembled again.
+    if (!fs::exists(folder / "journal.jsonl")) throw;
+    return std::nullopt;
+  }
+  require_same_specification(record->spec_hash, experiment, folder);
+  return record;
+}
+
+RunState restore(const Experiment& experiment, const Journal& journal, const fs::path& folder) {
+  RunState state(experiment);
+  for (std::size_t i = 0; i < journal.lines().size(); ++i) {
+    const auto* head = std::get_if<journal::RunLine>(&journal.lines()[i]);
+    if ((i == 0) != (head != nullptr)) {
+      throw Error("the journal does not begin with one line of kind 'run'",
+                  (folder / "journal.jsonl").string());
+    }
+    if (head != nullptr) require_same_specification(head->spec_hash, experiment, folder);
+    try {
+      state.apply(journal.lines()[i]);
+    } catch (const Error& error) {
+      throw Error(error.what(), (folder / "journal.jsonl").string() + ":" + std::to_string(i + 1));
+    }
+  }
+  return state;
+}
+
+void begin_run(const Experiment& experiment, Recorder& recorder) {
+  write_file_atomically(recorder.folder() / "spec.toml", experiment.resolved_toml);
+  write_file_atomically(recorder.folder() / "spec.json", spec_json(experiment));
+  recorder.add(
+      journal::RunLine{RunRecord{}.schema_version, experiment.id, experiment.hash, utc_now()});
+}
+
+std::vector<StoredFile> all_inputs(const RunState& state) {
+  std::vector<StoredFile> inputs;
+  for (const CaseState& one : state.cases()) {
+    for (const StoredFile& file : one.inputs.value_or(std::vector<StoredFile>{})) {
+      const auto same = [&](const StoredFile& other) {
+        return other.name == file.name && other.sha256 == file.sha256;
+      };
+      if (std::none_of(inputs.begin(), inputs.end(), same)) inputs.push_back(file);
+    }
+  }
+  return inputs;
+}
+
+CaseRecord case_record(const CaseState& state, const Topic& topic) {
+  CaseRecord record = state.record;
+  for (const VariantState& variant : state.variants) {
+    record.variants.push_back(variant.record);
+    auto& timing = record.variants.back().timing;
+    for (const auto& [phase, seconds] : variant.prepare) {
+      // A phase that is entered while preparing and later on has two entries.
+      timing[timing.contains(phase) ? "prepare:" + phase : phase] = {{seconds}};
+    }
+    timing["load"] = {{state.load_seconds}};
+    summarise(topic, record.variants.back());
+  }
+  return record;
+}
+
+RunRecord assemble(const Experiment& experiment, const Topic& topic, const RunState& state) {
+  RunRecord record;
+  record.experiment_id = experiment.id;
+  record.title = experiment.title;
+  record.figure = experiment.figure;
+  record.topic = experiment.topic;
+  record.quick = experiment.quick;
+  record.experiment_toml = experiment.resolved_toml;
+  record.spec_hash = experiment.hash;
+  record.provenance = provenance();
+  record.provenance["start"] = state.run()->start;
+  record.provenance["finish"] = utc_now();
+  record.inputs = all_inputs(state);
+  for (const CaseState& one : state.cases()) record.cases.push_back(case_record(one, topic));
+  record.content_sha256 = content_sha256(record);
+  return record;
+}
+
+/// One case: false after a stop request.
+bool run_case(const Experiment& experiment, const CaseSpec& spec, const std::vector<Topic>& topics,
+              const ExecuteRequest& request, const std::vector<std::string>& chain,
+              Recorder& recorder, RunState& state, Progress& progress) {
+  const CaseState& known = state.case_of(spec.name);
+  const bool timed = known.timed || !request.timing;
+  if (timed && std::all_of(known.variants.begin(), known.variants.end(),
+                           [](const VariantState& variant) { return variant.ended; })) {
+    for (std::size_t i = 0; i < known.variants.size(); ++i) progress.skip();
+    if (request.timing) progress.skip();
+    return true;
+  }
+  if (stop_requested()) return false;
+  const ResolvedScene scene = resolve_run_inputs(experiment, spec, topics, request, chain);
+  if (scene.stopped) return false;
+  CaseRunner runner(experiment, spec, topic_of(experiment, topics), recorder, state, progress);
+  if (request.only_declared) runner.require_declared_diagnostics();
+  bool complete = false;
+  with_threads(spec.threads,
+               [&] { complete = runner.run(*scene.options, scene.inputs, request.timing); });
+  return complete;
+}
+
+bool run_cases(const Experiment& experiment, const std::vector<Topic>& topics,
+               const ExecuteRequest& request, const std::vector<std::string>& chain,
+               Recorder& recorder, RunState& state) {
+  const std::size_t timings = request.timing ? experiment.cases.size() : 0;
+  const std::size_t steps =
+      std::accumulate(experiment.cases.begin(), experiment.cases.end(), timings,
+                      [](std::size_t n, const CaseSpec& spec) { return n + spec.variants.size(); });
+  Progress progress(request.show_progress, steps);
+  for (const CaseSpec& spec : experiment.cases) {
+    if (!run_case(experiment, spec, topics, request, chain, recorder, state, progress)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Studies, claims, run.h5. What cannot be decided must not cost the run: it is recorded as a claim
+/// that falls short, run.h5 is written, and the error is thrown after that.
+void finish(const Experiment& experiment, ExecuteResult& result) {
+  std::optional<Error> undecided;
+  try {
+    result.record.studies = make_studies(experiment, result.record);
+    result.record.claims = decide_claims(experiment, result.record);
+  } catch (const Error& error) {
+    undecided = error;
+    ClaimRecord claim;
+    claim.text = "every study and claim of the experiment can be decided";
+    claim.detail = error.what();
+    result.record.claims.push_back(claim);
+  }
+  fs::remove_all(result.folder / "checkpoints");
+  write_run_file(result.record, result.folder / "run.h5", result.folder);
+  if (undecided) throw Error(*undecided);
+}
+
+bool has_results(const RunState& state) {
+  return std::any_of(state.cases().begin(), state.cases().end(), [](const CaseState& one) {
+    return std::any_of(one.variants.begin(), one.variants.end(), [](const VariantState& variant) {
+      return variant.ended || variant.checkpoint || !variant.record.frames.empty();
+    });
+  });
+}
+
+/// Takes back what a run wrote that broke off without a result: bad input leaves no folder.
+void discard(const fs::path& folder, bool made_folder) {
+  std::error_code ignored;
+  for (const char* name : {"frames", "artifacts", "checkpoints"}) {
+    fs::remove_all(folder / name, ignored);
+  }
+  for (const char* name : {"spec.toml", "spec.json", "journal.jsonl"}) {
+    fs::remove(folder / name, ignored);
+  }
+  if (made_folder) fs::remove(folder, ignored);
+}
+
+}  // namespace
+
+ExecuteResult execute_in_chain(const Experiment& experiment, const std::vector<Topic>& topics,
+                               const ExecuteRequest& request, std::vector<std::string> chain) {
+  const Topic& topic = topic_of(experiment, topics);
+  chain.push_back(experiment.id);
+  ExecuteResult result;
+  const bool made_folder = !request.out || !fs::exists(*request.out);
+  result.folder = open_run_folder(experiment, request);
+  if (auto record = finished_record(experiment, result.folder)) {
+    std::fprintf(stderr, "%s is finished: nothing to do\n", result.folder.c_str());
+    result.record = std::move(*record);
+    result.was_finished = true;
+    return result;
+  }
+  Journal journal(result.folder / "journal.jsonl");
+  RunState state = restore(experiment, journal, result.folder);
+  Recorder recorder(result.folder, journal, state);
+  const bool is_new = !state.run();
+  try {
+    if (is_new) begin_run(experiment, recorder);
+    result.stopped = !run_cases(experiment, topics, request, chain, recorder, state);
+  } catch (const Error&) {
+    if (is_new && !has_results(state)) discard(result.folder, made_folder);
+    throw;
+  }
+  result.record = assemble(experiment, topic, state);
+  if (!result.stopped) finish(experiment, result);
+  return result;
+}
+
+ExecuteResult execute(const Experiment& experiment, const std::vector<Topic>& topics,
+                      const ExecuteRequest& request) {
+  return execute_in_chain(experiment, topics, request, {});
+}
+
+}  // namespace geoprior

@@ -1,0 +1,342 @@
+#include "testbed/runner/journal.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "testbed/formats/atomic_file.h"
+
+namespace geoprior::journal {
+
+namespace {
+
+using Json = nlohmann::json;
+
+template <class... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+template <class... Visitors>
+Overloaded(Visitors...) -> Overloaded<Visitors...>;
+
+/// JSON has no NaN and no infinities.
+Json number(double x) {
+  if (std::isnan(x)) return nullptr;
+  if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
+  return x;
+}
+
+double number(const Json& json) {
+  if (json.is_null()) return std::numeric_limits<double>::quiet_NaN();
+  if (json.is_string()) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    if (json == "inf") return infinity;
+    if (json == "-inf") return -infinity;
+    throw Error("no number: " + json.dump());
+  }
+  return json.get<double>();
+}
+
+Json numbers(const Numbers& map) {
+  Json out = Json::object();
+  for (const auto& [key, value] : map) out[key] = number(value);
+  return out;
+}
+
+Numbers numbers(const Json& json) {
+  Numbers out;
+  for (const auto& [key, value] : json.items()) out[key] = number(value);
+  return out;
+}
+
+Json files(const std::vector<StoredFile>& list) {
+  Json out = Json::array();
+  for (const StoredFile& file : list) out.push_back({{"name", file.name}, {"sha256", file.sha256}});
+  return out;
+}
+
+StoredFile file(const Json& json) { return {json.at("name"), json.at("sha256")}; }
+
+std::vector<StoredFile> files(const Json& json) {
+  std::vector<StoredFile> out;
+  for (const Json& entry : json) out.push_back(file(entry));
+  return out;
+}
+
+Json at(const Place& place, const char* kind) {
+  return {{"kind", kind}, {"case", place.case_name}, {"variant", place.variant}};
+}
+
+Place place(const Json& json) { return {json.at("case"), json.at("variant")}; }
+
+Json rows(const std::vector<std::vector<double>>& seconds) {
+  Json out = Json::array();
+  for (const auto& row : seconds) {
+    Json& line = out.emplace_back(Json::array());
+    for (const double x : row) line.push_back(number(x));
+  }
+  return out;
+}
+
+std::vector<std::vector<double>> rows(const Json& json) {
+  std::vector<std::vector<double>> out;
+  for (const Json& line : json) {
+    auto& row = out.emplace_back();
+    for (const Json& x : line) row.push_back(number(x));
+  }
+  return out;
+}
+
+Json write(const RunLine& line) {
+  return {{"kind", "run"},
+          {"schema_version", line.schema_version},
+          {"experiment_id", line.experiment_id},
+          {"spec_hash", line.spec_hash},
+          {"start", line.start}};
+}
+
+Json write(const CaseLine& line) {
+  return {{"kind", "case"},
+          {"case", line.case_name},
+          {"parameter_name", line.parameter_name},
+          {"parameter_unit", line.parameter_unit},
+          {"facts", numbers(line.facts)},
+          {"warnings", line.warnings},
+          {"inputs", files(line.inputs)},
+          {"seconds", number(line.seconds)}};
+}
+
+Json write(const BeginLine& line) {
+  Json json = at(line.place, "begin");
+  json["timing"] = numbers(line.timing);
+  return json;
+}
+
+Json write(const FrameLine& line) {
+  Json json = at(line.place, "frame");
+  json["index"] = line.index;
+  json["parameter"] = number(line.parameter);
+  json["files"] = files(line.files);
+  json["metrics"] = numbers(line.metrics);
+  json["diagnostics"] = numbers(line.diagnostics);
+  json["timing"] = numbers(line.timing);
+  return json;
+}
+
+Json write(const EventLine& line) {
+  Json json = at(line.place, "event");
+  const Event& event = line.event;
+  json["time_s"] = number(event.time_s);
+  json["kind_of_event"] = event.kind;
+  json["position"] = {number(event.position.x()), number(event.position.y()),
+                      number(event.position.z())};
+  json["energy_J"] = number(event.energy_J);
+  json["duration_s"] = number(event.duration_s);
+  return json;
+}
+
+Json write(const ArtifactLine& line) {
+  Json json = at(line.place, "artifact");
+  json["name"] = line.file.name;
+  json["sha256"] = line.file.sha256;
+  return json;
+}
+
+Json write(const CheckpointLine& line) {
+  Json json = at(line.place, "checkpoint");
+  json["name"] = line.file.name;
+  json["sha256"] = line.file.sha256;
+  json["frames"] = line.frames;
+  json["events"] = line.events;
+  json["artifacts"] = line.artifacts;
+  json["timing"] = numbers(line.timing);
+  return json;
+}
+
+Json write(const ResumeLine& line) {
+  Json json = at(line.place, "resume");
+  json["frames"] = line.frames;
+  json["events"] = line.events;
+  json["artifacts"] = line.artifacts;
+  return json;
+}
+
+Json write(const EndLine& line) {
+  Json json = at(line.place, "end");
+  json["summary"] = numbers(line.summary);
+  json["timing"] = numbers(line.timing);
+  if (!line.error.empty()) json["error"] = line.error;
+  return json;
+}
+
+Json write(const TimingLine& line) {
+  Json timing = Json::object();
+  for (const auto& [variant, phases] : line.timing) {
+    Json& of = timing[variant] = Json::object();
+    for (const auto& [phase, seconds] : phases) of[phase] = rows(seconds);
+  }
+  Json ratios = Json::array();
+  for (const TimingRatio& ratio : line.ratios) {
+    ratios.push_back({{"variant", ratio.variant},
+                      {"of", ratio.of},
+                      {"paired", ratio.paired},
+                      {"median_ratio", number(ratio.median_ratio)},
+                      {"low", number(ratio.low)},
+                      {"high", number(ratio.high)}});
+  }
+  return {{"kind", "timing"}, {"case", line.case_name}, {"timing", timing}, {"ratios", ratios}};
+}
+
+Json write(const ErrorLine& line) {
+  Json json = at(line.place, "error");
+  json["message"] = line.message;
+  return json;
+}
+
+Line read_event(const Json& json) {
+  EventLine line{place(json), {}};
+  line.event.time_s = number(json.at("time_s"));
+  line.event.kind = json.at("kind_of_event");
+  for (int axis = 0; axis < 3; ++axis) {
+    line.event.position[axis] = number(json.at("position").at(axis));
+  }
+  line.event.energy_J = number(json.at("energy_J"));
+  line.event.duration_s = number(json.at("duration_s"));
+  return line;
+}
+
+Line read_timing(const Json& json) {
+  TimingLine line;
+  line.case_name = json.at("case");
+  for (const auto& [variant, phases] : json.at("timing").items()) {
+    for (const auto& [phase, seconds] : phases.items()) line.timing[variant][phase] = rows(seconds);
+  }
+  for (const Json& ratio : json.at("ratios")) {
+    line.ratios.push_back({ratio.at("variant"), ratio.at("of"), number(ratio.at("median_ratio")),
+                           number(ratio.at("low")), number(ratio.at("high")), ratio.at("paired")});
+  }
+  return line;
+}
+
+Line read_frame(const Json& json) {
+  return FrameLine{place(json),
+                   json.at("index"),
+                   number(json.at("parameter")),
+                   files(json.at("files")),
+                   numbers(json.at("metrics")),
+                   numbers(json.at("diagnostics")),
+                   numbers(json.at("timing"))};
+}
+
+Line read(const Json& json) {
+  const std::string kind = json.at("kind");
+  if (kind == "frame") return read_frame(json);
+  if (kind == "event") return read_event(json);
+  if (kind == "timing") return read_timing(json);
+  if (kind == "artifact") return ArtifactLine{place(json), file(json)};
+  if (kind == "begin") return BeginLine{place(json), numbers(json.at("timing"))};
+  if (kind == "error") return ErrorLine{place(json), json.at("message")};
+  if (kind == "run") {
+    return RunLine{json.at("schema_version"), json.at("experiment_id"), json.at("spec_hash"),
+                   json.at("start")};
+  }
+  if (kind == "case") {
+    return CaseLine{json.at("case"),           json.at("parameter_name"), json.at("parameter_unit"),
+                    numbers(json.at("facts")), json.at("warnings"),       files(json.at("inputs")),
+                    number(json.at("seconds"))};
+  }
+  if (kind == "checkpoint") {
+    return CheckpointLine{place(json),       file(json),           json.at("frames"),
+                          json.at("events"), json.at("artifacts"), numbers(json.at("timing"))};
+  }
+  if (kind == "resume") {
+    return ResumeLine{place(json), json.at("frames"), json.at("events"), json.at("artifacts")};
+  }
+  if (kind == "end") {
+    return EndLine{place(json), numbers(json.at("summary")), numbers(json.at("timing")),
+                   json.value("error", "")};
+  }
+  throw Error("unknown kind of line '" + kind + "'");
+}
+
+}  // namespace
+
+std::string to_text(const Line& line) {
+  return std::visit([](const auto& of_kind) { return write(of_kind); }, line)
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Line from_text(std::string_view text) {
+  try {
+    return read(Json::parse(text));
+  } catch (const Json::exception& error) {
+    throw Error(std::string("damaged line: ") + error.what());
+  }
+}
+
+}  // namespace geoprior::journal
+
+namespace geoprior {
+
+Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
+  const bool is_new = !std::filesystem::exists(file_);
+  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) throw Error("cannot be opened: " + system_reason(errno), file_.string());
+  try {
+    lock();
+    if (is_new) flush_to_disk(file_.parent_path());
+    read();
+  } catch (...) {
+    ::close(descriptor_);
+    throw;
+  }
+}
+
+Journal::~Journal() { ::close(descriptor_); }
+
+void Journal::lock() {
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  if (errno == EWOULDBLOCK) {
+    throw Error("another program is writing this run", file_.parent_path().string(),
+                "wait for it, or choose another --out");
+  }
+  throw Error("cannot be locked: " + system_reason(errno), file_.string());
+}
+
+void Journal::read() {
+  const std::string text = read_whole_file(file_);
+  std::size_t begin = 0;
+  for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    try {
+      lines_.push_back(journal::from_text(std::string_view(text).substr(begin, end - begin)));
+    } catch (const Error& error) {
+      // A crash of the machine can leave the last line at its length but without its bytes.
+      if (end + 1 == text.size()) break;
+      throw Error(error.what(), file_.string() + ":" + std::to_string(lines_.size() + 1));
+    }
+  }
+  if (begin < text.size() && ::ftruncate(descriptor_, static_cast<off_t>(begin)) != 0) {
+    throw Error("cannot be repaired: " + system_reason(errno), file_.string());
+  }
+}
+
+void Journal::append(const journal::Line& line, bool flush) {
+  const off_t before = ::lseek(descriptor_, 0, SEEK_END);
+  try {
+    write_all(descriptor_, journal::to_text(line) + '\n', file_);
+  } catch (const Error&) {
+    // Half a line would be repaired on resume anyway; this keeps the file readable until then.
+    if (::ftruncate(descriptor_, before) != 0) errno = 0;
+    throw;
+  }
+  if (flush && ::fsync(descriptor_) != 0) {
+    throw Error("cannot be flushed to the disk: " + system_reason(errno), file_.string());
+  }
+}
+
+}  // namespace geoprior

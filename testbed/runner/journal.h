@@ -1,0 +1,127 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "testbed/runner/run_record.h"
+
+namespace geoprior {
+
+/// The lines of journal.jsonl (docs/file-formats.md). What a run knows is the sum of its lines: the
+/// running program and a resumed one build their state by the same `RunState::apply`.
+namespace journal {
+
+using Numbers = std::map<std::string, double>;
+
+struct Place {
+  std::string case_name;
+  std::string variant;
+};
+
+struct RunLine {
+  int schema_version = 1;
+  std::string experiment_id;
+  std::string spec_hash;
+  std::string start;  ///< UTC, "2025-01-31T12:00:00Z"
+};
+struct CaseLine {
+  std::string case_name;
+  std::string parameter_name;
+  std::string parameter_unit;
+  Numbers facts;
+  std::vector<std::string> warnings;
+  std::vector<StoredFile> inputs;
+  double seconds = 0;  ///< of loading
+};
+struct BeginLine {
+  Place place;
+  Numbers timing;  ///< "prepare" and the phases in it, s
+};
+struct FrameLine {
+  Place place;
+  std::size_t index = 0;
+  double parameter = 0;
+  std::vector<StoredFile> files;
+  Numbers metrics;
+  Numbers diagnostics;
+  Numbers timing;  ///< of a process: "run" and the phases in it since the frame before, s
+};
+struct EventLine {
+  Place place;
+  Event event;
+};
+struct ArtifactLine {
+  Place place;
+  StoredFile file;
+};
+struct CheckpointLine {
+  Place place;
+  StoredFile file;
+  std::size_t frames = 0;
+  std::size_t events = 0;
+  std::size_t artifacts = 0;
+  Numbers timing;  ///< "run" and the phases in it since the last frame, s
+};
+struct ResumeLine {
+  Place place;
+  std::size_t frames = 0;
+  std::size_t events = 0;
+  std::size_t artifacts = 0;
+};
+struct EndLine {
+  Place place;
+  Numbers summary;    ///< metrics of the sequence
+  Numbers timing;     ///< of a process: "run" and the phases in it after the last frame, s
+  std::string error;  ///< why the variant ended early; empty: it is complete
+};
+struct TimingLine {
+  std::string case_name;
+  /// variant: phase: [frame][repetition] s
+  std::map<std::string, std::map<std::string, std::vector<std::vector<double>>>> timing;
+  std::vector<TimingRatio> ratios;
+};
+struct ErrorLine {
+  Place place;
+  std::string message;
+};
+
+using Line = std::variant<RunLine, CaseLine, BeginLine, FrameLine, EventLine, ArtifactLine,
+                          CheckpointLine, ResumeLine, EndLine, TimingLine, ErrorLine>;
+
+/// One JSON object without line break; numbers are exact.
+std::string to_text(const Line& line);
+/// @throws Error  when the text is no line of a journal
+Line from_text(std::string_view text);
+
+}  // namespace journal
+
+/// The append-only log of a run folder, locked against other programs as long as it lives.
+class Journal {
+ public:
+  /// Opens or makes `file`, locks it, and cuts off a torn last line.
+  /// @throws Error  when another program writes this run, or a line but the last is damaged
+  explicit Journal(std::filesystem::path file);
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
+  /// The lines that were there when the journal was opened.
+  [[nodiscard]] const std::vector<journal::Line>& lines() const { return lines_; }
+  /// Appends a line; `flush` waits until it and all before it are on the disk.
+  /// @throws Error  disk full …; the journal is then as before
+  void append(const journal::Line& line, bool flush);
+
+ private:
+  void lock();
+  void read();
+
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+  std::vector<journal::Line> lines_;
+};
+
+}  // namespace geoprior

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "testbed/runner/run_record.h"
+
+namespace geoprior {
+
+/// A number of one variant with its unit.
+struct Quantity {
+  double value = 0;
+  std::string unit;
+};
+
+/// Value of a metric, "timing:<phase>" (median over repetitions) or "diagnostic:<name>" of a
+/// variant: at one parameter, or reduced over the frames ("max", "min", "median", "p95", "p99",
+/// "mean", "sum", "last"; frames without a value are left out). Metrics of a sequence have one
+/// value and take neither.
+///
+/// @throws Error  when the run has no such quantity, no such frame, or no value there
+Quantity quantity_of(const CaseRecord& in, const VariantRecord& variant, const std::string& name,
+                     std::optional<double> at_parameter, const std::string& reduce);
+
+/// The value of a metric of frames, of a diagnostic or of a timed phase at the frame of that
+/// parameter; absent when there is no such frame, or no value there.
+/// @throws Error  when the run has no such quantity of frames
+std::optional<double> value_at(const CaseRecord& in, const VariantRecord& variant,
+                               const std::string& name, double parameter);
+
+/// Parameters are the same frame when they differ by at most 1e-9 of their size.
+bool same_parameter(double a, double b);
+
+}  // namespace geoprior

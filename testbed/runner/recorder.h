@@ -1,0 +1,61 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "core/frame.h"
+#include "core/method.h"
+#include "testbed/runner/journal.h"
+#include "testbed/runner/run_state.h"
+
+namespace geoprior {
+
+/// Writes what a run makes into its folder, each file whole and then logged. A program killed at
+/// any moment leaves a folder that holds exactly what its journal says, and perhaps one frame in
+/// flight that the next program overwrites.
+class Recorder {
+ public:
+  Recorder(std::filesystem::path folder, Journal& journal, RunState& state);
+
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+  /// Logs a line and applies it to the state.
+  void add(const journal::Line& line, bool flush = true);
+
+  /// Writes the parts and tables of a frame: frames/<case>/<variant>/<part>_0000.vtp …
+  /// @throws Error  for a name that is no file name, or a file that cannot be written
+  std::vector<StoredFile> write_frame(const journal::Place& place, std::size_t index,
+                                      const Frame& frame);
+  /// @throws Error  when the variant has an artifact of that name
+  void write_artifact(const journal::Place& place, const Artifact& artifact);
+  /// The state replaces the one before it; `seconds` are those of the run so far.
+  void write_checkpoint(const journal::Place& place, const State& state,
+                        const journal::Numbers& seconds);
+  [[nodiscard]] State read_checkpoint(const journal::CheckpointLine& checkpoint) const;
+  /// frames/<case>/<variant>.pvd
+  void write_collection(const journal::Place& place);
+
+  /// Drops what cannot be continued and files that no line names. Returns the state to go on from.
+  std::optional<State> prepare_resume(const journal::Place& place, bool is_process);
+
+  /// Reads a frame back: equal, bit by bit, to the one that was recorded.
+  /// @param parts  only these of its parts and tables; absent: all. Those it has not are left out
+  /// @throws Error  naming a file that is missing or damaged
+  [[nodiscard]] Frame read_frame(
+      const VariantRecord& variant, std::size_t index,
+      const std::optional<std::set<std::string>>& parts = std::nullopt) const;
+
+ private:
+  StoredFile write(const std::filesystem::path& relative, std::string_view bytes);
+
+  std::filesystem::path folder_;
+  Journal& journal_;
+  RunState& state_;
+};
+
+/// @throws Error  naming method, frame, part and point when a position is NaN or infinite
+void require_finite(const Frame& frame, std::size_t index, const std::string& method);
+
+}  // namespace geoprior

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "testbed/runner/execute.h"
+#include "testbed/runner/spec.h"
+
+namespace geoprior {
+
+/// Where runs go without --out: $GEOPRIOR_RUNS, else results/runs of the clone.
+std::filesystem::path runs_root();
+
+/// Time of now in UTC, "2025-01-31T12:00:00Z".
+std::string utc_now();
+
+/// Folder of a run that shall be written: makes a new one, or finds the one to go on with.
+///
+/// Without `resume` the folder must not exist or be empty. With `resume` and without `out` it is
+/// the newest folder of the same hash below runs_root().
+/// @throws Error  naming the folder and what is allowed; before anything is computed
+std::filesystem::path open_run_folder(const Experiment& experiment, const ExecuteRequest& request);
+
+/// Name under which a run records an input file: relative to the clone where it lies inside, else
+/// absolute.
+std::string input_name(const std::filesystem::path& file);
+
+/// The newest run of an experiment with that `content_sha256`.
+/// @throws Error  when there is none below runs_root()
+std::filesystem::path find_run_of_content(const std::string& experiment_id,
+                                          const std::string& content_sha256);
+
+/// The newest folder of the experiment that an interrupted run of the same hash left.
+std::optional<std::filesystem::path> find_unfinished_run(const Experiment& experiment);
+
+/// Removes temporary files and files that `keep` (paths relative to the run folder) does not name
+/// from a folder of the run: what a killed program wrote and did not log.
+void remove_unlisted(const std::filesystem::path& run_folder, const std::filesystem::path& relative,
+                     const std::set<std::string>& keep);
+
+}  // namespace geoprior

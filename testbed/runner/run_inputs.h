@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "testbed/runner/execute.h"
+#include "testbed/runner/spec.h"
+
+namespace geoprior {
+
+/// A text option "run:<experiment id>/<variant>" or "run:<experiment id>/<case>/<variant>"; the id
+/// has two parts, "fluid/boat-wake". "#<file>" behind it means an artifact of the variant.
+struct RunReference {
+  std::string experiment_id;
+  std::string case_name = "default";
+  std::string variant;
+  std::string artifact;  ///< empty: the frames
+};
+
+bool is_run_reference(const std::string& text);
+/// @throws Error  when the text has not three or four parts, or no file name behind "#"
+RunReference parse_run_reference(const std::string& text);
+
+/// A scene whose run references are replaced by the folders of the frames, or the artifacts, that
+/// they mean.
+struct ResolvedScene {
+  std::shared_ptr<const OptionSet> options;
+  std::vector<StoredFile> inputs;  ///< the reference and the input run's content_sha256
+  bool stopped = false;            ///< Ctrl-C while an input was made
+};
+
+/// Finds the finished run of each reference, or makes it first. `chain` are the ids of the runs
+/// that wait for this one: an input that is among them is an Error.
+ResolvedScene resolve_run_inputs(const Experiment& experiment, const CaseSpec& spec,
+                                 const std::vector<Topic>& topics, const ExecuteRequest& request,
+                                 const std::vector<std::string>& chain);
+
+/// `execute` for a run that others wait for.
+ExecuteResult execute_in_chain(const Experiment& experiment, const std::vector<Topic>& topics,
+                               const ExecuteRequest& request, std::vector<std::string> chain);
+
+}  // namespace geoprior

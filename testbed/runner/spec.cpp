@@ -1,0 +1,286 @@
+#include "testbed/runner/spec.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "testbed/runner/build_info.h"
+#include "testbed/runner/option_json.h"
+#include "testbed/runner/option_toml.h"
+#include "testbed/runner/sha256.h"
+#include "testbed/runner/spec_claims.h"
+#include "testbed/runner/spec_json.h"
+#include "testbed/runner/spec_overrides.h"
+#include "testbed/runner/spec_resolve.h"
+#include "testbed/runner/spec_sweeps.h"
+#include "testbed/runner/spec_tables.h"
+
+namespace geoprior {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json json_of(const TomlNode& node) {
+  switch (node.kind) {
+    case TomlNode::Kind::boolean:
+      return node.boolean;
+    case TomlNode::Kind::integer:
+      return node.integer;
+    case TomlNode::Kind::real:
+      return node.real;
+    case TomlNode::Kind::text:
+      return node.text;
+    case TomlNode::Kind::array: {
+      Json array = Json::array();
+      for (const TomlNode& item : node.items) array.push_back(json_of(item));
+      return array;
+    }
+    case TomlNode::Kind::table: {
+      Json table = Json::object();
+      for (std::size_t i = 0; i < node.keys.size(); ++i) {
+        table[node.keys[i]] = json_of(node.items[i]);
+      }
+      return table;
+    }
+  }
+  return nullptr;
+}
+
+constexpr std::array<const char*, 8> kTables{"scene", "variant", "claim",     "sweep",
+                                             "study", "timing",  "tolerance", "figure_view"};
+
+HeaderTable read_header(const TomlNode& root) {
+  TomlNode plain = root;
+  for (const char* table : kTables) plain.erase(table);
+  HeaderTable header;
+  read_options(plain, "", header);
+  return header;
+}
+
+const Topic& topic_named(const std::vector<Topic>& topics, const std::string& name,
+                         const TomlNode& root) {
+  std::vector<std::string> names;
+  for (const Topic& topic : topics) {
+    if (topic.name == name) return topic;
+    names.push_back(topic.name);
+  }
+  const TomlNode* node = root.find("topic");
+  throw Error("unknown topic '" + name + "'",
+              (node != nullptr ? node->place : root.place) + ": topic", allowed_names(name, names));
+}
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// experiments/<folder>/<stem>.toml is <folder>/<stem>.
+std::string id_of(const std::filesystem::path& file) {
+  const std::filesystem::path whole = std::filesystem::absolute(file).lexically_normal();
+  const std::filesystem::path folder = whole.parent_path();
+  const std::string stem = whole.stem().string();
+  const bool ours = folder.parent_path().filename() == "experiments";
+  return ours ? folder.filename().string() + "/" + stem : stem;
+}
+
+template <class Table>
+Json table_json(Table table) {
+  OptionJsonWriter writer;
+  describe(writer, table);
+  return writer.json();
+}
+
+/// Sweeps with the values they were expanded with; names belong to the values of full runs.
+Json sweep_tables(const TomlNode& root, bool quick) {
+  Json list = Json::array();
+  for (const TomlNode& node : tables_of(root, "sweep")) {
+    TomlNode kept = node;
+    if (const TomlNode* reduced = node.find("quick_values"); reduced != nullptr && quick) {
+      if (reduced->items.empty()) continue;
+      const TomlNode values = *reduced;
+      kept.set("values", values);
+      kept.erase("names");
+    }
+    kept.erase("quick_values");
+    list.push_back(json_of(kept));
+  }
+  return list;
+}
+
+/// Takes cases that are not made out of the table's `cases`; false when that leaves none.
+bool keep_cases(Json& table, const std::vector<CaseSpec>& cases) {
+  if (!table.contains("cases")) return true;
+  Json kept = Json::array();
+  for (const Json& name : table["cases"]) {
+    const bool made = std::any_of(cases.begin(), cases.end(),
+                                  [&](const CaseSpec& one) { return name == one.name; });
+    if (made) kept.push_back(name);
+  }
+  table["cases"] = kept;
+  return !kept.empty();
+}
+
+Json resolved_json(const TomlNode& root, const Experiment& experiment, const HeaderTable& header,
+                   const CaseSpec& base, const KnownNames& names) {
+  Json json = table_json(header);
+  json["id"] = experiment.id;
+  json["size"] = experiment.quick ? "quick" : "full";
+  json["scene"] = Json::parse(base.scene_json);
+  json["timing"] = {{"repetitions", experiment.timing_repetitions}};
+  if (experiment.timing_warm_up) json["timing"]["warm_up"] = *experiment.timing_warm_up;
+  for (const auto& [metric, tolerance] : experiment.tolerances) {
+    json["tolerance"][metric] = {{"absolute", tolerance.absolute},
+                                 {"relative", tolerance.relative}};
+  }
+  json["variant"] = Json::array();
+  for (const VariantSpec& variant : base.variants) {
+    Json v{{"name", variant.name}, {"method", variant.method}, {"role", variant.role}};
+    if (variant.reference) v["reference"] = *variant.reference;
+    v["options"] = Json::parse(variant.options_json);
+    json["variant"].push_back(v);
+  }
+  json["sweep"] = sweep_tables(root, experiment.quick);
+  for (const char* key : {"claim", "study"}) {
+    Json kept = Json::array();
+    for (const TomlNode& node : tables_of(root, key)) {
+      Json table = json_of(node);
+      const auto left_out = [&](const char* member) {
+        return table.contains(member) && has(names.dropped, table[member].get<std::string>());
+      };
+      const std::string metric = table.value("metric", "");
+      const bool no_study = metric.starts_with("study:") && !has(names.studies, metric.substr(6));
+      const bool no_case = !keep_cases(table, experiment.cases);
+      if (!left_out("variant") && !left_out("of") && !no_study && !no_case) kept.push_back(table);
+    }
+    json[key] = kept;
+  }
+  for (const char* key : {"sweep", "claim", "study"}) {
+    if (json[key].empty()) json.erase(key);
+  }
+  return json;
+}
+
+std::string spec_hash(const std::string& text) {
+  const BuildInfo& build = build_info();
+  return sha256(text + "\nversion " + build.version + "\ncommit " + build.git_commit +
+                "\ndifference " + build.git_difference + "\n");
+}
+
+void keep_only(std::vector<std::string>& names, const std::vector<std::string>& dropped) {
+  std::erase_if(names, [&](const std::string& name) { return has(dropped, name); });
+}
+
+KnownNames known_names(const TomlNode& root, const std::vector<std::string>& selected, bool quick) {
+  KnownNames names;
+  for (const TomlNode& node : tables_of(root, "variant")) {
+    const std::string& name = node.find("name")->text;
+    const bool runs = selected.empty() || has(selected, name);
+    (runs ? names.variants : names.dropped).push_back(name);
+  }
+  for (const SweptCase& swept : expand_sweeps(root, quick)) names.cases.push_back(swept.name);
+  if (!quick) return names;
+  // What is claimed of cases that only the full version has is no mistake of the file.
+  for (const SweptCase& swept : expand_sweeps(root, false)) {
+    if (!has(names.cases, swept.name)) names.cases.push_back(swept.name);
+  }
+  return names;
+}
+
+/// Without its variant a sweep of a variant's options would only repeat the base case.
+void drop_sweeps(TomlNode& root, const std::vector<std::string>& dropped) {
+  TomlNode* sweeps = root.find("sweep");
+  if (sweeps == nullptr) return;
+  std::erase_if(sweeps->items, [&](const TomlNode& sweep) {
+    const TomlNode* key = sweep.find("key");
+    return key != nullptr && std::any_of(dropped.begin(), dropped.end(), [&](const auto& name) {
+             return key->text.starts_with("variant." + name + ".");
+           });
+  });
+}
+
+/// Forgets cases that `drop_sweeps` took away or that only the full version has; what was only
+/// about them goes too.
+template <class Specs>
+void drop_cases(Specs& specs, const std::vector<CaseSpec>& cases) {
+  std::erase_if(specs, [&](auto& spec) {
+    if (spec.cases.empty()) return false;
+    std::erase_if(spec.cases, [&](const std::string& name) {
+      return std::none_of(cases.begin(), cases.end(),
+                          [&](const CaseSpec& made) { return made.name == name; });
+    });
+    return spec.cases.empty();
+  });
+}
+
+void read_timing(const TomlNode& root, Experiment& experiment) {
+  TimingTable timing;
+  if (const TomlNode* table = root.find("timing")) read_options(*table, "timing", timing);
+  experiment.timing_repetitions = timing.repetitions;
+  experiment.timing_warm_up = timing.warm_up;
+}
+
+}  // namespace
+
+const Topic& topic_of(const Experiment& experiment, const std::vector<Topic>& topics) {
+  for (const Topic& topic : topics) {
+    if (topic.name == experiment.topic) return topic;
+  }
+  throw Error("unknown topic '" + experiment.topic + "'", experiment.file.string());
+}
+
+FigureView figure_view_of(const std::string& resolved_toml, const std::string& source,
+                          const std::vector<Topic>& topics) {
+  const TomlNode root = parse_toml_text(resolved_toml, source);
+  const TomlNode* topic = root.find("topic");
+  return read_figure_view(
+      root, topic_named(topics, topic != nullptr ? topic->text : std::string(), root));
+}
+
+Experiment load_experiment(const std::filesystem::path& file, const std::vector<Topic>& topics,
+                           const LoadRequest& request) {
+  TomlNode root = parse_toml_file(file);
+  require_known_tables(root);
+  Experiment experiment;
+  experiment.file = file;
+  const std::vector<std::string> selected = select_variants(root, request.variants);
+  apply_quick(root, request.quick);
+  apply_sets(root, request.sets);
+  if (request.threads) {
+    set_experiment_key(root, "threads",
+                       parse_toml_value(std::to_string(*request.threads), "--threads"));
+  }
+  const HeaderTable header = read_header(root);
+  experiment.id = header.id.value_or(id_of(file));
+  experiment.title = header.title;
+  experiment.figure = header.figure;
+  experiment.topic = header.topic;
+  experiment.quick = request.quick || header.size == RunSize::quick;
+  const Topic& topic = topic_named(topics, header.topic, root);
+
+  KnownNames names = known_names(root, selected, experiment.quick);
+  drop_sweeps(root, names.dropped);
+  for (const SweptCase& swept : expand_sweeps(root, experiment.quick)) {
+    CaseSpec made = resolve_case(swept, topic, selected);
+    if (!made.variants.empty()) experiment.cases.push_back(std::move(made));
+  }
+  read_timing(root, experiment);
+  experiment.studies = read_studies(root, topic, names);
+  drop_cases(experiment.studies, experiment.cases);
+  for (const StudySpec& study : experiment.studies) names.studies.push_back(study.name);
+  experiment.claims = read_claims(root, topic, names);
+  drop_cases(experiment.claims, experiment.cases);
+  experiment.tolerances = read_tolerances(root, topic);
+  experiment.view = read_figure_view(root, topic);
+  keep_only(experiment.view.variants, names.dropped);
+
+  SweptCase base;
+  base.root = root;
+  Json resolved =
+      resolved_json(root, experiment, header, resolve_case(base, topic, selected), names);
+  experiment.hash = spec_hash(toml_text(resolved));
+  if (const TomlNode* view = root.find("figure_view")) resolved["figure_view"] = json_of(*view);
+  experiment.resolved_toml = toml_text(resolved);
+  return experiment;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "testbed/figure_view.h"
+#include "testbed/topic.h"
+
+namespace geoprior {
+
+/// One method with its options on the scene of a case.
+struct VariantSpec {
+  std::string name;
+  std::string method;
+  std::string role;                      ///< "method", "baseline" or "ablation"
+  std::optional<std::string> reference;  ///< variant that metrics with needs_reference compare with
+  std::shared_ptr<const OptionSet> options;
+  std::string options_json;  ///< resolved: every option, defaults included
+};
+
+/// One point of the sweeps: a scene and the variants that run on it.
+struct CaseSpec {
+  std::string name = "default";              ///< "stop_angle_deg=26", folder-safe
+  std::map<std::string, std::string> swept;  ///< dotted key to the JSON text of its value
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0: all
+  std::shared_ptr<const OptionSet> scene;
+  std::string scene_json;  ///< resolved
+  /// "file:line:column" of every key below [scene], by its dotted path ("scene.handles.0.keys").
+  std::map<std::string, std::string> scene_places;
+  std::vector<VariantSpec> variants;
+};
+
+/// A statement that the runner can decide: value (is) factor * value of the other side + offset.
+struct ClaimSpec {
+  std::string text;
+  /// Of the metric table, or "timing:<phase>" (median, in s), "diagnostic:<name>" (per frame), or
+  /// "study:<name>" (its value; has no variant and is decided once).
+  std::string metric;
+  std::string variant;
+  std::optional<std::string> of;  ///< compared with this variant; absent: with `value`
+  std::optional<double> value;
+  std::string is = "<=";  ///< "<=", "<", ">=", ">", "=="
+  double factor = 1;
+  double offset = 0;
+  double tolerance = 0;  ///< for "=="
+  /// Why the claim falls short, where that is known and documented: `run` reports it, `check` lets
+  /// it pass.
+  std::optional<std::string> known_shortfall;
+  std::optional<double> at_parameter;  ///< at = { angle_deg = 90 }; the frame must exist
+  std::string at_key;  ///< "angle_deg": parameter name and unit, compared with the scene's
+  /// "max", "min", "median", "p95", "p99", "mean", "sum", "last" over the frames, when there is no
+  /// `at`; "every": the claim must hold at each frame, and the one nearest to failing is recorded.
+  std::string reduce = "max";
+  std::optional<std::string> of_reduce;  ///< of the other side; absent: as `reduce`
+  std::vector<std::string> cases;        ///< empty: every case
+};
+
+/// A quantity across cases.
+struct StudySpec {
+  std::string name;
+  /// "exponent": slope of log y against log x; "order": observed order of convergence; "spread":
+  /// standard deviation; "within-spread": distance of the medians of `variant` and `of` over half
+  /// the range of `of`.
+  std::string kind;
+  std::string variant;
+  std::string
+      quantity;  ///< as a claim's metric: of the table, "timing:<phase>", "diagnostic:<name>"
+  std::string against;             ///< a scene fact ("vertices") or a swept key; unused by "spread"
+  std::string reduce = "median";   ///< over the frames, as a claim's
+  std::vector<std::string> cases;  ///< empty: every case that has the variant and `against`
+  std::string finer = "smaller";   ///< of "order": whether smaller x (a step) or "larger" x (a
+                                   ///< count) is the finer discretisation
+  std::string of;                  ///< of "within-spread": the variant that is the yardstick
+};
+
+struct Experiment {
+  std::string id;  ///< "skinning/knee"
+  std::string title;
+  std::string figure;
+  std::string topic;
+  std::filesystem::path file;
+  bool quick = false;
+  std::vector<CaseSpec> cases;
+  std::vector<ClaimSpec> claims;
+  std::vector<StudySpec> studies;
+  std::map<std::string, Tolerance>
+      tolerances;  ///< [tolerance] overrides of the metric table, by metric
+  int timing_repetitions = 1;
+  std::optional<int> timing_warm_up;  ///< absent: 1 for pose methods, 0 for processes
+  FigureView view;
+  /// The whole text after quick, --set and defaults, before sweeps: an experiment file itself.
+  std::string resolved_toml;
+  /// sha256 of `resolved_toml` without [figure_view] (a camera changes no number), program version,
+  /// commit and the sources' difference from it; 64 hex digits.
+  std::string hash;
+};
+
+struct LoadRequest {
+  bool quick = false;
+  std::vector<std::string> sets;      ///< "key=value" of --set
+  std::vector<std::string> variants;  ///< of --variant; empty: all
+  std::optional<int> threads;         ///< of --threads
+};
+
+/// Parses, applies [quick] and --set, expands sweeps, resolves options. Throws Error naming file,
+/// line, key, allowed.
+///
+/// The identifier is <folder>/<stem> for a file in experiments/<folder>/, else its stem. Selecting
+/// variants keeps the references that they are compared with, and drops claims and studies about
+/// the others.
+Experiment load_experiment(const std::filesystem::path& file, const std::vector<Topic>& topics,
+                           const LoadRequest& request);
+
+/// The topic of a loaded experiment. Throws Error when it is none of `topics`.
+const Topic& topic_of(const Experiment& experiment, const std::vector<Topic>& topics);
+
+/// The [figure_view] of a resolved text (that of a run), to draw the run again.
+FigureView figure_view_of(const std::string& resolved_toml, const std::string& source,
+                          const std::vector<Topic>& topics);
+
+}  // namespace geoprior

@@ -1,0 +1,250 @@
+#include "testbed/runner/spec_claims.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "testbed/runner/option_toml.h"
+#include "testbed/runner/spec_overrides.h"
+#include "testbed/runner/spec_tables.h"
+
+namespace geoprior {
+namespace {
+
+using Names = std::vector<std::string>;
+
+bool contains(const Names& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string place_of(const TomlNode& table, std::string_view key) {
+  const TomlNode* member = table.find(key);
+  return (member != nullptr ? *member : table).place + ": " + std::string(key);
+}
+
+Names metric_names(const Topic& topic) {
+  Names names;
+  for (const MetricEntry& metric : topic.metrics) names.push_back(metric.name);
+  return names;
+}
+
+/// "timing:solve", "diagnostic:iterations" and "study:order" name what no table lists.
+bool has_prefix(const std::string& quantity) {
+  return quantity.starts_with("timing:") || quantity.starts_with("diagnostic:");
+}
+
+void require_metric(const std::string& name, const Topic& topic, const std::string& place,
+                    const Names& studies) {
+  if (has_prefix(name)) return;
+  if (name.starts_with("study:")) {
+    if (contains(studies, name.substr(6))) return;
+    throw Error("unknown study '" + name.substr(6) + "'", place,
+                allowed_names(name.substr(6), studies));
+  }
+  Names names = metric_names(topic);
+  if (contains(names, name)) return;
+  for (const char* prefix : {"timing:<phase>", "diagnostic:<name>", "study:<name>"}) {
+    names.emplace_back(prefix);
+  }
+  throw Error("unknown metric '" + name + "'", place, allowed_names(name, names));
+}
+
+void require_cases(const Names& cases, const KnownNames& names, const TomlNode& node) {
+  for (const std::string& name : cases) {
+    if (contains(names.cases, name)) continue;
+    throw Error("there is no case '" + name + "'", place_of(node, "cases"),
+                allowed_names(name, names.cases));
+  }
+}
+
+/// False when --variant left the variant out; throws when there never was one.
+bool runs(const std::string& variant, const KnownNames& names, const std::string& place) {
+  if (contains(names.variants, variant)) return true;
+  if (contains(names.dropped, variant)) return false;
+  Names all = names.variants;
+  all.insert(all.end(), names.dropped.begin(), names.dropped.end());
+  throw Error("there is no variant '" + variant + "'", place, allowed_names(variant, all));
+}
+
+/// `at = { angle_deg = 90 }`: one number under the parameter's name.
+void read_at(const TomlNode* at, std::optional<double>& parameter, std::string* key) {
+  if (at == nullptr) return;
+  const bool one = at->kind == TomlNode::Kind::table && at->items.size() == 1;
+  if (!one) {
+    throw Error("does not give one parameter", at->place + ": at",
+                "a table of one number, { angle_deg = 90 }");
+  }
+  struct At {
+    std::string key;
+    double value = 0;
+  };
+  At read{at->keys.front(), 0};
+  OptionTomlReader reader(*at, "at");
+  reader.value(read.key, read.value, {.doc = "parameter of the frame"});
+  parameter = read.value;
+  if (key != nullptr) *key = read.key;
+}
+
+ClaimSpec claim_of(const ClaimTable& table, const TomlNode& node) {
+  ClaimSpec claim;
+  claim.text = table.text;
+  claim.metric = table.metric;
+  claim.variant = table.variant.value_or("");
+  claim.of = table.of;
+  claim.value = table.value;
+  claim.is = text_of(table.is);
+  claim.factor = table.factor;
+  claim.offset = table.offset;
+  claim.tolerance = table.tolerance;
+  claim.known_shortfall = table.known_shortfall;
+  claim.reduce = text_of(table.reduce);
+  if (table.of_reduce != OfReduction::same) claim.of_reduce = text_of(table.of_reduce);
+  claim.cases = table.cases;
+  read_at(node.find("at"), claim.at_parameter, &claim.at_key);
+  return claim;
+}
+
+void require_sides(const ClaimSpec& claim, const TomlNode& node) {
+  if (claim.of.has_value() == claim.value.has_value()) {
+    throw Error(claim.of ? "has both `of` and `value`" : "is compared with nothing",
+                node.place + ": claim", "either `of`, a variant, or `value`, a number");
+  }
+  const bool study = claim.metric.starts_with("study:");
+  if (study && (!claim.variant.empty() || claim.of || claim.at_parameter || !claim.cases.empty())) {
+    throw Error("a study has one value for the whole experiment", place_of(node, "metric"),
+                "metric, is, value, factor, offset, tolerance");
+  }
+  if (!study && claim.variant.empty()) {
+    throw Error("is missing", place_of(node, "variant"), "the variant whose value is judged");
+  }
+  const bool reduces = node.find("reduce") != nullptr || claim.of_reduce;
+  if (claim.at_parameter && reduces) {
+    throw Error("`at` picks one frame, `reduce` and `of_reduce` take all", node.place + ": claim",
+                "one of the two");
+  }
+  if (claim.of_reduce && !claim.of) {
+    throw Error("reduces the frames of no variant", place_of(node, "of_reduce"),
+                "with `of`, which may be the variant itself");
+  }
+  if (claim.of_reduce && claim.reduce == "every") {
+    throw Error("`every` compares frame by frame", place_of(node, "of_reduce"),
+                "another `reduce`, or no `of_reduce`");
+  }
+}
+
+}  // namespace
+
+std::vector<ClaimSpec> read_claims(const TomlNode& root, const Topic& topic,
+                                   const KnownNames& names) {
+  std::vector<ClaimSpec> claims;
+  for (const TomlNode& node : tables_of(root, "claim")) {
+    TomlNode plain = node;
+    plain.erase("at");
+    ClaimTable table;
+    read_options(plain, "claim", table);
+    const ClaimSpec claim = claim_of(table, node);
+    require_sides(claim, node);
+    Names studies = names.studies;
+    bool decidable = true;
+    if (claim.metric.starts_with("study:") && !contains(studies, claim.metric.substr(6))) {
+      // A study about a variant that --variant left out is no mistake of the file.
+      for (const TomlNode& study : tables_of(root, "study")) {
+        const TomlNode* name = study.find("name");
+        if (name != nullptr && name->text == claim.metric.substr(6)) decidable = false;
+      }
+    }
+    if (decidable) require_metric(claim.metric, topic, place_of(node, "metric"), studies);
+    require_cases(claim.cases, names, node);
+    if (!claim.variant.empty()) {
+      decidable = runs(claim.variant, names, place_of(node, "variant")) && decidable;
+    }
+    if (claim.of) decidable = runs(*claim.of, names, place_of(node, "of")) && decidable;
+    if (decidable) claims.push_back(claim);
+  }
+  return claims;
+}
+
+std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
+                                    const KnownNames& names) {
+  std::vector<StudySpec> studies;
+  Names seen;
+  for (const TomlNode& node : tables_of(root, "study")) {
+    StudyTable table;
+    read_options(node, "study", table);
+    if (contains(seen, table.name)) {
+      throw Error("two studies are called '" + table.name + "'", place_of(node, "name"),
+                  "names of their own");
+    }
+    seen.push_back(table.name);
+    require_cases(table.cases, names, node);
+    if (table.quantity.starts_with("study:")) {
+      throw Error("a study of a study", place_of(node, "quantity"), "a metric");
+    }
+    require_metric(table.quantity, topic, place_of(node, "quantity"), {});
+    if (table.reduce == Reduction::every) {
+      throw Error("a study needs one value a case", place_of(node, "reduce"),
+                  "max, min, median, p95, p99, mean, sum, last");
+    }
+    const bool slope = table.kind == StudyKind::exponent || table.kind == StudyKind::order;
+    if (slope && !table.against) {
+      throw Error("is missing", place_of(node, "against"),
+                  "a fact of the scene or a swept key, the x of the slope");
+    }
+    const bool compares = table.kind == StudyKind::within_spread;
+    if (compares != table.of.has_value()) {
+      throw Error(compares ? "is missing" : "has no meaning for this kind", place_of(node, "of"),
+                  "the variant whose spread is the yardstick, for kind = \"within-spread\"");
+    }
+    bool decidable = runs(table.variant, names, place_of(node, "variant"));
+    if (table.of) decidable = runs(*table.of, names, place_of(node, "of")) && decidable;
+    if (!decidable) continue;
+    studies.push_back({table.name, text_of(table.kind), table.variant, table.quantity,
+                       table.against.value_or(""), text_of(table.reduce), table.cases,
+                       text_of(table.finer), table.of.value_or("")});
+  }
+  return studies;
+}
+
+std::map<std::string, Tolerance> read_tolerances(const TomlNode& root, const Topic& topic) {
+  std::map<std::string, Tolerance> tolerances;
+  const TomlNode* table = root.find("tolerance");
+  if (table == nullptr) return tolerances;
+  const Names names = metric_names(topic);
+  for (std::size_t i = 0; i < table->keys.size(); ++i) {
+    const std::string& metric = table->keys[i];
+    const TomlNode& node = table->items[i];
+    if (!contains(names, metric)) {
+      throw Error("unknown metric '" + metric + "'", node.place + ": tolerance",
+                  allowed_names(metric, names));
+    }
+    ToleranceTable read;
+    read_options(node, "tolerance." + metric, read);
+    tolerances[metric] = {read.absolute, read.relative};
+  }
+  return tolerances;
+}
+
+FigureView read_figure_view(const TomlNode& root, const Topic& topic) {
+  FigureViewTable table(topic.view);
+  FigureView& view = table.view;
+  if (const TomlNode* node = root.find("figure_view")) {
+    // The topic's classes are those of its own array.
+    if (node->find("color_by") != nullptr) view.classes.clear();
+    TomlNode plain = *node;
+    plain.erase("at");
+    read_options(plain, "figure_view", table);
+    read_at(node->find("at"), view.at_parameter, nullptr);
+    if (!table.target.empty() && table.target.size() != 3) {
+      throw Error("has " + std::to_string(table.target.size()) + " elements",
+                  place_of(*node, "target"), "an array of 3 numbers");
+    }
+    if (view.color_by && view.color_by->empty()) view.color_by.reset();
+    if (!view.classes.empty() && !view.color_by) {
+      throw Error("names the values of no array", place_of(*node, "classes"), "with `color_by`");
+    }
+  }
+  view.target.reset();
+  if (table.target.size() == 3) view.target = {table.target[0], table.target[1], table.target[2]};
+  return view;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "testbed/runner/spec.h"
+#include "testbed/runner/toml_tree.h"
+
+namespace geoprior {
+
+/// What claims and studies may name.
+struct KnownNames {
+  std::vector<std::string> variants;  ///< those that run
+  std::vector<std::string> dropped;   ///< those that --variant left out
+  std::vector<std::string> cases;     ///< of this version, and those that only the full one has
+  std::vector<std::string> studies;
+};
+
+std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
+                                    const KnownNames& names);
+std::vector<ClaimSpec> read_claims(const TomlNode& root, const Topic& topic,
+                                   const KnownNames& names);
+std::map<std::string, Tolerance> read_tolerances(const TomlNode& root, const Topic& topic);
+FigureView read_figure_view(const TomlNode& root, const Topic& topic);
+
+}  // namespace geoprior

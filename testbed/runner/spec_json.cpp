@@ -1,0 +1,55 @@
+#include "testbed/runner/spec_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace geoprior {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The JSON text of an option set or value; the text itself should it be none.
+Json embedded(const std::string& text) {
+  Json json = Json::parse(text, nullptr, false);
+  return json.is_discarded() ? Json(text) : json;
+}
+
+Json variant_json(const VariantSpec& variant) {
+  return {{"name", variant.name},
+          {"method", variant.method},
+          {"role", variant.role},
+          {"reference", variant.reference ? Json(*variant.reference) : Json(nullptr)},
+          {"options", embedded(variant.options_json)}};
+}
+
+Json case_json(const CaseSpec& spec) {
+  Json swept = Json::object();
+  for (const auto& [key, value] : spec.swept) swept[key] = embedded(value);
+  Json variants = Json::array();
+  for (const VariantSpec& variant : spec.variants) variants.push_back(variant_json(variant));
+  return {{"name", spec.name},
+          {"swept", swept},
+          {"seed", spec.seed},
+          {"threads", spec.threads},
+          {"scene", embedded(spec.scene_json)},
+          {"variants", variants}};
+}
+
+}  // namespace
+
+std::string spec_json(const Experiment& experiment) {
+  Json cases = Json::array();
+  for (const CaseSpec& spec : experiment.cases) cases.push_back(case_json(spec));
+  Json json{{"id", experiment.id},
+            {"title", experiment.title},
+            {"figure", experiment.figure},
+            {"topic", experiment.topic},
+            {"quick", experiment.quick},
+            {"hash", experiment.hash},
+            {"timing_repetitions", experiment.timing_repetitions},
+            {"cases", cases}};
+  if (experiment.timing_warm_up) json["timing_warm_up"] = *experiment.timing_warm_up;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace geoprior

@@ -1,0 +1,114 @@
+#include "testbed/runner/spec_overrides.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+const std::vector<std::string> kTopLevel{
+    "title",   "figure", "topic", "id",    "size",   "seed",      "threads", "scene",
+    "variant", "claim",  "sweep", "study", "timing", "tolerance", "quick",   "figure_view"};
+constexpr std::string_view kKeys =
+    "scene.*, seed, threads, timing.*, figure_view.*, variant.<name>.options.*";
+
+TomlNode* variant_named(TomlNode& root, const std::string& name) {
+  TomlNode* variants = root.find("variant");
+  if (variants == nullptr) return nullptr;
+  for (TomlNode& variant : variants->items) {
+    const TomlNode* has = variant.find("name");
+    if (has != nullptr && has->text == name) return &variant;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> variant_names(const TomlNode& root) {
+  std::vector<std::string> names;
+  for (const TomlNode& variant : tables_of(root, "variant")) {
+    if (const TomlNode* name = variant.find("name")) names.push_back(name->text);
+  }
+  return names;
+}
+
+}  // namespace
+
+std::vector<TomlNode> tables_of(const TomlNode& root, const std::string& key) {
+  const TomlNode* node = root.find(key);
+  return node == nullptr ? std::vector<TomlNode>{} : node->items;
+}
+
+void require_known_tables(const TomlNode& root) {
+  for (std::size_t i = 0; i < root.keys.size(); ++i) {
+    const std::string& key = root.keys[i];
+    const TomlNode& node = root.items[i];
+    if (std::find(kTopLevel.begin(), kTopLevel.end(), key) == kTopLevel.end()) {
+      throw Error("unknown key", node.place + ": " + key, allowed_names(key, kTopLevel));
+    }
+    for (const std::string table : {"scene", "timing", "tolerance", "quick", "figure_view"}) {
+      if (key == table && node.kind != TomlNode::Kind::table) {
+        throw Error("is " + node.kind_name(), node.place + ": " + key, "a table, [" + key + "]");
+      }
+    }
+    for (const std::string list : {"variant", "claim", "sweep", "study"}) {
+      if (key != list) continue;
+      const bool tables = node.kind == TomlNode::Kind::array &&
+                          std::all_of(node.items.begin(), node.items.end(), [](const auto& item) {
+                            return item.kind == TomlNode::Kind::table;
+                          });
+      if (!tables) {
+        throw Error("is " + node.kind_name(), node.place + ": " + key,
+                    "an array of tables, [[" + key + "]]");
+      }
+    }
+  }
+}
+
+void set_experiment_key(TomlNode& root, const std::string& key, const TomlNode& value) {
+  const std::vector<std::string> parts = split_dotted_key(key, value.place);
+  const std::string& first = parts.front();
+  const bool whole = first == "seed" || first == "threads";
+  const bool nested = first == "scene" || first == "timing" || first == "figure_view";
+  if ((whole && parts.size() == 1) || (nested && parts.size() > 1)) {
+    set_at(root, parts, value);
+    return;
+  }
+  if (first != "variant" || parts.size() < 4 || parts[2] != "options") {
+    throw Error("'" + key + "' cannot be set", value.place, std::string(kKeys));
+  }
+  TomlNode* variant = variant_named(root, parts[1]);
+  if (variant == nullptr) {
+    throw Error("there is no variant '" + parts[1] + "'", value.place + ": " + key,
+                allowed_names(parts[1], variant_names(root)));
+  }
+  set_at(*variant, {parts.begin() + 2, parts.end()}, value);
+}
+
+void apply_quick(TomlNode& root, bool quick) {
+  if (const TomlNode* table = root.find("quick"); table != nullptr && quick) {
+    const TomlNode overrides = *table;
+    for (std::size_t i = 0; i < overrides.keys.size(); ++i) {
+      set_experiment_key(root, overrides.keys[i], overrides.items[i]);
+    }
+  }
+  root.erase("quick");
+}
+
+void apply_sets(TomlNode& root, const std::vector<std::string>& sets) {
+  for (const std::string& set : sets) {
+    const std::size_t equals = set.find('=');
+    const std::string place = "--set " + set;
+    if (equals == std::string::npos || equals == 0) {
+      throw Error("has no key and value", place, "key=value, for example scene.frames=4");
+    }
+    const auto trimmed = [](std::string text) {
+      text.erase(0, text.find_first_not_of(" \t"));
+      text.erase(text.find_last_not_of(" \t") + 1);
+      return text;
+    };
+    set_experiment_key(root, trimmed(set.substr(0, equals)),
+                       parse_toml_value(trimmed(set.substr(equals + 1)), place));
+  }
+}
+
+}  // namespace geoprior

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "testbed/runner/spec.h"
+#include "testbed/runner/spec_sweeps.h"
+#include "testbed/runner/toml_tree.h"
+
+namespace geoprior {
+
+/// Reads scene and variants of one case.
+CaseSpec resolve_case(const SweptCase& swept, const Topic& topic,
+                      const std::vector<std::string>& selected);
+
+/// Names of the selected variants and of the references that they need; empty: all.
+std::vector<std::string> select_variants(const TomlNode& root,
+                                         const std::vector<std::string>& requested);
+
+}  // namespace geoprior

@@ -1,0 +1,198 @@
+#include "testbed/runner/spec_sweeps.h"
+
+#include <algorithm>
+#include <cctype>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/error.h"
+#include "testbed/runner/number_text.h"
+#include "testbed/runner/option_toml.h"
+#include "testbed/runner/spec_json.h"
+#include "testbed/runner/spec_overrides.h"
+#include "testbed/runner/spec_tables.h"
+
+namespace geoprior {
+namespace {
+
+struct Sweep {
+  SweepTable table;
+  std::vector<TomlNode> values;
+  std::vector<std::string> names;  ///< one a value
+};
+
+std::string folder_safe(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    const bool keep = std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                      std::string_view("._=,+-").find(c) != std::string_view::npos;
+    safe += keep ? c : '-';
+  }
+  return safe;
+}
+
+std::string value_text(const TomlNode& value, std::size_t index) {
+  switch (value.kind) {
+    case TomlNode::Kind::text:
+      return value.text;
+    case TomlNode::Kind::real:
+      return number_text(value.real);
+    case TomlNode::Kind::integer:
+      return std::to_string(value.integer);
+    case TomlNode::Kind::boolean:
+      return value.boolean ? "true" : "false";
+    case TomlNode::Kind::array: {
+      std::string joined;
+      for (std::size_t i = 0; i < value.items.size(); ++i) {
+        joined += (i == 0 ? "" : "-") + value_text(value.items[i], i);
+      }
+      return joined;
+    }
+    case TomlNode::Kind::table:
+      return std::to_string(index);
+  }
+  return std::to_string(index);
+}
+
+std::vector<TomlNode> values_of(const TomlNode& table, const char* key, bool required) {
+  const TomlNode* node = table.find(key);
+  if (node == nullptr && !required) return {};
+  const bool no_array = node == nullptr || node->kind != TomlNode::Kind::array;
+  if (no_array || (required && node->items.empty())) {
+    throw Error(node == nullptr ? "is missing" : "has no values",
+                (node == nullptr ? table : *node).place + ": sweep." + key, "an array of values");
+  }
+  return node->items;
+}
+
+/// Names of the values; a quick value that is also a full one keeps its name.
+std::vector<std::string> value_names(const Sweep& sweep, const std::vector<TomlNode>& full,
+                                     const std::string& label) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < sweep.values.size(); ++i) {
+    std::string name = label + "=" + value_text(sweep.values[i], i);
+    for (std::size_t j = 0; j < sweep.table.names.size(); ++j) {
+      if (json_of(full[j]) == json_of(sweep.values[i])) name = sweep.table.names[j];
+    }
+    names.push_back(folder_safe(name));
+  }
+  return names;
+}
+
+void require_sweepable(const SweepTable& table, const TomlNode& node) {
+  const std::string& key = table.key;
+  const bool allowed = key == "seed" || key == "threads" || key == "scene" ||
+                       key.starts_with("scene.") ||
+                       (key.starts_with("variant.") && key.find(".options.") != std::string::npos);
+  if (allowed) return;
+  const TomlNode* place = node.find("key");
+  throw Error("'" + key + "' cannot be swept", (place != nullptr ? *place : node).place + ": key",
+              "scene, scene.*, seed, threads, variant.<name>.options.*");
+}
+
+Sweep read_sweep(const TomlNode& node, bool quick) {
+  Sweep sweep;
+  TomlNode plain = node;
+  plain.erase("values");
+  plain.erase("quick_values");
+  read_options(plain, "sweep", sweep.table);
+  require_sweepable(sweep.table, node);
+  const std::vector<TomlNode> full = values_of(node, "values", true);
+  const std::vector<TomlNode> reduced = values_of(node, "quick_values", false);
+  if (!sweep.table.names.empty() && sweep.table.names.size() != full.size()) {
+    throw Error(std::to_string(sweep.table.names.size()) + " names", node.place + ": sweep.names",
+                std::to_string(full.size()) + ", one a value");
+  }
+  sweep.values = quick && node.find("quick_values") != nullptr ? reduced : full;
+  const std::string& key = sweep.table.key;
+  sweep.names = value_names(sweep, full, key.substr(key.rfind('.') + 1));
+  return sweep;
+}
+
+void apply(SweptCase& result, const Sweep& sweep, std::size_t i) {
+  const TomlNode& value = sweep.values[i];
+  if (sweep.table.key == "scene") {
+    // A table of several scene keys: those it names change, the others stay.
+    if (value.kind != TomlNode::Kind::table) {
+      throw Error("is " + value.kind_name(), value.place + ": sweep.values",
+                  "tables of scene keys");
+    }
+    for (std::size_t k = 0; k < value.keys.size(); ++k) {
+      set_experiment_key(result.root, "scene." + value.keys[k], value.items[k]);
+    }
+  } else {
+    set_experiment_key(result.root, sweep.table.key, value);
+  }
+  result.name = result.name == "default" ? sweep.names[i] : result.name + "," + sweep.names[i];
+  result.swept[sweep.table.key] = json_of(sweep.values[i]).dump();
+  for (const std::string& name : sweep.table.variants) result.variants.push_back(name);
+}
+
+std::vector<SweptCase> grid_product(const SweptCase& base, const std::vector<Sweep>& sweeps) {
+  std::vector<SweptCase> cases{base};
+  bool any = false;
+  for (const Sweep& sweep : sweeps) {
+    if (!sweep.table.grid) continue;
+    any = true;
+    std::vector<SweptCase> product;
+    for (const SweptCase& outer : cases) {
+      for (std::size_t i = 0; i < sweep.values.size(); ++i) {
+        product.push_back(outer);
+        apply(product.back(), sweep, i);
+      }
+    }
+    cases = std::move(product);
+  }
+  if (!any) cases.clear();
+  return cases;
+}
+
+/// Two sweeps of options of one name (of two variants): the whole key tells them apart.
+void make_names_unique(std::vector<Sweep>& sweeps) {
+  std::map<std::string, std::set<std::string>> keys_of_name;
+  for (const Sweep& sweep : sweeps) {
+    for (const std::string& name : sweep.names) keys_of_name[name].insert(sweep.table.key);
+  }
+  for (Sweep& sweep : sweeps) {
+    if (!sweep.table.names.empty()) continue;
+    const bool clash = std::any_of(sweep.names.begin(), sweep.names.end(),
+                                   [&](const auto& name) { return keys_of_name[name].size() > 1; });
+    if (!clash) continue;
+    for (std::size_t i = 0; i < sweep.names.size(); ++i) {
+      sweep.names[i] = folder_safe(sweep.table.key + "=" + value_text(sweep.values[i], i));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<SweptCase> expand_sweeps(const TomlNode& root, bool quick) {
+  std::vector<Sweep> sweeps;
+  for (const TomlNode& node : tables_of(root, "sweep")) sweeps.push_back(read_sweep(node, quick));
+  make_names_unique(sweeps);
+
+  SweptCase base;
+  base.root = root;
+  std::vector<SweptCase> cases;
+  const bool with_base = std::all_of(sweeps.begin(), sweeps.end(),
+                                     [](const Sweep& sweep) { return sweep.table.base; });
+  if (with_base) cases.push_back(base);
+  for (const Sweep& sweep : sweeps) {
+    for (std::size_t i = 0; !sweep.table.grid && i < sweep.values.size(); ++i) {
+      cases.push_back(base);
+      apply(cases.back(), sweep, i);
+    }
+  }
+  for (SweptCase& made : grid_product(base, sweeps)) cases.push_back(std::move(made));
+
+  std::set<std::string> names;
+  for (const SweptCase& made : cases) {
+    if (!names.insert(made.name).second) {
+      throw Error("two cases are called '" + made.name + "'", root.place + ": sweep",
+                  "different values, or `names` that differ");
+    }
+  }
+  return cases;
+}
+
+}  // namespace geoprior

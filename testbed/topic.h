@@ -1,0 +1,135 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/frame.h"
+#include "core/method.h"
+#include "core/options.h"
+#include "testbed/figure_view.h"
+#include "testbed/frame_sequence.h"
+
+namespace geoprior {
+
+/// The typed scene of a topic, seen by the runner.
+class Scene {
+ public:
+  virtual ~Scene() = default;
+  /// Pose methods are solved at these parameters, in order. Empty for a topic of processes.
+  [[nodiscard]] virtual std::vector<double> parameters() const = 0;
+  [[nodiscard]] virtual std::string parameter_name() const = 0;  ///< "angle", "time", …
+  [[nodiscard]] virtual std::string parameter_unit() const = 0;  ///< "deg", "s", …
+  /// Files read while loading, for the record (their sha256 goes into the run).
+  [[nodiscard]] virtual std::vector<std::filesystem::path> inputs() const = 0;
+  /// What was ignored or repaired while loading: printed once, recorded.
+  [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
+  /// Plain numbers worth recording (vertices, triangles, regions), shown in the report.
+  [[nodiscard]] virtual std::map<std::string, double> facts() const { return {}; }
+};
+
+/// A struct of options with its `describe`, type-erased: the runner parses into it, lists it and
+/// records it.
+class OptionSet {
+ public:
+  virtual ~OptionSet() = default;
+  virtual void visit(OptionVisitor& visitor) = 0;
+};
+
+template <class Options>
+class TypedOptions final : public OptionSet {
+ public:
+  void visit(OptionVisitor& visitor) override { describe(visitor, options); }
+  Options options;
+};
+
+/// One row of a topic's method table.
+struct MethodEntry {
+  using Instance = std::variant<std::unique_ptr<PoseMethod>, std::unique_ptr<Process>>;
+  std::string name;
+  bool is_baseline = false;
+  std::string summary;  ///< one line
+  std::string source;   ///< paper or thesis section
+  std::function<std::unique_ptr<OptionSet>()> default_options;
+  /// `prepare`: builds the method for a scene. Timed by the runner as phase "prepare".
+  std::function<Instance(const Scene&, const OptionSet&, RunContext&)> make;
+};
+
+/// Builds a MethodEntry from typed pieces: `make(const S&, const Options&, RunContext&)` returns a
+/// unique_ptr.
+template <class S, class Options, class Make>
+MethodEntry method_entry(std::string name, bool is_baseline, std::string summary,
+                         std::string source, Make make) {
+  return {std::move(name),
+          is_baseline,
+          std::move(summary),
+          std::move(source),
+          [] { return std::make_unique<TypedOptions<Options>>(); },
+          [make](const Scene& scene, const OptionSet& set,
+                 RunContext& context) -> MethodEntry::Instance {
+            return make(dynamic_cast<const S&>(scene),
+                        dynamic_cast<const TypedOptions<Options>&>(set).options, context);
+          }};
+}
+
+enum class Direction { lower_is_better, higher_is_better, closer_to_target, none };
+
+/// How far a value may be from its reference value before `check` reports it.
+struct Tolerance {
+  double absolute = 0;
+  double relative = 0;
+};
+
+/// One row of a topic's metric table. Exactly one of `of_frame` and `of_sequence` is set.
+struct MetricEntry {
+  std::string name;  ///< snake_case
+  std::string unit;
+  std::string definition;  ///< one sentence: what is measured and how
+  Direction direction = Direction::lower_is_better;
+  Tolerance tolerance;
+  double target = 0;  ///< for Direction::closer_to_target
+  /// Value at one frame; absent where it has no meaning. `reference` is the frame of equal
+  /// parameter of the variant that the experiment names as reference, or null.
+  std::function<std::optional<double>(const Scene&, const Frame&, const Frame* reference)> of_frame;
+  /// One value a variant, from all of its frames in order of parameter. They may have to be read
+  /// from the disk: go through them once (FrameSequence).
+  std::function<std::optional<double>(const Scene&, const FrameSequence&)> of_sequence;
+  bool needs_reference = false;  ///< skipped for variants without one
+  /// Parts and tables of the reference frame that are looked at: others are not read. Empty: all.
+  std::vector<std::string> reference_parts = {};
+};
+
+/// One row of a topic's table of diagnostics: what only a method can know of a frame (iterations,
+/// residual, evaluations), under one name for all methods.
+struct DiagnosticEntry {
+  std::string name;        ///< snake_case, as in Frame::diagnostics
+  std::string unit;        ///< "1" for a count or a ratio
+  std::string definition;  ///< one line
+};
+
+/// Everything the runner knows of a topic: one instance each, listed in ONE table
+/// (experiments/topics.cpp).
+struct Topic {
+  std::string name;
+  std::string summary;
+  /// Options of the `[scene]` table.
+  std::function<std::unique_ptr<OptionSet>()> default_scene;
+  /// Loads inputs. `folder` is the folder of the experiment file, against which relative paths are
+  /// tried first.
+  std::function<std::shared_ptr<Scene>(const OptionSet&, const std::filesystem::path& folder)> load;
+  std::vector<MethodEntry> methods;
+  std::vector<MetricEntry> metrics;
+  std::vector<DiagnosticEntry> diagnostics;
+  /// What is drawn where the experiment file does not say.
+  FigureView view;
+};
+
+/// The topics of the program. Tests add theirs.
+std::vector<Topic> all_topics();
+
+}  // namespace geoprior

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/frame.h"
+#include "testbed/view/colors.h"
+#include "testbed/view/panel.h"
+
+class vtkActor;
+template <class T>
+class vtkSmartPointer;
+
+namespace geoprior {
+
+/// What a panel is made of, ready to be drawn.
+struct PanelActors {
+  std::vector<vtkSmartPointer<vtkActor>> opaque;
+  std::vector<vtkSmartPointer<vtkActor>> faint;  ///< obstacles: they shade nothing
+};
+
+/// @param pixels_per_pixel  supersampling: lines are as many times as wide
+PanelActors make_actors(const PanelParts& parts, const ViewWindow& window, const PanelStyle& style,
+                        int pixels_per_pixel);
+
+}  // namespace geoprior

@@ -1,0 +1,165 @@
+#include "testbed/view/export.h"
+
+// Frames of a run as files of other tools: out/<case>/<variant>/<part>_0000.obj or .ply, or one
+// animated out/<case>/<variant>/<part>.glb.
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/mesh.h"
+#include "testbed/formats/atomic_file.h"
+#include "testbed/formats/gltf_writer.h"
+#include "testbed/formats/vtk_files.h"
+#include "testbed/view/mesh_text.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kMarker = "geoprior-export.txt";
+const std::vector<std::string> kFormats{"obj", "ply", "glb"};
+
+struct FrameFile {
+  fs::path file;
+  std::string stem;  ///< "surface_0012"
+  double parameter = 0;
+};
+
+/// Part name to its files, in order of frames.
+std::map<std::string, std::vector<FrameFile>> files_by_part(const VariantRecord& variant,
+                                                            const fs::path& run_folder) {
+  std::map<std::string, std::vector<FrameFile>> parts;
+  for (const FrameRecord& frame : variant.frames) {
+    for (const StoredFile& stored : frame.files) {
+      const fs::path file = run_folder / stored.name;
+      if (file.extension() == ".csv") continue;  // a table, open as it is
+      const std::string stem = file.stem().string();
+      parts[stem.substr(0, stem.find_last_of('_'))].push_back({file, stem, frame.parameter});
+    }
+  }
+  return parts;
+}
+
+/// Refuses a folder with anything in it that is not an earlier export: its files would be mixed
+/// with foreign ones or take their place.
+void claim_folder(const fs::path& out, const std::string& text) {
+  std::error_code ignored;
+  if (fs::exists(out, ignored) && !fs::is_directory(out, ignored)) {
+    throw Error("is a file", out.string(), "a new or empty folder, or an earlier export");
+  }
+  if (fs::is_directory(out, ignored) && !fs::is_empty(out, ignored) &&
+      !fs::exists(out / kMarker, ignored)) {
+    throw Error("has files that no export made", out.string(),
+                "a new or empty folder, or an earlier export");
+  }
+  make_folders(out);
+  write_file_atomically(out / kMarker, std::string_view(text));
+}
+
+std::string describe_frame(const CaseRecord& c, const VariantRecord& variant,
+                           const FrameFile& frame) {
+  std::array<char, 32> number{};
+  std::snprintf(number.data(), number.size(), "%.10g", frame.parameter);
+  return "geoprior: " + variant.name + ", " + c.parameter_name + " " + number.data() + " " +
+         c.parameter_unit;
+}
+
+/// Returns how many files were written.
+int export_texts(const CaseRecord& c, const VariantRecord& variant,
+                 const std::vector<FrameFile>& frames, const std::string& format,
+                 const fs::path& folder) {
+  int written = 0;
+  for (const FrameFile& frame : frames) {
+    const Part part = read_vtk_part(frame.file);
+    if (!is_mesh(part)) continue;
+    const std::string comment = describe_frame(c, variant, frame);
+    const std::string text =
+        format == "obj" ? part_to_obj(part, comment) : part_to_ply(part, comment);
+    make_folders(folder);
+    write_file_atomically(folder / (frame.stem + "." + format), std::string_view(text));
+    ++written;
+  }
+  return written;
+}
+
+bool same_topology(const std::vector<Part>& parts) {
+  return std::all_of(parts.begin(), parts.end(), [&](const Part& part) {
+    return part.points.rows() == parts.front().points.rows() &&
+           part.triangles.rows() == parts.front().triangles.rows() &&
+           part.triangles == parts.front().triangles;
+  });
+}
+
+/// Seconds of the frames in the animation: a time as it is, any other parameter spread evenly over
+/// 24 frames a second.
+std::vector<double> animation_times(const CaseRecord& c, const std::vector<FrameFile>& frames) {
+  constexpr double kFramesPerSecond = 24;
+  const bool is_time = c.parameter_unit == "s";
+  std::vector<double> times;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    times.push_back(is_time ? frames[i].parameter - frames.front().parameter
+                            : static_cast<double>(i) / kFramesPerSecond);
+  }
+  return times;
+}
+
+TriMesh mesh_of(const Part& part) { return {part.points, part.triangles}; }
+
+/// One animation, or a still a frame where the topology changes.
+int export_glb(const CaseRecord& c, const VariantRecord& variant, const std::string& part_name,
+               const std::vector<FrameFile>& frames, const fs::path& folder) {
+  std::vector<Part> parts;
+  for (const FrameFile& frame : frames) parts.push_back(read_vtk_part(frame.file));
+  const bool triangles = std::all_of(parts.begin(), parts.end(), [](const Part& part) {
+    return part.kind == Part::Kind::triangles && part.triangles.rows() > 0;
+  });
+  if (parts.empty() || !triangles) return 0;
+  make_folders(folder);
+  if (same_topology(parts)) {
+    std::vector<Eigen::MatrixX3d> positions;
+    for (const Part& part : parts) positions.push_back(part.points);
+    write_glb_animation(folder / (part_name + ".glb"), mesh_of(parts.front()), positions,
+                        animation_times(c, frames), variant.name + " " + part_name);
+    return 1;
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    write_glb_animation(folder / (frames[i].stem + ".glb"), mesh_of(parts[i]), {}, {},
+                        variant.name + " " + frames[i].stem);
+  }
+  return static_cast<int>(parts.size());
+}
+
+}  // namespace
+
+void export_run(const fs::path& run_folder, const std::string& format, const fs::path& out) {
+  if (std::find(kFormats.begin(), kFormats.end(), format) == kFormats.end()) {
+    throw Error("unknown format '" + format + "'", "export", "obj, ply, glb");
+  }
+  const RunRecord record = read_run_file(run_folder / "run.h5");
+  claim_folder(out, "Frames of " + record.experiment_id + " as " + format +
+                        ", written by geoprior export from run content " + record.content_sha256 +
+                        ".\nA later export into this folder replaces files of the same name.\n");
+  int written = 0;
+  for (const CaseRecord& c : record.cases) {
+    for (const VariantRecord& variant : c.variants) {
+      const fs::path folder = out / c.name / variant.name;
+      for (const auto& [name, frames] : files_by_part(variant, run_folder)) {
+        written += format == "glb" ? export_glb(c, variant, name, frames, folder)
+                                   : export_texts(c, variant, frames, format, folder);
+      }
+    }
+  }
+  if (written == 0) {
+    throw Error("no part of its frames can be written as " + format, run_folder.string(),
+                "grids stay .vti; glb holds triangles only");
+  }
+}
+
+}  // namespace geoprior

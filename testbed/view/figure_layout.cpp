@@ -1,0 +1,271 @@
+// Lays out a figure: rows of panels, headings, row labels, a scalar bar or a legend.
+
+#include "testbed/view/figure_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/error.h"
+#include "testbed/runner/run_folder.h"
+#include "testbed/runner/run_inputs.h"
+#include "testbed/view/section.h"
+#include "testbed/view/view_window.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kPictureWidth = 2400;
+constexpr int kMostPanelWidth = 900;
+constexpr int kMostPanelHeight = 1100;
+constexpr int kMargin = 20;
+constexpr int kGap = 14;         ///< between panels
+constexpr int kHeading = 64;     ///< height of a line of variant names
+constexpr int kRowLabel = 58;    ///< width of the row labels at the left
+constexpr int kBarHeight = 120;  ///< the scalar bar with its labels
+const TextStyle kHeadingStyle{36, {20, 20, 20}, true, false};
+const TextStyle kRowStyle{30, {60, 60, 60}, false, true};
+const TextStyle kNoteStyle{28, {130, 130, 130}, false, false};
+
+/// One line of panels as it is drawn: shaded, or cut.
+struct DrawnRow {
+  const FigureRow* row = nullptr;
+  bool is_section = false;
+  std::string label;
+  bool has_headings = false;
+};
+
+struct Layout {
+  int panel_width = 0;
+  int panel_height = 0;
+  int columns = 0;
+  int left = 0;
+  int width = 0;
+  int height = 0;
+};
+
+std::vector<const Part*> all_parts(const std::vector<FigureRow>& rows, bool with_overlays) {
+  std::vector<const Part*> parts;
+  for (const FigureRow& row : rows) {
+    for (const FigureCell& cell : row.cells) {
+      if (cell.part) parts.push_back(&*cell.part);
+      if (!with_overlays) continue;
+      for (const NamedPart& overlay : cell.overlays) parts.push_back(&overlay.part);
+    }
+  }
+  return parts;
+}
+
+std::vector<DrawnRow> drawn_rows(const std::vector<FigureRow>& rows, bool with_sections) {
+  std::vector<DrawnRow> out;
+  for (const FigureRow& row : rows) {
+    out.push_back({&row, false, row.label, row.has_headings});
+    if (with_sections) out.push_back({&row, true, "Section, overlap in red", false});
+  }
+  return out;
+}
+
+/// All but the height of the scalar bar or the legend.
+Layout make_layout(const std::vector<DrawnRow>& rows, const ViewWindow& window) {
+  Layout layout;
+  for (const DrawnRow& row : rows) {
+    layout.columns = std::max(layout.columns, static_cast<int>(row.row->cells.size()));
+  }
+  layout.left = kMargin + kRowLabel;
+  const int room = kPictureWidth - layout.left - kMargin - (layout.columns - 1) * kGap;
+  const double aspect = window.width_m / window.height_m;
+  const double width =
+      std::min({1.0 * room / layout.columns, 1.0 * kMostPanelWidth, kMostPanelHeight * aspect});
+  layout.panel_width = std::max(2, static_cast<int>(width));
+  layout.panel_height = std::max(2, static_cast<int>(std::lround(width / aspect)));
+  layout.width =
+      layout.left + layout.columns * layout.panel_width + (layout.columns - 1) * kGap + kMargin;
+  layout.height = 2 * kMargin;
+  for (const DrawnRow& row : rows) {
+    layout.height += layout.panel_height + kGap + (row.has_headings ? kHeading : 0);
+  }
+  return layout;
+}
+
+/// The largest size of `style`, at most its own, at which the text fits.
+TextStyle fitted(const std::string& text, TextStyle style, int room) {
+  while (style.size_px > 12 && text_width(text, style) > room) --style.size_px;
+  return style;
+}
+
+Picture draw_cell(const FigureCell& cell, bool is_section, const FigureView& view,
+                  const BlockLook& look, const Layout& layout) {
+  if (!cell.part) {
+    Picture empty(layout.panel_width, layout.panel_height);
+    draw_text(empty, cell.note, layout.panel_width / 2, layout.panel_height / 2, Align::center,
+              kNoteStyle);
+    return empty;
+  }
+  if (is_section) {
+    const ViewWindow plane = section_window(look.window, *view.section);
+    return draw_section(cut(*cell.part, plane), plane, layout.panel_width, layout.panel_height);
+  }
+  PanelParts parts;
+  parts.parts = {&*cell.part};
+  for (const NamedPart& overlay : cell.overlays) {
+    parts.overlays.push_back({&overlay.part, look.colors.at(overlay.name)});
+  }
+  if (cell.obstacles) parts.obstacles = {&*cell.obstacles};
+  return draw_panel(parts, look.window, look.style, layout.panel_width, layout.panel_height);
+}
+
+PanelStyle::Material panel_material(FigureView::Material material) {
+  switch (material) {
+    case FigureView::Material::paper:
+      return PanelStyle::Material::paper;
+    case FigureView::Material::water:
+      return PanelStyle::Material::water;
+    case FigureView::Material::clay:
+      break;
+  }
+  return PanelStyle::Material::clay;
+}
+
+PanelStyle panel_style(const std::vector<FigureRow>& rows, const FigureView& view) {
+  PanelStyle style;
+  style.flat = view.shading == FigureView::Shading::flat;
+  style.edges = view.edges;
+  style.material = panel_material(view.material);
+  if (!view.color_by) return style;
+  const std::vector<const Part*> parts = all_parts(rows, false);
+  const bool on_water = style.material == PanelStyle::Material::water;
+  if (view.identities) {
+    style.scale = make_identity_scale(parts, *view.color_by, on_water);
+  } else if (!view.classes.empty()) {
+    style.scale = make_class_scale(parts, *view.color_by, view.classes, on_water);
+  } else {
+    style.scale = make_color_scale(all_parts(rows, true), *view.color_by);
+  }
+  return style;
+}
+
+bool has_bar(const BlockLook& look) {
+  return look.style.scale && look.style.scale->palette.empty();
+}
+
+BlockLook make_look(const std::vector<FigureRow>& rows, const FigureView& view) {
+  BlockLook look;
+  look.window = fit_window(all_parts(rows, true), view);
+  look.style = panel_style(rows, view);
+  look.colors = overlay_colors(rows, view.overlays);
+  look.legend = legend_entries(rows, view);
+  return look;
+}
+
+FigureBlock make_block(const RunRecord& record, const fs::path& folder, const FigureView& view) {
+  FigureBlock block{view, collect_cells(record, folder, view), {}};
+  if (block.rows.empty() || all_parts(block.rows, false).empty()) {
+    throw Error("the run has no frames to draw", folder.string());
+  }
+  block.look = make_look(block.rows, view);
+  return block;
+}
+
+FigureView view_above(const FigureView& view) {
+  FigureView above = view;
+  above.part = view.above->part;
+  above.label = view.above->label;
+  above.color_by = view.above->color_by;
+  above.classes = view.above->classes;
+  above.identities = false;
+  above.direction = view.above->direction;
+  above.up = view.above->up;
+  above.height_m = view.above->height_m;
+  above.overlays = view.above->overlays;
+  above.target.reset();
+  above.section.reset();
+  above.above.reset();
+  return above;
+}
+
+std::optional<FigureBlock> make_block_above(const RunRecord& record, const fs::path& folder,
+                                            const FigureView& view) {
+  FigureView above = view_above(view);
+  if (!view.above->input) return make_block(record, folder, above);
+  const auto input = std::find_if(record.inputs.begin(), record.inputs.end(),
+                                  [&](const auto& i) { return i.name == *view.above->input; });
+  if (input == record.inputs.end()) return std::nullopt;
+  const RunReference reference = parse_run_reference(input->name);
+  const fs::path source = find_run_of_content(reference.experiment_id, input->sha256);
+  above.variants = {reference.variant};
+  above.cases = {reference.case_name};
+  return make_block(read_run_file(source / "run.h5"), source, above);
+}
+
+int block_height(const FigureBlock& block, const Layout& layout) {
+  return layout.height +
+         (has_bar(block.look) ? kBarHeight : legend_height(block.look.legend, layout.width));
+}
+
+void draw_block(Picture& picture, const FigureBlock& block, const Layout& layout, int y) {
+  for (const DrawnRow& line : drawn_rows(block.rows, block.view.section.has_value())) {
+    if (line.has_headings) y += kHeading;
+    int x = layout.left;
+    for (const FigureCell& cell : line.row->cells) {
+      if (line.has_headings) {
+        draw_text(picture, cell.label, x + layout.panel_width / 2, y - 20, Align::center,
+                  fitted(cell.label, kHeadingStyle, layout.panel_width));
+      }
+      picture.paste(draw_cell(cell, line.is_section, block.view, block.look, layout), x, y);
+      x += layout.panel_width + kGap;
+    }
+    draw_text(picture, line.label, kMargin + kRowLabel / 2, y + layout.panel_height / 2,
+              Align::center, fitted(line.label, kRowStyle, layout.panel_height));
+    y += layout.panel_height + kGap;
+  }
+  if (has_bar(block.look)) {
+    draw_scalar_bar(picture, *block.look.style.scale, y + kGap);
+  } else {
+    draw_legend(picture, block.look.legend, y + kGap);
+  }
+}
+
+}  // namespace
+
+std::vector<FigureBlock> make_blocks(const RunRecord& record, const fs::path& folder,
+                                     const FigureView& view) {
+  std::vector<FigureBlock> blocks;
+  if (view.above) {
+    if (auto above = make_block_above(record, folder, view)) blocks.push_back(*std::move(above));
+  }
+  blocks.push_back(make_block(record, folder, view));
+  if (blocks.size() == 1) return blocks;
+  if (same_labels(blocks.front().rows.back(), blocks.back().rows.front())) {
+    blocks.back().rows.front().has_headings = false;
+  }
+  for (FigureBlock& block : blocks) {
+    const std::string name =
+        block.view.label.empty() ? display_name(block.view.part) : block.view.label;
+    for (FigureRow& row : block.rows)
+      row.label = name + (row.label.empty() ? "" : ", ") + row.label;
+  }
+  return blocks;
+}
+
+Picture draw_figure(const std::vector<FigureBlock>& blocks) {
+  std::vector<Layout> layouts;
+  int width = 0;
+  int height = 0;
+  for (const FigureBlock& block : blocks) {
+    layouts.push_back(
+        make_layout(drawn_rows(block.rows, block.view.section.has_value()), block.look.window));
+    width = std::max(width, layouts.back().width);
+    height += block_height(block, layouts.back());
+  }
+  Picture picture(width, height);
+  int y = kMargin;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    draw_block(picture, blocks[i], layouts[i], y);
+    y += block_height(blocks[i], layouts[i]);
+  }
+  return picture;
+}
+
+}  // namespace geoprior

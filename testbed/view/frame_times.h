@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "testbed/runner/run_record.h"
+#include "testbed/runner/spec.h"
+
+namespace geoprior {
+
+/// Parameters at which some drawn variant of the view's first case has a frame, rising.
+std::vector<double> frame_parameters(const RunRecord& record, const FigureView& view);
+
+/// At most `count` of them, evenly spaced, the first and the last among them.
+std::vector<double> evenly_chosen(const std::vector<double>& parameters, int count);
+
+/// The view of a contact sheet: frames of `view.contact_sheet` evenly spaced parameters side by
+/// side, of one case, without a row above.
+FigureView contact_sheet_view(const RunRecord& record, const FigureView& view);
+
+}  // namespace geoprior

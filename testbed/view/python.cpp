@@ -1,0 +1,60 @@
+#include "testbed/view/python.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "testbed/home.h"
+#include "testbed/view/child_process.h"
+
+namespace geoprior {
+namespace {
+
+const std::string kInstall =
+    "apt-get install python3-h5py python3-matplotlib python3-numpy, or set GEOPRIOR_PYTHON to an "
+    "interpreter that has h5py, matplotlib and numpy";
+
+/// The interpreter to use. The first python3 on PATH is often another build without our packages,
+/// so Debian's own is tried before it.
+std::string find_python() {
+  std::vector<std::string> candidates{"/usr/bin/python3", "python3"};
+  if (const char* chosen = std::getenv("GEOPRIOR_PYTHON"); chosen != nullptr && *chosen != '\0') {
+    candidates = {chosen};
+  }
+  std::string tried;
+  for (const std::string& python : candidates) {
+    const ChildResult test = run_child({python, "-E", "-c", "import h5py, matplotlib, numpy"});
+    if (test.exit_code == 0) return python;
+    const auto last_line = test.errors.find_last_of('\n', test.errors.size() - 2);
+    std::string reason =
+        last_line == std::string::npos ? test.errors : test.errors.substr(last_line + 1);
+    while (!reason.empty() && reason.back() == '\n') reason.pop_back();
+    tried += (tried.empty() ? "" : "; ") + python + ": " + reason;
+  }
+  throw Error("no Python with h5py, matplotlib and numpy (" + tried + ")", "plots and report",
+              kInstall);
+}
+
+}  // namespace
+
+void run_python(const std::string& script, const std::vector<std::string>& arguments) {
+  const std::filesystem::path file = geoprior_home() / "results" / (script + ".py");
+  if (!std::filesystem::exists(file)) throw Error("no such script", file.string());
+  static const std::string python = find_python();
+  // -B: no __pycache__ in the clone; -E: a foreign PYTHONPATH or PYTHONHOME does not matter.
+  std::vector<std::string> command{python, "-B", "-E", file.string()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  const ChildResult result = run_child(command, {"MPLBACKEND=Agg"});
+  std::string text = result.errors;
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  if (result.exit_code != 0) {
+    throw Error(text.empty() ? "ended with code " + std::to_string(result.exit_code) : text,
+                script + ".py");
+  }
+  if (!text.empty()) std::cerr << text << '\n';
+}
+
+}  // namespace geoprior

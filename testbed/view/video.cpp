@@ -1,0 +1,89 @@
+#include "testbed/view/video.h"
+
+// Every frame of a run as a picture, and a video of them.
+
+#include <array>
+#include <cstdio>
+
+#include "core/error.h"
+#include "testbed/formats/atomic_file.h"
+#include "testbed/runner/stop.h"
+#include "testbed/view/child_process.h"
+#include "testbed/view/display.h"
+#include "testbed/view/figure_layout.h"
+#include "testbed/view/frame_times.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSampledFrames = 8;
+constexpr const char* kFramePattern = "frame_%04d.png";
+
+fs::path frame_file(const fs::path& folder, std::size_t index) {
+  std::array<char, 32> name{};
+  std::snprintf(name.data(), name.size(), kFramePattern, static_cast<int>(index));
+  return folder / name.data();
+}
+
+/// One state, of one case, variants side by side: pictures of one size.
+FigureView frame_view(const FigureView& view, const std::vector<double>& parameters,
+                      const RunRecord& record) {
+  FigureView frame = contact_sheet_view(record, view);
+  frame.above = view.above;
+  frame.parameters = parameters;
+  frame.across = FigureView::Across::variants;
+  return frame;
+}
+
+/// For a pattern of ffmpeg, in which % begins the number.
+std::string escaped(const std::string& path) {
+  std::string text;
+  for (const char c : path) text += c == '%' ? std::string("%%") : std::string(1, c);
+  return text;
+}
+
+/// Pads to even sizes, which the usual pixel format needs.
+void encode(const std::string& ffmpeg, const VideoOptions& options, int frames,
+            const fs::path& file) {
+  PendingFile pending(file);
+  const ChildResult result =
+      run_child({ffmpeg, "-y", "-nostdin", "-loglevel", "error", "-framerate",
+                 std::to_string(options.frames_per_second), "-i",
+                 escaped(options.out.string()) + "/" + kFramePattern, "-frames:v",
+                 std::to_string(frames), "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
+                 "-pix_fmt", "yuv420p", "-f", "mp4", pending.temporary().string()});
+  if (result.exit_code != 0) {
+    throw Error("ffmpeg failed: " + result.errors, file.string(),
+                "an ffmpeg that can write mp4; the frames are there");
+  }
+  pending.commit();
+}
+
+}  // namespace
+
+Video make_video(const fs::path& run_folder, const FigureView& view, const VideoOptions& options) {
+  const RunRecord record = read_run_file(run_folder / "run.h5");
+  const std::vector<double> parameters = frame_parameters(record, view);
+  const auto samples = make_blocks(
+      record, run_folder, frame_view(view, evenly_chosen(parameters, kSampledFrames), record));
+  make_folders(fs::absolute(options.out));
+  const Display display;
+  Video video;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    video.stopped = stop_requested();
+    if (video.stopped) return video;
+    auto blocks = make_blocks(record, run_folder, frame_view(view, {parameters[i]}, record));
+    for (std::size_t b = 0; b < blocks.size(); ++b) blocks[b].look = samples[b].look;
+    write_png(draw_figure(blocks), frame_file(options.out, i));
+    ++video.frames;
+  }
+  if (const auto ffmpeg = find_program("ffmpeg")) {
+    encode(*ffmpeg, options, video.frames, options.out / "video.mp4");
+    video.file = options.out / "video.mp4";
+  }
+  return video;
+}
+
+}  // namespace geoprior

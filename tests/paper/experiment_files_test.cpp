@@ -1,0 +1,55 @@
+// The experiment files of the topic: that they load, and that no sheet is asked to stretch.
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "experiments/paper/pulled_apart.h"
+#include "experiments/paper/scene.h"
+#include "experiments/paper/topic.h"
+#include "testbed/home.h"
+#include "testbed/runner/spec.h"
+
+namespace geoprior::paper::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> experiment_files() {
+  std::set<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(geoprior_home() / "experiments" / "paper")) {
+    if (entry.path().extension() == ".toml") files.insert(entry.path());
+  }
+  return {files.begin(), files.end()};
+}
+
+TEST(PaperExperiments, AreTheElevenThatTheTopicHas) {
+  EXPECT_EQ(experiment_files().size(), 11U);
+  for (const fs::path& file : experiment_files()) {
+    for (const bool quick : {false, true}) {
+      LoadRequest request;
+      request.quick = quick;
+      const Experiment experiment = load_experiment(file, {make_topic()}, request);
+      EXPECT_FALSE(experiment.cases.empty()) << file;
+      for (const CaseSpec& c : experiment.cases) {
+        EXPECT_NO_THROW(make_topic().load(*c.scene, file.parent_path())) << file;
+      }
+    }
+  }
+}
+
+// On a convex pattern two points of an isometric sheet are never farther apart in space than in the
+// pattern. The imperfection may add a ten-thousandth.
+TEST(PaperExperiments, NeverPullTwoHandlesFartherApartThanTheirPatternAllows) {
+  for (const fs::path& file : experiment_files()) {
+    const Experiment experiment = load_experiment(file, {make_topic()}, {});
+    const auto scene = make_topic().load(*experiment.cases[0].scene, file.parent_path());
+    const Sheet& sheet = dynamic_cast<const PaperScene&>(*scene).sheet;
+    const auto worst = worst_pulled_apart(sheet, 1e-4);
+    EXPECT_FALSE(worst) << file << ": " << warning_text(sheet, *worst, "scene");
+    EXPECT_TRUE(scene->warnings().empty()) << file;
+  }
+}
+
+}  // namespace
+}  // namespace geoprior::paper::test

@@ -1,0 +1,103 @@
+#pragma once
+
+// Runs made by hand, for the tests of what reads runs: pictures and exports.
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "core/frame.h"
+#include "testbed/formats/atomic_file.h"
+#include "testbed/formats/vtk_files.h"
+#include "testbed/runner/run_record.h"
+
+namespace geoprior {
+
+/// A folder of its own for the life of a test.
+class TestFolder {
+ public:
+  TestFolder() {
+    std::string pattern =
+        (std::filesystem::temp_directory_path() / "geoprior-view-XXXXXX").string();
+    path = ::mkdtemp(pattern.data());
+  }
+  ~TestFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  TestFolder(const TestFolder&) = delete;
+  TestFolder& operator=(const TestFolder&) = delete;
+
+  std::filesystem::path path;
+};
+
+/// Axis-aligned box, closed, outward oriented.
+inline Part make_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+  Part part;
+  part.points.resize(8, 3);
+  for (int i = 0; i < 8; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      part.points(i, axis) = ((i >> axis) & 1) != 0 ? high[axis] : low[axis];
+    }
+  }
+  part.triangles.resize(12, 3);
+  part.triangles << 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3,
+      0, 3, 1, 4, 5, 7, 4, 7, 6;
+  return part;
+}
+
+/// Both parts as one mesh.
+inline Part join(const Part& a, const Part& b) {
+  Part part;
+  part.points.resize(a.points.rows() + b.points.rows(), 3);
+  part.points << a.points, b.points;
+  part.triangles.resize(a.triangles.rows() + b.triangles.rows(), 3);
+  part.triangles << a.triangles, (b.triangles.array() + static_cast<int>(a.points.rows())).matrix();
+  return part;
+}
+
+inline void add_frame(VariantRecord& variant, const std::filesystem::path& folder, double parameter,
+                      const Part& part, const std::string& name = "surface") {
+  std::array<char, 16> index{};
+  std::snprintf(index.data(), index.size(), "_%04zu", variant.frames.size());
+  const std::string file =
+      "frames/default/" + variant.name + "/" + name + index.data() + part_extension(part);
+  make_folders((folder / file).parent_path());
+  write_file_atomically(folder / file, std::string_view(part_to_vtk_xml(part, parameter)));
+  variant.frames.push_back({parameter, {{file, std::string(64, '0')}}});
+}
+
+/// Two variants, three frames at 0, 45 and 90 degrees: boxes that grow in x, with an array
+/// "height" on the points.
+inline RunRecord make_fake_run(const std::filesystem::path& folder) {
+  RunRecord record;
+  record.experiment_id = "test/boxes";
+  record.title = "Boxes";
+  record.content_sha256 = std::string(64, 'b');
+  CaseRecord c;
+  c.name = "default";
+  c.parameter_name = "angle";
+  c.parameter_unit = "deg";
+  for (const std::string name : {"first-box", "second-box"}) {
+    VariantRecord variant;
+    variant.name = name;
+    variant.method = "box";
+    variant.role = "method";
+    variant.status = "done";
+    for (int i = 0; i < 3; ++i) {
+      Part part = make_box({0, 0, 0}, {1 + 0.1 * i, 1, 1.0 / 3});
+      part.arrays.push_back({"height", "m", NamedArray::On::points, part.points.col(1)});
+      add_frame(variant, folder, 45.0 * i, part);
+    }
+    c.variants.push_back(variant);
+  }
+  record.cases.push_back(c);
+  write_run_file(record, folder / "run.h5");
+  return record;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,115 @@
+// The frames of a long run are dropped once they are written; metrics get them back from the disk.
+
+#include "testbed/frame_sequence.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "experiments/toy/toy_topic.h"
+#include "testbed/runner/journal.h"
+#include "testbed/runner/measure.h"
+#include "testbed/runner/recorded_frames.h"
+#include "testbed/runner/run_state.h"
+#include "tests/testbed/run_fixture.h"
+
+namespace geoprior::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+namespace fs = std::filesystem;
+
+/// A finished run of the pendulum, 9 frames, opened again.
+class FramesOfARun : public RunTest {
+ protected:
+  void SetUp() override {
+    RunTest::SetUp();
+    experiment_ = load(pendulum());
+    run(experiment_, out());
+    journal_.emplace(out() / "journal.jsonl");
+    state_.emplace(experiment_);
+    for (const journal::Line& line : journal_->lines()) state_->apply(line);
+    recorder_.emplace(out(), *journal_, *state_);
+  }
+  [[nodiscard]] fs::path out() const { return folder() / "out"; }
+  [[nodiscard]] const Recorder& recorder() const { return *recorder_; }
+  [[nodiscard]] const VariantRecord& record() {
+    return state_->variant_of({"default", "midpoint"}).record;
+  }
+
+ private:
+  Experiment experiment_;
+  std::optional<Journal> journal_;
+  std::optional<RunState> state_;
+  std::optional<Recorder> recorder_;
+};
+
+TEST_F(FramesOfARun, HoldNoMoreThanAFewFramesInMemory) {
+  const KeptFrames none(0);
+  const RecordedFrames frames(recorder(), record(), none);
+  ASSERT_EQ(frames.size(), 9U);
+  std::vector<std::weak_ptr<const Frame>> seen;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    seen.push_back(frames.frame(i));
+    // A metric of second differences looks back by two frames.
+    if (i >= 2) {
+      EXPECT_EQ(frames.frame(i - 2), seen[i - 2].lock());
+    }
+    const auto alive =
+        std::count_if(seen.begin(), seen.end(), [](const auto& frame) { return !frame.expired(); });
+    EXPECT_LE(alive, static_cast<std::ptrdiff_t>(RecordedFrames::kRemembered));
+  }
+  EXPECT_EQ(frames.frames_read(), 9U) << "each once";
+}
+
+TEST_F(FramesOfARun, AreEqualWhetherTheyWereKeptOrRead) {
+  const Frame first = recorder().read_frame(record(), 0);
+  KeptFrames kept(3 * memory_of(first));
+  for (std::size_t i = 0; i < 9; ++i) kept.keep(i, recorder().read_frame(record(), i));
+  EXPECT_LE(kept.bytes(), 3 * memory_of(first));
+  EXPECT_NE(kept.find(2), nullptr);
+  EXPECT_EQ(kept.find(3), nullptr) << "three frames fit";
+  const RecordedFrames frames(recorder(), record(), kept);
+  for (std::size_t i = 0; i < 9; ++i) {
+    const Frame read = recorder().read_frame(record(), i);
+    EXPECT_EQ(frames.parameter(i), read.parameter);
+    EXPECT_EQ(frames.frame(i)->parts.at("bob").points, read.parts.at("bob").points);
+    EXPECT_EQ(frames.frame(i)->tables.at("state").rows, read.tables.at("state").rows);
+    EXPECT_EQ(frames.frame(i)->diagnostics, read.diagnostics);
+  }
+  EXPECT_EQ(frames.frames_read(), 6U);
+}
+
+TEST_F(FramesOfARun, ComeInOrderOfParameter) {
+  VariantRecord turned = record();
+  std::reverse(turned.frames.begin(), turned.frames.end());
+  const KeptFrames none(0);
+  const RecordedFrames frames(recorder(), turned, none);
+  const std::vector<double> parameters = frames.parameters();
+  EXPECT_TRUE(std::is_sorted(parameters.begin(), parameters.end()));
+  EXPECT_EQ(frames.parameter(8), 2);
+  EXPECT_EQ(frames.frame(8)->parameter, 2);
+}
+
+TEST_F(FramesOfARun, ReadOnlyThePartThatIsAskedFor) {
+  fs::remove(out() / "frames/default/midpoint/warmth_0004.vti");
+  const KeptFrames none(0);
+  const RecordedFrames frames(recorder(), record(), none);
+  const std::shared_ptr<const Part> bob = frames.part(4, "bob");
+  ASSERT_NE(bob, nullptr);
+  EXPECT_EQ(bob->points.rows(), 1);
+  EXPECT_EQ(frames.part(4, "nothing"), nullptr);
+  EXPECT_EQ(frames.frames_read(), 0U);
+  EXPECT_THAT(error_of([&] { (void)frames.frame(4); }), HasSubstr("warmth_0004.vti"));
+  EXPECT_EQ(recorder().read_frame(record(), 4, {{"bob", "state"}}).parts.size(), 1U);
+}
+
+TEST(ReferenceParts, AreThoseOfAllMetricsThatCompare) {
+  EXPECT_EQ(reference_parts(toy::pendulum_topic()), (std::set<std::string>{"bob"}));
+  EXPECT_EQ(reference_parts(toy::circle_topic()), std::nullopt) << "does not say: all of them";
+}
+
+}  // namespace
+}  // namespace geoprior::test

@@ -1,0 +1,245 @@
+// The program with the toy topics, started as a user starts it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "testbed/runner/sha256.h"
+#include "tests/testbed/toy_home.h"
+
+namespace geoprior {
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using toy::disc_experiment;
+using toy::Outcome;
+
+constexpr const char* kClaim = R"(
+[[claim]]
+text = "sixteen corners stay within four centimetres"
+metric = "radius_error"
+variant = "polygon"
+at = { angle_deg = 90 }
+is = "<="
+value = 0.04
+)";
+
+class Program : public ::testing::Test {
+ protected:
+  void write(const std::string& text) { home_.write("experiments/toy-circle/disc.toml", text); }
+  Outcome run(const std::string& arguments) { return home_.run(arguments); }
+  toy::Home home_;
+};
+
+TEST(Sha256, IsThatOfTheStandard) {
+  // FIPS 180-4, the example of one block.
+  EXPECT_EQ(sha256(std::string_view("abc")),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST_F(Program, WrongUseExitsWithTwoAndHelpWithZero) {
+  EXPECT_EQ(run("").code, 2);
+  EXPECT_EQ(run("no-such-command").code, 2);
+  EXPECT_EQ(run("run").code, 2);
+  EXPECT_EQ(run("run x --no-such-flag").code, 2);
+  EXPECT_EQ(run("run x --threads many").code, 2);
+  EXPECT_EQ(run("export x --format stl").code, 2);
+  const Outcome help = run("--help");
+  EXPECT_EQ(help.code, 0);
+  EXPECT_THAT(help.out, AllOf(HasSubstr("Examples"), HasSubstr("bless"), HasSubstr("Exit codes")));
+  EXPECT_EQ(run("run --help").code, 0);
+  const Outcome version = run("--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_THAT(version.out, AllOf(HasSubstr("geoprior "), HasSubstr("commit")));
+}
+
+TEST_F(Program, ListsWhatThereIs) {
+  write(disc_experiment());
+  home_.write("experiments/toy-circle/input.data.toml", "not = \"an experiment\"");
+  const Outcome outcome = run("list --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json list = json::parse(outcome.out);
+  ASSERT_EQ(list["experiments"].size(), 1U);
+  EXPECT_EQ(list["experiments"][0]["id"], "toy-circle/disc");
+  EXPECT_EQ(list["experiments"][0]["title"], "A disc as a polygon");
+  EXPECT_THAT(run("list").err, AllOf(HasSubstr("toy-circle/disc"), HasSubstr("explicit-euler")));
+}
+
+TEST_F(Program, DescribesMethodsTopicsMetricsAndFiles) {
+  const Outcome outcome = run("describe polygon --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json method = json::parse(outcome.out).at(0);
+  EXPECT_EQ(method["options"][0]["key"], "segments");
+  EXPECT_EQ(method["options"][0]["default"], "16");
+  EXPECT_EQ(method["options"][1]["range"], "on-rim | outside");
+  EXPECT_THAT(run("describe toy-circle").err, HasSubstr("motion.to_deg"));
+  EXPECT_THAT(run("describe toy-circle/radius_error").err, HasSubstr("lower_is_better"));
+  EXPECT_THAT(run("describe experiment").err,
+              AllOf(HasSubstr("[[claim]]"), HasSubstr("factor"), HasSubstr("quick_values"),
+                    HasSubstr("[quick]")));
+  EXPECT_THAT(run("describe polygon --markdown").out, HasSubstr("| `segments` | integer |"));
+  const Outcome unknown = run("describe poligon");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'polygon'"));
+}
+
+TEST_F(Program, RunRecordsAndDecidesClaims) {
+  write(disc_experiment("segments = 16", kClaim));
+  const Outcome good = run("run toy-circle/disc --no-pictures --json");
+  ASSERT_EQ(good.code, 0) << good.err;
+  const json run_json = json::parse(good.out);
+  EXPECT_EQ(run_json["claims"][0]["holds"], true);
+  EXPECT_TRUE(std::filesystem::exists(run_json["run"].get<std::string>() + "/run.h5"));
+  // r (1 - cos(pi / 16)) with r = 2: the middle of an edge lies on a point of the rim at 90 degrees
+  // only when it is sampled; the bound holds everywhere.
+  const json& variant = run_json["cases"][0]["variants"][1];
+  EXPECT_LE(variant["summary"]["radius_error.max"]["value"], 0.0384294391935392);
+  const Outcome bad =
+      run("run toy-circle/disc --no-pictures --set variant.polygon.options.segments=8");
+  EXPECT_EQ(bad.code, 1);
+  EXPECT_THAT(bad.err, AllOf(HasSubstr("falls short"), HasSubstr("a claim fell short")));
+}
+
+TEST_F(Program, AVariantThatFailsExitsWithOneAndItsFramesAreKept) {
+  home_.write("experiments/toy-pendulum/swing.toml", R"(
+title = "A pendulum that breaks off"
+topic = "toy-pendulum"
+[scene]
+frames = 4
+duration_s = 1
+[[variant]]
+name = "euler"
+method = "explicit-euler"
+options = { fail_at_s = 0.5 }
+[[variant]]
+name = "exact"
+method = "closed-form"
+)");
+  const Outcome outcome = run("run toy-pendulum/swing --no-pictures --json");
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("variant 'euler', case 'default': failed after 3 frames: time "
+                                     "0.500000 s: does not converge"));
+  const json variants = json::parse(outcome.out)["cases"][0]["variants"];
+  EXPECT_EQ(variants[0]["status"], "failed");
+  EXPECT_EQ(variants[0]["frames"], 3);
+  EXPECT_EQ(variants[1]["status"], "done");
+  EXPECT_EQ(variants[1]["frames"], 5);
+  EXPECT_GE(variants[1]["p95_time_s"]["run"], variants[1]["median_time_s"]["run"]);
+  EXPECT_EQ(
+      run("export toy-pendulum/swing --format obj --out " + (home_.root() / "exported").string())
+          .code,
+      0);
+  ASSERT_EQ(run("bless toy-pendulum/swing --reason test").code, 0);
+  const Outcome check = run("check toy-pendulum/swing --json");
+  EXPECT_EQ(check.code, 1) << "the values are those blessed, but the variant failed";
+  EXPECT_EQ(json::parse(check.out)["experiments"][0]["failures"].size(), 1U);
+  EXPECT_EQ(json::parse(check.out)["experiments"][0]["mismatches"].size(), 0U);
+}
+
+TEST_F(Program, BadInputExitsWithTwoAndLeavesNothingBehind) {
+  write(disc_experiment("segmants = 3"));
+  const Outcome unknown = run("run toy-circle/disc --no-pictures");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, AllOf(HasSubstr("disc.toml:15:"), HasSubstr("did you mean 'segments'")));
+  EXPECT_TRUE(std::filesystem::is_empty(home_.root() / "results/runs"));
+  const Outcome near = run("run toy-circle/disk --no-pictures");
+  EXPECT_EQ(near.code, 2);
+  EXPECT_THAT(near.err, HasSubstr("did you mean 'toy-circle/disc'"));
+  EXPECT_EQ(run("render toy-circle/nothing").code, 2);
+  EXPECT_EQ(run("report " + home_.root().string()).code, 2);
+}
+
+TEST_F(Program, CheckNamesTheMetricThatAnOptionChanged) {
+  write(disc_experiment("segments = 16", kClaim));
+  const Outcome without = run("check toy-circle/disc");
+  EXPECT_EQ(without.code, 1);
+  EXPECT_THAT(without.err, HasSubstr("no reference values"));
+  ASSERT_EQ(run("bless toy-circle/disc --reason 'first values'").code, 0);
+  const Outcome same = run("check");
+  EXPECT_EQ(same.code, 0) << same.err;
+
+  write(disc_experiment("segments = 15", kClaim));
+  const Outcome changed = run("check --json");
+  EXPECT_EQ(changed.code, 1);
+  EXPECT_THAT(changed.err,
+              AllOf(HasSubstr("toy-circle/disc"), HasSubstr("case 'default'"),
+                    HasSubstr("variant 'polygon'"), HasSubstr("metric 'radius_error.max'"),
+                    HasSubstr("reference 0.0342205545"), HasSubstr("tolerance")));
+  const json verdict = json::parse(changed.out);
+  EXPECT_EQ(verdict["passed"], false);
+  EXPECT_EQ(verdict["experiments"][0]["mismatches"][0]["variant"], "polygon");
+}
+
+TEST_F(Program, CheckFailsOnAClaimAloneAndIgnoresClaimsAboutTime) {
+  const std::string slow =
+      "[[claim]]\ntext = \"no time at all\"\nmetric = \"timing:solve\"\nvariant = \"polygon\"\n"
+      "value = 0\n";
+  write(disc_experiment("segments = 16", slow));
+  ASSERT_EQ(run("bless toy-circle/disc --reason x").code, 0);
+  EXPECT_EQ(run("check toy-circle/disc").code, 0);
+  const std::string impossible =
+      "[[claim]]\ntext = \"no error\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = "
+      "0\n";
+  write(disc_experiment("segments = 16", impossible));
+  const Outcome outcome = run("check toy-circle/disc");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("no error"));
+  // A documented finding is still named, but no regression.
+  write(disc_experiment("segments = 16",
+                        impossible + "known_shortfall = \"a polygon is no circle\"\n"));
+  const Outcome known = run("check toy-circle/disc");
+  EXPECT_EQ(known.code, 0);
+  EXPECT_THAT(known.err, HasSubstr("a polygon is no circle"));
+}
+
+TEST_F(Program, BlessIsRefusedWithoutAReason) {
+  write(disc_experiment());
+  EXPECT_EQ(run("bless toy-circle/disc").code, 2);
+  const Outcome blank = run("bless toy-circle/disc --reason ' '");
+  EXPECT_EQ(blank.code, 2);
+  EXPECT_THAT(blank.err, HasSubstr("without a reason"));
+  EXPECT_TRUE(std::filesystem::is_empty(home_.root() / "results/reference"));
+}
+
+TEST_F(Program, QuickAndFullReferencesStandApart) {
+  write(disc_experiment() + "[quick]\n\"variant.polygon.options.segments\" = 8\n");
+  ASSERT_EQ(run("bless toy-circle/disc --reason full").code, 0);
+  EXPECT_EQ(run("check toy-circle/disc --quick").code, 1);
+  ASSERT_EQ(run("bless toy-circle/disc --quick --reason quick").code, 0);
+  EXPECT_EQ(run("check toy-circle/disc --quick").code, 0);
+  EXPECT_EQ(run("check toy-circle/disc").code, 0);
+  const json reference =
+      json::parse(toy::Home::read(home_.root() / "results/reference/toy-circle/disc.json"));
+  const auto value = [&](const char* size) {
+    return reference[size]["values"]["default"]["polygon"]["radius_error.max"];
+  };
+  EXPECT_LT(value("full"), value("quick"));
+  EXPECT_EQ(reference["quick"]["reason"], "quick");
+  EXPECT_EQ(reference["quick"]["units"]["radius_error"], "m");
+  EXPECT_FALSE(reference["quick"]["commit"].get<std::string>().empty());
+}
+
+TEST_F(Program, ObservedOrderOfTheToyMethodsIsWhatTheoryPredicts) {
+  const auto pendulum = [](const std::string& method) {
+    return "title = \"order\"\ntopic = \"toy-pendulum\"\n[scene]\nframes = 4\n"
+           "[[variant]]\nname = \"m\"\nmethod = \"" +
+           method +
+           "\"\n"
+           "[[sweep]]\nkey = \"variant.m.options.step_s\"\nvalues = [0.01, 0.005, 0.0025]\n"
+           "base = false\n[[study]]\nname = \"order\"\nkind = \"order\"\nvariant = \"m\"\n"
+           "quantity = \"largest_angle_error\"\nagainst = \"variant.m.options.step_s\"\n";
+  };
+  const auto order = [&](const std::string& method) {
+    home_.write("experiments/toy-pendulum/order.toml", pendulum(method));
+    const Outcome outcome = run("run toy-pendulum/order --no-pictures --json");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return json::parse(outcome.out)["studies"][0]["value"].get<double>();
+  };
+  EXPECT_NEAR(order("implicit-midpoint"), 2, 0.2);
+  EXPECT_NEAR(order("explicit-euler"), 1, 0.2);
+}
+
+}  // namespace
+}  // namespace geoprior

@@ -1,0 +1,650 @@
+// The picture of a run: sections, framing, colours, and pixels that show what they should.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <numbers>
+#include <string>
+
+#include "testbed/runner/stop.h"
+#include "testbed/view/child_process.h"
+#include "testbed/view/colors.h"
+#include "testbed/view/display.h"
+#include "testbed/view/figure_cells.h"
+#include "testbed/view/figure_layout.h"
+#include "testbed/view/frame_times.h"
+#include "testbed/view/legend.h"
+#include "testbed/view/panel.h"
+#include "testbed/view/render.h"
+#include "testbed/view/section.h"
+#include "testbed/view/video.h"
+#include "testbed/view/view_window.h"
+#include "tests/testbed/fake_run.h"
+#include "tests/testbed/run_fixture.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// Looks along -z at the plane z = 1/2, four by four metres.
+ViewWindow front_window() {
+  ViewWindow window;
+  window.center = {0, 0, 0.5};
+  window.width_m = 4;
+  window.height_m = 4;
+  return window;
+}
+
+Part box_about(double x, double half) {
+  return make_box({x - half, -half, 0}, {x + half, half, 1});
+}
+
+double enclosed_area(const std::vector<SectionSegment>& segments) {
+  double area = 0;
+  for (const SectionSegment& s : segments) {
+    area += 0.5 * (s.from.x() * s.to.y() - s.from.y() * s.to.x());
+  }
+  return area;
+}
+
+TEST(Section, OfABoxIsItsSquareCounterClockwise) {
+  const auto segments = cut(box_about(0, 0.5), front_window());
+  EXPECT_NEAR(enclosed_area(segments), 1.0, 1e-12);  // round-off of a few products
+  EXPECT_EQ(winding_number(segments, {0.1, 0.2}), 1);
+  EXPECT_EQ(winding_number(segments, {0.7, 0.2}), 0);
+  EXPECT_EQ(winding_number(segments, {0.1, 0.8}), 0);
+}
+
+TEST(Section, CountsOverlapTwiceAndInsideOutNegative) {
+  const auto overlapping = cut(join(box_about(0, 0.5), box_about(0.6, 0.5)), front_window());
+  EXPECT_EQ(winding_number(overlapping, {0.3, 0.0}), 2);
+  EXPECT_EQ(winding_number(overlapping, {-0.3, 0.0}), 1);
+  EXPECT_EQ(winding_number(overlapping, {0.9, 0.0}), 1);
+  Part inside_out = box_about(0, 0.5);
+  inside_out.triangles.col(1).swap(inside_out.triangles.col(2));
+  EXPECT_EQ(winding_number(cut(inside_out, front_window()), {0, 0}), -1);
+}
+
+TEST(Section, PlaneThroughVerticesGivesAClosedCurve) {
+  ViewWindow window = front_window();
+  window.center.z() = 1;  // the top face lies in the plane and counts as in front of it
+  EXPECT_NEAR(enclosed_area(cut(box_about(0, 0.5), window)), 1.0, 1e-12);
+}
+
+TEST(Section, PaintsOverlapRedOnItsTrueArea) {
+  const Part part = join(box_about(0, 0.5), box_about(0.6, 0.5));
+  constexpr int kSize = 400;
+  const Picture picture = draw_section(cut(part, front_window()), front_window(), kSize, kSize);
+  int red = 0;
+  for (const Rgb& p : picture.pixels) red += p[0] > 180 && p[1] < 120 ? 1 : 0;
+  // The overlap is 0.4 m by 1 m of 16 m^2; its border, 1.5 px thick, takes at most a pixel a side.
+  const double pixels_per_metre = kSize / 4.0;
+  EXPECT_NEAR(red, 0.4 * pixels_per_metre * pixels_per_metre, 2.8 * pixels_per_metre);
+  EXPECT_EQ(picture.at(2, 2), (Rgb{255, 255, 255}));
+}
+
+TEST(Section, OpenSurfaceIsNotFilled) {
+  Part open = box_about(0, 0.5);
+  open.triangles.conservativeResize(2, 3);  // one side
+  const Picture picture = draw_section(cut(open, front_window()), front_window(), 100, 100);
+  EXPECT_EQ(picture.at(90, 50), (Rgb{255, 255, 255}));
+  EXPECT_EQ(picture.at(50, 50), (Rgb{255, 255, 255}));
+}
+
+TEST(ViewWindow, HoldsEveryPointAndIsOrthonormal) {
+  const Part a = make_box({0, 0, 0}, {1, 2, 3});
+  const Part b = make_box({-2, 0.5, 0}, {-1, 1, 1});
+  FigureView view;
+  view.direction = {1, 0.5, 2};
+  const ViewWindow window = fit_window({&a, &b}, view);
+  Eigen::Matrix3d axes;
+  axes << window.right, window.up, window.direction;
+  EXPECT_LT((axes.transpose() * axes - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+  for (const Part* part : {&a, &b}) {
+    for (Eigen::Index i = 0; i < part->points.rows(); ++i) {
+      const Eigen::Vector3d p = part->points.row(i).transpose() - window.center;
+      EXPECT_LE(std::abs(p.dot(window.right)), window.width_m / 2);
+      EXPECT_LE(std::abs(p.dot(window.up)), window.height_m / 2);
+      EXPECT_LE(std::abs(p.dot(window.direction)), window.depth_m);
+    }
+  }
+}
+
+TEST(ViewWindow, DirectionAlongUpIsAnError) {
+  const Part part = make_box({0, 0, 0}, {1, 1, 1});
+  FigureView view;
+  view.direction = {0, 2, 0};
+  EXPECT_THAT(test::error_of([&] { fit_window({&part}, view); }),
+              HasSubstr("figure_view.direction"));
+}
+
+TEST(ViewWindow, SectionLooksAlongTheNormalAtThePlane) {
+  SectionView section;
+  section.origin = {3, 0, 0};
+  section.normal = {-1, 0, 0};
+  ViewWindow window = front_window();
+  window.direction = Eigen::Vector3d(1, 0, 1).normalized();
+  const ViewWindow plane = section_window(window, section);
+  EXPECT_LT((plane.direction - Eigen::Vector3d::UnitX()).norm(), 1e-12);  // towards the eye
+  EXPECT_NEAR(plane.center.x(), 3, 1e-12);
+  EXPECT_NEAR(plane.center.z(), window.center.z(), 1e-12);
+}
+
+Part with_values(const std::string& name, const Eigen::VectorXd& values) {
+  Part part = make_box({0, 0, 0}, {1, 1, 1});
+  part.arrays.push_back({name, "m", NamedArray::On::points, values});
+  return part;
+}
+
+TEST(ColorScale, SignedValuesAreSymmetricAboutZeroAndRatiosAboutOne) {
+  const Eigen::VectorXd signs = Eigen::VectorXd::LinSpaced(8, -1, 3);
+  const Part part = with_values("offset", signs);
+  const ColorScale scale = make_color_scale({&part}, "offset");
+  EXPECT_TRUE(scale.diverging);
+  EXPECT_DOUBLE_EQ(scale.low, -3);
+  EXPECT_DOUBLE_EQ(scale.high, 3);
+  const Part ratios = with_values("area_ratio", Eigen::VectorXd::LinSpaced(8, 0.5, 1.2));
+  const ColorScale about_one = make_color_scale({&ratios}, "area_ratio");
+  EXPECT_DOUBLE_EQ(about_one.low, 0.5);
+  EXPECT_DOUBLE_EQ(about_one.high, 1.5);
+}
+
+TEST(ColorScale, OneRangeForAllPartsAndUnknownArrayNamesTheOnesThereAre) {
+  const Part a = with_values("height", Eigen::VectorXd::LinSpaced(8, 1, 2));
+  const Part b = with_values("height", Eigen::VectorXd::LinSpaced(8, 3, 7));
+  const ColorScale scale = make_color_scale({&a, &b}, "height");
+  EXPECT_DOUBLE_EQ(scale.low, 1);
+  EXPECT_DOUBLE_EQ(scale.high, 7);
+  EXPECT_THAT(test::error_of([&] { make_color_scale({&a}, "curvature"); }), HasSubstr("height"));
+}
+
+TEST(Names, AreWrittenForReaders) {
+  EXPECT_EQ(display_name("dual-quaternion"), "Dual quaternion");
+  EXPECT_EQ(with_unit(90, "deg"), "90\u00b0");
+  EXPECT_EQ(with_unit(0.25, "s"), "0.25 s");
+  EXPECT_EQ(with_unit(3, "1"), "3");
+  EXPECT_EQ(display_name("flip-uncorrected"), "FLIP uncorrected");
+  EXPECT_EQ(display_name("pictures"), "Pictures") << "no acronym, though it begins like one";
+}
+
+TEST(Display, IsOursAndEndsWithItsObject) {
+  const char* before = std::getenv("DISPLAY");
+  const std::string old = before != nullptr ? before : "";
+  std::string ours;
+  {
+    const Display display;
+    ours = std::getenv("DISPLAY");
+    EXPECT_NE(ours, old);
+  }
+  const char* after = std::getenv("DISPLAY");
+  EXPECT_EQ(after != nullptr ? after : "", old);
+  EXPECT_FALSE(fs::exists("/tmp/.X11-unix/X" + ours.substr(1)));
+}
+
+Part make_sphere(double radius, int rings) {
+  Part part;
+  const int sectors = 2 * rings;
+  part.points.resize((rings + 1) * sectors, 3);
+  part.triangles.resize(2 * rings * sectors, 3);
+  Eigen::Index t = 0;
+  for (int i = 0; i <= rings; ++i) {
+    for (int j = 0; j < sectors; ++j) {
+      const double theta = std::numbers::pi * i / rings;
+      const double phi = 2 * std::numbers::pi * j / sectors;
+      part.points.row(i * sectors + j) =
+          radius * Eigen::RowVector3d(std::sin(theta) * std::cos(phi), std::cos(theta),
+                                      -std::sin(theta) * std::sin(phi));
+      if (i == rings) continue;
+      const int next = (j + 1) % sectors;
+      part.triangles.row(t++) << i * sectors + j, (i + 1) * sectors + j, i * sectors + next;
+      part.triangles.row(t++) << i * sectors + next, (i + 1) * sectors + j,
+          (i + 1) * sectors + next;
+    }
+  }
+  return part;
+}
+
+TEST(Panel, SphereCoversItsDiscOnWhite) {
+  const Display display;
+  const Part sphere = make_sphere(1, 48);
+  ViewWindow window;
+  window.width_m = 4;
+  window.height_m = 4;
+  window.depth_m = 1.2;
+  constexpr int kSize = 200;
+  const Picture picture = draw_panel({{&sphere}, {}, {}}, window, {}, kSize, kSize);
+  int covered = 0;
+  for (const Rgb& p : picture.pixels) covered += p[0] < 250 || p[2] < 250 ? 1 : 0;
+  const double radius_px = kSize / 4.0;
+  // One pixel of soft edge around the disc.
+  EXPECT_NEAR(covered, std::numbers::pi * radius_px * radius_px, 2 * std::numbers::pi * radius_px);
+  EXPECT_EQ(picture.at(0, 0), (Rgb{255, 255, 255}));
+  const Rgb lit = picture.at(80, 75);  // the key light comes from the upper left
+  const Rgb shaded = picture.at(125, 135);
+  EXPECT_GT(lit[0], shaded[0] + 20);
+}
+
+TEST(Panel, LinesPointsAndGridsAreDrawn) {
+  const Display display;
+  Part lines;
+  lines.kind = Part::Kind::lines;
+  lines.points.resize(2, 3);
+  lines.points << -1, 0, 0, 1, 0, 0;
+  lines.lines = {{0, 1}};
+  Part points;
+  points.kind = Part::Kind::points;
+  points.points = lines.points;
+  Part ball;  // the distance field of a ball: its zero level is drawn
+  ball.kind = Part::Kind::grid;
+  ball.grid_size = {21, 21, 21};
+  ball.grid_origin.setConstant(-1);
+  ball.grid_spacing.setConstant(0.1);
+  Eigen::VectorXd distance(21 * 21 * 21);
+  for (int i = 0; i < distance.size(); ++i) {
+    const Eigen::Vector3d p(i % 21, (i / 21) % 21, i / 441);
+    distance[i] = (0.1 * p - Eigen::Vector3d::Ones()).norm() - 0.6;
+  }
+  ball.arrays.push_back({"distance", "m", NamedArray::On::points, distance});
+  ViewWindow window;
+  window.width_m = 4;
+  window.height_m = 4;
+  window.depth_m = 2;
+  for (const Part* part : {&lines, &points, &ball}) {
+    const Picture picture = draw_panel({{part}, {}, {}}, window, {}, 100, 100);
+    int covered = 0;
+    for (const Rgb& p : picture.pixels) covered += p[0] < 240 ? 1 : 0;
+    EXPECT_GT(covered, 4) << static_cast<int>(part->kind);
+    EXPECT_LT(covered, 3000) << static_cast<int>(part->kind);
+  }
+}
+
+/// A square of two triangles in the plane z = 0, classes 0 and 1, seen from above.
+Part two_classes() {
+  Part part;
+  part.points.resize(4, 3);
+  part.points << -1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0;
+  part.triangles.resize(2, 3);
+  part.triangles << 0, 1, 2, 0, 2, 3;
+  part.arrays.push_back({"kind", "1", NamedArray::On::cells, Eigen::Vector2d(0, 1)});
+  return part;
+}
+
+ViewWindow above() {
+  ViewWindow window;
+  window.width_m = 4;
+  window.height_m = 4;
+  window.depth_m = 1;
+  return window;
+}
+
+/// Blue over red: above 1 for class 1 (blue), below it for class 0 (warm white) and for red.
+double blueness(const Rgb& pixel) { return 1.0 * pixel[2] / std::max<int>(1, pixel[0]); }
+
+TEST(Panel, ClassesHaveTheirColours) {
+  const Display display;
+  const Part part = two_classes();
+  PanelStyle style;
+  style.scale = make_class_scale({&part}, "kind", {"flat", "cylinder"});
+  style.flat = true;
+  const Picture picture = draw_panel({{&part}, {}, {}}, above(), style, 200, 200);
+  EXPECT_LT(blueness(picture.at(130, 120)), 1) << "below the diagonal";
+  EXPECT_GT(blueness(picture.at(70, 80)), 1.3) << "above it";
+}
+
+TEST(Panel, EdgesOverlaysAndBothSidesOfPaperAreSeen) {
+  const Display display;
+  const Part part = two_classes();
+  Part ball;
+  ball.kind = Part::Kind::points;
+  ball.points.resize(1, 3);
+  ball.points << 0.5, -0.5, 0;
+  PanelStyle style;
+  style.material = PanelStyle::Material::paper;
+  style.flat = true;
+  ViewWindow window = above();
+  const Picture plain = draw_panel({{&part}, {}, {}}, window, style, 200, 200);
+  style.edges = true;
+  const Picture with =
+      draw_panel({{&part}, {{&ball, {0.8, 0.1, 0.1}}}, {}}, window, style, 200, 200);
+  int darkest = 255;
+  for (int x = 88; x <= 92; ++x) darkest = std::min<int>(darkest, with.at(x, 110)[1]);
+  EXPECT_LT(darkest, plain.at(90, 110)[1] - 10) << "the diagonal";
+  EXPECT_EQ(with.at(60, 80), plain.at(60, 80)) << "no edge here";
+  EXPECT_GT(with.at(125, 125)[0], 2 * with.at(125, 125)[1]) << "the ball is red";
+  window.direction = {0, 0, -1};
+  window.right = {-1, 0, 0};
+  const Picture back = draw_panel({{&part}, {}, {}}, window, style, 200, 200);
+  EXPECT_GT(blueness(back.at(60, 80)), blueness(plain.at(60, 80)) + 0.05) << "the back is cooler";
+}
+
+TEST(Panel, AnObstacleIsTranslucentAndMayReachOutOfTheWindow) {
+  const Display display;
+  const Part part = two_classes();
+  const Part obstacle = make_box({-50, -50, -50}, {50, 50, 50});
+  PanelStyle style;
+  style.scale = make_class_scale({&part}, "kind", {"flat", "cylinder"});
+  const Picture picture = draw_panel({{&part}, {}, {&obstacle}}, above(), style, 200, 200);
+  EXPECT_LT(picture.at(3, 3)[0], 245) << "the obstacle";
+  EXPECT_GT(blueness(picture.at(70, 80)), blueness(picture.at(130, 120)) + 0.1)
+      << "the sheet shows through";
+}
+
+TEST(Colors, AValueThatIsNoClassIsNamed) {
+  Part part = two_classes();
+  part.arrays[0].values(1, 0) = 2;
+  EXPECT_THAT(test::error_of([&] {
+                make_class_scale({&part}, "kind", {"flat", "cylinder"});
+              }),
+              HasSubstr("has the value 2"));
+  EXPECT_EQ(make_class_scale({}, "kind", {"flat"}).classes.size(), 1u) << "no part need have it";
+}
+
+TEST(Cells, ObstaclesComeWithTheFrameAndDoNotMoveTheWindow) {
+  const TestFolder folder;
+  RunRecord record = make_fake_run(folder.path);
+  VariantRecord& variant = record.cases[0].variants[0];
+  VariantRecord extra;
+  extra.name = variant.name;
+  add_frame(extra, folder.path, 0, make_box({-9, -9, -9}, {9, 9, 9}), "obstacles");
+  variant.frames[0].files.push_back(extra.frames[0].files[0]);
+  FigureView view;
+  view.at_parameter = 0;
+  view.variants = {variant.name};
+  const auto rows = collect_cells(record, folder.path, view);
+  ASSERT_TRUE(rows.at(0).cells.at(0).obstacles.has_value());
+  EXPECT_TRUE(rows[0].cells[0].overlays.empty());
+}
+
+TEST(ScalarBar, TitleStaysInsideANarrowPicture) {
+  ColorScale scale;
+  scale.array = "curvature_of_the_reference_surface";
+  scale.unit = "1/m";
+  for (const int width : {360, 540, 900, 2400}) {
+    Picture picture(width, 160);
+    draw_scalar_bar(picture, scale, 14);
+    int left = width, right = 0;
+    for (int y = 0; y < picture.height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        if (picture.at(x, y) == Rgb{255, 255, 255}) continue;
+        left = std::min(left, x);
+        right = std::max(right, x);
+      }
+    }
+    EXPECT_GE(left, 8) << width;
+    EXPECT_LE(right, width - 9) << width;
+    EXPECT_GT(right - left, width / 2) << "title and bar are there";
+  }
+}
+
+TEST(Legend, BreaksIntoLinesThatFitTheFigure) {
+  std::vector<LegendEntry> entries;
+  for (const char* name : {"Flat", "Cylinder", "Cone", "Rulings", "Singular points", "Handles"}) {
+    entries.push_back({name, {0, 0, 0}, LegendEntry::Mark::area});
+  }
+  EXPECT_EQ(legend_lines(entries, 2400).size(), 1U);
+  EXPECT_EQ(legend_height({}, 998), 0);
+  const auto lines = legend_lines(entries, 998);  // a figure of one column
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].size() + lines[1].size(), entries.size());
+  Picture picture(998, legend_height(entries, 998));
+  draw_legend(picture, entries, 0);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < 20; ++x) {
+      ASSERT_EQ(picture.at(x, y), (Rgb{255, 255, 255})) << x << ' ' << y;
+      ASSERT_EQ(picture.at(997 - x, y), (Rgb{255, 255, 255})) << 997 - x << ' ' << y;
+    }
+  }
+}
+
+TEST(Legend, ExplainsTheClassesAndOverlaysThatSomePanelHas) {
+  FigureView view;
+  view.color_by = std::make_optional<std::string>("kind");
+  view.classes = {"flat", "cone"};
+  view.overlays = {"rulings", "singular_points"};
+  FigureRow row;
+  row.cells.resize(2);
+  row.cells[0].part = make_box({0, 0, 0}, {1, 1, 1});  // a baseline without classes
+  EXPECT_TRUE(legend_entries({row}, view).empty());
+  row.cells[1].part = two_classes();
+  Part points;
+  points.kind = Part::Kind::points;
+  row.cells[1].overlays = {{"singular_points", points}};
+  const auto entries = legend_entries({row}, view);
+  ASSERT_EQ(entries.size(), 3u);
+  EXPECT_EQ(entries[1].label, "Cone");
+  EXPECT_EQ(entries[2].label, "Singular points");
+  EXPECT_EQ(entries[2].mark, LegendEntry::Mark::ball);
+  EXPECT_GT(entries[2].color[0], 2 * entries[2].color[2]) << "red, though it is named second";
+}
+
+TEST(Render, DrawsTheSameFigureTwiceWithoutADisplay) {
+  const TestFolder folder;
+  make_fake_run(folder.path);
+  ::unsetenv("DISPLAY");
+  FigureView view;
+  view.parameters = {0, 90};
+  view.color_by = "height";
+  view.section = SectionView{{0.5, 0.5, 0.1}, {0, 0, 1}};
+  render_run(folder.path, view);
+  const std::string once = read_whole_file(folder.path / "figure.png");
+  EXPECT_EQ(once.substr(1, 3), "PNG");
+  EXPECT_LT(once.size(), 1u << 20);
+  render_run(folder.path, view);
+  EXPECT_EQ(read_whole_file(folder.path / "figure.png"), once);
+}
+
+TEST(Render, NamesWhatTheRunDoesNotHave) {
+  const TestFolder folder;
+  make_fake_run(folder.path);
+  FigureView view;
+  view.variants = {"third-box"};
+  EXPECT_THAT(test::error_of([&] { render_run(folder.path, view); }),
+              HasSubstr("first-box, second-box"));
+  view.variants = {};
+  view.part = "strokes";
+  EXPECT_THAT(test::error_of([&] { render_run(folder.path, view); }), HasSubstr("surface"));
+  EXPECT_FALSE(fs::exists(folder.path / "figure.png"));
+}
+
+TEST(Cells, AFrameIsDrawnOnceThoughSeveralParametersAreNearestToIt) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  FigureView view;
+  view.parameters = {0, 90, 120, 180};
+  const auto rows = collect_cells(record, folder.path, view);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[1].label, "Angle 90\u00b0");
+}
+
+TEST(Cells, AVariantThatFailedBeforeTheStateIsNotDrawnInAnother) {
+  const TestFolder folder;
+  RunRecord record = make_fake_run(folder.path);
+  VariantRecord& failed = record.cases[0].variants[0];
+  failed.status = "failed";
+  failed.frames.resize(2);  // 0 and 45 degrees
+  FigureView view;
+  view.parameters = {45, 90};
+  const auto rows = collect_cells(record, folder.path, view);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_TRUE(rows[0].cells[0].part.has_value());
+  EXPECT_EQ(rows[1].label, "Angle 90\u00b0");
+  EXPECT_FALSE(rows[1].cells[0].part.has_value());
+  EXPECT_EQ(rows[1].cells[0].note, "failed after 45\u00b0");
+  EXPECT_TRUE(rows[1].cells[1].part.has_value());
+}
+
+TEST(Cells, NearestFrameIsTakenAndLabelledWithItsOwnParameter) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  FigureView view;
+  view.parameters = {50};
+  const auto rows = collect_cells(record, folder.path, view);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].label, "Angle 45\u00b0");
+  ASSERT_EQ(rows[0].cells.size(), 2u);
+  EXPECT_EQ(rows[0].cells[1].label, "Second box");
+  EXPECT_DOUBLE_EQ(rows[0].cells[0].part->points.col(0).maxCoeff(), 1.1);
+}
+
+TEST(Cells, StatesStandSideBySideWhenTheViewSaysAcross) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  FigureView view;
+  view.parameters = {0, 45, 90, 180};  // 180 is nearest to 90, which is there
+  view.across = FigureView::Across::states;
+  const auto rows = collect_cells(record, folder.path, view);
+  ASSERT_EQ(rows.size(), 2u) << "a row a variant";
+  EXPECT_EQ(rows[1].label, "Second box");
+  ASSERT_EQ(rows[1].cells.size(), 3u);
+  EXPECT_EQ(rows[1].cells[2].label, "Angle 90\u00b0");
+  EXPECT_DOUBLE_EQ(rows[1].cells[1].part->points.col(0).maxCoeff(), 1.1);
+  EXPECT_TRUE(rows[0].has_headings);
+}
+
+TEST(Blocks, ARowAboveHasItsOwnPartCameraAndLabel) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  FigureView view;
+  view.parameters = {0, 90};
+  view.across = FigureView::Across::states;
+  view.label = "Heights";
+  view.color_by = "height";
+  view.variants = {"first-box"};
+  view.above = RowAbove{};
+  view.above->label = "Input";
+  view.above->direction = {0, -1, 0};
+  view.above->up = {0, 0, 1};
+  const auto blocks = make_blocks(record, folder.path, view);
+  ASSERT_EQ(blocks.size(), 2u);
+  EXPECT_EQ(blocks[0].rows[0].label, "Input");
+  EXPECT_EQ(blocks[1].rows[0].label, "Heights");
+  EXPECT_NEAR(blocks[0].look.window.direction.y(), -1, 1e-12);
+  EXPECT_NEAR(blocks[1].look.window.direction.z(), 1, 1e-12);
+  EXPECT_FALSE(blocks[0].look.style.scale) << "coloured in the row below alone";
+  EXPECT_TRUE(blocks[1].look.style.scale);
+  EXPECT_TRUE(blocks[0].rows[0].has_headings);
+  EXPECT_FALSE(blocks[1].rows[0].has_headings) << "the same states stand over it already";
+}
+
+TEST(Blocks, ARowAboveOfAnInputIsTakenFromTheRunOfThatContent) {
+  const TestFolder folder;
+  const fs::path input = folder.path / "runs/test/boxes/20250101T000000Z-00000000";
+  make_fake_run(input);
+  const fs::path own = folder.path / "own";
+  RunRecord record = make_fake_run(own);
+  record.inputs = {{"run:test/boxes/second-box", std::string(64, 'b')}};
+  ::setenv("GEOPRIOR_RUNS", (folder.path / "runs").c_str(), 1);
+  FigureView view;
+  view.at_parameter = 45;
+  view.above = RowAbove{};
+  view.above->input = "run:test/boxes/second-box";
+  const auto blocks = make_blocks(record, own, view);
+  ASSERT_EQ(blocks.size(), 2u);
+  ASSERT_EQ(blocks[0].rows.at(0).cells.size(), 1u);
+  EXPECT_EQ(blocks[0].rows[0].cells[0].label, "Second box");
+  record.inputs[0].sha256 = std::string(64, 'c');
+  EXPECT_THAT(test::error_of([&] { make_blocks(record, own, view); }),
+              HasSubstr("no longer there"));
+  record.inputs.clear();
+  EXPECT_EQ(make_blocks(record, own, view).size(), 1u) << "made of files: no run to show";
+  ::unsetenv("GEOPRIOR_RUNS");
+}
+
+TEST(ColorScale, IdentitiesTakeColoursInTurnAndLeaveTheFirstToNone) {
+  Eigen::VectorXd ids = Eigen::VectorXd::Zero(8);
+  ids[3] = kIdentityColors + 1;
+  const Part part = with_values("track", ids);
+  const ColorScale scale = make_identity_scale({&part}, "track", true);
+  ASSERT_EQ(scale.palette.size(), kIdentityColors + 2);
+  EXPECT_EQ(scale.palette.front(), class_palette(1, true).front());
+  EXPECT_EQ(scale.palette[1], scale.palette[kIdentityColors + 1]);
+  EXPECT_NE(scale.palette[1], scale.palette[2]);
+  EXPECT_NE(scale.palette[1], scale.palette[0]);
+  ids[3] = 0.5;
+  const Part broken = with_values("track", ids);
+  EXPECT_THAT(test::error_of([&] { make_identity_scale({&broken}, "track", true); }),
+              HasSubstr("0.5"));
+}
+
+TEST(FrameTimes, AreEvenlyChosenWithTheFirstAndTheLast) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  EXPECT_EQ(frame_parameters(record, {}), (std::vector<double>{0, 45, 90}));
+  EXPECT_EQ(evenly_chosen({0, 1, 2, 3, 4, 5, 6, 7, 8}, 3), (std::vector<double>{0, 4, 8}));
+  EXPECT_EQ(evenly_chosen({0, 1}, 12), (std::vector<double>{0, 1}));
+  EXPECT_EQ(evenly_chosen({0, 1, 2}, 1), (std::vector<double>{2}));
+}
+
+TEST(Render, DrawsAContactSheetWhereTheViewAsksForOne) {
+  const TestFolder folder;
+  make_fake_run(folder.path);
+  FigureView view;
+  view.variants = {"first-box"};
+  render_run(folder.path, view);
+  EXPECT_FALSE(fs::exists(folder.path / "contact-sheet.png"));
+  view.contact_sheet = 3;
+  render_run(folder.path, view);
+  EXPECT_EQ(read_whole_file(folder.path / "contact-sheet.png").substr(1, 3), "PNG");
+}
+
+/// Puts a folder first on the PATH, for as long as it lives.
+class PathOf {
+ public:
+  explicit PathOf(const fs::path& folder) : old_(std::getenv("PATH")) {
+    ::setenv("PATH", (folder.string() + ":" + old_).c_str(), 1);
+  }
+  ~PathOf() { ::setenv("PATH", old_.c_str(), 1); }
+  PathOf(const PathOf&) = delete;
+  PathOf& operator=(const PathOf&) = delete;
+
+ private:
+  std::string old_;
+};
+
+/// A program named ffmpeg that runs `script`; its last argument is $file.
+void make_ffmpeg(const fs::path& folder, const std::string& script) {
+  write_file_atomically(folder / "ffmpeg",
+                        std::string_view("#!/bin/sh\nfor file; do :; done\n" + script + "\n"));
+  fs::permissions(folder / "ffmpeg", fs::perms::owner_all);
+}
+
+TEST(Video, HasAPictureAFrameAndIsWholeOrAbsent) {
+  const TestFolder folder;
+  make_fake_run(folder.path / "run");
+  const PathOf path(folder.path);
+  FigureView view;
+  view.variants = {"first-box"};
+  make_ffmpeg(folder.path, "echo half > \"$file\"; echo no encoder >&2; exit 1");
+  const fs::path out = folder.path / "50% video";
+  EXPECT_THAT(test::error_of([&] {
+                make_video(folder.path / "run", view, {25, out});
+              }),
+              HasSubstr("no encoder"));
+  EXPECT_TRUE(fs::exists(out / "frame_0002.png"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(out), {}), 3) << "three frames, no half video";
+  make_ffmpeg(folder.path, "echo \"$@\" > \"$file\"");
+  const Video video = make_video(folder.path / "run", view, {25, out});
+  EXPECT_EQ(video.frames, 3);
+  ASSERT_EQ(video.file, out / "video.mp4");
+  EXPECT_THAT(read_whole_file(out / "video.mp4"), HasSubstr("50%% video/frame_%04d.png"));
+}
+
+TEST(Video, IsLeftOutAfterCtrlC) {
+  const TestFolder folder;
+  make_fake_run(folder.path);
+  request_stop();
+  const Video video = make_video(folder.path, {}, {25, folder.path / "video"});
+  clear_stop();
+  EXPECT_TRUE(video.stopped);
+  EXPECT_EQ(video.frames, 0);
+  EXPECT_FALSE(video.file);
+}
+
+}  // namespace
+}  // namespace geoprior

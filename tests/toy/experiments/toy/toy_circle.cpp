@@ -1,0 +1,212 @@
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "core/error.h"
+#include "experiments/toy/toy_topic.h"
+
+namespace geoprior::toy {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+struct CircleSceneOptions {
+  double radius_m = 1;
+  int points = 24;
+  struct Motion {
+    double from_deg = 0;
+    double to_deg = 90;
+    int frames = 4;
+  } motion;
+};
+
+void describe(OptionVisitor& v, CircleSceneOptions::Motion& o) {
+  v.value("from_deg", o.from_deg, {.doc = "first angle", .unit = "deg"});
+  v.value("to_deg", o.to_deg, {.doc = "last angle", .unit = "deg"});
+  v.value("frames", o.frames, {.doc = "number of angles", .min = 1, .max = 1000});
+}
+
+void describe(OptionVisitor& v, CircleSceneOptions& o) {
+  v.value("radius_m", o.radius_m, {.doc = "radius r", .unit = "m", .min = 1e-6, .max = 1e6});
+  v.value("points", o.points, {.doc = "points on the rim", .min = 3, .max = 1000000});
+  describe_group(v, "motion", o.motion, {.doc = "angles at which the disc is posed"});
+}
+
+struct ExactOptions {};
+void describe(OptionVisitor&, ExactOptions&) {}
+
+enum class Corner { on_rim, outside };
+constexpr std::array<std::string_view, 2> kCornerNames{"on-rim", "outside"};
+
+struct PolygonOptions {
+  int segments = 16;
+  Corner corner = Corner::on_rim;
+  double scale = 1;
+};
+
+void describe(OptionVisitor& v, PolygonOptions& o) {
+  v.value("segments", o.segments, {.doc = "corners of the polygon n", .min = 3, .max = 100000});
+  describe_choice(v, "corner", o.corner, kCornerNames,
+                  {.doc = "corners on the rim, or edges that touch it"});
+  v.value("scale", o.scale, {.doc = "factor on the radius", .min = 0.5, .max = 2});
+}
+
+class CircleScene final : public Scene {
+ public:
+  explicit CircleScene(const CircleSceneOptions& o) : options(o) {}
+  [[nodiscard]] std::vector<double> parameters() const override {
+    const auto& m = options.motion;
+    std::vector<double> angles;
+    for (int i = 0; i < m.frames; ++i) {
+      angles.push_back(m.frames == 1 ? m.to_deg
+                                     : m.from_deg + (m.to_deg - m.from_deg) * i / (m.frames - 1));
+    }
+    return angles;
+  }
+  [[nodiscard]] std::string parameter_name() const override { return "angle"; }
+  [[nodiscard]] std::string parameter_unit() const override { return "deg"; }
+  [[nodiscard]] std::vector<std::filesystem::path> inputs() const override { return {}; }
+  [[nodiscard]] std::map<std::string, double> facts() const override {
+    return {{"vertices", options.points + 1.0}};
+  }
+  CircleSceneOptions options;
+};
+
+/// The disc as a fan about its centre; `radius_at(phi)` is the method's radius in direction phi
+/// (rad).
+class CircleMethod final : public PoseMethod {
+ public:
+  CircleMethod(const CircleScene& scene, std::function<double(double)> radius_at)
+      : points_(scene.options.points),
+        radius_at_(std::move(radius_at)),
+        V_(Eigen::MatrixX3d::Zero(points_ + 1, 3)),
+        F_(points_, 3) {
+    for (int i = 0; i < points_; ++i) F_.row(i) << 0, 1 + i, 1 + (i + 1) % points_;
+  }
+
+  void solve(double parameter, RunContext& context) override {
+    Phase phase(context, "rim");
+    parameter_ = parameter;
+    for (int i = 0; i < points_; ++i) {
+      const double phi = parameter * kDegree + 2 * std::numbers::pi * i / points_;
+      const double r = radius_at_(phi);
+      V_.row(1 + i) << r * std::cos(phi), r * std::sin(phi), 0;
+    }
+  }
+
+  [[nodiscard]] Frame frame() const override {
+    Frame f;
+    f.parameter = parameter_;
+    Part surface;
+    surface.points = V_;
+    surface.triangles = F_;
+    surface.arrays = {{"radius", "m", NamedArray::On::points, V_.rowwise().norm()}};
+    f.parts["surface"] = surface;
+    f.diagnostics["evaluations"] = points_;
+    return f;
+  }
+
+ private:
+  int points_;
+  std::function<double(double)> radius_at_;
+  Eigen::MatrixX3d V_;
+  Eigen::MatrixX3i F_;
+  double parameter_ = 0;
+};
+
+double polygon_radius(double r, const PolygonOptions& o, double phi) {
+  const double sector = 2 * std::numbers::pi / o.segments;
+  const double inside = phi - sector * std::floor(phi / sector) - sector / 2;
+  const double apothem = o.corner == Corner::on_rim ? std::cos(sector / 2) : 1;
+  return o.scale * r * apothem / std::cos(inside);
+}
+
+double radius_error(const Scene& scene, const Frame& frame) {
+  const double r = dynamic_cast<const CircleScene&>(scene).options.radius_m;
+  const auto& V = frame.parts.at("surface").points;
+  return (V.bottomRows(V.rows() - 1).rowwise().norm().array() - r).abs().maxCoeff();
+}
+
+std::vector<MetricEntry> circle_metrics() {
+  MetricEntry error{"radius_error",
+                    "m",
+                    "largest distance of a rim point to the circle",
+                    Direction::lower_is_better,
+                    {1e-12, 1e-6},
+                    0,
+                    {},
+                    {},
+                    false};
+  error.of_frame = [](const Scene& s, const Frame& f, const Frame*) -> std::optional<double> {
+    return radius_error(s, f);
+  };
+  MetricEntry largest{"largest_radius_error",
+                      "m",
+                      "largest radius_error over the frames",
+                      Direction::lower_is_better,
+                      {1e-12, 1e-6},
+                      0,
+                      {},
+                      {},
+                      false};
+  largest.of_sequence = [](const Scene& s, const FrameSequence& frames) {
+    double e = 0;
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      e = std::max(e, radius_error(s, *frames.frame(i)));
+    return std::optional<double>(e);
+  };
+  MetricEntry apart{"distance_to_reference",
+                    "m",
+                    "largest distance of corresponding points",
+                    Direction::lower_is_better,
+                    {1e-12, 1e-6},
+                    0,
+                    {},
+                    {},
+                    true};
+  apart.of_frame = [](const Scene&, const Frame& f, const Frame* r) -> std::optional<double> {
+    if (r == nullptr) return std::nullopt;
+    return (f.parts.at("surface").points - r->parts.at("surface").points)
+        .rowwise()
+        .norm()
+        .maxCoeff();
+  };
+  return {error, largest, apart};
+}
+
+std::vector<MethodEntry> circle_methods() {
+  return {method_entry<CircleScene, ExactOptions>(
+              "exact", false, "points on the circle", "Euclid, book III",
+              [](const CircleScene& scene, const ExactOptions&, RunContext&) {
+                const double r = scene.options.radius_m;
+                return std::make_unique<CircleMethod>(scene, [r](double) { return r; });
+              }),
+          method_entry<CircleScene, PolygonOptions>(
+              "polygon", true, "points on a regular polygon", "Archimedes",
+              [](const CircleScene& scene, const PolygonOptions& options, RunContext&) {
+                const double r = scene.options.radius_m;
+                return std::make_unique<CircleMethod>(
+                    scene, [r, options](double phi) { return polygon_radius(r, options, phi); });
+              })};
+}
+
+}  // namespace
+
+Topic circle_topic() {
+  Topic topic;
+  topic.name = "toy-circle";
+  topic.summary = "pose methods: a disc that turns";
+  topic.default_scene = [] { return std::make_unique<TypedOptions<CircleSceneOptions>>(); };
+  topic.load = [](const OptionSet& set, const std::filesystem::path&) -> std::shared_ptr<Scene> {
+    return std::make_shared<CircleScene>(
+        dynamic_cast<const TypedOptions<CircleSceneOptions>&>(set).options);
+  };
+  topic.methods = circle_methods();
+  topic.metrics = circle_metrics();
+  topic.diagnostics = {{"evaluations", "1", "points of the rim"}};
+  return topic;
+}
+
+std::vector<Topic> topics() { return {pendulum_topic(), circle_topic()}; }
+
+}  // namespace geoprior::toy
