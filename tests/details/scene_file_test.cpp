@@ -10,8 +10,10 @@
 #include "testbed/view/mesh_text.h"
 #include "tests/testbed/run_fixture.h"
 
-namespace geoprior::details::test {
+namespace geoprior::details {
 namespace {
+
+using namespace test;
 
 using ::testing::HasSubstr;
 
@@ -140,4 +142,4 @@ TEST_F(DetailsScenes, AreDrawnInTheFramesAskedFor) {
 }
 
 }  // namespace
-}  // namespace geoprior::details::test
+}  // namespace geoprior::details
