@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/connectivity.h"
+
 namespace geoprior::details {
 namespace {
 
@@ -69,33 +71,19 @@ void try_face(int face, const Eigen::Vector3d& target, const SurfaceTopology& su
 
 SurfaceTopology::SurfaceTopology(const TriMesh& rest)
     : face(static_cast<std::size_t>(rest.F.rows())),
-      across(face.size(), {-1, -1, -1}),
       corner_offset(static_cast<std::size_t>(rest.V.rows()) + 1, 0),
       border_vertex(static_cast<std::size_t>(rest.V.rows()), 0) {
-  std::vector<std::array<int, 4>> edges;  // smaller, larger vertex, face, corner
+  const EdgeConnectivity edges(rest.F);
+  across = edges.across();
+  for (int e = 0; e < edges.edge_count(); ++e) {
+    if (edges.half_edges(e).size() == 2) continue;
+    for (const int v : edges.edge(e)) border_vertex[v] = 1;
+  }
   for (int t = 0; t < rest.triangle_count(); ++t) {
     for (int k = 0; k < 3; ++k) {
-      const int a = rest.F(t, k), b = rest.F(t, (k + 1) % 3);
-      face[t][k] = a;
-      edges.push_back({std::min(a, b), std::max(a, b), t, k});
-      ++corner_offset[a + 1];
+      face[t][k] = rest.F(t, k);
+      ++corner_offset[rest.F(t, k) + 1];
     }
-  }
-  std::sort(edges.begin(), edges.end());
-  int edge_count = 0;
-  for (std::size_t i = 0; i < edges.size(); ++edge_count) {
-    std::size_t end = i + 1;
-    while (end < edges.size() && edges[end][0] == edges[i][0] && edges[end][1] == edges[i][1])
-      ++end;
-    if (end - i == 2) {
-      const auto &a = edges[i], &b = edges[i + 1];
-      across[a[2]][a[3]] = b[2];
-      across[b[2]][b[3]] = a[2];
-    } else {
-      border_vertex[edges[i][0]] = 1;
-      border_vertex[edges[i][1]] = 1;
-    }
-    i = end;
   }
   for (std::size_t v = 1; v < corner_offset.size(); ++v) corner_offset[v] += corner_offset[v - 1];
   faces_around.resize(3 * face.size());
@@ -105,7 +93,7 @@ SurfaceTopology::SurfaceTopology(const TriMesh& rest)
   }
   const Eigen::VectorXd areas = triangle_areas(rest.V, rest.F);
   rest_area.assign(areas.data(), areas.data() + areas.size());
-  euler = rest.vertex_count() - edge_count + rest.triangle_count();
+  euler = rest.vertex_count() - edges.edge_count() + rest.triangle_count();
 }
 
 int SurfaceTopology::fan_of(int vertex) const {
