@@ -90,8 +90,10 @@ std::optional<int> EdgeConnectivity::find(int u, int v) const {
 std::optional<int> EdgeConnectivity::first_repeated() const {
   std::optional<int> first;
   for (int e = 0; e < edge_count(); ++e) {
+    const std::span<const int> here = half_edges(e);
+    if (here.size() == 1 || (here.size() == 2 && ascends(here[0]) != ascends(here[1]))) continue;
     bool up = false, down = false;
-    for (const int h : half_edges(e)) {
+    for (const int h : here) {
       bool& taken = ascends(h) ? up : down;
       if (taken && (!first || h < *first)) first = h;
       taken = true;
