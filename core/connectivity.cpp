@@ -7,6 +7,25 @@
 #include "core/error.h"
 
 namespace geoprior {
+namespace {
+
+/// Counting sort of the corners by vertex. `vertex_of(t, k)` is corner k of triangle t.
+template <class VertexOf>
+void sort_corners(int triangle_count, int vertex_count, const VertexOf& vertex_of,
+                  std::vector<int>& begin, std::vector<int>& corner) {
+  begin.assign(vertex_count + 1, 0);
+  for (int t = 0; t < triangle_count; ++t) {
+    for (int k = 0; k < 3; ++k) ++begin[vertex_of(t, k) + 1];
+  }
+  for (int v = 0; v < vertex_count; ++v) begin[v + 1] += begin[v];
+  corner.resize(3 * triangle_count);
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (int t = 0; t < triangle_count; ++t) {
+    for (int k = 0; k < 3; ++k) corner[next[vertex_of(t, k)]++] = 3 * t + k;
+  }
+}
+
+}  // namespace
 
 EdgeConnectivity::EdgeConnectivity(const Eigen::MatrixX3i& F) : origin_(3 * F.rows()) {
   for (Eigen::Index t = 0; t < F.rows(); ++t) {
@@ -100,6 +119,18 @@ std::optional<int> EdgeConnectivity::first_repeated() const {
     }
   }
   return first;
+}
+
+VertexCorners::VertexCorners(const Eigen::MatrixX3i& F, int vertex_count) {
+  sort_corners(
+      static_cast<int>(F.rows()), vertex_count, [&](int t, int k) { return F(t, k); }, begin_,
+      corner_);
+}
+
+VertexCorners::VertexCorners(std::span<const std::array<int, 3>> triangles, int vertex_count) {
+  sort_corners(
+      static_cast<int>(triangles.size()), vertex_count,
+      [&](int t, int k) { return triangles[t][k]; }, begin_, corner_);
 }
 
 }  // namespace geoprior

@@ -21,7 +21,7 @@ using Edge = std::array<int, 2>;
 /// counted or refused (`first_repeated`).
 ///
 /// Time and memory are linear in the number of triangles and the largest index, up to sorting
-/// edges with the same lower vertex. The triangles must not change afterwards.
+/// edges with the same lower vertex.
 class EdgeConnectivity {
  public:
   /// @param F       m x 3 vertices
@@ -85,6 +85,27 @@ class EdgeConnectivity {
   std::vector<int> half_edge_;  ///< of edge e: from begin_[e] to begin_[e + 1]
   std::vector<int> begin_;      ///< edge count + 1
   std::vector<Edge> edges_;
+};
+
+/// The corners of triangles at every vertex: corner c = 3 t + k is corner k of triangle t. Linear.
+class VertexCorners {
+ public:
+  VertexCorners() = default;
+  /// @param F             m x 3 vertices, 0 ... vertex_count - 1
+  VertexCorners(const Eigen::MatrixX3i& F, int vertex_count);
+  VertexCorners(std::span<const std::array<int, 3>> triangles, int vertex_count);
+
+  /// Ascending; none for a vertex without triangles.
+  [[nodiscard]] std::span<const int> of(int vertex) const {
+    return {corner_.data() + begin_[vertex], static_cast<std::size_t>(count(vertex))};
+  }
+  [[nodiscard]] int count(int vertex) const { return begin_[vertex + 1] - begin_[vertex]; }
+  /// Number of corners at the vertices before this one.
+  [[nodiscard]] int begin(int vertex) const { return begin_[vertex]; }
+
+ private:
+  std::vector<int> begin_;   ///< vertex count + 1
+  std::vector<int> corner_;  ///< of vertex v: from begin_[v] to begin_[v + 1]
 };
 
 }  // namespace geoprior

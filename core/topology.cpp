@@ -92,22 +92,19 @@ struct PositionHash {
 }  // namespace
 
 VertexGraph one_rings(const Eigen::MatrixX3i& F, int vertex_count) {
-  const auto n = static_cast<std::size_t>(vertex_count);
-  std::vector<std::vector<DirectedEdge>> fans(n);  // per vertex: the edges opposite to it
-  for (Eigen::Index t = 0; t < F.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      fans[F(t, k)].push_back({F(t, (k + 1) % 3), F(t, (k + 2) % 3)});
-    }
-  }
+  const VertexCorners corners(F, vertex_count);
   VertexGraph graph;
-  graph.offset.reserve(n + 1);
+  graph.offset.reserve(vertex_count + 1);
   graph.offset.push_back(0);
   std::vector<int> ring;
-  for (const std::vector<DirectedEdge>& fan : fans) {
+  std::vector<DirectedEdge> fan;  // the edges opposite to the vertex
+  for (int v = 0; v < vertex_count; ++v) {
     ring.clear();
-    for (const DirectedEdge& e : fan) {
-      ring.push_back(e.from);
-      ring.push_back(e.to);
+    fan.clear();
+    for (const int c : corners.of(v)) {
+      const DirectedEdge opposite{F(c / 3, (c % 3 + 1) % 3), F(c / 3, (c % 3 + 2) % 3)};
+      fan.push_back(opposite);
+      ring.insert(ring.end(), {opposite.from, opposite.to});
     }
     std::sort(ring.begin(), ring.end());
     ring.erase(std::unique(ring.begin(), ring.end()), ring.end());

@@ -71,7 +71,7 @@ void try_face(int face, const Eigen::Vector3d& target, const SurfaceTopology& su
 
 SurfaceTopology::SurfaceTopology(const TriMesh& rest)
     : face(static_cast<std::size_t>(rest.F.rows())),
-      corner_offset(static_cast<std::size_t>(rest.V.rows()) + 1, 0),
+      corners(rest.F, rest.vertex_count()),
       border_vertex(static_cast<std::size_t>(rest.V.rows()), 0) {
   const EdgeConnectivity edges(rest.F);
   across = edges.across();
@@ -80,16 +80,7 @@ SurfaceTopology::SurfaceTopology(const TriMesh& rest)
     for (const int v : edges.edge(e)) border_vertex[v] = 1;
   }
   for (int t = 0; t < rest.triangle_count(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      face[t][k] = rest.F(t, k);
-      ++corner_offset[rest.F(t, k) + 1];
-    }
-  }
-  for (std::size_t v = 1; v < corner_offset.size(); ++v) corner_offset[v] += corner_offset[v - 1];
-  faces_around.resize(3 * face.size());
-  std::vector<int> fill(corner_offset.begin(), corner_offset.end() - 1);
-  for (int t = 0; t < rest.triangle_count(); ++t) {
-    for (const int v : face[t]) faces_around[fill[v]++] = t;
+    for (int k = 0; k < 3; ++k) face[t][k] = rest.F(t, k);
   }
   const Eigen::VectorXd areas = triangle_areas(rest.V, rest.F);
   rest_area.assign(areas.data(), areas.data() + areas.size());
@@ -97,18 +88,19 @@ SurfaceTopology::SurfaceTopology(const TriMesh& rest)
 }
 
 int SurfaceTopology::fan_of(int vertex) const {
-  const auto faces = faces_of(vertex);
-  if (faces.empty()) return 0;
+  const auto around = corners_of(vertex);
+  if (around.empty()) return 0;
+  const int start = around[0] / 3;
   int count = 0;
   for (const bool forward : {true, false}) {
-    int f = faces[0];
+    int f = start;
     for (;;) {
       const auto& v = face[f];
       const std::size_t k = v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2;
       const int g = across[f][forward ? (k + 2) % 3 : k];
-      if (forward || f != faces[0]) ++count;
-      if (g == faces[0]) return count;
-      if (g < 0 || count > static_cast<int>(faces.size())) break;
+      if (forward || f != start) ++count;
+      if (g == start) return count;
+      if (g < 0 || count > static_cast<int>(around.size())) break;
       f = g;
     }
   }
@@ -136,7 +128,7 @@ SurfacePoint walk_to_nearest(const SurfacePoint& start, const Eigen::Vector3d& t
     for (std::size_t k = 0; k < 3; ++k) {
       // The nearest point may lie beyond an edge it touches, or anywhere around a corner.
       if (b[static_cast<Eigen::Index>(k)] >= 1 - 1e-12) {
-        for (const int g : surface.faces_of(f[k])) try_face(g, target, surface, x, best);
+        for (const int c : surface.corners_of(f[k])) try_face(c / 3, target, surface, x, best);
       }
       if (b[static_cast<Eigen::Index>((k + 2) % 3)] > 1e-12) continue;
       const int g = surface.across[before.point.face][k];

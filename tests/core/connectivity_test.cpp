@@ -107,6 +107,23 @@ TEST(EdgeConnectivity, NoTrianglesHaveNoEdges) {
   EXPECT_FALSE(c.find(0, 1));
 }
 
+TEST(VertexCorners, HoldEveryCornerOnceAscending) {
+  const TriMesh mesh = shapes::square(3);
+  const int n = mesh.vertex_count() + 1;  // the last vertex has no triangle
+  const VertexCorners corners(mesh.F, n);
+  int seen = 0;
+  for (int v = 0; v < n; ++v) {
+    const std::span<const int> here = corners.of(v);
+    EXPECT_EQ(corners.begin(v), seen);
+    EXPECT_EQ(corners.count(v), static_cast<int>(here.size()));
+    EXPECT_TRUE(std::is_sorted(here.begin(), here.end()));
+    for (const int c : here) EXPECT_EQ(mesh.F(c / 3, c % 3), v);
+    seen += corners.count(v);
+  }
+  EXPECT_EQ(seen, 3 * mesh.triangle_count());
+  EXPECT_TRUE(corners.of(n - 1).empty());
+}
+
 TEST(EdgeConnectivity, NegativeIndexIsRefused) {
   Eigen::MatrixX3i F(1, 3);
   F << 0, 1, -1;
