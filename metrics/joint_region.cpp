@@ -8,6 +8,7 @@
 
 #include "core/connectivity.h"
 #include "core/error.h"
+#include "core/rig.h"
 
 namespace geoprior {
 namespace {

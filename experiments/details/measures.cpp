@@ -216,7 +216,7 @@ FrameState state_of(const FrameSequence& frames, std::size_t i) {
 }
 
 Value worst_edge_change(const DetailsScene& scene, const FrameSequence& frames, const char* mesh) {
-  std::vector<DetailSpacing> spacings{spacing_of(geoprior::required_part(scene.rest(), mesh), 0)};
+  std::vector<DetailSpacing> spacings{spacing_of(details::required_part(scene.rest(), mesh), 0)};
   for (std::size_t i = 0; i < frames.size(); ++i)
     spacings.push_back(spacing_of(*required_part(frames, i, mesh), 0));
   if (!(spacings.front().mean > 0)) return {};

@@ -5,7 +5,7 @@
 
 #include "core/connectivity.h"
 #include "core/mesh.h"
-#include "core/rig.h"
+#include "core/skeleton.h"
 
 namespace geoprior::skinning {
 
