@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <tuple>
 
+#include "core/connectivity.h"
 #include "core/curvature_estimate.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -56,40 +56,18 @@ std::vector<double> pattern_areas(const Eigen::MatrixX2d& pattern, const Eigen::
 /// hinge at each triangle's three edges (-1: border).
 std::vector<Hinge> find_hinges(const Eigen::MatrixX3i& F,
                                std::vector<std::array<int, 3>>& of_triangle) {
-  struct Side {
-    int low, high, triangle, corner;
-  };
-  std::vector<Side> sides;
-  sides.reserve(3 * F.rows());
-  for (int t = 0; t < static_cast<int>(F.rows()); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(F(t, k), F(t, (k + 1) % 3));
-      sides.push_back({low, high, t, k});
-    }
-  std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
-    return std::tie(p.low, p.high, p.triangle) < std::tie(q.low, q.high, q.triangle);
-  });
-  std::vector<std::array<int, 3>> other(F.rows(), {-1, -1, -1});
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i + 1;
-    while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high)
-      ++end;
-    const Side &p = sides[i], &q = sides[end - 1];
-    if (end - i > 2 || (end - i == 2 && F(p.triangle, p.corner) == F(q.triangle, q.corner)))
-      throw Error("edge that is not manifold",
-                  "edge " + std::to_string(p.low) + "-" + std::to_string(p.high),
-                  "one or two triangles of opposite direction at an edge");
-    if (end - i == 2) {
-      other[p.triangle][p.corner] = 3 * q.triangle + q.corner;
-      other[q.triangle][q.corner] = 3 * p.triangle + p.corner;
-    }
-    i = end;
+  const EdgeConnectivity connectivity(F);
+  if (const auto h = connectivity.first_repeated()) {
+    const Edge& edge = connectivity.edge(connectivity.edge_of(*h));
+    throw Error("edge that is not manifold",
+                "edge " + std::to_string(edge[0]) + "-" + std::to_string(edge[1]),
+                "one or two triangles of opposite direction at an edge");
   }
   std::vector<Hinge> hinges;
   of_triangle.assign(F.rows(), {-1, -1, -1});
   for (int t = 0; t < static_cast<int>(F.rows()); ++t)
     for (int k = 0; k < 3; ++k) {
-      const int opposite = other[t][k];
+      const int opposite = connectivity.twin(3 * t + k);
       if (opposite < 0 || opposite / 3 < t) continue;
       const int right = opposite / 3, corner = opposite % 3;
       const int index = static_cast<int>(hinges.size());

@@ -7,6 +7,7 @@
 #include <string>
 #include <unordered_map>
 
+#include "core/connectivity.h"
 #include "core/error.h"
 #include "core/topology.h"
 
@@ -36,27 +37,31 @@ struct EdgeTable {
   std::vector<std::array<int, 3>> of;
 };
 
+/// Edges in the order in which triangles first have them.
 EdgeTable edge_table(const Eigen::MatrixX3i& F) {
+  const EdgeConnectivity connectivity(F);
+  if (const auto h = connectivity.first_repeated()) {
+    throw Error("subdivision needs a manifold mesh of consistent orientation",
+                "edge " + std::to_string(connectivity.origin(*h)) + "-" +
+                    std::to_string(connectivity.tip(*h)),
+                "two triangles of opposite direction at every edge");
+  }
   EdgeTable table;
+  table.edges.reserve(connectivity.edge_count());
   table.of.resize(F.rows());
-  std::unordered_map<std::uint64_t, int> index;
-  index.reserve(static_cast<std::size_t>(F.rows()) * 2);
-  for (int t = 0; t < static_cast<int>(F.rows()); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = F(t, k), b = F(t, (k + 1) % 3);
-      const auto [it, is_new] = index.emplace(edge_key(a, b), static_cast<int>(table.edges.size()));
-      if (is_new) table.edges.push_back({a, b});
-      EdgeInfo& edge = table.edges[it->second];
-      const std::size_t side = edge.triangle[0] < 0 ? 0 : 1;
-      if (edge.triangle[side] >= 0 || (side == 1 && edge.a == a)) {
-        throw Error("subdivision needs a manifold mesh of consistent orientation",
-                    "edge " + std::to_string(a) + "-" + std::to_string(b),
-                    "two triangles of opposite direction at every edge");
-      }
-      edge.triangle[side] = t;
-      edge.opposite[side] = F(t, (k + 2) % 3);
-      table.of[t][k] = it->second;
+  for (int h = 0; h < connectivity.half_edge_count(); ++h) {
+    const int first = connectivity.half_edges(connectivity.edge_of(h))[0];
+    int& index = table.of[h / 3][h % 3];
+    if (first == h) {
+      index = static_cast<int>(table.edges.size());
+      table.edges.push_back({connectivity.origin(h), connectivity.tip(h)});
+    } else {
+      index = table.of[first / 3][first % 3];
     }
+    EdgeInfo& edge = table.edges[index];
+    const int side = first == h ? 0 : 1;
+    edge.triangle[side] = h / 3;
+    edge.opposite[side] = F(h / 3, (h % 3 + 2) % 3);
   }
   return table;
 }

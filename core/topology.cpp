@@ -13,17 +13,38 @@ namespace {
 struct DirectedEdge {
   int from;
   int to;
-  auto operator<=>(const DirectedEdge&) const = default;
 };
 
-std::vector<DirectedEdge> sorted_directed_edges(const Eigen::MatrixX3i& F) {
-  std::vector<DirectedEdge> edges;
-  edges.reserve(static_cast<std::size_t>(F.rows()) * 3);
-  for (Eigen::Index t = 0; t < F.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) edges.push_back({F(t, k), F(t, (k + 1) % 3)});
+/// Half-edges that no half-edge of the same edge runs against. A triangle that names a vertex twice
+/// has no border there.
+std::vector<Edge> open_edges(const EdgeConnectivity& c) {
+  std::vector<Edge> open;
+  for (int h = 0; h < c.half_edge_count(); ++h) {
+    if (c.origin(h) == c.tip(h)) continue;
+    const std::span<const int> here = c.half_edges(c.edge_of(h));
+    if (std::none_of(here.begin(), here.end(), [&](int g) { return c.ascends(g) != c.ascends(h); }))
+      open.push_back({c.origin(h), c.tip(h)});
   }
-  std::sort(edges.begin(), edges.end());
-  return edges;
+  return open;
+}
+
+/// Edges with two half-edges of one direction, in the order of the first such direction.
+std::vector<Edge> repeated_edges(const EdgeConnectivity& c) {
+  std::vector<Edge> repeated;  // directed
+  for (int e = 0; e < c.edge_count(); ++e) {
+    const std::span<const int> here = c.half_edges(e);
+    const auto up = std::count_if(here.begin(), here.end(), [&](int h) { return c.ascends(h); });
+    const auto down = static_cast<std::ptrdiff_t>(here.size()) - up;
+    const auto [low, high] = c.edge(e);
+    if (up > 1) {
+      repeated.push_back({low, high});
+    } else if (down > 1) {
+      repeated.push_back({high, low});
+    }
+  }
+  std::sort(repeated.begin(), repeated.end());
+  for (Edge& e : repeated) e = {std::min(e[0], e[1]), std::max(e[0], e[1])};
+  return repeated;
 }
 
 /// Orders the ring of one vertex by following `next_of`, which maps a neighbour to the one after
@@ -71,22 +92,19 @@ struct PositionHash {
 }  // namespace
 
 VertexGraph one_rings(const Eigen::MatrixX3i& F, int vertex_count) {
-  const auto n = static_cast<std::size_t>(vertex_count);
-  std::vector<std::vector<DirectedEdge>> fans(n);  // per vertex: the edges opposite to it
-  for (Eigen::Index t = 0; t < F.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      fans[F(t, k)].push_back({F(t, (k + 1) % 3), F(t, (k + 2) % 3)});
-    }
-  }
+  const VertexCorners corners(F, vertex_count);
   VertexGraph graph;
-  graph.offset.reserve(n + 1);
+  graph.offset.reserve(vertex_count + 1);
   graph.offset.push_back(0);
   std::vector<int> ring;
-  for (const std::vector<DirectedEdge>& fan : fans) {
+  std::vector<DirectedEdge> fan;  // the edges opposite to the vertex
+  for (int v = 0; v < vertex_count; ++v) {
     ring.clear();
-    for (const DirectedEdge& e : fan) {
-      ring.push_back(e.from);
-      ring.push_back(e.to);
+    fan.clear();
+    for (const int c : corners.of(v)) {
+      const DirectedEdge opposite{F(c / 3, (c % 3 + 1) % 3), F(c / 3, (c % 3 + 2) % 3)};
+      fan.push_back(opposite);
+      ring.insert(ring.end(), {opposite.from, opposite.to});
     }
     std::sort(ring.begin(), ring.end());
     ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
@@ -98,27 +116,11 @@ VertexGraph one_rings(const Eigen::MatrixX3i& F, int vertex_count) {
 }
 
 std::vector<Edge> boundary_edges(const Eigen::MatrixX3i& F) {
-  const std::vector<DirectedEdge> edges = sorted_directed_edges(F);
-  std::vector<Edge> boundary;
-  for (Eigen::Index t = 0; t < F.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const DirectedEdge opposite{F(t, (k + 1) % 3), F(t, k)};
-      if (!std::binary_search(edges.begin(), edges.end(), opposite))
-        boundary.push_back({opposite.to, opposite.from});
-    }
-  }
-  return boundary;
+  return open_edges(EdgeConnectivity(F));
 }
 
 std::vector<Edge> non_manifold_edges(const Eigen::MatrixX3i& F) {
-  const std::vector<DirectedEdge> edges = sorted_directed_edges(F);
-  std::vector<Edge> bad;
-  for (std::size_t i = 1; i < edges.size(); ++i) {
-    if (edges[i] != edges[i - 1]) continue;
-    const Edge edge{std::min(edges[i].from, edges[i].to), std::max(edges[i].from, edges[i].to)};
-    if (std::find(bad.begin(), bad.end(), edge) == bad.end()) bad.push_back(edge);
-  }
-  return bad;
+  return repeated_edges(EdgeConnectivity(F));
 }
 
 std::vector<bool> boundary_vertices(const Eigen::MatrixX3i& F, int vertex_count) {
@@ -132,14 +134,15 @@ std::vector<bool> boundary_vertices(const Eigen::MatrixX3i& F, int vertex_count)
 
 void require_closed_manifold(const TriMesh& mesh, const std::string& who,
                              const std::string& where) {
-  const std::vector<Edge> bad = non_manifold_edges(mesh.F);
+  const EdgeConnectivity connectivity(mesh.F);
+  const std::vector<Edge> bad = repeated_edges(connectivity);
   if (!bad.empty()) {
     throw Error(
         who + " needs a manifold mesh; " + std::to_string(bad.size()) +
             " edges have more than two triangles or two of equal direction: " + edge_list(bad),
         where, "two triangles of opposite direction at every edge");
   }
-  const std::vector<Edge> open = boundary_edges(mesh.F);
+  const std::vector<Edge> open = open_edges(connectivity);
   if (!open.empty()) {
     throw Error(who + " needs a closed mesh; " + std::to_string(open.size()) +
                     " boundary edges: " + edge_list(open),

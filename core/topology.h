@@ -1,10 +1,10 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/connectivity.h"
 #include "core/mesh.h"
 
 namespace geoprior {
@@ -26,8 +26,6 @@ struct VertexGraph {
 /// counter-clockwise seen from outside (mean-value coordinates need it); at a border the order
 /// starts at the border; elsewhere sorted.
 VertexGraph one_rings(const Eigen::MatrixX3i& F, int vertex_count);
-
-using Edge = std::array<int, 2>;
 
 /// Directed edges that have no opposite, in the order of the triangles: empty for a closed mesh.
 std::vector<Edge> boundary_edges(const Eigen::MatrixX3i& F);

@@ -1,36 +1,13 @@
 #include "metrics/closedness.h"
 
-#include <algorithm>
-#include <array>
-#include <cstdint>
 #include <numeric>
 #include <span>
 #include <vector>
 
+#include "core/connectivity.h"
+
 namespace geoprior {
 namespace {
-
-/// A side of a triangle: lower vertex, higher vertex, whether it is passed from low to high.
-struct Side {
-  int low, high;
-  bool forward;
-  int triangle;
-};
-
-std::vector<Side> sorted_sides(const Eigen::MatrixX3i& F) {
-  std::vector<Side> sides;
-  sides.reserve(static_cast<std::size_t>(F.rows()) * 3);
-  for (int t = 0; t < F.rows(); ++t) {
-    for (int c = 0; c < 3; ++c) {
-      const int a = F(t, c), b = F(t, (c + 1) % 3);
-      sides.push_back({std::min(a, b), std::max(a, b), a < b, t});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
-    return std::array{x.low, x.high, x.triangle} < std::array{y.low, y.high, y.triangle};
-  });
-  return sides;
-}
 
 /// Union-find over whole numbers.
 class Sets {
@@ -88,24 +65,17 @@ int pinched(const Eigen::MatrixX3i& F, int vertex_count, Sets& corners) {
 
 Closedness closedness(const TriMesh& mesh) {
   Closedness result;
-  const std::vector<Side> sides = sorted_sides(mesh.F);
+  const EdgeConnectivity connectivity(mesh.F);
   Sets corners(static_cast<std::size_t>(mesh.F.rows()) * 3);
-  int edges = 0;
-  for (std::size_t begin = 0, end; begin < sides.size(); begin = end) {
-    for (end = begin; end < sides.size() && sides[end].low == sides[begin].low &&
-                      sides[end].high == sides[begin].high;) {
-      ++end;
-    }
-    ++edges;
-    const std::size_t n = end - begin;
-    if (n == 1) ++result.border_edges;
-    if (n > 2) ++result.crowded_edges;
-    if (n == 2 && sides[begin].forward == sides[begin + 1].forward) ++result.turned_edges;
-    const Side& first = sides[begin];
-    for (const Side& side : std::span(sides).subspan(begin + 1, n - 1)) {
-      for (const int v : {side.low, side.high}) {
-        corners.join(corner_of(mesh.F, side.triangle, v), corner_of(mesh.F, first.triangle, v));
-      }
+  for (int e = 0; e < connectivity.edge_count(); ++e) {
+    const std::span<const int> here = connectivity.half_edges(e);
+    if (here.size() == 1) ++result.border_edges;
+    if (here.size() > 2) ++result.crowded_edges;
+    if (here.size() == 2 && connectivity.ascends(here[0]) == connectivity.ascends(here[1]))
+      ++result.turned_edges;
+    for (const int h : here.subspan(1)) {
+      for (const int v : connectivity.edge(e))
+        corners.join(corner_of(mesh.F, h / 3, v), corner_of(mesh.F, here[0] / 3, v));
     }
   }
   result.pinched_vertices = pinched(mesh.F, mesh.vertex_count(), corners);
@@ -118,7 +88,7 @@ Closedness closedness(const TriMesh& mesh) {
     ++used_count;
     if (vertices.find(v) == v) ++result.components;
   }
-  result.euler_characteristic = used_count - edges + mesh.triangle_count();
+  result.euler_characteristic = used_count - connectivity.edge_count() + mesh.triangle_count();
   return result;
 }
 

@@ -1,10 +1,13 @@
 #include "metrics/detail_spacing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <span>
 #include <string>
-#include <tuple>
 
+#include "core/connectivity.h"
 #include "core/error.h"
 
 namespace geoprior {
@@ -36,26 +39,23 @@ std::vector<std::pair<int, int>> edges_among_details(const Eigen::MatrixX3i& tri
                                                      std::span<const char> ghosts) {
   if (!ghosts.empty()) require_points(triangles, ghosts.size());
   const auto ghost = [&](int v) { return !ghosts.empty() && ghosts[v] != 0; };
-  // Each half-edge as (lower, higher, whether it runs downwards): an edge of two triangles has one
-  // of either kind. Triangles with a ghost are not looked at, so their edges lack a partner.
-  std::vector<std::tuple<int, int, int>> halves;
+  // Triangles with a ghost are not looked at, so their edges lack a partner.
+  std::vector<std::array<int, 3>> whole;
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    if (ghost(triangles(t, 0)) || ghost(triangles(t, 1)) || ghost(triangles(t, 2))) continue;
-    for (int c = 0; c < 3; ++c) {
-      const int a = triangles(t, c), b = triangles(t, (c + 1) % 3);
-      if (a != b) halves.emplace_back(std::min(a, b), std::max(a, b), a > b ? 1 : 0);
-    }
+    const std::array<int, 3> f{triangles(t, 0), triangles(t, 1), triangles(t, 2)};
+    if (!ghost(f[0]) && !ghost(f[1]) && !ghost(f[2])) whole.push_back(f);
   }
-  std::sort(halves.begin(), halves.end());
+  // Two details may share several edges; each has a half-edge of either direction.
+  const EdgeConnectivity connectivity(whole);
   std::vector<std::pair<int, int>> edges;
-  for (std::size_t i = 0; i < halves.size();) {
-    const auto [low, high, unused] = halves[i];
-    int count[2] = {0, 0};
-    for (; i < halves.size() && std::get<0>(halves[i]) == low && std::get<1>(halves[i]) == high;
-         ++i) {
-      ++count[std::get<2>(halves[i])];
-    }
-    for (int k = std::min(count[0], count[1]); k > 0; --k) edges.emplace_back(low, high);
+  for (int e = 0; e < connectivity.edge_count(); ++e) {
+    const auto [low, high] = connectivity.edge(e);
+    if (low == high) continue;
+    const std::span<const int> here = connectivity.half_edges(e);
+    const auto up =
+        std::count_if(here.begin(), here.end(), [&](int h) { return connectivity.ascends(h); });
+    const auto pairs = std::min(up, static_cast<std::ptrdiff_t>(here.size()) - up);
+    edges.insert(edges.end(), pairs, {low, high});
   }
   return edges;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/connectivity.h"
 #include "core/error.h"
 #include "core/mesh.h"
 #include "metrics/distortion.h"
@@ -15,23 +16,10 @@
 namespace geoprior {
 namespace {
 
-/// Every edge of the triangles once, ascending.
-std::vector<std::pair<int, int>> edges_of(const Eigen::MatrixX3i& triangles) {
-  std::vector<std::pair<int, int>> edges;
-  edges.reserve(3 * static_cast<std::size_t>(triangles.rows()));
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      edges.push_back(std::minmax(int{triangles(t, k)}, int{triangles(t, (k + 1) % 3)}));
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  return edges;
-}
-
 void measure_edges(const Eigen::MatrixX3d& flat, const Eigen::MatrixX3d& x,
                    const Eigen::MatrixX3i& triangles, IsometrySummary& summary) {
-  const std::vector<std::pair<int, int>> edges = edges_of(triangles);
+  const EdgeConnectivity connectivity(triangles);
+  const std::vector<Edge>& edges = connectivity.edges();
   Eigen::VectorXd error(static_cast<Eigen::Index>(edges.size()));
   Eigen::VectorXd length(error.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <tuple>
 
+#include "core/connectivity.h"
 #include "core/error.h"
 #include "core/rig.h"
 
@@ -224,34 +224,8 @@ std::vector<VertexRole> vertex_roles(const RiggedMesh& rig, const JointRegion& r
   return roles;
 }
 
-using Neighbours = std::vector<std::array<int, 3>>;
-
 /// Triangle across each edge of each triangle; -1 at a border.
-Neighbours triangle_neighbours(const Eigen::MatrixX3i& F) {
-  struct Side {
-    int low, high, triangle, edge;
-  };
-  std::vector<Side> sides;
-  sides.reserve(static_cast<std::size_t>(F.rows()) * 3);
-  for (int t = 0; t < static_cast<int>(F.rows()); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(F(t, k), F(t, (k + 1) % 3));
-      sides.push_back({low, high, t, k});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-  });
-  Neighbours neighbours(static_cast<std::size_t>(F.rows()), {-1, -1, -1});
-  for (std::size_t i = 1; i < sides.size(); ++i) {
-    const Side& a = sides[i - 1];
-    const Side& b = sides[i];
-    if (a.low != b.low || a.high != b.high) continue;
-    neighbours[a.triangle][a.edge] = b.triangle;
-    neighbours[b.triangle][b.edge] = a.triangle;
-  }
-  return neighbours;
-}
+using Neighbours = std::vector<std::array<int, 3>>;
 
 /// Marks, from the triangles in `stack` on, every triangle that `enter` allows; returns them.
 template <class Enter>
@@ -394,7 +368,7 @@ JointRegion make_joint_region(const RiggedMesh& rig, const std::string& name,
     }
     candidate[t] = own && near;
   }
-  const Neighbours neighbours = triangle_neighbours(rig.mesh.F);
+  const Neighbours neighbours = EdgeConnectivity(rig.mesh.F).across();
   std::vector<bool> in_region(candidate.size(), false);
   flood(neighbours, seeds(rig, region, candidate), in_region, [&](int t) { return candidate[t]; });
   absorb_islands(rig.mesh, neighbours, in_region);

@@ -61,7 +61,6 @@ UnfoldedSurface::Triangle lay_out(const TriMesh& mesh, int f) {
 UnfoldedSurface::UnfoldedSurface(TriMesh surface) : mesh_(std::move(surface)) {
   if (!mesh_.V.allFinite()) throw Error("a vertex is not finite", "unfolded surface");
   const auto vertices = static_cast<std::size_t>(mesh_.vertex_count());
-  face_offset_.assign(vertices + 1, 0);
   longest_edge_.assign(vertices, 0);
   for (int f = 0; f < mesh_.triangle_count(); ++f) {
     const Eigen::RowVector3i corner = mesh_.F.row(f);
@@ -72,20 +71,11 @@ UnfoldedSurface::UnfoldedSurface(TriMesh surface) : mesh_(std::move(surface)) {
     const auto& length = triangles_.back().length;
     const double longest = std::max({length[0], length[1], length[2]});
     for (const int c : corner) {
-      ++face_offset_[c + 1];
       double& known = longest_edge_[c];
       known = std::max(known, longest);
     }
   }
-  for (std::size_t v = 0; v < vertices; ++v) face_offset_[v + 1] += face_offset_[v];
-  face_.resize(face_offset_.back());
-  std::vector<int> next(face_offset_.begin(), face_offset_.end() - 1);
-  for (int f = 0; f < mesh_.triangle_count(); ++f) {
-    for (const int c : mesh_.F.row(f)) {
-      int& at = next[c];
-      face_[at++] = f;
-    }
-  }
+  corners_ = VertexCorners(mesh_.F, mesh_.vertex_count());
 }
 
 Eigen::Vector2d UnfoldedSurface::layout(const SurfacePlace& place) const {
@@ -99,12 +89,6 @@ Eigen::Vector3d UnfoldedSurface::position(const SurfacePlace& place) const {
     x += place.barycentric(c) * mesh_.V.row(mesh_.F(place.face, c)).transpose();
   }
   return x;
-}
-
-std::span<const int> UnfoldedSurface::faces_of(int vertex) const {
-  const int begin = face_offset_[vertex];
-  const int end = face_offset_[vertex + 1];
-  return {face_.data() + begin, static_cast<std::size_t>(end - begin)};
 }
 
 void UnfoldedSurface::require(const SurfacePlace& place) const {
@@ -167,14 +151,13 @@ void SurfaceFront::cross(int face, std::size_t from, double distance) {
 }
 
 void SurfaceFront::visit(int vertex, double distance) {
-  for (const int f : surface_.faces_of(vertex)) {
+  for (const int c : surface_.corners_of(vertex)) {
+    const int f = c / 3;
     if (is_reached_[f] == 0) {
       is_reached_[f] = 1;
       reached_.push_back(f);
     }
-    std::size_t from = 0;
-    while (surface_.mesh().F(f, static_cast<int>(from)) != vertex) ++from;
-    cross(f, from, distance);
+    cross(f, c % 3, distance);
   }
 }
 

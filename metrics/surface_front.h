@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/connectivity.h"
 #include "core/mesh.h"
 
 namespace geoprior {
@@ -33,7 +34,8 @@ class UnfoldedSurface {
   [[nodiscard]] const Triangle& triangle(int face) const { return triangles_[face]; }
   [[nodiscard]] Eigen::Vector2d layout(const SurfacePlace& place) const;
   [[nodiscard]] Eigen::Vector3d position(const SurfacePlace& place) const;
-  [[nodiscard]] std::span<const int> faces_of(int vertex) const;
+  /// Corners 3 f + c of the triangles around a vertex, ascending.
+  [[nodiscard]] std::span<const int> corners_of(int vertex) const { return corners_.of(vertex); }
   /// Longest edge of the triangles around a vertex (m).
   [[nodiscard]] double longest_edge(int vertex) const { return longest_edge_[vertex]; }
   /// @throws Error  on a place that is on no triangle
@@ -42,8 +44,8 @@ class UnfoldedSurface {
  private:
   TriMesh mesh_;
   std::vector<Triangle> triangles_;
-  std::vector<int> face_offset_, face_;  ///< triangles of the vertices
-  std::vector<double> longest_edge_;     ///< of the vertices
+  VertexCorners corners_;
+  std::vector<double> longest_edge_;  ///< of the vertices
 };
 
 /// Distances along a surface from one place, up to a reach.

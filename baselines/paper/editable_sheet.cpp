@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
+#include "core/connectivity.h"
+#include "core/error.h"
 #include "models/paper/overlap.h"
 #include "models/paper/planar.h"
-#include "models/paper/triangle_neighbours.h"
 
 namespace geoprior::paper {
 namespace {
@@ -26,7 +28,13 @@ EditableSheet::EditableSheet(const ShellState& state) {
     vertex.x = state.x.row(v);
     vertex.v = state.v.row(v);
   }
-  const auto neighbours = triangle_neighbours(state.mesh.triangles, n);
+  const EdgeConnectivity edges(state.mesh.triangles);
+  if (const auto h = edges.first_repeated()) {
+    throw Error(
+        "two triangles run the same way along an edge",
+        "edge " + std::to_string(edges.origin(*h)) + " to " + std::to_string(edges.tip(*h)));
+  }
+  const auto neighbours = edges.across();
   triangles_.resize(m);
   for (int f = 0; f < m; ++f) {
     Triangle& t = triangles_[f];

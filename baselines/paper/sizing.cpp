@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/connectivity.h"
 #include "models/paper/planar.h"
-#include "models/paper/triangle_neighbours.h"
 
 namespace geoprior::paper {
 namespace {
@@ -141,7 +141,7 @@ void SizingField::build_normals() {
 /// Interior edges, in the order of the triangles that have them first.
 std::vector<SizingField::Hinge> SizingField::hinges() const {
   const Eigen::MatrixX3i& F = state_.mesh.triangles;
-  const auto across = triangle_neighbours(F, state_.mesh.vertex_count());
+  const auto across = EdgeConnectivity(F).across();
   std::vector<Hinge> result;
   result.reserve(2 * across.size());
   for (int f = 0; f < static_cast<int>(F.rows()); ++f) {

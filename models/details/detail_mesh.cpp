@@ -237,10 +237,8 @@ void remove_surface_vertices(IntrinsicTriangulation& mesh, int count,
 }
 
 SurfacePoint point_of_vertex(int v, const SurfaceTopology& surface) {
-  const int f = surface.faces_of(v)[0];
-  SurfacePoint p{f, Eigen::Vector3d::Zero()};
-  for (Eigen::Index k = 0; k < 3; ++k) p.barycentric[k] = surface.face[f][k] == v ? 1 : 0;
-  return p;
+  const int corner = surface.corners_of(v)[0];
+  return {corner / 3, Eigen::Vector3d::Unit(corner % 3)};
 }
 
 /// Numbers details first, in their order, then ghosts.

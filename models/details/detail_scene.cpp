@@ -51,10 +51,10 @@ void require_one_manifold(const TriMesh& mesh, const std::string& where) {
   }
   const SurfaceTopology topology(mesh);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    if (topology.faces_of(v).empty())
+    if (topology.corners_of(v).empty())
       throw Error("vertex " + std::to_string(v) + " has no triangle", where,
                   "a surface in one piece");
-    if (topology.fan_of(v) != static_cast<int>(topology.faces_of(v).size()))
+    if (topology.fan_of(v) != topology.corners.count(v))
       throw Error("two sheets meet in vertex " + std::to_string(v), where, "a manifold surface");
   }
   std::vector<char> seen(topology.face.size(), 0);

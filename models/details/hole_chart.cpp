@@ -70,8 +70,8 @@ void HoleCharter::place_if_nearer(int vertex, const Eigen::Vector2d& at) {
 }
 
 void HoleCharter::spread_from(int v, double radius) {
-  for (const int f : surface_.faces_of(v)) {
-    const auto& c = surface_.face[f];
+  for (const int at_v : surface_.corners_of(v)) {
+    const auto& c = surface_.face[at_v / 3];
     for (std::size_t k = 0; k < 3; ++k) {
       // The corner at k + 2 lies left of the edge from k to k + 1, right of that from k + 1 to k.
       const int a = c[(k + 1) % 3], b = c[k], corner = c[(k + 2) % 3];
@@ -93,7 +93,8 @@ void HoleCharter::limit_by_edge(int face, std::size_t edge) {
 
 void HoleCharter::collect_faces(double radius) {
   for (const ChartVertex& v : chart_.vertices) {
-    for (const int f : surface_.faces_of(v.vertex)) {
+    for (const int at_v : surface_.corners_of(v.vertex)) {
+      const int f = at_v / 3;
       const auto& c = surface_.face[f];
       if (face_round_[f] == round_) continue;
       if (!placed(c[0]) || !placed(c[1]) || !placed(c[2])) continue;

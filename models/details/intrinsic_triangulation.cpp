@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/connectivity.h"
 #include "core/error.h"
 #include "core/parallel.h"
 
@@ -55,21 +56,10 @@ IntrinsicTriangulation::IntrinsicTriangulation(std::span<const std::array<int, 3
 }
 
 void IntrinsicTriangulation::link(std::span<const std::array<int, 3>> triangles) {
-  std::vector<std::array<int, 3>> edges;  // smaller vertex, larger vertex, half-edge
-  edges.reserve(3 * triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int a = triangles[t][k], b = triangles[t][(k + 1) % 3];
-      const int h = static_cast<int>(3 * t + k);
-      origin_[index(h)] = a;
-      edges.push_back({std::min(a, b), std::max(a, b), h});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-    if (edges[i][0] != edges[i + 1][0] || edges[i][1] != edges[i + 1][1]) continue;
-    twin_[index(edges[i][2])] = edges[i + 1][2];
-    twin_[index(edges[i + 1][2])] = edges[i][2];
+  const EdgeConnectivity edges(triangles);
+  for (int h = 0; h < edges.half_edge_count(); ++h) {
+    origin_[index(h)] = edges.origin(h);
+    twin_[index(h)] = edges.twin(h);
   }
   for (std::size_t h = 0; h < twin_.size(); ++h) {
     if (twin_[h] >= 0) continue;

@@ -14,9 +14,9 @@ Eigen::Vector3d normal_of_vertex(int v, const SurfaceTopology& surface,
                                  std::span<const Eigen::Vector3d> x) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   const Eigen::Vector3d& p = x[v];
-  for (const int f : surface.faces_of(v)) {
-    const auto& c = surface.face[f];
-    const std::size_t k = c[0] == v ? 0 : c[1] == v ? 1 : 2;
+  for (const int at_v : surface.corners_of(v)) {
+    const auto& c = surface.face[at_v / 3];
+    const int k = at_v % 3;
     const Eigen::Vector3d a = x[c[(k + 1) % 3]] - p;
     const Eigen::Vector3d b = x[c[(k + 2) % 3]] - p;
     const Eigen::Vector3d n = a.cross(b);

@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/connectivity.h"
+
 namespace geoprior::details {
 namespace {
 
@@ -69,58 +71,36 @@ void try_face(int face, const Eigen::Vector3d& target, const SurfaceTopology& su
 
 SurfaceTopology::SurfaceTopology(const TriMesh& rest)
     : face(static_cast<std::size_t>(rest.F.rows())),
-      across(face.size(), {-1, -1, -1}),
-      corner_offset(static_cast<std::size_t>(rest.V.rows()) + 1, 0),
+      corners(rest.F, rest.vertex_count()),
       border_vertex(static_cast<std::size_t>(rest.V.rows()), 0) {
-  std::vector<std::array<int, 4>> edges;  // smaller, larger vertex, face, corner
-  for (int t = 0; t < rest.triangle_count(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = rest.F(t, k), b = rest.F(t, (k + 1) % 3);
-      face[t][k] = a;
-      edges.push_back({std::min(a, b), std::max(a, b), t, k});
-      ++corner_offset[a + 1];
-    }
+  const EdgeConnectivity edges(rest.F);
+  across = edges.across();
+  for (int e = 0; e < edges.edge_count(); ++e) {
+    if (edges.half_edges(e).size() == 2) continue;
+    for (const int v : edges.edge(e)) border_vertex[v] = 1;
   }
-  std::sort(edges.begin(), edges.end());
-  int edge_count = 0;
-  for (std::size_t i = 0; i < edges.size(); ++edge_count) {
-    std::size_t end = i + 1;
-    while (end < edges.size() && edges[end][0] == edges[i][0] && edges[end][1] == edges[i][1])
-      ++end;
-    if (end - i == 2) {
-      const auto &a = edges[i], &b = edges[i + 1];
-      across[a[2]][a[3]] = b[2];
-      across[b[2]][b[3]] = a[2];
-    } else {
-      border_vertex[edges[i][0]] = 1;
-      border_vertex[edges[i][1]] = 1;
-    }
-    i = end;
-  }
-  for (std::size_t v = 1; v < corner_offset.size(); ++v) corner_offset[v] += corner_offset[v - 1];
-  faces_around.resize(3 * face.size());
-  std::vector<int> fill(corner_offset.begin(), corner_offset.end() - 1);
   for (int t = 0; t < rest.triangle_count(); ++t) {
-    for (const int v : face[t]) faces_around[fill[v]++] = t;
+    for (int k = 0; k < 3; ++k) face[t][k] = rest.F(t, k);
   }
   const Eigen::VectorXd areas = triangle_areas(rest.V, rest.F);
   rest_area.assign(areas.data(), areas.data() + areas.size());
-  euler = rest.vertex_count() - edge_count + rest.triangle_count();
+  euler = rest.vertex_count() - edges.edge_count() + rest.triangle_count();
 }
 
 int SurfaceTopology::fan_of(int vertex) const {
-  const auto faces = faces_of(vertex);
-  if (faces.empty()) return 0;
+  const auto around = corners_of(vertex);
+  if (around.empty()) return 0;
+  const int start = around[0] / 3;
   int count = 0;
   for (const bool forward : {true, false}) {
-    int f = faces[0];
+    int f = start;
     for (;;) {
       const auto& v = face[f];
       const std::size_t k = v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2;
       const int g = across[f][forward ? (k + 2) % 3 : k];
-      if (forward || f != faces[0]) ++count;
-      if (g == faces[0]) return count;
-      if (g < 0 || count > static_cast<int>(faces.size())) break;
+      if (forward || f != start) ++count;
+      if (g == start) return count;
+      if (g < 0 || count > static_cast<int>(around.size())) break;
       f = g;
     }
   }
@@ -148,7 +128,7 @@ SurfacePoint walk_to_nearest(const SurfacePoint& start, const Eigen::Vector3d& t
     for (std::size_t k = 0; k < 3; ++k) {
       // The nearest point may lie beyond an edge it touches, or anywhere around a corner.
       if (b[static_cast<Eigen::Index>(k)] >= 1 - 1e-12) {
-        for (const int g : surface.faces_of(f[k])) try_face(g, target, surface, x, best);
+        for (const int c : surface.corners_of(f[k])) try_face(c / 3, target, surface, x, best);
       }
       if (b[static_cast<Eigen::Index>((k + 2) % 3)] > 1e-12) continue;
       const int g = surface.across[before.point.face][k];

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/connectivity.h"
 #include "models/details/detail_scene.h"
 
 namespace geoprior::details {
@@ -15,11 +16,8 @@ struct SurfaceTopology {
 
   [[nodiscard]] int face_count() const { return static_cast<int>(face.size()); }
 
-  [[nodiscard]] std::span<const int> faces_of(int vertex) const {
-    const auto v = static_cast<std::size_t>(vertex);
-    return {faces_around.data() + corner_offset[v],
-            static_cast<std::size_t>(corner_offset[v + 1] - corner_offset[v])};
-  }
+  /// Corners 3 f + k of the faces around a vertex, ascending.
+  [[nodiscard]] std::span<const int> corners_of(int vertex) const { return corners.of(vertex); }
   /// Faces met when one walks around a vertex from neighbour to neighbour: all of its faces on a
   /// manifold.
   [[nodiscard]] int fan_of(int vertex) const;
@@ -27,8 +25,7 @@ struct SurfaceTopology {
   std::vector<std::array<int, 3>> face;  ///< vertices
   /// Face across the edge from vertex k to vertex k + 1; -1 at a border.
   std::vector<std::array<int, 3>> across;
-  std::vector<int> corner_offset;  ///< faces around vertex v: faces_around[corner_offset[v] ...]
-  std::vector<int> faces_around;
+  VertexCorners corners;
   std::vector<char> border_vertex;
   std::vector<double> rest_area;  ///< of the faces (m^2)
   int euler = 0;                  ///< V - E + F

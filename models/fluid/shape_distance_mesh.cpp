@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <vector>
 
+#include "core/connectivity.h"
 #include "core/parallel.h"
 
 namespace geoprior::fluid {
@@ -28,23 +28,12 @@ struct Pseudonormals {
 
 Pseudonormals pseudonormals(const TriMesh& mesh) {
   Pseudonormals result{triangle_normals(mesh), vertex_normals(mesh), {}};
-  struct HalfEdge {
-    int low, high, triangle, corner;
-  };
-  std::vector<HalfEdge> edges;
-  for (int t = 0; t < mesh.triangle_count(); ++t)
-    for (int c = 0; c < 3; ++c) {
-      const auto [low, high] = std::minmax({mesh.F(t, c), mesh.F(t, (c + 1) % 3)});
-      edges.push_back({low, high, t, c});
-    }
-  std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-  });
+  const EdgeConnectivity edges(mesh.F);
   result.edge.resize(mesh.triangle_count());
-  for (std::size_t e = 0; e + 1 < edges.size(); e += 2) {
-    const Eigen::Vector3d sum =
-        result.face.row(edges[e].triangle) + result.face.row(edges[e + 1].triangle);
-    for (const HalfEdge& h : {edges[e], edges[e + 1]}) result.edge[h.triangle][h.corner] = sum;
+  for (int h = 0; h < edges.half_edge_count(); ++h) {
+    Eigen::Vector3d& normal = result.edge[h / 3][h % 3];
+    normal = result.face.row(h / 3);
+    if (const int other = edges.twin(h); other >= 0) normal += result.face.row(other / 3);
   }
   return result;
 }

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <span>
 #include <utility>
+#include <vector>
 
+#include "core/connectivity.h"
 #include "core/error.h"
+#include "core/topology.h"
 #include "models/paper/planar.h"
 #include "models/paper/transfer.h"
 
@@ -104,14 +107,13 @@ bool AnchorPlacer::move_vertex(const Vector2d& anchor) {
 
 /// Triangles without those that contain one of the anchors or touch them along an edge: what stays
 /// of a mesh when new vertices come.
-std::set<std::pair<int, int>> edges_that_stay(const ShellMesh& mesh,
-                                              const std::vector<Vector2d>& anchors,
-                                              double tolerance) {
-  std::set<std::pair<int, int>> stay, opened;
+std::vector<Edge> edges_that_stay(const ShellMesh& mesh, const std::vector<Vector2d>& anchors,
+                                  double tolerance) {
+  std::vector<char> opened(mesh.triangle_count());
   for (int f = 0; f < mesh.triangle_count(); ++f) {
     std::array<Vector2d, 3> p;
     for (int k = 0; k < 3; ++k) p[k] = mesh.pattern.row(mesh.triangles(f, k));
-    const bool hit = std::any_of(anchors.begin(), anchors.end(), [&](const Vector2d& a) {
+    opened[f] = std::any_of(anchors.begin(), anchors.end(), [&](const Vector2d& a) {
       double least = std::numeric_limits<double>::infinity();
       for (std::size_t k = 0; k < 3; ++k) {
         const Vector2d along = p[(k + 1) % 3] - p[k];
@@ -119,25 +121,23 @@ std::set<std::pair<int, int>> edges_that_stay(const ShellMesh& mesh,
       }
       return least >= -tolerance;
     });
-    for (int k = 0; k < 3; ++k) {
-      const auto edge = std::minmax(mesh.triangles(f, k), mesh.triangles(f, (k + 1) % 3));
-      (hit ? opened : stay).insert({edge.first, edge.second});
-    }
   }
-  for (const auto& e : opened) stay.erase(e);
+  const EdgeConnectivity connectivity(mesh.triangles);
+  std::vector<Edge> stay;
+  for (int e = 0; e < connectivity.edge_count(); ++e) {
+    const std::span<const int> here = connectivity.half_edges(e);
+    if (std::none_of(here.begin(), here.end(), [&](int h) { return opened[h / 3] != 0; }))
+      stay.push_back(connectivity.edge(e));
+  }
   return stay;
 }
 
 /// Directed border edges of a mesh in which new vertices may lie: each in pieces between them.
 void add_border(const ShellMesh& old, const Eigen::MatrixX2d& points, double tolerance,
                 std::vector<Eigen::Vector2i>& segments) {
-  std::set<std::pair<int, int>> directed;
-  for (int f = 0; f < old.triangle_count(); ++f) {
-    for (int k = 0; k < 3; ++k)
-      directed.insert({old.triangles(f, k), old.triangles(f, (k + 1) % 3)});
-  }
-  for (const auto& [a, b] : directed) {
-    if (directed.contains({b, a})) continue;
+  std::vector<Edge> border = boundary_edges(old.triangles);
+  std::sort(border.begin(), border.end());
+  for (const auto& [a, b] : border) {
     const Vector2d from = points.row(a), along = points.row(b) - points.row(a);
     std::vector<std::pair<double, int>> stops{{0, a}, {1, b}};
     for (int v = old.vertex_count(); v < points.rows(); ++v) {

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace geoprior::skinning {
 namespace {
@@ -58,23 +57,11 @@ std::vector<Bone> bones_of(const Skeleton& skeleton) {
 }
 
 InsideVisibility::InsideVisibility(const TriMesh& mesh)
-    : mesh_(mesh),
-      fan_offset_(static_cast<std::size_t>(mesh.vertex_count()) + 1, 0),
-      tree_(std::make_unique<Tree>()) {
+    : mesh_(mesh), corners_(mesh.F, mesh.vertex_count()), tree_(std::make_unique<Tree>()) {
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
     const Triangle triangle(point(mesh.V.row(mesh.F(t, 0))), point(mesh.V.row(mesh.F(t, 1))),
                             point(mesh.V.row(mesh.F(t, 2))));
     if (!triangle.is_degenerate()) tree_->triangles.push_back(triangle);
-  }
-  for (Eigen::Index i = 0; i < mesh.F.size(); ++i) ++fan_offset_[mesh.F.data()[i] + 1];
-  std::partial_sum(fan_offset_.begin(), fan_offset_.end(), fan_offset_.begin());
-  fan_.resize(mesh.F.size());
-  std::vector<int> next = fan_offset_;
-  for (int t = 0; t < mesh.triangle_count(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      int& slot = next[mesh.F(t, k)];
-      fan_[slot++] = t;
-    }
   }
   tree_->tree.insert(tree_->triangles.cbegin(), tree_->triangles.cend());
   tree_->tree.build();
@@ -88,9 +75,8 @@ bool InsideVisibility::leaves_inwards(int v, const Eigen::Vector3d& way) const {
   const Eigen::Vector3d d = way.normalized();
   double nearest = std::numeric_limits<double>::infinity();
   double height = 1;
-  for (int i = fan_offset_[v]; i < fan_offset_[v + 1]; ++i) {
-    const int t = fan_[i];
-    const int k = mesh_.F(t, 0) == v ? 0 : (mesh_.F(t, 1) == v ? 1 : 2);
+  for (const int c : corners_.of(v)) {
+    const int t = c / 3, k = c % 3;
     const Eigen::Vector3d a = mesh_.V.row(mesh_.F(t, (k + 1) % 3)) - mesh_.V.row(v);
     const Eigen::Vector3d b = mesh_.V.row(mesh_.F(t, (k + 2) % 3)) - mesh_.V.row(v);
     const Eigen::Vector3d n = a.cross(b);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/connectivity.h"
 #include "core/mesh.h"
 #include "core/skeleton.h"
 
@@ -39,8 +40,7 @@ class InsideVisibility {
 
   struct Tree;
   const TriMesh& mesh_;
-  std::vector<int> fan_offset_;  ///< triangles of vertex v: fan_[fan_offset_[v] .. [v + 1])
-  std::vector<int> fan_;
+  VertexCorners corners_;
   std::unique_ptr<Tree> tree_;
 };
 

@@ -25,7 +25,6 @@ void copy_vertices(const TriMesh& mesh, SurfaceGraph& g) {
 void copy_triangles(const TriMesh& mesh, SurfaceGraph& g) {
   const auto n = mesh.vertex_count();
   g.triangle.resize(mesh.triangle_count());
-  g.corner_offset.assign(static_cast<std::size_t>(n) + 1, 0);
   for (std::size_t t = 0; t < g.triangle.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const int v = mesh.F(static_cast<Eigen::Index>(t), k);
@@ -34,21 +33,6 @@ void copy_triangles(const TriMesh& mesh, SurfaceGraph& g) {
                     "0 to " + std::to_string(n - 1));
       }
       g.triangle[t][k] = v;
-      ++g.corner_offset[v + 1];
-    }
-  }
-}
-
-/// Counting sort of the corners by vertex.
-void sort_corners(SurfaceGraph& g) {
-  for (std::size_t v = 1; v < g.corner_offset.size(); ++v)
-    g.corner_offset[v] += g.corner_offset[v - 1];
-  g.corner.resize(3 * g.triangle.size());
-  std::vector<int> next(g.corner_offset.begin(), g.corner_offset.end() - 1);
-  for (std::size_t t = 0; t < g.triangle.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto v = static_cast<std::size_t>(g.triangle[t][k]);
-      g.corner[next[v]++] = static_cast<int>(3 * t + k);
     }
   }
 }
@@ -57,7 +41,7 @@ void sort_corners(SurfaceGraph& g) {
 /// a border also those only led to. A neighbour met twice is no manifold.
 void collect_ring(SurfaceGraph& g, int v) {
   const auto i = static_cast<std::size_t>(v);
-  int* const begin = g.ring.data() + 2 * g.corner_offset[i];
+  int* const begin = g.ring.data() + 2 * g.corner.begin(v);
   int* end = begin;
   bool closed = !g.corners(v).empty();
   for (const int c : g.corners(v)) {
@@ -87,8 +71,8 @@ SurfaceGraph surface_graph(const TriMesh& mesh) {
   SurfaceGraph g;
   copy_vertices(mesh, g);
   copy_triangles(mesh, g);
-  sort_corners(g);
-  g.ring.resize(2 * g.corner.size());
+  g.corner = VertexCorners(g.triangle, mesh.vertex_count());
+  g.ring.resize(6 * g.triangle.size());
   g.ring_size.resize(g.x.size());
   g.border.resize(g.x.size());
   parallel_blocks(g.x.size(), kBlock, [&](std::size_t begin, std::size_t end) {

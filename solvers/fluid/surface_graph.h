@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/connectivity.h"
 #include "core/mesh.h"
 
 namespace geoprior::fluid {
@@ -15,21 +16,16 @@ namespace geoprior::fluid {
 struct SurfaceGraph {
   std::vector<Eigen::Vector3d> x;            ///< m
   std::vector<std::array<int, 3>> triangle;  ///< vertices
-  std::vector<int> corner_offset;            ///< n + 1
-  std::vector<int> corner;                   ///< 3 t + k, ascending for each vertex
-  std::vector<int> ring;                     ///< of v: from 2 corner_offset[v], ring_size[v] long
+  VertexCorners corner;
+  std::vector<int> ring;  ///< of v: from 2 corner.begin(v), ring_size[v] long
   std::vector<int> ring_size;
   std::vector<char> border;  ///< 1: the triangles around the vertex do not close
 
   [[nodiscard]] int size() const { return static_cast<int>(x.size()); }
-  [[nodiscard]] std::span<const int> corners(int v) const {
-    const auto i = static_cast<std::size_t>(v);
-    return {corner.data() + corner_offset[i],
-            static_cast<std::size_t>(corner_offset[i + 1] - corner_offset[i])};
-  }
+  /// Corners 3 t + k, ascending.
+  [[nodiscard]] std::span<const int> corners(int v) const { return corner.of(v); }
   [[nodiscard]] std::span<const int> neighbours(int v) const {
-    const auto i = static_cast<std::size_t>(v);
-    return {ring.data() + 2 * corner_offset[i], static_cast<std::size_t>(ring_size[i])};
+    return {ring.data() + 2 * corner.begin(v), static_cast<std::size_t>(ring_size[v])};
   }
 };
 

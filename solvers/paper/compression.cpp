@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/connectivity.h"
 #include "models/paper/planar.h"
-#include "solvers/paper/mesh_edges.h"
 #include "solvers/paper/segments.h"
 
 namespace geoprior::paper {
@@ -91,11 +91,10 @@ namespace {
 
 /// True when no ruling runs along the triangle and none is near: its curvature is then that of the
 /// ground, not of the fold beside it.
-bool inside_flat_cell(const RulingMesh& mesh, const MeshEdges& edges, int f) {
+bool inside_flat_cell(const RulingMesh& mesh, const EdgeConnectivity& edges, int f) {
   const auto cell = [&](int g) { return mesh.cell[g]; };
   for (int k = 0; k < 3; ++k) {
-    const MeshEdges::Edge& e = edges.of(f, k);
-    const int next = e.left == f ? e.right : e.left;
+    const int next = edges.across(f, k);
     if (next >= 0 && cell(next) != cell(f)) return false;
   }
   return true;
@@ -173,7 +172,7 @@ std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
                                  const Eigen::MatrixX3d& curvature, const RulingMesh& mesh,
                                  const RulingEditor& editor, const HybridOptions& options) {
   const int m = state.mesh.triangle_count();
-  const MeshEdges edges(state.mesh.triangles);
+  const EdgeConnectivity edges(state.mesh.triangles);
   std::vector<Demand> demands(m);
   for (int f = 0; f < m; ++f) {
     Demand& demand = demands[f];
@@ -206,7 +205,7 @@ std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
 std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const ShellMesh& mesh,
                                        double group_angle_deg) {
   const double group_angle = group_angle_deg * kRadians;
-  const MeshEdges edges(mesh.triangles);
+  const EdgeConnectivity edges(mesh.triangles);
   std::vector<int> order;
   for (std::size_t f = 0; f < demands.size(); ++f) {
     if (demands[f].weight > 0) order.push_back(static_cast<int>(f));
@@ -234,8 +233,7 @@ std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const
       group.excess = std::max(group.excess, demands[f].excess);
       group.centre += strength(f) * centroid(mesh, f);
       for (int corner = 0; corner < 3; ++corner) {
-        const MeshEdges::Edge& e = edges.of(f, corner);
-        const int next = e.left == f ? e.right : e.left;
+        const int next = edges.across(f, corner);
         if (next < 0 || taken[next]) continue;
         const Demand& other = demands[next];
         if (other.weight <= 0 || other.bent_ground != first.bent_ground ||

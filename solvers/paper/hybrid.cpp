@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "baselines/paper/dense.h"
+#include "core/connectivity.h"
 #include "models/paper/handle_map.h"
 #include "models/paper/pattern_locator.h"
 #include "models/paper/transfer.h"
@@ -18,7 +19,6 @@
 #include "solvers/paper/hybrid_frame.h"
 #include "solvers/paper/hybrid_mesher.h"
 #include "solvers/paper/invariants.h"
-#include "solvers/paper/mesh_edges.h"
 #include "solvers/paper/pieces.h"
 #include "solvers/paper/plastic_apex.h"
 #include "solvers/paper/structure_bytes.h"
@@ -66,12 +66,12 @@ Eigen::RowVector3d vertex_normal(const ShellState& state, int vertex) {
 }
 
 /// Side of the sheet (+1: that of the normal) to which the neighbours of a vertex lie.
-double hollow_side(const ShellState& state, int vertex, const Eigen::RowVector3d& normal) {
+double hollow_side(const ShellState& state, const EdgeConnectivity& edges, int vertex,
+                   const Eigen::RowVector3d& normal) {
   double sum = 0;
-  const MeshEdges edges(state.mesh.triangles);
-  for (const MeshEdges::Edge& e : edges.all()) {
-    if (e.a != vertex && e.b != vertex) continue;
-    const int other = e.a == vertex ? e.b : e.a;
+  for (const auto& [a, b] : edges.edges()) {
+    if (a != vertex && b != vertex) continue;
+    const int other = a == vertex ? b : a;
     const Eigen::RowVector3d d = state.x.row(other) - state.x.row(vertex);
     // Height over distance squared: half the curvature in that direction.
     sum += d.dot(normal) / d.squaredNorm();
@@ -271,11 +271,13 @@ bool HybridMesher::last_resort(const Sheet& sheet, const std::vector<DemandGroup
 /// could not decide.
 void HybridMesher::carry(ShellState& state, std::size_t old_points) const {
   state = transfer_state(state, mesh_.mesh);
+  if (old_points >= mesh_.singular_vertices.size()) return;
+  const EdgeConnectivity edges(state.mesh.triangles);
   for (std::size_t s = old_points; s < mesh_.singular_vertices.size(); ++s) {
     const int apex = mesh_.singular_vertices[s];
     const Eigen::RowVector3d normal = vertex_normal(state, apex);
     state.x.row(apex) +=
-        hollow_side(state, apex, normal) * kDent * options_.seeding_distance * normal;
+        hollow_side(state, edges, apex, normal) * kDent * options_.seeding_distance * normal;
   }
 }
 

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/connectivity.h"
 #include "models/paper/planar.h"
-#include "solvers/paper/mesh_edges.h"
 #include "solvers/paper/segments.h"
 
 namespace geoprior::paper {
@@ -36,15 +36,15 @@ class RulingSets {
 };
 
 /// Rulings on the outline of each cell, each once, sorted.
-std::vector<std::vector<int>> rulings_of_cells(const RulingMesh& mesh, const MeshEdges& edges) {
+std::vector<std::vector<int>> rulings_of_cells(const RulingMesh& mesh,
+                                               const EdgeConnectivity& edges) {
   std::vector<std::vector<int>> result(mesh.cell_count);
   for (std::size_t r = 0; r < mesh.ruling_paths.size(); ++r) {
     const std::vector<int>& path = mesh.ruling_paths[r];
     for (std::size_t k = 0; k + 1 < path.size(); ++k) {
       const auto e = edges.find(path[k], path[k + 1]);
       if (!e) continue;
-      const MeshEdges::Edge& edge = edges.all()[*e];
-      for (const int f : {edge.left, edge.right}) {
+      for (const int f : {edges.left(*e), edges.right(*e)}) {
         if (f < 0) continue;
         auto& list = result[mesh.cell[f]];
         if (list.empty() || list.back() != static_cast<int>(r)) list.push_back(static_cast<int>(r));
@@ -153,8 +153,7 @@ void inherit_ids(const PaperStructure& before, std::vector<PaperPiece>& pieces, 
 }
 
 /// The largest loop of the directed edges, as a polygon.
-std::vector<Vector2d> outline(const std::vector<std::array<int, 2>>& boundary,
-                              const Eigen::MatrixX2d& pattern) {
+std::vector<Vector2d> outline(const std::vector<Edge>& boundary, const Eigen::MatrixX2d& pattern) {
   std::vector<Vector2d> best;
   double largest = 0;
   std::vector<bool> used(boundary.size(), false);
@@ -181,14 +180,16 @@ std::vector<Vector2d> outline(const std::vector<std::array<int, 2>>& boundary,
   return best;
 }
 
-void fill_regions(std::vector<PaperPiece>& pieces, const RulingMesh& mesh, const MeshEdges& edges) {
-  std::vector<std::vector<std::array<int, 2>>> boundary(pieces.size());
+void fill_regions(std::vector<PaperPiece>& pieces, const RulingMesh& mesh,
+                  const EdgeConnectivity& edges) {
+  std::vector<std::vector<Edge>> boundary(pieces.size());
   const auto piece_of = [&](int f) { return f < 0 ? -1 : mesh.piece[f]; };
-  for (const MeshEdges::Edge& e : edges.all()) {
-    const int left = piece_of(e.left), right = piece_of(e.right);
+  for (int e = 0; e < edges.edge_count(); ++e) {
+    const int left = piece_of(edges.left(e)), right = piece_of(edges.right(e));
     if (left == right) continue;
-    if (left >= 0) boundary[left].push_back({e.a, e.b});
-    if (right >= 0) boundary[right].push_back({e.b, e.a});
+    const auto [a, b] = edges.edge(e);
+    if (left >= 0) boundary[left].push_back({a, b});
+    if (right >= 0) boundary[right].push_back({b, a});
     if (left >= 0 && right >= 0) {
       pieces[left].neighbours.push_back(right);
       pieces[right].neighbours.push_back(left);
@@ -265,7 +266,7 @@ std::vector<PaperPiece> bent_pieces(const PaperStructure& structure,
 }  // namespace
 
 void derive_pieces(PaperStructure& structure, const Pattern& pattern, RulingMesh& mesh) {
-  const MeshEdges edges(mesh.mesh.triangles);
+  const EdgeConnectivity edges(mesh.mesh.triangles);
   std::vector<int> piece_of_cell(mesh.cell_count, -1);
   std::vector<PaperPiece> pieces =
       bent_pieces(structure, rulings_of_cells(mesh, edges), piece_of_cell);

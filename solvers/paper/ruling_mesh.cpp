@@ -6,9 +6,9 @@
 #include <numbers>
 #include <utility>
 
+#include "core/connectivity.h"
 #include "core/error.h"
 #include "models/paper/planar.h"
-#include "solvers/paper/mesh_edges.h"
 #include "solvers/paper/segments.h"
 
 namespace geoprior::paper {
@@ -133,8 +133,8 @@ std::vector<int> points_along(const std::vector<Vector2d>& points, const Ruling&
 }
 
 void number_cells(RulingMesh& result) {
-  const MeshEdges edges(result.mesh.triangles);
-  std::vector<std::array<int, 2>> walls;
+  const EdgeConnectivity edges(result.mesh.triangles);
+  std::vector<Edge> walls;
   for (const auto& path : result.ruling_paths) {
     for (std::size_t k = 0; k + 1 < path.size(); ++k) {
       walls.push_back({std::min(path[k], path[k + 1]), std::max(path[k], path[k + 1])});
@@ -154,10 +154,10 @@ void number_cells(RulingMesh& result) {
       const int f = stack.back();
       stack.pop_back();
       for (int k = 0; k < 3; ++k) {
-        const MeshEdges::Edge& e = edges.of(f, k);
-        const int next = e.left == f ? e.right : e.left;
+        const int next = edges.across(f, k);
         if (next < 0 || result.cell[next] >= 0) continue;
-        if (std::binary_search(walls.begin(), walls.end(), std::array<int, 2>{e.a, e.b})) continue;
+        const Edge& edge = edges.edge(edges.edge_of(3 * f + k));
+        if (std::binary_search(walls.begin(), walls.end(), edge)) continue;
         result.cell[next] = cell;
         stack.push_back(next);
       }
@@ -233,7 +233,7 @@ std::vector<int> edge_path(const ShellMesh& mesh, const Vector2d& a, const Vecto
       (points[path.back()] - b).norm() > tolerance) {
     return {};
   }
-  const MeshEdges edges(mesh.triangles);
+  const EdgeConnectivity edges(mesh.triangles);
   for (std::size_t k = 0; k + 1 < path.size(); ++k) {
     if (!edges.find(path[k], path[k + 1])) return {};
   }

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/connectivity.h"
 #include "core/curvature_fit.h"
 #include "models/paper/planar.h"
-#include "solvers/paper/mesh_edges.h"
 #include "solvers/paper/segments.h"
 
 namespace geoprior::paper {
@@ -174,23 +174,24 @@ void mark_idle_rays(const PaperStructure& structure, const HybridOptions& option
 }  // namespace
 
 std::vector<double> fold_angles(const ShellState& state, const RulingMesh& mesh) {
-  const MeshEdges edges(state.mesh.triangles);
+  const EdgeConnectivity edges(state.mesh.triangles);
   std::vector<double> folds;
   for (const auto& path : mesh.ruling_paths) {
     double sum = 0, length = 0;
     for (std::size_t k = 0; k + 1 < path.size(); ++k) {
       const auto found = edges.find(path[k], path[k + 1]);
       if (!found) continue;
-      const MeshEdges::Edge& e = edges.all()[*found];
-      if (e.left < 0 || e.right < 0) continue;
+      const int left = edges.left(*found), right = edges.right(*found);
+      if (left < 0 || right < 0) continue;
+      const auto [a, b] = edges.edge(*found);
       CurvatureFit::Hinge hinge{};
-      hinge.a = e.a;
-      hinge.b = e.b;
-      hinge.left = e.left;
-      hinge.right = e.right;
-      hinge.c = third_vertex(state.mesh.triangles, e.left, e.a, e.b);
-      hinge.d = third_vertex(state.mesh.triangles, e.right, e.a, e.b);
-      const double l = (state.mesh.pattern.row(e.b) - state.mesh.pattern.row(e.a)).norm();
+      hinge.a = a;
+      hinge.b = b;
+      hinge.left = left;
+      hinge.right = right;
+      hinge.c = third_vertex(state.mesh.triangles, left, a, b);
+      hinge.d = third_vertex(state.mesh.triangles, right, a, b);
+      const double l = (state.mesh.pattern.row(b) - state.mesh.pattern.row(a)).norm();
       sum += l * dihedral_angle(state.x, hinge);
       length += l;
     }

@@ -4,62 +4,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
+#include <span>
 #include <utility>
 
+#include "core/connectivity.h"
 #include "core/error.h"
 #include "core/topology.h"
 
 namespace geoprior {
 namespace {
 
-/// An edge of a triangle, whatever its direction.
-struct Side {
-  int low, high;
-  int triangle;
-  bool upwards;  ///< the triangle runs from low to high
-};
-
-std::vector<Side> sorted_sides(const Eigen::MatrixX3i& F) {
-  std::vector<Side> sides;
-  sides.reserve(static_cast<std::size_t>(F.rows()) * 3);
-  for (Eigen::Index t = 0; t < F.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = F(t, k), b = F(t, (k + 1) % 3);
-      sides.push_back({std::min(a, b), std::max(a, b), static_cast<int>(t), a < b});
-    }
-  }
-  const auto edge = [](const Side& s) {
-    return static_cast<std::uint64_t>(s.low) << 32U | static_cast<std::uint32_t>(s.high);
-  };
-  std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) {
-    const std::uint64_t of_a = edge(a), of_b = edge(b);
-    return of_a != of_b ? of_a < of_b : a.triangle < b.triangle;
-  });
-  return sides;
-}
-
-/// Calls `visit(first, last)` for the sides of each edge.
-template <class Visit>
-void for_each_edge(const std::vector<Side>& sides, const Visit& visit) {
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t j = i + 1;
-    while (j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high) ++j;
-    visit(i, j);
-    i = j;
-  }
-}
-
 struct EdgeCounts {
   std::size_t border = 0, crowded = 0;
 };
 
-EdgeCounts count_edges(const std::vector<Side>& sides) {
+EdgeCounts count_edges(const EdgeConnectivity& edges) {
   EdgeCounts counts;
-  for_each_edge(sides, [&](std::size_t i, std::size_t j) {
-    if (j - i == 1) ++counts.border;
-    if (j - i > 2) ++counts.crowded;
-  });
+  for (int e = 0; e < edges.edge_count(); ++e) {
+    const std::size_t triangles = edges.half_edges(e).size();
+    if (triangles == 1) ++counts.border;
+    if (triangles > 2) ++counts.crowded;
+  }
   return counts;
 }
 
@@ -107,36 +72,37 @@ struct Neighbours {
 class Repair {
  public:
   Repair(SurfaceFrame& frame, const std::string& where, std::vector<std::string>& notes)
-      : frame_(frame), where_(where), notes_(notes), sides_(sorted_sides(frame.mesh.F)) {}
+      : frame_(frame), where_(where), notes_(notes), edges_(frame.mesh.F) {}
 
   void weld() {
-    const EdgeCounts before = count_edges(sides_);
+    const EdgeCounts before = count_edges(edges_);
     if (before.border == 0 || !border_has_doubles()) return;
     Weld welded = weld_by_position(frame_.mesh);
     if (welded.mesh.vertex_count() == frame_.mesh.vertex_count()) return;
     if (welded.mesh.triangle_count() == 0) return;  // all were points: not for us to judge
-    std::vector<Side> sides = sorted_sides(welded.mesh.F);
-    const EdgeCounts after = count_edges(sides);
+    EdgeConnectivity edges(welded.mesh.F);
+    const EdgeCounts after = count_edges(edges);
     if (after.border >= before.border || after.crowded > before.crowded) return;
     frame_.velocity = rows_at(frame_.velocity, welded.split_of_welded);
     frame_.mesh = std::move(welded.mesh);
-    sides_ = std::move(sides);
+    edges_ = std::move(edges);
     notes_.push_back("doubled vertices along seams were welded");
   }
 
   /// Two triangles an edge at most.
   void require_manifold() const {
-    for_each_edge(sides_, [&](std::size_t i, std::size_t j) {
-      if (j - i <= 2) return;
+    for (int e = 0; e < edges_.edge_count(); ++e) {
+      const std::span<const int> here = edges_.half_edges(e);
+      if (here.size() <= 2) continue;
       std::string triangles;
-      for (std::size_t k = i; k < std::min(j, i + 5); ++k) {
-        triangles += (k == i ? "" : ", ") + std::to_string(sides_[k].triangle);
-      }
-      throw Error("is not manifold: edge " + edge_name(sides_[i]) + " belongs to " +
-                      std::to_string(j - i) + " triangles (" + triangles +
-                      (j - i > 5 ? ", …" : "") + ")",
+      for (const int h : here.first(std::min<std::size_t>(here.size(), 5)))
+        triangles += (triangles.empty() ? "" : ", ") + std::to_string(h / 3);
+      throw Error("is not manifold: edge " + std::to_string(edges_.edge(e)[0]) + "-" +
+                      std::to_string(edges_.edge(e)[1]) + " belongs to " +
+                      std::to_string(here.size()) + " triangles (" + triangles +
+                      (here.size() > 5 ? ", …" : "") + ")",
                   where_, "two triangles an edge");
-    });
+    }
   }
 
   void orient() {
@@ -197,31 +163,27 @@ class Repair {
   [[nodiscard]] bool border_has_doubles() const {
     std::vector<std::array<double, 3>> positions;
     std::vector<char> seen(frame_.mesh.vertex_count(), 0);
-    for_each_edge(sides_, [&](std::size_t i, std::size_t j) {
-      if (j - i != 1) return;
-      for (const int v : {sides_[i].low, sides_[i].high}) {
+    for (int e = 0; e < edges_.edge_count(); ++e) {
+      if (edges_.half_edges(e).size() != 1) continue;
+      for (const int v : edges_.edge(e)) {
         if (std::exchange(seen[v], 1) != 0) continue;
         const Eigen::RowVector3d x = frame_.mesh.V.row(v);
         positions.push_back({x.x(), x.y(), x.z()});
       }
-    });
+    }
     std::sort(positions.begin(), positions.end());
     return std::adjacent_find(positions.begin(), positions.end()) != positions.end();
   }
 
-  static std::string edge_name(const Side& side) {
-    return std::to_string(side.low) + "-" + std::to_string(side.high);
-  }
-
   [[nodiscard]] std::vector<Neighbours> adjacency() const {
     std::vector<Neighbours> out(frame_.mesh.F.rows());
-    for_each_edge(sides_, [&](std::size_t i, std::size_t j) {
-      if (j - i != 2) return;
-      const Side &a = sides_[i], &b = sides_[i + 1];
-      const bool disagree = a.upwards == b.upwards;
-      out[a.triangle].add(b.triangle, disagree);
-      out[b.triangle].add(a.triangle, disagree);
-    });
+    for (int e = 0; e < edges_.edge_count(); ++e) {
+      const std::span<const int> both = edges_.half_edges(e);
+      if (both.size() != 2) continue;
+      const bool disagree = edges_.ascends(both[0]) == edges_.ascends(both[1]);
+      out[both[0] / 3].add(both[1] / 3, disagree);
+      out[both[1] / 3].add(both[0] / 3, disagree);
+    }
     return out;
   }
 
@@ -276,17 +238,17 @@ class Repair {
   [[nodiscard]] bool is_closed(const std::vector<int>& component) const {
     std::vector<char> inside(frame_.mesh.F.rows(), 0);
     for (const int t : component) inside[t] = 1;
-    bool closed = true;
-    for_each_edge(sides_, [&](std::size_t i, std::size_t j) {
-      if (j - i == 1 && inside[sides_[i].triangle] != 0) closed = false;
-    });
-    return closed;
+    for (int e = 0; e < edges_.edge_count(); ++e) {
+      const std::span<const int> here = edges_.half_edges(e);
+      if (here.size() == 1 && inside[here[0] / 3] != 0) return false;
+    }
+    return true;
   }
 
   SurfaceFrame& frame_;
   const std::string& where_;
   std::vector<std::string>& notes_;
-  std::vector<Side> sides_;
+  EdgeConnectivity edges_;  ///< of the frame, before triangles are turned over
   std::vector<std::vector<int>> components_;
 };
 

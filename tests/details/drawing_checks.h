@@ -22,7 +22,7 @@ inline bool manifold(const TriMesh& mesh) {
   if (!non_manifold_edges(mesh.F).empty()) return false;
   const SurfaceTopology topology(mesh);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    const auto faces = static_cast<int>(topology.faces_of(v).size());
+    const auto faces = topology.corners.count(v);
     if (faces == 0 || topology.fan_of(v) != faces) return false;
   }
   return true;

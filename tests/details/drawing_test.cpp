@@ -75,7 +75,7 @@ TEST(SurfaceRays, AreStraightInThePlaneAndEndAtTheBorder) {
   const auto x = points_of(square);
   SurfaceRays rays(topology, x);
   // Vertex 7 of row 3: rays leave from a corner, along edges too.
-  const SurfacePoint corner{topology.faces_of(3 * 18 + 7)[0], {0, 0, 1}};
+  const SurfacePoint corner{topology.corners_of(3 * 18 + 7)[0] / 3, {0, 0, 1}};
   for (const SurfacePoint& at : {SurfacePoint{250, {0.2, 0.3, 0.5}}, corner}) {
     rays.start(at, Eigen::Vector3d::UnitX());
     const Eigen::Vector3d p = position_of(at, square.V, square.F);

@@ -93,7 +93,7 @@ TEST(Holes, TakeTheAreaOfCapsFromASphere) {
     const Eigen::Vector3d axis = (i % 2 == 0 ? 1 : -1) * turn.col(i / 2);
     Eigen::Index nearest = 0;
     (sphere.V * axis).maxCoeff(&nearest);
-    const int face = topology.faces_of(static_cast<int>(nearest))[0];
+    const int face = topology.corners_of(static_cast<int>(nearest))[0] / 3;
     anchors[i].at = walk_to_nearest({face, {0.4, 0.3, 0.3}}, axis, topology, x);
   }
   for (const double r : {0.1, 0.3, 0.6}) {
