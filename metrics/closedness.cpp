@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <vector>
+
+#include "core/disjoint_sets.h"
 
 namespace geoprior {
 namespace {
@@ -32,26 +33,9 @@ std::vector<Side> sorted_sides(const Eigen::MatrixX3i& F) {
   return sides;
 }
 
-/// Union-find over whole numbers.
-class Sets {
- public:
-  explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int x) {
-    auto& p = parent_;
-    while (p[x] != x) {
-      x = p[x] = p[p[x]];
-    }
-    return x;
-  }
-  void join(int a, int b) { parent_[find(a)] = find(b); }
-
- private:
-  std::vector<int> parent_;
-};
-
 /// Vertices joined by common triangles.
-Sets vertex_sets(const TriMesh& mesh) {
-  Sets vertices(static_cast<std::size_t>(mesh.vertex_count()));
+DisjointSets vertex_sets(const TriMesh& mesh) {
+  DisjointSets vertices(mesh.vertex_count());
   for (int t = 0; t < mesh.F.rows(); ++t) {
     for (int c = 1; c < 3; ++c) vertices.join(mesh.F(t, c), mesh.F(t, 0));
   }
@@ -66,7 +50,7 @@ int corner_of(const Eigen::MatrixX3i& F, int triangle, int vertex) {
 }
 
 /// Vertices whose corners are not all joined across common edges.
-int pinched(const Eigen::MatrixX3i& F, int vertex_count, Sets& corners) {
+int pinched(const Eigen::MatrixX3i& F, int vertex_count, DisjointSets& corners) {
   std::vector<int> fan(vertex_count, -1);
   std::vector<char> counted(vertex_count, 0);
   int count = 0;
@@ -89,7 +73,7 @@ int pinched(const Eigen::MatrixX3i& F, int vertex_count, Sets& corners) {
 Closedness closedness(const TriMesh& mesh) {
   Closedness result;
   const std::vector<Side> sides = sorted_sides(mesh.F);
-  Sets corners(static_cast<std::size_t>(mesh.F.rows()) * 3);
+  DisjointSets corners(3 * mesh.triangle_count());
   int edges = 0;
   for (std::size_t begin = 0, end; begin < sides.size(); begin = end) {
     for (end = begin; end < sides.size() && sides[end].low == sides[begin].low &&
@@ -109,7 +93,7 @@ Closedness closedness(const TriMesh& mesh) {
     }
   }
   result.pinched_vertices = pinched(mesh.F, mesh.vertex_count(), corners);
-  Sets vertices = vertex_sets(mesh);
+  DisjointSets vertices = vertex_sets(mesh);
   std::vector<char> used(mesh.vertex_count(), 0);
   for (const int v : mesh.F.reshaped()) used[v] = 1;
   int used_count = 0;
@@ -123,7 +107,7 @@ Closedness closedness(const TriMesh& mesh) {
 }
 
 Eigen::MatrixX3i largest_component(const TriMesh& mesh) {
-  Sets vertices = vertex_sets(mesh);
+  DisjointSets vertices = vertex_sets(mesh);
   std::vector<int> count(mesh.vertex_count(), 0);
   int largest = -1;
   for (int t = 0; t < mesh.F.rows(); ++t) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 
 namespace geoprior {
@@ -64,30 +65,7 @@ long crossings(const GriddedSheet& sheet, const LinkFamily& link, double cosine)
   return count;
 }
 
-/// Facets by union of grid points; each set is named by its lowest point.
-class Facets {
- public:
-  explicit Facets(std::size_t points) : parent_(points) {
-    for (std::size_t p = 0; p < points; ++p) parent_[p] = p;
-  }
-  std::size_t find(std::size_t p) {
-    while (parent_[p] != p) p = parent_[p] = parent_[parent_[p]];
-    return p;
-  }
-  void join(std::size_t p, std::size_t q) {
-    p = find(p);
-    q = find(q);
-    parent_[std::max(p, q)] = std::min(p, q);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
-std::size_t index(const PatternGrid& grid, int i, int j) {
-  return static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.columns) +
-         static_cast<std::size_t>(i);
-}
+int index(const PatternGrid& grid, int i, int j) { return j * grid.columns + i; }
 
 /// Ring of grid offsets about a point.
 constexpr int kRing = 16;
@@ -194,7 +172,7 @@ double crease_length(const GriddedSheet& sheet, const CreaseOptions& options) {
 std::vector<double> facet_areas(const GriddedSheet& sheet, const CreaseOptions& options) {
   const PatternGrid& grid = sheet.grid;
   const double cosine = std::cos(options.fold_angle);
-  Facets facets(grid.triangle.size());
+  DisjointSets facets(static_cast<int>(grid.triangle.size()));  // named by their lowest points
   const auto smooth = [&](int a, int b) {
     return b >= 0 && (a == b || sheet.normals.row(a).dot(sheet.normals.row(b)) >= cosine);
   };
@@ -202,13 +180,13 @@ std::vector<double> facet_areas(const GriddedSheet& sheet, const CreaseOptions& 
     for (int i = 0; i < grid.columns; ++i) {
       const int own = grid.at(i, j);
       if (own < 0) continue;
-      const std::size_t p = index(grid, i, j);
+      const int p = index(grid, i, j);
       if (smooth(own, grid.at(i + 1, j))) facets.join(p, index(grid, i + 1, j));
       if (smooth(own, grid.at(i, j + 1))) facets.join(p, index(grid, i, j + 1));
     }
   }
   std::vector<int> points(grid.triangle.size(), 0);
-  for (std::size_t p = 0; p < points.size(); ++p) {
+  for (int p = 0; p < facets.size(); ++p) {
     if (grid.triangle[p] >= 0) ++points[facets.find(p)];
   }
   std::vector<double> areas;

@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/disjoint_sets.h"
+
 namespace geoprior::details {
 
 HoleMesh::HoleMesh(const SurfaceTopology& surface, std::span<const Eigen::Vector3d> x,
@@ -175,33 +177,6 @@ void HoleMesh::refine(int segments, double least) {
   }
 }
 
-namespace {
-
-/// Sets of vertices that are joined by edges; a set is named by its smallest vertex.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int of(int v) {
-    while (parent_[v] != v) {
-      parent_[v] = parent_[parent_[v]];
-      v = parent_[v];
-    }
-    return v;
-  }
-  void join(int a, int b) {
-    a = of(a);
-    b = of(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
-}  // namespace
-
 std::vector<int> HoleMesh::hole_of_vertices() const {
   std::vector<int> inside(x_.size(), -1);
   for (std::size_t v = 0; v < x_.size(); ++v) {
@@ -216,7 +191,8 @@ std::vector<int> HoleMesh::hole_of_vertices() const {
 /// Every hole in one piece, and what remains too: of several pieces the largest stays what it is
 /// (a chart that folds on a rough surface leaves single vertices behind).
 void HoleMesh::keep_whole(std::vector<int>& inside) const {
-  Sets pieces(x_.size()), whole(x_.size());
+  // Vertices joined by edges, within holes and in all; a set is named by its lowest vertex.
+  DisjointSets pieces(static_cast<int>(x_.size())), whole(pieces.size());
   for (const auto& c : corner_) {
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = c[k], b = c[(k + 1) % 3];
@@ -225,31 +201,31 @@ void HoleMesh::keep_whole(std::vector<int>& inside) const {
     }
   }
   std::vector<int> size(x_.size(), 0);
-  for (int v = 0; v < static_cast<int>(x_.size()); ++v) ++size[index(pieces.of(v))];
+  for (int v = 0; v < static_cast<int>(x_.size()); ++v) ++size[index(pieces.find(v))];
   // The largest piece of each hole, and of each connected surface.
   std::vector<int> largest(hole_.size() + x_.size(), -1);
   const auto owner = [&](int v) {
     const int hole = inside[index(v)];
-    return hole >= 0 ? index(hole) : hole_.size() + index(whole.of(v));
+    return hole >= 0 ? index(hole) : hole_.size() + index(whole.find(v));
   };
   for (int v = 0; v < static_cast<int>(x_.size()); ++v) {
     int& best = largest[owner(v)];
-    if (pieces.of(v) == v && (best < 0 || size[index(v)] > size[index(best)])) best = v;
+    if (pieces.find(v) == v && (best < 0 || size[index(v)] > size[index(best)])) best = v;
   }
   std::vector<int> corrected(x_.size(), -2);  // of strays: what they become
   for (const auto& c : corner_) {
     for (std::size_t k = 0; k < 3; ++k) {
       for (const auto& [v, w] :
            {std::pair(c[k], c[(k + 1) % 3]), std::pair(c[(k + 1) % 3], c[k])}) {
-        if (inside[index(v)] == inside[index(w)] || largest[owner(v)] == pieces.of(v)) continue;
-        int& to = corrected[index(pieces.of(v))];
+        if (inside[index(v)] == inside[index(w)] || largest[owner(v)] == pieces.find(v)) continue;
+        int& to = corrected[index(pieces.find(v))];
         to = std::max(to, inside[index(v)] >= 0 ? -1 : inside[index(w)]);
       }
     }
   }
   std::vector<int> result = inside;
   for (int v = 0; v < static_cast<int>(x_.size()); ++v)
-    if (const int to = corrected[index(pieces.of(v))]; to > -2) result[index(v)] = to;
+    if (const int to = corrected[index(pieces.find(v))]; to > -2) result[index(v)] = to;
   inside = std::move(result);
 }
 

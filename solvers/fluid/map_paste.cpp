@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "solvers/fluid/exponential_map.h"
@@ -52,30 +53,6 @@ Projection project(const WorkMesh& mesh, const EditedFrame& frame, double half, 
   return result;
 }
 
-/// Sets of vertices that facing triangles join.
-class Components {
- public:
-  explicit Components(std::size_t n) : parent_(n) {
-    for (std::size_t v = 0; v < n; ++v) parent_[v] = static_cast<int>(v);
-  }
-  int root(int v) {
-    while (at(v) != v) {
-      at(v) = at(at(v));
-      v = at(v);
-    }
-    return v;
-  }
-  void join(int a, int b) {
-    a = root(a);
-    b = root(b);
-    at(std::max(a, b)) = std::min(a, b);
-  }
-
- private:
-  int& at(int v) { return parent_[v]; }
-  std::vector<int> parent_;
-};
-
 /// What lies under a projected map, connected with the anchor.
 struct Footprint {
   std::vector<char> inside;             ///< of the vertices
@@ -87,7 +64,8 @@ Footprint footprint(const WorkMesh& mesh, const Projection& projection, const Pa
                     const Eigen::Vector3d& z) {
   Footprint result;
   result.normal.assign(mesh.x.size(), Eigen::Vector3d::Zero());
-  Components components(mesh.x.size());
+  // Vertices that facing triangles join.
+  DisjointSets components(static_cast<int>(mesh.x.size()));
   double area = 0, steep = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (projection.side[t] == Side::outside) continue;
@@ -103,12 +81,12 @@ Footprint footprint(const WorkMesh& mesh, const Projection& projection, const Pa
     if (n.dot(z) < std::sqrt(0.5) * size) steep += size;
   }
   result.steep_share = area > 0 ? steep / area : 0;
-  const int home = components.root(mesh.triangles[anchor.triangle][0]);
+  const int home = components.find(mesh.triangles[anchor.triangle][0]);
   result.inside.assign(mesh.x.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (projection.side[t] != Side::facing) continue;
     const auto& f = mesh.triangles[t];
-    if (components.root(f[0]) != home) continue;
+    if (components.find(f[0]) != home) continue;
     for (const int v : f) result.inside[v] = 1;
   }
   return result;
