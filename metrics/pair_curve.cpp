@@ -55,7 +55,7 @@ struct Tally {
   }
 };
 
-void require(std::span<const SurfacePlace> details, double unit, const PairCurveOptions& o,
+void require(std::span<const SurfacePoint> details, double unit, const PairCurveOptions& o,
              const PairCurveMask& mask, int triangles) {
   if (!(unit > 0)) throw Error("unit " + std::to_string(unit), "pair curve", "positive");
   if (!(o.reach > 0) || !(o.bandwidth > 0) || o.bins < 1 || o.sources < 1) {
@@ -83,7 +83,7 @@ void require(std::span<const SurfacePlace> details, double unit, const PairCurve
 /// The details that count, by triangle, and the measurement from one of them.
 class PairCount {
  public:
-  PairCount(const UnfoldedSurface& surface, std::span<const SurfacePlace> details, double unit,
+  PairCount(const UnfoldedSurface& surface, std::span<const SurfacePoint> details, double unit,
             const PairCurveOptions& options, const PairCurveMask& mask)
       : surface_(surface),
         unit_(unit),
@@ -164,7 +164,7 @@ class PairCount {
   const UnfoldedSurface& surface_;
   double unit_, reach_, cell_, sample_;  // reach and cell in units, sample in m
   std::span<const char> region_;
-  std::vector<SurfacePlace> place_;
+  std::vector<SurfacePoint> place_;
   std::vector<Eigen::Vector2d> layout_;
   std::vector<double> weight_;
   std::vector<std::size_t> offset_, row_;  // details of the triangles
@@ -203,7 +203,7 @@ Tally tally_of(const PairCount& count, const UnfoldedSurface& surface, std::size
 
 }  // namespace
 
-PairCurve pair_curve(const TriMesh& surface, std::span<const SurfacePlace> details, double unit,
+PairCurve pair_curve(const TriMesh& surface, std::span<const SurfacePoint> details, double unit,
                      const PairCurveOptions& options, const PairCurveMask& mask) {
   require(details, unit, options, mask, surface.triangle_count());
   const UnfoldedSurface unfolded(surface);

@@ -88,17 +88,13 @@ UnfoldedSurface::UnfoldedSurface(TriMesh surface) : mesh_(std::move(surface)) {
   }
 }
 
-Eigen::Vector2d UnfoldedSurface::layout(const SurfacePlace& place) const {
+Eigen::Vector2d UnfoldedSurface::layout(const SurfacePoint& place) const {
   const auto& corner = triangle(place.face).corner;
   return place.barycentric(1) * corner[1] + place.barycentric(2) * corner[2];
 }
 
-Eigen::Vector3d UnfoldedSurface::position(const SurfacePlace& place) const {
-  Eigen::Vector3d x = Eigen::Vector3d::Zero();
-  for (int c = 0; c < 3; ++c) {
-    x += place.barycentric(c) * mesh_.V.row(mesh_.F(place.face, c)).transpose();
-  }
-  return x;
+Eigen::Vector3d UnfoldedSurface::position(const SurfacePoint& place) const {
+  return position_of(place, mesh_.V, mesh_.F);
 }
 
 std::span<const int> UnfoldedSurface::faces_of(int vertex) const {
@@ -107,7 +103,7 @@ std::span<const int> UnfoldedSurface::faces_of(int vertex) const {
   return {face_.data() + begin, static_cast<std::size_t>(end - begin)};
 }
 
-void UnfoldedSurface::require(const SurfacePlace& place) const {
+void UnfoldedSurface::require(const SurfacePoint& place) const {
   if (place.face < 0 || place.face >= mesh_.triangle_count()) {
     throw Error("no triangle " + std::to_string(place.face), "place on a surface",
                 "0 to " + std::to_string(mesh_.triangle_count()) + " excluded");
@@ -178,7 +174,7 @@ void SurfaceFront::visit(int vertex, double distance) {
   }
 }
 
-void SurfaceFront::spread(const SurfacePlace& source, double reach) {
+void SurfaceFront::spread(const SurfacePoint& source, double reach) {
   surface_.require(source);
   if (!(reach > 0)) throw Error("reach " + std::to_string(reach), "front", "positive");
   clear();

@@ -15,7 +15,7 @@ namespace geoprior {
 namespace {
 
 using sampled::on_cells;
-using Places = std::vector<SurfacePlace>;
+using Places = std::vector<SurfacePoint>;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -146,9 +146,9 @@ Places darts(const UnfoldedSurface& surface, int count, double least, const Dist
   sampled::UniformPlaces uniform(surface.mesh(), 4);
   Places kept;
   for (int trial = 0; trial < 200000 && static_cast<int>(kept.size()) < count; ++trial) {
-    const SurfacePlace place = uniform.next();
+    const SurfacePoint place = uniform.next();
     bool is_free = true;
-    for (const SurfacePlace& other : kept) {
+    for (const SurfacePoint& other : kept) {
       is_free = is_free && distance(surface.position(place), surface.position(other)) >= least;
     }
     if (is_free) kept.push_back(place);
@@ -259,7 +259,7 @@ TEST(PairCurve, OfAPatternOnAPartIsMeasuredInThatPart) {
   std::vector<char> region;
   for (int f = 0; f < mesh.triangle_count(); ++f) region.push_back((f / 2) % 30 < 15 ? 1 : 0);
   Places places;
-  for (const SurfacePlace& p : sampled::uniform(mesh, 2000, 9)) {
+  for (const SurfacePoint& p : sampled::uniform(mesh, 2000, 9)) {
     if (region[p.face] != 0) places.push_back(p);
   }
   const PairCurve part = pair_curve(mesh, places, 1, {}, {{}, region});
