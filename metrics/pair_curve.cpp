@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/planar.h"
 
 namespace geoprior {
 namespace {
@@ -151,7 +152,7 @@ class PairCount {
     if (!(distance - longest < reach_ * unit_)) return;
     if (longest <= sample_) {
       const Eigen::Vector2d u = b - a, v = c - a;
-      area.add(distance / unit_, share * (u.x() * v.y() - u.y() * v.x()) / 2);
+      area.add(distance / unit_, share * cross(u, v) / 2);
       return;
     }
     const Eigen::Vector2d ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;

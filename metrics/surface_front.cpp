@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/planar.h"
 
 namespace geoprior {
 namespace {
@@ -27,16 +28,12 @@ bool centre_behind(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double le
   return true;
 }
 
-double cross_product(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
-  return u.x() * v.y() - u.y() * v.x();
-}
-
 /// Whether the straight way from the centre to the point passes between a and b.
 bool passes_between(const Eigen::Vector2d& centre, const Eigen::Vector2d& point,
                     const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Eigen::Vector2d way = point - centre;
   const double slack = 1e-12 * way.squaredNorm();
-  return cross_product(way, a - centre) >= -slack && cross_product(way, b - centre) <= slack;
+  return cross(way, a - centre) >= -slack && cross(way, b - centre) <= slack;
 }
 
 UnfoldedSurface::Triangle lay_out(const TriMesh& mesh, int f) {

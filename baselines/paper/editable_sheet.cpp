@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/planar.h"
 #include "models/paper/overlap.h"
-#include "models/paper/planar.h"
 #include "models/paper/triangle_neighbours.h"
 
 namespace geoprior::paper {

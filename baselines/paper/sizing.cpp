@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "models/paper/planar.h"
+#include "core/planar.h"
 #include "models/paper/triangle_neighbours.h"
 
 namespace geoprior::paper {

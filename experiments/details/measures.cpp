@@ -128,7 +128,7 @@ RadialSpectrum spectrum_of(const Part& plane, const std::vector<SurfacePoint>& p
   Eigen::MatrixX2d points(static_cast<Eigen::Index>(places.size()), 2);
   for (std::size_t i = 0; i < places.size(); ++i) {
     points.row(static_cast<Eigen::Index>(i)) =
-position_of(places[i], plane.points, plane.triangles).head<2>();
+        position_of(places[i], plane.points, plane.triangles).head<2>();
   }
   const Eigen::Vector2d low = plane.points.leftCols<2>().colwise().minCoeff();
   const Eigen::Vector2d high = plane.points.leftCols<2>().colwise().maxCoeff();

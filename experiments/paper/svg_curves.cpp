@@ -4,16 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/planar.h"
+
 namespace geoprior::paper {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kMostChords = 4096;
-
-/// Angle from `u` to `v` in (-pi, pi].
-double angle_between(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
-  return std::atan2(u.x() * v.y() - u.y() * v.x(), u.dot(v));
-}
 
 /// Centre of the arc in coordinates where the ellipse is a unit circle (F.6.5 after scaling).
 Eigen::Vector2d unit_circle_centre(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
@@ -58,7 +55,7 @@ void flatten_arc(const SvgArc& arc, double tolerance, std::vector<Eigen::Vector2
   const Eigen::Vector2d from = to_circle(arc.from), to = to_circle(arc.to);
   const Eigen::Vector2d centre = unit_circle_centre(from, to, arc.large != arc.sweep);
   const double first = std::atan2(from.y() - centre.y(), from.x() - centre.x());
-  double span = angle_between(from - centre, to - centre);
+  double span = signed_angle(from - centre, to - centre);
   if (arc.sweep && span < 0) span += 2 * kPi;
   if (!arc.sweep && span > 0) span -= 2 * kPi;
   // A chord over an angle a is off by at most r (1 - cos(a / 2)).

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/disjoint_sets.h"
+#include "core/planar.h"
 
 namespace geoprior::details {
 
@@ -69,7 +70,7 @@ bool HoleMesh::crossed_by(int t, int hole) const {
   for (std::size_t k = 0; k < 3; ++k) {
     const auto &a = u[k], &b = u[(k + 1) % 3];
     if (distance_to_segment(a, b) < radius) return true;
-    left += a.x() * b.y() - a.y() * b.x() > 0 ? 1 : 0;
+    left += cross(a, b) > 0 ? 1 : 0;
   }
   return left == 3 || left == 0;  // the disc lies inside
 }

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "models/paper/planar.h"
+#include "core/planar.h"
 #include "models/paper/transfer.h"
 
 namespace geoprior::paper {

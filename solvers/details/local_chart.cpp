@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/planar.h"
+
 namespace geoprior::details {
 namespace {
 
@@ -28,8 +30,7 @@ Eigen::Vector2d unfold(const Eigen::Vector2d& p, const Eigen::Vector2d& q, doubl
 
 /// Whether the origin lies on the right of p -> q, where the triangle to be unfolded does not.
 bool source_on_right(const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
-  const double cross = p.x() * q.y() - p.y() * q.x();
-  return cross < 1e-12 * (p.squaredNorm() + q.squaredNorm());
+  return cross(p, q) < 1e-12 * (p.squaredNorm() + q.squaredNorm());
 }
 
 }  // namespace

@@ -5,14 +5,12 @@
 #include <limits>
 #include <utility>
 
+#include "core/planar.h"
+
 namespace geoprior::details {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 }  // namespace
 

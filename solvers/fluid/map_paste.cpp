@@ -8,6 +8,7 @@
 #include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/planar.h"
 #include "solvers/fluid/exponential_map.h"
 
 namespace geoprior::fluid {
@@ -198,7 +199,7 @@ std::size_t triangles_needed(const WorkMesh& mesh, const std::vector<int>& candi
     const auto& f = mesh.triangles[t];
     const Eigen::Vector2d u = covered.uv(f[1]) - covered.uv(f[0]),
                           w = covered.uv(f[2]) - covered.uv(f[0]);
-    needed += std::abs(u.x() * w.y() - u.y() * w.x()) / (limit * limit);
+    needed += std::abs(cross(u, w)) / (limit * limit);
   }
   return static_cast<std::size_t>(std::min(needed, 1e15));
 }

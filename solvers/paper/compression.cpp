@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "models/paper/planar.h"
+#include "core/planar.h"
 #include "solvers/paper/mesh_edges.h"
 #include "solvers/paper/segments.h"
 

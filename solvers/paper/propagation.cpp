@@ -5,8 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/planar.h"
 #include "core/random.h"
-#include "models/paper/planar.h"
 #include "solvers/paper/segments.h"
 #include "solvers/paper/singular_point.h"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "models/paper/planar.h"
+#include "core/planar.h"
 #include "solvers/paper/mesh_edges.h"
 #include "solvers/paper/segments.h"
 

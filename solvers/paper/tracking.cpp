@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/curvature_fit.h"
-#include "models/paper/planar.h"
+#include "core/planar.h"
 #include "solvers/paper/mesh_edges.h"
 #include "solvers/paper/segments.h"
 
@@ -48,7 +48,7 @@ Vector2d observed_direction(const ShellState& state, const Eigen::MatrixX3d& cur
 
 /// Signed angle that takes one line to another, -pi/2 ... pi/2.
 double turn_between(const Vector2d& from, const Vector2d& to) {
-  const double angle = std::atan2(cross(from, to), from.dot(to));
+  const double angle = signed_angle(from, to);
   if (angle > std::numbers::pi / 2) return angle - std::numbers::pi;
   if (angle < -std::numbers::pi / 2) return angle + std::numbers::pi;
   return angle;

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/curvature_fit.h"
-#include "models/paper/planar.h"
+#include "core/planar.h"
 #include "solvers/paper/compression.h"
 #include "solvers/paper/invariants.h"
 #include "solvers/paper/pieces.h"
