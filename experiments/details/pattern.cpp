@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "experiments/details/projection.h"
+#include "core/triangle_tree.h"
 #include "models/details/point_grid.h"
 #include "models/details/surface_walk.h"
 #include "testbed/keyframes.h"
@@ -129,7 +129,7 @@ Places jittered_grid(const Ground& ground, const DetailPatternOptions& options,
   const double spacing = std::sqrt(ground.area() / options.count);
   const int nx = std::max(1, static_cast<int>(std::lround(size.x() / spacing)));
   const int ny = std::max(1, static_cast<int>(std::lround(size.y() / spacing)));
-  const SurfaceProjector projector(ground.mesh());
+  const TriangleTree tree(ground.mesh());
   Places places;
   for (int j = 0; j < ny; ++j) {
     for (int i = 0; i < nx; ++i) {
@@ -137,7 +137,7 @@ Places jittered_grid(const Ground& ground, const DetailPatternOptions& options,
       const double dy = options.jitter * (random.uniform() - 0.5);
       const Eigen::Vector3d x(low.x() + size.x() * (i + 0.5 + dx) / nx,
                               low.y() + size.y() * (j + 0.5 + dy) / ny, low.z());
-      const SurfaceProjector::Nearest nearest = projector.nearest(x);
+      const TriangleTree::Nearest nearest = tree.nearest(x);
       // Cells beside the outline of the surface, and of the region, stay empty.
       if (nearest.distance < 1e-6 * spacing && ground.holds(nearest.point))
         places.push_back(nearest.point);

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "core/mesh.h"
 #include "core/rig.h"
+#include "core/triangle_tree.h"
 
 namespace geoprior::skinning {
 
@@ -25,8 +25,8 @@ std::vector<Bone> bones_of(const Skeleton& skeleton);
 /// threads at once.
 class InsideVisibility {
  public:
+  /// @param mesh  kept by reference
   explicit InsideVisibility(const TriMesh& mesh);
-  ~InsideVisibility();
   InsideVisibility(const InsideVisibility&) = delete;
   InsideVisibility& operator=(const InsideVisibility&) = delete;
 
@@ -37,11 +37,10 @@ class InsideVisibility {
  private:
   [[nodiscard]] bool leaves_inwards(int v, const Eigen::Vector3d& way) const;
 
-  struct Tree;
   const TriMesh& mesh_;
   std::vector<int> fan_offset_;  ///< triangles of vertex v: fan_[fan_offset_[v] .. [v + 1])
   std::vector<int> fan_;
-  std::unique_ptr<Tree> tree_;
+  TriangleTree tree_;
 };
 
 }  // namespace geoprior::skinning
