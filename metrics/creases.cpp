@@ -13,7 +13,8 @@
 namespace geoprior {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
+
 constexpr double kPlateau = 0.8;  // of a peak's energy: belongs to its plateau
 
 /// A family of parallel links between grid points, and the range of directions of lines that it
@@ -27,8 +28,8 @@ struct LinkFamily {
 std::array<LinkFamily, 8> link_families() {
   const double steep = std::atan(0.5);  // between (2, 0) and (2, 1); pi/4 - steep to (1, 1)
   const double axis = steep;
-  const double oblique = kPi / 8;
-  const double diagonal = kPi / 4 - steep;
+  const double oblique = pi / 8;
+  const double diagonal = pi / 4 - steep;
   return {{{2, 0, axis},
            {2, 1, oblique},
            {1, 1, diagonal},
@@ -74,7 +75,7 @@ using Ring = std::array<std::array<int, 2>, kRing>;
 Ring ring_of(double radius_in_spacings) {
   Ring ring{};
   for (int k = 0; k < kRing; ++k) {
-    const double angle = 2 * kPi * k / kRing;
+    const double angle = 2 * pi * k / kRing;
     ring[k] = {static_cast<int>(std::lround(radius_in_spacings * std::cos(angle))),
                static_cast<int>(std::lround(radius_in_spacings * std::sin(angle)))};
   }
@@ -94,7 +95,7 @@ double ring_energy(const GriddedSheet& sheet, const Ring& ring, int i, int j) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const int t : triangle) sum += sheet.normals.row(t).transpose() * sheet.normals.row(t);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(2 * kPi / kRing * sum, Eigen::EigenvaluesOnly);
+  solver.computeDirect(2 * pi / kRing * sum, Eigen::EigenvaluesOnly);
   return std::max(solver.eigenvalues()(0), 0.0);
 }
 

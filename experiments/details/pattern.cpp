@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "core/random.h"
 #include "core/triangle_tree.h"
@@ -17,7 +18,6 @@
 namespace geoprior::details {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 /// Poisson-disk: darts for each detail that is wanted.
 constexpr int kDartsPerDetail = 400;
 /// Smallest distance in a cluster over its radius.
@@ -154,7 +154,7 @@ void add_cluster(const Ground& ground, const SurfacePoint& centre, int size, dou
   for (int tries = 0; tries < kTries * size; ++tries) {
     if (places.size() == first + static_cast<std::size_t>(size)) return;
     const Eigen::Vector3d direction =
-        tangent_direction(centre.face, kTurn * random.uniform(), ground.topology(), ground.x());
+        tangent_direction(centre.face, kFullTurn * random.uniform(), ground.topology(), ground.x());
     const double length = radius * std::sqrt(random.uniform());
     const SurfacePoint p = trace_straight(centre, direction, length, ground.topology(), ground.x());
     const Eigen::Vector3d x = ground.position(p);
@@ -247,7 +247,7 @@ std::vector<Detail> scatter(const TriMesh& surface, const DetailPatternOptions& 
   for (const SurfacePoint& at : places_of(ground, options, places)) {
     Detail& d = details.emplace_back();
     d.at = at;
-    d.tangent_angle = kTurn * looks.uniform();
+    d.tangent_angle = kFullTurn * looks.uniform();
     if (options.aligned) {
       d.tangent_angle =
           tangent_angle(at.face, to_vector(options.direction), ground.topology(), ground.x());

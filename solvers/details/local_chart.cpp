@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/angles.h"
 #include "core/planar.h"
 
 namespace geoprior::details {
 namespace {
-
-constexpr double kTurn = 6.283185307179586;
 
 double angle_at_start(const IntrinsicTriangulation& mesh, int h) {
   const double b = mesh.length(h), c = mesh.length(IntrinsicTriangulation::previous(h));
@@ -62,7 +61,7 @@ void LocalChart::lay_out_ring(const IntrinsicTriangulation& mesh, int source, do
     }
   };
   each_spoke([&](int h) { total += h >= 0 ? angle_at_start(mesh, h) : 0; });
-  const double scale = mesh.border_vertex(source) ? 1 : kTurn / total;
+  const double scale = mesh.border_vertex(source) ? 1 : kFullTurn / total;
   double angle = 0;
   each_spoke([&](int h) {
     const int edge = h >= 0 ? h : -1 - h;
