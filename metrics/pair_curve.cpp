@@ -93,7 +93,7 @@ class PairCount {
         sample_(kSampleSigmas * options.bandwidth * unit),
         region_(mask.region) {
     const int triangles = surface.mesh().triangle_count();
-    offset_.assign(static_cast<std::size_t>(triangles) + 1, 0);
+    offset_.assign(triangles + 1, 0);
     for (std::size_t i = 0; i < details.size(); ++i) {
       surface.require(details[i]);
       const double weight = mask.weights.empty() ? 1 : mask.weights[i];

@@ -179,7 +179,7 @@ DrawnDetails draw_spikes(const SurfaceTopology& surface, std::span<const Eigen::
   parallel_blocks(visible.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     SpikeDrawer spike = model;
     for (std::size_t i = begin; i < end; ++i) {
-      const auto anchor = static_cast<std::size_t>(visible[i]);
+      const int anchor = visible[i];
       spike.draw(anchors[anchor], normals[anchor]);
       spike.write(visible[i], i, drawn);
     }

@@ -35,7 +35,7 @@ Eigen::Vector3d normal(const Eigen::MatrixX3d& x, const Eigen::Vector3i& t) {
 NodeGraph element_graph(const ShellElements& elements, int vertices) {
   std::vector<int> offset(1, 0);
   std::vector<int> members;
-  offset.reserve(static_cast<std::size_t>(elements.size()) + 1);
+  offset.reserve(elements.size() + 1);
   members.reserve(static_cast<std::size_t>(elements.size()) * 6);
   for (int e = 0; e < elements.size(); ++e) {
     const auto nodes = elements.nodes(e);

@@ -196,7 +196,7 @@ Eigen::MatrixXd biharmonic(const TriMesh& mesh, const std::vector<char>& marks,
   Eigen::VectorXd weights = laplacian.mass.cwiseInverse();
   for (int i = 0; i < patch.with_ring; ++i) {
     // A border's row holds the pull of the missing side: it says nothing of curvature.
-    const auto v = static_cast<std::size_t>(patch.vertices[i]);
+    const int v = patch.vertices[i];
     if (marks[v] == 2) weights[i] = 0;
   }
   weights /= weights.maxCoeff();

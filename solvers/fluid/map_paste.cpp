@@ -135,7 +135,7 @@ MapCoordinates unrolled(const WorkMesh& mesh, const EditedFrame& frame,
 class Covered {
  public:
   Covered(const MapCoordinates& places, int vertex_count)
-      : places_(places), slot_(static_cast<std::size_t>(vertex_count), -1) {
+      : places_(places), slot_(vertex_count, -1) {
     for (std::size_t i = 0; i < places.vertex.size(); ++i) {
       slot_[places.vertex[i]] = static_cast<int>(i);
     }
@@ -232,11 +232,10 @@ void add_middles(const std::vector<std::array<int, 2>>& parents, int first,
   for (std::size_t e = 0; e < parents.size(); ++e) {
     const std::ptrdiff_t a = find(parents[e][0]), b = a < 0 ? -1 : find(parents[e][1]);
     if (b < 0) continue;
-    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
     places.vertex.push_back(first + static_cast<int>(e));
-    places.uv.emplace_back(0.5 * (places.uv[i] + places.uv[j]));
-    places.weight.push_back(0.5 * (places.weight[i] + places.weight[j]));
-    if (!places.axes.empty()) places.axes.emplace_back(0.5 * (places.axes[i] + places.axes[j]));
+    places.uv.emplace_back(0.5 * (places.uv[a] + places.uv[b]));
+    places.weight.push_back(0.5 * (places.weight[a] + places.weight[b]));
+    if (!places.axes.empty()) places.axes.emplace_back(0.5 * (places.axes[a] + places.axes[b]));
   }
 }
 

@@ -79,8 +79,7 @@ void relax_vertex(SkinState& state, std::size_t s, RelaxationLaw law) {
   if (!(slope2 > 0)) return;
   Float4 mean{};
   for (int j = state.ring_offset[s]; j < state.ring_offset[s + 1]; ++j) {
-    const auto k = static_cast<std::size_t>(j);
-    mean += splat(state.ring_weight[k]) * (state.position[state.ring[k]] - p);
+    mean += splat(state.ring_weight[j]) * (state.position[state.ring[j]] - p);
   }
   const Float4 tangential = mean - xyz(gradient) * splat(dot3(mean, gradient) / slope2);
   state.next[s] = p + tangential * splat(relaxation_share(law, gradient[3]));
