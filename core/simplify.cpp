@@ -202,9 +202,8 @@ void Simplifier::push_edges_of(int v) {
 }
 
 void Simplifier::apply(const Collapse& c) {
-  const auto keep = static_cast<std::size_t>(c.keep), drop = static_cast<std::size_t>(c.drop);
   std::vector<int> touched;
-  for (const int t : fans_[drop]) {
+  for (const int t : fans_[c.drop]) {
     const bool dies = F_(t, 0) == c.keep || F_(t, 1) == c.keep || F_(t, 2) == c.keep;
     if (dies) {
       triangle_lives_[t] = false;
@@ -216,13 +215,13 @@ void Simplifier::apply(const Collapse& c) {
     for (int k = 0; k < 3; ++k) {
       if (F_(t, k) == c.drop) F_(t, k) = c.keep;
     }
-    fans_[keep].push_back(t);
+    fans_[c.keep].push_back(t);
   }
-  fans_[drop].clear();
-  version_[drop] = -1;
-  positions_[keep] = c.position;
-  quadrics_[keep] += quadrics_[drop];
-  ++version_[keep];
+  fans_[c.drop].clear();
+  version_[c.drop] = -1;
+  positions_[c.keep] = c.position;
+  quadrics_[c.keep] += quadrics_[c.drop];
+  ++version_[c.keep];
   --vertices_;
   push_edges_of(c.keep);
 }
