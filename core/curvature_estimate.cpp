@@ -151,8 +151,7 @@ Columns3 fitted(const std::vector<Hinge>& hinges, const Patch& patch, const Obse
   const Eigen::Index n = seen.rows.rows();
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostEdges, 1> weight(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    weight[i] = distance_weight(patch.distance()[k]) / mandel_jump(hinges, patch, i).norm();
+    weight[i] = distance_weight(patch.distance()[i]) / mandel_jump(hinges, patch, i).norm();
   }
   const Rows3 weighted = weight.asDiagonal() * seen.rows;
   const Square right = weight.asDiagonal();

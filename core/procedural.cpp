@@ -204,7 +204,7 @@ RiggedMesh capsule_finger(const FingerOptions& options) {
                          joint_on_x_axis("middle", 1, head[1], head[2]),
                          joint_on_x_axis("distal", 2, head[2], head[3])};
   rig.weights = chain_weights(rig.mesh.V, 4, [&](int joint, double x) {
-    const auto i = static_cast<std::size_t>(joint - 1);
+    const int i = joint - 1;
     const double width = options.ramp_width * options.radius[i];
     const double t = std::clamp(0.5 + (x - head[i]) / width, 0.0, 1.0);
     return t * t * (3 - 2 * t);

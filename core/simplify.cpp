@@ -90,7 +90,7 @@ Simplifier::Simplifier(const TriMesh& mesh) : F_(mesh.F) {
     const Eigen::Vector3d normal = (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0));
     const double area = 0.5 * normal.norm();
     for (int k = 0; k < 3; ++k) {
-      const auto v = static_cast<std::size_t>(F_(t, k));
+      const int v = F_(t, k);
       fans_[v].push_back(t);
       if (version_[v] < 0) ++vertices_;
       version_[v] = 0;
@@ -98,7 +98,7 @@ Simplifier::Simplifier(const TriMesh& mesh) : F_(mesh.F) {
     }
   }
   for (const Edge& e : boundary_edges(F_)) {
-    const auto a = static_cast<std::size_t>(e[0]), b = static_cast<std::size_t>(e[1]);
+    const int a = e[0], b = e[1];
     const Eigen::Vector3d along = positions_[b] - positions_[a];
     for (const int t : fans_[a]) {
       if (F_(t, 0) != e[1] && F_(t, 1) != e[1] && F_(t, 2) != e[1]) continue;
@@ -132,14 +132,13 @@ bool Simplifier::on_border(int v) const { return ring(v).size() != fans_[v].size
 /// The point of least error for the edge: the minimum of the summed quadric where that is well
 /// determined and near the edge, else the best of both ends and the middle.
 Collapse Simplifier::candidate(int a, int b) const {
-  const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-  const Quadric q = quadrics_[i] + quadrics_[j];
+  const Quadric q = quadrics_[a] + quadrics_[b];
   const auto error = [&](const Eigen::Vector3d& p) {
     const Eigen::Vector4d h = p.homogeneous();
     return std::max(0.0, h.dot(q * h));
   };
-  Collapse c{0, a, b, {version_[i], version_[j]}, 0.5 * (positions_[i] + positions_[j])};
-  const double length = (positions_[i] - positions_[j]).norm();
+  Collapse c{0, a, b, {version_[a], version_[b]}, 0.5 * (positions_[a] + positions_[b])};
+  const double length = (positions_[a] - positions_[b]).norm();
   const Eigen::Matrix3d A = q.topLeftCorner<3, 3>();
   const Eigen::FullPivLU<Eigen::Matrix3d> lu(A);
   if (lu.rcond() > 1e-4) {
@@ -151,7 +150,7 @@ Collapse Simplifier::candidate(int a, int b) const {
     }
   }
   c.error = error(c.position);
-  for (const Eigen::Vector3d& end : {positions_[i], positions_[j]}) {
+  for (const Eigen::Vector3d& end : {positions_[a], positions_[b]}) {
     if (error(end) < c.error) {
       c.position = end;
       c.error = error(end);
@@ -203,9 +202,8 @@ void Simplifier::push_edges_of(int v) {
 }
 
 void Simplifier::apply(const Collapse& c) {
-  const auto keep = static_cast<std::size_t>(c.keep), drop = static_cast<std::size_t>(c.drop);
   std::vector<int> touched;
-  for (const int t : fans_[drop]) {
+  for (const int t : fans_[c.drop]) {
     const bool dies = F_(t, 0) == c.keep || F_(t, 1) == c.keep || F_(t, 2) == c.keep;
     if (dies) {
       triangle_lives_[t] = false;
@@ -217,13 +215,13 @@ void Simplifier::apply(const Collapse& c) {
     for (int k = 0; k < 3; ++k) {
       if (F_(t, k) == c.drop) F_(t, k) = c.keep;
     }
-    fans_[keep].push_back(t);
+    fans_[c.keep].push_back(t);
   }
-  fans_[drop].clear();
-  version_[drop] = -1;
-  positions_[keep] = c.position;
-  quadrics_[keep] += quadrics_[drop];
-  ++version_[keep];
+  fans_[c.drop].clear();
+  version_[c.drop] = -1;
+  positions_[c.keep] = c.position;
+  quadrics_[c.keep] += quadrics_[c.drop];
+  ++version_[c.keep];
   --vertices_;
   push_edges_of(c.keep);
 }
@@ -257,8 +255,7 @@ TriMesh Simplifier::run(int target_vertices) {
   while (vertices_ > target_vertices && !queue_.empty()) {
     const Collapse c = queue_.top();
     queue_.pop();
-    const auto keep = static_cast<std::size_t>(c.keep), drop = static_cast<std::size_t>(c.drop);
-    if (version_[keep] != c.version[0] || version_[drop] != c.version[1]) continue;
+    if (version_[c.keep] != c.version[0] || version_[c.drop] != c.version[1]) continue;
     if (keeps_manifold(c) && keeps_shape(c)) apply(c);
   }
   return result();

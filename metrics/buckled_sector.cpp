@@ -10,11 +10,11 @@
 namespace geoprior {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kLevel = 0.2;            // of the rise, where the width is taken
 constexpr double kSectorOfWidth = 1.653;  // at that level
 constexpr double kLeastRise = 0.5;        // of the depth of the apex: 2.8 in theory
-constexpr double kWidestGap = kPi / 6;    // of a profile that goes all the way round (rad)
+/// Of a profile that goes all the way round (rad).
+constexpr double kWidestGap = std::numbers::pi / 6;
 
 /// Height over the apex where the circle crosses an edge.
 struct Crossing {
@@ -59,7 +59,8 @@ std::vector<Crossing> profile(const Eigen::MatrixX2d& from_apex, const Eigen::Ve
 
 /// Angle from crossing `i` to the next (rad).
 double gap(const std::vector<Crossing>& p, std::size_t i) {
-  return i + 1 < p.size() ? p[i + 1].angle - p[i].angle : p[0].angle + 2 * kPi - p[i].angle;
+  return i + 1 < p.size() ? p[i + 1].angle - p[i].angle
+                          : p[0].angle + 2 * std::numbers::pi - p[i].angle;
 }
 
 /// Median over the circle: the height of the ring, as most of the circle lies on it.
@@ -125,7 +126,8 @@ std::optional<double> buckled_sector(const Eigen::MatrixX2d& pattern, const Eige
   const auto at = static_cast<std::size_t>(peak - p.begin());
   const double level = ring + kLevel * rise;
   if (rises(p, level) != 1) return std::nullopt;
-  return kSectorOfWidth * (reach(p, at, 1, level) + reach(p, at, -1, level)) * 180 / kPi;
+  return kSectorOfWidth * (reach(p, at, 1, level) + reach(p, at, -1, level)) * 180 /
+         std::numbers::pi;
 }
 
 }  // namespace geoprior

@@ -1,34 +1,17 @@
 #include "metrics/closedness.h"
 
-#include <numeric>
 #include <span>
 #include <vector>
 
 #include "core/connectivity.h"
+#include "core/disjoint_sets.h"
 
 namespace geoprior {
 namespace {
 
-/// Union-find over whole numbers.
-class Sets {
- public:
-  explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int x) {
-    auto& p = parent_;
-    while (p[x] != x) {
-      x = p[x] = p[p[x]];
-    }
-    return x;
-  }
-  void join(int a, int b) { parent_[find(a)] = find(b); }
-
- private:
-  std::vector<int> parent_;
-};
-
 /// Vertices joined by common triangles.
-Sets vertex_sets(const TriMesh& mesh) {
-  Sets vertices(static_cast<std::size_t>(mesh.vertex_count()));
+DisjointSets vertex_sets(const TriMesh& mesh) {
+  DisjointSets vertices(mesh.vertex_count());
   for (int t = 0; t < mesh.F.rows(); ++t) {
     for (int c = 1; c < 3; ++c) vertices.join(mesh.F(t, c), mesh.F(t, 0));
   }
@@ -43,7 +26,7 @@ int corner_of(const Eigen::MatrixX3i& F, int triangle, int vertex) {
 }
 
 /// Vertices whose corners are not all joined across common edges.
-int pinched(const Eigen::MatrixX3i& F, int vertex_count, Sets& corners) {
+int pinched(const Eigen::MatrixX3i& F, int vertex_count, DisjointSets& corners) {
   std::vector<int> fan(vertex_count, -1);
   std::vector<char> counted(vertex_count, 0);
   int count = 0;
@@ -66,7 +49,7 @@ int pinched(const Eigen::MatrixX3i& F, int vertex_count, Sets& corners) {
 Closedness closedness(const TriMesh& mesh) {
   Closedness result;
   const EdgeConnectivity connectivity(mesh.F);
-  Sets corners(static_cast<std::size_t>(mesh.F.rows()) * 3);
+  DisjointSets corners(3 * mesh.triangle_count());
   for (int e = 0; e < connectivity.edge_count(); ++e) {
     const std::span<const int> here = connectivity.half_edges(e);
     if (here.size() == 1) ++result.border_edges;
@@ -79,7 +62,7 @@ Closedness closedness(const TriMesh& mesh) {
     }
   }
   result.pinched_vertices = pinched(mesh.F, mesh.vertex_count(), corners);
-  Sets vertices = vertex_sets(mesh);
+  DisjointSets vertices = vertex_sets(mesh);
   std::vector<char> used(mesh.vertex_count(), 0);
   for (const int v : mesh.F.reshaped()) used[v] = 1;
   int used_count = 0;
@@ -93,7 +76,7 @@ Closedness closedness(const TriMesh& mesh) {
 }
 
 Eigen::MatrixX3i largest_component(const TriMesh& mesh) {
-  Sets vertices = vertex_sets(mesh);
+  DisjointSets vertices = vertex_sets(mesh);
   std::vector<int> count(mesh.vertex_count(), 0);
   int largest = -1;
   for (int t = 0; t < mesh.F.rows(); ++t) {

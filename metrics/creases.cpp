@@ -7,12 +7,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 
 namespace geoprior {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
+
 constexpr double kPlateau = 0.8;  // of a peak's energy: belongs to its plateau
 
 /// A family of parallel links between grid points, and the range of directions of lines that it
@@ -26,8 +28,8 @@ struct LinkFamily {
 std::array<LinkFamily, 8> link_families() {
   const double steep = std::atan(0.5);  // between (2, 0) and (2, 1); pi/4 - steep to (1, 1)
   const double axis = steep;
-  const double oblique = kPi / 8;
-  const double diagonal = kPi / 4 - steep;
+  const double oblique = pi / 8;
+  const double diagonal = pi / 4 - steep;
   return {{{2, 0, axis},
            {2, 1, oblique},
            {1, 1, diagonal},
@@ -64,30 +66,7 @@ long crossings(const GriddedSheet& sheet, const LinkFamily& link, double cosine)
   return count;
 }
 
-/// Facets by union of grid points; each set is named by its lowest point.
-class Facets {
- public:
-  explicit Facets(std::size_t points) : parent_(points) {
-    for (std::size_t p = 0; p < points; ++p) parent_[p] = p;
-  }
-  std::size_t find(std::size_t p) {
-    while (parent_[p] != p) p = parent_[p] = parent_[parent_[p]];
-    return p;
-  }
-  void join(std::size_t p, std::size_t q) {
-    p = find(p);
-    q = find(q);
-    parent_[std::max(p, q)] = std::min(p, q);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
-std::size_t index(const PatternGrid& grid, int i, int j) {
-  return static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.columns) +
-         static_cast<std::size_t>(i);
-}
+int index(const PatternGrid& grid, int i, int j) { return j * grid.columns + i; }
 
 /// Ring of grid offsets about a point.
 constexpr int kRing = 16;
@@ -96,7 +75,7 @@ using Ring = std::array<std::array<int, 2>, kRing>;
 Ring ring_of(double radius_in_spacings) {
   Ring ring{};
   for (int k = 0; k < kRing; ++k) {
-    const double angle = 2 * kPi * k / kRing;
+    const double angle = 2 * pi * k / kRing;
     ring[k] = {static_cast<int>(std::lround(radius_in_spacings * std::cos(angle))),
                static_cast<int>(std::lround(radius_in_spacings * std::sin(angle)))};
   }
@@ -116,7 +95,7 @@ double ring_energy(const GriddedSheet& sheet, const Ring& ring, int i, int j) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const int t : triangle) sum += sheet.normals.row(t).transpose() * sheet.normals.row(t);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(2 * kPi / kRing * sum, Eigen::EigenvaluesOnly);
+  solver.computeDirect(2 * pi / kRing * sum, Eigen::EigenvaluesOnly);
   return std::max(solver.eigenvalues()(0), 0.0);
 }
 
@@ -194,7 +173,7 @@ double crease_length(const GriddedSheet& sheet, const CreaseOptions& options) {
 std::vector<double> facet_areas(const GriddedSheet& sheet, const CreaseOptions& options) {
   const PatternGrid& grid = sheet.grid;
   const double cosine = std::cos(options.fold_angle);
-  Facets facets(grid.triangle.size());
+  DisjointSets facets(static_cast<int>(grid.triangle.size()));  // named by their lowest points
   const auto smooth = [&](int a, int b) {
     return b >= 0 && (a == b || sheet.normals.row(a).dot(sheet.normals.row(b)) >= cosine);
   };
@@ -202,13 +181,13 @@ std::vector<double> facet_areas(const GriddedSheet& sheet, const CreaseOptions& 
     for (int i = 0; i < grid.columns; ++i) {
       const int own = grid.at(i, j);
       if (own < 0) continue;
-      const std::size_t p = index(grid, i, j);
+      const int p = index(grid, i, j);
       if (smooth(own, grid.at(i + 1, j))) facets.join(p, index(grid, i + 1, j));
       if (smooth(own, grid.at(i, j + 1))) facets.join(p, index(grid, i, j + 1));
     }
   }
   std::vector<int> points(grid.triangle.size(), 0);
-  for (std::size_t p = 0; p < points.size(); ++p) {
+  for (int p = 0; p < facets.size(); ++p) {
     if (grid.triangle[p] >= 0) ++points[facets.find(p)];
   }
   std::vector<double> areas;

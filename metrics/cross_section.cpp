@@ -215,13 +215,12 @@ HalfArea half_area(const ProfilePair& p, double outer_weight, double inner_weigh
     const double share = outer_share(k, n);
     const double weight = outer_weight * share + inner_weight * (1 - share);
     half.wanted += weight;
-    const auto i = static_cast<std::size_t>(k);
-    if (weight == 0 || std::isnan(p.rest[i]) || std::isnan(p.posed[i])) continue;
-    const double limit = p.limit[i];
+    if (weight == 0 || std::isnan(p.rest[k]) || std::isnan(p.posed[k])) continue;
+    const double limit = p.limit[k];
     half.found += weight;
-    const double rest = p.rest[i];
+    const double rest = p.rest[k];
     const double reference = std::min(rest, limit);
-    const double posed = std::min(p.posed[i], limit);
+    const double posed = std::min(p.posed[k], limit);
     half.rest += weight * rest * rest;
     half.reference += weight * reference * reference;
     half.posed += weight * posed * posed;

@@ -7,13 +7,14 @@
 #include <numbers>
 #include <vector>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "core/topology.h"
 
 namespace geoprior {
 namespace {
 
-constexpr double kThin = std::numbers::pi / 180;
+constexpr double kThin = kDegree;
 
 /// What the stars of all vertices add up to.
 struct Stars {

@@ -133,7 +133,7 @@ void sort_by_column(StripBuffers& b, int first_column, int columns) {
   const auto slot = [&](const Crossing& c) {
     return static_cast<std::size_t>(c.column - first_column);
   };
-  b.end_of_column.assign(static_cast<std::size_t>(columns) + 1, 0);
+  b.end_of_column.assign(columns + 1, 0);
   for (const Crossing& c : b.crossings) ++b.end_of_column[slot(c) + 1];
   for (std::size_t i = 1; i < b.end_of_column.size(); ++i)
     b.end_of_column[i] += b.end_of_column[i - 1];

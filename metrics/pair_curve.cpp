@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/planar.h"
 
 namespace geoprior {
 namespace {
@@ -55,7 +56,7 @@ struct Tally {
   }
 };
 
-void require(std::span<const SurfacePlace> details, double unit, const PairCurveOptions& o,
+void require(std::span<const SurfacePoint> details, double unit, const PairCurveOptions& o,
              const PairCurveMask& mask, int triangles) {
   if (!(unit > 0)) throw Error("unit " + std::to_string(unit), "pair curve", "positive");
   if (!(o.reach > 0) || !(o.bandwidth > 0) || o.bins < 1 || o.sources < 1) {
@@ -83,7 +84,7 @@ void require(std::span<const SurfacePlace> details, double unit, const PairCurve
 /// The details that count, by triangle, and the measurement from one of them.
 class PairCount {
  public:
-  PairCount(const UnfoldedSurface& surface, std::span<const SurfacePlace> details, double unit,
+  PairCount(const UnfoldedSurface& surface, std::span<const SurfacePoint> details, double unit,
             const PairCurveOptions& options, const PairCurveMask& mask)
       : surface_(surface),
         unit_(unit),
@@ -92,7 +93,7 @@ class PairCount {
         sample_(kSampleSigmas * options.bandwidth * unit),
         region_(mask.region) {
     const int triangles = surface.mesh().triangle_count();
-    offset_.assign(static_cast<std::size_t>(triangles) + 1, 0);
+    offset_.assign(triangles + 1, 0);
     for (std::size_t i = 0; i < details.size(); ++i) {
       surface.require(details[i]);
       const double weight = mask.weights.empty() ? 1 : mask.weights[i];
@@ -151,7 +152,7 @@ class PairCount {
     if (!(distance - longest < reach_ * unit_)) return;
     if (longest <= sample_) {
       const Eigen::Vector2d u = b - a, v = c - a;
-      area.add(distance / unit_, share * (u.x() * v.y() - u.y() * v.x()) / 2);
+      area.add(distance / unit_, share * cross(u, v) / 2);
       return;
     }
     const Eigen::Vector2d ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
@@ -164,7 +165,7 @@ class PairCount {
   const UnfoldedSurface& surface_;
   double unit_, reach_, cell_, sample_;  // reach and cell in units, sample in m
   std::span<const char> region_;
-  std::vector<SurfacePlace> place_;
+  std::vector<SurfacePoint> place_;
   std::vector<Eigen::Vector2d> layout_;
   std::vector<double> weight_;
   std::vector<std::size_t> offset_, row_;  // details of the triangles
@@ -203,7 +204,7 @@ Tally tally_of(const PairCount& count, const UnfoldedSurface& surface, std::size
 
 }  // namespace
 
-PairCurve pair_curve(const TriMesh& surface, std::span<const SurfacePlace> details, double unit,
+PairCurve pair_curve(const TriMesh& surface, std::span<const SurfacePoint> details, double unit,
                      const PairCurveOptions& options, const PairCurveMask& mask) {
   require(details, unit, options, mask, surface.triangle_count());
   const UnfoldedSurface unfolded(surface);

@@ -60,7 +60,7 @@ struct PairCurveMask {
 ///                 fewer than two details that count
 /// Source: the planar estimator is that of Oeztireli and Gross 2012; the annulus on the surface
 /// replaces 2 pi r.
-PairCurve pair_curve(const TriMesh& surface, std::span<const SurfacePlace> details, double unit,
+PairCurve pair_curve(const TriMesh& surface, std::span<const SurfacePoint> details, double unit,
                      const PairCurveOptions& options = {}, const PairCurveMask& mask = {});
 
 /// L1 distance of two curves: integral of |g_a - g_b| over r, in units of the spacing.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/planar.h"
 
 namespace geoprior {
 namespace {
@@ -27,16 +28,12 @@ bool centre_behind(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double le
   return true;
 }
 
-double cross_product(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
-  return u.x() * v.y() - u.y() * v.x();
-}
-
 /// Whether the straight way from the centre to the point passes between a and b.
 bool passes_between(const Eigen::Vector2d& centre, const Eigen::Vector2d& point,
                     const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Eigen::Vector2d way = point - centre;
   const double slack = 1e-12 * way.squaredNorm();
-  return cross_product(way, a - centre) >= -slack && cross_product(way, b - centre) <= slack;
+  return cross(way, a - centre) >= -slack && cross(way, b - centre) <= slack;
 }
 
 UnfoldedSurface::Triangle lay_out(const TriMesh& mesh, int f) {
@@ -78,20 +75,16 @@ UnfoldedSurface::UnfoldedSurface(TriMesh surface) : mesh_(std::move(surface)) {
   corners_ = VertexCorners(mesh_.F, mesh_.vertex_count());
 }
 
-Eigen::Vector2d UnfoldedSurface::layout(const SurfacePlace& place) const {
+Eigen::Vector2d UnfoldedSurface::layout(const SurfacePoint& place) const {
   const auto& corner = triangle(place.face).corner;
   return place.barycentric(1) * corner[1] + place.barycentric(2) * corner[2];
 }
 
-Eigen::Vector3d UnfoldedSurface::position(const SurfacePlace& place) const {
-  Eigen::Vector3d x = Eigen::Vector3d::Zero();
-  for (int c = 0; c < 3; ++c) {
-    x += place.barycentric(c) * mesh_.V.row(mesh_.F(place.face, c)).transpose();
-  }
-  return x;
+Eigen::Vector3d UnfoldedSurface::position(const SurfacePoint& place) const {
+  return position_of(place, mesh_.V, mesh_.F);
 }
 
-void UnfoldedSurface::require(const SurfacePlace& place) const {
+void UnfoldedSurface::require(const SurfacePoint& place) const {
   if (place.face < 0 || place.face >= mesh_.triangle_count()) {
     throw Error("no triangle " + std::to_string(place.face), "place on a surface",
                 "0 to " + std::to_string(mesh_.triangle_count()) + " excluded");
@@ -161,7 +154,7 @@ void SurfaceFront::visit(int vertex, double distance) {
   }
 }
 
-void SurfaceFront::spread(const SurfacePlace& source, double reach) {
+void SurfaceFront::spread(const SurfacePoint& source, double reach) {
   surface_.require(source);
   if (!(reach > 0)) throw Error("reach " + std::to_string(reach), "front", "positive");
   clear();

@@ -9,14 +9,9 @@
 
 #include "core/connectivity.h"
 #include "core/mesh.h"
+#include "core/surface_point.h"
 
 namespace geoprior {
-
-/// A point of a surface: barycentric coordinates in a triangle.
-struct SurfacePlace {
-  int face = 0;
-  Eigen::Vector3d barycentric{1, 0, 0};
-};
 
 /// A surface with each of its triangles laid out in a plane: corner 0 at the origin, corner 1 on
 /// the positive x axis, corner 2 above it.
@@ -32,14 +27,14 @@ class UnfoldedSurface {
     std::array<double, 3> cosine;  ///< of the angle at corner c
   };
   [[nodiscard]] const Triangle& triangle(int face) const { return triangles_[face]; }
-  [[nodiscard]] Eigen::Vector2d layout(const SurfacePlace& place) const;
-  [[nodiscard]] Eigen::Vector3d position(const SurfacePlace& place) const;
+  [[nodiscard]] Eigen::Vector2d layout(const SurfacePoint& place) const;
+  [[nodiscard]] Eigen::Vector3d position(const SurfacePoint& place) const;
   /// Corners 3 f + c of the triangles around a vertex, ascending.
   [[nodiscard]] std::span<const int> corners_of(int vertex) const { return corners_.of(vertex); }
   /// Longest edge of the triangles around a vertex (m).
   [[nodiscard]] double longest_edge(int vertex) const { return longest_edge_[vertex]; }
   /// @throws Error  on a place that is on no triangle
-  void require(const SurfacePlace& place) const;
+  void require(const SurfacePoint& place) const;
 
  private:
   TriMesh mesh_;
@@ -67,7 +62,7 @@ class SurfaceFront {
   explicit SurfaceFront(const UnfoldedSurface& surface);
 
   /// @throws Error  on a place that is on no triangle or a reach that is not positive
-  void spread(const SurfacePlace& source, double reach);
+  void spread(const SurfacePoint& source, double reach);
   /// Triangles that may have a point within the reach, in the order they were found.
   [[nodiscard]] std::span<const int> faces() const { return reached_; }
 

@@ -132,7 +132,7 @@ void clear_scores(const Comparison& c, const TrackedFrames& truth, const Tracked
         track.interrupted = track.last >= 0;
         continue;
       }
-      const auto j = static_cast<std::size_t>(column[i]);
+      const int j = column[i];
       ++s.matches;
       similarity += frame.similarity(static_cast<Eigen::Index>(i), column[i]);
       square += (truth[f][i].centre - found[f][j].centre).squaredNorm();

@@ -9,7 +9,7 @@
 namespace geoprior {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Row m, column x: e^{-2 pi i m x / n} / n.
 Eigen::MatrixXcd transform_matrix(Eigen::Index n) {
@@ -17,7 +17,7 @@ Eigen::MatrixXcd transform_matrix(Eigen::Index n) {
   for (Eigen::Index m = 0; m < n; ++m) {
     for (Eigen::Index x = 0; x < n; ++x) {
       // m x mod n keeps the angle small, and the transform exact to round-off.
-      const double angle = -2 * kPi * static_cast<double>((m * x) % n) / static_cast<double>(n);
+      const double angle = -2 * pi * static_cast<double>((m * x) % n) / static_cast<double>(n);
       matrix(m, x) = std::polar(1.0 / static_cast<double>(n), angle);
     }
   }
@@ -38,7 +38,7 @@ Eigen::MatrixXcd fourier_modes(const Eigen::MatrixXd& heights) {
 
 Eigen::Vector2d WavePatch::wave_vector(Eigen::Index m, Eigen::Index n, Eigen::Index rows,
                                        Eigen::Index cols) const {
-  return {2 * kPi * signed_number(m, rows) / size_x, 2 * kPi * signed_number(n, cols) / size_y};
+  return {2 * pi * signed_number(m, rows) / size_x, 2 * pi * signed_number(n, cols) / size_y};
 }
 
 double WavePatch::frequency(Eigen::Index m, Eigen::Index n, Eigen::Index rows,
@@ -57,7 +57,7 @@ DispersionError dispersion_error(const Eigen::MatrixXcd& before, const Eigen::Ma
       const double expected = patch.frequency(m, n, now.rows(), now.cols());
       const double amplitude = std::abs(now(m, n));
       const double beside = (std::abs(before(m, n)) + std::abs(after(m, n))) / 2;
-      const bool measurable = expected > 0 && expected * interval < kPi && amplitude > weakest &&
+      const bool measurable = expected > 0 && expected * interval < pi && amplitude > weakest &&
                               amplitude > 0.1 * beside;
       if (!measurable) continue;
       const double cosine = ((before(m, n) + after(m, n)) * std::conj(now(m, n))).real() /

@@ -1,7 +1,6 @@
 #include "testbed/keyframes.h"
 
-#include <numbers>
-
+#include "core/angles.h"
 #include "core/error.h"
 
 namespace geoprior {
@@ -37,7 +36,7 @@ void describe_keys(OptionVisitor& v, std::vector<KeyOptions>& keys) {
 Eigen::Vector3d to_vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
 Eigen::Quaterniond to_rotation(const std::array<double, 3>& turn_deg) {
-  const Eigen::Vector3d r = to_vector(turn_deg) * (std::numbers::pi / 180);
+  const Eigen::Vector3d r = to_vector(turn_deg) * kDegree;
   const double angle = r.norm();
   if (angle == 0) return Eigen::Quaterniond::Identity();
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, r / angle));

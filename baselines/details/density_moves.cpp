@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "core/planar.h"
 
 namespace geoprior::details {
 namespace {
@@ -17,10 +18,6 @@ namespace {
 constexpr double kInside = 1e-3;
 /// Triangles crossed on the way to a circumcentre: a bound against round-off.
 constexpr int kMostCrossed = 64;
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 /// Apex of the triangle left of the segment from `a` to `b`, from its distances to both.
 Eigen::Vector2d apex(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double to_a, double to_b) {

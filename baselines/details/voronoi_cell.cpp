@@ -5,12 +5,10 @@
 #include <limits>
 #include <numbers>
 
+#include "core/planar.h"
+
 namespace geoprior::details {
 namespace {
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 /// Angle between the first and the last edge of the triangle of `h` at its origin.
 double angle_at(const IntrinsicTriangulation& mesh, int h) {

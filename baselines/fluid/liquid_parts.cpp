@@ -127,9 +127,8 @@ Part particles_part(const Tank& tank, const LiquidParticles& particles) {
   part.points.resize(n, 3);
   Eigen::MatrixXd velocity(n, 3);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const auto p = static_cast<std::size_t>(i);
-    part.points.row(i) = tank.origin + particles.position[p].cast<double>();
-    velocity.row(i) = particles.velocity[p].cast<double>();
+    part.points.row(i) = tank.origin + particles.position[i].cast<double>();
+    velocity.row(i) = particles.velocity[i].cast<double>();
   }
   part.arrays.push_back({"velocity", "m/s", NamedArray::On::points, std::move(velocity)});
   return part;

@@ -304,7 +304,6 @@ void require_valid(const OceanOptions& o, const std::string& where) {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kPhillipsAlpha = 8.1e-3;
 constexpr double kOnTheJump = 1e-12;
 
@@ -330,7 +329,7 @@ double dimensionless_fetch(const OceanOptions& o) {
 double peak_frequency(const OceanOptions& o) {
   const double scale = o.gravity / o.wind_speed;
   if (o.spectrum == SpectrumKind::jonswap || o.spectrum == SpectrumKind::tma) {
-    return 2 * kPi * 3.5 * scale * std::pow(dimensionless_fetch(o), -0.33);
+    return 2 * std::numbers::pi * 3.5 * scale * std::pow(dimensionless_fetch(o), -0.33);
   }
   return kDevelopedOmega * std::pow(4 * kDevelopedBeta / 5, 0.25) * scale;
 }
@@ -381,22 +380,22 @@ double mitsuyasu(double cosine, double omega, const OceanOptions& o) {
   // Stirling's series where the Gamma function would overflow; relative error 4e-8 at s = 50.
   const double ratio =
       s > 50 ? std::sqrt(s + 0.25 + 1 / (32 * s)) : std::tgamma(s + 1) / std::tgamma(s + 0.5);
-  return ratio / (2 * std::sqrt(kPi)) * std::pow(std::max(0.0, (1 + cosine) / 2), s);
+  return ratio / (2 * std::sqrt(std::numbers::pi)) * std::pow(std::max(0.0, (1 + cosine) / 2), s);
 }
 
 /// D(theta), integral 1 over the circle.
 double spreading(double cosine, double omega, const OceanOptions& o) {
   switch (o.spreading) {
     case SpreadingKind::none:
-      return 1 / (2 * kPi);
+      return 1 / (2 * std::numbers::pi);
     case SpreadingKind::cosine_squared:
-      return cosine > 0 ? 2 / kPi * square(cosine) : 0;
+      return cosine > 0 ? 2 / std::numbers::pi * square(cosine) : 0;
     case SpreadingKind::mitsuyasu:
       return mitsuyasu(cosine, omega, o);
     case SpreadingKind::one_sided:
       // Half of the value on the jump, so that sums over a grid of modes do not lose its column.
-      if (std::abs(cosine) < kOnTheJump) return 1 / (2 * kPi);
-      return cosine > 0 ? 1 / kPi : 0;
+      if (std::abs(cosine) < kOnTheJump) return 1 / (2 * std::numbers::pi);
+      return cosine > 0 ? 1 / std::numbers::pi : 0;
   }
   return 0;
 }
@@ -411,10 +410,10 @@ double ocean_spectrum(const OceanOptions& options, const Eigen::Vector2d& k) {
   const double length = k.norm();
   if (!(length > 0)) return 0;
   const double omega = ocean_frequency(options, length);
-  const double angle = options.wind_direction_deg * kPi / 180;
+  const double angle = options.wind_direction_deg * std::numbers::pi / 180;
   const double cosine =
       std::clamp(k.dot(Eigen::Vector2d(std::cos(angle), std::sin(angle))) / length, -1.0, 1.0);
-  const double damping = std::exp(-square(length * options.smallest_wave / (2 * kPi)));
+  const double damping = std::exp(-square(length * options.smallest_wave / (2 * std::numbers::pi)));
   return omnidirectional(length, omega, options) * spreading(cosine, omega, options) * damping;
 }
 

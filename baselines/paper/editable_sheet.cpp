@@ -7,8 +7,8 @@
 
 #include "core/connectivity.h"
 #include "core/error.h"
+#include "core/planar.h"
 #include "models/paper/overlap.h"
-#include "models/paper/planar.h"
 
 namespace geoprior::paper {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/planar.h"
 #include "models/paper/elements.h"
 #include "models/paper/pattern_locator.h"
-#include "models/paper/planar.h"
 #include "models/paper/transfer.h"
 
 namespace geoprior::paper {

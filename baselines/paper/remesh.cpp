@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "baselines/paper/editable_sheet.h"
-#include "models/paper/planar.h"
+#include "core/planar.h"
 
 namespace geoprior::paper {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/connectivity.h"
-#include "models/paper/planar.h"
+#include "core/planar.h"
 
 namespace geoprior::paper {
 namespace {

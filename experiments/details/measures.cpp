@@ -77,15 +77,15 @@ struct FrameState {
   int still = 0;  ///< frames that the surface has not moved for
 };
 
-std::vector<SurfacePlace> places_of(const std::vector<Detail>& details) {
-  std::vector<SurfacePlace> places;
-  for (const Detail& d : details) places.push_back({d.at.face, d.at.barycentric});
+std::vector<SurfacePoint> places_of(const std::vector<Detail>& details) {
+  std::vector<SurfacePoint> places;
+  for (const Detail& d : details) places.push_back(d.at);
   return places;
 }
 
-std::vector<SurfacePlace> visible_places(const Part& part) {
+std::vector<SurfacePoint> visible_places(const Part& part) {
   const FrameDetails details(part);
-  std::vector<SurfacePlace> places;
+  std::vector<SurfacePoint> places;
   for (std::size_t i = 0; i < details.face.size(); ++i) {
     if (!(details.weight[i] > 0.5)) continue;
     const auto b = details.barycentric.row(static_cast<Eigen::Index>(i));
@@ -95,11 +95,11 @@ std::vector<SurfacePlace> visible_places(const Part& part) {
 }
 
 PairCurve curve_of(DetailsMemo& memo, const DetailsScene& scene, const Part& surface,
-                   const std::vector<SurfacePlace>& places, double unit) {
+                   const std::vector<SurfacePoint>& places, double unit) {
   ContentKey key;
   key.add_matrix(surface.points);
   key.add_matrix(surface.triangles);
-  for (const SurfacePlace& p : places) {
+  for (const SurfacePoint& p : places) {
     key.add(static_cast<std::uint64_t>(p.face));
     key.add_matrix(p.barycentric);
   }
@@ -123,14 +123,12 @@ bool fills_rectangle(const Part& surface) {
   return std::abs(area - size.x() * size.y()) <= 1e-6 * area;
 }
 
-RadialSpectrum spectrum_of(const Part& plane, const std::vector<SurfacePlace>& places,
+RadialSpectrum spectrum_of(const Part& plane, const std::vector<SurfacePoint>& places,
                            double unit) {
   Eigen::MatrixX2d points(static_cast<Eigen::Index>(places.size()), 2);
   for (std::size_t i = 0; i < places.size(); ++i) {
     points.row(static_cast<Eigen::Index>(i)) =
-        position_of(SurfacePoint{places[i].face, places[i].barycentric}, plane.points,
-                    plane.triangles)
-            .head<2>();
+        position_of(places[i], plane.points, plane.triangles).head<2>();
   }
   const Eigen::Vector2d low = plane.points.leftCols<2>().colwise().minCoeff();
   const Eigen::Vector2d high = plane.points.leftCols<2>().colwise().maxCoeff();
@@ -301,7 +299,7 @@ std::optional<PairMeasures> pair_measures(DetailsMemo& memo, const DetailsScene&
   const Part& now = required_part(frame, "surface");
   const PairAtRest rest = pairs_at_rest(memo, scene);
   if (!(rest.unit > 0)) return {};
-  const auto distance = [&](const std::vector<SurfacePlace>& places) {
+  const auto distance = [&](const std::vector<SurfacePoint>& places) {
     return pair_curve_distance(curve_of(memo, scene, now, places, rest.unit), rest.curve);
   };
   PairMeasures m;

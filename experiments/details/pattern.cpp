@@ -7,9 +7,10 @@
 #include <string_view>
 #include <utility>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "core/random.h"
-#include "experiments/details/projection.h"
+#include "core/triangle_tree.h"
 #include "models/details/point_grid.h"
 #include "models/details/surface_walk.h"
 #include "testbed/keyframes.h"
@@ -17,7 +18,6 @@
 namespace geoprior::details {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 /// Poisson-disk: darts for each detail that is wanted.
 constexpr int kDartsPerDetail = 400;
 /// Smallest distance in a cluster over its radius.
@@ -129,7 +129,7 @@ Places jittered_grid(const Ground& ground, const DetailPatternOptions& options,
   const double spacing = std::sqrt(ground.area() / options.count);
   const int nx = std::max(1, static_cast<int>(std::lround(size.x() / spacing)));
   const int ny = std::max(1, static_cast<int>(std::lround(size.y() / spacing)));
-  const SurfaceProjector projector(ground.mesh());
+  const TriangleTree tree(ground.mesh());
   Places places;
   for (int j = 0; j < ny; ++j) {
     for (int i = 0; i < nx; ++i) {
@@ -137,7 +137,7 @@ Places jittered_grid(const Ground& ground, const DetailPatternOptions& options,
       const double dy = options.jitter * (random.uniform() - 0.5);
       const Eigen::Vector3d x(low.x() + size.x() * (i + 0.5 + dx) / nx,
                               low.y() + size.y() * (j + 0.5 + dy) / ny, low.z());
-      const SurfaceProjector::Nearest nearest = projector.nearest(x);
+      const TriangleTree::Nearest nearest = tree.nearest(x);
       // Cells beside the outline of the surface, and of the region, stay empty.
       if (nearest.distance < 1e-6 * spacing && ground.holds(nearest.point))
         places.push_back(nearest.point);
@@ -154,7 +154,7 @@ void add_cluster(const Ground& ground, const SurfacePoint& centre, int size, dou
   for (int tries = 0; tries < kTries * size; ++tries) {
     if (places.size() == first + static_cast<std::size_t>(size)) return;
     const Eigen::Vector3d direction =
-        tangent_direction(centre.face, kTurn * random.uniform(), ground.topology(), ground.x());
+        tangent_direction(centre.face, kFullTurn * random.uniform(), ground.topology(), ground.x());
     const double length = radius * std::sqrt(random.uniform());
     const SurfacePoint p = trace_straight(centre, direction, length, ground.topology(), ground.x());
     const Eigen::Vector3d x = ground.position(p);
@@ -247,7 +247,7 @@ std::vector<Detail> scatter(const TriMesh& surface, const DetailPatternOptions& 
   for (const SurfacePoint& at : places_of(ground, options, places)) {
     Detail& d = details.emplace_back();
     d.at = at;
-    d.tangent_angle = kTurn * looks.uniform();
+    d.tangent_angle = kFullTurn * looks.uniform();
     if (options.aligned) {
       d.tangent_angle =
           tangent_angle(at.face, to_vector(options.direction), ground.topology(), ground.x());

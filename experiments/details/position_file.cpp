@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "experiments/details/projection.h"
+#include "core/triangle_tree.h"
 #include "testbed/formats/mesh_file.h"
 #include "testbed/formats/text_lines.h"
 
@@ -137,11 +137,11 @@ std::vector<Detail> details_of_file(const fs::path& file, const TriMesh& surface
                                     double max_distance) {
   const std::vector<Position> positions =
       file.extension() == ".csv" ? read_csv(file) : read_vertices(file);
-  const SurfaceProjector projector(surface);
+  const TriangleTree tree(surface);
   std::vector<Detail> details;
   std::map<PlaceKey, std::string> taken;
   for (const Position& p : positions) {
-    const SurfaceProjector::Nearest nearest = projector.nearest(p.x);
+    const TriangleTree::Nearest nearest = tree.nearest(p.x);
     if (nearest.distance > max_distance) {
       throw Error("is off the surface by " + std::to_string(nearest.distance) + " m", p.place,
                   "at most " + std::to_string(max_distance) + " m");

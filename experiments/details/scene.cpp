@@ -7,7 +7,6 @@
 
 #include "core/error.h"
 #include "experiments/details/position_file.h"
-#include "experiments/details/projection.h"
 #include "models/details/detail_process.h"
 #include "testbed/formats/mesh_file.h"
 #include "testbed/formats/vtk_files.h"

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "core/procedural.h"
 #include "core/subdivision.h"
@@ -135,16 +136,15 @@ TriMesh torus_surface(double radius, double tube_radius, double edge) {
     throw Error("is not smaller than the ring's", "scene.surface.tube_radius",
                 "less than scene.surface.radius");
   }
-  constexpr double kTurn = 2 * std::numbers::pi;
-  require_size(kTurn * radius * kTurn * tube_radius, edge);
+  require_size(kFullTurn * radius * kFullTurn * tube_radius, edge);
   // Even numbers, so that diagonals alternate across the seams too.
-  const int nu = 2 * steps(kTurn * radius / 2, edge, 4);
-  const int nv = 2 * steps(kTurn * tube_radius / 2, edge, 3);
+  const int nu = 2 * steps(kFullTurn * radius / 2, edge, 4);
+  const int nv = 2 * steps(kFullTurn * tube_radius / 2, edge, 3);
   TriMesh mesh;
   mesh.V.resize(nu * nv, 3);
   for (int j = 0; j < nv; ++j) {
     for (int i = 0; i < nu; ++i) {
-      const double u = kTurn * i / nu, w = kTurn * j / nv;
+      const double u = kFullTurn * i / nu, w = kFullTurn * j / nv;
       const double r = radius + tube_radius * std::cos(w);
       mesh.V.row(j * nu + i) << r * std::cos(u), r * std::sin(u), tube_radius * std::sin(w);
     }

@@ -4,6 +4,8 @@
 #include <sstream>
 #include <vector>
 
+#include "core/planar.h"
+
 namespace geoprior::paper {
 namespace {
 
@@ -62,7 +64,7 @@ bool is_convex(const Pattern& pattern) {
   for (std::size_t i = 0; i < n; ++i) {
     const Eigen::Vector2d a = pattern.border[(i + 1) % n] - pattern.border[i];
     const Eigen::Vector2d b = pattern.border[(i + 2) % n] - pattern.border[(i + 1) % n];
-    if (a.x() * b.y() - a.y() * b.x() < -tolerance) return false;
+    if (cross(a, b) < -tolerance) return false;
   }
   return true;
 }

@@ -4,16 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/planar.h"
+
 namespace geoprior::paper {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kMostChords = 4096;
-
-/// Angle from `u` to `v` in (-pi, pi].
-double angle_between(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
-  return std::atan2(u.x() * v.y() - u.y() * v.x(), u.dot(v));
-}
 
 /// Centre of the arc in coordinates where the ellipse is a unit circle (F.6.5 after scaling).
 Eigen::Vector2d unit_circle_centre(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
@@ -47,7 +43,7 @@ void flatten_arc(const SvgArc& arc, double tolerance, std::vector<Eigen::Vector2
     out.push_back(arc.to);
     return;
   }
-  const double turn = arc.turn_deg * kPi / 180;
+  const double turn = arc.turn_deg * std::numbers::pi / 180;
   Eigen::Matrix2d rotation;
   rotation << std::cos(turn), -std::sin(turn), std::sin(turn), std::cos(turn);
   const auto to_circle = [&](const Eigen::Vector2d& p) -> Eigen::Vector2d {
@@ -58,9 +54,9 @@ void flatten_arc(const SvgArc& arc, double tolerance, std::vector<Eigen::Vector2
   const Eigen::Vector2d from = to_circle(arc.from), to = to_circle(arc.to);
   const Eigen::Vector2d centre = unit_circle_centre(from, to, arc.large != arc.sweep);
   const double first = std::atan2(from.y() - centre.y(), from.x() - centre.x());
-  double span = angle_between(from - centre, to - centre);
-  if (arc.sweep && span < 0) span += 2 * kPi;
-  if (!arc.sweep && span > 0) span -= 2 * kPi;
+  double span = signed_angle(from - centre, to - centre);
+  if (arc.sweep && span < 0) span += 2 * std::numbers::pi;
+  if (!arc.sweep && span > 0) span -= 2 * std::numbers::pi;
   // A chord over an angle a is off by at most r (1 - cos(a / 2)).
   const double largest = radii.maxCoeff();
   const double step = 2 * std::acos(std::clamp(1 - tolerance / largest, 0.0, 1.0));

@@ -169,14 +169,6 @@ std::shared_ptr<const SurfaceMotion> motion_of_sequence(const SurfaceSequence& s
   return std::make_shared<StoredMotion>(std::move(positions), std::move(times));
 }
 
-Eigen::Vector3d position_of(const SurfacePoint& point, const Eigen::MatrixX3d& V,
-                            const Eigen::MatrixX3i& F) {
-  return (point.barycentric[0] * V.row(F(point.face, 0)) +
-          point.barycentric[1] * V.row(F(point.face, 1)) +
-          point.barycentric[2] * V.row(F(point.face, 2)))
-      .transpose();
-}
-
 void require_valid(const DetailScene& scene) {
   require_surface(scene.surface, scene.name);
   if (scene.details.size() < 3) {

@@ -7,16 +7,10 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "core/surface_point.h"
 #include "core/surface_sequence.h"
 
 namespace geoprior::details {
-
-/// A point of a triangle mesh that goes where the mesh goes: a face and barycentric coordinates
-/// (not negative, sum 1) for its three vertices in the order of `F`.
-struct SurfacePoint {
-  int face = 0;
-  Eigen::Vector3d barycentric = Eigen::Vector3d::Constant(1.0 / 3);
-};
 
 /// One detail: a spike, an instance of a mesh, a hole (thesis 2.2.2: position and weight omega).
 struct Detail {
@@ -83,9 +77,5 @@ void require_valid(const DetailScene& scene);
 /// not (those have turned with the surface).
 void require_valid_step(const Eigen::MatrixX3i& F, const Eigen::MatrixX3d& before,
                         const Eigen::MatrixX3d& now, int frame, const std::string& name);
-
-/// Point of a detail on the surface with vertices `V`.
-Eigen::Vector3d position_of(const SurfacePoint& point, const Eigen::MatrixX3d& V,
-                            const Eigen::MatrixX3i& F);
 
 }  // namespace geoprior::details

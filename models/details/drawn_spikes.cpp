@@ -120,10 +120,8 @@ class SpikeDrawer {
     auto triangle = static_cast<Eigen::Index>(number * triangles_.size());
     std::fill(normal_.begin(), normal_.end(), Eigen::Vector3d::Zero());
     for (const auto& f : triangles_) {
-      const auto a = static_cast<std::size_t>(f[0]), b = static_cast<std::size_t>(f[1]),
-                 c = static_cast<std::size_t>(f[2]);
-      const Eigen::Vector3d n = (point_[b] - point_[a]).cross(point_[c] - point_[a]);
-      for (const std::size_t v : {a, b, c}) normal_[v] += n;
+      const Eigen::Vector3d n = (point_[f[1]] - point_[f[0]]).cross(point_[f[2]] - point_[f[0]]);
+      for (const int v : f) normal_[v] += n;
       for (Eigen::Index k = 0; k < 3; ++k)
         drawn.mesh.F(triangle, k) = static_cast<int>(vertex) + f[k];
       ++triangle;
@@ -179,7 +177,7 @@ DrawnDetails draw_spikes(const SurfaceTopology& surface, std::span<const Eigen::
   parallel_blocks(visible.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     SpikeDrawer spike = model;
     for (std::size_t i = begin; i < end; ++i) {
-      const auto anchor = static_cast<std::size_t>(visible[i]);
+      const int anchor = visible[i];
       spike.draw(anchors[anchor], normals[anchor]);
       spike.write(visible[i], i, drawn);
     }

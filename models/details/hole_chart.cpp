@@ -6,12 +6,10 @@
 #include <tuple>
 #include <utility>
 
+#include "core/planar.h"
+
 namespace geoprior::details {
 namespace {
-
-double angle_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
-}
 
 /// Polar coordinates of the third corner of a triangle right of the edge a -> b.
 Eigen::Vector2d polar_corner(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
@@ -22,9 +20,9 @@ Eigen::Vector2d polar_corner(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
   const Eigen::Vector2d anchor(along, std::sqrt(std::max(0.0, to_a * to_a - along * along)));
   const Eigen::Vector2d edge(length, 0);
   const Eigen::Vector2d corner = unfold_corner(Eigen::Vector2d::Zero(), edge, xa, xb, xc) - anchor;
-  const double between = angle_between(a, b);
-  const double whole = angle_between(-anchor, edge - anchor);
-  const double part = angle_between(-anchor, corner);
+  const double between = signed_angle(a, b);
+  const double whole = signed_angle(-anchor, edge - anchor);
+  const double part = signed_angle(-anchor, corner);
   if (between > 0 && whole > 0 && part >= 0 && part <= whole) {
     const double turn = between * part / whole, c = std::cos(turn), s = std::sin(turn);
     const Eigen::Vector2d toward = a * (corner.norm() / to_a);

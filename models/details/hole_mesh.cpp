@@ -8,6 +8,9 @@
 #include <tuple>
 #include <utility>
 
+#include "core/disjoint_sets.h"
+#include "core/planar.h"
+
 namespace geoprior::details {
 
 HoleMesh::HoleMesh(const SurfaceTopology& surface, std::span<const Eigen::Vector3d> x,
@@ -26,25 +29,25 @@ void HoleMesh::add(int number, const HoleChart& chart) {
 }
 
 const HoleMesh::Entry* HoleMesh::entry(int vertex, int hole) const {
-  for (int e = first_[index(vertex)]; e >= 0; e = entry_[index(e)].next)
-    if (entry_[index(e)].hole == hole) return &entry_[index(e)];
+  for (int e = first_[vertex]; e >= 0; e = entry_[e].next)
+    if (entry_[e].hole == hole) return &entry_[e];
   return nullptr;
 }
 
 void HoleMesh::add_entry(int vertex, int hole, const Eigen::Vector2d& at) {
-  entry_.push_back({hole, at, first_[index(vertex)]});
-  first_[index(vertex)] = static_cast<int>(entry_.size()) - 1;
+  entry_.push_back({hole, at, first_[vertex]});
+  first_[vertex] = static_cast<int>(entry_.size()) - 1;
 }
 
 double HoleMesh::length2(int a, int b) const {
   // The same bits from both sides: bisection compares lengths.
-  return (x_[index(std::max(a, b))] - x_[index(std::min(a, b))]).squaredNorm();
+  return (x_[std::max(a, b)] - x_[std::min(a, b)]).squaredNorm();
 }
 
 int HoleMesh::longest_edge(int t) const {
-  const auto& c = corner_[index(t)];
+  const auto& c = corner_[t];
   const auto key = [&](int k) {
-    const int a = c[index(k)], b = c[index((k + 1) % 3)];
+    const int a = c[k], b = c[(k + 1) % 3];
     return std::tuple(length2(a, b), std::min(a, b), std::max(a, b));
   };
   int longest = 0;
@@ -56,42 +59,41 @@ int HoleMesh::longest_edge(int t) const {
 bool HoleMesh::crossed_by(int t, int hole) const {
   std::array<Eigen::Vector2d, 3> u;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Entry* e = entry(corner_[index(t)][k], hole);
+    const Entry* e = entry(corner_[t][k], hole);
     if (e == nullptr) return false;
     u[k] = e->at;
   }
-  const double radius = hole_[index(hole)].radius;
+  const double radius = hole_[hole].radius;
   if (radius == 0) return false;  // given up
   if (std::max({u[0].norm(), u[1].norm(), u[2].norm()}) < radius) return false;
   int left = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto &a = u[k], &b = u[(k + 1) % 3];
     if (distance_to_segment(a, b) < radius) return true;
-    left += a.x() * b.y() - a.y() * b.x() > 0 ? 1 : 0;
+    left += cross(a, b) > 0 ? 1 : 0;
   }
   return left == 3 || left == 0;  // the disc lies inside
 }
 
 bool HoleMesh::too_large(int t) const {
   const int k = longest_edge(t);
-  const double length =
-      std::sqrt(length2(corner_[index(t)][index(k)], corner_[index(t)][index((k + 1) % 3)]));
-  for (int e = first_[index(corner_[index(t)][0])]; e >= 0; e = entry_[index(e)].next) {
-    const int hole = entry_[index(e)].hole;
-    if (length > hole_[index(hole)].longest && crossed_by(t, hole)) return true;
+  const double length = std::sqrt(length2(corner_[t][k], corner_[t][(k + 1) % 3]));
+  for (int e = first_[corner_[t][0]]; e >= 0; e = entry_[e].next) {
+    const int hole = entry_[e].hole;
+    if (length > hole_[hole].longest && crossed_by(t, hole)) return true;
   }
   return false;
 }
 
 int HoleMesh::add_middle(int a, int b) {
   const int middle = static_cast<int>(x_.size());
-  x_.push_back(0.5 * (x_[index(a)] + x_[index(b)]));
-  normal_.push_back((normal_[index(a)] + normal_[index(b)]).stableNormalized());
+  x_.push_back(0.5 * (x_[a] + x_[b]));
+  normal_.push_back((normal_[a] + normal_[b]).stableNormalized());
   first_.push_back(-1);
-  for (int e = first_[index(a)]; e >= 0; e = entry_[index(e)].next) {
-    const int hole = entry_[index(e)].hole;
+  for (int e = first_[a]; e >= 0; e = entry_[e].next) {
+    const int hole = entry_[e].hole;
     if (const Entry* other = entry(b, hole)) {
-      const Eigen::Vector2d at = 0.5 * (entry_[index(e)].at + other->at);
+      const Eigen::Vector2d at = 0.5 * (entry_[e].at + other->at);
       add_entry(middle, hole, at);
     }
   }
@@ -100,19 +102,19 @@ int HoleMesh::add_middle(int a, int b) {
 
 /// Triangle a, b, c becomes a, m, c; the new one is m, b, c. Edge 0 of both is that on a-b.
 int HoleMesh::halve(int t, int edge, int middle) {
-  const auto c = corner_[index(t)];
-  const auto n = across_[index(t)];
-  const auto k = index(edge), l = (k + 1) % 3, m = (k + 2) % 3;
+  const auto c = corner_[t];
+  const auto n = across_[t];
+  const int k = edge, l = (k + 1) % 3, m = (k + 2) % 3;
   const int half = static_cast<int>(corner_.size());
-  corner_[index(t)] = {c[k], middle, c[m]};
-  across_[index(t)] = {-1, half, n[m]};
+  corner_[t] = {c[k], middle, c[m]};
+  across_[t] = {-1, half, n[m]};
   corner_.push_back({middle, c[l], c[m]});
   across_.push_back({-1, n[l], t});
   if (n[l] >= 0) {
-    auto& back = across_[index(n[l])];
+    auto& back = across_[n[l]];
     // By corners: two triangles may share more than one edge.
     for (std::size_t j = 0; j < 3; ++j)
-      if (back[j] == t && corner_[index(n[l])][j] == c[m]) back[j] = half;
+      if (back[j] == t && corner_[n[l]][j] == c[m]) back[j] = half;
   }
   return half;
 }
@@ -120,12 +122,12 @@ int HoleMesh::halve(int t, int edge, int middle) {
 void HoleMesh::bisect(int t, std::vector<int>& changed) {
   for (;;) {
     const int k = longest_edge(t);
-    const int a = corner_[index(t)][index(k)], b = corner_[index(t)][index((k + 1) % 3)];
-    const int g = across_[index(t)][index(k)];
+    const int a = corner_[t][k], b = corner_[t][(k + 1) % 3];
+    const int g = across_[t][k];
     int l = 0;
     if (g >= 0) {
       l = longest_edge(g);
-      if (corner_[index(g)][index(l)] != b || corner_[index(g)][index((l + 1) % 3)] != a) {
+      if (corner_[g][l] != b || corner_[g][(l + 1) % 3] != a) {
         t = g;
         continue;
       }
@@ -136,10 +138,10 @@ void HoleMesh::bisect(int t, std::vector<int>& changed) {
     if (g < 0) return;
     const int g2 = halve(g, l, middle);
     changed.insert(changed.end(), {g, g2});
-    across_[index(t)][0] = g2;
-    across_[index(g2)][0] = t;
-    across_[index(t2)][0] = g;
-    across_[index(g)][0] = t2;
+    across_[t][0] = g2;
+    across_[g2][0] = t;
+    across_[t2][0] = g;
+    across_[g][0] = t2;
     return;
   }
 }
@@ -175,39 +177,12 @@ void HoleMesh::refine(int segments, double least) {
   }
 }
 
-namespace {
-
-/// Sets of vertices that are joined by edges; a set is named by its smallest vertex.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int of(int v) {
-    while (parent_[v] != v) {
-      parent_[v] = parent_[parent_[v]];
-      v = parent_[v];
-    }
-    return v;
-  }
-  void join(int a, int b) {
-    a = of(a);
-    b = of(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
-}  // namespace
-
 std::vector<int> HoleMesh::hole_of_vertices() const {
   std::vector<int> inside(x_.size(), -1);
   for (std::size_t v = 0; v < x_.size(); ++v) {
-    for (int e = first_[v]; e >= 0; e = entry_[index(e)].next) {
-      const auto& [hole, place, next] = entry_[index(e)];
-      if (place.norm() < hole_[index(hole)].radius) inside[v] = hole;
+    for (int e = first_[v]; e >= 0; e = entry_[e].next) {
+      const auto& [hole, place, next] = entry_[e];
+      if (place.norm() < hole_[hole].radius) inside[v] = hole;
     }
   }
   return inside;
@@ -216,40 +191,41 @@ std::vector<int> HoleMesh::hole_of_vertices() const {
 /// Every hole in one piece, and what remains too: of several pieces the largest stays what it is
 /// (a chart that folds on a rough surface leaves single vertices behind).
 void HoleMesh::keep_whole(std::vector<int>& inside) const {
-  Sets pieces(x_.size()), whole(x_.size());
+  // Vertices joined by edges, within holes and in all; a set is named by its lowest vertex.
+  DisjointSets pieces(static_cast<int>(x_.size())), whole(pieces.size());
   for (const auto& c : corner_) {
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = c[k], b = c[(k + 1) % 3];
-      if (inside[index(a)] == inside[index(b)]) pieces.join(a, b);
+      if (inside[a] == inside[b]) pieces.join(a, b);
       whole.join(a, b);
     }
   }
   std::vector<int> size(x_.size(), 0);
-  for (int v = 0; v < static_cast<int>(x_.size()); ++v) ++size[index(pieces.of(v))];
+  for (int v = 0; v < static_cast<int>(x_.size()); ++v) ++size[pieces.find(v)];
   // The largest piece of each hole, and of each connected surface.
   std::vector<int> largest(hole_.size() + x_.size(), -1);
   const auto owner = [&](int v) {
-    const int hole = inside[index(v)];
-    return hole >= 0 ? index(hole) : hole_.size() + index(whole.of(v));
+    const int hole = inside[v];
+    return hole >= 0 ? hole : static_cast<int>(hole_.size()) + whole.find(v);
   };
   for (int v = 0; v < static_cast<int>(x_.size()); ++v) {
     int& best = largest[owner(v)];
-    if (pieces.of(v) == v && (best < 0 || size[index(v)] > size[index(best)])) best = v;
+    if (pieces.find(v) == v && (best < 0 || size[v] > size[best])) best = v;
   }
   std::vector<int> corrected(x_.size(), -2);  // of strays: what they become
   for (const auto& c : corner_) {
     for (std::size_t k = 0; k < 3; ++k) {
       for (const auto& [v, w] :
            {std::pair(c[k], c[(k + 1) % 3]), std::pair(c[(k + 1) % 3], c[k])}) {
-        if (inside[index(v)] == inside[index(w)] || largest[owner(v)] == pieces.of(v)) continue;
-        int& to = corrected[index(pieces.of(v))];
-        to = std::max(to, inside[index(v)] >= 0 ? -1 : inside[index(w)]);
+        if (inside[v] == inside[w] || largest[owner(v)] == pieces.find(v)) continue;
+        int& to = corrected[pieces.find(v)];
+        to = std::max(to, inside[v] >= 0 ? -1 : inside[w]);
       }
     }
   }
   std::vector<int> result = inside;
   for (int v = 0; v < static_cast<int>(x_.size()); ++v)
-    if (const int to = corrected[index(pieces.of(v))]; to > -2) result[index(v)] = to;
+    if (const int to = corrected[pieces.find(v)]; to > -2) result[v] = to;
   inside = std::move(result);
 }
 
@@ -262,22 +238,21 @@ std::vector<char> HoleMesh::holes_in_trouble(const std::vector<int>& inside) con
   for (std::size_t v = 0; v < x_.size(); ++v) {
     const int hole = inside[v];
     if (hole < 0) continue;
-    ++euler[index(hole)];
-    for (int e = first_[v]; e >= 0; e = entry_[index(e)].next) {
-      const auto& [other, place, next] = entry_[index(e)];
-      if (other != hole && place.norm() < hole_[index(other)].radius)
-        trouble[index(hole)] = trouble[index(other)] = 1;
+    ++euler[hole];
+    for (int e = first_[v]; e >= 0; e = entry_[e].next) {
+      const auto& [other, place, next] = entry_[e];
+      if (other != hole && place.norm() < hole_[other].radius) trouble[hole] = trouble[other] = 1;
     }
   }
   for (std::size_t t = 0; t < corner_.size(); ++t) {
     const auto& c = corner_[t];
     for (std::size_t k = 0; k < 3; ++k) {
-      const int a = inside[index(c[k])], b = inside[index(c[(k + 1) % 3])];
+      const int a = inside[c[k]], b = inside[c[(k + 1) % 3]];
       if (a < 0) continue;
-      if (b >= 0 && a != b) trouble[index(a)] = trouble[index(b)] = 1;
-      if (across_[t][k] < 0) trouble[index(a)] = 1;
-      if (a == b && c[k] < c[(k + 1) % 3]) --euler[index(a)];
-      if (k == 0 && a == b && inside[index(c[2])] == a) ++euler[index(a)];
+      if (b >= 0 && a != b) trouble[a] = trouble[b] = 1;
+      if (across_[t][k] < 0) trouble[a] = 1;
+      if (a == b && c[k] < c[(k + 1) % 3]) --euler[a];
+      if (k == 0 && a == b && inside[c[2]] == a) ++euler[a];
     }
   }
   for (std::size_t i = 0; i < hole_.size(); ++i)
@@ -291,7 +266,7 @@ double HoleMesh::place_of_border(int in, int out, int hole) const {
   double t = 0.5;
   if (a != nullptr && b != nullptr) {
     const Eigen::Vector2d e = b->at - a->at;
-    const double radius = hole_[index(hole)].radius;
+    const double radius = hole_[hole].radius;
     const double half = a->at.dot(e), c = a->at.squaredNorm() - radius * radius;
     const double root = half * half - e.squaredNorm() * c;
     if (root > 0) t = (std::sqrt(root) - half) / e.squaredNorm();
@@ -312,9 +287,9 @@ class HoleMesh::TriangleCutter {
 
   /// What is kept of a triangle: all of it, a piece, or two.
   void cut(int t) {
-    const auto& c = mesh_.corner_[index(t)];
-    const auto in = [&](std::size_t k) { return inside_[index(c[k % 3])] >= 0; };
-    const auto out = [&](std::size_t k) { return !in(k) && on_border_[index(c[k % 3])] < 0; };
+    const auto& c = mesh_.corner_[t];
+    const auto in = [&](std::size_t k) { return inside_[c[k % 3]] >= 0; };
+    const auto out = [&](std::size_t k) { return !in(k) && on_border_[c[k % 3]] < 0; };
     const int ins = in(0) + in(1) + in(2), outs = out(0) + out(1) + out(2);
     if (outs == 0) return;
     std::size_t k = 0;
@@ -338,7 +313,7 @@ class HoleMesh::TriangleCutter {
  private:
   void add_quadrilateral(int a, int b, int c, int d) {
     const auto& x = cut_.x;
-    if ((x[index(a)] - x[index(c)]).norm() < (x[index(b)] - x[index(d)]).norm())
+    if ((x[a] - x[c]).norm() < (x[b] - x[d]).norm())
       cut_.triangle.insert(cut_.triangle.end(), {{a, b, c}, {a, c, d}});
     else
       cut_.triangle.insert(cut_.triangle.end(), {{a, b, d}, {b, c, d}});
@@ -346,22 +321,21 @@ class HoleMesh::TriangleCutter {
 
   /// On edge `k` of triangle `t`.
   int border_vertex(int t, std::size_t k) {
-    if (const int vertex = made_[index(t)][k]; vertex >= 0) return vertex;
-    int in = mesh_.corner_[index(t)][k], out = mesh_.corner_[index(t)][(k + 1) % 3];
+    if (const int vertex = made_[t][k]; vertex >= 0) return vertex;
+    int in = mesh_.corner_[t][k], out = mesh_.corner_[t][(k + 1) % 3];
     const int first = out;
-    if (inside_[index(in)] < 0) std::swap(in, out);
-    const int hole = inside_[index(in)];
+    if (inside_[in] < 0) std::swap(in, out);
+    const int hole = inside_[in];
     const double s = mesh_.place_of_border(in, out, hole);
     const int vertex = static_cast<int>(cut_.x.size());
-    cut_.x.push_back((1 - s) * mesh_.x_[index(in)] + s * mesh_.x_[index(out)]);
+    cut_.x.push_back((1 - s) * mesh_.x_[in] + s * mesh_.x_[out]);
     cut_.normal.push_back(
-        ((1 - s) * mesh_.normal_[index(in)] + s * mesh_.normal_[index(out)]).stableNormalized());
-    cut_.hole.push_back(mesh_.hole_[index(hole)].number);
-    made_[index(t)][k] = vertex;
-    if (const int g = mesh_.across_[index(t)][k]; g >= 0) {
+        ((1 - s) * mesh_.normal_[in] + s * mesh_.normal_[out]).stableNormalized());
+    cut_.hole.push_back(mesh_.hole_[hole].number);
+    made_[t][k] = vertex;
+    if (const int g = mesh_.across_[t][k]; g >= 0) {
       for (std::size_t j = 0; j < 3; ++j)
-        if (mesh_.across_[index(g)][j] == t && mesh_.corner_[index(g)][j] == first)
-          made_[index(g)][j] = vertex;
+        if (mesh_.across_[g][j] == t && mesh_.corner_[g][j] == first) made_[g][j] = vertex;
     }
     return vertex;
   }
@@ -381,7 +355,7 @@ HoledMesh HoleMesh::cut() {
   cut.normal = normal_;
   cut.hole.assign(x_.size(), -1);
   for (std::size_t v = 0; v < x_.size(); ++v)
-    if (on_border[v] >= 0) cut.hole[v] = hole_[index(on_border[v])].number;
+    if (on_border[v] >= 0) cut.hole[v] = hole_[on_border[v]].number;
   TriangleCutter cutter(*this, inside, on_border, cut);
   for (int t = 0; t < static_cast<int>(corner_.size()); ++t) cutter.cut(t);
   return cut;
@@ -398,7 +372,7 @@ class HoleMesh::Snapper {
   Snapper(HoleMesh& mesh, std::vector<int>& inside, std::vector<int>& on_border)
       : mesh_(mesh), inside_(inside), on_border_(on_border), triangle_of_(mesh.x_.size(), -1) {
     for (int t = 0; t < static_cast<int>(mesh.corner_.size()); ++t)
-      for (const int v : mesh.corner_[index(t)]) triangle_of_[index(v)] = t;
+      for (const int v : mesh.corner_[t]) triangle_of_[v] = t;
   }
 
   void run() {
@@ -415,10 +389,10 @@ class HoleMesh::Snapper {
   static constexpr double kNeedle = 0.2;      ///< least shape of a triangle after a move
   static constexpr double kTurnCosine = 0.9;  ///< of a triangle by a move
 
-  [[nodiscard]] bool is_in(int v) const { return inside_[index(v)] >= 0; }
-  [[nodiscard]] bool is_on(int v) const { return on_border_[index(v)] >= 0; }
+  [[nodiscard]] bool is_in(int v) const { return inside_[v] >= 0; }
+  [[nodiscard]] bool is_on(int v) const { return on_border_[v] >= 0; }
   [[nodiscard]] bool is_out(int v) const { return !is_in(v) && !is_on(v); }
-  [[nodiscard]] const Eigen::Vector3d& x(int v) const { return mesh_.x_[index(v)]; }
+  [[nodiscard]] const Eigen::Vector3d& x(int v) const { return mesh_.x_[v]; }
 
   /// The shortest way of each vertex to a border along an edge, where it is short enough.
   [[nodiscard]] std::vector<Move> moves() const {
@@ -428,9 +402,9 @@ class HoleMesh::Snapper {
         int a = c[k], b = c[(k + 1) % 3];
         if (is_in(a) == is_in(b)) continue;
         if (!is_in(a)) std::swap(a, b);
-        const double s = mesh_.place_of_border(a, b, inside_[index(a)]);
-        if (s < kFar && s < best[index(a)].share) best[index(a)] = {s, a, b};
-        if (1 - s < kFar && 1 - s < best[index(b)].share) best[index(b)] = {1 - s, b, a};
+        const double s = mesh_.place_of_border(a, b, inside_[a]);
+        if (s < kFar && s < best[a].share) best[a] = {s, a, b};
+        if (1 - s < kFar && 1 - s < best[b].share) best[b] = {1 - s, b, a};
       }
     }
     std::erase_if(best, [](const Move& m) { return m.vertex < 0; });
@@ -443,13 +417,13 @@ class HoleMesh::Snapper {
   /// Neighbours in cyclic order; empty at a border of the surface.
   [[nodiscard]] std::vector<int> ring_of(int v) const {
     std::vector<int> ring;
-    const int first = triangle_of_[index(v)];
+    const int first = triangle_of_[v];
     int t = first;
     do {
-      const auto& c = mesh_.corner_[index(t)];
+      const auto& c = mesh_.corner_[t];
       const std::size_t k = c[0] == v ? 0 : c[1] == v ? 1 : 2;
       ring.push_back(c[(k + 1) % 3]);
-      t = mesh_.across_[index(t)][(k + 2) % 3];
+      t = mesh_.across_[t][(k + 2) % 3];
       if (t < 0) return {};
     } while (t != first);
     return ring;
@@ -493,7 +467,7 @@ class HoleMesh::Snapper {
   }
 
   [[nodiscard]] Eigen::Vector3d border_between(int in, int out) const {
-    const double s = mesh_.place_of_border(in, out, inside_[index(in)]);
+    const double s = mesh_.place_of_border(in, out, inside_[in]);
     return (1 - s) * x(in) + s * x(out);
   }
 
@@ -501,25 +475,24 @@ class HoleMesh::Snapper {
     const int v = move.vertex;
     const std::vector<int> ring = ring_of(v);
     if (ring.empty() || is_on(move.toward)) return;
-    const int hole = inside_[index(is_in(v) ? v : move.toward)], was_in = inside_[index(v)];
+    const int hole = inside_[is_in(v) ? v : move.toward], was_in = inside_[v];
     for (const int w : ring) {
-      if ((is_in(w) && inside_[index(w)] != hole) || (is_on(w) && on_border_[index(w)] != hole))
-        return;
+      if ((is_in(w) && inside_[w] != hole) || (is_on(w) && on_border_[w] != hole)) return;
     }
-    inside_[index(v)] = -1;
-    on_border_[index(v)] = hole;
+    inside_[v] = -1;
+    on_border_[v] = hole;
     const Eigen::Vector3d to = (1 - move.share) * x(v) + move.share * x(move.toward);
     const bool allowed = is_simple(ring) && keeps_shape(v, ring, to) &&
                          std::all_of(ring.begin(), ring.end(),
                                      [&](int w) { return !is_on(w) || is_simple(ring_of(w)); });
     if (allowed) {
-      mesh_.x_[index(v)] = to;
-      mesh_.normal_[index(v)] = ((1 - move.share) * mesh_.normal_[index(v)] +
-                                 move.share * mesh_.normal_[index(move.toward)])
-                                    .stableNormalized();
+      mesh_.x_[v] = to;
+      mesh_.normal_[v] =
+          ((1 - move.share) * mesh_.normal_[v] + move.share * mesh_.normal_[move.toward])
+              .stableNormalized();
     } else {
-      inside_[index(v)] = was_in;
-      on_border_[index(v)] = -1;
+      inside_[v] = was_in;
+      on_border_[v] = -1;
     }
   }
 

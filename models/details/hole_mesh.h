@@ -39,7 +39,7 @@ class HoleMesh {
   /// @param least  holes that become smaller are given up (m)
   void refine(int segments, double least);
   /// Radius of the hole added as the i-th; 0: given up.
-  [[nodiscard]] double radius(int i) const { return hole_[index(i)].radius; }
+  [[nodiscard]] double radius(int i) const { return hole_[i].radius; }
   [[nodiscard]] HoledMesh cut();
 
  private:
@@ -55,7 +55,6 @@ class HoleMesh {
   };
   class TriangleCutter;
   class Snapper;
-  [[nodiscard]] static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] const Entry* entry(int vertex, int hole) const;
   void add_entry(int vertex, int hole, const Eigen::Vector2d& at);
   [[nodiscard]] double length2(int a, int b) const;

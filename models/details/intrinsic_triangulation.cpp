@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "core/connectivity.h"
@@ -516,8 +517,6 @@ bool IntrinsicTriangulation::collapse(int h, std::span<const Eigen::Vector3d> po
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// Angle opposite to an edge of length a.
 double angle(double a, double b, double c, double area) {
   return std::atan2(4 * area, b * b + c * c - a * a);
@@ -554,7 +553,7 @@ TriangulationReport IntrinsicTriangulation::check() const {
       const double sum = angle(l(h), l(next(h)), l(previous(h)), area(t)) +
                          angle(l(g), l(next(g)), l(previous(g)), area(g / 3));
       report.worst_angle_sum = std::max(report.worst_angle_sum, sum);
-      if (sum <= kPi + 1e-8) continue;
+      if (sum <= std::numbers::pi + 1e-8) continue;
       ++(adjacent(origin(previous(h)), origin(previous(g))) ? report.blocked : report.not_delaunay);
     }
   }

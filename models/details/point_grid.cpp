@@ -34,8 +34,7 @@ void PointGrid::add(const Eigen::Vector3d& position, const Eigen::Vector3d& norm
 void PointGrid::add_details(const DetailMesh& details) {
   for (int i = 0; i < details.site_slots(); ++i) {
     if (!details.is_detail(i)) continue;
-    const auto k = static_cast<std::size_t>(i);
-    add(details.position[k], normal_of_face(details.site[k].at.face, *details.surface, details.x));
+    add(details.position[i], normal_of_face(details.site[i].at.face, *details.surface, details.x));
   }
 }
 

@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/planar.h"
+
 namespace geoprior::details {
 namespace {
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 /// The edge that a ray leaves a face by: its right and left end seen along the ray.
 struct Crossing {

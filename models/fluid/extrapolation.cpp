@@ -158,16 +158,15 @@ Eigen::Vector3f solid_velocity(const SolidFractions& solids, const Eigen::Vector
 
 void constrain_component(const SolidFractions& solids, const std::vector<char>& known,
                          const MacGrid& velocity, int axis, std::vector<Constrained>& out) {
-  const auto a = static_cast<std::size_t>(axis);
-  const FaceGrid grid(velocity.face[a].size);
+  const FaceGrid grid(velocity.face[axis].size);
   const FaceSampler sampler(velocity);
   const GridSampler distance(solids.distance);
-  const std::vector<float>& open = solids.open[a].values;
+  const std::vector<float>& open = solids.open[axis].values;
   for (std::size_t i = 0; i < open.size(); ++i) {
     if (open[i] > 0 || known[i] == 0) continue;
     const Eigen::Vector3i at = grid.place(i);
     if (at[axis] == 0 || at[axis] + 1 == grid.size[axis]) {  // a wall of the domain
-      out.push_back({i, solids.velocity[a].values[i]});
+      out.push_back({i, solids.velocity[axis].values[i]});
       continue;
     }
     const Eigen::Vector3f x = face_place(at, axis);

@@ -24,21 +24,20 @@ constexpr double kBorderRoom = 0.02;
 ScalarGrid padded(const ScalarGrid& nodes) {
   const Eigen::Vector3i inner = nodes.size, outer = inner.array() + 2;
   ScalarGrid result(outer, 0);
-  parallel_blocks(static_cast<std::size_t>(outer.z()), kLayers,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (int k = static_cast<int>(begin); k < static_cast<int>(end); ++k)
-                      for (int j = 0; j < outer.y(); ++j) {
-                        const int jn = std::clamp(j - 1, 0, inner.y() - 1),
-                                  kn = std::clamp(k - 1, 0, inner.z() - 1);
-                        const bool beyond = jn != j - 1 || kn != k - 1;
-                        const float* from = nodes.values.data() + nodes.index(0, jn, kn);
-                        float* to = result.values.data() + result.index(0, j, k);
-                        for (int i = 0; i < outer.x(); ++i) {
-                          const int in = std::clamp(i - 1, 0, inner.x() - 1);
-                          to[i] = beyond || in != i - 1 ? std::abs(from[in]) : from[in];
-                        }
-                      }
-                  });
+  parallel_blocks(outer.z(), kLayers, [&](std::size_t begin, std::size_t end) {
+    for (int k = static_cast<int>(begin); k < static_cast<int>(end); ++k)
+      for (int j = 0; j < outer.y(); ++j) {
+        const int jn = std::clamp(j - 1, 0, inner.y() - 1),
+                  kn = std::clamp(k - 1, 0, inner.z() - 1);
+        const bool beyond = jn != j - 1 || kn != k - 1;
+        const float* from = nodes.values.data() + nodes.index(0, jn, kn);
+        float* to = result.values.data() + result.index(0, j, k);
+        for (int i = 0; i < outer.x(); ++i) {
+          const int in = std::clamp(i - 1, 0, inner.x() - 1);
+          to[i] = beyond || in != i - 1 ? std::abs(from[in]) : from[in];
+        }
+      }
+  });
   return result;
 }
 
@@ -85,10 +84,9 @@ class Contour {
  private:
   template <class Body>
   void for_layers(const Body& body) const {
-    parallel_blocks(static_cast<std::size_t>(size_.z()), kLayers,
-                    [&](std::size_t begin, std::size_t end) {
-                      for (std::size_t k = begin; k < end; ++k) body(static_cast<int>(k));
-                    });
+    parallel_blocks(size_.z(), kLayers, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) body(static_cast<int>(k));
+    });
   }
   void mark_inside() {
     inside_.assign(nodes_.values.size(), 0);

@@ -20,10 +20,9 @@ constexpr float kOnWall = 1e-3F;  ///< cells: as near as this, a node of the bor
 
 template <class Body>
 void for_layers(int layers, const Body& body) {
-  parallel_blocks(static_cast<std::size_t>(layers), kLayers,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t k = begin; k < end; ++k) body(static_cast<int>(k));
-                  });
+  parallel_blocks(layers, kLayers, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) body(static_cast<int>(k));
+  });
 }
 
 GridShape refined(const GridShape& shape, double cells_per_cell) {
@@ -150,11 +149,10 @@ void meet_solids(const GridShape& shape, const SolidFractions& solids, const Gri
 
 Eigen::MatrixX3d surface_velocity(const MacGrid& velocity, const Eigen::MatrixX3d& points) {
   Eigen::MatrixX3d result(points.rows(), 3);
-  parallel_blocks(
-      static_cast<std::size_t>(points.rows()), 2048, [&](std::size_t begin, std::size_t end) {
-        for (auto p = static_cast<Eigen::Index>(begin); p < static_cast<Eigen::Index>(end); ++p)
-          result.row(p) = velocity.velocity(Eigen::Vector3d(points.row(p))).transpose();
-      });
+  parallel_blocks(points.rows(), 2048, [&](std::size_t begin, std::size_t end) {
+    for (auto p = static_cast<Eigen::Index>(begin); p < static_cast<Eigen::Index>(end); ++p)
+      result.row(p) = velocity.velocity(Eigen::Vector3d(points.row(p))).transpose();
+  });
   return result;
 }
 

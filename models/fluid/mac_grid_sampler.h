@@ -39,8 +39,7 @@ struct CellSample {
   }
   /// For component `axis` of a staggered velocity.
   [[nodiscard]] const AxisSample& along(int axis, int component) const {
-    const auto a = static_cast<std::size_t>(axis);
-    return axis == component ? face[a] : centre[a];
+    return axis == component ? face[axis] : centre[axis];
   }
 };
 
@@ -73,7 +72,7 @@ class GridSampler {
   explicit GridSampler(const ScalarGrid& grid)
       : data_(grid.values.data()),
         size_(grid.size),
-        row_(static_cast<std::size_t>(grid.size.x())),
+        row_(grid.size.x()),
         slice_(row_ * static_cast<std::size_t>(grid.size.y())) {}
   [[nodiscard]] CornerValues corners(const AxisSample& x, const AxisSample& y,
                                      const AxisSample& z) const {

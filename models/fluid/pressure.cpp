@@ -52,7 +52,7 @@ struct Problem {
 };
 
 void for_cell_layers(const GridShape& shape, BlockBody body) {
-  parallel_blocks(static_cast<std::size_t>(shape.cells.z()), kLayers, body);
+  parallel_blocks(shape.cells.z(), kLayers, body);
 }
 
 bool any_open_face(const Problem& problem, const Eigen::Vector3i& at) {
@@ -81,12 +81,11 @@ double excess_outflow(const Problem& problem, const MacGrid& velocity, const Eig
                       std::size_t cell) {
   double outflow = 0, open_sum = 0;
   for (int a = 0; a < 3; ++a) {
-    const auto axis = static_cast<std::size_t>(a);
     for (int upper = 0; upper < 2; ++upper) {
       const std::size_t f = problem.face(a, at, upper);
-      const double open = problem.solids.open[axis].values[f];
-      const double flow = open * velocity.face[axis].values[f] +
-                          (1 - open) * problem.solids.velocity[axis].values[f];
+      const double open = problem.solids.open[a].values[f];
+      const double flow =
+          open * velocity.face[a].values[f] + (1 - open) * problem.solids.velocity[a].values[f];
       outflow += upper ? flow : -flow;
       open_sum += open;
     }
@@ -103,9 +102,8 @@ bool assemble_row(const Problem& problem, const MacGrid& velocity, PressureSyste
   double diagonal = 0;
   bool touches_air = false;
   for (int a = 0; a < 3; ++a) {
-    const auto axis = static_cast<std::size_t>(a);
     for (int upper = 0; upper < 2; ++upper) {
-      const float open = problem.solids.open[axis].values[problem.face(a, at, upper)];
+      const float open = problem.solids.open[a].values[problem.face(a, at, upper)];
       if (!(open > 0)) continue;
       const int next = at[a] + (upper ? 1 : -1);
       const bool beyond = next < 0 || next >= problem.shape.cells[a];
@@ -114,7 +112,7 @@ bool assemble_row(const Problem& problem, const MacGrid& velocity, PressureSyste
                                             : cell - problem.stride(a);
       if (!beyond && system.number[neighbour] > 0) {
         diagonal += open;
-        if (upper) system.link[axis][c] = open;
+        if (upper) system.link[a][c] = open;
       } else {
         diagonal += open / (beyond ? problem.border_theta(cell) : problem.theta(cell, neighbour));
         touches_air = true;
@@ -198,11 +196,10 @@ void PressureSolver::Workspace::assemble(const Problem& problem, const MacGrid& 
   const std::size_t entries = static_cast<std::size_t>(system.n) + 2;
   for (auto* v : {&x, &r, &z, &s, &q}) v->assign(entries, 0);
   touches_air.assign(entries, 0);
-  parallel_blocks(static_cast<std::size_t>(system.n), kPressureBlock,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t c = begin + 1; c <= end; ++c)
-                      touches_air[c] = assemble_row(problem, velocity, system, r, c);
-                  });
+  parallel_blocks(system.n, kPressureBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin + 1; c <= end; ++c)
+      touches_air[c] = assemble_row(problem, velocity, system, r, c);
+  });
   enclosed = enclosed_regions(system, touches_air);
   remove_means(enclosed, r);
 }
@@ -254,10 +251,9 @@ void PressureSolver::Workspace::solve(const PressureOptions& options, PressureRe
 void PressureSolver::Workspace::apply(const Problem& problem, MacGrid& velocity,
                                       std::array<std::vector<char>, 3>& valid) {
   for (int a = 0; a < 3; ++a) {
-    const auto axis = static_cast<std::size_t>(a);
     const Eigen::Vector3i n = problem.shape.face_cells(a);
-    ScalarGrid& u = velocity.face[axis];
-    valid[axis].assign(u.values.size(), 0);
+    ScalarGrid& u = velocity.face[a];
+    valid[a].assign(u.values.size(), 0);
     const std::size_t stride = problem.stride(a);
     const auto update_face = [&](const Eigen::Vector3i& i) {
       const std::size_t f = u.index(i.x(), i.y(), i.z());
@@ -269,35 +265,33 @@ void PressureSolver::Workspace::apply(const Problem& problem, MacGrid& velocity,
       const std::int32_t upper = has_upper ? system.number[above] : 0;
       if (lower == 0 && upper == 0) return;
       const bool on_wall = !has_lower || !has_upper;
-      if (!(problem.solids.open[axis].values[f] > 0)) {
-        if (on_wall) u.values[f] = problem.solids.velocity[axis].values[f];
-        valid[axis][f] = on_wall;
+      if (!(problem.solids.open[a].values[f] > 0)) {
+        if (on_wall) u.values[f] = problem.solids.velocity[a].values[f];
+        valid[a][f] = on_wall;
         return;
       }
       double step = x[upper] - x[lower];
       if (lower == 0) step /= has_lower ? problem.theta(above, below) : problem.border_theta(above);
       if (upper == 0) step /= has_upper ? problem.theta(below, above) : problem.border_theta(below);
       u.values[f] = static_cast<float>(u.values[f] - step);
-      valid[axis][f] = 1;
+      valid[a][f] = 1;
     };
-    parallel_blocks(static_cast<std::size_t>(n.z()), kLayers,
-                    [&](std::size_t begin, std::size_t end) {
-                      for (int k = static_cast<int>(begin); k < static_cast<int>(end); ++k)
-                        for (int j = 0; j < n.y(); ++j)
-                          for (int i = 0; i < n.x(); ++i) update_face({i, j, k});
-                    });
+    parallel_blocks(n.z(), kLayers, [&](std::size_t begin, std::size_t end) {
+      for (int k = static_cast<int>(begin); k < static_cast<int>(end); ++k)
+        for (int j = 0; j < n.y(); ++j)
+          for (int i = 0; i < n.x(); ++i) update_face({i, j, k});
+    });
   }
 }
 
 double PressureSolver::Workspace::remaining_divergence(const Problem& problem,
                                                        const MacGrid& velocity) {
-  parallel_blocks(static_cast<std::size_t>(system.n), kPressureBlock,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t c = begin + 1; c <= end; ++c) {
-                      const auto cell = static_cast<std::size_t>(system.cell[c]);
-                      q[c] = excess_outflow(problem, velocity, problem.cell(cell), cell);
-                    }
-                  });
+  parallel_blocks(system.n, kPressureBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin + 1; c <= end; ++c) {
+      const auto cell = static_cast<std::size_t>(system.cell[c]);
+      q[c] = excess_outflow(problem, velocity, problem.cell(cell), cell);
+    }
+  });
   remove_means(enclosed, q);
   return largest_magnitude(q) / problem.shape.cell;
 }

@@ -26,11 +26,10 @@ class IncompleteCholesky final : public PressureApproximation {
   void apply(const std::vector<double>& r, std::vector<double>& z) override {
     const double largest = largest_magnitude(r);
     const double scale = largest > 0 ? largest : 1;
-    parallel_blocks(static_cast<std::size_t>(system_->n), slab_,
-                    [&](std::size_t begin, std::size_t end) {
-                      forward(begin, end, r, scale);
-                      backward(begin, end, z, scale);
-                    });
+    parallel_blocks(system_->n, slab_, [&](std::size_t begin, std::size_t end) {
+      forward(begin, end, r, scale);
+      backward(begin, end, z, scale);
+    });
   }
 
  private:

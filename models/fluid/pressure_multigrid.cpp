@@ -40,26 +40,24 @@ void invert_diagonal(Level& level) {
 void relax(const Level& level, Floats& x, int from, int to) {
   const PressureSystem& a = *level.system;
   const auto offset = static_cast<std::size_t>(from);
-  parallel_blocks(
-      static_cast<std::size_t>(to - from), kPressureBlock, [&](std::size_t begin, std::size_t end) {
-        float* values = x.data();
-        for (std::size_t s = begin; s < end; ++s) {
-          const auto c = static_cast<std::size_t>(a.by_colour[offset + s]);
-          values[c] = level.inverse_diagonal[c] * (level.right[c] + a.neighbours<float>(values, c));
-        }
-      });
+  parallel_blocks(to - from, kPressureBlock, [&](std::size_t begin, std::size_t end) {
+    float* values = x.data();
+    for (std::size_t s = begin; s < end; ++s) {
+      const auto c = static_cast<std::size_t>(a.by_colour[offset + s]);
+      values[c] = level.inverse_diagonal[c] * (level.right[c] + a.neighbours<float>(values, c));
+    }
+  });
 }
 
 /// First even half sweep from x = 0; odd unknowns are overwritten by the next half sweep.
 void relax_even_from_zero(const Level& level, Floats& x) {
   const PressureSystem& a = *level.system;
-  parallel_blocks(static_cast<std::size_t>(a.even), kPressureBlock,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t s = begin; s < end; ++s) {
-                      const auto c = static_cast<std::size_t>(a.by_colour[s]);
-                      x[c] = level.inverse_diagonal[c] * level.right[c];
-                    }
-                  });
+  parallel_blocks(a.even, kPressureBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const int c = a.by_colour[s];
+      x[c] = level.inverse_diagonal[c] * level.right[c];
+    }
+  });
 }
 
 /// Cells of the coarse grid that hold an unknown of the fine one.
@@ -157,11 +155,10 @@ class Multigrid final : public PressureApproximation {
     coarse.owned.resize_coefficients();
     fine.parent.assign(a.diagonal.size(), 0);
     coarse.even_children.assign(coarse.owned.diagonal.size(), {0, 0, 0, 0});
-    parallel_blocks(static_cast<std::size_t>(coarse.owned.n), kPressureBlock / 4,
-                    [&](std::size_t begin, std::size_t end) {
-                      for (std::size_t c = begin + 1; c <= end; ++c)
-                        gather_coefficients(a, coarse.owned, coarse, fine.parent, c);
-                    });
+    parallel_blocks(coarse.owned.n, kPressureBlock / 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin + 1; c <= end; ++c)
+        gather_coefficients(a, coarse.owned, coarse, fine.parent, c);
+    });
     invert_diagonal(coarse);
   }
 
@@ -191,31 +188,29 @@ class Multigrid final : public PressureApproximation {
   /// Odd rows were relaxed last: their residual is 0.
   static void restrict_residual(const Level& fine, Level& coarse) {
     const PressureSystem& a = *fine.system;
-    parallel_blocks(static_cast<std::size_t>(coarse.system->n), kPressureBlock / 4,
-                    [&](std::size_t begin, std::size_t end) {
-                      const float* x = fine.value.data();
-                      for (std::size_t c = begin + 1; c <= end; ++c) {
-                        float sum = 0;
-                        for (const std::int32_t child : coarse.even_children[c]) {
-                          const auto f = static_cast<std::size_t>(child);
-                          if (f == 0) break;
-                          sum += fine.right[f] - a.diagonal[f] * x[f] + a.neighbours<float>(x, f);
-                        }
-                        coarse.right[c] = sum;
-                      }
-                    });
+    parallel_blocks(coarse.system->n, kPressureBlock / 4, [&](std::size_t begin, std::size_t end) {
+      const float* x = fine.value.data();
+      for (std::size_t c = begin + 1; c <= end; ++c) {
+        float sum = 0;
+        for (const std::int32_t child : coarse.even_children[c]) {
+          const auto f = static_cast<std::size_t>(child);
+          if (f == 0) break;
+          sum += fine.right[f] - a.diagonal[f] * x[f] + a.neighbours<float>(x, f);
+        }
+        coarse.right[c] = sum;
+      }
+    });
   }
 
   /// Odd unknowns follow from the even ones in the next half sweep.
   static void correct(Level& fine, const Level& coarse) {
     const PressureSystem& a = *fine.system;
-    parallel_blocks(static_cast<std::size_t>(a.even), kPressureBlock,
-                    [&](std::size_t begin, std::size_t end) {
-                      for (std::size_t s = begin; s < end; ++s) {
-                        const auto c = static_cast<std::size_t>(a.by_colour[s]);
-                        fine.value[c] += coarse.value[fine.parent[c]];
-                      }
-                    });
+    parallel_blocks(a.even, kPressureBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) {
+        const int c = a.by_colour[s];
+        fine.value[c] += coarse.value[fine.parent[c]];
+      }
+    });
   }
 
   std::deque<Level> levels_;  ///< never move: `system` points into them

@@ -40,7 +40,7 @@ void PressureSystem::number_cells(const Eigen::Vector3i& grid,
   const std::vector<std::int32_t> first = first_numbers(layer, layers, marked);
   n = first.back() - 1;
   number.resize(layer * layers);
-  cell.assign(static_cast<std::size_t>(n) + 2, 0);
+  cell.assign(n + 2, 0);
   parallel_blocks(layers, 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       std::int32_t next = first[k];
@@ -99,12 +99,11 @@ void PressureSystem::sort_by_colour(const std::vector<std::int32_t>& first) {
 }
 
 void PressureSystem::multiply(const std::vector<double>& x, std::vector<double>& out) const {
-  parallel_blocks(static_cast<std::size_t>(n), kPressureBlock,
-                  [&](std::size_t begin, std::size_t end) {
-                    const double* values = x.data();
-                    for (std::size_t c = begin + 1; c <= end; ++c)
-                      out[c] = static_cast<double>(diagonal[c]) * values[c] - neighbours(values, c);
-                  });
+  parallel_blocks(n, kPressureBlock, [&](std::size_t begin, std::size_t end) {
+    const double* values = x.data();
+    for (std::size_t c = begin + 1; c <= end; ++c)
+      out[c] = static_cast<double>(diagonal[c]) * values[c] - neighbours(values, c);
+  });
 }
 
 double ordered_dot(const std::vector<double>& a, const std::vector<double>& b) {

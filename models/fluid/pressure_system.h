@@ -34,10 +34,7 @@ struct PressureSystem {
   /// Off-diagonal part of row c times -1.
   template <class Real>
   [[nodiscard]] Real neighbours(const Real* x, std::size_t c) const {
-    const auto ym = static_cast<std::size_t>(lower[0][c]),
-               yp = static_cast<std::size_t>(upper[0][c]),
-               zm = static_cast<std::size_t>(lower[1][c]),
-               zp = static_cast<std::size_t>(upper[1][c]);
+    const int ym = lower[0][c], yp = upper[0][c], zm = lower[1][c], zp = upper[1][c];
     return static_cast<Real>(link[0][c]) * x[c + 1] + static_cast<Real>(link[0][c - 1]) * x[c - 1] +
            static_cast<Real>(link[1][c]) * x[yp] + static_cast<Real>(link[1][ym]) * x[ym] +
            static_cast<Real>(link[2][c]) * x[zp] + static_cast<Real>(link[2][zm]) * x[zm];

@@ -178,9 +178,8 @@ void SolidSampler::sample(std::span<const PlacedSolid> solids, SolidFractions& o
   std::vector<NodeBox> changed = moved_boxes_;
   if (!started_) {
     for (int a = 0; a < 3; ++a) {
-      const auto axis = static_cast<std::size_t>(a);
-      out.open[axis] = ScalarGrid(shape_.face_cells(a), 1);
-      out.velocity[axis] = ScalarGrid(shape_.face_cells(a), 0);
+      out.open[a] = ScalarGrid(shape_.face_cells(a), 1);
+      out.velocity[a] = ScalarGrid(shape_.face_cells(a), 0);
     }
     still_distance_ = distance_ = out.distance = ScalarGrid(nodes, kFar);
     still_owner_.assign(distance_.values.size(), -1);

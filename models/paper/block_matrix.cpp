@@ -33,7 +33,7 @@ std::span<const int> NodeGraph::neighbours(int node) const {
 
 NodeGraph couple_groups(int nodes, std::span<const int> offset, std::span<const int> members) {
   const int groups = static_cast<int>(offset.size()) - 1;
-  std::vector<int> first(static_cast<std::size_t>(nodes) + 1, 0);
+  std::vector<int> first(nodes + 1, 0);
   for (const int node : members) ++first[node + 1];
   for (int i = 0; i < nodes; ++i) first[i + 1] += first[i];
   std::vector<int> group_of(members.size());
@@ -45,7 +45,7 @@ NodeGraph couple_groups(int nodes, std::span<const int> offset, std::span<const 
   }
   NodeGraph graph;
   graph.offset.assign(1, 0);
-  graph.offset.reserve(static_cast<std::size_t>(nodes) + 1);
+  graph.offset.reserve(nodes + 1);
   graph.items.reserve(members.size() * 4);
   std::vector<int> seen_by(nodes, -1);
   for (int i = 0; i < nodes; ++i) {
@@ -65,12 +65,12 @@ NodeGraph couple_groups(int nodes, std::span<const int> offset, std::span<const 
 }
 
 BlockMatrix::BlockMatrix(const NodeGraph& graph, std::span<const int> position, Triangle triangle)
-    : triangle_(triangle), diagonal_(static_cast<std::size_t>(graph.nodes())) {
+    : triangle_(triangle), diagonal_(graph.nodes()) {
   const int n = graph.nodes();
   std::vector<int> node_at(n);
   for (int i = 0; i < n; ++i) node_at[position[i]] = i;
   first_.assign(1, 0);
-  first_.reserve(static_cast<std::size_t>(n) + 1);
+  first_.reserve(n + 1);
   rows_.reserve(graph.items.size() / 2 + static_cast<std::size_t>(n));
   for (int column = 0; column < n; ++column) {
     collect_rows(graph, position, node_at[column], triangle, rows_);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/planar.h"
 
 namespace geoprior::paper {
 namespace {
@@ -57,7 +58,7 @@ class ObstacleContact final : public ContactTerm {
     const Eigen::Vector3i v = mesh.triangles.row(t);
     const auto p = [&](int k) { return Eigen::Vector2d(mesh.pattern.row(v[k]).transpose()); };
     const Eigen::Vector2d b = p(1) - p(0), c = p(2) - p(0);
-    const double area = (b.x() * c.y() - b.y() * c.x()) / 2;
+    const double area = cross(b, c) / 2;
     const double longest = std::max({b.norm(), c.norm(), (c - b).norm()});
     const int m = std::clamp(static_cast<int>(std::ceil(longest / options_.spacing)), 1,
                              options_.most_divisions);

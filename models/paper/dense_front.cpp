@@ -92,10 +92,9 @@ void update(double* c, int c_stride, const double* a, int a_stride, int rows, in
     return;
   }
   constexpr std::size_t kBlock = 8;
-  parallel_blocks(static_cast<std::size_t>(columns / 3), kBlock,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (auto t = begin; t < end; ++t) tile(3 * static_cast<int>(t));
-                  });
+  parallel_blocks(columns / 3, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (auto t = begin; t < end; ++t) tile(3 * static_cast<int>(t));
+  });
 }
 
 /// Cholesky of a 3 x 3 diagonal block and the rows below it.

@@ -178,12 +178,11 @@ int ShellElements::Impl::add_hinges(const ShellMesh& mesh, int t, Element& eleme
 
 void ShellElements::Impl::add_element(const ShellMesh& mesh, int t, double bending_stiffness,
                                       BendingModel model, double hinge_calibration) {
-  const auto i = static_cast<std::size_t>(t);
   Element element;
-  element.area = fit.area[i];
+  element.area = fit.area[t];
   element.gradient = shape_gradients(mesh, t, element.area);
   const int own_nodes = add_hinges(mesh, t, element);
-  element.fit_hinges = static_cast<int>(fit.terms[i].size());
+  element.fit_hinges = static_cast<int>(fit.terms[t].size());
   element.nodes = static_cast<int>(nodes.size()) - element.first_node;
   Root rows;
   PlasticRows plastic_rows = PlasticRows::Zero();
@@ -193,10 +192,10 @@ void ShellElements::Impl::add_element(const ShellMesh& mesh, int t, double bendi
     element.hinges = element.fit_hinges;
     element.stiffness = bending_stiffness * element.area;
   } else {
-    element.hinges = fit.own[i];
+    element.hinges = fit.own[t];
     rows = Root::Zero(element.hinges, element.hinges);
     for (int k = 0; k < element.hinges; ++k) {
-      const auto& h = fit.hinges[fit.terms[i][k].hinge];
+      const auto& h = fit.hinges[fit.terms[t][k].hinge];
       const double length = (mesh.pattern.row(h.b) - mesh.pattern.row(h.a)).norm();
       const double areas = fit.area[h.left] + fit.area[h.right];
       // Half of k D/4 l^2/(2 a) theta^2: the other half is the neighbour's.
@@ -331,8 +330,7 @@ void ShellElements::evaluate(int element, const ShellState& state, const Eigen::
   if (order == Order::energy) return;
   for (int i = 0; i < e.hinges; ++i)
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto j = static_cast<std::size_t>(i);
-      out.gradient.segment<3>(3 * hinge[i].node[k]) += moments[j] * angle[j].gradient[k];
+      out.gradient.segment<3>(3 * hinge[i].node[k]) += moments[i] * angle[i].gradient[k];
     }
   if (order == Order::gradient) return;
   impl_->bending_rows(e, stiffness, angle.data(), rows);

@@ -8,8 +8,8 @@
 
 #include "core/connectivity.h"
 #include "core/error.h"
+#include "core/planar.h"
 #include "core/topology.h"
-#include "models/paper/planar.h"
 #include "models/paper/transfer.h"
 
 namespace geoprior::paper {

@@ -4,10 +4,10 @@
 #include <functional>
 #include <numbers>
 
+#include "core/angles.h"
+
 namespace geoprior::paper {
 namespace {
-
-constexpr double kTwoPi = 2 * std::numbers::pi;
 
 /// Triangles under construction.
 struct Shape {
@@ -49,7 +49,7 @@ Axes axes_at(const Obstacle& obstacle, double time) {
 
 void add_ball(Shape& shape, const Eigen::Vector3d& centre, double radius, bool half) {
   // Half: longitudes from 0 to pi, about the direction (-1, 1, 0): the far side for an eye at +x-y.
-  const double first = half ? std::numbers::pi / 4 : 0, span = half ? std::numbers::pi : kTwoPi;
+  const double first = half ? std::numbers::pi / 4 : 0, span = half ? std::numbers::pi : kFullTurn;
   shape.grid(half ? 24 : 48, 24, [&](double s, double t) -> Eigen::Vector3d {
     const double longitude = first + span * s, polar = std::numbers::pi * (1 - t);
     return centre + radius * Eigen::Vector3d(std::sin(polar) * std::cos(longitude),
@@ -62,16 +62,18 @@ void add_cylinder(Shape& shape, const Axes& a, double radius, double half_length
   const auto at = [&](double angle, double r, double z) -> Eigen::Vector3d {
     return a.centre + r * std::cos(angle) * a.x + r * std::sin(angle) * a.y + z * a.z;
   };
+  shape.grid(48, 1, [&](double s, double t) {
+    return at(kFullTurn * s, radius, (2 * t - 1) * half_length);
+  });
   shape.grid(48, 1,
-             [&](double s, double t) { return at(kTwoPi * s, radius, (2 * t - 1) * half_length); });
+             [&](double s, double t) { return at(kFullTurn * s, radius * (1 - t), half_length); });
   shape.grid(48, 1,
-             [&](double s, double t) { return at(kTwoPi * s, radius * (1 - t), half_length); });
-  shape.grid(48, 1, [&](double s, double t) { return at(kTwoPi * s, radius * t, -half_length); });
+             [&](double s, double t) { return at(kFullTurn * s, radius * t, -half_length); });
 }
 
 void add_torus(Shape& shape, const Axes& a, double radius, double tube) {
   shape.grid(96, 12, [&](double s, double t) -> Eigen::Vector3d {
-    const double around = kTwoPi * s, about = kTwoPi * t;
+    const double around = kFullTurn * s, about = kFullTurn * t;
     const double r = radius + tube * std::cos(about);
     return a.centre + r * (std::cos(around) * a.x + std::sin(around) * a.y) +
            tube * std::sin(about) * a.z;

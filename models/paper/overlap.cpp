@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "models/paper/planar.h"
+#include "core/planar.h"
 
 namespace geoprior::paper {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "models/paper/planar.h"
+#include "core/planar.h"
 
 namespace geoprior::paper {
 namespace {

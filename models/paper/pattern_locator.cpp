@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
-#include "models/paper/planar.h"
+#include "core/planar.h"
 
 namespace geoprior::paper {
 namespace {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/planar.h"
 #include "models/paper/cholmod_cholesky.h"
 #include "models/paper/eigen_cholesky.h"
 #include "models/paper/supernodal_cholesky.h"
@@ -34,7 +35,7 @@ Eigen::Vector3d normal(const Eigen::MatrixX3d& x, const Eigen::Vector3i& t) {
 NodeGraph element_graph(const ShellElements& elements, int vertices) {
   std::vector<int> offset(1, 0);
   std::vector<int> members;
-  offset.reserve(static_cast<std::size_t>(elements.size()) + 1);
+  offset.reserve(elements.size() + 1);
   members.reserve(static_cast<std::size_t>(elements.size()) * 6);
   for (int e = 0; e < elements.size(); ++e) {
     const auto nodes = elements.nodes(e);
@@ -53,7 +54,7 @@ Eigen::VectorXd lumped_masses(const ShellMesh& mesh, double area_density) {
     const Eigen::Vector2d a = mesh.pattern.row(v[0]);
     const Eigen::Vector2d b = mesh.pattern.row(v[1]).transpose() - a;
     const Eigen::Vector2d c = mesh.pattern.row(v[2]).transpose() - a;
-    const double area = (b.x() * c.y() - b.y() * c.x()) / 2;
+    const double area = cross(b, c) / 2;
     if (!(area > 0)) {
       throw Error("no area, or turned over, in the pattern", "triangle " + std::to_string(t),
                   "counter-clockwise triangles");

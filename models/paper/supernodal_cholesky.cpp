@@ -15,8 +15,6 @@
 namespace geoprior::paper {
 namespace {
 
-std::size_t at(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
-
 /// First-fit places for updates that live from a supernode to its parent.
 class Arena {
  public:
@@ -129,13 +127,13 @@ class SupernodalCholesky final : public SparseCholesky {
   /// `first`: of the subtree, all of whose updates lie in the arena; -1: the top, whose children
   /// below the cut keep theirs.
   void place_update(int s, Arena& arena, int first) {
-    const Supernode& node = supernodes_[at(s)];
-    Front& front = fronts_[at(s)];
+    const Supernode& node = supernodes_[s];
+    Front& front = fronts_[s];
     const std::ptrdiff_t size = std::ptrdiff_t{3} * node.below() * front.update_stride;
     front.update = arena.take(size);
     for (const int child : node.children) {
       const bool here = first >= 0 || std::binary_search(cut_.top.begin(), cut_.top.end(), child);
-      if (here && supernodes_[at(child)].below() > 0) arena.release(fronts_[at(child)].update);
+      if (here && supernodes_[child].below() > 0) arena.release(fronts_[child].update);
     }
   }
 
@@ -162,8 +160,8 @@ class SupernodalCholesky final : public SparseCholesky {
   }
 
   bool eliminate(int s, const BlockMatrix& matrix) {
-    const Supernode& node = supernodes_[at(s)];
-    const Front& front = fronts_[at(s)];
+    const Supernode& node = supernodes_[s];
+    const Front& front = fronts_[s];
     double* panel = panels_.data() + front.panel;
     double* rest = updates_.data() + front.update;
     const int width = 3 * node.columns(), below = 3 * node.below();
@@ -178,8 +176,8 @@ class SupernodalCholesky final : public SparseCholesky {
 
   void gather(const Supernode& node, const Front& front, const BlockMatrix& matrix) {
     for (int column = node.first; column < node.end; ++column) {
-      const int* rows = rows_in_front_.data() + first_row_[at(column)];
-      const int blocks = first_row_[at(column) + 1] - first_row_[at(column)];
+      const int* rows = rows_in_front_.data() + first_row_[column];
+      const int blocks = first_row_[column + 1] - first_row_[column];
       const double* from = matrix.column_values(column);
       double* to =
           panels_.data() + front.panel + std::ptrdiff_t{3} * (column - node.first) * front.stride;
@@ -191,9 +189,9 @@ class SupernodalCholesky final : public SparseCholesky {
 
   /// Adds a child's update to the columns and to the update of its parent.
   void take_up(int child, const Supernode& node, const Front& front) {
-    const std::vector<int>& place = supernodes_[at(child)].place;
-    const int stride = fronts_[at(child)].update_stride;
-    const double* from = updates_.data() + fronts_[at(child)].update;
+    const std::vector<int>& place = supernodes_[child].place;
+    const int stride = fronts_[child].update_stride;
+    const double* from = updates_.data() + fronts_[child].update;
     const int columns = node.columns();
     for (std::size_t k = 0; k < place.size(); ++k) {
       const bool inside = place[k] < columns;
@@ -216,14 +214,14 @@ class SupernodalCholesky final : public SparseCholesky {
   }
 
   void forward(int s, Eigen::VectorXd& b) {
-    const Supernode& node = supernodes_[at(s)];
-    const Front& front = fronts_[at(s)];
+    const Supernode& node = supernodes_[s];
+    const Front& front = fronts_[s];
     double* x = b.data() + 3 * node.first;
     double* y = vectors_.data() + front.vector;
     std::fill_n(y, 3 * node.below(), 0.0);
     for (const int child : node.children) {
-      const std::vector<int>& place = supernodes_[at(child)].place;
-      const double* from = vectors_.data() + fronts_[at(child)].vector;
+      const std::vector<int>& place = supernodes_[child].place;
+      const double* from = vectors_.data() + fronts_[child].vector;
       for (std::size_t k = 0; k < place.size(); ++k) {
         double* to =
             place[k] < node.columns() ? x + 3 * place[k] : y + 3 * (place[k] - node.columns());
@@ -235,8 +233,8 @@ class SupernodalCholesky final : public SparseCholesky {
   }
 
   void backward(int s, Eigen::VectorXd& b) {
-    const Supernode& node = supernodes_[at(s)];
-    const Front& front = fronts_[at(s)];
+    const Supernode& node = supernodes_[s];
+    const Front& front = fronts_[s];
     double* y = vectors_.data() + front.vector;
     for (std::size_t k = 0; k < node.rows.size(); ++k) {
       for (std::size_t c = 0; c < 3; ++c) y[3 * k + c] = b[3 * node.rows[k] + static_cast<int>(c)];

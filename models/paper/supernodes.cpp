@@ -23,8 +23,7 @@ Columns factor_columns(const BlockMatrix& matrix) {
   c.offset.assign(1, 0);
   c.parent.assign(n, -1);
   c.rows.reserve(matrix.block_count() * 3);
-  std::vector<int> seen_by(n, -1), first_child(static_cast<std::size_t>(n), -1),
-      next_child(static_cast<std::size_t>(n), -1);
+  std::vector<int> seen_by(n, -1), first_child(n, -1), next_child(n, -1);
   for (int j = 0; j < n; ++j) {
     seen_by[j] = j;
     const std::size_t begin = c.rows.size();

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/planar.h"
 #include "models/paper/overlap.h"
 #include "models/paper/pattern_locator.h"
-#include "models/paper/planar.h"
 
 namespace geoprior::paper {
 namespace {

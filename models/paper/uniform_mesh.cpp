@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/planar.h"
 #include "core/random.h"
 #include "models/paper/grid_anchors.h"
-#include "models/paper/planar.h"
 
 namespace geoprior::paper {
 namespace {

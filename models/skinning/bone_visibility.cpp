@@ -1,10 +1,5 @@
 #include "models/skinning/bone_visibility.h"
 
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
-#include <CGAL/Simple_cartesian.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -13,15 +8,8 @@
 namespace geoprior::skinning {
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;
-using Triangle = Kernel::Triangle_3;
-using Primitive = CGAL::AABB_triangle_primitive<Kernel, std::vector<Triangle>::const_iterator>;
-using Traits = CGAL::AABB_traits<Kernel, Primitive>;
-
 /// Share of the segment at the vertex that is not tested: the triangles around it are there.
 constexpr double kStart = 1e-3;
-
-Kernel::Point_3 point(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
 /// Point nearest to `d` in the wedge {x a + y b, x, y >= 0} of a triangle's corner, `n` its unit
 /// normal.
@@ -35,11 +23,6 @@ Eigen::Vector3d nearest_in_wedge(const Eigen::Vector3d& a, const Eigen::Vector3d
 }
 
 }  // namespace
-
-struct InsideVisibility::Tree {
-  std::vector<Triangle> triangles;
-  CGAL::AABB_tree<Traits> tree;
-};
 
 Eigen::Vector3d Bone::nearest(const Eigen::Vector3d& p) const {
   const Eigen::Vector3d axis = tail - head;
@@ -57,17 +40,7 @@ std::vector<Bone> bones_of(const Skeleton& skeleton) {
 }
 
 InsideVisibility::InsideVisibility(const TriMesh& mesh)
-    : mesh_(mesh), corners_(mesh.F, mesh.vertex_count()), tree_(std::make_unique<Tree>()) {
-  for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
-    const Triangle triangle(point(mesh.V.row(mesh.F(t, 0))), point(mesh.V.row(mesh.F(t, 1))),
-                            point(mesh.V.row(mesh.F(t, 2))));
-    if (!triangle.is_degenerate()) tree_->triangles.push_back(triangle);
-  }
-  tree_->tree.insert(tree_->triangles.cbegin(), tree_->triangles.cend());
-  tree_->tree.build();
-}
-
-InsideVisibility::~InsideVisibility() = default;
+    : mesh_(mesh), corners_(mesh.F, mesh.vertex_count()), tree_(mesh) {}
 
 /// Whether the way starts on the inner side of the triangles around the vertex: the side of the one
 /// nearest to it; between triangles equally near (a common edge), of the one it is steepest to.
@@ -96,8 +69,7 @@ bool InsideVisibility::sees(int v, const Eigen::Vector3d& target) const {
   const Eigen::Vector3d way = target - from;
   if (way.norm() == 0) return true;
   if (!leaves_inwards(v, way)) return false;
-  const Kernel::Segment_3 segment(point(from + kStart * way), point(target));
-  return !tree_->tree.do_intersect(segment);
+  return !tree_.meets_segment(from + kStart * way, target);
 }
 
 }  // namespace geoprior::skinning

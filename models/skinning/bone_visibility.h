@@ -1,11 +1,11 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "core/connectivity.h"
 #include "core/mesh.h"
 #include "core/skeleton.h"
+#include "core/triangle_tree.h"
 
 namespace geoprior::skinning {
 
@@ -26,8 +26,8 @@ std::vector<Bone> bones_of(const Skeleton& skeleton);
 /// threads at once.
 class InsideVisibility {
  public:
+  /// @param mesh  kept by reference
   explicit InsideVisibility(const TriMesh& mesh);
-  ~InsideVisibility();
   InsideVisibility(const InsideVisibility&) = delete;
   InsideVisibility& operator=(const InsideVisibility&) = delete;
 
@@ -38,10 +38,9 @@ class InsideVisibility {
  private:
   [[nodiscard]] bool leaves_inwards(int v, const Eigen::Vector3d& way) const;
 
-  struct Tree;
   const TriMesh& mesh_;
   VertexCorners corners_;
-  std::unique_ptr<Tree> tree_;
+  TriangleTree tree_;
 };
 
 }  // namespace geoprior::skinning

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "models/skinning/bone_visibility.h"
@@ -51,23 +51,13 @@ Contact nearest_bones(const Eigen::Vector3d& p, const std::vector<Bone>& bones, 
   return contact;
 }
 
-/// For each vertex a representative of its connected component.
-std::vector<int> components(const TriMesh& mesh) {
-  std::vector<int> parent(mesh.vertex_count());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int v) {
-    while (parent[v] != v) {
-      int& up = parent[v];
-      up = parent[up];
-      v = up;
-    }
-    return v;
-  };
+/// Vertices joined by common triangles.
+DisjointSets components(const TriMesh& mesh) {
+  DisjointSets sets(mesh.vertex_count());
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
-    for (int k = 0; k < 2; ++k) parent[root(mesh.F(t, k))] = root(mesh.F(t, k + 1));
+    for (int k = 0; k < 2; ++k) sets.join(mesh.F(t, k), mesh.F(t, k + 1));
   }
-  for (int v = 0; v < mesh.vertex_count(); ++v) parent[v] = root(v);
-  return parent;
+  return sets;
 }
 
 std::vector<Contact> bone_contacts(const TriMesh& mesh, const std::vector<Bone>& bones,
@@ -84,15 +74,15 @@ std::vector<Contact> bone_contacts(const TriMesh& mesh, const std::vector<Bone>&
                         [&](const Eigen::Vector3d& q) { return visibility.sees(row, q); });
     }
   });
-  const std::vector<int> component = components(mesh);
+  DisjointSets component = components(mesh);
   std::vector<bool> heated(n, false);
-  for (std::size_t v = 0; v < n; ++v) {
-    if (contacts[v].heat > 0) heated[component[v]] = true;
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    if (contacts[v].heat > 0) heated[component.find(v)] = true;
   }
-  for (std::size_t v = 0; v < n; ++v) {
-    if (heated[component[v]]) continue;
-    contacts[v] = nearest_bones(mesh.V.row(static_cast<Eigen::Index>(v)), bones, heat,
-                                smallest_distance, [](const Eigen::Vector3d&) { return true; });
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    if (heated[component.find(v)]) continue;
+    contacts[v] = nearest_bones(mesh.V.row(v), bones, heat, smallest_distance,
+                                [](const Eigen::Vector3d&) { return true; });
   }
   return contacts;
 }

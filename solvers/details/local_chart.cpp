@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/angles.h"
+#include "core/planar.h"
+
 namespace geoprior::details {
 namespace {
-
-constexpr double kTurn = 6.283185307179586;
 
 double angle_at_start(const IntrinsicTriangulation& mesh, int h) {
   const double b = mesh.length(h), c = mesh.length(IntrinsicTriangulation::previous(h));
@@ -28,8 +29,7 @@ Eigen::Vector2d unfold(const Eigen::Vector2d& p, const Eigen::Vector2d& q, doubl
 
 /// Whether the origin lies on the right of p -> q, where the triangle to be unfolded does not.
 bool source_on_right(const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
-  const double cross = p.x() * q.y() - p.y() * q.x();
-  return cross < 1e-12 * (p.squaredNorm() + q.squaredNorm());
+  return cross(p, q) < 1e-12 * (p.squaredNorm() + q.squaredNorm());
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ void LocalChart::lay_out_ring(const IntrinsicTriangulation& mesh, int source, do
     }
   };
   each_spoke([&](int h) { total += h >= 0 ? angle_at_start(mesh, h) : 0; });
-  const double scale = mesh.border_vertex(source) ? 1 : kTurn / total;
+  const double scale = mesh.border_vertex(source) ? 1 : kFullTurn / total;
   double angle = 0;
   each_spoke([&](int h) {
     const int edge = h >= 0 ? h : -1 - h;

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace geoprior::details {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-}  // namespace
+namespace {}  // namespace
 
 PairCorrelation::PairCorrelation(double mean_edge, const PairCorrelationOptions& options)
     : reach_(options.radius * mean_edge),
@@ -20,13 +17,13 @@ PairCorrelation::PairCorrelation(double mean_edge, const PairCorrelationOptions&
 
 void PairCorrelation::add(double distance, Eigen::VectorXd& into) const {
   if (into.size() == 0) into = Eigen::VectorXd::Zero(bins());
-  const double scale = 1 / (std::sqrt(2 * kPi) * sigma_);
+  const double scale = 1 / (std::sqrt(2 * std::numbers::pi) * sigma_);
   const double width = reach_ / bins();
   const int first = std::max(0, static_cast<int>((distance - 4 * sigma_) / width));
   const int last = std::min(bins() - 1, static_cast<int>((distance + 4 * sigma_) / width));
   for (int i = first; i <= last; ++i) {
     const double x = (radius_of_bin_[i] - distance) / sigma_;
-    into[i] += scale * std::exp(-0.5 * x * x) / (2 * kPi * radius_of_bin_[i]);
+    into[i] += scale * std::exp(-0.5 * x * x) / (2 * std::numbers::pi * radius_of_bin_[i]);
   }
 }
 

@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
+#include "core/planar.h"
+
 namespace geoprior::details {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TriangleKeys keys_of(const std::array<double, 3>& edges) {
   std::array<double, 3> e = edges;
@@ -41,7 +36,7 @@ std::array<int, 2> triplet_cell(const TriangleKeys& keys, double largest_area, i
     return std::clamp(static_cast<int>(x * cells), 0, cells - 1);
   };
   return {clamped(std::min(std::sqrt(keys.area / largest_area), 1.0)),
-          clamped(keys.least_angle / (kPi / 3))};
+          clamped(keys.least_angle / (std::numbers::pi / 3))};
 }
 
 TripletSearch::TripletSearch(const DetailMesh& original, const TripletOptions& options,

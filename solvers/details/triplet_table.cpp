@@ -33,7 +33,7 @@ std::vector<int> sources_of(const DetailMesh& original, const TripletOptions& op
 class Reservoirs {
  public:
   Reservoirs(int cells, int capacity, std::uint64_t seed)
-      : capacity_(static_cast<std::size_t>(capacity)),
+      : capacity_(capacity),
         kept_(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells)),
         seen_(kept_.size(), 0),
         random_(seed, "triplets") {}

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "core/topology.h"
 
@@ -79,27 +80,16 @@ Patch patch_of(const TriMesh& mesh, const std::vector<char>& marks) {
 
 /// A system without anything that stays is singular: found by flooding from what stays.
 void require_held(const TriMesh& mesh, const std::vector<char>& marks) {
-  std::vector<int> parent(marks.size());
-  for (std::size_t v = 0; v < parent.size(); ++v) parent[v] = static_cast<int>(v);
-  const auto root = [&](int v) {
-    while (parent[v] != v) {
-      parent[v] = parent[parent[v]];
-      v = parent[v];
-    }
-    return v;
-  };
+  DisjointSets components(mesh.vertex_count());
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
-    const int a = root(mesh.F(t, 0)), b = root(mesh.F(t, 1));
-    parent[std::max(a, b)] = std::min(a, b);
-    const int c = root(mesh.F(t, 2)), d = std::min(a, b);
-    parent[std::max(c, d)] = std::min(c, d);
+    components.join(components.join(mesh.F(t, 0), mesh.F(t, 1)), mesh.F(t, 2));
   }
   std::vector<char> held(marks.size(), 0);
-  for (std::size_t v = 0; v < marks.size(); ++v) {
-    if (marks[v] != 1) held[root(static_cast<int>(v))] = 1;
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    if (marks[v] != 1) held[components.find(v)] = 1;
   }
-  for (std::size_t v = 0; v < marks.size(); ++v) {
-    if (held[root(static_cast<int>(v))] == 0) {
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    if (held[components.find(v)] == 0) {
       throw Error("the region covers its whole component: no bed can be put under it",
                   "vertex " + std::to_string(v),
                   "regions that leave a vertex of every component outside");
@@ -206,7 +196,7 @@ Eigen::MatrixXd biharmonic(const TriMesh& mesh, const std::vector<char>& marks,
   Eigen::VectorXd weights = laplacian.mass.cwiseInverse();
   for (int i = 0; i < patch.with_ring; ++i) {
     // A border's row holds the pull of the missing side: it says nothing of curvature.
-    const auto v = static_cast<std::size_t>(patch.vertices[i]);
+    const int v = patch.vertices[i];
     if (marks[v] == 2) weights[i] = 0;
   }
   weights /= weights.maxCoeff();

@@ -80,10 +80,9 @@ void smooth(const SurfaceGraph& g, const std::vector<double>& area, std::vector<
       const auto valence = static_cast<double>(ring.size());
       double sum = valence * area[v] * H[v], weight = valence * area[v];
       for (const int n : ring) {
-        const auto j = static_cast<std::size_t>(n);
-        if (g.border[j] != 0) continue;
-        sum += area[j] * H[j];
-        weight += area[j];
+        if (g.border[n] != 0) continue;
+        sum += area[n] * H[n];
+        weight += area[n];
       }
       smoothed[v] = weight > 0 ? sum / weight : 0;
     }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/planar.h"
+
 namespace geoprior::fluid {
 namespace {
 
@@ -49,9 +51,6 @@ void draw(const Triangle& t, const std::array<const Value*, 3>& values, const Ov
                                     std::max({t.a.y(), t.b.y(), t.c.y()}) + 1e-6, n);
   const Range columns = texels_between(std::min({t.a.x(), t.b.x(), t.c.x()}) - 1e-6,
                                        std::max({t.a.x(), t.b.x(), t.c.x()}) + 1e-6, n);
-  const auto cross = [](const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
-    return p.x() * q.y() - p.y() * q.x();
-  };
   for (int j = rows.first; j <= rows.last; ++j) {
     for (int i = columns.first; i <= columns.last; ++i) {
       const Eigen::Vector2d p(i + 0.5, j + 0.5);

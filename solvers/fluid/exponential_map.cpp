@@ -89,11 +89,10 @@ class Unrolling {
   void start(const std::array<int, 3>& corners, const Eigen::Vector3d& anchor,
              const Eigen::Matrix3d& axes) {
     for (const int v : corners) {
-      const auto i = static_cast<std::size_t>(v);
-      uv_[i] = unrolled(near_.x[i] - anchor, axes);
-      axes_[i] = turned_to(axes, near_.normal[i]);
-      distance_[i] = (near_.x[i] - anchor).norm();
-      settled_[i] = 1;
+      uv_[v] = unrolled(near_.x[v] - anchor, axes);
+      axes_[v] = turned_to(axes, near_.normal[v]);
+      distance_[v] = (near_.x[v] - anchor).norm();
+      settled_[v] = 1;
     }
     for (const int v : corners) expand(v);
   }
@@ -134,36 +133,32 @@ class Unrolling {
   }
 
   void expand(int v) {
-    const auto i = static_cast<std::size_t>(v);
     for (const int w : ring(v)) {
-      const auto j = static_cast<std::size_t>(w);
-      const double distance = distance_[i] + (near_.x[j] - near_.x[i]).norm();
-      if (settled_[j] != 0 || distance >= distance_[j]) continue;
-      distance_[j] = distance;
+      const double distance = distance_[v] + (near_.x[w] - near_.x[v]).norm();
+      if (settled_[w] != 0 || distance >= distance_[w]) continue;
+      distance_[w] = distance;
       queue_.emplace(distance, w);
     }
   }
 
   void settle(int v) {
-    const auto i = static_cast<std::size_t>(v);
     Eigen::Vector2d uv = Eigen::Vector2d::Zero();
     Eigen::Vector3d first = Eigen::Vector3d::Zero();
     double sum = 0;
     for (const int w : ring(v)) {
-      const auto j = static_cast<std::size_t>(w);
-      if (settled_[j] == 0) continue;
-      const Eigen::Vector3d edge = near_.x[i] - near_.x[j];
+      if (settled_[w] == 0) continue;
+      const Eigen::Vector3d edge = near_.x[v] - near_.x[w];
       const double weight = 1 / std::max(edge.norm(), 1e-300);
-      uv += weight * (uv_[j] + unrolled(edge, axes_[j]));
-      first += weight * turned_to(axes_[j], near_.normal[i]).col(0);
+      uv += weight * (uv_[w] + unrolled(edge, axes_[w]));
+      first += weight * turned_to(axes_[w], near_.normal[v]).col(0);
       sum += weight;
     }
-    uv_[i] = uv / sum;
-    const Eigen::Vector3d& n = near_.normal[i];
-    axes_[i].col(0) = (first - first.dot(n) * n).normalized();
-    axes_[i].col(1) = n.cross(axes_[i].col(0));
-    axes_[i].col(2) = n;
-    settled_[i] = 1;
+    uv_[v] = uv / sum;
+    const Eigen::Vector3d& n = near_.normal[v];
+    axes_[v].col(0) = (first - first.dot(n) * n).normalized();
+    axes_[v].col(1) = n.cross(axes_[v].col(0));
+    axes_[v].col(2) = n;
+    settled_[v] = 1;
   }
 
   const Neighbourhood& near_;

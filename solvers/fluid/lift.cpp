@@ -185,14 +185,13 @@ bool label_missed(const SurfaceFrame& frame, int index, const Extraction& extrac
   const Eigen::Vector3d centre = before.centre + share * (after.centre - before.centre);
   bool any = false;
   for (Eigen::Index v = 0; v < frame.mesh.V.rows(); ++v) {
-    const auto i = static_cast<std::size_t>(v);
-    if (labels.label[i] != 0 || (!labels.masked.empty() && labels.masked[i] != 0)) continue;
+    if (labels.label[v] != 0 || (!labels.masked.empty() && labels.masked[v] != 0)) continue;
     const Eigen::Vector3d x = frame.mesh.V.row(v).transpose() - centre;
     const bool there = std::any_of(around.begin(), around.end(), [&](const Region* region) {
       return touches_support(region->support, support_cube(x + region->centre, extraction.cell));
     });
     if (!there) continue;
-    labels.label[i] = label;
+    labels.label[v] = label;
     any = true;
   }
   return any;

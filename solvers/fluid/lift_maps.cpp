@@ -74,7 +74,7 @@ void unroll(const LiftPatch& patch, PlacedPatch& placed) {
   std::fill(placed.uv.begin(), placed.uv.end(),
             Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()));
   for (std::size_t i = 0; i < map.vertices.size(); ++i) {
-    const auto v = static_cast<std::size_t>(map.vertices[i]);
+    const int v = map.vertices[i];
     placed.uv[v] = map.uv[i];
     placed.displacement[v] = (map.axes[i].transpose() * placed.displacement[v]).eval();
   }
@@ -185,13 +185,12 @@ Eigen::VectorXf bed_correction(const LiftedFrame& before, const LiftedFrame& fra
   const int n = frame.bed.resolution;
   Eigen::VectorXf result = Eigen::VectorXf::Zero(frame.map.alpha.size());
   for (int k = 0; k < n * n; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    if (frame.map.alpha[k] <= 0 || frame.bed.known[i] != 1) continue;
+    if (frame.map.alpha[k] <= 0 || frame.bed.known[k] != 1) continue;
     const double texel = frame.bed.extent / n;
     const Eigen::Vector3d point =
         own * Eigen::Vector3d((k % n + 0.5) * texel - 0.5 * frame.bed.extent,
                               (k / n + 0.5) * texel - 0.5 * frame.bed.extent,
-                              static_cast<double>(frame.bed.height[i]));
+                              static_cast<double>(frame.bed.height[k]));
     const auto low = height_above(before, frame_before, point);
     const auto high = height_above(after, frame_after, point);
     if (!low || !high) continue;
@@ -304,7 +303,7 @@ Feature feature_of_patches(std::vector<LiftPatch> patches, const std::vector<dou
   feature.volume.assign(feature.times.size(), 0);
   for (std::size_t i = 0; i < line.patch.size(); ++i) {
     if (line.patch[i] < 0) continue;
-    const auto p = static_cast<std::size_t>(line.patch[i]);
+    const int p = line.patch[i];
     feature.maps[i] = std::move(frames[p].map);
     feature.area[i] = patches[p].sample.area;
   }

@@ -73,14 +73,12 @@ std::vector<double> distance_from_region(const TriMesh& mesh, const FrameLabels&
   while (!queue.empty()) {
     const auto [d, v] = queue.top();
     queue.pop();
-    const auto i = static_cast<std::size_t>(v);
-    if (d > distance[i]) continue;
+    if (d > distance[v]) continue;
     for (const int w : graph.neighbours(v)) {
-      const auto j = static_cast<std::size_t>(w);
-      if (!labels.masked.empty() && labels.masked[j] != 0) continue;
-      const double further = d + (graph.x[j] - graph.x[i]).norm();
-      if (further >= distance[j] || further > reach) continue;
-      distance[j] = further;
+      if (!labels.masked.empty() && labels.masked[w] != 0) continue;
+      const double further = d + (graph.x[w] - graph.x[v]).norm();
+      if (further >= distance[w] || further > reach) continue;
+      distance[w] = further;
       queue.emplace(further, w);
     }
   }

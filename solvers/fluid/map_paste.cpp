@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/planar.h"
 #include "solvers/fluid/exponential_map.h"
 
 namespace geoprior::fluid {
@@ -52,30 +54,6 @@ Projection project(const WorkMesh& mesh, const EditedFrame& frame, double half, 
   return result;
 }
 
-/// Sets of vertices that facing triangles join.
-class Components {
- public:
-  explicit Components(std::size_t n) : parent_(n) {
-    for (std::size_t v = 0; v < n; ++v) parent_[v] = static_cast<int>(v);
-  }
-  int root(int v) {
-    while (at(v) != v) {
-      at(v) = at(at(v));
-      v = at(v);
-    }
-    return v;
-  }
-  void join(int a, int b) {
-    a = root(a);
-    b = root(b);
-    at(std::max(a, b)) = std::min(a, b);
-  }
-
- private:
-  int& at(int v) { return parent_[v]; }
-  std::vector<int> parent_;
-};
-
 /// What lies under a projected map, connected with the anchor.
 struct Footprint {
   std::vector<char> inside;             ///< of the vertices
@@ -87,7 +65,8 @@ Footprint footprint(const WorkMesh& mesh, const Projection& projection, const Pa
                     const Eigen::Vector3d& z) {
   Footprint result;
   result.normal.assign(mesh.x.size(), Eigen::Vector3d::Zero());
-  Components components(mesh.x.size());
+  // Vertices that facing triangles join.
+  DisjointSets components(static_cast<int>(mesh.x.size()));
   double area = 0, steep = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (projection.side[t] == Side::outside) continue;
@@ -103,12 +82,12 @@ Footprint footprint(const WorkMesh& mesh, const Projection& projection, const Pa
     if (n.dot(z) < std::sqrt(0.5) * size) steep += size;
   }
   result.steep_share = area > 0 ? steep / area : 0;
-  const int home = components.root(mesh.triangles[anchor.triangle][0]);
+  const int home = components.find(mesh.triangles[anchor.triangle][0]);
   result.inside.assign(mesh.x.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (projection.side[t] != Side::facing) continue;
     const auto& f = mesh.triangles[t];
-    if (components.root(f[0]) != home) continue;
+    if (components.find(f[0]) != home) continue;
     for (const int v : f) result.inside[v] = 1;
   }
   return result;
@@ -156,7 +135,7 @@ MapCoordinates unrolled(const WorkMesh& mesh, const EditedFrame& frame,
 class Covered {
  public:
   Covered(const MapCoordinates& places, int vertex_count)
-      : places_(places), slot_(static_cast<std::size_t>(vertex_count), -1) {
+      : places_(places), slot_(vertex_count, -1) {
     for (std::size_t i = 0; i < places.vertex.size(); ++i) {
       slot_[places.vertex[i]] = static_cast<int>(i);
     }
@@ -220,7 +199,7 @@ std::size_t triangles_needed(const WorkMesh& mesh, const std::vector<int>& candi
     const auto& f = mesh.triangles[t];
     const Eigen::Vector2d u = covered.uv(f[1]) - covered.uv(f[0]),
                           w = covered.uv(f[2]) - covered.uv(f[0]);
-    needed += std::abs(u.x() * w.y() - u.y() * w.x()) / (limit * limit);
+    needed += std::abs(cross(u, w)) / (limit * limit);
   }
   return static_cast<std::size_t>(std::min(needed, 1e15));
 }
@@ -253,11 +232,10 @@ void add_middles(const std::vector<std::array<int, 2>>& parents, int first,
   for (std::size_t e = 0; e < parents.size(); ++e) {
     const std::ptrdiff_t a = find(parents[e][0]), b = a < 0 ? -1 : find(parents[e][1]);
     if (b < 0) continue;
-    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
     places.vertex.push_back(first + static_cast<int>(e));
-    places.uv.emplace_back(0.5 * (places.uv[i] + places.uv[j]));
-    places.weight.push_back(0.5 * (places.weight[i] + places.weight[j]));
-    if (!places.axes.empty()) places.axes.emplace_back(0.5 * (places.axes[i] + places.axes[j]));
+    places.uv.emplace_back(0.5 * (places.uv[a] + places.uv[b]));
+    places.weight.push_back(0.5 * (places.weight[a] + places.weight[b]));
+    if (!places.axes.empty()) places.axes.emplace_back(0.5 * (places.axes[a] + places.axes[b]));
   }
 }
 

@@ -82,7 +82,7 @@ std::vector<Eigen::Vector3d> displacement_rates(const WorkMesh& mesh, const Plac
                                                 after.frame.placement.inverse()};
   parallel_blocks(rates.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto v = static_cast<std::size_t>(placed.places.vertex[i]);
+      const int v = placed.places.vertex[i];
       const auto shift = [&](std::size_t k) -> Eigen::Vector3d {
         const PlacedMap::Instant& instant = placed.instants[k];
         const Eigen::Vector3d x = mesh.x[v] + instant.time * mesh.velocity[v];
@@ -110,8 +110,7 @@ double swept_volume(const WorkMesh& mesh, const std::vector<Eigen::Vector3d>& sh
     double sum = 0;
     for (std::size_t t = begin; t < end; ++t) {
       const auto& f = mesh.triangles[t];
-      const auto a = static_cast<std::size_t>(f[0]), b = static_cast<std::size_t>(f[1]),
-                 c = static_cast<std::size_t>(f[2]);
+      const int a = f[0], b = f[1], c = f[2];
       if (shift[a].isZero(0) && shift[b].isZero(0) && shift[c].isZero(0)) continue;
       const Eigen::Vector3d p = mesh.x[a] - origin, q = mesh.x[b] - origin, r = mesh.x[c] - origin;
       sum += (p + shift[a]).dot((q + shift[b]).cross(r + shift[c])) - p.dot(q.cross(r));

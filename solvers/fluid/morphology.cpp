@@ -23,12 +23,11 @@ void Morphology::spread(std::vector<char>& set, char from, double radius) {
   const auto relax = [&](int v, double base) {
     const Eigen::Vector3d& x = graph_.x[v];
     for (const int n : graph_.neighbours(v)) {
-      const auto j = static_cast<std::size_t>(n);
-      if (active_[j] == 0 || set[j] == from) continue;
-      const double d = base + (graph_.x[j] - x).norm();
-      if (d > radius || d >= distance_[j]) continue;
-      if (distance_[j] == kFar) touched_.push_back(n);
-      distance_[j] = d;
+      if (active_[n] == 0 || set[n] == from) continue;
+      const double d = base + (graph_.x[n] - x).norm();
+      if (d > radius || d >= distance_[n]) continue;
+      if (distance_[n] == kFar) touched_.push_back(n);
+      distance_[n] = d;
       heap_.push_back({d, n});
       std::push_heap(heap_.begin(), heap_.end(), later);
     }
@@ -63,15 +62,14 @@ void Morphology::fill_holes(std::vector<char>& set, const std::vector<double>& a
     double total = 0;
     bool surrounded = true, touches = false;
     for (std::size_t i = 0; i < part.size(); ++i) {
-      const auto v = static_cast<std::size_t>(part[i]);
+      const int v = part[i];
       total += area[v];
       surrounded = surrounded && graph_.border[v] == 0;
       for (const int n : graph_.neighbours(part[i])) {
-        const auto j = static_cast<std::size_t>(n);
-        surrounded = surrounded && active_[j] != 0;
-        touches = touches || set[j] != 0;
-        if (active_[j] == 0 || set[j] != 0 || seen[j] != 0) continue;
-        seen[j] = 1;
+        surrounded = surrounded && active_[n] != 0;
+        touches = touches || set[n] != 0;
+        if (active_[n] == 0 || set[n] != 0 || seen[n] != 0) continue;
+        seen[n] = 1;
         part.push_back(n);
       }
     }

@@ -91,7 +91,7 @@ void add(const PlacedMap& placed, const Displaced& displaced, int number,
          const std::vector<PlacedMap>& all, Sums& sums, std::set<std::pair<int, int>>& overlaps) {
   const std::string& name = placed.insertion->edit.name;
   for (std::size_t i = 0; i < displaced.shift.size(); ++i) {
-    const auto v = static_cast<std::size_t>(placed.places.vertex[i]);
+    const int v = placed.places.vertex[i];
     sums.shift[v] += displaced.shift[i];
     const double length = displaced.shift[i].squaredNorm();
     if (length > sums.largest[v]) {

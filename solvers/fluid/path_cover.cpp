@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 
 // A path cover with fewest costs is a matching of largest gain: n nodes without links are n paths,
@@ -48,28 +48,15 @@ std::vector<Gain> gains_of(int nodes, const std::vector<PathLink>& links, double
   return gains;
 }
 
-int root_of(std::vector<int>& parent, int i) {
-  while (parent[i] != i) {
-    int& p = parent[i];
-    p = parent[p];
-    i = p;
-  }
-  return i;
-}
-
 /// Gains by connected part of the bipartite graph (leaving node i, entered node n + j), parts in
 /// the order of their first gains.
 std::vector<std::vector<Gain>> parts_of(int nodes, const std::vector<Gain>& gains) {
-  std::vector<int> parent(2 * static_cast<std::size_t>(nodes));
-  std::iota(parent.begin(), parent.end(), 0);
-  for (const Gain& g : gains) {
-    const int a = root_of(parent, g.from), b = root_of(parent, nodes + g.to);
-    parent[std::max(a, b)] = std::min(a, b);
-  }
-  std::vector<int> part_of(parent.size(), -1);
+  DisjointSets sets(2 * nodes);
+  for (const Gain& g : gains) sets.join(g.from, nodes + g.to);
+  std::vector<int> part_of(sets.size(), -1);
   std::vector<std::vector<Gain>> parts;
   for (const Gain& g : gains) {
-    int& part = part_of[root_of(parent, g.from)];
+    int& part = part_of[sets.find(g.from)];
     if (part < 0) {
       part = static_cast<int>(parts.size());
       parts.emplace_back();

@@ -152,11 +152,10 @@ std::vector<int> EdgeSplitter::apply(WorkMesh& mesh) const {
   if (empty()) return changed;
   std::vector<char> touched(mesh.x.size(), 0);
   for (const auto& [a, b] : parents_) {
-    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-    touched[i] = touched[j] = 1;
-    mesh.x.push_back(0.5 * (mesh.x[i] + mesh.x[j]));
+    touched[a] = touched[b] = 1;
+    mesh.x.push_back(0.5 * (mesh.x[a] + mesh.x[b]));
     if (!mesh.velocity.empty()) {
-      mesh.velocity.push_back(0.5 * (mesh.velocity[i] + mesh.velocity[j]));
+      mesh.velocity.push_back(0.5 * (mesh.velocity[a] + mesh.velocity[b]));
     }
   }
   Parts parts(mesh, changed);

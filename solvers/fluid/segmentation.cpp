@@ -30,9 +30,8 @@ std::vector<char> hysteresis(const Canvas& c, double high, double low) {
       const int from = queue.back();
       queue.pop_back();
       for (const int n : c.graph.neighbours(from)) {
-        const auto j = static_cast<std::size_t>(n);
-        if (c.active[j] == 0 || set[j] != 0 || std::abs(c.shape.curvature[j]) <= low) continue;
-        set[j] = 1;
+        if (c.active[n] == 0 || set[n] != 0 || std::abs(c.shape.curvature[n]) <= low) continue;
+        set[n] = 1;
         queue.push_back(n);
       }
     }
@@ -54,9 +53,8 @@ int label_parts(const Canvas& c, const std::vector<char>& set, double smallest, 
     for (std::size_t i = 0; i < part.size(); ++i) {
       area += c.shape.area[part[i]];
       for (const int n : c.graph.neighbours(part[i])) {
-        const auto j = static_cast<std::size_t>(n);
-        if (set[j] == 0 || seen[j] != 0) continue;
-        seen[j] = 1;
+        if (set[n] == 0 || seen[n] != 0) continue;
+        seen[n] = 1;
         part.push_back(n);
       }
     }

@@ -13,7 +13,7 @@ void flood(const SurfaceGraph& g, int start, int label, SurfaceComponents& resul
   result.of_vertex[start] = label;
   std::size_t half_edges = 0;
   for (std::size_t i = 0; i < queue.size(); ++i) {
-    const auto v = static_cast<std::size_t>(queue[i]);
+    const int v = queue[i];
     component.closed = component.closed && g.border[v] == 0;
     half_edges += g.neighbours(queue[i]).size();
     for (const int n : g.neighbours(queue[i])) {

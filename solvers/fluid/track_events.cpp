@@ -50,10 +50,9 @@ class EventFinder {
   [[nodiscard]] double time_of(int r) const { return times_[region(r).frame]; }
   /// Way of a region over dt (m).
   [[nodiscard]] Eigen::Vector3d way(int r, double dt) const {
-    const auto i = static_cast<std::size_t>(r);
     // The better known of both: a track's first region has no past, its last no future.
-    const RegionMotion& past = motions_.from_past[i];
-    const RegionMotion& future = motions_.from_future[i];
+    const RegionMotion& past = motions_.from_past[r];
+    const RegionMotion& future = motions_.from_future[r];
     const bool by_past = past.velocity_variance <= future.velocity_variance;
     return predicted(region(r), by_past ? past : future, dt, options_) - region(r).centre;
   }

@@ -36,8 +36,7 @@ std::vector<int> frame_by_frame(std::span<const Region> regions, const std::vect
     }
     const std::vector<int> chosen = cover_by_paths(nodes, open, new_path_cost);
     for (const PathLink& link : open) {
-      const auto from = static_cast<std::size_t>(link.from);
-      if (chosen[from] >= 0) successor[from] = chosen[from];
+      if (chosen[link.from] >= 0) successor[link.from] = chosen[link.from];
     }
   }
   return successor;

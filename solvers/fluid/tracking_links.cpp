@@ -165,11 +165,10 @@ std::vector<PathLink> candidate_links(std::span<const Region> regions,
           std::sqrt((2 * options.new_path_cost + 6) * (g * variance + past.variance(dt)));
       const double x = predicted(a, past, dt, options).x();
       for (const int to : index.window(frame, x, reach)) {
-        const auto j = static_cast<std::size_t>(to);
-        const Region& b = regions[j];
+        const Region& b = regions[to];
         if (b.kind != a.kind || is_too_fast(a, b, dt, options)) continue;
         const double ahead = prediction_cost(a, past, b.centre, dt, g, variance, options);
-        const double back = prediction_cost(b, motions.from_future[j], a.centre, -dt, g,
+        const double back = prediction_cost(b, motions.from_future[to], a.centre, -dt, g,
                                             centre_variance(b, cell, options), options);
         double cost = 0.5 * (ahead + back) + (g - 1) * options.gap_cost;
         if (cost >= options.new_path_cost) continue;

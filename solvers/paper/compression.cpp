@@ -6,8 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/connectivity.h"
-#include "models/paper/planar.h"
+#include "core/planar.h"
 #include "solvers/paper/segments.h"
 
 namespace geoprior::paper {
@@ -16,7 +17,6 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-constexpr double kRadians = std::numbers::pi / 180;
 /// On flat ground rulings are still free: about a point handle the directions of compression fan
 /// out, and their mean is meant (rad).
 constexpr double kFlatGroupAngle = std::numbers::pi / 4;
@@ -108,7 +108,7 @@ double admissible_strain(const Sheet& sheet, const RulingEditor& editor,
   const Vector2d t = perpendicular(d);
   const double across = t.x() * t.x() * curvature[0] + 2 * t.x() * t.y() * curvature[1] +
                         t.y() * t.y() * curvature[2];
-  const double slope = options.least_slope_deg * kRadians;
+  const double slope = options.least_slope_deg * kDegree;
   return std::max(
       options.euler_factor * critical_strain(sheet.material, span(editor, p, d), across),
       slope * slope / 4);
@@ -144,7 +144,7 @@ void demand_of_bent_rulings(const Sheet& sheet, const ShellState& state,
                             const RulingEditor& editor, const HybridOptions& options,
                             std::vector<Demand>& demands) {
   const bool plain = options.test == CompressionTest::threshold;
-  const double least_turn = plain ? 0 : options.refine_angle_deg * kRadians;
+  const double least_turn = plain ? 0 : options.refine_angle_deg * kDegree;
   for (std::size_t r = 0; r < mesh.ruling_paths.size(); ++r) {
     if (mesh.ruling_paths[r].size() < 3) continue;
     const BentRuling bent = bent_ruling(state, mesh.ruling_paths[r]);
@@ -182,7 +182,7 @@ std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
     const bool bent = !ruling.isZero();
     const Compression c = compression(state, f);
     const bool served =
-        bent && line_angle(perpendicular(c.direction), ruling) < options.group_angle_deg * kRadians;
+        bent && line_angle(perpendicular(c.direction), ruling) < options.group_angle_deg * kDegree;
     if (c.strain > 0 && !served) {
       const double limit = admissible_strain(sheet, editor, options, p, c.direction, S);
       if (c.strain > limit) {
@@ -204,7 +204,7 @@ std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
 
 std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const ShellMesh& mesh,
                                        double group_angle_deg) {
-  const double group_angle = group_angle_deg * kRadians;
+  const double group_angle = group_angle_deg * kDegree;
   const EdgeConnectivity edges(mesh.triangles);
   std::vector<int> order;
   for (std::size_t f = 0; f < demands.size(); ++f) {

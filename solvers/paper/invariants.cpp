@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "models/paper/planar.h"
+#include "core/planar.h"
 #include "solvers/paper/ruling_mesh.h"
 
 namespace geoprior::paper {

@@ -5,35 +5,17 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "core/connectivity.h"
-#include "models/paper/planar.h"
+#include "core/disjoint_sets.h"
+#include "core/planar.h"
 #include "solvers/paper/segments.h"
 
 namespace geoprior::paper {
 namespace {
 
 using Eigen::Vector2d;
-
-/// Rulings that are one piece, by union and find.
-class RulingSets {
- public:
-  explicit RulingSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int root(int i) {
-    while (parent_[i] != i) i = parent_[i];
-    return i;
-  }
-  /// The smaller index becomes the root.
-  void join(int i, int j) {
-    const int p = root(i), q = root(j);
-    parent_[std::max(p, q)] = std::min(p, q);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// Rulings on the outline of each cell, each once, sorted.
 std::vector<std::vector<int>> rulings_of_cells(const RulingMesh& mesh,
@@ -222,7 +204,7 @@ std::vector<PaperPiece> bent_pieces(const PaperStructure& structure,
                                     const std::vector<std::vector<int>>& rulings_of_cell,
                                     std::vector<int>& piece_of_cell) {
   const std::size_t cells = rulings_of_cell.size();
-  RulingSets sets(structure.rulings.size());
+  DisjointSets sets(static_cast<int>(structure.rulings.size()));  // rulings that are one piece
   std::vector<std::optional<int>> apex_of(structure.rulings.size());
   std::vector<PaperPiece::Kind> kinds(cells, PaperPiece::Kind::flat);
   for (std::size_t c = 0; c < cells; ++c) {
@@ -240,7 +222,7 @@ std::vector<PaperPiece> bent_pieces(const PaperStructure& structure,
   std::map<int, int> piece_of_root;
   for (std::size_t c = 0; c < cells; ++c) {
     if (kinds[c] == PaperPiece::Kind::flat) continue;
-    const int root = sets.root(rulings_of_cell[c][0]);
+    const int root = sets.find(rulings_of_cell[c][0]);
     const auto [at, fresh] = piece_of_root.try_emplace(root, static_cast<int>(pieces.size()));
     if (fresh) {
       pieces.emplace_back();

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "core/angles.h"
+#include "core/planar.h"
 #include "core/random.h"
-#include "models/paper/planar.h"
 #include "solvers/paper/segments.h"
 #include "solvers/paper/singular_point.h"
 
@@ -15,7 +15,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kRadians = std::numbers::pi / 180;
 /// Draws of a singular point until one keeps its distance to the others.
 constexpr int kMostDraws = 16;
 /// Turn of the border at a corner that counts as one (rad).
@@ -30,7 +29,7 @@ Vector2d merged_direction(const DemandGroup& group, const RulingEditor& editor,
   const Vector2d d = perpendicular(group.direction);
   for (const PaperPiece& piece : editor.structure().pieces) {
     if (piece.kind == PaperPiece::Kind::cylinder &&
-        line_angle(piece.direction, d) < options.merge_angle_deg * kRadians) {
+        line_angle(piece.direction, d) < options.merge_angle_deg * kDegree) {
       return piece.direction;
     }
   }
@@ -60,7 +59,7 @@ Candidate make_candidate(const Vector2d& seed, Vector2d d, const GroupTest& in_g
                          const RulingEditor& editor, const HybridOptions& options) {
   Candidate c;
   c.seed = seed;
-  const double group_angle = options.group_angle_deg * kRadians;
+  const double group_angle = options.group_angle_deg * kDegree;
   c.forward = editor.propagate(seed, d);
   c.backward = editor.propagate(seed, -d);
   // A ruling met at a small angle is no conflict: follow it.

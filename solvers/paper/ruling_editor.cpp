@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "models/paper/planar.h"
+#include "core/planar.h"
 #include "solvers/paper/segments.h"
 
 namespace geoprior::paper {

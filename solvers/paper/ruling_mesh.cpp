@@ -8,7 +8,7 @@
 
 #include "core/connectivity.h"
 #include "core/error.h"
-#include "models/paper/planar.h"
+#include "core/planar.h"
 #include "solvers/paper/segments.h"
 
 namespace geoprior::paper {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/paper/planar.h"
+#include "core/planar.h"
 
 namespace geoprior::paper {
 

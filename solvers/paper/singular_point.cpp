@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/angles.h"
 #include "solvers/paper/segments.h"
 
 namespace geoprior::paper {
@@ -14,7 +15,6 @@ using Eigen::Vector2d;
 
 /// Nearest that a ruling of another piece passes a singular point, in gaps.
 constexpr double kClear = 1.5;
-constexpr double kFullTurn = 2 * std::numbers::pi;
 
 /// Lines to all that the point sees, the nearest first: a far one must not come too near to them.
 void connect(int index, RulingEditor& editor) {

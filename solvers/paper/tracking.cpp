@@ -5,9 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/connectivity.h"
 #include "core/curvature_fit.h"
-#include "models/paper/planar.h"
+#include "core/planar.h"
 #include "solvers/paper/segments.h"
 
 namespace geoprior::paper {
@@ -15,7 +16,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kRadians = std::numbers::pi / 180;
 /// Turns smaller than this are not worth a new mesh.
 constexpr double kLeastTurnDegrees = 1;
 /// Part of all rulings that must be superfluous to be worth a new mesh of their own.
@@ -48,7 +48,7 @@ Vector2d observed_direction(const ShellState& state, const Eigen::MatrixX3d& cur
 
 /// Signed angle that takes one line to another, -pi/2 ... pi/2.
 double turn_between(const Vector2d& from, const Vector2d& to) {
-  const double angle = std::atan2(cross(from, to), from.dot(to));
+  const double angle = signed_angle(from, to);
   if (angle > std::numbers::pi / 2) return angle - std::numbers::pi;
   if (angle < -std::numbers::pi / 2) return angle + std::numbers::pi;
   return angle;
@@ -208,9 +208,9 @@ bool turn_cylinders(const ShellState& state, const Eigen::MatrixX3d& curvature,
     if (pieces[i].kind != PaperPiece::Kind::cylinder) continue;
     const Vector2d target = observed_direction(state, curvature, mesh, static_cast<int>(i));
     if (target.isZero()) continue;
-    const double limit = options.tracking_rate_deg * kRadians;
+    const double limit = options.tracking_rate_deg * kDegree;
     const double angle = std::clamp(turn_between(pieces[i].direction, target), -limit, limit);
-    if (std::abs(angle) < kLeastTurnDegrees * kRadians) continue;
+    if (std::abs(angle) < kLeastTurnDegrees * kDegree) continue;
     // Indices of rulings change when a piece turns: one piece a frame keeps them simple.
     if (turn_piece(pieces[i], angle, editor)) {
       turned = true;
@@ -222,7 +222,7 @@ bool turn_cylinders(const ShellState& state, const Eigen::MatrixX3d& curvature,
 
 bool refine_rulings(const std::vector<double>& folds, const HybridOptions& options,
                     RulingEditor& editor) {
-  const double limit = options.refine_angle_deg * kRadians;
+  const double limit = options.refine_angle_deg * kDegree;
   // Copies: adding rulings moves what the structure holds.
   const std::vector<Ruling> rulings = editor.structure().rulings;
   bool refined = false;
@@ -254,7 +254,7 @@ void count_flat_frames(const std::vector<double>& folds, const HybridOptions& op
                        RulingEditor& editor) {
   PaperStructure& structure = editor.structure();
   const double flat = options.flat_curvature * options.seeding_distance;
-  const double sharp = options.refine_angle_deg * kRadians;
+  const double sharp = options.refine_angle_deg * kDegree;
   for (std::size_t i = 0; i < folds.size(); ++i) {
     int& frames = structure.rulings[i].unbent_frames;
     frames = std::abs(folds[i]) < flat ? frames + 1 : 0;

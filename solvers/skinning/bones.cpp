@@ -27,7 +27,7 @@ int owner_joint(const RiggedMesh& rig, int v, PartitionRule rule,
   int best = -1;
   double best_score = -std::numeric_limits<double>::infinity();
   for (SkinWeights::InnerIterator it(rig.weights, v); it; ++it) {
-    const auto j = static_cast<std::size_t>(it.col());
+    const auto j = it.col();
     if (!allowed[j] || !(it.value() > 0)) continue;
     // The closest bone competes only among joints that matter; 0.05 is the released code's bound.
     double score = it.value();

@@ -67,7 +67,7 @@ void FieldComposition::set_pose(const Pose& pose) {
   for (std::size_t j = 0; j < pose.size(); ++j) rotations_[j] = rigid_part(pose[j]).linear();
   for (std::size_t b = 0; b < fields_.size(); ++b) {
     const BoneField& field = fields_[b];
-    const auto joint = static_cast<std::size_t>(field.bone.joint);
+    const int joint = field.bone.joint;
     const Eigen::Isometry3d rigid = bone_motion(field.bone, pose[joint], rotations_[joint]);
     const Eigen::Isometry3d inverse = rigid.inverse();
     to_rest_[b] = inverse;
@@ -112,25 +112,23 @@ int FieldComposition::bones_near(Float4 low, Float4 high, int* bones) const {
 }
 
 Float4 FieldComposition::exact_distance(int bone, Float4 p) const {
-  const auto b = static_cast<std::size_t>(bone);
-  const Hrbf::Value v = fields_[b].hrbf(to_rest_[b] * Eigen::Vector3d(static_cast<double>(p[0]),
-                                                                      static_cast<double>(p[1]),
-                                                                      static_cast<double>(p[2])));
+  const Hrbf::Value v = fields_[bone].hrbf(
+      to_rest_[bone] * Eigen::Vector3d(static_cast<double>(p[0]), static_cast<double>(p[1]),
+                                       static_cast<double>(p[2])));
   Float4 result = to_float4(v.gradient);
   result[3] = static_cast<float>(v.value);
   return result;
 }
 
 bool FieldComposition::sample_bone(int bone, Float4 p, Sampled& out) const {
-  const auto b = static_cast<std::size_t>(bone);
-  const PosedBone& posed = posed_[b];
+  const PosedBone& posed = posed_[bone];
   const Float4 u = posed.to_grid[0] * splat(p[0]) + posed.to_grid[1] * splat(p[1]) +
                    posed.to_grid[2] * splat(p[2]) + posed.to_grid[3];
   const Float4 e = posed.extent;
   if (!(u[0] >= 0 && u[1] >= 0 && u[2] >= 0 && u[0] < e[0] && u[1] < e[1] && u[2] < e[2])) {
     return false;
   }
-  const BoneField& field = fields_[b];
+  const BoneField& field = fields_[bone];
   const Float4 d = field.cache ? field.cache->sample(u) : exact_distance(bone, p);
   if (!(d[3] < 1.0F)) return false;
   const SupportValue f = compact_support(support_, static_cast<double>(d[3]));

@@ -8,6 +8,8 @@
 namespace geoprior::skinning {
 namespace {
 
+using std::numbers::pi;
+
 constexpr double kBlendTip = 0.7;
 constexpr double kBulgeTip = 0.55;
 
@@ -188,7 +190,6 @@ BlendValue JointOperator::operator()(double f1, double f2, double cos_alpha) con
 namespace {
 
 constexpr int kIntervals = 1024;
-constexpr double kPi = std::numbers::pi;
 
 /// Smooth step of all orders from (0, 0) to (1, 1).
 double kappa(double x) {
@@ -199,8 +200,8 @@ double kappa(double x) {
 
 /// theta(alpha) of the finger in the gradient-controlled operator's report: union up to pi/8.
 double smooth_finger_theta(double alpha) {
-  constexpr double kAlpha0 = kPi / 8, kAlpha1 = kPi / 2;
-  constexpr double kTheta0 = kPi / 4, kTheta1 = kPi / 10;
+  constexpr double kAlpha0 = pi / 8, kAlpha1 = pi / 2;
+  constexpr double kTheta0 = pi / 4, kTheta1 = pi / 10;
   if (alpha <= kAlpha0) return kTheta0;
   if (alpha >= kAlpha1) return kTheta1;
   const double x = (alpha - kAlpha1) / (kAlpha0 - kAlpha1);
@@ -245,7 +246,7 @@ double curve_theta(const Curve& c, double cos_alpha) {
   const double left = rise((cos_alpha - x0) / (c.x1 - x0), c.power_left);
   const double right = rise((cos_alpha - c.x1) / (x2 - c.x1), c.power_right);
   const double f = cos_alpha < c.x1 ? c.f0 + left * (c.f1 - c.f0) : c.f1 + right * (c.f2 - c.f1);
-  return 0.2499 * kPi * f + 1e-5;
+  return 0.2499 * pi * f + 1e-5;
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ void Projection::step_block(SkinState& state, std::size_t block) const {
 
 bool Projection::step_vertex(SkinState& state, std::size_t slot, const FieldAt& at) const {
   const float slope2 = dot3(at.gradient, at.gradient);
-  const auto owner = static_cast<std::size_t>(state.owner[slot]);
+  const int owner = state.owner[slot];
   const auto radius = static_cast<float>(field_.fields()[owner].bone.radius);
   const Float4 last = state.gradient[slot];
   const bool has_last = state.last_bone[slot] >= 0;

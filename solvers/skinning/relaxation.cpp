@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "core/planar.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -24,7 +25,7 @@ bool mean_value_coordinates(const std::vector<Eigen::Vector2d>& ring, std::vecto
   for (std::size_t j = 0; j < n; ++j) {
     const Eigen::Vector2d& a = ring[j];
     const Eigen::Vector2d& b = ring[(j + 1) % n];
-    const double angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+    const double angle = signed_angle(a, b);
     if (!(angle > 1e-6) || angle > std::numbers::pi - 1e-3) return false;
     turn += angle;
     half_tangent[j] = std::tan(angle / 2);
@@ -78,8 +79,7 @@ void relax_vertex(SkinState& state, std::size_t s, RelaxationLaw law) {
   if (!(slope2 > 0)) return;
   Float4 mean{};
   for (int j = state.ring_offset[s]; j < state.ring_offset[s + 1]; ++j) {
-    const auto k = static_cast<std::size_t>(j);
-    mean += splat(state.ring_weight[k]) * (state.position[state.ring[k]] - p);
+    mean += splat(state.ring_weight[j]) * (state.position[state.ring[j]] - p);
   }
   const Float4 tangential = mean - xyz(gradient) * splat(dot3(mean, gradient) / slope2);
   state.next[s] = p + tangential * splat(relaxation_share(law, gradient[3]));

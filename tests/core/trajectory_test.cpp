@@ -8,11 +8,10 @@
 namespace geoprior {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 Keyframe key(double time, const Eigen::Vector3d& shift, double turn_deg = 0,
              const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) {
-  return {time, shift, Eigen::Quaterniond(Eigen::AngleAxisd(turn_deg * kPi / 180, axis))};
+  return {time, shift,
+          Eigen::Quaterniond(Eigen::AngleAxisd(turn_deg * std::numbers::pi / 180, axis))};
 }
 
 Eigen::Vector3d along(double x) { return {x, -2 * x, 0.5}; }
@@ -64,7 +63,7 @@ TEST(Trajectory, TurnsAboutAFixedAxisLikeANumber) {
   const Eigen::Vector3d axis = Eigen::Vector3d(1, 2, -1).normalized();
   const Trajectory t{{key(0, along(0), 10, axis), key(2, along(0), 130, axis)}};
   const double angle = 10 + 120 * 5.0 / 32;
-  const Eigen::Quaterniond expected(Eigen::AngleAxisd(angle * kPi / 180, axis));
+  const Eigen::Quaterniond expected(Eigen::AngleAxisd(angle * std::numbers::pi / 180, axis));
   EXPECT_NEAR(t.at(0.5).turn.angularDistance(expected), 0, 1e-7);
 }
 

@@ -14,9 +14,8 @@
 namespace geoprior::details {
 namespace {
 
+using std::numbers::pi;
 using ::testing::HasSubstr;
-
-constexpr double kPi = std::numbers::pi;
 
 /// An operation that goes from nothing at 0 s to `value` at 1 s.
 DeformationOptions operation(DeformationKind kind, double value) {
@@ -115,7 +114,7 @@ TEST(DetailDeformation, TwistTurnsByItsAngle) {
   const TriMesh plane = plane_surface(1, 0.2, 0.05);
   const TriMesh now = deformed(plane, {operation(DeformationKind::twist, 90)});
   for (Eigen::Index v = 0; v < plane.V.rows(); ++v) {
-    const double angle = kPi / 2 * (plane.V(v, 0) + 0.5), y = plane.V(v, 1);
+    const double angle = pi / 2 * (plane.V(v, 0) + 0.5), y = plane.V(v, 1);
     const Eigen::RowVector3d expected(plane.V(v, 0), y * std::cos(angle), y * std::sin(angle));
     EXPECT_LT((now.V.row(v) - expected).norm(), 1e-12);
   }
@@ -125,14 +124,14 @@ TEST(DetailDeformation, TwistTurnsByItsAngle) {
 TEST(DetailDeformation, BendMakesAnArcOfTheSameLength) {
   const TriMesh plane = plane_surface(1, 0.2, 0.05);
   const TriMesh now = deformed(plane, {operation(DeformationKind::bend, 180)});
-  const Eigen::RowVector3d middle(-0.5, 0, 1 / kPi);
+  const Eigen::RowVector3d middle(-0.5, 0, 1 / pi);
   for (Eigen::Index v = 0; v < plane.V.rows(); ++v) {
     Eigen::RowVector3d arm = now.V.row(v) - middle;
     EXPECT_EQ(now.V(v, 1), plane.V(v, 1));
     arm.y() = 0;
-    EXPECT_NEAR(arm.norm(), 1 / kPi, 1e-12);
-    const double angle = kPi * (plane.V(v, 0) + 0.5);
-    EXPECT_NEAR(arm.x(), std::sin(angle) / kPi, 1e-12);
+    EXPECT_NEAR(arm.norm(), 1 / pi, 1e-12);
+    const double angle = pi * (plane.V(v, 0) + 0.5);
+    EXPECT_NEAR(arm.x(), std::sin(angle) / pi, 1e-12);
   }
 }
 

@@ -16,6 +16,7 @@
 namespace geoprior::details {
 namespace {
 
+using std::numbers::pi;
 using ::testing::HasSubstr;
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -134,7 +135,7 @@ TEST(DetailPattern, RegionsMustAllHold) {
   // A face counts by its centre: its corners are off by less than an edge.
   for (const Eigen::Vector3d& p : points_of(sphere, details)) {
     EXPECT_GT(p.x(), -0.05);
-    EXPECT_GT(p.z(), std::cos(std::numbers::pi / 3) - 0.05);
+    EXPECT_GT(p.z(), std::cos(pi / 3) - 0.05);
     EXPECT_GT((p - Eigen::Vector3d::UnitZ()).norm(), 0.3 - 0.05);
   }
   options.region[0].point = {2, 0, 0};
@@ -196,11 +197,10 @@ TEST(DetailPattern, WhatHasNoPlaceIsNamed) {
 // (e / r)^2 / 6 of it.
 TEST(DetailSurfaces, HaveTheAreaOfTheirShape) {
   const auto area = [](const TriMesh& mesh) { return triangle_areas(mesh.V, mesh.F).sum(); };
-  constexpr double kPi = std::numbers::pi;
   EXPECT_NEAR(area(plane_surface(2, 0.5, 0.03)), 1, 1e-12);
-  EXPECT_NEAR(area(sphere_surface(0.5, 0.02)), kPi, 2e-3);
-  EXPECT_NEAR(area(torus_surface(0.5, 0.2, 0.01)), 4 * kPi * kPi * 0.1, 4e-3);
-  EXPECT_NEAR(area(capsule_surface(0.2, 1, 0.01)), 4 * kPi * 0.04 + 2 * kPi * 0.2, 4e-3);
+  EXPECT_NEAR(area(sphere_surface(0.5, 0.02)), pi, 2e-3);
+  EXPECT_NEAR(area(torus_surface(0.5, 0.2, 0.01)), 4 * pi * pi * 0.1, 4e-3);
+  EXPECT_NEAR(area(capsule_surface(0.2, 1, 0.01)), 4 * pi * 0.04 + 2 * pi * 0.2, 4e-3);
   EXPECT_GT(area(blob_surface(0.5, 0.2, 0.03)), 0);
 }
 

@@ -13,9 +13,8 @@
 namespace geoprior::fluid {
 namespace {
 
+using std::numbers::pi;
 using testing::grid_of;
-
-constexpr double kPi = std::numbers::pi;
 
 /// Sets the faces of a grid from a velocity field.
 template <class Field>
@@ -57,7 +56,7 @@ TEST(LiquidAdvection, RungeKuttaIsOfThirdOrder) {
     particles.position = {{0.9F, 0.5F, 0.01F}};
     particles.velocity = {Eigen::Vector3f::Zero()};
     const int steps = n == 0 ? 3 : 6;
-    for (int s = 0; s < steps; ++s) advect(grid, kPi / 2 / steps, particles);
+    for (int s = 0; s < steps; ++s) advect(grid, pi / 2 / steps, particles);
     error[n] =
         static_cast<double>((particles.position[0] - Eigen::Vector3f(0.5F, 0.9F, 0.01F)).norm());
   }
@@ -74,7 +73,7 @@ TEST(LiquidAdvection, ZalesakDiscComesBackAfterATurn) {
   MacGrid grid(grid_of({100, 100, 2}, 1));
   sample_field(
       [](const Eigen::Vector3d& x) {
-        return Eigen::Vector3d(kPi / 314 * (50 - x.y()), kPi / 314 * (x.x() - 50), 0);
+        return Eigen::Vector3d(pi / 314 * (50 - x.y()), pi / 314 * (x.x() - 50), 0);
       },
       grid);
   LiquidParticles particles;
@@ -100,7 +99,7 @@ TEST(LiquidAdvection, EnrightSphereComesBackWithItsVolume) {
   MacGrid full(shape), now(shape);
   sample_field(
       [](const Eigen::Vector3d& x) {
-        const Eigen::Vector3d s = (kPi * x).array().sin(), t = (2 * kPi * x).array().sin();
+        const Eigen::Vector3d s = (pi * x).array().sin(), t = (2 * pi * x).array().sin();
         return Eigen::Vector3d(2 * s.x() * s.x() * t.y() * t.z(), -t.x() * s.y() * s.y() * t.z(),
                                -t.x() * t.y() * s.z() * s.z());
       },
@@ -114,7 +113,7 @@ TEST(LiquidAdvection, EnrightSphereComesBackWithItsVolume) {
   constexpr int kSteps = 200;
   double widest = 0;
   for (int s = 0; s < kSteps; ++s) {
-    const auto factor = static_cast<float>(std::cos(kPi * (s + 0.5) / kSteps));
+    const auto factor = static_cast<float>(std::cos(pi * (s + 0.5) / kSteps));
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t i = 0; i < now.face[a].values.size(); ++i)
         now.face[a].values[i] = factor * full.face[a].values[i];

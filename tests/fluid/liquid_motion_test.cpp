@@ -11,6 +11,7 @@
 namespace geoprior::fluid {
 namespace {
 
+using std::numbers::pi;
 using testing::at_rest;
 using testing::ball;
 using testing::box_between;
@@ -19,7 +20,6 @@ using testing::run_until;
 using testing::tank_of;
 
 constexpr double kGravity = 9.81;
-constexpr double kPi = std::numbers::pi;
 
 LiquidOptions with(TransferKind transfer) {
   LiquidOptions options;
@@ -69,8 +69,8 @@ TEST(LiquidMotion, SloshingHasTheFrequencyOfTheFirstMode) {
     before = now;
   }
   ASSERT_EQ(crossings.size(), 4U);
-  const double omega = 3 * kPi / (crossings[3] - crossings[0]);
-  const double exact = std::sqrt(kGravity * kPi * std::tanh(kPi * 0.5));
+  const double omega = 3 * pi / (crossings[3] - crossings[0]);
+  const double exact = std::sqrt(kGravity * pi * std::tanh(pi * 0.5));
   RecordProperty("omega_over_exact", std::to_string(omega / exact));
   EXPECT_NEAR(omega / exact, 1, 0.03);
 }
@@ -84,22 +84,21 @@ double effective_viscosity(TransferKind transfer) {
   Liquid liquid(tank, with(transfer), 1);
   LiquidParticles& p = liquid.particles();
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const double x = kPi * static_cast<double>(p.position[i].x()),
-                 z = kPi * static_cast<double>(p.position[i].z());
+    const double x = pi * static_cast<double>(p.position[i].x()),
+                 z = pi * static_cast<double>(p.position[i].z());
     p.velocity[i] =
         Eigen::Vector3d(std::sin(x) * std::cos(z), 0, -std::cos(x) * std::sin(z)).cast<float>();
     if (p.affine.empty()) continue;
     Eigen::Matrix3d c = Eigen::Matrix3d::Zero();
-    c(0, 0) = kPi * std::cos(x) * std::cos(z);
-    c(0, 2) = -kPi * std::sin(x) * std::sin(z);
-    c(2, 0) = kPi * std::sin(x) * std::sin(z);
-    c(2, 2) = -kPi * std::cos(x) * std::cos(z);
+    c(0, 0) = pi * std::cos(x) * std::cos(z);
+    c(0, 2) = -pi * std::sin(x) * std::sin(z);
+    c(2, 0) = pi * std::sin(x) * std::sin(z);
+    c(2, 2) = -pi * std::cos(x) * std::cos(z);
     p.affine[i] = c.cast<float>();
   }
   const double start = kinetic_energy(liquid.shape(), p);
   run_until(liquid, 0.5, 1.0 / 120);
-  return std::log(start / kinetic_energy(liquid.shape(), liquid.particles())) /
-         (4 * kPi * kPi * 0.5);
+  return std::log(start / kinetic_energy(liquid.shape(), liquid.particles())) / (4 * pi * pi * 0.5);
 }
 
 // The vortex is a steady solution without viscosity: what decays is the transfers' own.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "core/error.h"
@@ -94,7 +95,7 @@ TEST(LiquidStart, ParticlesKeepOutOfSolids) {
   solid.shape = ball({0.5, 0.5, 0.3}, 0.2);
   tank.solids.push_back(solid);
   Liquid liquid(tank, LiquidOptions{}, 1);
-  const double ball_volume = 4.0 / 3 * 3.14159265 * 0.008;
+  const double ball_volume = 4.0 / 3 * std::numbers::pi * 0.008;
   EXPECT_NEAR(static_cast<double>(liquid.particles().size()) / 8 / 4096, 0.6 - ball_volume, 3e-3);
   run_until(liquid, 0.3);
   for (const Eigen::Vector3f& x : liquid.particles().position) {
@@ -177,7 +178,7 @@ TEST(LiquidProcess, FramesHaveTheirTimesPartsAndDiagnostics) {
     const Part& solids = frame.parts.at("solids");
     TriMesh body{solids.points, solids.triangles};
     // A ball of 32 x 16 facets lacks 1 - 1.3 % of its volume.
-    EXPECT_NEAR(signed_volume(body.V, body.F), 4.0 / 3 * 3.14159265 * 1e-3, 1.3e-4);
+    EXPECT_NEAR(signed_volume(body.V, body.F), 4.0 / 3 * std::numbers::pi * 1e-3, 1.3e-4);
     const auto& d = frame.diagnostics;
     EXPECT_EQ(static_cast<double>(frame.parts.at("particles").points.rows()), d.at("particles"));
     EXPECT_NEAR(d.at("particle_volume"), d.at("particles") / 8 / 4096, 1e-12);

@@ -10,7 +10,8 @@
 namespace geoprior::fluid {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
+
 constexpr double kG = 9.81;
 
 constexpr std::array kSpectra{SpectrumKind::phillips, SpectrumKind::pierson_moskowitz,
@@ -29,10 +30,10 @@ double around(const OceanOptions& o, double k) {
   constexpr int kDirections = 3600;
   double sum = 0;
   for (int i = 0; i < kDirections; ++i) {
-    const double theta = 2 * kPi * (i + 0.5) / kDirections;
+    const double theta = 2 * pi * (i + 0.5) / kDirections;
     sum += ocean_spectrum(o, k * Eigen::Vector2d(std::cos(theta), std::sin(theta)));
   }
-  return sum * 2 * kPi / kDirections;
+  return sum * 2 * pi / kDirections;
 }
 
 /// Variance of waves of wave numbers up to `highest`: integral of k P over directions and k.
@@ -41,7 +42,7 @@ double variance_up_to(const OceanOptions& o, double highest) {
   double sum = 0;
   for (int i = 0; i < kSteps; ++i) {
     const double k = highest * (i + 0.5) / kSteps;
-    sum += 2 * kPi * ocean_spectrum(o, Eigen::Vector2d(k, 0)) * k * highest / kSteps;
+    sum += 2 * pi * ocean_spectrum(o, Eigen::Vector2d(k, 0)) * k * highest / kSteps;
   }
   return sum;
 }
@@ -92,7 +93,7 @@ TEST(OceanSpectrum, JonswapHasItsVariance) {
   o.peak_enhancement = 1;
   const double fetch = kG * o.fetch / 100;
   const double alpha = 0.076 * std::pow(fetch, -0.22);
-  const double peak = 22 * std::pow(fetch, -0.33) * kG / 10 * (2 * kPi * 3.5 / 22);
+  const double peak = 22 * std::pow(fetch, -0.33) * kG / 10 * (2 * pi * 3.5 / 22);
   const double highest = 8, below = std::exp(-1.25 * std::pow(peak * peak / kG / highest, 2));
   const double m0 = alpha * kG * kG / (5 * std::pow(peak, 4));
   const double plain = variance_up_to(o, highest);
@@ -117,7 +118,7 @@ TEST(OceanSpectrum, ModesOfAPatchSumToTheIntegral) {
       OceanOptions o = with(spectrum, spreading);
       o.size = 3000;
       o.samples = 512;
-      const double nyquist = kPi * o.samples / o.size;
+      const double nyquist = pi * o.samples / o.size;
       const double sum = Ocean(o, 1).expected_variance();
       OceanOptions all = with(spectrum);
       EXPECT_GT(sum, 0.995 * variance_up_to(all, nyquist)) << static_cast<int>(spectrum);
@@ -182,7 +183,7 @@ TEST(OceanSpectrum, DepthLowersTheSpectrumByKitaigorodskiisFactor) {
 
 TEST(OceanSpectrum, SmallWavesAreDampedByOneOverE) {
   OceanOptions o = with(SpectrumKind::jonswap);
-  const Eigen::Vector2d k(2 * kPi / 5, 0);
+  const Eigen::Vector2d k(2 * pi / 5, 0);
   const double whole = ocean_spectrum(o, k);
   o.smallest_wave = 5;
   EXPECT_NEAR(ocean_spectrum(o, k) / whole, std::exp(-1), 1e-12);

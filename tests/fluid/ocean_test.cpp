@@ -18,7 +18,6 @@ namespace geoprior::fluid {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kPi = std::numbers::pi;
 
 /// A sea in which every mode carries something.
 OceanOptions all_directions(int samples, double size) {
@@ -60,7 +59,7 @@ TEST(Ocean, EveryModeObeysTheDispersionRelation) {
     for (int j = 0; j < 32; ++j) {
       for (int i = 0; i < 32; ++i) {
         if (i == 16 || j == 16 || (i == 0 && j == 0)) continue;
-        const double k = 2 * kPi / 50 * std::hypot(waves_of(i, 32), waves_of(j, 32));
+        const double k = 2 * std::numbers::pi / 50 * std::hypot(waves_of(i, 32), waves_of(j, 32));
         const double exact = std::sqrt(9.81 * k * std::tanh(k * depth));
         const Complex c = (before(j, i) + after(j, i)) / (2.0 * now(j, i));
         EXPECT_NEAR(std::acos(c.real()) / s / exact, 1, 1e-6) << i << " " << j;

@@ -18,7 +18,6 @@ namespace {
 using namespace waves;
 
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
-constexpr double kPi = std::numbers::pi;
 
 Labelled source(const Eigen::Affine3d& placed = Eigen::Affine3d::Identity(),
                 const Hill& h = {.velocity = {1, 0}}) {
@@ -96,7 +95,8 @@ TEST(Paste, KeepsAClosedManifoldClosedAndCountsItsVolume) {
   EXPECT_EQ(out.mesh.triangle_count(), target.mesh.triangle_count() + report.added_triangles);
   // Splitting changes neither surface nor volume, so the volume is that of the hill:
   // 2 pi sigma^2 A up to the triangles' facets and the cut at 4.5 sigma.
-  EXPECT_NEAR(report.added_volume, 2 * kPi * 0.01 * 0.05, 0.01 * 2 * kPi * 0.01 * 0.05);
+  EXPECT_NEAR(report.added_volume, 2 * std::numbers::pi * 0.01 * 0.05,
+              0.01 * 2 * std::numbers::pi * 0.01 * 0.05);
   EXPECT_NEAR(signed_volume(out.mesh.V, out.mesh.F) - signed_volume(target.mesh.V, target.mesh.F),
               report.added_volume, 1e-12);
   EXPECT_EQ(report.min_jacobian, 1);  // heights never fold the plane
@@ -315,7 +315,7 @@ TEST(ExponentialMap, UnrollsACylinder) {
   std::vector<std::array<int, 3>> triangles;
   for (int j = 0; j <= rings; ++j) {
     for (int i = 0; i < around; ++i) {
-      const double a = 2 * kPi * i / around;
+      const double a = 2 * std::numbers::pi * i / around;
       x.emplace_back(std::cos(a), std::sin(a), 3.0 * j / rings - 1.5);
     }
   }

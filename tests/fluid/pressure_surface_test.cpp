@@ -10,6 +10,7 @@
 namespace geoprior::fluid {
 namespace {
 
+using std::numbers::pi;
 using namespace pressure_test;
 
 constexpr double kGravity = 9.81, kDensity = 1000;
@@ -92,15 +93,14 @@ TEST(PressureSurface, StillWaterStaysStillAroundABallAndASlantedFloor) {
 /// whose zero level is a wave. The velocity given is grad f (u* . n = 0 on x = 0 and x = 1), solids
 /// stand still: p = f (rho = dt = 1) leaves no velocity anywhere, the floor included.
 double curved_surface_error(int n) {
-  constexpr double kPi = std::numbers::pi, kMiddle = 0.5;
+  constexpr double kMiddle = 0.5;
   Tank tank;
   tank.cells = {n, 2, n};
   tank.cell = 1.0 / n;
   const GridShape shape = shape_of(tank);
   const double a = 0.1;
   const auto f = [&](const Eigen::Vector3d& x) {
-    return kMiddle - x.z() +
-           a * std::cos(kPi * x.x()) * std::cosh(kPi * x.z()) / std::cosh(kPi / 2);
+    return kMiddle - x.z() + a * std::cos(pi * x.x()) * std::cosh(pi * x.z()) / std::cosh(pi / 2);
   };
   // The same zero level, but not proportional to the solution: theta is no better than its order.
   const ScalarGrid distance = at_centres(
@@ -112,15 +112,15 @@ double curved_surface_error(int n) {
     for (int j = 0; j < 2; ++j)
       for (int i = 1; i < n; ++i) {
         const Eigen::Vector3d x = shape.node(i, j, k) + h * Eigen::Vector3d(0, 0.5, 0.5);
-        velocity.face[0](i, j, k) = static_cast<float>(-a * kPi * std::sin(kPi * x.x()) *
-                                                       std::cosh(kPi * x.z()) / std::cosh(kPi / 2));
+        velocity.face[0](i, j, k) = static_cast<float>(-a * pi * std::sin(pi * x.x()) *
+                                                       std::cosh(pi * x.z()) / std::cosh(pi / 2));
       }
   for (int k = 1; k < n; ++k)
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < n; ++i) {
         const Eigen::Vector3d x = shape.node(i, j, k) + h * Eigen::Vector3d(0.5, 0.5, 0);
         velocity.face[2](i, j, k) = static_cast<float>(
-            -1 + a * kPi * std::cos(kPi * x.x()) * std::sinh(kPi * x.z()) / std::cosh(kPi / 2));
+            -1 + a * pi * std::cos(pi * x.x()) * std::sinh(pi * x.z()) / std::cosh(pi / 2));
       }
   PressureSolver solver(shape);
   std::array<std::vector<char>, 3> valid;

@@ -5,14 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "tests/metrics/sheets.h"
 
 namespace geoprior {
 namespace {
 
 using sheets::Sheet;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Profile of a d-cone in a ring whose buckled sector is 2 t1 wide: psi = c1 cos t + c2 cos(a t)
 /// inside, 1 outside; psi, psi' and psi'' are continuous.

@@ -7,14 +7,13 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/angles.h"
 #include "tests/metrics/sheets.h"
 
 namespace geoprior {
 namespace {
 
 using sheets::Sheet;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 GriddedSheet gridded(const Sheet& s) {
   return gridded_sheet(s.pattern, s.x, s.triangles, CreaseOptions{}.grid_spacing);

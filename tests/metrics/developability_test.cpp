@@ -13,7 +13,7 @@
 namespace geoprior {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A vertex at the origin and neighbours about it, vertex 0.
 TriMesh star(const std::vector<Eigen::Vector3d>& neighbours) {
@@ -48,12 +48,12 @@ TEST(Developability, OfAPyramidIsTheClosedForm) {
   const double height = 0.4;
   std::vector<Eigen::Vector3d> ring;
   for (int i = 0; i < 6; ++i) {
-    ring.emplace_back(std::cos(kPi * i / 3), std::sin(kPi * i / 3), -height);
+    ring.emplace_back(std::cos(pi * i / 3), std::sin(pi * i / 3), -height);
   }
   const TriMesh m = star(ring);
   const double angle = 2 * std::asin(0.5 / std::hypot(1, height));  // of the unit sides at the apex
   const double lean = std::atan2(height, std::sqrt(3) / 2);
-  EXPECT_NEAR(angle_defect(m)(0), 2 * kPi - 6 * angle, 1e-14);
+  EXPECT_NEAR(angle_defect(m)(0), 2 * pi - 6 * angle, 1e-14);
   EXPECT_NEAR(hinge_energy(m)(0), 3 * angle * std::pow(std::sin(lean), 2), 1e-14);
   EXPECT_EQ(angle_defect(m)(1), 0);  // border
   EXPECT_EQ(hinge_energy(m)(1), 0);
@@ -64,7 +64,7 @@ TEST(Developability, OfASaddleIsTheClosedForm) {
   const double h = 0.3;
   const TriMesh m = star({{1, 0, h}, {0, 1, -h}, {-1, 0, h}, {0, -1, -h}});
   const double angle = std::acos(-h * h / (1 + h * h));
-  EXPECT_NEAR(angle_defect(m)(0), 2 * kPi - 4 * angle, 1e-14);
+  EXPECT_NEAR(angle_defect(m)(0), 2 * pi - 4 * angle, 1e-14);
   EXPECT_LT(angle_defect(m)(0), -0.1);
   EXPECT_NEAR(hinge_energy(m)(0), 4 * angle * h * h / (1 + 2 * h * h), 1e-14);
 }
@@ -72,13 +72,13 @@ TEST(Developability, OfASaddleIsTheClosedForm) {
 TEST(Developability, DefectsOfASphereAddUpToFourPi) {
   for (const int levels : {2, 4}) {
     const TriMesh m = shapes::sphere(0.3, {1, 2, 3}, levels);
-    EXPECT_NEAR(angle_defect(m).sum(), 4 * kPi, 1e-9);  // Gauss-Bonnet
+    EXPECT_NEAR(angle_defect(m).sum(), 4 * pi, 1e-9);  // Gauss-Bonnet
     EXPECT_GT(angle_defect(m).minCoeff(), 0);
     EXPECT_GT(hinge_energy(m).minCoeff(), 0);
   }
   // On a regular triangular layout a star has pi l^2 / (3 R^2) and sqrt(3)/2 l^2 of area, so the
   // sum would be 8 pi^2 / (3 sqrt 3) = 15.2; the subdivided octahedron is not quite regular.
-  const double regular = 8 * kPi * kPi / (3 * std::sqrt(3.0));
+  const double regular = 8 * pi * pi / (3 * std::sqrt(3.0));
   EXPECT_NEAR(hinge_energy(shapes::sphere(1, {0, 0, 0}, 5)).sum() / regular, 1, 0.1);
   EXPECT_EQ(developability(shapes::sphere(1, {0, 0, 0}, 2)).thinness, 0);
 }
@@ -91,7 +91,7 @@ TEST(Developability, CrumpledWithoutDefectIsSeenByTheHingeEnergyAlone) {
   EXPECT_LT(d.angle_defect_max, 1e-13);
   // The four normals are (+-VH, +-SH, SL): the first axis has the smallest eigenvalue.
   const double n2 = std::pow(m.V * m.H, 2) + std::pow(m.S * m.H, 2) + std::pow(m.S * m.L, 2);
-  const double vertex = 2 * kPi * std::pow(m.V * m.H, 2) / n2;
+  const double vertex = 2 * pi * std::pow(m.V * m.H, 2) / n2;
   EXPECT_NEAR(d.hinge_energy_max, vertex, 1e-13);
   EXPECT_NEAR(d.hinge_energy_sum, 81 * vertex, 1e-11);
   EXPECT_GT(vertex, 0.1);
@@ -124,7 +124,7 @@ TEST(Developability, ThinnessIsAShareOfTheArea) {
   sheets::Sheet s = sheets::rectangle(1, 1, 12, 3);
   const int lifted = 3 * 4 + 1;
   s.x(lifted, 2) += 0.05;
-  const double thin = gauss_image_thinness(s.mesh(), kPi / 180);
+  const double thin = gauss_image_thinness(s.mesh(), pi / 180);
   EXPECT_GT(thin, 0.5);
   EXPECT_LT(thin, 1 - 1.0 / 22);
   EXPECT_EQ(gauss_image_thinness(s.mesh(), 1.5), 1);

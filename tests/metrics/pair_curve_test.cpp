@@ -15,9 +15,8 @@ namespace geoprior {
 namespace {
 
 using sampled::on_cells;
-using Places = std::vector<SurfacePlace>;
-
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
+using Places = std::vector<SurfacePoint>;
 
 /// 30 x 30 units in cells of different size and shape; density 1 has 900 points.
 TriMesh border_sheet() { return sampled::sheet(30, 30, 25, 25, 0.3); }
@@ -42,7 +41,7 @@ void expect_one_for_independent_points(const TriMesh& mesh, int seeds) {
     mean += curve.g / seeds;
     error = curve.error;
   }
-  EXPECT_NEAR(deviation, std::sqrt(2 / kPi), 0.2);
+  EXPECT_NEAR(deviation, std::sqrt(2 / pi), 0.2);
   EXPECT_LT(((mean.array() - 1).abs() / error.array()).maxCoeff(), 3.5 / std::sqrt(seeds));
 }
 
@@ -85,11 +84,11 @@ struct Shell {
   int count;
 };
 double grid_curve(double r, double sigma, double rho, const std::vector<Shell>& shells) {
-  const auto gauss = [](double z) { return std::exp(-z * z / 2) / std::sqrt(2 * kPi); };
+  const auto gauss = [](double z) { return std::exp(-z * z / 2) / std::sqrt(2 * pi); };
   double sum = 0;
   for (const Shell& s : shells) sum += s.count * gauss((r - s.at) / sigma) / sigma;
   const double below = std::erfc(-r / sigma / std::sqrt(2)) / 2;
-  return sum / (rho * 2 * kPi * (r * below + sigma * gauss(r / sigma)));
+  return sum / (rho * 2 * pi * (r * below + sigma * gauss(r / sigma)));
 }
 
 // Neighbours of the hexagonal grid: 6 at 1, 6 at sqrt 3, 6 at 2, 12 at sqrt 7, 6 at 3, 6 at sqrt
@@ -146,9 +145,9 @@ Places darts(const UnfoldedSurface& surface, int count, double least, const Dist
   sampled::UniformPlaces uniform(surface.mesh(), 4);
   Places kept;
   for (int trial = 0; trial < 200000 && static_cast<int>(kept.size()) < count; ++trial) {
-    const SurfacePlace place = uniform.next();
+    const SurfacePoint place = uniform.next();
     bool is_free = true;
-    for (const SurfacePlace& other : kept) {
+    for (const SurfacePoint& other : kept) {
       is_free = is_free && distance(surface.position(place), surface.position(other)) >= least;
     }
     if (is_free) kept.push_back(place);
@@ -216,7 +215,7 @@ TEST(PairCurve, OfThomasClustersIsKnown) {
   }
   for (Eigen::Index k = 3; k < mean.size(); ++k) {
     const double r = curve.radius(k);
-    const double g = 1 + std::exp(-r * r / (4 * s * s)) / (4 * kPi * s * s * kappa);
+    const double g = 1 + std::exp(-r * r / (4 * s * s)) / (4 * pi * s * s * kappa);
     EXPECT_NEAR(mean(k), g, 0.05 * g) << "r " << r;
   }
 }
@@ -259,7 +258,7 @@ TEST(PairCurve, OfAPatternOnAPartIsMeasuredInThatPart) {
   std::vector<char> region;
   for (int f = 0; f < mesh.triangle_count(); ++f) region.push_back((f / 2) % 30 < 15 ? 1 : 0);
   Places places;
-  for (const SurfacePlace& p : sampled::uniform(mesh, 2000, 9)) {
+  for (const SurfacePoint& p : sampled::uniform(mesh, 2000, 9)) {
     if (region[p.face] != 0) places.push_back(p);
   }
   const PairCurve part = pair_curve(mesh, places, 1, {}, {{}, region});
@@ -298,7 +297,7 @@ TEST(PairCurveNoise, OfIndependentPointsIsThatOfTheirErrors) {
     curves.push_back(pair_curve(mesh, sampled::uniform(mesh, 900, 30 + seed), 1));
   }
   const PairNoise noise = pair_curve_noise(curves);
-  const double expected = curves[0].step * 2 / std::sqrt(kPi) * curves[0].error.sum();
+  const double expected = curves[0].step * 2 / std::sqrt(pi) * curves[0].error.sum();
   EXPECT_NEAR(noise.mean, expected, 0.2 * expected);
   EXPECT_GE(noise.largest, noise.mean);
   EXPECT_LT(noise.largest, 2 * noise.mean);

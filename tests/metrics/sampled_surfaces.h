@@ -61,7 +61,7 @@ inline TriMesh prism(double around, double height, int n, int m) {
 }
 
 /// Place at (x, y) of a regular sheet or prism of n x m cells of size `dx` x `dy`.
-inline SurfacePlace on_cells(double x, double y, double dx, double dy, int n, int m) {
+inline SurfacePoint on_cells(double x, double y, double dx, double dy, int n, int m) {
   const int i = std::clamp(static_cast<int>(std::floor(x / dx)), 0, n - 1);
   const int j = std::clamp(static_cast<int>(std::floor(y / dy)), 0, m - 1);
   const double u = x / dx - i, v = y / dy - j;
@@ -79,7 +79,7 @@ class UniformPlaces {
       up_to_.push_back((f > 0 ? up_to_.back() : 0) + areas(f));
     }
   }
-  SurfacePlace next() {
+  SurfacePoint next() {
     const double at = random_.uniform() * up_to_.back();
     const auto f = std::upper_bound(up_to_.begin(), up_to_.end() - 1, at) - up_to_.begin();
     double u = random_.uniform(), v = random_.uniform();
@@ -95,9 +95,9 @@ class UniformPlaces {
   std::vector<double> up_to_;
 };
 
-inline std::vector<SurfacePlace> uniform(const TriMesh& mesh, int count, std::uint64_t seed) {
+inline std::vector<SurfacePoint> uniform(const TriMesh& mesh, int count, std::uint64_t seed) {
   UniformPlaces places(mesh, seed);
-  std::vector<SurfacePlace> result;
+  std::vector<SurfacePoint> result;
   for (int i = 0; i < count; ++i) result.push_back(places.next());
   return result;
 }

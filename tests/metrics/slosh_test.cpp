@@ -8,7 +8,7 @@
 namespace geoprior {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // h = H + A cos(pi x / L) at midpoints: discrete cosines are orthogonal, so the amplitude is exact.
 TEST(SloshAmplitude, OfTheFirstModeIsItsAmplitudeAndOfTheSecondZero) {
@@ -19,8 +19,8 @@ TEST(SloshAmplitude, OfTheFirstModeIsItsAmplitudeAndOfTheSecondZero) {
   for (int j = 0; j < grid.ny; ++j) {
     for (int i = 0; i < grid.nx; ++i) {
       const double x = grid.probe(i, j).x();
-      first.top[grid.index(i, j)] = 0.4 + 0.03 * std::cos(kPi * x);
-      second.top[grid.index(i, j)] = 0.4 + 0.03 * std::cos(2 * kPi * x);
+      first.top[grid.index(i, j)] = 0.4 + 0.03 * std::cos(pi * x);
+      second.top[grid.index(i, j)] = 0.4 + 0.03 * std::cos(2 * pi * x);
     }
   }
   EXPECT_NEAR(slosh_amplitude(first, grid), 0.03, 1e-15);
@@ -41,8 +41,8 @@ TEST(CrossingFrequency, OfADampedSwing) {
 
 // Deep and shallow limits: sqrt(g k) and k sqrt(g H).
 TEST(SloshFrequency, HasTheLimitsOfDeepAndShallowWater) {
-  EXPECT_NEAR(slosh_frequency(1, 100, 9.81), std::sqrt(9.81 * kPi), 1e-12);
-  EXPECT_NEAR(slosh_frequency(1, 1e-3, 9.81), kPi * std::sqrt(9.81e-3), 1e-5);
+  EXPECT_NEAR(slosh_frequency(1, 100, 9.81), std::sqrt(9.81 * pi), 1e-12);
+  EXPECT_NEAR(slosh_frequency(1, 1e-3, 9.81), pi * std::sqrt(9.81e-3), 1e-5);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 using sampled::on_cells;
 
-double along(SurfaceFront& front, const UnfoldedSurface& surface, const SurfacePlace& place) {
+double along(SurfaceFront& front, const UnfoldedSurface& surface, const SurfacePoint& place) {
   return front.within(place.face).distance(surface.layout(place));
 }
 
@@ -27,9 +27,9 @@ double worst(const TriMesh& mesh, double reach, const Expected& expected) {
   SurfaceFront front(surface);
   double largest = 0;
   int pairs = 0;
-  for (const SurfacePlace& a : places) {
+  for (const SurfacePoint& a : places) {
     front.spread(a, reach);
-    for (const SurfacePlace& b : places) {
+    for (const SurfacePoint& b : places) {
       const double d = expected(surface.position(a), surface.position(b));
       if (d > reach || d == 0) continue;
       largest = std::max(largest, std::abs(along(front, surface, b) / d - 1));
@@ -65,7 +65,7 @@ TEST(SurfaceFront, IsExactAroundAPrism) {
     const double d = std::hypot(std::min(dx, around - dx), a.y() - b.y());
     if (d > 0.8) continue;
     front.spread(on_cells(a.x(), a.y(), around / n, height / m, n, m), 0.8);
-    const SurfacePlace there = on_cells(b.x(), b.y(), around / n, height / m, n, m);
+    const SurfacePoint there = on_cells(b.x(), b.y(), around / n, height / m, n, m);
     EXPECT_NEAR(along(front, surface, there), d, 1e-7);
   }
 }
@@ -87,7 +87,7 @@ TEST(SurfaceFront, ConvergesToAnglesOnTheSphere) {
 TEST(SurfaceFront, UnfoldsTheFacesOfACube) {
   const UnfoldedSurface surface(shapes::box({0, 0, 0}, {2, 2, 2}));
   SurfaceFront front(surface);
-  const SurfacePlace bottom{0, {0, 0.5, 0.5}}, side{4, {0, 0.5, 0.5}};
+  const SurfacePoint bottom{0, {0, 0.5, 0.5}}, side{4, {0, 0.5, 0.5}};
   ASSERT_TRUE(surface.position(bottom).isApprox(Eigen::Vector3d(1, 1, 0)));
   ASSERT_TRUE(surface.position(side).isApprox(Eigen::Vector3d(1, 0, 1)));
   front.spread(bottom, 5);
@@ -103,9 +103,9 @@ TEST(SurfaceFront, CrossesATriangleWithoutArea) {
   mesh.F << 0, 4, 2, 4, 1, 2, 0, 1, 4, 0, 3, 1;
   const UnfoldedSurface surface(mesh);
   SurfaceFront front(surface);
-  for (const SurfacePlace& a : sampled::uniform(mesh, 20, 1)) {
+  for (const SurfacePoint& a : sampled::uniform(mesh, 20, 1)) {
     front.spread(a, 4);
-    for (const SurfacePlace& b : sampled::uniform(mesh, 20, 2)) {
+    for (const SurfacePoint& b : sampled::uniform(mesh, 20, 2)) {
       const double d = (surface.position(a) - surface.position(b)).norm();
       EXPECT_NEAR(along(front, surface, b), d, 1e-7);
     }
@@ -127,7 +127,7 @@ TEST(SurfaceFront, GoesAroundACorner) {
   const UnfoldedSurface surface(mesh);
   SurfaceFront front(surface);
   const auto place = [&](double x, double y) {
-    SurfacePlace p = on_cells(x, y, 0.05, 0.05, 40, 40);
+    SurfacePoint p = on_cells(x, y, 0.05, 0.05, 40, 40);
     for (p.face = 0; p.face < count; ++p.face) {
       if ((surface.position(p) - Eigen::Vector3d(x, y, 0)).norm() < 1e-9) return p;
     }
@@ -145,13 +145,13 @@ TEST(SurfaceFront, CanBeUsedAgain) {
   const UnfoldedSurface surface(sampled::sheet(1, 1, 30, 30, 0.2));
   const auto places = sampled::uniform(surface.mesh(), 20, 11);
   SurfaceFront used(surface);
-  for (const SurfacePlace& a : places) {
+  for (const SurfacePoint& a : places) {
     used.spread(a, 0.2);
     SurfaceFront fresh(surface);
     fresh.spread(a, 0.2);
     ASSERT_EQ(used.faces().size(), fresh.faces().size());
     EXPECT_LT(used.faces().size(), static_cast<std::size_t>(surface.mesh().triangle_count() / 2));
-    for (const SurfacePlace& b : places) {
+    for (const SurfacePoint& b : places) {
       EXPECT_EQ(along(used, surface, b), along(fresh, surface, b));
     }
   }

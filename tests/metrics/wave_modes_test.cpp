@@ -10,8 +10,6 @@
 namespace geoprior {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 struct Wave {
   int m, n;
   double amplitude, phase;
@@ -23,7 +21,8 @@ Eigen::MatrixXd heights(const std::vector<Wave>& waves, const WavePatch& patch, 
   constexpr int kSamples = 16;
   Eigen::MatrixXd h = Eigen::MatrixXd::Zero(kSamples, kSamples);
   for (const Wave& wave : waves) {
-    const Eigen::Vector2d k(2 * kPi * wave.m / patch.size_x, 2 * kPi * wave.n / patch.size_y);
+    const Eigen::Vector2d k(2 * std::numbers::pi * wave.m / patch.size_x,
+                            2 * std::numbers::pi * wave.n / patch.size_y);
     const double w =
         slower * std::sqrt(patch.gravity * k.norm() * std::tanh(k.norm() * patch.depth));
     for (int i = 0; i < kSamples; ++i) {

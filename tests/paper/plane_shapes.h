@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/planar.h"
 #include "models/paper/pattern.h"
-#include "models/paper/planar.h"
 #include "models/paper/shell_state.h"
 
 namespace geoprior::paper {

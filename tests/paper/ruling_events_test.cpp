@@ -4,8 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/curvature_fit.h"
-#include "models/paper/planar.h"
+#include "core/planar.h"
 #include "solvers/paper/compression.h"
 #include "solvers/paper/invariants.h"
 #include "solvers/paper/pieces.h"
@@ -19,8 +20,6 @@ namespace geoprior::paper {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// A sheet of 0.2 m by 0.2 m, its structure, mesh and flat state.
 struct EventSheet {

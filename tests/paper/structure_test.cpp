@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "core/planar.h"
 #include "core/random.h"
-#include "models/paper/planar.h"
 #include "solvers/paper/invariants.h"
 #include "solvers/paper/pieces.h"
 #include "solvers/paper/ruling_editor.h"

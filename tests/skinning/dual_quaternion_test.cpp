@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "tests/skinning/fixtures.h"
@@ -13,8 +13,6 @@ namespace geoprior::skinning {
 namespace {
 
 using fixtures::cylinder_options;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 Eigen::MatrixX3d dual_quaternion_blend(const RiggedMesh& rig, const Pose& pose) {
   Eigen::MatrixX3d posed;

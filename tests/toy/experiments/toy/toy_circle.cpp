@@ -2,13 +2,12 @@
 #include <memory>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "experiments/toy/toy_topic.h"
 
 namespace geoprior::toy {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct CircleSceneOptions {
   double radius_m = 1;

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
-namespace geoprior::paper {
+namespace geoprior {
 
 /// Side of the line from `a` to `b` on which `c` lies: +1 left, -1 right, 0 on it. Exact.
 int orientation(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c);
@@ -12,9 +13,16 @@ int orientation(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen:
 bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                    const Eigen::Vector2d& d);
 
-/// Twice the signed area of a triangle (m^2), positive when counter-clockwise.
+/// Twice the signed area of the triangle 0, a, b: positive when it is counter-clockwise. Rounded,
+/// so that its sign is no substitute for `orientation`.
 inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Angle by which `a` turns to the direction of `b` (rad), in [-pi, pi], positive
+/// counter-clockwise.
+inline double signed_angle(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return std::atan2(cross(a, b), a.dot(b));
 }
 
 /// Constrained Delaunay triangulation of the inside of a closed chain of segments.
@@ -28,4 +36,4 @@ inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 Eigen::MatrixX3i constrained_delaunay(const Eigen::MatrixX2d& points,
                                       const std::vector<Eigen::Vector2i>& segments);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior

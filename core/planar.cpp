@@ -1,4 +1,4 @@
-#include "models/paper/planar.h"
+#include "core/planar.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -12,7 +12,7 @@
 
 #include "core/error.h"
 
-namespace geoprior::paper {
+namespace geoprior {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -110,4 +110,4 @@ Eigen::MatrixX3i constrained_delaunay(const Eigen::MatrixX2d& points,
   return result;
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior
