@@ -62,7 +62,7 @@ void DetailMesh::save(StateWriter& out) const {
 
 void DetailMesh::load(StateReader& in) {
   in.items(x);
-  site.assign(in.number<std::size_t>(), {});
+  site.assign(in.count(), {});
   for (Detail& d : site) {
     d.at.face = in.number<int>();
     in.matrix(d.at.barycentric);

@@ -5,7 +5,7 @@
 #include "solvers/fluid/extract.h"
 #include "solvers/fluid/sculpt.h"
 #include "solvers/fluid/sculpt_scene.h"
-#include "solvers/fluid/sculpt_state.h"
+#include "solvers/fluid/warnings.h"
 #include "tests/core/shapes.h"
 #include "tests/fluid/map_waves.h"
 #include "tests/fluid/sculpt_fixture.h"
@@ -141,17 +141,24 @@ TEST(Sculpting, RefusesWhatCannotBeMeant) {
   EXPECT_TRUE(has(message([](SculptScene& s) { s.target = nullptr; }), "a target"));
 }
 
-TEST(Sculpting, StateKeepsWhatWasWarnedOf) {
-  SculptState state;
-  state.next_frame = 12;
+TEST(Sculpting, WarningsRememberWhatTheyTold) {
+  Warnings warnings;
   Sink sink;
-  state.warn("a at 1 s", "a", 1, sink);
-  state.warn("a at 2 s", "a", 2, sink);
-  state.warn("b", "b", 2, sink);
+  warnings.warn("a at 1 s", "a", 1, sink);
+  warnings.warn("a at 2 s", "a", 2, sink);
+  warnings.warn("b", "b", 2, sink);
   EXPECT_EQ(sink.events.size(), 2U);
-  const SculptState back = SculptState::of(state.bytes());
-  EXPECT_EQ(back.next_frame, 12);
-  EXPECT_EQ(back.warned, state.warned);
+  StateWriter out;
+  warnings.save(out);
+  const State saved = out.take();
+  StateReader in(saved);
+  Warnings back;
+  back.load(in);
+  back.warn("a at 3 s", "a", 3, sink);
+  back.warn("b", "b", 3, sink);
+  EXPECT_EQ(sink.events.size(), 2U);
+  back.warn("c", "c", 3, sink);
+  EXPECT_EQ(sink.events.size(), 3U);
 }
 
 TEST(Sculpting, ExtractsWaveAndDropAndPastesThemElsewhere) {

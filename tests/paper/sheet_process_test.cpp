@@ -207,8 +207,8 @@ class SwitchingMesher final : public SheetMesher {
   void annotate(const ShellState& /*state*/, Frame& frame) const override {
     frame.diagnostics["switched"] = switched_ ? 1 : 0;
   }
-  [[nodiscard]] State save() const override { return {static_cast<std::byte>(switched_)}; }
-  void load(const State& state) override { switched_ = state.at(0) != std::byte{0}; }
+  void save(StateWriter& out) const override { out.number(switched_); }
+  void load(StateReader& in) override { switched_ = in.number<bool>(); }
 
  private:
   static ShellMesh mesh(const Sheet& sheet, int triangles) {
