@@ -27,7 +27,7 @@ struct Loading {
   std::shared_ptr<const SurfaceSequence> sequence;  ///< of `motion`, or null
 
   void load_surface() {
-    DetailScene& scene = result.scene;
+    DetailScene& scene = result.input;
     const DetailSurfaceOptions& o = options.surface;
     if (o.kind == DetailSurfaceKind::sequence) {
       if (!sequence) throw Error("there is none", "scene.motion.sequence", "a mesh sequence");
@@ -50,13 +50,13 @@ struct Loading {
     TriMesh mesh =
         open_sequence(still, folder, result.load_warnings, result.input_files)->frame(0).mesh;
     mesh.V = mesh.V * to_rotation(o.turn_deg).toRotationMatrix().transpose();
-    result.scene.surface = std::move(mesh);
-    result.scene.name = still.path;
+    result.input.surface = std::move(mesh);
+    result.input.name = still.path;
   }
 
   [[nodiscard]] Eigen::VectorXd density() const {
     const DensityOptions& o = options.pattern.density;
-    const TriMesh& surface = result.scene.surface;
+    const TriMesh& surface = result.input.surface;
     if (o.kind != DensityKind::array) return gradient_density(surface, o);
     const std::string where = "scene.pattern.density.array";
     const fs::path file = options.surface.file;
@@ -78,7 +78,7 @@ struct Loading {
   }
 
   void load_details() {
-    DetailScene& scene = result.scene;
+    DetailScene& scene = result.input;
     const DetailPatternOptions& o = options.pattern;
     result.region = faces_of_region(scene.surface, o.region);
     if (o.kind == PatternKind::file) {
@@ -115,7 +115,7 @@ struct Loading {
   }
 
   void align(std::vector<Detail>& details) const {
-    const TriMesh& surface = result.scene.surface;
+    const TriMesh& surface = result.input.surface;
     const SurfaceTopology topology(surface);
     std::vector<Eigen::Vector3d> x;
     for (Eigen::Index v = 0; v < surface.V.rows(); ++v) x.emplace_back(surface.V.row(v));
@@ -125,7 +125,7 @@ struct Loading {
 
   void load_motion() {
     const DetailMotionOptions& o = options.motion;
-    DetailScene& scene = result.scene;
+    DetailScene& scene = result.input;
     if (sequence) {
       if (!o.deform.empty() || o.drag)
         throw Error("stands beside a sequence", "scene.motion", "sequence, or deform and drag");
@@ -202,7 +202,7 @@ std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& optio
   scene->pair_frames = options.pair_frames;
   scene->pair_sources = options.pair_sources;
   loading.load_drawing();
-  require_valid(scene->scene);
+  require_valid(scene->input);
   return scene;
 }
 

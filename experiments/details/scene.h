@@ -19,7 +19,7 @@ namespace geoprior::details {
 /// on.
 class DetailsScene final : public Scene {
  public:
-  DetailScene scene;
+  DetailScene input;  ///< what a method is given
   /// The same process of placing drawn anew (other seeds), for noise floors; none for details of a
   /// file.
   std::vector<std::vector<Detail>> resamples;

@@ -6,8 +6,10 @@
 
 #include "tests/testbed/run_fixture.h"
 
-namespace geoprior::paper::test {
+namespace geoprior::paper {
 namespace {
+
+using namespace test;
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -189,4 +191,4 @@ TEST_F(BadSheet, NamesTheDrawingAndItsPath) {
 }
 
 }  // namespace
-}  // namespace geoprior::paper::test
+}  // namespace geoprior::paper
