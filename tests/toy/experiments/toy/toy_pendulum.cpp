@@ -254,7 +254,7 @@ MethodEntry pendulum_method(std::string name, bool is_baseline, std::string summ
 }
 
 double angle_of(const Frame& frame) {
-  const Eigen::RowVector3d p = frame.parts.at("bob").points.row(0);
+  const Eigen::RowVector3d p = frame.require_part("bob").points.row(0);
   return std::atan2(p.x(), -p.y());
 }
 
@@ -302,7 +302,7 @@ std::vector<MetricEntry> pendulum_metrics() {
                     true};
   apart.of_frame = [](const Scene&, const Frame& f, const Frame* r) -> std::optional<double> {
     if (r == nullptr) return std::nullopt;
-    return (f.parts.at("bob").points.row(0) - r->parts.at("bob").points.row(0)).norm();
+    return (f.require_part("bob").points.row(0) - r->require_part("bob").points.row(0)).norm();
   };
   apart.reference_parts = {"bob"};
   return {error, largest, apart};
