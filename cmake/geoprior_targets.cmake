@@ -28,7 +28,7 @@ target_compile_options(geoprior_warnings INTERFACE
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${GEOPRIOR_SANITIZE}>>:-Wno-maybe-uninitialized>
   $<$<BOOL:${GEOPRIOR_WERROR}>:-Werror>)
 
-# geoprior_precompile(target HEADERS…): the first target of a kind precompiles them, all others of that kind share the
+# geoprior_precompile(target kind HEADERS…): the first target of a kind precompiles them, all others of that kind share the
 # result. Flags must agree within a kind.
 function(geoprior_precompile target kind)
   if(NOT GEOPRIOR_PCH)
@@ -62,7 +62,7 @@ endfunction()
 # Sources in which GCC 12 takes the assignment of a short text for an overflow (GCC bug 105651, mended in 13).
 set(GEOPRIOR_FALSE_OVERFLOWS
   experiments/details/metrics.cpp experiments/fluid/exr_maps.cpp experiments/skinning/methods.cpp
-  testbed/commands/list.cpp testbed/formats/mesh_sequence_repair.cpp)
+  testbed/formats/mesh_sequence_repair.cpp)
 list(TRANSFORM GEOPRIOR_FALSE_OVERFLOWS PREPEND ${PROJECT_SOURCE_DIR}/)
 
 # geoprior_library(name SOURCES... [PUBLIC libs] [PRIVATE libs]): a static library `geoprior_<name>`, alias
@@ -81,15 +81,19 @@ function(geoprior_library name)
     <limits> <map> <memory> <numbers> <optional> <span> <string> <vector>)
 endfunction()
 
-# geoprior_spine_library(name SOURCES... [PUBLIC libs] [PRIVATE libs]): a static library `geoprior_<name>` of the program.
+# geoprior_spine_library(name SOURCES... [PUBLIC libs] [PRIVATE libs] [PRECOMPILE kind headers...]): a static library
+# `geoprior_<name>` of the program. Without PRECOMPILE its precompiled headers are those of the libraries.
 function(geoprior_spine_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE" ${ARGN})
   add_library(geoprior_${name} STATIC ${arg_SOURCES})
   target_include_directories(geoprior_${name} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(geoprior_${name} PUBLIC geoprior_flags ${arg_PUBLIC}
     PRIVATE geoprior_code geoprior_warnings ${arg_PRIVATE})
   geoprior_mark_sources(${arg_SOURCES})
-  geoprior_precompile(geoprior_${name} library)
+  if(NOT arg_PRECOMPILE)
+    set(arg_PRECOMPILE library)
+  endif()
+  geoprior_precompile(geoprior_${name} ${arg_PRECOMPILE})
 endfunction()
 
 # geoprior_test(name SOURCES... LIBS...): one GoogleTest executable a topic, its tests discovered one by one.

@@ -148,17 +148,17 @@ struct Loading {
 const Frame& DetailsScene::rest() const {
   std::call_once(rest_made_, [&] {
     rest_ =
-        detail_frame(build_detail_mesh(scene.surface, scene.details), scene.motion->parameter(0));
+        detail_frame(build_detail_mesh(input.surface, input.details), input.motion->parameter(0));
   });
   return rest_;
 }
 
 bool DetailsScene::is_one_of(int count, double parameter) const {
-  const int last = scene.motion->frame_count() - 1;
+  const int last = input.motion->frame_count() - 1;
   for (int i = 1; i <= count; ++i) {
     const auto frame = static_cast<int>(std::lround(static_cast<double>(last) * i / count));
     // Recorded parameters went through text.
-    if (std::abs(scene.motion->parameter(frame) - parameter) <= 1e-9 * std::abs(parameter))
+    if (std::abs(input.motion->parameter(frame) - parameter) <= 1e-9 * std::abs(parameter))
       return true;
   }
   return false;
@@ -170,16 +170,16 @@ bool DetailsScene::measures_pairs(double parameter) const {
 
 bool DetailsScene::is_drawn(double parameter) const {
   if (!drawing) return false;
-  return parameter == scene.motion->parameter(0) || is_one_of(drawing->frames, parameter);
+  return parameter == input.motion->parameter(0) || is_one_of(drawing->frames, parameter);
 }
 
 std::map<std::string, double> DetailsScene::facts() const {
-  const Eigen::VectorXd areas = triangle_areas(scene.surface.V, scene.surface.F);
-  return {{"vertices", static_cast<double>(scene.surface.vertex_count())},
-          {"triangles", static_cast<double>(scene.surface.triangle_count())},
+  const Eigen::VectorXd areas = triangle_areas(input.surface.V, input.surface.F);
+  return {{"vertices", static_cast<double>(input.surface.vertex_count())},
+          {"triangles", static_cast<double>(input.surface.triangle_count())},
           {"area", areas.sum()},
-          {"details", static_cast<double>(scene.details.size())},
-          {"frames", static_cast<double>(scene.motion->frame_count())}};
+          {"details", static_cast<double>(input.details.size())},
+          {"frames", static_cast<double>(input.motion->frame_count())}};
 }
 
 std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& options,

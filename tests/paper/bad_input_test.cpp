@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "experiments/paper/topic.h"
 #include "tests/testbed/run_fixture.h"
 
 namespace geoprior::paper {

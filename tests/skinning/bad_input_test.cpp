@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "experiments/skinning/topic.h"
 #include "tests/testbed/gltf_samples.h"
 #include "tests/testbed/run_fixture.h"
 
