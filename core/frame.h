@@ -4,7 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace geoprior {
@@ -31,6 +33,18 @@ struct Part {
   Eigen::Vector3d grid_origin = Eigen::Vector3d::Zero();
   Eigen::Vector3d grid_spacing = Eigen::Vector3d::Ones();
   std::vector<NamedArray> arrays;
+
+  /// Rows that an array over points or over cells has here: cells are triangles, poly-lines, single
+  /// points, or the boxes of a grid (flat along an axis with one point).
+  [[nodiscard]] Eigen::Index count(NamedArray::On on) const;
+  /// The first array of that name; null when there is none.
+  [[nodiscard]] const NamedArray* find_array(std::string_view name) const;
+  [[nodiscard]] const NamedArray* find_array(std::string_view name, NamedArray::On on) const;
+  /// @param where  what the error calls this part
+  /// @throws Error  when there is no such array, or it has another number of components or rows
+  [[nodiscard]] const NamedArray& require_array(std::string_view name, NamedArray::On on,
+                                                std::optional<int> components = {},
+                                                const std::string& where = "part") const;
 };
 
 /// A small table of numbers that belongs to a frame (pieces of a surface, steps of a solver).
@@ -47,6 +61,18 @@ struct Frame {
   std::map<std::string, FrameTable> tables;
   std::map<std::string, double>
       diagnostics;  ///< what only the method can know: iterations, residual, evaluations
+
+  /// Null when there is none of that name.
+  [[nodiscard]] const Part* find_part(const std::string& name) const;
+  [[nodiscard]] const FrameTable* find_table(const std::string& name) const;
+  /// @throws Error  naming what is missing and what is there, as all of these
+  [[nodiscard]] const Part& require_part(const std::string& name) const;
+  [[nodiscard]] const Part& require_part(const std::string& name, Part::Kind kind) const;
+  [[nodiscard]] const FrameTable& require_table(const std::string& name) const;
+  /// As `Part::require_array`, of a part.
+  [[nodiscard]] const NamedArray& require_array(const std::string& part, std::string_view name,
+                                                NamedArray::On on,
+                                                std::optional<int> components = {}) const;
 };
 
 /// A discrete event for sound and for logs.

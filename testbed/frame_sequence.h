@@ -25,6 +25,14 @@ class FrameSequence {
   [[nodiscard]] virtual std::shared_ptr<const Part> part(std::size_t i,
                                                          const std::string& name) const = 0;
 
+  /// The same. @throws Error  when the frame has none of that name
+  [[nodiscard]] std::shared_ptr<const Part> require_part(std::size_t i,
+                                                         const std::string& name) const {
+    if (auto found = part(i, name)) return found;
+    const std::shared_ptr<const Frame> whole = frame(i);
+    return {whole, &whole->require_part(name)};
+  }
+
   [[nodiscard]] std::vector<double> parameters() const {
     std::vector<double> all;
     for (std::size_t i = 0; i < size(); ++i) all.push_back(parameter(i));
@@ -35,9 +43,9 @@ class FrameSequence {
 /// The part of a frame that lives as long as the frame; null when there is none of that name.
 inline std::shared_ptr<const Part> part_of(const std::shared_ptr<const Frame>& frame,
                                            const std::string& name) {
-  const auto found = frame->parts.find(name);
-  if (found == frame->parts.end()) return nullptr;
-  return {frame, &found->second};
+  const Part* part = frame->find_part(name);
+  if (part == nullptr) return nullptr;
+  return {frame, part};
 }
 
 /// Frames that are all in memory, sorted by parameter already.

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string_view>
 #include <vector>
 
 #include "baselines/details/rest_density.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "models/details/detail_step.h"
 #include "models/details/point_grid.h"
 
 namespace geoprior::details {
@@ -38,26 +38,17 @@ class DartThrowing final : public DetailMethod {
         density_(now_) {}
 
   void step(const Eigen::MatrixX3d& V, RunContext& context) override {
-    const std::int64_t refused = now_.mesh.refused_flips();
-    {
-      const Phase phase(context, "move");
-      flips_ = move_surface(now_, V, options_.lengths);
-    }
-    {
+    report_ = step_details(now_, V, options_.lengths, options_.weight_rate, context, [&] {
       const Phase phase(context, "insert");
       throw_darts();
-    }
-    const Phase phase(context, "weights");
-    max_weight_change_ = change_weights(now_, options_.weight_rate);
-    // An insertion may have cleared the way for a flip that was refused before it.
-    if (now_.mesh.refused_flips() != refused) flips_ += now_.mesh.flip_to_delaunay();
+    });
   }
 
   [[nodiscard]] const DetailMesh& details() const override { return now_; }
   void diagnose(std::map<std::string, double>& into) const override {
     into["inserted"] = inserted_;
-    into["flips"] = flips_;
-    into["max_weight_change"] = max_weight_change_;
+    into["flips"] = report_.flips;
+    into["max_weight_change"] = report_.max_weight_change;
   }
   void save(StateWriter& out) const override { now_.save(out); }
   void load(StateReader& in) override { now_.load(in); }
@@ -140,14 +131,13 @@ class DartThrowing final : public DetailMethod {
   std::uint64_t seed_;
   DetailMesh now_;
   RestDensity density_;
-  int inserted_ = 0, flips_ = 0;
-  double max_weight_change_ = 0;
+  int inserted_ = 0;
+  StepReport report_;
 };
 
 }  // namespace
 
 void describe(OptionVisitor& v, DartThrowingOptions& options) {
-  static constexpr std::array<std::string_view, 2> kLengths{"chord", "geodesic"};
   v.value("radius", options.radius,
           {.doc = "smallest distance in units of 1 / sqrt(density at rest)", .min = 0.3, .max = 2});
   v.value("stretch_threshold", options.stretch_threshold,
@@ -156,8 +146,7 @@ void describe(OptionVisitor& v, DartThrowingOptions& options) {
           {.doc = "thrown into a triangle with room, a frame", .min = 1, .max = 1000});
   v.value("weight_rate", options.weight_rate,
           {.doc = "largest change of a weight in a frame", .min = 1e-3, .max = 1});
-  describe_choice(v, "lengths", options.lengths, kLengths,
-                  {.doc = "edges of M_d: distance of their ends, or along the surface"});
+  describe_lengths(v, options.lengths);
 }
 
 std::unique_ptr<DetailMethod> make_dart_throwing(const DetailScene& scene,

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -106,9 +105,9 @@ DensityMoves::DensityMoves(DetailMesh& details, const RestDensity& density, Area
                            double dead_band)
     : now_(details), density_(density), budget_(budget), limit_(0.5 + dead_band) {}
 
-void DensityMoves::measure(const Lead& lead) {
+void DensityMoves::measure(const AreaBudget::Lead& lead) {
   budget_.count(now_);
-  budget_.update(now_, lead.growing, lead.shrinking);
+  budget_.update(now_, lead);
   spacing_ = spacing_of_sites(now_, density_);
   touched_.assign(now_.site.size(), 0);
 }
@@ -132,23 +131,6 @@ bool DensityMoves::touched(int t) const {
   return std::any_of(corner.begin(), corner.end(), [&](int c) {
     return static_cast<std::size_t>(c) >= touched_.size() || touched_[c] != 0;
   });
-}
-
-int DensityMoves::revive() {
-  std::vector<std::pair<double, int>> fading;
-  for (int i = 0; i < now_.site_slots(); ++i) {
-    const Detail& d = now_.site[i];
-    if (now_.is_detail(i) && d.target_weight == 0) fading.emplace_back(-d.weight, i);
-  }
-  std::sort(fading.begin(), fading.end());
-  int revived = 0;
-  for (const auto& [weight, i] : fading) {
-    if (deficit(i) < limit_) continue;
-    now_.site[i].target_weight = 1;
-    budget_.add(budget_.patch_of(now_.site[i].at), 1);
-    ++revived;
-  }
-  return revived;
 }
 
 bool DensityMoves::may_fade(int site) const {
@@ -189,8 +171,7 @@ int DensityMoves::fade_shortest_edges(double most) {
     };
     const int gone = crowding(a, b) < crowding(b, a) ? a : b;
     ended[a] = ended[b] = 1;
-    now_.site[gone].target_weight = 0;
-    budget_.add(budget_.patch_of(now_.site[gone].at), -1);
+    fade_detail(now_, gone, budget_);
     ++faded;
   }
   return faded;
@@ -238,9 +219,8 @@ DensityChanges DensityMoves::keep_number(const DensityMoveOptions& options, RunC
   DensityChanges changes;
   {
     const Phase phase(context, "budget");
-    const double frames = options.anticipate ? 1 / options.weight_rate : 0;
-    measure({frames / 4, 3 * frames / 4});
-    changes.revived = revive();
+    measure(lead_of(options.anticipate, options.weight_rate));
+    changes.revived = revive_details(now_, budget_, limit_);
   }
   {
     const Phase phase(context, "merge");
@@ -257,8 +237,41 @@ void DensityChanges::diagnose(std::map<std::string, double>& into) const {
   into["fading"] = fading;
 }
 
+DensityMethod::DensityMethod(const DetailScene& scene, const DensityMoveOptions& options)
+    : now_(build_detail_mesh(scene.surface, scene.details)),
+      density_(now_),
+      options_(options),
+      budget_(now_, options.patch_details),
+      moves_(now_, density_, budget_, options.dead_band) {}
+
+void DensityMethod::step(const Eigen::MatrixX3d& V, RunContext& context) {
+  const bool moved = surface_differs(now_, V);
+  int flips = 0;
+  report_ = step_details(now_, V, options_.lengths, options_.weight_rate, context, [&] {
+    changes_ = moves_.keep_number(options_, context);
+    flips = relax(moved, context);
+  });
+  report_.flips += flips;
+}
+
+void DensityMethod::diagnose(std::map<std::string, double>& into) const {
+  changes_.diagnose(into);
+  into["flips"] = report_.flips;
+  into["refused_flips"] = static_cast<double>(now_.mesh.refused_flips());
+  into["max_weight_change"] = report_.max_weight_change;
+}
+
+void DensityMethod::save(StateWriter& out) const {
+  now_.save(out);
+  budget_.save(out);
+}
+
+void DensityMethod::load(StateReader& in) {
+  now_.load(in);
+  budget_.load(in);
+}
+
 void describe(OptionVisitor& v, DensityMoveOptions& options) {
-  static constexpr std::array<std::string_view, 2> kLengths{"chord", "geodesic"};
   v.value("circumradius", options.circumradius,
           {.doc = "least circumradius that is filled, in units of the lattice's", .min = 0});
   v.value("shortest_edge", options.shortest_edge,
@@ -271,8 +284,7 @@ void describe(OptionVisitor& v, DensityMoveOptions& options) {
                   "they shrink, K = 1 / weight_rate"});
   v.value("weight_rate", options.weight_rate,
           {.doc = "largest change of a weight in a frame", .min = 1e-3, .max = 1});
-  describe_choice(v, "lengths", options.lengths, kLengths,
-                  {.doc = "edges of M_d: distance of their ends, or along the surface"});
+  describe_lengths(v, options.lengths);
 }
 
 }  // namespace geoprior::details

@@ -11,6 +11,8 @@
 #include "core/options.h"
 #include "models/details/area_budget.h"
 #include "models/details/detail_mesh.h"
+#include "models/details/detail_process.h"
+#include "models/details/detail_step.h"
 
 namespace geoprior::details {
 
@@ -56,26 +58,22 @@ struct DensityChanges {
   void diagnose(std::map<std::string, double>& into) const;
 };
 
-/// Three moves that keep the number of details of every patch near its budget: a patch acts when it
-/// is off by 1/2 + `dead_band` or more. Patches and numbers are those of the thesis' method with
-/// its budget, so that what differs is where details come and which ones go. Nothing
-/// comes or goes where the surface is bare.
+/// Keeps the number of details of every patch near its budget: a patch acts when it is off by
+/// 1/2 + `dead_band` or more. Details that fade turn back where some are lacking; others fade at
+/// short edges, or come at circumcentres. Patches and numbers are those of the thesis' method with
+/// its budget, so that what differs is where details come and which ones go. Nothing comes or goes
+/// where the surface is bare.
 class DensityMoves {
  public:
-  /// Frames ahead for which patches ask, as the thesis' method does; see `AreaBudget::update`.
-  struct Lead {
-    double growing = 0, shrinking = 0;
-  };
-
   /// @param details  with the density at rest; all references are kept
   DensityMoves(DetailMesh& details, const RestDensity& density, AreaBudget& budget,
                double dead_band);
-  /// To be called at the start of every frame: counts details, measures areas.
-  void measure(const Lead& lead);
+  /// The moves of a frame. Phases: "budget", "merge", "insert".
+  DensityChanges keep_number(const DensityMoveOptions& options, RunContext& context);
 
-  /// Details that fade where some are lacking turn back, the largest weights first.
-  /// @return  number of details
-  int revive();
+ private:
+  /// To be called before the others: counts details, measures areas.
+  void measure(const AreaBudget::Lead& lead);
   /// Lets one end fade of edges that are crowded: the shortest in units of the lattice's first, up
   /// to `most` of it; no two share a vertex. The end goes that has the shorter other edges. To be
   /// called before details are inserted.
@@ -85,10 +83,6 @@ class DensityMoves {
   /// circumradius in units of the lattice's first, down to `least` of it; no two share a vertex.
   /// @return  number of details
   int insert_at_circumcentres(double least);
-  /// All of them, as a frame needs them. Phases: "budget", "merge", "insert".
-  DensityChanges keep_number(const DensityMoveOptions& options, RunContext& context);
-
- private:
   [[nodiscard]] double deficit(int site) const;
   [[nodiscard]] bool lacks(int triangle) const;
   [[nodiscard]] bool may_fade(int site) const;
@@ -103,6 +97,33 @@ class DensityMoves {
   double limit_;
   std::vector<double> spacing_;
   std::vector<char> touched_;
+};
+
+/// A method that lets details come and go by `DensityMoves`; one that derives from it may move them
+/// afterwards. Diagnostics: those of `DensityChanges`, flips, refused_flips, max_weight_change.
+class DensityMethod : public DetailMethod {
+ public:
+  DensityMethod(const DetailScene& scene, const DensityMoveOptions& options);
+  void step(const Eigen::MatrixX3d& V, RunContext& context) final;
+  [[nodiscard]] const DetailMesh& details() const final { return now_; }
+  void diagnose(std::map<std::string, double>& into) const override;
+  void save(StateWriter& out) const final;
+  void load(StateReader& in) final;
+
+ protected:
+  /// Called after the moves of every frame, before weights change. Marks its own phases.
+  /// @return  number of flips in M_d
+  virtual int relax(bool /*surface_moved*/, RunContext& /*context*/) { return 0; }
+
+  DetailMesh now_;
+  const RestDensity density_;
+
+ private:
+  DensityMoveOptions options_;
+  AreaBudget budget_;
+  DensityMoves moves_;
+  DensityChanges changes_;
+  StepReport report_;
 };
 
 }  // namespace geoprior::details

@@ -14,41 +14,13 @@ namespace {
 /// Details that move towards each other by this part of a height do not turn a triangle over.
 constexpr double kLargestSlide = 0.25;
 
-class LloydRelaxation final : public DetailMethod {
+class LloydRelaxation final : public DensityMethod {
  public:
   LloydRelaxation(const DetailScene& scene, const LloydRelaxationOptions& options)
-      : options_(options),
-        now_(build_detail_mesh(scene.surface, scene.details)),
-        density_(now_),
-        budget_(now_, options.patch_details),
-        moves_(now_, density_, budget_, options.dead_band) {}
+      : DensityMethod(scene, options), options_(options) {}
 
-  void step(const Eigen::MatrixX3d& V, RunContext& context) override {
-    const std::int64_t refused = now_.mesh.refused_flips();
-    const bool moved = surface_differs(now_, V);
-    {
-      const Phase phase(context, "move");
-      flips_ = move_surface(now_, V, options_.lengths);
-    }
-    changes_ = moves_.keep_number(options_, context);
-    slide_.assign(now_.site.size(), 0);
-    if (moved) {
-      const Phase phase(context, "relax");
-      for (int i = 0; i < options_.iterations; ++i) relax();
-      set_densities();
-    }
-    const Phase phase(context, "weights");
-    max_weight_change_ = change_weights(now_, options_.weight_rate);
-    // An insertion or a removal may have cleared the way for a flip that was refused before it.
-    if (now_.mesh.refused_flips() != refused) flips_ += now_.mesh.flip_to_delaunay();
-  }
-
-  [[nodiscard]] const DetailMesh& details() const override { return now_; }
   void diagnose(std::map<std::string, double>& into) const override {
-    changes_.diagnose(into);
-    into["flips"] = flips_;
-    into["refused_flips"] = static_cast<double>(now_.mesh.refused_flips());
-    into["max_weight_change"] = max_weight_change_;
+    DensityMethod::diagnose(into);
     double sum = 0, most = 0;
     for (const double slide : slide_) {
       sum += slide;
@@ -57,13 +29,16 @@ class LloydRelaxation final : public DetailMethod {
     into["mean_slide"] = sum / std::max(1, now_.detail_count());
     into["max_slide"] = most;
   }
-  void save(StateWriter& out) const override {
-    now_.save(out);
-    budget_.save(out);
-  }
-  void load(StateReader& in) override {
-    now_.load(in);
-    budget_.load(in);
+
+ protected:
+  int relax(bool surface_moved, RunContext& context) override {
+    slide_.assign(now_.site.size(), 0);
+    if (!surface_moved) return 0;
+    const Phase phase(context, "relax");
+    int flips = 0;
+    for (int i = 0; i < options_.iterations; ++i) flips += slide_all();
+    set_densities();
+    return flips;
   }
 
  private:
@@ -96,7 +71,8 @@ class LloydRelaxation final : public DetailMethod {
   }
 
   /// All details at once, each by the cells before.
-  void relax() {
+  /// @return  number of flips
+  int slide_all() {
     const std::vector<double> spacing = spacing_of_sites(now_, density_);
     std::vector<Slide> slides(now_.site.size());
     parallel_blocks(slides.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -113,7 +89,7 @@ class LloydRelaxation final : public DetailMethod {
       slide_[i] += slides[i].length;
     }
     measure_edges(now_, options_.lengths);
-    flips_ += now_.mesh.flip_to_delaunay();
+    return now_.mesh.flip_to_delaunay();
   }
 
   /// Triangles that slide over the surface hold what lies under them.
@@ -127,13 +103,6 @@ class LloydRelaxation final : public DetailMethod {
   }
 
   LloydRelaxationOptions options_;
-  DetailMesh now_;
-  RestDensity density_;
-  AreaBudget budget_;
-  DensityMoves moves_;
-  DensityChanges changes_;
-  int flips_ = 0;
-  double max_weight_change_ = 0;
   std::vector<double> slide_;  ///< per site, of the last frame (m)
 };
 

@@ -1,8 +1,5 @@
 #include "baselines/details/naive_stretch.h"
 
-#include <array>
-#include <string_view>
-
 namespace geoprior::details {
 namespace {
 
@@ -29,9 +26,7 @@ class NaiveStretch final : public DetailMethod {
 }  // namespace
 
 void describe(OptionVisitor& v, NaiveStretchOptions& options) {
-  static constexpr std::array<std::string_view, 2> kLengths{"chord", "geodesic"};
-  describe_choice(v, "lengths", options.lengths, kLengths,
-                  {.doc = "edges of M_d: distance of their ends, or along the surface"});
+  describe_lengths(v, options.lengths);
 }
 
 std::unique_ptr<DetailMethod> make_naive_stretch(const DetailScene& scene,

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "baselines/fluid/liquid_parts.h"
 #include "core/error.h"
-#include "core/state_bytes.h"
+#include "core/frame_loop.h"
 #include "models/fluid/transfer.h"
 
 namespace geoprior::fluid {
@@ -53,56 +54,32 @@ void measure_particles(const Tank& tank, int per_cell, const GridShape& shape,
   out["momentum_z"] = mass * momentum.z();
 }
 
-class LiquidProcess final : public Process {
+class LiquidFrames final : public FrameModel {
  public:
-  LiquidProcess(const Tank& tank, const LiquidOptions& options) : tank_(tank), options_(options) {
-    require_valid(tank_, options_.particles_per_cell, std::numeric_limits<double>::infinity(),
-                  "tank");
-  }
+  LiquidFrames(const Tank& tank, const LiquidOptions& options, std::uint64_t seed)
+      : tank_(tank), options_(options), liquid_(tank, options, seed) {}
 
-  void run(FrameSink& sink, RunContext& context, const std::optional<State>& resume_from) override {
-    Liquid liquid(tank_, options_, context.seed());
-    int frame = 0;
-    if (resume_from) {
-      StateReader in(*resume_from);
-      frame = in.number<int>();
-      liquid.load(in.bytes());
-    }
-    const int count = tank_.frame_count();
-    for (; frame < count; ++frame) {
-      if (context.stop_requested()) return;
-      FrameReport report;
-      if (frame > 0) report = advance(liquid, frame, context);
-      sink.frame(make_frame(liquid, frame, report, context));
-      context.progress(static_cast<double>(frame + 1) / count);
-      StateWriter out;
-      out.number(frame + 1);
-      out.bytes(liquid.save());
-      sink.checkpoint(out.take());
-    }
-  }
+  [[nodiscard]] int frame_count() const override { return tank_.frame_count(); }
 
- private:
-  FrameReport advance(Liquid& liquid, int frame, RunContext& context) const {
+  void advance(int frame, FrameSink& /*sink*/, RunContext& context) override {
     const double end = tank_.frame_time(frame);
-    FrameReport report;
+    report_ = {};
     for (;;) {
-      const double rest = end - liquid.time();
-      const LiquidStepReport step = liquid.step(rest, context);
-      add(report, step, tank_.cell);
-      if (step.dt >= rest) return report;
-      if (report.substeps >= options_.max_substeps) {
+      const double rest = end - liquid_.time();
+      const LiquidStepReport step = liquid_.step(rest, context);
+      add(report_, step, tank_.cell);
+      if (step.dt >= rest) return;
+      if (report_.substeps >= options_.max_substeps) {
         throw Error("frame " + std::to_string(frame) + " needs more than " +
                         std::to_string(options_.max_substeps) +
                         " substeps: " + std::to_string(step.max_speed) + " m/s at " +
-                        std::to_string(liquid.time()) + " s",
+                        std::to_string(liquid_.time()) + " s",
                     "liquid", "larger max_substeps or cfl, slower liquid, solids and sources");
       }
     }
   }
 
-  Frame make_frame(const Liquid& liquid, int number, const FrameReport& report,
-                   RunContext& context) const {
+  void record(int number, FrameSink& sink, RunContext& context) override {
     Frame frame;
     frame.parameter = tank_.frame_time(number);
     auto& d = frame.diagnostics;
@@ -110,34 +87,43 @@ class LiquidProcess final : public Process {
       const Phase phase(context, "surface");
       Part part;
       Eigen::MatrixX3d velocity;
-      TriMesh mesh = liquid.surface(&velocity);
+      TriMesh mesh = liquid_.surface(&velocity);
       d["surface_volume"] = signed_volume(mesh.V, mesh.F);
       part.points = std::move(mesh.V);
       part.triangles = std::move(mesh.F);
       part.arrays.push_back({"velocity", "m/s", NamedArray::On::points, std::move(velocity)});
       frame.parts["surface"] = std::move(part);
     }
-    if (!tank_.solids.empty()) frame.parts["solids"] = solids_part(tank_, liquid.solids());
+    if (!tank_.solids.empty()) frame.parts["solids"] = solids_part(tank_, liquid_.solids());
     if (options_.record_particles)
-      frame.parts["particles"] = particles_part(tank_, liquid.particles());
-    measure_particles(tank_, options_.particles_per_cell, liquid.shape(), liquid.particles(), d);
-    d["substeps"] = report.substeps;
-    d["cfl"] = report.cfl;
-    d["pressure_iterations"] = report.iterations;
-    d["pressure_converged"] = report.converged ? 1 : 0;
-    d["max_divergence"] = report.max_divergence;
-    if (number > 0) d["liquid_volume"] = report.liquid_volume;
-    return frame;
+      frame.parts["particles"] = particles_part(tank_, liquid_.particles());
+    measure_particles(tank_, options_.particles_per_cell, liquid_.shape(), liquid_.particles(), d);
+    d["substeps"] = report_.substeps;
+    d["cfl"] = report_.cfl;
+    d["pressure_iterations"] = report_.iterations;
+    d["pressure_converged"] = report_.converged ? 1 : 0;
+    d["max_divergence"] = report_.max_divergence;
+    if (number > 0) d["liquid_volume"] = report_.liquid_volume;
+    sink.frame(std::move(frame));
   }
 
-  Tank tank_;
-  LiquidOptions options_;
+  void save(StateWriter& out) const override { out.bytes(liquid_.save()); }
+  void load(StateReader& in, int /*next_frame*/) override { liquid_.load(in.bytes()); }
+
+ private:
+  const Tank& tank_;
+  const LiquidOptions& options_;
+  Liquid liquid_;
+  FrameReport report_;  ///< of the last `advance`
 };
 
 }  // namespace
 
 std::unique_ptr<Process> make_liquid(const Tank& tank, const LiquidOptions& options) {
-  return std::make_unique<LiquidProcess>(tank, options);
+  require_valid(tank, options.particles_per_cell, std::numeric_limits<double>::infinity(), "tank");
+  return frame_process([tank, options](RunContext& context) {
+    return std::make_unique<LiquidFrames>(tank, options, context.seed());
+  });
 }
 
 }  // namespace geoprior::fluid

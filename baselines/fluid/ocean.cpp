@@ -6,7 +6,6 @@
 #include <cmath>
 #include <complex>
 #include <cstdlib>
-#include <cstring>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -14,6 +13,7 @@
 
 #include "baselines/fluid/ocean_transform.h"
 #include "core/error.h"
+#include "core/frame_loop.h"
 #include "core/parallel.h"
 #include "core/random.h"
 
@@ -429,87 +429,69 @@ double folded_triangles(const TriMesh& mesh) {
   return folded;
 }
 
-class OceanProcess final : public Process {
+/// Frames of one sea: each follows from its time alone.
+class OceanFrames final : public FrameModel {
  public:
-  OceanProcess(const OceanOptions& options, std::vector<double> times)
-      : options_(options), times_(std::move(times)) {
-    require_valid(options_, "ocean");
-  }
+  OceanFrames(const OceanOptions& options, const std::vector<double>& times, std::uint64_t seed)
+      : options_(options), times_(times), ocean_(options, seed) {}
 
-  void run(FrameSink& sink, RunContext& context, const std::optional<State>& resume) override {
-    const Ocean ocean(options_, context.seed());
-    const int count = static_cast<int>(times_.size());
-    for (int i = resume ? frame_in(*resume) : 0; i < count; ++i) {
-      if (context.stop_requested()) return;
-      sink.frame(frame(ocean, times_[i], context));
-      context.progress(static_cast<double>(i + 1) / count);
-      sink.checkpoint(state_of(i + 1));
-    }
-  }
+  [[nodiscard]] int frame_count() const override { return static_cast<int>(times_.size()); }
 
- private:
-  static State state_of(int next_frame) {
-    State state(sizeof next_frame);
-    std::memcpy(state.data(), &next_frame, sizeof next_frame);
-    return state;
-  }
-
-  static int frame_in(const State& state) {
-    int next_frame = 0;
-    if (state.size() != sizeof next_frame) throw Error("is no state of an ocean", "checkpoint");
-    std::memcpy(&next_frame, state.data(), sizeof next_frame);
-    return next_frame;
-  }
-
-  [[nodiscard]] Frame frame(const Ocean& ocean, double time, RunContext& context) const {
+  void record(int number, FrameSink& sink, RunContext& context) override {
+    const double time = times_[number];
     Frame frame;
     frame.parameter = time;
     Eigen::MatrixX3d velocity;
     TriMesh mesh;
     {
       const Phase phase(context, "synthesis");
-      mesh = ocean.surface(time, &velocity);
-      frame.parts["samples"] = samples(ocean, time);
+      mesh = ocean_.surface(time, &velocity);
+      frame.parts["samples"] = samples(time);
     }
     frame.diagnostics["folded_triangles"] = folded_triangles(mesh);
     Part& part = frame.parts["surface"];
     part.points = std::move(mesh.V);
     part.triangles = std::move(mesh.F);
     part.arrays.push_back({"velocity", "m/s", NamedArray::On::points, std::move(velocity)});
-    frame.tables["sea"] = sea(ocean);
-    return frame;
+    frame.tables["sea"] = sea();
+    sink.frame(std::move(frame));
   }
 
-  [[nodiscard]] Part samples(const Ocean& ocean, double time) const {
+ private:
+  [[nodiscard]] Part samples(double time) const {
     const double spacing = options_.size / options_.samples;
     Part grid;
     grid.kind = Part::Kind::grid;
     grid.grid_size = {options_.samples, options_.samples, 1};
     grid.grid_origin = {0, 0, options_.mean_level};
     grid.grid_spacing = {spacing, spacing, 1};
-    grid.arrays.push_back({"height", "m", NamedArray::On::points, ocean.heights(time)});
-    grid.arrays.push_back({"rate", "m/s", NamedArray::On::points, ocean.velocities(time).col(2)});
+    grid.arrays.push_back({"height", "m", NamedArray::On::points, ocean_.heights(time)});
+    grid.arrays.push_back({"rate", "m/s", NamedArray::On::points, ocean_.velocities(time).col(2)});
     return grid;
   }
 
-  [[nodiscard]] FrameTable sea(const Ocean& ocean) const {
+  [[nodiscard]] FrameTable sea() const {
     FrameTable table;
     table.columns = {"depth [m]", "gravity [m/s^2]", "wind_direction [deg]",
                      "expected_variance [m^2]"};
     table.rows.resize(1, 4);
     table.rows << options_.depth, options_.gravity, options_.wind_direction_deg,
-        ocean.expected_variance();
+        ocean_.expected_variance();
     return table;
   }
 
-  OceanOptions options_;
-  std::vector<double> times_;
+  const OceanOptions& options_;
+  const std::vector<double>& times_;
+  Ocean ocean_;
 };
 
 }  // namespace
 
 std::unique_ptr<Process> make_ocean(const OceanOptions& options, std::vector<double> times) {
-  return std::make_unique<OceanProcess>(options, std::move(times));
+  require_valid(options, "ocean");
+  return frame_process([options, times = std::move(times)](RunContext& context) {
+    return std::make_unique<OceanFrames>(options, times, context.seed());
+  });
 }
 
 }  // namespace geoprior::fluid

@@ -73,12 +73,8 @@ class AdaptiveMesher final : public SheetMesher {
   }
 
   /// Counts of the last frame only: the next remeshing depends on the sheet alone.
-  [[nodiscard]] State save() const override {
-    StateWriter out;
-    out.number(last_);
-    return out.take();
-  }
-  void load(const State& state) override { last_ = StateReader(state).number<Counts>(); }
+  void save(StateWriter& out) const override { out.number(last_); }
+  void load(StateReader& in) override { last_ = in.number<Counts>(); }
 
  private:
   static std::vector<int> held_vertices(const Sheet& sheet, const ShellState& state) {

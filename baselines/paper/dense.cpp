@@ -5,7 +5,6 @@
 #include <string_view>
 #include <utility>
 
-#include "core/error.h"
 #include "models/paper/uniform_mesh.h"
 
 namespace geoprior::paper {
@@ -33,10 +32,6 @@ class UniformMesher final : public SheetMesher {
     return false;
   }
   void annotate(const ShellState& /*state*/, Frame& /*frame*/) const override {}
-  [[nodiscard]] State save() const override { return {}; }
-  void load(const State& state) override {
-    if (!state.empty()) throw Error("state of another method", "dense sheet");
-  }
 
  private:
   DenseOptions options_;

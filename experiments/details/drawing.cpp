@@ -5,7 +5,6 @@
 
 #include "experiments/details/measures.h"
 #include "experiments/details/scene.h"
-#include "testbed/frame_arrays.h"
 
 namespace geoprior::details {
 namespace {
@@ -14,12 +13,12 @@ enum DrawnClass { kSurface = 0, kOriginal = 1, kBorn = 2 };
 
 /// Class of every point of a drawing by the detail it belongs to.
 Eigen::VectorXd classes_of(const Part& drawing, const Part& details) {
-  const NamedArray* detail = find_array(drawing, "detail");
-  const NamedArray* born = find_array(details, "birth_frame");
+  const auto& detail = drawing.require_array("detail", NamedArray::On::points, 1).values;
+  const auto& born = details.require_array("birth_frame", NamedArray::On::points, 1).values;
   Eigen::VectorXd classes = Eigen::VectorXd::Constant(drawing.points.rows(), kSurface);
   for (Eigen::Index i = 0; i < classes.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(detail->values(i, 0));
-    if (row >= 0) classes[i] = born->values(row, 0) > 0 ? kBorn : kOriginal;
+    const auto row = static_cast<Eigen::Index>(detail(i, 0));
+    if (row >= 0) classes[i] = born(row, 0) > 0 ? kBorn : kOriginal;
   }
   return classes;
 }
@@ -34,19 +33,18 @@ Part joined(const Part& a, const Part& b) {
 }
 
 void draw(Frame& frame, const DetailsScene& scene) {
-  const double edge = spacing_of(required_part(scene.rest(), "detail_mesh"), 0).mean;
+  const double edge = spacing_of(scene.rest().require_part("detail_mesh"), 0).mean;
   const DrawingOptions& look = scene.drawing->look;
   const std::string name = add_drawing(frame, look, edge, scene.instance);
-  const Part drawing = std::move(frame.parts.at(name));
-  frame.parts.erase(name);
-  Eigen::VectorXd kind = classes_of(drawing, required_part(frame, "details"));
+  const Part drawing = std::move(frame.parts.extract(name).mapped());
+  Eigen::VectorXd kind = classes_of(drawing, frame.require_part("details"));
   Part drawn;
   if (look.kind == DrawnKind::hole) {
     drawn.points = drawing.points;
     drawn.triangles = drawing.triangles;
     kind.setConstant(kSurface);
   } else {
-    const Part& surface = required_part(frame, "surface");
+    const Part& surface = frame.require_part("surface");
     drawn = joined(surface, drawing);
     const Eigen::VectorXd details = kind;
     kind = Eigen::VectorXd::Constant(drawn.points.rows(), kSurface);

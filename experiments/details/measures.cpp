@@ -8,24 +8,14 @@
 #include <string>
 #include <utility>
 
-#include "core/error.h"
 #include "core/mesh.h"
-#include "testbed/frame_arrays.h"
 
 namespace geoprior::details {
 namespace {
 
-constexpr const char* kParts = "surface, details, detail_mesh, visible_mesh";
-
-const NamedArray& required_array(const Part& part, const char* name) {
-  const NamedArray* array = find_array(part, name);
-  if (array == nullptr) throw Error(std::string("has no array '") + name + "'", "part of a frame");
-  return *array;
-}
-
 template <class T>
 std::vector<T> column(const Part& part, const char* name) {
-  const Eigen::MatrixXd& values = required_array(part, name).values;
+  const Eigen::MatrixXd& values = part.require_array(name, NamedArray::On::points, 1).values;
   std::vector<T> out(values.rows());
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = static_cast<T>(values(static_cast<Eigen::Index>(i), 0));
@@ -44,7 +34,7 @@ struct FrameDetails {
         weight(column<double>(part, "weight")),
         target(column<double>(part, "target_weight")),
         face(column<int>(part, "face")),
-        barycentric(required_array(part, "barycentric").values) {}
+        barycentric(part.require_array("barycentric", NamedArray::On::points, 3).values) {}
 
   [[nodiscard]] DetailsOfFrame state() const { return {birth, weight}; }
   [[nodiscard]] AnchoredDetails anchored() const { return {state(), face, barycentric}; }
@@ -67,7 +57,7 @@ struct FrameDetails {
 /// Height of a detail of weight 1 (m); 0 when nothing says it.
 double height_of(const DetailsScene& scene) {
   if (scene.chosen_height) return *scene.chosen_height;
-  return spacing_of(required_part(scene.rest(), "detail_mesh"), 0).mean / 2;
+  return spacing_of(scene.rest().require_part("detail_mesh"), 0).mean / 2;
 }
 
 /// One frame of `motion_measures`.
@@ -149,14 +139,14 @@ double elongation_of(const RadialSpectrum& spectrum) {
 
 ContentKey key_of(const Frame& rest) {
   ContentKey key;
-  key.add_matrix(required_part(rest, "surface").points);
-  key.add_matrix(required_part(rest, "detail_mesh").points);
+  key.add_matrix(rest.require_part("surface").points);
+  key.add_matrix(rest.require_part("detail_mesh").points);
   return key;
 }
 
 SpectrumAtRest spectrum_at_rest(DetailsMemo& memo, const DetailsScene& scene, double unit) {
   return memo.spectra_at_rest.get(key_of(scene.rest()), [&] {
-    const Part& plane = required_part(scene.rest(), "surface");
+    const Part& plane = scene.rest().require_part("surface");
     SpectrumAtRest rest;
     rest.spectrum = spectrum_of(plane, places_of(scene.input.details), unit);
     for (const auto& resample : scene.resamples) {
@@ -169,8 +159,8 @@ SpectrumAtRest spectrum_at_rest(DetailsMemo& memo, const DetailsScene& scene, do
 }
 
 PairAtRest pairs_at_rest(DetailsMemo& memo, const DetailsScene& scene) {
-  const Part& surface = required_part(scene.rest(), "surface");
-  const Part& mesh = required_part(scene.rest(), "detail_mesh");
+  const Part& surface = scene.rest().require_part("surface");
+  const Part& mesh = scene.rest().require_part("detail_mesh");
   return memo.pairs_at_rest.get(key_of(scene.rest()), [&] {
     PairAtRest rest;
     rest.unit = spacing_of(mesh, 0).mean;
@@ -201,22 +191,15 @@ ContentKey key_of(const FrameSequence& frames) {
   return key;
 }
 
-std::shared_ptr<const Part> required_part(const FrameSequence& frames, std::size_t i,
-                                          const char* name) {
-  auto part = frames.part(i, name);
-  if (part) return part;
-  throw Error(std::string("has no part '") + name + "'", "frame " + std::to_string(i), kParts);
-}
-
 FrameState state_of(const FrameSequence& frames, std::size_t i) {
-  const auto details = required_part(frames, i, "details");
-  return {required_part(frames, i, "surface"), FrameDetails(*details), 0};
+  const auto details = frames.require_part(i, "details");
+  return {frames.require_part(i, "surface"), FrameDetails(*details), 0};
 }
 
 Value worst_edge_change(const DetailsScene& scene, const FrameSequence& frames, const char* mesh) {
-  std::vector<DetailSpacing> spacings{spacing_of(details::required_part(scene.rest(), mesh), 0)};
+  std::vector<DetailSpacing> spacings{spacing_of(scene.rest().require_part(mesh), 0)};
   for (std::size_t i = 0; i < frames.size(); ++i)
-    spacings.push_back(spacing_of(*required_part(frames, i, mesh), 0));
+    spacings.push_back(spacing_of(*frames.require_part(i, mesh), 0));
   if (!(spacings.front().mean > 0)) return {};
   return std::abs(worst_mean_change(spacings).change);
 }
@@ -252,13 +235,6 @@ MotionMeasures measure_motion(const DetailsScene& scene, const FrameSequence& fr
 
 }  // namespace
 
-const Part& required_part(const Frame& frame, const char* name) {
-  const auto found = frame.parts.find(name);
-  if (found != frame.parts.end()) return found->second;
-  throw Error(std::string("has no part '") + name + "'",
-              "frame at " + std::to_string(frame.parameter) + " s", kParts);
-}
-
 DetailSpacing spacing_of(const Part& mesh, double reference) {
   const std::vector<char> ghosts = column<char>(mesh, "ghost");
   return detail_spacing(mesh.points, mesh.triangles, ghosts, reference);
@@ -268,7 +244,7 @@ SpacingPair spacing_pair(DetailsMemo& memo, const DetailsScene& scene, const Fra
                          bool visible) {
   const char* name = visible ? "visible_mesh" : "detail_mesh";
   const auto measured = [&](const Frame& f, double reference) {
-    const Part& mesh = required_part(f, name);
+    const Part& mesh = f.require_part(name);
     ContentKey key;
     key.add_matrix(mesh.points);
     key.add_matrix(mesh.triangles);
@@ -283,27 +259,27 @@ SpacingPair spacing_pair(DetailsMemo& memo, const DetailsScene& scene, const Fra
 
 double details_over_wanted(const DetailsScene& scene, const Frame& frame, bool visible) {
   const auto areas = [](const Frame& f) {
-    const Part& surface = required_part(f, "surface");
+    const Part& surface = f.require_part("surface");
     return triangle_areas(surface.points, surface.triangles);
   };
-  const std::vector<double> weights = column<double>(required_part(frame, "details"), "weight");
+  const std::vector<double> weights = column<double>(frame.require_part("details"), "weight");
   const auto count =
       std::count_if(weights.begin(), weights.end(), [&](double w) { return !visible || w > 0.5; });
-  const std::vector<int> faces = column<int>(required_part(scene.rest(), "details"), "face");
+  const std::vector<int> faces = column<int>(scene.rest().require_part("details"), "face");
   return density_ratio(static_cast<int>(count), faces, areas(scene.rest()), areas(frame));
 }
 
 std::optional<PairMeasures> pair_measures(DetailsMemo& memo, const DetailsScene& scene,
                                           const Frame& frame) {
   if (!scene.measures_pairs(frame.parameter)) return {};
-  const Part& now = required_part(frame, "surface");
+  const Part& now = frame.require_part("surface");
   const PairAtRest rest = pairs_at_rest(memo, scene);
   if (!(rest.unit > 0)) return {};
   const auto distance = [&](const std::vector<SurfacePoint>& places) {
     return pair_curve_distance(curve_of(memo, scene, now, places, rest.unit), rest.curve);
   };
   PairMeasures m;
-  m.distance = distance(visible_places(required_part(frame, "details")));
+  m.distance = distance(visible_places(frame.require_part("details")));
   m.naive = distance(places_of(scene.input.details));
   m.noise = rest.noise;
   return m;
@@ -312,18 +288,18 @@ std::optional<PairMeasures> pair_measures(DetailsMemo& memo, const DetailsScene&
 std::optional<SpectrumMeasures> spectrum_measures(DetailsMemo& memo, const DetailsScene& scene,
                                                   const Frame& frame) {
   constexpr Eigen::Index kMostDetails = 5000;
-  const Part& surface = required_part(frame, "surface");
-  const Part& details = required_part(frame, "details");
+  const Part& surface = frame.require_part("surface");
+  const Part& details = frame.require_part("details");
   if (!scene.measures_pairs(frame.parameter) || details.points.rows() > kMostDetails) return {};
-  if (!fills_rectangle(surface) || !fills_rectangle(required_part(scene.rest(), "surface")))
+  if (!fills_rectangle(surface) || !fills_rectangle(scene.rest().require_part("surface")))
     return {};
-  const double unit = spacing_of(required_part(scene.rest(), "detail_mesh"), 0).mean;
+  const double unit = spacing_of(scene.rest().require_part("detail_mesh"), 0).mean;
   if (!(unit > 0)) return {};
   const SpectrumAtRest rest = spectrum_at_rest(memo, scene, unit);
   ContentKey key = key_of(scene.rest());
   key.add_matrix(surface.points);
   key.add_matrix(details.points);
-  key.add_matrix(required_array(details, "weight").values);
+  key.add_matrix(details.require_array("weight", NamedArray::On::points, 1).values);
   return memo.spectra.get(key, [&] {
     const RadialSpectrum now = spectrum_of(surface, visible_places(details), unit);
     SpectrumMeasures m;

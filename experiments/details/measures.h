@@ -20,9 +20,6 @@ namespace geoprior::details {
 /// motion, absent where they have no meaning.
 using Value = std::optional<double>;
 
-/// A part of a frame. @throws Error  when it has none of that name
-const Part& required_part(const Frame& frame, const char* name);
-
 /// Lengths of the edges of "detail_mesh" or "visible_mesh".
 DetailSpacing spacing_of(const Part& mesh, double reference);
 

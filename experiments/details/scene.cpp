@@ -10,7 +10,6 @@
 #include "models/details/detail_process.h"
 #include "testbed/formats/mesh_file.h"
 #include "testbed/formats/vtk_files.h"
-#include "testbed/frame_arrays.h"
 #include "testbed/home.h"
 
 namespace geoprior::details {
@@ -63,7 +62,7 @@ struct Loading {
       throw Error("is in no file", where, "with scene.surface.file, a .vtp");
     }
     const Part part = read_vtk_part(find_file(file.string(), folder, "data", "scene.surface.file"));
-    const NamedArray* array = find_array(part, o.array);
+    const NamedArray* array = part.find_array(o.array);
     if (array == nullptr || array->on != NamedArray::On::points || array->values.cols() != 1) {
       throw Error("there is no array '" + o.array + "'", where, "one number a point");
     }

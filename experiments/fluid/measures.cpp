@@ -6,7 +6,6 @@
 #include <map>
 #include <numbers>
 
-#include "core/error.h"
 #include "core/mesh.h"
 #include "metrics/dam_break.h"
 #include "metrics/volume.h"
@@ -64,7 +63,7 @@ enum class GaugeCover : char { unknown, bed, pasted };
 std::vector<GaugeCover> gauge_cover(const ColumnGrid& grid, const Part& surface,
                                     const Eigen::MatrixX3i& bed) {
   std::vector<GaugeCover> cover(grid.count(), GaugeCover::unknown);
-  const NamedArray* feature = find_array(surface, "feature");
+  const NamedArray* feature = surface.find_array("feature");
   if (feature == nullptr) return cover;
   for (const int v : bed.reshaped()) {
     const Eigen::Vector2d at =
@@ -174,12 +173,7 @@ TrackedFrames true_objects(const InjectedSequence& injected) {
 }  // namespace
 
 const Part& surface_part(const Frame& frame) {
-  const auto found = frame.parts.find("surface");
-  if (found == frame.parts.end() || found->second.kind != Part::Kind::triangles) {
-    throw Error("has no surface", "frame at " + std::to_string(frame.parameter) + " s",
-                "a part \"surface\" of triangles");
-  }
-  return found->second;
+  return frame.require_part("surface", Part::Kind::triangles);
 }
 
 LiquidMeasures liquid_measures(FluidMemo& memo, const FluidScene& scene, const Part& surface) {
@@ -212,18 +206,17 @@ std::optional<DamMeasures> dam_measures(FluidMemo& memo, const FluidScene& scene
 }
 
 std::optional<SeaState> sea_state(const Frame& frame) {
-  const auto grid = frame.parts.find("samples");
-  const auto table = frame.tables.find("sea");
-  if (grid == frame.parts.end() || table == frame.tables.end()) return {};
-  const Part& samples = grid->second;
-  const NamedArray* height = find_array(samples, "height");
-  const NamedArray* rate = find_array(samples, "rate");
+  const Part* samples = frame.find_part("samples");
+  const FrameTable* table = frame.find_table("sea");
+  if (samples == nullptr || table == nullptr) return {};
+  const NamedArray* height = samples->find_array("height");
+  const NamedArray* rate = samples->find_array("rate");
   if (height == nullptr || rate == nullptr) return {};
-  const Eigen::Index nx = samples.grid_size[0], ny = samples.grid_size[1];
-  const auto row = table->second.rows.row(0);
+  const Eigen::Index nx = samples->grid_size[0], ny = samples->grid_size[1];
+  const auto row = table->rows.row(0);
   SeaState sea;
-  sea.patch = {static_cast<double>(nx) * samples.grid_spacing.x(),
-               static_cast<double>(ny) * samples.grid_spacing.y(), row[1], row[0]};
+  sea.patch = {static_cast<double>(nx) * samples->grid_spacing.x(),
+               static_cast<double>(ny) * samples->grid_spacing.y(), row[1], row[0]};
   const double wind = row[2] * std::numbers::pi / 180;
   sea.wind = {std::cos(wind), std::sin(wind)};
   sea.expected_variance = row[3];
@@ -266,8 +259,8 @@ std::optional<TrackingScores> scores_against_truth(const FluidScene& scene,
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const auto surface = frames.part(i, "surface");
     if (!surface) return {};
-    const NamedArray* track = find_array(*surface, "track");
-    const NamedArray* kind = find_array(*surface, "kind");
+    const NamedArray* track = surface->find_array("track");
+    const NamedArray* kind = surface->find_array("kind");
     if (track == nullptr || kind == nullptr) return {};
     found.push_back(tracked_objects(*surface, *track, *kind));
   }

@@ -11,7 +11,6 @@
 #include "metrics/surface_distance.h"
 #include "metrics/tracking_scores.h"
 #include "metrics/wave_modes.h"
-#include "testbed/frame_arrays.h"
 #include "testbed/frame_sequence.h"
 #include "testbed/memo.h"
 

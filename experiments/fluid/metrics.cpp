@@ -117,7 +117,7 @@ void add_surface(Rows rows, const SharedMemo& memo) {
              Direction::lower_is_better, kChaotic,
              [](const FluidScene&, const Frame& frame) -> Value {
                const Part& surface = surface_part(frame);
-               const NamedArray* feature = find_array(surface, "feature");
+               const NamedArray* feature = surface.find_array("feature");
                if (feature == nullptr) return {};
                std::vector<char> moved(surface.points.rows());
                for (std::size_t v = 0; v < moved.size(); ++v) {
@@ -131,7 +131,7 @@ void add_surface(Rows rows, const SharedMemo& memo) {
              Direction::lower_is_better, kCount,
              [](const FluidScene&, const Frame& frame) -> Value {
                const Part& surface = surface_part(frame);
-               if (find_array(surface, "feature") == nullptr) return {};
+               if (surface.find_array("feature") == nullptr) return {};
                return intersecting_pairs(surface.points, surface.triangles);
              });
 }

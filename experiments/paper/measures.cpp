@@ -28,13 +28,6 @@ constexpr double kSamplesAcross = 32;      // of the Hausdorff distance, along t
 constexpr double kLeastShortening = 1e-3;  // under it the imperfection decides the height
 constexpr int kStripSamples = 9;           // across the strip, where its height is taken
 
-const NamedArray* find_array(const Part& part, const std::string& name, NamedArray::On on) {
-  for (const NamedArray& array : part.arrays) {
-    if (array.name == name && array.on == on) return &array;
-  }
-  return nullptr;
-}
-
 std::string place(const Frame& frame) {
   return "frame at " + std::to_string(frame.parameter) + " s";
 }
@@ -66,12 +59,12 @@ void measure_energies(SheetMemo& memo, const SheetFrame& f, SurfaceMeasures& out
   const PlateStiffness plate{material.membrane_stiffness(), material.bending_stiffness(),
                              material.poisson_ratio};
   out.membrane_energy = membrane_energy(f.pattern, f.x(), f.triangles(), plate);
-  const NamedArray* plastic = find_array(f.surface, "plastic_curvature", NamedArray::On::cells);
+  const NamedArray* plastic = f.surface.find_array("plastic_curvature", NamedArray::On::cells);
   const Eigen::MatrixX3d rest = plastic != nullptr
                                     ? Eigen::MatrixX3d(plastic->values)
                                     : Eigen::MatrixX3d::Zero(f.triangles().rows(), 3);
   out.bending_energy = bending_energy(*fit_of(memo, f), f.x(), rest, plate);
-  if (const NamedArray* v = find_array(f.surface, "velocity", NamedArray::On::points)) {
+  if (const NamedArray* v = f.surface.find_array("velocity", NamedArray::On::points)) {
     out.kinetic_energy = kinetic_energy(f.pattern, v->values, f.triangles(), material.area_density);
   }
 }
@@ -149,20 +142,18 @@ std::optional<Strip> strip_of(const Sheet& sheet, double time) {
 }  // namespace
 
 SheetFrame sheet_frame(const Scene& scene, const Frame& frame) {
-  const auto part = frame.parts.find("surface");
-  if (part == frame.parts.end()) throw Error("no part 'surface'", place(frame), "a sheet");
-  const Part& surface = part->second;
-  const NamedArray* pattern = find_array(surface, "pattern", NamedArray::On::points);
-  if (pattern == nullptr || pattern->values.rows() != surface.points.rows() ||
-      pattern->values.cols() < 2) {
-    throw Error("part 'surface' has no pattern coordinates", place(frame),
-                "a point array 'pattern' with two components");
+  const Part& surface = frame.require_part("surface");
+  const Eigen::MatrixXd& pattern =
+      frame.require_array("surface", "pattern", NamedArray::On::points).values;
+  if (pattern.cols() < 2) {
+    throw Error("point array 'pattern' of part 'surface' has " + std::to_string(pattern.cols()) +
+                    " components",
+                place(frame), "two, the coordinates in the pattern");
   }
-  if (!surface.points.allFinite() || !pattern->values.allFinite()) {
+  if (!surface.points.allFinite() || !pattern.allFinite()) {
     throw Error("a coordinate of part 'surface' is not finite", place(frame), "finite numbers");
   }
-  return {dynamic_cast<const PaperScene&>(scene).sheet, frame, surface,
-          pattern->values.leftCols<2>()};
+  return {dynamic_cast<const PaperScene&>(scene).sheet, frame, surface, pattern.leftCols<2>()};
 }
 
 SurfaceMeasures surface_measures(SheetMemo& memo, const SheetFrame& f) {
@@ -170,10 +161,10 @@ SurfaceMeasures surface_measures(SheetMemo& memo, const SheetFrame& f) {
 }
 
 std::optional<HandleForce> handle_force(const SheetFrame& f) {
-  const auto part = f.frame.parts.find("handles");
-  if (part == f.frame.parts.end()) return std::nullopt;
-  const NamedArray* handle = find_array(part->second, "handle", NamedArray::On::points);
-  const NamedArray* force = find_array(part->second, "force", NamedArray::On::points);
+  const Part* handles = f.frame.find_part("handles");
+  if (handles == nullptr) return std::nullopt;
+  const NamedArray* handle = handles->find_array("handle", NamedArray::On::points);
+  const NamedArray* force = handles->find_array("force", NamedArray::On::points);
   if (handle == nullptr || force == nullptr || handle->values.rows() == 0) return std::nullopt;
   std::map<int, Eigen::Vector3d> total;
   for (Eigen::Index i = 0; i < handle->values.rows(); ++i) {

@@ -17,12 +17,10 @@ constexpr double kGlobalDepth = 48;      // detection depth of a whole body, in 
 constexpr double kIdentityPose = 1e-12;  // entry of a transform that still is the rest pose
 
 const Eigen::MatrixX3d& surface_of(const SkinningScene& scene, const Frame& frame) {
-  const auto part = frame.parts.find("surface");
-  const std::string where = std::string("frame at ").append(std::to_string(frame.parameter));
-  if (part == frame.parts.end()) throw Error("no part 'surface'", where, "a skinned surface");
-  const Eigen::MatrixX3d& points = part->second.points;
+  const Eigen::MatrixX3d& points = frame.require_part("surface").points;
   if (points.rows() != scene.rig.mesh.V.rows()) {
-    throw Error(std::to_string(points.rows()) + " vertices in part 'surface'", where,
+    throw Error(std::to_string(points.rows()) + " vertices in part 'surface'",
+                "frame at " + std::to_string(frame.parameter),
                 std::to_string(scene.rig.mesh.V.rows()) + ", as in the scene");
   }
   return points;

@@ -158,7 +158,7 @@ void AreaBudget::leave_bare_faces(const DetailMesh& original) {
   }
 }
 
-void AreaBudget::update(const DetailMesh& details, double lead_growing, double lead_shrinking) {
+void AreaBudget::update(const DetailMesh& details, const Lead& lead) {
   target_.resize(rest_area_.size());
   if (area_.empty()) area_ = rest_area_;
   parallel_blocks(rest_area_.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -168,7 +168,7 @@ void AreaBudget::update(const DetailMesh& details, double lead_growing, double l
         area += area_of_face(face_[i], *details.surface, details.x);
       const double change = area - area_[p];
       const double ahead =
-          std::max(0.0, area + (change > 0 ? lead_growing : lead_shrinking) * change);
+          std::max(0.0, area + (change > 0 ? lead.growing : lead.shrinking) * change);
       target_[p] = rest_area_[p] > 0 ? rest_count_[p] * ahead / rest_area_[p] : 0;
       area_[p] = area;
     }

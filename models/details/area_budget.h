@@ -20,9 +20,14 @@ class AreaBudget {
   /// Patches of about `details_per_patch` details of `original`, at rest.
   AreaBudget(const DetailMesh& original, int details_per_patch);
 
+  /// Frames ahead for which patches ask while they grow, and while they shrink.
+  struct Lead {
+    double growing = 0, shrinking = 0;
+  };
   /// Measures the areas. Targets are those of some frames ahead, by the change of the area since
   /// the last call.
-  void update(const DetailMesh& details, double lead_growing = 0, double lead_shrinking = 0);
+  void update(const DetailMesh& details, const Lead& lead);
+  void update(const DetailMesh& details) { update(details, {}); }
   /// Counts the details whose target weight is not 0; `add` keeps the count from then on.
   void count(const DetailMesh& details);
   [[nodiscard]] int patch_count() const { return static_cast<int>(rest_area_.size()); }

@@ -23,16 +23,6 @@ void require_anchor(const DrawnAnchor& anchor, std::size_t i, const SurfaceTopol
   if (!anchor.tangent.allFinite()) throw Error("tangent is not finite", where, "a direction");
 }
 
-const NamedArray& array_of(const Part& part, const std::string& name, Eigen::Index components) {
-  for (const NamedArray& array : part.arrays) {
-    if (array.name == name && array.on == NamedArray::On::points &&
-        array.values.cols() == components)
-      return array;
-  }
-  throw Error("has no point array '" + name + "'", "part 'details'",
-              std::to_string(components) + " components a point");
-}
-
 /// Those that are not drawn keep their place with weight 0, so that numbers stay.
 std::vector<DrawnAnchor> drawn_anchors(std::span<const DrawnAnchor> anchors,
                                        const SurfaceTopology& surface, std::optional<int> type) {
@@ -103,11 +93,11 @@ DrawnDetails draw_details(const TriMesh& surface, std::span<const DrawnAnchor> a
 }
 
 std::vector<DrawnAnchor> anchors_of(const Part& details) {
-  const auto& weight = array_of(details, "weight", 1).values;
-  const auto& type = array_of(details, "type", 1).values;
-  const auto& face = array_of(details, "face", 1).values;
-  const auto& barycentric = array_of(details, "barycentric", 3).values;
-  const auto& tangent = array_of(details, "tangent", 3).values;
+  const auto array = [&](const char* name, int components) -> const Eigen::MatrixXd& {
+    return details.require_array(name, NamedArray::On::points, components, "part 'details'").values;
+  };
+  const auto &weight = array("weight", 1), &type = array("type", 1), &face = array("face", 1);
+  const auto &barycentric = array("barycentric", 3), &tangent = array("tangent", 3);
   std::vector<DrawnAnchor> anchors(details.points.rows());
   for (std::size_t i = 0; i < anchors.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -121,11 +111,8 @@ std::vector<DrawnAnchor> anchors_of(const Part& details) {
 
 std::string add_drawing(Frame& frame, const DrawingOptions& options, double mean_edge,
                         const TriMesh& instance) {
-  for (const char* needed : {"surface", "details"})
-    if (!frame.parts.contains(needed))
-      throw Error(std::string("has no part '") + needed + "'", "frame", "a frame of details");
-  const Part& surface = frame.parts.at("surface");
-  const auto anchors = anchors_of(frame.parts.at("details"));
+  const Part& surface = frame.require_part("surface");
+  const auto anchors = anchors_of(frame.require_part("details"));
   DrawnDetails drawn =
       draw_details({surface.points, surface.triangles}, anchors, options, mean_edge, instance);
   Part part;

@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <string_view>
 #include <utility>
 
 #include "core/parallel.h"
@@ -62,7 +64,7 @@ void DetailMesh::save(StateWriter& out) const {
 
 void DetailMesh::load(StateReader& in) {
   in.items(x);
-  site.assign(in.number<std::size_t>(), {});
+  site.assign(in.count(), {});
   for (Detail& d : site) {
     d.at.face = in.number<int>();
     in.matrix(d.at.barycentric);
@@ -79,6 +81,12 @@ void DetailMesh::load(StateReader& in) {
   mesh.load(in);
   births = in.number<std::int64_t>();
   frame = in.number<int>();
+}
+
+void describe_lengths(OptionVisitor& v, LengthRule& rule) {
+  static constexpr std::array<std::string_view, 2> kNames{"chord", "geodesic"};
+  describe_choice(v, "lengths", rule, kNames,
+                  {.doc = "edges of M_d: distance of their ends, or along the surface"});
 }
 
 void measure_edges(DetailMesh& d, LengthRule rule) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/options.h"
 #include "core/state_bytes.h"
 #include "models/details/detail_scene.h"
 #include "models/details/intrinsic_triangulation.h"
@@ -61,6 +62,8 @@ enum class LengthRule {
   chord,    ///< distance of the end points
   geodesic  ///< length of the section of the surface by the plane of the chord and the mean normal
 };
+/// The option `lengths` of the methods.
+void describe_lengths(OptionVisitor& v, LengthRule& rule);
 
 /// Measures the edges of M_d along the surface; where a section does not arrive (at a border, over
 /// a fold), by its chord. The lengths of three sections may violate the triangle inequality on a

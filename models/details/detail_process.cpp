@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/frame_loop.h"
+
 namespace geoprior::details {
 namespace {
 
@@ -88,59 +90,41 @@ Part mesh_part(const DetailMesh& d, std::span<const int> sites,
   return part;
 }
 
-class DetailProcess final : public Process {
+class DetailFrames final : public FrameModel {
  public:
-  DetailProcess(const DetailScene& scene, DetailMethodFactory factory)
-      : scene_(scene), factory_(std::move(factory)) {
-    require_valid(scene_);
+  DetailFrames(const DetailScene& scene, std::unique_ptr<DetailMethod> method)
+      : scene_(scene), method_(std::move(method)) {}
+
+  [[nodiscard]] int frame_count() const override { return scene_.motion->frame_count(); }
+
+  void start(RunContext& /*context*/) override { before_ = scene_.motion->positions(0); }
+
+  void load(StateReader& in, int next_frame) override {
+    method_->load(in);
+    before_ = scene_.motion->positions(next_frame - 1);
   }
 
-  void run(FrameSink& sink, RunContext& context, const std::optional<State>& resume_from) override {
-    std::unique_ptr<DetailMethod> method;
-    {
-      const Phase phase(context, "prepare");
-      method = factory_(scene_, context);
-    }
-    int frame = 0;
-    if (resume_from) {
-      StateReader in(*resume_from);
-      frame = in.number<int>();
-      method->load(in);
-    }
-    const int count = scene_.motion->frame_count();
-    Eigen::MatrixX3d before = scene_.motion->positions(std::max(frame - 1, 0));
-    for (; frame < count; ++frame) {
-      if (context.stop_requested()) return;
-      if (frame > 0) before = advance(*method, frame, before, context);
-      record(*method, frame, sink, context);
-      context.progress(static_cast<double>(frame + 1) / count);
-      StateWriter out;
-      out.number(frame + 1);
-      method->save(out);
-      sink.checkpoint(out.take());
-    }
-  }
-
- private:
-  [[nodiscard]] Eigen::MatrixX3d advance(DetailMethod& method, int frame,
-                                         const Eigen::MatrixX3d& before,
-                                         RunContext& context) const {
+  void advance(int frame, FrameSink& /*sink*/, RunContext& context) override {
     Eigen::MatrixX3d V = scene_.motion->positions(frame);
-    require_valid_step(scene_.surface.F, before, V, frame, scene_.name);
+    require_valid_step(scene_.surface.F, before_, V, frame, scene_.name);
     const Phase phase(context, "step");
-    method.step(V, context);
-    return V;
+    method_->step(V, context);
+    before_ = std::move(V);
   }
 
-  void record(const DetailMethod& method, int number, FrameSink& sink, RunContext& context) const {
+  void record(int number, FrameSink& sink, RunContext& context) override {
     const Phase phase(context, "record");
-    Frame frame = detail_frame(method.details(), scene_.motion->parameter(number));
-    method.diagnose(frame.diagnostics);
+    Frame frame = detail_frame(method_->details(), scene_.motion->parameter(number));
+    method_->diagnose(frame.diagnostics);
     sink.frame(std::move(frame));
   }
 
-  DetailScene scene_;
-  DetailMethodFactory factory_;
+  void save(StateWriter& out) const override { method_->save(out); }
+
+ private:
+  const DetailScene& scene_;
+  std::unique_ptr<DetailMethod> method_;
+  Eigen::MatrixX3d before_;  ///< vertices in the frame that `method_` has reached
 };
 
 }  // namespace
@@ -172,7 +156,11 @@ Frame detail_frame(const DetailMesh& d, double parameter) {
 
 std::unique_ptr<Process> make_detail_process(const DetailScene& scene,
                                              DetailMethodFactory factory) {
-  return std::make_unique<DetailProcess>(scene, std::move(factory));
+  require_valid(scene);
+  return frame_process([scene, factory = std::move(factory)](RunContext& context) {
+    const Phase phase(context, "prepare");
+    return std::make_unique<DetailFrames>(scene, factory(scene, context));
+  });
 }
 
 }  // namespace geoprior::details

@@ -1,21 +1,15 @@
 #include "models/paper/sheet_process.h"
 
+#include <cstdint>
 #include <utility>
 
 #include "core/error.h"
-#include "core/state_bytes.h"
+#include "core/frame_loop.h"
 #include "models/paper/obstacle_shape.h"
 #include "models/paper/sheet_valid.h"
 
 namespace geoprior::paper {
 namespace {
-
-/// What the loop itself remembers from frame to frame.
-struct Loop {
-  int next_frame = 0;
-  double handle_work = 0;  ///< since the start (J)
-  ShellState state;
-};
 
 /// Sums over the substeps of a frame.
 struct FrameReport {
@@ -24,39 +18,6 @@ struct FrameReport {
   int halvings = 0;
   std::vector<Eigen::Vector3d> handle_force;  ///< mean (N)
 };
-
-State save(const Loop& loop, const SheetMesher& mesher) {
-  StateWriter out;
-  out.number(loop.next_frame);
-  out.number(loop.handle_work);
-  const ShellState& s = loop.state;
-  out.matrix(s.mesh.pattern);
-  out.matrix(s.mesh.triangles);
-  out.matrix(s.x);
-  out.matrix(s.v);
-  out.matrix(s.plastic_curvature);
-  out.matrix(s.damage);
-  out.number(s.time);
-  out.bytes(mesher.save());
-  return out.take();
-}
-
-Loop load(const State& bytes, SheetMesher& mesher) {
-  StateReader in(bytes);
-  Loop loop;
-  loop.next_frame = in.number<int>();
-  loop.handle_work = in.number<double>();
-  ShellState& s = loop.state;
-  in.matrix(s.mesh.pattern);
-  in.matrix(s.mesh.triangles);
-  in.matrix(s.x);
-  in.matrix(s.v);
-  in.matrix(s.plastic_curvature);
-  in.matrix(s.damage);
-  s.time = in.number<double>();
-  mesher.load(in.bytes());
-  return loop;
-}
 
 void add(FrameReport& frame, const StepReport& step, int substeps) {
   ++frame.substeps;
@@ -108,48 +69,99 @@ Part handles_part(const ShellState& state, const std::vector<ShellStepper::Held>
   return part;
 }
 
-Frame make_frame(const Sheet& sheet, const Loop& loop, const FrameReport& report,
-                 const ShellStepper& stepper) {
-  Frame frame;
-  frame.parameter = sheet.frame_time(loop.next_frame);
-  frame.parts["surface"] = surface_part(loop.state);
-  frame.parts["handles"] = handles_part(loop.state, stepper.held(loop.state.time), report);
-  if (std::optional<Part> shown = obstacle_part(sheet, frame.parameter)) {
-    frame.parts["obstacles"] = std::move(*shown);
-  }
-  frame.diagnostics["triangles"] = loop.state.mesh.triangle_count();
-  frame.diagnostics["vertices"] = loop.state.mesh.vertex_count();
-  frame.diagnostics["substeps"] = report.substeps;
-  frame.diagnostics["newton_iterations"] = report.newton_iterations;
-  frame.diagnostics["halvings"] = report.halvings;
-  frame.diagnostics["factor_nonzeros"] = static_cast<double>(stepper.factor_nonzeros());
-  frame.diagnostics["handle_work"] = loop.handle_work;
-  return frame;
+void save(const ShellState& s, StateWriter& out) {
+  out.matrix(s.mesh.pattern);
+  out.matrix(s.mesh.triangles);
+  out.matrix(s.x);
+  out.matrix(s.v);
+  out.matrix(s.plastic_curvature);
+  out.matrix(s.damage);
+  out.number(s.time);
 }
 
-/// One frame: substeps, then the mesher's turn.
-FrameReport advance(const Sheet& sheet, Loop& loop, ShellStepper& stepper, SheetMesher& mesher,
-                    RunContext& context) {
-  const double start = sheet.frame_time(loop.next_frame - 1);
-  const double dt = (sheet.frame_time(loop.next_frame) - start) / sheet.substeps;
-  FrameReport report;
-  {
-    const Phase phase(context, "elastic");
-    for (int i = 0; i < sheet.substeps; ++i) {
-      // Not summed, so that a resumed run has the same times.
-      loop.state.time = start + i * dt;
-      const StepReport step = stepper.step(loop.state, dt, context);
-      loop.handle_work += step.handle_work;
-      add(report, step, sheet.substeps);
-    }
-    loop.state.time = sheet.frame_time(loop.next_frame);
-  }
-  if (mesher.adapt(sheet, stepper, loop.state, context)) {
-    const Phase phase(context, "connectivity");
-    stepper.set_mesh(loop.state);
-  }
-  return report;
+void load(ShellState& s, StateReader& in) {
+  in.matrix(s.mesh.pattern);
+  in.matrix(s.mesh.triangles);
+  in.matrix(s.x);
+  in.matrix(s.v);
+  in.matrix(s.plastic_curvature);
+  in.matrix(s.damage);
+  s.time = in.number<double>();
 }
+
+class SheetFrames final : public FrameModel {
+ public:
+  SheetFrames(const Sheet& sheet, const StepperOptions& options, SheetMesher& mesher,
+              std::uint64_t seed)
+      : sheet_(sheet), mesher_(mesher), stepper_(sheet, options, seed) {}
+
+  [[nodiscard]] int frame_count() const override { return sheet_.frame_count(); }
+
+  void start(RunContext& context) override { state_ = mesher_.start(sheet_, context); }
+
+  void begin(FrameSink& /*sink*/, RunContext& /*context*/) override { stepper_.set_mesh(state_); }
+
+  /// Substeps, then the mesher's turn.
+  void advance(int frame, FrameSink& /*sink*/, RunContext& context) override {
+    const double start = sheet_.frame_time(frame - 1);
+    const double dt = (sheet_.frame_time(frame) - start) / sheet_.substeps;
+    report_ = {};
+    {
+      const Phase phase(context, "elastic");
+      for (int i = 0; i < sheet_.substeps; ++i) {
+        // Not summed, so that a resumed run has the same times.
+        state_.time = start + i * dt;
+        const StepReport step = stepper_.step(state_, dt, context);
+        handle_work_ += step.handle_work;
+        add(report_, step, sheet_.substeps);
+      }
+      state_.time = sheet_.frame_time(frame);
+    }
+    if (mesher_.adapt(sheet_, stepper_, state_, context)) {
+      const Phase phase(context, "connectivity");
+      stepper_.set_mesh(state_);
+    }
+  }
+
+  void record(int number, FrameSink& sink, RunContext& /*context*/) override {
+    Frame frame;
+    frame.parameter = sheet_.frame_time(number);
+    frame.parts["surface"] = surface_part(state_);
+    frame.parts["handles"] = handles_part(state_, stepper_.held(state_.time), report_);
+    if (std::optional<Part> shown = obstacle_part(sheet_, frame.parameter)) {
+      frame.parts["obstacles"] = std::move(*shown);
+    }
+    frame.diagnostics["triangles"] = state_.mesh.triangle_count();
+    frame.diagnostics["vertices"] = state_.mesh.vertex_count();
+    frame.diagnostics["substeps"] = report_.substeps;
+    frame.diagnostics["newton_iterations"] = report_.newton_iterations;
+    frame.diagnostics["halvings"] = report_.halvings;
+    frame.diagnostics["factor_nonzeros"] = static_cast<double>(stepper_.factor_nonzeros());
+    frame.diagnostics["handle_work"] = handle_work_;
+    mesher_.annotate(state_, frame);
+    sink.frame(std::move(frame));
+  }
+
+  void save(StateWriter& out) const override {
+    out.number(handle_work_);
+    paper::save(state_, out);
+    mesher_.save(out);
+  }
+
+  void load(StateReader& in, int /*next_frame*/) override {
+    handle_work_ = in.number<double>();
+    paper::load(state_, in);
+    mesher_.load(in);
+  }
+
+ private:
+  const Sheet& sheet_;
+  SheetMesher& mesher_;
+  ShellStepper stepper_;
+  ShellState state_;
+  double handle_work_ = 0;  ///< since the start (J)
+  FrameReport report_;      ///< of the last `advance`
+};
 
 }  // namespace
 
@@ -161,29 +173,8 @@ SheetProcess::SheetProcess(const Sheet& sheet, const StepperOptions& options,
 
 void SheetProcess::run(FrameSink& sink, RunContext& context,
                        const std::optional<State>& resume_from) {
-  Loop loop;
-  if (resume_from) {
-    loop = load(*resume_from, *mesher_);
-  } else {
-    loop.state = mesher_->start(sheet_, context);
-  }
-  ShellStepper stepper(sheet_, options_, context.seed());
-  stepper.set_mesh(loop.state);
-  const int count = sheet_.frame_count();
-  for (; loop.next_frame < count; ++loop.next_frame) {
-    if (context.stop_requested()) return;
-    FrameReport report;
-    if (loop.next_frame > 0) {
-      report = advance(sheet_, loop, stepper, *mesher_, context);
-    }
-    Frame frame = make_frame(sheet_, loop, report, stepper);
-    mesher_->annotate(loop.state, frame);
-    sink.frame(std::move(frame));
-    context.progress(static_cast<double>(loop.next_frame + 1) / count);
-    Loop next = loop;
-    ++next.next_frame;
-    sink.checkpoint(save(next, *mesher_));
-  }
+  SheetFrames frames(sheet_, options_, *mesher_, context.seed());
+  run_frames(frames, sink, context, resume_from);
 }
 
 }  // namespace geoprior::paper

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/method.h"
+#include "core/state_bytes.h"
 #include "models/paper/stepper.h"
 
 namespace geoprior::paper {
@@ -19,9 +20,9 @@ class SheetMesher {
                      RunContext& context) = 0;
   /// Adds parts, arrays, tables and diagnostics of its own ("rulings", "singular_points" …).
   virtual void annotate(const ShellState& state, Frame& frame) const = 0;
-  /// Of everything that `adapt` remembers, for checkpoints.
-  [[nodiscard]] virtual State save() const = 0;
-  virtual void load(const State& state) = 0;
+  /// Everything that `adapt` and `annotate` remember, for checkpoints.
+  virtual void save(StateWriter& /*out*/) const {}
+  virtual void load(StateReader& /*in*/) {}
 };
 
 /// The loop that all methods of the topic share: frames of `substeps` steps, remeshing, recording,

@@ -19,6 +19,7 @@
 #include "core/parallel.h"
 #include "core/state_bytes.h"
 #include "models/details/area_budget.h"
+#include "models/details/detail_step.h"
 #include "models/details/point_grid.h"
 #include "solvers/details/local_density.h"
 #include "solvers/details/pair_correlation.h"
@@ -27,14 +28,12 @@
 namespace geoprior::details {
 namespace {
 
-/// What a step did.
+/// What a step changed.
 struct StepCounts {
   int inserted = 0;
   int revived = 0;
   int fading = 0;
-  int flips = 0;
   int failed_queries = 0;
-  double max_weight_change = 0;
 };
 
 /// A triangle of M_d that asks for a change, for the sake of a patch. The least rank comes first;
@@ -79,7 +78,6 @@ class SelfReplicating final : public DetailMethod {
 
   // Filling stretched triangles.
   void insert();
-  void revive();
   [[nodiscard]] double largest_deficit(int triangle) const;
   bool fill(int triangle);
   [[nodiscard]] std::vector<NewDetail> copy_of(const TripletMatch& match, int triangle) const;
@@ -113,6 +111,7 @@ class SelfReplicating final : public DetailMethod {
   double least_gap_ = 0;        ///< half of the distance of the nearest two at rest (m)
   double area_per_detail_ = 0;  ///< at rest
   StepCounts counts_;
+  StepReport report_;
   std::vector<int> mark_;  ///< frame mark of sites whose surroundings changed
   int current_mark_ = 0;
   static constexpr double kNotWanting = std::numeric_limits<double>::infinity();
@@ -283,28 +282,18 @@ double SelfReplicating::weight_step(const Eigen::MatrixX3d& V) const {
 
 void SelfReplicating::step(const Eigen::MatrixX3d& V, RunContext& context) {
   counts_ = {};
-  const double most = weight_step(V);
-  const std::int64_t refused = now_.mesh.refused_flips();
-  {
-    const Phase phase(context, "move");
-    counts_.flips = move_surface(now_, V, options_.lengths);
-  }
-  {
-    const Phase phase(context, "insert");
-    const double frames = options_.anticipate ? 1 / options_.weight_rate : 0;
-    budget_.update(now_, frames / 4, 3 * frames / 4);
-    find_needs();
-    if (options_.area_rule == AreaRule::budget) revive();
-    insert();
-  }
-  {
+  report_ = step_details(now_, V, options_.lengths, weight_step(V), context, [&] {
+    {
+      const Phase phase(context, "insert");
+      budget_.update(now_, lead_of(options_.anticipate, options_.weight_rate));
+      find_needs();
+      if (options_.area_rule == AreaRule::budget)
+        counts_.revived = revive_details(now_, budget_, limit());
+      insert();
+    }
     const Phase phase(context, "merge");
     merge();
-  }
-  const Phase phase(context, "weights");
-  counts_.max_weight_change = change_weights(now_, most);
-  // An insertion or a removal may have cleared the way for a flip that was refused before it.
-  if (now_.mesh.refused_flips() != refused) counts_.flips += now_.mesh.flip_to_delaunay();
+  });
 }
 
 void SelfReplicating::measure_histogram() {
@@ -316,9 +305,9 @@ void SelfReplicating::diagnose(std::map<std::string, double>& into) const {
   into["inserted"] = counts_.inserted;
   into["revived"] = counts_.revived;
   into["fading"] = counts_.fading;
-  into["flips"] = counts_.flips;
+  into["flips"] = report_.flips;
   into["failed_queries"] = counts_.failed_queries;
-  into["max_weight_change"] = counts_.max_weight_change;
+  into["max_weight_change"] = report_.max_weight_change;
   into["refused_flips"] = static_cast<double>(now_.mesh.refused_flips());
   into["budget_target"] = budget_.total_target();
   if (now_.frame > 0) return;
@@ -381,7 +370,6 @@ void describe(OptionVisitor& v, PairCorrelationOptions& options) {
 void describe(OptionVisitor& v, SelfReplicatingOptions& options) {
   static constexpr std::array<std::string_view, 3> kAreaRules{"own", "mean", "budget"};
   static constexpr std::array<std::string_view, 2> kWeightLaws{"frame", "motion"};
-  static constexpr std::array<std::string_view, 2> kLengths{"chord", "geodesic"};
   describe_choice(v, "area_rule", options.area_rule, kAreaRules,
                   {.doc = "reference area of a triangle: its own, the mean, or a local budget"});
   v.value("stretch_threshold", options.stretch_threshold,
@@ -405,8 +393,7 @@ void describe(OptionVisitor& v, SelfReplicatingOptions& options) {
           {.doc = "largest change of a weight in a frame", .min = 1e-3, .max = 1});
   v.value("motion_rate", options.motion_rate,
           {.doc = "law motion: change of weight per mean edge of displacement", .min = 0});
-  describe_choice(v, "lengths", options.lengths, kLengths,
-                  {.doc = "edges of M_d: distance of their ends, or along the surface"});
+  describe_lengths(v, options.lengths);
   v.value("histogram", options.histogram,
           {.doc = "choose among candidate triplets by the pair correlation (the extension)"});
   v.value("candidates", options.candidates,
@@ -423,23 +410,6 @@ namespace {
 constexpr int kTries = 4;
 
 }  // namespace
-
-void SelfReplicating::revive() {
-  std::vector<std::pair<double, int>> fading;
-  for (int i = 0; i < now_.site_slots(); ++i) {
-    if (need_[i] != Need::more || !now_.is_detail(i)) continue;
-    const Detail& d = now_.site[i];
-    if (d.target_weight == 0) fading.emplace_back(-d.weight, i);
-  }
-  std::sort(fading.begin(), fading.end());
-  for (const auto& [weight, i] : fading) {
-    const int patch = patch_of_site(i);
-    if (budget_.deficit(patch) < limit()) continue;
-    now_.site[i].target_weight = 1;
-    budget_.add(patch, 1);
-    ++counts_.revived;
-  }
-}
 
 double SelfReplicating::largest_deficit(int t) const {
   double largest = 0;
@@ -689,8 +659,7 @@ void SelfReplicating::fade_one_of(int t) {
   const int gone = marked(t) ? -1 : loser(t);
   if (gone < 0) return;
   for (const int c : now_.mesh.corners(t)) mark(c);
-  now_.site[gone].target_weight = 0;
-  budget_.add(patch_of_site(gone), -1);
+  fade_detail(now_, gone, budget_);
   ++counts_.fading;
 }
 

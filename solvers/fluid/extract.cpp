@@ -5,9 +5,10 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/frame_loop.h"
 #include "solvers/fluid/lift.h"
 #include "solvers/fluid/lifted_frames.h"
-#include "solvers/fluid/sculpt_state.h"
+#include "solvers/fluid/warnings.h"
 
 namespace geoprior::fluid {
 
@@ -31,17 +32,47 @@ struct Lifted {
 
 int kind_number(RegionKind kind) { return kind == RegionKind::isolated ? 1 : 2; }
 
-class ExtractProcess final : public Process {
+class ExtractFrames final : public FrameModel {
  public:
-  ExtractProcess(std::shared_ptr<const SurfaceSequence> source, const ExtractOptions& options,
-                 FeatureFiles files)
-      : source_(std::move(source)), options_(options), files_(std::move(files)) {}
+  ExtractFrames(const SurfaceSequence& source, const ExtractOptions& options,
+                const FeatureFiles& files)
+      : source_(source), options_(options), files_(files) {}
 
-  void run(FrameSink& sink, RunContext& context, const std::optional<State>& resume) override {
-    SculptState state = resume ? SculptState::of(*resume) : SculptState{};
-    std::vector<Kept> kept(source_->frame_count());
+  [[nodiscard]] int frame_count() const override { return source_.frame_count(); }
+
+  void begin(FrameSink& sink, RunContext& context) override {
+    segment(context);
+    if (context.stop_requested()) return;
+    for (const std::string& w : extraction_.warnings) warnings_.warn(w, w, 0, sink);
+    if (options_.lift) lift(context);
+    if (context.stop_requested()) return;
+    track_of_ = tracks_of(extraction_);
+  }
+
+  void record(int i, FrameSink& sink, RunContext& /*context*/) override {
+    const bool is_last = i + 1 == frame_count();
+    Frame frame = labelled(i);
+    frame.diagnostics.merge(std::map(lifted_.diagnostics));
+    if (lifted_.shown != nullptr) {
+      frame.parts["map"] = map_part(*lifted_.shown, extraction_.times[i]);
+    }
+    if (is_last) add_tracks(extraction_, frame);
+    if (is_last && options_.lift) add_features(frame);
+    sink.frame(std::move(frame));
+    // Before the last checkpoint: a run that goes on after it has them, one before makes them.
+    if (is_last) {
+      for (Artifact& file : lifted_.files) sink.artifact(std::move(file));
+    }
+  }
+
+  void save(StateWriter& out) const override { warnings_.save(out); }
+  void load(StateReader& in, int /*next_frame*/) override { warnings_.load(in); }
+
+ private:
+  void segment(RunContext& context) {
+    kept_.resize(source_.frame_count());
     const auto keep = [&](int i, const SurfaceFrame& source, const SegmentedFrame& segmented) {
-      Kept& k = kept[i];
+      Kept& k = kept_[i];
       k.bytes = mesh_bytes(source.mesh);
       k.curvature = segmented.curvature.cast<float>();
       k.label = segmented.label;
@@ -50,34 +81,9 @@ class ExtractProcess final : public Process {
                                                 : static_cast<double>(masked) /
                                                       static_cast<double>(segmented.masked.size());
     };
-    const Extraction extraction = extract_regions(*source_, options_.extraction, context, keep);
-    if (context.stop_requested()) return;
-    for (const std::string& w : extraction.warnings) state.warn(w, w, 0, sink);
-    Lifted lifted;
-    if (options_.lift) lift(extraction, kept, lifted, context);
-    if (context.stop_requested()) return;
-    const std::vector<int> track_of = tracks_of(extraction);
-    const int count = source_->frame_count();
-    for (int i = state.next_frame; i < count && !context.stop_requested(); ++i) {
-      Frame frame = labelled(i, extraction, track_of, kept[i]);
-      frame.diagnostics.merge(std::map(lifted.diagnostics));
-      if (lifted.shown != nullptr) {
-        frame.parts["map"] = map_part(*lifted.shown, extraction.times[i]);
-      }
-      if (i + 1 == count) add_tracks(extraction, frame);
-      if (i + 1 == count && options_.lift) add_features(extraction, kept, lifted, frame);
-      sink.frame(std::move(frame));
-      // Before the last checkpoint: a run that goes on after it has them, one before makes them.
-      if (i + 1 == count) {
-        for (Artifact& file : lifted.files) sink.artifact(std::move(file));
-      }
-      state.next_frame = i + 1;
-      sink.checkpoint(state.bytes());
-      context.progress(static_cast<double>(i + 1) / count);
-    }
+    extraction_ = extract_regions(source_, options_.extraction, context, keep);
   }
 
- private:
   /// Track id of every region, 0 for none.
   static std::vector<int> tracks_of(const Extraction& extraction) {
     std::vector<int> result(extraction.regions.size(), 0);
@@ -87,46 +93,44 @@ class ExtractProcess final : public Process {
     return result;
   }
 
-  void lift(const Extraction& extraction, const std::vector<Kept>& kept, Lifted& lifted,
-            RunContext& context) const {
-    lifted.features = lift_features(*source_, extraction, options_.extraction, {}, context);
+  void lift(RunContext& context) {
+    lifted_.features = lift_features(source_, extraction_, options_.extraction, {}, context);
     if (context.stop_requested()) return;
-    lifted.shown = shown_map(lifted.features, options_.map_feature);
+    lifted_.shown = shown_map(lifted_.features, options_.map_feature);
     if (files_) {
       const Phase phase(context, "store");
-      lifted.files = files_(lifted.features);
+      lifted_.files = files_(lifted_.features);
     }
     double features = 0, files = 0, sequence = 0;
-    for (const Feature& f : lifted.features) features += static_cast<double>(f.bytes());
-    for (const Artifact& file : lifted.files) files += static_cast<double>(file.bytes.size());
-    for (const Kept& k : kept) sequence += k.bytes;
-    lifted.diagnostics = {{"lifted_features", static_cast<double>(lifted.features.size())},
-                          {"feature_bytes", features},
-                          {"feature_file_bytes", files},
-                          {"sequence_bytes", sequence}};
+    for (const Feature& f : lifted_.features) features += static_cast<double>(f.bytes());
+    for (const Artifact& file : lifted_.files) files += static_cast<double>(file.bytes.size());
+    for (const Kept& k : kept_) sequence += k.bytes;
+    lifted_.diagnostics = {{"lifted_features", static_cast<double>(lifted_.features.size())},
+                           {"feature_bytes", features},
+                           {"feature_file_bytes", files},
+                           {"sequence_bytes", sequence}};
   }
 
-  static void add_features(const Extraction& extraction, const std::vector<Kept>& kept,
-                           const Lifted& lifted, Frame& frame) {
+  void add_features(Frame& frame) const {
     std::vector<double> bytes;
-    for (const Kept& k : kept) bytes.push_back(k.bytes);
-    frame.tables["features"] = feature_table(lifted.features, extraction.times, bytes);
+    for (const Kept& k : kept_) bytes.push_back(k.bytes);
+    frame.tables["features"] = feature_table(lifted_.features, extraction_.times, bytes);
   }
 
-  Frame labelled(int i, const Extraction& extraction, const std::vector<int>& track_of,
-                 const Kept& kept) const {
-    SurfaceFrame source = source_->frame(i);
+  [[nodiscard]] Frame labelled(int i) const {
+    const Kept& kept = kept_[i];
+    SurfaceFrame source = source_.frame(i);
     Frame frame;
     frame.parameter = source.time;
     const Eigen::Index n = source.mesh.V.rows();
     Eigen::VectorXd label(n), track = Eigen::VectorXd::Zero(n), kind = Eigen::VectorXd::Zero(n);
     std::vector<std::vector<double>> rows;
     std::map<int, std::pair<int, int>> of_label;  // track and kind
-    for (std::size_t r = 0; r < extraction.regions.size(); ++r) {
-      const Region& region = extraction.regions[r];
+    for (std::size_t r = 0; r < extraction_.regions.size(); ++r) {
+      const Region& region = extraction_.regions[r];
       if (region.frame != i) continue;
-      of_label[region.label] = {track_of[r], kind_number(region.kind)};
-      rows.push_back({static_cast<double>(region.label), static_cast<double>(track_of[r]),
+      of_label[region.label] = {track_of_[r], kind_number(region.kind)};
+      rows.push_back({static_cast<double>(region.label), static_cast<double>(track_of_[r]),
                       static_cast<double>(kind_number(region.kind)), region.centre.x(),
                       region.centre.y(), region.centre.z(), region.area, region.volume});
     }
@@ -152,7 +156,7 @@ class ExtractProcess final : public Process {
                                      "z [m]", "area [m^2]", "volume [m^3]"},
                                     rows);
     frame.diagnostics["regions"] = static_cast<double>(rows.size());
-    frame.diagnostics["tracks"] = static_cast<double>(extraction.tracking.tracks.size());
+    frame.diagnostics["tracks"] = static_cast<double>(extraction_.tracking.tracks.size());
     frame.diagnostics["masked_share"] = kept.masked_share;
     return frame;
   }
@@ -192,9 +196,14 @@ class ExtractProcess final : public Process {
     frame.tables["events"] = table({"kind [1]", "time [s]", "from [1]", "to [1]"}, events);
   }
 
-  std::shared_ptr<const SurfaceSequence> source_;
-  ExtractOptions options_;
-  FeatureFiles files_;
+  const SurfaceSequence& source_;
+  const ExtractOptions& options_;
+  const FeatureFiles& files_;
+  Warnings warnings_;
+  Extraction extraction_;
+  std::vector<Kept> kept_;     ///< by frame
+  std::vector<int> track_of_;  ///< by region: its track's id, 0 for none
+  Lifted lifted_;
 };
 
 }  // namespace
@@ -212,7 +221,10 @@ std::unique_ptr<Process> make_extract(const SculptScene& scene, const ExtractOpt
   if (scene.sources.empty() || scene.sources.begin()->second == nullptr) {
     throw Error("there is nothing to extract features from", "scene", "a source");
   }
-  return std::make_unique<ExtractProcess>(scene.sources.begin()->second, options, std::move(files));
+  return frame_process([source = scene.sources.begin()->second, options,
+                        files = std::move(files)](RunContext& /*context*/) {
+    return std::make_unique<ExtractFrames>(*source, options, files);
+  });
 }
 
 }  // namespace geoprior::fluid

@@ -5,11 +5,13 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "core/error.h"
+#include "core/frame_loop.h"
 #include "solvers/fluid/lift.h"
 #include "solvers/fluid/lifted_frames.h"
-#include "solvers/fluid/sculpt_state.h"
+#include "solvers/fluid/warnings.h"
 
 namespace geoprior::fluid {
 namespace {
@@ -76,46 +78,38 @@ double distance_beside(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& po
   return (away - away.dot(up) * up).norm();
 }
 
-class SculptProcess final : public Process {
+class SculptFrames final : public FrameModel {
  public:
-  SculptProcess(const SculptScene& scene, const SculptOptions& options)
-      : scene_(scene), options_(options) {
-    scene_.edits = named_edits(scene);
-    for (const Edit& edit : scene_.edits) {
-      if (edit.cut) require_cuts_target(scene_, edit);
+  SculptFrames(const SculptScene& scene, const SculptOptions& options)
+      : scene_(scene), options_(options) {}
+
+  [[nodiscard]] int frame_count() const override { return static_cast<int>(scene_.times.size()); }
+
+  void begin(FrameSink& sink, RunContext& context) override {
+    make_insertions(sink, context);
+    if (context.stop_requested()) return;
+    require_on_target(sink);
+    for (const auto& entry : lifted_) {
+      for (const Feature& f : entry.second) feature_bytes_ += static_cast<double>(f.bytes());
+      lifted_features_ += static_cast<double>(entry.second.size());
     }
   }
 
-  void run(FrameSink& sink, RunContext& context, const std::optional<State>& resume) override {
-    SculptState state = resume ? SculptState::of(*resume) : SculptState{};
-    std::map<std::string, std::vector<Feature>> lifted;
-    Cut cut;
-    const std::vector<Insertion> insertions = make_insertions(lifted, cut, state, sink, context);
-    if (context.stop_requested()) return;
-    require_on_target(insertions, state, sink);
-    double bytes = 0, features = 0;
-    for (const auto& entry : lifted) {
-      for (const Feature& f : entry.second) bytes += static_cast<double>(f.bytes());
-      features += static_cast<double>(entry.second.size());
-    }
-    const auto count = static_cast<int>(scene_.times.size());
-    for (int i = state.next_frame; i < count && !context.stop_requested(); ++i) {
-      Frame frame = pasted(insertions, cut, scene_.times[i], state, sink, context);
-      frame.diagnostics["lifted_features"] = features;
-      frame.diagnostics["feature_bytes"] = bytes;
-      sink.frame(std::move(frame));
-      state.next_frame = i + 1;
-      sink.checkpoint(state.bytes());
-      context.progress(static_cast<double>(i + 1) / count);
-    }
+  void record(int number, FrameSink& sink, RunContext& context) override {
+    Frame frame = pasted(scene_.times[number], sink, context);
+    frame.diagnostics["lifted_features"] = lifted_features_;
+    frame.diagnostics["feature_bytes"] = feature_bytes_;
+    sink.frame(std::move(frame));
   }
+
+  void save(StateWriter& out) const override { warnings_.save(out); }
+  void load(StateReader& in, int /*next_frame*/) override { warnings_.load(in); }
 
  private:
   /// Features that the edits select from one source, lifted when it is a sequence.
   std::map<std::string, std::vector<int>> lift_source(const std::string& source,
-                                                      std::vector<Feature>& features, Cut& cut,
-                                                      SculptState& state, FrameSink& sink,
-                                                      RunContext& context) const {
+                                                      std::vector<Feature>& features,
+                                                      FrameSink& sink, RunContext& context) {
     const auto library = scene_.libraries.find(source);
     Extraction extraction;
     std::vector<FeatureSummary> summaries;
@@ -125,7 +119,7 @@ class SculptProcess final : public Process {
       extraction = extract_regions(*scene_.sources.at(source), options_.extraction, context);
       if (context.stop_requested()) return {};
       for (const std::string& w : extraction.warnings) {
-        state.warn(source + ": " + w, source + ": " + w, 0, sink);
+        warnings_.warn(source + ": " + w, source + ": " + w, 0, sink);
       }
       summaries = track_summaries(extraction, 1);
     }
@@ -135,7 +129,7 @@ class SculptProcess final : public Process {
       if (edit.source != source) continue;
       selected[edit.name] = select_features(of_length(summaries, edit), edit);
       ids.insert(selected[edit.name].begin(), selected[edit.name].end());
-      if (edit.cut) cut.ids.insert(selected[edit.name].begin(), selected[edit.name].end());
+      if (edit.cut) cut_.ids.insert(selected[edit.name].begin(), selected[edit.name].end());
     }
     if (library != scene_.libraries.end()) {
       for (const Feature& f : library->second) {
@@ -146,8 +140,8 @@ class SculptProcess final : public Process {
                                {ids.begin(), ids.end()}, context);
     }
     // Only one source is the target.
-    if (!cut.ids.empty() && cut.extraction.segmenter == nullptr) {
-      cut.extraction = std::move(extraction);
+    if (!cut_.ids.empty() && cut_.extraction.segmenter == nullptr) {
+      cut_.extraction = std::move(extraction);
     }
     return selected;
   }
@@ -165,24 +159,19 @@ class SculptProcess final : public Process {
     return result;
   }
 
-  std::vector<Insertion> make_insertions(std::map<std::string, std::vector<Feature>>& lifted,
-                                         Cut& cut, SculptState& state, FrameSink& sink,
-                                         RunContext& context) const {
+  void make_insertions(FrameSink& sink, RunContext& context) {
     std::map<std::string, std::map<std::string, std::vector<int>>> selected;
     for (const Edit& edit : scene_.edits) {
       if (selected.contains(edit.source)) continue;
-      selected[edit.source] =
-          lift_source(edit.source, lifted[edit.source], cut, state, sink, context);
-      if (context.stop_requested()) return {};
+      selected[edit.source] = lift_source(edit.source, lifted_[edit.source], sink, context);
+      if (context.stop_requested()) return;
     }
-    std::vector<Insertion> insertions;
     for (const Edit& edit : scene_.edits) {
-      for (const Feature& f : lifted[edit.source]) {
+      for (const Feature& f : lifted_[edit.source]) {
         const auto& ids = selected[edit.source][edit.name];
-        if (std::find(ids.begin(), ids.end(), f.id) != ids.end()) insertions.push_back({&f, edit});
+        if (std::find(ids.begin(), ids.end(), f.id) != ids.end()) insertions_.push_back({&f, edit});
       }
     }
-    return insertions;
   }
 
   [[nodiscard]] SurfaceFrame target_at(double time) const {
@@ -194,14 +183,13 @@ class SculptProcess final : public Process {
   }
 
   /// Before anything is pasted: every map meets the target at some time, or there is no point.
-  void require_on_target(const std::vector<Insertion>& insertions, SculptState& state,
-                         FrameSink& sink) const {
+  void require_on_target(FrameSink& sink) {
     Eigen::AlignedBox3d box;
     const SurfaceFrame first = target_at(scene_.times.front());
     for (Eigen::Index v = 0; v < first.mesh.V.rows(); ++v) {
       box.extend(first.mesh.V.row(v).transpose());
     }
-    for (const Insertion& insertion : insertions) {
+    for (const Insertion& insertion : insertions_) {
       const std::string who =
           "edit '" + insertion.edit.name + "', feature " + std::to_string(insertion.feature->id);
       bool alive = false;
@@ -217,7 +205,7 @@ class SculptProcess final : public Process {
       }
       if (!alive) {
         const std::string text = who + ": lives at none of the result's times";
-        state.warn(text, text, scene_.times.front(), sink);
+        warnings_.warn(text, text, scene_.times.front(), sink);
       } else if (nearest > 0 && insertion.feature->kind == RegionKind::differential) {
         throw Error("lies off the target at all times, by " + std::to_string(nearest) + " m", who,
                     "a place on the target, which reaches from " + text_of(box.min()) + " to " +
@@ -231,24 +219,23 @@ class SculptProcess final : public Process {
            std::to_string(p.z()) + ")";
   }
 
-  Frame pasted(const std::vector<Insertion>& insertions, const Cut& cut, double time,
-               SculptState& state, FrameSink& sink, RunContext& context) const {
+  Frame pasted(double time, FrameSink& sink, RunContext& context) {
     SurfaceFrame target = target_at(time);
-    if (!cut.ids.empty()) {
+    if (!cut_.ids.empty()) {
       const Phase phase(context, "cut");
-      target = without_feature(target, scene_.target->nearest_frame(time), cut.extraction,
-                               options_.extraction, {cut.ids.begin(), cut.ids.end()});
+      target = without_feature(target, scene_.target->nearest_frame(time), cut_.extraction,
+                               options_.extraction, {cut_.ids.begin(), cut_.ids.end()});
     }
     PasteReport report;
     SurfaceFrame result;
     {
       const Phase phase(context, "paste");
-      result = paste(target, insertions, time, scene_.up, options_.paste, &report);
+      result = paste(target, insertions_, time, scene_.up, options_.paste, &report);
     }
-    for (const std::string& w : report.warnings) state.warn(w, without_time(w), time, sink);
+    for (const std::string& w : report.warnings) warnings_.warn(w, without_time(w), time, sink);
     Frame frame;
     frame.parameter = time;
-    frame.tables["insertions"] = present(insertions, time);
+    frame.tables["insertions"] = present(time);
     Part& surface = frame.parts["surface"];
     const Eigen::Index n = result.mesh.V.rows();
     surface.points = std::move(result.mesh.V);
@@ -270,11 +257,11 @@ class SculptProcess final : public Process {
     return frame;
   }
 
-  [[nodiscard]] FrameTable present(const std::vector<Insertion>& insertions, double time) const {
+  [[nodiscard]] FrameTable present(double time) const {
     FrameTable table;
     table.columns = {"edit [1]", "feature [1]", "x [m]",          "y [m]",
                      "z [m]",    "fade [1]",    "source_time [s]"};
-    for (const Insertion& insertion : insertions) {
+    for (const Insertion& insertion : insertions_) {
       const auto frame = edited_frame(*insertion.feature, insertion.edit, time, scene_.up);
       if (!frame) continue;
       const auto edit = std::find_if(scene_.edits.begin(), scene_.edits.end(),
@@ -288,8 +275,13 @@ class SculptProcess final : public Process {
     return table;
   }
 
-  SculptScene scene_;
-  SculptOptions options_;
+  const SculptScene& scene_;
+  const SculptOptions& options_;
+  Warnings warnings_;
+  std::map<std::string, std::vector<Feature>> lifted_;  ///< by source
+  Cut cut_;
+  std::vector<Insertion> insertions_;  ///< of features in `lifted_`
+  double lifted_features_ = 0, feature_bytes_ = 0;
 };
 
 }  // namespace
@@ -300,7 +292,14 @@ std::unique_ptr<Process> make_sculpt(const SculptScene& scene, const SculptOptio
   }
   if (scene.times.empty()) throw Error("the result has no times", "scene", "at least one time");
   if (scene.edits.empty()) throw Error("there are no edits", "scene", "at least one [[edit]]");
-  return std::make_unique<SculptProcess>(scene, options);
+  SculptScene named = scene;
+  named.edits = named_edits(scene);
+  for (const Edit& edit : named.edits) {
+    if (edit.cut) require_cuts_target(named, edit);
+  }
+  return frame_process([scene = std::move(named), options](RunContext& /*context*/) {
+    return std::make_unique<SculptFrames>(scene, options);
+  });
 }
 
 void describe(OptionVisitor& v, SculptOptions& o) {

@@ -302,16 +302,13 @@ void HybridMesher::annotate(const ShellState& state, Frame& frame) const {
   frame.diagnostics["strain_after"] = projection_.strain_after;
 }
 
-State HybridMesher::save() const {
-  StateWriter out;
+void HybridMesher::save(StateWriter& out) const {
   write_structure(structure_, out);
   out.number(draws_);
   out.number(rejected_);
-  return out.take();
 }
 
-void HybridMesher::load(const State& state) {
-  StateReader in(state);
+void HybridMesher::load(StateReader& in) {
   structure_ = read_structure(in);
   draws_ = in.number<std::uint64_t>();
   rejected_ = in.number<int>();

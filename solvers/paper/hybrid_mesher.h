@@ -22,8 +22,8 @@ class HybridMesher final : public SheetMesher {
   bool adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
              RunContext& context) override;
   void annotate(const ShellState& state, Frame& frame) const override;
-  [[nodiscard]] State save() const override;
-  void load(const State& state) override;
+  void save(StateWriter& out) const override;
+  void load(StateReader& in) override;
 
   [[nodiscard]] const PaperStructure& structure() const { return structure_; }
   [[nodiscard]] const RulingMesh& mesh() const { return mesh_; }

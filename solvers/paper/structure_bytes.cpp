@@ -52,7 +52,7 @@ void write_structure(const PaperStructure& structure, StateWriter& out) {
 
 PaperStructure read_structure(StateReader& in) {
   PaperStructure structure;
-  structure.rulings.resize(in.number<std::size_t>());
+  structure.rulings.resize(in.count());
   for (Ruling& r : structure.rulings) {
     r.a = read_point(in);
     r.b = read_point(in);
@@ -62,7 +62,7 @@ PaperStructure read_structure(StateReader& in) {
     r.age_frames = in.number<int>();
     r.unbent_frames = in.number<int>();
   }
-  structure.singular_points.resize(in.number<std::size_t>());
+  structure.singular_points.resize(in.count());
   for (SingularPoint& s : structure.singular_points) {
     s.id = in.number<int>();
     s.position = read_point(in);
@@ -70,7 +70,7 @@ PaperStructure read_structure(StateReader& in) {
     s.weakening = in.number<double>();
     s.on_border = in.number<bool>();
   }
-  structure.pieces.resize(in.number<std::size_t>());
+  structure.pieces.resize(in.count());
   for (PaperPiece& piece : structure.pieces) {
     piece.kind = in.number<PaperPiece::Kind>();
     piece.id = in.number<int>();

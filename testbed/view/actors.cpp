@@ -105,7 +105,7 @@ void show_edges(int pixels_per_pixel, vtkActor* actor) {
 
 vtkSmartPointer<vtkActor> main_actor(const Part& part, const ViewWindow& window,
                                      const PanelStyle& style, int pixels_per_pixel) {
-  const bool colored = style.scale && find_array(part, style.scale->array) != nullptr;
+  const bool colored = style.scale && part.find_array(style.scale->array) != nullptr;
   const bool surface = part.kind == Part::Kind::triangles;
   auto actor = plain_actor(part, colored ? style.scale->array : "", kThickness * window.height_m,
                            style.flat && surface);

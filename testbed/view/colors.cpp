@@ -68,7 +68,7 @@ std::vector<double> finite_values(const std::vector<const Part*>& parts, const s
                                   std::string& unit) {
   std::vector<double> values;
   for (const Part* part : parts) {
-    const NamedArray* array = find_array(*part, name);
+    const NamedArray* array = part->find_array(name);
     if (array == nullptr) continue;
     unit = array->unit;
     for (const double x : scalars(*array)) {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/frame.h"
-#include "testbed/frame_arrays.h"
 #include "testbed/view/picture.h"
 
 namespace geoprior {

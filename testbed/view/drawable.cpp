@@ -32,7 +32,7 @@ vtkSmartPointer<vtkDoubleArray> to_array(const Eigen::VectorXd& values, const st
 }
 
 void add_scalars(const Part& part, const std::string& color_by, vtkDataSet* data) {
-  const NamedArray* array = color_by.empty() ? nullptr : find_array(part, color_by);
+  const NamedArray* array = color_by.empty() ? nullptr : part.find_array(color_by);
   if (array == nullptr) return;
   const auto values = to_array(scalars(*array), color_by);
   if (array->on == NamedArray::On::points) {

@@ -220,7 +220,7 @@ std::vector<LegendEntry> legend_entries(const std::vector<FigureRow>& rows,
   bool colored = false;
   for (const FigureRow& row : rows) {
     for (const FigureCell& cell : row.cells) {
-      colored = colored || (cell.part && find_array(*cell.part, *view.color_by) != nullptr);
+      colored = colored || (cell.part && cell.part->find_array(*view.color_by) != nullptr);
     }
   }
   const bool on_water = view.material == FigureView::Material::water;

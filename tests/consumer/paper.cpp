@@ -32,7 +32,7 @@ int main() {
   const int n = sheet.substeps;
   const double dt = sheet.frame_interval / n;
   const double expected = sheet.gravity.z() * dt * dt * n * (n + 1) / 2;
-  const double fallen = sink.last.parts.at("surface").points.col(2).mean();
+  const double fallen = sink.last.require_part("surface").points.col(2).mean();
   std::printf("fallen %.9f m, expected %.9f m\n", fallen, expected);
   return std::abs(fallen - expected) <= 1e-9 ? 0 : 1;
 }

@@ -37,13 +37,10 @@ inline double diagnostic(const DetailMethod& method, const char* name) {
 
 /// Spacing in one part of a recorded frame: "detail_mesh" or "visible_mesh".
 inline DetailSpacing spacing_in(const Frame& frame, const char* name) {
-  const Part& part = frame.parts.at(name);
+  const Part& part = frame.require_part(name);
   std::vector<char> ghosts;
-  for (const NamedArray& array : part.arrays) {
-    if (array.name != "ghost") continue;
-    for (Eigen::Index i = 0; i < array.values.rows(); ++i)
-      ghosts.push_back(array.values(i, 0) > 0.5 ? 1 : 0);
-  }
+  for (const double ghost : part.require_array("ghost", NamedArray::On::points, 1).values.col(0))
+    ghosts.push_back(ghost > 0.5 ? 1 : 0);
   return detail_spacing(part.points, part.triangles, ghosts);
 }
 
@@ -101,9 +98,9 @@ inline void expect_resumed_run_is_the_same(const std::function<std::unique_ptr<P
   ASSERT_EQ(rest.frames.size(), whole.frames.size() - stop - 1);
   for (std::size_t i = 0; i < rest.frames.size(); ++i) {
     const Frame &a = whole.frames[i + stop + 1], &b = rest.frames[i];
-    EXPECT_EQ(a.parts.at("detail_mesh").points, b.parts.at("detail_mesh").points);
-    EXPECT_EQ(a.parts.at("detail_mesh").triangles, b.parts.at("detail_mesh").triangles);
-    const auto &x = a.parts.at("details").arrays, &y = b.parts.at("details").arrays;
+    EXPECT_EQ(a.require_part("detail_mesh").points, b.require_part("detail_mesh").points);
+    EXPECT_EQ(a.require_part("detail_mesh").triangles, b.require_part("detail_mesh").triangles);
+    const auto &x = a.require_part("details").arrays, &y = b.require_part("details").arrays;
     ASSERT_EQ(x.size(), y.size());
     for (std::size_t k = 0; k < x.size(); ++k) EXPECT_EQ(x[k].values, y[k].values) << x[k].name;
     EXPECT_EQ(a.diagnostics, b.diagnostics);

@@ -244,7 +244,7 @@ TEST(Drawing, AddsAPartToARecordedFrame) {
                                    {DrawnKind::hole, "holes"}}) {
     options.kind = kind;
     EXPECT_EQ(add_drawing(frame, options, frame.diagnostics["mean_edge"]), name);
-    const Part& part = frame.parts.at(name);
+    const Part& part = frame.require_part(name);
     ASSERT_EQ(part.arrays.size(), 4u);
     EXPECT_EQ(part.arrays[0].name, "detail");
     EXPECT_EQ(part.arrays[0].values.maxCoeff(), 39);

@@ -20,9 +20,7 @@ struct Collector final : FrameSink {
 };
 
 const NamedArray& array(const Part& part, const std::string& name) {
-  for (const NamedArray& a : part.arrays)
-    if (a.name == name) return a;
-  throw Error("no array " + name);
+  return part.require_array(name, NamedArray::On::points);
 }
 
 DetailScene stretched_square(int frames) {
@@ -37,14 +35,14 @@ TEST(DetailProcess, FramesHoldWhatMetricsRead) {
   make_self_replicating_process(s, {})->run(sink, context, {});
   ASSERT_EQ(sink.frames.size(), 21u);
   for (const Frame& f : sink.frames) {
-    const Part& details = f.parts.at("details");
-    const Part& mesh = f.parts.at("detail_mesh");
+    const Part& details = f.require_part("details");
+    const Part& mesh = f.require_part("detail_mesh");
     const Eigen::Index n = details.points.rows();
     EXPECT_EQ(f.diagnostics.at("details"), static_cast<double>(n));
     EXPECT_EQ(mesh.points.topRows(n), details.points);
     EXPECT_EQ(array(mesh, "ghost").values.sum(), static_cast<double>(mesh.points.rows() - n));
     // The anchor gives the point.
-    const Part& surface = f.parts.at("surface");
+    const Part& surface = f.require_part("surface");
     for (Eigen::Index i = 0; i < n; ++i) {
       const SurfacePoint at{static_cast<int>(array(details, "face").values(i, 0)),
                             array(details, "barycentric").values.row(i).transpose()};
@@ -70,10 +68,10 @@ TEST(DetailProcess, AResumedRunMakesTheSameFrames) {
     for (std::size_t i = 0; i < rest.frames.size(); ++i) {
       const Frame &a = whole.frames[i + 10], &b = rest.frames[i];
       EXPECT_EQ(a.parameter, b.parameter);
-      EXPECT_EQ(a.parts.at("detail_mesh").points, b.parts.at("detail_mesh").points);
-      EXPECT_EQ(a.parts.at("detail_mesh").triangles, b.parts.at("detail_mesh").triangles);
-      EXPECT_EQ(array(a.parts.at("details"), "weight").values,
-                array(b.parts.at("details"), "weight").values);
+      EXPECT_EQ(a.require_part("detail_mesh").points, b.require_part("detail_mesh").points);
+      EXPECT_EQ(a.require_part("detail_mesh").triangles, b.require_part("detail_mesh").triangles);
+      EXPECT_EQ(array(a.require_part("details"), "weight").values,
+                array(b.require_part("details"), "weight").values);
       EXPECT_EQ(a.diagnostics, b.diagnostics);
     }
   }

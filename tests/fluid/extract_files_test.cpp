@@ -37,10 +37,7 @@ Sink extract(const StoredExtractOptions& options, const std::optional<State>& re
 }
 
 const Eigen::MatrixXd& array(const Part& part, const std::string& name) {
-  for (const NamedArray& a : part.arrays) {
-    if (a.name == name) return a.values;
-  }
-  throw Error("no array " + name);
+  return part.require_array(name, NamedArray::On::points).values;
 }
 
 std::string_view text_of(const std::vector<std::byte>& bytes) {
@@ -57,9 +54,9 @@ class ExtractFiles : public test::ScratchFolder {
 TEST_F(ExtractFiles, MapOfTheHillIsInEveryFrameAndTheHillInTheMap) {
   const Sink sink = extract(lifting());
   ASSERT_EQ(sink.frames.size(), 12U);
-  const Part& first = sink.frames.front().parts.at("map");
+  const Part& first = sink.frames.front().require_part("map");
   for (const Frame& frame : sink.frames) {
-    const Part& map = frame.parts.at("map");
+    const Part& map = frame.require_part("map");
     EXPECT_EQ(map.kind, Part::Kind::grid);
     EXPECT_EQ(map.grid_size, first.grid_size);
     EXPECT_EQ(array(map, "height"),
@@ -68,7 +65,7 @@ TEST_F(ExtractFiles, MapOfTheHillIsInEveryFrameAndTheHillInTheMap) {
   // The pool is calm up to frame 3: there is no hill yet, and nothing in its map.
   EXPECT_EQ(array(first, "alpha").cwiseAbs().maxCoeff(), 0);
   // 0.17 m, less its foot, which lies below the threshold.
-  const Eigen::MatrixXd& height = array(sink.frames.back().parts.at("map"), "height");
+  const Eigen::MatrixXd& height = array(sink.frames.back().require_part("map"), "height");
   Eigen::Index top = 0;
   EXPECT_NEAR(height.col(0).maxCoeff(&top), 0.17, 0.03);
   // It stands in the middle of its map, to a texel.
@@ -109,7 +106,7 @@ TEST_F(ExtractFiles, LibraryAndPicturesHoldWhatWasLifted) {
   const TriMesh mesh = splash_scene().sources.at("splash")->frame(0).mesh;
   EXPECT_EQ(known.at("sequence_bytes"),
             12.0 * (24.0 * (2 * 65 * 65 + 66) + 12.0 * mesh.triangle_count()));
-  EXPECT_EQ(sink.frames.back().tables.at("features").rows.rows(), 2);
+  EXPECT_EQ(sink.frames.back().require_table("features").rows.rows(), 2);
 }
 
 TEST_F(ExtractFiles, PastingFromALibraryIsPastingWhatIsLiftedAnewBitForBit) {
@@ -133,8 +130,8 @@ TEST_F(ExtractFiles, PastingFromALibraryIsPastingWhatIsLiftedAnewBitForBit) {
   ASSERT_EQ(stored.frames.size(), 12U);
   EXPECT_EQ(lifted.frames[10].diagnostics.at("features"), 2);
   for (std::size_t i = 0; i < 12; ++i) {
-    const Part& a = lifted.frames[i].parts.at("surface");
-    const Part& b = stored.frames[i].parts.at("surface");
+    const Part& a = lifted.frames[i].require_part("surface");
+    const Part& b = stored.frames[i].require_part("surface");
     EXPECT_EQ(a.points, b.points) << i;
     EXPECT_EQ(a.triangles, b.triangles) << i;
     EXPECT_EQ(array(a, "velocity"), array(b, "velocity")) << i;
@@ -153,8 +150,8 @@ TEST_F(ExtractFiles, AreTheSameAfterAnInterruption) {
   const Sink rest = extract(options, first.states.back());
   ASSERT_EQ(rest.frames.size(), 7U);
   for (std::size_t i = 0; i < 7; ++i) {
-    EXPECT_EQ(array(rest.frames[i].parts.at("map"), "displacement"),
-              array(whole.frames[i + 5].parts.at("map"), "displacement"));
+    EXPECT_EQ(array(rest.frames[i].require_part("map"), "displacement"),
+              array(whole.frames[i + 5].require_part("map"), "displacement"));
   }
   ASSERT_EQ(rest.artifacts.size(), 1U);
   EXPECT_EQ(rest.artifacts[0].bytes, whole.artifacts[0].bytes);

@@ -168,19 +168,20 @@ TEST(LiquidProcess, FramesHaveTheirTimesPartsAndDiagnostics) {
   for (std::size_t f = 0; f < sink.frames.size(); ++f) {
     const Frame& frame = sink.frames[f];
     EXPECT_DOUBLE_EQ(frame.parameter, 0.04 * static_cast<double>(f));
-    const Part& surface = frame.parts.at("surface");
+    const Part& surface = frame.require_part("surface");
     TriMesh mesh{surface.points, surface.triangles};
     EXPECT_NO_THROW(require_closed_manifold(mesh, "surface", "frame"));
     EXPECT_GT(signed_volume(mesh.V, mesh.F), 0);
     EXPECT_EQ(surface.arrays.at(0).name, "velocity");
     EXPECT_EQ(surface.arrays.at(0).values.rows(), mesh.V.rows());
     EXPECT_TRUE(surface.arrays.at(0).values.allFinite());
-    const Part& solids = frame.parts.at("solids");
+    const Part& solids = frame.require_part("solids");
     TriMesh body{solids.points, solids.triangles};
     // A ball of 32 x 16 facets lacks 1 - 1.3 % of its volume.
     EXPECT_NEAR(signed_volume(body.V, body.F), 4.0 / 3 * std::numbers::pi * 1e-3, 1.3e-4);
     const auto& d = frame.diagnostics;
-    EXPECT_EQ(static_cast<double>(frame.parts.at("particles").points.rows()), d.at("particles"));
+    EXPECT_EQ(static_cast<double>(frame.require_part("particles").points.rows()),
+              d.at("particles"));
     EXPECT_NEAR(d.at("particle_volume"), d.at("particles") / 8 / 4096, 1e-12);
     EXPECT_EQ(d.at("pressure_converged"), 1) << f;
     if (f > 0) {
@@ -188,8 +189,8 @@ TEST(LiquidProcess, FramesHaveTheirTimesPartsAndDiagnostics) {
       EXPECT_GE(d.at("substeps"), 1);
     }
   }
-  EXPECT_LT(sink.frames[5].parts.at("solids").points.col(0).mean(),
-            sink.frames[0].parts.at("solids").points.col(0).mean());
+  EXPECT_LT(sink.frames[5].require_part("solids").points.col(0).mean(),
+            sink.frames[0].require_part("solids").points.col(0).mean());
 }
 
 TEST(LiquidProcess, ARunResumedFromAnyFrameHasTheSameBytes) {
@@ -207,8 +208,9 @@ TEST(LiquidProcess, ARunResumedFromAnyFrameHasTheSameBytes) {
     for (std::size_t f = 0; f < rest.frames.size(); ++f) {
       const Frame &a = rest.frames[f], &b = whole.frames[f + at + 1];
       EXPECT_EQ(a.diagnostics, b.diagnostics);
-      EXPECT_EQ(a.parts.at("surface").points, b.parts.at("surface").points);
-      EXPECT_EQ(a.parts.at("surface").arrays[0].values, b.parts.at("surface").arrays[0].values);
+      EXPECT_EQ(a.require_part("surface").points, b.require_part("surface").points);
+      EXPECT_EQ(a.require_part("surface").arrays[0].values,
+                b.require_part("surface").arrays[0].values);
     }
   }
 }

@@ -235,13 +235,13 @@ TEST(Ocean, ProcessPushesFramesAtTheTimesAndResumes) {
   make_ocean(o, times)->run(whole, context, std::nullopt);
   ASSERT_EQ(whole.frames.size(), 4U);
   EXPECT_DOUBLE_EQ(whole.frames[3].parameter, 0.3);
-  const Part& surface = whole.frames[2].parts.at("surface");
+  const Part& surface = whole.frames[2].require_part("surface");
   EXPECT_TRUE(surface.points == Ocean(o, 12).surface(0.2).V);
   ASSERT_EQ(surface.arrays.size(), 1U);
   EXPECT_EQ(surface.arrays[0].name, "velocity");
   make_ocean(o, times)->run(rest, context, whole.states.at(1));
   ASSERT_EQ(rest.frames.size(), 2U);
-  EXPECT_TRUE(rest.frames[0].parts.at("surface").points == surface.points);
+  EXPECT_TRUE(rest.frames[0].require_part("surface").points == surface.points);
 }
 
 TEST(Ocean, RefusesWhatIsNoSea) {

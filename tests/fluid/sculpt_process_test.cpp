@@ -5,7 +5,7 @@
 #include "solvers/fluid/extract.h"
 #include "solvers/fluid/sculpt.h"
 #include "solvers/fluid/sculpt_scene.h"
-#include "solvers/fluid/sculpt_state.h"
+#include "solvers/fluid/warnings.h"
 #include "tests/core/shapes.h"
 #include "tests/fluid/map_waves.h"
 #include "tests/fluid/sculpt_fixture.h"
@@ -57,10 +57,7 @@ Sink run(const SculptScene& s, const std::optional<State>& resume = {}) {
 }
 
 const NamedArray& array(const Frame& frame, const std::string& name) {
-  for (const NamedArray& a : frame.parts.at("surface").arrays) {
-    if (a.name == name) return a;
-  }
-  throw Error("no array " + name);
+  return frame.require_array("surface", name, NamedArray::On::points);
 }
 
 TEST(Sculpting, PastesALibraryWhileItsFeaturesLive) {
@@ -73,13 +70,13 @@ TEST(Sculpting, PastesALibraryWhileItsFeaturesLive) {
     const Frame& frame = sink.frames[i];
     const bool alive = frame.parameter < 0.2 + 1e-9;
     EXPECT_EQ(frame.diagnostics.at("features"), alive ? 2 : 0) << i;
-    EXPECT_EQ(frame.tables.at("insertions").rows.rows(), alive ? 2 : 0);
-    EXPECT_EQ(frame.parts.at("surface").triangles.rows(),
+    EXPECT_EQ(frame.require_table("insertions").rows.rows(), alive ? 2 : 0);
+    EXPECT_EQ(frame.require_part("surface").triangles.rows(),
               target + frame.diagnostics.at("added_triangles"));
     const Eigen::MatrixXd& ids = array(frame, "feature").values;
     EXPECT_EQ(ids.maxCoeff(), alive ? 2 : 0);
     EXPECT_EQ((ids.array() == 1).any(), alive);
-    EXPECT_EQ(array(frame, "velocity").values.rows(), frame.parts.at("surface").points.rows());
+    EXPECT_EQ(array(frame, "velocity").values.rows(), frame.require_part("surface").points.rows());
   }
   EXPECT_EQ(sink.frames[0].diagnostics.at("lifted_features"), 2);
 }
@@ -94,8 +91,8 @@ TEST(Sculpting, GoesOnWhereItWasStopped) {
   const Sink rest = run(s, first.states.back());
   ASSERT_EQ(rest.frames.size(), 5U);
   for (std::size_t i = 0; i < 5; ++i) {
-    EXPECT_EQ(rest.frames[i].parts.at("surface").points,
-              whole.frames[i + 3].parts.at("surface").points);
+    EXPECT_EQ(rest.frames[i].require_part("surface").points,
+              whole.frames[i + 3].require_part("surface").points);
   }
   EXPECT_THROW(run(s, State{}), Error);
 }
@@ -141,17 +138,24 @@ TEST(Sculpting, RefusesWhatCannotBeMeant) {
   EXPECT_TRUE(has(message([](SculptScene& s) { s.target = nullptr; }), "a target"));
 }
 
-TEST(Sculpting, StateKeepsWhatWasWarnedOf) {
-  SculptState state;
-  state.next_frame = 12;
+TEST(Sculpting, WarningsRememberWhatTheyTold) {
+  Warnings warnings;
   Sink sink;
-  state.warn("a at 1 s", "a", 1, sink);
-  state.warn("a at 2 s", "a", 2, sink);
-  state.warn("b", "b", 2, sink);
+  warnings.warn("a at 1 s", "a", 1, sink);
+  warnings.warn("a at 2 s", "a", 2, sink);
+  warnings.warn("b", "b", 2, sink);
   EXPECT_EQ(sink.events.size(), 2U);
-  const SculptState back = SculptState::of(state.bytes());
-  EXPECT_EQ(back.next_frame, 12);
-  EXPECT_EQ(back.warned, state.warned);
+  StateWriter out;
+  warnings.save(out);
+  const State saved = out.take();
+  StateReader in(saved);
+  Warnings back;
+  back.load(in);
+  back.warn("a at 3 s", "a", 3, sink);
+  back.warn("b", "b", 3, sink);
+  EXPECT_EQ(sink.events.size(), 2U);
+  back.warn("c", "c", 3, sink);
+  EXPECT_EQ(sink.events.size(), 3U);
 }
 
 TEST(Sculpting, ExtractsWaveAndDropAndPastesThemElsewhere) {
@@ -162,7 +166,7 @@ TEST(Sculpting, ExtractsWaveAndDropAndPastesThemElsewhere) {
   make_extract(s, {})->run(extracted, context, {});
   ASSERT_EQ(extracted.frames.size(), 12U);
   const Frame& last = extracted.frames.back();
-  const Eigen::MatrixXd& tracks = last.tables.at("tracks").rows;
+  const Eigen::MatrixXd& tracks = last.require_table("tracks").rows;
   ASSERT_EQ(tracks.rows(), 2);
   EXPECT_EQ(tracks.col(1).minCoeff(), 1);  // the drop
   EXPECT_EQ(tracks.col(1).maxCoeff(), 2);  // the hill
@@ -182,7 +186,7 @@ TEST(Sculpting, ExtractsWaveAndDropAndPastesThemElsewhere) {
   EXPECT_EQ(pasted.frames[1].diagnostics.at("features"), 1);
   EXPECT_EQ(pasted.frames[11].diagnostics.at("features"), 2);
   // The hill of 0.17 m stands at (2, 2) of the target now, its foot lost below the threshold.
-  const Eigen::MatrixX3d& V = pasted.frames[11].parts.at("surface").points;
+  const Eigen::MatrixX3d& V = pasted.frames[11].require_part("surface").points;
   const Eigen::MatrixXd& feature = array(pasted.frames[11], "feature").values;
   double top = 0;
   for (Eigen::Index v = 0; v < V.rows(); ++v) {

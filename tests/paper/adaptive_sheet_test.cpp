@@ -64,12 +64,10 @@ AdaptiveOptions fine() {
 }
 
 ShellMesh mesh_of(const Frame& frame) {
-  const Part& surface = frame.parts.at("surface");
+  const Part& surface = frame.require_part("surface");
   ShellMesh mesh;
   mesh.triangles = surface.triangles;
-  for (const NamedArray& array : surface.arrays) {
-    if (array.name == "pattern") mesh.pattern = array.values;
-  }
+  mesh.pattern = surface.require_array("pattern", NamedArray::On::points, 2).values;
   return mesh;
 }
 
@@ -85,7 +83,7 @@ TEST(AdaptiveSheet, CoversThePatternAndKeepsTheHandlesInEveryFrame) {
       EXPECT_NEAR(test::total_area(mesh), 0.04, 1e-14);
       EXPECT_GT(test::least_area(mesh), 0);
       EXPECT_EQ(test::euler_characteristic(mesh), 1);
-      EXPECT_TRUE(frame.parts.at("surface").points.allFinite());
+      EXPECT_TRUE(frame.require_part("surface").points.allFinite());
       for (const Handle& handle : sheet.handles) {
         EXPECT_LT(test::distance_to_vertices(mesh, handle.points[0]), 1e-12);
       }
@@ -104,7 +102,7 @@ TEST(AdaptiveSheet, RefinesWhereTheSheetBends) {
   EXPECT_GT(splits, 0);
   // An elastica of 0.2 m with its ends 0.16 m apart is k / K(k) 0.2 m = 0.053 m high,
   // 2 E(k) / K(k) - 1 = 0.8.
-  const Eigen::MatrixX3d& x = recording.frames.back().parts.at("surface").points;
+  const Eigen::MatrixX3d& x = recording.frames.back().require_part("surface").points;
   EXPECT_NEAR((x.colwise().maxCoeff() - x.colwise().minCoeff()).z(), 0.053, 0.01);
 }
 
@@ -115,8 +113,8 @@ TEST(AdaptiveSheet, GoesOnFromACheckpointAsIfNothingHadHappened) {
   ASSERT_EQ(rest.frames.size(), whole.frames.size() - 7);
   for (std::size_t i = 0; i < rest.frames.size(); ++i) {
     const Frame &a = rest.frames[i], &b = whole.frames[i + 7];
-    EXPECT_EQ(a.parts.at("surface").points, b.parts.at("surface").points);
-    EXPECT_EQ(a.parts.at("surface").triangles, b.parts.at("surface").triangles);
+    EXPECT_EQ(a.require_part("surface").points, b.require_part("surface").points);
+    EXPECT_EQ(a.require_part("surface").triangles, b.require_part("surface").triangles);
     EXPECT_EQ(a.diagnostics, b.diagnostics);
   }
 }

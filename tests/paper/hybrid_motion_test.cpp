@@ -169,8 +169,8 @@ TEST(HybridProcess, GoesOnFromACheckpointAsIfItHadNotStopped) {
     std::vector<std::size_t> pieces;
     std::vector<State> states;
     void frame(Frame f) override {
-      places.push_back(f.parts.at("surface").points);
-      pieces.push_back(static_cast<std::size_t>(f.tables.at("pieces").rows.rows()));
+      places.push_back(f.require_part("surface").points);
+      pieces.push_back(static_cast<std::size_t>(f.require_table("pieces").rows.rows()));
     }
     void event(const Event&) override {}
     void artifact(Artifact) override {}

@@ -80,7 +80,7 @@ void expect_same(const Frame& a, const Frame& b) {
   EXPECT_EQ(a.diagnostics, b.diagnostics);
   ASSERT_EQ(a.parts.size(), b.parts.size());
   for (const auto& [name, part] : a.parts) {
-    const Part& other = b.parts.at(name);
+    const Part& other = b.require_part(name);
     EXPECT_EQ(part.points, other.points) << name;
     EXPECT_EQ(part.triangles, other.triangles) << name;
     ASSERT_EQ(part.arrays.size(), other.arrays.size());
@@ -97,7 +97,7 @@ TEST(SheetProcess, RecordsTheStartAndThenAFrameAnInterval) {
   EXPECT_EQ(r.frames[0].parameter, 0);
   EXPECT_EQ(r.frames[3].parameter, 0.12);
   for (const Frame& frame : r.frames) {
-    const Part& surface = frame.parts.at("surface");
+    const Part& surface = frame.require_part("surface");
     ASSERT_EQ(surface.arrays.size(), 4U);
     EXPECT_EQ(surface.arrays[0].values.rows(), surface.points.rows());
     EXPECT_EQ(surface.arrays[2].values.rows(), surface.triangles.rows());
@@ -112,7 +112,7 @@ TEST(SheetProcess, PutsHandlesWhereTheirTrajectoriesAre) {
   const Sheet sheet = bent_square();
   const Recording r = run(*dense(sheet));
   for (const Frame& frame : r.frames) {
-    const Part& held = frame.parts.at("handles");
+    const Part& held = frame.require_part("handles");
     ASSERT_GE(held.points.rows(), 4);
     for (Eigen::Index i = 0; i < held.points.rows(); ++i) {
       const auto h = static_cast<std::size_t>(held.arrays[0].values(i, 0));
@@ -207,8 +207,8 @@ class SwitchingMesher final : public SheetMesher {
   void annotate(const ShellState& /*state*/, Frame& frame) const override {
     frame.diagnostics["switched"] = switched_ ? 1 : 0;
   }
-  [[nodiscard]] State save() const override { return {static_cast<std::byte>(switched_)}; }
-  void load(const State& state) override { switched_ = state.at(0) != std::byte{0}; }
+  void save(StateWriter& out) const override { out.number(switched_); }
+  void load(StateReader& in) override { switched_ = in.number<bool>(); }
 
  private:
   static ShellMesh mesh(const Sheet& sheet, int triangles) {
@@ -245,7 +245,7 @@ TEST(SheetProcess, HangingSheetPullsItsHandleByItsWeight) {
   sheet.imperfection = 0;
   sheet.placement = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX());
   const Recording r = run(*dense(sheet));
-  const Part& held = r.frames.back().parts.at("handles");
+  const Part& held = r.frames.back().require_part("handles");
   const Eigen::RowVector3d force = held.arrays[1].values.colwise().sum();
   EXPECT_NEAR(force.z(), 0.08 * 0.01 * 9.81, 1e-4 * 0.08 * 0.01 * 9.81);
   EXPECT_NEAR(force.head<2>().norm(), 0, 1e-6);

@@ -75,8 +75,8 @@ TEST_F(FramesOfARun, AreEqualWhetherTheyWereKeptOrRead) {
   for (std::size_t i = 0; i < 9; ++i) {
     const Frame read = recorder().read_frame(record(), i);
     EXPECT_EQ(frames.parameter(i), read.parameter);
-    EXPECT_EQ(frames.frame(i)->parts.at("bob").points, read.parts.at("bob").points);
-    EXPECT_EQ(frames.frame(i)->tables.at("state").rows, read.tables.at("state").rows);
+    EXPECT_EQ(frames.frame(i)->require_part("bob").points, read.require_part("bob").points);
+    EXPECT_EQ(frames.frame(i)->require_table("state").rows, read.require_table("state").rows);
     EXPECT_EQ(frames.frame(i)->diagnostics, read.diagnostics);
   }
   EXPECT_EQ(frames.frames_read(), 6U);

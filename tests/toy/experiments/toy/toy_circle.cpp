@@ -122,7 +122,7 @@ double polygon_radius(double r, const PolygonOptions& o, double phi) {
 
 double radius_error(const Scene& scene, const Frame& frame) {
   const double r = dynamic_cast<const CircleScene&>(scene).options.radius_m;
-  const auto& V = frame.parts.at("surface").points;
+  const auto& V = frame.require_part("surface").points;
   return (V.bottomRows(V.rows() - 1).rowwise().norm().array() - r).abs().maxCoeff();
 }
 
@@ -165,7 +165,7 @@ std::vector<MetricEntry> circle_metrics() {
                     true};
   apart.of_frame = [](const Scene&, const Frame& f, const Frame* r) -> std::optional<double> {
     if (r == nullptr) return std::nullopt;
-    return (f.parts.at("surface").points - r->parts.at("surface").points)
+    return (f.require_part("surface").points - r->require_part("surface").points)
         .rowwise()
         .norm()
         .maxCoeff();

@@ -1,12 +1,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <numbers>
 #include <thread>
 
 #include "core/error.h"
+#include "core/frame_loop.h"
 #include "experiments/toy/toy_topic.h"
 
 namespace geoprior::toy {
@@ -77,33 +77,11 @@ class PendulumScene final : public Scene {
 
 enum class Scheme { implicit_midpoint, explicit_euler, closed_form };
 
-/// What a checkpoint holds, followed by the samples of the sound.
 struct PendulumState {
-  std::int64_t next_frame = 0;
   double angle = 0;
   double velocity = 0;
   double time = 0;
 };
-
-State save(const PendulumState& state, const std::vector<double>& samples) {
-  State bytes(sizeof(PendulumState) + samples.size() * sizeof(double));
-  std::memcpy(bytes.data(), &state, sizeof(PendulumState));
-  if (!samples.empty()) {
-    std::memcpy(bytes.data() + sizeof(PendulumState), samples.data(),
-                samples.size() * sizeof(double));
-  }
-  return bytes;
-}
-
-void load(const State& bytes, PendulumState& state, std::vector<double>& samples) {
-  if (bytes.size() < sizeof(PendulumState)) throw Error("checkpoint is cut off", "pendulum");
-  std::memcpy(&state, bytes.data(), sizeof(PendulumState));
-  samples.resize((bytes.size() - sizeof(PendulumState)) / sizeof(double));
-  if (!samples.empty()) {
-    std::memcpy(samples.data(), bytes.data() + sizeof(PendulumState),
-                samples.size() * sizeof(double));
-  }
-}
 
 void append(std::vector<std::byte>& bytes, std::uint32_t value, int count) {
   for (int i = 0; i < count; ++i) bytes.push_back(static_cast<std::byte>(value >> (8 * i)));
@@ -137,48 +115,52 @@ Artifact wav(const std::vector<double>& samples, double full_scale, int rate_hz)
   return file;
 }
 
-class PendulumProcess final : public Process {
+class PendulumFrames final : public FrameModel {
  public:
-  PendulumProcess(const PendulumScene& scene, const PendulumOptions& options, Scheme scheme)
-      : scene_(scene), options_(options), scheme_(scheme) {}
+  PendulumFrames(const PendulumScene& scene, const PendulumOptions& options, Scheme scheme)
+      : scene_(scene), options_(options), scheme_(scheme), state_{scene.initial_angle(), 0, 0} {}
 
-  void run(FrameSink& sink, RunContext& context, const std::optional<State>& resume) override {
-    PendulumState s{0, scene_.initial_angle(), 0, 0};
-    samples_.clear();
-    if (resume) load(*resume, s, samples_);
-    const int last = scene_.options.frames;
-    for (; s.next_frame <= last; ++s.next_frame) {
-      if (context.stop_requested()) return;
-      std::this_thread::sleep_for(std::chrono::milliseconds(scene_.options.frame_delay_ms));
-      if (options_.fail_at_s && s.time >= *options_.fail_at_s) {
-        throw Error("does not converge", "time " + std::to_string(s.time) + " s");
-      }
-      if (s.next_frame > 0) {
-        Phase phase(context, "solve");
-        advance(s, scene_.options.duration_s / last, sink);
-      }
-      sink.frame(frame(s));
-      context.progress(static_cast<double>(s.next_frame) / last);
-      if (options_.checkpoints) {
-        PendulumState next = s;
-        ++next.next_frame;
-        sink.checkpoint(save(next, samples_));
-      }
+  [[nodiscard]] int frame_count() const override { return scene_.options.frames + 1; }
+
+  void start(RunContext& /*context*/) override { wait(); }
+
+  void advance(int /*frame*/, FrameSink& sink, RunContext& context) override {
+    wait();
+    const Phase phase(context, "solve");
+    const double interval = scene_.options.duration_s / scene_.options.frames;
+    const int steps = std::max(1, static_cast<int>(std::ceil(interval / options_.step_s - 1e-9)));
+    const double h = interval / steps;
+    const double t0 = state_.time;
+    for (int i = 1; i <= steps; ++i) {
+      const double before = state_.angle;
+      step(state_, h, t0 + i * h);
+      state_.time = t0 + i * h;
+      samples_.push_back(state_.angle);
+      if ((before < 0) != (state_.angle < 0)) sink.event(crossing(state_));
     }
+  }
+
+  void record(int number, FrameSink& sink, RunContext& /*context*/) override {
+    sink.frame(frame(state_));
+    if (number + 1 < frame_count()) return;
     sink.artifact(wav(samples_, std::abs(scene_.initial_angle()) + 1e-12, options_.sound_rate_hz));
   }
 
+  void save(StateWriter& out) const override {
+    out.number(state_);
+    out.items(samples_);
+  }
+  void load(StateReader& in, int /*next_frame*/) override {
+    state_ = in.number<PendulumState>();
+    in.items(samples_);
+  }
+  [[nodiscard]] bool can_resume() const override { return options_.checkpoints; }
+
  private:
-  void advance(PendulumState& s, double interval, FrameSink& sink) {
-    const int steps = std::max(1, static_cast<int>(std::ceil(interval / options_.step_s - 1e-9)));
-    const double h = interval / steps;
-    const double t0 = s.time;
-    for (int i = 1; i <= steps; ++i) {
-      const double before = s.angle;
-      step(s, h, t0 + i * h);
-      s.time = t0 + i * h;
-      samples_.push_back(s.angle);
-      if ((before < 0) != (s.angle < 0)) sink.event(crossing(s));
+  void wait() const {
+    std::this_thread::sleep_for(std::chrono::milliseconds(scene_.options.frame_delay_ms));
+    if (options_.fail_at_s && state_.time >= *options_.fail_at_s) {
+      throw Error("does not converge", "time " + std::to_string(state_.time) + " s");
     }
   }
 
@@ -254,9 +236,10 @@ class PendulumProcess final : public Process {
   }
 
   const PendulumScene& scene_;
-  PendulumOptions options_;
+  const PendulumOptions& options_;
   Scheme scheme_;
-  std::vector<double> samples_;
+  PendulumState state_;
+  std::vector<double> samples_;  ///< of the sound so far
 };
 
 MethodEntry pendulum_method(std::string name, bool is_baseline, std::string summary,
@@ -264,12 +247,14 @@ MethodEntry pendulum_method(std::string name, bool is_baseline, std::string summ
   return method_entry<PendulumScene, PendulumOptions>(
       std::move(name), is_baseline, std::move(summary), "Hairer, Lubich, Wanner 2006",
       [scheme](const PendulumScene& scene, const PendulumOptions& options, RunContext&) {
-        return std::make_unique<PendulumProcess>(scene, options, scheme);
+        return frame_process([&scene, options, scheme](RunContext&) {
+          return std::make_unique<PendulumFrames>(scene, options, scheme);
+        });
       });
 }
 
 double angle_of(const Frame& frame) {
-  const Eigen::RowVector3d p = frame.parts.at("bob").points.row(0);
+  const Eigen::RowVector3d p = frame.require_part("bob").points.row(0);
   return std::atan2(p.x(), -p.y());
 }
 
@@ -317,7 +302,7 @@ std::vector<MetricEntry> pendulum_metrics() {
                     true};
   apart.of_frame = [](const Scene&, const Frame& f, const Frame* r) -> std::optional<double> {
     if (r == nullptr) return std::nullopt;
-    return (f.parts.at("bob").points.row(0) - r->parts.at("bob").points.row(0)).norm();
+    return (f.require_part("bob").points.row(0) - r->require_part("bob").points.row(0)).norm();
   };
   apart.reference_parts = {"bob"};
   return {error, largest, apart};
