@@ -66,9 +66,9 @@ Eigen::RowVector3d vertex_normal(const ShellState& state, int vertex) {
 }
 
 /// Side of the sheet (+1: that of the normal) to which the neighbours of a vertex lie.
-double hollow_side(const ShellState& state, int vertex, const Eigen::RowVector3d& normal) {
+double hollow_side(const ShellState& state, const MeshEdges& edges, int vertex,
+                   const Eigen::RowVector3d& normal) {
   double sum = 0;
-  const MeshEdges edges(state.mesh.triangles);
   for (const MeshEdges::Edge& e : edges.all()) {
     if (e.a != vertex && e.b != vertex) continue;
     const int other = e.a == vertex ? e.b : e.a;
@@ -271,11 +271,13 @@ bool HybridMesher::last_resort(const Sheet& sheet, const std::vector<DemandGroup
 /// could not decide.
 void HybridMesher::carry(ShellState& state, std::size_t old_points) const {
   state = transfer_state(state, mesh_.mesh);
+  if (old_points >= mesh_.singular_vertices.size()) return;
+  const MeshEdges edges(state.mesh.triangles);
   for (std::size_t s = old_points; s < mesh_.singular_vertices.size(); ++s) {
     const int apex = mesh_.singular_vertices[s];
     const Eigen::RowVector3d normal = vertex_normal(state, apex);
     state.x.row(apex) +=
-        hollow_side(state, apex, normal) * kDent * options_.seeding_distance * normal;
+        hollow_side(state, edges, apex, normal) * kDent * options_.seeding_distance * normal;
   }
 }
 
