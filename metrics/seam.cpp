@@ -22,7 +22,7 @@ Eigen::Vector3d doubled_area(const TriMesh& mesh, int t) {
   return (b - a).cross(c - a);
 }
 
-/// Those of the same edge behind one another.
+/// The sides of all triangles, sorted so that sides of one edge follow one another.
 std::vector<Side> sorted_sides(const TriMesh& mesh) {
   std::vector<Side> sides;
   sides.reserve(static_cast<std::size_t>(mesh.F.rows()) * 3);

@@ -33,7 +33,8 @@ const NamedArray& array_of(const Part& part, const std::string& name, Eigen::Ind
               std::to_string(components) + " components a point");
 }
 
-/// Those that are not drawn keep their place with weight 0, so that numbers stay.
+/// The anchors to draw. Anchors of other types keep their place in the list with weight 0, so that
+/// the numbers of the details stay.
 std::vector<DrawnAnchor> drawn_anchors(std::span<const DrawnAnchor> anchors,
                                        const SurfaceTopology& surface, std::optional<int> type) {
   std::vector<DrawnAnchor> drawn(anchors.begin(), anchors.end());

@@ -37,7 +37,7 @@ void HoleMesh::add_entry(int vertex, int hole, const Eigen::Vector2d& at) {
 }
 
 double HoleMesh::length2(int a, int b) const {
-  // The same bits from both sides: bisection compares lengths.
+  // Both triangles of an edge must see the same bits, because bisection compares lengths.
   return (x_[index(std::max(a, b))] - x_[index(std::min(a, b))]).squaredNorm();
 }
 
@@ -455,7 +455,7 @@ class HoleMesh::Snapper {
     return ring;
   }
 
-  /// One run of kept triangles, and a gap.
+  /// Whether the triangles kept about a ring are one run with one gap.
   [[nodiscard]] bool is_simple(const std::vector<int>& ring) const {
     const std::size_t n = ring.size();
     int runs = 0;

@@ -44,7 +44,8 @@ std::vector<char> rows_with_known(const FaceGrid& grid, const std::vector<char>&
   return any;
 }
 
-/// Of a row: 1 where a face is unknown and one beside it known.
+/// Marks the faces of a row that are unknown and have a known one beside them with 1, others with
+/// 0.
 void mark_front(std::size_t n, const char* at, const std::array<const char*, 4>& rows,
                 std::vector<char>& beside) {
   for (std::size_t i = 0; i < n; ++i)

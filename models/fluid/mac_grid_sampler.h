@@ -88,7 +88,7 @@ class GridSampler {
                      sz = axis_sample(x.z(), size_.z());
     return corners(sx, sy, sz).value(sx.fraction, sy.fraction, sz.fraction);
   }
-  /// Also the gradient, per sample distance.
+  /// The value at x, and in `gradient` that of the interpolant, per sample distance.
   float with_gradient(const Eigen::Vector3f& x, Eigen::Vector3f& gradient) const {
     const AxisSample sx = axis_sample(x.x(), size_.x()), sy = axis_sample(x.y(), size_.y()),
                      sz = axis_sample(x.z(), size_.z());

@@ -136,7 +136,7 @@ FrameReport advance(const Sheet& sheet, Loop& loop, ShellStepper& stepper, Sheet
   {
     const Phase phase(context, "elastic");
     for (int i = 0; i < sheet.substeps; ++i) {
-      // Not summed, so that a resumed run has the same times.
+      // Times are not summed up, so that a resumed run has the same ones.
       loop.state.time = start + i * dt;
       const StepReport step = stepper.step(loop.state, dt, context);
       loop.handle_work += step.handle_work;

@@ -19,7 +19,7 @@ class SheetMesher {
                      RunContext& context) = 0;
   /// Adds parts, arrays, tables and diagnostics of its own ("rulings", "singular_points" …).
   virtual void annotate(const ShellState& state, Frame& frame) const = 0;
-  /// Of everything that `adapt` remembers, for checkpoints.
+  /// Everything that `adapt` remembers from one frame to the next, for checkpoints.
   [[nodiscard]] virtual State save() const = 0;
   virtual void load(const State& state) = 0;
 };

@@ -145,7 +145,8 @@ class SculptProcess final : public Process {
       features = lift_features(*scene_.sources.at(source), extraction, options_.extraction,
                                {ids.begin(), ids.end()}, context);
     }
-    // Only one source is the target.
+    // Features are cut out of the target only, which one source is: there is one extraction to
+    // keep.
     if (!cut.ids.empty() && cut.extraction.segmenter == nullptr) {
       cut.extraction = std::move(extraction);
     }
