@@ -81,11 +81,13 @@ class DensityMoves {
   /// called before details are inserted.
   /// @return  number of details
   int fade_shortest_edges(double most);
-  /// Details of weight 0 at circumcentres of triangles that lack details around: the largest
-  /// circumradius in units of the lattice's first, down to `least` of it; no two share a vertex.
+  /// Inserts details of weight 0 at circumcentres of triangles that lack details around: the
+  /// largest circumradius in units of the lattice's first, down to `least` of it; no two share a
+  /// vertex.
   /// @return  number of details
   int insert_at_circumcentres(double least);
-  /// All of them, as a frame needs them. Phases: "budget", "merge", "insert".
+  /// Makes all of these changes, in the order in which a frame needs them. Phases: "budget",
+  /// "merge", "insert".
   DensityChanges keep_number(const DensityMoveOptions& options, RunContext& context);
 
  private:

@@ -95,7 +95,7 @@ class LloydRelaxation final : public DetailMethod {
     return slide;
   }
 
-  /// All details at once, each by the cells before.
+  /// One iteration: moves all details at once, each by the cells that they had before it.
   void relax() {
     const std::vector<double> spacing = spacing_of_sites(now_, density_);
     std::vector<Slide> slides(now_.site.size());

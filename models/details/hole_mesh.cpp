@@ -344,7 +344,8 @@ class HoleMesh::TriangleCutter {
       cut_.triangle.insert(cut_.triangle.end(), {{a, b, d}, {b, c, d}});
   }
 
-  /// On edge `k` of triangle `t`.
+  /// The vertex at which the hole's border crosses edge `k` of triangle `t`; makes it the first
+  /// time.
   int border_vertex(int t, std::size_t k) {
     if (const int vertex = made_[index(t)][k]; vertex >= 0) return vertex;
     int in = mesh_.corner_[index(t)][k], out = mesh_.corner_[index(t)][(k + 1) % 3];

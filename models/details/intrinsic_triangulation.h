@@ -45,7 +45,7 @@ struct TriangulationReport {
 class IntrinsicTriangulation {
  public:
   IntrinsicTriangulation() = default;
-  /// From triangles and positions of an oriented manifold; lengths are distances.
+  /// Takes triangles and positions of an oriented manifold; lengths are distances.
   IntrinsicTriangulation(std::span<const std::array<int, 3>> triangles,
                          std::span<const Eigen::Vector3d> position);
 

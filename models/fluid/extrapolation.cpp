@@ -67,7 +67,7 @@ void first_front(const FaceGrid& grid, const std::vector<char>& known,
   for (std::size_t k = 0; k < nz; ++k) {
     for (std::size_t j = 0; j < ny; ++j) {
       const std::size_t row = j + ny * k;
-      // Beyond the border the row itself stands in.
+      // At the border the row stands in for its neighbour that does not exist.
       const std::array<std::size_t, 4> around{j > 0 ? row - 1 : row, j + 1 < ny ? row + 1 : row,
                                               k > 0 ? row - ny : row, k + 1 < nz ? row + ny : row};
       char reached = any[row];

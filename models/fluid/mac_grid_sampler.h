@@ -37,7 +37,7 @@ struct CellSample {
       centre[a] = axis_sample(x[a] - 0.5F, cells[a]);
     }
   }
-  /// For component `axis` of a staggered velocity.
+  /// Where the point falls along `axis` among the samples of velocity component `component`.
   [[nodiscard]] const AxisSample& along(int axis, int component) const {
     const auto a = static_cast<std::size_t>(axis);
     return axis == component ? face[a] : centre[a];

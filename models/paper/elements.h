@@ -40,7 +40,7 @@ class ShellElements {
                 double hinge_calibration);
 
   [[nodiscard]] int size() const;
-  /// From which bending is computed.
+  /// The fit of shape operators from which bending is computed.
   [[nodiscard]] const CurvatureFit& curvature_fit() const;
   /// Vertices that an element depends on; the first three are those of its triangle.
   [[nodiscard]] std::span<const int> nodes(int element) const;
