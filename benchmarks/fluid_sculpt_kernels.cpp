@@ -14,6 +14,7 @@
 #include "core/random.h"
 #include "solvers/fluid/extraction.h"
 #include "solvers/fluid/paste.h"
+#include "solvers/fluid/path_cover.h"
 #include "solvers/fluid/sculpt.h"
 #include "solvers/fluid/sculpt_scene.h"
 

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/options.h"
 #include "core/rig.h"
 
 namespace geoprior {
@@ -15,6 +16,7 @@ struct CylinderOptions {
   int rings_per_half = 40;   ///< rings of the straight part on one side; one more lies at x = 0
   double ramp_width = 0.2;   ///< length along x over which the weights pass from 1, 0 to 0, 1 (m)
 };
+void describe(OptionVisitor& v, CylinderOptions& options);
 
 /// Two-bone cylinder with analytic weights.
 ///
@@ -41,6 +43,7 @@ struct FingerOptions {
   double ramp_width = 1.0;    ///< of the weights about a joint, in local radii
   double ring_spacing = 1.0;  ///< distance of rings in edge lengths of a ring
 };
+void describe(OptionVisitor& v, FingerOptions& options);
 
 /// Finger whose rest surface is the union of tapered capsules with collinear axes: one closed
 /// manifold surface of revolution.

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "core/error.h"
+#include "core/rig.h"
 
 namespace geoprior {
 namespace {

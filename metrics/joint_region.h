@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "core/mesh.h"
-#include "core/rig.h"
 
 namespace geoprior {
+
+struct RiggedMesh;
 
 /// The part of a skin around the joints that a motion turns; chosen once, in the rest pose.
 ///

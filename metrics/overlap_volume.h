@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/mesh.h"
-#include "core/rig.h"
+#include "core/skeleton.h"
 #include "metrics/joint_region.h"
 
 namespace geoprior {

@@ -170,9 +170,6 @@ void EditableSheet::place_triangle(int triangle, const std::array<int, 3>& verte
 
 namespace {
 
-constexpr int kNext[3] = {1, 2, 0};
-constexpr int kPrevious[3] = {2, 0, 1};
-
 EditableSheet::Vertex middle(const EditableSheet::Vertex& a, const EditableSheet::Vertex& b,
                              bool on_border) {
   EditableSheet::Vertex m;

@@ -160,7 +160,7 @@ SpectrumAtRest spectrum_at_rest(DetailsMemo& memo, const DetailsScene& scene, do
   return memo.spectra_at_rest.get(key_of(scene.rest()), [&] {
     const Part& plane = required_part(scene.rest(), "surface");
     SpectrumAtRest rest;
-    rest.spectrum = spectrum_of(plane, places_of(scene.scene.details), unit);
+    rest.spectrum = spectrum_of(plane, places_of(scene.input.details), unit);
     for (const auto& resample : scene.resamples) {
       const double distance =
           radial_spectrum_distance(spectrum_of(plane, places_of(resample), unit), rest.spectrum);
@@ -180,7 +180,7 @@ PairAtRest pairs_at_rest(DetailsMemo& memo, const DetailsScene& scene) {
     const auto curve = [&](const std::vector<Detail>& details) {
       return curve_of(memo, scene, surface, places_of(details), rest.unit);
     };
-    std::vector<PairCurve> process{curve(scene.scene.details)};
+    std::vector<PairCurve> process{curve(scene.input.details)};
     rest.curve = process.front();
     for (const auto& resample : scene.resamples) process.push_back(curve(resample));
     if (process.size() > 1) rest.noise = pair_curve_noise(process).mean;
@@ -216,7 +216,7 @@ FrameState state_of(const FrameSequence& frames, std::size_t i) {
 }
 
 Value worst_edge_change(const DetailsScene& scene, const FrameSequence& frames, const char* mesh) {
-  std::vector<DetailSpacing> spacings{spacing_of(required_part(scene.rest(), mesh), 0)};
+  std::vector<DetailSpacing> spacings{spacing_of(details::required_part(scene.rest(), mesh), 0)};
   for (std::size_t i = 0; i < frames.size(); ++i)
     spacings.push_back(spacing_of(*required_part(frames, i, mesh), 0));
   if (!(spacings.front().mean > 0)) return {};
@@ -306,7 +306,7 @@ std::optional<PairMeasures> pair_measures(DetailsMemo& memo, const DetailsScene&
   };
   PairMeasures m;
   m.distance = distance(visible_places(required_part(frame, "details")));
-  m.naive = distance(places_of(scene.scene.details));
+  m.naive = distance(places_of(scene.input.details));
   m.noise = rest.noise;
   return m;
 }

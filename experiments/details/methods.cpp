@@ -18,37 +18,37 @@ std::vector<MethodEntry> methods() {
           "details multiply where the surface is stretched and merge where it is squeezed",
           "thesis 2.2.2; Rohmer, Hahmann and Cani 2015",
           [](const S& scene, const SelfReplicatingOptions& options, RunContext&) {
-            return with_drawing(make_self_replicating_process(scene.scene, options), scene);
+            return with_drawing(make_self_replicating_process(scene.input, options), scene);
           }),
       method_entry<S, NaiveStretchOptions>(
           "naive-stretch", true, "details go where the surface goes, none comes, none leaves",
           "what a texture does",
           [](const S& scene, const NaiveStretchOptions& options, RunContext&) {
-            return with_drawing(make_naive_stretch_process(scene.scene, options), scene);
+            return with_drawing(make_naive_stretch_process(scene.input, options), scene);
           }),
       method_entry<S, RescatterOptions>(
           "re-scatter", true, "all details are scattered anew in every frame",
           "Poisson-disk by dart throwing: Cook 1986",
           [](const S& scene, const RescatterOptions& options, RunContext&) {
-            return with_drawing(make_rescatter_process(scene.scene, options), scene);
+            return with_drawing(make_rescatter_process(scene.input, options), scene);
           }),
       method_entry<S, DartThrowingOptions>(
           "dart-throwing", true, "darts thrown where the surface is stretched become details",
           "Poisson-disk by dart throwing: Cook 1986",
           [](const S& scene, const DartThrowingOptions& options, RunContext&) {
-            return with_drawing(make_dart_throwing_process(scene.scene, options), scene);
+            return with_drawing(make_dart_throwing_process(scene.input, options), scene);
           }),
       method_entry<S, DelaunayRefinementOptions>(
           "delaunay-refinement", true, "details come at the points farthest from all others",
           "Chew 1989",
           [](const S& scene, const DelaunayRefinementOptions& options, RunContext&) {
-            return with_drawing(make_delaunay_refinement_process(scene.scene, options), scene);
+            return with_drawing(make_delaunay_refinement_process(scene.input, options), scene);
           }),
       method_entry<S, LloydRelaxationOptions>(
           "lloyd", true, "details slide to the centroids of their Voronoi cells in every frame",
           "Lloyd 1982; Du, Faber and Gunzburger 1999",
           [](const S& scene, const LloydRelaxationOptions& options, RunContext&) {
-            return with_drawing(make_lloyd_relaxation_process(scene.scene, options), scene);
+            return with_drawing(make_lloyd_relaxation_process(scene.input, options), scene);
           }),
   };
 }

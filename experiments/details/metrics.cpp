@@ -115,7 +115,7 @@ void add_density(Rows rows) {
   rows.frame("count_ratio", "1", "details over those at rest", kNone, kShare,
              [](const DetailsScene& scene, const Frame& frame) -> Value {
                return static_cast<double>(required_part(frame, "details").points.rows()) /
-                      static_cast<double>(scene.scene.details.size());
+                      static_cast<double>(scene.input.details.size());
              });
 }
 

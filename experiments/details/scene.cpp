@@ -27,7 +27,7 @@ struct Loading {
   std::shared_ptr<const SurfaceSequence> sequence;  ///< of `motion`, or null
 
   void load_surface() {
-    DetailScene& scene = result.scene;
+    DetailScene& scene = result.input;
     const DetailSurfaceOptions& o = options.surface;
     if (o.kind == DetailSurfaceKind::sequence) {
       if (!sequence) throw Error("there is none", "scene.motion.sequence", "a mesh sequence");
@@ -50,13 +50,13 @@ struct Loading {
     TriMesh mesh =
         open_sequence(still, folder, result.load_warnings, result.input_files)->frame(0).mesh;
     mesh.V = mesh.V * to_rotation(o.turn_deg).toRotationMatrix().transpose();
-    result.scene.surface = std::move(mesh);
-    result.scene.name = still.path;
+    result.input.surface = std::move(mesh);
+    result.input.name = still.path;
   }
 
   [[nodiscard]] Eigen::VectorXd density() const {
     const DensityOptions& o = options.pattern.density;
-    const TriMesh& surface = result.scene.surface;
+    const TriMesh& surface = result.input.surface;
     if (o.kind != DensityKind::array) return gradient_density(surface, o);
     const std::string where = "scene.pattern.density.array";
     const fs::path file = options.surface.file;
@@ -78,7 +78,7 @@ struct Loading {
   }
 
   void load_details() {
-    DetailScene& scene = result.scene;
+    DetailScene& scene = result.input;
     const DetailPatternOptions& o = options.pattern;
     result.region = faces_of_region(scene.surface, o.region);
     if (o.kind == PatternKind::file) {
@@ -115,7 +115,7 @@ struct Loading {
   }
 
   void align(std::vector<Detail>& details) const {
-    const TriMesh& surface = result.scene.surface;
+    const TriMesh& surface = result.input.surface;
     const SurfaceTopology topology(surface);
     std::vector<Eigen::Vector3d> x;
     for (Eigen::Index v = 0; v < surface.V.rows(); ++v) x.emplace_back(surface.V.row(v));
@@ -125,7 +125,7 @@ struct Loading {
 
   void load_motion() {
     const DetailMotionOptions& o = options.motion;
-    DetailScene& scene = result.scene;
+    DetailScene& scene = result.input;
     if (sequence) {
       if (!o.deform.empty() || o.drag)
         throw Error("stands beside a sequence", "scene.motion", "sequence, or deform and drag");
@@ -149,17 +149,17 @@ struct Loading {
 const Frame& DetailsScene::rest() const {
   std::call_once(rest_made_, [&] {
     rest_ =
-        detail_frame(build_detail_mesh(scene.surface, scene.details), scene.motion->parameter(0));
+        detail_frame(build_detail_mesh(input.surface, input.details), input.motion->parameter(0));
   });
   return rest_;
 }
 
 bool DetailsScene::is_one_of(int count, double parameter) const {
-  const int last = scene.motion->frame_count() - 1;
+  const int last = input.motion->frame_count() - 1;
   for (int i = 1; i <= count; ++i) {
     const auto frame = static_cast<int>(std::lround(static_cast<double>(last) * i / count));
     // Recorded parameters went through text.
-    if (std::abs(scene.motion->parameter(frame) - parameter) <= 1e-9 * std::abs(parameter))
+    if (std::abs(input.motion->parameter(frame) - parameter) <= 1e-9 * std::abs(parameter))
       return true;
   }
   return false;
@@ -171,16 +171,16 @@ bool DetailsScene::measures_pairs(double parameter) const {
 
 bool DetailsScene::is_drawn(double parameter) const {
   if (!drawing) return false;
-  return parameter == scene.motion->parameter(0) || is_one_of(drawing->frames, parameter);
+  return parameter == input.motion->parameter(0) || is_one_of(drawing->frames, parameter);
 }
 
 std::map<std::string, double> DetailsScene::facts() const {
-  const Eigen::VectorXd areas = triangle_areas(scene.surface.V, scene.surface.F);
-  return {{"vertices", static_cast<double>(scene.surface.vertex_count())},
-          {"triangles", static_cast<double>(scene.surface.triangle_count())},
+  const Eigen::VectorXd areas = triangle_areas(input.surface.V, input.surface.F);
+  return {{"vertices", static_cast<double>(input.surface.vertex_count())},
+          {"triangles", static_cast<double>(input.surface.triangle_count())},
           {"area", areas.sum()},
-          {"details", static_cast<double>(scene.details.size())},
-          {"frames", static_cast<double>(scene.motion->frame_count())}};
+          {"details", static_cast<double>(input.details.size())},
+          {"frames", static_cast<double>(input.motion->frame_count())}};
 }
 
 std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& options,
@@ -202,7 +202,7 @@ std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& optio
   scene->pair_frames = options.pair_frames;
   scene->pair_sources = options.pair_sources;
   loading.load_drawing();
-  require_valid(scene->scene);
+  require_valid(scene->input);
   return scene;
 }
 

@@ -19,7 +19,7 @@ namespace geoprior::details {
 /// on.
 class DetailsScene final : public Scene {
  public:
-  DetailScene scene;
+  DetailScene input;  ///< what a method is given
   /// Details that the scene's own process of placing gives with other seeds, for noise floors; none
   /// where details come from a file.
   std::vector<std::vector<Detail>> resamples;

@@ -22,8 +22,6 @@ struct RefineOptions {
   double extent = 2;  ///< of a joint's region along its bones, in local radii
 };
 void describe(OptionVisitor& v, RefineOptions& options);
-void describe(OptionVisitor& v, CylinderOptions& options);
-void describe(OptionVisitor& v, FingerOptions& options);
 
 /// Which character, and how its mesh, skeleton and weights come about.
 struct CharacterOptions {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/rig.h"
+#include "core/skeleton.h"
 
 namespace geoprior::skinning {
 

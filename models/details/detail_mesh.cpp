@@ -205,8 +205,6 @@ std::vector<std::array<int, 3>> visible_triangles(const DetailMesh& d, double we
 
 namespace {
 
-std::size_t static_cast<std::size_t>(int i) { return static_cast<std::size_t>(i); }
-
 /// Details become vertices n_surface, n_surface + 1, …
 void insert_details(IntrinsicTriangulation& mesh, std::span<const Detail> details,
                     std::vector<int>& vertex) {
@@ -316,8 +314,6 @@ DetailMesh build_detail_mesh(const TriMesh& rest, std::span<const Detail> detail
 }
 
 namespace {
-
-std::size_t static_cast<std::size_t>(int i) { return static_cast<std::size_t>(i); }
 
 /// Walks from one anchor to another through the faces that a plane cuts.
 class Section {

@@ -72,7 +72,7 @@ class HoleMesh {
   [[nodiscard]] std::vector<char> holes_in_trouble(const std::vector<int>& inside) const;
   [[nodiscard]] double place_of_border(int in, int out, int hole) const;
 
-  void snap_to_borders(std::vector<int>& inside, std::vector<int>& on_border);  // hole_snap.cpp
+  void snap_to_borders(std::vector<int>& inside, std::vector<int>& on_border);
 
   std::vector<Eigen::Vector3d> x_, normal_;
   std::vector<int> first_;  ///< entry of each vertex; -1: none

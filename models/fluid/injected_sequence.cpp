@@ -12,10 +12,10 @@
 namespace geoprior::fluid {
 namespace {
 
-constexpr double kGravity = -9.81;
-constexpr double kDepth = 8;       // of a tank, in cells of resolution 1
-constexpr double kOffset = 0.37;   // of the lattice: no wall lies on nodes
-constexpr double kBumpExtent = 2;  // sigmas of the disc that stands for a bump
+constexpr double kGravity = -9.81;  // m/s^2
+constexpr double kDepth = 8;        // of a tank, in cells of resolution 1
+constexpr double kOffset = 0.37;    // of the lattice: no wall lies on nodes
+constexpr double kBumpExtent = 2;   // sigmas of the disc that stands for a bump
 
 double gauss(double x) { return std::exp(-x * x); }
 
@@ -258,7 +258,6 @@ using Shape = InjectedSequence::Shape;
 constexpr double kLane = 24;    // width of a lane in cells
 constexpr double kLength = 64;  // of the pool in cells
 constexpr int kRingsInALane = 2;
-constexpr double kGravity = -9.81;  // m/s^2
 
 /// Draws the features; lengths below are in cells of resolution 1, times in frames.
 class Layout {

@@ -94,7 +94,7 @@ class InjectedSequence final : public SurfaceSequence {
   std::vector<InjectedCause> causes_;
 };
 
-/// Items and causes of the options; sets the pool's size (injected_layout.cpp).
+/// Items and causes of the options; sets the pool's size.
 std::vector<InjectedSequence::Item> injected_layout(const InjectedOptions& options,
                                                     Eigen::Vector2d& size,
                                                     std::vector<InjectedCause>& causes);

@@ -72,12 +72,12 @@ class ShellDynamics {
   void find_contacts();
   [[nodiscard]] double expected_slip(const ContactPoint& point, double limit) const;
 
-  // One linear solve (linear_step.cpp): the change of velocity, and the reactions (N).
+  // One linear solve: the change of velocity, and the reactions (N).
   bool solve_linear(Eigen::VectorXd& change, Eigen::VectorXd& reaction);
   void add_linear_contacts();
   bool solve_held(const Eigen::VectorXd& prescribed, Eigen::VectorXd& solution);
 
-  // Implicit Euler solved (newton_step.cpp).
+  // Implicit Euler solved by Newton's method.
   bool solve_newton(Step& result, Eigen::VectorXd& reaction);
   void prepare_newton(Step& result);
   bool find_direction(const Eigen::VectorXd& gradient, SecantPairs& secants,

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/mesh.h"
-#include "core/rig.h"
+#include "core/skeleton.h"
 
 namespace geoprior::skinning {
 

@@ -419,8 +419,6 @@ void describe(OptionVisitor& v, SelfReplicatingOptions& options) {
 
 namespace {
 
-std::size_t static_cast<std::size_t>(int i) { return static_cast<std::size_t>(i); }
-
 /// Triplets tried for a triangle before it is left for the next frame: copies may land in a patch
 /// that has enough.
 constexpr int kTries = 4;
@@ -633,12 +631,6 @@ double SelfReplicating::histogram_distance(int t, const std::vector<NewDetail>& 
   const Eigen::VectorXd after = (n * histogram_now_ + 2 * area_per_detail_ * rows) / (n + k);
   return (after - histogram_at_rest_).lpNorm<1>();
 }
-
-namespace {
-
-std::size_t static_cast<std::size_t>(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
 
 bool SelfReplicating::may_fade(int site) const {
   if (!now_.is_detail(site) || now_.site[site].target_weight == 0) return false;

@@ -300,8 +300,6 @@ void refine_under_map(WorkMesh& mesh, const DisplacementSampler& map, const Past
 
 namespace {
 
-constexpr std::size_t kBlock = 4096;
-
 struct Hit {
   double distance = std::numeric_limits<double>::infinity();
   int triangle = -1;

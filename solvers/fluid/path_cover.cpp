@@ -1,3 +1,5 @@
+#include "solvers/fluid/path_cover.h"
+
 #include <lemon/network_simplex.h>
 #include <lemon/smart_graph.h>
 
@@ -7,7 +9,6 @@
 #include <string>
 
 #include "core/error.h"
-#include "solvers/fluid/tracking.h"
 
 // A path cover with fewest costs is a matching of largest gain: n nodes without links are n paths,
 // and a link joins two of them, which gains c_new - c_ij. So nodes are split into one that a link

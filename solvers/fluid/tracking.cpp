@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "solvers/fluid/path_cover.h"
 #include "solvers/fluid/track_events.h"
 #include "solvers/fluid/tracking_links.h"
 

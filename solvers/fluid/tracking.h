@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/options.h"
+#include "solvers/fluid/path_cover.h"
 #include "solvers/fluid/regions.h"
 
 namespace geoprior::fluid {
@@ -29,17 +30,6 @@ struct TrackingOptions {
   double cause_reach = 6;     ///< … and at most this far from it, beside the drop's size (h)
 };
 void describe(OptionVisitor& v, TrackingOptions& options);
-
-/// Minimum-cost vertex-disjoint path cover of a directed acyclic graph with n nodes: paths cost
-/// `new_path_cost` each and links their own cost; every node is in exactly one path. Solved as a
-/// minimum-cost flow (network simplex, costs in units of 1e-4).
-struct PathLink {
-  int from = 0, to = 0;  ///< from < to in time
-  double cost = 0;
-};
-/// @return  successor of every node, -1 at the end of a path
-std::vector<int> cover_by_paths(int nodes, const std::vector<PathLink>& links,
-                                double new_path_cost);
 
 /// A space-time feature: regions of increasing frames (indices into the list given), gaps allowed.
 struct Track {

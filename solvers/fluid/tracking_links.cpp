@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/fluid/path_cover.h"
+
 namespace geoprior::fluid {
 namespace {
 

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "solvers/fluid/path_cover.h"
 #include "solvers/fluid/tracking_motion.h"
 
 namespace geoprior::fluid {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/rig.h"
+#include "core/skeleton.h"
 #include "core/topology.h"
 #include "solvers/skinning/field_cache.h"
 #include "solvers/skinning/operators.h"

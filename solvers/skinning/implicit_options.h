@@ -11,7 +11,7 @@ namespace geoprior::skinning {
 /// How the fields of two bones that share a joint are combined (operators.h has the equations).
 enum class BlendKind { union_max, ricci, gradient_controlled, bulge_in_contact, contact };
 
-/// Opening angle of a blend as a function of the angle between the two gradients (opening.h).
+/// Opening angle of a blend as a function of the angle between the two gradients (operators.h).
 enum class OpeningPreset {
   smooth_finger,
   elbow,

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/rig.h"
+#include "core/skeleton.h"
 #include "testbed/formats/gltf_model.h"
 #include "testbed/formats/gltf_reader.h"
 

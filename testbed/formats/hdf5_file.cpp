@@ -235,9 +235,6 @@ void H5File::save(const std::filesystem::path& file) const {
   write_file_atomically(file, std::span<const std::byte>(image_of(id_, file.string())));
 }
 
-using h5::check;
-using h5::Handle;
-
 namespace {
 
 void write_number(hid_t owner, std::string_view name, hid_t file_type, hid_t memory_type,
@@ -387,9 +384,6 @@ std::map<std::string, std::string> read_all_attributes(hid_t owner, const std::s
 
 }  // namespace h5
 
-using h5::check;
-using h5::Handle;
-
 namespace {
 
 constexpr unsigned kZlibLevel = 4;
@@ -476,9 +470,6 @@ GEOPRIOR_BLOCK(double);
 GEOPRIOR_BLOCK(std::int32_t);
 GEOPRIOR_BLOCK(std::int64_t);
 #undef GEOPRIOR_BLOCK
-
-using h5::check;
-using h5::Handle;
 
 namespace {
 

@@ -5,6 +5,9 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/obj_reader.h"
+#include "testbed/formats/off_reader.h"
+#include "testbed/formats/ply_reader.h"
 #include "testbed/formats/vtk_files.h"
 
 namespace geoprior {

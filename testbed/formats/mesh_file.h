@@ -32,9 +32,4 @@ MeshFile read_mesh_file(const std::filesystem::path& file);
 std::string mesh_file_extensions();
 bool is_mesh_file_extension(std::string extension);
 
-/// `read_mesh_file` for the bytes of a file of each format; `name` is for messages.
-MeshFile parse_obj(std::string_view bytes, const std::string& name);
-MeshFile parse_ply(std::string_view bytes, const std::string& name);
-MeshFile parse_off(std::string_view bytes, const std::string& name);
-
 }  // namespace geoprior

@@ -1,7 +1,8 @@
+#include "testbed/formats/off_reader.h"
+
 #include <limits>
 
 #include "core/error.h"
-#include "testbed/formats/mesh_file.h"
 #include "testbed/formats/polygon_soup.h"
 #include "testbed/formats/text_lines.h"
 

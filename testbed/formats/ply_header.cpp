@@ -75,7 +75,7 @@ PlyHeader::Property property_of(const TextLines& lines) {
 
 std::size_t size_of(PlyHeader::Type type) {
   constexpr std::array<std::size_t, 8> kSizes{1, 1, 2, 2, 4, 4, 4, 8};
-  return kSizes[type];
+  return kSizes[static_cast<std::size_t>(type)];
 }
 
 std::optional<std::size_t> PlyHeader::Element::find(

@@ -1,3 +1,5 @@
+#include "testbed/formats/ply_reader.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -6,7 +8,6 @@
 #include <limits>
 
 #include "core/error.h"
-#include "testbed/formats/mesh_file.h"
 #include "testbed/formats/ply_header.h"
 #include "testbed/formats/polygon_soup.h"
 #include "testbed/formats/text_lines.h"

@@ -21,13 +21,19 @@ const VariantRecord* variant_named(const CaseRecord& in, const std::string& name
 }
 
 bool holds(const ClaimSpec& claim, double left, double right) {
-  if (claim.is == "<=") return left <= right;
-  if (claim.is == "<") return left < right;
-  if (claim.is == ">=") return left >= right;
-  if (claim.is == ">") return left > right;
-  if (claim.is == "==") return std::abs(left - right) <= claim.tolerance;
-  throw Error("unknown comparison '" + claim.is + "'", "claim '" + claim.text + "'",
-              "<=, <, >=, >, ==");
+  switch (claim.is) {
+    case Comparison::less_equal:
+      return left <= right;
+    case Comparison::less:
+      return left < right;
+    case Comparison::greater_equal:
+      return left >= right;
+    case Comparison::greater:
+      return left > right;
+    case Comparison::equal:
+      return std::abs(left - right) <= claim.tolerance;
+  }
+  throw Error("is no comparison", "claim '" + claim.text + "'");
 }
 
 /// "0.2 * 3.4e-06 + 1e-9 m^3 (+- 1e-12)".
@@ -36,7 +42,7 @@ std::string right_text(const ClaimSpec& claim, double other, const std::string& 
   if (claim.factor != 1) text = number_text(claim.factor) + " * " + text;
   if (claim.offset != 0) text += " + " + number_text(claim.offset);
   if (!unit.empty() && unit != "1") text += " " + unit;
-  if (claim.is == "==") text += " (within " + number_text(claim.tolerance) + ")";
+  if (claim.is == Comparison::equal) text += " (within " + number_text(claim.tolerance) + ")";
   return text;
 }
 
@@ -47,7 +53,7 @@ ClaimRecord decided(const ClaimSpec& claim, const std::string& subject, const Qu
   record.left = left.value;
   record.right = claim.factor * other + claim.offset;
   record.holds = holds(claim, record.left, record.right);
-  record.detail = subject + ": " + rounded_text(left.value) + " " + claim.is + " " +
+  record.detail = subject + ": " + rounded_text(left.value) + " " + text_of(claim.is) + " " +
                   right_text(claim, other, left.unit);
   return record;
 }
@@ -64,20 +70,20 @@ void require_parameter(const ClaimSpec& claim, const CaseRecord& in) {
 ClaimRecord decide_in_case(const ClaimSpec& claim, const CaseRecord& in,
                            const VariantRecord& variant, const VariantRecord* of) {
   require_parameter(claim, in);
-  const auto value = [&](const VariantRecord& v, const std::string& reduce) {
+  const auto value = [&](const VariantRecord& v, Reduction reduce) {
     return quantity_of(in, v, claim.metric, claim.at_parameter, reduce);
   };
   const Quantity left = value(variant, claim.reduce);
-  const std::string of_reduce = claim.of_reduce.value_or(claim.reduce);
+  const Reduction of_reduce = claim.of_reduce.value_or(claim.reduce);
   std::string subject = claim.metric + " of " + variant.name;
   if (claim.at_parameter) {
     subject += " at " + in.parameter_name + " " + number_text(*claim.at_parameter) + " " +
                in.parameter_unit;
   } else if (!variant.summary.contains(claim.metric)) {
-    subject += " (" + claim.reduce + ")";
+    subject += " (" + text_of(claim.reduce) + ")";
   }
   if (of != nullptr) subject += " against " + of->name;
-  if (claim.of_reduce) subject += " (" + of_reduce + ")";
+  if (claim.of_reduce) subject += " (" + text_of(of_reduce) + ")";
   const double other = of != nullptr ? value(*of, of_reduce).value : claim.value.value_or(0);
   ClaimRecord record = decided(claim, subject, left, other);
   record.case_name = in.name;
@@ -86,8 +92,9 @@ ClaimRecord decide_in_case(const ClaimSpec& claim, const CaseRecord& in,
 
 /// How far the claim is from failing; negative when it fails.
 double margin(const ClaimSpec& claim, const ClaimRecord& record) {
-  if (claim.is == "==") return claim.tolerance - std::abs(record.left - record.right);
-  return claim.is.starts_with('<') ? record.right - record.left : record.left - record.right;
+  if (claim.is == Comparison::equal) return claim.tolerance - std::abs(record.left - record.right);
+  const bool below = claim.is == Comparison::less_equal || claim.is == Comparison::less;
+  return below ? record.right - record.left : record.left - record.right;
 }
 
 /// Frame by frame; the frame nearest to failing speaks for all. Frames where a side has no value
@@ -135,7 +142,7 @@ std::optional<ClaimRecord> fallen_short(const ClaimSpec& claim, const CaseRecord
 ClaimRecord decide_for(const ClaimSpec& claim, const CaseRecord& in, const VariantRecord& variant,
                        const VariantRecord* of) {
   if (auto record = fallen_short(claim, in, variant, of)) return *record;
-  const bool every = claim.reduce == "every" && !claim.at_parameter;
+  const bool every = claim.reduce == Reduction::every && !claim.at_parameter;
   return every ? decide_every_frame(claim, in, variant, of)
                : decide_in_case(claim, in, variant, of);
 }

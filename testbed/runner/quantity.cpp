@@ -23,20 +23,31 @@ std::string key_list(const Map& map) {
   return text.empty() ? "none there" : text;
 }
 
-double reduced(std::vector<double> values, const std::string& how) {
+double reduced(std::vector<double> values, Reduction how) {
   std::erase_if(values, [](double x) { return std::isnan(x); });
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  if (how == "max") return *std::max_element(values.begin(), values.end());
-  if (how == "min") return *std::min_element(values.begin(), values.end());
-  if (how == "median") return median(values);
-  if (how == "p95") return quantile(values, 0.95);
-  if (how == "p99") return quantile(values, 0.99);
-  if (how == "last") return values.back();
-  const double sum = std::accumulate(values.begin(), values.end(), 0.0);
-  if (how == "sum") return sum;
-  if (how == "mean") return sum / static_cast<double>(values.size());
-  throw Error("unknown reduction '" + how + "'", "reduce",
-              "max, min, median, p95, p99, mean, sum, last");
+  const auto sum = [&] { return std::accumulate(values.begin(), values.end(), 0.0); };
+  switch (how) {
+    case Reduction::max:
+      return *std::max_element(values.begin(), values.end());
+    case Reduction::min:
+      return *std::min_element(values.begin(), values.end());
+    case Reduction::median:
+      return median(values);
+    case Reduction::p95:
+      return quantile(values, 0.95);
+    case Reduction::p99:
+      return quantile(values, 0.99);
+    case Reduction::mean:
+      return sum() / static_cast<double>(values.size());
+    case Reduction::sum:
+      return sum();
+    case Reduction::last:
+      return values.back();
+    case Reduction::every:
+      break;
+  }
+  throw Error("is no number", "reduce = \"every\"", "a claim that is decided frame by frame");
 }
 
 std::size_t frame_at(const CaseRecord& in, const VariantRecord& variant, double parameter) {
@@ -97,7 +108,7 @@ bool same_parameter(double a, double b) {
 }
 
 Quantity quantity_of(const CaseRecord& in, const VariantRecord& variant, const std::string& name,
-                     std::optional<double> at_parameter, const std::string& reduce) {
+                     std::optional<double> at_parameter, Reduction reduce) {
   const Column column = column_of(in, variant, name);
   if (column.of_sequence && at_parameter) {
     throw Error("metric '" + name + "' has one value for all frames", place(in, variant),

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "testbed/runner/run_record.h"
+#include "testbed/runner/spec_terms.h"
 
 namespace geoprior {
 
@@ -15,13 +16,12 @@ struct Quantity {
 };
 
 /// Value of a metric, "timing:<phase>" (median over repetitions) or "diagnostic:<name>" of a
-/// variant: at one parameter, or reduced over the frames ("max", "min", "median", "p95", "p99",
-/// "mean", "sum", "last"; frames without a value are left out). Metrics of a sequence have one
+/// variant: at one parameter, or reduced over the frames. Metrics of a sequence have one
 /// value and take neither.
 ///
 /// @throws Error  when the run has no such quantity, no such frame, or no value there
 Quantity quantity_of(const CaseRecord& in, const VariantRecord& variant, const std::string& name,
-                     std::optional<double> at_parameter, const std::string& reduce);
+                     std::optional<double> at_parameter, Reduction reduce);
 
 /// The value of a metric of frames, of a diagnostic or of a timed phase at the frame of that
 /// parameter; absent when there is no such frame, or no value there.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "testbed/figure_view.h"
+#include "testbed/runner/spec_terms.h"
 #include "testbed/topic.h"
 
 namespace geoprior {
@@ -46,38 +47,34 @@ struct ClaimSpec {
   std::string variant;
   std::optional<std::string> of;  ///< compared with this variant; absent: with `value`
   std::optional<double> value;
-  std::string is = "<=";  ///< "<=", "<", ">=", ">", "=="
+  Comparison is = Comparison::less_equal;
   double factor = 1;
   double offset = 0;
-  double tolerance = 0;  ///< for "=="
+  double tolerance = 0;  ///< for `equal`
   /// Why the claim falls short, where that is known and documented: `run` reports it, `check` lets
   /// it pass.
   std::optional<std::string> known_shortfall;
   std::optional<double> at_parameter;  ///< at = { angle_deg = 90 }; the frame must exist
   std::string at_key;  ///< "angle_deg": parameter name and unit, compared with the scene's
-  /// "max", "min", "median", "p95", "p99", "mean", "sum", "last" over the frames, when there is no
-  /// `at`; "every": the claim must hold at each frame, and the one nearest to failing is recorded.
-  std::string reduce = "max";
-  std::optional<std::string> of_reduce;  ///< of the other side; absent: as `reduce`
-  std::vector<std::string> cases;        ///< empty: every case
+  /// Over the frames, when there is no `at`; of `every` frame, the one nearest to failing is
+  /// recorded.
+  Reduction reduce = Reduction::max;
+  std::optional<Reduction> of_reduce;  ///< of the other side; absent: as `reduce`
+  std::vector<std::string> cases;      ///< empty: every case
 };
 
 /// A quantity across cases.
 struct StudySpec {
   std::string name;
-  /// "exponent": slope of log y against log x; "order": observed order of convergence; "spread":
-  /// standard deviation; "within-spread": distance of the medians of `variant` and `of` over half
-  /// the range of `of`.
-  std::string kind;
+  StudyKind kind = StudyKind::exponent;
   std::string variant;
   std::string
       quantity;  ///< as a claim's metric: of the table, "timing:<phase>", "diagnostic:<name>"
-  std::string against;             ///< a scene fact ("vertices") or a swept key; unused by "spread"
-  std::string reduce = "median";   ///< over the frames, as a claim's
-  std::vector<std::string> cases;  ///< empty: every case that has the variant and `against`
-  std::string finer = "smaller";   ///< of "order": whether smaller x (a step) or "larger" x (a
-                                   ///< count) is the finer discretisation
-  std::string of;                  ///< of "within-spread": the variant that is the yardstick
+  std::string against;  ///< a scene fact ("vertices") or a swept key; unused by spreads
+  Reduction reduce = Reduction::median;  ///< over the frames, as a claim's
+  std::vector<std::string> cases;        ///< empty: every case that has the variant and `against`
+  Finer finer = Finer::smaller;          ///< of `order`
+  std::string of;                        ///< of `within_spread`: the variant that is the yardstick
 };
 
 struct Experiment {

@@ -84,6 +84,9 @@ void read_at(const TomlNode* at, std::optional<double>& parameter, std::string* 
   if (key != nullptr) *key = read.key;
 }
 
+/// `OfReduction` is `same`, then the enumerators of `Reduction` in their order.
+Reduction reduction_of(OfReduction x) { return static_cast<Reduction>(static_cast<int>(x) - 1); }
+
 ClaimSpec claim_of(const ClaimTable& table, const TomlNode& node) {
   ClaimSpec claim;
   claim.text = table.text;
@@ -91,13 +94,13 @@ ClaimSpec claim_of(const ClaimTable& table, const TomlNode& node) {
   claim.variant = table.variant.value_or("");
   claim.of = table.of;
   claim.value = table.value;
-  claim.is = text_of(table.is);
+  claim.is = table.is;
   claim.factor = table.factor;
   claim.offset = table.offset;
   claim.tolerance = table.tolerance;
   claim.known_shortfall = table.known_shortfall;
-  claim.reduce = text_of(table.reduce);
-  if (table.of_reduce != OfReduction::same) claim.of_reduce = text_of(table.of_reduce);
+  claim.reduce = table.reduce;
+  if (table.of_reduce != OfReduction::same) claim.of_reduce = reduction_of(table.of_reduce);
   claim.cases = table.cases;
   read_at(node.find("at"), claim.at_parameter, &claim.at_key);
   return claim;
@@ -125,7 +128,7 @@ void require_sides(const ClaimSpec& claim, const TomlNode& node) {
     throw Error("reduces the frames of no variant", place_of(node, "of_reduce"),
                 "with `of`, which may be the variant itself");
   }
-  if (claim.of_reduce && claim.reduce == "every") {
+  if (claim.of_reduce && claim.reduce == Reduction::every) {
     throw Error("`every` compares frame by frame", place_of(node, "of_reduce"),
                 "another `reduce`, or no `of_reduce`");
   }
@@ -197,9 +200,9 @@ std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
     bool decidable = runs(table.variant, names, place_of(node, "variant"));
     if (table.of) decidable = runs(*table.of, names, place_of(node, "of")) && decidable;
     if (!decidable) continue;
-    studies.push_back({table.name, text_of(table.kind), table.variant, table.quantity,
-                       table.against.value_or(""), text_of(table.reduce), table.cases,
-                       text_of(table.finer), table.of.value_or("")});
+    studies.push_back({table.name, table.kind, table.variant, table.quantity,
+                       table.against.value_or(""), table.reduce, table.cases, table.finer,
+                       table.of.value_or("")});
   }
   return studies;
 }

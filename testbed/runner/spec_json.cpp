@@ -4,9 +4,35 @@
 
 namespace geoprior {
 
-namespace {
-
 using Json = nlohmann::ordered_json;
+
+Json json_of(const TomlNode& node) {
+  switch (node.kind) {
+    case TomlNode::Kind::boolean:
+      return node.boolean;
+    case TomlNode::Kind::integer:
+      return node.integer;
+    case TomlNode::Kind::real:
+      return node.real;
+    case TomlNode::Kind::text:
+      return node.text;
+    case TomlNode::Kind::array: {
+      Json array = Json::array();
+      for (const TomlNode& item : node.items) array.push_back(json_of(item));
+      return array;
+    }
+    case TomlNode::Kind::table: {
+      Json table = Json::object();
+      for (std::size_t i = 0; i < node.keys.size(); ++i) {
+        table[node.keys[i]] = json_of(node.items[i]);
+      }
+      return table;
+    }
+  }
+  return nullptr;
+}
+
+namespace {
 
 /// The JSON text of an option set or value; the text itself should it be none.
 Json embedded(const std::string& text) {

@@ -6,30 +6,13 @@ namespace geoprior {
 namespace {
 
 constexpr std::array<std::string_view, 2> kSizes{"full", "quick"};
-constexpr std::array<std::string_view, 5> kComparisons{"<=", "<", ">=", ">", "=="};
-constexpr std::array<std::string_view, 9> kReductions{"max",  "min", "median", "p95",  "p99",
-                                                      "mean", "sum", "last",   "every"};
 constexpr std::array<std::string_view, 9> kOfReductions{"same", "max",  "min", "median", "p95",
                                                         "p99",  "mean", "sum", "last"};
-constexpr std::array<std::string_view, 4> kStudyKinds{"exponent", "order", "spread",
-                                                      "within-spread"};
-constexpr std::array<std::string_view, 2> kFiner{"smaller", "larger"};
 constexpr std::array<std::string_view, 2> kShadings{"smooth", "flat"};
 constexpr std::array<std::string_view, 3> kMaterials{"clay", "paper", "water"};
 constexpr std::array<std::string_view, 2> kAcross{"variants", "states"};
 
-template <class Enum, std::size_t N>
-std::string name_of(Enum x, const std::array<std::string_view, N>& names) {
-  return std::string(names.at(x));
-}
-
 }  // namespace
-
-std::string text_of(Comparison x) { return name_of(x, kComparisons); }
-std::string text_of(Reduction x) { return name_of(x, kReductions); }
-std::string text_of(OfReduction x) { return name_of(x, kOfReductions); }
-std::string text_of(StudyKind x) { return name_of(x, kStudyKinds); }
-std::string text_of(Finer x) { return name_of(x, kFiner); }
 
 void describe(OptionVisitor& v, HeaderTable& t) {
   v.value("title", t.title, {.doc = "what is shown, one line", .required = true});

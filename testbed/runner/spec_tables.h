@@ -7,6 +7,7 @@
 
 #include "core/options.h"
 #include "testbed/runner/spec.h"
+#include "testbed/runner/spec_terms.h"
 
 namespace geoprior {
 
@@ -40,8 +41,7 @@ struct SweepTable {
   bool base = true;
 };
 
-enum class Comparison { less_equal, less, greater_equal, greater, equal };
-enum class Reduction { max, min, median, p95, p99, mean, sum, last, every };
+/// A reduction of the other side: `same`, or one of those that give a number.
 enum class OfReduction { same, max, min, median, p95, p99, mean, sum, last };
 
 struct ClaimTable {
@@ -59,9 +59,6 @@ struct ClaimTable {
   OfReduction of_reduce = OfReduction::same;
   std::vector<std::string> cases;
 };
-
-enum class StudyKind { exponent, order, spread, within_spread };
-enum class Finer { smaller, larger };
 
 struct StudyTable {
   std::string name;
@@ -104,12 +101,5 @@ void describe(OptionVisitor& v, ToleranceTable& t);
 void describe(OptionVisitor& v, SectionView& t);
 void describe(OptionVisitor& v, RowAbove& t);
 void describe(OptionVisitor& v, FigureViewTable& t);
-
-/// The texts of the enumerators, as files have them.
-std::string text_of(Comparison x);
-std::string text_of(Reduction x);
-std::string text_of(OfReduction x);
-std::string text_of(StudyKind x);
-std::string text_of(Finer x);
 
 }  // namespace geoprior

@@ -32,7 +32,9 @@ void require_positive(double value, const std::string& what, const StudySpec& st
               "study '" + study.name + "', case '" + in.name + "'");
 }
 
-bool is_slope(const StudySpec& study) { return study.kind == "exponent" || study.kind == "order"; }
+bool is_slope(const StudySpec& study) {
+  return study.kind == StudyKind::exponent || study.kind == StudyKind::order;
+}
 
 /// The study's quantity of a variant in a case; absent when the case does not have the variant, or
 /// only some of its frames.
@@ -49,7 +51,7 @@ void add_point(StudyRecord& record, const StudySpec& study, const CaseRecord& in
       is_slope(study) ? abscissa(in, study) : static_cast<double>(record.x.size());
   const std::optional<double> y = x ? value_in(in, study.variant, study) : std::nullopt;
   if (!y) return;
-  if (study.kind == "within-spread") {
+  if (study.kind == StudyKind::within_spread) {
     const std::optional<double> other = value_in(in, study.of, study);
     if (!other) return;
     record.y_of.push_back(*other);
@@ -70,24 +72,25 @@ Interval logarithmic_slope(const StudyRecord& record) {
 }
 
 Interval interval_of(const StudySpec& study, const StudyRecord& record, std::uint64_t seed) {
-  if (study.kind == "spread") {
+  if (study.kind == StudyKind::spread) {
     return spread_with_interval(record.y, RandomStream(seed, "study " + study.name));
   }
-  if (study.kind == "within-spread") {
+  if (study.kind == StudyKind::within_spread) {
     return median_distance_with_interval(record.y, record.y_of,
                                          RandomStream(seed, "study " + study.name));
   }
   const Interval slope = logarithmic_slope(record);
   // Errors fall with a smaller step, or with a larger count: the order is positive either way.
-  if (study.kind == "order" && study.finer == "larger") {
+  if (study.kind == StudyKind::order && study.finer == Finer::larger) {
     return {-slope.value, -slope.high, -slope.low};
   }
   return slope;
 }
 
 std::string needed_by(const StudySpec& study) {
-  if (study.kind == "spread") return "at least 2 cases with variant '" + study.variant + "'";
-  if (study.kind == "within-spread") {
+  if (study.kind == StudyKind::spread)
+    return "at least 2 cases with variant '" + study.variant + "'";
+  if (study.kind == StudyKind::within_spread) {
     return "at least 2 cases with variants '" + study.variant + "' and '" + study.of + "'";
   }
   return "at least 2 cases with '" + study.against + "', a fact of the scene or a swept key";
@@ -100,7 +103,7 @@ std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRec
   for (const StudySpec& study : experiment.studies) {
     StudyRecord made;
     made.name = study.name;
-    made.kind = study.kind;
+    made.kind = text_of(study.kind);
     made.quantity = study.quantity;
     for (const CaseRecord& in : record.cases) {
       const bool named = study.cases.empty() || std::find(study.cases.begin(), study.cases.end(),

@@ -116,7 +116,9 @@ vtkSmartPointer<vtkActor> main_actor(const Part& part, const ViewWindow& window,
   if (colored && part.kind == Part::Kind::grid) actor->GetProperty()->LightingOff();
   if (style.material == PanelStyle::Material::water && surface) {
     const bool has_ground = colored && !style.scale->palette.empty();
-    const Tint tint = has_ground ? Tint::but_ground : colored ? Tint::all : Tint::none;
+    const WaterTint tint = has_ground ? WaterTint::but_ground
+                           : colored  ? WaterTint::all
+                                      : WaterTint::none;
     shade_as_water(actor, window, tint, has_ground ? style.scale->palette.front() : Color{});
   }
   if (style.edges && surface) show_edges(pixels_per_pixel, actor);

@@ -16,6 +16,7 @@
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/gltf_writer.h"
 #include "testbed/formats/vtk_files.h"
+#include "testbed/runner/run_record.h"
 #include "testbed/view/mesh_text.h"
 
 namespace geoprior {

@@ -43,13 +43,13 @@ constexpr const char* kShader = R"(
   fragOutput0 = vec4(min(water, vec3(1.0)), fragOutput0.a);
 )";
 
-std::string tint_code(Tint tint, const Eigen::Vector3d& ground) {
+std::string tint_code(WaterTint tint, const Eigen::Vector3d& ground) {
   switch (tint) {
-    case Tint::none:
+    case WaterTint::none:
       return "";
-    case Tint::all:
+    case WaterTint::all:
       return "body = mix(body, diffuseColor, 0.72);";
-    case Tint::but_ground:
+    case WaterTint::but_ground:
       break;
   }
   // The waves of a tinted place stay visible: its paint is as light or dark as the water was.
@@ -61,7 +61,7 @@ std::string tint_code(Tint tint, const Eigen::Vector3d& ground) {
 
 }  // namespace
 
-void shade_as_water(vtkActor* actor, const ViewWindow& window, Tint tint,
+void shade_as_water(vtkActor* actor, const ViewWindow& window, WaterTint tint,
                     const std::array<double, 3>& ground) {
   std::string code = kShader;
   code.replace(code.find("TINT"), 4, tint_code(tint, {ground[0], ground[1], ground[2]}));

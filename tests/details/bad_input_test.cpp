@@ -13,8 +13,10 @@
 #include "testbed/view/mesh_text.h"
 #include "tests/testbed/run_fixture.h"
 
-namespace geoprior::details::test {
+namespace geoprior::details {
 namespace {
+
+using namespace test;
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -203,4 +205,4 @@ TEST_F(BadDetails, NameTheKeyInTheFile) {
 }
 
 }  // namespace
-}  // namespace geoprior::details::test
+}  // namespace geoprior::details

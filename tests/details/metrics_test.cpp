@@ -25,13 +25,13 @@ class DetailsMetrics : public ::testing::Test {
     DetailPatternOptions pattern;
     pattern.count = 120;
     const Eigen::VectorXd density = gradient_density(plane, {});
-    scene.scene.surface = plane;
-    scene.scene.details = scatter(plane, pattern, density);
+    scene.input.surface = plane;
+    scene.input.details = scatter(plane, pattern, density);
     for (pattern.seed = 2; pattern.seed < 4; ++pattern.seed)
       scene.resamples.push_back(scatter(plane, pattern, density));
     scene.region.assign(plane.F.rows(), 1);
     scene.pair_frames = 1;
-    scene.scene.motion = std::make_shared<StoredMotion>(
+    scene.input.motion = std::make_shared<StoredMotion>(
         std::vector<Eigen::MatrixX3d>{plane.V, 1.25 * plane.V, kGrowth * plane.V},
         std::vector<double>{0, 1, 2});
     for (MetricEntry& entry : metrics()) metrics[entry.name] = std::move(entry);
@@ -39,8 +39,8 @@ class DetailsMetrics : public ::testing::Test {
 
   /// The details as they are, on the plane scaled by `factor`.
   [[nodiscard]] DetailMesh details_at(double factor) const {
-    DetailMesh details = build_detail_mesh(scene.scene.surface, scene.scene.details);
-    move_surface(details, factor * scene.scene.surface.V, LengthRule::chord);
+    DetailMesh details = build_detail_mesh(scene.input.surface, scene.input.details);
+    move_surface(details, factor * scene.input.surface.V, LengthRule::chord);
     return details;
   }
   [[nodiscard]] std::optional<double> value(const std::string& name, const Frame& frame) const {
@@ -123,7 +123,7 @@ TEST_F(DetailsMetrics, SpectrumShowsSpacingAndDirection) {
   EXPECT_GT(value("spectrum_distance", scaled).value(),
             1.5 * value("spectrum_noise", scaled).value());
   DetailMesh details = details_at(1);
-  Eigen::MatrixX3d V = scene.scene.surface.V;
+  Eigen::MatrixX3d V = scene.input.surface.V;
   V.col(0) *= 2;
   move_surface(details, V, LengthRule::chord);
   const Frame stretched = detail_frame(details, 2);
@@ -160,7 +160,7 @@ TEST_F(DetailsMetrics, ADetailThatComesAtOncePops) {
   const Frame first = detail_frame(details, 0);
   insert(details, 0.5);
   const Frame second = detail_frame(details, 1);
-  move_surface(details, 1.25 * scene.scene.surface.V, LengthRule::chord);
+  move_surface(details, 1.25 * scene.input.surface.V, LengthRule::chord);
   const std::vector<Frame> frames{first, second, detail_frame(details, 2)};
   EXPECT_NEAR(over("weight_step", frames).value(), 0.5, 1e-12);
   EXPECT_NEAR(over("popping", frames).value(), 0.5, 1e-12);

@@ -10,8 +10,10 @@
 #include "testbed/view/mesh_text.h"
 #include "tests/testbed/run_fixture.h"
 
-namespace geoprior::details::test {
+namespace geoprior::details {
 namespace {
+
+using namespace test;
 
 using ::testing::HasSubstr;
 
@@ -53,11 +55,11 @@ const std::string kSmall =
 
 TEST_F(DetailsScenes, DefaultsToThousandDetailsOnASquareMetre) {
   const auto s = scene("");
-  EXPECT_EQ(s->scene.details.size(), 1000U);
-  EXPECT_NEAR(triangle_areas(s->scene.surface.V, s->scene.surface.F).sum(), 1, 1e-12);
-  EXPECT_EQ(s->scene.motion->frame_count(), 241);
+  EXPECT_EQ(s->input.details.size(), 1000U);
+  EXPECT_NEAR(triangle_areas(s->input.surface.V, s->input.surface.F).sum(), 1, 1e-12);
+  EXPECT_EQ(s->input.motion->frame_count(), 241);
   EXPECT_EQ(s->resamples.size(), 3U);
-  EXPECT_NE(s->resamples[0][0].at.barycentric, s->scene.details[0].at.barycentric);
+  EXPECT_NE(s->resamples[0][0].at.barycentric, s->input.details[0].at.barycentric);
 }
 
 TEST_F(DetailsScenes, ReadSurfacesInTheirUnitAndTurnThem) {
@@ -71,7 +73,7 @@ TEST_F(DetailsScenes, ReadSurfacesInTheirUnitAndTurnThem) {
   const auto s = scene(
       "surface = { kind = \"file\", file = \"cm.obj\", scale = 0.01, turn_deg = [90, 0, 0] }\n"
       "pattern = { kind = \"uniform\", count = 10 }\n");
-  EXPECT_NEAR((s->scene.surface.V.row(2) - Eigen::RowVector3d(1, 0, 1)).norm(), 0, 1e-12);
+  EXPECT_NEAR((s->input.surface.V.row(2) - Eigen::RowVector3d(1, 0, 1)).norm(), 0, 1e-12);
   ASSERT_EQ(s->inputs().size(), 1U);
   EXPECT_EQ(s->inputs()[0].filename(), "cm.obj");
 }
@@ -91,8 +93,8 @@ TEST_F(DetailsScenes, TakeTheirDensityFromAnArrayOfTheSurface) {
   const auto s = scene(
       "surface = { kind = \"file\", file = \"s.vtp\" }\npattern = { kind = \"uniform\", count = "
       "200, density = { kind = \"array\", array = \"rho\" } }\n");
-  for (const Detail& d : s->scene.details)
-    EXPECT_LE(position_of(d.at, s->scene.surface.V, s->scene.surface.F).x(), 1 + 1e-12);
+  for (const Detail& d : s->input.details)
+    EXPECT_LE(position_of(d.at, s->input.surface.V, s->input.surface.F).x(), 1 + 1e-12);
 }
 
 TEST_F(DetailsScenes, WarnOfAPatternThatDoesNotFit) {
@@ -140,4 +142,4 @@ TEST_F(DetailsScenes, AreDrawnInTheFramesAskedFor) {
 }
 
 }  // namespace
-}  // namespace geoprior::details::test
+}  // namespace geoprior::details

@@ -18,8 +18,10 @@
 #include "tests/fluid/map_waves.h"
 #include "tests/testbed/run_fixture.h"
 
-namespace geoprior::fluid::test {
+namespace geoprior::fluid {
 namespace {
+
+using namespace test;
 
 using ::testing::AllOf;
 using ::testing::Contains;
@@ -297,4 +299,4 @@ TEST_F(KilledLiquid, GoesOnAtItsLastFrameAndEndsAsUndisturbed) {
 }
 
 }  // namespace
-}  // namespace geoprior::fluid::test
+}  // namespace geoprior::fluid

@@ -5,7 +5,7 @@
 #include <complex>
 #include <numbers>
 
-namespace geoprior::fluid::test {
+namespace geoprior::fluid {
 
 /// Fourier coefficients of N x N heights, row ky, column kx in 0 … N-1, by the sum itself:
 /// independent of the library that made them.
@@ -23,4 +23,4 @@ inline Eigen::MatrixXcd ocean_modes(const Eigen::VectorXd& heights, int n) {
 /// Waves along the patch of a row or column of the coefficients.
 inline int waves_of(int index, int n) { return index <= n / 2 ? index : index - n; }
 
-}  // namespace geoprior::fluid::test
+}  // namespace geoprior::fluid

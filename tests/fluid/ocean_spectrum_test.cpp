@@ -142,7 +142,7 @@ double ring_power(const Eigen::MatrixXcd& modes, int n, double radius) {
   int count = 0;
   for (int j = 0; j < n; ++j) {
     for (int i = 0; i < n; ++i) {
-      const double k = std::hypot(test::waves_of(i, n), test::waves_of(j, n));
+      const double k = std::hypot(waves_of(i, n), waves_of(j, n));
       if (std::abs(k - radius) > 0.5) continue;
       // Brought to the middle of the ring: the slope inside it would bias the mean.
       sum += std::norm(modes(j, i)) * std::pow(k / radius, 4);
@@ -162,7 +162,7 @@ TEST(OceanSpectrum, HeightsHaveTheTailOfTheirSpectrum) {
     o.samples = 64;
     double low = 0, high = 0;
     for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-      const auto modes = test::ocean_modes(Ocean(o, seed).heights(0), 64);
+      const auto modes = ocean_modes(Ocean(o, seed).heights(0), 64);
       low += ring_power(modes, 64, 6);
       high += ring_power(modes, 64, 24);
     }

@@ -53,19 +53,18 @@ TEST(Ocean, EveryModeObeysTheDispersionRelation) {
     o.depth = depth;
     const Ocean ocean(o, 7);
     const double t = 12.5, s = 0.3;
-    const auto before = test::ocean_modes(ocean.heights(t - s), 32);
-    const auto now = test::ocean_modes(ocean.heights(t), 32);
-    const auto after = test::ocean_modes(ocean.heights(t + s), 32);
+    const auto before = ocean_modes(ocean.heights(t - s), 32);
+    const auto now = ocean_modes(ocean.heights(t), 32);
+    const auto after = ocean_modes(ocean.heights(t + s), 32);
     int checked = 0;
     for (int j = 0; j < 32; ++j) {
       for (int i = 0; i < 32; ++i) {
         if (i == 16 || j == 16 || (i == 0 && j == 0)) continue;
-        const double k = 2 * kPi / 50 * std::hypot(test::waves_of(i, 32), test::waves_of(j, 32));
+        const double k = 2 * kPi / 50 * std::hypot(waves_of(i, 32), waves_of(j, 32));
         const double exact = std::sqrt(9.81 * k * std::tanh(k * depth));
         const Complex c = (before(j, i) + after(j, i)) / (2.0 * now(j, i));
         EXPECT_NEAR(std::acos(c.real()) / s / exact, 1, 1e-6) << i << " " << j;
-        EXPECT_NEAR(ocean.frequency(test::waves_of(i, 32), test::waves_of(j, 32)) / exact, 1,
-                    1e-14);
+        EXPECT_NEAR(ocean.frequency(waves_of(i, 32), waves_of(j, 32)) / exact, 1, 1e-14);
         ++checked;
       }
     }
@@ -80,13 +79,13 @@ TEST(Ocean, OneSidedSpectrumMovesDownwindAtPhaseSpeed) {
   o.wind_direction_deg = 90;
   const Ocean ocean(o, 3);
   const double s = 0.2;
-  const auto now = test::ocean_modes(ocean.heights(4), 32);
-  const auto after = test::ocean_modes(ocean.heights(4 + s), 32);
+  const auto now = ocean_modes(ocean.heights(4), 32);
+  const auto after = ocean_modes(ocean.heights(4 + s), 32);
   for (int j = 1; j < 16; ++j) {  // ky > 0: downwind
     for (int i = 0; i < 32; ++i) {
       if (i == 16) continue;
       const Complex turn = after(j, i) / now(j, i);
-      const double omega = ocean.frequency(test::waves_of(i, 32), j);
+      const double omega = ocean.frequency(waves_of(i, 32), j);
       EXPECT_NEAR(std::abs(turn - std::polar(1.0, -omega * s)), 0, 1e-9) << i << " " << j;
     }
   }
@@ -94,7 +93,7 @@ TEST(Ocean, OneSidedSpectrumMovesDownwindAtPhaseSpeed) {
 
 TEST(Ocean, NyquistModesAndTheMeanCarryNothing) {
   const Ocean ocean(all_directions(16, 30), 5);
-  const auto c = test::ocean_modes(ocean.heights(1.25), 16);
+  const auto c = ocean_modes(ocean.heights(1.25), 16);
   EXPECT_NEAR(c.row(8).cwiseAbs().maxCoeff(), 0, 1e-15);
   EXPECT_NEAR(c.col(8).cwiseAbs().maxCoeff(), 0, 1e-15);
   EXPECT_NEAR(std::abs(c(0, 0)), 0, 1e-15);

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "metrics/optimal_assignment.h"
+#include "solvers/fluid/path_cover.h"
 #include "solvers/fluid/tracking.h"
 
 namespace geoprior::fluid {

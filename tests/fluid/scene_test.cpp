@@ -10,8 +10,10 @@
 #include "experiments/fluid/topic.h"
 #include "tests/testbed/run_fixture.h"
 
-namespace geoprior::fluid::test {
+namespace geoprior::fluid {
 namespace {
+
+using namespace test;
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -135,4 +137,4 @@ TEST_F(FluidScenes, GridsTooLargeForMemoryAreRefusedBeforeTheyStart) {
 }
 
 }  // namespace
-}  // namespace geoprior::fluid::test
+}  // namespace geoprior::fluid

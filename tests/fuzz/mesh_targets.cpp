@@ -1,5 +1,8 @@
 #include "testbed/formats/mesh_file.h"
 #include "testbed/formats/mesh_sequence_repair.h"
+#include "testbed/formats/obj_reader.h"
+#include "testbed/formats/off_reader.h"
+#include "testbed/formats/ply_reader.h"
 #include "tests/fuzz/allow_error.h"
 #include "tests/fuzz/targets.h"
 

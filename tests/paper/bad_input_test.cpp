@@ -4,10 +4,13 @@
 
 #include <fstream>
 
+#include "experiments/paper/topic.h"
 #include "tests/testbed/run_fixture.h"
 
-namespace geoprior::paper::test {
+namespace geoprior::paper {
 namespace {
+
+using namespace test;
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -189,4 +192,4 @@ TEST_F(BadSheet, NamesTheDrawingAndItsPath) {
 }
 
 }  // namespace
-}  // namespace geoprior::paper::test
+}  // namespace geoprior::paper

@@ -10,8 +10,10 @@
 #include "testbed/home.h"
 #include "testbed/runner/spec.h"
 
-namespace geoprior::paper::test {
+namespace geoprior::paper {
 namespace {
+
+using namespace test;
 
 namespace fs = std::filesystem;
 
@@ -52,4 +54,4 @@ TEST(PaperExperiments, NeverPullTwoHandlesFartherApartThanTheirPatternAllows) {
 }
 
 }  // namespace
-}  // namespace geoprior::paper::test
+}  // namespace geoprior::paper

@@ -9,8 +9,10 @@
 #include "experiments/paper/topic.h"
 #include "tests/testbed/run_fixture.h"
 
-namespace geoprior::paper::test {
+namespace geoprior::paper {
 namespace {
+
+using namespace test;
 
 class PaperScenes : public RunTest {
  protected:
@@ -119,4 +121,4 @@ TEST_F(PaperScenes, PatternsRunCounterClockwiseHoweverTheyAreGiven) {
 }
 
 }  // namespace
-}  // namespace geoprior::paper::test
+}  // namespace geoprior::paper

@@ -6,11 +6,14 @@
 #include <limits>
 
 #include "core/error.h"
+#include "experiments/skinning/topic.h"
 #include "tests/testbed/gltf_samples.h"
 #include "tests/testbed/run_fixture.h"
 
-namespace geoprior::skinning::test {
+namespace geoprior::skinning {
 namespace {
+
+using namespace test;
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -187,4 +190,4 @@ TEST_F(BadCharacter, FileGivenAsFolderIsNamed) {
 }
 
 }  // namespace
-}  // namespace geoprior::skinning::test
+}  // namespace geoprior::skinning

@@ -28,7 +28,7 @@ class BentTube : public ::testing::Test {
               .toRotationMatrix();
       scene.frame_pose.push_back(pose);
     }
-    for (MetricEntry& entry : metrics()) metrics[entry.name] = std::move(entry);
+    for (MetricEntry& entry : skinning::metrics()) metrics[entry.name] = std::move(entry);
   }
 
   [[nodiscard]] Frame posed(std::size_t i) const {

@@ -65,27 +65,28 @@ const RunRecord kTwo = record_of({variant("a", {1, 5, 2}), variant("b", {4, 10, 
 
 TEST(Claims, ReductionsAndFramesPickTheirValue) {
   const VariantRecord& a = kTwo.cases[0].variants[0];
-  const auto value = [&](const char* name, std::optional<double> at, const char* reduce) {
+  const auto value = [&](const char* name, std::optional<double> at, Reduction reduce) {
     return quantity_of(kTwo.cases[0], a, name, at, reduce).value;
   };
-  EXPECT_EQ(value("error", {}, "max"), 5);
-  EXPECT_EQ(value("error", {}, "min"), 1);
-  EXPECT_EQ(value("error", {}, "median"), 2);
-  EXPECT_NEAR(value("error", {}, "mean"), 8.0 / 3, 1e-15);
-  EXPECT_EQ(value("error", {}, "last"), 2);
-  EXPECT_EQ(value("error", {}, "sum"), 8);
+  EXPECT_EQ(value("error", {}, Reduction::max), 5);
+  EXPECT_EQ(value("error", {}, Reduction::min), 1);
+  EXPECT_EQ(value("error", {}, Reduction::median), 2);
+  EXPECT_NEAR(value("error", {}, Reduction::mean), 8.0 / 3, 1e-15);
+  EXPECT_EQ(value("error", {}, Reduction::last), 2);
+  EXPECT_EQ(value("error", {}, Reduction::sum), 8);
   // numpy.quantile([1, 2, 5], 0.95) = 2 + 0.9 (5 - 2)
-  EXPECT_NEAR(value("error", {}, "p95"), 4.7, 1e-14);
-  EXPECT_NEAR(value("error", {}, "p99"), 4.94, 1e-14);
-  EXPECT_NEAR(value("timing:solve", {}, "p95"), 0.47, 1e-14) << "of the frames' medians";
-  EXPECT_EQ(value("error", 45, "max"), 5);
-  EXPECT_EQ(value("whole", {}, "max"), 7);
-  EXPECT_EQ(value("timing:solve", {}, "median"), 0.2) << "median of the frames' medians";
-  EXPECT_EQ(value("timing:contact", {}, "median"), 0.25) << "what was not entered is left out";
+  EXPECT_NEAR(value("error", {}, Reduction::p95), 4.7, 1e-14);
+  EXPECT_NEAR(value("error", {}, Reduction::p99), 4.94, 1e-14);
+  EXPECT_NEAR(value("timing:solve", {}, Reduction::p95), 0.47, 1e-14) << "of the frames' medians";
+  EXPECT_EQ(value("error", 45, Reduction::max), 5);
+  EXPECT_EQ(value("whole", {}, Reduction::max), 7);
+  EXPECT_EQ(value("timing:solve", {}, Reduction::median), 0.2) << "median of the frames' medians";
+  EXPECT_EQ(value("timing:contact", {}, Reduction::median), 0.25)
+      << "what was not entered is left out";
 }
 
 TEST(Claims, EveryComparisonFollowsItsDefinition) {
-  const auto holds = [](const char* is, double left_value, double tolerance = 0) {
+  const auto holds = [](Comparison is, double left_value, double tolerance = 0) {
     ClaimSpec c = claim("error", "");
     c.at_parameter = 0;
     c.value = left_value;
@@ -93,13 +94,13 @@ TEST(Claims, EveryComparisonFollowsItsDefinition) {
     c.tolerance = tolerance;
     return decide(c, kTwo).holds;
   };
-  EXPECT_TRUE(holds("<=", 1));
-  EXPECT_FALSE(holds("<", 1));
-  EXPECT_TRUE(holds("<", 1.1));
-  EXPECT_TRUE(holds(">=", 1));
-  EXPECT_FALSE(holds(">", 1));
-  EXPECT_FALSE(holds("==", 1.25, 0.2));
-  EXPECT_TRUE(holds("==", 1.25, 0.25));
+  EXPECT_TRUE(holds(Comparison::less_equal, 1));
+  EXPECT_FALSE(holds(Comparison::less, 1));
+  EXPECT_TRUE(holds(Comparison::less, 1.1));
+  EXPECT_TRUE(holds(Comparison::greater_equal, 1));
+  EXPECT_FALSE(holds(Comparison::greater, 1));
+  EXPECT_FALSE(holds(Comparison::equal, 1.25, 0.2));
+  EXPECT_TRUE(holds(Comparison::equal, 1.25, 0.25));
 }
 
 TEST(Claims, FactorAndOffsetApplyToTheOtherSide) {
@@ -118,8 +119,8 @@ TEST(Claims, FactorAndOffsetApplyToTheOtherSide) {
 
 TEST(Claims, OfReduceComparesAVariantWithItselfUnderAnotherReduction) {
   ClaimSpec c = claim("timing:solve", "a");
-  c.reduce = "p95";
-  c.of_reduce = "median";
+  c.reduce = Reduction::p95;
+  c.of_reduce = Reduction::median;
   c.factor = 2;
   const ClaimRecord record = decide(c, kTwo);
   EXPECT_NEAR(record.left, 0.47, 1e-14);
@@ -135,7 +136,7 @@ TEST(Claims, OfAVariantThatFailedFallShort) {
   record.cases[0].variants[1].status = "failed";
   record.cases[0].variants[1].error = "does not converge";
   ClaimSpec c = claim("error", "b");
-  c.reduce = "every";
+  c.reduce = Reduction::every;
   const ClaimRecord decided = decide(c, record);
   EXPECT_FALSE(decided.holds) << "every frame that b has would hold it";
   EXPECT_THAT(decided.detail, HasSubstr("variant 'b' failed after 3 frames: does not converge"));
@@ -145,7 +146,7 @@ TEST(Claims, OfAVariantThatFailedFallShort) {
 
 TEST(Claims, EveryFrameMeansTheWorstFrame) {
   ClaimSpec c = claim("error", "b");
-  c.reduce = "every";
+  c.reduce = Reduction::every;
   c.factor = 0.5;
   ClaimRecord record = decide(c, kTwo);
   EXPECT_TRUE(record.holds) << "1 <= 2, 5 <= 5, 2 <= 10";
@@ -190,7 +191,7 @@ RunRecord family(const std::vector<double>& n, Y y) {
   return record;
 }
 
-StudySpec study(const std::string& kind, const std::string& against) {
+StudySpec study(StudyKind kind, const std::string& against) {
   StudySpec s;
   s.name = "s";
   s.kind = kind;
@@ -208,7 +209,7 @@ StudyRecord make(const StudySpec& s, const RunRecord& record) {
 
 TEST(Studies, ExponentOfAPowerLawIsExactWithAnIntervalOfRoundOff) {
   const RunRecord record = family({10, 20, 40, 80}, [](double n) { return 3 * std::pow(n, 1.1); });
-  const StudyRecord s = make(study("exponent", "vertices"), record);
+  const StudyRecord s = make(study(StudyKind::exponent, "vertices"), record);
   EXPECT_NEAR(s.value, 1.1, 1e-12);
   EXPECT_NEAR(s.high - s.low, 0, 1e-12);
   EXPECT_EQ(s.x.size(), 4U);
@@ -216,16 +217,16 @@ TEST(Studies, ExponentOfAPowerLawIsExactWithAnIntervalOfRoundOff) {
 
 TEST(Studies, OrderIsPositiveForStepsAndForCounts) {
   const RunRecord by_step = family({0.1, 0.05, 0.025}, [](double h) { return h * h; });
-  EXPECT_NEAR(make(study("order", "scene.n"), by_step).value, 2, 1e-12);
+  EXPECT_NEAR(make(study(StudyKind::order, "scene.n"), by_step).value, 2, 1e-12);
   const RunRecord by_count = family({8, 16, 32}, [](double n) { return 5 / (n * n); });
-  StudySpec s = study("order", "vertices");
-  s.finer = "larger";
+  StudySpec s = study(StudyKind::order, "vertices");
+  s.finer = Finer::larger;
   EXPECT_NEAR(make(s, by_count).value, 2, 1e-12);
 }
 
 TEST(Studies, ClaimsDecideThem) {
   Experiment e;
-  e.studies = {study("exponent", "vertices")};
+  e.studies = {study(StudyKind::exponent, "vertices")};
   ClaimSpec c = claim("study:s", "");
   c.value = 1.1;
   e.claims = {c};
@@ -236,18 +237,19 @@ TEST(Studies, ClaimsDecideThem) {
 
 TEST(Studies, TooFewCasesAndValuesWithoutLogarithmAreErrors) {
   const auto zero = [](double) { return 0.0; };
-  EXPECT_THROW(make(study("exponent", "vertices"), family({1, 2}, zero)), Error);
-  EXPECT_THROW(make(study("exponent", "faces"), family({1, 2}, zero)), Error);
-  EXPECT_THROW(make(study("exponent", "vertices"), family({1}, [](double n) { return n; })), Error);
+  EXPECT_THROW(make(study(StudyKind::exponent, "vertices"), family({1, 2}, zero)), Error);
+  EXPECT_THROW(make(study(StudyKind::exponent, "faces"), family({1, 2}, zero)), Error);
+  EXPECT_THROW(
+      make(study(StudyKind::exponent, "vertices"), family({1}, [](double n) { return n; })), Error);
 }
 
 TEST(Studies, SpreadIsTheStandardDeviationWithAReproducibleInterval) {
   const RunRecord record = family({2, 4, 4, 4, 5, 5, 7, 9}, [](double n) { return n; });
-  const StudyRecord s = make(study("spread", ""), record);
+  const StudyRecord s = make(study(StudyKind::spread, ""), record);
   EXPECT_NEAR(s.value, std::sqrt(32.0 / 7), 1e-14) << "sum of squares about the mean 5 is 32";
   EXPECT_LT(s.low, s.value);
   EXPECT_GT(s.high, s.value);
-  EXPECT_EQ(make(study("spread", ""), record).low, s.low);
+  EXPECT_EQ(make(study(StudyKind::spread, ""), record).low, s.low);
 }
 
 /// Cases of two variants with these errors.
@@ -262,7 +264,7 @@ RunRecord seeds(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 StudySpec within_spread() {
-  StudySpec s = study("within-spread", "");
+  StudySpec s = study(StudyKind::within_spread, "");
   s.of = "b";
   return s;
 }

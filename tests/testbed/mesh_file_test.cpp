@@ -9,6 +9,9 @@
 #include <cstring>
 
 #include "core/topology.h"
+#include "testbed/formats/obj_reader.h"
+#include "testbed/formats/off_reader.h"
+#include "testbed/formats/ply_reader.h"
 #include "testbed/formats/polygon_soup.h"
 #include "testbed/formats/vtk_files.h"
 #include "testbed/view/mesh_text.h"
