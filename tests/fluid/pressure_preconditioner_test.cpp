@@ -128,7 +128,7 @@ Eigen::VectorXd v_cycle(const Level& level, const Eigen::VectorXd& b) {
 }
 
 TEST(PressureMultigrid, IsTheVCycleOfGalerkinMatricesOverAggregates) {
-  const PressureSystem system = blob({11, 10, 9});  // 900 unknowns, then 150, then 27
+  const PressureSystem system = blob({11, 10, 9});  // about 900 unknowns, then 150, then 27
   Level finest{matrix_of(system), {}};
   for (int c = 1; c <= system.n; ++c) finest.cell.push_back(place(system, c));
   const Eigen::VectorXd r = random_vector(system.n);

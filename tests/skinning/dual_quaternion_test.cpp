@@ -132,7 +132,8 @@ TEST(DualQuaternionBlend, BeyondAHalfTurnTheShorterWayIsTaken) {
   EXPECT_LE(fixtures::largest_distance(beyond, back), 1e-14);
 }
 
-// Joints that turn by up to 162 degrees about different axes: signs and any number of influences.
+// Joints that turn by up to 173 degrees about different axes: any number of influences, and with
+// five copies two joints whose quaternions have a negative product, so that a sign matters.
 TEST(DualQuaternionBlend, LanesAgreeWithTheFormula) {
   for (int copies = 1; copies <= 5; ++copies) {
     const RiggedMesh rig = fixtures::cylinder_of_many_influences(copies);

@@ -148,7 +148,7 @@ TEST(FieldCache, SamplesTheTrilinearSumOfTheFieldAtItsNodes) {
     }
     const Float4 got = cache.sample(Float4{static_cast<float>(u.x()), static_cast<float>(u.y()),
                                            static_cast<float>(u.z()), 0.0F});
-    // Coordinates up to 20 cells and values near 1 in single precision.
+    // Grid coordinates and values are in single precision.
     for (int k = 0; k < 4; ++k) EXPECT_NEAR(got[k], expected[k], 1e-5);
   }
 }
