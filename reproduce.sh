@@ -41,5 +41,9 @@ for id in "${ids[@]}"; do
   [ "$status" -le 1 ] || exit "$status"
   [ "$status" -le "$worst" ] || worst=$status
 done
-"$geoprior" report "${ids[@]}"
+# One run has said where its picture and its report are; several get an overview and a report of all.
+if [ "${#ids[@]}" -gt 1 ]; then
+  printf '\n'
+  "$geoprior" report "${ids[@]}"
+fi
 exit "$worst"

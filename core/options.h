@@ -46,6 +46,9 @@ class OptionVisitor {
   /// One of `names`, stored as its index.
   virtual void choice(std::string_view key, int& index, std::span<const std::string_view> names,
                       const OptionInfo& info) = 0;
+  /// One of `names` or nothing: without it, something else decides.
+  virtual void optional_choice(std::string_view key, std::optional<int>& index,
+                               std::span<const std::string_view> names, const OptionInfo& info) = 0;
   /// A nested table that is always there; `inside` describes its members.
   virtual void group(std::string_view key, const OptionInfo& info,
                      const std::function<void()>& inside) = 0;
@@ -70,6 +73,17 @@ void describe_choice(OptionVisitor& v, std::string_view key, Enum& x,
   int index = static_cast<int>(x);
   v.choice(key, index, names, info);
   x = static_cast<Enum>(index);
+}
+
+/// An enum option that may be absent.
+template <class Enum>
+void describe_choice(OptionVisitor& v, std::string_view key, std::optional<Enum>& x,
+                     std::span<const std::string_view> names, const OptionInfo& info) {
+  std::optional<int> index;
+  if (x) index = static_cast<int>(*x);
+  v.optional_choice(key, index, names, info);
+  x.reset();
+  if (index) x = static_cast<Enum>(*index);
 }
 
 /// A nested option struct that has its own `describe`.

@@ -27,7 +27,7 @@ class StateWriter {
     number(m.cols());
     append(m.data(), static_cast<std::size_t>(m.size()) * sizeof(typename Derived::Scalar));
   }
-  /// Of types without pointers: fixed-size vectors and matrices.
+  /// A list of items without pointers inside, such as vectors and matrices of fixed size.
   template <class T>
   void items(const std::vector<T>& list) {
     number(list.size());

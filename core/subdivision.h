@@ -17,7 +17,7 @@ struct Subdivision {
   Eigen::SparseMatrix<double, Eigen::RowMajor> stencil;
   std::vector<int> parent;      ///< of each new triangle: the old one it lies in
   std::vector<bool> quartered;  ///< of each new triangle: whether its parent was split in four
-  /// Of each new vertex after the old ones: the old edge it was put on.
+  /// The old edge that each new vertex was put on. New vertices are numbered after the old ones.
   std::vector<std::array<int, 2>> split_edge;
 };
 

@@ -47,7 +47,7 @@ double mean_depth(const Columns& columns, const ColumnGrid& grid, int i) {
   return sum / grid.ny;
 }
 
-/// Of probes at any x, in the rows of the grid.
+/// Mean depth over the rows of the grid at any x, not only at the centres of its columns (m).
 double mean_depth_at(const TriMesh& mesh, const ColumnGrid& grid, double x) {
   ColumnGrid row = grid;
   row.origin.x() = x - grid.spacing / 2;

@@ -25,7 +25,7 @@ int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F);
 std::vector<std::array<int, 2>> intersecting_triangles(const Eigen::MatrixX3d& V,
                                                        const Eigen::MatrixX3i& F);
 
-/// Only the pairs of which at least one triangle belongs to the region.
+/// Number of intersecting pairs of which at least one triangle belongs to the region.
 int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
                        const JointRegion& region);
 

@@ -49,7 +49,7 @@ struct TrackingScores {
   double lifetime_error = 0;
 };
 
-/// No true object: rates are 0, but 1 when nothing was found either.
+/// Scores of a tracking. Without any true object rates are 0, but 1 when nothing was found either.
 /// @throws Error  when the frame counts differ or a frame holds an id twice (named)
 TrackingScores tracking_scores(const TrackedFrames& truth, const TrackedFrames& found,
                                const TrackingScoreOptions& options);

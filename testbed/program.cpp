@@ -68,6 +68,7 @@ void add_run(CommandLine& line) {
   run->add_option("--out", request.out, "folder of the run")->type_name("DIR");
   run->add_flag("--resume", request.resume, "go on with an interrupted run");
   run->add_flag("--no-pictures", line.no_pictures, "numbers only: no figure.png, no report");
+  run->add_flag("--table", request.table, "print the table of all numbers (summary.md has it too)");
 }
 
 void add_checks(CommandLine& line) {

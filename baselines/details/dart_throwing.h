@@ -34,7 +34,7 @@ std::unique_ptr<DetailMethod> make_dart_throwing(const DetailScene& scene,
                                                  const DartThrowingOptions& options,
                                                  std::uint64_t seed);
 
-/// As a process: `make_detail_process` around it.
+/// The method as a process: `make_detail_process` around it.
 std::unique_ptr<Process> make_dart_throwing_process(const DetailScene& scene,
                                                     const DartThrowingOptions& options);
 

@@ -29,7 +29,7 @@ struct DelaunayRefinementOptions : DensityMoveOptions {};
 std::unique_ptr<DetailMethod> make_delaunay_refinement(const DetailScene& scene,
                                                        const DelaunayRefinementOptions& options);
 
-/// As a process: `make_detail_process` around it.
+/// The method as a process: `make_detail_process` around it.
 std::unique_ptr<Process> make_delaunay_refinement_process(const DetailScene& scene,
                                                           const DelaunayRefinementOptions& options);
 

@@ -79,8 +79,9 @@ class DensityMoves {
   /// called before details are inserted.
   /// @return  number of details
   int fade_shortest_edges(double most);
-  /// Details of weight 0 at circumcentres of triangles that lack details around: the largest
-  /// circumradius in units of the lattice's first, down to `least` of it; no two share a vertex.
+  /// Inserts details of weight 0 at circumcentres of triangles that lack details around: the
+  /// largest circumradius in units of the lattice's first, down to `least` of it; no two share a
+  /// vertex.
   /// @return  number of details
   int insert_at_circumcentres(double least);
   [[nodiscard]] double deficit(int site) const;

@@ -70,7 +70,7 @@ class LloydRelaxation final : public DensityMethod {
     return slide;
   }
 
-  /// All details at once, each by the cells before.
+  /// One iteration: moves all details at once, each by the cells that they had before it.
   /// @return  number of flips
   int slide_all() {
     const std::vector<double> spacing = spacing_of_sites(now_, density_);

@@ -37,7 +37,7 @@ void describe(OptionVisitor& v, LloydRelaxationOptions& options);
 std::unique_ptr<DetailMethod> make_lloyd_relaxation(const DetailScene& scene,
                                                     const LloydRelaxationOptions& options);
 
-/// As a process: `make_detail_process` around it.
+/// The method as a process: `make_detail_process` around it.
 std::unique_ptr<Process> make_lloyd_relaxation_process(const DetailScene& scene,
                                                        const LloydRelaxationOptions& options);
 

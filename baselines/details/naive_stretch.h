@@ -19,7 +19,7 @@ void describe(OptionVisitor& v, NaiveStretchOptions& options);
 std::unique_ptr<DetailMethod> make_naive_stretch(const DetailScene& scene,
                                                  const NaiveStretchOptions& options);
 
-/// As a process: `make_detail_process` around it.
+/// The method as a process: `make_detail_process` around it.
 std::unique_ptr<Process> make_naive_stretch_process(const DetailScene& scene,
                                                     const NaiveStretchOptions& options);
 

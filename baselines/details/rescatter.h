@@ -29,7 +29,7 @@ void describe(OptionVisitor& v, RescatterOptions& options);
 std::unique_ptr<DetailMethod> make_rescatter(const DetailScene& scene,
                                              const RescatterOptions& options, std::uint64_t seed);
 
-/// As a process: `make_detail_process` around it.
+/// The method as a process: `make_detail_process` around it.
 std::unique_ptr<Process> make_rescatter_process(const DetailScene& scene,
                                                 const RescatterOptions& options);
 

@@ -13,9 +13,9 @@ namespace geoprior::details {
 struct VoronoiCell {
   double area = 0;   ///< m^2
   double reach = 0;  ///< distance of the farthest corner (m)
-  /// Of density^2, so that cells at their centroids are spread with the density (Du, Faber,
-  /// Gunzburger 1999: in the plane points have the density of the weight's square root). The detail
-  /// is at 0 (m).
+  /// Centroid of the cell under the weight density^2, with which cells at their centroids are
+  /// spread with the density (Du, Faber, Gunzburger 1999: in the plane points have the density of
+  /// the weight's square root). The detail is at 0 (m).
   Eigen::Vector2d centroid = Eigen::Vector2d::Zero();
 };
 

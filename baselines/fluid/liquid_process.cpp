@@ -27,7 +27,7 @@ struct FrameReport {
 
 void add(FrameReport& frame, const LiquidStepReport& step, double cell) {
   ++frame.substeps;
-  frame.iterations = std::max(frame.iterations, step.pressure.iterations);
+  frame.iterations += step.pressure.iterations;
   frame.max_divergence = std::max(frame.max_divergence, step.pressure.max_divergence);
   frame.cfl = std::max(frame.cfl, step.max_speed * step.dt / cell);
   frame.liquid_volume = step.liquid_volume;

@@ -13,7 +13,7 @@ namespace geoprior::fluid {
 /// (triangles to look at, cell array "solid" (index)) when the tank has solids, optionally
 /// "particles" (points; point array "velocity"). Diagnostics: particles; particle_volume [m^3]
 /// (number over particles_per_cell cells); liquid_volume [m^3] (see LiquidStepReport; absent in
-/// frame 0); surface_volume [m^3]; substeps; pressure_iterations (most of a substep);
+/// frame 0); surface_volume [m^3]; substeps; pressure_iterations (sum of the substeps);
 /// max_divergence [1/s] (largest of a substep); pressure_converged (0 when a substep's solve did
 /// not reach its tolerance); kinetic_energy, potential_energy [J] (of the particles; height 0 at
 /// the coordinate origin); momentum_x, momentum_y, momentum_z [kg m/s]; cfl (cells that the fastest

@@ -301,7 +301,8 @@ void EditableSheet::collapse(int v, int w) {
       kept.push_back(t);
       continue;
     }
-    // Of (v, w, p) or (v, p, w): what lies across w p and p v become neighbours.
+    // The triangle (v, w, p) or (v, p, w) goes: what lies across its edges w p and p v become
+    // neighbours.
     const int outer = across(t, kNext[k]), inner = across(t, first ? kPrevious[k] : k);
     const int p = corner(t, first ? kPrevious[k] : kNext[k]);
     replace_neighbour(outer, t, inner);

@@ -57,13 +57,13 @@ class EditableSheet {
   /// The side from a to b, or from b to a where only that exists; triangle -1 when they are no
   /// neighbours.
   [[nodiscard]] Side find(int a, int b) const;
-  /// The same; looks first where the edge was.
+  /// `find(a, b)` that looks first where the edge was when last seen.
   [[nodiscard]] Side find(int a, int b, Side hint) const;
   [[nodiscard]] int start(Side s) const { return corner(s.triangle, s.k); }
   [[nodiscard]] int end(Side s) const { return corner(s.triangle, (s.k + 1) % 3); }
   /// Vertex opposite to the side in its triangle.
   [[nodiscard]] int apex(Side s) const { return corner(s.triangle, (s.k + 2) % 3); }
-  /// The same edge in the triangle across; triangle -1 at the border.
+  /// The side of the same edge in the triangle across it; triangle -1 at the border.
   [[nodiscard]] Side opposite(Side s) const;
   /// Triangles about a vertex, counter-clockwise; at the border from one end to the other.
   void star(int v, std::vector<int>& triangles) const;
@@ -73,7 +73,7 @@ class EditableSheet {
   /// `star`, until it returns true; returns whether it did.
   template <class Visit>
   bool around(int v, Visit&& visit) const;
-  /// Both ends lie on the segment of one handle: the edge stays.
+  /// True where both ends lie on the segment of one handle: such an edge must stay.
   [[nodiscard]] bool is_held(Side s) const;
 
   /// @return  the new vertex in the middle of the edge; its size is the mean of both ends'

@@ -166,6 +166,7 @@ void DeltaMush::smooth() {
         const Double4 p = lanes::load(&points[v].x);
         Double4 sum = lanes::all(0);
         for (std::uint32_t i = first; i < last; ++i) sum += lanes::load(&points[ring_[i]].x);
+        // p + step (mean of the ring - p), with pull = step / size.
         const auto size = static_cast<double>(last - first);
         lanes::store(&next_[v].x, p + lanes::all(pull_[v]) * (sum - lanes::all(size) * p));
       }
@@ -188,6 +189,7 @@ void DeltaMush::deform(const Pose& pose, Eigen::MatrixX3d& posed) {
         along4 += lanes::all(frame_weight_[i].along) * edge;
         across4 += lanes::all(frame_weight_[i].across) * edge;
       }
+      // v' = s' + R' d.
       const LocalFrame frame =
           orthonormal({along4[0], along4[1], along4[2]}, {across4[0], across4[1], across4[2]});
       const Eigen::Vector3d s(p[0], p[1], p[2]);

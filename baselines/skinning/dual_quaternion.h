@@ -25,7 +25,24 @@ namespace geoprior::skinning {
 /// A pose holds no number of turns, so no blending of transforms can do better; distribute a larger
 /// twist over several joints.
 ///
+/// With b = r + eps e the posed position is (r / |r|) v (r / |r|)* + 2 vec(e r*) / |r|^2.
+///
+/// A transform that is not rigid is replaced by its rotation (polar decomposition) about the
+/// image of the joint's head: scale and shear are lost, the bone stays attached.
+///
+/// This is the formula, one vertex and one influence at a time. `DualQuaternionBlend` computes the
+/// same four vertices at a time and is what experiments run.
+///
+/// @param rig   mesh of n vertices, skeleton of m joints, weights n x m
+/// @param pose  m transforms
+/// @return      posed positions, n x 3 (m)
+/// @throws Error  unless `pose` has m transforms, all finite
 /// Source: Kavan, Collins, Žára, O'Sullivan 2007/2008; thesis 3.1.
+Eigen::MatrixX3d dual_quaternion_blend(const RiggedMesh& rig, const Pose& pose);
+
+/// `dual_quaternion_blend` for many poses of one rig: influences are packed once, and vertices
+/// taken four at a time (dual_quaternion_lanes.h) by several threads. Weights are stored as floats,
+/// whose rounding is the difference from the formula.
 class DualQuaternionBlend {
  public:
   /// @param rig  welded mesh of n vertices, skeleton of m joints, weights n x m (validated; throws
@@ -34,9 +51,6 @@ class DualQuaternionBlend {
 
   /// Writes the posed positions (n x 3, metres); resizes `posed` when needed, allocates nothing
   /// otherwise (beyond 256 joints: one table of their dual quaternions).
-  ///
-  /// A transform that is not rigid is replaced by its rotation (polar decomposition) about the
-  /// image of the joint's head: scale and shear are lost, the bone stays attached.
   /// @throws Error  unless `pose` has m transforms, all finite
   void deform(const Pose& pose, Eigen::MatrixX3d& posed) const;
 

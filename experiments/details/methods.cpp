@@ -55,7 +55,7 @@ std::vector<MethodEntry> methods() {
 
 std::vector<DiagnosticEntry> diagnostics() {
   return {
-      // Of every method.
+      // Recorded by every method.
       {"details", "1", "details, visible or not"},
       {"visible_details", "1", "details of weight above 1/2"},
       {"ghosts", "1", "vertices of the surface that M_d keeps: along borders, around thin parts"},
@@ -64,7 +64,7 @@ std::vector<DiagnosticEntry> diagnostics() {
       {"inserted", "1", "details that came in the frame"},
       {"removed", "1", "details that left in the frame"},
       {"max_weight_change", "1", "largest change of a weight in the frame"},
-      // Of self-replicating details.
+      // Recorded by self-replicating details.
       {"revived", "1", "fading details that were called back in the frame"},
       {"fading", "1", "details that began to fade in the frame"},
       {"refused_flips", "1", "flips that M_d refused since the start"},
@@ -73,10 +73,10 @@ std::vector<DiagnosticEntry> diagnostics() {
       {"triplets", "1", "triplets in the table (first frame)"},
       {"triplets_met", "1", "triplets that were looked at to fill it (first frame)"},
       {"table_bytes", "B", "memory of the table (first frame)"},
-      // Of relaxation.
+      // Recorded by relaxation.
       {"mean_slide", "m", "mean way that the relaxation moved details in the frame"},
       {"max_slide", "m", "largest such way"},
-      // Of scattering.
+      // Recorded by scattering.
       {"darts", "1", "darts thrown in the frame"},
   };
 }

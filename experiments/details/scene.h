@@ -20,8 +20,8 @@ namespace geoprior::details {
 class DetailsScene final : public Scene {
  public:
   DetailScene input;  ///< what a method is given
-  /// The same process of placing drawn anew (other seeds), for noise floors; none for details of a
-  /// file.
+  /// Details that the scene's own process of placing gives with other seeds, for noise floors; none
+  /// where details come from a file.
   std::vector<std::vector<Detail>> resamples;
   std::vector<char> region;  ///< a flag a triangle: where the pattern is
   int pair_frames = 4;       ///< at which the pair correlation is measured

@@ -47,33 +47,35 @@ std::vector<MethodEntry> methods() {
 
 std::vector<DiagnosticEntry> diagnostics() {
   return {
-      // Of a simulation.
+      // Recorded by a simulation.
       {"particles", "1", "particles of the liquid"},
       {"particle_volume", "m^3", "particles over particles_per_cell, in cells"},
       {"surface_volume", "m^3", "volume that the recorded surface encloses"},
       {"liquid_volume", "m^3", "volume of the liquid cells that the last substep projected"},
       {"substeps", "1", "time steps of the frame"},
       {"cfl", "1", "cells that the fastest particle crossed in the longest of them"},
-      {"pressure_iterations", "1", "iterations of the pressure solver in the frame"},
+      {"pressure_iterations", "1",
+       "iterations of the pressure solver, summed over the frame's substeps"},
       {"pressure_converged", "1", "0 when a solve stopped at its largest number of iterations"},
-      {"max_divergence", "1/s", "largest divergence of a liquid cell after the last projection"},
+      {"max_divergence", "1/s",
+       "largest divergence of a liquid cell after a projection of the frame"},
       {"kinetic_energy", "J", "of the particles"},
       {"potential_energy", "J", "of the particles above the origin"},
       {"momentum_x", "kg m/s", "of the particles"},
       {"momentum_y", "kg m/s", "of the particles"},
       {"momentum_z", "kg m/s", "of the particles"},
-      // Of an ocean.
+      // Recorded by an ocean.
       {"folded_triangles", "1", "triangles turned over by choppiness"},
-      // Of an extraction.
+      // Recorded by an extraction.
       {"regions", "1", "regions of the frame"},
       {"tracks", "1", "features of the whole animation"},
       {"masked_share", "1", "share of the vertices that lie at walls and solids"},
-      // Of what was lifted, by an extraction or for a paste.
+      // What an extraction has lifted, or a sculpting for its paste.
       {"lifted_features", "1", "features taken from their animations"},
       {"feature_bytes", "B", "memory that they take"},
       {"feature_file_bytes", "B", "files that they are stored in: the library, and pictures"},
       {"sequence_bytes", "B", "memory that positions and triangles of the animation take"},
-      // Of a paste.
+      // Recorded by a paste.
       {"target_vertices", "1", "vertices of the target's frame"},
       {"displaced_vertices", "1", "vertices of the result that a map moved"},
       {"added_triangles", "1", "triangles more than the target has"},

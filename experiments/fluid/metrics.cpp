@@ -64,7 +64,7 @@ class Rows {
     };
   }
 
-  /// Of the last row.
+  /// Sets the value that the metric of the row added last is to be close to.
   void target(double value) { table_.back().target = value; }
 
  private:

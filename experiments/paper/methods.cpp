@@ -31,7 +31,7 @@ std::vector<MethodEntry> methods() {
 
 std::vector<DiagnosticEntry> diagnostics() {
   return {
-      // Of every method.
+      // Recorded by every method.
       {"triangles", "1", "triangles of the mesh"},
       {"vertices", "1", "vertices of the mesh"},
       {"substeps", "1", "time steps of the frame"},
@@ -39,12 +39,12 @@ std::vector<DiagnosticEntry> diagnostics() {
       {"halvings", "1", "times a step was halved because Newton's iteration did not converge"},
       {"factor_nonzeros", "1", "non-zeros of the factor of the last step's system"},
       {"handle_work", "J", "work done on the sheet by the prescribed handles since the start"},
-      // Of the adaptive mesh.
+      // Recorded by the adaptive mesh.
       {"splits", "1", "edges split by the frame's remeshing"},
       {"collapses", "1", "edges collapsed by it"},
       {"flips", "1", "edges flipped by it"},
       {"pop_filter_steps", "1", "steps that take back the pop of the remeshing"},
-      // Of the hybrid.
+      // Recorded by the hybrid.
       {"flats", "1", "planar pieces"},
       {"cylinders", "1", "cylindrical pieces"},
       {"cones", "1", "conical pieces"},

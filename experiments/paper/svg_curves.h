@@ -19,8 +19,8 @@ struct SvgArc {
   bool sweep = false;  ///< angles increase
 };
 
-/// Likewise for an arc. Radii too small to reach are enlarged, a zero radius makes a straight line,
-/// equal ends nothing (SVG 1.1, F.6.2).
+/// Appends the points of an arc likewise. Radii too small to reach are enlarged, a zero radius
+/// makes a straight line, equal ends nothing (SVG 1.1, F.6.2).
 void flatten_arc(const SvgArc& arc, double tolerance, std::vector<Eigen::Vector2d>& out);
 
 }  // namespace geoprior::paper

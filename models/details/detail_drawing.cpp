@@ -23,7 +23,8 @@ void require_anchor(const DrawnAnchor& anchor, std::size_t i, const SurfaceTopol
   if (!anchor.tangent.allFinite()) throw Error("tangent is not finite", where, "a direction");
 }
 
-/// Those that are not drawn keep their place with weight 0, so that numbers stay.
+/// The anchors to draw. Anchors of other types keep their place in the list with weight 0, so that
+/// the numbers of the details stay.
 std::vector<DrawnAnchor> drawn_anchors(std::span<const DrawnAnchor> anchors,
                                        const SurfaceTopology& surface, std::optional<int> type) {
   std::vector<DrawnAnchor> drawn(anchors.begin(), anchors.end());

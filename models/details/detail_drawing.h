@@ -44,7 +44,7 @@ void describe(OptionVisitor& v, DrawingOptions& options);
 DrawnDetails draw_details(const SurfaceTopology& surface, std::span<const Eigen::Vector3d> x,
                           std::span<const DrawnAnchor> anchors, const DrawingOptions& options,
                           double mean_edge, const TriMesh& instance = {});
-/// The same for a mesh.
+/// Draws details on a mesh whose topology is made here.
 DrawnDetails draw_details(const TriMesh& surface, std::span<const DrawnAnchor> anchors,
                           const DrawingOptions& options, double mean_edge,
                           const TriMesh& instance = {});

@@ -52,7 +52,7 @@ struct DetailMesh {
 /// @param details  valid (`require_valid`), not two in one place
 /// @throws Error   when triangles become degenerate (names the detail)
 DetailMesh build_detail_mesh(const TriMesh& rest, std::span<const Detail> details);
-/// The same on the surface as it stands, with births and frame as given: for methods that start
+/// Builds M_d on the surface as it stands, with births and frame as given: for methods that start
 /// from scratch every frame. `details` keep their birth and generation.
 DetailMesh build_detail_mesh(std::shared_ptr<const SurfaceTopology> surface,
                              std::span<const Eigen::Vector3d> x, std::span<const Detail> details);
@@ -90,7 +90,7 @@ struct NewDetail {
 /// generation are set.
 /// @return  numbers of the sites
 std::vector<int> insert_details(DetailMesh& details, int t, std::span<const NewDetail> born);
-/// One detail, at the point of the surface near that point of the flat triangle.
+/// Inserts one detail, at the point of the surface nearest to a point of the flat triangle `t`.
 int insert_detail(DetailMesh& details, int t, const Eigen::Vector3d& barycentric,
                   const Detail& like);
 /// Where `insert_detail` would put it.

@@ -40,7 +40,7 @@ void HoleMesh::add_entry(int vertex, int hole, const Eigen::Vector2d& at) {
 }
 
 double HoleMesh::length2(int a, int b) const {
-  // The same bits from both sides: bisection compares lengths.
+  // Both triangles of an edge must see the same bits, because bisection compares lengths.
   return (x_[std::max(a, b)] - x_[std::min(a, b)]).squaredNorm();
 }
 
@@ -319,7 +319,8 @@ class HoleMesh::TriangleCutter {
       cut_.triangle.insert(cut_.triangle.end(), {{a, b, d}, {b, c, d}});
   }
 
-  /// On edge `k` of triangle `t`.
+  /// The vertex at which the hole's border crosses edge `k` of triangle `t`; makes it the first
+  /// time.
   int border_vertex(int t, std::size_t k) {
     if (const int vertex = made_[t][k]; vertex >= 0) return vertex;
     int in = mesh_.corner_[t][k], out = mesh_.corner_[t][(k + 1) % 3];
@@ -429,7 +430,7 @@ class HoleMesh::Snapper {
     return ring;
   }
 
-  /// One run of kept triangles, and a gap.
+  /// Whether the triangles kept about a ring are one run with one gap.
   [[nodiscard]] bool is_simple(const std::vector<int>& ring) const {
     const std::size_t n = ring.size();
     int runs = 0;

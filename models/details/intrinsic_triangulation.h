@@ -45,7 +45,7 @@ struct TriangulationReport {
 class IntrinsicTriangulation {
  public:
   IntrinsicTriangulation() = default;
-  /// From triangles and positions of an oriented manifold; lengths are distances.
+  /// Takes triangles and positions of an oriented manifold; lengths are distances.
   IntrinsicTriangulation(std::span<const std::array<int, 3>> triangles,
                          std::span<const Eigen::Vector3d> position);
 
@@ -85,7 +85,8 @@ class IntrinsicTriangulation {
   /// Flips edges until all are Delaunay (opposite angles sum to at most pi; cot + cot >= -1e-10).
   /// @return  number of flips
   int flip_to_delaunay();
-  /// The same from the edges of the triangles around some vertices: after `insert` without flips.
+  /// Flips until all are Delaunay, beginning with the edges of the triangles around some vertices;
+  /// for what `insert` without flips has left.
   int flip_around(std::span<const int> vertices);
   /// Flips one edge. False when it is a border edge, its quadrilateral is not convex, or the other
   /// diagonal exists.

@@ -22,7 +22,7 @@ class PointGrid {
   void add(const Eigen::Vector3d& position, const Eigen::Vector3d& normal);
   /// Adds all details, in order of their sites.
   void add_details(const DetailMesh& details);
-  /// No point is nearer than `radius`.
+  /// True where no point is nearer than `radius`.
   [[nodiscard]] bool is_free(const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
                              double radius) const;
   /// Number of the nearest point within `radius` (the least number among equals); -1 for none.

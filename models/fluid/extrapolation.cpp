@@ -44,7 +44,8 @@ std::vector<char> rows_with_known(const FaceGrid& grid, const std::vector<char>&
   return any;
 }
 
-/// Of a row: 1 where a face is unknown and one beside it known.
+/// Marks the faces of a row that are unknown and have a known one beside them with 1, others with
+/// 0.
 void mark_front(std::size_t n, const char* at, const std::array<const char*, 4>& rows,
                 std::vector<char>& beside) {
   for (std::size_t i = 0; i < n; ++i)
@@ -66,7 +67,7 @@ void first_front(const FaceGrid& grid, const std::vector<char>& known,
   for (std::size_t k = 0; k < nz; ++k) {
     for (std::size_t j = 0; j < ny; ++j) {
       const std::size_t row = j + ny * k;
-      // Beyond the border the row itself stands in.
+      // At the border the row stands in for its neighbour that does not exist.
       const std::array<std::size_t, 4> around{j > 0 ? row - 1 : row, j + 1 < ny ? row + 1 : row,
                                               k > 0 ? row - ny : row, k + 1 < nz ? row + ny : row};
       char reached = any[row];

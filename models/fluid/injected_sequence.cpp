@@ -157,7 +157,7 @@ InjectedTruth InjectedSequence::truth_of(const Item& item, int frame) const {
   return truth;
 }
 
-/// Of the free surface over the rest level z = 0.
+/// Height of the free surface over the rest level z = 0 (m).
 double InjectedSequence::height(double x, double y, int frame) const {
   double z = 0;
   for (const Item& item : items_) {

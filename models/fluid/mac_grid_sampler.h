@@ -37,7 +37,7 @@ struct CellSample {
       centre[a] = axis_sample(x[a] - 0.5F, cells[a]);
     }
   }
-  /// For component `axis` of a staggered velocity.
+  /// Where the point falls along `axis` among the samples of velocity component `component`.
   [[nodiscard]] const AxisSample& along(int axis, int component) const {
     return axis == component ? face[axis] : centre[axis];
   }
@@ -87,7 +87,7 @@ class GridSampler {
                      sz = axis_sample(x.z(), size_.z());
     return corners(sx, sy, sz).value(sx.fraction, sy.fraction, sz.fraction);
   }
-  /// Also the gradient, per sample distance.
+  /// The value at x, and in `gradient` that of the interpolant, per sample distance.
   float with_gradient(const Eigen::Vector3f& x, Eigen::Vector3f& gradient) const {
     const AxisSample sx = axis_sample(x.x(), size_.x()), sy = axis_sample(x.y(), size_.y()),
                      sz = axis_sample(x.z(), size_.z());

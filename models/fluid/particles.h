@@ -23,7 +23,7 @@ struct LiquidParticles {
 /// the grid count to the nearest cell.
 void sort_by_cell(const GridShape& shape, LiquidParticles& particles);
 
-/// The same with buffers that stay: no allocation once warm.
+/// `sort_by_cell` with buffers that stay from one call to the next: no allocation once warm.
 ///
 /// Two levels, so that counters fit into the cache: blocks of particles are counted and spread by
 /// row of cells (y, z), then every row is sorted by x.

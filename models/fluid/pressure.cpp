@@ -44,7 +44,8 @@ struct Problem {
     const double inside = liquid.values[liquid_cell], outside = liquid.values[air_cell];
     return std::max(inside / (inside - outside), smallest_theta);
   }
-  /// The same towards an open side of the domain, whose border is the last place for a surface.
+  /// Share of a cell, from its liquid centre towards an open side of the domain, that is liquid: at
+  /// most a half, since the surface lies at the border at the latest.
   [[nodiscard]] double border_theta(std::size_t liquid_cell) const {
     const double inside = -static_cast<double>(liquid.values[liquid_cell]) / shape.cell;
     return std::clamp(inside, smallest_theta, 0.5);

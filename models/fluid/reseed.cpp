@@ -190,7 +190,7 @@ bool reseed(const MacGrid& velocity, const ScalarGrid& distance, const SeedRule&
   for (const Uneven::Cell& c : uneven.cells) {
     const std::size_t cell = shape.index(c.i, c.j, c.k);
     if (c.change < 0) {
-      // Which one is left to chance: order within a cell is the order of arrival.
+      // Which particles go is drawn: in a cell they stand in the order of their arrival.
       RandomStream random = cell_stream(rule, cell);
       const std::uint32_t first = particles.cell_begin[cell], count = particles_in(particles, cell);
       for (int taken = 0; taken < -c.change;) {

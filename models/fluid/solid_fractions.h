@@ -27,8 +27,8 @@ DomainSide top_side(const Eigen::Vector3d& gravity);
 void solid_fractions(const Tank& tank, std::span<const PlacedSolid> solids, const GridShape& shape,
                      SolidFractions& out);
 
-/// The same for a simulation: bodies that stand still are sampled once, bodies that move only in
-/// the box where they are and were. Keeps no reference to the tank.
+/// `solid_fractions` for a simulation: bodies that stand still are sampled once, bodies that move
+/// only in the box where they are and were. Keeps no reference to the tank.
 class SolidSampler {
  public:
   SolidSampler(const Tank& tank, const GridShape& shape);

@@ -64,7 +64,7 @@ class BatchSampler {
     Int8 low;
     Float8 fraction;
   };
-  /// As axis_sample in mac_grid_sampler.h.
+  /// Does for eight coordinates what axis_sample (mac_grid_sampler.h) does for one.
   static void locate(const Float8& x, std::int32_t samples, Axis& out) {
     const auto last = static_cast<float>(samples - 1);
     Float8 at = x > 0.0F ? x : Float8{};

@@ -85,7 +85,7 @@ Root plate_rows(const CurvatureFit& fit, int t, const Eigen::Matrix3d& root) {
   Eigen::MatrixXd residual = std::sqrt(kFitResidual / own) * curvature.asDiagonal() *
                              (Eigen::MatrixXd::Identity(n, n) - jumps * fitted);
   residual.bottomRows(n - own).setZero();
-  // As many rows as the residual has dimensions.
+  // The residual is written with as few rows as it has dimensions.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(residual.transpose() * residual);
   const auto spare = (eigen.eigenvalues().array() > 1e-12 * plate.squaredNorm()).count();
   assert(3 + spare <= kMostRows);

@@ -18,9 +18,9 @@ namespace geoprior::paper {
 ///   G = (F'F - I) / 2, F the map from the pattern (3 x 2), A the pattern's area
 ///   membrane  E = A Y/2 [(1-nu) |G|^2 + nu tr(G)^2],            Y = E h / (1 - nu^2)
 ///   bending   E = A D/2 [(1-nu) |S-S_p|^2 + nu tr(S-S_p)^2] / (1 + weakening damage)
-///   hinge     E = sum over edges, k D/4 l^2/(A1+A2) (theta - theta_p)^2 / 2, k =
-///   hinge_calibration,
-///             theta_p the angle that S_p would give; half of it in each triangle
+///   hinge     E = sum over edges, k D/4 l^2/(A1+A2) (theta - theta_p)^2 / 2
+///                 / (1 + weakening damage), k = hinge_calibration, theta_p the angle that S_p
+///                 would give; half of it in each triangle
 ///
 /// Triangles at the border and folds also resist the residual theta - jump . S of their own edges,
 /// a tenth as much as S; it is zero for constant curvature. So every interior edge is resisted.
@@ -40,7 +40,7 @@ class ShellElements {
                 double hinge_calibration);
 
   [[nodiscard]] int size() const;
-  /// From which bending is computed.
+  /// The fit of shape operators from which bending is computed.
   [[nodiscard]] const CurvatureFit& curvature_fit() const;
   /// Vertices that an element depends on; the first three are those of its triangle.
   [[nodiscard]] std::span<const int> nodes(int element) const;

@@ -109,7 +109,7 @@ class SheetFrames final : public FrameModel {
     {
       const Phase phase(context, "elastic");
       for (int i = 0; i < sheet_.substeps; ++i) {
-        // Not summed, so that a resumed run has the same times.
+        // Times are not summed up, so that a resumed run has the same ones.
         state_.time = start + i * dt;
         const StepReport step = stepper_.step(state_, dt, context);
         handle_work_ += step.handle_work;

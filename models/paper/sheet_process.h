@@ -20,7 +20,7 @@ class SheetMesher {
                      RunContext& context) = 0;
   /// Adds parts, arrays, tables and diagnostics of its own ("rulings", "singular_points" …).
   virtual void annotate(const ShellState& state, Frame& frame) const = 0;
-  /// Everything that `adapt` and `annotate` remember, for checkpoints.
+  /// Everything that `adapt` and `annotate` remember from one frame to the next, for checkpoints.
   virtual void save(StateWriter& /*out*/) const {}
   virtual void load(StateReader& /*in*/) {}
 };

@@ -190,7 +190,7 @@ void ShellDynamics::place(const Eigen::VectorXd& change, Step& result) const {
     result.v.row(i) = state.v.row(i) + change.segment<3>(row(i)).transpose();
   }
   result.x = state.x + problem_.dt * result.v;
-  // Not by way of the velocity: held places do not drift.
+  // Held vertices get their places themselves, not by way of the velocity: they would drift.
   for (const HandleMap::Target& t : problem_.targets) result.x.row(t.vertex) = t.place.transpose();
 }
 

@@ -33,7 +33,8 @@ class ShellSystem {
               Sums& sums) const;
   void gradient(const ShellElements& elements, const ShellState& state, const Eigen::MatrixX3d& x,
                 Sums& sums) const;
-  /// Also adds `scale` times the Hessian, projected to positive semidefinite, to the matrix.
+  /// Energy and gradient; adds `scale` times the Hessian, projected to positive semidefinite, to
+  /// the matrix.
   void hessian(const ShellElements& elements, const ShellState& state, const Eigen::MatrixX3d& x,
                double scale, Sums& sums, BlockMatrix& matrix) const;
 

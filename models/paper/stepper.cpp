@@ -89,7 +89,7 @@ StepReport ShellStepper::step(ShellState& state, double dt, RunContext& /*contex
     state = before;
     throw;
   }
-  // Not the sum of halved steps, so that times do not depend on what it took.
+  // Times are not summed over halved steps, so that they do not depend on how many it took.
   state.time = before.time + dt;
   return report;
 }

@@ -59,7 +59,8 @@ class SelfReplicating final : public DetailMethod {
   void load(StateReader& in) override;
 
  private:
-  // Which triangles want more details, or fewer.
+  // The area that a triangle wants (m^2), and its area over that: more details belong where it is
+  // large.
   [[nodiscard]] double wanted_area(int triangle) const;
   [[nodiscard]] double ratio(int triangle) const;
   [[nodiscard]] int patch_of_site(int site) const { return patch_of_site_[site]; }

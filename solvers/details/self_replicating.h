@@ -69,7 +69,7 @@ std::unique_ptr<DetailMethod> make_self_replicating(const DetailScene& scene,
                                                     const SelfReplicatingOptions& options,
                                                     std::uint64_t seed);
 
-/// As a process: `make_detail_process` around it.
+/// The method as a process: `make_detail_process` around it.
 std::unique_ptr<Process> make_self_replicating_process(const DetailScene& scene,
                                                        const SelfReplicatingOptions& options);
 

@@ -31,7 +31,8 @@ struct MapCoordinates {
   std::vector<Eigen::Matrix3d> axes;  ///< of every vertex, times scale; empty: the placement's
 };
 
-/// By projection along the placement's z, or by the exponential map (see `MappingKind`).
+/// Finds where vertices lie in the map, by projection along the placement's z, or by the
+/// exponential map (see `MappingKind`).
 MapCoordinates locate(const WorkMesh& mesh, const EditedFrame& frame,
                       const DisplacementSampler& map, const PasteAnchor& anchor,
                       const PasteOptions& options);

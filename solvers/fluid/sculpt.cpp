@@ -139,7 +139,8 @@ class SculptFrames final : public FrameModel {
       features = lift_features(*scene_.sources.at(source), extraction, options_.extraction,
                                {ids.begin(), ids.end()}, context);
     }
-    // Only one source is the target.
+    // Features are cut out of the target only, which one source is: there is one extraction to
+    // keep.
     if (!cut_.ids.empty() && cut_.extraction.segmenter == nullptr) {
       cut_.extraction = std::move(extraction);
     }

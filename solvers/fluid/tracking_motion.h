@@ -18,7 +18,7 @@ struct RegionMotion {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
   double position_variance = 0, covariance = 0, velocity_variance = 0;
 
-  /// Of the position at dt (s) from the region's time.
+  /// Variance of the position at dt (s) from the region's time (m^2).
   [[nodiscard]] double variance(double dt) const {
     return position_variance + 2 * dt * covariance + dt * dt * velocity_variance;
   }
@@ -42,7 +42,7 @@ RegionMotion region_motion(std::span<const Region> regions, std::span<const doub
                            double cell, const TrackingOptions& options, const GateSpeeds& speeds,
                            const std::vector<int>& next, std::size_t i);
 
-/// Of all regions, on both sides.
+/// Motions of all regions, each along its path before and after it.
 RegionMotions region_motions(std::span<const Region> regions, std::span<const double> times,
                              double cell, const TrackingOptions& options, const GateSpeeds& speeds,
                              const std::vector<int>& successor);

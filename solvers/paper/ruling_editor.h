@@ -47,10 +47,10 @@ class RulingEditor {
   [[nodiscard]] std::optional<Ruling> chord(const Eigen::Vector2d& centre,
                                             const Eigen::Vector2d& direction,
                                             const std::vector<bool>& ignored = {}) const;
-  /// From a singular point to the border, likewise.
+  /// The line from a singular point to the border, under the same conditions as `chord`.
   [[nodiscard]] std::optional<Ruling> ray(int singular_point,
                                           const Eigen::Vector2d& direction) const;
-  /// From a singular point to a border point or to another singular point.
+  /// The line from a singular point to a border point or to another singular point.
   [[nodiscard]] std::optional<Ruling> ray_to(int singular_point, const Eigen::Vector2d& end) const;
   [[nodiscard]] std::optional<Ruling> ray_between(int singular_point, int other) const;
 

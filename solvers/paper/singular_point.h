@@ -33,7 +33,8 @@ std::vector<bool> rulings_in_conflict(const Eigen::Vector2d& p, std::optional<in
 void add_singular_point(const Eigen::Vector2d& p, double time, const Conflict& conflict,
                         const HybridOptions& options, RulingEditor& editor);
 
-/// The same about a singular point that is there already: compression beside it widens its cones.
+/// Replaces the rulings in conflict with a singular point that is there already by rulings from it:
+/// compression beside it widens its cones.
 /// False when no ruling is in conflict with it.
 bool widen_singular_point(int singular_point, const Conflict& conflict,
                           const HybridOptions& options, RulingEditor& editor);

@@ -32,8 +32,8 @@ std::vector<JointOperator> joint_operators(const BonePartition& partition, const
     OpeningPreset opening = options.opening;
     for (const JointBlend& own : options.joint_blends) {
       if (own.joint != name) continue;
-      blend = own.blend;
-      opening = own.opening;
+      blend = own.blend.value_or(blend);
+      opening = own.opening.value_or(opening);
     }
     operators.emplace_back(blend, opening, options.ricci_exponent);
   }

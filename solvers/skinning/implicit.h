@@ -48,10 +48,10 @@ class ImplicitSkinning {
   /// @throws Error unless `pose` has m finite transforms
   void deform(const Pose& pose, Eigen::MatrixX3d& posed, RunContext& context);
 
-  /// Of the last deform. `evaluations_per_vertex` (bone fields sampled), `iterations`,
-  /// `field_error_rms` and `field_error_max` (|F - target| of vertices that neither stopped in
-  /// contact nor were smoothed), `stopped_fraction` (in contact), `unfinished_fraction` (out of
-  /// iterations), `contact_gap_max` (|f1 - f2| at stopped vertices after smoothing).
+  /// What the last call of `deform` did: `evaluations_per_vertex` (bone fields sampled),
+  /// `iterations`, `field_error_rms` and `field_error_max` (|F - target| of vertices that neither
+  /// stopped in contact nor were smoothed), `stopped_fraction` (in contact), `unfinished_fraction`
+  /// (out of iterations), `contact_gap_max` (|f1 - f2| at stopped vertices after smoothing).
   [[nodiscard]] std::map<std::string, double> diagnostics() const;
 
   /// F - iso of every vertex at given positions (n x 3) in the pose of the last deform; the

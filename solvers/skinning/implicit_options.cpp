@@ -78,8 +78,10 @@ void describe_solve(OptionVisitor& v, ImplicitOptions& o) {
 
 void describe(OptionVisitor& v, JointBlend& o) {
   v.value("joint", o.joint, {.doc = "name of the joint (the child bone's)", .required = true});
-  describe_choice(v, "blend", o.blend, kBlendNames, {.doc = "operator of this joint"});
-  describe_choice(v, "opening", o.opening, kOpeningNames, {.doc = "its opening curve"});
+  describe_choice(v, "blend", o.blend, kBlendNames,
+                  {.doc = "operator of this joint; absent: that of the others"});
+  describe_choice(v, "opening", o.opening, kOpeningNames,
+                  {.doc = "its opening curve; absent: that of the others"});
 }
 
 void describe(OptionVisitor& v, SamplingOptions& o) {

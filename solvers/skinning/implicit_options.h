@@ -35,11 +35,11 @@ enum class SupportKind { quintic, cubic, logistic };
 /// Order of the passes of one solve: that of the paper, or that of the code its authors released.
 enum class Schedule { paper, released_code };
 
-/// Operator of one joint, where it differs from the others.
+/// Operator of one joint, where it differs from the others. What it leaves out is as for them.
 struct JointBlend {
   std::string joint;
-  BlendKind blend = BlendKind::gradient_controlled;
-  OpeningPreset opening = OpeningPreset::elbow_soft;
+  std::optional<BlendKind> blend;
+  std::optional<OpeningPreset> opening;
 };
 void describe(OptionVisitor& v, JointBlend& options);
 

@@ -39,7 +39,7 @@ struct SkinState {
   std::vector<int> influence_joint;
   std::vector<float> influence_weight;
 
-  // Of one frame.
+  // What one frame computes; the next one overwrites it.
   std::vector<Float4> start;    ///< dual quaternion positions
   std::vector<Float4> outward;  ///< rest normal turned by the blended joints; no unit length
   std::vector<Float4> position;

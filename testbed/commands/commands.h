@@ -30,6 +30,7 @@ struct RunRequest {
   std::optional<std::string> out;
   bool resume = false;
   bool pictures = true;  ///< figure.png and the report, after the run
+  bool table = false;    ///< the table of all numbers on the terminal as well
 };
 
 struct CheckRequest {

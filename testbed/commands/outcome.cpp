@@ -91,12 +91,21 @@ Json variant_json(const VariantRecord& variant) {
 
 }  // namespace
 
-bool all_claims_hold(const RunRecord& record) {
-  for (const ClaimRecord& claim : record.claims) {
-    if (!claim.holds) return false;
-  }
-  return true;
+ClaimCount count_claims(const RunRecord& record) {
+  ClaimCount count;
+  for (const ClaimRecord& claim : record.claims) ++(claim.holds ? count.hold : count.fall_short);
+  return count;
 }
+
+std::string claim_count_text(const ClaimCount& count) {
+  if (count.hold + count.fall_short == 0) return "none";
+  const std::string hold = std::to_string(count.hold) + (count.hold == 1 ? " holds" : " hold");
+  if (count.fall_short == 0) return hold;
+  return hold + ", " + std::to_string(count.fall_short) +
+         (count.fall_short == 1 ? " falls short" : " fall short");
+}
+
+bool all_claims_hold(const RunRecord& record) { return count_claims(record).fall_short == 0; }
 
 std::vector<std::string> failures(const RunRecord& record) {
   std::vector<std::string> lines;
@@ -110,14 +119,14 @@ std::vector<std::string> failures(const RunRecord& record) {
   return lines;
 }
 
-void say_claims(const RunRecord& record) {
+void say_claims(const RunRecord& record, bool all_numbers) {
   for (const ClaimRecord& claim : record.claims) {
     const std::string in = claim.case_name.empty() || claim.case_name == "default"
                                ? ""
                                : "  [" + claim.case_name + "]";
     say((claim.holds ? tinted("holds      ", Tint::good) : tinted("falls short", Tint::bad)) +
         "  " + claim.text + in);
-    say("             " + claim.detail);
+    if (all_numbers || !claim.holds) say("             " + claim.detail);
   }
 }
 

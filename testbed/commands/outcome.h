@@ -9,8 +9,19 @@
 
 namespace geoprior {
 
-/// Claims with their numbers, one line each.
-void say_claims(const RunRecord& record);
+/// How many claims a run has decided, and how.
+struct ClaimCount {
+  int hold = 0;
+  int fall_short = 0;
+};
+ClaimCount count_claims(const RunRecord& record);
+
+/// "4 hold, 1 falls short"; "none" for a run without claims.
+std::string claim_count_text(const ClaimCount& count);
+
+/// Claims with their verdicts, one line each; below it the numbers of those that fall short, or of
+/// all.
+void say_claims(const RunRecord& record, bool all_numbers);
 
 /// Studies with their intervals.
 void say_studies(const RunRecord& record);

@@ -36,7 +36,10 @@ Pictures make_pictures(const fs::path& run_folder, const FigureView& view) {
     pictures.figure = run_folder / "figure.png";
   });
   attempt(pictures.error, [&] { run_python("plots", {run_folder.string()}); });
-  attempt(pictures.error, [&] { run_python("summary", {run_folder.string()}); });
+  attempt(pictures.error, [&] {
+    run_python("summary", {run_folder.string()});
+    pictures.summary = run_folder / "summary.md";
+  });
   attempt(pictures.error, [&] {
     make_report({run_folder}, run_folder / "report.html");
     pictures.report = run_folder / "report.html";

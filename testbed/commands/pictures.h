@@ -11,6 +11,7 @@ namespace geoprior {
 
 struct Pictures {
   std::optional<std::filesystem::path> figure;
+  std::optional<std::filesystem::path> summary;
   std::optional<std::filesystem::path> report;
   std::string error;  ///< what kept the rest from being made; the run itself is complete
 };

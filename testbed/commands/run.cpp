@@ -36,6 +36,7 @@ std::string resume_command(const RunRequest& request, const fs::path& folder) {
     command += " --threads " + std::to_string(*request.experiment.load.threads);
   }
   if (!request.pictures) command += " --no-pictures";
+  if (request.table) command += " --table";
   return command + " --out " + shell_word(folder.string()) + " --resume";
 }
 
@@ -49,18 +50,21 @@ int report_stop(const CommandContext& context, const RunRequest& request,
   return wrong_use;
 }
 
-void say_outcome(const ExecuteResult& result, const Pictures& pictures) {
+/// Claims and where to look; the table of all numbers, which summary.md has as well, when it is
+/// asked for or there is no summary.md.
+void say_outcome(const ExecuteResult& result, const Pictures& pictures, bool table) {
   const RunRecord& record = result.record;
   say();
-  say_summary(record);
-  say_studies(record);
-  say_claims(record);
+  if (table) say_summary(record);
+  if (table) say_studies(record);
+  say_claims(record, table);
   if (!record.claims.empty()) say();
-  say("numbers  " + (result.folder / "run.h5").string());
+  for (const std::string& line : failures(record)) say(tinted(line, Tint::bad));
+  const std::string claims = "claims   " + claim_count_text(count_claims(record));
+  say(all_claims_hold(record) ? claims : tinted(claims, Tint::bad));
+  say("numbers  " + pictures.summary.value_or(result.folder / "run.h5").string());
   if (pictures.figure) say("picture  " + pictures.figure->string());
   if (pictures.report) say("report   " + pictures.report->string());
-  if (!all_claims_hold(record)) say(tinted("a claim fell short", Tint::bad));
-  for (const std::string& line : failures(record)) say(tinted(line, Tint::bad));
 }
 
 }  // namespace
@@ -80,7 +84,7 @@ int run_command(const CommandContext& context, const RunRequest& request) {
 
   Pictures pictures;
   if (request.pictures) pictures = make_pictures(result.folder, experiment.view);
-  say_outcome(result, pictures);
+  say_outcome(result, pictures, request.table || !pictures.summary);
   if (context.json) {
     nlohmann::ordered_json json = outcome_json(result.record, result.folder);
     json["stopped"] = false;

@@ -4,6 +4,7 @@
 #include "testbed/commands/catalogue.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
+#include "testbed/commands/outcome.h"
 #include "testbed/commands/pictures.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/stop.h"
@@ -23,6 +24,19 @@ FigureView view_of(const fs::path& run_folder, const std::optional<std::string>&
   if (experiment) return load_experiment(experiment_file(*experiment), topics, {}).view;
   const fs::path file = run_folder / "run.h5";
   return figure_view_of(read_run_file(file).experiment_toml, file.string(), topics);
+}
+
+/// One line a run: its claims, and its picture where there is one. Damage is named here, before
+/// Python meets it.
+std::vector<std::vector<std::string>> overview(const std::vector<fs::path>& folders) {
+  std::vector<std::vector<std::string>> rows{{"experiment", "claims", "picture"}};
+  for (const fs::path& folder : folders) {
+    const RunRecord record = read_run_file(folder / "run.h5");
+    const fs::path figure = folder / "figure.png";
+    rows.push_back({record.experiment_id, claim_count_text(count_claims(record)),
+                    fs::exists(figure) ? figure.string() : "-"});
+  }
+  return rows;
 }
 
 }  // namespace
@@ -73,12 +87,12 @@ int report_command(const CommandContext& context, const ReportRequest& request) 
     }
   }
   if (folders.empty()) throw Error("there are no runs", runs_root().string(), "geoprior run <id>");
-  // Damage is named before Python meets it.
-  for (const fs::path& folder : folders) (void)read_run_file(folder / "run.h5");
+  const std::vector<std::vector<std::string>> runs_found = overview(folders);
   fs::path page =
       folders.size() == 1 ? folders.front() / "report.html" : runs_root() / "report.html";
   if (request.out) page = *request.out;
   make_report(folders, page);
+  say_table(runs_found);
   say("report   " + page.string());
   if (context.json) {
     nlohmann::ordered_json runs = nlohmann::ordered_json::array();

@@ -203,7 +203,7 @@ class At {
     // 2^40 bytes are beyond any file we could hold; the bound keeps sums of sizes from overflowing.
     constexpr std::uint64_t kLimit = std::uint64_t{1} << 40;
     if (!value_.is_number_unsigned() || value_.get<std::uint64_t>() > kLimit) {
-      // No dump of anything but numbers: it recurses as deeply as the file nests.
+      // Only numbers are printed: a dump of others recurses as deeply as the file nests.
       fail("is " + (value_.is_number() ? value_.dump() : std::string(value_.type_name())),
            "an integer, 0 to 2^40");
     }

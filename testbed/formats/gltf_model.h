@@ -116,7 +116,8 @@ struct Model {
 /// @throws Error  naming the file and the JSON pointer ("/nodes/3/mesh") of what is wrong
 Model parse_gltf(const std::filesystem::path& file);
 
-/// The same from bytes; buffers in other files are refused when `folder` is absent (fuzzing).
+/// Parses the bytes of such a file; buffers in other files are refused when `folder` is absent
+/// (fuzzing).
 Model parse_gltf(const std::vector<std::byte>& bytes, const std::filesystem::path& file,
                  bool other_files_allowed);
 

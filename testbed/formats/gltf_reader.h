@@ -76,7 +76,7 @@ struct GltfCharacter {
 /// Source: Khronos glTF 2.0 specification.
 GltfCharacter read_gltf(const std::filesystem::path& file, const GltfReadOptions& options = {});
 
-/// The same from the bytes of a self-contained file; `name` is for messages.
+/// `read_gltf` for the bytes of a self-contained file; `name` is for messages.
 GltfCharacter read_gltf_bytes(const std::vector<std::byte>& bytes,
                               const std::filesystem::path& name,
                               const GltfReadOptions& options = {});

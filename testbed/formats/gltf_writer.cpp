@@ -101,7 +101,7 @@ void check(const std::string& file, const TriMesh& base,
                   std::to_string(base.V.rows()));
     }
     if (!frames[i].allFinite()) throw Error("a position of " + frame + " is not finite", file);
-    // In single precision, as the times are stored.
+    // Times are compared in single precision, in which they are stored.
     const auto time = static_cast<float>(times_s[i]);
     if (!(time >= 0) || !std::isfinite(time) ||
         (i > 0 && !(time > static_cast<float>(times_s[i - 1]))))

@@ -34,7 +34,7 @@ std::optional<double> finite_number(std::string_view word) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
   if (word.empty() || end != word.data() + word.size()) return std::nullopt;
   if (error == std::errc::result_out_of_range) {
-    // Too small for a double is 0, too large is no number for us.
+    // A number too small for a double counts as 0; one too large counts as no number.
     const std::size_t e = word.find_first_of("eE");
     if (e == std::string_view::npos || word[e + 1] != '-') return std::nullopt;
     return 0;

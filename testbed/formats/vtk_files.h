@@ -19,7 +19,8 @@ std::string part_to_vtk_xml(const Part& part, double parameter);
 /// Reads back what `part_to_vtk_xml` wrote (any valid .vtp or .vti); throws Error naming the file.
 Part read_vtk_part(const std::filesystem::path& file, double* parameter = nullptr);
 
-/// The same of a file of others, which need not have a TimeValue.
+/// Reads a .vtp or .vti of another program, which need not have a TimeValue: `parameter` is then
+/// empty.
 Part read_vtk_part(const std::filesystem::path& file, std::optional<double>& parameter);
 
 /// Text of a ParaView .pvd collection over (parameter, relative file, part name).

@@ -27,6 +27,10 @@ class Walk : public OptionValues<Walk> {
               const OptionInfo&) override {
     exchange(index);
   }
+  void optional_choice(std::string_view, std::optional<int>& index,
+                       std::span<const std::string_view>, const OptionInfo&) override {
+    exchange(index);
+  }
   void group(std::string_view, const OptionInfo&, const std::function<void()>& inside) override {
     inside();
   }

@@ -39,6 +39,11 @@ void OptionJsonWriter::choice(std::string_view key, int& index,
   member(key) = std::string(names[index]);
 }
 
+void OptionJsonWriter::optional_choice(std::string_view key, std::optional<int>& index,
+                                       std::span<const std::string_view> names, const OptionInfo&) {
+  member(key) = index ? Json(std::string(names[*index])) : Json(nullptr);
+}
+
 void OptionJsonWriter::group(std::string_view key, const OptionInfo&,
                              const std::function<void()>& inside) {
   member(key) = walk(inside);

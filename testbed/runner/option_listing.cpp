@@ -90,6 +90,8 @@ class OptionLister final : public OptionValues<OptionLister> {
 
   void choice(std::string_view key, int& index, std::span<const std::string_view> names,
               const OptionInfo& info) override;
+  void optional_choice(std::string_view key, std::optional<int>& index,
+                       std::span<const std::string_view> names, const OptionInfo& info) override;
   void group(std::string_view key, const OptionInfo& info,
              const std::function<void()>& inside) override;
   void optional_group(std::string_view key, bool& present, const OptionInfo& info,
@@ -188,6 +190,13 @@ void OptionLister::choice(std::string_view key, int& index, std::span<const std:
   Tag tag{full, {names.begin(), names.end()}, {}};
   walked_.rows.back().range = joined(tag.names);
   walked_.tags.push_back(std::move(tag));
+}
+
+void OptionLister::optional_choice(std::string_view key, std::optional<int>& index,
+                                   std::span<const std::string_view> names,
+                                   const OptionInfo& info) {
+  add(key, "choice", index ? in_quotes(std::string(names[*index])) : "", info);
+  walked_.rows.back().range = joined({names.begin(), names.end()});
 }
 
 void OptionLister::group(std::string_view key, const OptionInfo& info,

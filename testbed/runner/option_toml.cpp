@@ -181,6 +181,14 @@ template class OptionValues<OptionTomlReader>;
 
 void OptionTomlReader::choice(std::string_view key, int& index,
                               std::span<const std::string_view> names, const OptionInfo& info) {
+  std::optional<int> chosen = index;
+  optional_choice(key, chosen, names, info);
+  index = *chosen;
+}
+
+void OptionTomlReader::optional_choice(std::string_view key, std::optional<int>& index,
+                                       std::span<const std::string_view> names,
+                                       const OptionInfo& info) {
   const TomlNode* node = take(key, info);
   if (node == nullptr) return;
   const std::vector<std::string> allowed(names.begin(), names.end());

@@ -27,6 +27,8 @@ class OptionTomlReader final : public OptionValues<OptionTomlReader> {
 
   void choice(std::string_view key, int& index, std::span<const std::string_view> names,
               const OptionInfo& info) override;
+  void optional_choice(std::string_view key, std::optional<int>& index,
+                       std::span<const std::string_view> names, const OptionInfo& info) override;
   void group(std::string_view key, const OptionInfo& info,
              const std::function<void()>& inside) override;
   void optional_group(std::string_view key, bool& present, const OptionInfo& info,

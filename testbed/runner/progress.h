@@ -16,7 +16,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void begin(const std::string& what);
-  /// Of the current step, 0 … 1.
+  /// Shows how much of the current step is done, 0 … 1.
   void fraction(double done);
   void end();
   /// A step that an earlier, interrupted run has done.

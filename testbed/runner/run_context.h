@@ -27,7 +27,8 @@ class TimedContext final : public RunContext {
   [[nodiscard]] bool stop_was_told() const { return stop_was_told_; }
   /// Seconds of each phase since the last call, and starts anew.
   std::map<std::string, double> take_phases();
-  /// The same; open phases count up to now and start anew too: the times of one frame.
+  /// Seconds of each phase since the last call, open phases up to now, which start anew as well:
+  /// the times of one frame.
   std::map<std::string, double> lap();
   /// What `lap` would return, without starting anew.
   [[nodiscard]] std::map<std::string, double> phases() const;

@@ -17,7 +17,7 @@ void put(std::vector<double>& column, std::size_t index, double value) {
   column.push_back(value);
 }
 
-/// The same for the one repetition of a phase's times.
+/// Puts the seconds of one phase at a frame, as its only repetition.
 void put(std::vector<std::vector<double>>& rows, std::size_t index, double seconds) {
   rows.resize(index, {kAbsent});
   rows.push_back({seconds});

@@ -41,8 +41,8 @@ struct CaseSpec {
 /// A statement that the runner can decide: value (is) factor * value of the other side + offset.
 struct ClaimSpec {
   std::string text;
-  /// Of the metric table, or "timing:<phase>" (median, in s), "diagnostic:<name>" (per frame), or
-  /// "study:<name>" (its value; has no variant and is decided once).
+  /// A name of the metric table, or "timing:<phase>" (median, in s), "diagnostic:<name>" (per
+  /// frame), or "study:<name>" (its value; has no variant and is decided once).
   std::string metric;
   std::string variant;
   std::optional<std::string> of;  ///< compared with this variant; absent: with `value`

@@ -38,7 +38,7 @@ double central_probability(double t, int nu) {
 
 constexpr int kResamples = 2000;
 
-/// Of `values`, and left in `sample`.
+/// Draws as many numbers from `values` as there are, with replacement, into `sample`.
 void draw(std::span<const double> values, RandomStream& random, std::vector<double>& sample) {
   sample.resize(values.size());
   for (double& x : sample) x = values[random.below(static_cast<std::uint32_t>(values.size()))];

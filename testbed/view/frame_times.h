@@ -10,7 +10,7 @@ namespace geoprior {
 /// Parameters at which some drawn variant of the view's first case has a frame, rising.
 std::vector<double> frame_parameters(const RunRecord& record, const FigureView& view);
 
-/// At most `count` of them, evenly spaced, the first and the last among them.
+/// Chooses at most `count` of the parameters, evenly spaced, the first and the last among them.
 std::vector<double> evenly_chosen(const std::vector<double>& parameters, int count);
 
 /// The view of a contact sheet: frames of `view.contact_sheet` evenly spaced parameters side by

@@ -41,7 +41,7 @@ std::vector<std::vector<LegendEntry>> legend_lines(const std::vector<LegendEntry
 /// Pixels that the lines of the legend take; 0 without entries.
 int legend_height(const std::vector<LegendEntry>& entries, int width);
 
-/// In centred lines below `top`.
+/// Draws the legend in centred lines below the row of pixels `top`.
 void draw_legend(Picture& picture, const std::vector<LegendEntry>& entries, int top);
 
 }  // namespace geoprior

@@ -227,6 +227,30 @@ TEST(LiquidProcess, SameBytesWithOneAndTwoThreads) {
   EXPECT_EQ(states[0], states[1]);
 }
 
+TEST(LiquidProcess, PressureIterationsOfAFrameAreTheSumOfItsSubsteps) {
+  Tank tank = column_tank(8);
+  tank.duration = 0.2;
+  tank.frame_interval = 0.1;
+  LiquidOptions options;
+  options.cfl = 0.1;
+  Collector sink;
+  RunContext context;
+  make_liquid(tank, options)->run(sink, context, std::nullopt);
+  Liquid liquid(tank, options, context.seed());
+  int substeps = 0;
+  for (int frame = 1; frame < tank.frame_count(); ++frame) {
+    int iterations = 0;
+    for (bool done = false; !done; ++substeps) {
+      const double rest = tank.frame_time(frame) - liquid.time();
+      const LiquidStepReport step = liquid.step(rest, context);
+      iterations += step.pressure.iterations;
+      done = step.dt >= rest;
+    }
+    EXPECT_EQ(sink.frames[frame].diagnostics.at("pressure_iterations"), iterations) << frame;
+  }
+  EXPECT_GT(substeps, 2 * tank.frame_count());
+}
+
 TEST(LiquidProcess, AnotherSeedIsAnotherJitter) {
   const Liquid a(column_tank(8), LiquidOptions{}, 1), b(column_tank(8), LiquidOptions{}, 2);
   EXPECT_FALSE(same_bytes(a.particles().position, b.particles().position));

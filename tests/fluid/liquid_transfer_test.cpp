@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "core/parallel.h"
@@ -33,6 +34,78 @@ struct RoundTrip {
   }
 };
 
+/// The kernel of the header by its definition, for component a of the velocity (a = 3: the cell
+/// centres): hats between the samples of each axis, clamped to the first and last.
+struct Kernel {
+  GridShape shape;
+  int component;
+
+  [[nodiscard]] Eigen::Vector3i samples() const {
+    return component < 3 ? shape.face_cells(component) : shape.cells;
+  }
+  /// Sample i of axis b (m).
+  [[nodiscard]] double place(int b, int i) const {
+    return shape.cell * (b == component ? i : i + 0.5);
+  }
+  [[nodiscard]] double hat(int b, int i, double x) const {
+    const double clamped = std::clamp(x, place(b, 0), place(b, samples()[b] - 1));
+    return std::max(0.0, 1 - std::abs(clamped - place(b, i)) / shape.cell);
+  }
+  [[nodiscard]] double hat_slope(int b, int i, double x) const {
+    if (x < place(b, 0) || x > place(b, samples()[b] - 1) || hat(b, i, x) == 0) return 0;
+    return (x < place(b, i) ? 1 : -1) / shape.cell;
+  }
+  /// Calls f(sample, N, grad N) for the samples that x reaches.
+  template <class Function>
+  void for_each(const Eigen::Vector3d& x, const Function& f) const {
+    const Eigen::Vector3i n = samples();
+    for (int k = 0; k < n.z(); ++k)
+      for (int j = 0; j < n.y(); ++j)
+        for (int i = 0; i < n.x(); ++i) {
+          const Eigen::Vector3d h(hat(0, i, x.x()), hat(1, j, x.y()), hat(2, k, x.z()));
+          if (h.prod() == 0) continue;
+          const Eigen::Vector3d slope(hat_slope(0, i, x.x()), hat_slope(1, j, x.y()),
+                                      hat_slope(2, k, x.z()));
+          f(Eigen::Vector3i(i, j, k), h.prod(),
+            Eigen::Vector3d(slope.x() * h.y() * h.z(), h.x() * slope.y() * h.z(),
+                            h.x() * h.y() * slope.z()));
+        }
+  }
+};
+
+/// m_i and m_i u_i of one component over all its samples, as the header has them.
+void sum_particles(const Kernel& kernel, const LiquidParticles& particles,
+                   std::vector<double>& mass, std::vector<double>& momentum) {
+  const Eigen::Vector3i n = kernel.samples();
+  mass.assign(static_cast<std::size_t>(n.prod()), 0);
+  momentum = mass;
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const Eigen::Vector3d x = particles.position[p].cast<double>();
+    kernel.for_each(x, [&](const Eigen::Vector3i& at, double weight, const Eigen::Vector3d&) {
+      const int i = at.x() + n.x() * (at.y() + n.y() * at.z());
+      mass[i] += weight;
+      if (kernel.component == 3) return;
+      double u = static_cast<double>(particles.velocity[p][kernel.component]);
+      if (!particles.affine.empty()) {
+        const Eigen::Vector3d xi(kernel.place(0, at.x()), kernel.place(1, at.y()),
+                                 kernel.place(2, at.z()));
+        u += particles.affine[p].row(kernel.component).cast<double>().dot(xi - x);
+      }
+      momentum[i] += weight * u;
+    });
+  }
+}
+
+/// Particles all over a small grid, with velocity gradients.
+LiquidParticles particles_with_gradients(std::uint64_t seed) {
+  LiquidParticles particles = scattered(403, {0, 0, 0}, {0.6, 0.5, 0.7}, seed);
+  RandomStream random(seed, "gradients");
+  particles.affine.resize(particles.size());
+  for (Eigen::Matrix3f& c : particles.affine)
+    for (int i = 0; i < 9; ++i) c(i / 3, i % 3) = static_cast<float>(random.normal());
+  return particles;
+}
+
 std::size_t cell_of(const GridShape& shape, const Eigen::Vector3f& x) {
   const Eigen::Vector3i at = (x / static_cast<float>(shape.cell)).array().floor().cast<int>();
   return shape.index(at.x(), at.y(), at.z());
@@ -64,6 +137,63 @@ TEST(LiquidSort, ParticlesOutsideCountToTheNearestCell) {
   EXPECT_EQ(particles.cell_begin[1], 1U);
   EXPECT_EQ(particles.cell_begin[63], 1U);
   EXPECT_EQ(particles.position[1].x(), 9);
+}
+
+TEST(LiquidTransfer, TilesSumWhatTheKernelSays) {
+  const GridShape shape = grid_of({6, 5, 7}, kCell);
+  for (const bool affine : {false, true}) {
+    LiquidParticles particles = particles_with_gradients(10);
+    if (!affine) particles.affine.clear();
+    sort_by_cell(shape, particles);
+    MacGrid grid(shape);
+    std::array<std::vector<char>, 3> touched;
+    ScalarGrid density;
+    ParticleToGrid(shape).gather(particles, 8, grid, touched, density);
+    std::vector<double> mass, momentum;
+    for (int a = 0; a < 3; ++a) {
+      sum_particles({shape, a}, particles, mass, momentum);
+      for (std::size_t i = 0; i < mass.size(); ++i) {
+        if (mass[i] < 1e-3) continue;  // the quotient of the floats is round-off there
+        // Sums of up to thirty floats near 1, then their quotient.
+        EXPECT_NEAR(grid.face[a].values[i], momentum[i] / mass[i], 1e-5 / std::min(1.0, mass[i]));
+        EXPECT_EQ(touched[a][i], 1);
+      }
+    }
+    sum_particles({shape, 3}, particles, mass, momentum);
+    for (std::size_t i = 0; i < mass.size(); ++i) EXPECT_NEAR(density.values[i], mass[i] / 8, 1e-6);
+  }
+}
+
+// Without gradients eight particles are taken at a time (403 leave a last batch of three), with
+// them one: both are the sum over the samples.
+TEST(LiquidTransfer, ParticlesTakeWhatTheKernelSays) {
+  const GridShape shape = grid_of({6, 5, 7}, kCell);
+  MacGrid field(shape);
+  RandomStream random(11, "field");
+  for (ScalarGrid& face : field.face)
+    for (float& u : face.values) u = static_cast<float>(random.normal());
+  for (const bool affine : {false, true}) {
+    const LiquidParticles before = particles_with_gradients(12);
+    LiquidParticles after = before;
+    grid_to_particles(field, 0.25F, affine, after);
+    for (std::size_t p = 0; p < before.size(); ++p) {
+      const Eigen::Vector3d x = before.position[p].cast<double>();
+      for (int a = 0; a < 3; ++a) {
+        double u = 0;
+        Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+        Kernel{shape, a}.for_each(
+            x, [&](const Eigen::Vector3i& at, double weight, const Eigen::Vector3d& slope) {
+              const double here = field.face[a](at.x(), at.y(), at.z());
+              u += weight * here;
+              gradient += slope * here;
+            });
+        const double kept = 0.25 * static_cast<double>(before.velocity[p][a]);
+        EXPECT_NEAR(after.velocity[p][a], kept + u, 1e-5);
+        if (!affine) continue;
+        EXPECT_LT((after.affine[p].row(a).transpose().cast<double>() - gradient).norm(), 2e-4);
+      }
+    }
+  }
 }
 
 TEST(LiquidTransfer, UniformVelocityIsReproducedEverywhere) {

@@ -125,6 +125,76 @@ TEST(ShellElements, GradientsAreDerivativesOfTheEnergies) {
   }
 }
 
+/// Membrane energy of the header: A Y/2 [(1-nu) |G|^2 + nu tr(G)^2], G = (F'F - I) / 2.
+double membrane_energy(const ShellMesh& mesh, const PaperMaterial& material, int t, double area,
+                       const Eigen::MatrixX3d& x) {
+  const Eigen::RowVector3i v = mesh.triangles.row(t);
+  Eigen::Matrix2d flat;
+  Eigen::Matrix<double, 3, 2> bent;
+  for (int k = 0; k < 2; ++k) {
+    flat.col(k) = mesh.pattern.row(v[k + 1]) - mesh.pattern.row(v[0]);
+    bent.col(k) = x.row(v[k + 1]) - x.row(v[0]);
+  }
+  const Eigen::Matrix<double, 3, 2> F = bent * flat.inverse();
+  const Eigen::Matrix2d G = 0.5 * (F.transpose() * F - Eigen::Matrix2d::Identity());
+  const double nu = material.poisson_ratio;
+  return area * material.membrane_stiffness() / 2 *
+         ((1 - nu) * G.squaredNorm() + nu * G.trace() * G.trace());
+}
+
+/// Bending energy of the header, of an element without residual:
+/// A D/2 [(1-nu) |S|^2 + nu tr(S)^2] / (1 + weakening damage), S the elastic shape operator.
+double plate_energy(const PaperMaterial& material, double area, const Eigen::Vector3d& S,
+                    double damage) {
+  const double nu = material.poisson_ratio, trace = S[0] + S[2];
+  const double square = S[0] * S[0] + 2 * S[1] * S[1] + S[2] * S[2];
+  return area * material.bending_stiffness() / 2 * ((1 - nu) * square + nu * trace * trace) /
+         (1 + material.weakening * damage);
+}
+
+/// Half of the header's energy of the hinges at a triangle, calibration 4.
+double hinge_energy(const CurvatureFit& fit, const ShellMesh& mesh, const PaperMaterial& material,
+                    int t, const ShellState& state, const Eigen::MatrixX3d& x) {
+  double sum = 0;
+  for (int i = 0; i < fit.own[t]; ++i) {
+    const CurvatureFit::Hinge& h = fit.hinges[fit.terms[t][i].hinge];
+    const double l2 = (mesh.pattern.row(h.b) - mesh.pattern.row(h.a)).squaredNorm();
+    const double bent = dihedral_angle(x, h) - h.jump.dot(state.plastic_curvature.row(t));
+    sum += 4 * material.bending_stiffness() / 4 * l2 / (fit.area[h.left] + fit.area[h.right]) *
+           bent * bent / 2 / 2;
+  }
+  return sum / (1 + material.weakening * state.damage[t]);
+}
+
+TEST(ShellElements, EnergiesAreTheFormulasOfTheHeader) {
+  PaperMaterial material = thick();
+  material.weakening = 2;
+  int plates = 0;
+  for (const auto& [name, mesh, model] : small_sheets()) {
+    const ShellElements elements(mesh, material, model, 4);
+    const CurvatureFit& fit = elements.curvature_fit();
+    ShellState state = flat_state(mesh);
+    randomise_memory(state, 3);
+    const Eigen::MatrixX3d x = crumpled(mesh, 0.03, 1);
+    ShellElements::Local local;
+    for (int t = 0; t < elements.size(); ++t) {
+      elements.evaluate(t, state, x, Order::energy, local);
+      const double membrane = membrane_energy(mesh, material, t, fit.area[t], x);
+      EXPECT_NEAR(local.membrane, membrane, 1e-12 * membrane) << name << t;
+      double bending = local.bending;
+      if (model == BendingModel::hinge) {
+        bending = hinge_energy(fit, mesh, material, t, state, x);
+      } else if (fit.own[t] == 3 && fit.rank[t] == 3) {
+        ++plates;
+        bending = plate_energy(material, fit.area[t], elements.elastic_curvature(t, state, x),
+                               state.damage[t]);
+      }
+      EXPECT_NEAR(local.bending, bending, 1e-12 * bending) << name << t;
+    }
+  }
+  EXPECT_GT(plates, 10);
+}
+
 /// Largest difference between the Hessian and the differences of gradients, relative.
 double hessian_error(const ShellElements& elements, const ShellState& state,
                      const Eigen::MatrixX3d& x) {

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
+#include <vector>
+
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/topology.h"
 #include "tests/skinning/fixtures.h"
 
 namespace geoprior::skinning {
@@ -15,6 +19,57 @@ Eigen::MatrixX3d delta_mush(const RiggedMesh& rig, const Pose& pose,
                             const DeltaMushOptions& options = {}) {
   Eigen::MatrixX3d posed;
   DeltaMush(rig, options).deform(pose, posed);
+  return posed;
+}
+
+/// Rotation that the header calls R_i: the rotation part of the linear map that takes the rest
+/// edges of a ring to the posed ones with the least squares error, in the plane across the ring's
+/// rest normal.
+Eigen::Matrix3d ring_frame(const std::vector<int>& ring, int i, const Eigen::MatrixX3d& rest,
+                           const Eigen::MatrixX3d& posed) {
+  Eigen::MatrixX3d before(ring.size(), 3), after(ring.size(), 3);
+  Eigen::Vector3d area = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    before.row(static_cast<Eigen::Index>(k)) = rest.row(ring[k]) - rest.row(i);
+    after.row(static_cast<Eigen::Index>(k)) = posed.row(ring[k]) - posed.row(i);
+    const Eigen::Vector3d next = rest.row(ring[(k + 1) % ring.size()]) - rest.row(i);
+    area += Eigen::Vector3d(before.row(static_cast<Eigen::Index>(k))).cross(next);
+  }
+  const Eigen::Vector3d x = area.unitOrthogonal(), y = area.normalized().cross(x);
+  Eigen::MatrixX2d plane(before.rows(), 2);
+  plane << before * x, before * y;
+  const Eigen::Matrix<double, 2, 3> map = plane.colPivHouseholderQr().solve(after);
+  const Eigen::Vector3d a = map.row(0), b = map.row(1);
+  const Eigen::Vector3d n = a.cross(b).normalized(), t = (a + b.cross(n)).normalized();
+  Eigen::Matrix3d frame;
+  frame << t, n.cross(t), n;
+  return frame;
+}
+
+/// The three lines of the header, s = S(p), d = R^T (p - s), v' = s' + R' d, vertex by vertex.
+Eigen::MatrixX3d by_definition(const RiggedMesh& rig, const Pose& pose,
+                               const DeltaMushOptions& options) {
+  const VertexGraph graph = one_rings(rig.mesh.F, rig.mesh.vertex_count());
+  const auto smoothed = [&](Eigen::MatrixX3d V) {
+    for (int pass = 0; pass < options.iterations; ++pass) {
+      const Eigen::MatrixX3d before = V;
+      for (int i = 0; i < V.rows(); ++i) {
+        Eigen::RowVector3d mean = Eigen::RowVector3d::Zero();
+        for (const int j : graph.of(i))
+          mean += before.row(j) / static_cast<double>(graph.of(i).size());
+        V.row(i) += options.step * (mean - before.row(i));
+      }
+    }
+    return V;
+  };
+  const Eigen::MatrixX3d s = smoothed(rig.mesh.V), moved = smoothed(linear_blend(rig, pose));
+  Eigen::MatrixX3d posed(s.rows(), 3);
+  for (int i = 0; i < s.rows(); ++i) {
+    const std::vector<int> ring(graph.of(i).begin(), graph.of(i).end());
+    const Eigen::Vector3d detail =
+        ring_frame(ring, i, s, s).transpose() * (rig.mesh.V.row(i) - s.row(i)).transpose();
+    posed.row(i) = moved.row(i) + (ring_frame(ring, i, s, moved) * detail).transpose();
+  }
   return posed;
 }
 
@@ -59,6 +114,16 @@ TEST(DeltaMush, TurnsWithARigidMotionOfAllJoints) {
   const Eigen::MatrixX3d expected =
       (rig.mesh.V * motion.linear().transpose()).rowwise() + motion.translation().transpose();
   EXPECT_LE(fixtures::largest_distance(delta_mush(rig, pose), expected), 1e-12);
+}
+
+TEST(DeltaMush, LanesAgreeWithTheDefinition) {
+  const RiggedMesh rig = capsule_finger();
+  const Pose pose = fixtures::curled(rig, 0.8);
+  const DeltaMushOptions options;
+  // The blend's weights are packed as floats.
+  EXPECT_LE(
+      fixtures::largest_distance(delta_mush(rig, pose, options), by_definition(rig, pose, options)),
+      1e-7 * bounding_box_diagonal(rig.mesh.V));
 }
 
 TEST(DeltaMush, WithoutIterationsItIsLinearBlend) {

@@ -129,6 +129,30 @@ double cache_error(int grid) {
   return worst;
 }
 
+TEST(FieldCache, SamplesTheTrilinearSumOfTheFieldAtItsNodes) {
+  const Sphere s = sphere(50, 0.08);
+  const Hrbf field(s.points, s.normals, 0.08);
+  const FieldBox box = field_box(stub_bone(s), s.points);
+  const FieldCache cache(field, box, 12);
+  RandomStream random(4, "samples");
+  for (int sample = 0; sample < 200; ++sample) {
+    const Eigen::Vector3d u = Eigen::Vector3d(random.uniform(), random.uniform(), random.uniform())
+                                  .cwiseProduct(cache.extent());
+    Eigen::Vector4d expected = Eigen::Vector4d::Zero();
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d node =
+          u.array().floor() + Eigen::Array3d(corner % 2, corner / 2 % 2, corner / 4);
+      const double weight = (1 - (u - node).array().abs()).prod();
+      const Hrbf::Value v = field(box.axes * (box.low + cache.cell_size() * node));
+      expected += weight * Eigen::Vector4d(v.gradient.x(), v.gradient.y(), v.gradient.z(), v.value);
+    }
+    const Float4 got = cache.sample(Float4{static_cast<float>(u.x()), static_cast<float>(u.y()),
+                                           static_cast<float>(u.z()), 0.0F});
+    // Grid coordinates and values are in single precision.
+    for (int k = 0; k < 4; ++k) EXPECT_NEAR(got[k], expected[k], 1e-5);
+  }
+}
+
 // Trilinear interpolation of a C2 function is of second order: doubling the grid quarters the
 // error; 3 leaves room for the third derivative's jumps at the samples.
 TEST(FieldCache, ConvergesWithSecondOrder) {

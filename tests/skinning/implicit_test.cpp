@@ -176,6 +176,28 @@ TEST(ImplicitSkinning, SamplesLieOnTheSkinOrOnTheBones) {
   }
 }
 
+Eigen::MatrixX3d bent_finger(const ImplicitOptions& options) {
+  ImplicitSkinning skin = make(finger(), options);
+  Eigen::MatrixX3d posed;
+  RunContext context;
+  skin.deform(bend(finger(), "middle", 60), posed, context);
+  return posed;
+}
+
+TEST(ImplicitSkinning, AJointKeepsWhatItsOwnBlendLeavesOut) {
+  ImplicitOptions options;
+  options.blend = BlendKind::bulge_in_contact;
+  options.opening = OpeningPreset::bulge;
+  const Eigen::MatrixX3d all = bent_finger(options);
+  options.joint_blends = {{"middle", std::nullopt, OpeningPreset::bulge}};
+  EXPECT_TRUE((bent_finger(options).array() == all.array()).all());
+  options.joint_blends = {{"middle", BlendKind::bulge_in_contact, std::nullopt}};
+  EXPECT_TRUE((bent_finger(options).array() == all.array()).all());
+  // What they name does count.
+  options.joint_blends = {{"middle", BlendKind::union_max, std::nullopt}};
+  EXPECT_GT((bent_finger(options) - all).rowwise().norm().maxCoeff(), 1e-5);
+}
+
 TEST(ImplicitSkinning, RefusesOpenMeshesAndUnknownJoints) {
   RiggedMesh open = finger();
   open.mesh.F.conservativeResize(open.mesh.F.rows() - 1, 3);

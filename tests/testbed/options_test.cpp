@@ -39,6 +39,7 @@ struct Everything {
   std::array<double, 3> point{0, 0, 1};
   std::array<int, 3> size{1, 1, 1};
   Shape shape = Shape::round;
+  std::optional<Shape> maybe_shape;
   Inner inner;
   std::optional<Inner> maybe_inner;
   std::vector<Inner> inners;
@@ -56,6 +57,7 @@ void describe(OptionVisitor& v, Everything& o) {
   v.value("point", o.point, {.doc = "a point"});
   v.value("size", o.size, {.doc = "a size", .min = 1});
   describe_choice(v, "shape", o.shape, kShapes, {.doc = "a choice"});
+  describe_choice(v, "maybe_shape", o.maybe_shape, kShapes, {.doc = "may be absent"});
   describe_group(v, "inner", o.inner, {.doc = "a table"});
   describe_group(v, "maybe_inner", o.maybe_inner, {.doc = "a table that may be absent"});
   describe_list(v, "inners", o.inners, {.doc = "tables"});
@@ -95,6 +97,7 @@ maybe_text = "t"
 point = [1, 2.5, 3]
 size = [4, 5, 6]
 shape = "square"
+maybe_shape = "round"
 inner = { weight = 0.75 }
 maybe_inner = { }
 inners = [{ weight = 0.1 }, { }]
@@ -114,11 +117,13 @@ TEST(OptionToml, ReadsEveryKindAndKeepsDefaultsOfAbsentKeys) {
   EXPECT_EQ(o.point, (std::array<double, 3>{1, 2.5, 3}));
   EXPECT_EQ(o.size, (std::array<int, 3>{4, 5, 6}));
   EXPECT_EQ(o.shape, Shape::square);
+  EXPECT_EQ(o.maybe_shape, Shape::round);
   EXPECT_EQ(o.inner.weight, 0.75);
   ASSERT_TRUE(o.maybe_inner);
   ASSERT_EQ(o.inners.size(), 2U);
   EXPECT_EQ(o.inners[1].weight, 0.5);
   EXPECT_FALSE(read("").maybe_inner);
+  EXPECT_FALSE(read("").maybe_shape);
   EXPECT_EQ(json_of(read("")), json_of(Everything{}));
 }
 
@@ -165,6 +170,7 @@ TEST(OptionToml, NanInfinityAndValuesOutOfRangeAreRefused) {
   EXPECT_THAT(error_of("inner.weight = 2"), HasSubstr("between 0 and 1 kg"));
   EXPECT_THAT(error_of("shape = \"sqare\""),
               AllOf(HasSubstr("round, square"), HasSubstr("did you mean 'square'")));
+  EXPECT_THAT(error_of("maybe_shape = \"oval\""), HasSubstr("round, square"));
 }
 
 TEST(OptionToml, SyntaxErrorNamesTheLine) {
@@ -181,12 +187,13 @@ TEST(OptionListing, ListsEveryKeyWithDefaultRangeAndUnit) {
   Everything options;
   const std::vector<OptionRow> rows = list_options([&](OptionVisitor& v) { describe(v, options); });
   EXPECT_THAT(keys_of(rows),
-              testing::IsSupersetOf({"real", "shape", "inner.weight", "maybe_inner.weight",
-                                     "inners[].weight", "size"}));
+              testing::IsSupersetOf({"real", "shape", "maybe_shape", "inner.weight",
+                                     "maybe_inner.weight", "inners[].weight", "size"}));
   EXPECT_EQ(rows[0].default_value, "1.5");
   EXPECT_EQ(rows[0].range, "at least 0");
   EXPECT_EQ(rows[0].unit, "m");
   EXPECT_THAT(markdown_table(rows), HasSubstr("| `real` | number | `1.5` | at least 0 | m"));
+  EXPECT_THAT(markdown_table(rows), HasSubstr("| `maybe_shape` | choice |  | round \\| square |"));
   for (const OptionRow& row : rows) EXPECT_EQ(row.when, "") << row.key;
 }
 

@@ -96,10 +96,13 @@ TEST_F(Program, RunRecordsAndDecidesClaims) {
   // only when it is sampled; the bound holds everywhere.
   const json& variant = run_json["cases"][0]["variants"][1];
   EXPECT_LE(variant["summary"]["radius_error.max"]["value"], 0.0384294391935392);
+  EXPECT_THAT(good.err, AllOf(HasSubstr("holds        sixteen corners"),
+                              HasSubstr("claims   1 holds"), HasSubstr("run.h5")));
   const Outcome bad =
       run("run toy-circle/disc --no-pictures --set variant.polygon.options.segments=8");
   EXPECT_EQ(bad.code, 1);
-  EXPECT_THAT(bad.err, AllOf(HasSubstr("falls short"), HasSubstr("a claim fell short")));
+  EXPECT_THAT(bad.err, AllOf(HasSubstr("falls short  sixteen corners"),
+                             HasSubstr("claims   0 hold, 1 falls short")));
 }
 
 TEST_F(Program, AVariantThatFailsExitsWithOneAndItsFramesAreKept) {
