@@ -59,27 +59,27 @@ IntrinsicTriangulation::IntrinsicTriangulation(std::span<const std::array<int, 3
 void IntrinsicTriangulation::link(std::span<const std::array<int, 3>> triangles) {
   const EdgeConnectivity edges(triangles);
   for (int h = 0; h < edges.half_edge_count(); ++h) {
-    origin_[index(h)] = edges.origin(h);
-    twin_[index(h)] = edges.twin(h);
+    origin_[h] = edges.origin(h);
+    twin_[h] = edges.twin(h);
   }
   for (std::size_t h = 0; h < twin_.size(); ++h) {
     if (twin_[h] >= 0) continue;
-    border_[index(origin_[h])] = 1;
-    border_[index(tip(static_cast<int>(h)))] = 1;
+    border_[origin_[h]] = 1;
+    border_[tip(static_cast<int>(h))] = 1;
   }
   for (int t = 0; t < triangle_slots(); ++t) refresh_outgoing(t);
 }
 
 double IntrinsicTriangulation::area(int t) const {
-  return kahan_area(length_[index(3 * t)], length_[index(3 * t + 1)], length_[index(3 * t + 2)]);
+  return kahan_area(length_[3 * t], length_[3 * t + 1], length_[3 * t + 2]);
 }
 
 void IntrinsicTriangulation::neighbours(int v, std::vector<int>& into) const {
   into.clear();
-  const int start = out_[index(v)];
+  const int start = out_[v];
   for (int h = start;;) {
     into.push_back(tip(h));
-    const int back = previous(h), g = twin_[index(back)];
+    const int back = previous(h), g = twin_[back];
     if (g == start) return;
     if (g < 0) {
       into.push_back(origin(back));
@@ -91,20 +91,20 @@ void IntrinsicTriangulation::neighbours(int v, std::vector<int>& into) const {
 
 int IntrinsicTriangulation::degree(int v) const {
   int count = 0;
-  const int start = out_[index(v)];
+  const int start = out_[v];
   for (int h = start; h >= 0;) {
     ++count;
-    h = twin_[index(previous(h))];
+    h = twin_[previous(h)];
     if (h == start) break;
   }
   return count;
 }
 
 int IntrinsicTriangulation::find_edge(int a, int b) const {
-  const int start = out_[index(a)];
+  const int start = out_[a];
   for (int h = start; h >= 0;) {
     if (tip(h) == b) return h;
-    h = twin_[index(previous(h))];
+    h = twin_[previous(h)];
     if (h == start) break;
   }
   return -1;
@@ -118,9 +118,9 @@ void IntrinsicTriangulation::measure(std::span<const Eigen::Vector3d> position) 
   parallel_blocks(density_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       if (origin_[3 * t] < 0) continue;
-      const Eigen::Vector3d& a = position[index(origin_[3 * t])];
-      const Eigen::Vector3d& b = position[index(origin_[3 * t + 1])];
-      const Eigen::Vector3d& c = position[index(origin_[3 * t + 2])];
+      const Eigen::Vector3d& a = position[origin_[3 * t]];
+      const Eigen::Vector3d& b = position[origin_[3 * t + 1]];
+      const Eigen::Vector3d& c = position[origin_[3 * t + 2]];
       length_[3 * t] = (b - a).norm();
       length_[3 * t + 1] = (c - b).norm();
       length_[3 * t + 2] = (a - c).norm();
@@ -129,24 +129,24 @@ void IntrinsicTriangulation::measure(std::span<const Eigen::Vector3d> position) 
 }
 
 void IntrinsicTriangulation::set_length(int h, double length) {
-  length_[index(h)] = length;
-  if (twin_[index(h)] >= 0) length_[index(twin_[index(h)])] = length;
+  length_[h] = length;
+  if (twin_[h] >= 0) length_[twin_[h]] = length;
 }
 
 double IntrinsicTriangulation::cotangent(int h) const {
-  const double a = length_[index(h)], b = length_[index(next(h))], c = length_[index(previous(h))];
+  const double a = length_[h], b = length_[next(h)], c = length_[previous(h)];
   return (b * b + c * c - a * a) / std::max(4 * kahan_area(a, b, c), 1e-300);
 }
 
 bool IntrinsicTriangulation::delaunay(int h) const {
-  return opposite_angles_fit(cotangent(h), cotangent(twin_[index(h)]));
+  return opposite_angles_fit(cotangent(h), cotangent(twin_[h]));
 }
 
 IntrinsicTriangulation::Diagonal IntrinsicTriangulation::other_diagonal(int h) const {
-  const int g = twin_[index(h)];
-  const double base = length_[index(h)];
-  const Eigen::Vector2d c = apex(base, length_[index(previous(h))], length_[index(next(h))]);
-  const Eigen::Vector2d d = apex(base, length_[index(next(g))], length_[index(previous(g))]);
+  const int g = twin_[h];
+  const double base = length_[h];
+  const Eigen::Vector2d c = apex(base, length_[previous(h)], length_[next(h)]);
+  const Eigen::Vector2d d = apex(base, length_[next(g)], length_[previous(g)]);
   const double height = c.y() + d.y();
   if (!(height > 0)) return {};
   const double crossing = (c.x() * d.y() + d.x() * c.y()) / height;
@@ -158,23 +158,23 @@ void IntrinsicTriangulation::set_triangle(int t, const std::array<int, 3>& corne
                                           const std::array<double, 3>& length,
                                           const std::array<int, 3>& twin) {
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t h = index(3 * t) + k;
+    const std::size_t h = static_cast<std::size_t>(3 * t) + k;
     origin_[h] = corner[k];
     length_[h] = length[k];
     twin_[h] = twin[k];
-    if (twin[k] >= 0) twin_[index(twin[k])] = static_cast<int>(h);
+    if (twin[k] >= 0) twin_[twin[k]] = static_cast<int>(h);
   }
 }
 
 void IntrinsicTriangulation::refresh_outgoing(int t) {
   for (int h = 3 * t; h < 3 * t + 3; ++h) {
-    const std::size_t v = index(origin_[index(h)]);
-    if (border_[v] == 0 || twin_[index(h)] < 0) out_[v] = h;
+    const std::size_t v = static_cast<std::size_t>(origin_[h]);
+    if (border_[v] == 0 || twin_[h] < 0) out_[v] = h;
   }
 }
 
 bool IntrinsicTriangulation::flip(int h) {
-  const int g = twin_[index(h)];
+  const int g = twin_[h];
   if (g < 0) return false;
   const int a = origin(h), b = origin(g), c = origin(previous(h)), d = origin(previous(g));
   if (c == d || adjacent(c, d)) return false;
@@ -182,7 +182,7 @@ bool IntrinsicTriangulation::flip(int h) {
   if (!diagonal.convex) return false;
   const int t = h / 3, s = g / 3;
   const double mass = density(t) * area(t) + density(s) * area(s);
-  const auto edge = [&](int e) { return std::pair(length_[index(e)], twin_[index(e)]); };
+  const auto edge = [&](int e) { return std::pair(length_[e], twin_[e]); };
   const auto [ad, twin_ad] = edge(next(g));
   const auto [db, twin_db] = edge(previous(g));
   const auto [bc, twin_bc] = edge(next(h));
@@ -192,13 +192,13 @@ bool IntrinsicTriangulation::flip(int h) {
   refresh_outgoing(t);
   refresh_outgoing(s);
   const double both = area(t) + area(s);
-  density_[index(t)] = density_[index(s)] = both > 0 ? mass / both : 0;
+  density_[t] = density_[s] = both > 0 ? mass / both : 0;
   return true;
 }
 
 void IntrinsicTriangulation::push_edges(int t, std::vector<int>& stack) const {
   for (int h = 3 * t; h < 3 * t + 3; ++h)
-    if (twin_[index(h)] >= 0) stack.push_back(h);
+    if (twin_[h] >= 0) stack.push_back(h);
 }
 
 int IntrinsicTriangulation::settle(std::vector<int>& stack) {
@@ -215,8 +215,8 @@ int IntrinsicTriangulation::settle(std::vector<int>& stack) {
     }
     const int h = stack.back();
     stack.pop_back();
-    if (origin_[index(h)] < 0) continue;
-    const int g = twin_[index(h)];
+    if (origin_[h] < 0) continue;
+    const int g = twin_[h];
     if (g < 0 || delaunay(h)) continue;
     if (!flip(h)) {
       refused_.push_back(h);
@@ -247,7 +247,7 @@ int IntrinsicTriangulation::flip_to_delaunay() {
   parallel_blocks(density_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t h = 3 * begin; h < 3 * end; ++h) {
       if (origin_[h] < 0 || twin_[h] < static_cast<int>(h)) continue;
-      if (!opposite_angles_fit(cotangents_[h], cotangents_[index(twin_[h])])) wanting[h / 3] = 1;
+      if (!opposite_angles_fit(cotangents_[h], cotangents_[twin_[h]])) wanting[h / 3] = 1;
     }
   });
   stack_.clear();
@@ -259,10 +259,10 @@ int IntrinsicTriangulation::flip_to_delaunay() {
 int IntrinsicTriangulation::flip_around(std::span<const int> vertices) {
   stack_.clear();
   for (const int v : vertices) {
-    const int start = out_[index(v)];
+    const int start = out_[v];
     for (int h = start; h >= 0;) {
       push_edges(h / 3, stack_);
-      h = twin_[index(previous(h))];
+      h = twin_[previous(h)];
       if (h == start) break;
     }
   }
@@ -271,9 +271,7 @@ int IntrinsicTriangulation::flip_around(std::span<const int> vertices) {
 
 int IntrinsicTriangulation::insert(int t, const Eigen::Vector3d& barycentric, bool flips) {
   const auto [a, b, c] = corners(t);
-  const auto edge = [&](int k) {
-    return std::pair(length_[index(3 * t + k)], twin_[index(3 * t + k)]);
-  };
+  const auto edge = [&](int k) { return std::pair(length_[3 * t + k], twin_[3 * t + k]); };
   const auto [ab, twin_ab] = edge(0);
   const auto [bc, twin_bc] = edge(1);
   const auto [ca, twin_ca] = edge(2);
@@ -286,7 +284,7 @@ int IntrinsicTriangulation::insert(int t, const Eigen::Vector3d& barycentric, bo
   set_triangle(r, {b, c, v}, {bc, pc, pb}, {twin_bc, 3 * s + 2, 3 * t + 1});
   set_triangle(s, {c, a, v}, {ca, pa, pc}, {twin_ca, 3 * t + 2, 3 * r + 1});
   for (const int u : {t, r, s}) {
-    density_[index(u)] = density_here;
+    density_[u] = density_here;
     refresh_outgoing(u);
   }
   if (flips) {
@@ -324,7 +322,7 @@ int IntrinsicTriangulation::new_vertex() {
 }
 
 void IntrinsicTriangulation::free_triangle(int t) {
-  for (int h = 3 * t; h < 3 * t + 3; ++h) origin_[index(h)] = twin_[index(h)] = -1;
+  for (int h = 3 * t; h < 3 * t + 3; ++h) origin_[h] = twin_[h] = -1;
   free_triangles_.push_back(t);
   --live_triangles_;
 }
@@ -339,12 +337,12 @@ std::vector<std::array<int, 3>> IntrinsicTriangulation::triangles() const {
 
 void IntrinsicTriangulation::renumber(std::span<const int> number) {
   for (int& v : origin_)
-    if (v >= 0) v = number[index(v)];
+    if (v >= 0) v = number[v];
   std::vector<int> out;
   std::vector<char> border;
   for (std::size_t v = 0; v < out_.size(); ++v) {
     if (out_[v] < 0) continue;
-    const std::size_t w = index(number[v]);
+    const std::size_t w = static_cast<std::size_t>(number[v]);
     if (out.size() <= w) {
       out.resize(w + 1, -1);
       border.resize(w + 1, 0);
@@ -386,10 +384,10 @@ void IntrinsicTriangulation::load(StateReader& in) {
 bool IntrinsicTriangulation::flip_down_to_three(int v, std::vector<int>& touched) {
   for (int left = degree(v); left > 3; --left) {
     bool flipped = false;
-    const int start = out_[index(v)];
+    const int start = out_[v];
     for (int h = start; !flipped;) {
-      const int along = previous(h), g = twin_[index(along)];  // the next spoke; v is interior
-      const int other = twin_[index(h)] / 3;
+      const int along = previous(h), g = twin_[along];  // the next spoke; v is interior
+      const int other = twin_[h] / 3;
       if (flip(h)) {
         flipped = true;
         touched.push_back(h / 3);
@@ -407,16 +405,16 @@ bool IntrinsicTriangulation::flip_down_to_three(int v, std::vector<int>& touched
 bool IntrinsicTriangulation::merge_three(int v, std::vector<int>& touched) {
   std::array<int, 3> spoke{}, corner{}, twin{};
   std::array<double, 3> length{};
-  int h = out_[index(v)];
+  int h = out_[v];
   double mass = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     spoke[k] = h;
     const int outer = next(h);
     corner[k] = origin(outer);
-    length[k] = length_[index(outer)];
-    twin[k] = twin_[index(outer)];
+    length[k] = length_[outer];
+    twin[k] = twin_[outer];
     mass += density(h / 3) * area(h / 3);
-    h = twin_[index(previous(h))];
+    h = twin_[previous(h)];
   }
   const bool pillow = twin[0] >= 0 && twin[0] / 3 == twin[1] / 3 && twin[0] / 3 == twin[2] / 3;
   const double longest = std::max({length[0], length[1], length[2]});
@@ -427,8 +425,8 @@ bool IntrinsicTriangulation::merge_three(int v, std::vector<int>& touched) {
   set_triangle(t, corner, length, twin);
   refresh_outgoing(t);
   const double here = area(t);
-  density_[index(t)] = here > 0 ? mass / here : 0;
-  out_[index(v)] = -1;
+  density_[t] = here > 0 ? mass / here : 0;
+  out_[v] = -1;
   free_vertices_.push_back(v);
   touched.push_back(t);
   return true;
@@ -444,10 +442,10 @@ bool IntrinsicTriangulation::remove(int v, std::span<const Eigen::Vector3d> posi
   settle(stack_);
   if (removed) return true;
   std::vector<std::pair<double, int>> ring;  // length, tip
-  const int start = out_[index(v)];
+  const int start = out_[v];
   for (int h = start;;) {
-    ring.emplace_back(length_[index(h)], tip(h));
-    h = twin_[index(previous(h))];
+    ring.emplace_back(length_[h], tip(h));
+    h = twin_[previous(h)];
     if (h == start) break;
   }
   std::sort(ring.begin(), ring.end());
@@ -469,37 +467,36 @@ bool IntrinsicTriangulation::can_collapse(int h) const {
 
 bool IntrinsicTriangulation::collapse(int h, std::span<const Eigen::Vector3d> position) {
   if (!can_collapse(h)) return false;
-  const int v = origin(h), w = tip(h), g = twin_[index(h)];
+  const int v = origin(h), w = tip(h), g = twin_[h];
   std::vector<int> star;  // half-edges that leave v
-  const int start = out_[index(v)];
+  const int start = out_[v];
   double mass = 0;
   for (int e = start;;) {
     star.push_back(e);
     mass += density(e / 3) * area(e / 3);
-    e = twin_[index(previous(e))];
+    e = twin_[previous(e)];
     if (e == start) break;
   }
   // The edges v-c and w-c become one, and so do v-d and w-d.
-  const std::array<std::pair<int, int>, 2> joined{
-      std::pair(twin_[index(previous(h))], twin_[index(next(h))]),
-      std::pair(twin_[index(next(g))], twin_[index(previous(g))])};
-  const std::array<double, 2> kept{length_[index(next(h))], length_[index(previous(g))]};
+  const std::array<std::pair<int, int>, 2> joined{std::pair(twin_[previous(h)], twin_[next(h)]),
+                                                  std::pair(twin_[next(g)], twin_[previous(g)])};
+  const std::array<double, 2> kept{length_[next(h)], length_[previous(g)]};
   for (const int e : star) {
     if (e / 3 == h / 3 || e / 3 == g / 3) continue;
-    origin_[index(e)] = w;
-    const double chord = (position[index(w)] - position[index(tip(e))]).norm();
+    origin_[e] = w;
+    const double chord = (position[w] - position[tip(e)]).norm();
     set_length(e, chord);
-    set_length(previous(e), (position[index(w)] - position[index(origin(previous(e)))]).norm());
+    set_length(previous(e), (position[w] - position[origin(previous(e))]).norm());
   }
   for (std::size_t side = 0; side < 2; ++side) {
     const auto [inner, outer] = joined[side];
-    twin_[index(inner)] = outer;
-    length_[index(inner)] = kept[side];
-    if (outer >= 0) twin_[index(outer)] = inner;
+    twin_[inner] = outer;
+    length_[inner] = kept[side];
+    if (outer >= 0) twin_[outer] = inner;
   }
   free_triangle(h / 3);
   free_triangle(g / 3);
-  out_[index(v)] = -1;
+  out_[v] = -1;
   free_vertices_.push_back(v);
   double left = 0;
   stack_.clear();
@@ -510,7 +507,7 @@ bool IntrinsicTriangulation::collapse(int h, std::span<const Eigen::Vector3d> po
     push_edges(e / 3, stack_);
   }
   for (const int e : star)
-    if (triangle_alive(e / 3)) density_[index(e / 3)] = left > 0 ? mass / left : 0;
+    if (triangle_alive(e / 3)) density_[e / 3] = left > 0 ? mass / left : 0;
   settle(stack_);
   return true;
 }
@@ -532,12 +529,12 @@ TriangulationReport IntrinsicTriangulation::check() const {
   for (int t = 0; t < triangle_slots(); ++t) {
     if (!triangle_alive(t)) continue;
     ++report.triangles;
-    const auto l = [&](int h) { return length_[index(h)]; };
+    const auto l = [&](int h) { return length_[h]; };
     const double longest = std::max({l(3 * t), l(3 * t + 1), l(3 * t + 2)});
     if (!(l(3 * t) + l(3 * t + 1) + l(3 * t + 2) >= 2 * longest * (1 - 1e-12)))
       ++report.broken_triangles;
     for (int h = 3 * t; h < 3 * t + 3; ++h) {
-      ++corners_of[index(origin(h))];
+      ++corners_of[origin(h)];
       const int g = twin(h);
       if (g < 0) {
         ++report.border_edges;
@@ -564,11 +561,11 @@ TriangulationReport IntrinsicTriangulation::check() const {
   }
   for (int v = 0; v < vertex_slots(); ++v) {
     if (!vertex_alive(v)) {
-      report.broken_vertices += corners_of[index(v)] > 0 ? 1 : 0;
+      report.broken_vertices += corners_of[v] > 0 ? 1 : 0;
       continue;
     }
     ++report.vertices;
-    if (origin(out_[index(v)]) != v || degree(v) != corners_of[index(v)]) ++report.broken_vertices;
+    if (origin(out_[v]) != v || degree(v) != corners_of[v]) ++report.broken_vertices;
   }
   report.euler = report.vertices - edge_count + report.triangles;
   return report;

@@ -52,24 +52,24 @@ class IntrinsicTriangulation {
   // --- What is there ---
   [[nodiscard]] int vertex_slots() const { return static_cast<int>(out_.size()); }
   [[nodiscard]] int triangle_slots() const { return static_cast<int>(density_.size()); }
-  [[nodiscard]] bool vertex_alive(int v) const { return out_[index(v)] >= 0; }
-  [[nodiscard]] bool triangle_alive(int t) const { return origin_[index(3 * t)] >= 0; }
+  [[nodiscard]] bool vertex_alive(int v) const { return out_[v] >= 0; }
+  [[nodiscard]] bool triangle_alive(int t) const { return origin_[3 * t] >= 0; }
   [[nodiscard]] int triangle_count() const { return live_triangles_; }
-  [[nodiscard]] int origin(int h) const { return origin_[index(h)]; }
-  [[nodiscard]] int twin(int h) const { return twin_[index(h)]; }  ///< -1 at a border
-  [[nodiscard]] double length(int h) const { return length_[index(h)]; }
-  [[nodiscard]] int tip(int h) const { return origin_[index(next(h))]; }
+  [[nodiscard]] int origin(int h) const { return origin_[h]; }
+  [[nodiscard]] int twin(int h) const { return twin_[h]; }  ///< -1 at a border
+  [[nodiscard]] double length(int h) const { return length_[h]; }
+  [[nodiscard]] int tip(int h) const { return origin_[next(h)]; }
   [[nodiscard]] static int next(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
   [[nodiscard]] static int previous(int h) { return h % 3 == 0 ? h + 2 : h - 1; }
-  [[nodiscard]] bool border_vertex(int v) const { return border_[index(v)] != 0; }
+  [[nodiscard]] bool border_vertex(int v) const { return border_[v] != 0; }
   [[nodiscard]] std::array<int, 3> corners(int t) const {
     return {origin(3 * t), origin(3 * t + 1), origin(3 * t + 2)};
   }
   [[nodiscard]] double area(int t) const;  ///< Kahan's formula (m^2)
-  [[nodiscard]] double density(int t) const { return density_[index(t)]; }
-  void set_density(int t, double density) { density_[index(t)] = density; }
+  [[nodiscard]] double density(int t) const { return density_[t]; }
+  void set_density(int t, double density) { density_[t] = density; }
   /// A half-edge that leaves `v`; of a border vertex the one along the border.
-  [[nodiscard]] int outgoing(int v) const { return out_[index(v)]; }
+  [[nodiscard]] int outgoing(int v) const { return out_[v]; }
   /// Neighbours of `v`, counter-clockwise (from border to border).
   void neighbours(int v, std::vector<int>& into) const;
   /// Half-edge from a to b; -1 when there is none (a border edge that exists only the other way).
@@ -118,7 +118,6 @@ class IntrinsicTriangulation {
 
  private:
   struct Diagonal;
-  [[nodiscard]] static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] Diagonal other_diagonal(int h) const;
   [[nodiscard]] double cotangent(int h) const;
   [[nodiscard]] bool delaunay(int h) const;
