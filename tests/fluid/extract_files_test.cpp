@@ -7,6 +7,7 @@
 
 #include "experiments/fluid/exr_maps.h"
 #include "experiments/fluid/feature_files.h"
+#include "solvers/fluid/sculpt.h"
 #include "tests/fluid/sculpt_fixture.h"
 #include "tests/testbed/scratch_folder.h"
 
