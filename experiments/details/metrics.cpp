@@ -5,6 +5,7 @@
 
 #include "experiments/details/measures.h"
 #include "experiments/details/topic.h"
+#include "testbed/metric_rows.h"
 
 namespace geoprior::details {
 namespace {
@@ -16,47 +17,7 @@ constexpr Tolerance kCount{3, 0.05};
 constexpr Tolerance kRoundOff{1e-6, 0};
 
 using SharedMemo = std::shared_ptr<DetailsMemo>;
-using OfFrame = std::function<Value(const DetailsScene&, const Frame&)>;
-using OfSequence = std::function<Value(const DetailsScene&, const FrameSequence&)>;
-
-const DetailsScene& details(const Scene& scene) { return dynamic_cast<const DetailsScene&>(scene); }
-
-/// Adds rows to the table.
-class Rows {
- public:
-  explicit Rows(std::vector<MetricEntry>& table) : table_(table) {}
-
-  void frame(const char* name, const char* unit, const char* definition, Direction direction,
-             Tolerance tolerance, OfFrame measure) {
-    add(name, unit, definition, direction, tolerance).of_frame =
-        [measure = std::move(measure)](const Scene& scene, const Frame& frame, const Frame*) {
-          return measure(details(scene), frame);
-        };
-  }
-  void sequence(const char* name, const char* unit, const char* definition, Direction direction,
-                Tolerance tolerance, OfSequence measure) {
-    add(name, unit, definition, direction, tolerance).of_sequence =
-        [measure = std::move(measure)](const Scene& scene, const FrameSequence& frames) {
-          return measure(details(scene), frames);
-        };
-  }
-  /// Sets the value that the metric of the row added last is to be close to.
-  void target(double value) { table_.back().target = value; }
-
- private:
-  MetricEntry& add(const char* name, const char* unit, const char* definition, Direction direction,
-                   Tolerance tolerance) {
-    MetricEntry& e = table_.emplace_back();
-    e.name = name;
-    e.unit = unit;
-    e.definition = definition;
-    e.direction = direction;
-    e.tolerance = tolerance;
-    return e;
-  }
-
-  std::vector<MetricEntry>& table_;
-};
+using Rows = MetricRows<DetailsScene>;
 
 constexpr Direction kLow = Direction::lower_is_better;
 constexpr Direction kTarget = Direction::closer_to_target;

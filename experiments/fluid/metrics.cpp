@@ -12,6 +12,7 @@
 #include "metrics/seam.h"
 #include "metrics/self_contact.h"
 #include "metrics/slosh.h"
+#include "testbed/metric_rows.h"
 
 namespace geoprior::fluid {
 namespace {
@@ -25,62 +26,7 @@ constexpr Tolerance kExact{0, 0};
 constexpr Tolerance kRoundOff{1e-7, 0};
 
 using SharedMemo = std::shared_ptr<FluidMemo>;
-using OfFrame = std::function<Value(const FluidScene&, const Frame&)>;
-using OfPair = std::function<Value(const FluidScene&, const Frame&, const Frame&)>;
-using OfSequence = std::function<Value(const FluidScene&, const FrameSequence&)>;
-
-const FluidScene& fluid(const Scene& scene) { return dynamic_cast<const FluidScene&>(scene); }
-
-/// Adds rows to the table.
-class Rows {
- public:
-  explicit Rows(std::vector<MetricEntry>& table) : table_(table) {}
-
-  void frame(const char* name, const char* unit, const char* definition, Direction direction,
-             Tolerance tolerance, OfFrame measure) {
-    MetricEntry& e = add(name, unit, definition, direction, tolerance);
-    e.of_frame = [measure = std::move(measure)](const Scene& scene, const Frame& frame,
-                                                const Frame*) {
-      return measure(fluid(scene), frame);
-    };
-  }
-  void pair(const char* name, const char* unit, const char* definition, Direction direction,
-            Tolerance tolerance, OfPair measure) {
-    MetricEntry& e = add(name, unit, definition, direction, tolerance);
-    e.needs_reference = true;
-    e.reference_parts = {"surface"};
-    e.of_frame = [measure = std::move(measure)](const Scene& scene, const Frame& frame,
-                                                const Frame* reference) -> Value {
-      if (reference == nullptr) return {};
-      return measure(fluid(scene), frame, *reference);
-    };
-  }
-  void sequence(const char* name, const char* unit, const char* definition, Direction direction,
-                Tolerance tolerance, OfSequence measure) {
-    MetricEntry& e = add(name, unit, definition, direction, tolerance);
-    e.of_sequence = [measure = std::move(measure)](const Scene& scene,
-                                                   const FrameSequence& frames) {
-      return measure(fluid(scene), frames);
-    };
-  }
-
-  /// Sets the value that the metric of the row added last is to be close to.
-  void target(double value) { table_.back().target = value; }
-
- private:
-  MetricEntry& add(const char* name, const char* unit, const char* definition, Direction direction,
-                   Tolerance tolerance) {
-    MetricEntry& e = table_.emplace_back();
-    e.name = name;
-    e.unit = unit;
-    e.definition = definition;
-    e.direction = direction;
-    e.tolerance = tolerance;
-    return e;
-  }
-
-  std::vector<MetricEntry>& table_;
-};
+using Rows = MetricRows<FluidScene>;
 
 void add_surface(Rows rows, const SharedMemo& memo) {
   const auto read = [memo](auto get) {

@@ -8,7 +8,7 @@
 #include "core/context.h"
 #include "core/surface_sequence.h"
 #include "solvers/fluid/feature.h"
-#include "solvers/fluid/regions.h"
+#include "solvers/fluid/segmentation.h"
 #include "solvers/fluid/tracking.h"
 
 namespace geoprior::fluid {

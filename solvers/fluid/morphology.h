@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/mesh.h"
 #include "solvers/fluid/surface_graph.h"
 
 namespace geoprior::fluid {
@@ -34,5 +35,11 @@ class Morphology {
   std::vector<Reached> heap_;
   std::vector<int> touched_;
 };
+
+/// Geodesic dilation and erosion of a vertex set by a metric radius (m). Distances run along edges,
+/// so they exceed the true ones by up to about a tenth on irregular meshes. The border of an open
+/// mesh does not erode.
+std::vector<char> dilate(const TriMesh& mesh, const std::vector<char>& set, double radius);
+std::vector<char> erode(const TriMesh& mesh, const std::vector<char>& set, double radius);
 
 }  // namespace geoprior::fluid

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "solvers/fluid/regions.h"
+#include "solvers/fluid/segmentation.h"
 #include "solvers/fluid/surface_components.h"
 
 namespace geoprior::fluid {

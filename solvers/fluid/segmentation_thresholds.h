@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "solvers/fluid/regions.h"
+#include "solvers/fluid/segmentation.h"
 
 namespace geoprior::fluid {
 

@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 #include "core/topology.h"
 #include "models/fluid/injected_sequence.h"
-#include "solvers/fluid/regions.h"
+#include "solvers/fluid/segmentation.h"
 #include "solvers/fluid/segmentation_thresholds.h"
 #include "solvers/fluid/surface_components.h"
 #include "tests/fluid/test_surfaces.h"

@@ -1,4 +1,4 @@
-#include "solvers/fluid/regions_attributes.h"
+#include "solvers/fluid/regions.h"
 
 #include <algorithm>
 #include <cmath>
