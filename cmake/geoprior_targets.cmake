@@ -51,7 +51,8 @@ function(geoprior_mark_sources)
       file(STRINGS ${source} includes REGEX "^#include <CGAL/")
     endif()
     if(includes)
-      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS -frounding-math SKIP_PRECOMPILE_HEADERS ON)
+      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS -frounding-math
+        COMPILE_DEFINITIONS "CGAL_USE_GMPXX=1;BOOST_ALL_NO_LIB" SKIP_PRECOMPILE_HEADERS ON)
     endif()
     if(source IN_LIST GEOPRIOR_FALSE_OVERFLOWS)
       set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS

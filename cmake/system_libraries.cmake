@@ -2,13 +2,12 @@
 # Cholesky) and the BLAS below it, FFTW (Fourier transforms), LEMON (network flows).
 # Also installed, for the projects that link geoprior.
 if(NOT TARGET geoprior_cholmod)
-  # CGAL is headers over two number libraries. Its own target compiles all that links it with -frounding-math; here only
-  # the sources that include CGAL are (geoprior_library).
+  # CGAL is headers over two number libraries. Its own target compiles all that links it with -frounding-math; here the
+  # sources that include CGAL get its flags one by one (geoprior_mark_sources).
   find_library(GMP_LIBRARY gmp REQUIRED)
   find_library(GMPXX_LIBRARY gmpxx REQUIRED)
   find_library(MPFR_LIBRARY mpfr REQUIRED)
   add_library(geoprior_cgal INTERFACE IMPORTED)
-  target_compile_definitions(geoprior_cgal INTERFACE CGAL_USE_GMPXX=1 BOOST_ALL_NO_LIB)
   target_link_libraries(geoprior_cgal INTERFACE ${GMPXX_LIBRARY} ${MPFR_LIBRARY} ${GMP_LIBRARY})
 
   find_path(CHOLMOD_INCLUDE_DIR NAMES cholmod.h PATH_SUFFIXES suitesparse REQUIRED)

@@ -4,6 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "core/mesh.h"
+#include "core/surface_sequence.h"
 #include "solvers/fluid/moving_frame.h"
 #include "solvers/fluid/regions.h"
 

@@ -34,7 +34,7 @@ class DetailsMetrics : public ::testing::Test {
     scene.input.motion = std::make_shared<StoredMotion>(
         std::vector<Eigen::MatrixX3d>{plane.V, 1.25 * plane.V, kGrowth * plane.V},
         std::vector<double>{0, 1, 2});
-    for (MetricEntry& entry : metrics()) metrics[entry.name] = std::move(entry);
+    for (MetricEntry& entry : details::metrics()) metrics[entry.name] = std::move(entry);
   }
 
   /// The details as they are, on the plane scaled by `factor`.
@@ -73,7 +73,7 @@ void insert(DetailMesh& d, double weight) {
 
 TEST(DetailsTable, EveryRowIsComplete) {
   std::set<std::string> names;
-  for (const MetricEntry& entry : metrics()) {
+  for (const MetricEntry& entry : details::metrics()) {
     EXPECT_TRUE(names.insert(entry.name).second) << entry.name << " twice";
     EXPECT_NE(static_cast<bool>(entry.of_frame), static_cast<bool>(entry.of_sequence))
         << entry.name;

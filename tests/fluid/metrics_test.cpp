@@ -61,7 +61,7 @@ class TankMetrics : public ::testing::Test {
     scene.gauges = ColumnGrid{Eigen::Vector2d::Zero(), tank.cell, 20, 8};
     scene.cell = tank.cell;
     scene.tank = tank;
-    for (MetricEntry& entry : metrics()) metrics[entry.name] = std::move(entry);
+    for (MetricEntry& entry : fluid::metrics()) metrics[entry.name] = std::move(entry);
   }
   [[nodiscard]] std::optional<double> value(const std::string& name, const Frame& frame,
                                             const Frame* reference = nullptr) const {

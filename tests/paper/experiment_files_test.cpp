@@ -13,8 +13,6 @@
 namespace geoprior::paper {
 namespace {
 
-using namespace test;
-
 namespace fs = std::filesystem;
 
 std::vector<fs::path> experiment_files() {

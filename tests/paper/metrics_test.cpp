@@ -44,7 +44,7 @@ class StripMetrics : public ::testing::Test {
       side.motion = Trajectory{{Keyframe{}}};
       scene.sheet.handles.push_back(side);
     }
-    for (MetricEntry& entry : metrics()) metrics[entry.name] = std::move(entry);
+    for (MetricEntry& entry : paper::metrics()) metrics[entry.name] = std::move(entry);
   }
 
   std::optional<double> value(const std::string& name, const Frame& frame,
