@@ -20,6 +20,9 @@ if(GEOPRIOR_ODR)
 endif()
 
 add_library(geoprior_warnings INTERFACE)
+# GCC collects garbage from 128 MB on; from 1 GB on most files need no collection, which saves a sixth of their time.
+target_compile_options(geoprior_warnings INTERFACE
+  $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
 target_compile_options(geoprior_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-ignored-attributes
   # GCC 12 warns wrongly of `"text" + std::string` at -O3 (GCC bug 105329).
@@ -29,7 +32,7 @@ target_compile_options(geoprior_warnings INTERFACE
   $<$<BOOL:${GEOPRIOR_WERROR}>:-Werror>)
 
 # geoprior_precompile(target kind HEADERS…): the first target of a kind precompiles them, all others of that kind share the
-# result. Flags must agree within a kind.
+# result. Flags must agree within a kind, and no macro may be defined for the first target but not for another.
 function(geoprior_precompile target kind)
   if(NOT GEOPRIOR_PCH)
     return()

@@ -262,8 +262,8 @@ TEST_F(Spec, ReductionsOfBothSidesOfAClaim) {
       "[[claim]]\ntext = \"t\"\nmetric = \"timing:solve\"\nvariant = \"polygon\"\n";
   const Experiment e =
       load(disc_with(head + "of = \"polygon\"\nreduce = \"p95\"\nof_reduce = \"median\"\n"));
-  EXPECT_EQ(e.claims.at(0).reduce, "p95");
-  EXPECT_EQ(e.claims.at(0).of_reduce, "median");
+  EXPECT_EQ(e.claims.at(0).reduce, Reduction::p95);
+  EXPECT_EQ(e.claims.at(0).of_reduce, Reduction::median);
   EXPECT_FALSE(load(disc_with(head + "of = \"exact\"\n")).claims.at(0).of_reduce.has_value());
   EXPECT_THAT(error_of(disc_with(head + "value = 1\nof_reduce = \"median\"\n")),
               HasSubstr("reduces the frames of no variant"));

@@ -9,12 +9,12 @@
 #include "core/error.h"
 #include "core/topology.h"
 #include "experiments/skinning/characters.h"
-#include "gltf_samples.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/gltf_reader.h"
 #include "testbed/formats/gltf_writer.h"
+#include "tests/testbed/gltf_samples.h"
 
-namespace geoprior {
+namespace geoprior::skinning {
 namespace {
 
 using test::GltfSample;
@@ -373,4 +373,4 @@ TEST(GltfWriter, RefusesWhatIsNoAnimationAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::skinning
