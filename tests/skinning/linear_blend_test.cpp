@@ -25,7 +25,7 @@ TEST(LinearBlend, RestPoseReturnsTheInput) {
   for (const RiggedMesh& rig : {two_bone_cylinder(cylinder_options()), capsule_finger(),
                                 fixtures::cylinder_of_many_influences(5)}) {
     const Eigen::MatrixX3d posed = deformed(rig, rest_pose(rig.skeleton.size()));
-    // Weights sum to 1 in double, so only rounding is left: far below the 1e-6.
+    // Weights sum to 1 in double, so only rounding is left: far below 1e-6.
     EXPECT_LE(fixtures::largest_distance(posed, rig.mesh.V),
               1e-15 * bounding_box_diagonal(rig.mesh.V));
   }
