@@ -40,7 +40,7 @@ if [ "$mode" = --odr ] || [ "$mode" = --long ]; then
 fi
 
 scripts/build.sh release
-ctest --test-dir build/release --output-on-failure -j 2
+ctest --test-dir build/release --output-on-failure -j 2 --timeout 300
 if [ "$mode" = --long ]; then
   # Tests named Long… do more when GEOPRIOR_LONG is set: more seeds, more frames.
   GEOPRIOR_LONG=1 GEOPRIOR_FUZZ_SECONDS=600 ctest --test-dir build/release --output-on-failure -R '[Ff]uzz|Long' --timeout 3600

@@ -1,5 +1,5 @@
-# geoprior_topic(<name> [ROOT folder] [DEPS libs] [EXPERIMENT_DEPS libs]): everything of a topic, from the folders that carry its name. A folder that is not
-# there, or without sources, gives no target.
+# geoprior_topic(<name> [ROOT folder] [DEPS libs] [EXPERIMENT_DEPS libs]): everything of a topic, from the folders that
+# carry its name. A folder that is not there, or without sources, gives no target.
 #
 #   models/<name>       geoprior_<name>_models        what its method and its baselines share
 #   baselines/<name>    geoprior_<name>_baselines
@@ -8,10 +8,9 @@
 #   tests/<name>        test_<name>                   GEOPRIOR_PROGRAM only
 #
 # Each links those above it. DEPS are linked by the first three, EXPERIMENT_DEPS by the experiments; nobody else sees
-# them. ROOT holds the folders: a topic of the tests, of which the program knows nothing. Without it they are the
-# project's, and what was made is appended to
-# GEOPRIOR_TOPIC_LIBRARIES (installed), GEOPRIOR_TOPIC_NAMES (listed by experiments/topics.cpp) and, with
-# GEOPRIOR_PROGRAM, GEOPRIOR_TOPIC_EXPERIMENTS (linked by the program).
+# them. ROOT holds the folders of a topic of the tests, of which the program knows nothing. Without it they are the
+# project's, and what was made is appended to the global properties GEOPRIOR_TOPIC_LIBRARIES (installed),
+# GEOPRIOR_TOPIC_NAMES (listed by experiments/topics.cpp) and GEOPRIOR_TOPIC_EXPERIMENTS (linked by the program).
 function(geoprior_topic topic)
   cmake_parse_arguments(arg "" "ROOT" "DEPS;EXPERIMENT_DEPS" ${ARGN})
   set(root ${PROJECT_SOURCE_DIR})

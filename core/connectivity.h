@@ -53,7 +53,7 @@ class EdgeConnectivity {
     const int other = twin(3 * triangle + k);
     return other < 0 ? -1 : other / 3;
   }
-  /// The same for all triangles and corners.
+  /// The triangles across the three edges of every triangle, as `across(triangle, k)` gives them.
   [[nodiscard]] std::vector<std::array<int, 3>> across() const;
 
   /// Lower and higher vertex of every edge, ascending.

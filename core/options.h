@@ -65,8 +65,8 @@ class OptionVisitor {
 
 /// An enum option: `names[i]` is the text of the enumerator of value i.
 ///
-/// A tagged choice: describe the tag first, then the members that it selects (MotionOptions in
-/// experiments/skinning/motion.cpp); the reader has set the tag by then.
+/// A tagged choice: describe the tag first, then the members that it selects, in a `switch`; the
+/// reader has set the tag by then.
 template <class Enum>
 void describe_choice(OptionVisitor& v, std::string_view key, Enum& x,
                      std::span<const std::string_view> names, const OptionInfo& info) {

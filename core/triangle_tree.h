@@ -30,7 +30,7 @@ class TriangleTree {
   };
   /// @throws Error  when no triangle has an area
   [[nodiscard]] Nearest nearest(const Eigen::Vector3d& x) const;
-  /// Of the nearest point (m^2).
+  /// Squared distance of the nearest point (m^2).
   /// @throws Error  when no triangle has an area
   [[nodiscard]] double squared_distance(const Eigen::Vector3d& x) const;
 

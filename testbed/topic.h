@@ -33,6 +33,19 @@ class Scene {
   [[nodiscard]] virtual std::map<std::string, double> facts() const { return {}; }
 };
 
+/// A scene of processes, whose frames are times: what all such scenes say alike.
+class ProcessScene : public Scene {
+ public:
+  std::vector<std::filesystem::path> input_files;
+  std::vector<std::string> load_warnings;
+
+  [[nodiscard]] std::vector<double> parameters() const override { return {}; }
+  [[nodiscard]] std::string parameter_name() const override { return "time"; }
+  [[nodiscard]] std::string parameter_unit() const override { return "s"; }
+  [[nodiscard]] std::vector<std::filesystem::path> inputs() const override { return input_files; }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return load_warnings; }
+};
+
 /// A struct of options with its `describe`, type-erased: the runner parses into it, lists it and
 /// records it.
 class OptionSet {

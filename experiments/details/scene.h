@@ -17,7 +17,7 @@ namespace geoprior::details {
 
 /// A surface that moves with details on it: what the methods are given and the metrics are measured
 /// on.
-class DetailsScene final : public Scene {
+class DetailsScene final : public ProcessScene {
  public:
   DetailScene input;  ///< what a method is given
   /// Details that the scene's own process of placing gives with other seeds, for noise floors; none
@@ -29,8 +29,6 @@ class DetailsScene final : public Scene {
   std::optional<DetailDrawingOptions> drawing;
   TriMesh instance;                     ///< mesh of a detail, when the drawing takes one of a file
   std::optional<double> chosen_height;  ///< of a detail of weight 1 (m)
-  std::vector<std::filesystem::path> input_files;
-  std::vector<std::string> load_warnings;
 
   /// The frame of a method that has done nothing yet: surface and M_d at rest. Made when it is
   /// first asked for; safe from several threads.
@@ -39,11 +37,6 @@ class DetailsScene final : public Scene {
   [[nodiscard]] bool measures_pairs(double parameter) const;
   [[nodiscard]] bool is_drawn(double parameter) const;
 
-  [[nodiscard]] std::vector<double> parameters() const override { return {}; }
-  [[nodiscard]] std::string parameter_name() const override { return "time"; }
-  [[nodiscard]] std::string parameter_unit() const override { return "s"; }
-  [[nodiscard]] std::vector<std::filesystem::path> inputs() const override { return input_files; }
-  [[nodiscard]] std::vector<std::string> warnings() const override { return load_warnings; }
   [[nodiscard]] std::map<std::string, double> facts() const override;
 
  private:

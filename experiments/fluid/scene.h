@@ -18,7 +18,7 @@ namespace geoprior::fluid {
 
 /// A tank to simulate, or animations, a target and edits, or several of these: what the fluid
 /// methods are given and the fluid metrics are measured on.
-class FluidScene final : public Scene {
+class FluidScene final : public ProcessScene {
  public:
   std::optional<Tank> tank;
   std::shared_ptr<const InjectedSequence> injected;  ///< with its truth, or null
@@ -29,8 +29,6 @@ class FluidScene final : public Scene {
   /// Where wave gauges stand: over the tank, else over the first frame of target or source.
   std::optional<ColumnGrid> gauges;
   double cell = 0;  ///< length that distances are compared with: the tank's h, or the mean edge (m)
-  std::vector<std::filesystem::path> input_files;
-  std::vector<std::string> load_warnings;
 
   /// @throws Error  naming the method: without the table, or without volumes and sources in it
   [[nodiscard]] const Tank& require_tank(const std::string& who) const;
@@ -39,11 +37,6 @@ class FluidScene final : public Scene {
   /// tank without solids and sources; absent for other scenes.
   [[nodiscard]] std::optional<double> dam_width() const;
 
-  [[nodiscard]] std::vector<double> parameters() const override { return {}; }
-  [[nodiscard]] std::string parameter_name() const override { return "time"; }
-  [[nodiscard]] std::string parameter_unit() const override { return "s"; }
-  [[nodiscard]] std::vector<std::filesystem::path> inputs() const override { return input_files; }
-  [[nodiscard]] std::vector<std::string> warnings() const override { return load_warnings; }
   [[nodiscard]] std::map<std::string, double> facts() const override;
 };
 

@@ -1,5 +1,3 @@
-#include "experiments/paper/metrics.h"
-
 #include <functional>
 #include <memory>
 #include <optional>
@@ -7,6 +5,7 @@
 #include <utility>
 
 #include "experiments/paper/measures.h"
+#include "experiments/paper/topic.h"
 
 namespace geoprior::paper {
 namespace {

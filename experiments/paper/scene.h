@@ -14,17 +14,10 @@ namespace geoprior::paper {
 
 /// A sheet, what moves it and what is in its way: what every paper method is given and every paper
 /// metric is measured on.
-class PaperScene final : public Scene {
+class PaperScene final : public ProcessScene {
  public:
   Sheet sheet;
-  std::vector<std::filesystem::path> input_files;
-  std::vector<std::string> load_warnings;
 
-  [[nodiscard]] std::vector<double> parameters() const override { return {}; }
-  [[nodiscard]] std::string parameter_name() const override { return "time"; }
-  [[nodiscard]] std::string parameter_unit() const override { return "s"; }
-  [[nodiscard]] std::vector<std::filesystem::path> inputs() const override { return input_files; }
-  [[nodiscard]] std::vector<std::string> warnings() const override { return load_warnings; }
   [[nodiscard]] std::map<std::string, double> facts() const override;
 };
 

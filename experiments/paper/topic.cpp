@@ -1,6 +1,5 @@
 #include "experiments/paper/topic.h"
 
-#include "experiments/paper/metrics.h"
 #include "experiments/paper/scene.h"
 
 namespace geoprior::paper {

@@ -9,6 +9,8 @@ Topic make_topic();
 
 /// The methods of the topic: experiments/paper/methods.cpp.
 std::vector<MethodEntry> methods();
+/// What is measured of their frames: experiments/paper/metrics.cpp.
+std::vector<MetricEntry> metrics();
 /// What they alone can know of a frame.
 std::vector<DiagnosticEntry> diagnostics();
 

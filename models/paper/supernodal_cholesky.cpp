@@ -80,7 +80,7 @@ class SupernodalCholesky final : public SparseCholesky {
   [[nodiscard]] long nonzeros() const override { return nonzeros_; }
 
  private:
-  /// Where a supernode keeps its numbers.
+  /// Where the numbers of a supernode begin in the shared storage.
   struct Front {
     std::ptrdiff_t panel = 0;   ///< of its columns of the factor, in panels_
     std::ptrdiff_t update = 0;  ///< of what it leaves to its parent, in updates_

@@ -126,10 +126,6 @@ class SelfReplicating final : public DetailMethod {
   std::optional<PointGrid> near_;  ///< details of this frame, when surface is bare
 };
 
-}  // namespace
-
-namespace {
-
 /// Centres that stand for all in the histogram of a frame.
 constexpr int kHistogramCentres = 512;
 

@@ -1,5 +1,6 @@
 #include "solvers/fluid/map_paste.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -16,11 +16,6 @@ bool contains(const Names& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::string place_of(const TomlNode& table, std::string_view key) {
-  const TomlNode* member = table.find(key);
-  return (member != nullptr ? *member : table).place + ": " + std::string(key);
-}
-
 Names metric_names(const Topic& topic) {
   Names names;
   for (const MetricEntry& metric : topic.metrics) names.push_back(metric.name);

@@ -14,11 +14,6 @@
 namespace geoprior {
 namespace {
 
-std::string place_of(const TomlNode& table, std::string_view key) {
-  const TomlNode* member = table.find(key);
-  return (member != nullptr ? *member : table).place + ": " + std::string(key);
-}
-
 /// Fills a fresh set of options from a table; absent table: defaults, required keys are asked for.
 std::shared_ptr<const OptionSet> read_set(std::unique_ptr<OptionSet> set, const TomlNode* table,
                                           const std::string& place, const std::string& path,

@@ -233,4 +233,9 @@ std::string allowed_names(std::string_view name, const std::vector<std::string>&
   return nearest.empty() ? text : text + "; did you mean '" + nearest + "'?";
 }
 
+std::string place_of(const TomlNode& table, std::string_view key) {
+  const TomlNode* member = table.find(key);
+  return (member != nullptr ? *member : table).place + ": " + std::string(key);
+}
+
 }  // namespace geoprior

@@ -50,4 +50,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 /// "a, b, c; did you mean 'b'?": what an Error gives as allowed.
 std::string allowed_names(std::string_view name, const std::vector<std::string>& names);
 
+/// "file:line:column: key" of a member of a table, or of the table when it has none of that name.
+std::string place_of(const TomlNode& table, std::string_view key);
+
 }  // namespace geoprior

@@ -137,10 +137,6 @@ std::vector<LegendEntry> identity_entries(const std::string& array, bool on_wate
   return entries;
 }
 
-}  // namespace
-
-namespace {
-
 /// Beside the bar, or centred above it where the picture is too narrow: the bar is then moved, and
 /// its new top returned.
 int draw_bar_title(Picture& picture, const ColorScale& scale, int length, int& left, int top,

@@ -33,28 +33,28 @@ void wander(const TriMesh& mesh, int details, const SelfReplicatingOptions& opti
   }
 }
 
-TEST(ReplicationMotion, LongMotionKeepsTheMeshDelaunayAndManifoldOnASphere) {
+TEST(SelfReplicatingMotion, LongMotionKeepsTheMeshDelaunayAndManifoldOnASphere) {
   wander(shapes::sphere(4), 300, {});
 }
 
-TEST(ReplicationMotion, LongMotionKeepsTheMeshDelaunayAndManifoldOnAnOpenSurface) {
+TEST(SelfReplicatingMotion, LongMotionKeepsTheMeshDelaunayAndManifoldOnAnOpenSurface) {
   wander(shapes::square(20), 200, {});
 }
 
-TEST(ReplicationMotion, LongMotionKeepsTheMeshDelaunayAndManifoldByThresholds) {
+TEST(SelfReplicatingMotion, LongMotionKeepsTheMeshDelaunayAndManifoldByThresholds) {
   SelfReplicatingOptions options;
   options.area_rule = AreaRule::own;
   options.stretch_threshold = options.shrink_threshold = 1.4;
   wander(shapes::sphere(4), 300, options);
 }
 
-TEST(ReplicationMotion, LongMotionKeepsTheMeshDelaunayAndManifoldInLengthsAlongTheSurface) {
+TEST(SelfReplicatingMotion, LongMotionKeepsTheMeshDelaunayAndManifoldInLengthsAlongTheSurface) {
   SelfReplicatingOptions options;
   options.lengths = LengthRule::geodesic;
   wander(shapes::sphere(4), 300, options);
 }
 
-TEST(ReplicationMotion, DetailsReturnWithTheSurface) {
+TEST(SelfReplicatingMotion, DetailsReturnWithTheSurface) {
   const TriMesh mesh = shapes::square(30);
   const auto s = scene(mesh, even_details(mesh, 600, 2), stretch(mesh, 60, 2));
   const auto method = make_self_replicating(s, {}, 1);
@@ -90,7 +90,7 @@ State state_after(const DetailScene& s, const SelfReplicatingOptions& options, i
   return out.take();
 }
 
-TEST(ReplicationMotion, OneThreadAndTwoMakeTheSameBytes) {
+TEST(SelfReplicatingMotion, OneThreadAndTwoMakeTheSameBytes) {
   const TriMesh mesh = shapes::sphere(5);
   const auto s = scene(mesh, even_details(mesh, 6000, 1), inflate(mesh, 20, 1.5));
   for (const bool histogram : {false, true}) {

@@ -62,7 +62,7 @@ Course follow(DetailMethod& method, const SurfaceMotion& motion) {
   return course;
 }
 
-TEST(Replication, SpacingHoldsUnderStretch) {
+TEST(SelfReplicating, SpacingHoldsUnderStretch) {
   const TriMesh mesh = shapes::square(40);
   const auto s = scene(mesh, even_details(mesh, 400, 1), stretch(mesh, 240, 2));
   const auto method = make_self_replicating(s, {}, 1);
@@ -72,7 +72,7 @@ TEST(Replication, SpacingHoldsUnderStretch) {
   EXPECT_LE(c.weight_change, 0.1 + 1e-12);
 }
 
-TEST(Replication, SpacingHoldsUnderInflation) {
+TEST(SelfReplicating, SpacingHoldsUnderInflation) {
   const TriMesh mesh = shapes::sphere(5);
   const auto s = scene(mesh, even_details(mesh, 600, 1), inflate(mesh, 240, 2));
   const auto method = make_self_replicating(s, {}, 1);
@@ -81,7 +81,7 @@ TEST(Replication, SpacingHoldsUnderInflation) {
   EXPECT_LE(c.worst_visible, 0.03);
 }
 
-TEST(Replication, SpacingHoldsUnderCompression) {
+TEST(SelfReplicating, SpacingHoldsUnderCompression) {
   const TriMesh mesh = shapes::square(40);
   const auto s = scene(mesh, even_details(mesh, 800, 1), stretch(mesh, 240, 0.5));
   const auto method = make_self_replicating(s, {}, 1);
@@ -126,14 +126,14 @@ SelfReplicatingOptions nothing() {
   return options;
 }
 
-TEST(Replication, UniformPatternsKeepTheirPairCorrelation) {
+TEST(SelfReplicating, UniformPatternsKeepTheirPairCorrelation) {
   const TriMesh mesh = shapes::square(40);
   const auto s = scene(mesh, even_details(mesh, 500, 1), stretch(mesh, 240, 2));
   // Half of naive stretch: the target of the method. Measured: 0.3.
   EXPECT_LE(correlation_change(s, {}), 0.5 * correlation_change(s, nothing()));
 }
 
-TEST(Replication, TheHistogramKeepsClusters) {
+TEST(SelfReplicating, TheHistogramKeepsClusters) {
   const TriMesh mesh = shapes::square(60);
   const auto s = scene(mesh, clusters(mesh, 80, 1), stretch(mesh, 240, 2));
   const double naive = correlation_change(s, nothing());
@@ -144,7 +144,7 @@ TEST(Replication, TheHistogramKeepsClusters) {
   EXPECT_LT(correlation_change(s, extension), naive);
 }
 
-TEST(Replication, AThresholdLetsTheEdgesGrow) {
+TEST(SelfReplicating, AThresholdLetsTheEdgesGrow) {
   // Filled above tau times their area, triangles have between 1 and tau times it on the whole: the
   // mean edge grows with tau (the thesis reports about 10 %).
   const TriMesh mesh = shapes::square(40);
@@ -163,7 +163,7 @@ TEST(Replication, AThresholdLetsTheEdgesGrow) {
   EXPECT_GT(edge[2], 0.15);
 }
 
-TEST(Replication, WeightsFollowTheMotionByThatLaw) {
+TEST(SelfReplicating, WeightsFollowTheMotionByThatLaw) {
   const TriMesh mesh = shapes::square(40);
   const auto s = scene(mesh, even_details(mesh, 400, 1), stretch(mesh, 100, 2));
   SelfReplicatingOptions options;
@@ -182,7 +182,7 @@ TEST(Replication, WeightsFollowTheMotionByThatLaw) {
   EXPECT_EQ(d["max_weight_change"], 0);
 }
 
-TEST(Replication, NewbornsCarryTypeAndLineage) {
+TEST(SelfReplicating, NewbornsCarryTypeAndLineage) {
   const TriMesh mesh = shapes::square(20);
   auto details = even_details(mesh, 200, 1);
   for (std::size_t i = 0; i < details.size(); ++i) details[i].type = 7;
@@ -204,7 +204,7 @@ TEST(Replication, NewbornsCarryTypeAndLineage) {
   EXPECT_GT(born, 150);
 }
 
-TEST(Replication, AlignedTangentsStayAligned) {
+TEST(SelfReplicating, AlignedTangentsStayAligned) {
   // All tangents along -y on a sheet that is stretched along x: so are those of the newborns, as
   // far as those of the first details are (they keep an angle in triangles that are sheared).
   const TriMesh mesh = shapes::square(20);
@@ -231,7 +231,7 @@ TEST(Replication, AlignedTangentsStayAligned) {
   EXPECT_GT(worst_born, worst_first - 0.15);
 }
 
-TEST(Replication, TheRimOfAPatternStaysAndNothingStacks) {
+TEST(SelfReplicating, TheRimOfAPatternStaysAndNothingStacks) {
   // Details on the upper cap of a sphere that grows to twice the area. Triangles of M_d span the
   // bare rest: copies in them stay within one and a half spacings (and a face) of the rim, and
   // apart.

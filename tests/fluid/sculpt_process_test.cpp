@@ -60,7 +60,7 @@ const NamedArray& array(const Frame& frame, const std::string& name) {
   return frame.require_array("surface", name, NamedArray::On::points);
 }
 
-TEST(Sculpting, PastesALibraryWhileItsFeaturesLive) {
+TEST(Sculpt, PastesALibraryWhileItsFeaturesLive) {
   const SculptScene s = scene();
   const Sink sink = run(s);
   ASSERT_EQ(sink.frames.size(), 8U);
@@ -81,7 +81,7 @@ TEST(Sculpting, PastesALibraryWhileItsFeaturesLive) {
   EXPECT_EQ(sink.frames[0].diagnostics.at("lifted_features"), 2);
 }
 
-TEST(Sculpting, GoesOnWhereItWasStopped) {
+TEST(Sculpt, GoesOnWhereItWasStopped) {
   const SculptScene s = scene();
   const Sink whole = run(s);
   Sink first;
@@ -97,7 +97,7 @@ TEST(Sculpting, GoesOnWhereItWasStopped) {
   EXPECT_THROW(run(s, State{}), Error);
 }
 
-TEST(Sculpting, WarnsOnceOfEachThing) {
+TEST(Sculpt, WarnsOnceOfEachThing) {
   SculptScene s = scene();
   s.edits[0].ids = {1};
   s.edits.push_back(s.edits[0]);
@@ -112,7 +112,7 @@ TEST(Sculpting, WarnsOnceOfEachThing) {
   EXPECT_NE(sink.events[1].kind.find("'again' and 'both' overlap"), std::string::npos);
 }
 
-TEST(Sculpting, RefusesWhatCannotBeMeant) {
+TEST(Sculpt, RefusesWhatCannotBeMeant) {
   const auto message = [](auto change) -> std::string {
     SculptScene s = scene();
     change(s);
@@ -138,7 +138,7 @@ TEST(Sculpting, RefusesWhatCannotBeMeant) {
   EXPECT_TRUE(has(message([](SculptScene& s) { s.target = nullptr; }), "a target"));
 }
 
-TEST(Sculpting, WarningsRememberWhatTheyTold) {
+TEST(Sculpt, WarningsRememberWhatTheyTold) {
   Warnings warnings;
   Sink sink;
   warnings.warn("a at 1 s", "a", 1, sink);
@@ -158,7 +158,7 @@ TEST(Sculpting, WarningsRememberWhatTheyTold) {
   EXPECT_EQ(sink.events.size(), 3U);
 }
 
-TEST(Sculpting, ExtractsWaveAndDropAndPastesThemElsewhere) {
+TEST(Sculpt, ExtractsWaveAndDropAndPastesThemElsewhere) {
   SculptScene s;
   s.sources["splash"] = splash();
   Sink extracted;

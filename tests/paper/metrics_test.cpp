@@ -1,5 +1,3 @@
-#include "experiments/paper/metrics.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "core/error.h"
 #include "experiments/paper/scene.h"
+#include "experiments/paper/topic.h"
 #include "metrics/elastica.h"
 #include "tests/metrics/sheets.h"
 
