@@ -1,5 +1,6 @@
-#include "solvers/sample/growing_square.h"
 #include "testbed/topic.h"
+
+#include "solvers/sample/growing_square.h"
 
 namespace geoprior::sample {
 
