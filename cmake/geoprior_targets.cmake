@@ -20,7 +20,7 @@ if(GEOPRIOR_ODR)
 endif()
 
 add_library(geoprior_warnings INTERFACE)
-# GCC collects garbage from 128 MB on; from 1 GB on most files need no collection, which saves a sixth of their time.
+# GCC collects its garbage from 128 MB on: most files never need to when it starts at 1 GB.
 target_compile_options(geoprior_warnings INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
 target_compile_options(geoprior_warnings INTERFACE
@@ -106,7 +106,7 @@ function(geoprior_spine_library name)
 endfunction()
 
 # geoprior_test(name SOURCES... LIBS...): one GoogleTest executable a topic, its tests discovered one by one.
-# What a test does itself is a small part of its time: -O1 builds it in half of the time that -O3 takes.
+# What a test does itself is a small part of its time: it is compiled with -O1, which is quicker to build.
 function(geoprior_test name)
   cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
   add_executable(test_${name} ${arg_SOURCES})

@@ -29,19 +29,15 @@ void add(FrameReport& frame, const StepReport& step, int substeps) {
   }
 }
 
-NamedArray array(std::string name, std::string unit, NamedArray::On on, Eigen::MatrixXd values) {
-  return {std::move(name), std::move(unit), on, std::move(values)};
-}
-
 Part surface_part(const ShellState& state) {
   Part part;
   part.points = state.x;
   part.triangles = state.mesh.triangles;
   using On = NamedArray::On;
-  part.arrays.push_back(array("pattern", "m", On::points, state.mesh.pattern));
-  part.arrays.push_back(array("velocity", "m/s", On::points, state.v));
-  part.arrays.push_back(array("plastic_curvature", "1/m", On::cells, state.plastic_curvature));
-  part.arrays.push_back(array("damage", "1", On::cells, state.damage));
+  part.arrays.push_back({"pattern", "m", On::points, state.mesh.pattern});
+  part.arrays.push_back({"velocity", "m/s", On::points, state.v});
+  part.arrays.push_back({"plastic_curvature", "1/m", On::cells, state.plastic_curvature});
+  part.arrays.push_back({"damage", "1", On::cells, state.damage});
   return part;
 }
 
@@ -64,8 +60,8 @@ Part handles_part(const ShellState& state, const std::vector<ShellStepper::Held>
     handle(i, 0) = h.handle;
     if (k < count.size()) force.row(i) = report.handle_force[k].transpose() / count[k];
   }
-  part.arrays.push_back(array("handle", "1", NamedArray::On::points, handle));
-  part.arrays.push_back(array("force", "N", NamedArray::On::points, force));
+  part.arrays.push_back({"handle", "1", NamedArray::On::points, handle});
+  part.arrays.push_back({"force", "N", NamedArray::On::points, force});
   return part;
 }
 

@@ -11,10 +11,6 @@ double kind_number(const PaperStructure& structure, int piece) {
   return piece < 0 ? 0 : static_cast<double>(structure.pieces[piece].kind);
 }
 
-NamedArray array(std::string name, std::string unit, NamedArray::On on, Eigen::MatrixXd values) {
-  return {std::move(name), std::move(unit), on, std::move(values)};
-}
-
 Part rulings_part(const PaperStructure& structure, const RulingMesh& mesh,
                   const ShellState& state) {
   Part part;
@@ -35,8 +31,8 @@ Part rulings_part(const PaperStructure& structure, const RulingMesh& mesh,
     piece(r, 0) = structure.rulings[r].piece;
     kind(r, 0) = kind_number(structure, structure.rulings[r].piece);
   }
-  part.arrays.push_back(array("piece", "1", NamedArray::On::cells, piece));
-  part.arrays.push_back(array("kind", "1", NamedArray::On::cells, kind));
+  part.arrays.push_back({"piece", "1", NamedArray::On::cells, piece});
+  part.arrays.push_back({"kind", "1", NamedArray::On::cells, kind});
   return part;
 }
 
@@ -53,9 +49,9 @@ Part points_part(const PaperStructure& structure, const RulingMesh& mesh, const 
     birth(i, 0) = s.birth;
     weakening(i, 0) = s.weakening;
   }
-  part.arrays.push_back(array("id", "1", NamedArray::On::points, id));
-  part.arrays.push_back(array("birth", "s", NamedArray::On::points, birth));
-  part.arrays.push_back(array("weakening", "1", NamedArray::On::points, weakening));
+  part.arrays.push_back({"id", "1", NamedArray::On::points, id});
+  part.arrays.push_back({"birth", "s", NamedArray::On::points, birth});
+  part.arrays.push_back({"weakening", "1", NamedArray::On::points, weakening});
   return part;
 }
 
@@ -102,8 +98,8 @@ void add_structure(const PaperStructure& structure, const RulingMesh& mesh, cons
     kind(f, 0) = kind_number(structure, mesh.piece[f]);
   }
   Part& surface = frame.parts["surface"];
-  surface.arrays.push_back(array("piece", "1", NamedArray::On::cells, piece));
-  surface.arrays.push_back(array("kind", "1", NamedArray::On::cells, kind));
+  surface.arrays.push_back({"piece", "1", NamedArray::On::cells, piece});
+  surface.arrays.push_back({"kind", "1", NamedArray::On::cells, kind});
   frame.parts["rulings"] = rulings_part(structure, mesh, state);
   frame.parts["singular_points"] = points_part(structure, mesh, state);
   frame.tables["pieces"] = pieces_table(structure);
