@@ -31,6 +31,17 @@ target_compile_options(geoprior_warnings INTERFACE
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${GEOPRIOR_SANITIZE}>>:-Wno-maybe-uninitialized>
   $<$<BOOL:${GEOPRIOR_WERROR}>:-Werror>)
 
+# geoprior_unite(target): its sources are compiled eight at a time, those with flags of their own alone. Names in anonymous
+# namespaces must differ within a target.
+function(geoprior_unite target)
+  if(NOT GEOPRIOR_UNITY)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  # A batch includes its sources, for GCC as if they were headers: types of their own are no leak.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endfunction()
+
 # geoprior_precompile(target kind HEADERS…): the first target of a kind precompiles them, all others of that kind share the
 # result. Flags must agree within a kind, and no macro may be defined for the first target but not for another.
 function(geoprior_precompile target kind)
@@ -52,12 +63,16 @@ function(geoprior_mark_sources)
     set(includes "")
     if(NOT source MATCHES "/generated/")
       file(STRINGS ${source} includes REGEX "^#include <CGAL/")
+      file(STRINGS ${source} toml REGEX "^#include <toml")
+      if(toml)  # wants to be included once a translation unit, before all else
+        set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+      endif()
     endif()
     set(options "")
     if(includes)
       list(APPEND options -frounding-math)
       set_source_files_properties(${source} PROPERTIES
-        COMPILE_DEFINITIONS "CGAL_USE_GMPXX=1;BOOST_ALL_NO_LIB" SKIP_PRECOMPILE_HEADERS ON)
+        COMPILE_DEFINITIONS "CGAL_USE_GMPXX=1;BOOST_ALL_NO_LIB" SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
     if(source IN_LIST GEOPRIOR_FALSE_OVERFLOWS)
       list(APPEND options -Wno-stringop-overflow -Wno-stringop-overread -Wno-array-bounds)
@@ -86,23 +101,29 @@ function(geoprior_library name)
   target_link_libraries(geoprior_${name} PUBLIC geoprior_flags ${arg_PUBLIC}
     PRIVATE $<BUILD_INTERFACE:geoprior_code> $<BUILD_INTERFACE:geoprior_warnings> ${arg_PRIVATE})
   geoprior_mark_sources(${arg_SOURCES})
+  geoprior_unite(geoprior_${name})
   geoprior_precompile(geoprior_${name} library <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <cmath> <functional>
     <limits> <map> <memory> <numbers> <optional> <span> <string> <vector>)
 endfunction()
 
-# geoprior_spine_library(name SOURCES... [PUBLIC libs] [PRIVATE libs] [PRECOMPILE kind headers...]): a static library
-# `geoprior_<name>` of the program. Without PRECOMPILE its precompiled headers are those of the libraries.
+# geoprior_spine_library(name SOURCES... [PUBLIC libs] [PRIVATE libs] [TIMED]): a static library `geoprior_<name>` of the
+# program. What runs beside the methods is compiled with -O1, which is quicker to build; TIMED runs within their timed
+# phases and is compiled as they are.
 function(geoprior_spine_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(arg "TIMED" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(geoprior_${name} STATIC ${arg_SOURCES})
   target_include_directories(geoprior_${name} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(geoprior_${name} PUBLIC geoprior_flags ${arg_PUBLIC}
     PRIVATE geoprior_code geoprior_warnings ${arg_PRIVATE})
   geoprior_mark_sources(${arg_SOURCES})
-  if(NOT arg_PRECOMPILE)
-    set(arg_PRECOMPILE library)
+  geoprior_unite(geoprior_${name})
+  if(arg_TIMED)
+    geoprior_precompile(geoprior_${name} library)
+    return()
   endif()
-  geoprior_precompile(geoprior_${name} ${arg_PRECOMPILE})
+  target_compile_options(geoprior_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  geoprior_precompile(geoprior_${name} spine <nlohmann/json.hpp> <Eigen/Core> <Eigen/Geometry> <algorithm> <array>
+    <filesystem> <functional> <map> <memory> <optional> <string> <vector>)
 endfunction()
 
 # geoprior_test(name SOURCES... LIBS...): one GoogleTest executable a topic, its tests discovered one by one.
@@ -117,6 +138,7 @@ function(geoprior_test name)
   target_link_libraries(test_${name} PRIVATE ${arg_LIBS} geoprior_code geoprior_warnings
     GTest::gtest GTest::gmock GTest::gtest_main)
   geoprior_mark_sources(${arg_SOURCES})
+  geoprior_unite(test_${name})
   geoprior_precompile(test_${name} test <gmock/gmock.h> <gtest/gtest.h> <Eigen/Core> <Eigen/Geometry> <algorithm> <array>
     <cmath> <filesystem> <functional> <map> <memory> <numbers> <optional> <string> <vector>)
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST)

@@ -39,7 +39,7 @@ constexpr std::array<DamBreakPoint, 17> kHeight{{{0.56, 0.94},
                                                  {5.25, 0.11},
                                                  {7.40, 0.06}}};
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 double mean_depth(const Columns& columns, const ColumnGrid& grid, int i) {
   double sum = 0;
@@ -66,14 +66,14 @@ double interpolate(std::span<const DamBreakPoint> points, double time) {
     if (time < a.time || time > b.time) continue;
     return a.value + (b.value - a.value) * (time - a.time) / (b.time - a.time);
   }
-  return kNone;
+  return kNoValue;
 }
 
 double dam_front(const TriMesh& mesh, const Columns& columns, const ColumnGrid& grid,
                  double threshold) {
   int last = grid.nx - 1;
   while (last >= 0 && !(mean_depth(columns, grid, last) > threshold)) --last;
-  if (last < 0) return kNone;
+  if (last < 0) return kNoValue;
   double deep = grid.probe(last, 0).x();
   // The next probe is shallow; behind the last one the grid ends.
   double shallow = deep + (last + 1 < grid.nx ? 1 : 0.5) * grid.spacing;

@@ -16,7 +16,7 @@ namespace {
 /// Darts of a batch that share a random stream.
 constexpr std::size_t kBlock = 256;
 
-struct Dart {
+struct TriedPlace {
   SurfacePoint at;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
@@ -83,12 +83,12 @@ class Rescatter final : public DetailMethod {
     return sums;
   }
 
-  [[nodiscard]] bool lands(const Dart& dart, const PointGrid& grid) const {
+  [[nodiscard]] bool lands(const TriedPlace& dart, const PointGrid& grid) const {
     const double radius = options_.radius * density_.spacing(dart.at.face);
     return std::isfinite(radius) && grid.is_free(dart.position, dart.normal, radius);
   }
 
-  void throw_one(Dart& dart, const std::vector<double>& sums, const PointGrid& grid,
+  void throw_one(TriedPlace& dart, const std::vector<double>& sums, const PointGrid& grid,
                  RandomStream& random) const {
     const double s = random.uniform() * sums.back();
     const auto found = std::upper_bound(sums.begin(), sums.end() - 1, s);
@@ -108,7 +108,7 @@ class Rescatter final : public DetailMethod {
     const std::size_t most = wanted * static_cast<std::size_t>(options_.darts_per_detail);
     PointGrid grid(options_.radius * density_.mean_spacing(), wanted);
     std::vector<Detail> scattered;
-    std::vector<Dart> batch(std::max(wanted, kBlock));
+    std::vector<TriedPlace> batch(std::max(wanted, kBlock));
     for (std::size_t thrown = 0; thrown < most && scattered.size() < wanted;
          thrown += batch.size()) {
       parallel_blocks(batch.size(), kBlock, [&](std::size_t begin, std::size_t end) {
@@ -116,7 +116,7 @@ class Rescatter final : public DetailMethod {
         RandomStream random(seed_, (static_cast<std::uint64_t>(now_.frame) << 40) + first);
         for (std::size_t i = begin; i < end; ++i) throw_one(batch[i], sums, grid, random);
       });
-      for (const Dart& dart : batch) {
+      for (const TriedPlace& dart : batch) {
         if (scattered.size() == wanted) break;
         ++darts_;
         if (!dart.lands || !lands(dart, grid)) continue;

@@ -14,8 +14,8 @@
 namespace geoprior::details {
 namespace {
 
-constexpr double kLeastWeight = 1e-3;
-constexpr std::size_t kBlock = 64;
+constexpr double kLeastSpikeWeight = 1e-3;
+constexpr std::size_t kSpikeBlock = 64;
 
 /// A ring of a spike in units of radius and height.
 struct Ring {
@@ -165,7 +165,7 @@ DrawnDetails draw_spikes(const SurfaceTopology& surface, std::span<const Eigen::
                          double radius, double height) {
   std::vector<int> visible;
   for (std::size_t i = 0; i < anchors.size(); ++i)
-    if (anchors[i].weight >= kLeastWeight) visible.push_back(static_cast<int>(i));
+    if (anchors[i].weight >= kLeastSpikeWeight) visible.push_back(static_cast<int>(i));
   const std::vector<Eigen::Vector3d> normals = normals_at(surface, x, anchors);
   const SpikeDrawer model(surface, x, options, radius, height);
   DrawnDetails drawn;
@@ -174,7 +174,7 @@ DrawnDetails draw_spikes(const SurfaceTopology& surface, std::span<const Eigen::
   drawn.normals.resize(rows, 3);
   drawn.detail.resize(rows);
   drawn.mesh.F.resize(static_cast<Eigen::Index>(visible.size() * model.triangles()), 3);
-  parallel_blocks(visible.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(visible.size(), kSpikeBlock, [&](std::size_t begin, std::size_t end) {
     SpikeDrawer spike = model;
     for (std::size_t i = begin; i < end; ++i) {
       const int anchor = visible[i];

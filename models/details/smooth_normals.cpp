@@ -8,7 +8,7 @@
 namespace geoprior::details {
 namespace {
 
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kNormalBlock = 1024;
 
 Eigen::Vector3d normal_of_vertex(int v, const SurfaceTopology& surface,
                                  std::span<const Eigen::Vector3d> x) {
@@ -31,7 +31,7 @@ Eigen::Vector3d normal_of_vertex(int v, const SurfaceTopology& surface,
 std::vector<Eigen::Vector3d> smooth_normals(const SurfaceTopology& surface,
                                             std::span<const Eigen::Vector3d> x) {
   std::vector<Eigen::Vector3d> normals(x.size());
-  parallel_blocks(x.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(x.size(), kNormalBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       normals[v] = normal_of_vertex(static_cast<int>(v), surface, x);
   });

@@ -9,7 +9,7 @@
 namespace geoprior::fluid {
 namespace {
 
-constexpr std::size_t kParticleBlock = 4096;
+constexpr std::size_t kMovedBlock = 4096;
 /// Distance from walls and solids that particles keep (cells): enough for round-off.
 constexpr float kClearance = 1e-3F;
 
@@ -66,7 +66,7 @@ void advect_particles(const MacGrid& velocity, double dt, const ScalarGrid* soli
   const auto step = static_cast<float>(dt / velocity.shape.cell);
   const Eigen::Vector3i cells = velocity.shape.cells;
   left.assign(particles.size(), 0);
-  parallel_blocks(particles.size(), kParticleBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(particles.size(), kMovedBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t first = begin; first < end; first += kBatch) {
       BatchPoints batch;
       load_batch(particles.position, first, end, per_metre, batch);

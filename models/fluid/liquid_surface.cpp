@@ -12,7 +12,7 @@
 namespace geoprior::fluid {
 namespace {
 
-constexpr std::size_t kLayers = 2;  ///< layers of nodes of a parallel block
+constexpr std::size_t kSurfaceLayers = 2;  ///< layers of nodes of a parallel block
 /// Cells off a solid where the liquid beside it is looked up: particles stay half a cell off, and a
 /// cell further the field is deep.
 constexpr float kReadOff = 1.5F;
@@ -20,7 +20,7 @@ constexpr float kOnWall = 1e-3F;  ///< cells: as near as this, a node of the bor
 
 template <class Body>
 void for_layers(int layers, const Body& body) {
-  parallel_blocks(layers, kLayers, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(layers, kSurfaceLayers, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) body(static_cast<int>(k));
   });
 }

@@ -13,7 +13,7 @@
 namespace geoprior::fluid {
 namespace {
 
-constexpr std::size_t kLayers = 2;  ///< layers of cells of a parallel block
+constexpr std::size_t kPressureLayers = 2;  ///< layers of cells of a parallel block
 
 /// One call: what was given, and how neighbours are looked up.
 struct Problem {
@@ -53,7 +53,7 @@ struct Problem {
 };
 
 void for_cell_layers(const GridShape& shape, BlockBody body) {
-  parallel_blocks(shape.cells.z(), kLayers, body);
+  parallel_blocks(shape.cells.z(), kPressureLayers, body);
 }
 
 bool any_open_face(const Problem& problem, const Eigen::Vector3i& at) {
@@ -277,7 +277,7 @@ void PressureSolver::Workspace::apply(const Problem& problem, MacGrid& velocity,
       u.values[f] = static_cast<float>(u.values[f] - step);
       valid[a][f] = 1;
     };
-    parallel_blocks(n.z(), kLayers, [&](std::size_t begin, std::size_t end) {
+    parallel_blocks(n.z(), kPressureLayers, [&](std::size_t begin, std::size_t end) {
       for (int k = static_cast<int>(begin); k < static_cast<int>(end); ++k)
         for (int j = 0; j < n.y(); ++j)
           for (int i = 0; i < n.x(); ++i) update_face({i, j, k});

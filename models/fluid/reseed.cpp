@@ -55,12 +55,12 @@ std::uint32_t particles_in(const LiquidParticles& particles, std::size_t cell) {
 }
 
 /// Cells from `low` up to `high` that a box touches.
-struct CellRange {
+struct TankCells {
   Eigen::Vector3i low, high;
 };
 
-CellRange cells_of(const GridShape& shape, const Eigen::AlignedBox3d& box) {
-  CellRange range{Eigen::Vector3i::Zero(), shape.cells};
+TankCells cells_of(const GridShape& shape, const Eigen::AlignedBox3d& box) {
+  TankCells range{Eigen::Vector3i::Zero(), shape.cells};
   for (int a = 0; a < 3; ++a) {
     const double n = shape.cells[a];
     const double low = (box.min()[a] - shape.origin[a]) / shape.cell;
@@ -76,7 +76,7 @@ CellRange cells_of(const GridShape& shape, const Eigen::AlignedBox3d& box) {
 std::size_t fill_shape(const GridShape& shape, const ShapeDistance& body,
                        const Eigen::Vector3d& velocity, const ScalarGrid* solids, bool only_empty,
                        const SeedRule& rule, LiquidParticles& particles) {
-  const CellRange range = cells_of(shape, body.bounds());
+  const TankCells range = cells_of(shape, body.bounds());
   const int slices = range.high.z() - range.low.z();
   if (slices <= 0) return 0;
   std::vector<std::vector<Eigen::Vector3f>> found(slices);
@@ -111,7 +111,7 @@ std::size_t fill_shape(const GridShape& shape, const ShapeDistance& body,
 
 void set_velocity_inside(const GridShape& shape, const ShapeDistance& body,
                          const Eigen::Vector3d& velocity, LiquidParticles& particles) {
-  const CellRange range = cells_of(shape, body.bounds());
+  const TankCells range = cells_of(shape, body.bounds());
   const Eigen::Vector3f v = velocity.cast<float>();
   for (int k = range.low.z(); k < range.high.z(); ++k) {
     for (int j = range.low.y(); j < range.high.y(); ++j) {

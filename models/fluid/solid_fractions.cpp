@@ -12,8 +12,8 @@ namespace {
 
 constexpr float kTouching = 1e-4F;  ///< cells: nearer than this counts as inside
 constexpr float kSmallestOpening = 0.01F;
-constexpr double kBand = 4;    ///< cells around a body in which it is sampled
-constexpr float kFar = 1e30F;  ///< distance where no body was sampled
+constexpr double kSampledBand = 4;  ///< cells around a body in which it is sampled
+constexpr float kFar = 1e30F;       ///< distance where no body was sampled
 
 /// Share of an edge that lies outside, from the distances at its ends (one of them positive).
 float open_length(float inside, float outside) { return outside / (outside - inside); }
@@ -100,12 +100,12 @@ SolidSampler::NodeBox SolidSampler::box_of(const PlacedSolid& solid) const {
   for (int c = 0; c < 8; ++c)
     moved.extend(solid.placement * bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(c)));
   // Bodies far outside must not overflow whole numbers.
-  const Eigen::Array3d limit = shape_.cells.cast<double>().array() + 2 * kBand;
+  const Eigen::Array3d limit = shape_.cells.cast<double>().array() + 2 * kSampledBand;
   const auto to_node = [&](const Eigen::Vector3d& x, double band) {
     const Eigen::Array3d node = (x - shape_.origin).array() / shape_.cell + band;
-    return Eigen::Vector3i(node.max(-2 * kBand).min(limit).floor().cast<int>());
+    return Eigen::Vector3i(node.max(-2 * kSampledBand).min(limit).floor().cast<int>());
   };
-  const NodeBox box(to_node(moved.min(), -kBand), to_node(moved.max(), kBand + 1));
+  const NodeBox box(to_node(moved.min(), -kSampledBand), to_node(moved.max(), kSampledBand + 1));
   return box.intersection(all);
 }
 

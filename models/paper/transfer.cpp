@@ -62,11 +62,11 @@ void carry_vertices(const ShellState& from, const PatternLocator& locator, Shell
   }
 }
 
-struct Box {
+struct TriangleBox {
   Vector2d low, high;
-  explicit Box(const PlaneTriangle& t)
+  explicit TriangleBox(const PlaneTriangle& t)
       : low(t[0].cwiseMin(t[1]).cwiseMin(t[2])), high(t[0].cwiseMax(t[1]).cwiseMax(t[2])) {}
-  [[nodiscard]] bool meets(const Box& o) const {
+  [[nodiscard]] bool meets(const TriangleBox& o) const {
     return low.x() < o.high.x() && o.low.x() < high.x() && low.y() < o.high.y() &&
            o.low.y() < high.y();
   }
@@ -76,14 +76,14 @@ struct Box {
 struct BoxedTriangle {
   int index;
   PlaneTriangle corners;
-  Box box;
+  TriangleBox box;
 };
 std::vector<BoxedTriangle> from_left_to_right(const ShellMesh& mesh) {
   std::vector<BoxedTriangle> list;
   list.reserve(mesh.triangle_count());
   for (int f = 0; f < mesh.triangle_count(); ++f) {
     const PlaneTriangle t = corners(mesh, f);
-    list.push_back({f, t, Box(t)});
+    list.push_back({f, t, TriangleBox(t)});
   }
   std::sort(list.begin(), list.end(), [](const BoxedTriangle& p, const BoxedTriangle& q) {
     return std::tie(p.box.low.x(), p.index) < std::tie(q.box.low.x(), q.index);
@@ -108,7 +108,7 @@ void carry_creases(const ShellState& from, ShellState& to) {
   }
   for (const int f : creased) {
     const PlaneTriangle old = corners(from.mesh, f);
-    const Box box(old);
+    const TriangleBox box(old);
     const auto left_of = [](const BoxedTriangle& t, double u) { return t.box.low.x() < u; };
     auto t = std::lower_bound(triangles.begin(), triangles.end(), box.low.x() - widest, left_of);
     for (; t != triangles.end() && t->box.low.x() < box.high.x(); ++t) {

@@ -177,7 +177,7 @@ std::optional<EditedFrame> edited_frame(const Feature& feature, const Edit& edit
 
 namespace {
 
-constexpr double kFar = 1e6;  // m, s
+constexpr double kFarAway = 1e6;  // m, s
 
 void describe_selection(OptionVisitor& v, Edit& o) {
   v.value("name", o.name, {.doc = "what messages call the edit"});
@@ -222,9 +222,10 @@ void describe_time(OptionVisitor& v, Edit& o) {
   describe_list(v, "trajectory", o.trajectory,
                 {.doc = "positions of the feature's centre at times; the fine motion stays"});
   v.value("fade_in", o.fade_in,
-          {.doc = "time over which a map grows (quintic)", .unit = "s", .min = 0, .max = kFar});
-  v.value("fade_out", o.fade_out,
-          {.doc = "time over which a map vanishes (quintic)", .unit = "s", .min = 0, .max = kFar});
+          {.doc = "time over which a map grows (quintic)", .unit = "s", .min = 0, .max = kFarAway});
+  v.value(
+      "fade_out", o.fade_out,
+      {.doc = "time over which a map vanishes (quintic)", .unit = "s", .min = 0, .max = kFarAway});
 }
 
 }  // namespace

@@ -12,13 +12,13 @@
 namespace geoprior::fluid {
 namespace {
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr double kUnreached = std::numeric_limits<double>::infinity();
 
 Eigen::Vector3d row(const Eigen::MatrixX3d& V, int v) { return V.row(v).transpose(); }
 
 bool touches(const TriMesh& mesh, Eigen::Index t, const std::vector<double>& distance) {
   for (int k = 0; k < 3; ++k) {
-    if (distance[mesh.F(t, k)] < kFar) return true;
+    if (distance[mesh.F(t, k)] < kUnreached) return true;
   }
   return false;
 }
@@ -61,7 +61,7 @@ FrameSample bed_sample(const TriMesh& mesh, const Eigen::MatrixX3d& bed,
 std::vector<double> distance_from_region(const TriMesh& mesh, const FrameLabels& labels,
                                          const std::vector<int>& wanted, double reach) {
   const SurfaceGraph graph = surface_graph(mesh);
-  std::vector<double> distance(graph.size(), kFar);
+  std::vector<double> distance(graph.size(), kUnreached);
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   for (int v = 0; v < graph.size(); ++v) {
@@ -90,7 +90,7 @@ LiftPatch lift_patch(const SurfaceFrame& frame, const FrameLabels& labels, const
   const TriMesh& mesh = frame.mesh;
   const std::vector<double> distance = distance_from_region(mesh, labels, {region.label}, border);
   std::vector<char> inside(distance.size());
-  for (std::size_t v = 0; v < inside.size(); ++v) inside[v] = distance[v] < kFar ? 1 : 0;
+  for (std::size_t v = 0; v < inside.size(); ++v) inside[v] = distance[v] < kUnreached ? 1 : 0;
   const Eigen::MatrixX3d bed = unfolded_base(mesh, inside);
   LiftPatch patch;
   patch.sample = bed_sample(mesh, bed, labels.label, region.label);

@@ -15,11 +15,11 @@
 namespace geoprior::fluid {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kTexelBlock = 4096;
 /// A vertex whose normal leans this far (n.z) against a projected map moves with it fully.
-constexpr double kFacing = 0.2;
+constexpr double kMapFacing = 0.2;
 /// `MappingKind::automatic`: geodesics when more than this share is steeper than 45 degrees.
-constexpr double kSteepShare = 0.05;
+constexpr double kSteepShareOfMaps = 0.05;
 
 enum class Side : char { outside, facing, averted };
 
@@ -33,12 +33,12 @@ Projection project(const WorkMesh& mesh, const EditedFrame& frame, double half, 
   Projection result;
   const Eigen::Affine3d inverse = frame.placement.inverse();
   result.local.resize(mesh.x.size());
-  parallel_blocks(mesh.x.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(mesh.x.size(), kTexelBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) result.local[v] = inverse * mesh.x[v];
   });
   const double turn = frame.placement.linear().determinant() < 0 ? -1 : 1;
   result.side.resize(mesh.triangles.size());
-  parallel_blocks(mesh.triangles.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(mesh.triangles.size(), kTexelBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const auto& f = mesh.triangles[t];
       const Eigen::Vector3d& a = result.local[f[0]];
@@ -96,7 +96,7 @@ Footprint footprint(const WorkMesh& mesh, const Projection& projection, const Pa
 
 double facing_weight(const Eigen::Vector3d& normal, const Eigen::Vector3d& z) {
   const double length = normal.norm();
-  const double x = length > 0 ? std::clamp(normal.dot(z) / (kFacing * length), 0.0, 1.0) : 0;
+  const double x = length > 0 ? std::clamp(normal.dot(z) / (kMapFacing * length), 0.0, 1.0) : 0;
   return x * x * (3 - 2 * x);
 }
 
@@ -216,7 +216,7 @@ MapCoordinates locate(const WorkMesh& mesh, const EditedFrame& frame,
   const Projection projection =
       project(mesh, frame, 0.5 * map.extent(), anchor_w, options.projection_reach * map.extent());
   const Footprint under = footprint(mesh, projection, anchor, z);
-  if (options.mapping == MappingKind::automatic && under.steep_share > kSteepShare) {
+  if (options.mapping == MappingKind::automatic && under.steep_share > kSteepShareOfMaps) {
     return unrolled(mesh, frame, map, anchor);
   }
   return projected(projection, under, z);
@@ -297,11 +297,11 @@ Corners corners(const WorkMesh& mesh, std::size_t t) {
 /// Closest hit over all triangles; of equal ones the first.
 template <class Test>
 Hit nearest_hit(const WorkMesh& mesh, const Test& test) {
-  std::vector<Hit> best((mesh.triangles.size() + kBlock - 1) / kBlock);
-  parallel_blocks(mesh.triangles.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  std::vector<Hit> best((mesh.triangles.size() + kTexelBlock - 1) / kTexelBlock);
+  parallel_blocks(mesh.triangles.size(), kTexelBlock, [&](std::size_t begin, std::size_t end) {
     Hit hit;
     for (std::size_t t = begin; t < end; ++t) test(t, hit);
-    best[begin / kBlock] = hit;
+    best[begin / kTexelBlock] = hit;
   });
   Hit result;
   for (const Hit& hit : best) {

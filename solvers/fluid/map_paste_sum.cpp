@@ -9,7 +9,7 @@
 namespace geoprior::fluid {
 namespace {
 
-constexpr std::size_t kBlock = 2048;
+constexpr std::size_t kSummedBlock = 2048;
 constexpr int kSecantSteps = 4;
 /// Volumes this small against the map's own are none.
 constexpr double kNoVolume = 1e-12;
@@ -36,7 +36,7 @@ Displaced displacements(const PlacedMap& placed) {
   const std::size_t n = placed.places.vertex.size();
   result.shift.resize(n);
   result.alpha.resize(n);
-  parallel_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(n, kSummedBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const DisplacementSampler::Value value = placed.map.at(placed.places.uv[i]);
       const double factor = placed.frame.fade * placed.places.weight[i];
@@ -80,7 +80,7 @@ std::vector<Eigen::Vector3d> displacement_rates(const WorkMesh& mesh, const Plac
   const Eigen::Affine3d inverse = placed.frame.placement.inverse();
   const std::array<Eigen::Affine3d, 2> inverses{before.frame.placement.inverse(),
                                                 after.frame.placement.inverse()};
-  parallel_blocks(rates.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(rates.size(), kSummedBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const int v = placed.places.vertex[i];
       const auto shift = [&](std::size_t k) -> Eigen::Vector3d {
@@ -105,8 +105,8 @@ std::vector<Eigen::Vector3d> displacement_rates(const WorkMesh& mesh, const Plac
 double swept_volume(const WorkMesh& mesh, const std::vector<Eigen::Vector3d>& shift) {
   if (mesh.x.empty()) return 0;
   const Eigen::Vector3d origin = mesh.x.front();
-  std::vector<double> sums((mesh.triangles.size() + kBlock - 1) / kBlock, 0);
-  parallel_blocks(mesh.triangles.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  std::vector<double> sums((mesh.triangles.size() + kSummedBlock - 1) / kSummedBlock, 0);
+  parallel_blocks(mesh.triangles.size(), kSummedBlock, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t t = begin; t < end; ++t) {
       const auto& f = mesh.triangles[t];
@@ -115,7 +115,7 @@ double swept_volume(const WorkMesh& mesh, const std::vector<Eigen::Vector3d>& sh
       const Eigen::Vector3d p = mesh.x[a] - origin, q = mesh.x[b] - origin, r = mesh.x[c] - origin;
       sum += (p + shift[a]).dot((q + shift[b]).cross(r + shift[c])) - p.dot(q.cross(r));
     }
-    sums[begin / kBlock] = sum;
+    sums[begin / kSummedBlock] = sum;
   });
   double total = 0;
   for (const double s : sums) total += s;

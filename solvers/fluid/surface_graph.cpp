@@ -9,7 +9,7 @@
 namespace geoprior::fluid {
 namespace {
 
-constexpr std::size_t kBlock = 2048;
+constexpr std::size_t kGraphBlock = 2048;
 
 void copy_vertices(const TriMesh& mesh, SurfaceGraph& g) {
   const auto n = static_cast<std::size_t>(mesh.vertex_count());
@@ -75,7 +75,7 @@ SurfaceGraph surface_graph(const TriMesh& mesh) {
   g.ring.resize(6 * g.triangle.size());
   g.ring_size.resize(g.x.size());
   g.border.resize(g.x.size());
-  parallel_blocks(g.x.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(g.x.size(), kGraphBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) collect_ring(g, static_cast<int>(v));
   });
   return g;

@@ -11,7 +11,7 @@
 namespace geoprior::skinning {
 namespace {
 
-constexpr std::size_t kLiveBlocksPerTask = 8;
+constexpr std::size_t kRelaxedBlocksPerTask = 8;
 
 Eigen::Vector3d to_vector(Float4 v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
@@ -87,7 +87,7 @@ void relax_vertex(SkinState& state, std::size_t s, RelaxationLaw law) {
 
 template <class Body>
 void for_active(SkinState& state, const Body& body) {
-  parallel_blocks(state.live_blocks.size(), kLiveBlocksPerTask,
+  parallel_blocks(state.live_blocks.size(), kRelaxedBlocksPerTask,
                   [&body](std::size_t begin, std::size_t end) { body(begin, end); });
 }
 

@@ -21,8 +21,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
 /// What a check found of one experiment.
 struct Verdict {
   std::string id;
@@ -98,9 +96,9 @@ Json verdict_json(const Verdict& verdict) {
                                   {"variant", m.variant},
                                   {"metric", m.metric},
                                   {"problem", m.problem},
-                                  {"value", number(m.value)},
-                                  {"reference", number(m.reference)},
-                                  {"tolerance", number(m.tolerance)},
+                                  {"value", json_number(m.value)},
+                                  {"reference", json_number(m.reference)},
+                                  {"tolerance", json_number(m.tolerance)},
                                   {"unit", m.unit}});
   }
   for (const ClaimRecord& claim : verdict.claims) {

@@ -19,4 +19,7 @@ void say_table(const std::vector<std::vector<std::string>>& rows, const std::str
 
 void print_json(const nlohmann::ordered_json& json);
 
+/// The number, or null where it is none: JSON has no NaN and no infinities.
+nlohmann::ordered_json json_number(double x);
+
 }  // namespace geoprior

@@ -14,8 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
 /// Times of all frames and repetitions.
 std::vector<double> all_times(const std::vector<std::vector<double>>& frames) {
   std::vector<double> all;
@@ -79,12 +77,12 @@ Json variant_json(const VariantRecord& variant) {
   if (!variant.error.empty()) json["error"] = variant.error;
   json["summary"] = Json::object();
   for (const auto& [name, value] : variant.summary) {
-    json["summary"][name] = {{"value", number(value.value)}, {"unit", value.unit}};
+    json["summary"][name] = {{"value", json_number(value.value)}, {"unit", value.unit}};
   }
   json["median_time_s"] = Json::object();
   for (const auto& [phase, frames] : variant.timing) {
-    json["median_time_s"][phase] = number(median(all_times(frames)));
-    json["p95_time_s"][phase] = number(quantile(all_times(frames), 0.95));
+    json["median_time_s"][phase] = json_number(median(all_times(frames)));
+    json["p95_time_s"][phase] = json_number(quantile(all_times(frames), 0.95));
   }
   return json;
 }
@@ -164,8 +162,8 @@ Json outcome_json(const RunRecord& record, const std::filesystem::path& folder) 
     json["claims"].push_back({{"text", claim.text},
                               {"case", claim.case_name},
                               {"detail", claim.detail},
-                              {"left", number(claim.left)},
-                              {"right", number(claim.right)},
+                              {"left", json_number(claim.left)},
+                              {"right", json_number(claim.right)},
                               {"holds", claim.holds}});
   }
   json["studies"] = Json::array();
@@ -173,9 +171,9 @@ Json outcome_json(const RunRecord& record, const std::filesystem::path& folder) 
     json["studies"].push_back({{"name", study.name},
                                {"kind", study.kind},
                                {"quantity", study.quantity},
-                               {"value", number(study.value)},
-                               {"low", number(study.low)},
-                               {"high", number(study.high)}});
+                               {"value", json_number(study.value)},
+                               {"low", json_number(study.low)},
+                               {"high", json_number(study.high)}});
   }
   json["cases"] = Json::array();
   for (const CaseRecord& in : record.cases) {

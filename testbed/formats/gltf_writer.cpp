@@ -19,7 +19,7 @@ constexpr int kVertexTarget = 34962;
 constexpr int kIndexTarget = 34963;
 
 /// Binary chunk and the JSON that describes it, grown together.
-class Builder {
+class GltfBuilder {
  public:
   /// Appends an accessor of its own buffer view; returns its index.
   template <class T>
@@ -84,8 +84,9 @@ class Builder {
   std::string bytes_;
 };
 
-void check(const std::string& file, const TriMesh& base,
-           const std::vector<Eigen::MatrixX3d>& frames, const std::vector<double>& times_s) {
+void require_sequence(const std::string& file, const TriMesh& base,
+                      const std::vector<Eigen::MatrixX3d>& frames,
+                      const std::vector<double>& times_s) {
   if (base.F.rows() == 0 || base.V.rows() == 0) throw Error("the mesh is empty", file);
   if (base.F.minCoeff() < 0 || base.F.maxCoeff() >= base.V.rows())
     throw Error("a triangle's index is out of range", file);
@@ -110,7 +111,8 @@ void check(const std::string& file, const TriMesh& base,
   }
 }
 
-void add_animation(Builder& builder, const std::vector<double>& times_s, const std::string& name) {
+void add_animation(GltfBuilder& builder, const std::vector<double>& times_s,
+                   const std::string& name) {
   const std::size_t n = times_s.size();
   const std::vector<float> times(times_s.begin(), times_s.end());
   std::vector<float> weights(n * n, 0.0F);  // one target a frame: at its time alone
@@ -133,8 +135,8 @@ void add_animation(Builder& builder, const std::vector<double>& times_s, const s
 void write_glb_animation(const std::filesystem::path& file, const TriMesh& base,
                          const std::vector<Eigen::MatrixX3d>& frames,
                          const std::vector<double>& times_s, const std::string& name) {
-  check(file.string(), base, frames, times_s);
-  Builder builder;
+  require_sequence(file.string(), base, frames, times_s);
+  GltfBuilder builder;
   json& document = builder.document();
   document["asset"] = {{"version", "2.0"}, {"generator", "geoprior"}};
   document["scene"] = 0;

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 constexpr int kPictureWidth = 2400;
 constexpr int kMostPanelWidth = 900;
 constexpr int kMostPanelHeight = 1100;
-constexpr int kMargin = 20;
-constexpr int kGap = 14;         ///< between panels
+constexpr int kFigureMargin = 20;
+constexpr int kPanelGap = 14;    ///< between panels
 constexpr int kHeading = 64;     ///< height of a line of variant names
 constexpr int kRowLabel = 58;    ///< width of the row labels at the left
 constexpr int kBarHeight = 120;  ///< the scalar bar with its labels
@@ -73,18 +73,18 @@ Layout make_layout(const std::vector<DrawnRow>& rows, const ViewWindow& window) 
   for (const DrawnRow& row : rows) {
     layout.columns = std::max(layout.columns, static_cast<int>(row.row->cells.size()));
   }
-  layout.left = kMargin + kRowLabel;
-  const int room = kPictureWidth - layout.left - kMargin - (layout.columns - 1) * kGap;
+  layout.left = kFigureMargin + kRowLabel;
+  const int room = kPictureWidth - layout.left - kFigureMargin - (layout.columns - 1) * kPanelGap;
   const double aspect = window.width_m / window.height_m;
   const double width =
       std::min({1.0 * room / layout.columns, 1.0 * kMostPanelWidth, kMostPanelHeight * aspect});
   layout.panel_width = std::max(2, static_cast<int>(width));
   layout.panel_height = std::max(2, static_cast<int>(std::lround(width / aspect)));
-  layout.width =
-      layout.left + layout.columns * layout.panel_width + (layout.columns - 1) * kGap + kMargin;
-  layout.height = 2 * kMargin;
+  layout.width = layout.left + layout.columns * layout.panel_width +
+                 (layout.columns - 1) * kPanelGap + kFigureMargin;
+  layout.height = 2 * kFigureMargin;
   for (const DrawnRow& row : rows) {
-    layout.height += layout.panel_height + kGap + (row.has_headings ? kHeading : 0);
+    layout.height += layout.panel_height + kPanelGap + (row.has_headings ? kHeading : 0);
   }
   return layout;
 }
@@ -214,16 +214,16 @@ void draw_block(Picture& picture, const FigureBlock& block, const Layout& layout
                   fitted(cell.label, kHeadingStyle, layout.panel_width));
       }
       picture.paste(draw_cell(cell, line.is_section, block.view, block.look, layout), x, y);
-      x += layout.panel_width + kGap;
+      x += layout.panel_width + kPanelGap;
     }
-    draw_text(picture, line.label, kMargin + kRowLabel / 2, y + layout.panel_height / 2,
+    draw_text(picture, line.label, kFigureMargin + kRowLabel / 2, y + layout.panel_height / 2,
               Align::center, fitted(line.label, kRowStyle, layout.panel_height));
-    y += layout.panel_height + kGap;
+    y += layout.panel_height + kPanelGap;
   }
   if (has_bar(block.look)) {
-    draw_scalar_bar(picture, *block.look.style.scale, y + kGap);
+    draw_scalar_bar(picture, *block.look.style.scale, y + kPanelGap);
   } else {
-    draw_legend(picture, block.look.legend, y + kGap);
+    draw_legend(picture, block.look.legend, y + kPanelGap);
   }
 }
 
@@ -260,7 +260,7 @@ Picture draw_figure(const std::vector<FigureBlock>& blocks) {
     height += block_height(block, layouts.back());
   }
   Picture picture(width, height);
-  int y = kMargin;
+  int y = kFigureMargin;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     draw_block(picture, blocks[i], layouts[i], y);
     y += block_height(blocks[i], layouts[i]);

@@ -14,7 +14,7 @@ namespace geoprior::fluid {
 namespace {
 
 using std::numbers::pi;
-using testing::grid_of;
+using tanks::grid_of;
 
 /// Sets the faces of a grid from a velocity field.
 template <class Field>
@@ -59,7 +59,7 @@ TEST(LiquidAdvection, BatchesOfEightMoveAsRalstonsMethodMovesOne) {
   for (ScalarGrid& face : grid.face)
     for (float& u : face.values) u = static_cast<float>(random.normal());
   // Two cells from walls, and moved by one at most: nothing is put back inside.
-  const LiquidParticles before = testing::scattered(203, {0.2, 0.2, 0.2}, {1.0, 0.8, 0.6}, 4);
+  const LiquidParticles before = tanks::scattered(203, {0.2, 0.2, 0.2}, {1.0, 0.8, 0.6}, 4);
   LiquidParticles after = before;
   advect(grid, 0.02, after);
   for (std::size_t p = 0; p < before.size(); ++p) {
@@ -128,7 +128,7 @@ TEST(LiquidAdvection, EnrightSphereComesBackWithItsVolume) {
                                -t.x() * t.y() * s.z() * s.z());
       },
       full);
-  LiquidParticles particles = testing::scattered(40000, {0.2, 0.2, 0.2}, {0.5, 0.5, 0.5}, 1);
+  LiquidParticles particles = tanks::scattered(40000, {0.2, 0.2, 0.2}, {0.5, 0.5, 0.5}, 1);
   std::vector<Eigen::Vector3f> inside;
   for (const Eigen::Vector3f& x : particles.position)
     if ((x - Eigen::Vector3f::Constant(0.35F)).norm() < 0.15F) inside.push_back(x);
@@ -157,7 +157,7 @@ TEST(LiquidAdvection, ParticlesInASolidComeOutOnItsSurface) {
     for (int j = 0; j < 17; ++j)
       for (int i = 0; i < 17; ++i)
         distance(i, j, k) = static_cast<float>((shape.node(i, j, k) - centre).norm() - 0.3);
-  LiquidParticles particles = testing::scattered(2000, {0.01, 0.01, 0.01}, {0.99, 0.99, 0.99}, 2);
+  LiquidParticles particles = tanks::scattered(2000, {0.01, 0.01, 0.01}, {0.99, 0.99, 0.99}, 2);
   const std::vector<Eigen::Vector3f> start = particles.position;
   std::vector<std::uint8_t> left;
   advect_particles(MacGrid(shape), 0.1, &distance, std::nullopt, particles, left);
@@ -234,9 +234,9 @@ TEST(LiquidExtrapolation, ClosedFacesOfASolidKeepItsNormalVelocityAndSlipAlong) 
 
 /// Distance that particles in boxes of half a cell, jittered, give for liquid up to a height.
 ScalarGrid pool_distance(const GridShape& shape, double height) {
-  Tank tank = testing::tank_of(shape.cells, shape.cell);
+  Tank tank = tanks::tank_of(shape.cells, shape.cell);
   const double top = shape.cell * shape.cells.x();
-  tank.volumes.push_back(testing::at_rest(testing::box_between({0, 0, 0}, {top, top, height})));
+  tank.volumes.push_back(tanks::at_rest(tanks::box_between({0, 0, 0}, {top, top, height})));
   const Liquid liquid(tank, LiquidOptions{}, 1);
   MacGrid grid(shape);
   std::array<std::vector<char>, 3> touched;

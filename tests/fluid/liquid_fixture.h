@@ -7,7 +7,7 @@
 #include "baselines/fluid/liquid.h"
 #include "core/random.h"
 
-namespace geoprior::fluid::testing {
+namespace geoprior::fluid::tanks {
 
 inline LiquidShape box_between(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   LiquidShape shape;
@@ -89,4 +89,4 @@ inline void run_until(Liquid& liquid, double until, double dt_most = 1.0 / 30) {
     liquid.step(std::min(dt_most, until - liquid.time()), context);
 }
 
-}  // namespace geoprior::fluid::testing
+}  // namespace geoprior::fluid::tanks

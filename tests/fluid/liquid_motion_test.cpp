@@ -12,12 +12,12 @@ namespace geoprior::fluid {
 namespace {
 
 using std::numbers::pi;
-using testing::at_rest;
-using testing::ball;
-using testing::box_between;
-using testing::centre_of;
-using testing::run_until;
-using testing::tank_of;
+using tanks::at_rest;
+using tanks::ball;
+using tanks::box_between;
+using tanks::centre_of;
+using tanks::run_until;
+using tanks::tank_of;
 
 constexpr double kGravity = 9.81;
 
@@ -205,7 +205,7 @@ TEST(LiquidMotion, CorrectionKeepsTheVolumeOfTenSecondsOfSloshing) {
 // positions, so that the potential energy is the mean of two steps.
 TEST(LiquidMotion, EnergyNeverGrowsInAClosedTank) {
   for (const TransferKind transfer : {TransferKind::flip, TransferKind::apic}) {
-    Tank tank = testing::column_tank(16);
+    Tank tank = tanks::column_tank(16);
     tank.open_top = false;
     LiquidOptions options = with(transfer);
     options.volume_correction = VolumeCorrection::none;

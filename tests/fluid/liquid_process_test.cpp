@@ -17,12 +17,12 @@
 namespace geoprior::fluid {
 namespace {
 
-using testing::at_rest;
-using testing::ball;
-using testing::box_between;
-using testing::column_tank;
-using testing::run_until;
-using testing::tank_of;
+using tanks::at_rest;
+using tanks::ball;
+using tanks::box_between;
+using tanks::column_tank;
+using tanks::run_until;
+using tanks::tank_of;
 
 /// Everything at once: a column, a moving ball, a spout.
 Tank busy_tank() {
@@ -126,7 +126,7 @@ TEST(LiquidSource, PoursItsAreaTimesItsSpeed) {
 }
 
 TEST(LiquidReseed, KeepsCountsWithinBoundsAndAddsAsMuchAsItRemoves) {
-  const GridShape shape = testing::grid_of({8, 8, 8}, 1.0 / 8);
+  const GridShape shape = tanks::grid_of({8, 8, 8}, 1.0 / 8);
   LiquidParticles particles;
   SeedRule rule;
   RandomStream random(3, "counts");
@@ -348,9 +348,9 @@ TEST(LiquidProcess, AMovingSolidPushesLiquid) {
   tank.solids.push_back(paddle);
   std::optional<Liquid> liquid;
   liquid.emplace(tank, LiquidOptions{}, 1);
-  const double start = testing::momentum(liquid->particles()).x();
+  const double start = tanks::momentum(liquid->particles()).x();
   run_until(*liquid, 0.25, 0.02);
-  EXPECT_GT(testing::momentum(liquid->particles()).x() - start, 0);
+  EXPECT_GT(tanks::momentum(liquid->particles()).x() - start, 0);
   const double face = 0.2 + paddle.motion->at(0.25).shift.x();
   for (const Eigen::Vector3f& x : liquid->particles().position)
     EXPECT_GT(static_cast<double>(x.x()), face - 0.1 / 32);

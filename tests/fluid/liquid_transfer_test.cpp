@@ -12,9 +12,9 @@
 namespace geoprior::fluid {
 namespace {
 
-using testing::grid_of;
-using testing::momentum;
-using testing::scattered;
+using tanks::grid_of;
+using tanks::momentum;
+using tanks::scattered;
 
 constexpr double kCell = 0.1;
 

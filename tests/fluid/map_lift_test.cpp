@@ -18,7 +18,6 @@ namespace {
 using namespace waves;
 
 constexpr double kSize = 2;  // m
-const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 
 Labelled waves_in_tank(const Hill& h, int n, int frames = 7) {
   return labelled(tank(n, kSize, 1, 0.25), (n + 1) * (n + 1), hill(h), frames, 0.04, kSize / n);

@@ -12,6 +12,8 @@
 
 namespace geoprior::fluid::waves {
 
+inline const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
+
 /// Closed box: a top of n x n cells over [0, size]^2 at z = 0, a floor at z = -depth, sides between
 /// them. Top vertices come first, x fastest, interior ones moved in the plane by up to `jitter`
 /// cells: no grid of texels meets them.

@@ -17,8 +17,6 @@ namespace {
 
 using namespace waves;
 
-const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
-
 Labelled source(const Eigen::Affine3d& placed = Eigen::Affine3d::Identity(),
                 const Hill& h = {.velocity = {1, 0}}) {
   return labelled(tank(40, 2, 1, 0.25), 41 * 41, hill(h), 5, 0.04, 0.05, placed);
@@ -57,7 +55,7 @@ Insertion at(const Feature& feature, double x, double y, double z = 0,
   return insertion;
 }
 
-SurfaceFrame still(const TriMesh& mesh) {
+SurfaceFrame still_frame(const TriMesh& mesh) {
   SurfaceFrame frame;
   frame.mesh = mesh;
   return frame;
@@ -71,7 +69,7 @@ TriMesh moved(const TriMesh& mesh, const Eigen::Isometry3d& motion) {
 
 TEST(Paste, PutsTheFormulaOntoAPlane) {
   const Feature f = formula_hill(0.05);
-  const SurfaceFrame target = still(tank(40, 2, 1, 0.25));
+  const SurfaceFrame target = still_frame(tank(40, 2, 1, 0.25));
   const SurfaceFrame out = paste(target, {at(f, 1.1, 0.9)}, 0, kUp, {});
   for (Eigen::Index v = 0; v < 41 * 41; ++v) {
     const double r = std::hypot(out.mesh.V(v, 0) - 1.1, out.mesh.V(v, 1) - 0.9) / 0.1;
@@ -87,7 +85,7 @@ TEST(Paste, PutsTheFormulaOntoAPlane) {
 
 TEST(Paste, KeepsAClosedManifoldClosedAndCountsItsVolume) {
   const Feature f = formula_hill(0.05);
-  const SurfaceFrame target = still(tank(16, 2, 1, 0.25));  // edges of 8 texels
+  const SurfaceFrame target = still_frame(tank(16, 2, 1, 0.25));  // edges of 8 texels
   PasteReport report;
   const SurfaceFrame out = paste(target, {at(f, 1, 1)}, 0, kUp, {}, &report);
   require_closed_manifold(out.mesh, "paste", "tank");
@@ -109,7 +107,7 @@ TEST(Paste, RefinesUntilEdgesHoldTheTexels) {
   two.V << -2, -2, 0, 2, -2, 0, 2, 2, 0, -2, 2, 0;
   two.F.resize(2, 3);
   two.F << 0, 1, 2, 0, 2, 3;
-  const SurfaceFrame out = paste(still(two), {at(f, 0.2, 0.1)}, 0, kUp, {});
+  const SurfaceFrame out = paste(still_frame(two), {at(f, 0.2, 0.1)}, 0, kUp, {});
   const double limit = 2.0 / 64;
   for (Eigen::Index t = 0; t < out.mesh.F.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
@@ -133,7 +131,7 @@ TEST(Paste, RefinesUntilEdgesHoldTheTexels) {
 
 TEST(Paste, SeveralFeaturesAddUpInAnyOrder) {
   const Feature f = formula_hill(0.05);
-  const SurfaceFrame target = still(tank(30, 2, 1, 0.25));
+  const SurfaceFrame target = still_frame(tank(30, 2, 1, 0.25));
   const Insertion a = at(f, 0.9, 1, 0, "a"), b = at(f, 1.05, 1.02, 0, "b"),
                   c = at(f, 1, 0.8, 0, "c");
   const SurfaceFrame one = paste(target, {a, b, c}, 0, kUp, {});
@@ -151,7 +149,7 @@ TEST(Paste, SeveralFeaturesAddUpInAnyOrder) {
 
 TEST(Paste, WarnsOfEditsThatOverlap) {
   const Feature f = formula_hill(0.05);
-  const SurfaceFrame target = still(tank(30, 2, 1, 0.25));
+  const SurfaceFrame target = still_frame(tank(30, 2, 1, 0.25));
   PasteReport report;
   paste(target, {at(f, 0.9, 1, 0, "left"), at(f, 1.1, 1, 0, "right")}, 0, kUp, {}, &report);
   ASSERT_EQ(report.warnings.size(), 1U);
@@ -162,7 +160,7 @@ TEST(Paste, WarnsOfEditsThatOverlap) {
 
 TEST(Paste, LeavesOutWhatLiesOffTheTarget) {
   const Feature f = formula_hill(0.05);
-  const SurfaceFrame target = still(tank(20, 2, 1, 0.25));
+  const SurfaceFrame target = still_frame(tank(20, 2, 1, 0.25));
   PasteReport report;
   const SurfaceFrame out = paste(target, {at(f, 5, 5, 0, "lost")}, 0, kUp, {}, &report);
   EXPECT_EQ(out.mesh.V, target.mesh.V);
@@ -176,7 +174,7 @@ TEST(Paste, LeavesOutWhatLiesOffTheTarget) {
 
 TEST(Paste, RefusesATargetTooCoarse) {
   const Feature f = formula_hill(0.05);
-  const SurfaceFrame target = still(tank(8, 2, 1, 0));  // edges of 16 texels
+  const SurfaceFrame target = still_frame(tank(8, 2, 1, 0));  // edges of 16 texels
   PasteOptions options;
   options.refine = false;
   try {
@@ -198,7 +196,7 @@ TEST(Paste, VolumeLockAddsNoVolume) {
   Insertion insertion = at(f, 1, 1);
   insertion.edit.volume_lock = true;
   PasteReport report;
-  const SurfaceFrame out = paste(still(wavy), {insertion}, 0, kUp, {}, &report);
+  const SurfaceFrame out = paste(still_frame(wavy), {insertion}, 0, kUp, {}, &report);
   // The hill alone adds 3.1e-3 m^3.
   EXPECT_LT(std::abs(report.added_volume), 1e-12);
   EXPECT_NEAR(signed_volume(out.mesh.V, out.mesh.F), signed_volume(wavy.V, wavy.F), 1e-12);
@@ -219,9 +217,9 @@ TEST(Paste, MovesWithSourceAndTarget) {
   for (const MappingKind mapping : {MappingKind::projection, MappingKind::exponential}) {
     PasteOptions options;
     options.mapping = mapping;
-    const SurfaceFrame a = paste(still(wavy), {plain}, 0, kUp, options);
+    const SurfaceFrame a = paste(still_frame(wavy), {plain}, 0, kUp, options);
     const SurfaceFrame b =
-        paste(still(moved(wavy, motion)), {other}, 0, motion.linear() * kUp, options);
+        paste(still_frame(moved(wavy, motion)), {other}, 0, motion.linear() * kUp, options);
     ASSERT_EQ(a.mesh.F, b.mesh.F);
     EXPECT_LT((moved(a.mesh, motion).V - b.mesh.V).cwiseAbs().maxCoeff(), 1e-9);
   }
@@ -248,7 +246,7 @@ TEST(Paste, MirroredMapsLieMirrored) {
     if (k / 64 < 32) f.maps[0].displacement.row(k).setZero();
     f.maps[0].displacement(k, 1) = 0.5F * f.maps[0].displacement(k, 2);
   }
-  const SurfaceFrame target = still(tank(40, 2, 1, 0));  // symmetric about y = 1
+  const SurfaceFrame target = still_frame(tank(40, 2, 1, 0));  // symmetric about y = 1
   Insertion plain = at(f, 1, 1), mirrored = plain;
   mirrored.edit.mirror = true;
   PasteOptions options;
@@ -276,7 +274,7 @@ TEST(Paste, HillsStandUprightOnABall) {
   options.mapping = MappingKind::exponential;
   PasteReport report;
   const SurfaceFrame out =
-      paste(still(ball), {at(f, direction.x(), direction.y(), 2)}, 0, kUp, options, &report);
+      paste(still_frame(ball), {at(f, direction.x(), direction.y(), 2)}, 0, kUp, options, &report);
   require_closed_manifold(out.mesh, "paste", "ball");
   // The anchor is above the given point along up.
   const double z = std::sqrt(1 - direction.head<2>().squaredNorm());
@@ -298,14 +296,14 @@ TEST(Paste, ChoosesGeodesicsOnACurvedTarget) {
   const auto run = [&](MappingKind kind) {
     PasteOptions options;
     options.mapping = kind;
-    return paste(still(ball), {at(f, 0.1, 0, 0.5)}, 0, kUp, options).mesh;
+    return paste(still_frame(ball), {at(f, 0.1, 0, 0.5)}, 0, kUp, options).mesh;
   };
   EXPECT_EQ(run(MappingKind::automatic).V, run(MappingKind::exponential).V);
   const TriMesh plane = tank(30, 2, 1, 0.25);
   PasteOptions automatic, projection;
   projection.mapping = MappingKind::projection;
-  EXPECT_EQ(paste(still(plane), {at(f, 1, 1)}, 0, kUp, automatic).mesh.V,
-            paste(still(plane), {at(f, 1, 1)}, 0, kUp, projection).mesh.V);
+  EXPECT_EQ(paste(still_frame(plane), {at(f, 1, 1)}, 0, kUp, automatic).mesh.V,
+            paste(still_frame(plane), {at(f, 1, 1)}, 0, kUp, projection).mesh.V);
 }
 
 TEST(ExponentialMap, UnrollsACylinder) {
@@ -348,7 +346,7 @@ TEST(Paste, VelocityIsTheRateOfTheDisplacement) {
   // A hill that grows by its first height every 0.1 s on a target that moves with (0.2, 0, 0):
   // the map stands still, so points that pass under it rise with A f' + 0.2 df/dx.
   const Feature f = formula_hill(0.01, 5);
-  SurfaceFrame target = still(tank(40, 2, 1, 0.25));
+  SurfaceFrame target = still_frame(tank(40, 2, 1, 0.25));
   target.velocity = Eigen::MatrixX3d::Zero(target.mesh.V.rows(), 3);
   target.velocity.col(0).setConstant(0.2);
   const SurfaceFrame out = paste(target, {at(f, 1, 1)}, 0.2, kUp, {});
@@ -372,7 +370,7 @@ TEST(Paste, IsolatedMeshesAreInsertedOrUnited) {
   for (TriMesh& m : drop.meshes) m.V *= 0.2;
   drop.placement = {Eigen::Isometry3d::Identity(),
                     Eigen::Isometry3d(Eigen::Translation3d(0, 0, -0.3))};
-  SurfaceFrame target = still(tank(20, 2, 1, 0.25));
+  SurfaceFrame target = still_frame(tank(20, 2, 1, 0.25));
   target.velocity = Eigen::MatrixX3d::Zero(target.mesh.V.rows(), 3);
   const double before = signed_volume(target.mesh.V, target.mesh.F);
   const double sphere = signed_volume(drop.meshes[0].V, drop.meshes[0].F);
@@ -394,14 +392,14 @@ TEST(Paste, IsolatedMeshesAreInsertedOrUnited) {
   ASSERT_EQ(static_cast<int>(report.vertex_feature.size()), out.mesh.vertex_count());
   ASSERT_EQ(out.velocity.rows(), out.mesh.V.rows());
   // An open target cannot be united: said, and inserted.
-  out = paste(still(shapes::square(4)), {insertion}, 0, kUp, {}, &report);
+  out = paste(still_frame(shapes::square(4)), {insertion}, 0, kUp, {}, &report);
   ASSERT_EQ(report.warnings.size(), 1U);
   EXPECT_NE(report.warnings[0].find("cannot be united"), std::string::npos);
 }
 
 TEST(Paste, IsTheSameForAnyNumberOfThreads) {
   const Feature f = formula_hill(0.05, 3);
-  SurfaceFrame target = still(tank(60, 2, 1, 0.25));
+  SurfaceFrame target = still_frame(tank(60, 2, 1, 0.25));
   target.velocity = Eigen::MatrixX3d::Ones(target.mesh.V.rows(), 3);
   SurfaceFrame one, two;
   const std::vector<Insertion> list{at(f, 1, 1, 0, "a"), at(f, 1.2, 1, 0, "b")};

@@ -13,7 +13,7 @@ namespace {
 using std::numbers::pi;
 using namespace pressure_test;
 
-constexpr double kGravity = 9.81, kDensity = 1000;
+constexpr double kSurfaceGravity = 9.81, kDensity = 1000;
 
 /// Still water of depth H in a box after gravity has pulled for dt: what the projection leaves.
 struct Rest {
@@ -37,7 +37,8 @@ Rest project_rest(const Tank& tank, double depth, double dt) {
       for (int i = 0; i < shape.cells.x(); ++i) {
         const float p = solver.pressure()(i, j, k);
         if (p == 0) continue;
-        const double expected = kDensity * kGravity * (depth - shape.cell_centre(i, j, k).z());
+        const double expected =
+            kDensity * kSurfaceGravity * (depth - shape.cell_centre(i, j, k).z());
         rest.largest_pressure_error = std::max(rest.largest_pressure_error, std::abs(p - expected));
       }
   return rest;
@@ -51,10 +52,10 @@ TEST(PressureSurface, StillWaterStaysStillWhereverItsSurfaceLies) {
   for (const double cells : {12.02, 12.3, 12.51, 12.77, 13.0}) {
     const double depth = cells * tank.cell;
     const Rest rest = project_rest(tank, depth, 0.02);
-    EXPECT_LE(rest.largest_speed, 1e-3 * std::sqrt(kGravity * depth)) << cells;
+    EXPECT_LE(rest.largest_speed, 1e-3 * std::sqrt(kSurfaceGravity * depth)) << cells;
     // Single precision of speeds g dt = 0.2 m/s.
     EXPECT_LE(rest.largest_speed, 2e-6) << cells;
-    EXPECT_LE(rest.largest_pressure_error, 1e-5 * kDensity * kGravity * depth) << cells;
+    EXPECT_LE(rest.largest_pressure_error, 1e-5 * kDensity * kSurfaceGravity * depth) << cells;
   }
 }
 
@@ -65,7 +66,7 @@ TEST(PressureSurface, AnOpenTopHoldsAPressureOfZeroOnTheBorder) {
   tank.cell = 0.1;
   const Rest rest = project_rest(tank, 1.0, 0.02);
   EXPECT_LE(rest.largest_speed, 2e-6);
-  EXPECT_LE(rest.largest_pressure_error, 1e-5 * kDensity * kGravity);
+  EXPECT_LE(rest.largest_pressure_error, 1e-5 * kDensity * kSurfaceGravity);
 }
 
 TEST(PressureSurface, StillWaterStaysStillAroundABallAndASlantedFloor) {
@@ -84,7 +85,7 @@ TEST(PressureSurface, StillWaterStaysStillAroundABallAndASlantedFloor) {
   tank.solids = {ball, floor};
   const double depth = 0.613;
   const Rest rest = project_rest(tank, depth, 0.02);
-  EXPECT_LE(rest.largest_speed, 1e-3 * std::sqrt(kGravity * depth));
+  EXPECT_LE(rest.largest_speed, 1e-3 * std::sqrt(kSurfaceGravity * depth));
   EXPECT_LE(rest.largest_speed, 2e-6);
 }
 

@@ -19,7 +19,7 @@ namespace {
 using surfaces::append;
 using surfaces::still;
 
-constexpr double kCell = 0.025;
+constexpr double kRegionCell = 0.025;
 
 double two_bumps(double x, double y) {
   const auto bump = [](double r2) { return 0.08 * std::exp(-r2 / (2 * 0.09 * 0.09)); };
@@ -29,7 +29,7 @@ TriMesh pool_with_bumps() { return surfaces::graph(1, 80, 0.3, two_bumps); }
 
 SegmentationOptions given(double high, double low) {
   SegmentationOptions options;
-  options.cell = kCell;
+  options.cell = kRegionCell;
   options.thresholds = ThresholdKind::given;
   options.high = high;
   options.low = low;
@@ -50,13 +50,14 @@ TEST(Segmentation, FindsTheBumpsOfAPoolWhereTheyAre) {
   ASSERT_EQ(frame.regions.size(), 2u);
   for (const Region& region : frame.regions) {
     EXPECT_EQ(region.kind, RegionKind::differential);
-    EXPECT_NEAR(std::abs(region.centre.x()), 0.5, kCell);
-    EXPECT_NEAR(region.centre.y(), 0, kCell);
+    EXPECT_NEAR(std::abs(region.centre.x()), 0.5, kRegionCell);
+    EXPECT_NEAR(region.centre.y(), 0, kRegionCell);
     EXPECT_GT(region.crest_share, 0.5);
     EXPECT_FALSE(region.support.empty());
     EXPECT_LT(region.box_min.z(), region.box_max.z());
     // |H| h > 0.04 holds inside of about sqrt(2) sigma, where H changes its sign.
-    EXPECT_NEAR(std::sqrt(region.area / std::numbers::pi), std::sqrt(2.0) * 0.09, 1.5 * kCell);
+    EXPECT_NEAR(std::sqrt(region.area / std::numbers::pi), std::sqrt(2.0) * 0.09,
+                1.5 * kRegionCell);
   }
 }
 

@@ -19,9 +19,9 @@ Tank cube_tank(int n) {
   return tank;
 }
 
-TankSolid ball(const Eigen::Vector3d& centre, double radius) {
+TankSolid solid_ball(const Eigen::Vector3d& centre, double radius) {
   TankSolid solid;
-  solid.name = "ball";
+  solid.name = "solid_ball";
   solid.shape.kind = LiquidShape::Kind::sphere;
   solid.shape.centre = centre;
   solid.shape.radius = radius;
@@ -55,7 +55,7 @@ TEST(SolidFractions, AreaOfABallsSectionConvergesToSecondOrder) {
   for (std::size_t l = 0; l < 2; ++l) {
     const int n = 20 << (2 * l);
     Tank tank = cube_tank(n);
-    tank.solids = {ball({0.5 + offset, 0.503, 0.497}, radius)};
+    tank.solids = {solid_ball({0.5 + offset, 0.503, 0.497}, radius)};
     errors[l] = std::abs(closed_area(sampled(tank), n / 2, tank.cell) - exact) / exact;
   }
   // Linear interpolation of the distance along edges errs by up to h^2 / (12 r) in the mean, chords
@@ -86,7 +86,8 @@ TEST(SolidFractions, DiagonalCornersAreJoinedOrNotByTheCentre) {
   // area and closed area of the mirrored case add up to one.
   Tank tank = cube_tank(4);
   const double h = tank.cell;
-  tank.solids = {ball({0.5, 0.5, 0.5}, 0.5 * h), ball({0.5, 0.5 + h, 0.5 + h}, 0.5 * h)};
+  tank.solids = {solid_ball({0.5, 0.5, 0.5}, 0.5 * h),
+                 solid_ball({0.5, 0.5 + h, 0.5 + h}, 0.5 * h)};
   const SolidFractions solids = sampled(tank);
   // Corners at distance 0.5 h inside, the other two at 0.5 h outside: the centre is on the border,
   // each triangle is 1/8 of the face.
@@ -145,7 +146,7 @@ TEST(SolidFractions, TheTopIsTheSideThatGravityPointsAwayFrom) {
 
 TEST(SolidFractions, FacesCarryTheVelocityOfTheirBody) {
   Tank tank = cube_tank(20);
-  TankSolid still = ball({0.25, 0.3, 0.5}, 0.15), moving = ball({0.7, 0.5, 0.5}, 0.15);
+  TankSolid still = solid_ball({0.25, 0.3, 0.5}, 0.15), moving = solid_ball({0.7, 0.5, 0.5}, 0.15);
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()));
   moving.motion = Trajectory{{{0, {0, 0, 0}, Eigen::Quaterniond::Identity()},
                               {1, {0.02, 0, 0.05}, turn},
@@ -173,7 +174,7 @@ TEST(SolidFractions, FacesCarryTheVelocityOfTheirBody) {
 
 TEST(SolidSampler, MovingBodiesLeaveNothingBehind) {
   Tank tank = cube_tank(24);
-  TankSolid still = ball({0.5, 0.3, 0.3}, 0.2), moving = ball({0.2, 0.5, 0.5}, 0.12);
+  TankSolid still = solid_ball({0.5, 0.3, 0.3}, 0.2), moving = solid_ball({0.2, 0.5, 0.5}, 0.12);
   moving.motion =
       Trajectory{{{.time = 0, .shift = {0, 0, 0}}, {.time = 1, .shift = {0.6, 0.1, 0}}}};
   tank.solids = {moving, still};
@@ -197,7 +198,7 @@ TEST(SolidSampler, MovingBodiesLeaveNothingBehind) {
 
 TEST(SolidSampler, IsTheSameForAnyNumberOfThreads) {
   Tank tank = cube_tank(24);
-  tank.solids = {ball({0.5, 0.3, 0.3}, 0.2), ball({0.4, 0.6, 0.3}, 0.25)};
+  tank.solids = {solid_ball({0.5, 0.3, 0.3}, 0.2), solid_ball({0.4, 0.6, 0.3}, 0.25)};
   std::array<SolidFractions, 2> results;
   for (const int threads : {1, 2})
     with_threads(threads, [&] { results[threads - 1] = sampled(tank); });
@@ -207,7 +208,7 @@ TEST(SolidSampler, IsTheSameForAnyNumberOfThreads) {
 
 TEST(SolidSampler, ABodyOutsideTheDomainClosesNothing) {
   Tank tank = cube_tank(8);
-  tank.solids = {ball({5, 5, 5}, 0.3)};
+  tank.solids = {solid_ball({5, 5, 5}, 0.3)};
   const SolidFractions solids = sampled(tank);
   for (int i = 1; i < 8; ++i) EXPECT_EQ(closed_area(solids, i, tank.cell), 0);
 }

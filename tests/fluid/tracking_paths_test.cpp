@@ -12,7 +12,7 @@
 namespace geoprior::fluid {
 namespace {
 
-constexpr double kCell = 0.02, kStep = 1.0 / 30;
+constexpr double kTrackedCell = 0.02, kStep = 1.0 / 30;
 
 std::vector<double> times(int frames) {
   std::vector<double> t;
@@ -28,13 +28,15 @@ Region region(int frame, RegionKind kind, const Eigen::Vector3d& centre, double 
   const double disc = std::numbers::pi * radius * radius;
   r.area = kind == RegionKind::isolated ? 4 * disc : disc;
   r.volume = kind == RegionKind::isolated ? 4.0 / 3 * disc * radius : 0;
-  const double high = kind == RegionKind::isolated ? radius : kCell;
+  const double high = kind == RegionKind::isolated ? radius : kTrackedCell;
   const Eigen::Vector3d half(radius, radius, high);
   r.box_min = centre - half;
   r.box_max = centre + half;
-  const auto cube = [](double x) { return static_cast<std::int64_t>(std::floor(x / (2 * kCell))); };
-  for (double x = r.box_min.x(); x <= r.box_max.x(); x += kCell) {
-    for (double y = r.box_min.y(); y <= r.box_max.y(); y += kCell)
+  const auto cube = [](double x) {
+    return static_cast<std::int64_t>(std::floor(x / (2 * kTrackedCell)));
+  };
+  for (double x = r.box_min.x(); x <= r.box_max.x(); x += kTrackedCell) {
+    for (double y = r.box_min.y(); y <= r.box_max.y(); y += kTrackedCell)
       r.support.push_back(support_key(cube(x), cube(y), cube(centre.z())));
   }
   std::sort(r.support.begin(), r.support.end());
@@ -69,7 +71,7 @@ bool is_straight(const Track& track) {
 
 TEST(Tracking, BallisticPredictionFollowsDropsThroughACrossing) {
   const std::vector<Region> regions = crossing_drops(20);
-  const TrackResult result = track_regions(regions, times(20), kCell, {});
+  const TrackResult result = track_regions(regions, times(20), kTrackedCell, {});
   ASSERT_EQ(result.tracks.size(), 2u);
   for (const Track& track : result.tracks) {
     EXPECT_EQ(track.regions.size(), 20u);
@@ -91,7 +93,7 @@ TEST(Tracking, VelocitiesThatAreGivenAreUsed) {
   }
   TrackingOptions options;
   options.ballistic = false;
-  const TrackResult result = track_regions(regions, times(5), kCell, options);
+  const TrackResult result = track_regions(regions, times(5), kTrackedCell, options);
   ASSERT_EQ(result.tracks.size(), 2u);
   for (const Track& track : result.tracks) EXPECT_TRUE(is_straight(track));
 }
@@ -101,19 +103,19 @@ TEST(Tracking, GapsAreBridgedUpToTheLargest) {
   for (int f = 0; f < 16; ++f) {
     if (f != 6 && f != 7) regions.push_back(wave(f, 0.02 * f, 0));
   }
-  EXPECT_EQ(track_regions(regions, times(16), kCell, {}).tracks.size(), 1u);
+  EXPECT_EQ(track_regions(regions, times(16), kTrackedCell, {}).tracks.size(), 1u);
   TrackingOptions options;
   options.largest_gap = 2;
-  EXPECT_EQ(track_regions(regions, times(16), kCell, options).tracks.size(), 2u);
+  EXPECT_EQ(track_regions(regions, times(16), kTrackedCell, options).tracks.size(), 2u);
 }
 
 TEST(Tracking, KindsAreNeverLinkedNorVeryDifferentSizes) {
   const TrackResult kinds =
-      track_regions({drop(0, {0, 0, 0.1}), wave(1, 0, 0)}, times(2), kCell, {});
+      track_regions({drop(0, {0, 0, 0.1}), wave(1, 0, 0)}, times(2), kTrackedCell, {});
   EXPECT_EQ(kinds.tracks.size(), 2u);
   // ln(area ratio) = 2 ln 3 is 4.4 sigma.
   const TrackResult sizes =
-      track_regions({wave(0, 0, 0, 0.1), wave(1, 0, 0, 0.3)}, times(2), kCell, {});
+      track_regions({wave(0, 0, 0, 0.1), wave(1, 0, 0, 0.3)}, times(2), kTrackedCell, {});
   EXPECT_EQ(sizes.tracks.size(), 2u);
 }
 
@@ -128,7 +130,7 @@ TEST(Tracking, EveryRegionIsInOneTrackAndIdsFollowTheirBeginnings) {
        {AssignmentKind::flow, AssignmentKind::frame_by_frame, AssignmentKind::greedy}) {
     TrackingOptions options;
     options.assignment = kind;
-    const TrackResult result = track_regions(regions, times(12), kCell, options);
+    const TrackResult result = track_regions(regions, times(12), kTrackedCell, options);
     std::vector<int> seen(regions.size(), 0);
     int last_begin = 0;
     for (std::size_t t = 0; t < result.tracks.size(); ++t) {
@@ -161,9 +163,9 @@ TEST(Tracking, FlowEqualsFrameByFrameWithoutGaps) {
   }
   TrackingOptions options;
   options.largest_gap = 1;
-  const TrackResult flow = track_regions(regions, times(15), kCell, options);
+  const TrackResult flow = track_regions(regions, times(15), kTrackedCell, options);
   options.assignment = AssignmentKind::frame_by_frame;
-  const TrackResult frames = track_regions(regions, times(15), kCell, options);
+  const TrackResult frames = track_regions(regions, times(15), kTrackedCell, options);
   ASSERT_EQ(flow.tracks.size(), frames.tracks.size());
   for (std::size_t t = 0; t < flow.tracks.size(); ++t)
     EXPECT_EQ(flow.tracks[t].regions, frames.tracks[t].regions);
@@ -179,7 +181,7 @@ TEST(Tracking, ADropThatEndsCausesTheWaveThatBeginsThere) {
     regions.push_back(wave(f, 0.3, 0.2, 0.1 + 0.01 * f));
     regions.push_back(wave(f, 1.5, 0.2, 0.1 + 0.01 * f));  // too far to be its doing
   }
-  const TrackResult result = track_regions(regions, times(12), kCell, {});
+  const TrackResult result = track_regions(regions, times(12), kTrackedCell, {});
   ASSERT_EQ(result.tracks.size(), 3u);
   ASSERT_EQ(result.events.size(), 1u);
   EXPECT_EQ(result.events[0].kind, TrackEventKind::causes);
@@ -195,7 +197,7 @@ TEST(Tracking, SplitsAndMergesAreEventsBetweenTracks) {
     regions.push_back(wave(f, 0, 0, 0.2));
     if (f >= 5 && f <= 9) regions.push_back(wave(f, 0.2, 0, 0.06));
   }
-  const TrackResult result = track_regions(regions, times(14), kCell, {});
+  const TrackResult result = track_regions(regions, times(14), kTrackedCell, {});
   ASSERT_EQ(result.tracks.size(), 2u);
   ASSERT_EQ(result.events.size(), 2u);
   EXPECT_EQ(result.events[0].kind, TrackEventKind::split);
@@ -210,15 +212,15 @@ TEST(Tracking, SplitsAndMergesAreEventsBetweenTracks) {
 
 TEST(Tracking, SupportsOverlapWhereTheyHaveMoved) {
   const Region a = wave(0, 0, 0), b = wave(1, 1, 0);
-  EXPECT_EQ(support_overlap(a, b, Eigen::Vector3d::Zero(), kCell), 0);
-  EXPECT_EQ(support_overlap(a, b, {1, 0, 0}, kCell), 1);
+  EXPECT_EQ(support_overlap(a, b, Eigen::Vector3d::Zero(), kTrackedCell), 0);
+  EXPECT_EQ(support_overlap(a, b, {1, 0, 0}, kTrackedCell), 1);
 }
 
 TEST(Tracking, NothingGivesNothingAndDisorderIsAnError) {
-  EXPECT_TRUE(track_regions({}, {}, kCell, {}).tracks.empty());
-  EXPECT_TRUE(track_regions({}, times(3), kCell, {}).tracks.empty());
-  EXPECT_THROW(track_regions({wave(1, 0, 0), wave(0, 0, 0)}, times(2), kCell, {}), Error);
-  EXPECT_THROW(track_regions({wave(2, 0, 0)}, times(2), kCell, {}), Error);
+  EXPECT_TRUE(track_regions({}, {}, kTrackedCell, {}).tracks.empty());
+  EXPECT_TRUE(track_regions({}, times(3), kTrackedCell, {}).tracks.empty());
+  EXPECT_THROW(track_regions({wave(1, 0, 0), wave(0, 0, 0)}, times(2), kTrackedCell, {}), Error);
+  EXPECT_THROW(track_regions({wave(2, 0, 0)}, times(2), kTrackedCell, {}), Error);
 }
 
 }  // namespace

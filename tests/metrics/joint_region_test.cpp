@@ -13,7 +13,7 @@
 namespace geoprior {
 namespace {
 
-const Eigen::Vector3d kFlexion(0, 1, 0);
+const Eigen::Vector3d kBendingAxis(0, 1, 0);
 
 /// Euler characteristic of the region's triangles: 2 for a closed sphere, less one a border loop.
 int euler_characteristic(const JointRegion& region, const Eigen::MatrixX3i& F) {
@@ -28,7 +28,7 @@ int euler_characteristic(const JointRegion& region, const Eigen::MatrixX3i& F) {
 TEST(JointRegion, OfACylinderIsATubeOfTwoRadiiEachWay) {
   CylinderOptions options;
   const RiggedMesh rig = two_bone_cylinder(options);
-  const JointRegion region = make_joint_region(rig, "joint", {1}, {kFlexion});
+  const JointRegion region = make_joint_region(rig, "joint", {1}, {kBendingAxis});
   const JointRegion::Hinge& hinge = region.hinges.front();
   EXPECT_NEAR(hinge.radius, options.radius, 1e-12);
   EXPECT_TRUE(hinge.distal.isApprox(Eigen::Vector3d::UnitX()));
@@ -49,7 +49,7 @@ TEST(JointRegion, OfACylinderIsATubeOfTwoRadiiEachWay) {
 
 TEST(JointRegion, LoopsRunAlongBoundaryEdgesOfTheRegion) {
   const RiggedMesh rig = two_bone_cylinder();
-  const JointRegion region = make_joint_region(rig, "joint", {1}, {kFlexion}, 1.5);
+  const JointRegion region = make_joint_region(rig, "joint", {1}, {kBendingAxis}, 1.5);
   std::multiset<std::pair<int, int>> directed;
   for (const int t : region.triangles) {
     for (int k = 0; k < 3; ++k) directed.emplace(rig.mesh.F(t, k), rig.mesh.F(t, (k + 1) % 3));
@@ -70,7 +70,7 @@ TEST(JointRegion, LoopsRunAlongBoundaryEdgesOfTheRegion) {
 TEST(JointRegion, OfAWholeFingerIsOneTube) {
   const RiggedMesh rig = capsule_finger();
   const JointRegion region =
-      make_joint_region(rig, "finger", {1, 2, 3}, {kFlexion, kFlexion, kFlexion});
+      make_joint_region(rig, "finger", {1, 2, 3}, {kBendingAxis, kBendingAxis, kBendingAxis});
   EXPECT_EQ(region.hinges.size(), 3u);
   // Closed at the tip when two radii of the last joint reach it: one or two border loops.
   EXPECT_EQ(euler_characteristic(region, rig.mesh.F),
@@ -111,8 +111,8 @@ TEST(JointRegion, KeepsOffTheNeighbouringLimb) {
       two.weights.coeffRef(n + v, j == 0 ? 0 : 2) = w;
     }
   }
-  const JointRegion alone = make_joint_region(one, "joint", {1}, {kFlexion});
-  const JointRegion beside = make_joint_region(two, "joint", {1}, {kFlexion});
+  const JointRegion alone = make_joint_region(one, "joint", {1}, {kBendingAxis});
+  const JointRegion beside = make_joint_region(two, "joint", {1}, {kBendingAxis});
   EXPECT_EQ(alone.triangles, beside.triangles);
   EXPECT_EQ(alone.border_loops, beside.border_loops);
 }
@@ -120,7 +120,7 @@ TEST(JointRegion, KeepsOffTheNeighbouringLimb) {
 TEST(JointRegion, GrowsWithTheExtent) {
   const RiggedMesh rig = two_bone_cylinder();
   const auto count = [&](double extent) {
-    return make_joint_region(rig, "joint", {1}, {kFlexion}, extent).triangles.size();
+    return make_joint_region(rig, "joint", {1}, {kBendingAxis}, extent).triangles.size();
   };
   EXPECT_LT(count(1), count(2));
   EXPECT_LT(count(2), count(3));
@@ -133,7 +133,7 @@ TEST(JointRegion, RigidWeightsStillGiveTheRadius) {
     rig.weights.coeffRef(v, 0) = upper ? 0 : 1;
     rig.weights.coeffRef(v, 1) = upper ? 1 : 0;
   }
-  const JointRegion region = make_joint_region(rig, "joint", {1}, {kFlexion});
+  const JointRegion region = make_joint_region(rig, "joint", {1}, {kBendingAxis});
   EXPECT_NEAR(region.hinges.front().radius, 0.1, 1e-12);
 }
 
@@ -148,12 +148,12 @@ TEST(JointRegion, ChainCoordinateIsSignedAlongTheBones) {
 
 TEST(JointRegion, NamesWhatIsWrong) {
   const RiggedMesh rig = two_bone_cylinder();
-  EXPECT_THROW(make_joint_region(rig, "root", {0}, {kFlexion}), Error);
+  EXPECT_THROW(make_joint_region(rig, "root", {0}, {kBendingAxis}), Error);
   EXPECT_THROW(make_joint_region(rig, "none", {}, {}), Error);
   EXPECT_THROW(make_joint_region(rig, "axes", {1}, {}), Error);
-  EXPECT_THROW(make_joint_region(rig, "index", {7}, {kFlexion}), Error);
+  EXPECT_THROW(make_joint_region(rig, "index", {7}, {kBendingAxis}), Error);
   try {
-    make_joint_region(rig, "root", {0}, {kFlexion});
+    make_joint_region(rig, "root", {0}, {kBendingAxis});
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("'lower'"), std::string::npos);
   }

@@ -12,21 +12,11 @@
 #include "models/paper/pattern_locator.h"
 #include "models/paper/transfer.h"
 #include "tests/paper/plane_shapes.h"
+#include "tests/paper/recording.h"
 #include "tests/paper/sheets.h"
 
 namespace geoprior::paper {
 namespace {
-
-class Recording final : public FrameSink {
- public:
-  void frame(Frame frame) override { frames.push_back(std::move(frame)); }
-  void event(const Event& /*event*/) override {}
-  void artifact(Artifact /*artifact*/) override {}
-  void checkpoint(const State& state) override { checkpoints.push_back(state); }
-
-  std::vector<Frame> frames;
-  std::vector<State> checkpoints;
-};
 
 Recording run(const Sheet& sheet, const AdaptiveOptions& options,
               const std::optional<State>& from = {}) {
@@ -80,12 +70,12 @@ TEST(AdaptiveSheet, CoversThePatternAndKeepsTheHandlesInEveryFrame) {
     ASSERT_EQ(recording.frames.size(), static_cast<std::size_t>(sheet.frame_count()));
     for (const Frame& frame : recording.frames) {
       const ShellMesh mesh = mesh_of(frame);
-      EXPECT_NEAR(test::total_area(mesh), 0.04, 1e-14);
-      EXPECT_GT(test::least_area(mesh), 0);
-      EXPECT_EQ(test::euler_characteristic(mesh), 1);
+      EXPECT_NEAR(plane_shapes::total_area(mesh), 0.04, 1e-14);
+      EXPECT_GT(plane_shapes::least_area(mesh), 0);
+      EXPECT_EQ(plane_shapes::euler_characteristic(mesh), 1);
       EXPECT_TRUE(frame.require_part("surface").points.allFinite());
       for (const Handle& handle : sheet.handles) {
-        EXPECT_LT(test::distance_to_vertices(mesh, handle.points[0]), 1e-12);
+        EXPECT_LT(plane_shapes::distance_to_vertices(mesh, handle.points[0]), 1e-12);
       }
     }
   }
@@ -135,7 +125,7 @@ double pop(const Sheet& sheet, const ShellState& before, const ShellState& after
     Eigen::VectorXd area = Eigen::VectorXd::Zero(state.mesh.vertex_count());
     for (int f = 0; f < state.mesh.triangle_count(); ++f) {
       for (int k = 0; k < 3; ++k) {
-        area[state.mesh.triangles(f, k)] += test::twice_area(state.mesh, f) / 6;
+        area[state.mesh.triangles(f, k)] += plane_shapes::twice_area(state.mesh, f) / 6;
       }
     }
     return stepper.elastic_forces(state).array().colwise() / area.array();

@@ -13,27 +13,18 @@
 #include "baselines/paper/sizing.h"
 #include "core/random.h"
 #include "models/paper/uniform_mesh.h"
+#include "tests/paper/meshes.h"
 #include "tests/paper/plane_shapes.h"
 
 namespace geoprior::paper {
 namespace {
 
+using meshes::flat_state;
+
 Sheet sheet_of(const Pattern& pattern) {
   Sheet sheet;
   sheet.pattern = pattern;
   return sheet;
-}
-
-ShellState flat_state(ShellMesh mesh) {
-  ShellState state;
-  state.mesh = std::move(mesh);
-  const int n = state.mesh.vertex_count(), m = state.mesh.triangle_count();
-  state.x = Eigen::MatrixX3d::Zero(n, 3);
-  state.x.leftCols<2>() = state.mesh.pattern;
-  state.v = Eigen::MatrixX3d::Zero(n, 3);
-  state.plastic_curvature = Eigen::MatrixX3d::Zero(m, 3);
-  state.damage = Eigen::VectorXd::Zero(m);
-  return state;
 }
 
 /// Rolls the pattern onto a cylinder of this radius, its axis turned by `angle` from v towards -u.
@@ -57,7 +48,7 @@ void remesh_on_cylinder(const Sheet& sheet, const SizingOptions& options, double
 }
 
 std::vector<Eigen::Vector2d> interior_edges(const ShellMesh& mesh) {
-  const auto directed = test::directed_edges(mesh);
+  const auto directed = plane_shapes::directed_edges(mesh);
   std::vector<Eigen::Vector2d> edges;
   for (const auto& [edge, count] : directed) {
     if (edge.first > edge.second || !directed.contains({edge.second, edge.first})) continue;
@@ -68,15 +59,15 @@ std::vector<Eigen::Vector2d> interior_edges(const ShellMesh& mesh) {
 
 void expect_sound(const ShellMesh& mesh, const Pattern& pattern) {
   const double area = signed_area(pattern);
-  EXPECT_NEAR(test::total_area(mesh), area, 1e-12 * area);
-  EXPECT_GT(test::least_area(mesh), 0);
-  EXPECT_EQ(test::euler_characteristic(mesh), 1);
-  for (const auto& [edge, count] : test::directed_edges(mesh)) EXPECT_EQ(count, 1);
-  for (const auto& [a, b] : test::border_edges(mesh)) {
+  EXPECT_NEAR(plane_shapes::total_area(mesh), area, 1e-12 * area);
+  EXPECT_GT(plane_shapes::least_area(mesh), 0);
+  EXPECT_EQ(plane_shapes::euler_characteristic(mesh), 1);
+  for (const auto& [edge, count] : plane_shapes::directed_edges(mesh)) EXPECT_EQ(count, 1);
+  for (const auto& [a, b] : plane_shapes::border_edges(mesh)) {
     EXPECT_LT(nearest_on_border(pattern, mesh.pattern.row(a)).distance, 1e-15);
   }
   for (const Eigen::Vector2d& corner : pattern.border) {
-    EXPECT_EQ(test::distance_to_vertices(mesh, corner), 0);
+    EXPECT_EQ(plane_shapes::distance_to_vertices(mesh, corner), 0);
   }
 }
 
@@ -171,7 +162,7 @@ TEST(Sizing, FollowsCompressionVelocityAndObstacles) {
 
 TEST(EditableSheet, SurvivesRandomOperations) {
   for (const Pattern& pattern :
-       {rectangle_pattern(0.2, 0.3), disc_pattern(0.1, 24), test::ell_pattern()}) {
+       {rectangle_pattern(0.2, 0.3), disc_pattern(0.1, 24), plane_shapes::ell_pattern()}) {
     ShellState state = flat_state(uniform_mesh(pattern, 60, UniformLayout::delaunay, {}, 1));
     RandomStream random(3, "operations");
     for (int f = 0; f < state.mesh.triangle_count(); ++f) {
@@ -181,7 +172,7 @@ TEST(EditableSheet, SurvivesRandomOperations) {
     const auto integral = [](const ShellState& s) {
       Eigen::Vector4d sum = Eigen::Vector4d::Zero();
       for (int f = 0; f < s.mesh.triangle_count(); ++f) {
-        const double area = test::twice_area(s.mesh, f) / 2;
+        const double area = plane_shapes::twice_area(s.mesh, f) / 2;
         sum.head<3>() += area * s.plastic_curvature.row(f).transpose();
         sum[3] += area * s.damage[f];
       }
@@ -233,7 +224,7 @@ TEST(EditableSheet, SurvivesRandomOperations) {
 
 TEST(Remesh, CoarsensAFlatSheetToTheLargestSize) {
   for (const Pattern& pattern :
-       {rectangle_pattern(1, 0.7), disc_pattern(0.5, 24), test::ell_pattern()}) {
+       {rectangle_pattern(1, 0.7), disc_pattern(0.5, 24), plane_shapes::ell_pattern()}) {
     const Sheet sheet = sheet_of(pattern);
     SizingOptions options;
     options.size_max = 0.25 * width(pattern);
@@ -316,12 +307,12 @@ TEST(Remesh, KeepsHandles) {
     expect_sound(state.mesh, sheet.pattern);
     for (const Handle& handle : sheet.handles) {
       for (const Eigen::Vector2d& p : handle.anchors()) {
-        EXPECT_LT(test::distance_to_vertices(state.mesh, p), 1e-12);
+        EXPECT_LT(plane_shapes::distance_to_vertices(state.mesh, p), 1e-12);
       }
     }
     // The edges on the segment add up to its length.
     double length = 0;
-    for (const auto& [edge, count] : test::directed_edges(state.mesh)) {
+    for (const auto& [edge, count] : plane_shapes::directed_edges(state.mesh)) {
       const Eigen::Vector2d a = state.mesh.pattern.row(edge.first),
                             b = state.mesh.pattern.row(edge.second);
       if (edge.first < edge.second && sheet.handles[1].covers(a) && sheet.handles[1].covers(b)) {
@@ -353,7 +344,7 @@ TEST(Remesh, NeverFlipsAcrossAFold) {
   remesh(sheet, sizes, state);
   for (const Eigen::Vector2d& e : interior_edges(state.mesh)) EXPECT_TRUE(e.allFinite());
   double across = 0;
-  for (const auto& [edge, count] : test::directed_edges(state.mesh)) {
+  for (const auto& [edge, count] : plane_shapes::directed_edges(state.mesh)) {
     const double u = state.mesh.pattern(edge.first, 0), w = state.mesh.pattern(edge.second, 0);
     if (u < -1e-12 && w > 1e-12) ++across;
   }

@@ -19,7 +19,7 @@ constexpr double kLargest = 1e-2;
 
 /// Height of the middle of a thin strip, ends hinged, over its length, when they have approached by
 /// `shortening` of it: Euler's elastica, w = k / K(k) with 2 - 2 E(k) / K(k) = shortening.
-double elastica_height(double shortening) {
+double relative_elastica_height(double shortening) {
   // Complete elliptic integrals by the arithmetic-geometric mean.
   const auto integrals = [](double k) {
     double a = 1, b = std::sqrt(1 - k * k), c = k, sum = k * k / 2;
@@ -57,7 +57,7 @@ TEST(HybridBend, MakesACylinderOfTheHeightOfTheElastica) {
   });
   const double height = end.x.col(2).cwiseAbs().maxCoeff();
   // 2 % of the width, the bound for smooth scenes.
-  EXPECT_NEAR(height, 0.2 * elastica_height(0.4), 0.02 * 0.2);
+  EXPECT_NEAR(height, 0.2 * relative_elastica_height(0.4), 0.02 * 0.2);
 }
 
 TEST(HybridPinch, PutsASingularPointWithConesWhereTheEdgeIsPinched) {

@@ -10,9 +10,9 @@
 namespace geoprior::paper {
 namespace {
 
-using Kind = Obstacle::Kind;
+using ObstacleKind = Obstacle::Kind;
 
-Obstacle obstacle(Kind kind) {
+Obstacle obstacle(ObstacleKind kind) {
   Obstacle o;
   o.kind = kind;
   o.centre = {0.1, -0.2, 0.3};
@@ -22,19 +22,22 @@ Obstacle obstacle(Kind kind) {
   return o;
 }
 
-const std::vector<Kind> kKinds{Kind::plane, Kind::sphere, Kind::cylinder, Kind::hollow_sphere,
-                               Kind::torus};
+const std::vector<ObstacleKind> kKinds{ObstacleKind::plane, ObstacleKind::sphere,
+                                       ObstacleKind::cylinder, ObstacleKind::hollow_sphere,
+                                       ObstacleKind::torus};
 
 TEST(Obstacle, DistancesAreThoseOfElementaryGeometry) {
-  const Eigen::Vector3d c = obstacle(Kind::plane).centre, axis = obstacle(Kind::plane).axis;
+  const Eigen::Vector3d c = obstacle(ObstacleKind::plane).centre,
+                        axis = obstacle(ObstacleKind::plane).axis;
   const Eigen::Vector3d across = axis.unitOrthogonal();
   const Eigen::Vector3d x = c + 0.3 * axis + 0.4 * across;
-  EXPECT_NEAR(obstacle(Kind::plane).contact(x, 0).distance, 0.3, 1e-15);
-  EXPECT_NEAR(obstacle(Kind::sphere).contact(x, 0).distance, 0.5 - 0.1, 1e-15);
-  EXPECT_NEAR(obstacle(Kind::hollow_sphere).contact(x, 0).distance, 0.1 - 0.5, 1e-15);
-  EXPECT_NEAR(obstacle(Kind::cylinder).contact(x, 0).distance, 0.3, 1e-15);
-  EXPECT_NEAR(obstacle(Kind::torus).contact(x, 0).distance, std::hypot(0.3, 0.3) - 0.02, 1e-15);
-  Obstacle capped = obstacle(Kind::cylinder);
+  EXPECT_NEAR(obstacle(ObstacleKind::plane).contact(x, 0).distance, 0.3, 1e-15);
+  EXPECT_NEAR(obstacle(ObstacleKind::sphere).contact(x, 0).distance, 0.5 - 0.1, 1e-15);
+  EXPECT_NEAR(obstacle(ObstacleKind::hollow_sphere).contact(x, 0).distance, 0.1 - 0.5, 1e-15);
+  EXPECT_NEAR(obstacle(ObstacleKind::cylinder).contact(x, 0).distance, 0.3, 1e-15);
+  EXPECT_NEAR(obstacle(ObstacleKind::torus).contact(x, 0).distance, std::hypot(0.3, 0.3) - 0.02,
+              1e-15);
+  Obstacle capped = obstacle(ObstacleKind::cylinder);
   capped.half_length = 0.2;
   EXPECT_NEAR(capped.contact(x, 0).distance, std::hypot(0.3, 0.1), 1e-15);
   EXPECT_NEAR(capped.contact(c + 0.19 * axis, 0).distance, -0.01, 1e-15);
@@ -45,9 +48,9 @@ TEST(Obstacle, DistancesAreThoseOfElementaryGeometry) {
 // Central differences at random points; 1e-7 is their truncation and round-off for h = 1e-6.
 TEST(Obstacle, NormalIsTheGradientOfTheDistance) {
   RandomStream random(3, "obstacle points");
-  for (const Kind kind : kKinds) {
+  for (const ObstacleKind kind : kKinds) {
     Obstacle o = obstacle(kind);
-    if (kind == Kind::cylinder) o.half_length = 0.15;
+    if (kind == ObstacleKind::cylinder) o.half_length = 0.15;
     for (int i = 0; i < 50; ++i) {
       const Eigen::Vector3d x =
           o.centre + 0.3 * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
@@ -64,7 +67,7 @@ TEST(Obstacle, NormalIsTheGradientOfTheDistance) {
 
 // A sphere that moves 0.4 m in 2 s from rest to rest is fastest, 1.5 * 0.2 m/s, in the middle.
 TEST(Obstacle, SurfaceMovesWithTheBody) {
-  Obstacle o = obstacle(Kind::sphere);
+  Obstacle o = obstacle(ObstacleKind::sphere);
   const Eigen::Quaterniond none = Eigen::Quaterniond::Identity();
   o.motion = Trajectory{{Keyframe{0, {0, 0, 0}, none}, Keyframe{2, {0.4, 0, 0}, none}}};
   const Eigen::Vector3d middle = o.centre + Eigen::Vector3d(0.2, 0, 0);
@@ -75,7 +78,7 @@ TEST(Obstacle, SurfaceMovesWithTheBody) {
 
 // Half a turn in 2 s: 1.5 * pi / 2 rad/s in the middle; speed at the rim is that times the radius.
 TEST(Obstacle, SpinningCylinderDragsItsSurface) {
-  Obstacle o = obstacle(Kind::cylinder);
+  Obstacle o = obstacle(ObstacleKind::cylinder);
   const auto turned = [&](double angle) {
     return Eigen::Quaterniond(Eigen::AngleAxisd(angle, o.axis));
   };
@@ -88,7 +91,7 @@ TEST(Obstacle, SpinningCylinderDragsItsSurface) {
 }
 
 TEST(Obstacle, ShrinkingSphereClosesInFromOutside) {
-  Obstacle o = obstacle(Kind::hollow_sphere);
+  Obstacle o = obstacle(ObstacleKind::hollow_sphere);
   o.radii = {{1, 0.2}, {3, 0.1}};
   const Eigen::Vector3d x = o.centre + Eigen::Vector3d(0.05, 0, 0);
   EXPECT_NEAR(o.contact(x, 0).distance, 0.15, 1e-15);
@@ -105,9 +108,9 @@ TEST(ObstaclePart, HasItsVerticesOnTheSurface) {
   Sheet sheet;
   sheet.pattern = rectangle_pattern(0.2, 0.2);
   EXPECT_FALSE(obstacle_part(sheet, 0).has_value());
-  for (const Kind kind : kKinds) {
+  for (const ObstacleKind kind : kKinds) {
     sheet.obstacles = {obstacle(kind)};
-    sheet.obstacles[0].half_length = kind == Kind::cylinder ? 0.15 : 0;
+    sheet.obstacles[0].half_length = kind == ObstacleKind::cylinder ? 0.15 : 0;
     const Part part = obstacle_part(sheet, 0).value();
     ASSERT_GT(part.triangles.rows(), 0);
     for (Eigen::Index i = 0; i < part.points.rows(); ++i) {

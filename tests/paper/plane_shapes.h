@@ -11,7 +11,7 @@
 #include "models/paper/pattern.h"
 #include "models/paper/shell_state.h"
 
-namespace geoprior::paper::test {
+namespace geoprior::paper::plane_shapes {
 
 /// An L of two squares of 0.1 m and one between: a pattern with an inward corner.
 inline Pattern ell_pattern() {
@@ -70,4 +70,4 @@ inline double distance_to_vertices(const ShellMesh& mesh, const Eigen::Vector2d&
   return (mesh.pattern.rowwise() - p.transpose()).rowwise().norm().minCoeff();
 }
 
-}  // namespace geoprior::paper::test
+}  // namespace geoprior::paper::plane_shapes

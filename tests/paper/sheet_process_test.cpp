@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "models/paper/transfer.h"
 #include "models/paper/uniform_mesh.h"
+#include "tests/paper/recording.h"
 
 namespace geoprior::paper {
 namespace {
@@ -18,17 +19,6 @@ namespace {
 using ::testing::HasSubstr;
 
 /// Keeps all that a process pushes.
-class Recording final : public FrameSink {
- public:
-  void frame(Frame frame) override { frames.push_back(std::move(frame)); }
-  void event(const Event& /*event*/) override {}
-  void artifact(Artifact /*artifact*/) override {}
-  void checkpoint(const State& state) override { checkpoints.push_back(state); }
-
-  std::vector<Frame> frames;
-  std::vector<State> checkpoints;
-};
-
 /// Wishes to stop once so many frames are done.
 class StoppingContext final : public RunContext {
  public:

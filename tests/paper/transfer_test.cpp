@@ -48,7 +48,7 @@ ShellState sample_state(const Pattern& pattern, int triangles) {
 Eigen::Vector4d crease_integrals(const ShellState& state) {
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
   for (int f = 0; f < state.mesh.triangle_count(); ++f) {
-    const double area = test::twice_area(state.mesh, f) / 2;
+    const double area = plane_shapes::twice_area(state.mesh, f) / 2;
     sum.head<3>() += area * state.plastic_curvature.row(f).transpose();
     sum[3] += area * state.damage[f];
   }
@@ -56,7 +56,7 @@ Eigen::Vector4d crease_integrals(const ShellState& state) {
 }
 
 TEST(TransferState, ReproducesLinearFields) {
-  for (const Pattern& pattern : {rectangle_pattern(0.2, 0.3), test::ell_pattern()}) {
+  for (const Pattern& pattern : {rectangle_pattern(0.2, 0.3), plane_shapes::ell_pattern()}) {
     const ShellState from = sample_state(pattern, 150);
     const ShellMesh mesh = uniform_mesh(pattern, 260, UniformLayout::equilateral, {}, 1);
     const ShellState to = transfer_state(from, mesh);
@@ -73,7 +73,7 @@ TEST(TransferState, ReproducesLinearFields) {
 }
 
 TEST(TransferState, ConservesTheIntegralOfTheCreases) {
-  for (const Pattern& pattern : {rectangle_pattern(0.2, 0.3), test::ell_pattern()}) {
+  for (const Pattern& pattern : {rectangle_pattern(0.2, 0.3), plane_shapes::ell_pattern()}) {
     const ShellState from = sample_state(pattern, 150);
     const ShellState to =
         transfer_state(from, uniform_mesh(pattern, 260, UniformLayout::equilateral, {}, 1));
@@ -109,7 +109,8 @@ TEST(TransferState, RefusesAVertexOutside) {
 }
 
 TEST(PatternLocator, FindsTheTriangleOfEveryPoint) {
-  const ShellMesh mesh = uniform_mesh(test::ell_pattern(), 300, UniformLayout::delaunay, {}, 1);
+  const ShellMesh mesh =
+      uniform_mesh(plane_shapes::ell_pattern(), 300, UniformLayout::delaunay, {}, 1);
   const PatternLocator locator(mesh);
   RandomStream random(2, "points");
   for (int i = 0; i < 2000; ++i) {
@@ -120,8 +121,8 @@ TEST(PatternLocator, FindsTheTriangleOfEveryPoint) {
       EXPECT_GE(place.weights[k], 0);
       q += place.weights[k] * mesh.pattern.row(mesh.triangles(place.triangle, k)).transpose();
     }
-    const bool inside = contains(test::ell_pattern(), p);
-    const double expected = inside ? 0 : nearest_on_border(test::ell_pattern(), p).distance;
+    const bool inside = contains(plane_shapes::ell_pattern(), p);
+    const double expected = inside ? 0 : nearest_on_border(plane_shapes::ell_pattern(), p).distance;
     EXPECT_NEAR((p - q).norm(), expected, 1e-12);
   }
 }

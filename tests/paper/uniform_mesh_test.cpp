@@ -32,9 +32,9 @@ std::vector<Case> cases() {
           {"DelaunayRectangle", sheet, UniformLayout::delaunay},
           {"EquilateralDisc", disc_pattern(0.1, 40), UniformLayout::equilateral},
           {"DelaunayDisc", disc_pattern(0.1, 40), UniformLayout::delaunay},
-          {"AutomaticEll", test::ell_pattern(), UniformLayout::automatic},
-          {"EquilateralEll", test::ell_pattern(), UniformLayout::equilateral},
-          {"DelaunayEll", test::ell_pattern(), UniformLayout::delaunay}};
+          {"AutomaticEll", plane_shapes::ell_pattern(), UniformLayout::automatic},
+          {"EquilateralEll", plane_shapes::ell_pattern(), UniformLayout::equilateral},
+          {"DelaunayEll", plane_shapes::ell_pattern(), UniformLayout::delaunay}};
 }
 
 /// Points inside, on an edge and at a corner of a pattern.
@@ -52,15 +52,15 @@ std::vector<Eigen::Vector2d> some_anchors(const Pattern& pattern) {
 
 void expect_covers(const ShellMesh& mesh, const Pattern& pattern) {
   const double area = signed_area(pattern);
-  EXPECT_NEAR(test::total_area(mesh), area, 1e-12 * area);
-  EXPECT_GT(test::least_area(mesh), 0);
-  EXPECT_EQ(test::euler_characteristic(mesh), 1);
-  for (const auto& [edge, count] : test::directed_edges(mesh)) EXPECT_EQ(count, 1);
-  for (const auto& [a, b] : test::border_edges(mesh)) {
+  EXPECT_NEAR(plane_shapes::total_area(mesh), area, 1e-12 * area);
+  EXPECT_GT(plane_shapes::least_area(mesh), 0);
+  EXPECT_EQ(plane_shapes::euler_characteristic(mesh), 1);
+  for (const auto& [edge, count] : plane_shapes::directed_edges(mesh)) EXPECT_EQ(count, 1);
+  for (const auto& [a, b] : plane_shapes::border_edges(mesh)) {
     EXPECT_LT(nearest_on_border(pattern, mesh.pattern.row(a)).distance, 1e-15);
   }
   for (const Eigen::Vector2d& corner : pattern.border) {
-    EXPECT_EQ(test::distance_to_vertices(mesh, corner), 0);
+    EXPECT_EQ(plane_shapes::distance_to_vertices(mesh, corner), 0);
   }
 }
 
@@ -87,7 +87,8 @@ TEST_P(UniformMesh, HasAVertexAtEveryAnchor) {
     const ShellMesh mesh =
         uniform_mesh(GetParam().pattern, triangles, GetParam().layout, anchors, 1);
     expect_covers(mesh, GetParam().pattern);
-    for (const Eigen::Vector2d& p : anchors) EXPECT_LT(test::distance_to_vertices(mesh, p), 1e-12);
+    for (const Eigen::Vector2d& p : anchors)
+      EXPECT_LT(plane_shapes::distance_to_vertices(mesh, p), 1e-12);
   }
 }
 
@@ -102,7 +103,7 @@ TEST_P(UniformMesh, TrianglesHaveAGoodShape) {
                 mesh.pattern.row(mesh.triangles(f, (k + 1) % 3)))
                    .squaredNorm();
     }
-    worst = std::min(worst, 2 * std::sqrt(3.0) * test::twice_area(mesh, f) / edges);
+    worst = std::min(worst, 2 * std::sqrt(3.0) * plane_shapes::twice_area(mesh, f) / edges);
   }
   EXPECT_GT(worst, 0.3);
 }
@@ -141,7 +142,7 @@ TEST(AutomaticMesh, IsStructuredOnAnUprightRectangleOnly) {
   EXPECT_EQ(DenseOptions{}.layout, UniformLayout::automatic);
   EXPECT_TRUE(same(rectangle_pattern(0.3, 0.2), UniformLayout::structured));
   EXPECT_TRUE(same(disc_pattern(0.1, 40), UniformLayout::equilateral));
-  EXPECT_TRUE(same(test::ell_pattern(), UniformLayout::equilateral));
+  EXPECT_TRUE(same(plane_shapes::ell_pattern(), UniformLayout::equilateral));
 }
 
 TEST(UniformMeshErrors, NameAnAnchorOutside) {

@@ -38,7 +38,7 @@ Frame Time: 0.5
 1 2 3  90 0 0  0 90 0
 )";
 
-std::string error_of(const std::string& text) {
+std::string bvh_error(const std::string& text) {
   try {
     parse_bvh(text, "test.bvh");
   } catch (const Error& e) {
@@ -128,23 +128,23 @@ TEST(Bvh, UnknownJointsOfTheMotionAreNamed) {
 }
 
 TEST(Bvh, MistakesNameTheLine) {
-  EXPECT_THAT(error_of(replaced(kLeg, "OFFSET 0 10 0", "OFFSET 0 ten 0")),
+  EXPECT_THAT(bvh_error(replaced(kLeg, "OFFSET 0 10 0", "OFFSET 0 ten 0")),
               HasSubstr("test.bvh:4: 'ten' is no number"));
-  EXPECT_THAT(error_of(replaced(kLeg, "Xrotation Zrotation", "Xrotation Wrotation")),
+  EXPECT_THAT(bvh_error(replaced(kLeg, "Xrotation Zrotation", "Xrotation Wrotation")),
               HasSubstr("test.bvh:9: channel 'Wrotation'"));
-  EXPECT_THAT(error_of(replaced(kLeg, "CHANNELS 3", "CHANNELS 7")), HasSubstr("test.bvh:9"));
-  EXPECT_THAT(error_of(replaced(kLeg, "End Site", "Site")), HasSubstr("test.bvh:10"));
-  EXPECT_THAT(error_of(replaced(kLeg, "0 90 0\n", "0 90\n")), HasSubstr("the file ends"));
-  EXPECT_THAT(error_of(replaced(kLeg, "0 90 0\n", "0 90 0 7\n")), HasSubstr("more numbers"));
-  EXPECT_THAT(error_of(replaced(kLeg, "0 90 0\n", "0 nan 0\n")), HasSubstr("'nan'"));
-  EXPECT_THAT(error_of(replaced(kLeg, "Time: 0.5", "Time: 0")), HasSubstr("frame time"));
-  EXPECT_THAT(error_of(kLeg.substr(0, kLeg.find("MOTION"))), HasSubstr("the file ends"));
-  EXPECT_THAT(error_of(""), HasSubstr("HIERARCHY"));
+  EXPECT_THAT(bvh_error(replaced(kLeg, "CHANNELS 3", "CHANNELS 7")), HasSubstr("test.bvh:9"));
+  EXPECT_THAT(bvh_error(replaced(kLeg, "End Site", "Site")), HasSubstr("test.bvh:10"));
+  EXPECT_THAT(bvh_error(replaced(kLeg, "0 90 0\n", "0 90\n")), HasSubstr("the file ends"));
+  EXPECT_THAT(bvh_error(replaced(kLeg, "0 90 0\n", "0 90 0 7\n")), HasSubstr("more numbers"));
+  EXPECT_THAT(bvh_error(replaced(kLeg, "0 90 0\n", "0 nan 0\n")), HasSubstr("'nan'"));
+  EXPECT_THAT(bvh_error(replaced(kLeg, "Time: 0.5", "Time: 0")), HasSubstr("frame time"));
+  EXPECT_THAT(bvh_error(kLeg.substr(0, kLeg.find("MOTION"))), HasSubstr("the file ends"));
+  EXPECT_THAT(bvh_error(""), HasSubstr("HIERARCHY"));
 }
 
 TEST(Bvh, CountsBeyondTheFileAllocateNothing) {
-  EXPECT_THAT(error_of(replaced(kLeg, "Frames: 2", "Frames: 99999999")), HasSubstr("too short"));
-  EXPECT_THAT(error_of(replaced(kLeg, "Frames: 2", "Frames: 1e30")), HasSubstr("out of range"));
+  EXPECT_THAT(bvh_error(replaced(kLeg, "Frames: 2", "Frames: 99999999")), HasSubstr("too short"));
+  EXPECT_THAT(bvh_error(replaced(kLeg, "Frames: 2", "Frames: 1e30")), HasSubstr("out of range"));
 }
 
 TEST(Bvh, CapturedClipDrivesTheBody) {

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string error_of(const std::string& text) {
+std::string skeleton_error(const std::string& text) {
   try {
     parse_skeleton(text, "test.toml");
   } catch (const Error& e) {
@@ -63,27 +63,29 @@ TEST(SkeletonFile, ParentsComeFirstInWhateverOrderTheyStand) {
 }
 
 TEST(SkeletonFile, MistakesNameFileLineAndWhatIsAllowed) {
-  EXPECT_THAT(error_of("[joint.a]\nhead = [0, 0, 0]\nlength = 3\n"),
+  EXPECT_THAT(skeleton_error("[joint.a]\nhead = [0, 0, 0]\nlength = 3\n"),
               testing::AllOf(HasSubstr("test.toml:3"), HasSubstr("'length'"), HasSubstr("tail")));
-  EXPECT_THAT(error_of("[bone.a]\nhead = [0, 0, 0]\n"), HasSubstr("test.toml:1"));
-  EXPECT_THAT(error_of("[joint.a]\nhead = [0, 0]\n"), HasSubstr("test.toml:2: 'head'"));
-  EXPECT_THAT(error_of("[joint.a]\nhead = [0, 0, nan]\n"), HasSubstr("test.toml:2: 'head'"));
-  EXPECT_THAT(error_of("[joint.a]\ntail = [0, 0, 1]\n"), HasSubstr("has no 'head'"));
-  EXPECT_THAT(error_of("[joint.a]\nhead = [0, 0, 0]\ntail = [0, 0, 0]\n"), HasSubstr("coincide"));
-  EXPECT_THAT(error_of("[joint.a]\nhead = [0, 0, 0]\naxes = { flexion = \"x\" }\n"),
+  EXPECT_THAT(skeleton_error("[bone.a]\nhead = [0, 0, 0]\n"), HasSubstr("test.toml:1"));
+  EXPECT_THAT(skeleton_error("[joint.a]\nhead = [0, 0]\n"), HasSubstr("test.toml:2: 'head'"));
+  EXPECT_THAT(skeleton_error("[joint.a]\nhead = [0, 0, nan]\n"), HasSubstr("test.toml:2: 'head'"));
+  EXPECT_THAT(skeleton_error("[joint.a]\ntail = [0, 0, 1]\n"), HasSubstr("has no 'head'"));
+  EXPECT_THAT(skeleton_error("[joint.a]\nhead = [0, 0, 0]\ntail = [0, 0, 0]\n"),
+              HasSubstr("coincide"));
+  EXPECT_THAT(skeleton_error("[joint.a]\nhead = [0, 0, 0]\naxes = { flexion = \"x\" }\n"),
               testing::AllOf(HasSubstr("test.toml:3"), HasSubstr("+x")));
-  EXPECT_THAT(error_of("[joint.a]\nhead = [0, 0, 0]\naxes = { flexion = [0, 0, 0] }\n"),
+  EXPECT_THAT(skeleton_error("[joint.a]\nhead = [0, 0, 0]\naxes = { flexion = [0, 0, 0] }\n"),
               HasSubstr("no direction"));
-  EXPECT_THAT(error_of("[joint.a]\nhead = [0, 0, 0]\nparent = \"b\"\n"), HasSubstr("no joint 'b'"));
-  EXPECT_THAT(error_of("[joint.a]\nhead = [0,\n"), HasSubstr("no valid TOML"));
-  EXPECT_THAT(error_of(""), HasSubstr("no joints"));
+  EXPECT_THAT(skeleton_error("[joint.a]\nhead = [0, 0, 0]\nparent = \"b\"\n"),
+              HasSubstr("no joint 'b'"));
+  EXPECT_THAT(skeleton_error("[joint.a]\nhead = [0,\n"), HasSubstr("no valid TOML"));
+  EXPECT_THAT(skeleton_error(""), HasSubstr("no joints"));
 }
 
 TEST(SkeletonFile, CyclicParentsNameTheJoint) {
-  EXPECT_THAT(error_of("[joint.a]\nhead = [0, 0, 0]\nparent = \"b\"\n"
-                       "[joint.b]\nhead = [0, 1, 0]\nparent = \"a\"\n"),
+  EXPECT_THAT(skeleton_error("[joint.a]\nhead = [0, 0, 0]\nparent = \"b\"\n"
+                             "[joint.b]\nhead = [0, 1, 0]\nparent = \"a\"\n"),
               HasSubstr("joint 'a' is its own ancestor"));
-  EXPECT_THAT(error_of("[joint.a]\nhead = [0, 0, 0]\nparent = \"a\"\n"),
+  EXPECT_THAT(skeleton_error("[joint.a]\nhead = [0, 0, 0]\nparent = \"a\"\n"),
               HasSubstr("joint 'a' is its own ancestor"));
 }
 

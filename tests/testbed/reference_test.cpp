@@ -60,8 +60,8 @@ TEST(Reference, SaysReasonCommitAndUnitOnceASetAndOtherwiseWhereTheyDiffer) {
                    blessed({{"a.max", 1}, {"a.min", 2}, {"b", 3}}), "b grew", "c2");
   reference.sets["full"]["default"]["v"]["a.min"].unit = "mm";
   write_reference(reference, file);
-  const auto json = nlohmann::json::parse(toy::Home::read(file));
-  const auto& set = json.at("full");
+  const auto stored = nlohmann::json::parse(toy::Home::read(file));
+  const auto& set = stored.at("full");
   EXPECT_EQ(set.at("reason"), "first");
   EXPECT_EQ(set.at("commit"), "c1");
   const auto& values = set.at("values").at("default").at("v");

@@ -155,8 +155,8 @@ TEST_F(SequenceFiles, SidecarSaysRateAxisScaleAndStart) {
 
 TEST_F(SequenceFiles, SidecarMistakesAreNamed) {
   write_objs("a_%04d.obj", {1, 2});
-  const auto refused = [&](const std::string& json, std::initializer_list<std::string> parts) {
-    write("a_%04d.obj.json", json);
+  const auto refused = [&](const std::string& sidecar, std::initializer_list<std::string> parts) {
+    write("a_%04d.obj.json", sidecar);
     expect_error([&] { open("a_%04d.obj"); }, parts);
   };
   refused("{\"fps\": 24}", {"a_%04d.obj.json", "\"fps\"", "frames_per_second"});
