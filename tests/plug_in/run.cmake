@@ -33,7 +33,7 @@ function(run)
   endif()
 endfunction()
 run(${CMAKE_COMMAND} -S ${tree} -B ${tree}/build -G Ninja -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=Debug
-  -DGEOPRIOR_TOPICS=sample -DGEOPRIOR_PCH=OFF -DGEOPRIOR_WERROR=ON)
+  -DGEOPRIOR_TOPICS=sample -DGEOPRIOR_PCH=OFF -DGEOPRIOR_UNITY=OFF -DGEOPRIOR_WERROR=ON)
 # Objects only: archives would ask for those of the spine.
 run(${CMAKE_COMMAND} --build ${tree}/build --target
   CMakeFiles/geoprior_sample.dir/solvers/sample/growing_square.cpp.o
