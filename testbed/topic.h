@@ -113,6 +113,10 @@ struct MetricEntry {
   /// from the disk: go through them once (FrameSequence).
   std::function<std::optional<double>(const Scene&, const FrameSequence&)> of_sequence;
   bool needs_reference = false;  ///< skipped for variants without one
+  /// An identity or a closed form: what a row says of a method is decided by its own tests, which
+  /// mutate the method.
+  bool oracle = false;
+  std::string ungated = {};  ///< why `check` does not hold the row against a reference value
   /// Parts and tables of the reference frame that are looked at: others are not read. Empty: all.
   std::vector<std::string> reference_parts = {};
 };
