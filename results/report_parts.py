@@ -7,7 +7,7 @@ import numpy as np
 import plots
 from report_html import details, escape, png_figure, svg_figure, table
 from tables import event_counts, failures, metric_rows, phase_rows, timing_rows
-from wording import display_name, interval, labelled, number, unit_symbol, with_unit
+from wording import beside, display_name, interval, labelled, number, unit_symbol, with_unit
 
 
 def meta_line(run):
@@ -35,8 +35,9 @@ def claims(run):
         badge = '<span class="badge good">✓ holds</span>' if claim.holds \
             else '<span class="badge bad">✗ falls short</span>'
         case = f' <span class="note">({escape(claim.case)})</span>' if claim.case and len(run.cases) > 1 else ""
+        notes = "".join(f'<br><span class="note">{escape(words)}</span>' for words in beside(claim))
         items.append(f"<li><div>{badge}</div><div>{escape(claim.text)}{case}<br>"
-                     f"<code>{escape(claim.detail)}</code></div></li>")
+                     f"<code>{escape(claim.detail)}</code>{notes}</div></li>")
     return (f"<h2>Claims: {held} of {len(run.claims)} hold</h2>\n"
             f'<ul class="claims">{"".join(items)}</ul>')
 

@@ -10,7 +10,7 @@ from urllib.parse import unquote
 import h5py
 import numpy as np
 
-SCHEMA_VERSION = 2  # and what came before it
+SCHEMA_VERSION = 3  # and what came before it
 
 
 class RunFileError(Exception):
@@ -76,6 +76,7 @@ class Case:
     facts: dict[str, float]
     variants: list[Variant]
     ratios: list[Ratio]
+    nulls: list[Variant]  # variants that are there to fail claims: not shown
 
     def variant(self, name):
         """The variant of that name, or None."""
@@ -103,6 +104,10 @@ class Claim:
     left: float
     right: float
     holds: bool
+    null: str = ""  # variant that must fail the claim; empty: none is named
+    null_verdict: str = ""  # discriminates, void, undecided, exempt, unasked; empty before schema 3
+    null_detail: str = ""
+    passed_too: str = ""  # further variants that the claim holds for
 
 
 @dataclass
@@ -183,6 +188,7 @@ def read_variant(name, group):
 
 def read_case(name, group):
     attrs = group.attrs
+    variants = [read_variant(n, g) for n, g in by_index(group["variants"])]
     return Case(
         name=name, parameter_name=text(attrs["parameter_name"]),
         parameter_unit=text(attrs["parameter_unit"]), seed=int(attrs["seed"]),
@@ -190,11 +196,19 @@ def read_case(name, group):
         warnings=[text(w) for w in np.atleast_1d(attrs["warnings"])],
         swept={unquote(k): read_json(v) for k, v in group["swept"].attrs.items()},
         facts={unquote(k): float(v) for k, v in group["facts"].attrs.items()},
-        variants=[read_variant(n, g) for n, g in by_index(group["variants"])],
+        variants=[v for v in variants if v.role != "null"],
+        nulls=[v for v in variants if v.role == "null"],
         ratios=[Ratio(text(r["variant"]), text(r["of"]), float(r["median_ratio"]),
                       float(r["low"]), float(r["high"]),
                       text(r["paired"]) if "paired" in r.dtype.names else "frame")
                 for r in group["ratios"][()]])
+
+
+def read_claim(row):
+    since_3 = [text(row[name]) for name in ("null", "null_verdict", "null_detail", "passed_too")
+               if name in row.dtype.names]
+    return Claim(text(row["text"]), text(row["case"]), text(row["detail"]), float(row["left"]),
+                 float(row["right"]), bool(row["holds"]), *since_3)
 
 
 def read_root(folder, file):
@@ -210,8 +224,7 @@ def read_root(folder, file):
                        float(g.attrs["value"]), float(g.attrs["low"]), float(g.attrs["high"]),
                        g["x"][()], g["y"][()], g["y_of"][()] if "y_of" in g else np.array([]))
                  for n, g in by_index(file["study"])],
-        claims=[Claim(text(c["text"]), text(c["case"]), text(c["detail"]), float(c["left"]),
-                      float(c["right"]), bool(c["holds"])) for c in file["claims"][()]])
+        claims=[read_claim(c) for c in file["claims"][()]])
     try:
         run.view = tomllib.loads(run.experiment).get("figure_view", {})
     except tomllib.TOMLDecodeError:

@@ -10,7 +10,7 @@ import numpy as np
 
 import runfile
 from tables import failures, metric_rows, timing_rows
-from wording import display_name, interval, with_unit
+from wording import beside, display_name, interval, with_unit
 
 
 def table(head, rows):
@@ -28,7 +28,7 @@ def claims(run):
     for claim in run.claims:
         case = f" ({claim.case})" if claim.case and len(run.cases) > 1 else ""
         lines.append(f"- **{'holds' if claim.holds else 'falls short'}**: {claim.text}{case}  ")
-        lines.append(f"  `{claim.detail}`")
+        lines.append(f"  `{claim.detail}`" + "".join(f"; {words}" for words in beside(claim)))
     return lines
 
 

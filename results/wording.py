@@ -21,6 +21,30 @@ WORDS = {
 }
 
 
+def null_words(claim):
+    """What a claim's null says of it; empty for runs that knew no nulls."""
+    return {
+        "discriminates": f"discriminates: not so with the null {claim.null}: {claim.null_detail}",
+        "void": f"void: its null {claim.null} passes too, or as good as: {claim.null_detail}",
+        "undecided": f"undecided: its null {claim.null} has no value: {claim.null_detail}",
+        "exempt": "needs no null: a time, or an oracle",
+        "unasked": "names no null: nothing says that it can fail",
+    }.get(claim.null_verdict, "")
+
+
+def slack(claim):
+    """Value over limit; empty for a limit of 0."""
+    if not claim.right or not math.isfinite(claim.left) or not math.isfinite(claim.right):
+        return ""
+    return f"value over limit {claim.left / claim.right:.3g}"
+
+
+def beside(claim):
+    """All that stands beside a decided claim: slack, null, further variants that pass it."""
+    too = f"holds for {claim.passed_too} too" if claim.passed_too else ""
+    return [words for words in (slack(claim), null_words(claim), too) if words]
+
+
 def display_name(name):
     """`dual-quaternion` as `Dual quaternion`, `dcone_count` as `d-cone count`."""
     words = name.replace("_", " ").replace("-", " ").split(" ")

@@ -31,6 +31,7 @@ struct CommandLine {
   CLI::App app{"Geometric priors beside their baselines: scenes, methods, metrics, recorded runs",
                "geoprior"};
   bool json = false;
+  bool list_claims = false;
   std::string described;
   bool markdown = false;
   RunRequest run;
@@ -111,7 +112,10 @@ void build(CommandLine& line) {
   line.app.footer(kFooter);
   line.app.set_version_flag("--version", version_line());
   line.app.require_subcommand(1);
-  add_command(line, "list", "experiments, topics, methods and metrics");
+  CLI::App* list = add_command(line, "list", "experiments, topics, methods and metrics");
+  list->add_flag(
+      "--claims", line.list_claims,
+      "instead: the claims of all experiments, with value over limit and null in the newest run");
   CLI::App* describe = add_command(
       line, "describe",
       "options of a method or a topic, keys of an experiment file, meaning of a number");
@@ -131,7 +135,9 @@ int dispatch(CommandLine& line, const std::vector<Topic>& topics) {
   const CommandContext context{topics, line.json};
   const std::string command = line.app.get_subcommands().front()->get_name();
   line.run.pictures = !line.no_pictures;
-  if (command == "list") return list_command(context);
+  if (command == "list") {
+    return line.list_claims ? list_claims_command(context) : list_command(context);
+  }
   if (command == "describe") return describe_command(context, line.described, line.markdown);
   if (command == "run") return run_command(context, line.run);
   if (command == "check") return check_command(context, line.check);

@@ -35,7 +35,7 @@ struct Verdict {
   [[nodiscard]] bool passed() const {
     return has_reference && mismatches.empty() && failures.empty() &&
            std::all_of(claims.begin(), claims.end(), [&](const ClaimRecord& claim) {
-             return claim.holds || known_shortfalls.contains(claim.text);
+             return is_sound(claim) && (claim.holds || known_shortfalls.contains(claim.text));
            });
   }
 };
@@ -76,6 +76,10 @@ void say_verdict(const Verdict& verdict, bool quick) {
     say("        " + mismatch_text(verdict.id, mismatch));
   }
   for (const ClaimRecord& claim : verdict.claims) {
+    if (!is_sound(claim)) {
+      say("        " + verdict.id + ", case '" + claim.case_name + "', claim: " + claim.text +
+          ": " + null_text(claim));
+    }
     if (claim.holds) continue;
     say("        " + verdict.id + ", case '" + claim.case_name +
         "', claim falls short: " + claim.text + ": " + claim.detail);
@@ -105,7 +109,8 @@ Json verdict_json(const Verdict& verdict) {
     json["claims"].push_back({{"text", claim.text},
                               {"case", claim.case_name},
                               {"detail", claim.detail},
-                              {"holds", claim.holds}});
+                              {"holds", claim.holds},
+                              {"null", text_of(claim.null.verdict)}});
   }
   return json;
 }

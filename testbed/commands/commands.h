@@ -68,6 +68,7 @@ struct ExportRequest {
 };
 
 int list_command(const CommandContext& context);
+int list_claims_command(const CommandContext& context);
 int describe_command(const CommandContext& context, const std::string& name, bool markdown);
 int run_command(const CommandContext& context, const RunRequest& request);
 int check_command(const CommandContext& context, const CheckRequest& request);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "testbed/commands/console.h"
+#include "testbed/runner/claims.h"
 #include "testbed/runner/frames_text.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/timing_statistics.h"
@@ -37,11 +38,17 @@ std::string times_text(const std::vector<std::vector<double>>& frames) {
   return times.size() < 2 ? text : text + " (" + time_text(quantile(times, 0.95)) + ")";
 }
 
+std::vector<VariantRecord> without_nulls(std::vector<VariantRecord> variants) {
+  std::erase_if(variants, [](const VariantRecord& v) { return is_null_control(v.role); });
+  return variants;
+}
+
 void say_case(const CaseRecord& in) {
   std::vector<std::vector<std::string>> rows{{in.name == "default" ? "" : in.name, "unit"}};
   std::map<std::string, std::string> metrics;
   std::set<std::string> phases;
-  for (const VariantRecord& variant : in.variants) {
+  const std::vector<VariantRecord> shown = without_nulls(in.variants);
+  for (const VariantRecord& variant : shown) {
     rows.front().push_back(variant.name);
     for (const auto& [name, value] : variant.summary) {
       const bool detail = name.ends_with(".last") || name.ends_with(".min");
@@ -51,7 +58,7 @@ void say_case(const CaseRecord& in) {
   }
   for (const auto& [metric, unit] : metrics) {
     std::vector<std::string> row{metric, unit};
-    for (const VariantRecord& variant : in.variants) {
+    for (const VariantRecord& variant : shown) {
       const auto found = variant.summary.find(metric);
       row.push_back(found == variant.summary.end() ? "-" : rounded_text(found->second.value));
     }
@@ -59,13 +66,22 @@ void say_case(const CaseRecord& in) {
   }
   for (const std::string& phase : phases) {
     std::vector<std::string> row{"time of " + phase + ", median (p95)", ""};
-    for (const VariantRecord& variant : in.variants) {
+    for (const VariantRecord& variant : shown) {
       const auto found = variant.timing.find(phase);
       row.push_back(found == variant.timing.end() ? "-" : times_text(found->second));
     }
     rows.push_back(row);
   }
   say_table(rows);
+}
+
+Json null_json(const NullRecord& null) {
+  if (null.variant.empty()) return {{"verdict", text_of(null.verdict)}};
+  return {{"variant", null.variant},
+          {"verdict", text_of(null.verdict)},
+          {"left", json_number(null.left)},
+          {"right", json_number(null.right)},
+          {"detail", null.detail}};
 }
 
 Json variant_json(const VariantRecord& variant) {
@@ -117,6 +133,23 @@ std::vector<std::string> failures(const RunRecord& record) {
   return lines;
 }
 
+std::string null_text(const ClaimRecord& claim) {
+  switch (claim.null.verdict) {
+    case Discrimination::discriminates:
+      return "discriminates: not so with the null " + claim.null.variant + ": " + claim.null.detail;
+    case Discrimination::is_void:
+      return "void: its null " + claim.null.variant +
+             " passes too, or as good as: " + claim.null.detail;
+    case Discrimination::undecided:
+      return "undecided: its null " + claim.null.variant + " has no value: " + claim.null.detail;
+    case Discrimination::exempt:
+      return "needs no null: a time, or an oracle";
+    case Discrimination::unasked:
+      break;
+  }
+  return "names no null: nothing says that it can fail";
+}
+
 void say_claims(const RunRecord& record, bool all_numbers) {
   for (const ClaimRecord& claim : record.claims) {
     const std::string in = claim.case_name.empty() || claim.case_name == "default"
@@ -125,6 +158,12 @@ void say_claims(const RunRecord& record, bool all_numbers) {
     say((claim.holds ? tinted("holds      ", Tint::good) : tinted("falls short", Tint::bad)) +
         "  " + claim.text + in);
     if (all_numbers || !claim.holds) say("             " + claim.detail);
+    const bool told = all_numbers || claim.null.verdict == Discrimination::is_void ||
+                      claim.null.verdict == Discrimination::undecided;
+    if (told) say("             " + null_text(claim));
+    if (all_numbers && !claim.passed_too.empty()) {
+      say("             holds for " + claim.passed_too + " too");
+    }
   }
 }
 
@@ -164,7 +203,10 @@ Json outcome_json(const RunRecord& record, const std::filesystem::path& folder) 
                               {"detail", claim.detail},
                               {"left", json_number(claim.left)},
                               {"right", json_number(claim.right)},
-                              {"holds", claim.holds}});
+                              {"holds", claim.holds},
+                              {"null", null_json(claim.null)},
+                              {"holds_too_for", claim.passed_too}});
+    if (const auto ratio = slack(claim)) json["claims"].back()["value_over_limit"] = *ratio;
   }
   json["studies"] = Json::array();
   for (const StudyRecord& study : record.studies) {

@@ -19,6 +19,9 @@ ClaimCount count_claims(const RunRecord& record);
 /// "4 hold, 1 falls short"; "none" for a run without claims.
 std::string claim_count_text(const ClaimCount& count);
 
+/// What the claim's null says of it, in words.
+std::string null_text(const ClaimRecord& claim);
+
 /// Claims with their verdicts, one line each; below it the numbers of those that fall short, or of
 /// all.
 void say_claims(const RunRecord& record, bool all_numbers);

@@ -323,6 +323,7 @@ constexpr int kProcessWarmUp = 0;
 bool CaseRunner::time_poses(std::map<std::string, Timing>& timing) {
   std::vector<BenchmarkEntry> entries;
   for (const VariantSpec& variant : spec_.variants) {
+    if (is_null_control(variant.role)) continue;
     MethodEntry::Instance& instance = prepare(variant, false);
     if (auto* method = std::get_if<std::unique_ptr<PoseMethod>>(&instance)) {
       entries.push_back({variant.name, method->get()});
@@ -342,6 +343,7 @@ bool CaseRunner::time_processes(std::map<std::string, Timing>& timing) {
   std::vector<ProcessEntry> entries;
   for (const VariantSpec& variant : spec_.variants) {
     const VariantRecord& record = state_of(variant).record;
+    if (is_null_control(variant.role)) continue;
     // A process that failed would fail again; its record keeps the times of its frames.
     if (record.status == "failed") continue;
     if (auto* process = std::get_if<std::unique_ptr<Process>>(&prepare(variant, false))) {

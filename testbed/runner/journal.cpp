@@ -15,7 +15,7 @@ namespace geoprior::journal {
 
 namespace {
 
-using Json = nlohmann::json;
+using SortedJson = nlohmann::json;
 
 template <class... Visitors>
 struct Overloaded : Visitors... {
@@ -25,13 +25,13 @@ template <class... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
 /// JSON has no NaN and no infinities.
-Json number(double x) {
+SortedJson number(double x) {
   if (std::isnan(x)) return nullptr;
   if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
   return x;
 }
 
-double number(const Json& json) {
+double number(const SortedJson& json) {
   if (json.is_null()) return std::numeric_limits<double>::quiet_NaN();
   if (json.is_string()) {
     const double infinity = std::numeric_limits<double>::infinity();
@@ -42,57 +42,57 @@ double number(const Json& json) {
   return json.get<double>();
 }
 
-Json numbers(const Numbers& map) {
-  Json out = Json::object();
+SortedJson numbers(const Numbers& map) {
+  SortedJson out = SortedJson::object();
   for (const auto& [key, value] : map) out[key] = number(value);
   return out;
 }
 
-Numbers numbers(const Json& json) {
+Numbers numbers(const SortedJson& json) {
   Numbers out;
   for (const auto& [key, value] : json.items()) out[key] = number(value);
   return out;
 }
 
-Json files(const std::vector<StoredFile>& list) {
-  Json out = Json::array();
+SortedJson files(const std::vector<StoredFile>& list) {
+  SortedJson out = SortedJson::array();
   for (const StoredFile& file : list) out.push_back({{"name", file.name}, {"sha256", file.sha256}});
   return out;
 }
 
-StoredFile file(const Json& json) { return {json.at("name"), json.at("sha256")}; }
+StoredFile file(const SortedJson& json) { return {json.at("name"), json.at("sha256")}; }
 
-std::vector<StoredFile> files(const Json& json) {
+std::vector<StoredFile> files(const SortedJson& json) {
   std::vector<StoredFile> out;
-  for (const Json& entry : json) out.push_back(file(entry));
+  for (const SortedJson& entry : json) out.push_back(file(entry));
   return out;
 }
 
-Json at(const Place& place, const char* kind) {
+SortedJson at(const Place& place, const char* kind) {
   return {{"kind", kind}, {"case", place.case_name}, {"variant", place.variant}};
 }
 
-Place place(const Json& json) { return {json.at("case"), json.at("variant")}; }
+Place place(const SortedJson& json) { return {json.at("case"), json.at("variant")}; }
 
-Json rows(const std::vector<std::vector<double>>& seconds) {
-  Json out = Json::array();
+SortedJson rows(const std::vector<std::vector<double>>& seconds) {
+  SortedJson out = SortedJson::array();
   for (const auto& row : seconds) {
-    Json& line = out.emplace_back(Json::array());
+    SortedJson& line = out.emplace_back(SortedJson::array());
     for (const double x : row) line.push_back(number(x));
   }
   return out;
 }
 
-std::vector<std::vector<double>> rows(const Json& json) {
+std::vector<std::vector<double>> rows(const SortedJson& json) {
   std::vector<std::vector<double>> out;
-  for (const Json& line : json) {
+  for (const SortedJson& line : json) {
     auto& row = out.emplace_back();
-    for (const Json& x : line) row.push_back(number(x));
+    for (const SortedJson& x : line) row.push_back(number(x));
   }
   return out;
 }
 
-Json write(const RunLine& line) {
+SortedJson write(const RunLine& line) {
   return {{"kind", "run"},
           {"schema_version", line.schema_version},
           {"experiment_id", line.experiment_id},
@@ -100,7 +100,7 @@ Json write(const RunLine& line) {
           {"start", line.start}};
 }
 
-Json write(const CaseLine& line) {
+SortedJson write(const CaseLine& line) {
   return {{"kind", "case"},
           {"case", line.case_name},
           {"parameter_name", line.parameter_name},
@@ -111,14 +111,14 @@ Json write(const CaseLine& line) {
           {"seconds", number(line.seconds)}};
 }
 
-Json write(const BeginLine& line) {
-  Json json = at(line.place, "begin");
+SortedJson write(const BeginLine& line) {
+  SortedJson json = at(line.place, "begin");
   json["timing"] = numbers(line.timing);
   return json;
 }
 
-Json write(const FrameLine& line) {
-  Json json = at(line.place, "frame");
+SortedJson write(const FrameLine& line) {
+  SortedJson json = at(line.place, "frame");
   json["index"] = line.index;
   json["parameter"] = number(line.parameter);
   json["files"] = files(line.files);
@@ -128,8 +128,8 @@ Json write(const FrameLine& line) {
   return json;
 }
 
-Json write(const EventLine& line) {
-  Json json = at(line.place, "event");
+SortedJson write(const EventLine& line) {
+  SortedJson json = at(line.place, "event");
   const Event& event = line.event;
   json["time_s"] = number(event.time_s);
   json["kind_of_event"] = event.kind;
@@ -140,15 +140,15 @@ Json write(const EventLine& line) {
   return json;
 }
 
-Json write(const ArtifactLine& line) {
-  Json json = at(line.place, "artifact");
+SortedJson write(const ArtifactLine& line) {
+  SortedJson json = at(line.place, "artifact");
   json["name"] = line.file.name;
   json["sha256"] = line.file.sha256;
   return json;
 }
 
-Json write(const CheckpointLine& line) {
-  Json json = at(line.place, "checkpoint");
+SortedJson write(const CheckpointLine& line) {
+  SortedJson json = at(line.place, "checkpoint");
   json["name"] = line.file.name;
   json["sha256"] = line.file.sha256;
   json["frames"] = line.frames;
@@ -158,29 +158,29 @@ Json write(const CheckpointLine& line) {
   return json;
 }
 
-Json write(const ResumeLine& line) {
-  Json json = at(line.place, "resume");
+SortedJson write(const ResumeLine& line) {
+  SortedJson json = at(line.place, "resume");
   json["frames"] = line.frames;
   json["events"] = line.events;
   json["artifacts"] = line.artifacts;
   return json;
 }
 
-Json write(const EndLine& line) {
-  Json json = at(line.place, "end");
+SortedJson write(const EndLine& line) {
+  SortedJson json = at(line.place, "end");
   json["summary"] = numbers(line.summary);
   json["timing"] = numbers(line.timing);
   if (!line.error.empty()) json["error"] = line.error;
   return json;
 }
 
-Json write(const TimingLine& line) {
-  Json timing = Json::object();
+SortedJson write(const TimingLine& line) {
+  SortedJson timing = SortedJson::object();
   for (const auto& [variant, phases] : line.timing) {
-    Json& of = timing[variant] = Json::object();
+    SortedJson& of = timing[variant] = SortedJson::object();
     for (const auto& [phase, seconds] : phases) of[phase] = rows(seconds);
   }
-  Json ratios = Json::array();
+  SortedJson ratios = SortedJson::array();
   for (const TimingRatio& ratio : line.ratios) {
     ratios.push_back({{"variant", ratio.variant},
                       {"of", ratio.of},
@@ -192,13 +192,13 @@ Json write(const TimingLine& line) {
   return {{"kind", "timing"}, {"case", line.case_name}, {"timing", timing}, {"ratios", ratios}};
 }
 
-Json write(const ErrorLine& line) {
-  Json json = at(line.place, "error");
+SortedJson write(const ErrorLine& line) {
+  SortedJson json = at(line.place, "error");
   json["message"] = line.message;
   return json;
 }
 
-Line read_event(const Json& json) {
+Line read_event(const SortedJson& json) {
   EventLine line{place(json), {}};
   line.event.time_s = number(json.at("time_s"));
   line.event.kind = json.at("kind_of_event");
@@ -210,20 +210,20 @@ Line read_event(const Json& json) {
   return line;
 }
 
-Line read_timing(const Json& json) {
+Line read_timing(const SortedJson& json) {
   TimingLine line;
   line.case_name = json.at("case");
   for (const auto& [variant, phases] : json.at("timing").items()) {
     for (const auto& [phase, seconds] : phases.items()) line.timing[variant][phase] = rows(seconds);
   }
-  for (const Json& ratio : json.at("ratios")) {
+  for (const SortedJson& ratio : json.at("ratios")) {
     line.ratios.push_back({ratio.at("variant"), ratio.at("of"), number(ratio.at("median_ratio")),
                            number(ratio.at("low")), number(ratio.at("high")), ratio.at("paired")});
   }
   return line;
 }
 
-Line read_frame(const Json& json) {
+Line read_frame(const SortedJson& json) {
   return FrameLine{place(json),
                    json.at("index"),
                    number(json.at("parameter")),
@@ -233,7 +233,7 @@ Line read_frame(const Json& json) {
                    numbers(json.at("timing"))};
 }
 
-Line read(const Json& json) {
+Line read(const SortedJson& json) {
   const std::string kind = json.at("kind");
   if (kind == "frame") return read_frame(json);
   if (kind == "event") return read_event(json);
@@ -268,13 +268,13 @@ Line read(const Json& json) {
 
 std::string to_text(const Line& line) {
   return std::visit([](const auto& of_kind) { return write(of_kind); }, line)
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+      .dump(-1, ' ', false, SortedJson::error_handler_t::replace);
 }
 
 Line from_text(std::string_view text) {
   try {
-    return read(Json::parse(text));
-  } catch (const Json::exception& error) {
+    return read(SortedJson::parse(text));
+  } catch (const SortedJson::exception& error) {
     throw Error(std::string("damaged line: ") + error.what());
   }
 }

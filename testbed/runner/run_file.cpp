@@ -189,8 +189,8 @@ void write_studies(H5Group& root, const std::vector<StudyRecord>& studies) {
 }
 
 void write_claims(H5Group& root, const std::vector<ClaimRecord>& claims) {
-  std::vector<std::string> text, cases, detail;
-  std::vector<double> left, right;
+  std::vector<std::string> text, cases, detail, null, null_verdict, null_detail, passed_too;
+  std::vector<double> left, right, null_left, null_right;
   std::vector<std::int64_t> holds;
   for (const ClaimRecord& claim : claims) {
     text.push_back(claim.text);
@@ -199,13 +199,25 @@ void write_claims(H5Group& root, const std::vector<ClaimRecord>& claims) {
     left.push_back(claim.left);
     right.push_back(claim.right);
     holds.push_back(claim.holds ? 1 : 0);
+    null.push_back(claim.null.variant);
+    null_verdict.push_back(text_of(claim.null.verdict));
+    null_left.push_back(claim.null.left);
+    null_right.push_back(claim.null.right);
+    null_detail.push_back(claim.null.detail);
+    passed_too.push_back(claim.passed_too);
   }
   root.write_table("claims", {{"text", text},
                               {"case", cases},
                               {"detail", detail},
                               {"left", left},
                               {"right", right},
-                              {"holds", holds}});
+                              {"holds", holds},
+                              {"null", null},
+                              {"null_verdict", null_verdict},
+                              {"null_left", null_left},
+                              {"null_right", null_right},
+                              {"null_detail", null_detail},
+                              {"passed_too", passed_too}});
 }
 
 void write_root(H5Group root, const RunRecord& record, TableSource run_folder) {
@@ -430,16 +442,47 @@ std::vector<StudyRecord> read_studies(const H5Group& parent) {
   return studies;
 }
 
-std::vector<ClaimRecord> read_claims(const H5Group& root) {
+Discrimination discrimination_of(const std::string& text) {
+  const auto found = std::find(kDiscriminations.begin(), kDiscriminations.end(), text);
+  if (found == kDiscriminations.end()) {
+    throw Error("'" + text + "' is no verdict of a null", "claims: null_verdict");
+  }
+  return static_cast<Discrimination>(found - kDiscriminations.begin());
+}
+
+/// What schema version 2 did not have.
+void read_nulls(const H5Group& root, std::vector<ClaimRecord>& claims) {
+  std::vector<H5Column> table{{"null", Texts{}},        {"null_verdict", Texts{}},
+                              {"null_detail", Texts{}}, {"passed_too", Texts{}},
+                              {"null_left", Numbers{}}, {"null_right", Numbers{}}};
+  root.read_table("claims", table);
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    NullRecord& null = claims[i].null;
+    null.variant = column<std::string>(table, 0)[i];
+    null.verdict = discrimination_of(column<std::string>(table, 1)[i]);
+    null.detail = column<std::string>(table, 2)[i];
+    claims[i].passed_too = column<std::string>(table, 3)[i];
+    null.left = column<double>(table, 4)[i];
+    null.right = column<double>(table, 5)[i];
+  }
+}
+
+std::vector<ClaimRecord> read_claims(const H5Group& root, int schema_version) {
   std::vector<H5Column> table{{"text", Texts{}},   {"case", Texts{}},    {"detail", Texts{}},
                               {"left", Numbers{}}, {"right", Numbers{}}, {"holds", Integers{}}};
   root.read_table("claims", table);
   std::vector<ClaimRecord> claims;
   for (std::size_t i = 0; i < column<std::string>(table, 0).size(); ++i) {
-    claims.push_back({column<std::string>(table, 0)[i], column<std::string>(table, 1)[i],
-                      column<std::string>(table, 2)[i], column<double>(table, 3)[i],
-                      column<double>(table, 4)[i], column<std::int64_t>(table, 5)[i] != 0});
+    claims.push_back({column<std::string>(table, 0)[i],
+                      column<std::string>(table, 1)[i],
+                      column<std::string>(table, 2)[i],
+                      column<double>(table, 3)[i],
+                      column<double>(table, 4)[i],
+                      column<std::int64_t>(table, 5)[i] != 0,
+                      {},
+                      {}});
   }
+  if (schema_version >= 3) read_nulls(root, claims);
   return claims;
 }
 
@@ -472,7 +515,7 @@ RunRecord read_root(const H5Group& root) {
     record.cases.push_back(read_case(cases.open_group(name), name, record.schema_version));
   }
   record.studies = read_studies(root.open_group("study"));
-  record.claims = read_claims(root);
+  record.claims = read_claims(root, record.schema_version);
   return record;
 }
 

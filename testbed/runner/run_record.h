@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/frame.h"
+#include "testbed/runner/spec_terms.h"
 
 namespace geoprior {
 
@@ -86,6 +87,14 @@ struct CaseRecord {
   std::vector<TimingRatio> ratios;
 };
 
+/// The variant of that name, or null.
+inline const VariantRecord* find_variant(const CaseRecord& in, const std::string& name) {
+  for (const VariantRecord& variant : in.variants) {
+    if (variant.name == name) return &variant;
+  }
+  return nullptr;
+}
+
 struct StudyRecord {
   std::string name;
   std::string kind;
@@ -98,6 +107,15 @@ struct StudyRecord {
   std::vector<double> y_of;  ///< of "within-spread": the values of the variant compared with
 };
 
+/// The claim's inequality with its null in the place of its variant.
+struct NullRecord {
+  std::string variant;  ///< empty: the claim names none
+  Discrimination verdict = Discrimination::unasked;
+  double left = 0;  ///< of one seed: that in which the null came nearest to passing
+  double right = 0;
+  std::string detail;  ///< as the claim's; why it is undecided
+};
+
 struct ClaimRecord {
   std::string text;
   std::string case_name;
@@ -105,12 +123,14 @@ struct ClaimRecord {
   double left = 0;
   double right = 0;
   bool holds = false;
+  NullRecord null;
+  std::string passed_too;  ///< further variants that the inequality holds for: "adaptive, dense"
 };
 
 /// The memory image of a run: what run.h5 holds (docs/file-formats.md), what claims, check and
 /// report read.
 struct RunRecord {
-  int schema_version = 2;
+  int schema_version = 3;
   std::string experiment_id;
   std::string title;
   std::string figure;

@@ -124,6 +124,7 @@ Json resolved_json(const TomlNode& root, const Experiment& experiment, const Hea
       const std::string metric = table.value("metric", "");
       const bool no_study = metric.starts_with("study:") && !has(names.studies, metric.substr(6));
       const bool no_case = !keep_cases(table, experiment.cases);
+      if (left_out("null")) table.erase("null");
       if (!left_out("variant") && !left_out("of") && !no_study && !no_case) kept.push_back(table);
     }
     json[key] = kept;
@@ -150,6 +151,7 @@ KnownNames known_names(const TomlNode& root, const std::vector<std::string>& sel
     const std::string& name = node.find("name")->text;
     const bool runs = selected.empty() || has(selected, name);
     (runs ? names.variants : names.dropped).push_back(name);
+    if (const TomlNode* to = node.find("reference")) names.references[name] = to->text;
   }
   for (const SweptCase& swept : expand_sweeps(root, quick)) names.cases.push_back(swept.name);
   if (!quick) return names;
@@ -241,9 +243,9 @@ Experiment load_experiment(const std::filesystem::path& file, const std::vector<
   experiment.studies = read_studies(root, topic, names);
   drop_cases(experiment.studies, experiment.cases);
   for (const StudySpec& study : experiment.studies) names.studies.push_back(study.name);
-  experiment.claims = read_claims(root, topic, names);
-  drop_cases(experiment.claims, experiment.cases);
   experiment.tolerances = read_tolerances(root, topic);
+  experiment.claims = read_claims(root, topic, names, experiment.tolerances, experiment.studies);
+  drop_cases(experiment.claims, experiment.cases);
   experiment.view = read_figure_view(root, topic);
   keep_only(experiment.view.variants, names.dropped);
 

@@ -19,7 +19,7 @@ namespace geoprior {
 struct VariantSpec {
   std::string name;
   std::string method;
-  std::string role;                      ///< "method", "baseline" or "ablation"
+  std::string role;                      ///< "method", "baseline", "ablation" or "null"
   std::optional<std::string> reference;  ///< variant that metrics with needs_reference compare with
   std::shared_ptr<const OptionSet> options;
   std::string options_json;  ///< resolved: every option, defaults included
@@ -61,6 +61,11 @@ struct ClaimSpec {
   Reduction reduce = Reduction::max;
   std::optional<Reduction> of_reduce;  ///< of the other side; absent: as `reduce`
   std::vector<std::string> cases;      ///< empty: every case
+  ClaimOver over = ClaimOver::case_;
+  /// Variant that must fail the same inequality put in the place of `variant`.
+  std::optional<std::string> null;
+  Exemption exempt = Exemption::none;
+  Tolerance metric_tolerance;  ///< by more than which the null must fail
 };
 
 /// A quantity across cases.

@@ -97,6 +97,8 @@ ClaimSpec claim_of(const ClaimTable& table, const TomlNode& node) {
   claim.reduce = table.reduce;
   if (table.of_reduce != OfReduction::same) claim.of_reduce = reduction_of(table.of_reduce);
   claim.cases = table.cases;
+  claim.over = table.over;
+  claim.null = table.null;
   read_at(node.find("at"), claim.at_parameter, &claim.at_key);
   return claim;
 }
@@ -129,18 +131,96 @@ void require_sides(const ClaimSpec& claim, const TomlNode& node) {
   }
 }
 
+/// The table's row of what the claim measures; null for times and diagnostics.
+const MetricEntry* measured_by(const ClaimSpec& claim, const Topic& topic,
+                               const std::vector<StudySpec>& studies) {
+  std::string name = claim.metric;
+  for (const StudySpec& study : studies) {
+    if (claim.metric == "study:" + study.name) name = study.quantity;
+  }
+  const auto found = std::find_if(topic.metrics.begin(), topic.metrics.end(),
+                                  [&](const MetricEntry& metric) { return metric.name == name; });
+  return found == topic.metrics.end() ? nullptr : &*found;
+}
+
+bool is_timed(const ClaimSpec& claim, const std::vector<StudySpec>& studies) {
+  return claim.metric.starts_with("timing:") ||
+         std::any_of(studies.begin(), studies.end(), [&](const StudySpec& study) {
+           return claim.metric == "study:" + study.name && study.quantity.starts_with("timing:");
+         });
+}
+
+/// The variant that the null takes the place of: that of the claim, or of its study.
+std::string judged_variant(const ClaimSpec& claim, const std::vector<StudySpec>& studies) {
+  for (const StudySpec& study : studies) {
+    if (claim.metric == "study:" + study.name) return study.variant;
+  }
+  return claim.variant;
+}
+
+void require_null(const ClaimSpec& claim, const std::string& variant, const MetricEntry* metric,
+                  const KnownNames& names, const TomlNode& node) {
+  const std::string place = place_of(node, "null"), &null = *claim.null;
+  if (null == variant) {
+    throw Error("is the variant itself", place, "another variant, one that must fail the claim");
+  }
+  const auto reference_of = [&](const std::string& name) {
+    const auto found = names.references.find(name);
+    return found == names.references.end() ? std::string() : found->second;
+  };
+  if (metric != nullptr && metric->needs_reference && reference_of(null) != reference_of(variant)) {
+    throw Error("'" + metric->name + "' of '" + null + "' is not measured against '" +
+                    reference_of(variant) + "'",
+                place, "a null with the reference of '" + variant + "'");
+  }
+  const bool yardstick = claim.of == claim.null && claim.factor == 1 && claim.offset == 0;
+  const bool strict = claim.is == Comparison::less || claim.is == Comparison::greater;
+  if (yardstick && !claim.of_reduce && !strict) {
+    throw Error("would pass: it is what '" + variant + "' is compared with", place_of(node, "is"),
+                "\"<\" or \">\", a factor, or another null");
+  }
+}
+
+void complete(ClaimSpec& claim, const Topic& topic, const KnownNames& names,
+              const std::map<std::string, Tolerance>& tolerances,
+              const std::vector<StudySpec>& studies, const TomlNode& node) {
+  const MetricEntry* metric = measured_by(claim, topic, studies);
+  if (is_timed(claim, studies)) claim.exempt = Exemption::timing;
+  if (metric != nullptr) {
+    if (metric->oracle) claim.exempt = Exemption::oracle;
+    const auto own = tolerances.find(metric->name);
+    // A slope or an interval of values has another unit than they have.
+    if (!claim.metric.starts_with("study:")) {
+      claim.metric_tolerance = own == tolerances.end() ? metric->tolerance : own->second;
+    }
+  }
+  // Without a null that --variant left out the claim is decided, and nothing is said of its worth.
+  if (claim.null && !runs(*claim.null, names, place_of(node, "null"))) claim.null.reset();
+  if (claim.null) require_null(claim, judged_variant(claim, studies), metric, names, node);
+}
+
+void require_own_text(const ClaimSpec& claim, const std::vector<ClaimSpec>& before,
+                      const TomlNode& node) {
+  const auto same = [&](const ClaimSpec& other) { return other.text == claim.text; };
+  if (std::none_of(before.begin(), before.end(), same)) return;
+  throw Error("two claims say '" + claim.text + "'", place_of(node, "text"), "texts of their own");
+}
+
 }  // namespace
 
 std::vector<ClaimSpec> read_claims(const TomlNode& root, const Topic& topic,
-                                   const KnownNames& names) {
+                                   const KnownNames& names,
+                                   const std::map<std::string, Tolerance>& tolerances,
+                                   const std::vector<StudySpec>& decided_studies) {
   std::vector<ClaimSpec> claims;
   for (const TomlNode& node : tables_of(root, "claim")) {
     TomlNode plain = node;
     plain.erase("at");
     ClaimTable table;
     read_options(plain, "claim", table);
-    const ClaimSpec claim = claim_of(table, node);
+    ClaimSpec claim = claim_of(table, node);
     require_sides(claim, node);
+    require_own_text(claim, claims, node);
     Names studies = names.studies;
     bool decidable = true;
     if (claim.metric.starts_with("study:") && !contains(studies, claim.metric.substr(6))) {
@@ -156,7 +236,9 @@ std::vector<ClaimSpec> read_claims(const TomlNode& root, const Topic& topic,
       decidable = runs(claim.variant, names, place_of(node, "variant")) && decidable;
     }
     if (claim.of) decidable = runs(*claim.of, names, place_of(node, "of")) && decidable;
-    if (decidable) claims.push_back(claim);
+    if (!decidable) continue;
+    complete(claim, topic, names, tolerances, decided_studies, node);
+    claims.push_back(std::move(claim));
   }
   return claims;
 }

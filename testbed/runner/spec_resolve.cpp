@@ -67,7 +67,7 @@ const MethodEntry& method_named(const Topic& topic, const std::string& name, con
 
 std::string role_of(const VariantTable& table, const MethodEntry& method, const TomlNode& node) {
   if (!table.role) return method.is_baseline ? "baseline" : "method";
-  const std::vector<std::string> roles{"method", "baseline", "ablation"};
+  const std::vector<std::string> roles{"method", "baseline", "ablation", "null"};
   if (std::find(roles.begin(), roles.end(), *table.role) == roles.end()) {
     throw Error("unknown role '" + *table.role + "'", place_of(node, "role"),
                 allowed_names(*table.role, roles));

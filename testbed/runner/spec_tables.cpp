@@ -27,7 +27,11 @@ void describe(OptionVisitor& v, HeaderTable& t) {
 void describe(OptionVisitor& v, VariantTable& t) {
   v.value("name", t.name, {.doc = "letters, digits, '-' and '_'", .required = true});
   v.value("method", t.method, {.doc = "of the topic's method table", .required = true});
-  v.value("role", t.role, {.doc = "method, baseline or ablation; absent: by the method table"});
+  v.value(
+      "role", t.role,
+      {.doc =
+           "method, baseline, ablation, or null (must fail claims; not timed, drawn or blessed); "
+           "absent: by the method table"});
   v.value("reference", t.reference,
           {.doc = "variant that metrics of distance between variants compare with"});
 }
@@ -60,6 +64,10 @@ void describe(OptionVisitor& v, ClaimTable& t) {
   describe_choice(v, "of_reduce", t.of_reduce, kOfReductions,
                   {.doc = "over the frames of the other side; same: as `reduce`"});
   v.value("cases", t.cases, {.doc = "names of cases; absent: all that have the variants"});
+  describe_choice(v, "over", t.over, kClaimOvers,
+                  {.doc = "seed: 9 of 10 seeds of a case decide together, at least ten of them"});
+  v.value("null", t.null,
+          {.doc = "variant that must fail the same inequality in place of `variant`"});
 }
 
 void describe(OptionVisitor& v, StudyTable& t) {

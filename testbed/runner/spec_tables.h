@@ -58,6 +58,8 @@ struct ClaimTable {
   Reduction reduce = Reduction::max;
   OfReduction of_reduce = OfReduction::same;
   std::vector<std::string> cases;
+  ClaimOver over = ClaimOver::case_;
+  std::optional<std::string> null;
 };
 
 struct StudyTable {

@@ -24,9 +24,27 @@ enum class StudyKind { exponent, order, spread, within_spread };
 inline constexpr std::array<std::string_view, 4> kStudyKinds{"exponent", "order", "spread",
                                                              "within-spread"};
 
+/// What a claim is decided over: each of its cases by itself, or all seeds of one case together.
+enum class ClaimOver { case_, seed };
+inline constexpr std::array<std::string_view, 2> kClaimOvers{"case", "seed"};
+
+/// Why a claim needs no null: times are no metric of a method's result; an oracle's own tests
+/// mutate the method.
+enum class Exemption { none, timing, oracle };
+
+/// What a claim's null says of it. `unasked`: no null is named though one is due; `is_void`: the
+/// null passes, or fails by less than the metric's tolerance; `undecided`: it has no value.
+enum class Discrimination { unasked, exempt, discriminates, is_void, undecided };
+inline constexpr std::array<std::string_view, 5> kDiscriminations{
+    "unasked", "exempt", "discriminates", "void", "undecided"};
+
 /// Which x is that of the finer discretisation: a step is smaller, a count larger.
 enum class Finer { smaller, larger };
 inline constexpr std::array<std::string_view, 2> kFiner{"smaller", "larger"};
+
+/// Variants of the role "null" are there to fail claims: they are neither timed, nor drawn, nor
+/// blessed.
+inline bool is_null_control(const std::string& role) { return role == "null"; }
 
 /// The words of the enumerators, as files have them.
 inline std::string text_of(Comparison x) {
@@ -34,6 +52,9 @@ inline std::string text_of(Comparison x) {
 }
 inline std::string text_of(Reduction x) {
   return std::string(kReductions.at(static_cast<std::size_t>(x)));
+}
+inline std::string text_of(Discrimination x) {
+  return std::string(kDiscriminations.at(static_cast<std::size_t>(x)));
 }
 inline std::string text_of(StudyKind x) {
   return std::string(kStudyKinds.at(static_cast<std::size_t>(x)));

@@ -47,17 +47,11 @@ std::vector<std::string> variant_names(const RunRecord& record) {
   std::vector<std::string> names;
   for (const CaseRecord& c : record.cases) {
     for (const VariantRecord& v : c.variants) {
+      if (is_null_control(v.role)) continue;
       if (std::find(names.begin(), names.end(), v.name) == names.end()) names.push_back(v.name);
     }
   }
   return names;
-}
-
-const VariantRecord* find_variant(const CaseRecord& c, const std::string& name) {
-  for (const VariantRecord& v : c.variants) {
-    if (v.name == name) return &v;
-  }
-  return nullptr;
 }
 
 const FrameRecord* nearest_frame(const VariantRecord& variant, std::optional<double> wanted) {

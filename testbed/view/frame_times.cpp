@@ -19,6 +19,7 @@ const CaseRecord* first_case(const RunRecord& record, const FigureView& view) {
 }
 
 bool is_drawn(const VariantRecord& variant, const FigureView& view) {
+  if (is_null_control(variant.role)) return false;
   return view.variants.empty() ||
          std::find(view.variants.begin(), view.variants.end(), variant.name) != view.variants.end();
 }

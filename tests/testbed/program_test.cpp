@@ -16,7 +16,15 @@ using ::testing::HasSubstr;
 using toy::disc_experiment;
 using toy::Outcome;
 
-constexpr const char* kClaim = R"(
+constexpr const char* kSquare = R"(
+[[variant]]
+name = "square"
+method = "polygon"
+role = "null"
+options = { segments = 4 }
+)";
+
+const std::string kClaim = std::string(kSquare) + R"(
 [[claim]]
 text = "sixteen corners stay within four centimetres"
 metric = "radius_error"
@@ -24,6 +32,7 @@ variant = "polygon"
 at = { angle_deg = 90 }
 is = "<="
 value = 0.04
+null = "square"
 )";
 
 class Program : public ::testing::Test {
@@ -183,8 +192,9 @@ TEST_F(Program, CheckFailsOnAClaimAloneAndIgnoresClaimsAboutTime) {
   ASSERT_EQ(run("bless toy-circle/disc --reason x").code, 0);
   EXPECT_EQ(run("check toy-circle/disc").code, 0);
   const std::string impossible =
+      std::string(kSquare) +
       "[[claim]]\ntext = \"no error\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = "
-      "0\n";
+      "0\nnull = \"square\"\n";
   write(disc_experiment("segments = 16", impossible));
   const Outcome outcome = run("check toy-circle/disc");
   EXPECT_EQ(outcome.code, 1);
@@ -195,6 +205,49 @@ TEST_F(Program, CheckFailsOnAClaimAloneAndIgnoresClaimsAboutTime) {
   const Outcome known = run("check toy-circle/disc");
   EXPECT_EQ(known.code, 0);
   EXPECT_THAT(known.err, HasSubstr("a polygon is no circle"));
+}
+
+TEST_F(Program, CheckFailsOnClaimsThatCannot) {
+  const auto with = [&](const std::string& claim) {
+    write(
+        disc_experiment("segments = 16", std::string(kSquare) +
+                                             "[[claim]]\ntext = \"near\"\n"
+                                             "metric = \"radius_error\"\nvariant = \"polygon\"\n" +
+                                             claim));
+  };
+  with("value = 0.04\nnull = \"square\"\n");
+  ASSERT_EQ(run("bless toy-circle/disc --reason x").code, 0);
+  EXPECT_EQ(run("check toy-circle/disc").code, 0);
+  with("value = 3\nnull = \"square\"\n");
+  const Outcome is_void = run("check toy-circle/disc");
+  EXPECT_EQ(is_void.code, 1);
+  EXPECT_THAT(is_void.err, HasSubstr("near: void: its null square passes too"));
+  EXPECT_EQ(run("run toy-circle/disc --no-pictures").code, 0) << "the claim holds all the same";
+  with("value = 0.04\n");
+  EXPECT_THAT(run("check toy-circle/disc").err, HasSubstr("names no null"));
+  with("value = 0.04\nnull = \"square\"\n");
+  write(toy::Home::read(home_.root() / "experiments/toy-circle/disc.toml") +
+        "[[sweep]]\nkey = \"seed\"\nvalues = [2]\nvariants = [\"exact\", \"polygon\"]\n");
+  const Outcome undecided = run("check toy-circle/disc");
+  EXPECT_EQ(undecided.code, 1);
+  EXPECT_THAT(undecided.err, HasSubstr("undecided: its null square has no value: "));
+}
+
+TEST_F(Program, NullsAreNeitherTimedNorShownAndClaimsAreListed) {
+  write(disc_experiment("segments = 16", kClaim));
+  EXPECT_THAT(run("list --claims").err, AllOf(HasSubstr("toy-circle/disc  (no run yet)"),
+                                              HasSubstr("sixteen corners"), HasSubstr("square")));
+  const Outcome outcome = run("run toy-circle/disc --no-pictures --table --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("discriminates: not so with the null square"));
+  const json made = json::parse(outcome.out);
+  EXPECT_EQ(made["claims"][0]["null"]["verdict"], "discriminates");
+  EXPECT_EQ(made["cases"][0]["variants"][2]["role"], "null");
+  EXPECT_FALSE(made["cases"][0]["variants"][2]["median_time_s"].contains("solve"));
+  const json listed = json::parse(run("list --claims --json").out);
+  const json& claim = listed[0]["claims"][0];
+  EXPECT_EQ(claim["cases"][0]["null"], "discriminates");
+  EXPECT_NEAR(claim["cases"][0]["value_over_limit"], 0.855, 0.01);
 }
 
 TEST_F(Program, BlessIsRefusedWithoutAReason) {

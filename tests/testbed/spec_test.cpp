@@ -241,6 +241,54 @@ TEST_F(Spec, ClaimsAreCheckedAgainstMetricsVariantsAndCases) {
             "no error");
 }
 
+/// A claim about the polygon, with a null called "square".
+std::string with_null(const std::string& rest, const std::string& reference = "exact") {
+  return toy::disc_experiment() +
+         "[[variant]]\nname = \"square\"\nmethod = \"polygon\"\nrole = \"null\"\n" +
+         (reference.empty() ? "" : "reference = \"" + reference + "\"\n") +
+         "options = { segments = 4 }\n"
+         "[[claim]]\ntext = \"t\"\nvariant = \"polygon\"\n" +
+         rest;
+}
+
+TEST_F(Spec, NullsAreOtherVariantsThatCanFailTheClaim) {
+  const std::string metric = "metric = \"radius_error\"\nvalue = 0.1\n";
+  const Experiment e = load(with_null(metric + "null = \"square\"\n"));
+  EXPECT_EQ(e.claims.at(0).null, "square");
+  EXPECT_EQ(e.cases.at(0).variants.at(2).role, "null");
+  EXPECT_EQ(e.claims.at(0).metric_tolerance.absolute, topics_[0].metrics[0].tolerance.absolute);
+  EXPECT_THAT(
+      error_of(with_null(metric + "null = \"sqare\"\n")),
+      AllOf(HasSubstr("null: there is no variant 'sqare'"), HasSubstr("did you mean 'square'")));
+  EXPECT_THAT(error_of(with_null(metric + "null = \"polygon\"\n")),
+              HasSubstr("null: is the variant itself"));
+  const std::string of = "metric = \"radius_error\"\nof = \"exact\"\nnull = \"exact\"\n";
+  EXPECT_THAT(error_of(with_null(of + "is = \"<=\"\n")), HasSubstr("would pass: it is what"));
+  EXPECT_EQ(error_of(with_null(of + "is = \"<\"\n")), "no error");
+  EXPECT_EQ(error_of(with_null(of + "is = \"<=\"\nfactor = 0.5\n")), "no error");
+}
+
+TEST_F(Spec, ANullHasTheReferenceOfItsVariant) {
+  const std::string claim = "metric = \"distance_to_reference\"\nvalue = 0.1\nnull = \"square\"\n";
+  EXPECT_EQ(error_of(with_null(claim)), "no error");
+  EXPECT_THAT(error_of(with_null(claim, "")), HasSubstr("is not measured against 'exact'"));
+}
+
+TEST_F(Spec, TimesNeedNoNullAndOneLeftOutIsForgotten) {
+  const Experiment timed = load(with_null("metric = \"timing:solve\"\nvalue = 1\n"));
+  EXPECT_EQ(timed.claims.at(0).exempt, Exemption::timing);
+  const std::string text = with_null("metric = \"radius_error\"\nvalue = 0.1\nnull = \"square\"\n");
+  const Experiment alone = load(text, only({"polygon"}));
+  EXPECT_FALSE(alone.claims.at(0).null.has_value());
+  EXPECT_EQ(load(alone.resolved_toml).claims.size(), 1U);
+}
+
+TEST_F(Spec, TwoClaimsOfOneTextAreRefused) {
+  const std::string claim =
+      "[[claim]]\ntext = \"t\"\nmetric = \"radius_error\"\nvariant = \"exact\"\nvalue = 1\n";
+  EXPECT_THAT(error_of(toy::disc_experiment() + claim + claim), HasSubstr("two claims say 't'"));
+}
+
 TEST_F(Spec, SweepsOfOneNameAreToldApartAndRepeatedCasesRefused) {
   const std::string two =
       "[[variant]]\nname = \"other\"\nmethod = \"polygon\"\n"
