@@ -478,9 +478,7 @@ std::vector<ClaimRecord> read_claims(const H5Group& root, int schema_version) {
                       column<std::string>(table, 2)[i],
                       column<double>(table, 3)[i],
                       column<double>(table, 4)[i],
-                      column<std::int64_t>(table, 5)[i] != 0,
-                      {},
-                      {}});
+                      column<std::int64_t>(table, 5)[i] != 0});
   }
   if (schema_version >= 3) read_nulls(root, claims);
   return claims;
