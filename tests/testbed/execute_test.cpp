@@ -337,7 +337,7 @@ Topic follower_topic() {
   Topic topic;
   topic.name = "follower";
   topic.default_scene = [] { return std::make_unique<TypedOptions<FollowerSceneOptions>>(); };
-  topic.load = [](const OptionSet& set, const fs::path&) -> std::shared_ptr<Scene> {
+  topic.load = [](const OptionSet& set, const fs::path&, std::uint64_t) -> std::shared_ptr<Scene> {
     auto scene = std::make_shared<FollowerScene>();
     scene->options = dynamic_cast<const TypedOptions<FollowerSceneOptions>&>(set).options;
     return scene;
