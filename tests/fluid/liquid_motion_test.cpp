@@ -158,13 +158,15 @@ TEST(LiquidMotion, DamBreakBeginsWithTheAccelerationOfPotentialFlow) {
   const Eigen::Vector2d exact = first_acceleration(0.5, 1);
   Liquid liquid(dam(32), with(TransferKind::flip), 1);
   RunContext context;
-  const double dt = liquid.step(1e-3, context).dt;
+  // Leapfrog: after the first step velocities are those of half of it.
+  const double half_dt = liquid.step(1e-3, context).dt / 2;
   const LiquidParticles& p = liquid.particles();
-  const Eigen::Vector3d now = tanks::momentum(p) / (static_cast<double>(p.size()) * kGravity * dt);
+  const Eigen::Vector3d now =
+      tanks::momentum(p) / (static_cast<double>(p.size()) * kGravity * half_dt);
   RecordProperty("acceleration_x_over_exact", std::to_string(now.x() / exact.x()));
   RecordProperty("acceleration_z_over_exact", std::to_string(now.z() / exact.y()));
-  EXPECT_NEAR(now.x() / exact.x(), 1, 0.03);
-  EXPECT_NEAR(now.z() / exact.y(), 1, 0.03);
+  EXPECT_NEAR(now.x() / exact.x(), 1, 0.005);
+  EXPECT_NEAR(now.z() / exact.y(), 1, 0.005);
 }
 
 // Martin and Moyce 1952, n^2 = 2, a = 2.25 in: Z = 1.44, 2.11, 3.00, 4.11 at T = 1.19, 1.83, 2.51,
