@@ -16,8 +16,10 @@ std::optional<std::size_t> of_a_step_at_rest(int details, const SelfReplicatingO
   scene.details = detail_scenes::even_details(scene.surface, details, 1);
   scene.motion = std::make_shared<StoredMotion>(std::vector{scene.surface.V, scene.surface.V},
                                                 std::vector{0.0, 1.0});
-  const auto method = make_self_replicating(scene, options, 1);
-  std::optional<std::size_t> count;
+  std::unique_ptr<DetailMethod> method;
+  std::optional<std::size_t> count =
+      test::allocations_of([&] { method = make_self_replicating(scene, options, 1); });
+  if (count) EXPECT_GT(*count, 100U) << "what is kept of the surface";
   with_threads(1, [&] {
     RunContext context;
     for (int frame = 0; frame < 2; ++frame) method->step(scene.surface.V, context);

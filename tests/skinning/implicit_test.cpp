@@ -197,7 +197,7 @@ TEST(ImplicitSkinning, TheReleasedScheduleReachesTheIsoValues) {
   EXPECT_LE((posed - other).rowwise().norm().maxCoeff(), 0.1 * kFingerRadius);
 }
 
-TEST(ImplicitSkinning, EveryOperatorKeepsVolumeBonesAndSidesOfABentFinger) {
+TEST(ImplicitSkinning, EveryOperatorKeepsVolumeAndBonesOfABentFinger) {
   const RiggedMesh& rig = finger();
   const double rest_volume = signed_volume(rig.mesh.V, rig.mesh.F);
   for (const BlendKind kind :
