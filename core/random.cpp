@@ -49,6 +49,10 @@ double RandomStream::normal() {
   return radius * std::cos(angle);
 }
 
+std::uint64_t scene_seed(std::uint64_t experiment, int own) {
+  return experiment + static_cast<std::uint64_t>(own) - 1;
+}
+
 std::uint64_t fnv1a(std::string_view text) {
   std::uint64_t hash = 0xCBF29CE484222325ULL;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ULL;

@@ -30,6 +30,11 @@ class RandomStream {
   bool has_spare_ = false;
 };
 
+/// Seed of what a scene draws: the experiment's, moved on by the scene's own key, so that the one
+/// reaches everything and the other still gives another scene within an experiment. With the
+/// experiment's seed 1, the default, it is the key's value.
+std::uint64_t scene_seed(std::uint64_t experiment, int own = 1);
+
 /// FNV-1a, 64 bit: to name streams, not to protect anything.
 std::uint64_t fnv1a(std::string_view text);
 

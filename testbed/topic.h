@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -137,8 +138,11 @@ struct Topic {
   /// Options of the `[scene]` table.
   std::function<std::unique_ptr<OptionSet>()> default_scene;
   /// Loads inputs. `folder` is the folder of the experiment file, against which relative paths are
-  /// tried first.
-  std::function<std::shared_ptr<Scene>(const OptionSet&, const std::filesystem::path& folder)> load;
+  /// tried first; `seed` is the experiment's, of whatever the scene draws (core/random.h,
+  /// scene_seed).
+  std::function<std::shared_ptr<Scene>(const OptionSet&, const std::filesystem::path& folder,
+                                       std::uint64_t seed)>
+      load;
   std::vector<MethodEntry> methods;
   std::vector<MetricEntry> metrics;
   std::vector<DiagnosticEntry> diagnostics;

@@ -239,9 +239,9 @@ Eigen::VectorXd gradient_density(const TriMesh& surface, const DensityOptions& o
 }
 
 std::vector<Detail> scatter(const TriMesh& surface, const DetailPatternOptions& options,
-                            const Eigen::VectorXd& relative) {
+                            const Eigen::VectorXd& relative, std::uint64_t experiment_seed) {
   const Ground ground(surface, options, relative);
-  const auto seed = static_cast<std::uint64_t>(options.seed);
+  const std::uint64_t seed = scene_seed(experiment_seed, options.seed);
   RandomStream places(seed, "places"), looks(seed, "looks");
   std::vector<Detail> details;
   for (const SurfacePoint& at : places_of(ground, options, places)) {
@@ -335,7 +335,8 @@ void describe(OptionVisitor& v, DetailPatternOptions& options) {
   }
   v.value("aligned", options.aligned, {.doc = "tangents along `direction`, else at random"});
   v.value("direction", options.direction, {.doc = "of aligned tangents"});
-  v.value("seed", options.seed, {.doc = "of places, types and tangents", .min = 0});
+  v.value("seed", options.seed,
+          {.doc = "of places, types and tangents, beside the experiment's", .min = 0});
 }
 
 }  // namespace geoprior::details

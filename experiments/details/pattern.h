@@ -63,7 +63,7 @@ Eigen::VectorXd gradient_density(const TriMesh& surface, const DensityOptions& o
 /// @throws Error  naming the key: a direction that is none
 std::vector<char> faces_of_region(const TriMesh& surface, const std::vector<RegionOptions>& region);
 
-/// Details of a sampled pattern. Same surface, options and seed: same details.
+/// Details of a sampled pattern. Same surface, options and seeds: same details.
 ///
 /// - uniform: places drawn with the density, independently (a Poisson process of fixed number).
 /// - poisson-disk: drawn likewise; one that has another within radius / sqrt(density at it) is
@@ -75,9 +75,10 @@ std::vector<char> faces_of_region(const TriMesh& surface, const std::vector<Regi
 ///
 /// The density is scaled so that it sums to `count` over the surface.
 /// @param relative  density at each vertex, not negative, in any unit
+/// @param experiment_seed  moved on by that of the options (core/random.h, scene_seed)
 /// @throws Error  naming the key: density 0 everywhere, a region that holds nothing, a grid on a
 ///                surface that is not flat, fewer than 3 details
 std::vector<Detail> scatter(const TriMesh& surface, const DetailPatternOptions& options,
-                            const Eigen::VectorXd& relative);
+                            const Eigen::VectorXd& relative, std::uint64_t experiment_seed = 1);
 
 }  // namespace geoprior::details

@@ -22,6 +22,7 @@ struct Loading {
   const DetailSceneOptions& options;
   fs::path folder;
   DetailsScene& result;
+  std::uint64_t seed;                               ///< of the experiment
   std::shared_ptr<const SurfaceSequence> sequence;  ///< of `motion`, or null
 
   void load_surface() {
@@ -88,11 +89,11 @@ struct Loading {
       return;
     }
     const Eigen::VectorXd relative = density();
-    scene.details = scatter(scene.surface, o, relative);
+    scene.details = scatter(scene.surface, o, relative, seed);
     for (int i = 1; i <= kResamples; ++i) {
       DetailPatternOptions again = o;
       again.seed += i * kSeedStep;
-      result.resamples.push_back(scatter(scene.surface, again, relative));
+      result.resamples.push_back(scatter(scene.surface, again, relative, seed));
     }
     // A twentieth less is what chance explains; more is a pattern that does not fit.
     const double share = static_cast<double>(scene.details.size()) / o.count;
@@ -182,9 +183,9 @@ std::map<std::string, double> DetailsScene::facts() const {
 }
 
 std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& options,
-                                                 const fs::path& folder) {
+                                                 const fs::path& folder, std::uint64_t seed) {
   auto scene = std::make_shared<DetailsScene>();
-  Loading loading{options, folder, *scene, nullptr};
+  Loading loading{options, folder, *scene, seed, nullptr};
   if (options.motion.sequence) {
     if (options.surface.kind != DetailSurfaceKind::sequence) {
       throw Error("is not the one that moves", "scene.surface.kind",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -48,8 +49,10 @@ class DetailsScene final : public ProcessScene {
 };
 
 /// @param folder  of the experiment file, against which relative files are tried first
+/// @param seed    of the experiment: of the pattern, beside the pattern's own
 /// @throws Error  naming key or file, and place
 std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& options,
-                                                 const std::filesystem::path& folder);
+                                                 const std::filesystem::path& folder,
+                                                 std::uint64_t seed);
 
 }  // namespace geoprior::details

@@ -9,9 +9,9 @@ Topic make_topic() {
   topic.name = "details";
   topic.summary = "details on a surface keep their spacing while it is deformed (thesis 2.2.2)";
   topic.default_scene = [] { return std::make_unique<TypedOptions<DetailSceneOptions>>(); };
-  topic.load = [](const OptionSet& set, const std::filesystem::path& folder) {
+  topic.load = [](const OptionSet& set, const std::filesystem::path& folder, std::uint64_t seed) {
     return load_details_scene(dynamic_cast<const TypedOptions<DetailSceneOptions>&>(set).options,
-                              folder);
+                              folder, seed);
   };
   topic.methods = methods();
   topic.metrics = metrics();

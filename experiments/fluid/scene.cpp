@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/random.h"
 #include "experiments/fluid/edit_list.h"
 #include "experiments/fluid/feature_files.h"
 #include "experiments/fluid/ocean_sequence.h"
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 struct Loading {
   fs::path folder;
   FluidScene& scene;
+  std::uint64_t seed;  ///< of the experiment
 
   TriMesh read_mesh(const std::string& file, double scale, const std::string& where) {
     SequenceOptions still;
@@ -113,7 +115,7 @@ std::shared_ptr<const SurfaceSequence> make_target(const TargetOptions& options,
                            scene.input_files);
     case TargetKind::ocean:
       return std::make_shared<OceanSequence>(
-          options.ocean, static_cast<std::uint64_t>(options.ocean_seed), scene.sculpt.times);
+          options.ocean, scene_seed(loading.seed, options.ocean_seed), scene.sculpt.times);
     case TargetKind::mesh: {
       TriMesh mesh = loading.read_mesh(options.file, options.scale, "scene.target.file");
       const Eigen::Matrix3d turn = to_rotation(options.turn_deg).toRotationMatrix();
@@ -136,7 +138,9 @@ void load_sources(const FluidSceneOptions& options, Loading& loading) {
     }
   };
   if (options.injected) {
-    loading.scene.injected = std::make_shared<InjectedSequence>(*options.injected);
+    InjectedOptions injected = *options.injected;
+    injected.seed = scene_seed(loading.seed);
+    loading.scene.injected = std::make_shared<InjectedSequence>(injected);
     loading.scene.injected_resolution = options.injected->resolution;
     sculpt.sources["injected"] = loading.scene.injected;
   }
@@ -275,9 +279,9 @@ double simulation_memory_limit() {
 }
 
 std::shared_ptr<FluidScene> load_fluid_scene(const FluidSceneOptions& options,
-                                             const fs::path& folder) {
+                                             const fs::path& folder, std::uint64_t seed) {
   auto scene = std::make_shared<FluidScene>();
-  Loading loading{folder, *scene};
+  Loading loading{folder, *scene, seed};
   scene->duration = options.duration;
   scene->frame_interval = options.frame_interval;
   scene->gravity = to_vector(options.gravity);

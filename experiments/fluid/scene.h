@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -44,8 +45,10 @@ class FluidScene final : public ProcessScene {
 double simulation_memory_limit();
 
 /// @param folder  of the experiment file, against which relative files are tried first
+/// @param seed    of the experiment: of injected features, their noise, and an ocean's waves
 /// @throws Error  naming key or file, and place
 std::shared_ptr<FluidScene> load_fluid_scene(const FluidSceneOptions& options,
-                                             const std::filesystem::path& folder);
+                                             const std::filesystem::path& folder,
+                                             std::uint64_t seed);
 
 }  // namespace geoprior::fluid

@@ -101,7 +101,8 @@ void describe(OptionVisitor& v, TargetOptions& options) {
       break;
     case TargetKind::ocean:
       describe_group(v, "ocean", options.ocean, {.doc = "spectrum and patch"});
-      v.value("ocean_seed", options.ocean_seed, {.doc = "of its waves", .min = 0});
+      v.value("ocean_seed", options.ocean_seed,
+              {.doc = "of its waves, beside the experiment's", .min = 0});
       break;
     case TargetKind::injected:
       break;

@@ -9,9 +9,9 @@ Topic make_topic() {
   topic.name = "fluid";
   topic.summary = "features are cut from liquid animations and pasted into others (thesis 3.3)";
   topic.default_scene = [] { return std::make_unique<TypedOptions<FluidSceneOptions>>(); };
-  topic.load = [](const OptionSet& set, const std::filesystem::path& folder) {
+  topic.load = [](const OptionSet& set, const std::filesystem::path& folder, std::uint64_t seed) {
     return load_fluid_scene(dynamic_cast<const TypedOptions<FluidSceneOptions>&>(set).options,
-                            folder);
+                            folder, seed);
   };
   topic.methods = methods();
   topic.metrics = metrics();

@@ -9,7 +9,8 @@ Topic make_topic() {
   topic.name = "skinning";
   topic.summary = "a character's skin follows its skeleton (thesis 3.1)";
   topic.default_scene = [] { return std::make_unique<TypedOptions<SkinningSceneOptions>>(); };
-  topic.load = [](const OptionSet& set, const std::filesystem::path& folder) {
+  topic.load = [](const OptionSet& set, const std::filesystem::path& folder,
+                  std::uint64_t /*seed*/) {
     return load_skinning_scene(dynamic_cast<const TypedOptions<SkinningSceneOptions>&>(set).options,
                                folder);
   };

@@ -132,7 +132,7 @@ CaseRunner::CaseRunner(const Experiment& experiment, const CaseSpec& spec, const
 void CaseRunner::load(const OptionSet& options, std::vector<StoredFile> inputs) {
   const auto begin = std::chrono::steady_clock::now();
   try {
-    scene_ = topic_.load(options, experiment_.file.parent_path());
+    scene_ = topic_.load(options, experiment_.file.parent_path(), spec_.seed);
   } catch (const Error& error) {
     const std::string place = place_of_scene_key(spec_.scene_places, error.what());
     throw Error(error.what(), (place.empty() ? experiment_.file.string() : place) +

@@ -16,6 +16,14 @@ TEST(RandomStream, MatchesThePublishedPcg32Sequence) {
   }
 }
 
+TEST(SceneSeed, IsTheKeyOfTheSceneWhereTheExperimentHasTheFirstSeed) {
+  for (const int own : {0, 1, 2, 1000003})
+    EXPECT_EQ(scene_seed(1, own), static_cast<unsigned>(own));
+  EXPECT_EQ(scene_seed(7), 7U);
+  EXPECT_NE(scene_seed(2, 5), scene_seed(1, 5));
+  EXPECT_NE(scene_seed(2, 5), scene_seed(2, 6));
+}
+
 TEST(RandomStream, UniformAndNormalHaveTheirMoments) {
   RandomStream stream(7, "moments");
   constexpr int kDraws = 200000;

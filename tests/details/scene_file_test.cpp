@@ -32,9 +32,10 @@ class DetailsScenes : public RunTest {
     request.threads = threads;
     return load_experiment(write_experiment("details/scene", text), {make_topic()}, request);
   }
-  [[nodiscard]] std::shared_ptr<DetailsScene> scene(const std::string& scene_lines) const {
+  [[nodiscard]] std::shared_ptr<DetailsScene> scene(const std::string& scene_lines,
+                                                    std::uint64_t seed = 1) const {
     const auto loaded = make_topic().load(*experiment(scene_lines, "").cases[0].scene,
-                                          folder() / "experiments" / "details");
+                                          folder() / "experiments" / "details", seed);
     return std::dynamic_pointer_cast<DetailsScene>(loaded);
   }
   [[nodiscard]] ExecuteResult run(const std::string& scene_lines, const std::string& only,
@@ -52,6 +53,28 @@ const std::string kSmall =
     "pattern = { count = 60, types = 2 }\npair_frames = 1\n"
     "motion = { frames = 6, deform = [{ kind = \"inflate\", keys = [{ t = 0, value = 1 }, { t = 1, "
     "value = 1.3 }] }] }\n";
+
+std::vector<Eigen::Vector3d> places_of(const DetailsScene& scene,
+                                       const std::vector<Detail>& details) {
+  std::vector<Eigen::Vector3d> places;
+  for (const Detail& d : details)
+    places.push_back(position_of(d.at, scene.input.surface.V, scene.input.surface.F));
+  return places;
+}
+
+TEST_F(DetailsScenes, SeedOfTheExperimentReachesThePattern) {
+  for (const std::string kind : {"poisson-disk", "uniform", "grid", "clusters"}) {
+    const std::string lines = "pattern = { kind = \"" + kind + "\", count = 60 }\n";
+    const auto one = scene(lines, 1), again = scene(lines, 1), two = scene(lines, 2);
+    const auto places = places_of(*one, one->input.details);
+    EXPECT_EQ(places, places_of(*again, again->input.details)) << kind;
+    EXPECT_NE(places, places_of(*two, two->input.details)) << kind;
+    for (std::size_t i = 0; i < one->resamples.size(); ++i) {
+      EXPECT_NE(places, places_of(*one, one->resamples[i])) << kind;
+      EXPECT_NE(places_of(*one, one->resamples[i]), places_of(*two, two->resamples[i])) << kind;
+    }
+  }
+}
 
 TEST_F(DetailsScenes, DefaultsToThousandDetailsOnASquareMetre) {
   const auto s = scene("");

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -129,15 +130,54 @@ double front(const Liquid& liquid) {
   return (last + 1) * shape.cell;
 }
 
-// Martin and Moyce 1952, n^2 = 2, a = 2.25 in: Z = 1.44, 2.11, 3.00, 4.11 at T = 1.19, 1.83, 2.51,
-// 3.33, T = t sqrt(2 g / a), Z = x / a. The front moves as fast as measured (10 %, at 16 cells to
-// a column), and ahead of it by the same time at every place: the experiment's gate opens, the
-// simulation's is not there. (32 cells and steps of 2 ms change the places by 3 %.)
-TEST(LiquidMotion, DamBreakFrontMovesAsMartinAndMoyceMeasured) {
+/// Acceleration of a column's centre in the first moment of a dam break, in units of g: column of
+/// width a against the wall x = 0, height H, free at x = a and z = H.
+///
+/// The pressure is harmonic: p / (rho g) = H - z + sum_n c_n cos(k_n z) cosh(k_n x) / cosh(k_n a),
+/// k_n = (n + 1/2) pi / H, c_n = -2 / (H k_n^2) so that it vanishes at x = a. Wall and floor push
+/// the centre; what they push is its integral over them.
+Eigen::Vector2d first_acceleration(double a, double H) {
+  double wall = H * H / 2, floor = a * H;
+  for (int n = 0; n < 2000; ++n) {
+    const double k = (n + 0.5) * pi / H, c = -2 / (H * k * k);
+    wall += c * (n % 2 == 0 ? 1 : -1) / (k * std::cosh(std::min(k * a, 700.0)));
+    floor += c * std::tanh(k * a) / k;
+  }
+  return {wall / (a * H), floor / (a * H) - 1};
+}
+
+Tank dam(int cells_a_width) {
   constexpr double kWidth = 0.5;
-  Tank tank = tank_of({80, 2, 36}, kWidth / 16);
+  Tank tank = tank_of({5 * cells_a_width, 2, 9 * cells_a_width / 4}, kWidth / cells_a_width);
   tank.volumes.push_back(at_rest(box_between({0, 0, 0}, {kWidth, 1, 2 * kWidth})));
-  Liquid liquid(tank, with(TransferKind::flip), 1);
+  return tank;
+}
+
+// Potential flow, which a column at rest begins with: no measurement, no gate.
+TEST(LiquidMotion, DamBreakBeginsWithTheAccelerationOfPotentialFlow) {
+  const Eigen::Vector2d exact = first_acceleration(0.5, 1);
+  Liquid liquid(dam(32), with(TransferKind::flip), 1);
+  RunContext context;
+  // Leapfrog: after the first step velocities are those of half of it.
+  const double half_dt = liquid.step(1e-3, context).dt / 2;
+  const LiquidParticles& p = liquid.particles();
+  const Eigen::Vector3d now =
+      tanks::momentum(p) / (static_cast<double>(p.size()) * kGravity * half_dt);
+  RecordProperty("acceleration_x_over_exact", std::to_string(now.x() / exact.x()));
+  RecordProperty("acceleration_z_over_exact", std::to_string(now.z() / exact.y()));
+  EXPECT_NEAR(now.x() / exact.x(), 1, 0.005);
+  EXPECT_NEAR(now.z() / exact.y(), 1, 0.005);
+}
+
+// Martin and Moyce 1952, n^2 = 2, a = 2.25 in: Z = 1.44, 2.11, 3.00, 4.11 at T = 1.19, 1.83, 2.51,
+// 3.33, T = t sqrt(2 g / a), Z = x / a. Their clock starts with the gate, which takes a time to
+// open that is not published: speeds between the places are compared, to 10 % at 16 cells to a
+// column (32 cells and steps of 2 ms change them by 3 %). Without a gate the front is nowhere later
+// than measured, and never faster than the front on a dry bed of Ritter 1892, 2 sqrt(g H): 2 in Z
+// a T.
+TEST(LiquidMotion, DamBreakFrontMovesAsMartinAndMoyceMeasured) {
+  constexpr double kWidth = 0.5, kRitter = 2;
+  Liquid liquid(dam(16), with(TransferKind::flip), 1);
   const double unit = std::sqrt(kWidth / (2 * kGravity));
   constexpr std::array<std::array<double, 2>, 4> kMeasured{
       {{1.19, 1.44}, {1.83, 2.11}, {2.51, 3.00}, {3.33, 4.11}}};
@@ -155,11 +195,15 @@ TEST(LiquidMotion, DamBreakFrontMovesAsMartinAndMoyceMeasured) {
     ASSERT_LT(liquid.time(), 5 * unit);
   }
   for (std::size_t m = 0; m < 4; ++m) {
-    RecordProperty("ahead_" + std::to_string(m), std::to_string(kMeasured[m][0] - reached[m]));
-    EXPECT_NEAR(kMeasured[m][0] - reached[m], 0.27, 0.1) << m;
+    EXPECT_LT(reached[m], kMeasured[m][0]) << m;
+    EXPECT_GT(reached[m], (kMeasured[m][1] - 1) / kRitter) << m;
+    if (m == 0) continue;
+    const double way = kMeasured[m][1] - kMeasured[m - 1][1];
+    const double speed = way / (reached[m] - reached[m - 1]);
+    const double measured = way / (kMeasured[m][0] - kMeasured[m - 1][0]);
+    RecordProperty("speed_over_measured_" + std::to_string(m), std::to_string(speed / measured));
+    EXPECT_NEAR(speed / measured, 1, 0.1) << m;
   }
-  const double measured_speed = (4.11 - 2.11) / (3.33 - 1.83);
-  EXPECT_NEAR((4.11 - 2.11) / (reached[3] - reached[1]) / measured_speed, 1, 0.1);
 }
 
 /// Volume in which the pressure acts, from the particles as they are.

@@ -352,8 +352,21 @@ TEST(LiquidProcess, AMovingSolidPushesLiquid) {
   run_until(*liquid, 0.25, 0.02);
   EXPECT_GT(tanks::momentum(liquid->particles()).x() - start, 0);
   const double face = 0.2 + paddle.motion->at(0.25).shift.x();
-  for (const Eigen::Vector3f& x : liquid->particles().position)
-    EXPECT_GT(static_cast<double>(x.x()), face - 0.1 / 32);
+  double speed = 0;
+  int beside = 0;
+  const LiquidParticles& particles = liquid->particles();
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const double x = static_cast<double>(particles.position[p].x());
+    EXPECT_GT(x, face - 0.1 / 32);
+    if (x > face + 1.0 / 32) continue;
+    speed += static_cast<double>(particles.velocity[p].x());
+    ++beside;
+  }
+  ASSERT_GT(beside, 0);
+  RecordProperty("speed_beside_the_face", std::to_string(speed / beside));
+  const double paddle_speed =
+      (paddle.motion->at(0.251).shift.x() - paddle.motion->at(0.249).shift.x()) / 0.002;
+  EXPECT_NEAR(speed / beside, paddle_speed, 0.05 * paddle_speed);
 }
 
 }  // namespace

@@ -21,15 +21,16 @@ using ::testing::HasSubstr;
 class FluidScenes : public RunTest {
  protected:
   /// What a [scene] table describes.
-  [[nodiscard]] std::shared_ptr<const Scene> load_scene(const std::string& scene_lines) const {
+  [[nodiscard]] std::shared_ptr<const Scene> load_scene(const std::string& scene_lines,
+                                                        std::uint64_t seed = 1) const {
     const auto file = write_experiment(
         "fluid/scene", "title = \"A scene\"\ntopic = \"fluid\"\n[scene]\n" + scene_lines +
                            "\n[[variant]]\nname = \"flip\"\nmethod = \"liquid\"\n");
     const Experiment experiment = load_experiment(file, {make_topic()}, {});
-    return make_topic().load(*experiment.cases[0].scene, file.parent_path());
+    return make_topic().load(*experiment.cases[0].scene, file.parent_path(), seed);
   }
-  [[nodiscard]] FluidScene scene(const std::string& scene_lines) const {
-    return dynamic_cast<const FluidScene&>(*load_scene(scene_lines));
+  [[nodiscard]] FluidScene scene(const std::string& scene_lines, std::uint64_t seed = 1) const {
+    return dynamic_cast<const FluidScene&>(*load_scene(scene_lines, seed));
   }
   [[nodiscard]] std::string refusal(const std::string& scene_lines) const {
     return error_of([&] { (void)load_scene(scene_lines); });
@@ -47,6 +48,55 @@ const std::string kTank =
     "[0.1, 0.1, 0.05], size = [0.2, 0.2, 0.1] } }] }\n";
 const std::string kTetrahedron =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+/// Vertices of all frames, in order.
+Eigen::MatrixX3d vertices_of(const SurfaceSequence& sequence) {
+  Eigen::MatrixX3d all(0, 3);
+  for (int f = 0; f < sequence.frame_count(); ++f) {
+    const Eigen::MatrixX3d V = sequence.frame(f).mesh.V;
+    all.conservativeResize(all.rows() + V.rows(), 3);
+    all.bottomRows(V.rows()) = V;
+  }
+  return all;
+}
+
+bool same_bytes(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d& b) {
+  return a.rows() == b.rows() && (a.array() == b.array()).all();
+}
+
+TEST_F(FluidScenes, SeedOfTheExperimentReachesInjectedFeaturesAndTheirNoise) {
+  for (const std::string lines :
+       {"injected = { frames = 4 }\n", "injected = { frames = 4, noise = 0.05 }\n"}) {
+    const Eigen::MatrixX3d one = vertices_of(*scene(lines, 1).injected);
+    EXPECT_TRUE(same_bytes(one, vertices_of(*scene(lines, 1).injected)));
+    EXPECT_FALSE(same_bytes(one, vertices_of(*scene(lines, 2).injected)));
+  }
+}
+
+TEST_F(FluidScenes, NoiseOfAStillPoolIsThatOfTheSeed) {
+  const std::string still =
+      "injected = { bumps = 0, rings = 0, drops = 0, crossings = 0, frames = 3";
+  const std::string noisy = still + ", noise = 0.05 }\n";
+  // Without noise and features nothing is drawn.
+  EXPECT_TRUE(same_bytes(vertices_of(*scene(still + " }\n", 1).injected),
+                         vertices_of(*scene(still + " }\n", 2).injected)));
+  const Eigen::MatrixX3d one = vertices_of(*scene(noisy, 1).injected);
+  const Eigen::MatrixX3d two = vertices_of(*scene(noisy, 2).injected);
+  EXPECT_TRUE(same_bytes(one, vertices_of(*scene(noisy, 1).injected)));
+  EXPECT_FALSE(same_bytes(one, two));
+}
+
+TEST_F(FluidScenes, SeedOfTheExperimentReachesTheWavesOfAnOcean) {
+  const std::string start = "duration = 0.1\nframe_interval = 0.05\n";
+  const auto ocean = [&](const std::string& more) {
+    return start + "target = { kind = \"ocean\", ocean = { samples = 32, size = 20 }" + more +
+           " }\n";
+  };
+  const Eigen::MatrixX3d one = vertices_of(*scene(ocean(""), 1).sculpt.target);
+  EXPECT_TRUE(same_bytes(one, vertices_of(*scene(ocean(""), 1).sculpt.target)));
+  EXPECT_FALSE(same_bytes(one, vertices_of(*scene(ocean(""), 2).sculpt.target)));
+  EXPECT_FALSE(same_bytes(one, vertices_of(*scene(ocean(", ocean_seed = 2"), 1).sculpt.target)));
+}
 
 TEST_F(FluidScenes, TankIsWholeCellsWithGaugesOverIt) {
   const FluidScene s = scene("duration = 0.1\nframe_interval = 0.02\n" + kTank);

@@ -32,7 +32,7 @@ TEST(PaperExperiments, AreTheElevenThatTheTopicHas) {
       const Experiment experiment = load_experiment(file, {make_topic()}, request);
       EXPECT_FALSE(experiment.cases.empty()) << file;
       for (const CaseSpec& c : experiment.cases) {
-        EXPECT_NO_THROW(make_topic().load(*c.scene, file.parent_path())) << file;
+        EXPECT_NO_THROW(make_topic().load(*c.scene, file.parent_path(), c.seed)) << file;
       }
     }
   }
@@ -43,7 +43,7 @@ TEST(PaperExperiments, AreTheElevenThatTheTopicHas) {
 TEST(PaperExperiments, NeverPullTwoHandlesFartherApartThanTheirPatternAllows) {
   for (const fs::path& file : experiment_files()) {
     const Experiment experiment = load_experiment(file, {make_topic()}, {});
-    const auto scene = make_topic().load(*experiment.cases[0].scene, file.parent_path());
+    const auto scene = make_topic().load(*experiment.cases[0].scene, file.parent_path(), 1);
     const Sheet& sheet = dynamic_cast<const PaperScene&>(*scene).sheet;
     const auto worst = worst_pulled_apart(sheet, 1e-4);
     EXPECT_FALSE(worst) << file << ": " << warning_text(sheet, *worst, "scene");

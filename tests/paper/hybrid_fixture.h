@@ -118,9 +118,11 @@ inline Sheet wandering_sheet(std::uint64_t seed, int frames) {
   return sheet;
 }
 
-/// Runs the hybrid model and shows each frame.
+using HybridLook = std::function<void(const HybridMesher&, const ShellState&)>;
+
+/// Runs the hybrid model and shows each frame, if asked for also as the model finds it.
 inline void run_hybrid(const Sheet& sheet, const HybridOptions& options, std::uint64_t seed,
-                       const std::function<void(const HybridMesher&, const ShellState&)>& look) {
+                       const HybridLook& look, const HybridLook& look_before = {}) {
   RunContext context(seed);
   HybridMesher mesher(options);
   ShellState state = mesher.start(sheet, context);
@@ -134,9 +136,28 @@ inline void run_hybrid(const Sheet& sheet, const HybridOptions& options, std::ui
       stepper.step(state, dt, context);
     }
     state.time = sheet.frame_time(frame);
+    if (look_before) look_before(mesher, state);
     if (mesher.adapt(sheet, stepper, state, context)) stepper.set_mesh(state);
     look(mesher, state);
   }
+}
+
+/// Stretches sigma_1 >= sigma_2 of a triangle's map from the pattern, and the triangle's area
+/// there.
+struct Stretch {
+  Eigen::Vector2d sigma;
+  double area = 0;
+};
+inline Stretch stretch(const ShellState& state, int f) {
+  const Eigen::RowVector3i t = state.mesh.triangles.row(f);
+  Eigen::Matrix2d rest;
+  Eigen::Matrix<double, 3, 2> now;
+  for (int k = 0; k < 2; ++k) {
+    rest.col(k) = state.mesh.pattern.row(t[k + 1]) - state.mesh.pattern.row(t[0]);
+    now.col(k) = state.x.row(t[k + 1]) - state.x.row(t[0]);
+  }
+  const Eigen::MatrixXd F = now * rest.inverse();
+  return {Eigen::JacobiSVD<Eigen::MatrixXd>(F).singularValues(), rest.determinant() / 2};
 }
 
 /// RMS (by area) and largest |sigma - 1| of the map from the pattern.
@@ -146,20 +167,43 @@ struct Isometry {
 inline Isometry isometry(const ShellState& state) {
   double sum = 0, whole = 0, largest = 0;
   for (int f = 0; f < state.mesh.triangle_count(); ++f) {
-    const Eigen::RowVector3i t = state.mesh.triangles.row(f);
-    Eigen::Matrix2d rest;
-    Eigen::Matrix<double, 3, 2> now;
-    for (int k = 0; k < 2; ++k) {
-      rest.col(k) = state.mesh.pattern.row(t[k + 1]) - state.mesh.pattern.row(t[0]);
-      now.col(k) = state.x.row(t[k + 1]) - state.x.row(t[0]);
-    }
-    const Eigen::MatrixXd F = now * rest.inverse();
-    const Eigen::Vector2d off = Eigen::JacobiSVD<Eigen::MatrixXd>(F).singularValues().array() - 1;
-    sum += rest.determinant() * off.squaredNorm() / 2;
-    whole += rest.determinant();
+    const Stretch s = stretch(state, f);
+    const Eigen::Vector2d off = s.sigma.array() - 1;
+    sum += s.area * off.squaredNorm();
+    whole += 2 * s.area;
     largest = std::max(largest, off.cwiseAbs().maxCoeff());
   }
   return {std::sqrt(sum / whole), largest};
+}
+
+/// By how much the ends of a ruling's path through space have approached, relative to its length:
+/// the path goes over the vertices that lie on the ruling in the pattern.
+inline double shortening(const ShellState& state, const Ruling& ruling) {
+  const Eigen::Vector2d along = ruling.b - ruling.a;
+  std::vector<std::pair<double, Eigen::Index>> path;
+  for (Eigen::Index v = 0; v < state.mesh.pattern.rows(); ++v) {
+    const Eigen::Vector2d p = state.mesh.pattern.row(v).transpose() - ruling.a;
+    const double t = p.dot(along) / along.squaredNorm();
+    if ((p - t * along).norm() < 1e-9 && t > -1e-9 && t < 1 + 1e-9) path.emplace_back(t, v);
+  }
+  std::sort(path.begin(), path.end());
+  double length = 0;
+  for (std::size_t i = 1; i < path.size(); ++i)
+    length += (state.x.row(path[i].second) - state.x.row(path[i - 1].second)).norm();
+  if (!(length > 0)) return 0;
+  return 1 - (state.x.row(path.back().second) - state.x.row(path.front().second)).norm() / length;
+}
+
+/// Largest compression of a sheet: of a triangle (strain (1 - sigma_2^2) / 2), or along a ruling
+/// that has given way.
+inline double largest_compression(const PaperStructure& structure, const ShellState& state) {
+  double most = 0;
+  for (int f = 0; f < state.mesh.triangle_count(); ++f) {
+    const double sigma = stretch(state, f).sigma[1];
+    most = std::max(most, (1 - sigma * sigma) / 2);
+  }
+  for (const Ruling& ruling : structure.rulings) most = std::max(most, shortening(state, ruling));
+  return most;
 }
 
 }  // namespace geoprior::paper

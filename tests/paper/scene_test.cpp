@@ -22,7 +22,7 @@ class PaperScenes : public RunTest {
         "paper/scene", "title = \"A scene\"\ntopic = \"paper\"\n[scene]\n" + scene_lines +
                            "\n[[variant]]\nname = \"dense\"\nmethod = \"dense\"\n");
     const Experiment experiment = load_experiment(file, {make_topic()}, {});
-    const auto loaded = make_topic().load(*experiment.cases[0].scene, file.parent_path());
+    const auto loaded = make_topic().load(*experiment.cases[0].scene, file.parent_path(), 1);
     return dynamic_cast<const PaperScene&>(*loaded);
   }
   [[nodiscard]] Sheet sheet(const std::string& scene_lines) const {

@@ -39,36 +39,29 @@ ShellMesh polar_mesh() {
   return mesh;
 }
 
-/// Slope of the inextensible d-cone over `kSlope`, its buckle scaled.
-double buckled(double t, double scale) {
-  const double t1 = 138.99 / 2 * std::numbers::pi / 180, a = 3.805;
-  t = std::abs(std::remainder(t, 2 * std::numbers::pi));
-  if (t >= t1) return 1;
-  const double det = -a * std::cos(t1) * std::sin(a * t1) + std::cos(a * t1) * std::sin(t1);
-  const double c1 = -a * std::sin(a * t1) / det, c2 = std::sin(t1) / det;
-  return 1 + scale * (c1 * std::cos(t) + c2 * std::cos(a * t) - 1);
-}
-
-/// An isometric cone near the solution: only the mode with one buckle is asked for.
-Eigen::MatrixX3d first_guess(const Eigen::MatrixX2d& pattern) {
+/// An isometric cone that lies on the ring but for a sector of the given width (rad), where it
+/// rises as a cosine as high as it takes for the rays to close on themselves. One buckle is asked
+/// for; how wide it becomes is left to the solver.
+Eigen::MatrixX3d cone_with_a_buckle(const Eigen::MatrixX2d& pattern, double width) {
   constexpr int kSteps = 7200;
   std::vector<Eigen::Vector3d> ray(kSteps + 1);
   std::vector<double> arc(kSteps + 1, 0.0);
-  const auto trace = [&](double scale) {
+  const auto trace = [&](double rise) {
     for (int i = 0; i <= kSteps; ++i) {
       const double turn = 2 * std::numbers::pi * i / kSteps;
-      ray[i] = Eigen::Vector3d(std::cos(turn), std::sin(turn), kSlope * buckled(turn, scale))
-                   .normalized();
+      const double t = std::abs(std::remainder(turn, 2 * std::numbers::pi)) / (width / 2);
+      const double lift = t < 1 ? rise * (1 + std::cos(std::numbers::pi * t)) / 2 : 0;
+      ray[i] = Eigen::Vector3d(std::cos(turn), std::sin(turn), kSlope * (1 + lift)).normalized();
     }
     for (std::size_t i = 1; i < arc.size(); ++i) arc[i] = arc[i - 1] + (ray[i] - ray[i - 1]).norm();
     return arc.back();
   };
-  // At finite slope the buckle is a little larger for the rays to close on themselves.
-  double low = 0.5, high = 2;
-  for (int i = 0; i < 40; ++i) {
+  double low = 0, high = 20;
+  for (int i = 0; i < 60; ++i) {
     const double middle = (low + high) / 2;
     (trace(middle) > 2 * std::numbers::pi ? high : low) = middle;
   }
+  EXPECT_NEAR(arc.back(), 2 * std::numbers::pi, 1e-9) << "no such cone";
   Eigen::MatrixX3d x(pattern.rows(), 3);
   for (Eigen::Index v = 0; v < pattern.rows(); ++v) {
     double angle = std::atan2(pattern(v, 1), pattern(v, 0));
@@ -80,7 +73,9 @@ Eigen::MatrixX3d first_guess(const Eigen::MatrixX2d& pattern) {
   return x;
 }
 
-double sector_of_thickness(double thickness) {
+/// Sector over which the sheet leaves the ring when it has come to rest: when it changes no more,
+/// which takes the longer the thinner the sheet (degrees).
+double buckled_from(double start_degrees, double thickness) {
   const ShellMesh mesh = polar_mesh();
   Sheet sheet;
   sheet.pattern = disc_pattern(kDisc, kSectors);
@@ -102,23 +97,34 @@ double sector_of_thickness(double thickness) {
   sheet.obstacles = {ring};
   ShellStepper stepper(sheet, options, 1);
   ShellState state = meshes::flat_state(mesh);
-  state.x = first_guess(mesh.pattern);
+  state.x = cone_with_a_buckle(mesh.pattern, start_degrees * std::numbers::pi / 180);
   stepper.set_mesh(state);
-  sheets::advance(stepper, state, 0.04, 30);
+  const auto sector = [&] {
+    return buckled_sector(mesh.pattern, state.x, mesh.triangles, {0, 0}, kRing, {0, 0, 1}).value();
+  };
+  sheets::advance(stepper, state, 0.04, 70);
+  const double before = sector();
+  sheets::advance(stepper, state, 0.04, 10);
+  EXPECT_NEAR(sector(), before, 0.2) << thickness;
   const ShellEnergies energies = stepper.energies(state);
   EXPECT_LT(energies.kinetic, 1e-4 * energies.bending) << thickness;  // at rest
   EXPECT_LT(energies.membrane, 0.2 * energies.bending) << thickness;  // nearly inextensible
-  return buckled_sector(mesh.pattern, state.x, mesh.triangles, {0, 0}, kRing, {0, 0, 1}).value();
+  return sector();
 }
 
-// 138.99 degrees is the limit of no thickness at small deflection, approached slowly: a disc of
-// 0.1 m lifts off over 117 degrees at the thickness of paper, 128 at 30 microns, 138 at 10 microns.
-TEST(Dcone, BuckledSectorApproachesThatOfTheInextensibleConeAsTheSheetGetsThinner) {
-  const double paper = sector_of_thickness(1e-4), foil = sector_of_thickness(1e-5);
+// 138.99 degrees (Cerda and Mahadevan 1998) is the limit of no thickness at small deflection.
+// Sheets start with buckles of other widths, from both sides, and forget them. Thinner ones go
+// towards the limit, slowly: from 115.3 to 116.1 degrees at half the thickness of paper.
+TEST(Dcone, ForgetsTheSectorItStartsWithAndWidensAsTheSheetGetsThinner) {
+  const double paper = buckled_from(80, 1e-4);
+  RecordProperty("paper", std::to_string(paper));
+  for (const double start : {120.0, 160.0})
+    EXPECT_NEAR(buckled_from(start, 1e-4), paper, 0.2) << start;
+  const double thinner = buckled_from(80, 5e-5);
+  RecordProperty("thinner", std::to_string(thinner));
   EXPECT_GT(paper, 110);
-  EXPECT_GT(foil, paper + 10);
-  EXPECT_GT(foil, 130);
-  EXPECT_LT(foil, 138.99 + 0.5);  // the accuracy of the measurement on a mesh of rulings
+  EXPECT_GT(thinner, paper + 0.5);
+  EXPECT_LT(thinner, 138.99);
 }
 
 }  // namespace

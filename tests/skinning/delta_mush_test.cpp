@@ -187,8 +187,9 @@ TEST(DeltaMush, BordersCanBePinned) {
     EXPECT_LE((pinned.row(v) - blended.row(v)).norm(), 1e-14) << v;
 }
 
-TEST(DeltaMush, CollapsedAndIsolatedVerticesStayFinite) {
-  RiggedMesh rig = two_bone_cylinder(cylinder_options());
+TEST(DeltaMush, CollapsedVerticesStayFiniteAndChangeNothingElsewhere) {
+  const RiggedMesh whole = two_bone_cylinder(cylinder_options());
+  RiggedMesh rig = whole;
   // One ring collapses to a point: neighbours at equal positions span no plane.
   for (int k = 0; k < 3 * cylinder_options().segments; ++k)
     rig.mesh.V.row(1 + k) = rig.mesh.V.row(0);
@@ -196,7 +197,14 @@ TEST(DeltaMush, CollapsedAndIsolatedVerticesStayFinite) {
   options.iterations = 1;
   const Eigen::MatrixX3d rest = delta_mush(rig, rest_pose(2), options);
   EXPECT_LE(fixtures::largest_distance(rest, rig.mesh.V), 1e-12);
-  EXPECT_TRUE(delta_mush(rig, fixtures::turned(rig, "upper", "twist", 3.14), options).allFinite());
+  const Pose pose = fixtures::turned(rig, "upper", "twist", 3.14);
+  const Eigen::MatrixX3d posed = delta_mush(rig, pose, options);
+  EXPECT_TRUE(posed.allFinite());
+  // Three rings further on, past the reach of a pass and of the frames.
+  const Eigen::Index rest_of_it = rig.mesh.V.rows() - 1 - 6 * cylinder_options().segments;
+  EXPECT_LE(fixtures::largest_distance(posed.bottomRows(rest_of_it),
+                                       delta_mush(whole, pose, options).bottomRows(rest_of_it)),
+            1e-12);
 }
 
 TEST(DeltaMush, SameBitsForOneAndTwoThreads) {

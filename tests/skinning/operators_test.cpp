@@ -133,15 +133,113 @@ TEST(BlendBoundary, IsTheDiagonalAtItsTip) {
   }
 }
 
-TEST(BulgeInContact, SwellsBesideTheContact) {
-  // The profile lies inside the circle, so the value exceeds the arc's of the same boundary.
-  EXPECT_GT(bulge_in_contact(0.42, 0.42, 0.01).value,
-            profile_blend(0.42, 0.42, 0.01, 0.55, 0).value);
+/// A uniform cubic B-spline over [0, 1] by de Boor's recursion: control value i belongs to the
+/// knots i - 3 … i + 1, in spans.
+double uniform_cubic_spline(const std::vector<double>& control, double u) {
+  const std::function<double(int, int, double)> basis = [&](int i, int degree, double x) {
+    if (degree == 0) return x >= i && x < i + 1 ? 1.0 : 0.0;
+    return ((x - i) * basis(i, degree - 1, x) +
+            (i + degree + 1 - x) * basis(i + 1, degree - 1, x)) /
+           degree;
+  };
+  const int spans = static_cast<int>(control.size()) - 3;
+  const double x = std::min(u * spans, spans * (1 - 1e-15));
+  double sum = 0;
+  for (std::size_t i = 0; i < control.size(); ++i)
+    sum += control[i] * basis(static_cast<int>(i) - 3, 3, x);
+  return sum;
 }
 
-TEST(Contact, SurfaceOfTheOverlapIsWhereTheFieldsAgree) {
-  for (double f = 0.5; f <= 1; f += 0.05) EXPECT_NEAR(contact(f, f).value, 0.5, 1e-12);
-  EXPECT_GT(contact(0.8, 0.7).value, 0.5);
+/// Profile of the bulge at the angle phi from an axis, mirrored on the diagonal (Vaillant 2013).
+double bulge_profile(double phi, double p) {
+  std::vector<double> control{0, 0, 0, p, 2 * p, 3 * p, 4 * p, 5 * p, 4 * p, 4 * p, 4 * p};
+  for (double& c : control) c = 1 - c;
+  return uniform_cubic_spline(control, std::tan(std::min(phi, std::numbers::pi / 2 - phi)));
+}
+
+/// Iso-lines of an operator drawn forwards: the line of value c is (k, k) + P(phi) (c - k) (cos
+/// phi, sin phi), k the boundary at c; the operator must find c at each of its points.
+template <class Profile>
+void expect_iso_lines(const Operator& g, double t, double tip, const Profile& profile) {
+  for (double c = 0.02; c < tip - 0.005; c += 0.01) {
+    const double k = c <= 0.5 ? t * c : 0.5 * t + (tip - 0.5 * t) * (c - 0.5) / (tip - 0.5);
+    for (int i = 0; i <= 40; ++i) {
+      const double phi = std::numbers::pi / 2 * i / 40;
+      const double radius = profile(phi) * (c - k);
+      const double f1 = k + radius * std::cos(phi), f2 = k + radius * std::sin(phi);
+      ASSERT_NEAR(g(f1, f2).value, c, 1e-9) << "t = " << t << ", angle " << phi;
+    }
+  }
+}
+
+TEST(GradientControlled, HasTheArcsOfItsConstructionForIsoLines) {
+  for (const double t : {0.001, 0.2, 0.325, 0.6, 0.9}) {
+    expect_iso_lines([t](double a, double b) { return gradient_controlled(a, b, t); }, t, 0.7,
+                     [](double) { return 1.0; });
+  }
+}
+
+TEST(BulgeInContact, HasTheProfileOfItsConstructionForIsoLines) {
+  for (const double p : {0.01, 0.025}) {
+    for (const double t : {0.001, 0.2, 0.325, 0.6, 0.9}) {
+      expect_iso_lines([=](double a, double b) { return bulge_in_contact(a, b, t, p); }, t, 0.55,
+                       [p](double phi) { return bulge_profile(phi, p); });
+    }
+  }
+}
+
+// The profile lies within the circle: between the boundary curves the value exceeds the arc's of
+// the same boundary, and outside of them both are the union.
+TEST(BulgeInContact, SwellsBesideTheContactAndNowhereElse) {
+  int swollen = 0;
+  for (const double t : {0.001, 0.2, 0.6}) {
+    for (double a = 0.01; a < 1; a += 0.01) {
+      for (double b = 0.01; b < 1; b += 0.01) {
+        const double bulge = bulge_in_contact(a, b, t).value;
+        const double arc = profile_blend(a, b, t, 0.55, 0).value;
+        if (std::min(a, b) <= blend_boundary(std::max(a, b), t, 0.55)) {
+          ASSERT_EQ(bulge, std::max(a, b)) << a << ' ' << b << ' ' << t;
+          continue;
+        }
+        ASSERT_GE(bulge, arc - 1e-12) << a << ' ' << b << ' ' << t;
+        swollen += bulge > arc + 1e-4 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(swollen, 1000);
+}
+
+TEST(Ricci, IsThePowerMeanWithoutItsFactor) {
+  for (const double n : {2.0, 8.0, 20.0}) {
+    for (double a = 0; a <= 1; a += 0.05) {
+      for (double b = 0; b <= 1; b += 0.05) {
+        ASSERT_NEAR(std::pow(ricci(a, b, n).value, n), std::pow(a, n) + std::pow(b, n), 1e-12)
+            << a << ' ' << b << ' ' << n;
+      }
+    }
+  }
+}
+
+// The surfaces are where the fields are 1/2. In the overlap they meet on f1 = f2 and the field
+// grows with the distance from it; beside it they swell by x (1 - x / w)^2, whose largest value is
+// 4 w / 27 at x = w / 3; beyond w they are the union.
+TEST(Contact, RecedesInTheOverlapSwellsBesideItAndIsTheUnionBeyond) {
+  constexpr double kWidth = 0.25;
+  for (double a = 0; a <= 1; a += 0.01) {
+    for (double b = 0; b <= a; b += 0.01) {
+      const double g = contact(a, b, kWidth).value;
+      if (b >= 0.5 - 1e-9) {
+        ASSERT_NEAR(g, 0.5 + (a - b), 1e-12) << a << ' ' << b;
+      } else if (b <= 0.5 - kWidth + 1e-9) {
+        ASSERT_NEAR(g, a, 1e-12) << a << ' ' << b;
+      } else if (a >= 0.5) {
+        ASSERT_GT(g, a) << b;
+        ASSERT_LE(g, a + 4 * kWidth / 27 + 1e-12) << b;
+      }
+    }
+  }
+  const double crest = 0.5 - kWidth / 3;
+  EXPECT_NEAR(contact(0.7, crest, kWidth).value, 0.7 + 4 * kWidth / 27, 1e-12);
 }
 
 TEST(Opening, PresetsReachTheirEnds) {

@@ -60,6 +60,26 @@ TEST_F(Execute, RecordsPosesMetricsAndTimes) {
   EXPECT_EQ(result.record.cases.front().ratios.front().of, "polygon");
 }
 
+TEST_F(Execute, GivesTheSeedOfEachCaseToItsScene) {
+  std::vector<std::uint64_t> seeds;
+  std::vector<Topic> topics = toy::topics();
+  for (Topic& topic : topics) {
+    topic.load = [&seeds, load = topic.load](const OptionSet& set, const fs::path& where,
+                                             std::uint64_t seed) {
+      seeds.push_back(seed);
+      return load(set, where, seed);
+    };
+  }
+  const auto file = write_experiment(
+      "toy-circle/seeds", text_of(circle()) + "\n[[sweep]]\nkey = \"seed\"\nvalues = [4, 9]\n");
+  ExecuteRequest request;
+  request.out = out();
+  execute(load_experiment(file, topics, {}), topics, request);
+  ASSERT_FALSE(seeds.empty());
+  for (const std::uint64_t seed : {4U, 9U})
+    EXPECT_GE(std::count(seeds.begin(), seeds.end(), seed), 1) << seed;
+}
+
 TEST_F(Execute, RecordsDiagnosticsWithUnitAndMeaning) {
   run(load(circle()), out());
   const RunRecord read = read_run_file(out() / "run.h5");
@@ -337,7 +357,7 @@ Topic follower_topic() {
   Topic topic;
   topic.name = "follower";
   topic.default_scene = [] { return std::make_unique<TypedOptions<FollowerSceneOptions>>(); };
-  topic.load = [](const OptionSet& set, const fs::path&) -> std::shared_ptr<Scene> {
+  topic.load = [](const OptionSet& set, const fs::path&, std::uint64_t) -> std::shared_ptr<Scene> {
     auto scene = std::make_shared<FollowerScene>();
     scene->options = dynamic_cast<const TypedOptions<FollowerSceneOptions>&>(set).options;
     return scene;

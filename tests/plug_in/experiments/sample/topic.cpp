@@ -39,7 +39,7 @@ Topic make_topic() {
   topic.name = "sample";
   topic.summary = "a square that grows";
   topic.default_scene = [] { return std::make_unique<TypedOptions<SampleSceneOptions>>(); };
-  topic.load = [](const OptionSet& set, const std::filesystem::path&) {
+  topic.load = [](const OptionSet& set, const std::filesystem::path&, std::uint64_t) {
     return std::make_shared<SampleScene>(
         dynamic_cast<const TypedOptions<SampleSceneOptions>&>(set).options);
   };

@@ -196,7 +196,8 @@ Topic circle_topic() {
   topic.name = "toy-circle";
   topic.summary = "pose methods: a disc that turns";
   topic.default_scene = [] { return std::make_unique<TypedOptions<CircleSceneOptions>>(); };
-  topic.load = [](const OptionSet& set, const std::filesystem::path&) -> std::shared_ptr<Scene> {
+  topic.load = [](const OptionSet& set, const std::filesystem::path&,
+                  std::uint64_t) -> std::shared_ptr<Scene> {
     return std::make_shared<CircleScene>(
         dynamic_cast<const TypedOptions<CircleSceneOptions>&>(set).options);
   };

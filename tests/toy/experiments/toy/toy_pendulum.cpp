@@ -321,7 +321,8 @@ Topic pendulum_topic() {
   topic.name = "toy-pendulum";
   topic.summary = "processes: a damped pendulum with a closed form";
   topic.default_scene = [] { return std::make_unique<TypedOptions<PendulumSceneOptions>>(); };
-  topic.load = [](const OptionSet& set, const std::filesystem::path&) -> std::shared_ptr<Scene> {
+  topic.load = [](const OptionSet& set, const std::filesystem::path&,
+                  std::uint64_t) -> std::shared_ptr<Scene> {
     return std::make_shared<PendulumScene>(
         dynamic_cast<const TypedOptions<PendulumSceneOptions>&>(set).options);
   };
