@@ -182,7 +182,7 @@ Frame pool_with_a_ridge(const ColumnGrid& grid, double height, double lift, Past
     }
   }
   Frame frame = frame_of(mesh, time);
-  frame.parts["surface"].arrays.push_back({"feature", NamedArray::On::points, "1", feature});
+  frame.parts["surface"].arrays.push_back({"feature", "1", NamedArray::On::points, feature});
   return frame;
 }
 
