@@ -24,7 +24,7 @@ double ball_volume(double radius) { return 4 * pi / 3 * std::pow(radius, 3); }
 
 /// What two balls at the distance d share, when neither contains the other's centre plane:
 /// pi (R + r - d)^2 (d^2 + 2 d (R + r) - 3 (R - r)^2) / (12 d).
-double lens(double R, double r, double d) {
+double lens_of(double R, double r, double d) {
   return pi * std::pow(R + r - d, 2) * (d * d + 2 * d * (R + r) - 3 * std::pow(R - r, 2)) /
          (12 * d);
 }
@@ -38,7 +38,7 @@ TEST(SharedVolume, OfTwoSpheresIsTheLens) {
                                              Eigen::Vector3d(1.0 / 3, 2.0 / 3, 2.0 / 3)}) {
       const Eigen::Vector3d centre = Eigen::Vector3d(0.01, 0.02, -0.03) + d * direction;
       const SharedVolume v = shared_volume(ball(r, centre), sphere, R / 80);
-      const double expected = lens(R, r, d);
+      const double expected = lens_of(R, r, d);
       EXPECT_NEAR(v.first / ball_volume(r), 1, 1e-3) << d;
       EXPECT_NEAR(v.second / ball_volume(R), 1, 1e-3) << d;
       EXPECT_NEAR(v.both / expected, 1, 5e-3) << d;
@@ -53,7 +53,7 @@ TEST(SharedVolume, ErrorFallsWithTheSpacing) {
   const TriMesh sphere = shapes::sphere(R, Eigen::Vector3d::Zero(), 7);
   const auto error = [&](double spacing) {
     const SharedVolume v = shared_volume(ball(R, {0.08, 0.03, 0.02}), sphere, spacing);
-    return std::abs(v.both / lens(R, R, Eigen::Vector3d(0.08, 0.03, 0.02).norm()) - 1);
+    return std::abs(v.both / lens_of(R, R, Eigen::Vector3d(0.08, 0.03, 0.02).norm()) - 1);
   };
   EXPECT_LT(error(R / 10), 0.03);
   EXPECT_LT(error(R / 160), 1e-3);
@@ -67,7 +67,7 @@ TEST(SharedVolume, OverlappingBallsCountOnce) {
   two.radii = Eigen::Vector2d::Constant(r);
   const TriMesh box = shapes::box({-1, -1, -1}, {1, 1, 1});
   const SharedVolume v = shared_volume(two, box, r / 80);
-  EXPECT_NEAR(v.first / (2 * ball_volume(r) - lens(r, r, d)), 1, 1e-3);
+  EXPECT_NEAR(v.first / (2 * ball_volume(r) - lens_of(r, r, d)), 1, 1e-3);
   EXPECT_NEAR(v.both, v.first, 1e-12);
   EXPECT_NEAR(v.second, 8, 1e-9);
   EXPECT_NEAR(v.intersection_over_union().value(), v.first / 8, 1e-12);
