@@ -23,7 +23,8 @@ namespace geoprior {
 /// What it cannot do: a patch is about three edges wide, so a fold along one edge is seen as a bend
 /// of that width, with 0.42 of the energy of the same fold spread over the two triangles beside it
 /// (core/curvature_fit.h). Where such a fold has become the rest curvature, an eighth of that
-/// stays: read the elastic energy of a crumpled sheet as an upper bound.
+/// stays. A cone's curvature averages out where a patch has the apex in it: fans about an apex are
+/// not measured (docs/metrics.md has the numbers on simulated sheets).
 class QuadricCurvature {
  public:
   /// @param pattern    n x 2 (m)
