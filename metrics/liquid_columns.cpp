@@ -57,32 +57,40 @@ ColumnGrid covering_grid(const Eigen::MatrixX3d& points, double spacing) {
   return grid;
 }
 
+void append_crossings(const Eigen::Matrix3d& corners, const ColumnGrid& grid, int first_row,
+                      int last_row, std::vector<ColumnCrossing>* crossings) {
+  const auto range = [&](int axis, int first, int last) {
+    const double low = (corners.col(axis).minCoeff() - grid.origin[axis]) / grid.spacing - 0.5;
+    const double high = (corners.col(axis).maxCoeff() - grid.origin[axis]) / grid.spacing - 0.5;
+    return std::pair{std::max(first, static_cast<int>(std::floor(std::max(low, -1.0)))),
+                     std::min(last, static_cast<int>(std::ceil(std::min(high, last + 1.0))))};
+  };
+  const auto [i0, i1] = range(0, 0, grid.nx - 1);
+  const auto [j0, j1] = range(1, first_row, last_row);
+  for (int j = j0; j <= j1; ++j) {
+    for (int i = i0; i <= i1; ++i) {
+      double height = 0;
+      const int sign = crossing(corners, grid.probe(i, j), &height);
+      if (sign != 0) crossings->push_back({i, j, height, sign});
+    }
+  }
+}
+
 Columns columns(const TriMesh& mesh, const ColumnGrid& grid) {
   if (!mesh.V.allFinite()) throw Error("coordinate is not finite", "columns", "finite numbers");
   Columns result;
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   result.top = Eigen::VectorXd::Constant(grid.count(), kNone);
   result.depth = Eigen::VectorXd::Zero(grid.count());
+  std::vector<ColumnCrossing> crossings;
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
-    Eigen::Matrix3d corners;
-    for (int c = 0; c < 3; ++c) corners.row(c) = mesh.V.row(mesh.F(t, c));
-    const auto range = [&](int axis, int n) {
-      const double low = (corners.col(axis).minCoeff() - grid.origin[axis]) / grid.spacing - 0.5;
-      const double high = (corners.col(axis).maxCoeff() - grid.origin[axis]) / grid.spacing - 0.5;
-      return std::pair{std::max(0, static_cast<int>(std::floor(std::max(low, -1.0)))),
-                       std::min(n - 1, static_cast<int>(std::ceil(std::min(high, double(n)))))};
-    };
-    const auto [i0, i1] = range(0, grid.nx);
-    const auto [j0, j1] = range(1, grid.ny);
-    for (int j = j0; j <= j1; ++j) {
-      for (int i = i0; i <= i1; ++i) {
-        double height = 0;
-        const int sign = crossing(corners, grid.probe(i, j), &height);
-        if (sign == 0) continue;
-        const Eigen::Index at = grid.index(i, j);
-        result.top[at] = std::max(result.top[at], height);
-        result.depth[at] += sign * height;
-      }
+    crossings.clear();
+    append_crossings(mesh.V({mesh.F(t, 0), mesh.F(t, 1), mesh.F(t, 2)}, Eigen::all), grid, 0,
+                     grid.ny - 1, &crossings);
+    for (const ColumnCrossing& c : crossings) {
+      const Eigen::Index at = grid.index(c.i, c.j);
+      result.top[at] = std::max(result.top[at], c.height);
+      result.depth[at] += c.sign * c.height;
     }
   }
   for (double& top : result.top) {

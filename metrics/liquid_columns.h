@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "core/mesh.h"
 
@@ -23,6 +24,20 @@ struct ColumnGrid {
 /// Grid of squares of about `spacing` that covers the box of the points in x and y.
 ColumnGrid covering_grid(const Eigen::MatrixX3d& points, double spacing);
 
+/// Where the line of column (i, j) passes through a triangle.
+struct ColumnCrossing {
+  int i, j;
+  double height;  ///< m
+  int sign;       ///< +1: the triangle is seen from above, what it encloses lies below; -1: above
+};
+
+/// Appends the crossings of a triangle with the columns of some rows of the grid. Over the
+/// triangles of a closed surface each crossing comes exactly once, also on edges and vertices
+/// (a consistent rule for ties).
+/// @param corners  rows: the triangle's corners, finite
+void append_crossings(const Eigen::Matrix3d& corners, const ColumnGrid& grid, int first_row,
+                      int last_row, std::vector<ColumnCrossing>* crossings);
+
 /// What the lines meet.
 struct Columns {
   Eigen::VectorXd top;  ///< highest crossing (m); NaN where the line meets nothing
@@ -30,8 +45,7 @@ struct Columns {
       depth;  ///< length inside a closed, outward oriented surface (m); else meaningless
 };
 
-/// Each crossing of a line with a closed surface counts exactly once, also on edges and vertices
-/// (a consistent rule for ties).
+/// Each crossing of a line with a closed surface counts exactly once (`append_crossings`).
 /// @throws Error  on a coordinate that is not finite
 Columns columns(const TriMesh& mesh, const ColumnGrid& grid);
 

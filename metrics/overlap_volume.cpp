@@ -18,15 +18,15 @@ constexpr double kSpacingsOfRadius = 24;
 
 /// A square grid of columns seen along their axis; (x, y, z) is a cyclic permutation, so that
 /// orientation is kept.
-struct ColumnGrid {
+struct OverlapGrid {
   int x_axis, y_axis, z_axis;
   double x0, y0, spacing;  // of column (0, 0)
   int width, height;
   double z_low, z_high;
 };
 
-ColumnGrid make_grid(const Eigen::AlignedBox3d& box, double spacing, int axis) {
-  ColumnGrid g{};
+OverlapGrid make_grid(const Eigen::AlignedBox3d& box, double spacing, int axis) {
+  OverlapGrid g{};
   g.x_axis = (axis + 1) % 3;
   g.y_axis = (axis + 2) % 3;
   g.z_axis = axis;
@@ -88,7 +88,7 @@ RowRange rows_of(const std::array<Corner, 3>& c, int height) {
 }
 
 /// The crossings of one triangle with the columns of rows [first, last].
-void rasterise(const std::array<Corner, 3>& c, RowRange rows, const ColumnGrid& grid,
+void rasterise(const std::array<Corner, 3>& c, RowRange rows, const OverlapGrid& grid,
                std::vector<Crossing>& crossings) {
   const auto [low, high] = std::minmax({c[0].x, c[1].x, c[2].x});
   const int first = static_cast<int>(std::ceil(std::max(low, 0.0)));
@@ -108,7 +108,7 @@ void rasterise(const std::array<Corner, 3>& c, RowRange rows, const ColumnGrid& 
 }
 
 /// Integral of max(0, w - 1) between z_low and z_high along one column, its crossings sorted by z.
-double integrate(const Crossing* begin, const Crossing* end, const ColumnGrid& grid) {
+double integrate(const Crossing* begin, const Crossing* end, const OverlapGrid& grid) {
   double sum = 0;
   int winding = 0;
   for (const Crossing* c = begin; c + 1 < end; ++c) {
@@ -142,7 +142,7 @@ void sort_by_column(StripBuffers& b, int first_column, int columns) {
 }
 
 OverlapVolume integrate_strip(StripBuffers& b, int first_column, int columns,
-                              const ColumnGrid& grid) {
+                              const OverlapGrid& grid) {
   sort_by_column(b, first_column, columns);
   OverlapVolume strip;
   std::size_t begin = 0;
@@ -165,7 +165,7 @@ OverlapVolume integrate_strip(StripBuffers& b, int first_column, int columns,
   return strip;
 }
 
-std::vector<Corner> project(const Eigen::MatrixX3d& V, const ColumnGrid& grid) {
+std::vector<Corner> project(const Eigen::MatrixX3d& V, const OverlapGrid& grid) {
   std::vector<Corner> corners(V.rows());
   for (Eigen::Index v = 0; v < V.rows(); ++v) {
     corners[v] = {(V(v, grid.x_axis) - grid.x0) / grid.spacing,
@@ -183,7 +183,7 @@ std::array<Corner, 3> corners_of(const std::vector<Corner>& corners, const Eigen
 /// Triangles that reach each strip of rows, in order of index.
 std::vector<std::vector<int>> triangles_of_strips(const std::vector<Corner>& corners,
                                                   const Eigen::MatrixX3i& F,
-                                                  const ColumnGrid& grid) {
+                                                  const OverlapGrid& grid) {
   const int strips = (grid.height + kRowsOfStrip - 1) / kRowsOfStrip;
   std::vector<std::vector<int>> of_strip(strips);
   for (Eigen::Index t = 0; t < F.rows(); ++t) {
@@ -206,7 +206,7 @@ OverlapVolume overlap_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& 
     throw Error("column spacing " + std::to_string(spacing), "overlap volume", "a positive length");
   }
   if (box.isEmpty() || F.rows() == 0) return {};
-  const ColumnGrid grid = make_grid(box, spacing, axis);
+  const OverlapGrid grid = make_grid(box, spacing, axis);
   const std::vector<Corner> corners = project(V, grid);
   const std::vector<std::vector<int>> of_strip = triangles_of_strips(corners, F, grid);
   std::vector<OverlapVolume> partial(of_strip.size());

@@ -18,13 +18,12 @@ Eigen::Matrix2d pattern_edges(const Eigen::MatrixX2d& pattern, const Eigen::Matr
   return edges;
 }
 
-/// (1 - nu) |S|^2 + nu (tr S)^2 of a symmetric tensor with components S_uu, S_uv, S_vv.
-double isotropic_form(double uu, double uv, double vv, double poisson_ratio) {
+}  // namespace
+
+double plate_form(double uu, double uv, double vv, double poisson_ratio) {
   const double trace = uu + vv;
   return (1 - poisson_ratio) * (uu * uu + 2 * uv * uv + vv * vv) + poisson_ratio * trace * trace;
 }
-
-}  // namespace
 
 double membrane_energy(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX3d& x,
                        const Eigen::MatrixX3i& triangles, const PlateStiffness& plate) {
@@ -41,7 +40,7 @@ double membrane_energy(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX3d& 
         (x.row(triangles(t, 2)) - x.row(triangles(t, 0))).transpose();
     const Eigen::Matrix<double, 3, 2> F = now * rest.inverse();
     const Eigen::Matrix2d G = (F.transpose() * F - Eigen::Matrix2d::Identity()) / 2;
-    energy += area * isotropic_form(G(0, 0), G(0, 1), G(1, 1), plate.poisson_ratio);
+    energy += area * plate_form(G(0, 0), G(0, 1), G(1, 1), plate.poisson_ratio);
   }
   return energy * plate.membrane / 2;
 }
@@ -56,8 +55,8 @@ double bending_energy(const CurvatureFit& fit, const Eigen::MatrixX3d& x,
   const Eigen::MatrixX3d elastic = S - rest_curvature;
   double energy = 0;
   for (Eigen::Index t = 0; t < elastic.rows(); ++t) {
-    energy += fit.area[t] *
-              isotropic_form(elastic(t, 0), elastic(t, 1), elastic(t, 2), plate.poisson_ratio);
+    energy +=
+        fit.area[t] * plate_form(elastic(t, 0), elastic(t, 1), elastic(t, 2), plate.poisson_ratio);
   }
   return energy * plate.bending / 2;
 }

@@ -13,6 +13,10 @@ struct PlateStiffness {
   double poisson_ratio = 0;  ///< nu
 };
 
+/// (1 - nu) |S|^2 + nu (tr S)^2 of a symmetric tensor with components S_uu, S_uv, S_vv: a plate's
+/// energy per area is half its stiffness times this form of its strain or curvature.
+double plate_form(double uu, double uv, double vv, double poisson_ratio);
+
 /// Elastic energy of stretching (J), St. Venant-Kirchhoff: with G = (F'F - I)/2 of each triangle's
 /// map F from the pattern to space, sum of A C/2 ((1 - nu) |G|^2 + nu (tr G)^2), C = E h / (1 -
 /// nu^2).

@@ -163,6 +163,13 @@ double hausdorff_distance(const TriMesh& a, const TriMesh& b, double spacing) {
   return std::sqrt(largest_distance2(samples_of(b, second, spacing), first_tree, forth));
 }
 
+double largest_distance(const TriMesh& from, const TriMesh& to, double spacing) {
+  if (!(spacing > 0)) throw Error("spacing is not positive", "largest distance", "above 0");
+  const Triangles triangles = triangles_of(from, "from");
+  triangles_of(to, "to");  // refuses one without area
+  return std::sqrt(largest_distance2(samples_of(from, triangles, spacing), TriangleTree(to), 0));
+}
+
 SurfaceDeviation surface_deviation(const TriMesh& a, const TriMesh& b, double spacing) {
   if (!(spacing > 0)) throw Error("spacing is not positive", "surface deviation", "above 0");
   const Triangles from = triangles_of(a, "a");

@@ -18,6 +18,10 @@ namespace geoprior {
 ///                 that is not positive
 double hausdorff_distance(const TriMesh& a, const TriMesh& b, double spacing);
 
+/// One side of it: the largest distance of a point of `from` from `to` (m).
+/// @throws Error   as `hausdorff_distance`
+double largest_distance(const TriMesh& from, const TriMesh& to, double spacing);
+
 /// How far points of one surface are from another, over its area.
 struct SurfaceDeviation {
   double rms = 0, mean = 0, max = 0;  ///< m

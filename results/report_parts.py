@@ -121,10 +121,13 @@ def timing(run):
         if not rows:
             continue
         with_whole = any(np.isfinite(r.whole) for r in rows)
+        with_memory = any(np.isfinite(r.memory) for r in rows)
         head = ["Variant", "Phase", "Median", "p95", "Quartiles", "Samples",
-                *(["Whole run"] if with_whole else []), "Prepare", "Ratio of times [95 % interval]"]
+                *(["Whole run"] if with_whole else []), "Prepare",
+                *(["Peak memory"] if with_memory else []), "Ratio of times [95 % interval]"]
         body = [[escape(r.variant), escape(r.phase), *time_cells(r.times), str(r.count),
                  *([with_unit(r.whole, "s")] if with_whole else []), with_unit(r.prepare, "s"),
+                 *([with_unit(r.memory, "B")] if with_memory else []),
                  ratio_text(r)] for r in rows]
         blocks += [case_heading(run, case), table(head, body, ["text", "text"])]
         inside = [[escape(v), escape(p), *time_cells(times)] for v, p, times in phase_rows(case)]
@@ -137,7 +140,8 @@ def timing(run):
     threads = {c.threads for c in run.cases}
     note = f'<p class="note">{escape(cpu)}{", " if cpu else ""}threads: ' \
         f'{", ".join("all" if t == 0 else str(t) for t in sorted(threads))}. Methods interleaved, ' \
-        "recording excluded; a ratio is the median of paired ratios.</p>"
+        "recording excluded; a ratio is the median of paired ratios. Peak memory is that of one run " \
+        "on top of what was resident before it, recording and measuring included.</p>"
     return "\n".join(["<h2>Times</h2>", note, times_over_frames(run), *blocks])
 
 

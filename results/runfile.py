@@ -48,6 +48,7 @@ class Variant:
     summary: dict[str, Metric]
     diagnostics: dict[str, Diagnostic]
     timing: dict[str, np.ndarray]  # phase: frames x repetitions, seconds
+    memory: float  # peak of the process while it ran, less what was resident before (bytes)
     events: np.ndarray
     frames: list[tuple[int, str, str]]  # index, name, sha256
     artifacts: list[tuple[str, str]]
@@ -181,6 +182,7 @@ def read_variant(name, group):
         metrics=read_metrics(group["metrics"]), summary=read_metrics(group["summary"]),
         diagnostics={unquote(n): read_diagnostic(d) for n, d in group["diagnostics"].items()},
         timing={unquote(n): np.atleast_2d(group["timing"][n][()]) for n in group["timing"]},
+        memory=float(attrs.get("memory_peak", np.nan)) - float(attrs.get("memory_start", np.nan)),
         events=group["events"][()],
         frames=[(int(f["frame"]), text(f["name"]), text(f["sha256"])) for f in group["frames"][()]],
         artifacts=[(text(a["name"]), text(a["sha256"])) for a in group["artifacts"][()]])

@@ -42,19 +42,21 @@ def metrics_table(case):
 def timing_table(case):
     found = timing_rows(case)
     with_whole = any(np.isfinite(row.whole) for row in found)
+    with_memory = any(np.isfinite(row.memory) for row in found)
     rows = []
     for row in found:
         t = row.times
         whole = [with_unit(row.whole, "s")] if with_whole else []
+        memory = [with_unit(row.memory, "B")] if with_memory else []
         ratios = [f"{interval(r.median, r.low, r.high)} × {display_name(r.of)}"
                   + (" (whole runs)" if r.paired == "run" else "") for r in row.ratios]
         rows.append([row.variant, row.phase, with_unit(t.median, "s"), with_unit(t.p95, "s"),
                      f"{with_unit(t.low, 's')} … {with_unit(t.high, 's')}", *whole,
-                     with_unit(row.prepare, "s"), "<br>".join(ratios)])
+                     with_unit(row.prepare, "s"), *memory, "<br>".join(ratios)])
     if not rows:
         return []
     head = ["variant", "phase", "median", "p95", "quartiles", *(["whole run"] if with_whole else []),
-            "prepare", "ratio [95 % interval]"]
+            "prepare", *(["peak memory"] if with_memory else []), "ratio [95 % interval]"]
     return ["", *table(head, rows)]
 
 

@@ -107,6 +107,7 @@ class TimingRow:
     whole: float  # a run of all frames; NaN for a pose method
     prepare: float
     ratios: list
+    memory: float  # bytes on top of what was there before the variant; NaN: not measured
 
 
 def times_of(seconds):
@@ -148,7 +149,7 @@ def timing_rows(case):
                               "frame" if has_frame_times(variant) else phase, times_of(times),
                               int(np.isfinite(times).sum()), whole_run(variant),
                               math.nan if prepare is None else times_of(prepare).median,
-                              [r for r in case.ratios if r.variant == variant.name]))
+                              [r for r in case.ratios if r.variant == variant.name], variant.memory))
     return rows
 
 

@@ -43,6 +43,20 @@ std::vector<VariantRecord> without_nulls(std::vector<VariantRecord> variants) {
   return variants;
 }
 
+/// What each variant needed on top of what was there before it; empty where none was measured.
+std::vector<std::string> memory_row(const std::vector<VariantRecord>& variants) {
+  std::vector<std::string> row{"peak memory", "MB"};
+  bool measured = false;
+  for (const VariantRecord& variant : variants) {
+    measured |= variant.memory.has_value();
+    row.push_back(variant.memory ? rounded_text(1e-6 * static_cast<double>(variant.memory->peak -
+                                                                           variant.memory->start),
+                                                3)
+                                 : "-");
+  }
+  return measured ? row : std::vector<std::string>();
+}
+
 void say_case(const CaseRecord& in) {
   std::vector<std::vector<std::string>> rows{{in.name == "default" ? "" : in.name, "unit"}};
   std::map<std::string, std::string> metrics;
@@ -72,6 +86,8 @@ void say_case(const CaseRecord& in) {
     }
     rows.push_back(row);
   }
+  rows.push_back(memory_row(shown));
+  if (rows.back().empty()) rows.pop_back();
   say_table(rows);
 }
 
@@ -91,6 +107,10 @@ Json variant_json(const VariantRecord& variant) {
             {"status", variant.status},
             {"frames", variant.frames.size()}};
   if (!variant.error.empty()) json["error"] = variant.error;
+  if (variant.memory) {
+    json["memory_start_bytes"] = variant.memory->start;
+    json["memory_peak_bytes"] = variant.memory->peak;
+  }
   json["summary"] = Json::object();
   for (const auto& [name, value] : variant.summary) {
     json["summary"][name] = {{"value", json_number(value.value)}, {"unit", value.unit}};

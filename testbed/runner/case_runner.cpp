@@ -6,6 +6,7 @@
 #include "testbed/runner/benchmark.h"
 #include "testbed/runner/frames_text.h"
 #include "testbed/runner/measure.h"
+#include "testbed/runner/peak_memory.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/scene_place.h"
 #include "testbed/runner/sha256.h"
@@ -255,6 +256,7 @@ void CaseRunner::finish(const VariantSpec& variant, journal::EndLine line) {
 bool CaseRunner::run_variant(const VariantSpec& variant) {
   progress_.begin(experiment_.id + " " + spec_.name + "/" + variant.name);
   kept_ = KeptFrames(kMostKept);
+  const PeakMemory memory;
   MethodEntry::Instance& instance = prepare(variant, true);
   TimedContext context(spec_.seed, [this](double done) { progress_.fraction(done); });
   journal::EndLine end;
@@ -268,6 +270,7 @@ bool CaseRunner::run_variant(const VariantSpec& variant) {
     complete = run_process(variant, *process, context, end);
   }
   if (!complete) return false;
+  end.memory = memory.use();
   if (!end.error.empty()) {
     progress_.say("variant '" + variant.name + "' of case '" + spec_.name + "' failed after " +
                   frames_text(state_of(variant).record.frames.size()) + ": " + end.error);

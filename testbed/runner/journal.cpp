@@ -171,6 +171,7 @@ SortedJson write(const EndLine& line) {
   json["summary"] = numbers(line.summary);
   json["timing"] = numbers(line.timing);
   if (!line.error.empty()) json["error"] = line.error;
+  if (line.memory) json["memory"] = {{"start", line.memory->start}, {"peak", line.memory->peak}};
   return json;
 }
 
@@ -208,6 +209,11 @@ Line read_event(const SortedJson& json) {
   line.event.energy_J = number(json.at("energy_J"));
   line.event.duration_s = number(json.at("duration_s"));
   return line;
+}
+
+std::optional<MemoryUse> memory(const SortedJson& json) {
+  if (!json.contains("memory")) return std::nullopt;
+  return MemoryUse{json.at("memory").at("start"), json.at("memory").at("peak")};
 }
 
 Line read_timing(const SortedJson& json) {
@@ -259,7 +265,7 @@ Line read(const SortedJson& json) {
   }
   if (kind == "end") {
     return EndLine{place(json), numbers(json.at("summary")), numbers(json.at("timing")),
-                   json.value("error", "")};
+                   json.value("error", ""), memory(json)};
   }
   throw Error("unknown kind of line '" + kind + "'");
 }

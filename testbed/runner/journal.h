@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -77,6 +78,7 @@ struct EndLine {
   Numbers summary;    ///< metrics of the sequence
   Numbers timing;     ///< of a process: "run" and the phases in it after the last frame, s
   std::string error;  ///< why the variant ended early; empty: it is complete
+  std::optional<MemoryUse> memory;
 };
 struct TimingLine {
   std::string case_name;

@@ -123,6 +123,10 @@ void write_variant(H5Group& parent, const CaseRecord& of, std::size_t index,
   group.write_attribute("options", variant.options_json);
   group.write_attribute("status", variant.status);
   group.write_attribute("error", variant.error);
+  if (variant.memory) {
+    group.write_attribute("memory_start", variant.memory->start);
+    group.write_attribute("memory_peak", variant.memory->peak);
+  }
   H5Array parameter{
       {variant.frames.size()}, {}, {{"name", of.parameter_name}, {"unit", of.parameter_unit}}};
   for (const FrameRecord& frame : variant.frames) parameter.values.push_back(frame.parameter);
@@ -362,11 +366,19 @@ void read_numbers(const H5Group& group, VariantRecord& variant) {
   }
 }
 
+bool has_attribute(const H5Group& group, const std::string& name) {
+  const std::vector<std::string> names = group.attributes();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 /// What schema version 1 did not have.
 std::string read_text_or_none(const H5Group& group, const std::string& name) {
-  const std::vector<std::string> names = group.attributes();
-  const bool there = std::find(names.begin(), names.end(), name) != names.end();
-  return there ? group.read_text(name) : std::string();
+  return has_attribute(group, name) ? group.read_text(name) : std::string();
+}
+
+std::optional<MemoryUse> read_memory(const H5Group& group) {
+  if (!has_attribute(group, "memory_peak")) return std::nullopt;
+  return MemoryUse{group.read_unsigned("memory_start"), group.read_unsigned("memory_peak")};
 }
 
 VariantRecord read_variant(const H5Group& group, const std::string& name) {
@@ -378,6 +390,7 @@ VariantRecord read_variant(const H5Group& group, const std::string& name) {
   variant.options_json = group.read_text("options");
   variant.status = group.read_text("status");
   variant.error = read_text_or_none(group, "error");
+  variant.memory = read_memory(group);
   variant.frames = read_frames(group);
   read_numbers(group, variant);
   variant.events = read_events(group);

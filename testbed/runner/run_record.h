@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +42,12 @@ struct SummaryValue {
   std::string direction;
 };
 
+/// Resident memory of the process while a variant was prepared and run (bytes).
+struct MemoryUse {
+  std::uint64_t start = 0;  ///< before it
+  std::uint64_t peak = 0;   ///< most at any time; minus `start`: what the variant needed
+};
+
 /// Everything known of one variant of one case.
 struct VariantRecord {
   std::string name;
@@ -57,6 +65,7 @@ struct VariantRecord {
   /// Phase: [frame][repetition] seconds. "load", "prepare" and "finish" (of a process: after its
   /// last frame) have one row.
   std::map<std::string, std::vector<std::vector<double>>> timing;
+  std::optional<MemoryUse> memory;  ///< absent where it cannot be measured
   std::vector<Event> events;
   std::vector<StoredFile> artifacts;
 };

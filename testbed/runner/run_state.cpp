@@ -156,6 +156,7 @@ void RunState::apply(const journal::EndLine& line) {
   state.ended = true;
   state.record.status = line.error.empty() ? "done" : "failed";
   state.record.error = line.error;
+  state.record.memory = line.memory;
   // Columns that had no value at the last frames end with the frames.
   for (auto& [name, column] : state.record.metrics) {
     column.values.resize(state.record.frames.size(), kAbsent);

@@ -10,35 +10,15 @@
 #include "models/fluid/volume_correction.h"
 #include "tests/core/shapes.h"
 #include "tests/fluid/liquid_fixture.h"
+#include "tests/fluid/standard_flows.h"
 
 namespace geoprior::fluid {
 namespace {
 
+using flows::advect;
+using flows::sample_field;
 using std::numbers::pi;
 using tanks::grid_of;
-
-/// Sets the faces of a grid from a velocity field.
-template <class Field>
-void sample_field(const Field& field, MacGrid& grid) {
-  for (int a = 0; a < 3; ++a) {
-    ScalarGrid& face = grid.face[a];
-    for (int k = 0; k < face.size.z(); ++k) {
-      for (int j = 0; j < face.size.y(); ++j) {
-        for (int i = 0; i < face.size.x(); ++i) {
-          Eigen::Vector3d x = Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5);
-          x[a] -= 0.5;
-          const Eigen::Vector3d u = field(Eigen::Vector3d(grid.shape.origin + grid.shape.cell * x));
-          face(i, j, k) = static_cast<float>(u[a]);
-        }
-      }
-    }
-  }
-}
-
-void advect(const MacGrid& velocity, double dt, LiquidParticles& particles) {
-  std::vector<std::uint8_t> left;
-  advect_particles(velocity, dt, nullptr, std::nullopt, particles, left);
-}
 
 float furthest(const std::vector<Eigen::Vector3f>& a, const std::vector<Eigen::Vector3f>& b) {
   float most = 0;
@@ -88,41 +68,22 @@ TEST(LiquidAdvection, RungeKuttaIsOfThirdOrder) {
   EXPECT_NEAR(std::log2(error[0] / error[1]), 3, 0.2);
 }
 
-/// Zalesak 1979: disc of radius 15 at (50, 75) with a slot 5 wide and 25 long.
-bool in_slotted_disc(double x, double y) {
-  const bool slot = std::abs(x - 50) < 2.5 && y < 85;
-  return std::hypot(x - 50, y - 75) < 15 && !slot;
-}
-
 TEST(LiquidAdvection, ZalesakDiscComesBackAfterATurn) {
-  MacGrid grid(grid_of({100, 100, 2}, 1));
-  sample_field(
-      [](const Eigen::Vector3d& x) {
-        return Eigen::Vector3d(pi / 314 * (50 - x.y()), pi / 314 * (x.x() - 50), 0);
-      },
-      grid);
+  const MacGrid grid = flows::SlottedDisc::flow();
   LiquidParticles particles;
   for (int j = 0; j < 400; ++j) {
     for (int i = 0; i < 400; ++i) {
       const double x = (i + 0.5) / 4, y = (j + 0.5) / 4;
-      if (!in_slotted_disc(x, y)) continue;
+      if (!flows::SlottedDisc::contains(x, y)) continue;
       particles.position.push_back(Eigen::Vector3d(x, y, 1).cast<float>());
     }
   }
   particles.velocity.assign(particles.size(), Eigen::Vector3f::Zero());
   const std::vector<Eigen::Vector3f> start = particles.position;
-  // Area of slotted disc: pi 15^2 minus the slot (10 + sqrt(15^2 - 2.5^2) long at its sides).
-  EXPECT_NEAR(static_cast<double>(particles.size()) / 16, 582.2, 3);
+  EXPECT_NEAR(static_cast<double>(particles.size()) / 16, flows::SlottedDisc::area(), 3);
   for (int s = 0; s < 628; ++s) advect(grid, 1, particles);
   // Round-off of 628 additions of numbers near 100: 628^(1/2) 4e-6, in a few directions.
   EXPECT_LT(furthest(particles.position, start), 2e-3F);
-}
-
-/// Flow of Enright et al. 2002 in the unit cube, without its factor in time: no divergence.
-Eigen::Vector3d enright_velocity(const Eigen::Vector3d& x) {
-  const Eigen::Vector3d s = (pi * x).array().sin(), t = (2 * pi * x).array().sin();
-  return {2 * s.x() * s.x() * t.y() * t.z(), -t.x() * s.y() * s.y() * t.z(),
-          -t.x() * t.y() * s.z() * s.z()};
 }
 
 /// Volume within a closed surface whose vertices are particles.
@@ -147,14 +108,8 @@ struct TornSphere {
 /// @param level  of the sphere's subdivision: its surface has 2 4^(level + 1) triangles
 /// @param leak   divergence added to the flow (1/s)
 TornSphere torn_sphere(int level, double leak = 0) {
-  constexpr int n = 32, steps = 200;
-  const GridShape shape = grid_of({n, n, n}, 1.0 / n);
-  MacGrid full(shape), now(shape);
-  sample_field(
-      [leak](const Eigen::Vector3d& x) -> Eigen::Vector3d {
-        return enright_velocity(x) + leak / 3 * (x - Eigen::Vector3d::Constant(0.5));
-      },
-      full);
+  using flows::EnrightSphere;
+  const MacGrid flow = EnrightSphere::flow(32, leak);
   const TriMesh sphere = shapes::sphere(level);
   LiquidParticles particles;
   for (Eigen::Index v = 0; v < sphere.V.rows(); ++v) {
@@ -166,12 +121,8 @@ TornSphere torn_sphere(int level, double leak = 0) {
   const double ball = enclosed_volume(start, sphere.F);
   EXPECT_NEAR(ball / (4 * pi / 3 * std::pow(0.15, 3)), 1, 1e-3);
   TornSphere result;
-  for (int s = 0; s < steps; ++s) {
-    const auto factor = static_cast<float>(std::cos(pi * (s + 0.5) / steps));
-    for (std::size_t a = 0; a < 3; ++a)
-      for (std::size_t i = 0; i < now.face[a].values.size(); ++i)
-        now.face[a].values[i] = factor * full.face[a].values[i];
-    advect(now, 3.0 / steps, particles);
+  for (int s = 0; s < EnrightSphere::kSteps; ++s) {
+    EnrightSphere::step(flow, s, particles);
     result.apart = static_cast<double>(furthest(particles.position, start));
     result.widest = std::max(result.widest, result.apart);
     result.volume_change = std::max(

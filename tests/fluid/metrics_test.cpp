@@ -1,8 +1,10 @@
 // Rows of the fluid metric table on frames made by hand, whose answers are known.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 
@@ -154,6 +156,80 @@ TEST_F(TankMetrics, DriftAndJitterOverTime) {
   }
   EXPECT_NEAR(over("volume_drift", frames).value(), 0.02, 1e-12);
   EXPECT_NEAR(over("second_difference", frames).value(), 0.005, 1e-12);
+}
+
+/// A pool with vertices at the quarters of every gauge's square: a gauge stands between vertices of
+/// its own square and sees their height. Where `pasted(i)` holds for the gauge's column, a feature
+/// has lifted the pool by `lift`.
+template <class Pasted>
+Frame pool_with_a_ridge(const ColumnGrid& grid, double height, double lift, Pasted pasted,
+                        double time) {
+  const int nx = 2 * grid.nx, ny = 2 * grid.ny;
+  TriMesh mesh;
+  mesh.V.resize(nx * ny, 3);
+  mesh.F.resize(2 * (nx - 1) * (ny - 1), 3);
+  Eigen::VectorXd feature(nx * ny);
+  int t = 0;
+  for (int i = 0; i < nx; ++i) {
+    for (int j = 0; j < ny; ++j) {
+      const int v = i * ny + j;
+      feature[v] = pasted(i / 2) ? 1 : 0;
+      mesh.V.row(v) << grid.spacing * (i + 0.5) / 2, grid.spacing * (j + 0.5) / 2,
+          height + lift * feature[v];
+      if (i + 1 == nx || j + 1 == ny) continue;
+      mesh.F.row(t++) << v, v + ny, v + ny + 1;
+      mesh.F.row(t++) << v, v + ny + 1, v + 1;
+    }
+  }
+  Frame frame = frame_of(mesh, time);
+  frame.parts["surface"].arrays.push_back({"feature", "1", NamedArray::On::points, feature});
+  return frame;
+}
+
+/// The pool alone, at three heights whose second difference is -0.005 m.
+constexpr std::array<double, 3> kPool{0.1, 0.102, 0.099};
+
+std::shared_ptr<const SurfaceSequence> pool_alone(const ColumnGrid& grid) {
+  std::vector<SurfaceFrame> frames;
+  for (const double height : kPool) {
+    const double time = 0.1 * static_cast<double>(frames.size());
+    const Frame frame = pool_with_a_ridge(
+        grid, height, 0, [](int) { return false; }, time);
+    const Part& surface = frame.parts.at("surface");
+    frames.push_back({time, {surface.points, surface.triangles}, {}, {}});
+  }
+  return std::make_shared<StoredSequence>(std::move(frames), "pool");
+}
+
+// The ridge over the gauges 8 to 11 is lifted by 0.02, 0.03 and 0.01 m: with the pool's own, its
+// second difference is -0.035 m, seven times the pool's.
+TEST_F(TankMetrics, SeamJitterOfARidgeThatRisesAndFallsIsItsSecondDifference) {
+  scene.sculpt.target = pool_alone(*scene.gauges);
+  constexpr std::array<double, 3> lift{0.02, 0.03, 0.01};
+  std::vector<Frame> frames;
+  for (std::size_t f = 0; f < 3; ++f) {
+    frames.push_back(pool_with_a_ridge(
+        *scene.gauges, kPool[f], lift[f], [](int i) { return i >= 8 && i < 12; },
+        0.1 * static_cast<double>(f)));
+  }
+  EXPECT_NEAR(over("seam_jitter", frames).value(), 7, 1e-9);
+}
+
+// A ridge of 0.02 m that moves on by one gauge a frame: at its border a gauge is lifted (0, 1, 1)
+// or (1, 1, 0) times, a second difference of -0.02 m beside the pool's -0.005 m. The same border
+// fixed in place: that of the pool alone.
+TEST_F(TankMetrics, SeamJitterOfARidgeThatMovesIsItsHeight) {
+  scene.sculpt.target = pool_alone(*scene.gauges);
+  for (const int step : {0, 1}) {
+    std::vector<Frame> frames;
+    for (int f = 0; f < 3; ++f) {
+      const int first = 8 + step * f;
+      frames.push_back(pool_with_a_ridge(
+          *scene.gauges, kPool[static_cast<std::size_t>(f)], 0.02,
+          [=](int i) { return i >= first && i < first + 4; }, 0.1 * f));
+    }
+    EXPECT_NEAR(over("seam_jitter", frames).value(), step == 0 ? 1 : 5, 1e-9) << step;
+  }
 }
 
 /// Frames with an octahedron at every true object, labelled by `id_of(true id, frame)`, 0: none.

@@ -256,6 +256,20 @@ class RunTest(unittest.TestCase):
         self.assertIn("**falls short**: bulge stays", text)
         self.assertIn("4.00 ms", text)
 
+    def test_peak_memory_is_shown_where_it_was_measured(self):
+        summary.main([str(self.folder)])
+        self.assertNotIn("peak memory", (self.folder / "summary.md").read_text(encoding="utf-8"))
+        with h5py.File(self.folder / "run.h5", "a") as file:
+            variants = file["cases/default/variants"]
+            attrs = variants[list(variants)[0]].attrs
+            attrs["memory_start"], attrs["memory_peak"] = np.uint64(100e6), np.uint64(164e6)
+        report.main([str(self.folder), "--out", str(self.folder / "report.html")])
+        summary.main([str(self.folder)])
+        for name in ("report.html", "summary.md"):
+            text = (self.folder / name).read_text(encoding="utf-8")
+            self.assertIn("eak memory", text)
+            self.assertIn("64.0 MB", text)
+
     def test_processes_have_times_of_frames(self):
         make_processes(self.folder)
         run = runfile.read_run(self.folder)

@@ -70,6 +70,7 @@ RunRecord sample_record() {
   one.variants = {sample_variant("zeta"), sample_variant("alpha")};  // not sorted by name
   one.ratios = {{"zeta", "alpha", 1.5, 1.25, 2, "run"}, {"zeta", "beta", 1, kNan, kNan, "frame"}};
   record.cases = {one, {}};
+  record.cases[0].variants[1].memory = MemoryUse{1 << 20, std::uint64_t{5} << 32};
   record.cases[1].name = "default";
   record.studies = {{"growth", "exponent", "timing:solve", 1.02, 0.9, 1.1, {1, 2}, {3, 4}, {}},
                     {"near", "within-spread", "x", kInfinity, 0, 1, {0, 1}, {3, 4}, {5, 5}}};
@@ -93,6 +94,7 @@ std::string numbers(const std::vector<double>& values) {
 std::string dump(const VariantRecord& v) {
   std::string text =
       v.name + v.method + v.role + v.reference + v.options_json + v.status + v.error + "\n";
+  if (v.memory) text += std::to_string(v.memory->start) + " " + std::to_string(v.memory->peak);
   for (const auto& frame : v.frames) {
     text += numbers({frame.parameter});
     for (const auto& file : frame.files) text += file.name + file.sha256 + "\n";
