@@ -40,6 +40,7 @@ class ExpressionError(Exception):
 class Quantity:
     value: float
     unit: str
+    counted: bool = False  # whole numbers are shown exactly
 
 
 @dataclass
@@ -162,7 +163,8 @@ def quantity_of(record, case, variant, name):
         return ratio_of(record, case, variant, name.removeprefix("ratio:"))
     where = f"'{record.experiment_id}', case '{case}',"
     values = known(record.values.get(case, {}), variant, "values of variant", where)
-    return Quantity(known(values, name, "value", f"{where} variant '{variant}',"), record.units[name])
+    value = known(values, name, "value", f"{where} variant '{variant}',")
+    return Quantity(value, record.units[name], counted=record.units[name] == "1")
 
 
 def study_of(record, words):
@@ -191,7 +193,8 @@ def term_value(term, records):
                                   f"{listed(TEXTS)}, not '{' '.join(term.words)}'")
     if any(q.value is None or math.isnan(q.value) for q in found):
         raise ExpressionError(f"'{term.experiment} {' '.join(term.words)}' has no value")
-    return Quantity(REDUCTIONS[term.reduction or "median"]([q.value for q in found]), found[0].unit)
+    value = REDUCTIONS[term.reduction or "median"]([q.value for q in found])
+    return Quantity(value, found[0].unit, found[0].counted)
 
 
 def quotient(top, bottom):
@@ -211,7 +214,8 @@ def rendered(quantity, unit, digits):
         symbol = unit
         if base != quantity.unit:
             raise ExpressionError(f"a quantity in '{quantity.unit}' has no '{unit}'")
-    text = number(quantity.value / size, digits or DEFAULT_DIGITS, counts=digits is None).replace("\u202f", ",")
+    counts = quantity.counted and not unit and digits is None
+    text = number(quantity.value / size, digits or DEFAULT_DIGITS, counts).replace("\u202f", ",")
     return text + (symbol if symbol == "°" else f" {symbol}" if symbol else "")
 
 
@@ -227,11 +231,7 @@ def evaluate(text, records):
     return value
 
 
-def quoted(texts):
-    """experiment: {(variant, quantity)}, what the expressions need of runs."""
-    out = {}
-    for text in texts:
-        for term in parse(text).terms:
-            if len(term.words) == 2 and term.words[0] != "study":
-                out.setdefault(term.experiment, set()).add(tuple(term.words))
-    return out
+def quoted(text):
+    """(experiment, variant, quantity) of every quantity of a variant that the expression names."""
+    return [(term.experiment, *term.words) for term in parse(text).terms
+            if len(term.words) == 2 and term.words[0] != "study"]

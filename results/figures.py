@@ -12,7 +12,6 @@ import argparse
 import sys
 from pathlib import Path
 
-import expressions
 import pages
 import records
 import runfile
@@ -29,17 +28,13 @@ def page_texts(root):
     return {str(path.relative_to(root)): path.read_text(encoding="utf-8") for path in page_files(root)}
 
 
-def quoted_by(texts):
-    """experiment: what the pages quote of its variants."""
-    found = [text for page, content in texts.items() for text in pages.expressions_of(page, content)]
-    return expressions.quoted(found)
-
-
 def publish(root, run_folders):
-    wanted = quoted_by(page_texts(root))
+    """Makes the records of the runs anew, with what the pages quote of them."""
+    wanted = [quote for page, text in page_texts(root).items() for quote in pages.quoted(page, text)]
     for folder in run_folders:
         run = runfile.read_run(folder)
-        print(records.write_record(root, records.record_of(run, wanted.get(run.experiment_id, set()))))
+        quotes = {(variant, quantity) for experiment, variant, quantity in wanted if experiment == run.experiment_id}
+        print(records.write_record(root, records.record_of(run, quotes)))
 
 
 def unshown(texts, published):
@@ -74,7 +69,8 @@ def main(arguments):
     parser.add_argument("--publish", nargs="+", default=[], metavar="RUN_FOLDER", help="runs to make records of")
     parser.add_argument("--root", type=Path, default=REPOSITORY, help="the repository (default: this one)")
     chosen = parser.parse_args(arguments)
-    publish(chosen.root, chosen.publish)
+    if chosen.publish:
+        publish(chosen.root, chosen.publish)
     return check(chosen.root) if chosen.check else rewrite(chosen.root)
 
 

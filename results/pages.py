@@ -189,9 +189,18 @@ def rewritten(page, text, records):
     return text
 
 
-def expressions_of(page, text):
-    """The expressions of all markers of a page, those of its tables too."""
+def quoted(page, text):
+    """(experiment, variant, quantity) of all markers of a page, those of its tables too."""
     out = []
     for marker in markers_of(page, text):
-        out += PLACEHOLDER.findall(marker.source) if marker.block else [marker.source]
+        try:
+            for source in PLACEHOLDER.findall(marker.source) if marker.block else [marker.source]:
+                out += expressions.quoted(source)
+        except ExpressionError as error:
+            raise PageError(f"{page}:{marker.line}: {marker.name()}: {error}") from error
     return out
+
+
+def pictures_of(text):
+    """The relative targets of the pictures that a page shows."""
+    return [target for target in re.findall(r"!\[[^]]*\]\(([^)]+)\)", text) if "://" not in target]
