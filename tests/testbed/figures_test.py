@@ -170,7 +170,7 @@ class Markers(Scratch):
                 ("test/knee implicit time.median to 12", "significant digits are 1 to 9"),
                 ("test/knee implicit time.median / test/elbow implicit time.median", "only quantities of one run"),
                 ("test/knee implicit time.median / test/knee implicit overlap_excess.max", "a quotient of 's'"),
-                ("test/knee study growth", "has no study 'growth'"),
+                ("test/knee study decay", "has no study 'decay'"),
                 ("test/knee implicit", "after 'test/knee'"),
                 ("knee implicit time.median", "'knee' is no experiment")):
             answer = self.answer_to(f"a <!--= {source} -->1<!-- -->")
