@@ -58,9 +58,19 @@ def series_of(variant, name):
     return variant.diagnostics.get(rest) if kind == "diagnostic" else variant.metrics.get(name)
 
 
+def percentile_of_time(variant, quantity):
+    """(seconds, "s") of `timing:step.p99`, over all frames and repetitions; None without that phase."""
+    phase, _, percent = quantity.removeprefix("timing:").rpartition(".p")
+    if phase not in variant.timing or not percent.isdigit():
+        return None
+    return float(np.nanpercentile(variant.timing[phase], int(percent))), "s"
+
+
 def measured(variant, quantity):
-    """(value, unit) of `metric.max`, `metric@90` (at that parameter), `diagnostic:name.last`, or a
-    metric of the whole sequence; None when the variant has no such quantity."""
+    """(value, unit) of `metric.max`, `metric@90` (at that parameter), `diagnostic:name.last`, `timing:step.p99`,
+    or a metric of the whole sequence; None when the variant has no such quantity."""
+    if quantity.startswith("timing:"):
+        return percentile_of_time(variant, quantity)
     if quantity in variant.summary:
         return variant.summary[quantity].values, variant.summary[quantity].unit
     name, at, parameter = quantity.partition("@")
