@@ -3,7 +3,8 @@
     paper/bend hybrid isometry_rms.max                          a metric of a variant
     skinning/scaling@18k,threads=2 implicit time.median         … of a case
     paper/dense-adaptive-hybrid@median(*) dense dcone_count.last   … over the cases that match
-    paper/bend hybrid ratio:dense                               median of the paired ratios of time
+    paper/bend hybrid ratio:dense                               median of the paired ratios of time; also
+                                                                speedup:dense, ratio:dense.low, …
     paper/dense-adaptive-hybrid study "d-cones: hybrid" low     a study, or an end of its interval
     paper/bend claims | title | command | commit | processor | sizes     a text
     A / B                                                       a quotient, within one run
@@ -147,20 +148,28 @@ def time_of(record, case, variant, name):
     return Quantity(row[name], "s")
 
 
-def ratio_of(record, case, variant, of):
-    rows = {(r["variant"], r["of"]): r["median"] for r in record.ratios.get(case, [])}
-    if (variant, of) not in rows:
+def ratio_of(record, case, variant, name):
+    """`ratio:OF` or `speedup:OF` (its inverse), or an end of its interval: `ratio:OF.low`."""
+    kind, _, rest = name.partition(":")
+    of, _, end = rest.partition(".")
+    if end not in ("", "low", "high"):
+        raise ExpressionError(f"'{name}': an interval has 'low' and 'high', no '{end}'")
+    rows = [r for r in record.ratios.get(case, []) if (r["variant"], r["of"]) == (variant, of)]
+    if not rows:
         raise ExpressionError(f"'{record.experiment_id}', case '{case}', has no ratio of times of "
                               f"'{variant}' over '{of}'")
-    return Quantity(rows[variant, of], "1")
+    if kind == "ratio":
+        return Quantity(rows[0][end or "median"], "1")
+    opposite = {"": "median", "low": "high", "high": "low"}[end]
+    return Quantity(1 / rows[0][opposite], "1")
 
 
 def quantity_of(record, case, variant, name):
     """A quantity of a variant in one case."""
     if name.startswith("time."):
         return time_of(record, case, variant, name.removeprefix("time."))
-    if name.startswith("ratio:"):
-        return ratio_of(record, case, variant, name.removeprefix("ratio:"))
+    if name.startswith(("ratio:", "speedup:")):
+        return ratio_of(record, case, variant, name)
     where = f"'{record.experiment_id}', case '{case}',"
     values = known(record.values.get(case, {}), variant, "values of variant", where)
     value = known(values, name, "value", f"{where} variant '{variant}',")

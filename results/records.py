@@ -58,19 +58,23 @@ def series_of(variant, name):
     return variant.diagnostics.get(rest) if kind == "diagnostic" else variant.metrics.get(name)
 
 
-def percentile_of_time(variant, quantity):
-    """(seconds, "s") of `timing:step.p99`, over all frames and repetitions; None without that phase."""
-    phase, _, percent = quantity.removeprefix("timing:").rpartition(".p")
-    if phase not in variant.timing or not percent.isdigit():
+def statistic_of_time(variant, quantity):
+    """(seconds, "s") of `timing:step.p99` or `timing:run.mean`, over all frames and repetitions; None
+    without that phase."""
+    phase, _, reduction = quantity.removeprefix("timing:").rpartition(".")
+    if phase not in variant.timing:
         return None
-    return float(np.nanpercentile(variant.timing[phase], int(percent))), "s"
+    if reduction == "mean":
+        return float(np.nanmean(variant.timing[phase])), "s"
+    percent = reduction.removeprefix("p")
+    return (float(np.nanpercentile(variant.timing[phase], int(percent))), "s") if percent.isdigit() else None
 
 
 def measured(variant, quantity):
     """(value, unit) of `metric.max`, `metric@90` (at that parameter), `diagnostic:name.last`, `timing:step.p99`,
     or a metric of the whole sequence; None when the variant has no such quantity."""
     if quantity.startswith("timing:"):
-        return percentile_of_time(variant, quantity)
+        return statistic_of_time(variant, quantity)
     if quantity in variant.summary:
         return variant.summary[quantity].values, variant.summary[quantity].unit
     name, at, parameter = quantity.partition("@")

@@ -120,10 +120,10 @@ class Publishing(Scratch):
         run = figures.runfile.read_run(self.run)
         implicit = run.cases[0].variant("implicit")
         for quantity, value in (("overlap_excess@45", 1e-9), ("overlap_excess.median", 1e-9),
-                                ("diagnostic:work_done.last", 2.0), ("diagnostic:iterations.max", 7.0),
+                                ("timing:solve.p99", 0.004), ("timing:solve.mean", 0.004), ("diagnostic:work_done.last", 2.0), ("diagnostic:iterations.max", 7.0),
                                 ("rest_identity", 1e-16)):
             self.assertEqual(records.measured(implicit, quantity)[0], value, quantity)
-        for quantity in ("overlap_excess", "overlap_excess@44", "overlap_excess.mode", "nothing.max"):
+        for quantity in ("timing:relax.mean", "timing:solve.mode", "overlap_excess", "overlap_excess@44", "overlap_excess.mode", "nothing.max"):
             self.assertIsNone(records.measured(implicit, quantity), quantity)
 
 
@@ -197,6 +197,8 @@ class Markers(Scratch):
         for source, shown in (("test/knee implicit time.median in ms to 2", "4.0 ms"),
                               ("test/knee implicit time.median / test/knee dual-quaternion time.median to 2", "4.0"),
                               ("test/knee implicit ratio:dual-quaternion", "4.00"),
+                              ("test/knee implicit ratio:dual-quaternion.high", "4.10"),
+                              ("test/knee implicit speedup:dual-quaternion.high", "0.256"),
                               ("test/knee@median(*) implicit overlap_excess.max in mm³", "2.00 mm³"),
                               ("test/knee processor", "A CPU"), ("test/knee command", "geoprior run test/knee")):
             self.assertEqual(expressions.evaluate(source, published), shown, source)
