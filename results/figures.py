@@ -46,17 +46,17 @@ def unshown(texts, published):
 
 
 def check(root):
-    texts, published = page_texts(root), records.read_records(root)
-    found = [line for page, text in texts.items() for line in pages.differences(page, text, published)]
-    found += unshown(texts, published)
+    texts, sources = page_texts(root), pages.read_sources(root)
+    found = [line for page, text in texts.items() for line in pages.differences(page, text, sources)]
+    found += unshown(texts, sources.records)
     print(*found, sep="\n", end="\n" if found else "", file=sys.stderr)
     return 1 if found else 0
 
 
 def rewrite(root):
-    published = records.read_records(root)
+    sources = pages.read_sources(root)
     for page, text in page_texts(root).items():
-        made = pages.rewritten(page, text, published)
+        made = pages.rewritten(page, text, sources)
         if made != text:
             runfile.write_atomically(root / page, made)
             print(page)

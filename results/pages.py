@@ -3,16 +3,20 @@
     <!--= EXPRESSION -->1.3 %<!-- -->                        a number in prose
     <!-- begin: KIND … --> … <!-- end -->                    lines that are generated
 
-KIND is `overview`, `experiment ID`, `claims ID`, `times ID[@CASE]`, `figure ID`, or `table` followed by the
-rows of a table whose cells have {EXPRESSION} in the place of numbers.
+KIND is `overview`, `experiment ID`, `claims ID`, `times ID[@CASE]`, `figure ID`, `options TOPIC`, or `table`
+followed by the rows of a table whose cells have {EXPRESSION} in the place of numbers.
 """
 
+import json
 import re
+import tomllib
 from dataclasses import dataclass
+from pathlib import Path
 
 import expressions
 from expressions import ExpressionError
 from runfile import RunFileError
+from records import Record, read_records
 from summary import claims, table, timing_table
 
 INLINE = re.compile(r"<!--= (?P<source>.*?) -->(?P<shown>.*?)<!-- -->")
@@ -20,6 +24,17 @@ BLOCK = re.compile(r"^(?P<pad> *)<!-- begin: (?P<source>.*?)\s*-->\n(?P<shown>.*
                    re.DOTALL | re.MULTILINE)
 PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
 LARGEST_DETAILED = 4  # cases of an experiment whose times are all shown
+
+
+@dataclass
+class Sources:
+    """What the pages are made from: published records, by experiment, and the experiment files below the root."""
+    root: Path
+    records: dict[str, Record]
+
+
+def read_sources(root):
+    return Sources(Path(root), read_records(root))
 
 
 class PageError(RunFileError):
@@ -89,6 +104,29 @@ def caption(record):
     return ["", f"*{record.title}.* `{record.command}`: {verdict}.", ""]
 
 
+def flat_options(options, prefix=""):
+    """`stepper.plasticity = false`, one text an option."""
+    out = []
+    for name, value in options.items():
+        nested = isinstance(value, dict)
+        out += flat_options(value, f"{prefix}{name}.") if nested else [f"`{prefix}{name} = {json.dumps(value)}`"]
+    return out
+
+
+def option_rows(sources, topic):
+    """What the experiments set by hand instead of a method's defaults."""
+    rows = []
+    for path in sorted((sources.root / "experiments" / topic).glob("*.toml")):
+        spec = tomllib.loads(path.read_text(encoding="utf-8"))
+        rows += [[f"`{path.stem}`", spec.get("figure") or "–", variant["name"],
+                  ", ".join(flat_options(variant["options"]))]
+                 for variant in spec.get("variant", []) if variant.get("options")]
+    if not rows:
+        raise ExpressionError(f"no experiment of topic '{topic}' sets options")
+    return ["| experiment | figure | variant | options set by hand |", "|---|---|---|---|",
+            *("| " + " | ".join(row) + " |" for row in rows)]
+
+
 def filled_table(template, records):
     """The rows of a template, with values in the place of {EXPRESSION}."""
     rows = []
@@ -100,24 +138,32 @@ def filled_table(template, records):
     return table(rows[0], rows[1:])
 
 
-def block_lines(source, records):
+def times_of_place(place, records):
+    term = expressions.parse_term([place])
+    record = expressions.record_named(records, term.experiment)
+    return times_lines(record, *expressions.cases_of(record, term))
+
+
+def block_lines(source, sources):
+    """The lines that a block should have. Raises ExpressionError."""
     first, *template = source.splitlines()
     kind, _, argument = first.partition(" ")
     if template and kind != "table":
         raise ExpressionError(f"a block of kind '{kind}' has one line")
-    if kind == "table" and not argument:
-        return filled_table(template, records)
-    if kind == "overview" and not argument:
-        return figure_index(records)
-    made = {"experiment": section, "claims": claim_lines, "figure": caption}.get(kind)
-    if made:
-        return made(expressions.record_named(records, argument))
-    if kind == "times":
-        term = expressions.parse_term([argument])
-        record = expressions.record_named(records, term.experiment)
-        return times_lines(record, *expressions.cases_of(record, term))
+    of_record = {"experiment": section, "claims": claim_lines, "figure": caption}
+    if kind in of_record:
+        return of_record[kind](expressions.record_named(sources.records, argument))
+    match kind, bool(argument):
+        case "table", False:
+            return filled_table(template, sources.records)
+        case "overview", False:
+            return figure_index(sources.records)
+        case "times", True:
+            return times_of_place(argument, sources.records)
+        case "options", True:
+            return option_rows(sources, argument)
     raise ExpressionError(f"unknown block '{first}' (there are overview, experiment ID, claims ID, "
-                          "times ID[@CASE], figure ID, table)")
+                          "times ID[@CASE], figure ID, options TOPIC, table)")
 
 
 # Pages
@@ -153,12 +199,12 @@ def markers_of(page, text):
                    m["pad"] if m.re is BLOCK else "") for m in found]
 
 
-def content_of(page, marker, records):
+def content_of(page, marker, sources):
     """What should stand between the two comments of a marker. Raises PageError."""
     try:
         if not marker.block:
-            return expressions.evaluate(marker.source, records)
-        return "".join(f"{marker.pad}{line}\n" if line else "\n" for text in block_lines(marker.source, records)
+            return expressions.evaluate(marker.source, sources.records)
+        return "".join(f"{marker.pad}{line}\n" if line else "\n" for text in block_lines(marker.source, sources)
                        for line in text.split("\n"))
     except ExpressionError as error:
         raise PageError(f"{page}:{marker.line}: {marker.name()}: {error}") from error
@@ -170,22 +216,22 @@ def first_difference(shown, wanted):
     return next(((a, b) for a, b in pairs if a != b), ("", "more or fewer lines"))
 
 
-def differences(page, text, records):
+def differences(page, text, sources):
     """One line for every marker whose content differs from its source."""
     out = []
     for marker in markers_of(page, text):
-        wanted = content_of(page, marker, records)
+        wanted = content_of(page, marker, sources)
         if wanted != marker.shown:
             shows, gives = first_difference(marker.shown, wanted)
             out.append(f"{page}:{marker.line}: {marker.name()} shows '{shows}', its source gives '{gives}'")
     return out
 
 
-def rewritten(page, text, records):
+def rewritten(page, text, sources):
     """The page with the content of every marker made anew."""
     for marker in reversed(markers_of(page, text)):
         end = marker.start + len(marker.shown)
-        text = text[:marker.start] + content_of(page, marker, records) + text[end:]
+        text = text[:marker.start] + content_of(page, marker, sources) + text[end:]
     return text
 
 

@@ -34,7 +34,7 @@ def run_figures(*arguments):
 class CommittedPages(unittest.TestCase):
     def setUp(self):
         self.texts = figures.page_texts(REPOSITORY)
-        self.records = records.read_records(REPOSITORY)
+        self.sources = pages.read_sources(REPOSITORY)
 
     def test_equal_their_sources(self):
         code, _, err = run_figures("--check")
@@ -43,7 +43,7 @@ class CommittedPages(unittest.TestCase):
     def test_every_edited_marker_is_found_and_named(self):
         for page, text in self.texts.items():
             markers = pages.markers_of(page, text)
-            wanted = [pages.content_of(page, marker, self.records) for marker in markers]
+            wanted = [pages.content_of(page, marker, self.sources) for marker in markers]
             for at, marker in enumerate(markers):
                 edited = text[:marker.start] + "7" + text[marker.start:]
                 again = pages.markers_of(page, edited)
@@ -52,8 +52,15 @@ class CommittedPages(unittest.TestCase):
 
     def test_a_rewritten_page_differs_nowhere(self):
         for page, text in self.texts.items():
-            again = pages.rewritten(page, text, self.records)
-            self.assertEqual(pages.differences(page, again, self.records), [])
+            again = pages.rewritten(page, text, self.sources)
+            self.assertEqual(pages.differences(page, again, self.sources), [])
+
+    def test_the_gallery_has_every_figure_of_the_thesis(self):
+        markers = pages.markers_of("docs/gallery.md", self.texts["docs/gallery.md"])
+        shown = {marker.source for marker in markers}
+        for record in self.sources.records.values():
+            if record.figure:
+                self.assertIn(f"figure {record.experiment_id}", shown)
 
     def test_pictures_that_pages_show_are_there(self):
         for page, text in self.texts.items():
@@ -180,6 +187,8 @@ class Markers(Scratch):
     def test_blocks_that_say_nothing_name_page_and_line(self):
         for source, message in (("picture test/knee", "unknown block 'picture test/knee'"),
                                 ("claims test/elbow", "has no published record"),
+                                ("options nothing", "no experiment of topic 'nothing'"),
+                                ("options", "unknown block 'options'"),
                                 ("table\n| a | b |\n| {test/knee implicit time.median} |", "rows of as many cells"),
                                 ("table\n| a |\n| {test/knee implicit time.mode} |", "unknown time 'mode'")):
             answer = self.answer_to(f"<!-- begin: {source} -->\n<!-- end -->")
