@@ -22,6 +22,7 @@ from summary import claims, table, timing_table
 INLINE = re.compile(r"<!--= (?P<source>.*?) -->(?P<shown>.*?)<!-- -->")
 BLOCK = re.compile(r"^(?P<pad> *)<!-- begin: (?P<source>.*?)\s*-->\n(?P<shown>.*?)^ *<!-- end -->",
                    re.DOTALL | re.MULTILINE)
+FENCED = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
 PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
 LARGEST_DETAILED = 4  # cases of an experiment whose times are all shown
 
@@ -173,6 +174,11 @@ def line_of(text, position):
     return text.count("\n", 0, position) + 1
 
 
+def without_code(text):
+    """The page with its fenced code blank, every other character where it was."""
+    return FENCED.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
+
+
 def matches(text):
     """The blocks of a page and the numbers between them, in their order."""
     blocks = list(BLOCK.finditer(text))
@@ -183,6 +189,7 @@ def matches(text):
 
 def markers_of(page, text):
     """All markers of a page in their order. Raises PageError where one is not closed."""
+    text = without_code(text)
     found = matches(text)
     starts = {m.start() for m in found}
     for opening in re.finditer(r"<!--=|^ *<!-- begin:", text, re.MULTILINE):

@@ -200,6 +200,11 @@ class Markers(Scratch):
                      "| a |\n<!-- end -->"):
             self.assertRegex(self.answer_to(text), r"^docs/page\.md:[34]: a (closing )?marker")
 
+    def test_in_code_are_none(self):
+        self.publish()
+        text = "```\n<!--= nothing -->1<!-- -->\n```\n<!--= test/knee claims -->1 of 2<!-- -->\n"
+        self.assertEqual([m.line for m in pages.markers_of("page.md", text)], [4])
+
     def test_show_values_quotients_and_texts(self):
         self.publish()
         published = records.read_records(self.root)
