@@ -196,6 +196,8 @@ def markers_of(page, text):
         if opening.start() not in starts:
             raise PageError(f"{page}:{line_of(text, opening.start())}: a marker that is not closed on its line, "
                             "or inside another")
+    for first in re.finditer(r"^\s*<!--=", text, re.MULTILINE):  # Markdown would show the whole line as it is
+        raise PageError(f"{page}:{line_of(text, first.end())}: a number may not begin a line")
     closings = [m.start() for m in re.finditer(r"<!-- end -->|<!-- -->", text)]
     for closing in closings:
         if not any(m.start() < closing < m.end() for m in found):

@@ -200,9 +200,13 @@ class Markers(Scratch):
                      "| a |\n<!-- end -->"):
             self.assertRegex(self.answer_to(text), r"^docs/page\.md:[34]: a (closing )?marker")
 
+    def test_begin_no_line(self):
+        self.assertEqual(self.answer_to("<!--= test/knee claims -->1 of 2<!-- --> hold"),
+                         "docs/page.md:3: a number may not begin a line")
+
     def test_in_code_are_none(self):
         self.publish()
-        text = "```\n<!--= nothing -->1<!-- -->\n```\n<!--= test/knee claims -->1 of 2<!-- -->\n"
+        text = "```\n<!--= nothing -->1<!-- -->\n```\nOf it <!--= test/knee claims -->1 of 2<!-- -->\n"
         self.assertEqual([m.line for m in pages.markers_of("page.md", text)], [4])
 
     def test_show_values_quotients_and_texts(self):
