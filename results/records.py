@@ -14,6 +14,7 @@ from wording import display_name
 
 SCHEMA_VERSION = 1
 TIMES = ("median", "low", "high", "p95", "whole", "prepare")
+LEVELS = {"claims": 1, "studies": 1, "times": 2, "ratios": 2, "units": 1, "values": 3}  # broken into lines
 REDUCTIONS = {"max": np.nanmax, "min": np.nanmin, "median": np.nanmedian, "mean": np.nanmean,
               "last": lambda values: values[-1]}
 
@@ -127,25 +128,22 @@ def record_of(run, quoted):
 # Files
 
 
-def flat(item):
-    """Whether it stands on one line: a table row rather than a table."""
-    members = item.values() if isinstance(item, dict) else item
-    return not any(isinstance(member, (dict, list)) for member in members)
-
-
-def json_text(item, indent=0, row=False):
-    """JSON with one value, one claim or one row of times a line, so that a change reads as one."""
-    if not isinstance(item, (dict, list)) or not item or (row and flat(item)):
+def json_lines(item, levels, indent):
+    """JSON whose outer `levels` have a line for each member; what is deeper stands on one line."""
+    if levels == 0 or not item:
         return json.dumps(item, ensure_ascii=False)
     pad = " " * (indent + 2)
-    if isinstance(item, list):
-        lines = [pad + json_text(member, indent + 2, row=True) for member in item]
-        return "[\n" + ",\n".join(lines) + "\n" + " " * indent + "]"
-    lines = [f"{pad}{json.dumps(key, ensure_ascii=False)}: "
-             + json_text(member, indent + 2, row="phase" in member or "kind" in member
-                         if isinstance(member, dict) else key == "cases")
-             for key, member in item.items()]
-    return "{\n" + ",\n".join(lines) + "\n" + " " * indent + "}"
+    inner = [(f"{json.dumps(key, ensure_ascii=False)}: ", value) for key, value in item.items()] \
+        if isinstance(item, dict) else [("", value) for value in item]
+    lines = [pad + name + json_lines(value, levels - 1, indent + 2) for name, value in inner]
+    opening, closing = "{}" if isinstance(item, dict) else "[]"
+    return f"{opening}\n" + ",\n".join(lines) + f"\n{' ' * indent}{closing}"
+
+
+def json_text(data):
+    """The record with one value, one claim or one row of times a line, so that a change reads as one."""
+    lines = [f'  "{key}": ' + json_lines(value, LEVELS.get(key, 0), 2) for key, value in data.items()]
+    return "{\n" + ",\n".join(lines) + "\n}"
 
 
 def write_record(root, data):

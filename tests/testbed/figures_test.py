@@ -41,14 +41,21 @@ class CommittedPages(unittest.TestCase):
         self.assertEqual((code, err), (0, ""))
 
     def test_every_edited_marker_is_found_and_named(self):
-        for page, text in self.texts.items():
-            markers = pages.markers_of(page, text)
-            wanted = [pages.content_of(page, marker, self.sources) for marker in markers]
-            for at, marker in enumerate(markers):
-                edited = text[:marker.start] + "7" + text[marker.start:]
-                again = pages.markers_of(page, edited)
-                found = [m for m, content in zip(again, wanted) if m.shown != content]
-                self.assertEqual([(m.line, m.name()) for m in found], [(marker.line, markers[at].name())], page)
+        """In a copy whose pages are wrong between all markers, --check names each of them."""
+        with tempfile.TemporaryDirectory() as scratch:
+            root = Path(scratch)
+            for folder in ("docs", "experiments", "results/published"):
+                shutil.copytree(REPOSITORY / folder, root / folder, ignore=shutil.ignore_patterns("*.png"))
+            expected = []
+            for page, text in self.texts.items():
+                for marker in reversed(pages.markers_of(page, text)):
+                    text = text[:marker.start] + "7" + text[marker.start:]
+                    expected.append(f"{page}:{marker.line}: {marker.name()} shows")
+                (root / page).write_text(text, encoding="utf-8")
+            code, _, err = run_figures("--root", root, "--check")
+        self.assertEqual(code, 1)
+        named = [line.partition(" '7")[0] for line in err.splitlines()]
+        self.assertEqual(sorted(named), sorted(expected))
 
     def test_a_rewritten_page_differs_nowhere(self):
         for page, text in self.texts.items():
@@ -127,10 +134,12 @@ class Publishing(Scratch):
         run = figures.runfile.read_run(self.run)
         implicit = run.cases[0].variant("implicit")
         for quantity, value in (("overlap_excess@45", 1e-9), ("overlap_excess.median", 1e-9),
-                                ("timing:solve.p99", 0.004), ("timing:solve.mean", 0.004), ("diagnostic:work_done.last", 2.0), ("diagnostic:iterations.max", 7.0),
+                                ("timing:solve.p99", 0.004), ("timing:solve.mean", 0.004),
+                                ("diagnostic:work_done.last", 2.0), ("diagnostic:iterations.max", 7.0),
                                 ("rest_identity", 1e-16)):
             self.assertAlmostEqual(records.measured(implicit, quantity)[0], value, delta=1e-9 * value, msg=quantity)
-        for quantity in ("timing:relax.mean", "timing:solve.mode", "overlap_excess", "overlap_excess@44", "overlap_excess.mode", "nothing.max"):
+        for quantity in ("timing:relax.mean", "timing:solve.mode", "overlap_excess", "overlap_excess@44",
+                         "overlap_excess.mode", "nothing.max"):
             self.assertIsNone(records.measured(implicit, quantity), quantity)
 
 
