@@ -172,7 +172,10 @@ def quantity_of(record, case, variant, name):
         return ratio_of(record, case, variant, name)
     where = f"'{record.experiment_id}', case '{case}',"
     values = known(record.values.get(case, {}), variant, "values of variant", where)
-    value = known(values, name, "value", f"{where} variant '{variant}',")
+    if name not in values:
+        raise ExpressionError(f"{where} variant '{variant}', has no value '{name}' (there are {listed(values)}; "
+                              "--publish of a run adds what pages quote)")
+    value = values[name]
     return Quantity(value, record.units[name], counted=record.units[name] == "1")
 
 
