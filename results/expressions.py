@@ -81,8 +81,19 @@ def option(tokens, keyword):
     return ""
 
 
+def operands(tokens):
+    """The tokens between those that are a slash."""
+    out = [[]]
+    for token in tokens:
+        if token == "/":
+            out.append([])
+        else:
+            out[-1].append(token)
+    return out
+
+
 def parse(text):
-    """Raises ExpressionError."""
+    """The Expression of a marker. Raises ExpressionError where it cannot be understood."""
     try:
         tokens = shlex.split(text)
     except ValueError as error:
@@ -92,14 +103,7 @@ def parse(text):
         raise ExpressionError(f"'to {digits}': significant digits are 1 to 9")
     if unit and unit not in SCALES:
         raise ExpressionError(f"unknown unit '{unit}' (there are {', '.join(SCALES)})")
-    parts, part = [], []
-    for token in tokens:
-        if token == "/":
-            parts.append(part)
-            part = []
-        else:
-            part.append(token)
-    terms = [parse_term(part) for part in (*parts, part)]
+    terms = [parse_term(operand) for operand in operands(tokens)]
     if len(terms) > 2:
         raise ExpressionError("a quotient has two operands")
     if len({term.experiment for term in terms}) > 1:
