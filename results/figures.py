@@ -1,76 +1,77 @@
-"""Writes docs/figures.md: thesis figure, experiment, files, numbers, and whether the thesis' claim holds.
+"""Keeps the numbers of the pages equal to the published records (docs/file-formats.md).
 
-    python3 results/figures.py RUN_FOLDER... --out docs/figures.md
+    python3 results/figures.py                        writes what stands between the markers of all pages
+    python3 results/figures.py --check                exit code 1 where a page differs from its source
+    python3 results/figures.py --publish RUN_FOLDER…  first makes the records of these runs anew
 
-Every number comes from the runs given; the order is theirs.
+Pages are README.md and docs/**/*.md. A record holds what the pages quote of its run: a new quantity on a page
+needs `--publish` of a run of that experiment.
 """
 
 import argparse
+import sys
 from pathlib import Path
 
-import numpy as np
-
+import pages
+import records
 import runfile
-from summary import claims, table, timing_table
-from tables import failures
 
-HEADER = """# Figures and numbers
-
-Thesis figure, the experiment that makes it, its claims with the values measured, and whether they hold. A claim that falls short is a
-finding, explained in the method's page ({pages}). Written by `results/figures.py` from the runs that the table names; a run's folder is
-`results/runs/<experiment>/<time>-<hash>/` with `figure.png`, `metrics.svg`, `run.h5` and `frames/`. Make them again with `./reproduce.sh --all`.
-"""
+REPOSITORY = Path(__file__).resolve().parents[1]
 
 
-def sizes(run):
-    """How large its scenes are; of simulations, whose meshes change, the largest frame of any variant."""
-    vertices = sorted({int(case.facts["vertices"]) for case in run.cases if "vertices" in case.facts})
-    if vertices:
-        return ", ".join(f"{n:,}" for n in vertices)
-    triangles = [np.nanmax(metric.values) for case in run.cases for variant in case.variants
-                 for name, metric in variant.metrics.items() if name == "triangles"]
-    return f"up to {int(max(triangles)):,} triangles" if triangles else ""
+def page_files(root):
+    return sorted([*root.glob("README.md"), *root.glob("docs/**/*.md")])
 
 
-def header(runs):
-    topics = dict.fromkeys(run.topic for run in runs)
-    return HEADER.replace("{pages}", ", ".join(f"[{t}](methods/{t}.md#what-was-found)" for t in topics))
+def page_texts(root):
+    """name of the page: its text."""
+    return {str(path.relative_to(root)): path.read_text(encoding="utf-8") for path in page_files(root)}
 
 
-def overview(runs):
-    rows = []
-    for run in runs:
-        held = sum(claim.holds for claim in run.claims)
-        verdict = f"{held} of {len(run.claims)} claims hold" if run.claims else "no claims"
-        rows.append([f"`{run.experiment_id}`", run.figure or "–", sizes(run), verdict,
-                     f"`{run.content_sha256[:12]}`", f"`{run.provenance.get('git_commit', 'unknown')[:12]}`"])
-    return table(["experiment", "figure", "vertices or triangles", "result", "content_sha256", "commit"], rows)
+def publish(root, run_folders):
+    """Makes the records of the runs anew, with what the pages quote of them."""
+    wanted = [quote for page, text in page_texts(root).items() for quote in pages.quoted(page, text)]
+    for folder in run_folders:
+        run = runfile.read_run(folder)
+        quotes = {(variant, quantity) for experiment, variant, quantity in wanted if experiment == run.experiment_id}
+        print(records.write_record(root, records.record_of(run, quotes)))
 
 
-def section(run):
-    lines = ["", f"## {run.experiment_id}" + (f" → Figure {run.figure}" if run.figure else ""), "", run.title + "."]
-    lines += [f"\n**{line}**\n" for line in failures(run)]
-    lines += [line.replace("## Claims", "**Claims**") if line.startswith("## ") else line for line in claims(run)]
-    if run.studies:
-        lines += ["", *table(["study", "value", "95 % interval"],
-                             [[s.name, f"{s.value:.3g}", f"{s.low:.3g} … {s.high:.3g}"] for s in run.studies])]
-    for case in run.cases[:1] if len(run.cases) > 4 else run.cases:
-        lines += timing_table(case)
-    return lines
+def unshown(texts, published):
+    """One line for every record that no page shows in full."""
+    shown = {marker.source for page, text in texts.items() for marker in pages.markers_of(page, text)
+             if marker.block}
+    return [f"{name}: published, but no page has a block 'experiment {name}'"
+            for name in published if f"experiment {name}" not in shown]
+
+
+def check(root):
+    texts, sources = page_texts(root), pages.read_sources(root)
+    found = [line for page, text in texts.items() for line in pages.differences(page, text, sources)]
+    found += unshown(texts, sources.records)
+    print(*found, sep="\n", end="\n" if found else "", file=sys.stderr)
+    return 1 if found else 0
+
+
+def rewrite(root):
+    sources = pages.read_sources(root)
+    for page, text in page_texts(root).items():
+        made = pages.rewritten(page, text, sources)
+        if made != text:
+            runfile.write_atomically(root / page, made)
+            print(page)
+    return 0
 
 
 def main(arguments):
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("runs", nargs="+")
-    parser.add_argument("--out", type=Path, required=True)
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--check", action="store_true", help="only say what differs")
+    parser.add_argument("--publish", nargs="+", default=[], metavar="RUN_FOLDER", help="runs to make records of")
+    parser.add_argument("--root", type=Path, default=REPOSITORY, help="the repository (default: this one)")
     chosen = parser.parse_args(arguments)
-    runs = [runfile.read_run(place) for place in chosen.runs]
-    provenance = runs[0].provenance
-    lines = [header(runs), f"Processor: {provenance.get('cpu', 'unknown')}.", ""]
-    lines += overview(runs)
-    for run in runs:
-        lines += section(run)
-    runfile.write_atomically(chosen.out, "\n".join(lines) + "\n")
+    if chosen.publish:
+        publish(chosen.root, chosen.publish)
+    return check(chosen.root) if chosen.check else rewrite(chosen.root)
 
 
 if __name__ == "__main__":

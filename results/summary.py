@@ -39,8 +39,8 @@ def metrics_table(case):
     return ["", *table(["metric"] + [display_name(v.name) for v in case.variants], rows)]
 
 
-def timing_table(case):
-    found = timing_rows(case)
+def timing_table(found):
+    """The Markdown table of timing rows: times with their spread, ratios with their interval."""
     with_whole = any(np.isfinite(row.whole) for row in found)
     with_memory = any(np.isfinite(row.memory) for row in found)
     rows = []
@@ -71,7 +71,7 @@ def summary_text(run):
     for case in run.cases:
         heading = f": {case.name}" if len(run.cases) > 1 else ""
         lines += ["", f"## Metrics{heading}"] + metrics_table(case)
-        times = timing_table(case)
+        times = timing_table(timing_rows(case))
         if times:
             lines += ["", f"## Times{heading}"] + times
         lines += [f"\nWarning: {warning}" for warning in case.warnings]

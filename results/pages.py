@@ -1,0 +1,261 @@
+"""Pages whose numbers are generated: their markers found, checked and rewritten (docs/file-formats.md).
+
+    <!--= EXPRESSION -->1.3 %<!-- -->                        a number in prose
+    <!-- begin: KIND … --> … <!-- end -->                    lines that are generated
+
+KIND is `overview`, `experiment ID`, `claims ID`, `times ID[@CASE]`, `figure ID`, `options TOPIC`, or `table`
+followed by the rows of a table whose cells have {EXPRESSION} in the place of numbers.
+"""
+
+import json
+import re
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+import expressions
+from expressions import ExpressionError
+from runfile import RunFileError
+from records import Record, read_records
+from summary import claims, table, timing_table
+
+INLINE = re.compile(r"<!--= (?P<source>.*?) -->(?P<shown>.*?)<!-- -->")
+BLOCK = re.compile(r"^(?P<pad> *)<!-- begin: (?P<source>.*?)\s*-->\n(?P<shown>.*?)^ *<!-- end -->",
+                   re.DOTALL | re.MULTILINE)
+FENCED = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
+PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
+LARGEST_DETAILED = 4  # cases of an experiment whose times are all shown
+
+
+@dataclass
+class Sources:
+    """What the pages are made from: published records, by experiment, and the experiment files below the root."""
+    root: Path
+    records: dict[str, Record]
+
+
+def read_sources(root):
+    return Sources(Path(root), read_records(root))
+
+
+class PageError(RunFileError):
+    """A marker that cannot be understood; the message begins with page and line."""
+
+
+@dataclass
+class Marker:
+    line: int
+    start: int   # of what is shown, in the page
+    source: str  # the expression, or kind and arguments of a block
+    shown: str
+    block: bool
+    pad: str = ""
+
+    def name(self):
+        return f"block '{self.source.splitlines()[0]}'" if self.block else f"number '{self.source}'"
+
+
+# What blocks show
+
+
+def figure_index(records):
+    rows = []
+    for record in records.values():
+        verdict = f"{record.held()} of {len(record.claims)} claims hold" if record.claims else "no claims"
+        rows.append([f"`{record.experiment_id}`", record.figure or "–", record.sizes, verdict,
+                     f"`{record.content_sha256[:12]}`", f"`{record.commit[:12]}`"])
+    return table(["experiment", "figure", "vertices or triangles", "result", "content_sha256", "commit"], rows)
+
+
+def claim_lines(record):
+    """The list of claims, without a heading of its own."""
+    return claims(record)[3:]
+
+
+def times_lines(record, case):
+    lines = timing_table(record.timing_rows(case))
+    return [*lines[1:], "", f"Processor: {record.processor}."] if lines else []
+
+
+def section(record):
+    """Everything that a record says of its experiment."""
+    lines = ["", f"## {record.experiment_id}" + (f" → Figure {record.figure}" if record.figure else ""), "",
+             record.title + ".", "", f"`{record.command}`, {record.processor}."]
+    lines += [f"\n**{line}**\n" for line in record.failures]
+    lines += [line.replace("## Claims", "**Claims**") if line.startswith("## ") else line
+              for line in claims(record)]
+    if record.studies:
+        lines += ["", *table(["study", "value", "95 % interval"],
+                             [[s.name, f"{s.value:.3g}", f"{s.low:.3g} … {s.high:.3g}"] for s in record.studies])]
+    timed = list(record.times)
+    for case in timed[:1] if len(timed) > LARGEST_DETAILED else timed:
+        lines += timing_table(record.timing_rows(case))
+    return [*lines, ""]
+
+
+def caption(record):
+    """Title, command and verdict, as they stand below a picture."""
+    if not record.claims:
+        verdict = "no claims"
+    elif record.held() == len(record.claims):
+        verdict = f"{record.held()} of {len(record.claims)} claims hold"
+    else:
+        missed = list(dict.fromkeys(c.text for c in record.claims if not c.holds))
+        verdict = f"{record.held()} of {len(record.claims)} claims hold. Falls short: " + "; ".join(missed)
+    return ["", f"*{record.title}.* `{record.command}`: {verdict}.", ""]
+
+
+def flat_options(options, prefix=""):
+    """`stepper.plasticity = false`, one text an option."""
+    out = []
+    for name, value in options.items():
+        nested = isinstance(value, dict)
+        out += flat_options(value, f"{prefix}{name}.") if nested else [f"`{prefix}{name} = {json.dumps(value)}`"]
+    return out
+
+
+def option_rows(sources, topic):
+    """What the experiments set by hand instead of a method's defaults."""
+    rows = []
+    for path in sorted((sources.root / "experiments" / topic).glob("*.toml")):
+        spec = tomllib.loads(path.read_text(encoding="utf-8"))
+        rows += [[f"`{path.stem}`", spec.get("figure") or "–", variant["name"],
+                  ", ".join(flat_options(variant["options"]))]
+                 for variant in spec.get("variant", []) if variant.get("options")]
+    if not rows:
+        raise ExpressionError(f"no experiment of topic '{topic}' sets options")
+    return ["| experiment | figure | variant | options set by hand |", "|---|---|---|---|",
+            *("| " + " | ".join(row) + " |" for row in rows)]
+
+
+def filled_table(template, records):
+    """The rows of a template, with values in the place of {EXPRESSION}."""
+    rows = []
+    for line in template:
+        filled = PLACEHOLDER.sub(lambda m: expressions.evaluate(m[1], records), line)
+        rows.append([cell.strip() for cell in filled.strip().strip("|").split("|")])
+    if not rows or any(len(row) != len(rows[0]) for row in rows):
+        raise ExpressionError("a table needs a head and rows of as many cells")
+    return table(rows[0], rows[1:])
+
+
+def times_of_place(place, records):
+    term = expressions.parse_term([place])
+    record = expressions.record_named(records, term.experiment)
+    return times_lines(record, *expressions.cases_of(record, term))
+
+
+def block_lines(source, sources):
+    """The lines that a block should have. Raises ExpressionError."""
+    first, *template = source.splitlines()
+    kind, _, argument = first.partition(" ")
+    if template and kind != "table":
+        raise ExpressionError(f"a block of kind '{kind}' has one line")
+    of_record = {"experiment": section, "claims": claim_lines, "figure": caption}
+    if kind in of_record:
+        return of_record[kind](expressions.record_named(sources.records, argument))
+    match kind, bool(argument):
+        case "table", False:
+            return filled_table(template, sources.records)
+        case "overview", False:
+            return figure_index(sources.records)
+        case "times", True:
+            return times_of_place(argument, sources.records)
+        case "options", True:
+            return option_rows(sources, argument)
+    raise ExpressionError(f"unknown block '{first}' (there are overview, experiment ID, claims ID, "
+                          "times ID[@CASE], figure ID, options TOPIC, table)")
+
+
+# Pages
+
+
+def line_of(text, position):
+    return text.count("\n", 0, position) + 1
+
+
+def without_code(text):
+    """The page with its fenced code blank, every other character where it was."""
+    return FENCED.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
+
+
+def matches(text):
+    """The blocks of a page and the numbers between them, in their order."""
+    blocks = list(BLOCK.finditer(text))
+    numbers = [m for m in INLINE.finditer(text)
+               if not any(b.start() <= m.start() < b.end() for b in blocks)]
+    return sorted([*blocks, *numbers], key=lambda m: m.start())
+
+
+def markers_of(page, text):
+    """All markers of a page in their order. Raises PageError where one is not closed."""
+    text = without_code(text)
+    found = matches(text)
+    starts = {m.start() for m in found}
+    for opening in re.finditer(r"<!--=|^ *<!-- begin:", text, re.MULTILINE):
+        if opening.start() not in starts:
+            raise PageError(f"{page}:{line_of(text, opening.start())}: a marker that is not closed on its line, "
+                            "or inside another")
+    for first in re.finditer(r"^\s*<!--=", text, re.MULTILINE):  # Markdown would show the whole line as it is
+        raise PageError(f"{page}:{line_of(text, first.end())}: a number may not begin a line")
+    closings = [m.start() for m in re.finditer(r"<!-- end -->|<!-- -->", text)]
+    for closing in closings:
+        if not any(m.start() < closing < m.end() for m in found):
+            raise PageError(f"{page}:{line_of(text, closing)}: a closing marker without an opening one")
+    if len(closings) != len(found):
+        raise PageError(f"{page}: {len(closings)} closing markers for {len(found)} openings")
+    return [Marker(line_of(text, m.start()), m.start("shown"), m["source"], m["shown"], m.re is BLOCK,
+                   m["pad"] if m.re is BLOCK else "") for m in found]
+
+
+def content_of(page, marker, sources):
+    """What should stand between the two comments of a marker. Raises PageError."""
+    try:
+        if not marker.block:
+            return expressions.evaluate(marker.source, sources.records)
+        return "".join(f"{marker.pad}{line}\n" if line else "\n" for text in block_lines(marker.source, sources)
+                       for line in text.split("\n"))
+    except ExpressionError as error:
+        raise PageError(f"{page}:{marker.line}: {marker.name()}: {error}") from error
+
+
+def first_difference(shown, wanted):
+    """The two lines where a block first differs."""
+    pairs = zip(shown.splitlines() + [""], wanted.splitlines() + [""])
+    return next(((a, b) for a, b in pairs if a != b), ("", "more or fewer lines"))
+
+
+def differences(page, text, sources):
+    """One line for every marker whose content differs from its source."""
+    out = []
+    for marker in markers_of(page, text):
+        wanted = content_of(page, marker, sources)
+        if wanted != marker.shown:
+            shows, gives = first_difference(marker.shown, wanted)
+            out.append(f"{page}:{marker.line}: {marker.name()} shows '{shows}', its source gives '{gives}'")
+    return out
+
+
+def rewritten(page, text, sources):
+    """The page with the content of every marker made anew."""
+    for marker in reversed(markers_of(page, text)):
+        end = marker.start + len(marker.shown)
+        text = text[:marker.start] + content_of(page, marker, sources) + text[end:]
+    return text
+
+
+def quoted(page, text):
+    """(experiment, variant, quantity) of all markers of a page, those of its tables too."""
+    out = []
+    for marker in markers_of(page, text):
+        try:
+            for source in PLACEHOLDER.findall(marker.source) if marker.block else [marker.source]:
+                out += expressions.quoted(source)
+        except ExpressionError as error:
+            raise PageError(f"{page}:{marker.line}: {marker.name()}: {error}") from error
+    return out
+
+
+def pictures_of(text):
+    """The relative targets of the pictures that a page shows."""
+    return [target for target in re.findall(r"!\[[^]]*\]\(([^)]+)\)", text) if "://" not in target]

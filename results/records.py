@@ -1,0 +1,224 @@
+"""Published records: results/published/<topic>/<experiment>.json, the one source of every number that
+the pages show (docs/file-formats.md). Made from a run by `record_of`, read by `read_record`."""
+
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import tables
+from runfile import Claim, Ratio, RunFileError, Study, write_atomically
+from wording import display_name
+
+SCHEMA_VERSION = 1
+TIMES = ("median", "low", "high", "p95", "whole", "prepare")
+LEVELS = {"claims": 1, "studies": 1, "times": 2, "ratios": 2, "units": 1, "values": 3}  # broken into lines
+REDUCTIONS = {"max": np.nanmax, "min": np.nanmin, "median": np.nanmedian, "mean": np.nanmean,
+              "last": lambda values: values[-1]}
+
+
+def rounded(value, digits):
+    """The number as a record keeps it; None where there is none."""
+    return float(f"{value:.{digits}g}") if math.isfinite(value) else None
+
+
+def present(value):
+    return math.nan if value is None else value
+
+
+# From a run
+
+
+def sizes(run):
+    """How large its scenes are; of simulations, whose meshes change, the largest frame of any variant."""
+    vertices = sorted({int(case.facts["vertices"]) for case in run.cases if "vertices" in case.facts})
+    if vertices:
+        return ", ".join(f"{n:,}" for n in vertices)
+    triangles = [np.nanmax(metric.values) for case in run.cases for variant in case.variants
+                 for name, metric in variant.metrics.items() if name == "triangles"]
+    return f"up to {int(max(triangles)):,} triangles" if triangles else ""
+
+
+def times_of_case(case):
+    """variant: phase and seconds of its timing row."""
+    names = {display_name(v.name): v.name for v in case.variants}
+    out = {}
+    for row in tables.timing_rows(case):
+        seconds = {"median": row.times.median, "low": row.times.low, "high": row.times.high,
+                   "p95": row.times.p95, "whole": row.whole, "prepare": row.prepare}
+        out[names[row.variant]] = {"phase": row.phase,
+                                   **{name: rounded(s, 4) for name, s in seconds.items()}}
+    return out
+
+
+def series_of(variant, name):
+    """The values over the frames that `metric` or `diagnostic:name` stands for, or None."""
+    kind, _, rest = name.partition(":")
+    return variant.diagnostics.get(rest) if kind == "diagnostic" else variant.metrics.get(name)
+
+
+def statistic_of_time(variant, quantity):
+    """(seconds, "s") of `timing:step.p99` or `timing:run.mean`, over all frames and repetitions; None
+    without that phase."""
+    phase, _, reduction = quantity.removeprefix("timing:").rpartition(".")
+    if phase not in variant.timing:
+        return None
+    if reduction == "mean":
+        return float(np.nanmean(variant.timing[phase])), "s"
+    percent = reduction.removeprefix("p")
+    return (float(np.nanpercentile(variant.timing[phase], int(percent))), "s") if percent.isdigit() else None
+
+
+def measured(variant, quantity):
+    """(value, unit) of `metric.max`, `metric@90` (at that parameter), `diagnostic:name.last`, `timing:step.p99`,
+    or a metric of the whole sequence; None when the variant has no such quantity."""
+    if quantity.startswith("timing:"):
+        return statistic_of_time(variant, quantity)
+    if quantity in variant.summary:
+        return variant.summary[quantity].values, variant.summary[quantity].unit
+    name, at, parameter = quantity.partition("@")
+    base, _, reduction = name.rpartition(".")
+    series = series_of(variant, name if at else base)
+    if series is None or not (at or reduction in REDUCTIONS):
+        return None
+    if not at:
+        return float(REDUCTIONS[reduction](series.values)), series.unit
+    frames = np.flatnonzero(np.isclose(variant.parameter, float(parameter), rtol=1e-9))
+    return (float(series.values[frames[0]]), series.unit) if frames.size else None
+
+
+def quoted_values(run, quoted):
+    """(values, units) of the quantities that pages quote: `quoted` has (variant, quantity) pairs."""
+    values, units = {}, {}
+    for case in run.cases:
+        for variant_name, quantity in sorted(quoted):
+            variant = case.variant(variant_name)
+            found = measured(variant, quantity) if variant else None
+            if found is None:
+                continue
+            values.setdefault(case.name, {}).setdefault(variant_name, {})[quantity] = rounded(found[0], 6)
+            units[quantity] = found[1]
+    return values, dict(sorted(units.items()))
+
+
+def record_of(run, quoted):
+    """What the run publishes, as the JSON object that its file holds."""
+    if run.quick:
+        raise RunFileError(f"{run.folder}: a quick run is not published")
+    values, units = quoted_values(run, quoted)
+    return {
+        "schema_version": SCHEMA_VERSION, "experiment": run.experiment_id, "title": run.title,
+        "figure": run.figure, "command": f"geoprior run {run.experiment_id}", "source": "run.h5",
+        "commit": run.provenance.get("git_commit", "unknown"), "content_sha256": run.content_sha256,
+        "processor": run.provenance.get("cpu", "unknown"), "sizes": sizes(run),
+        "failures": tables.failures(run), "cases": [case.name for case in run.cases],
+        "claims": [{"holds": c.holds, "case": c.case, "text": c.text, "detail": c.detail}
+                   for c in run.claims],
+        "studies": {s.name: {"kind": s.kind, "quantity": s.quantity, "value": rounded(s.value, 4),
+                             "low": rounded(s.low, 4), "high": rounded(s.high, 4)} for s in run.studies},
+        "times": {case.name: times_of_case(case) for case in run.cases},
+        "ratios": {case.name: [{"variant": r.variant, "of": r.of, "median": rounded(r.median, 4),
+                                "low": rounded(r.low, 4), "high": rounded(r.high, 4),
+                                "paired": r.paired} for r in case.ratios] for case in run.cases},
+        "units": units, "values": values}
+
+
+# Files
+
+
+def json_lines(item, levels, indent):
+    """JSON whose outer `levels` have a line for each member; what is deeper stands on one line."""
+    if levels == 0 or not item:
+        return json.dumps(item, ensure_ascii=False)
+    pad = " " * (indent + 2)
+    inner = [(f"{json.dumps(key, ensure_ascii=False)}: ", value) for key, value in item.items()] \
+        if isinstance(item, dict) else [("", value) for value in item]
+    lines = [pad + name + json_lines(value, levels - 1, indent + 2) for name, value in inner]
+    opening, closing = "{}" if isinstance(item, dict) else "[]"
+    return f"{opening}\n" + ",\n".join(lines) + f"\n{' ' * indent}{closing}"
+
+
+def json_text(data):
+    """The record with one value, one claim or one row of times a line, so that a change reads as one."""
+    lines = [f'  "{key}": ' + json_lines(value, LEVELS.get(key, 0), 2) for key, value in data.items()]
+    return "{\n" + ",\n".join(lines) + "\n}"
+
+
+def write_record(root, data):
+    """Writes the record below `root`, the repository; returns its path."""
+    path = record_path(root, data["experiment"])
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_atomically(path, json_text(data) + "\n")
+    return path
+
+
+def record_path(root, experiment):
+    return Path(root) / "results" / "published" / f"{experiment}.json"
+
+
+@dataclass
+class Record:
+    """One published run; the attributes that runs have too are named like theirs."""
+    experiment_id: str
+    title: str
+    figure: str
+    command: str
+    commit: str
+    content_sha256: str
+    processor: str
+    sizes: str
+    failures: list[str]
+    cases: list[str]
+    claims: list[Claim]
+    studies: list[Study]
+    times: dict
+    ratios: dict
+    units: dict[str, str]
+    values: dict
+
+    def held(self):
+        return sum(claim.holds for claim in self.claims)
+
+    def timing_rows(self, case):
+        """The rows of the timing table of a case, as `tables.timing_rows` gives them of a run."""
+        ratios = [Ratio(**{k: present(v) for k, v in r.items()}) for r in self.ratios.get(case, [])]
+        rows = []
+        for variant, row in self.times.get(case, {}).items():
+            seconds = {name: present(row[name]) for name in TIMES}
+            rows.append(tables.TimingRow(
+                display_name(variant), row["phase"],
+                tables.Times(seconds["median"], seconds["low"], seconds["high"], seconds["p95"]), 0,
+                seconds["whole"], seconds["prepare"], [r for r in ratios if r.variant == variant]))
+        return rows
+
+
+def read_record(path):
+    """Reads a published record. Raises RunFileError with one line that names the file."""
+    try:
+        data = json.loads(Path(path).read_text(encoding="utf-8"))
+        if data["schema_version"] != SCHEMA_VERSION:
+            raise RunFileError(f"{path}: schema version {data['schema_version']} "
+                               f"(this program reads {SCHEMA_VERSION})")
+        same = {key: data[key] for key in ("title", "figure", "command", "commit", "content_sha256",
+                                           "processor", "sizes", "failures", "cases", "times",
+                                           "ratios", "units", "values")}
+        empty = np.array([])
+        return Record(
+            experiment_id=data["experiment"], **same,
+            claims=[Claim(c["text"], c["case"], c["detail"], math.nan, math.nan, c["holds"])
+                    for c in data["claims"]],
+            studies=[Study(name, s["kind"], s["quantity"], *(present(s[k]) for k in ("value", "low", "high")),
+                           empty, empty, empty) for name, s in data["studies"].items()])
+    except OSError as error:
+        raise RunFileError(f"{path}: {error.strerror}") from error
+    except (KeyError, TypeError, ValueError) as error:
+        raise RunFileError(f"{path}: not a published record ({type(error).__name__}: {error})") from error
+
+
+def read_records(root):
+    """experiment id: record, of all that are published."""
+    folder = Path(root) / "results" / "published"
+    found = [read_record(path) for path in sorted(folder.glob("*/*.json"))]
+    return {record.experiment_id: record for record in found}

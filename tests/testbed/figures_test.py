@@ -1,0 +1,235 @@
+"""The numbers of the pages are those of the published records: the committed pages, every marker edited, markers
+that say nothing, and records made from a run. Run with Debian's python3."""
+
+import contextlib
+import io
+import shutil
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+
+HERE = Path(__file__).resolve().parent
+REPOSITORY = HERE.parents[1]
+sys.path[:0] = [str(HERE), str(REPOSITORY / "results")]
+
+import expressions  # noqa: E402
+import figures  # noqa: E402
+import pages  # noqa: E402
+import records  # noqa: E402
+from report_test import make_run  # noqa: E402
+from runfile import RunFileError  # noqa: E402
+
+
+def run_figures(*arguments):
+    """(exit code, stdout, stderr) of results/figures.py."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = figures.main([str(a) for a in arguments])
+    return code, out.getvalue(), err.getvalue()
+
+
+class CommittedPages(unittest.TestCase):
+    def setUp(self):
+        self.texts = figures.page_texts(REPOSITORY)
+        self.sources = pages.read_sources(REPOSITORY)
+
+    def test_equal_their_sources(self):
+        code, _, err = run_figures("--check")
+        self.assertEqual((code, err), (0, ""))
+
+    def test_every_edited_marker_is_found_and_named(self):
+        """In a copy whose pages are wrong between all markers, --check names each of them."""
+        with tempfile.TemporaryDirectory() as scratch:
+            root = Path(scratch)
+            for folder in ("docs", "experiments", "results/published"):
+                shutil.copytree(REPOSITORY / folder, root / folder, ignore=shutil.ignore_patterns("*.png"))
+            expected = []
+            for page, text in self.texts.items():
+                for marker in reversed(pages.markers_of(page, text)):
+                    text = text[:marker.start] + "7" + text[marker.start:]
+                    expected.append(f"{page}:{marker.line}: {marker.name()} shows")
+                (root / page).write_text(text, encoding="utf-8")
+            code, _, err = run_figures("--root", root, "--check")
+        self.assertEqual(code, 1)
+        named = [line.partition(" '7")[0] for line in err.splitlines()]
+        self.assertEqual(sorted(named), sorted(expected))
+
+    def test_a_rewritten_page_differs_nowhere(self):
+        for page, text in self.texts.items():
+            again = pages.rewritten(page, text, self.sources)
+            self.assertEqual(pages.differences(page, again, self.sources), [])
+
+    def test_the_gallery_has_every_figure_of_the_thesis(self):
+        markers = pages.markers_of("docs/gallery.md", self.texts["docs/gallery.md"])
+        shown = {marker.source for marker in markers}
+        for record in self.sources.records.values():
+            if record.figure:
+                self.assertIn(f"figure {record.experiment_id}", shown)
+
+    def test_pictures_that_pages_show_are_there(self):
+        for page, text in self.texts.items():
+            for target in pages.pictures_of(text):
+                self.assertTrue(((REPOSITORY / page).parent / target).is_file(), f"{page} shows {target}")
+
+
+class Scratch(unittest.TestCase):
+    """A small repository: one run published, one page that quotes it."""
+
+    PAGE = ("# Page\n\nOverlap <!--= test/knee implicit overlap_excess.max in mm³ --><!-- -->.\n\n"
+            "<!-- begin: experiment test/knee -->\n<!-- end -->\n")
+
+    def setUp(self):
+        self.root = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.root)
+        (self.root / "docs").mkdir()
+        self.page = self.root / "docs" / "page.md"
+        self.page.write_text(self.PAGE, encoding="utf-8")
+        self.run = self.root / "run"
+        self.run.mkdir()
+        make_run(self.run)
+        with h5py.File(self.run / "run.h5", "a") as file:
+            file.attrs["quick"] = 0
+
+    def publish(self):
+        return run_figures("--root", self.root, "--publish", self.run)
+
+    def answer_to(self, text):
+        """What --check says of a page with that text in its third line."""
+        self.page.write_text(self.PAGE, encoding="utf-8")
+        self.publish()
+        self.page.write_text("# Page\n\n" + text + "\n", encoding="utf-8")
+        with self.assertRaises(RunFileError) as caught:
+            run_figures("--root", self.root, "--check")
+        return str(caught.exception)
+
+
+class Publishing(Scratch):
+    def test_a_run_becomes_a_record_and_its_quoted_values_a_page(self):
+        self.assertEqual(self.publish()[0], 0)
+        record = records.read_records(self.root)["test/knee"]
+        self.assertEqual(record.values, {"default": {"implicit": {"overlap_excess.max": 2e-9}}})
+        self.assertEqual(record.units, {"overlap_excess.max": "m^3"})
+        self.assertEqual(record.processor, "A CPU")
+        self.assertEqual(record.times["default"]["implicit"]["median"], 0.004)
+        self.assertIn("-->2.00 mm³<!-- -->", self.page.read_text(encoding="utf-8"))
+        self.assertEqual(run_figures("--root", self.root, "--check"), (0, "", ""))
+
+    def test_publishing_twice_gives_the_same_bytes(self):
+        self.publish()
+        path = records.record_path(self.root, "test/knee")
+        first = path.read_bytes()
+        self.publish()
+        self.assertEqual(path.read_bytes(), first)
+
+    def test_quick_runs_are_refused(self):
+        with h5py.File(self.run / "run.h5", "a") as file:
+            file.attrs["quick"] = 1
+        with self.assertRaisesRegex(RunFileError, "a quick run is not published"):
+            self.publish()
+
+    def test_quantities_of_a_run(self):
+        run = figures.runfile.read_run(self.run)
+        implicit = run.cases[0].variant("implicit")
+        for quantity, value in (("overlap_excess@45", 1e-9), ("overlap_excess.median", 1e-9),
+                                ("timing:solve.p99", 0.004), ("timing:solve.mean", 0.004),
+                                ("diagnostic:work_done.last", 2.0), ("diagnostic:iterations.max", 7.0),
+                                ("rest_identity", 1e-16)):
+            self.assertAlmostEqual(records.measured(implicit, quantity)[0], value, delta=1e-9 * value, msg=quantity)
+        for quantity in ("timing:relax.mean", "timing:solve.mode", "overlap_excess", "overlap_excess@44",
+                         "overlap_excess.mode", "nothing.max"):
+            self.assertIsNone(records.measured(implicit, quantity), quantity)
+
+
+class Checking(Scratch):
+    def test_an_edited_number_is_named(self):
+        self.publish()
+        self.page.write_text(self.page.read_text(encoding="utf-8").replace("2.00 mm³", "1.00 mm³"), encoding="utf-8")
+        code, _, err = run_figures("--root", self.root, "--check")
+        self.assertEqual(code, 1)
+        self.assertEqual(err, "docs/page.md:3: number 'test/knee implicit overlap_excess.max in mm³' shows "
+                              "'1.00 mm³', its source gives '2.00 mm³'\n")
+
+    def test_an_edited_block_is_named(self):
+        self.publish()
+        self.page.write_text(self.page.read_text(encoding="utf-8").replace("4.00 ms", "3.00 ms", 1), encoding="utf-8")
+        code, _, err = run_figures("--root", self.root, "--check")
+        self.assertEqual(code, 1)
+        self.assertRegex(err, r"^docs/page.md:5: block 'experiment test/knee' shows '.*3.00 ms.*4.00 ms")
+
+    def test_an_edited_record_is_found(self):
+        self.publish()
+        path = records.record_path(self.root, "test/knee")
+        path.write_text(path.read_text(encoding="utf-8").replace("2e-09", "3e-09"), encoding="utf-8")
+        self.assertEqual(run_figures("--root", self.root, "--check")[0], 1)
+
+    def test_a_record_that_no_page_shows_is_named(self):
+        self.publish()
+        self.page.write_text("# Page\n", encoding="utf-8")
+        code, _, err = run_figures("--root", self.root, "--check")
+        self.assertEqual((code, err), (1, "test/knee: published, but no page has a block 'experiment test/knee'\n"))
+
+
+class Markers(Scratch):
+    def test_that_say_nothing_name_page_and_line(self):
+        for source, message in (
+                ("test/elbow implicit time.median", "experiment 'test/elbow' has no published record"),
+                ("test/knee@seed=2 implicit time.median", "has no case 'seed=2'"),
+                ("test/knee dense overlap_excess.max", "has no values of variant 'dense'"),
+                ("test/knee implicit overlap.max", "has no value 'overlap.max'"),
+                ("test/knee implicit time.mode", "unknown time 'mode'"),
+                ("test/knee implicit ratio:linear-blend", "has no ratio of times"),
+                ("test/knee implicit time.median in furlongs", "unknown unit 'furlongs'"),
+                ("test/knee implicit time.median in mm", "a quantity in 's' has no 'mm'"),
+                ("test/knee implicit time.median to 12", "significant digits are 1 to 9"),
+                ("test/knee implicit time.median / test/elbow implicit time.median", "only quantities of one run"),
+                ("test/knee implicit time.median / test/knee implicit overlap_excess.max", "a quotient of 's'"),
+                ("test/knee study decay", "has no study 'decay'"),
+                ("test/knee implicit", "after 'test/knee'"),
+                ("knee implicit time.median", "'knee' is no experiment")):
+            answer = self.answer_to(f"a <!--= {source} -->1<!-- -->")
+            self.assertRegex(answer, r"^docs/page\.md:3: number '")
+            self.assertIn(message, answer)
+
+    def test_blocks_that_say_nothing_name_page_and_line(self):
+        for source, message in (("picture test/knee", "unknown block 'picture test/knee'"),
+                                ("claims test/elbow", "has no published record"),
+                                ("options nothing", "no experiment of topic 'nothing'"),
+                                ("options", "unknown block 'options'"),
+                                ("table\n| a | b |\n| {test/knee implicit time.median} |", "rows of as many cells"),
+                                ("table\n| a |\n| {test/knee implicit time.mode} |", "unknown time 'mode'")):
+            answer = self.answer_to(f"<!-- begin: {source} -->\n<!-- end -->")
+            self.assertRegex(answer, r"^docs/page\.md:3: block '")
+            self.assertIn(message, answer)
+
+    def test_that_are_not_closed_name_page_and_line(self):
+        for text in ("a <!--= test/knee claims -->1 of 1", "<!-- begin: overview -->\n| a |", "1<!-- -->",
+                     "| a |\n<!-- end -->"):
+            self.assertRegex(self.answer_to(text), r"^docs/page\.md:[34]: a (closing )?marker")
+
+    def test_begin_no_line(self):
+        self.assertEqual(self.answer_to("<!--= test/knee claims -->1 of 2<!-- --> hold"),
+                         "docs/page.md:3: a number may not begin a line")
+
+    def test_in_code_are_none(self):
+        self.publish()
+        text = "```\n<!--= nothing -->1<!-- -->\n```\nOf it <!--= test/knee claims -->1 of 2<!-- -->\n"
+        self.assertEqual([m.line for m in pages.markers_of("page.md", text)], [4])
+
+    def test_show_values_quotients_and_texts(self):
+        self.publish()
+        published = records.read_records(self.root)
+        for source, shown in (("test/knee implicit time.median in ms to 2", "4.0 ms"),
+                              ("test/knee implicit time.median / test/knee dual-quaternion time.median to 2", "4.0"),
+                              ("test/knee implicit ratio:dual-quaternion", "4.00"),
+                              ("test/knee implicit ratio:dual-quaternion.high", "4.10"),
+                              ("test/knee implicit speedup:dual-quaternion.high", "0.256"),
+                              ("test/knee@median(*) implicit overlap_excess.max in mm³", "2.00 mm³"),
+                              ("test/knee processor", "A CPU"), ("test/knee command", "geoprior run test/knee")):
+            self.assertEqual(expressions.evaluate(source, published), shown, source)
+
+
+if __name__ == "__main__":
+    unittest.main()
