@@ -82,6 +82,8 @@ class MetricRows {
   /// Implicit, so that a table lists what it builds.
   operator MetricGroup() const { return group_; }
 
+  /// `measure(const Scene&, const Frame&, const Frame* reference)` returns Measures, or an optional
+  /// of them.
   template <class Measure>
   void measured_at_frame(Measure measure) {
     group_.of_frame = [readers = readers_, measure = std::move(measure)](
@@ -89,6 +91,7 @@ class MetricRows {
       return values(*readers, measure(scene, frame, reference));
     };
   }
+  /// The same of `measure(const Scene&, const FrameSequence&)`.
   template <class Measure>
   void measured_over_sequence(Measure measure) {
     group_.of_sequence = [readers = readers_, measure = std::move(measure)](
@@ -96,6 +99,7 @@ class MetricRows {
       return values(*readers, measure(scene, frames));
     };
   }
+  /// Of a reference frame `parts` are looked at; empty: all.
   void compared_with_reference(std::vector<std::string> parts) {
     group_.needs_reference = true;
     group_.reference_parts = std::move(parts);

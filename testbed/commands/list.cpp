@@ -24,7 +24,9 @@ Json topic_json(const Topic& topic) {
     json["metrics"].push_back({{"name", metric.name},
                                {"unit", metric.unit},
                                {"definition", metric.definition},
-                               {"direction", direction_text(metric.direction)}});
+                               {"direction", direction_text(metric.direction)},
+                               {"oracle", metric.oracle},
+                               {"gated", metric.gated()}});
   }
   return json;
 }

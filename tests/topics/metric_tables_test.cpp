@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <fstream>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -49,6 +51,41 @@ TEST_P(MetricTables, EveryGroupMeasuresOnceForItsRows) {
     if (group.needs_reference) EXPECT_TRUE(group.of_frame) << first;
     if (!group.needs_reference) EXPECT_TRUE(group.reference_parts.empty()) << first;
   }
+}
+
+/// "skinning rest_identity", … of the table under "Oracles" of docs/metrics.md.
+std::set<std::string> documented_oracles() {
+  std::ifstream page(GEOPRIOR_SOURCE_DIR "/docs/metrics.md");
+  std::set<std::string> oracles;
+  std::string line;
+  while (std::getline(page, line) && !line.starts_with("**Oracles**")) {
+  }
+  while (std::getline(page, line) && !line.starts_with("## ")) {
+    const std::string rows = line.substr(0, line.find('|', 1));
+    const std::regex name("`([a-z0-9_]+)`");
+    const std::string topic =
+        rows.substr(std::min<std::size_t>(2, rows.size()), rows.find(" `") - 2);
+    for (std::sregex_iterator it(rows.begin(), rows.end(), name), end; it != end; ++it) {
+      oracles.insert(topic + " " + it->str(1));
+    }
+  }
+  return oracles;
+}
+
+TEST(Oracles, AreThoseOfTheDocumentation) {
+  std::set<std::string> documented = documented_oracles(), marked;
+  const auto of_a_topic_left_out = [](const std::string& name) {
+    const auto is_topic = [&](const Topic& topic) { return name.starts_with(topic.name + " "); };
+    const std::vector<Topic> topics = all_topics();
+    return std::none_of(topics.begin(), topics.end(), is_topic);
+  };
+  std::erase_if(documented, of_a_topic_left_out);
+  for (const Topic& topic : all_topics()) {
+    for (const MetricEntry& row : metric_rows(topic)) {
+      if (row.oracle) marked.insert(topic.name + " " + row.name);
+    }
+  }
+  EXPECT_EQ(marked, documented);
 }
 
 std::vector<Topic> with_toys() {
