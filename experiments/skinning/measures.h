@@ -34,8 +34,9 @@ struct Measured {
 /// @throws Error  when the frame has no part "surface" with as many vertices as the scene's mesh
 Measured measured(const SkinningScene& scene, const Frame& frame);
 
-/// What several frames and groups of metrics share: the rest pose is that of every frame, and the
-/// overlap of a reference frame is the divisor of all variants that are compared with it.
+/// What groups of metrics and frames share: overlap_excess is the numerator of its ratio to the
+/// reference's, the overlap of a reference frame the denominator of every variant that is compared
+/// with it, and the rest pose that of all frames. Each takes longer than all other measures.
 struct Shared {
   Memo<OverlapStudy> overlap;
   Memo<int> pairs_at_rest;

@@ -34,6 +34,8 @@ TEST_P(MetricTables, EveryRowIsComplete) {
     EXPECT_GE(row.definition.size(), 20U) << row.name;
     EXPECT_GE(row.tolerance.absolute, 0) << row.name;
     EXPECT_GE(row.tolerance.relative, 0) << row.name;
+    const bool exact = row.tolerance.absolute == 0 && row.tolerance.relative == 0;
+    EXPECT_TRUE(!exact || row.unit == "1") << row.name << ": only counts are compared exactly";
     EXPECT_TRUE(std::isfinite(row.target)) << row.name;
     EXPECT_TRUE(row.target == 0 || row.direction == Direction::closer_to_target) << row.name;
     // What `check` leaves alone has a reason that one can read.
