@@ -24,7 +24,7 @@ struct SquareMeasures {
   std::optional<double> diagonal;
 };
 
-constexpr Direction kNone = Direction::none;
+constexpr Direction kNoDirection = Direction::none;
 
 /// Area and diagonal of the scene's square, the latter not in the first second.
 SquareMeasures measure_square(const SquareScene& scene, const Frame& frame) {
@@ -42,14 +42,15 @@ Frame frame_at(double time) {
 TEST(MetricGroups, MeasureOnceForAllRows) {
   const auto calls = std::make_shared<int>(0);
   Topic topic;
-  topic.metrics = {frame_metrics<SquareScene>([calls](const SquareScene& scene, const Frame& f) {
-                     ++*calls;
-                     return measure_square(scene, f);
-                   })
-                       .row("area", "m^2", "area", kNone, {}, &SquareMeasures::area)
-                       .row("diagonal", "m", "diagonal", kNone, {}, &SquareMeasures::diagonal)
-                       .row("half", "m^2", "half of it", kNone, {},
-                            [](const SquareMeasures& m) { return m.area / 2; })};
+  topic.metrics = {
+      frame_metrics<SquareScene>([calls](const SquareScene& scene, const Frame& f) {
+        ++*calls;
+        return measure_square(scene, f);
+      })
+          .row("area", "m^2", "area", kNoDirection, {}, &SquareMeasures::area)
+          .row("diagonal", "m", "diagonal", kNoDirection, {}, &SquareMeasures::diagonal)
+          .row("half", "m^2", "half of it", kNoDirection, {},
+               [](const SquareMeasures& m) { return m.area / 2; })};
   const SquareScene scene;
   EXPECT_THAT(measure_frame(topic, scene, frame_at(0), nullptr),
               ElementsAre(Pair("area", 4), Pair("half", 2)));
@@ -60,7 +61,7 @@ TEST(MetricGroups, MeasureOnceForAllRows) {
 
 TEST(MetricGroups, AttributesBelongToTheRowBeforeThem) {
   const MetricGroup group = frame_metrics<SquareScene>(measure_square)
-                                .row("area", "m^2", "area", kNone, {}, &SquareMeasures::area)
+                                .row("area", "m^2", "area", kNoDirection, {}, &SquareMeasures::area)
                                 .oracle()
                                 .ungated("what it is")
                                 .row("diagonal", "m", "diagonal", Direction::closer_to_target, {},
@@ -80,11 +81,11 @@ TEST(MetricGroups, WithoutMeasuresOrReferenceThereAreNoValues) {
   topic.metrics = {
       frame_metrics<SquareScene>([](const SquareScene&, const Frame&) {
         return std::optional<SquareMeasures>();
-      }).row("area", "m^2", "area", kNone, {}, &SquareMeasures::area),
+      }).row("area", "m^2", "area", kNoDirection, {}, &SquareMeasures::area),
       reference_metrics<SquareScene>({}, [&](const SquareScene&, const Frame&, const Frame& r) {
         ++calls;
         return r.parameter;
-      }).row("then", "s", "time of the reference", kNone, {})};
+      }).row("then", "s", "time of the reference", kNoDirection, {})};
   const SquareScene scene;
   EXPECT_TRUE(measure_frame(topic, scene, frame_at(0), nullptr).empty());
   EXPECT_EQ(calls, 0);
@@ -95,20 +96,21 @@ TEST(MetricGroups, WithoutMeasuresOrReferenceThereAreNoValues) {
 TEST(MetricGroups, ErrorsNameTheRowOrAllOfThem) {
   Topic topic;
   topic.metrics = {frame_metrics<SquareScene>(measure_square)
-                       .row("area", "m^2", "area", kNone, {}, &SquareMeasures::area)
-                       .row("crooked", "m", "diagonal", kNone, {},
+                       .row("area", "m^2", "area", kNoDirection, {}, &SquareMeasures::area)
+                       .row("crooked", "m", "diagonal", kNoDirection, {},
                             [](const SquareMeasures&) -> double { throw Error("no diagonal"); })};
   const SquareScene scene;
   const auto message = [&] {
     return error_of([&] { measure_frame(topic, scene, frame_at(2), nullptr); });
   };
   EXPECT_EQ(message(), "metric 'crooked' at parameter 2: no diagonal");
-  topic.metrics = {frame_metrics<SquareScene>([](const SquareScene&, const Frame&) {
-                     throw Error("no square");
-                     return SquareMeasures();
-                   })
-                       .row("area", "m^2", "area", kNone, {}, &SquareMeasures::area)
-                       .row("diagonal", "m", "diagonal", kNone, {}, &SquareMeasures::diagonal)};
+  topic.metrics = {
+      frame_metrics<SquareScene>([](const SquareScene&, const Frame&) {
+        throw Error("no square");
+        return SquareMeasures();
+      })
+          .row("area", "m^2", "area", kNoDirection, {}, &SquareMeasures::area)
+          .row("diagonal", "m", "diagonal", kNoDirection, {}, &SquareMeasures::diagonal)};
   EXPECT_EQ(message(), "metrics 'area', 'diagonal' at parameter 2: no square");
 }
 
