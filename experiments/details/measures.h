@@ -1,9 +1,6 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "core/frame.h"
 #include "experiments/details/scene.h"

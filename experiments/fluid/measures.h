@@ -1,8 +1,6 @@
 #pragma once
 
-#include <limits>
 #include <optional>
-#include <string>
 
 #include "core/frame.h"
 #include "experiments/fluid/scene.h"

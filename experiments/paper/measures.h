@@ -11,7 +11,6 @@
 #include "metrics/pattern_mesh.h"
 #include "models/paper/sheet.h"
 #include "testbed/memo.h"
-#include "testbed/topic.h"
 
 namespace geoprior::paper {
 

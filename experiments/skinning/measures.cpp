@@ -1,6 +1,8 @@
 #include "experiments/skinning/measures.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <string>
 
 #include "core/error.h"
