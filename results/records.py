@@ -103,6 +103,15 @@ def quoted_values(run, quoted):
     return values, dict(sorted(units.items()))
 
 
+def published_claim(claim):
+    """Verdict, numbers, and what its null says of it: those of a row of run.h5 that have a value."""
+    beside = {"left": rounded(claim.left, 6), "right": rounded(claim.right, 6), "null": claim.null,
+              "null_verdict": claim.null_verdict, "null_detail": claim.null_detail,
+              "passed_too": claim.passed_too}
+    return {"holds": claim.holds, "case": claim.case, "text": claim.text, "detail": claim.detail,
+            **{name: value for name, value in beside.items() if value not in ("", None)}}
+
+
 def record_of(run, quoted):
     """What the run publishes, as the JSON object that its file holds."""
     if run.quick:
@@ -114,8 +123,7 @@ def record_of(run, quoted):
         "commit": run.provenance.get("git_commit", "unknown"), "content_sha256": run.content_sha256,
         "processor": run.provenance.get("cpu", "unknown"), "sizes": sizes(run),
         "failures": tables.failures(run), "cases": [case.name for case in run.cases],
-        "claims": [{"holds": c.holds, "case": c.case, "text": c.text, "detail": c.detail}
-                   for c in run.claims],
+        "claims": [published_claim(c) for c in run.claims],
         "studies": {s.name: {"kind": s.kind, "quantity": s.quantity, "value": rounded(s.value, 4),
                              "low": rounded(s.low, 4), "high": rounded(s.high, 4)} for s in run.studies},
         "times": {case.name: times_of_case(case) for case in run.cases},
@@ -190,7 +198,8 @@ class Record:
             rows.append(tables.TimingRow(
                 display_name(variant), row["phase"],
                 tables.Times(seconds["median"], seconds["low"], seconds["high"], seconds["p95"]), 0,
-                seconds["whole"], seconds["prepare"], [r for r in ratios if r.variant == variant]))
+                seconds["whole"], seconds["prepare"], [r for r in ratios if r.variant == variant],
+                present(row.get("memory"))))
         return rows
 
 
@@ -207,8 +216,7 @@ def read_record(path):
         empty = np.array([])
         return Record(
             experiment_id=data["experiment"], **same,
-            claims=[Claim(c["text"], c["case"], c["detail"], math.nan, math.nan, c["holds"])
-                    for c in data["claims"]],
+            claims=[Claim(**{"left": math.nan, "right": math.nan} | c) for c in data["claims"]],
             studies=[Study(name, s["kind"], s["quantity"], *(present(s[k]) for k in ("value", "low", "high")),
                            empty, empty, empty) for name, s in data["studies"].items()])
     except OSError as error:

@@ -35,8 +35,10 @@ struct ContentKey {
   }
 };
 
-/// Remembers the last `Remembered` values of one expensive quantity, several metrics of a frame
-/// share it. Two threads that miss at once compute the same value twice, which is harmless.
+/// Remembers the last `Remembered` values of one expensive quantity that several frames, variants
+/// or groups of metrics share: what stays at rest, the frame of a reference. (The rows of one group
+/// need none: a group measures once, testbed/metric_rows.h.) Two threads that miss at once compute
+/// the same value twice, which is harmless.
 template <class T, std::size_t Remembered = 1024>
 class Memo {
  public:

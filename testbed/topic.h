@@ -99,7 +99,7 @@ struct Tolerance {
   double relative = 0;
 };
 
-/// One row of a topic's metric table. Exactly one of `of_frame` and `of_sequence` is set.
+/// One row of a topic's metric table.
 struct MetricEntry {
   std::string name;  ///< snake_case
   std::string unit;
@@ -107,19 +107,30 @@ struct MetricEntry {
   Direction direction = Direction::lower_is_better;
   Tolerance tolerance;
   double target = 0;  ///< for Direction::closer_to_target
-  /// Value at one frame; absent where it has no meaning. `reference` is the frame of equal
-  /// parameter of the variant that the experiment names as reference, or null.
-  std::function<std::optional<double>(const Scene&, const Frame&, const Frame* reference)> of_frame;
-  /// One value a variant, from all of its frames in order of parameter. They may have to be read
-  /// from the disk: go through them once (FrameSequence).
-  std::function<std::optional<double>(const Scene&, const FrameSequence&)> of_sequence;
-  bool needs_reference = false;  ///< skipped for variants without one
   /// An identity or a closed form: what a row says of a method is decided by its own tests, which
   /// mutate the method.
   bool oracle = false;
   std::string ungated = {};  ///< why `check` does not hold the row against a reference value
+
+  [[nodiscard]] bool gated() const { return ungated.empty(); }
+};
+
+/// Values of a group's rows, in their order; absent where a row has no meaning.
+using MetricValues = std::vector<std::optional<double>>;
+
+/// Rows of a topic's metric table that are read off one measurement, which is made once. Exactly
+/// one of `of_frame` and `of_sequence` is set. testbed/metric_rows.h makes groups of typed pieces.
+struct MetricGroup {
+  std::vector<MetricEntry> rows;
+  bool needs_reference = false;  ///< left out where there is no reference frame
   /// Parts and tables of the reference frame that are looked at: others are not read. Empty: all.
   std::vector<std::string> reference_parts = {};
+  /// Values at one frame. `reference` is the frame of equal parameter of the variant that the
+  /// experiment names as reference, or null.
+  std::function<MetricValues(const Scene&, const Frame&, const Frame* reference)> of_frame = {};
+  /// One value a row and variant, from all of its frames in order of parameter. They may have to be
+  /// read from the disk: go through them once (FrameSequence).
+  std::function<MetricValues(const Scene&, const FrameSequence&)> of_sequence = {};
 };
 
 /// One row of a topic's table of diagnostics: what only a method can know of a frame (iterations,
@@ -144,11 +155,17 @@ struct Topic {
                                        std::uint64_t seed)>
       load;
   std::vector<MethodEntry> methods;
-  std::vector<MetricEntry> metrics;
+  std::vector<MetricGroup> metrics;
   std::vector<DiagnosticEntry> diagnostics;
   /// What is drawn where the experiment file does not say.
   FigureView view;
 };
+
+/// Rows of all groups of the topic's metric table, in their order.
+std::vector<std::reference_wrapper<const MetricEntry>> metric_rows(const Topic& topic);
+
+/// The row of that name, null when there is none.
+const MetricEntry* find_metric(const Topic& topic, const std::string& name);
 
 /// The topics of the program. Tests add theirs.
 std::vector<Topic> all_topics();

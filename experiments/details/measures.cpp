@@ -1,12 +1,13 @@
 #include "experiments/details/measures.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/mesh.h"
 
@@ -60,7 +61,7 @@ double height_of(const DetailsScene& scene) {
   return spacing_of(scene.rest().require_part("detail_mesh"), 0).mean / 2;
 }
 
-/// One frame of `motion_measures`.
+/// One frame of a motion.
 struct FrameState {
   std::shared_ptr<const Part> surface;
   FrameDetails details;
@@ -84,7 +85,7 @@ std::vector<SurfacePoint> visible_places(const Part& part) {
   return places;
 }
 
-PairCurve curve_of(DetailsMemo& memo, const DetailsScene& scene, const Part& surface,
+PairCurve curve_of(PairMemo& memo, const DetailsScene& scene, const Part& surface,
                    const std::vector<SurfacePoint>& places, double unit) {
   ContentKey key;
   key.add_matrix(surface.points);
@@ -144,8 +145,8 @@ ContentKey key_of(const Frame& rest) {
   return key;
 }
 
-SpectrumAtRest spectrum_at_rest(DetailsMemo& memo, const DetailsScene& scene, double unit) {
-  return memo.spectra_at_rest.get(key_of(scene.rest()), [&] {
+SpectrumAtRest spectrum_at_rest(SpectrumMemo& memo, const DetailsScene& scene, double unit) {
+  return memo.get(key_of(scene.rest()), [&] {
     const Part& plane = scene.rest().require_part("surface");
     SpectrumAtRest rest;
     rest.spectrum = spectrum_of(plane, places_of(scene.input.details), unit);
@@ -158,10 +159,10 @@ SpectrumAtRest spectrum_at_rest(DetailsMemo& memo, const DetailsScene& scene, do
   });
 }
 
-PairAtRest pairs_at_rest(DetailsMemo& memo, const DetailsScene& scene) {
+PairAtRest pairs_at_rest(PairMemo& memo, const DetailsScene& scene) {
   const Part& surface = scene.rest().require_part("surface");
   const Part& mesh = scene.rest().require_part("detail_mesh");
-  return memo.pairs_at_rest.get(key_of(scene.rest()), [&] {
+  return memo.at_rest.get(key_of(scene.rest()), [&] {
     PairAtRest rest;
     rest.unit = spacing_of(mesh, 0).mean;
     if (!(rest.unit > 0)) return rest;
@@ -174,21 +175,6 @@ PairAtRest pairs_at_rest(DetailsMemo& memo, const DetailsScene& scene) {
     if (process.size() > 1) rest.noise = pair_curve_noise(process).mean;
     return rest;
   });
-}
-
-/// The sequence itself, and what some of its frames hold.
-ContentKey key_of(const FrameSequence& frames) {
-  constexpr std::size_t kLooked = 8;
-  ContentKey key;
-  key.add(reinterpret_cast<std::uintptr_t>(&frames));
-  key.add(frames.size());
-  for (std::size_t i = 0; i < kLooked && frames.size() > 0; ++i) {
-    const auto part = frames.part((frames.size() - 1) * i / (kLooked - 1), "details");
-    if (!part) continue;
-    key.add_matrix(part->points);
-    for (const NamedArray& array : part->arrays) key.add_matrix(array.values);
-  }
-  return key;
 }
 
 FrameState state_of(const FrameSequence& frames, std::size_t i) {
@@ -204,7 +190,75 @@ Value worst_edge_change(const DetailsScene& scene, const FrameSequence& frames, 
   return std::abs(worst_mean_change(spacings).change);
 }
 
-MotionMeasures measure_motion(const DetailsScene& scene, const FrameSequence& frames) {
+}  // namespace
+
+DetailSpacing spacing_of(const Part& mesh, double reference) {
+  const std::vector<char> ghosts = column<char>(mesh, "ghost");
+  return detail_spacing(mesh.points, mesh.triangles, ghosts, reference);
+}
+
+std::optional<SpacingPair> spacing_pair(const DetailsScene& scene, const Frame& frame,
+                                        const char* mesh) {
+  SpacingPair pair;
+  pair.rest = spacing_of(scene.rest().require_part(mesh), 0);
+  pair.now = spacing_of(frame.require_part(mesh), pair.rest.mean);
+  if (!(pair.rest.mean > 0) || pair.now.edges == 0) return {};
+  pair.change = spacing_change(pair.rest, pair.now);
+  return pair;
+}
+
+DensityMeasures density_measures(const DetailsScene& scene, const Frame& frame) {
+  const auto areas = [](const Frame& f) {
+    const Part& surface = f.require_part("surface");
+    return triangle_areas(surface.points, surface.triangles);
+  };
+  const std::vector<int> faces = column<int>(scene.rest().require_part("details"), "face");
+  const std::vector<double> weights = column<double>(frame.require_part("details"), "weight");
+  const Eigen::VectorXd then = areas(scene.rest()), now = areas(frame);
+  const auto count = static_cast<int>(weights.size());
+  const auto visible =
+      std::count_if(weights.begin(), weights.end(), [](double w) { return w > 0.5; });
+  return {density_ratio(count, faces, then, now),
+          density_ratio(static_cast<int>(visible), faces, then, now),
+          static_cast<double>(count) / static_cast<double>(scene.input.details.size())};
+}
+
+std::optional<PairMeasures> pair_measures(PairMemo& memo, const DetailsScene& scene,
+                                          const Frame& frame) {
+  if (!scene.measures_pairs(frame.parameter)) return {};
+  const Part& now = frame.require_part("surface");
+  const PairAtRest rest = pairs_at_rest(memo, scene);
+  if (!(rest.unit > 0)) return {};
+  const auto distance = [&](const std::vector<SurfacePoint>& places) {
+    return pair_curve_distance(curve_of(memo, scene, now, places, rest.unit), rest.curve);
+  };
+  PairMeasures m;
+  m.distance = distance(visible_places(frame.require_part("details")));
+  m.naive = distance(places_of(scene.input.details));
+  m.noise = rest.noise;
+  return m;
+}
+
+std::optional<SpectrumMeasures> spectrum_measures(SpectrumMemo& memo, const DetailsScene& scene,
+                                                  const Frame& frame) {
+  constexpr Eigen::Index kMostDetails = 5000;
+  const Part& surface = frame.require_part("surface");
+  const Part& details = frame.require_part("details");
+  if (!scene.measures_pairs(frame.parameter) || details.points.rows() > kMostDetails) return {};
+  if (!fills_rectangle(surface) || !fills_rectangle(scene.rest().require_part("surface")))
+    return {};
+  const double unit = spacing_of(scene.rest().require_part("detail_mesh"), 0).mean;
+  if (!(unit > 0)) return {};
+  const SpectrumAtRest rest = spectrum_at_rest(memo, scene, unit);
+  const RadialSpectrum now = spectrum_of(surface, visible_places(details), unit);
+  SpectrumMeasures m;
+  m.distance = radial_spectrum_distance(now, rest.spectrum);
+  m.noise = rest.noise;
+  m.elongation = elongation_of(now);
+  return m;
+}
+
+MotionMeasures motion_measures(const DetailsScene& scene, const FrameSequence& frames) {
   constexpr int kStillAfter = 10;
   MotionMeasures m;
   if (frames.size() == 0) return m;
@@ -231,88 +285,6 @@ MotionMeasures measure_motion(const DetailsScene& scene, const FrameSequence& fr
   m.events = detail_events(changes);
   m.turns = turns(counts, std::max(1.0, 0.01 * counts.front()));
   return m;
-}
-
-}  // namespace
-
-DetailSpacing spacing_of(const Part& mesh, double reference) {
-  const std::vector<char> ghosts = column<char>(mesh, "ghost");
-  return detail_spacing(mesh.points, mesh.triangles, ghosts, reference);
-}
-
-SpacingPair spacing_pair(DetailsMemo& memo, const DetailsScene& scene, const Frame& frame,
-                         bool visible) {
-  const char* name = visible ? "visible_mesh" : "detail_mesh";
-  const auto measured = [&](const Frame& f, double reference) {
-    const Part& mesh = f.require_part(name);
-    ContentKey key;
-    key.add_matrix(mesh.points);
-    key.add_matrix(mesh.triangles);
-    key.add(std::bit_cast<std::uint64_t>(reference));
-    return memo.spacing.get(key, [&] { return spacing_of(mesh, reference); });
-  };
-  SpacingPair pair;
-  pair.rest = measured(scene.rest(), 0);
-  pair.now = measured(frame, pair.rest.mean);
-  return pair;
-}
-
-double details_over_wanted(const DetailsScene& scene, const Frame& frame, bool visible) {
-  const auto areas = [](const Frame& f) {
-    const Part& surface = f.require_part("surface");
-    return triangle_areas(surface.points, surface.triangles);
-  };
-  const std::vector<double> weights = column<double>(frame.require_part("details"), "weight");
-  const auto count =
-      std::count_if(weights.begin(), weights.end(), [&](double w) { return !visible || w > 0.5; });
-  const std::vector<int> faces = column<int>(scene.rest().require_part("details"), "face");
-  return density_ratio(static_cast<int>(count), faces, areas(scene.rest()), areas(frame));
-}
-
-std::optional<PairMeasures> pair_measures(DetailsMemo& memo, const DetailsScene& scene,
-                                          const Frame& frame) {
-  if (!scene.measures_pairs(frame.parameter)) return {};
-  const Part& now = frame.require_part("surface");
-  const PairAtRest rest = pairs_at_rest(memo, scene);
-  if (!(rest.unit > 0)) return {};
-  const auto distance = [&](const std::vector<SurfacePoint>& places) {
-    return pair_curve_distance(curve_of(memo, scene, now, places, rest.unit), rest.curve);
-  };
-  PairMeasures m;
-  m.distance = distance(visible_places(frame.require_part("details")));
-  m.naive = distance(places_of(scene.input.details));
-  m.noise = rest.noise;
-  return m;
-}
-
-std::optional<SpectrumMeasures> spectrum_measures(DetailsMemo& memo, const DetailsScene& scene,
-                                                  const Frame& frame) {
-  constexpr Eigen::Index kMostDetails = 5000;
-  const Part& surface = frame.require_part("surface");
-  const Part& details = frame.require_part("details");
-  if (!scene.measures_pairs(frame.parameter) || details.points.rows() > kMostDetails) return {};
-  if (!fills_rectangle(surface) || !fills_rectangle(scene.rest().require_part("surface")))
-    return {};
-  const double unit = spacing_of(scene.rest().require_part("detail_mesh"), 0).mean;
-  if (!(unit > 0)) return {};
-  const SpectrumAtRest rest = spectrum_at_rest(memo, scene, unit);
-  ContentKey key = key_of(scene.rest());
-  key.add_matrix(surface.points);
-  key.add_matrix(details.points);
-  key.add_matrix(details.require_array("weight", NamedArray::On::points, 1).values);
-  return memo.spectra.get(key, [&] {
-    const RadialSpectrum now = spectrum_of(surface, visible_places(details), unit);
-    SpectrumMeasures m;
-    m.distance = radial_spectrum_distance(now, rest.spectrum);
-    m.noise = rest.noise;
-    m.elongation = elongation_of(now);
-    return m;
-  });
-}
-
-MotionMeasures motion_measures(DetailsMemo& memo, const DetailsScene& scene,
-                               const FrameSequence& frames) {
-  return memo.motions.get(key_of(frames), [&] { return measure_motion(scene, frames); });
 }
 
 }  // namespace geoprior::details

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "core/frame.h"
 #include "experiments/details/scene.h"
@@ -16,12 +13,70 @@
 
 namespace geoprior::details {
 
-/// What the rows of the table of metrics (metrics.cpp) read: quantities of one frame or of a
+/// What the groups of the table of metrics (metrics.cpp) measure: quantities of one frame or of a
 /// motion, absent where they have no meaning.
 using Value = std::optional<double>;
 
-/// Lengths of the edges of "detail_mesh" or "visible_mesh".
+/// Lengths of the edges of a mesh of details; `outside` is against the reference length (m).
 DetailSpacing spacing_of(const Part& mesh, double reference);
+
+/// Lengths of the edges of "detail_mesh" (all details) or "visible_mesh" (those that one sees), in
+/// the frame and at rest; `outside` is against the mean at rest. Absent without edges.
+struct SpacingPair {
+  DetailSpacing rest, now;
+  SpacingChange change;
+};
+std::optional<SpacingPair> spacing_pair(const DetailsScene& scene, const Frame& frame,
+                                        const char* mesh);
+
+/// Details over how many the surface asks for, and over those at rest.
+struct DensityMeasures {
+  double all = 0, visible = 0;  ///< over those wanted
+  double count = 0;             ///< over those at rest
+};
+DensityMeasures density_measures(const DetailsScene& scene, const Frame& frame);
+
+/// Pair correlation of a scene's pattern before anything moves.
+struct PairAtRest {
+  PairCurve curve;
+  double unit = 0;  ///< mean edge (m); 0: without edges
+  Value noise;      ///< mean distance between independent patterns of the process
+};
+/// What frames and variants share: the pattern at rest is that of every frame, and doing nothing is
+/// the same for every variant. Each takes longer than a step of the method.
+struct PairMemo {
+  Memo<PairCurve, 64> curves;
+  Memo<PairAtRest, 16> at_rest;
+};
+
+/// Pair correlation of the visible details against that of the original, in units of its mean edge.
+/// Absent but in the frames that the scene chooses: it costs more than what it judges.
+struct PairMeasures {
+  double distance = 0;  ///< of the curve to that of the original
+  double naive = 0;     ///< of the curve of the original details, carried along
+  Value noise;          ///< mean distance between independent patterns of the process, at rest
+};
+std::optional<PairMeasures> pair_measures(PairMemo& memo, const DetailsScene& scene,
+                                          const Frame& frame);
+
+/// The spectrum before anything moves.
+struct SpectrumAtRest {
+  RadialSpectrum spectrum;
+  Value noise;  ///< mean distance of independent patterns of the process
+};
+/// That of every frame.
+using SpectrumMemo = Memo<SpectrumAtRest, 16>;
+
+/// Radial power spectrum of the visible details of a plane, in the frames that the scene chooses
+/// for pairs. Absent in others, where the surface is no rectangle, and where the details are more
+/// than 5,000: the cost grows with the square of their number.
+struct SpectrumMeasures {
+  double distance = 0;    ///< to that of the original
+  Value noise;            ///< mean distance of independent patterns of the process, at rest
+  double elongation = 0;  ///< mean up to the ring of the spacing: how much one axis is preferred
+};
+std::optional<SpectrumMeasures> spectrum_measures(SpectrumMemo& memo, const DetailsScene& scene,
+                                                  const Frame& frame);
 
 /// What happened to the details over a motion.
 struct MotionMeasures {
@@ -32,67 +87,8 @@ struct MotionMeasures {
   Value popping;               ///< largest, over the height of a detail
   std::optional<int> at_rest;  ///< insertions and details that begin to fade while nothing moves
 };
-
-/// Pair correlation of a scene's pattern before anything moves.
-struct PairAtRest {
-  PairCurve curve;
-  double unit = 0;  ///< mean edge (m); 0: without edges
-  Value noise;      ///< mean distance between independent patterns of the process
-};
-
-/// Radial power spectrum of the visible details of a plane, in the frames that the scene chooses
-/// for pairs.
-struct SpectrumMeasures {
-  double distance = 0;    ///< to that of the original
-  Value noise;            ///< mean distance of independent patterns of the process, at rest
-  double elongation = 0;  ///< mean up to the ring of the spacing: how much one axis is preferred
-};
-
-/// The spectrum before anything moves.
-struct SpectrumAtRest {
-  RadialSpectrum spectrum;
-  Value noise;
-};
-
-/// Values that several metrics share.
-struct DetailsMemo {
-  Memo<DetailSpacing, 16> spacing;
-  Memo<PairCurve, 64> curves;
-  Memo<PairAtRest, 16> pairs_at_rest;
-  Memo<SpectrumMeasures, 16> spectra;
-  Memo<SpectrumAtRest, 16> spectra_at_rest;
-  Memo<MotionMeasures, 4> motions;
-};
-
-/// Spacing of all details ("detail_mesh") or of those that one sees ("visible_mesh"), in the frame
-/// and at rest; `outside` is against the mean at rest.
-struct SpacingPair {
-  DetailSpacing rest, now;
-};
-SpacingPair spacing_pair(DetailsMemo& memo, const DetailsScene& scene, const Frame& frame,
-                         bool visible);
-
-/// Details over how many the surface asks for.
-double details_over_wanted(const DetailsScene& scene, const Frame& frame, bool visible);
-
-/// Pair correlation of the visible details against that of the original, in units of its mean edge.
-/// Absent but in the frames that the scene chooses: it costs more than what it judges.
-struct PairMeasures {
-  double distance = 0;  ///< of the curve to that of the original
-  double naive = 0;     ///< of the curve of the original details, carried along
-  Value noise;          ///< mean distance between independent patterns of the process, at rest
-};
-std::optional<PairMeasures> pair_measures(DetailsMemo& memo, const DetailsScene& scene,
-                                          const Frame& frame);
-
-/// Absent where the surface is no rectangle, or the details are more than 5,000: the cost grows
-/// with the square of their number.
-std::optional<SpectrumMeasures> spectrum_measures(DetailsMemo& memo, const DetailsScene& scene,
-                                                  const Frame& frame);
-
 /// Frames count as at rest once the surface has not moved for ten frames: weights that change by a
 /// tenth a frame are then done.
-MotionMeasures motion_measures(DetailsMemo& memo, const DetailsScene& scene,
-                               const FrameSequence& frames);
+MotionMeasures motion_measures(const DetailsScene& scene, const FrameSequence& frames);
 
 }  // namespace geoprior::details

@@ -8,7 +8,7 @@ namespace geoprior::details {
 Topic make_topic();
 
 std::vector<MethodEntry> methods();
-std::vector<MetricEntry> metrics();
+std::vector<MetricGroup> metrics();
 std::vector<DiagnosticEntry> diagnostics();
 
 }  // namespace geoprior::details

@@ -8,6 +8,10 @@
 
 #include "core/mesh.h"
 #include "metrics/dam_break.h"
+#include "metrics/seam.h"
+#include "metrics/self_contact.h"
+#include "metrics/slosh.h"
+#include "metrics/surface_distance.h"
 #include "metrics/volume.h"
 
 namespace geoprior::fluid {
@@ -15,45 +19,54 @@ namespace {
 
 TriMesh mesh_of(const Part& part) { return {part.points, part.triangles}; }
 
-ContentKey key_of(const Part& part) {
-  ContentKey key;
-  key.add_matrix(part.points);
-  key.add_matrix(part.triangles);
-  return key;
+TriMesh mesh_of(const Frame& frame) { return mesh_of(surface_part(frame)); }
+
+/// Volume that a closed surface encloses (m^3); absent for others and without triangles.
+Value enclosed_volume(const TriMesh& mesh, const Closedness& closed) {
+  if (mesh.triangle_count() == 0 || closed.defects() != 0) return {};
+  return signed_volume(mesh.V, mesh.F);
 }
 
-ContentKey key_of(const Part& a, const Part& b) {
-  ContentKey key = key_of(a);
-  key.add_matrix(b.points);
-  key.add_matrix(b.triangles);
-  return key;
+Value enclosed_volume(const TriMesh& mesh) { return enclosed_volume(mesh, closedness(mesh)); }
+
+/// Absent without gauges or triangles.
+std::optional<Columns> columns_of(const FluidScene& scene, const TriMesh& mesh) {
+  if (!scene.gauges || mesh.triangle_count() == 0) return {};
+  return columns(mesh, *scene.gauges);
 }
 
-LiquidMeasures measure(const FluidScene& scene, const Part& surface) {
-  LiquidMeasures m;
-  const TriMesh mesh = mesh_of(surface);
-  m.closed = closedness(mesh);
-  if (mesh.triangle_count() == 0) return m;
-  m.top = mesh.V.col(2).maxCoeff();
-  if (m.closed.defects() == 0) {
-    m.volume = signed_volume(mesh.V, mesh.F);
-    const double density = scene.tank ? scene.tank->density : 1000;
-    if (*m.volume != 0) {
-      m.potential_energy = -density * *m.volume * scene.gravity.dot(volume_centroid(mesh));
-    }
+/// One half space of water that starts tilted in a tank with nothing in it.
+bool is_sloshing(const FluidScene& scene) {
+  if (!scene.tank->solids.empty()) return false;
+  const std::vector<LiquidVolume>& volumes = scene.tank->volumes;
+  return volumes.size() == 1 && volumes.front().shape.kind == LiquidShape::Kind::half_space;
+}
+
+/// Largest |V - V0| / V0; absent when a volume is.
+Value largest_drift(const std::vector<Value>& volumes) {
+  Value drift;
+  for (const Value& volume : volumes) {
+    if (!volume || *volumes.front() == 0) return {};
+    drift = std::max(drift.value_or(0), std::abs(*volume / *volumes.front() - 1));
   }
-  if (scene.gauges) m.columns = columns(mesh, *scene.gauges);
-  if (m.columns && scene.dam_width()) {
-    m.dam_front = dam_front(mesh, *m.columns, *scene.gauges, scene.tank->cell / 2);
-  }
-  return m;
+  return drift;
 }
 
-SurfaceDeviation deviation(Memo<SurfaceDeviation, 8>& memo, const FluidScene& scene, const Part& a,
-                           const Part& b) {
-  return memo.get(key_of(a, b), [&] {
-    return surface_deviation(mesh_of(a), mesh_of(b), std::max(scene.cell / 2, 1e-9));
-  });
+/// Relative error of the frequency of the first standing wave.
+Value slosh_error(const FluidScene& scene, const std::vector<double>& times,
+                  const std::vector<std::optional<Columns>>& columns) {
+  std::vector<double> swing;
+  for (const std::optional<Columns>& at : columns) {
+    if (!at) return {};
+    swing.push_back(slosh_amplitude(*at, *scene.gauges));
+  }
+  if (swing.empty()) return {};
+  const double measured = crossing_frequency(times, swing);
+  const double length = scene.tank->cells.x() * scene.tank->cell;
+  const double expected =
+      slosh_frequency(length, columns.front()->depth.mean(), scene.gravity.norm());
+  if (measured == 0 || expected == 0) return {};
+  return std::abs(measured / expected - 1);
 }
 
 enum class GaugeCover : char { unknown, bed, pasted };
@@ -176,33 +189,89 @@ const Part& surface_part(const Frame& frame) {
   return frame.require_part("surface", Part::Kind::triangles);
 }
 
-LiquidMeasures liquid_measures(FluidMemo& memo, const FluidScene& scene, const Part& surface) {
-  return memo.surface.get(key_of(surface), [&] { return measure(scene, surface); });
+LiquidMeasures liquid_measures(const FluidScene& scene, const Frame& frame) {
+  LiquidMeasures m;
+  const TriMesh mesh = mesh_of(frame);
+  m.closed = closedness(mesh);
+  m.triangles = mesh.F.rows();
+  if (mesh.triangle_count() == 0) return m;
+  m.top = mesh.V.col(2).maxCoeff();
+  m.volume = enclosed_volume(mesh, m.closed);
+  const double density = scene.tank ? scene.tank->density : 1000;
+  if (m.volume && *m.volume != 0) {
+    m.potential_energy = -density * *m.volume * scene.gravity.dot(volume_centroid(mesh));
+  }
+  return m;
 }
 
-SurfaceDeviation deviation_from(FluidMemo& memo, const FluidScene& scene, const Frame& frame,
-                                const Frame& reference) {
-  return deviation(memo.forth, scene, surface_part(frame), surface_part(reference));
+std::optional<PasteMeasures> paste_measures(const FluidScene&, const Frame& frame) {
+  const Part& surface = surface_part(frame);
+  const NamedArray* feature = surface.find_array("feature");
+  if (feature == nullptr) return {};
+  std::vector<char> moved(surface.points.rows());
+  for (std::size_t v = 0; v < moved.size(); ++v) {
+    moved[v] = feature->values(static_cast<Eigen::Index>(v), 0) != 0 ? 1 : 0;
+  }
+  return PasteMeasures{largest_seam_angle(mesh_of(surface), moved),
+                       intersecting_pairs(surface.points, surface.triangles)};
 }
 
-SurfaceDeviation deviation_of_reference(FluidMemo& memo, const FluidScene& scene,
-                                        const Frame& frame, const Frame& reference) {
-  return deviation(memo.back, scene, surface_part(reference), surface_part(frame));
-}
-
-std::optional<DamMeasures> dam_measures(FluidMemo& memo, const FluidScene& scene,
-                                        const Frame& frame) {
+std::optional<DamMeasures> dam_measures(const FluidScene& scene, const Frame& frame) {
   const std::optional<double> a = scene.dam_width();
   if (!a) return {};
-  const LiquidMeasures m = liquid_measures(memo, scene, surface_part(frame));
-  if (!m.columns) return {};
+  const TriMesh mesh = mesh_of(frame);
+  const std::optional<Columns> columns = columns_of(scene, mesh);
+  if (!columns) return {};
   DamMeasures dam;
   const double rate = std::sqrt(scene.gravity.norm() / *a);
   dam.front_time = frame.parameter * std::numbers::sqrt2 * rate;
   dam.height_time = frame.parameter * rate;
-  dam.front = (m.dam_front - scene.tank->origin.x()) / *a;
-  dam.height = dam_height(*m.columns, *scene.gauges) / (2 * *a);
+  const double front = dam_front(mesh, *columns, *scene.gauges, scene.tank->cell / 2);
+  dam.front = (front - scene.tank->origin.x()) / *a;
+  dam.height = dam_height(*columns, *scene.gauges) / (2 * *a);
   return dam;
+}
+
+SurfaceDistance surface_distance(const FluidScene& scene, const Frame& frame,
+                                 const Frame& reference) {
+  const TriMesh mesh = mesh_of(frame), other = mesh_of(reference);
+  const double spacing = std::max(scene.cell / 2, 1e-9);
+  const SurfaceDeviation there = surface_deviation(mesh, other, spacing);
+  const SurfaceDeviation back = surface_deviation(other, mesh, spacing);
+  return {std::max(there.rms, back.rms), std::max(there.max, back.max)};
+}
+
+std::optional<ColumnComparison> height_comparison(const FluidScene& scene, const Frame& frame,
+                                                  const Frame& reference) {
+  const std::optional<Columns> a = columns_of(scene, mesh_of(frame));
+  const std::optional<Columns> b = columns_of(scene, mesh_of(reference));
+  if (!a || !b) return {};
+  return compare_columns(a->top, b->top);
+}
+
+Value volume_change(const FluidScene&, const Frame& frame, const Frame& reference) {
+  const Value a = enclosed_volume(mesh_of(frame));
+  const Value b = enclosed_volume(mesh_of(reference));
+  if (!a || !b || *b == 0) return {};
+  return *a / *b - 1;
+}
+
+std::optional<TankMeasures> tank_measures(const FluidScene& scene, const FrameSequence& frames) {
+  if (!scene.tank || !scene.tank->sources.empty()) return {};
+  const bool sloshes = is_sloshing(scene);
+  std::vector<Value> volumes;
+  std::vector<std::optional<Columns>> gauges;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const auto surface = frames.part(i, "surface");
+    if (!surface) return {};
+    const TriMesh mesh = mesh_of(*surface);
+    volumes.push_back(enclosed_volume(mesh));
+    if (sloshes) gauges.push_back(columns_of(scene, mesh));
+  }
+  TankMeasures m;
+  m.volume_drift = largest_drift(volumes);
+  if (sloshes) m.slosh_frequency_error = slosh_error(scene, frames.parameters(), gauges);
+  return m;
 }
 
 std::optional<SeaState> sea_state(const Frame& frame) {
@@ -223,6 +292,37 @@ std::optional<SeaState> sea_state(const Frame& frame) {
   sea.heights = height->values.reshaped(nx, ny);
   sea.rates = rate->values.reshaped(nx, ny);
   return sea;
+}
+
+std::optional<SeaMeasures> sea_measures(const FluidScene&, const Frame& frame) {
+  const std::optional<SeaState> sea = sea_state(frame);
+  if (!sea) return {};
+  const Moments of_heights = moments(sea->heights.reshaped());
+  SeaMeasures m;
+  m.significant_height = 4 * std::sqrt(of_heights.variance);
+  if (sea->expected_variance != 0) m.variance_ratio = of_heights.variance / sea->expected_variance;
+  m.kurtosis = of_heights.kurtosis;
+  m.downwind_share = share_running_along(fourier_modes(sea->heights), fourier_modes(sea->rates),
+                                         sea->wind, sea->patch);
+  return m;
+}
+
+Value sea_dispersion(const FluidScene&, const FrameSequence& frames) {
+  Eigen::MatrixXcd modes[3];
+  Value worst;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::optional<SeaState> sea = sea_state(*frames.frame(i));
+    if (!sea) return {};
+    modes[0] = std::move(modes[1]);
+    modes[1] = std::move(modes[2]);
+    modes[2] = fourier_modes(sea->heights);
+    if (i < 2) continue;
+    const double interval = (frames.parameter(i) - frames.parameter(i - 2)) / 2;
+    const DispersionError error =
+        dispersion_error(modes[0], modes[1], modes[2], interval, sea->patch);
+    if (error.modes > 0) worst = std::max(worst.value_or(0), error.max);
+  }
+  return worst;
 }
 
 SecondDifference second_difference(const FluidScene& scene, const FrameSequence& frames,

@@ -1,58 +1,72 @@
 #pragma once
 
-#include <limits>
 #include <optional>
-#include <string>
 
 #include "core/frame.h"
 #include "experiments/fluid/scene.h"
 #include "metrics/closedness.h"
 #include "metrics/liquid_columns.h"
-#include "metrics/surface_distance.h"
 #include "metrics/tracking_scores.h"
 #include "metrics/wave_modes.h"
 #include "testbed/frame_sequence.h"
-#include "testbed/memo.h"
 
 namespace geoprior::fluid {
 
-/// What the rows of the fluid metric table (metrics.cpp) read: quantities of one frame or sequence,
-/// absent where they have no meaning.
+/// What the groups of the fluid metric table (metrics.cpp) measure: quantities of one frame or
+/// sequence, absent where they have no meaning.
 using Value = std::optional<double>;
 
 /// @throws Error  when the frame has no part "surface" of triangles
 const Part& surface_part(const Frame& frame);
 
-/// Everything that is read off one surface.
+/// What one surface encloses, and whether it does.
 struct LiquidMeasures {
   Closedness closed;
   Value volume;            ///< m^3, of closed surfaces
   Value potential_energy;  ///< J above z = 0, of closed surfaces
   double top = 0;          ///< highest point (m)
-  std::optional<Columns> columns;
-  double dam_front = std::numeric_limits<double>::quiet_NaN();  ///< m, of a dam break's scene
+  Eigen::Index triangles = 0;
 };
+LiquidMeasures liquid_measures(const FluidScene& scene, const Frame& frame);
 
-/// Values that the metrics of a frame share.
-struct FluidMemo {
-  Memo<LiquidMeasures, 8> surface;
-  Memo<SurfaceDeviation, 8> forth, back;
+/// A surface that features were pasted into; absent for others.
+struct PasteMeasures {
+  double seam_angle = 0;  ///< rad: metrics/seam.h
+  int intersecting_pairs = 0;
 };
-LiquidMeasures liquid_measures(FluidMemo& memo, const FluidScene& scene, const Part& surface);
+std::optional<PasteMeasures> paste_measures(const FluidScene& scene, const Frame& frame);
 
-/// Distances of the surface from the reference's, at gauges half a cell apart (m).
-SurfaceDeviation deviation_from(FluidMemo& memo, const FluidScene& scene, const Frame& frame,
-                                const Frame& reference);
-SurfaceDeviation deviation_of_reference(FluidMemo& memo, const FluidScene& scene,
-                                        const Frame& frame, const Frame& reference);
-
-/// Front Z = x / a and height H = h / (2a) of a dam break (metrics/dam_break.h).
+/// Front Z = x / a and height H = h / (2a) of a dam break (metrics/dam_break.h); absent for scenes
+/// that are none.
 struct DamMeasures {
   double front_time = 0, height_time = 0;  ///< T and tau
   double front = 0, height = 0;
 };
-std::optional<DamMeasures> dam_measures(FluidMemo& memo, const FluidScene& scene,
-                                        const Frame& frame);
+std::optional<DamMeasures> dam_measures(const FluidScene& scene, const Frame& frame);
+
+/// Distances of the surface from the reference's and of the reference's from it, the larger, at
+/// points half a cell apart (m).
+struct SurfaceDistance {
+  double rms = 0, max = 0;
+};
+SurfaceDistance surface_distance(const FluidScene& scene, const Frame& frame,
+                                 const Frame& reference);
+
+/// Highest points at the gauges against the reference's; absent without gauges or surface.
+std::optional<ColumnComparison> height_comparison(const FluidScene& scene, const Frame& frame,
+                                                  const Frame& reference);
+
+/// Enclosed volume over the reference's, minus 1; absent when one of the two is not closed.
+Value volume_change(const FluidScene& scene, const Frame& frame, const Frame& reference);
+
+/// Of a tank without sources, over time; absent for other scenes.
+struct TankMeasures {
+  Value volume_drift;  ///< largest |V - V0| / V0; absent when a frame is not closed
+  /// Of the frequency of the first standing wave against linear theory, for one half space of water
+  /// that starts tilted in a tank without solids; absent for others.
+  Value slosh_frequency_error;
+};
+std::optional<TankMeasures> tank_measures(const FluidScene& scene, const FrameSequence& frames);
 
 /// The patch that ocean frames carry: modes of heights and rates.
 struct SeaState {
@@ -62,6 +76,19 @@ struct SeaState {
   Eigen::MatrixXd heights, rates;
 };
 std::optional<SeaState> sea_state(const Frame& frame);
+
+/// Four standard deviations, variance over the expected, kurtosis and share along the wind of the
+/// heights of an ocean; absent for frames that are none.
+struct SeaMeasures {
+  double significant_height = 0;  ///< m
+  Value variance_ratio;           ///< absent where nothing is expected
+  double kurtosis = 3;
+  double downwind_share = 0;
+};
+std::optional<SeaMeasures> sea_measures(const FluidScene& scene, const Frame& frame);
+
+/// Largest relative error of the frequency of any mode in any three frames in a row, of an ocean.
+Value sea_dispersion(const FluidScene& scene, const FrameSequence& frames);
 
 /// Largest second difference in time of the gauges' heights (m).
 ///

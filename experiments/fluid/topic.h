@@ -8,7 +8,7 @@ namespace geoprior::fluid {
 
 Topic make_topic();
 std::vector<MethodEntry> methods();
-std::vector<MetricEntry> metrics();
+std::vector<MetricGroup> metrics();
 /// What the methods alone can know of a frame.
 std::vector<DiagnosticEntry> diagnostics();
 

@@ -32,67 +32,13 @@ std::string place(const Frame& frame) {
   return "frame at " + std::to_string(frame.parameter) + " s";
 }
 
-ContentKey key_of(const SheetFrame& f) {
-  ContentKey key;
-  const PaperMaterial& m = f.sheet.material;
-  for (const double x : {m.thickness, m.young_modulus, m.poisson_ratio, m.area_density}) {
-    key.add(std::bit_cast<std::uint64_t>(x));
-  }
-  for (const Eigen::Vector2d& p : f.sheet.pattern.border) key.add_matrix(p);
-  key.add_matrix(f.x());
-  key.add_matrix(f.triangles());
-  for (const NamedArray& array : f.surface.arrays) key.add_matrix(array.values);
-  return key;
-}
-
-std::shared_ptr<const CurvatureFit> fit_of(SheetMemo& memo, const SheetFrame& f) {
+std::shared_ptr<const CurvatureFit> fit_of(FitMemo& fits, const SheetFrame& f) {
   ContentKey key;
   key.add_matrix(f.pattern);
   key.add_matrix(f.triangles());
-  return memo.fit.get(key, [&] {
+  return fits.get(key, [&] {
     return std::make_shared<const CurvatureFit>(fit_curvature(f.pattern, f.triangles()));
   });
-}
-
-void measure_energies(SheetMemo& memo, const SheetFrame& f, SurfaceMeasures& out) {
-  const PaperMaterial& material = f.sheet.material;
-  const PlateStiffness plate{material.membrane_stiffness(), material.bending_stiffness(),
-                             material.poisson_ratio};
-  out.membrane_energy = membrane_energy(f.pattern, f.x(), f.triangles(), plate);
-  const NamedArray* plastic = f.surface.find_array("plastic_curvature", NamedArray::On::cells);
-  const Eigen::MatrixX3d rest = plastic != nullptr
-                                    ? Eigen::MatrixX3d(plastic->values)
-                                    : Eigen::MatrixX3d::Zero(f.triangles().rows(), 3);
-  out.bending_energy = bending_energy(*fit_of(memo, f), f.x(), rest, plate);
-  if (const NamedArray* v = f.surface.find_array("velocity", NamedArray::On::points)) {
-    out.kinetic_energy = kinetic_energy(f.pattern, v->values, f.triangles(), material.area_density);
-  }
-}
-
-void measure_creases(const SheetFrame& f, SurfaceMeasures& out) {
-  const CreaseOptions options;
-  const GriddedSheet sheet = gridded_sheet(f.pattern, f.x(), f.triangles(), options.grid_spacing);
-  out.crease_length = crease_length(sheet, options);
-  out.cones = static_cast<int>(detect_cones(sheet, options).size());
-  const std::vector<double> facets = facet_areas(sheet, options);
-  out.facets = static_cast<int>(facets.size());
-  if (facets.empty()) return;
-  const Eigen::Map<const Eigen::VectorXd> areas(facets.data(), out.facets);
-  out.facet_area_median = weighted_quantile(areas, areas, 0.5);
-}
-
-SurfaceMeasures compute(SheetMemo& memo, const SheetFrame& f) {
-  SurfaceMeasures out;
-  out.isometry = isometry(f.pattern, f.x(), f.triangles());
-  out.developability = developability({f.x(), f.triangles()});
-  measure_creases(f, out);
-  out.mesh = pattern_mesh(f.pattern, f.triangles());
-  out.uncovered_area = std::abs(out.mesh.area - signed_area(f.sheet.pattern));
-  if (out.mesh.inverted == 0) measure_energies(memo, f, out);
-  const auto pairs = intersecting_triangles(f.x(), f.triangles());
-  out.intersecting_pairs = static_cast<int>(pairs.size());
-  out.intersection_depth = intersection_depth(f.x(), f.triangles(), pairs);
-  return out;
 }
 
 /// Two opposite sides of a rectangle, corner to corner: p(s, t) is at `s` along the sides, `t` from
@@ -141,7 +87,7 @@ std::optional<Strip> strip_of(const Sheet& sheet, double time) {
 
 }  // namespace
 
-SheetFrame sheet_frame(const Scene& scene, const Frame& frame) {
+SheetFrame sheet_frame(const PaperScene& scene, const Frame& frame) {
   const Part& surface = frame.require_part("surface");
   const Eigen::MatrixXd& pattern =
       frame.require_array("surface", "pattern", NamedArray::On::points).values;
@@ -153,11 +99,66 @@ SheetFrame sheet_frame(const Scene& scene, const Frame& frame) {
   if (!surface.points.allFinite() || !pattern.allFinite()) {
     throw Error("a coordinate of part 'surface' is not finite", place(frame), "finite numbers");
   }
-  return {dynamic_cast<const PaperScene&>(scene).sheet, frame, surface, pattern.leftCols<2>()};
+  return {scene.sheet, frame, surface, pattern.leftCols<2>()};
 }
 
-SurfaceMeasures surface_measures(SheetMemo& memo, const SheetFrame& f) {
-  return memo.surface.get(key_of(f), [&] { return compute(memo, f); });
+IsometrySummary sheet_isometry(const SheetFrame& f) {
+  return isometry(f.pattern, f.x(), f.triangles());
+}
+
+DevelopabilitySummary sheet_developability(const SheetFrame& f) {
+  return developability({f.x(), f.triangles()});
+}
+
+CreaseMeasures crease_measures(const SheetFrame& f) {
+  CreaseMeasures out;
+  const CreaseOptions options;
+  const GriddedSheet sheet = gridded_sheet(f.pattern, f.x(), f.triangles(), options.grid_spacing);
+  out.crease_length = crease_length(sheet, options);
+  out.cones = static_cast<int>(detect_cones(sheet, options).size());
+  const std::vector<double> facets = facet_areas(sheet, options);
+  out.facets = static_cast<int>(facets.size());
+  if (facets.empty()) return out;
+  const Eigen::Map<const Eigen::VectorXd> areas(facets.data(), out.facets);
+  out.facet_area_median = weighted_quantile(areas, areas, 0.5);
+  return out;
+}
+
+std::optional<EnergyMeasures> energy_measures(FitMemo& fits, const SheetFrame& f) {
+  if (pattern_mesh(f.pattern, f.triangles()).inverted != 0) return std::nullopt;
+  const PaperMaterial& material = f.sheet.material;
+  const PlateStiffness plate{material.membrane_stiffness(), material.bending_stiffness(),
+                             material.poisson_ratio};
+  EnergyMeasures out;
+  out.membrane = membrane_energy(f.pattern, f.x(), f.triangles(), plate);
+  const NamedArray* plastic = f.surface.find_array("plastic_curvature", NamedArray::On::cells);
+  const Eigen::MatrixX3d rest = plastic != nullptr
+                                    ? Eigen::MatrixX3d(plastic->values)
+                                    : Eigen::MatrixX3d::Zero(f.triangles().rows(), 3);
+  out.bending = bending_energy(*fit_of(fits, f), f.x(), rest, plate);
+  if (const NamedArray* v = f.surface.find_array("velocity", NamedArray::On::points)) {
+    out.kinetic = kinetic_energy(f.pattern, v->values, f.triangles(), material.area_density);
+  }
+  return out;
+}
+
+MeshMeasures mesh_measures(const SheetFrame& f) {
+  MeshMeasures out;
+  out.triangles = f.triangles().rows();
+  out.pattern = pattern_mesh(f.pattern, f.triangles());
+  out.uncovered_area = std::abs(out.pattern.area - signed_area(f.sheet.pattern));
+  return out;
+}
+
+ContactMeasures contact_measures(const SheetFrame& f) {
+  const auto pairs = intersecting_triangles(f.x(), f.triangles());
+  return {static_cast<int>(pairs.size()), intersection_depth(f.x(), f.triangles(), pairs)};
+}
+
+Value handle_work(const SheetFrame& f) {
+  const auto work = f.frame.diagnostics.find("handle_work");
+  if (work == f.frame.diagnostics.end()) return std::nullopt;
+  return work->second;
 }
 
 std::optional<HandleForce> handle_force(const SheetFrame& f) {

@@ -5,16 +5,16 @@
 
 #include "core/curvature_fit.h"
 #include "core/frame.h"
+#include "experiments/paper/scene.h"
 #include "metrics/developability.h"
 #include "metrics/isometry.h"
 #include "metrics/pattern_mesh.h"
 #include "models/paper/sheet.h"
 #include "testbed/memo.h"
-#include "testbed/topic.h"
 
 namespace geoprior::paper {
 
-/// What the rows of the paper metric table (metrics.cpp) read: quantities of one frame of one
+/// What the groups of the paper metric table (metrics.cpp) measure: quantities of one frame of one
 /// scene, absent where they have no meaning.
 using Value = std::optional<double>;
 
@@ -31,31 +31,47 @@ struct SheetFrame {
 
 /// @throws Error  when the frame has no part "surface" of triangles with a point array "pattern",
 ///                or a coordinate is not finite
-SheetFrame sheet_frame(const Scene& scene, const Frame& frame);
+SheetFrame sheet_frame(const PaperScene& scene, const Frame& frame);
 
-/// Everything that is read off the surface of one frame alone.
-struct SurfaceMeasures {
-  IsometrySummary isometry;
-  DevelopabilitySummary developability;
+IsometrySummary sheet_isometry(const SheetFrame& f);
+DevelopabilitySummary sheet_developability(const SheetFrame& f);
+
+/// Folds, singular points and facets, on a common grid of the pattern (metrics/creases.h).
+struct CreaseMeasures {
   double crease_length = 0;  ///< m
   int cones = 0;             ///< detected apexes
   int facets = 0;
   Value facet_area_median;  ///< m^2; absent when all facets are dust
-  PatternMeshSummary mesh;
+};
+CreaseMeasures crease_measures(const SheetFrame& f);
+
+/// J; kinetic energy absent without velocities.
+struct EnergyMeasures {
+  double membrane = 0, bending = 0;
+  Value kinetic;
+};
+/// Fits of curvature to the last meshes in the pattern: frames of a method that does not remesh
+/// have one in common, and making it costs more than measuring with it.
+using FitMemo = Memo<std::shared_ptr<const CurvatureFit>, 4>;
+/// Absent when a triangle has no area in the pattern or is turned over there.
+std::optional<EnergyMeasures> energy_measures(FitMemo& fits, const SheetFrame& f);
+
+/// The mesh in the pattern.
+struct MeshMeasures {
+  Eigen::Index triangles = 0;
+  PatternMeshSummary pattern;
   double uncovered_area = 0;  ///< |area of the mesh - area of the pattern| (m^2)
-  /// J; absent when a triangle has no area in the pattern or is turned over there, the kinetic
-  /// energy also without velocities.
-  Value membrane_energy, bending_energy, kinetic_energy;
+};
+MeshMeasures mesh_measures(const SheetFrame& f);
+
+struct ContactMeasures {
   int intersecting_pairs = 0;
   double intersection_depth = 0;  ///< m
 };
+ContactMeasures contact_measures(const SheetFrame& f);
 
-/// Values that the metrics of a frame share, and the bending fits of the last meshes.
-struct SheetMemo {
-  Memo<SurfaceMeasures> surface;
-  Memo<std::shared_ptr<const CurvatureFit>, 4> fit;
-};
-SurfaceMeasures surface_measures(SheetMemo& memo, const SheetFrame& f);
+/// Work of the handles since the start (J), as the method summed it; absent when it does not.
+Value handle_work(const SheetFrame& f);
 
 /// Norms of the total forces of the handles that hold the sheet (N); absent when none does.
 struct HandleForce {

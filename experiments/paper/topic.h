@@ -10,7 +10,7 @@ Topic make_topic();
 /// The methods of the topic: experiments/paper/methods.cpp.
 std::vector<MethodEntry> methods();
 /// What is measured of their frames: experiments/paper/metrics.cpp.
-std::vector<MetricEntry> metrics();
+std::vector<MetricGroup> metrics();
 /// What they alone can know of a frame.
 std::vector<DiagnosticEntry> diagnostics();
 

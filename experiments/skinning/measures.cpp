@@ -1,6 +1,8 @@
 #include "experiments/skinning/measures.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <string>
 
 #include "core/error.h"
@@ -44,11 +46,7 @@ ContentKey key_of(const Measured& m, const Eigen::MatrixX3d& posed, const Pose& 
   return key;
 }
 
-bool is_closed(Shared& shared, const Measured& m) {
-  ContentKey key;
-  key.add_matrix(m.mesh().F);
-  return shared.closed.get(key, [&] { return boundary_edges(m.mesh().F).empty(); });
-}
+bool is_closed(const TriMesh& mesh) { return boundary_edges(mesh.F).empty(); }
 
 OverlapStudy compute_overlap(const Measured& m, const Eigen::MatrixX3d& V, const Pose& pose) {
   if (const JointRegion* region = m.region()) {
@@ -85,9 +83,19 @@ Eigen::MatrixX3d in_bone_frame(const Measured& m) {
 
 }  // namespace
 
-Measured measured(const Scene& scene, const Frame& frame) {
-  const auto& skinning = dynamic_cast<const SkinningScene&>(scene);
-  return {skinning, surface_of(skinning, frame), skinning.pose_at(frame.parameter)};
+Measured measured(const SkinningScene& scene, const Frame& frame) {
+  return {scene, surface_of(scene, frame), scene.pose_at(frame.parameter)};
+}
+
+Value volume_change(const Measured& m) {
+  if (!m.region()) return std::nullopt;
+  return relative_change(region_volume(m.mesh().V, m.mesh().F, *m.region()),
+                         region_volume(m.posed, m.mesh().F, *m.region()));
+}
+
+Value volume_change_global(const Measured& m) {
+  if (!is_closed(m.mesh())) return std::nullopt;
+  return relative_change(signed_volume(m.mesh().V, m.mesh().F), signed_volume(m.posed, m.mesh().F));
 }
 
 std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m) {
@@ -95,7 +103,7 @@ std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m) {
   const auto study = [&](const Eigen::MatrixX3d& V, const Pose& pose) {
     return shared.overlap.get(key_of(m, V, pose), [&] { return compute_overlap(m, V, pose); });
   };
-  if (!is_closed(shared, m)) return std::nullopt;
+  if (!is_closed(m.mesh())) return std::nullopt;
   const OverlapStudy rest = study(m.mesh().V, at_rest);
   OverlapStudy excess = study(m.posed, m.pose);
   excess.volume -= rest.volume;
@@ -103,9 +111,8 @@ std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m) {
   return excess;
 }
 
-Value clipped(const std::optional<OverlapStudy>& study) {
-  if (!study) return std::nullopt;
-  return study->volume > study->noise_floor ? study->volume : 0.0;
+double clipped(const OverlapStudy& study) {
+  return study.volume > study.noise_floor ? study.volume : 0.0;
 }
 
 Value overlap_excess_ratio(Shared& shared, const Measured& m, const Measured& reference) {
@@ -117,39 +124,24 @@ Value overlap_excess_ratio(Shared& shared, const Measured& m, const Measured& re
   return own->volume / std::max(other->volume, floor);
 }
 
-Value pairs_excess(Shared& shared, const Measured& m) {
+double pairs_excess(Shared& shared, const Measured& m) {
   const auto count = [&](const Eigen::MatrixX3d& V) {
-    return shared.pairs.get(key_of(m, V, {}), [&] {
-      return m.region() ? intersecting_pairs(V, m.mesh().F, *m.region())
-                        : intersecting_pairs(V, m.mesh().F);
-    });
+    return m.region() ? intersecting_pairs(V, m.mesh().F, *m.region())
+                      : intersecting_pairs(V, m.mesh().F);
   };
-  return count(m.posed) - count(m.mesh().V);
+  const int at_rest =
+      shared.pairs_at_rest.get(key_of(m, m.mesh().V, {}), [&] { return count(m.mesh().V); });
+  return count(m.posed) - at_rest;
 }
 
-std::optional<SectionSummary> sections_of(Shared& shared, const Measured& m) {
+std::optional<SectionSummary> section_summary(const Measured& m) {
   if (!m.region()) return std::nullopt;
-  return shared.sections.get(key_of(m, m.posed, m.pose), [&] {
-    return summarize(cross_sections(*m.region(), m.mesh().F, m.mesh().V, m.posed, m.pose));
-  });
+  return summarize(cross_sections(*m.region(), m.mesh().F, m.mesh().V, m.posed, m.pose));
 }
 
-std::optional<DistortionSummary> distortion_of(Shared& shared, const Measured& m) {
+std::optional<DistortionSummary> region_distortion(const Measured& m) {
   if (!m.region()) return std::nullopt;
-  return shared.distortion.get(key_of(m, m.posed, m.pose), [&] {
-    return distortion(m.mesh().V, m.posed, m.mesh().F, m.region()->triangles);
-  });
-}
-
-Value volume_change(const Measured& m) {
-  if (!m.region()) return std::nullopt;
-  return relative_change(region_volume(m.mesh().V, m.mesh().F, *m.region()),
-                         region_volume(m.posed, m.mesh().F, *m.region()));
-}
-
-Value volume_change_global(Shared& shared, const Measured& m) {
-  if (!is_closed(shared, m)) return std::nullopt;
-  return relative_change(signed_volume(m.mesh().V, m.mesh().F), signed_volume(m.posed, m.mesh().F));
+  return distortion(m.mesh().V, m.posed, m.mesh().F, m.region()->triangles);
 }
 
 Value rest_identity(const Measured& m) {
@@ -175,17 +167,16 @@ VertexDistance reference_distance(const Measured& m, const Measured& reference) 
   return vertex_distance(m.posed, reference.posed, vertices);
 }
 
-Value second_difference(const Scene& scene, const FrameSequence& frames) {
+Value second_difference(const SkinningScene& scene, const FrameSequence& frames) {
   std::vector<Eigen::MatrixX3d> positions;
   const std::vector<double> parameters = frames.parameters();
-  const auto& skinning = dynamic_cast<const SkinningScene&>(scene);
-  if (frames.size() < 3 || !equally_spaced(parameters) || skinning.regions.empty())
+  if (frames.size() < 3 || !equally_spaced(parameters) || scene.regions.empty())
     return std::nullopt;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     positions.push_back(in_bone_frame(measured(scene, *frames.frame(i))));
   }
   return second_difference_max(positions, parameters,
-                               region_vertices(skinning.regions.front(), skinning.rig.mesh.F));
+                               region_vertices(scene.regions.front(), scene.rig.mesh.F));
 }
 
 }  // namespace geoprior::skinning

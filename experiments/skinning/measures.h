@@ -14,8 +14,8 @@
 
 namespace geoprior::skinning {
 
-/// What the rows of the skinning metric table (metrics.cpp) read: quantities of one frame of one
-/// scene, absent where they have no meaning.
+/// What the groups of the skinning metric table (metrics.cpp) measure: quantities of one frame of
+/// one scene, absent where they have no meaning.
 using Value = std::optional<double>;
 
 /// One frame of one scene, as every metric sees it.
@@ -32,35 +32,39 @@ struct Measured {
 };
 
 /// @throws Error  when the frame has no part "surface" with as many vertices as the scene's mesh
-Measured measured(const Scene& scene, const Frame& frame);
+Measured measured(const SkinningScene& scene, const Frame& frame);
 
-/// Values that several metrics of a frame share, and those of the rest pose.
+/// What groups of metrics and frames share: overlap_excess is the numerator of its ratio to the
+/// reference's, the overlap of a reference frame the denominator of every variant that is compared
+/// with it, and the rest pose that of all frames. Each takes longer than all other measures.
 struct Shared {
-  Memo<bool> closed;
   Memo<OverlapStudy> overlap;
-  Memo<int> pairs;
-  Memo<SectionSummary> sections;
-  Memo<DistortionSummary> distortion;
+  Memo<int> pairs_at_rest;
 };
+
+/// Absent without a region.
+Value volume_change(const Measured& m);
+/// Absent for an open mesh.
+Value volume_change_global(const Measured& m);
 
 /// Overlap above rest (raw) with its noise floor; absent for an open mesh.
 std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m);
 /// The excess, 0 where it does not exceed the floor.
-Value clipped(const std::optional<OverlapStudy>& study);
+double clipped(const OverlapStudy& study);
 /// 0 up to the floor, else over the reference's excess or the floor, whichever is larger.
 Value overlap_excess_ratio(Shared& shared, const Measured& m, const Measured& reference);
+/// Intersecting pairs above rest.
+double pairs_excess(Shared& shared, const Measured& m);
 
-Value pairs_excess(Shared& shared, const Measured& m);
-std::optional<SectionSummary> sections_of(Shared& shared, const Measured& m);
-std::optional<DistortionSummary> distortion_of(Shared& shared, const Measured& m);
-Value volume_change(const Measured& m);
-Value volume_change_global(Shared& shared, const Measured& m);
+/// Absent without a region, as the next.
+std::optional<SectionSummary> section_summary(const Measured& m);
+std::optional<DistortionSummary> region_distortion(const Measured& m);
 /// Absent unless the frame's pose is the rest pose.
 Value rest_identity(const Measured& m);
 /// Absent unless the region is a tube made by formula, with one joint.
 std::optional<RingRatio> mid_ring(const Measured& m);
 VertexDistance reference_distance(const Measured& m, const Measured& reference);
 /// Absent for fewer than three frames, unequal steps or no region.
-Value second_difference(const Scene& scene, const FrameSequence& frames);
+Value second_difference(const SkinningScene& scene, const FrameSequence& frames);
 
 }  // namespace geoprior::skinning

@@ -9,7 +9,7 @@ Topic make_topic();
 
 /// The tables behind it: experiments/skinning/methods.cpp and experiments/skinning/metrics.cpp.
 std::vector<MethodEntry> methods();
-std::vector<MetricEntry> metrics();
+std::vector<MetricGroup> metrics();
 std::vector<DiagnosticEntry> diagnostics();
 
 }  // namespace geoprior::skinning

@@ -52,7 +52,9 @@ Described describe_topic(const Topic& topic) {
   Described result{"topic", topic.name, {{"summary", topic.summary}}, "[scene]", {}};
   std::string methods, metrics, diagnostics;
   for (const auto& m : topic.methods) methods += (methods.empty() ? "" : ", ") + m.name;
-  for (const auto& m : topic.metrics) metrics += (metrics.empty() ? "" : ", ") + m.name;
+  for (const MetricEntry& m : metric_rows(topic)) {
+    metrics += (metrics.empty() ? "" : ", ") + m.name;
+  }
   result.facts.emplace_back("methods", methods);
   for (const auto& d : topic.diagnostics) {
     diagnostics += (diagnostics.empty() ? "" : ", ") + d.name;
@@ -63,18 +65,20 @@ Described describe_topic(const Topic& topic) {
   return result;
 }
 
-Described describe_metric(const Topic& topic, const MetricEntry& metric) {
+Described describe_metric(const Topic& topic, const MetricGroup& group, const MetricEntry& metric) {
   Described result{"metric", topic.name + "/" + metric.name, {}, "", {}};
   result.facts = {{"definition", metric.definition},
                   {"unit", metric.unit},
                   {"direction", direction_text(metric.direction)},
-                  {"of", metric.of_frame ? "a frame" : "the sequence of frames"},
+                  {"of", group.of_frame ? "a frame" : "the sequence of frames"},
                   {"tolerance", rounded_text(metric.tolerance.absolute) + " + " +
                                     rounded_text(metric.tolerance.relative) + " * |reference|"}};
   if (metric.direction == Direction::closer_to_target) {
     result.facts.emplace_back("target", rounded_text(metric.target));
   }
-  if (metric.needs_reference) result.facts.emplace_back("needs", "a variant with `reference`");
+  if (group.needs_reference) result.facts.emplace_back("needs", "a variant with `reference`");
+  if (metric.oracle) result.facts.emplace_back("oracle", "an identity or a closed form");
+  if (!metric.gated()) result.facts.emplace_back("not compared by check", metric.ungated);
   return result;
 }
 
@@ -123,8 +127,10 @@ std::vector<Described> find_described(const std::vector<Topic>& topics, const st
     for (const MethodEntry& method : topic.methods) {
       if (matches(topic, method.name)) found.push_back(describe_method(topic, method));
     }
-    for (const MetricEntry& metric : topic.metrics) {
-      if (matches(topic, metric.name)) found.push_back(describe_metric(topic, metric));
+    for (const MetricGroup& group : topic.metrics) {
+      for (const MetricEntry& metric : group.rows) {
+        if (matches(topic, metric.name)) found.push_back(describe_metric(topic, group, metric));
+      }
     }
     for (const DiagnosticEntry& entry : topic.diagnostics) {
       if (matches(topic, entry.name)) found.push_back(describe_diagnostic(topic, entry));

@@ -20,11 +20,13 @@ Json topic_json(const Topic& topic) {
                                {"source", method.source}});
   }
   json["metrics"] = Json::array();
-  for (const MetricEntry& metric : topic.metrics) {
+  for (const MetricEntry& metric : metric_rows(topic)) {
     json["metrics"].push_back({{"name", metric.name},
                                {"unit", metric.unit},
                                {"definition", metric.definition},
-                               {"direction", direction_text(metric.direction)}});
+                               {"direction", direction_text(metric.direction)},
+                               {"oracle", metric.oracle},
+                               {"gated", metric.gated()}});
   }
   return json;
 }
@@ -37,7 +39,7 @@ void say_topic(const Topic& topic) {
   }
   say_table(methods);
   std::vector<std::vector<std::string>> metrics{{"metric", "unit", "definition"}};
-  for (const MetricEntry& m : topic.metrics) metrics.push_back({m.name, m.unit, m.definition});
+  for (const MetricEntry& m : metric_rows(topic)) metrics.push_back({m.name, m.unit, m.definition});
   say();
   say_table(metrics);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "testbed/metric_rows.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/quantity.h"
 #include "testbed/runner/timing_statistics.h"
@@ -12,13 +13,6 @@ namespace geoprior {
 
 namespace {
 
-const MetricEntry* find_metric(const Topic& topic, const std::string& name) {
-  for (const MetricEntry& metric : topic.metrics) {
-    if (metric.name == name) return &metric;
-  }
-  return nullptr;
-}
-
 const DiagnosticEntry* find_diagnostic(const Topic& topic, const std::string& name) {
   for (const DiagnosticEntry& diagnostic : topic.diagnostics) {
     if (diagnostic.name == name) return &diagnostic;
@@ -26,17 +20,28 @@ const DiagnosticEntry* find_diagnostic(const Topic& topic, const std::string& na
   return nullptr;
 }
 
-template <class Of>
-std::map<std::string, double> values_of(const Topic& topic, const std::string& where, Of of) {
-  std::map<std::string, double> values;
-  for (const MetricEntry& metric : topic.metrics) {
-    try {
-      if (const std::optional<double> value = of(metric)) values[metric.name] = *value;
-    } catch (const Error& error) {
-      throw Error(error.what(), "metric '" + metric.name + "'" + where);
-    }
+std::string rows_text(const MetricGroup& group) {
+  std::string names;
+  for (const MetricEntry& row : group.rows) {
+    names += (names.empty() ? "'" : ", '") + row.name + "'";
   }
-  return values;
+  return (group.rows.size() == 1 ? "metric " : "metrics ") + names;
+}
+
+/// Adds what `measure` gives of a group to the values.
+template <class Measure>
+void add_values(const MetricGroup& group, const std::string& where, const Measure& measure,
+                std::map<std::string, double>& values) {
+  try {
+    const MetricValues measured = measure();
+    for (std::size_t i = 0; i < group.rows.size(); ++i) {
+      if (measured.at(i)) values[group.rows[i].name] = *measured[i];
+    }
+  } catch (const MetricRowError& error) {
+    throw Error(error.what(), "metric '" + error.row() + "'" + where);
+  } catch (const Error& error) {
+    throw Error(error.what(), rows_text(group) + where);
+  }
 }
 
 void summarise_column(const std::string& name, const MetricColumn& column, VariantRecord& variant) {
@@ -79,20 +84,25 @@ int frame_of_parameter(const std::vector<FrameRecord>& frames, double parameter)
 
 std::map<std::string, double> measure_frame(const Topic& topic, const Scene& scene,
                                             const Frame& frame, const Frame* reference) {
-  return values_of(topic, " at parameter " + number_text(frame.parameter),
-                   [&](const MetricEntry& metric) -> std::optional<double> {
-                     if (!metric.of_frame) return std::nullopt;
-                     if (metric.needs_reference && reference == nullptr) return std::nullopt;
-                     return metric.of_frame(scene, frame, reference);
-                   });
+  std::map<std::string, double> values;
+  const std::string where = " at parameter " + number_text(frame.parameter);
+  for (const MetricGroup& group : topic.metrics) {
+    if (!group.of_frame || (group.needs_reference && reference == nullptr)) continue;
+    add_values(
+        group, where, [&] { return group.of_frame(scene, frame, reference); }, values);
+  }
+  return values;
 }
 
 std::map<std::string, double> measure_sequence(const Topic& topic, const Scene& scene,
                                                const FrameSequence& frames) {
-  return values_of(topic, "", [&](const MetricEntry& metric) -> std::optional<double> {
-    if (!metric.of_sequence) return std::nullopt;
-    return metric.of_sequence(scene, frames);
-  });
+  std::map<std::string, double> values;
+  for (const MetricGroup& group : topic.metrics) {
+    if (!group.of_sequence) continue;
+    add_values(
+        group, "", [&] { return group.of_sequence(scene, frames); }, values);
+  }
+  return values;
 }
 
 void require_declared(const Topic& topic, const Frame& frame, const std::string& method) {
@@ -109,20 +119,20 @@ void require_declared(const Topic& topic, const Frame& frame, const std::string&
 
 bool has_sequence_metrics(const Topic& topic) {
   return std::any_of(topic.metrics.begin(), topic.metrics.end(),
-                     [](const MetricEntry& metric) { return bool(metric.of_sequence); });
+                     [](const MetricGroup& group) { return bool(group.of_sequence); });
 }
 
 bool has_reference_metrics(const Topic& topic) {
   return std::any_of(topic.metrics.begin(), topic.metrics.end(),
-                     [](const MetricEntry& metric) { return metric.needs_reference; });
+                     [](const MetricGroup& group) { return group.needs_reference; });
 }
 
 std::optional<std::set<std::string>> reference_parts(const Topic& topic) {
   std::set<std::string> parts;
-  for (const MetricEntry& metric : topic.metrics) {
-    if (!metric.needs_reference) continue;
-    if (metric.reference_parts.empty()) return std::nullopt;
-    parts.insert(metric.reference_parts.begin(), metric.reference_parts.end());
+  for (const MetricGroup& group : topic.metrics) {
+    if (!group.needs_reference) continue;
+    if (group.reference_parts.empty()) return std::nullopt;
+    parts.insert(group.reference_parts.begin(), group.reference_parts.end());
   }
   return parts;
 }

@@ -18,10 +18,11 @@ std::string direction_text(Direction direction);
 int frame_of_parameter(const std::vector<FrameRecord>& frames, double parameter);
 
 /// Values of the topic's frame metrics at a frame; those without meaning there are absent.
+/// @throws Error  naming the metric, or those of the group when its measurement fails
 std::map<std::string, double> measure_frame(const Topic& topic, const Scene& scene,
                                             const Frame& frame, const Frame* reference);
 
-/// Values of the topic's sequence metrics.
+/// Values of the topic's sequence metrics. @throws Error  as measure_frame
 std::map<std::string, double> measure_sequence(const Topic& topic, const Scene& scene,
                                                const FrameSequence& frames);
 

@@ -183,7 +183,7 @@ void write_reference(const Reference& reference, const std::filesystem::path& fi
 
 ToleranceOf tolerances_of(const Experiment& experiment, const Topic& topic) {
   std::map<std::string, Tolerance> tolerances;
-  for (const MetricEntry& metric : topic.metrics) tolerances[metric.name] = metric.tolerance;
+  for (const MetricEntry& metric : metric_rows(topic)) tolerances[metric.name] = metric.tolerance;
   for (const auto& [metric, tolerance] : experiment.tolerances) tolerances[metric] = tolerance;
   return [tolerances](const std::string& name) {
     auto found = tolerances.find(name);

@@ -18,7 +18,7 @@ bool contains(const Names& names, const std::string& name) {
 
 Names metric_names(const Topic& topic) {
   Names names;
-  for (const MetricEntry& metric : topic.metrics) names.push_back(metric.name);
+  for (const MetricEntry& metric : metric_rows(topic)) names.push_back(metric.name);
   return names;
 }
 

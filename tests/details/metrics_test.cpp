@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
-#include <set>
 #include <string>
 
 #include "experiments/details/pattern.h"
@@ -11,6 +9,7 @@
 #include "experiments/details/surfaces.h"
 #include "experiments/details/topic.h"
 #include "models/details/detail_process.h"
+#include "tests/testbed/metric_table.h"
 
 namespace geoprior::details {
 namespace {
@@ -34,7 +33,6 @@ class DetailsMetrics : public ::testing::Test {
     scene.input.motion = std::make_shared<StoredMotion>(
         std::vector<Eigen::MatrixX3d>{plane.V, 1.25 * plane.V, kGrowth * plane.V},
         std::vector<double>{0, 1, 2});
-    for (MetricEntry& entry : details::metrics()) metrics[entry.name] = std::move(entry);
   }
 
   /// The details as they are, on the plane scaled by `factor`.
@@ -44,15 +42,15 @@ class DetailsMetrics : public ::testing::Test {
     return details;
   }
   [[nodiscard]] std::optional<double> value(const std::string& name, const Frame& frame) const {
-    return metrics.at(name).of_frame(scene, frame, nullptr);
+    return table.of_frame(name, scene, frame);
   }
   [[nodiscard]] std::optional<double> over(const std::string& name,
                                            const std::vector<Frame>& frames) const {
-    return metrics.at(name).of_sequence(scene, FramesInMemory(frames));
+    return table.of_sequence(name, scene, frames);
   }
 
   DetailsScene scene;
-  std::map<std::string, MetricEntry> metrics;
+  test::MetricTable table{details::metrics()};
 };
 
 /// A triangle of M_d with details at all corners.
@@ -69,17 +67,6 @@ void insert(DetailMesh& d, double weight) {
   Detail like;
   like.weight = weight;
   insert_detail(d, triangle_of_details(d), Eigen::Vector3d::Constant(1.0 / 3), like);
-}
-
-TEST(DetailsTable, EveryRowIsComplete) {
-  std::set<std::string> names;
-  for (const MetricEntry& entry : details::metrics()) {
-    EXPECT_TRUE(names.insert(entry.name).second) << entry.name << " twice";
-    EXPECT_NE(static_cast<bool>(entry.of_frame), static_cast<bool>(entry.of_sequence))
-        << entry.name;
-    EXPECT_FALSE(entry.unit.empty()) << entry.name;
-    EXPECT_GT(entry.definition.size(), 20U) << entry.name;
-  }
 }
 
 TEST_F(DetailsMetrics, ScaledDetailsAreFartherApartByTheFactor) {

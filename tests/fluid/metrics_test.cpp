@@ -4,13 +4,12 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <memory>
-#include <set>
 #include <string>
 
 #include "experiments/fluid/measures.h"
 #include "experiments/fluid/topic.h"
 #include "tests/core/shapes.h"
+#include "tests/testbed/metric_table.h"
 
 namespace geoprior::fluid {
 namespace {
@@ -63,32 +62,20 @@ class TankMetrics : public ::testing::Test {
     scene.gauges = ColumnGrid{Eigen::Vector2d::Zero(), tank.cell, 20, 8};
     scene.cell = tank.cell;
     scene.tank = tank;
-    for (MetricEntry& entry : fluid::metrics()) metrics[entry.name] = std::move(entry);
   }
   [[nodiscard]] std::optional<double> value(const std::string& name, const Frame& frame,
                                             const Frame* reference = nullptr) const {
-    return metrics.at(name).of_frame(scene, frame, reference);
+    return table.of_frame(name, scene, frame, reference);
   }
   [[nodiscard]] std::optional<double> over(const std::string& name,
                                            const std::vector<Frame>& frames) const {
-    return metrics.at(name).of_sequence(scene, FramesInMemory(frames));
+    return table.of_sequence(name, scene, frames);
   }
 
   FluidScene scene;
-  std::map<std::string, MetricEntry> metrics;
+  test::MetricTable table{fluid::metrics()};
   Frame block = frame_of(box({0, 0, 0}, {0.2, 0.4, 0.4}));
 };
-
-TEST(FluidMetrics, EveryRowIsComplete) {
-  std::set<std::string> names;
-  for (const MetricEntry& entry : metrics()) {
-    EXPECT_TRUE(names.insert(entry.name).second) << entry.name << " twice";
-    EXPECT_NE(static_cast<bool>(entry.of_frame), static_cast<bool>(entry.of_sequence))
-        << entry.name;
-    EXPECT_FALSE(entry.unit.empty()) << entry.name;
-    EXPECT_GT(entry.definition.size(), 20U) << entry.name;
-  }
-}
 
 // Potential energy: rho g V z of the centre = 1000 * 9.81 * 0.032 * 0.2 J.
 TEST_F(TankMetrics, ABlockOfWaterIsMeasured) {

@@ -2,9 +2,7 @@
 
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
-#include <set>
 #include <string>
 
 #include "core/error.h"
@@ -12,6 +10,7 @@
 #include "experiments/paper/topic.h"
 #include "metrics/elastica.h"
 #include "tests/metrics/sheets.h"
+#include "tests/testbed/metric_table.h"
 
 namespace geoprior::paper {
 namespace {
@@ -43,30 +42,17 @@ class StripMetrics : public ::testing::Test {
       side.motion = Trajectory{{Keyframe{}}};
       scene.sheet.handles.push_back(side);
     }
-    for (MetricEntry& entry : paper::metrics()) metrics[entry.name] = std::move(entry);
   }
 
   std::optional<double> value(const std::string& name, const Frame& frame,
                               const Frame* reference = nullptr) const {
-    return metrics.at(name).of_frame(scene, frame, reference);
+    return table.of_frame(name, scene, frame, reference);
   }
 
   PaperScene scene;
-  std::map<std::string, MetricEntry> metrics;
+  test::MetricTable table{paper::metrics()};
   sheets::Sheet strip = sheets::rectangle(0.2, 0.1, 20, 10);
 };
-
-TEST(PaperMetrics, EveryRowIsComplete) {
-  std::set<std::string> names;
-  for (const MetricEntry& entry : metrics()) {
-    EXPECT_TRUE(names.insert(entry.name).second) << entry.name << " twice";
-    EXPECT_NE(static_cast<bool>(entry.of_frame), static_cast<bool>(entry.of_sequence))
-        << entry.name;
-    EXPECT_FALSE(entry.unit.empty()) << entry.name;
-    EXPECT_GT(entry.definition.size(), 20u) << entry.name;
-    EXPECT_GT(entry.tolerance.absolute + entry.tolerance.relative, 0) << entry.name;
-  }
-}
 
 TEST_F(StripMetrics, AFlatSheetHasNothingToReport) {
   const Frame flat = frame_of(strip);

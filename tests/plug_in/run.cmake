@@ -38,8 +38,8 @@ run(${CMAKE_COMMAND} -S ${tree} -B ${tree}/build -G Ninja -DCMAKE_CXX_COMPILER=$
 run(${CMAKE_COMMAND} --build ${tree}/build --target
   CMakeFiles/geoprior_sample.dir/solvers/sample/growing_square.cpp.o
   CMakeFiles/geoprior_sample_experiments.dir/experiments/sample/topic.cpp.o
-  experiments/CMakeFiles/geoprior.dir/topics.cpp.o)
-execute_process(COMMAND nm -C ${tree}/build/experiments/CMakeFiles/geoprior.dir/topics.cpp.o OUTPUT_VARIABLE names)
+  experiments/CMakeFiles/geoprior_topics.dir/topics.cpp.o)
+execute_process(COMMAND nm -C ${tree}/build/experiments/CMakeFiles/geoprior_topics.dir/topics.cpp.o OUTPUT_VARIABLE names)
 if(NOT names MATCHES "U geoprior::sample::make_topic")
   message(FATAL_ERROR "the table of topics does not ask for the topic:\n${names}")
 endif()

@@ -1,14 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <set>
 
 #include "core/error.h"
 #include "core/procedural.h"
 #include "experiments/skinning/scene.h"
 #include "experiments/skinning/topic.h"
+#include "tests/testbed/metric_table.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -28,7 +27,6 @@ class BentTube : public ::testing::Test {
               .toRotationMatrix();
       scene.frame_pose.push_back(pose);
     }
-    for (MetricEntry& entry : skinning::metrics()) metrics[entry.name] = std::move(entry);
   }
 
   [[nodiscard]] Frame posed(std::size_t i) const {
@@ -49,24 +47,12 @@ class BentTube : public ::testing::Test {
 
   std::optional<double> value(const std::string& name, const Frame& frame,
                               const Frame* reference = nullptr) const {
-    return metrics.at(name).of_frame(scene, frame, reference);
+    return table.of_frame(name, scene, frame, reference);
   }
 
   SkinningScene scene;
-  std::map<std::string, MetricEntry> metrics;
+  test::MetricTable table{skinning::metrics()};
 };
-
-TEST(SkinningMetrics, EveryRowIsComplete) {
-  std::set<std::string> names;
-  for (const MetricEntry& entry : metrics()) {
-    EXPECT_TRUE(names.insert(entry.name).second) << entry.name << " twice";
-    EXPECT_NE(static_cast<bool>(entry.of_frame), static_cast<bool>(entry.of_sequence))
-        << entry.name;
-    EXPECT_FALSE(entry.unit.empty()) << entry.name;
-    EXPECT_GT(entry.definition.size(), 20u) << entry.name;
-    EXPECT_GT(entry.tolerance.absolute + entry.tolerance.relative, 0) << entry.name;
-  }
-}
 
 TEST_F(BentTube, RestFrameHasNothingToReport) {
   const Frame rest = posed(0);
@@ -121,7 +107,7 @@ TEST_F(BentTube, PopsAreSeenAndRigidMotionIsNot) {
   std::vector<Frame> frames;
   for (std::size_t i = 0; i < 6; ++i) frames.push_back(posed(i));
   const auto pops = [&](const std::vector<Frame>& sequence) {
-    return metrics.at("second_difference_max").of_sequence(scene, FramesInMemory(sequence));
+    return table.of_sequence("second_difference_max", scene, sequence);
   };
   const double smooth = pops(frames).value();
   // The pull of the blended ring is about r (30 degrees)^2 / 4; rigid ends would add 0.5 m times

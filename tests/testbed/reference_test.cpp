@@ -120,10 +120,9 @@ TEST(Reference, BlessingKeepsTheReasonOfValuesThatDidNotChange) {
 
 TEST(Reference, ExperimentFileOverridesTheMetricTablesTolerance) {
   Topic topic;
-  MetricEntry metric;
+  MetricEntry& metric = topic.metrics.emplace_back().rows.emplace_back();
   metric.name = "error";
   metric.tolerance = {1, 2};
-  topic.metrics = {metric};
   Experiment experiment;
   EXPECT_EQ(tolerances_of(experiment, topic)("error.max").absolute, 1);
   EXPECT_EQ(tolerances_of(experiment, topic)("error").relative, 2);

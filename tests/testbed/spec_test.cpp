@@ -420,9 +420,7 @@ Topic knee_topic() {
   baseline.default_options = [] { return std::make_unique<TypedOptions<NoOptions>>(); };
   implicit.default_options = [] { return std::make_unique<TypedOptions<ImplicitLike>>(); };
   topic.methods = {baseline, implicit};
-  MetricEntry overlap;
-  overlap.name = "overlap_volume";
-  topic.metrics = {overlap};
+  topic.metrics.emplace_back().rows.emplace_back().name = "overlap_volume";
   return topic;
 }
 

@@ -5,6 +5,7 @@
 #include "core/angles.h"
 #include "core/error.h"
 #include "experiments/toy/toy_topic.h"
+#include "testbed/metric_rows.h"
 
 namespace geoprior::toy {
 namespace {
@@ -120,57 +121,40 @@ double polygon_radius(double r, const PolygonOptions& o, double phi) {
   return o.scale * r * apothem / std::cos(inside);
 }
 
-double radius_error(const Scene& scene, const Frame& frame) {
-  const double r = dynamic_cast<const CircleScene&>(scene).options.radius_m;
+/// Largest distance of a rim point to the circle (m).
+double radius_error(const CircleScene& scene, const Frame& frame) {
   const auto& V = frame.require_part("surface").points;
-  return (V.bottomRows(V.rows() - 1).rowwise().norm().array() - r).abs().maxCoeff();
+  return (V.bottomRows(V.rows() - 1).rowwise().norm().array() - scene.options.radius_m)
+      .abs()
+      .maxCoeff();
 }
 
-std::vector<MetricEntry> circle_metrics() {
-  MetricEntry error{"radius_error",
-                    "m",
-                    "largest distance of a rim point to the circle",
-                    Direction::lower_is_better,
-                    {1e-12, 1e-6},
-                    0,
-                    {},
-                    {},
-                    false};
-  error.of_frame = [](const Scene& s, const Frame& f, const Frame*) -> std::optional<double> {
-    return radius_error(s, f);
-  };
-  MetricEntry largest{"largest_radius_error",
-                      "m",
-                      "largest radius_error over the frames",
-                      Direction::lower_is_better,
-                      {1e-12, 1e-6},
-                      0,
-                      {},
-                      {},
-                      false};
-  largest.of_sequence = [](const Scene& s, const FrameSequence& frames) {
-    double e = 0;
-    for (std::size_t i = 0; i < frames.size(); ++i)
-      e = std::max(e, radius_error(s, *frames.frame(i)));
-    return std::optional<double>(e);
-  };
-  MetricEntry apart{"distance_to_reference",
-                    "m",
-                    "largest distance of corresponding points",
-                    Direction::lower_is_better,
-                    {1e-12, 1e-6},
-                    0,
-                    {},
-                    {},
-                    true};
-  apart.of_frame = [](const Scene&, const Frame& f, const Frame* r) -> std::optional<double> {
-    if (r == nullptr) return std::nullopt;
-    return (f.require_part("surface").points - r->require_part("surface").points)
-        .rowwise()
-        .norm()
-        .maxCoeff();
-  };
-  return {error, largest, apart};
+double largest_radius_error(const CircleScene& scene, const FrameSequence& frames) {
+  double largest = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    largest = std::max(largest, radius_error(scene, *frames.frame(i)));
+  }
+  return largest;
+}
+
+double largest_distance(const CircleScene&, const Frame& frame, const Frame& reference) {
+  return (frame.require_part("surface").points - reference.require_part("surface").points)
+      .rowwise()
+      .norm()
+      .maxCoeff();
+}
+
+std::vector<MetricGroup> circle_metrics() {
+  constexpr Direction kLow = Direction::lower_is_better;
+  constexpr Tolerance kSmooth{1e-12, 1e-6};
+  return {
+      frame_metrics<CircleScene>(radius_error)
+          .row("radius_error", "m", "largest distance of a rim point to the circle", kLow, kSmooth),
+      sequence_metrics<CircleScene>(largest_radius_error)
+          .row("largest_radius_error", "m", "largest radius_error over the frames", kLow, kSmooth),
+      reference_metrics<CircleScene>({}, largest_distance)
+          .row("distance_to_reference", "m", "largest distance of corresponding points", kLow,
+               kSmooth)};
 }
 
 std::vector<MethodEntry> circle_methods() {

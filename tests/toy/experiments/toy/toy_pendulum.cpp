@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/frame_loop.h"
 #include "experiments/toy/toy_topic.h"
+#include "testbed/metric_rows.h"
 
 namespace geoprior::toy {
 namespace {
@@ -258,54 +259,34 @@ double angle_of(const Frame& frame) {
   return std::atan2(p.x(), -p.y());
 }
 
-double angle_error(const Scene& scene, const Frame& frame) {
-  return std::abs(angle_of(frame) -
-                  dynamic_cast<const PendulumScene&>(scene).angle(frame.parameter));
+double angle_error(const PendulumScene& scene, const Frame& frame) {
+  return std::abs(angle_of(frame) - scene.angle(frame.parameter));
 }
 
-std::vector<MetricEntry> pendulum_metrics() {
-  MetricEntry error{"angle_error",
-                    "rad",
-                    "distance of the angle to the closed form",
-                    Direction::lower_is_better,
-                    {1e-12, 1e-6},
-                    0,
-                    {},
-                    {},
-                    false};
-  error.of_frame = [](const Scene& s, const Frame& f, const Frame*) -> std::optional<double> {
-    return angle_error(s, f);
-  };
-  MetricEntry largest{"largest_angle_error",
-                      "rad",
-                      "largest angle_error over the frames",
-                      Direction::lower_is_better,
-                      {1e-12, 1e-6},
-                      0,
-                      {},
-                      {},
-                      false};
-  largest.of_sequence = [](const Scene& s, const FrameSequence& frames) {
-    double e = 0;
-    for (std::size_t i = 0; i < frames.size(); ++i)
-      e = std::max(e, angle_error(s, *frames.frame(i)));
-    return std::optional<double>(e);
-  };
-  MetricEntry apart{"distance_to_reference",
-                    "m",
-                    "distance of the bob to that of the reference",
-                    Direction::lower_is_better,
-                    {1e-12, 1e-6},
-                    0,
-                    {},
-                    {},
-                    true};
-  apart.of_frame = [](const Scene&, const Frame& f, const Frame* r) -> std::optional<double> {
-    if (r == nullptr) return std::nullopt;
-    return (f.require_part("bob").points.row(0) - r->require_part("bob").points.row(0)).norm();
-  };
-  apart.reference_parts = {"bob"};
-  return {error, largest, apart};
+double largest_angle_error(const PendulumScene& scene, const FrameSequence& frames) {
+  double largest = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    largest = std::max(largest, angle_error(scene, *frames.frame(i)));
+  }
+  return largest;
+}
+
+double distance_of_bobs(const PendulumScene&, const Frame& frame, const Frame& reference) {
+  return (frame.require_part("bob").points.row(0) - reference.require_part("bob").points.row(0))
+      .norm();
+}
+
+std::vector<MetricGroup> pendulum_metrics() {
+  constexpr Direction kLow = Direction::lower_is_better;
+  constexpr Tolerance kSmooth{1e-12, 1e-6};
+  return {
+      frame_metrics<PendulumScene>(angle_error)
+          .row("angle_error", "rad", "distance of the angle to the closed form", kLow, kSmooth),
+      sequence_metrics<PendulumScene>(largest_angle_error)
+          .row("largest_angle_error", "rad", "largest angle_error over the frames", kLow, kSmooth),
+      reference_metrics<PendulumScene>({"bob"}, distance_of_bobs)
+          .row("distance_to_reference", "m", "distance of the bob to that of the reference", kLow,
+               kSmooth)};
 }
 
 }  // namespace
