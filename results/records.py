@@ -47,7 +47,8 @@ def times_of_case(case):
     out = {}
     for row in tables.timing_rows(case):
         seconds = {"median": row.times.median, "low": row.times.low, "high": row.times.high,
-                   "p95": row.times.p95, "whole": row.whole, "prepare": row.prepare}
+                   "p95": row.times.p95, "whole": row.whole, "prepare": row.prepare,
+                   "memory": row.memory}
         out[names[row.variant]] = {"phase": row.phase,
                                    **{name: rounded(s, 4) for name, s in seconds.items()}}
     return out
