@@ -127,6 +127,10 @@ struct DiagnosticEntry {
   std::string name;        ///< snake_case, as in Frame::diagnostics
   std::string unit;        ///< "1" for a count or a ratio
   std::string definition;  ///< one line
+  /// Work that the method counts (iterations, evaluations): `check` fails when the mean over the
+  /// frames grows by more than `tolerance`.
+  bool counted_work = false;
+  Tolerance tolerance = {};
 };
 
 /// Everything the runner knows of a topic: one instance each, listed in ONE table

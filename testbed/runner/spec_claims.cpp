@@ -206,7 +206,10 @@ std::map<std::string, Tolerance> read_tolerances(const TomlNode& root, const Top
   std::map<std::string, Tolerance> tolerances;
   const TomlNode* table = root.find("tolerance");
   if (table == nullptr) return tolerances;
-  const Names names = metric_names(topic);
+  Names names = metric_names(topic);
+  for (const TomlNode& study : tables_of(root, "study")) {
+    if (const TomlNode* name = study.find("name")) names.push_back("study:" + name->text);
+  }
   for (std::size_t i = 0; i < table->keys.size(); ++i) {
     const std::string& metric = table->keys[i];
     const TomlNode& node = table->items[i];
