@@ -40,7 +40,7 @@ bool constant(const Row& row) {
          });
 }
 
-std::string quoted(const std::string& text) {
+std::string in_quotes(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '\n') {
@@ -58,7 +58,7 @@ std::string word_of(const std::string& text) {
   if (text.empty()) return "-";
   const bool plain = text != "-" && text.find_first_of(" \t\n\"\\") == std::string::npos &&
                      text.front() != '[' && text.front() != '=' && text.front() != '#';
-  return plain ? text : quoted(text);
+  return plain ? text : in_quotes(text);
 }
 
 std::string exact_text(double x) { return std::isnan(x) ? "nan" : number_text(x); }
@@ -70,10 +70,10 @@ void append_padded(std::string& line, const std::string& text, std::size_t width
 
 // ---------------------------------------------------------------------------------- writing
 
-/// Numbers of blessings: those that the file has, and new ones behind them.
-class Numbers {
+/// BlessingNumbers of blessings: those that the file has, and new ones behind them.
+class BlessingNumbers {
  public:
-  explicit Numbers(const std::map<int, Blessing>& known) : known_(known) {}
+  explicit BlessingNumbers(const std::map<int, Blessing>& known) : known_(known) {}
 
   int of(const ReferenceValue& value) {
     for (const auto& [number, blessing] : known_) {
@@ -92,7 +92,7 @@ class Numbers {
     for (const int number : used_) {
       const Blessing& blessing = known_.at(number);
       lines += "[" + std::to_string(number) + "] " + word_of(blessing.commit) + " " +
-               quoted(blessing.reason) + "\n";
+               in_quotes(blessing.reason) + "\n";
     }
     return lines;
   }
@@ -120,7 +120,7 @@ double& place_in(Row& row, const std::string& suffix, const RowName& name) {
                         : row.values[static_cast<std::size_t>(statistic - kStatistics.begin())];
 }
 
-Rows rows_of(const ReferenceSet& set, Numbers& numbers) {
+Rows rows_of(const ReferenceSet& set, BlessingNumbers& numbers) {
   Rows rows;
   std::map<RowName, std::size_t> filled;
   for (const auto& [in, variants] : set) {
@@ -433,7 +433,7 @@ class Parser {
 }  // namespace
 
 std::string reference_text(const Reference& reference) {
-  Numbers numbers(reference.blessings);
+  BlessingNumbers numbers(reference.blessings);
   std::string sets;
   for (const auto& [size, set] : reference.sets) {
     const Rows rows = rows_of(set, numbers);
