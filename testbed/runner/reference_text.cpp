@@ -63,11 +63,6 @@ std::string word_of(const std::string& text) {
 
 std::string exact_text(double x) { return std::isnan(x) ? "nan" : number_text(x); }
 
-void append_padded(std::string& line, const std::string& text, std::size_t width) {
-  line += text;
-  line.append(text.size() < width ? width - text.size() : 0, ' ');
-}
-
 // ---------------------------------------------------------------------------------- writing
 
 /// BlessingNumbers of blessings: those that the file has, and new ones behind them.
@@ -180,36 +175,53 @@ std::string units_text(const Rows& rows) {
   return text;
 }
 
-std::array<std::size_t, 3> column_widths(const Rows& rows) {
-  std::array<std::size_t, 3> widths{};
-  const auto widen = [](std::size_t& width, const std::string& name) {
-    width = std::max(width, std::min(word_of(name).size(), kWidestColumn) + 2);
+using Widths = std::array<std::size_t, 3>;
+constexpr std::array<std::string_view, 3> kNameColumns{"metric", "variant", "case"};
+
+Widths widths_of(const Rows& rows) {
+  Widths widths{};
+  const auto widen = [](std::size_t& width, std::size_t size) {
+    width = std::max(width, std::min(size, kWidestColumn) + 2);
   };
+  for (std::size_t i = 0; i < widths.size(); ++i) widen(widths[i], kNameColumns[i].size());
   for (const auto& [name, row] : rows) {
-    widen(widths[0], std::get<0>(name));
-    widen(widths[1], std::get<1>(name));
-    widen(widths[2], std::get<2>(name));
+    widen(widths[0], word_of(std::get<0>(name)).size());
+    widen(widths[1], word_of(std::get<1>(name)).size());
+    widen(widths[2], word_of(std::get<2>(name)).size());
   }
   return widths;
 }
 
-std::string row_text(const RowName& name, const Row& row, const std::array<std::size_t, 3>& widths,
+/// The text, filled up with spaces, one at least.
+void append_column(std::string& line, std::string_view text, std::size_t width) {
+  line += text;
+  line.append(std::max(width, text.size() + 1) - text.size(), ' ');
+}
+
+/// A comment over the columns.
+std::string heading_text(const Widths& widths) {
+  std::string line = "# ";
+  for (std::size_t i = 0; i < widths.size(); ++i) append_column(line, kNameColumns[i], widths[i]);
+  for (const std::string_view statistic : kStatistics) {
+    append_column(line, statistic.substr(1), kNumberColumn);
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + "\n";
+}
+
+std::string row_text(const RowName& name, const Row& row, const Widths& widths,
                      int usual_blessing) {
   std::string line = "  ";
-  const auto column = [&](const std::string& text, std::size_t width) {
-    append_padded(line, text, width);
-    if (line.back() != ' ') line += ' ';
-  };
-  column(word_of(std::get<0>(name)), widths[0]);
-  column(word_of(std::get<1>(name)), widths[1]);
-  column(word_of(std::get<2>(name)), widths[2]);
+  append_column(line, word_of(std::get<0>(name)), widths[0]);
+  append_column(line, word_of(std::get<1>(name)), widths[1]);
+  append_column(line, word_of(std::get<2>(name)), widths[2]);
   if (constant(row)) {
     line += "= " + exact_text(row.values.front());
   } else {
-    for (const double value : row.values) column(exact_text(value), kNumberColumn);
+    for (const double value : row.values) append_column(line, exact_text(value), kNumberColumn);
   }
   line.erase(line.find_last_not_of(' ') + 1);
-  if (row.blessing != usual_blessing) line += " [" + std::to_string(row.blessing) + "]";
+  if (row.blessing != usual_blessing) line += "  [" + std::to_string(row.blessing) + "]";
   return line + "\n";
 }
 
@@ -222,7 +234,8 @@ std::string set_text(const std::string& size, const Rows& rows, const ContentHas
     text += "content " + word_of(content->instruction_set) + " " + content->sha256 + "\n";
   }
   text += units_text(rows);
-  const std::array<std::size_t, 3> widths = column_widths(rows);
+  const Widths widths = widths_of(rows);
+  if (!rows.empty()) text += heading_text(widths);
   for (const auto& [name, row] : rows) text += row_text(name, row, widths, blessing);
   return text;
 }

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "testbed/formats/atomic_file.h"
 #include "testbed/runner/reference.h"
+#include "testbed/runner/reference_text.h"
 
 namespace geoprior::test {
 
@@ -67,6 +69,8 @@ inline void expect_headline_metrics_are_guarded(const Topic& topic) {
        std::filesystem::directory_iterator(home / "results/reference" / topic.name)) {
     const std::string id = topic.name + "/" + entry.path().stem().string();
     const Reference reference = read_reference(entry.path());
+    EXPECT_EQ(reference_text(reference), read_whole_file(entry.path()))
+        << "not as bless writes it: " << entry.path();
     ++files;
     for (const auto& [size, set] : reference.sets) {
       LoadRequest load;

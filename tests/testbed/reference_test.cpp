@@ -65,9 +65,10 @@ TEST(ReferenceText, IsOneLineAMetricVariantAndCase) {
                 std::string(64, 'a') +
                 "\n"
                 "unit m error events rest\n"
-                "  error   v  default  0            0.25         0.5          0.125\n"
-                "  events  v  default  12\n"
-                "  rest    v  default  = 0\n");
+                "# metric  variant  case     min          median       max          last\n"
+                "  error   v        default  0            0.25         0.5          0.125\n"
+                "  events  v        default  12\n"
+                "  rest    v        default  = 0\n");
 }
 
 TEST(ReferenceText, SurvivesAFileExactlyWithQuickAndFullApart) {
@@ -109,7 +110,7 @@ TEST(ReferenceText, BlessingsKeepTheirNumbersAndLinesSayTheUnusual) {
   };
   EXPECT_THAT(bless({{"a", 1}, {"b", 9}, {"c", 3}}, {"c2", "b grew"}),
               AllOf(HasSubstr("[1] c1 \"first\"\n[2] c2 \"b grew\"\n"), HasSubstr("set full [1]\n"),
-                    HasSubstr("default  9            [2]\n"), HasSubstr("default  1\n")));
+                    HasSubstr("default  9  [2]\n"), HasSubstr("default  1\n")));
   const std::string third = bless({{"a", 1}, {"b", 8}, {"c", 3}}, {"c3", "b fell"});
   EXPECT_THAT(third, AllOf(HasSubstr("[1] c1"), Not(HasSubstr("[2]")), HasSubstr("[3] c3")));
 }
