@@ -72,19 +72,17 @@ class BlessingNumbers {
 
   int of(const ReferenceValue& value) {
     for (const auto& [number, blessing] : known_) {
-      if (blessing.commit != value.commit || blessing.reason != value.reason) continue;
-      used_.insert(number);
-      return number;
+      if (blessing.commit == value.commit && blessing.reason == value.reason) return number;
     }
     const int next = known_.empty() ? 1 : known_.rbegin()->first + 1;
     known_[next] = {value.commit, value.reason};
-    used_.insert(next);
     return next;
   }
 
-  [[nodiscard]] std::string text() const {
+  /// Those that are left out are forgotten.
+  [[nodiscard]] std::string text(const std::set<int>& used) const {
     std::string lines;
-    for (const int number : used_) {
+    for (const int number : used) {
       const Blessing& blessing = known_.at(number);
       lines += "[" + std::to_string(number) + "] " + word_of(blessing.commit) + " " +
                in_quotes(blessing.reason) + "\n";
@@ -94,7 +92,6 @@ class BlessingNumbers {
 
  private:
   std::map<int, Blessing> known_;
-  std::set<int> used_;
 };
 
 using Rows = std::map<RowName, Row>;
@@ -447,13 +444,15 @@ class Parser {
 
 std::string reference_text(const Reference& reference) {
   BlessingNumbers numbers(reference.blessings);
+  std::set<int> used;
   std::string sets;
   for (const auto& [size, set] : reference.sets) {
     const Rows rows = rows_of(set, numbers);
+    for (const auto& [name, row] : rows) used.insert(row.blessing);
     const auto content = reference.contents.find(size);
     sets += set_text(size, rows, content == reference.contents.end() ? nullptr : &content->second);
   }
-  return std::string(kFirstLine) + "\n" + numbers.text() + sets;
+  return std::string(kFirstLine) + "\n" + numbers.text(used) + sets;
 }
 
 Reference parse_reference(const std::string& text, const std::string& source) {

@@ -257,8 +257,8 @@ TEST_F(Program, BlessSaysWhatItChanges) {
   EXPECT_THAT(run("bless toy-circle/disc --reason first").err, HasSubstr(" new: "));
   write(disc_experiment("segments = 8"));
   const Outcome outcome = run("bless toy-circle/disc --reason 'half the corners'");
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("radius_error.max, polygon, default: 0.03842"),
-                                 HasSubstr(" -> 0.152"), HasSubstr("tolerances)")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("radius_error.max, polygon, default: 0.0342205"),
+                                 HasSubstr(" -> 0.136296"), HasSubstr("tolerances)")));
 }
 
 TEST_F(Program, ObservedOrderOfTheToyMethodsIsWhatTheoryPredicts) {
