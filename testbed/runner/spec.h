@@ -52,7 +52,7 @@ struct ClaimSpec {
   double offset = 0;
   double tolerance = 0;  ///< for `equal`
   /// Why the claim falls short, where that is known and documented: `run` reports it, `check` lets
-  /// it pass.
+  /// it pass where it falls short by as much as when it was blessed.
   std::optional<std::string> known_shortfall;
   std::optional<double> at_parameter;  ///< at = { angle_deg = 90 }; the frame must exist
   std::string at_key;  ///< "angle_deg": parameter name and unit, compared with the scene's
