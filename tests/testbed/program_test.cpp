@@ -252,6 +252,24 @@ TEST_F(Program, SameBytesNeedNoComparisonAndCountedWorkIsComparedAllTheSame) {
   EXPECT_THAT(more.err, AllOf(HasSubstr("(same bytes)"), HasSubstr("'diagnostic:evaluations'")));
 }
 
+TEST_F(Program, AClaimsMetricMayNotWorsenWithinItsWideTolerance) {
+  const std::string wide = "[tolerance]\nradius_error = { absolute = 0, relative = 0.25 }\n";
+  const auto problem_of_radius_error = [&](const std::string& claim) {
+    write(disc_experiment("segments = 16", claim + wide));
+    EXPECT_EQ(run("bless toy-circle/disc --reason x").code, 0);
+    // A thousandth of 2 m is 6 % of the error of 0.034 m.
+    write(disc_experiment("segments = 16, scale = 0.999", claim + wide));
+    const json verdict = json::parse(run("check toy-circle/disc --json").out)["experiments"][0];
+    std::string problem;
+    for (const json& mismatch : verdict["mismatches"]) {
+      if (mismatch["metric"] == "radius_error.max") problem = mismatch["problem"];
+    }
+    return problem;
+  };
+  EXPECT_EQ(problem_of_radius_error(""), "") << "no claim is about it";
+  EXPECT_EQ(problem_of_radius_error(kClaim), "is named by a claim and changed for the worse");
+}
+
 TEST_F(Program, BlessSaysWhatItChanges) {
   write(disc_experiment("segments = 16"));
   EXPECT_THAT(run("bless toy-circle/disc --reason first").err, HasSubstr(" new: "));
