@@ -105,7 +105,9 @@ void add_shortfalls(const Experiment& experiment, const Topic& topic,
       const bool study = claim.metric.starts_with("study:");
       const std::string unit = study ? unit_of_study(experiment, topic, claim.metric.substr(6))
                                      : unit_of(topic, claim.metric);
-      values[record.case_name][""]["shortfall:" + claim.text] = {shortfall(claim, record), unit};
+      const double size = std::abs(record.left) + (claim.of ? std::abs(record.right) : 0);
+      values[record.case_name][""]["shortfall:" + claim.text] = {shortfall(claim, record), unit,
+                                                                 size};
     }
   }
 }
@@ -123,6 +125,7 @@ std::string name_over_seeds(const CaseRecord& in) {
 GatedValues medians_over_seeds(const RunRecord& record, const GatedValues& values) {
   struct Sample {
     std::string unit;
+    std::optional<double> size;
     std::vector<double> values;
   };
   std::map<std::string, std::map<std::string, std::map<std::string, Sample>>> samples;
@@ -133,6 +136,7 @@ GatedValues medians_over_seeds(const RunRecord& record, const GatedValues& value
       for (const auto& [name, value] : named) {
         Sample& sample = samples[name_over_seeds(in)][variant][name];
         sample.unit = value.unit;
+        sample.size = value.size;
         if (!std::isnan(value.value)) sample.values.push_back(value.value);
       }
     }
@@ -142,7 +146,7 @@ GatedValues medians_over_seeds(const RunRecord& record, const GatedValues& value
     for (const auto& [variant, named] : variants) {
       for (const auto& [name, sample] : named) {
         const double value = sample.values.empty() ? kNone : median(sample.values);
-        medians[in][variant][name] = {value, sample.unit};
+        medians[in][variant][name] = {value, sample.unit, sample.size};
       }
     }
   }

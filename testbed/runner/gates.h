@@ -43,6 +43,9 @@ class Gates {
 struct GatedValue {
   double value = 0;
   std::string unit;
+  /// What a relative tolerance is a share of where that is not the value: the sides of the claim
+  /// that falls short.
+  std::optional<double> size = {};
 };
 
 /// Case, variant, name. Names are those of VariantRecord::summary ("overlap_volume.max"; a metric

@@ -56,7 +56,8 @@ void visit_values(const Values& set, Visit visit) {
 /// Fills in `problem`; leaves it empty where the value is what it was.
 void judge(const Gate& gate, const GatedValue& now, const ReferenceValue& before, Mismatch& m) {
   m.reference = before.value;
-  m.tolerance = gate.tolerance.absolute + gate.tolerance.relative * std::abs(before.value);
+  m.tolerance =
+      gate.tolerance.absolute + gate.tolerance.relative * now.size.value_or(std::abs(before.value));
   if (before.unit != now.unit) {
     m.problem = "unit was " + before.unit;
     return;
@@ -180,7 +181,11 @@ ReferenceSet bless_values(const GatedValues& now, const ReferenceSet& before, co
   visit_values(now, [&](const auto& in, const auto& variant, const auto& name, const auto& value) {
     const Gate gate = gates.of(variant, name);
     if (!gate.compared) return;
-    const double rounded = rounded_for(value.value, gate.tolerance);
+    const double relative = gate.tolerance.relative;
+    const Tolerance tolerance = value.size
+                                    ? Tolerance{gate.tolerance.absolute + relative * *value.size, 0}
+                                    : gate.tolerance;
+    const double rounded = rounded_for(value.value, tolerance);
     const auto* old = find_in(before, in, variant, name);
     const bool same = old != nullptr && old->unit == value.unit && within(old->value, rounded, 0);
     set[in][variant][name] =

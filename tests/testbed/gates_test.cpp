@@ -146,6 +146,10 @@ TEST(Gates, AKnownShortfallMayNeitherGrowNorShrinkUnseen) {
   EXPECT_EQ(only(1.7), "changed for the worse");
   EXPECT_THAT(only(1.2), HasSubstr("for the better (bless it"));
   EXPECT_THAT(only(0.9), HasSubstr("remove its known_shortfall"));
+  // A relative tolerance is a share of what the claim compares, not of the difference.
+  topic.metrics[0].tolerance = {0, 0.1};
+  EXPECT_TRUE(compare_with_reference(values(1.64), set, Gates(experiment, topic)).empty());
+  EXPECT_EQ(compare_with_reference(values(1.68), set, Gates(experiment, topic)).size(), 1U);
 }
 
 TEST(Gates, StudiesHaveATolerance) {
