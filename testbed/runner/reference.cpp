@@ -10,6 +10,7 @@
 #include "testbed/formats/atomic_file.h"
 #include "testbed/home.h"
 #include "testbed/runner/number_text.h"
+#include "testbed/runner/reference_parser.h"
 #include "testbed/runner/reference_text.h"
 
 namespace geoprior {

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "testbed/runner/reference_diff.h"
+#include "testbed/runner/reference_parser.h"
 #include "testbed/runner/reference_text.h"
 #include "tests/testbed/run_fixture.h"
 #include "tests/testbed/toy_home.h"
