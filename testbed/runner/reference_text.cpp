@@ -245,7 +245,8 @@ std::string reference_text(const Reference& reference) {
     const auto content = reference.contents.find(size);
     sets += set_text(size, rows, content == reference.contents.end() ? nullptr : &content->second);
   }
-  return std::string(kReferenceFirstLine) + "\n" + numbers.text(used) + sets;
+  std::string text(kReferenceFirstLine);
+  return text.append("\n").append(numbers.text(used)).append(sets);
 }
 
 }  // namespace geoprior
