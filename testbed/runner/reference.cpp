@@ -35,8 +35,8 @@ std::string change(const Gate& gate, double value, double reference) {
 template <class Values>
 const auto* find_in(const Values& set, const std::string& case_name, const std::string& variant,
                     const std::string& name) {
-  using Value = typename Values::mapped_type::mapped_type::mapped_type;
-  const Value* none = nullptr;
+  using Found = typename Values::mapped_type::mapped_type::mapped_type;
+  const Found* none = nullptr;
   const auto in_case = set.find(case_name);
   if (in_case == set.end()) return none;
   const auto of_variant = in_case->second.find(variant);

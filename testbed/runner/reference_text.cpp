@@ -36,7 +36,7 @@ bool constant(const Row& row) {
          });
 }
 
-std::string in_quotes(const std::string& text) {
+std::string escaped_text(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '\n') {
@@ -54,7 +54,7 @@ std::string word_of(const std::string& text) {
   if (text.empty()) return "-";
   const bool plain = text != "-" && text.find_first_of(" \t\n\"\\") == std::string::npos &&
                      text.front() != '[' && text.front() != '=' && text.front() != '#';
-  return plain ? text : in_quotes(text);
+  return plain ? text : escaped_text(text);
 }
 
 std::string exact_text(double x) { return std::isnan(x) ? "nan" : number_text(x); }
@@ -79,7 +79,7 @@ class BlessingNumbers {
     for (const int number : used) {
       const Blessing& blessing = known_.at(number);
       lines += "[" + std::to_string(number) + "] " + word_of(blessing.commit) + " " +
-               in_quotes(blessing.reason) + "\n";
+               escaped_text(blessing.reason) + "\n";
     }
     return lines;
   }
