@@ -1,5 +1,7 @@
 #include "testbed/topic.h"
 
+#include "core/error.h"
+
 namespace geoprior {
 
 std::vector<std::reference_wrapper<const MetricEntry>> metric_rows(const Topic& topic) {
@@ -8,6 +10,15 @@ std::vector<std::reference_wrapper<const MetricEntry>> metric_rows(const Topic& 
     rows.insert(rows.end(), group.rows.begin(), group.rows.end());
   }
   return rows;
+}
+
+const MetricGroup& group_of(const Topic& topic, const MetricEntry& row) {
+  for (const MetricGroup& group : topic.metrics) {
+    for (const MetricEntry& of_group : group.rows) {
+      if (&of_group == &row) return group;
+    }
+  }
+  throw Error("is in no group", "metric '" + row.name + "'");
 }
 
 const MetricEntry* find_metric(const Topic& topic, const std::string& name) {

@@ -139,6 +139,10 @@ struct DiagnosticEntry {
   std::string name;        ///< snake_case, as in Frame::diagnostics
   std::string unit;        ///< "1" for a count or a ratio
   std::string definition;  ///< one line
+  /// Work that the method counts (iterations, evaluations): `check` fails when the mean over the
+  /// frames grows by more than `tolerance`.
+  bool counted_work = false;
+  Tolerance tolerance = {};
 };
 
 /// Everything the runner knows of a topic: one instance each, listed in ONE table
@@ -166,6 +170,9 @@ std::vector<std::reference_wrapper<const MetricEntry>> metric_rows(const Topic& 
 
 /// The row of that name, null when there is none.
 const MetricEntry* find_metric(const Topic& topic, const std::string& name);
+
+/// The group that the row is in.
+const MetricGroup& group_of(const Topic& topic, const MetricEntry& row);
 
 /// The topics of the program. Tests add theirs.
 std::vector<Topic> all_topics();

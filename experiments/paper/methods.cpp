@@ -30,13 +30,16 @@ std::vector<MethodEntry> methods() {
 }
 
 std::vector<DiagnosticEntry> diagnostics() {
+  // Counts are exact on one machine; another compiler's round-off moves some of them.
+  constexpr Tolerance kWork{0.1, 0.05};
   return {
       // Recorded by every method.
       {"triangles", "1", "triangles of the mesh"},
       {"vertices", "1", "vertices of the mesh"},
       {"substeps", "1", "time steps of the frame"},
-      {"newton_iterations", "1", "linear solves of its steps"},
-      {"halvings", "1", "times a step was halved because Newton's iteration did not converge"},
+      {"newton_iterations", "1", "linear solves of its steps", true, kWork},
+      {"halvings", "1", "times a step was halved because Newton's iteration did not converge", true,
+       kWork},
       {"factor_nonzeros", "1", "non-zeros of the factor of the last step's system"},
       {"handle_work", "J", "work done on the sheet by the prescribed handles since the start"},
       // Recorded by the adaptive mesh.
@@ -49,13 +52,14 @@ std::vector<DiagnosticEntry> diagnostics() {
       {"cylinders", "1", "cylindrical pieces"},
       {"cones", "1", "conical pieces"},
       {"rulings", "1", "rulings of all pieces"},
-      {"singular_points", "1", "singular points"},
+      {"singular_points", "1", "singular points", true, kWork},
       {"new_rulings", "1", "rulings inserted in the frame"},
       {"new_singular_points", "1", "singular points inserted in the frame"},
       {"rejected_changes", "1", "changes of the structure given up since the start"},
       {"remeshed", "1", "1 when the frame changed the structure, else 0"},
-      {"meshes_made", "1", "meshes made in the frame, those of changes taken back too"},
-      {"projection_iterations", "1", "iterations of the projection to isometry"},
+      {"meshes_made", "1", "meshes made in the frame, those of changes taken back too", true,
+       kWork},
+      {"projection_iterations", "1", "iterations of the projection to isometry", true, kWork},
       {"strain_before", "1", "largest principal Green strain of a triangle before it, in modulus"},
       {"strain_after", "1", "the same after it"},
   };

@@ -137,9 +137,11 @@ std::vector<MethodEntry> methods() {
 }
 
 std::vector<DiagnosticEntry> diagnostics() {
+  // Counts are exact on one machine; another compiler's round-off moves some of them.
+  constexpr Tolerance kWork{0.1, 0.05};
   return {
-      {"evaluations_per_vertex", "1", "bone fields sampled, over the vertices"},
-      {"iterations", "1", "steps of the projection"},
+      {"evaluations_per_vertex", "1", "bone fields sampled, over the vertices", true, kWork},
+      {"iterations", "1", "steps of the projection", true, kWork},
       {"field_error_rms", "1",
        "root mean square of |field - target| over the vertices that neither stopped in contact nor "
        "were smoothed"},

@@ -1,7 +1,4 @@
-#include <unistd.h>
-
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -11,7 +8,6 @@
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
 #include "testbed/commands/outcome.h"
-#include "testbed/runner/build_info.h"
 #include "testbed/runner/claims.h"
 #include "testbed/runner/reference.h"
 #include "testbed/runner/stop.h"
@@ -31,14 +27,29 @@ struct Verdict {
   std::vector<std::string> failures;                    ///< of variants that an error ended
   std::map<std::string, std::string> known_shortfalls;  ///< text of a claim, why it falls short
   bool has_reference = true;
+  bool same_bytes = false;  ///< as the blessed run: its values need no comparison
+  std::string notice;       ///< why the values were compared although nothing need have changed
 
   [[nodiscard]] bool passed() const {
-    return has_reference && mismatches.empty() && failures.empty() &&
+    return has_reference && failures.empty() &&
+           std::none_of(mismatches.begin(), mismatches.end(),
+                        [](const Mismatch& mismatch) { return mismatch.fails; }) &&
            std::all_of(claims.begin(), claims.end(), [&](const ClaimRecord& claim) {
              return is_sound(claim) && (claim.holds || known_shortfalls.contains(claim.text));
            });
   }
 };
+
+/// Decides whether frames and metrics are those of the blessed run, byte by byte.
+void compare_contents(const RunRecord& record, const ContentHash& blessed, Verdict& verdict) {
+  const ContentHash now = content_of(record);
+  if (now.instruction_set != blessed.instruction_set) {
+    verdict.notice = "blessed on " + blessed.instruction_set + ", run on " + now.instruction_set;
+    return;
+  }
+  verdict.same_bytes = now.sha256 == blessed.sha256;
+  if (!verdict.same_bytes) verdict.notice = "frames or metrics are not those blessed, byte by byte";
+}
 
 Verdict check_one(const CommandContext& context, const std::string& id, bool quick) {
   const BlessedRun run = run_without_clock(context, id, quick);
@@ -51,34 +62,44 @@ Verdict check_one(const CommandContext& context, const std::string& id, bool qui
     if (claim.known_shortfall) verdict.known_shortfalls[claim.text] = *claim.known_shortfall;
   }
   const Reference reference = read_reference(reference_file(run.experiment.id));
-  const auto set = reference.sets.find(run.experiment.quick ? "quick" : "full");
+  const std::string size = run.experiment.quick ? "quick" : "full";
+  const auto set = reference.sets.find(size);
   verdict.has_reference = set != reference.sets.end();
   if (!verdict.has_reference) return verdict;
-  for (const CaseRecord& in : run.record.cases) {
-    for (const VariantRecord& variant : in.variants) verdict.compared += variant.summary.size();
+  GatedValues now = gated_values(run.experiment, *run.topic, run.record, verdict.claims);
+  ReferenceSet before = set->second;
+  verdict.compared = count_values(now);
+  const auto blessed = reference.contents.find(size);
+  if (blessed != reference.contents.end()) compare_contents(run.record, blessed->second, verdict);
+  if (verdict.same_bytes) {
+    keep_outside_content(now);
+    keep_outside_content(before);
   }
-  verdict.mismatches =
-      compare_with_reference(run.record, set->second, tolerances_of(run.experiment, *run.topic));
+  verdict.mismatches = compare_with_reference(now, before, Gates(run.experiment, *run.topic));
   return verdict;
 }
 
 void say_verdict(const Verdict& verdict, bool quick) {
   const std::string head =
       verdict.passed() ? tinted("ok    ", Tint::good) : tinted("failed", Tint::bad);
-  say(head + "  " + verdict.id + "  " + std::to_string(verdict.compared) + " values, " +
-      std::to_string(verdict.claims.size()) + " claims");
+  say(head + "  " + verdict.id + "  " + std::to_string(verdict.compared) + " values" +
+      (verdict.same_bytes ? " (same bytes), " : ", ") + std::to_string(verdict.claims.size()) +
+      " claims");
+  if (!verdict.notice.empty()) say("        notice: " + verdict.notice);
   if (!verdict.has_reference) {
     say("        no reference values; make them with: geoprior bless " + verdict.id +
         (quick ? " --quick" : "") + " --reason \"…\"");
   }
   for (const std::string& failure : verdict.failures) say("        " + failure);
   for (const Mismatch& mismatch : verdict.mismatches) {
-    say("        " + mismatch_text(verdict.id, mismatch));
+    say(std::string("        ") + (mismatch.fails ? "" : "notice: ") +
+        mismatch_text(verdict.id, mismatch));
   }
   for (const ClaimRecord& claim : verdict.claims) {
-    if (!is_sound(claim)) {
-      say("        " + verdict.id + ", case '" + claim.case_name + "', claim: " + claim.text +
-          ": " + null_text(claim));
+    const bool unasked = claim.null.verdict == Discrimination::unasked;
+    if (unasked || !is_sound(claim)) {
+      say("        " + std::string(unasked ? "notice: " : "") + verdict.id + ", case '" +
+          claim.case_name + "', claim: " + claim.text + ": " + null_text(claim));
     }
     if (claim.holds) continue;
     say("        " + verdict.id + ", case '" + claim.case_name +
@@ -91,10 +112,16 @@ void say_verdict(const Verdict& verdict, bool quick) {
 }
 
 Json verdict_json(const Verdict& verdict) {
-  Json json{{"experiment", verdict.id},     {"passed", verdict.passed()},
-            {"run", verdict.run},           {"has_reference", verdict.has_reference},
-            {"compared", verdict.compared}, {"failures", verdict.failures},
-            {"mismatches", Json::array()},  {"claims", Json::array()}};
+  Json json{{"experiment", verdict.id},
+            {"passed", verdict.passed()},
+            {"run", verdict.run},
+            {"has_reference", verdict.has_reference},
+            {"compared", verdict.compared},
+            {"failures", verdict.failures},
+            {"same_bytes", verdict.same_bytes},
+            {"notice", verdict.notice},
+            {"mismatches", Json::array()},
+            {"claims", Json::array()}};
   for (const Mismatch& m : verdict.mismatches) {
     json["mismatches"].push_back({{"case", m.case_name},
                                   {"variant", m.variant},
@@ -103,7 +130,8 @@ Json verdict_json(const Verdict& verdict) {
                                   {"value", json_number(m.value)},
                                   {"reference", json_number(m.reference)},
                                   {"tolerance", json_number(m.tolerance)},
-                                  {"unit", m.unit}});
+                                  {"unit", m.unit},
+                                  {"fails", m.fails}});
   }
   for (const ClaimRecord& claim : verdict.claims) {
     json["claims"].push_back({{"text", claim.text},
@@ -134,42 +162,6 @@ int check_command(const CommandContext& context, const CheckRequest& request) {
   }
   if (context.json) print_json({{"passed", passed}, {"experiments", json}});
   return passed ? done : fell_short;
-}
-
-int bless_command(const CommandContext& context, const BlessRequest& request) {
-  const bool blank = std::all_of(request.reason.begin(), request.reason.end(),
-                                 [](unsigned char c) { return std::isspace(c) != 0; });
-  if (blank) {
-    throw Error("no reference value changes without a reason", "bless " + request.id,
-                "--reason \"why the new values are right\"");
-  }
-  install_stop_handler();
-  const BlessedRun run = run_without_clock(context, request.id, request.quick);
-  const std::filesystem::path file = reference_file(run.experiment.id);
-  Reference reference = read_reference(file);
-  const std::string size = run.experiment.quick ? "quick" : "full";
-  const std::vector<Mismatch> before = compare_with_reference(
-      run.record, reference.sets[size], [](const std::string&) { return Tolerance{}; });
-  const BuildInfo& build = build_info();
-  reference.sets[size] = bless_values(run.record, reference.sets[size], request.reason,
-                                      build.git_commit + (build.git_dirty() ? "-modified" : ""));
-  write_reference(reference, file);
-  for (const std::string& failure : failures(run.record)) say("  note: " + failure);
-  for (const Mismatch& mismatch : before) {
-    if (!std::isnan(mismatch.reference)) say("  " + mismatch_text(run.experiment.id, mismatch));
-  }
-  for (const ClaimRecord& claim : decide_claims(run.experiment, run.record)) {
-    if (!claim.holds) say("  note: a claim falls short: " + claim.text + ": " + claim.detail);
-  }
-  say("blessed " + std::to_string(before.size()) + " values of " + run.experiment.id + " (" + size +
-      ") in " + file.string());
-  if (context.json) {
-    print_json({{"experiment", run.experiment.id},
-                {"size", size},
-                {"changed", before.size()},
-                {"file", file.string()}});
-  }
-  return done;
 }
 
 }  // namespace geoprior

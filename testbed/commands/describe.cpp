@@ -65,14 +65,18 @@ Described describe_topic(const Topic& topic) {
   return result;
 }
 
+std::string tolerance_text(const Tolerance& tolerance) {
+  return rounded_text(tolerance.absolute) + " + " + rounded_text(tolerance.relative) +
+         " * |reference|";
+}
+
 Described describe_metric(const Topic& topic, const MetricGroup& group, const MetricEntry& metric) {
   Described result{"metric", topic.name + "/" + metric.name, {}, "", {}};
   result.facts = {{"definition", metric.definition},
                   {"unit", metric.unit},
                   {"direction", direction_text(metric.direction)},
                   {"of", group.of_frame ? "a frame" : "the sequence of frames"},
-                  {"tolerance", rounded_text(metric.tolerance.absolute) + " + " +
-                                    rounded_text(metric.tolerance.relative) + " * |reference|"}};
+                  {"tolerance", tolerance_text(metric.tolerance)}};
   if (metric.direction == Direction::closer_to_target) {
     result.facts.emplace_back("target", rounded_text(metric.target));
   }
@@ -83,11 +87,16 @@ Described describe_metric(const Topic& topic, const MetricGroup& group, const Me
 }
 
 Described describe_diagnostic(const Topic& topic, const DiagnosticEntry& entry) {
-  return {"diagnostic",
-          topic.name + "/" + entry.name,
-          {{"definition", entry.definition}, {"unit", entry.unit}, {"of", "a frame"}},
-          "",
-          {}};
+  Described result{"diagnostic",
+                   topic.name + "/" + entry.name,
+                   {{"definition", entry.definition}, {"unit", entry.unit}, {"of", "a frame"}},
+                   "",
+                   {}};
+  if (entry.counted_work) {
+    result.facts.emplace_back("counted work", "check fails when its mean grows by more than " +
+                                                  tolerance_text(entry.tolerance));
+  }
+  return result;
 }
 
 std::vector<Described> experiment_tables() {
@@ -109,6 +118,7 @@ std::vector<Described> experiment_tables() {
           file_table<StudyTable>("[[study]]"),
           file_table<TimingTable>("[timing]"),
           file_table<ToleranceTable>("[tolerance] metric = { … }"),
+          file_table<CheckTable>("[check]"),
           {"experiment", "[quick]", {}, "[quick]", {quick}},
           file_table<FigureViewTable>("[figure_view]", {at})};
 }

@@ -319,8 +319,8 @@ std::optional<double> slack(const ClaimRecord& claim) {
 }
 
 bool is_sound(const ClaimRecord& claim) {
-  return claim.null.verdict == Discrimination::discriminates ||
-         claim.null.verdict == Discrimination::exempt;
+  return claim.null.verdict != Discrimination::is_void &&
+         claim.null.verdict != Discrimination::undecided;
 }
 
 }  // namespace geoprior

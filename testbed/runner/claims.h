@@ -22,7 +22,7 @@ std::vector<ClaimRecord> decide_claims(const Experiment& experiment, const RunRe
 /// Value over limit of a decided claim; absent without either, or for a limit of 0.
 std::optional<double> slack(const ClaimRecord& claim);
 
-/// Whether the claim can fail: its null does, or it needs none.
+/// Whether no null says that the claim is worth nothing: void and undecided claims are not sound.
 bool is_sound(const ClaimRecord& claim);
 
 }  // namespace geoprior

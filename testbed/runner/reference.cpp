@@ -1,258 +1,208 @@
 #include "testbed/runner/reference.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
-#include <tuple>
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/home.h"
 #include "testbed/runner/number_text.h"
+#include "testbed/runner/reference_parser.h"
+#include "testbed/runner/reference_text.h"
 
 namespace geoprior {
 namespace {
 
-using Json = nlohmann::json;
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+constexpr int kMostDigits = 9;
+/// Share of a tolerance that rounding may take.
+constexpr double kRoundingShare = 0.1;
 
-constexpr int kSchemaVersion = 2;
-
-/// "overlap_volume" of "overlap_volume.max": what has one unit in all of its reductions.
-std::string base_name(const std::string& summary_name) {
-  return summary_name.substr(0, summary_name.rfind('.'));
-}
-
-template <class Visit>
-void for_each_value(const ReferenceSet& set, Visit visit) {
-  for (const auto& [case_name, variants] : set) {
-    for (const auto& [variant, metrics] : variants) {
-      for (const auto& [metric, value] : metrics) visit(case_name, variant, metric, value);
-    }
-  }
-}
-
-/// What most values of a set share; a value says only what it has otherwise.
-struct Shared {
-  std::string reason;
-  std::string commit;
-  std::map<std::string, std::string> units;  ///< by `base_name`
-};
-
-Shared shared_by_most(const ReferenceSet& set) {
-  Shared shared;
-  std::map<std::pair<std::string, std::string>, std::size_t> blessings;
-  for_each_value(set, [&](const auto&, const auto&, const auto& metric, const auto& value) {
-    ++blessings[{value.reason, value.commit}];
-    shared.units.emplace(base_name(metric), value.unit);
-  });
-  const auto most =
-      std::max_element(blessings.begin(), blessings.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (most != blessings.end()) std::tie(shared.reason, shared.commit) = most->first;
-  return shared;
-}
-
-/// A plain number, or an object of what the value does not share.
-Json json_of(const ReferenceValue& value, const std::string& unit, const Shared& shared) {
-  const Json number =
-      std::isfinite(value.value) ? Json(value.value) : Json(number_text(value.value));
-  Json own = Json::object();
-  if (value.unit != unit) own["unit"] = value.unit;
-  if (value.reason != shared.reason) own["reason"] = value.reason;
-  if (value.commit != shared.commit) own["commit"] = value.commit;
-  if (own.empty()) return number;
-  own["value"] = number;
-  return own;
-}
-
-Json json_of(const ReferenceSet& set) {
-  const Shared shared = shared_by_most(set);
-  Json values = Json::object();
-  for_each_value(set, [&](const auto& in, const auto& variant, const auto& metric, const auto& v) {
-    values[in][variant][metric] = json_of(v, shared.units.at(base_name(metric)), shared);
-  });
-  return {{"reason", shared.reason},
-          {"commit", shared.commit},
-          {"units", shared.units},
-          {"values", values}};
-}
-
-double number_of(const Json& value) {
-  if (value.is_number()) return value.get<double>();
-  const auto text = value.get<std::string>();
-  if (text == "inf") return std::numeric_limits<double>::infinity();
-  if (text == "-inf") return -std::numeric_limits<double>::infinity();
-  if (text == "nan" || text == "-nan") return std::numeric_limits<double>::quiet_NaN();
-  throw Error("'" + text + "' is no number", "value", "a number, \"nan\", \"inf\", \"-inf\"");
-}
-
-ReferenceValue value_of(const Json& entry, const std::string& unit, const Json& shared) {
-  if (!entry.is_object()) return {number_of(entry), unit, shared.at("reason"), shared.at("commit")};
-  const auto own = [&](const char* key) -> std::string {
-    return entry.contains(key) ? entry.at(key) : shared.at(key);
-  };
-  return {number_of(entry.at("value")), entry.value("unit", unit), own("reason"), own("commit")};
-}
-
-ReferenceSet set_of(const Json& json) {
-  ReferenceSet set;
-  for (const auto& [case_name, variants] : json.at("values").items()) {
-    for (const auto& [variant, metrics] : variants.items()) {
-      for (const auto& [metric, entry] : metrics.items()) {
-        const std::string unit = json.at("units").at(base_name(metric));
-        set[case_name][variant][metric] = value_of(entry, unit, json);
-      }
-    }
-  }
-  return set;
-}
-
-bool within(double value, double reference, const Tolerance& tolerance) {
+bool within(double value, double reference, double tolerance) {
   if (std::isnan(value) || std::isnan(reference)) return std::isnan(value) == std::isnan(reference);
-  if (value == reference) return true;  // infinities too
-  return std::abs(value - reference) <=
-         tolerance.absolute + tolerance.relative * std::abs(reference);
+  return value == reference || std::abs(value - reference) <= tolerance;  // equal infinities too
 }
 
-std::string change(const SummaryValue& now, double reference) {
-  const double step = now.value - reference;
-  const bool up = now.direction == "higher_is_better", down = now.direction == "lower_is_better";
-  if (std::isnan(step) || (!up && !down)) return "changed";
-  return (step > 0) == up ? "changed for the better (bless it to keep it)"
-                          : "changed for the worse";
+std::string change(const Gate& gate, double value, double reference) {
+  const double worse = worsening(gate, value, reference);
+  if (std::isnan(worse) || gate.direction == Direction::none) return "changed";
+  return worse > 0 ? "changed for the worse" : "changed for the better (bless it to keep it)";
 }
 
-const ReferenceValue* find(const ReferenceSet& set, const std::string& case_name,
-                           const std::string& variant, const std::string& metric) {
+template <class Values>
+const auto* find_in(const Values& set, const std::string& case_name, const std::string& variant,
+                    const std::string& name) {
+  using Found = typename Values::mapped_type::mapped_type::mapped_type;
+  const Found* none = nullptr;
   const auto in_case = set.find(case_name);
-  if (in_case == set.end()) return nullptr;
+  if (in_case == set.end()) return none;
   const auto of_variant = in_case->second.find(variant);
-  if (of_variant == in_case->second.end()) return nullptr;
-  const auto value = of_variant->second.find(metric);
-  return value == of_variant->second.end() ? nullptr : &value->second;
+  if (of_variant == in_case->second.end()) return none;
+  const auto value = of_variant->second.find(name);
+  return value == of_variant->second.end() ? none : &value->second;
 }
 
-const SummaryValue* find(const RunRecord& record, const std::string& case_name,
-                         const std::string& variant, const std::string& metric) {
-  for (const CaseRecord& in : record.cases) {
-    if (in.name != case_name) continue;
-    for (const VariantRecord& v : in.variants) {
-      if (v.name != variant) continue;
-      const auto value = v.summary.find(metric);
-      return value == v.summary.end() ? nullptr : &value->second;
+template <class Values, class Visit>
+void visit_values(const Values& set, Visit visit) {
+  for (const auto& [case_name, variants] : set) {
+    for (const auto& [variant, values] : variants) {
+      for (const auto& [name, value] : values) visit(case_name, variant, name, value);
     }
   }
-  return nullptr;
+}
+
+/// Fills in `problem`; leaves it empty where the value is what it was.
+void judge(const Gate& gate, const GatedValue& now, const ReferenceValue& before, Mismatch& m) {
+  m.reference = before.value;
+  m.tolerance =
+      gate.tolerance.absolute + gate.tolerance.relative * now.size.value_or(std::abs(before.value));
+  if (before.unit != now.unit) {
+    m.problem = "unit was " + before.unit;
+    return;
+  }
+  const double worse = worsening(gate, now.value, before.value);
+  if (!within(now.value, before.value, m.tolerance)) {
+    m.problem = change(gate, now.value, before.value);
+    if (gate.only_more && worse < 0) {
+      m.problem = "is less work (bless it to keep it)";
+      m.fails = false;
+    }
+    return;
+  }
+  const double limit = headline_limit(gate, before.value);
+  if (gate.headline && worse > limit) {
+    m.problem = "is named by a claim and changed for the worse";
+    m.tolerance = limit;
+  }
+}
+
+/// Names of what a ContentHash does not cover have a prefix.
+template <class Values>
+void erase_metrics(Values& values) {
+  for (auto& [case_name, variants] : values) {
+    for (auto& [variant, named] : variants) {
+      std::erase_if(named,
+                    [](const auto& one) { return one.first.find(':') == std::string::npos; });
+    }
+  }
+}
+
+std::string gone_text(const std::string& name) {
+  return name.starts_with("shortfall:")
+             ? "is gone: the claim holds (remove its known_shortfall, and bless)"
+             : "is gone (bless the rest to forget it)";
 }
 
 }  // namespace
 
 std::filesystem::path reference_file(const std::string& experiment_id) {
-  return geoprior_home() / "results" / "reference" / (experiment_id + ".json");
+  return geoprior_home() / "results" / "reference" / (experiment_id + ".txt");
 }
 
 Reference read_reference(const std::filesystem::path& file) {
-  Reference reference;
-  if (!std::filesystem::exists(file)) return reference;
-  const std::string text = read_whole_file(file);
-  try {
-    const Json json = Json::parse(text);
-    const int version = json.at("schema_version");
-    if (version != kSchemaVersion) {
-      throw Error("schema version " + std::to_string(version), file.string(),
-                  std::to_string(kSchemaVersion));
-    }
-    for (const char* size : {"full", "quick"}) {
-      if (json.contains(size)) reference.sets[size] = set_of(json.at(size));
-    }
-  } catch (const Json::exception& error) {
-    throw Error(std::string("is damaged: ") + error.what(), file.string(),
-                "what `geoprior bless` writes");
+  if (std::filesystem::exists(file)) return parse_reference(read_whole_file(file), file.string());
+  std::filesystem::path old_form = file;
+  old_form.replace_extension(".json");
+  if (std::filesystem::exists(old_form)) {
+    throw Error("is a reference file of the old form, which is not read any more",
+                old_form.string(),
+                "remove it, then make " + file.filename().string() + " with `geoprior bless`");
   }
-  return reference;
+  return {};
 }
 
 void write_reference(const Reference& reference, const std::filesystem::path& file) {
-  Json json;
-  json["schema_version"] = kSchemaVersion;
-  for (const auto& [size, set] : reference.sets) json[size] = json_of(set);
+  const std::string text = reference_text(reference);
   make_folders(file.parent_path());
-  write_file_atomically(file, std::string_view(json.dump(1) + "\n"));
+  write_file_atomically(file, std::string_view(text));
 }
 
-ToleranceOf tolerances_of(const Experiment& experiment, const Topic& topic) {
-  std::map<std::string, Tolerance> tolerances;
-  for (const MetricEntry& metric : metric_rows(topic)) tolerances[metric.name] = metric.tolerance;
-  for (const auto& [metric, tolerance] : experiment.tolerances) tolerances[metric] = tolerance;
-  return [tolerances](const std::string& name) {
-    auto found = tolerances.find(name);
-    if (found == tolerances.end()) found = tolerances.find(name.substr(0, name.rfind('.')));
-    return found == tolerances.end() ? Tolerance{} : found->second;
-  };
+const ReferenceValue* find_value(const ReferenceSet& set, const std::string& case_name,
+                                 const std::string& variant, const std::string& name) {
+  return find_in(set, case_name, variant, name);
 }
 
-std::vector<Mismatch> compare_with_reference(const RunRecord& record, const ReferenceSet& reference,
-                                             const ToleranceOf& tolerance_of) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+std::vector<Mismatch> compare_with_reference(const GatedValues& now, const ReferenceSet& reference,
+                                             const Gates& gates) {
   std::vector<Mismatch> mismatches;
-  for (const CaseRecord& in : record.cases) {
-    for (const VariantRecord& variant : in.variants) {
-      for (const auto& [metric, now] : variant.summary) {
-        const ReferenceValue* before = find(reference, in.name, variant.name, metric);
-        Mismatch mismatch{in.name, variant.name, metric, "", now.value, kNone, 0, now.unit};
-        if (before == nullptr) {
-          mismatch.problem = "has no reference value (bless it)";
-          mismatches.push_back(mismatch);
-          continue;
-        }
-        const Tolerance tolerance = tolerance_of(metric);
-        mismatch.reference = before->value;
-        mismatch.tolerance = tolerance.absolute + tolerance.relative * std::abs(before->value);
-        if (before->unit != now.unit) {
-          mismatch.problem = "unit was " + before->unit;
-        } else if (!within(now.value, before->value, tolerance)) {
-          mismatch.problem = change(now, before->value);
-        }
-        if (!mismatch.problem.empty()) mismatches.push_back(mismatch);
-      }
+  visit_values(now, [&](const auto& in, const auto& variant, const auto& name, const auto& value) {
+    const Gate gate = gates.of(variant, name);
+    if (!gate.compared) return;
+    Mismatch mismatch{in, variant, name, "", value.value, kNoValue, 0, value.unit};
+    if (const auto* before = find_in(reference, in, variant, name)) {
+      judge(gate, value, *before, mismatch);
+    } else {
+      mismatch.problem = "has no reference value (bless it)";
     }
-  }
-  for (const auto& [case_name, variants] : reference) {
-    for (const auto& [variant, metrics] : variants) {
-      for (const auto& [metric, before] : metrics) {
-        if (find(record, case_name, variant, metric) != nullptr) continue;
-        mismatches.push_back({case_name, variant, metric, "is gone (bless the rest to forget it)",
-                              kNone, before.value, 0, before.unit});
-      }
-    }
-  }
+    if (!mismatch.problem.empty()) mismatches.push_back(mismatch);
+  });
+  visit_values(
+      reference, [&](const auto& in, const auto& variant, const auto& name, const auto& before) {
+        if (find_in(now, in, variant, name) != nullptr || !gates.of(variant, name).compared) return;
+        mismatches.push_back(
+            {in, variant, name, gone_text(name), kNoValue, before.value, 0, before.unit});
+      });
   return mismatches;
 }
 
-ReferenceSet bless_values(const RunRecord& record, const ReferenceSet& before,
-                          const std::string& reason, const std::string& commit) {
+ContentHash content_of(const RunRecord& record) {
+  const auto instructions = record.provenance.find("instruction_set");
+  return {instructions == record.provenance.end() ? "unknown" : instructions->second,
+          record.content_sha256};
+}
+
+std::size_t count_values(const GatedValues& values) {
+  std::size_t count = 0;
+  visit_values(values, [&](const auto&, const auto&, const auto&, const auto&) { ++count; });
+  return count;
+}
+
+void keep_outside_content(GatedValues& values) { erase_metrics(values); }
+void keep_outside_content(ReferenceSet& values) { erase_metrics(values); }
+
+double rounded_for(double value, const Tolerance& tolerance) {
+  const double moved = kRoundingShare * (tolerance.absolute + tolerance.relative * std::abs(value));
+  if (!std::isfinite(value) || std::abs(value) <= moved) return std::isfinite(value) ? 0 : value;
+  // Digits down to a power of ten of which half is at most `moved`, so that neighbours agree.
+  const double last_place = std::floor(std::log10(2 * moved));
+  const double first_place = std::floor(std::log10(std::abs(value)));
+  const double digits = std::clamp(first_place - last_place + 1, 1.0, double{kMostDigits});
+  const std::string text = rounded_text(value, static_cast<int>(digits));
+  double rounded = 0;
+  std::from_chars(text.data(), text.data() + text.size(), rounded);
+  return std::abs(rounded - value) <= moved ? rounded : value;
+}
+
+ReferenceSet bless_values(const GatedValues& now, const ReferenceSet& before, const Gates& gates,
+                          const Blessing& blessing) {
   ReferenceSet set;
-  for (const CaseRecord& in : record.cases) {
-    for (const VariantRecord& variant : in.variants) {
-      for (const auto& [metric, now] : variant.summary) {
-        const ReferenceValue* old = find(before, in.name, variant.name, metric);
-        const bool same =
-            old != nullptr && old->unit == now.unit &&
-            (old->value == now.value || (std::isnan(old->value) && std::isnan(now.value)));
-        set[in.name][variant.name][metric] =
-            same ? *old : ReferenceValue{now.value, now.unit, reason, commit};
-      }
-    }
-  }
+  visit_values(now, [&](const auto& in, const auto& variant, const auto& name, const auto& value) {
+    const Gate gate = gates.of(variant, name);
+    if (!gate.compared) return;
+    const double relative = gate.tolerance.relative;
+    const Tolerance tolerance = value.size
+                                    ? Tolerance{gate.tolerance.absolute + relative * *value.size, 0}
+                                    : gate.tolerance;
+    const double rounded = rounded_for(value.value, tolerance);
+    const auto* old = find_in(before, in, variant, name);
+    const bool same = old != nullptr && old->unit == value.unit && within(old->value, rounded, 0);
+    set[in][variant][name] =
+        same ? *old : ReferenceValue{rounded, value.unit, blessing.reason, blessing.commit};
+  });
   return set;
 }
 
 std::string mismatch_text(const std::string& experiment_id, const Mismatch& m) {
   const std::string unit = m.unit.empty() || m.unit == "1" ? "" : " " + m.unit;
-  return experiment_id + ", case '" + m.case_name + "', variant '" + m.variant + "', metric '" +
-         m.metric + "' " + m.problem + ": value " + number_text(m.value) + unit + ", reference " +
-         number_text(m.reference) + unit + ", tolerance " + rounded_text(m.tolerance) + unit;
+  std::string place = experiment_id;
+  if (!m.case_name.empty()) place += ", case '" + m.case_name + "'";
+  if (!m.variant.empty()) place += ", variant '" + m.variant + "'";
+  return place + ", metric '" + m.metric + "' " + m.problem + ": value " + number_text(m.value) +
+         unit + ", reference " + number_text(m.reference) + unit + ", tolerance " +
+         rounded_text(m.tolerance) + unit;
 }
 
 }  // namespace geoprior

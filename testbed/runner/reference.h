@@ -1,38 +1,54 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
-#include <functional>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "testbed/runner/run_record.h"
-#include "testbed/runner/spec.h"
+#include "testbed/runner/gates.h"
 
 namespace geoprior {
 
-/// One value that a metric had when it was blessed.
+/// One value that was blessed.
 struct ReferenceValue {
-  double value = 0;  ///< NaN: the metric had no value
+  double value = 0;  ///< NaN: there was none
   std::string unit;
   std::string reason;
   std::string commit;
 };
 
-/// Case, variant, summary name ("overlap_volume.max").
+/// Case, variant, name of a gated value (gates.h).
 using ReferenceSet =
     std::map<std::string, std::map<std::string, std::map<std::string, ReferenceValue>>>;
 
-/// results/reference/<id>.json: one set for full and one for quick runs. In the file a set names
-/// reason, commit and units once; values that have others say so themselves.
-struct Reference {
-  std::map<std::string, ReferenceSet> sets;  ///< "full", "quick"
+/// What the frames, metrics, events and artifacts of the blessed run were, byte by byte.
+struct ContentHash {
+  std::string instruction_set;  ///< of the build: other ones round differently
+  std::string sha256;           ///< RunRecord::content_sha256
 };
 
-/// results/reference/<id>.json of the clone.
+struct Blessing {
+  std::string commit;
+  std::string reason;
+};
+
+/// results/reference/<id>.txt: one set for full and one for quick runs.
+struct Reference {
+  std::map<std::string, ReferenceSet> sets;     ///< "full", "quick"
+  std::map<std::string, ContentHash> contents;  ///< of a set; absent where it was not recorded
+  /// By the numbers that they have in the file; they keep them.
+  std::map<int, Blessing> blessings;
+};
+
+/// results/reference/<id>.txt of the clone.
 std::filesystem::path reference_file(const std::string& experiment_id);
 
-/// Empty when there is no file. @throws Error  naming the file and what is damaged
+/// Empty when there is no file.
+/// @throws Error  naming the file, the line and what is wrong there; or a file of the old form
+///                (JSON) that lies where this one is missing
 Reference read_reference(const std::filesystem::path& file);
 
 /// Whole or not at all; the same reference gives the same bytes.
@@ -48,23 +64,38 @@ struct Mismatch {
   double reference = 0;
   double tolerance = 0;  ///< |value - reference| that is allowed
   std::string unit;
+  bool fails = true;  ///< false: a notice
 };
 
-/// How far each metric may be off: that of the experiment file, else of the metric table, by the
-/// name before ".max".
-using ToleranceOf = std::function<Tolerance(const std::string& summary_name)>;
-ToleranceOf tolerances_of(const Experiment& experiment, const Topic& topic);
+/// Null when there is none.
+const ReferenceValue* find_value(const ReferenceSet& set, const std::string& case_name,
+                                 const std::string& variant, const std::string& name);
 
-/// Every summary value of the run against the set: |value - reference| <= absolute + relative
-/// |reference|. A change for the better is a mismatch too: reference values follow by `bless`, or
-/// they would hide the next loss.
-std::vector<Mismatch> compare_with_reference(const RunRecord& record, const ReferenceSet& reference,
-                                             const ToleranceOf& tolerance_of);
+/// Every gated value against the set: |value - reference| <= absolute + relative |reference|, and
+/// no headline metric worse by more than `headline_limit`. A change for the better is a mismatch
+/// too: reference values follow by `bless`, or they would hide the next loss. Of counted work only
+/// more fails; less is a notice.
+std::vector<Mismatch> compare_with_reference(const GatedValues& now, const ReferenceSet& reference,
+                                             const Gates& gates);
 
-/// The set that a run's values make. Values that are exactly as before keep their reason and
+/// Of a run's frames, metrics, events and artifacts.
+ContentHash content_of(const RunRecord& record);
+
+/// How many values there are.
+std::size_t count_values(const GatedValues& values);
+
+/// Leaves what a ContentHash does not cover: counted work, studies, shortfalls.
+void keep_outside_content(GatedValues& values);
+void keep_outside_content(ReferenceSet& values);
+
+/// The value with as many digits (at most 9) as move it by no more than a tenth of its tolerance;
+/// the value itself where 9 are too few.
+double rounded_for(double value, const Tolerance& tolerance);
+
+/// The set that a run's values make, rounded. Values that are as before keep their reason and
 /// commit.
-ReferenceSet bless_values(const RunRecord& record, const ReferenceSet& before,
-                          const std::string& reason, const std::string& commit);
+ReferenceSet bless_values(const GatedValues& now, const ReferenceSet& before, const Gates& gates,
+                          const Blessing& blessing);
 
 /// "experiment, case, variant, metric: problem: value …, reference …, tolerance …".
 std::string mismatch_text(const std::string& experiment_id, const Mismatch& mismatch);

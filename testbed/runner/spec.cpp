@@ -21,8 +21,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr std::array<const char*, 8> kTables{"scene", "variant", "claim",     "sweep",
-                                             "study", "timing",  "tolerance", "figure_view"};
+constexpr std::array<const char*, 9> kTables{"scene",  "variant",   "claim",       "sweep", "study",
+                                             "timing", "tolerance", "figure_view", "check"};
 
 HeaderTable read_header(const TomlNode& root) {
   TomlNode plain = root;
@@ -195,6 +195,22 @@ void read_timing(const TomlNode& root, Experiment& experiment) {
   experiment.timing_warm_up = timing.warm_up;
 }
 
+/// What bifurcates is compared over its seeds: there must be some.
+void read_check(const TomlNode& root, Experiment& experiment) {
+  const TomlNode* node = root.find("check");
+  if (node == nullptr) return;
+  CheckTable table;
+  read_options(*node, "check", table);
+  experiment.bifurcates = table.bifurcates;
+  const bool sweeps_seed =
+      std::all_of(experiment.cases.begin(), experiment.cases.end(),
+                  [](const CaseSpec& one) { return one.swept.contains("seed"); });
+  if (experiment.bifurcates && !sweeps_seed) {
+    throw Error("there are no seeds to take the median over", place_of(*node, "bifurcates"),
+                "with a [[sweep]] over `seed`, base = false");
+  }
+}
+
 }  // namespace
 
 const Topic& topic_of(const Experiment& experiment, const std::vector<Topic>& topics) {
@@ -246,6 +262,7 @@ Experiment load_experiment(const std::filesystem::path& file, const std::vector<
   experiment.tolerances = read_tolerances(root, topic);
   experiment.claims = read_claims(root, topic, names, experiment.tolerances, experiment.studies);
   drop_cases(experiment.claims, experiment.cases);
+  read_check(root, experiment);
   experiment.view = read_figure_view(root, topic);
   keep_only(experiment.view.variants, names.dropped);
 
@@ -254,7 +271,9 @@ Experiment load_experiment(const std::filesystem::path& file, const std::vector<
   Json resolved =
       resolved_json(root, experiment, header, resolve_case(base, topic, selected), names);
   experiment.hash = spec_hash(toml_text(resolved));
-  if (const TomlNode* view = root.find("figure_view")) resolved["figure_view"] = json_of(*view);
+  for (const char* key : {"figure_view", "check"}) {
+    if (const TomlNode* table = root.find(key)) resolved[key] = json_of(*table);
+  }
   experiment.resolved_toml = toml_text(resolved);
   return experiment;
 }

@@ -52,7 +52,7 @@ struct ClaimSpec {
   double offset = 0;
   double tolerance = 0;  ///< for `equal`
   /// Why the claim falls short, where that is known and documented: `run` reports it, `check` lets
-  /// it pass.
+  /// it pass where it falls short by as much as when it was blessed.
   std::optional<std::string> known_shortfall;
   std::optional<double> at_parameter;  ///< at = { angle_deg = 90 }; the frame must exist
   std::string at_key;  ///< "angle_deg": parameter name and unit, compared with the scene's
@@ -93,14 +93,16 @@ struct Experiment {
   std::vector<ClaimSpec> claims;
   std::vector<StudySpec> studies;
   std::map<std::string, Tolerance>
-      tolerances;  ///< [tolerance] overrides of the metric table, by metric
+      tolerances;  ///< [tolerance] overrides of the metric table, by metric or "study:<name>"
+  /// [check]: the motion takes one of several paths, and `check` compares medians over the seeds.
+  bool bifurcates = false;
   int timing_repetitions = 1;
   std::optional<int> timing_warm_up;  ///< absent: 1 for pose methods, 0 for processes
   FigureView view;
   /// The whole text after quick, --set and defaults, before sweeps: an experiment file itself.
   std::string resolved_toml;
-  /// sha256 of `resolved_toml` without [figure_view] (a camera changes no number), program version,
-  /// commit and the sources' difference from it; 64 hex digits.
+  /// sha256 of `resolved_toml` without [figure_view] and [check] (neither changes a number),
+  /// program version, commit and the sources' difference from it; 64 hex digits.
   std::string hash;
 };
 

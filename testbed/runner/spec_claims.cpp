@@ -138,9 +138,7 @@ const MetricEntry* measured_by(const ClaimSpec& claim, const Topic& topic,
   for (const StudySpec& study : studies) {
     if (claim.metric == "study:" + study.name) name = study.quantity;
   }
-  const auto found = std::find_if(topic.metrics.begin(), topic.metrics.end(),
-                                  [&](const MetricEntry& metric) { return metric.name == name; });
-  return found == topic.metrics.end() ? nullptr : &*found;
+  return find_metric(topic, name);
 }
 
 bool is_timed(const ClaimSpec& claim, const std::vector<StudySpec>& studies) {
@@ -158,8 +156,10 @@ std::string judged_variant(const ClaimSpec& claim, const std::vector<StudySpec>&
   return claim.variant;
 }
 
-void require_null(const ClaimSpec& claim, const std::string& variant, const MetricEntry* metric,
-                  const KnownNames& names, const TomlNode& node) {
+/// `reference_metric` is what the claim measures, if that compares with a reference; else null.
+void require_null(const ClaimSpec& claim, const std::string& variant,
+                  const MetricEntry* reference_metric, const KnownNames& names,
+                  const TomlNode& node) {
   const std::string place = place_of(node, "null"), &null = *claim.null;
   if (null == variant) {
     throw Error("is the variant itself", place, "another variant, one that must fail the claim");
@@ -168,8 +168,8 @@ void require_null(const ClaimSpec& claim, const std::string& variant, const Metr
     const auto found = names.references.find(name);
     return found == names.references.end() ? std::string() : found->second;
   };
-  if (metric != nullptr && metric->needs_reference && reference_of(null) != reference_of(variant)) {
-    throw Error("'" + metric->name + "' of '" + null + "' is not measured against '" +
+  if (reference_metric != nullptr && reference_of(null) != reference_of(variant)) {
+    throw Error("'" + reference_metric->name + "' of '" + null + "' is not measured against '" +
                     reference_of(variant) + "'",
                 place, "a null with the reference of '" + variant + "'");
   }
@@ -196,7 +196,9 @@ void complete(ClaimSpec& claim, const Topic& topic, const KnownNames& names,
   }
   // Without a null that --variant left out the claim is decided, and nothing is said of its worth.
   if (claim.null && !runs(*claim.null, names, place_of(node, "null"))) claim.null.reset();
-  if (claim.null) require_null(claim, judged_variant(claim, studies), metric, names, node);
+  if (!claim.null) return;
+  const bool compares = metric != nullptr && group_of(topic, *metric).needs_reference;
+  require_null(claim, judged_variant(claim, studies), compares ? metric : nullptr, names, node);
 }
 
 void require_own_text(const ClaimSpec& claim, const std::vector<ClaimSpec>& before,
@@ -288,7 +290,10 @@ std::map<std::string, Tolerance> read_tolerances(const TomlNode& root, const Top
   std::map<std::string, Tolerance> tolerances;
   const TomlNode* table = root.find("tolerance");
   if (table == nullptr) return tolerances;
-  const Names names = metric_names(topic);
+  Names names = metric_names(topic);
+  for (const TomlNode& study : tables_of(root, "study")) {
+    if (const TomlNode* name = study.find("name")) names.push_back("study:" + name->text);
+  }
   for (std::size_t i = 0; i < table->keys.size(); ++i) {
     const std::string& metric = table->keys[i];
     const TomlNode& node = table->items[i];

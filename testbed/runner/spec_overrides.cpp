@@ -8,8 +8,8 @@ namespace geoprior {
 namespace {
 
 const std::vector<std::string> kTopLevel{
-    "title",   "figure", "topic", "id",    "size",   "seed",      "threads", "scene",
-    "variant", "claim",  "sweep", "study", "timing", "tolerance", "quick",   "figure_view"};
+    "title", "figure", "topic", "id",     "size",      "seed",  "threads",     "scene", "variant",
+    "claim", "sweep",  "study", "timing", "tolerance", "quick", "figure_view", "check"};
 constexpr std::string_view kKeys =
     "scene.*, seed, threads, timing.*, figure_view.*, variant.<name>.options.*";
 
@@ -45,7 +45,8 @@ void require_known_tables(const TomlNode& root) {
     if (std::find(kTopLevel.begin(), kTopLevel.end(), key) == kTopLevel.end()) {
       throw Error("unknown key", node.place + ": " + key, allowed_names(key, kTopLevel));
     }
-    for (const std::string table : {"scene", "timing", "tolerance", "quick", "figure_view"}) {
+    for (const std::string table :
+         {"scene", "timing", "tolerance", "quick", "figure_view", "check"}) {
       if (key == table && node.kind != TomlNode::Kind::table) {
         throw Error("is " + node.kind_name(), node.place + ": " + key, "a table, [" + key + "]");
       }

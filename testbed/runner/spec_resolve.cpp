@@ -136,8 +136,8 @@ CaseSpec resolve_case(const SweptCase& swept, const Topic& topic,
   result.name = swept.name;
   result.swept = swept.swept;
   TomlNode header = swept.root;
-  for (const char* table :
-       {"scene", "variant", "claim", "sweep", "study", "timing", "tolerance", "figure_view"}) {
+  for (const char* table : {"scene", "variant", "claim", "sweep", "study", "timing", "tolerance",
+                            "figure_view", "check"}) {
     header.erase(table);
   }
   HeaderTable values;

@@ -95,6 +95,11 @@ void describe(OptionVisitor& v, TimingTable& t) {
            .max = 1000});
 }
 
+void describe(OptionVisitor& v, CheckTable& t) {
+  v.value("bifurcates", t.bifurcates,
+          {.doc = "compare medians over the sweep of `seed`, not one path"});
+}
+
 void describe(OptionVisitor& v, ToleranceTable& t) {
   v.value("absolute", t.absolute, {.doc = "in the metric's unit", .min = 0});
   v.value("relative", t.relative, {.doc = "fraction of the reference value", .min = 0});

@@ -79,6 +79,10 @@ struct TimingTable {
   std::optional<int> warm_up;
 };
 
+struct CheckTable {
+  bool bifurcates = false;
+};
+
 struct ToleranceTable {
   double absolute = 0;
   double relative = 0;
@@ -99,6 +103,7 @@ void describe(OptionVisitor& v, SweepTable& t);
 void describe(OptionVisitor& v, ClaimTable& t);
 void describe(OptionVisitor& v, StudyTable& t);
 void describe(OptionVisitor& v, TimingTable& t);
+void describe(OptionVisitor& v, CheckTable& t);
 void describe(OptionVisitor& v, ToleranceTable& t);
 void describe(OptionVisitor& v, SectionView& t);
 void describe(OptionVisitor& v, RowAbove& t);

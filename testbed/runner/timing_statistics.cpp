@@ -12,7 +12,7 @@ namespace geoprior {
 
 namespace {
 
-constexpr int kTimingResamples = 2000;
+constexpr int kRatioResamples = 2000;
 
 /// Reorders `values`, which holds no NaN.
 double quantile_in_place(std::vector<double>& values, double p) {
@@ -53,7 +53,7 @@ Interval bootstrap_median(std::span<const double> values, std::uint64_t seed) {
   result.value = median(kept);
   if (kept.empty()) return {result.value, result.value, result.value};
   RandomStream random(seed, "bootstrap");
-  std::vector<double> medians(kTimingResamples);
+  std::vector<double> medians(kRatioResamples);
   std::vector<double> sample(kept.size());
   for (double& of_sample : medians) {
     for (double& x : sample) x = kept[random.below(static_cast<std::uint32_t>(kept.size()))];

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "testbed/runner/reference.h"
 #include "testbed/runner/sha256.h"
 #include "tests/testbed/toy_home.h"
 
@@ -178,7 +179,7 @@ TEST_F(Program, CheckNamesTheMetricThatAnOptionChanged) {
   EXPECT_THAT(changed.err,
               AllOf(HasSubstr("toy-circle/disc"), HasSubstr("case 'default'"),
                     HasSubstr("variant 'polygon'"), HasSubstr("metric 'radius_error.max'"),
-                    HasSubstr("reference 0.0342205545"), HasSubstr("tolerance")));
+                    HasSubstr("reference 0.034220"), HasSubstr("tolerance")));
   const json verdict = json::parse(changed.out);
   EXPECT_EQ(verdict["passed"], false);
   EXPECT_EQ(verdict["experiments"][0]["mismatches"][0]["variant"], "polygon");
@@ -202,6 +203,8 @@ TEST_F(Program, CheckFailsOnAClaimAloneAndIgnoresClaimsAboutTime) {
   // A documented finding is still named, but no regression.
   write(disc_experiment("segments = 16",
                         impossible + "known_shortfall = \"a polygon is no circle\"\n"));
+  EXPECT_EQ(run("check toy-circle/disc").code, 1) << "by how much it falls short is not blessed";
+  ASSERT_EQ(run("bless toy-circle/disc --reason 'known'").code, 0);
   const Outcome known = run("check toy-circle/disc");
   EXPECT_EQ(known.code, 0);
   EXPECT_THAT(known.err, HasSubstr("a polygon is no circle"));
@@ -266,15 +269,67 @@ TEST_F(Program, QuickAndFullReferencesStandApart) {
   ASSERT_EQ(run("bless toy-circle/disc --quick --reason quick").code, 0);
   EXPECT_EQ(run("check toy-circle/disc --quick").code, 0);
   EXPECT_EQ(run("check toy-circle/disc").code, 0);
-  const json reference =
-      json::parse(toy::Home::read(home_.root() / "results/reference/toy-circle/disc.json"));
+  const Reference reference =
+      read_reference(home_.root() / "results/reference/toy-circle/disc.txt");
   const auto value = [&](const char* size) {
-    return reference[size]["values"]["default"]["polygon"]["radius_error.max"];
+    return *find_value(reference.sets.at(size), "default", "polygon", "radius_error.max");
   };
-  EXPECT_LT(value("full"), value("quick"));
-  EXPECT_EQ(reference["quick"]["reason"], "quick");
-  EXPECT_EQ(reference["quick"]["units"]["radius_error"], "m");
-  EXPECT_FALSE(reference["quick"]["commit"].get<std::string>().empty());
+  EXPECT_LT(value("full").value, value("quick").value);
+  EXPECT_EQ(value("quick").reason, "quick");
+  EXPECT_EQ(value("quick").unit, "m");
+  EXPECT_FALSE(value("quick").commit.empty());
+}
+
+TEST_F(Program, SameBytesNeedNoComparisonAndCountedWorkIsComparedAllTheSame) {
+  write(disc_experiment());
+  ASSERT_EQ(run("bless toy-circle/disc --reason x").code, 0);
+  EXPECT_THAT(run("check toy-circle/disc").err, HasSubstr("(same bytes)"));
+  const auto file = home_.root() / "results/reference/toy-circle/disc.txt";
+  Reference reference = read_reference(file);
+  const ContentHash blessed = reference.contents.at("full");
+  // The values of other bytes decide, and so do those of another instruction set.
+  reference.contents["full"].sha256 = std::string(64, '0');
+  write_reference(reference, file);
+  const Outcome other = run("check toy-circle/disc");
+  EXPECT_EQ(other.code, 0) << "values are as blessed";
+  EXPECT_THAT(other.err, AllOf(HasSubstr("notice: "), HasSubstr("byte by byte")));
+  reference.contents["full"] = {"another", blessed.sha256};
+  write_reference(reference, file);
+  EXPECT_THAT(run("check toy-circle/disc").err, HasSubstr("notice: blessed on another"));
+  // The hash covers no diagnostics.
+  reference.contents["full"] = blessed;
+  reference.sets["full"]["default"]["polygon"]["diagnostic:evaluations"].value -= 1;
+  write_reference(reference, file);
+  const Outcome more = run("check toy-circle/disc");
+  EXPECT_EQ(more.code, 1);
+  EXPECT_THAT(more.err, AllOf(HasSubstr("(same bytes)"), HasSubstr("'diagnostic:evaluations'")));
+}
+
+TEST_F(Program, AClaimsMetricMayNotWorsenWithinItsWideTolerance) {
+  const std::string wide = "[tolerance]\nradius_error = { absolute = 0, relative = 0.25 }\n";
+  const auto problem_of_radius_error = [&](const std::string& claim) {
+    write(disc_experiment("segments = 16", claim + wide));
+    EXPECT_EQ(run("bless toy-circle/disc --reason x").code, 0);
+    // A thousandth of 2 m is 6 % of the error of 0.034 m.
+    write(disc_experiment("segments = 16, scale = 0.999", claim + wide));
+    const json verdict = json::parse(run("check toy-circle/disc --json").out)["experiments"][0];
+    std::string problem;
+    for (const json& mismatch : verdict["mismatches"]) {
+      if (mismatch["metric"] == "radius_error.max") problem = mismatch["problem"];
+    }
+    return problem;
+  };
+  EXPECT_EQ(problem_of_radius_error(""), "") << "no claim is about it";
+  EXPECT_EQ(problem_of_radius_error(kClaim), "is named by a claim and changed for the worse");
+}
+
+TEST_F(Program, BlessSaysWhatItChanges) {
+  write(disc_experiment("segments = 16"));
+  EXPECT_THAT(run("bless toy-circle/disc --reason first").err, HasSubstr(" new: "));
+  write(disc_experiment("segments = 8"));
+  const Outcome outcome = run("bless toy-circle/disc --reason 'half the corners'");
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("radius_error.max, polygon, default: 0.0342205"),
+                                 HasSubstr(" -> 0.136296"), HasSubstr("tolerances)")));
 }
 
 TEST_F(Program, ObservedOrderOfTheToyMethodsIsWhatTheoryPredicts) {

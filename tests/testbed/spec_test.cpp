@@ -256,7 +256,8 @@ TEST_F(Spec, NullsAreOtherVariantsThatCanFailTheClaim) {
   const Experiment e = load(with_null(metric + "null = \"square\"\n"));
   EXPECT_EQ(e.claims.at(0).null, "square");
   EXPECT_EQ(e.cases.at(0).variants.at(2).role, "null");
-  EXPECT_EQ(e.claims.at(0).metric_tolerance.absolute, topics_[0].metrics[0].tolerance.absolute);
+  EXPECT_EQ(e.claims.at(0).metric_tolerance.absolute,
+            find_metric(topics_[0], "radius_error")->tolerance.absolute);
   EXPECT_THAT(
       error_of(with_null(metric + "null = \"sqare\"\n")),
       AllOf(HasSubstr("null: there is no variant 'sqare'"), HasSubstr("did you mean 'square'")));

@@ -187,7 +187,7 @@ Topic circle_topic() {
   };
   topic.methods = circle_methods();
   topic.metrics = circle_metrics();
-  topic.diagnostics = {{"evaluations", "1", "points of the rim"}};
+  topic.diagnostics = {{"evaluations", "1", "points of the rim", true, {0.5, 0}}};
   return topic;
 }
 

@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <cctype>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "testbed/commands/blessed_run.h"
+#include "testbed/commands/commands.h"
+#include "testbed/commands/console.h"
+#include "testbed/commands/outcome.h"
+#include "testbed/runner/build_info.h"
+#include "testbed/runner/claims.h"
+#include "testbed/runner/reference_diff.h"
+#include "testbed/runner/stop.h"
+
+namespace geoprior {
+namespace {
+
+constexpr std::size_t kMostLines = 40;
+
+void require_reason(const BlessRequest& request) {
+  const bool blank = std::all_of(request.reason.begin(), request.reason.end(),
+                                 [](unsigned char c) { return std::isspace(c) != 0; });
+  if (!blank) return;
+  throw Error("no reference value changes without a reason", "bless " + request.id,
+              "--reason \"why the new values are right\"");
+}
+
+}  // namespace
+
+int bless_command(const CommandContext& context, const BlessRequest& request) {
+  require_reason(request);
+  install_stop_handler();
+  const BlessedRun run = run_without_clock(context, request.id, request.quick);
+  const std::filesystem::path file = reference_file(run.experiment.id);
+  Reference reference = read_reference(file);
+  const std::string size = run.experiment.quick ? "quick" : "full";
+  const std::vector<ClaimRecord> claims = decide_claims(run.experiment, run.record);
+  const Gates gates(run.experiment, *run.topic);
+  const BuildInfo& build = build_info();
+  const ReferenceSet before = reference.sets[size];
+  ReferenceSet& after = reference.sets[size];
+  after = bless_values(gated_values(run.experiment, *run.topic, run.record, claims), before, gates,
+                       {build.git_commit + (build.git_dirty() ? "-modified" : ""), request.reason});
+  reference.contents[size] = content_of(run.record);
+  write_reference(reference, file);
+
+  for (const std::string& failure : failures(run.record)) say("  note: " + failure);
+  const std::vector<ReferenceChange> changes = changes_of(before, after, gates);
+  for (const std::string& line : difference_lines(changes, kMostLines)) say("  " + line);
+  for (const ClaimRecord& claim : claims) {
+    if (!claim.holds) say("  note: a claim falls short: " + claim.text + ": " + claim.detail);
+  }
+  say("blessed " + std::to_string(changes.size()) + " values of " + run.experiment.id + " (" +
+      size + ") in " + file.string());
+  if (context.json) {
+    print_json({{"experiment", run.experiment.id},
+                {"size", size},
+                {"changed", changes.size()},
+                {"file", file.string()}});
+  }
+  return done;
+}
+
+}  // namespace geoprior
