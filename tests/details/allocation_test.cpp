@@ -19,7 +19,9 @@ std::optional<std::size_t> of_a_step_at_rest(int details, const SelfReplicatingO
   std::unique_ptr<DetailMethod> method;
   std::optional<std::size_t> count =
       test::allocations_of([&] { method = make_self_replicating(scene, options, 1); });
-  if (count) EXPECT_GT(*count, 100U) << "what is kept of the surface";
+  if (count) {
+    EXPECT_GT(*count, 100U) << "what is kept of the surface";
+  }
   with_threads(1, [&] {
     RunContext context;
     for (int frame = 0; frame < 2; ++frame) method->step(scene.surface.V, context);

@@ -21,7 +21,9 @@ std::optional<std::size_t> of_second_pose(const RiggedMesh& rig, const Deform& d
   std::optional<std::size_t> count;
   with_threads(1, [&] {
     const auto of_first = test::allocations_of([&] { deform(first); });
-    if (of_first) EXPECT_GT(*of_first, 0U) << "the posed vertices need room";
+    if (of_first) {
+      EXPECT_GT(*of_first, 0U) << "the posed vertices need room";
+    }
     count = test::allocations_of([&] { deform(second); });
   });
   return count;

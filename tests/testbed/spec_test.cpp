@@ -116,10 +116,12 @@ TEST_F(Spec, QuickOverridesKeysAndSweepValues) {
 }
 
 TEST_F(Spec, QuickVersionLeavesOutWhatOnlyTheFullOneHas) {
-  const std::string claim =
-      "[[claim]]\ntext = \"a\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = 1\n";
-  const std::string text = toy::disc_experiment() + kSweep + claim +
-                           "cases = [\"segments=8\", \"segments=32\"]\n" + claim +
+  const auto claim = [](const std::string& text) {
+    return "[[claim]]\ntext = \"" + text +
+           "\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = 1\n";
+  };
+  const std::string text = toy::disc_experiment() + kSweep + claim("both") +
+                           "cases = [\"segments=8\", \"segments=32\"]\n" + claim("full") +
                            "cases = [\"segments=32\"]\n" +
                            "[[sweep]]\nkey = \"seed\"\nvalues = [4]\nquick_values = []\n";
   EXPECT_EQ(load(text).claims.size(), 2U);
@@ -131,7 +133,7 @@ TEST_F(Spec, QuickVersionLeavesOutWhatOnlyTheFullOneHas) {
   const Experiment again = load(quick.resolved_toml);
   EXPECT_EQ(case_names(again), case_names(quick));
   EXPECT_EQ(again.claims.size(), 1U);
-  EXPECT_THAT(error_of(text + claim + "cases = [\"segments=9\"]\n", sized(true)),
+  EXPECT_THAT(error_of(text + claim("none") + "cases = [\"segments=9\"]\n", sized(true)),
               HasSubstr("segments=9"));
 }
 
@@ -257,7 +259,7 @@ TEST_F(Spec, NullsAreOtherVariantsThatCanFailTheClaim) {
   EXPECT_EQ(e.claims.at(0).null, "square");
   EXPECT_EQ(e.cases.at(0).variants.at(2).role, "null");
   EXPECT_EQ(e.claims.at(0).metric_tolerance.absolute,
-            find_metric(topics_[0], "radius_error")->tolerance.absolute);
+            find_metric(topic_of(e, topics_), "radius_error")->tolerance.absolute);
   EXPECT_THAT(
       error_of(with_null(metric + "null = \"sqare\"\n")),
       AllOf(HasSubstr("null: there is no variant 'sqare'"), HasSubstr("did you mean 'square'")));
