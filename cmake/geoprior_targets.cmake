@@ -141,5 +141,8 @@ function(geoprior_test name)
   geoprior_unite(test_${name})
   geoprior_precompile(test_${name} test <gmock/gmock.h> <gtest/gtest.h> <Eigen/Core> <Eigen/Geometry> <algorithm> <array>
     <cmath> <filesystem> <functional> <map> <memory> <numbers> <optional> <string> <vector>)
+  if(GEOPRIOR_SANITIZE)
+    target_sources(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/keep_libraries.cpp)
+  endif()
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST)
 endfunction()
