@@ -486,12 +486,9 @@ std::vector<ClaimRecord> read_claims(const H5Group& root, int schema_version) {
   root.read_table("claims", table);
   std::vector<ClaimRecord> claims;
   for (std::size_t i = 0; i < column<std::string>(table, 0).size(); ++i) {
-    claims.push_back({column<std::string>(table, 0)[i],
-                      column<std::string>(table, 1)[i],
-                      column<std::string>(table, 2)[i],
-                      column<double>(table, 3)[i],
-                      column<double>(table, 4)[i],
-                      column<std::int64_t>(table, 5)[i] != 0});
+    claims.push_back({column<std::string>(table, 0)[i], column<std::string>(table, 1)[i],
+                      column<std::string>(table, 2)[i], column<double>(table, 3)[i],
+                      column<double>(table, 4)[i], column<std::int64_t>(table, 5)[i] != 0});
   }
   if (schema_version >= 3) read_nulls(root, claims);
   return claims;

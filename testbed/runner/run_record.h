@@ -133,7 +133,8 @@ struct ClaimRecord {
   double right = 0;
   bool holds = false;
   NullRecord null = {};
-  std::string passed_too = {};  ///< further variants that the inequality holds for: "adaptive, dense"
+  std::string passed_too =
+      {};  ///< further variants that the inequality holds for: "adaptive, dense"
 };
 
 /// The memory image of a run: what run.h5 holds (docs/file-formats.md), what claims, check and

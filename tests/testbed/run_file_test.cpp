@@ -74,8 +74,14 @@ RunRecord sample_record() {
   record.cases[1].name = "default";
   record.studies = {{"growth", "exponent", "timing:solve", 1.02, 0.9, 1.1, {1, 2}, {3, 4}, {}},
                     {"near", "within-spread", "x", kInfinity, 0, 1, {0, 1}, {3, 4}, {5, 5}}};
-  record.claims = {{"it holds", "default", "1 <= 2", 1, 2, true,
-                    {"naive", Discrimination::discriminates, 3, 2, "3 <= 2"}, "alpha, zeta"},
+  record.claims = {{"it holds",
+                    "default",
+                    "1 <= 2",
+                    1,
+                    2,
+                    true,
+                    {"naive", Discrimination::discriminates, 3, 2, "3 <= 2"},
+                    "alpha, zeta"},
                    {"it does not", "", "", kNan, 0, false}};
   return record;
 }
