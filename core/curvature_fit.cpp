@@ -18,7 +18,6 @@ namespace {
 using Hinge = CurvatureFit::Hinge;
 using Terms = std::vector<CurvatureFit::Term>;  // here with coefficients as (uu, sqrt2 uv, vv)
 
-constexpr double kSqrt2 = std::numbers::sqrt2;
 constexpr std::size_t kBlock = 64;  // triangles fitted by one thread: about 0.1 ms
 
 /// Slope across the edge a-b of the plane through a, b, c less that of the quadratic u' S u / 2 at
@@ -176,7 +175,7 @@ CurvatureFit fit_curvature(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX
   fit.hinges = find_hinges(triangles, of_triangle);
   for (Hinge& h : fit.hinges) {
     h.jump = slope_rise(pattern, h.a, h.b, h.c) + slope_rise(pattern, h.b, h.a, h.d);
-    h.jump[1] *= kSqrt2;
+    h.jump[1] *= std::numbers::sqrt2;
   }
   const std::size_t m = fit.area.size();
   fit.own.resize(m);
@@ -195,7 +194,7 @@ CurvatureFit fit_curvature(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX
   parallel_blocks(m, kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       fit.terms[t] = assembly.terms(static_cast<int>(t));
-      for (CurvatureFit::Term& term : fit.terms[t]) term.coefficient[1] /= kSqrt2;
+      for (CurvatureFit::Term& term : fit.terms[t]) term.coefficient[1] /= std::numbers::sqrt2;
     }
   });
   return fit;

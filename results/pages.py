@@ -17,7 +17,7 @@ import expressions
 from expressions import ExpressionError
 from runfile import RunFileError
 from records import Record, read_records
-from summary import claims, table, timing_table
+from summary import claim_list, claims, table, timing_table
 
 INLINE = re.compile(r"<!--= (?P<source>.*?) -->(?P<shown>.*?)<!-- -->")
 BLOCK = re.compile(r"^(?P<pad> *)<!-- begin: (?P<source>.*?)\s*-->\n(?P<shown>.*?)^ *<!-- end -->",
@@ -67,11 +67,6 @@ def figure_index(records):
     return table(["experiment", "figure", "vertices or triangles", "result", "content_sha256", "commit"], rows)
 
 
-def claim_lines(record):
-    """The list of claims, without a heading of its own."""
-    return claims(record)[3:]
-
-
 def times_lines(record, case):
     lines = timing_table(record.timing_rows(case))
     return [*lines[1:], "", f"Processor: {record.processor}."] if lines else []
@@ -82,8 +77,7 @@ def section(record):
     lines = ["", f"## {record.experiment_id}" + (f" → Figure {record.figure}" if record.figure else ""), "",
              record.title + ".", "", f"`{record.command}`, {record.processor}."]
     lines += [f"\n**{line}**\n" for line in record.failures]
-    lines += [line.replace("## Claims", "**Claims**") if line.startswith("## ") else line
-              for line in claims(record)]
+    lines += claims(record, "**Claims**")
     if record.studies:
         lines += ["", *table(["study", "value", "95 % interval"],
                              [[s.name, f"{s.value:.3g}", f"{s.low:.3g} … {s.high:.3g}"] for s in record.studies])]
@@ -151,7 +145,7 @@ def block_lines(source, sources):
     kind, _, argument = first.partition(" ")
     if template and kind != "table":
         raise ExpressionError(f"a block of kind '{kind}' has one line")
-    of_record = {"experiment": section, "claims": claim_lines, "figure": caption}
+    of_record = {"experiment": section, "claims": claim_list, "figure": caption}
     if kind in of_record:
         return of_record[kind](expressions.record_named(sources.records, argument))
     match kind, bool(argument):

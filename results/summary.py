@@ -20,16 +20,21 @@ def table(head, rows):
     return lines + ["| " + " | ".join(row) + " |" for row in clean]
 
 
-def claims(run):
-    if not run.claims:
-        return []
-    held = sum(c.holds for c in run.claims)
-    lines = ["", f"## Claims: {held} of {len(run.claims)} hold", ""]
+def claim_list(run):
+    lines = []
     for claim in run.claims:
         case = f" ({claim.case})" if claim.case and len(run.cases) > 1 else ""
         lines.append(f"- **{'holds' if claim.holds else 'falls short'}**: {claim.text}{case}  ")
         lines.append(f"  `{claim.detail}`" + "".join(f"; {words}" for words in beside(claim)))
     return lines
+
+
+def claims(run, heading="## Claims"):
+    """The list below a line of how many hold; nothing for a run without claims."""
+    if not run.claims:
+        return []
+    held = sum(c.holds for c in run.claims)
+    return ["", f"{heading}: {held} of {len(run.claims)} hold", "", *claim_list(run)]
 
 
 def metrics_table(case):

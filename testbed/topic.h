@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -97,6 +98,9 @@ enum class Direction { lower_is_better, higher_is_better, closer_to_target, none
 struct Tolerance {
   double absolute = 0;
   double relative = 0;
+
+  /// What it comes to for a value of that size.
+  [[nodiscard]] double of(double value) const { return absolute + relative * std::abs(value); }
 };
 
 /// One row of a topic's metric table.

@@ -46,7 +46,11 @@ ContentKey key_of(const Measured& m, const Eigen::MatrixX3d& posed, const Pose& 
   return key;
 }
 
-bool is_closed(const TriMesh& mesh) { return boundary_edges(mesh.F).empty(); }
+bool is_closed(Shared& shared, const TriMesh& mesh) {
+  ContentKey key;
+  key.add_matrix(mesh.F);
+  return shared.closed.get(key, [&] { return boundary_edges(mesh.F).empty(); });
+}
 
 OverlapStudy compute_overlap(const Measured& m, const Eigen::MatrixX3d& V, const Pose& pose) {
   if (const JointRegion* region = m.region()) {
@@ -93,8 +97,8 @@ Value volume_change(const Measured& m) {
                          region_volume(m.posed, m.mesh().F, *m.region()));
 }
 
-Value volume_change_global(const Measured& m) {
-  if (!is_closed(m.mesh())) return std::nullopt;
+Value volume_change_global(Shared& shared, const Measured& m) {
+  if (!is_closed(shared, m.mesh())) return std::nullopt;
   return relative_change(signed_volume(m.mesh().V, m.mesh().F), signed_volume(m.posed, m.mesh().F));
 }
 
@@ -103,7 +107,7 @@ std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m) {
   const auto study = [&](const Eigen::MatrixX3d& V, const Pose& pose) {
     return shared.overlap.get(key_of(m, V, pose), [&] { return compute_overlap(m, V, pose); });
   };
-  if (!is_closed(m.mesh())) return std::nullopt;
+  if (!is_closed(shared, m.mesh())) return std::nullopt;
   const OverlapStudy rest = study(m.mesh().V, at_rest);
   OverlapStudy excess = study(m.posed, m.pose);
   excess.volume -= rest.volume;

@@ -38,6 +38,7 @@ Measured measured(const SkinningScene& scene, const Frame& frame);
 /// reference's, the overlap of a reference frame the denominator of every variant that is compared
 /// with it, and the rest pose that of all frames. Each takes longer than all other measures.
 struct Shared {
+  Memo<bool> closed;
   Memo<OverlapStudy> overlap;
   Memo<int> pairs_at_rest;
 };
@@ -45,7 +46,7 @@ struct Shared {
 /// Absent without a region.
 Value volume_change(const Measured& m);
 /// Absent for an open mesh.
-Value volume_change_global(const Measured& m);
+Value volume_change_global(Shared& shared, const Measured& m);
 
 /// Overlap above rest (raw) with its noise floor; absent for an open mesh.
 std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m);

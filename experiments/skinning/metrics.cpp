@@ -48,8 +48,8 @@ MetricGroup region_volume_group() {
            [](double change) { return std::abs(change); });
 }
 
-MetricGroup global_volume_group() {
-  return of_frame(volume_change_global)
+MetricGroup global_volume_group(const SharedPtr& shared) {
+  return of_frame([shared](const Measured& m) { return volume_change_global(*shared, m); })
       .row("volume_change_global", "1",
            "change of the signed volume of the whole closed surface over its rest volume", kTarget,
            kFineRatio);
@@ -175,7 +175,7 @@ MetricGroup distance_group() {
 
 std::vector<MetricGroup> metrics() {
   const auto shared = std::make_shared<Shared>();
-  return {region_volume_group(), global_volume_group(),
+  return {region_volume_group(), global_volume_group(shared),
           overlap_group(shared), overlap_ratio_group(shared),
           pairs_group(shared),   section_group(),
           distortion_group(),    rest_group(),

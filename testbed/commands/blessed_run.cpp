@@ -17,16 +17,10 @@ namespace geoprior {
 namespace {
 
 void drop_timing(Experiment& experiment) {
-  std::vector<std::string> timed;
-  for (const StudySpec& study : experiment.studies) {
-    if (study.quantity.starts_with("timing:")) timed.push_back("study:" + study.name);
-  }
   std::erase_if(experiment.studies,
                 [](const StudySpec& study) { return study.quantity.starts_with("timing:"); });
-  std::erase_if(experiment.claims, [&](const ClaimSpec& claim) {
-    return claim.metric.starts_with("timing:") ||
-           std::find(timed.begin(), timed.end(), claim.metric) != timed.end();
-  });
+  std::erase_if(experiment.claims,
+                [](const ClaimSpec& claim) { return claim.exempt == Exemption::timing; });
 }
 
 }  // namespace

@@ -1,6 +1,9 @@
 #include "testbed/commands/outcome.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -38,13 +41,17 @@ std::string times_text(const std::vector<std::vector<double>>& frames) {
   return times.size() < 2 ? text : text + " (" + time_text(quantile(times, 0.95)) + ")";
 }
 
-std::vector<VariantRecord> without_nulls(std::vector<VariantRecord> variants) {
-  std::erase_if(variants, [](const VariantRecord& v) { return is_null_control(v.role); });
-  return variants;
+using Variants = std::vector<std::reference_wrapper<const VariantRecord>>;
+
+Variants without_nulls(const CaseRecord& in) {
+  Variants shown;
+  std::copy_if(in.variants.begin(), in.variants.end(), std::back_inserter(shown),
+               [](const VariantRecord& variant) { return !is_null_control(variant.role); });
+  return shown;
 }
 
 /// What each variant needed on top of what was there before it; empty where none was measured.
-std::vector<std::string> memory_row(const std::vector<VariantRecord>& variants) {
+std::vector<std::string> memory_row(const Variants& variants) {
   std::vector<std::string> row{"peak memory", "MB"};
   bool measured = false;
   for (const VariantRecord& variant : variants) {
@@ -61,7 +68,7 @@ void say_case(const CaseRecord& in) {
   std::vector<std::vector<std::string>> rows{{in.name == "default" ? "" : in.name, "unit"}};
   std::map<std::string, std::string> metrics;
   std::set<std::string> phases;
-  const std::vector<VariantRecord> shown = without_nulls(in.variants);
+  const Variants shown = without_nulls(in);
   for (const VariantRecord& variant : shown) {
     rows.front().push_back(variant.name);
     for (const auto& [name, value] : variant.summary) {
@@ -178,9 +185,7 @@ void say_claims(const RunRecord& record, bool all_numbers) {
     say((claim.holds ? tinted("holds      ", Tint::good) : tinted("falls short", Tint::bad)) +
         "  " + claim.text + in);
     if (all_numbers || !claim.holds) say("             " + claim.detail);
-    const bool told = all_numbers || claim.null.verdict == Discrimination::is_void ||
-                      claim.null.verdict == Discrimination::undecided;
-    if (told) say("             " + null_text(claim));
+    if (all_numbers || !is_sound(claim)) say("             " + null_text(claim));
     if (all_numbers && !claim.passed_too.empty()) {
       say("             holds for " + claim.passed_too + " too");
     }

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "core/error.h"
+#include "testbed/joined.h"
 #include "testbed/runner/frames_text.h"
 #include "testbed/runner/judgement.h"
-#include "testbed/runner/number_text.h"
 #include "testbed/runner/studies.h"
 
 namespace geoprior {
@@ -19,30 +19,23 @@ namespace {
 /// The share of the seeds in which a claim must hold, and its null must fail.
 constexpr double kShareOfSeeds = 0.9;
 constexpr std::size_t kLeastSeeds = 10;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What a claim comes to in one case, with the numbers behind it.
 struct Decision {
   ClaimRecord record;
-  std::optional<Judgement> own;  ///< absent where a side failed
+  double margin = -kInfinity;       ///< of the trial nearest to failing; -infinity: a side failed
+  double null_margin = -kInfinity;  ///< of the null's; -infinity: it has no value
   std::vector<std::string> passed_too;
 };
 
-void speak(ClaimRecord& record, const Judgement::Comparison& worst) {
+void speak(Decision& decision, const Judgement::Trial& worst) {
+  ClaimRecord& record = decision.record;
   record.left = worst.left;
   record.right = worst.right;
   record.holds = worst.holds;
   record.detail = worst.detail;
-}
-
-/// The claim is `a < b` or `a > b` with its null for b: the null fails as a value is not less than
-/// itself, and it is the claim's own margin that must be more than nothing.
-bool null_is_yardstick(const ClaimSpec& claim) {
-  return claim.null && claim.of == claim.null && claim.factor == 1 && claim.offset == 0 &&
-         !claim.of_reduce;
-}
-
-bool is_clear(const Judgement::Comparison& worst, const Tolerance& tolerance) {
-  return worst.margin > tolerance.absolute + tolerance.relative * std::abs(worst.left);
+  decision.margin = worst.margin;
 }
 
 /// What the null's judgement says of a claim that was judged `own`.
@@ -50,42 +43,41 @@ Discrimination verdict_of(const ClaimSpec& claim, const Judgement& own, const Ju
   const Tolerance& tolerance = claim.metric_tolerance;
   bool seen = false;
   if (claim.known_shortfall && !own.holds()) {
-    const double gap = own.worst().margin - null.worst().margin;
-    seen = gap > tolerance.absolute + tolerance.relative * std::abs(null.worst().left);
+    seen = own.worst().margin - null.worst().margin > tolerance.of(null.worst().left);
   } else if (null_is_yardstick(claim)) {
-    seen = is_clear(own.worst(), tolerance);
+    seen = own.worst().margin > tolerance.of(own.worst().left);
   } else {
     seen = null.fails_clearly(tolerance);
   }
   return seen ? Discrimination::discriminates : Discrimination::is_void;
 }
 
-/// `judge_null` puts the null in the place of the variant; what it throws leaves the claim
-/// undecided.
+/// Adds what the null says; `own` is null where a side failed. `judge_null` puts the null in the
+/// place of the variant; what it throws leaves the claim undecided.
 template <class JudgeNull>
-NullRecord null_record(const ClaimSpec& claim, const std::optional<Judgement>& own,
-                       JudgeNull judge_null) {
-  NullRecord record;
+void ask_null(const ClaimSpec& claim, const Judgement* own, JudgeNull judge_null,
+              Decision& decision) {
+  NullRecord& record = decision.record.null;
   record.left = record.right = std::numeric_limits<double>::quiet_NaN();
   if (!claim.null) {
     const bool exempt = claim.exempt != Exemption::none;
     record.verdict = exempt ? Discrimination::exempt : Discrimination::unasked;
-    return record;
+    return;
   }
   record.variant = *claim.null;
   record.verdict = Discrimination::undecided;
   record.detail = "the claim's own variant failed";
-  if (!own) return record;
+  if (own == nullptr) return;
   try {
     const Judgement null = judge_null(*claim.null);
     record.left = null.worst().left;
     record.right = null.worst().right;
     record.detail = null.worst().detail;
     record.verdict = verdict_of(claim, *own, null);
+    decision.null_margin = null.worst().margin;
   } catch (const Error& error) {
     record.detail = error.what();
   }
-  return record;
 }
 
 /// A variant that broke off has values of some frames only: they decide nothing.
@@ -119,23 +111,18 @@ Decision decide_in_case(const ClaimSpec& claim, const CaseRecord& in, const Vari
   ClaimRecord& record = decision.record;
   record.text = claim.text;
   record.case_name = in.name;
+  const auto judge_null = [&](const std::string& null) { return judge(claim, in, null); };
   if (const auto reason = fallen_short(variant, of)) {
     record.left = record.right = std::numeric_limits<double>::quiet_NaN();
     record.detail = *reason;
-  } else {
-    decision.own = judge(claim, in, claim.variant);
-    speak(record, decision.own->worst());
-    decision.passed_too = others_that_pass(claim, in);
+    ask_null(claim, nullptr, judge_null, decision);
+    return decision;
   }
-  record.null = null_record(claim, decision.own,
-                            [&](const std::string& null) { return judge(claim, in, null); });
+  const Judgement own = judge(claim, in, claim.variant);
+  speak(decision, own.worst());
+  decision.passed_too = others_that_pass(claim, in);
+  ask_null(claim, &own, judge_null, decision);
   return decision;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 bool most(std::size_t count, std::size_t of) {
@@ -155,29 +142,31 @@ std::vector<std::string> in_most(const std::vector<Decision>& seeds) {
   return names;
 }
 
-Discrimination verdict_over(const std::vector<Decision>& seeds) {
-  std::size_t discriminating = 0;
-  for (const Decision& seed : seeds) {
-    const Discrimination verdict = seed.record.null.verdict;
-    if (verdict == Discrimination::undecided || verdict == Discrimination::exempt ||
-        verdict == Discrimination::unasked) {
-      return verdict;
-    }
-    if (verdict == Discrimination::discriminates) ++discriminating;
-  }
-  return most(discriminating, seeds.size()) ? Discrimination::discriminates
-                                            : Discrimination::is_void;
+/// What the null says in all seeds together: of seeds that it leaves undecided the first, else in
+/// the words of the seed in which it comes nearest to passing.
+NullRecord null_over(const std::vector<Decision>& seeds) {
+  const auto is = [](Discrimination verdict) {
+    return [verdict](const Decision& seed) { return seed.record.null.verdict == verdict; };
+  };
+  const Discrimination first = seeds.front().record.null.verdict;
+  const bool asked = first != Discrimination::exempt && first != Discrimination::unasked;
+  if (!asked) return seeds.front().record.null;
+  const auto undecided = std::find_if(seeds.begin(), seeds.end(), is(Discrimination::undecided));
+  if (undecided != seeds.end()) return undecided->record.null;
+  NullRecord null = std::max_element(seeds.begin(), seeds.end(), [](const auto& a, const auto& b) {
+                      return a.null_margin < b.null_margin;
+                    })->record.null;
+  const auto failed = static_cast<std::size_t>(
+      std::count_if(seeds.begin(), seeds.end(), is(Discrimination::discriminates)));
+  null.verdict =
+      most(failed, seeds.size()) ? Discrimination::discriminates : Discrimination::is_void;
+  return null;
 }
 
-/// "9 of 10 seeds; worst: …": the seed nearest to failing speaks for the claim, that nearest to
-/// passing for its null.
+/// "9 of 10 seeds; worst: …": the seed nearest to failing speaks for the claim.
 ClaimRecord over_seeds(const std::vector<Decision>& seeds) {
-  const auto margin = [](const Decision& d) {
-    return d.own ? d.own->worst().margin : -std::numeric_limits<double>::infinity();
-  };
-  const auto worst =
-      std::min_element(seeds.begin(), seeds.end(),
-                       [&](const auto& a, const auto& b) { return margin(a) < margin(b); });
+  const auto worst = std::min_element(
+      seeds.begin(), seeds.end(), [](const auto& a, const auto& b) { return a.margin < b.margin; });
   const auto held = static_cast<std::size_t>(
       std::count_if(seeds.begin(), seeds.end(), [](const auto& d) { return d.record.holds; }));
   ClaimRecord record = worst->record;
@@ -185,15 +174,7 @@ ClaimRecord over_seeds(const std::vector<Decision>& seeds) {
   record.holds = most(held, seeds.size());
   record.detail = std::to_string(held) + " of " + std::to_string(seeds.size()) +
                   " seeds; worst: " + worst->record.detail;
-  record.null.verdict = verdict_over(seeds);
-  const auto first = std::find_if(seeds.begin(), seeds.end(), [&](const Decision& d) {
-    return d.record.null.verdict != Discrimination::discriminates;
-  });
-  if (first != seeds.end()) {
-    const Discrimination verdict = record.null.verdict;
-    record.null = first->record.null;
-    record.null.verdict = verdict;
-  }
+  record.null = null_over(seeds);
   record.passed_too = joined(in_most(seeds));
   return record;
 }
@@ -273,24 +254,22 @@ std::vector<ClaimRecord> decide_in_cases(const ClaimSpec& claim, const Experimen
 std::vector<StudyRecord> studies_of_null(const ClaimSpec& claim, const Experiment& experiment,
                                          const RunRecord& record, const std::string& null) {
   Experiment replaced;
-  for (const StudySpec& study : experiment.studies) {
-    if ("study:" + study.name != claim.metric) continue;
-    replaced.studies.push_back(study);
-    replaced.studies.back().variant = null;
-  }
+  replaced.studies = {*study_of(claim, experiment.studies)};
+  replaced.studies.front().variant = null;
   return make_studies(replaced, record);
 }
 
 ClaimRecord decide_study(const ClaimSpec& claim, const Experiment& experiment,
                          const RunRecord& record, const std::vector<StudyRecord>& studies) {
   const Judgement own = judge_study(claim, studies);
-  ClaimRecord decided;
-  decided.text = claim.text;
-  speak(decided, own.worst());
-  decided.null = null_record(claim, own, [&](const std::string& null) {
+  Decision decision;
+  decision.record.text = claim.text;
+  speak(decision, own.worst());
+  const auto judge_null = [&](const std::string& null) {
     return judge_study(claim, studies_of_null(claim, experiment, record, null));
-  });
-  return decided;
+  };
+  ask_null(claim, &own, judge_null, decision);
+  return decision.record;
 }
 
 }  // namespace

@@ -20,11 +20,6 @@ constexpr Tolerance kSlope{0.02, 0};
 /// Of a distance of two medians in half ranges, which a single seed can move.
 constexpr Tolerance kWithinSpread{0.1, 0.05};
 
-/// "overlap_volume" of "overlap_volume.max"; names with a prefix are whole.
-std::string metric_of(const std::string& name) {
-  return name.find(':') == std::string::npos ? name.substr(0, name.rfind('.')) : name;
-}
-
 Direction direction_of(Comparison comparison) {
   switch (comparison) {
     case Comparison::less_equal:
@@ -52,23 +47,15 @@ double shortfall(const ClaimSpec& claim, const ClaimRecord& record) {
 }
 
 std::string unit_of(const Topic& topic, const std::string& quantity) {
-  for (const MetricEntry& metric : metric_rows(topic)) {
-    if (metric.name == quantity) return metric.unit;
-  }
+  if (const MetricEntry* metric = find_metric(topic, quantity)) return metric->unit;
   for (const DiagnosticEntry& diagnostic : topic.diagnostics) {
     if ("diagnostic:" + diagnostic.name == quantity) return diagnostic.unit;
   }
   return "1";
 }
 
-std::string unit_of_study(const Experiment& experiment, const Topic& topic,
-                          const std::string& name) {
-  for (const StudySpec& study : experiment.studies) {
-    if (study.name == name && study.kind == StudyKind::spread) {
-      return unit_of(topic, study.quantity);
-    }
-  }
-  return "1";
+std::string unit_of(const Topic& topic, const StudySpec& study) {
+  return study.kind == StudyKind::spread ? unit_of(topic, study.quantity) : "1";
 }
 
 void add_counted_work(const Topic& topic, const VariantRecord& variant,
@@ -101,11 +88,11 @@ void add_shortfalls(const Experiment& experiment, const Topic& topic,
                     const std::vector<ClaimRecord>& claims, GatedValues& values) {
   for (const ClaimSpec& claim : experiment.claims) {
     if (!claim.known_shortfall) continue;
+    const StudySpec* study = study_of(claim, experiment.studies);
+    const std::string unit =
+        study != nullptr ? unit_of(topic, *study) : unit_of(topic, claim.metric);
     for (const ClaimRecord& record : claims) {
       if (record.text != claim.text || record.holds) continue;
-      const bool study = claim.metric.starts_with("study:");
-      const std::string unit = study ? unit_of_study(experiment, topic, claim.metric.substr(6))
-                                     : unit_of(topic, claim.metric);
       const double size = std::abs(record.left) + (claim.of ? std::abs(record.right) : 0);
       values[record.case_name][""]["shortfall:" + claim.text] = {shortfall(claim, record), unit,
                                                                  size};
@@ -156,13 +143,17 @@ GatedValues medians_over_seeds(const RunRecord& record, const GatedValues& value
 
 }  // namespace
 
+std::string without_statistic(const std::string& name) {
+  return name.find(':') == std::string::npos ? name.substr(0, name.rfind('.')) : name;
+}
+
 Gates::Gates(const Experiment& experiment, const Topic& topic) {
   for (const MetricEntry& metric : metric_rows(topic)) {
     Gate& gate = gates_[metric.name];
     gate.tolerance = metric.tolerance;
     gate.direction = metric.direction;
     gate.target = metric.target;
-    gate.compared = metric.ungated.empty();
+    gate.compared = metric.gated();
   }
   for (const DiagnosticEntry& entry : topic.diagnostics) {
     Gate& gate = gates_["diagnostic:" + entry.name];
@@ -207,20 +198,19 @@ void Gates::add_claim(const ClaimSpec& claim, const Experiment& experiment) {
       gate.tolerance.absolute *= 1 + std::abs(claim.factor);
     }
   }
-  if (!claim.metric.starts_with("study:")) {
+  const StudySpec* study = study_of(claim, experiment.studies);
+  if (study == nullptr) {
     headline_.emplace(claim.variant, claim.metric);
     return;
   }
-  headline_.emplace("", claim.metric);
   gates_[claim.metric].direction = direction_of(claim.is);
-  for (const StudySpec& study : experiment.studies) {
-    if ("study:" + study.name == claim.metric) headline_.emplace(study.variant, study.quantity);
-  }
+  headline_.emplace("", claim.metric);
+  headline_.emplace(study->variant, study->quantity);
 }
 
 Gate Gates::of(const std::string& variant, const std::string& name) const {
   auto found = gates_.find(name);
-  if (found == gates_.end()) found = gates_.find(metric_of(name));
+  if (found == gates_.end()) found = gates_.find(without_statistic(name));
   if (found == gates_.end()) return {};
   Gate gate = found->second;
   gate.headline = !gate.only_more && headline_.contains({variant, found->first});
@@ -238,8 +228,7 @@ GatedValues gated_values(const Experiment& experiment, const Topic& topic, const
     const auto study = std::find_if(studies.begin(), studies.end(),
                                     [&](const StudyRecord& s) { return s.name == spec.name; });
     if (study == studies.end()) throw Error("is not in the run", "study '" + spec.name + "'");
-    values[""][""]["study:" + spec.name] = {study->value,
-                                            unit_of_study(experiment, topic, spec.name)};
+    values[""][""]["study:" + spec.name] = {study->value, unit_of(topic, spec)};
   }
   return values;
 }

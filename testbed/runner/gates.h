@@ -54,6 +54,19 @@ struct GatedValue {
 /// how much a claim with `known_shortfall` falls short, in its metric's unit.
 using GatedValues = std::map<std::string, std::map<std::string, std::map<std::string, GatedValue>>>;
 
+/// visit(case, variant, name, value) for each of a set's values, in their order.
+template <class Values, class Visit>
+void visit_values(const Values& set, Visit visit) {
+  for (const auto& [case_name, variants] : set) {
+    for (const auto& [variant, values] : variants) {
+      for (const auto& [name, value] : values) visit(case_name, variant, name, value);
+    }
+  }
+}
+
+/// "overlap_volume" of "overlap_volume.max"; names with a prefix are whole.
+std::string without_statistic(const std::string& name);
+
 /// What `check` compares of a run. Of an experiment that bifurcates it is the median over the
 /// seeds: its cases differ in nothing else and are called "seed=*".
 /// @param claims  decided for this record

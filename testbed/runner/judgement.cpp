@@ -43,9 +43,9 @@ std::string right_text(const ClaimSpec& claim, double other, const std::string& 
   return text;
 }
 
-Judgement::Comparison compared(const ClaimSpec& claim, const std::string& subject,
-                               const Quantity& left, double other) {
-  Judgement::Comparison made;
+Judgement::Trial compared(const ClaimSpec& claim, const std::string& subject, const Quantity& left,
+                          double other) {
+  Judgement::Trial made;
   made.left = left.value;
   made.right = claim.factor * other + claim.offset;
   made.holds = satisfies(claim, made.left, made.right);
@@ -64,8 +64,8 @@ void require_parameter(const ClaimSpec& claim, const CaseRecord& in) {
               "claim '" + claim.text + "', case '" + in.name + "'", with_unit);
 }
 
-Judgement::Comparison compare_in_case(const ClaimSpec& claim, const CaseRecord& in,
-                                      const VariantRecord& variant, const VariantRecord* of) {
+Judgement::Trial compare_in_case(const ClaimSpec& claim, const CaseRecord& in,
+                                 const VariantRecord& variant, const VariantRecord* of) {
   const auto value = [&](const VariantRecord& v, Reduction reduce) {
     return quantity_of(in, v, claim.metric, claim.at_parameter, reduce);
   };
@@ -86,10 +86,10 @@ Judgement::Comparison compare_in_case(const ClaimSpec& claim, const CaseRecord& 
 
 /// Frame by frame. Frames where a side has no value are passed over, but one at least must have
 /// both.
-std::vector<Judgement::Comparison> compare_every_frame(const ClaimSpec& claim, const CaseRecord& in,
-                                                       const VariantRecord& variant,
-                                                       const VariantRecord* of) {
-  std::vector<Judgement::Comparison> made;
+std::vector<Judgement::Trial> compare_every_frame(const ClaimSpec& claim, const CaseRecord& in,
+                                                  const VariantRecord& variant,
+                                                  const VariantRecord* of) {
+  std::vector<Judgement::Trial> made;
   const auto has_value = [&](const VariantRecord& v, double parameter) {
     return value_at(in, v, claim.metric, parameter).has_value();
   };
@@ -122,18 +122,17 @@ const VariantRecord& require_variant(const ClaimSpec& claim, const CaseRecord& i
 
 }  // namespace
 
-const Judgement::Comparison& Judgement::worst() const {
-  return *std::min_element(comparisons.begin(), comparisons.end(),
-                           [](const auto& a, const auto& b) {
-                             return a.holds != b.holds ? b.holds : a.margin < b.margin;
-                           });
+const Judgement::Trial& Judgement::worst() const {
+  return *std::min_element(trials.begin(), trials.end(), [](const auto& a, const auto& b) {
+    return a.holds != b.holds ? b.holds : a.margin < b.margin;
+  });
 }
 
 bool Judgement::fails_clearly(const Tolerance& tolerance) const {
-  const auto failing = std::count_if(comparisons.begin(), comparisons.end(), [&](const auto& one) {
-    return !one.holds && -one.margin > tolerance.absolute + tolerance.relative * std::abs(one.left);
+  const auto failing = std::count_if(trials.begin(), trials.end(), [&](const auto& one) {
+    return !one.holds && -one.margin > tolerance.of(one.left);
   });
-  return 2 * static_cast<std::size_t>(failing) >= comparisons.size() && failing > 0;
+  return 2 * static_cast<std::size_t>(failing) >= trials.size() && failing > 0;
 }
 
 Judgement judge(const ClaimSpec& claim, const CaseRecord& in, const std::string& variant) {

@@ -11,16 +11,16 @@ namespace geoprior {
 /// frame by frame.
 struct Judgement {
   /// One comparison. Of all that are made the one nearest to failing speaks for the claim.
-  struct Comparison {
+  struct Trial {
     double left = 0;
     double right = 0;
     bool holds = false;
     double margin = 0;  ///< how far it is from failing; negative when it fails
     std::string detail;
   };
-  std::vector<Comparison> comparisons;  ///< at least one
+  std::vector<Trial> trials;  ///< at least one
 
-  [[nodiscard]] const Comparison& worst() const;
+  [[nodiscard]] const Trial& worst() const;
   [[nodiscard]] bool holds() const { return worst().holds; }
   /// Whether it fails by more than the tolerance: at the one frame, or in at least half of all.
   [[nodiscard]] bool fails_clearly(const Tolerance& tolerance) const;

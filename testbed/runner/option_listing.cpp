@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "testbed/joined.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/option_toml.h"
 #include "testbed/runner/option_values_definition.h"
@@ -31,9 +32,9 @@ Shown shown(const std::optional<T>& x) {
 
 template <class Items>
 std::string array_text(const Items& items) {
-  std::string joined;
-  for (const auto& item : items) joined += (joined.empty() ? "" : ", ") + shown(item).value;
-  return "[" + joined + "]";
+  std::vector<std::string> texts;
+  for (const auto& item : items) texts.push_back(shown(item).value);
+  return "[" + joined(texts) + "]";
 }
 
 template <class T>
@@ -44,12 +45,6 @@ Shown shown(const std::vector<T>& x) {
 template <class T>
 Shown shown(const std::array<T, 3>& x) {
   return {"3 " + shown(T{}).type + "s", array_text(x)};
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : " | ") + name;
-  return text;
 }
 
 /// Values that choices are made to have, by key.
@@ -153,7 +148,8 @@ void OptionLister::walk_tags(const std::string& prefix, std::size_t tag, Walked&
   for (OptionRow& row : all.rows) {
     const auto names = names_with.find(row.key);
     if (names == names_with.end() || names->second.size() == of.names.size()) continue;
-    const std::string when = of_tag + of.key.substr(prefix.size()) + " = " + joined(names->second);
+    const std::string when =
+        of_tag + of.key.substr(prefix.size()) + " = " + joined(names->second, " | ");
     row.when = row.when.empty() || when.starts_with(row.when) ? when : when + ", " + row.when;
   }
 }
@@ -188,7 +184,7 @@ void OptionLister::choice(std::string_view key, int& index, std::span<const std:
   index = forced == forced_.end() ? usual : forced->second;
   add(key, "choice", in_quotes(std::string(names[usual])), info);
   Tag tag{full, {names.begin(), names.end()}, {}};
-  walked_.rows.back().range = joined(tag.names);
+  walked_.rows.back().range = joined(tag.names, " | ");
   walked_.tags.push_back(std::move(tag));
 }
 
@@ -196,7 +192,7 @@ void OptionLister::optional_choice(std::string_view key, std::optional<int>& ind
                                    std::span<const std::string_view> names,
                                    const OptionInfo& info) {
   add(key, "choice", index ? in_quotes(std::string(names[*index])) : "", info);
-  walked_.rows.back().range = joined({names.begin(), names.end()});
+  walked_.rows.back().range = joined(names, " | ");
 }
 
 void OptionLister::group(std::string_view key, const OptionInfo& info,

@@ -45,20 +45,10 @@ const auto* find_in(const Values& set, const std::string& case_name, const std::
   return value == of_variant->second.end() ? none : &value->second;
 }
 
-template <class Values, class Visit>
-void visit_values(const Values& set, Visit visit) {
-  for (const auto& [case_name, variants] : set) {
-    for (const auto& [variant, values] : variants) {
-      for (const auto& [name, value] : values) visit(case_name, variant, name, value);
-    }
-  }
-}
-
 /// Fills in `problem`; leaves it empty where the value is what it was.
 void judge(const Gate& gate, const GatedValue& now, const ReferenceValue& before, Mismatch& m) {
   m.reference = before.value;
-  m.tolerance =
-      gate.tolerance.absolute + gate.tolerance.relative * now.size.value_or(std::abs(before.value));
+  m.tolerance = gate.tolerance.of(now.size.value_or(before.value));
   if (before.unit != now.unit) {
     m.problem = "unit was " + before.unit;
     return;
@@ -164,7 +154,7 @@ void keep_outside_content(GatedValues& values) { erase_metrics(values); }
 void keep_outside_content(ReferenceSet& values) { erase_metrics(values); }
 
 double rounded_for(double value, const Tolerance& tolerance) {
-  const double moved = kRoundingShare * (tolerance.absolute + tolerance.relative * std::abs(value));
+  const double moved = kRoundingShare * tolerance.of(value);
   if (!std::isfinite(value) || std::abs(value) <= moved) return std::isfinite(value) ? 0 : value;
   // Digits down to a power of ten of which half is at most `moved`, so that neighbours agree.
   const double last_place = std::floor(std::log10(2 * moved));
@@ -182,10 +172,8 @@ ReferenceSet bless_values(const GatedValues& now, const ReferenceSet& before, co
   visit_values(now, [&](const auto& in, const auto& variant, const auto& name, const auto& value) {
     const Gate gate = gates.of(variant, name);
     if (!gate.compared) return;
-    const double relative = gate.tolerance.relative;
-    const Tolerance tolerance = value.size
-                                    ? Tolerance{gate.tolerance.absolute + relative * *value.size, 0}
-                                    : gate.tolerance;
+    const Tolerance tolerance =
+        value.size ? Tolerance{gate.tolerance.of(*value.size), 0} : gate.tolerance;
     const double rounded = rounded_for(value.value, tolerance);
     const auto* old = find_in(before, in, variant, name);
     const bool same = old != nullptr && old->unit == value.unit && within(old->value, rounded, 0);

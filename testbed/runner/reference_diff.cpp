@@ -11,15 +11,6 @@ namespace {
 
 using Kind = ReferenceChange::Kind;
 
-template <class Visit>
-void for_each_value(const ReferenceSet& set, Visit visit) {
-  for (const auto& [in, variants] : set) {
-    for (const auto& [variant, values] : variants) {
-      for (const auto& [name, value] : values) visit(in, variant, name, value);
-    }
-  }
-}
-
 bool differ(const ReferenceValue& a, const ReferenceValue& b) {
   if (a.unit != b.unit) return true;
   return std::isnan(a.value) || std::isnan(b.value) ? std::isnan(a.value) != std::isnan(b.value)
@@ -28,8 +19,7 @@ bool differ(const ReferenceValue& a, const ReferenceValue& b) {
 
 /// NaN where a side has no value.
 double in_tolerances(const Gate& gate, double before, double after) {
-  return std::abs(after - before) /
-         (gate.tolerance.absolute + gate.tolerance.relative * std::abs(before));
+  return std::abs(after - before) / gate.tolerance.of(before);
 }
 
 /// Changes that no number measures come first.
@@ -58,17 +48,12 @@ std::string count_line(const std::map<std::string, std::size_t>& metrics, const 
   return total == 0 ? "" : std::to_string(total) + " " + what + ": " + list;
 }
 
-/// Reductions of a metric are counted together.
-std::string without_statistic(const std::string& name) {
-  return name.find(':') == std::string::npos ? name.substr(0, name.rfind('.')) : name;
-}
-
 }  // namespace
 
 std::vector<ReferenceChange> changes_of(const ReferenceSet& before, const ReferenceSet& after,
                                         const Gates& gates) {
   std::vector<ReferenceChange> changes;
-  for_each_value(after, [&](const auto& in, const auto& variant, const auto& name, const auto& v) {
+  visit_values(after, [&](const auto& in, const auto& variant, const auto& name, const auto& v) {
     ReferenceChange change{Kind::added, in, variant, name, v.unit};
     change.after = v.value;
     if (const ReferenceValue* old = find_value(before, in, variant, name)) {
@@ -79,7 +64,7 @@ std::vector<ReferenceChange> changes_of(const ReferenceSet& before, const Refere
     }
     changes.push_back(change);
   });
-  for_each_value(before, [&](const auto& in, const auto& variant, const auto& name, const auto& v) {
+  visit_values(before, [&](const auto& in, const auto& variant, const auto& name, const auto& v) {
     if (find_value(after, in, variant, name) != nullptr) return;
     ReferenceChange change{Kind::removed, in, variant, name, v.unit};
     change.before = v.value;

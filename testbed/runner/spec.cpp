@@ -21,17 +21,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr std::array<const char*, 9> kTables{"scene",  "variant",   "claim",       "sweep", "study",
-                                             "timing", "tolerance", "figure_view", "check"};
-
-HeaderTable read_header(const TomlNode& root) {
-  TomlNode plain = root;
-  for (const char* table : kTables) plain.erase(table);
-  HeaderTable header;
-  read_options(plain, "", header);
-  return header;
-}
-
 const Topic& topic_named(const std::vector<Topic>& topics, const std::string& name,
                          const TomlNode& root) {
   std::vector<std::string> names;
@@ -212,6 +201,18 @@ void read_check(const TomlNode& root, Experiment& experiment) {
 }
 
 }  // namespace
+
+const StudySpec* study_of(const ClaimSpec& claim, const std::vector<StudySpec>& studies) {
+  const auto found = std::find_if(studies.begin(), studies.end(), [&](const StudySpec& study) {
+    return "study:" + study.name == claim.metric;
+  });
+  return found == studies.end() ? nullptr : &*found;
+}
+
+bool null_is_yardstick(const ClaimSpec& claim) {
+  return claim.null && claim.of == claim.null && claim.factor == 1 && claim.offset == 0 &&
+         !claim.of_reduce;
+}
 
 const Topic& topic_of(const Experiment& experiment, const std::vector<Topic>& topics) {
   for (const Topic& topic : topics) {

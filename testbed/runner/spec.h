@@ -82,6 +82,13 @@ struct StudySpec {
   std::string of;                        ///< of `within_spread`: the variant that is the yardstick
 };
 
+/// The study that the claim is about; null when it is about a variant.
+const StudySpec* study_of(const ClaimSpec& claim, const std::vector<StudySpec>& studies);
+
+/// The claim compares with its null itself (`a < b` with b for null): b is not less than b, so the
+/// null fails by nothing, and it is the claim's own margin that must be clear.
+bool null_is_yardstick(const ClaimSpec& claim);
+
 struct Experiment {
   std::string id;  ///< "skinning/knee"
   std::string title;

@@ -131,31 +131,6 @@ void require_sides(const ClaimSpec& claim, const TomlNode& node) {
   }
 }
 
-/// The table's row of what the claim measures; null for times and diagnostics.
-const MetricEntry* measured_by(const ClaimSpec& claim, const Topic& topic,
-                               const std::vector<StudySpec>& studies) {
-  std::string name = claim.metric;
-  for (const StudySpec& study : studies) {
-    if (claim.metric == "study:" + study.name) name = study.quantity;
-  }
-  return find_metric(topic, name);
-}
-
-bool is_timed(const ClaimSpec& claim, const std::vector<StudySpec>& studies) {
-  return claim.metric.starts_with("timing:") ||
-         std::any_of(studies.begin(), studies.end(), [&](const StudySpec& study) {
-           return claim.metric == "study:" + study.name && study.quantity.starts_with("timing:");
-         });
-}
-
-/// The variant that the null takes the place of: that of the claim, or of its study.
-std::string judged_variant(const ClaimSpec& claim, const std::vector<StudySpec>& studies) {
-  for (const StudySpec& study : studies) {
-    if (claim.metric == "study:" + study.name) return study.variant;
-  }
-  return claim.variant;
-}
-
 /// `reference_metric` is what the claim measures, if that compares with a reference; else null.
 void require_null(const ClaimSpec& claim, const std::string& variant,
                   const MetricEntry* reference_metric, const KnownNames& names,
@@ -173,9 +148,8 @@ void require_null(const ClaimSpec& claim, const std::string& variant,
                     reference_of(variant) + "'",
                 place, "a null with the reference of '" + variant + "'");
   }
-  const bool yardstick = claim.of == claim.null && claim.factor == 1 && claim.offset == 0;
   const bool strict = claim.is == Comparison::less || claim.is == Comparison::greater;
-  if (yardstick && !claim.of_reduce && !strict) {
+  if (null_is_yardstick(claim) && !strict) {
     throw Error("would pass: it is what '" + variant + "' is compared with", place_of(node, "is"),
                 "\"<\" or \">\", a factor, or another null");
   }
@@ -184,21 +158,22 @@ void require_null(const ClaimSpec& claim, const std::string& variant,
 void complete(ClaimSpec& claim, const Topic& topic, const KnownNames& names,
               const std::map<std::string, Tolerance>& tolerances,
               const std::vector<StudySpec>& studies, const TomlNode& node) {
-  const MetricEntry* metric = measured_by(claim, topic, studies);
-  if (is_timed(claim, studies)) claim.exempt = Exemption::timing;
-  if (metric != nullptr) {
-    if (metric->oracle) claim.exempt = Exemption::oracle;
+  const StudySpec* study = study_of(claim, studies);
+  const std::string& quantity = study != nullptr ? study->quantity : claim.metric;
+  const MetricEntry* metric = find_metric(topic, quantity);
+  if (quantity.starts_with("timing:")) claim.exempt = Exemption::timing;
+  if (metric != nullptr && metric->oracle) claim.exempt = Exemption::oracle;
+  // The slope or the spread of a metric has another unit than it has.
+  if (metric != nullptr && study == nullptr) {
     const auto own = tolerances.find(metric->name);
-    // A slope or an interval of values has another unit than they have.
-    if (!claim.metric.starts_with("study:")) {
-      claim.metric_tolerance = own == tolerances.end() ? metric->tolerance : own->second;
-    }
+    claim.metric_tolerance = own == tolerances.end() ? metric->tolerance : own->second;
   }
   // Without a null that --variant left out the claim is decided, and nothing is said of its worth.
   if (claim.null && !runs(*claim.null, names, place_of(node, "null"))) claim.null.reset();
   if (!claim.null) return;
   const bool compares = metric != nullptr && group_of(topic, *metric).needs_reference;
-  require_null(claim, judged_variant(claim, studies), compares ? metric : nullptr, names, node);
+  require_null(claim, study != nullptr ? study->variant : claim.variant,
+               compares ? metric : nullptr, names, node);
 }
 
 void require_own_text(const ClaimSpec& claim, const std::vector<ClaimSpec>& before,

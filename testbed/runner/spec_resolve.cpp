@@ -90,6 +90,17 @@ VariantSpec resolve_variant(const TomlNode& node, const Topic& topic) {
 
 }  // namespace
 
+HeaderTable read_header(const TomlNode& root) {
+  TomlNode plain = root;
+  for (const char* table : {"scene", "variant", "claim", "sweep", "study", "timing", "tolerance",
+                            "figure_view", "check"}) {
+    plain.erase(table);
+  }
+  HeaderTable header;
+  read_options(plain, "", header);
+  return header;
+}
+
 std::vector<std::string> select_variants(const TomlNode& root,
                                          const std::vector<std::string>& requested) {
   std::vector<std::string> names;
@@ -135,13 +146,7 @@ CaseSpec resolve_case(const SweptCase& swept, const Topic& topic,
   CaseSpec result;
   result.name = swept.name;
   result.swept = swept.swept;
-  TomlNode header = swept.root;
-  for (const char* table : {"scene", "variant", "claim", "sweep", "study", "timing", "tolerance",
-                            "figure_view", "check"}) {
-    header.erase(table);
-  }
-  HeaderTable values;
-  read_options(header, "", values);
+  const HeaderTable values = read_header(swept.root);
   result.seed = static_cast<std::uint64_t>(values.seed);
   result.threads = values.threads;
   result.scene = read_set(topic.default_scene(), swept.root.find("scene"), swept.root.place,

@@ -5,9 +5,13 @@
 
 #include "testbed/runner/spec.h"
 #include "testbed/runner/spec_sweeps.h"
+#include "testbed/runner/spec_tables.h"
 #include "testbed/runner/toml_tree.h"
 
 namespace geoprior {
+
+/// What stands above the tables.
+HeaderTable read_header(const TomlNode& root);
 
 /// Reads scene and variants of one case.
 CaseSpec resolve_case(const SweptCase& swept, const Topic& topic,

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "testbed/joined.h"
 
 namespace geoprior {
 namespace {
@@ -226,9 +227,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 }
 
 std::string allowed_names(std::string_view name, const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& n : names) text += (text.empty() ? "" : ", ") + n;
-  if (text.empty()) text = "nothing here";
+  const std::string text = names.empty() ? "nothing here" : joined(names);
   const std::string nearest = nearest_name(name, names);
   return nearest.empty() ? text : text + "; did you mean '" + nearest + "'?";
 }

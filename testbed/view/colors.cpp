@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "testbed/joined.h"
 #include "testbed/runner/number_text.h"
 
 namespace geoprior {
@@ -83,9 +84,7 @@ std::string array_names(const std::vector<const Part*>& parts) {
   for (const Part* part : parts) {
     for (const NamedArray& array : part->arrays) names.insert(array.name);
   }
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "this part has no arrays; leave color_by out" : text;
+  return names.empty() ? "this part has no arrays; leave color_by out" : joined(names);
 }
 
 double percentile(std::vector<double>& values, double fraction) {

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/vtk_files.h"
+#include "testbed/joined.h"
 #include "testbed/runner/quantity.h"
 
 namespace geoprior {
@@ -18,12 +19,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostColumns = 6;
 constexpr std::size_t kMostRows = 8;
 constexpr const char* kObstacles = "obstacles";
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
 
 /// `wanted` in its own order, checked; all of `available` when none is wanted.
 std::vector<std::string> choose(const std::vector<std::string>& wanted,

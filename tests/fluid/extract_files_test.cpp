@@ -41,14 +41,10 @@ const Eigen::MatrixXd& array(const Part& part, const std::string& name) {
   return part.require_array(name, NamedArray::On::points).values;
 }
 
-std::string_view characters_of(const std::vector<std::byte>& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 class ExtractFiles : public test::ScratchFolder {
  protected:
   std::vector<Feature> library_of(const Sink& sink) {
-    return read_feature_library(write("features.h5", characters_of(sink.artifacts.at(0).bytes)));
+    return read_feature_library(write("features.h5", test::text_of(sink.artifacts.at(0).bytes)));
   }
 };
 
@@ -92,7 +88,7 @@ TEST_F(ExtractFiles, LibraryAndPicturesHoldWhatWasLifted) {
   ASSERT_EQ(sink.artifacts.size(), 1 + wave.maps.size());
   std::vector<std::filesystem::path> pictures;
   for (std::size_t i = 1; i < sink.artifacts.size(); ++i) {
-    pictures.push_back(write(sink.artifacts[i].name, characters_of(sink.artifacts[i].bytes)));
+    pictures.push_back(write(sink.artifacts[i].name, test::text_of(sink.artifacts[i].bytes)));
   }
   EXPECT_EQ(sink.artifacts[1].name, "feature" + std::to_string(wave.id) + "_0000.exr");
   EXPECT_EQ(read_exr_maps(pictures).maps.back().displacement, wave.maps.back().displacement);

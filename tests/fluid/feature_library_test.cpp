@@ -96,15 +96,11 @@ void expect_equal(const Feature& a, const Feature& b) {
   }
 }
 
-std::string_view text_of(const std::vector<std::byte>& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 using FeatureLibrary = test::ScratchFolder;
 
 TEST_F(FeatureLibrary, GivesFeaturesBackBitForBit) {
   const auto bytes = feature_library_bytes({ripple(), drop()});
-  const auto features = read_feature_library(write("a.h5", text_of(bytes)));
+  const auto features = read_feature_library(write("a.h5", test::text_of(bytes)));
   ASSERT_EQ(features.size(), 2U);  // by id
   expect_equal(features[0], drop());
   expect_equal(features[1], ripple());
@@ -112,7 +108,8 @@ TEST_F(FeatureLibrary, GivesFeaturesBackBitForBit) {
 
 TEST_F(FeatureLibrary, EqualFeaturesMakeEqualBytes) {
   EXPECT_EQ(feature_library_bytes({ripple()}), feature_library_bytes({ripple()}));
-  EXPECT_TRUE(read_feature_library(write("empty.h5", text_of(feature_library_bytes({})))).empty());
+  EXPECT_TRUE(
+      read_feature_library(write("empty.h5", test::text_of(feature_library_bytes({})))).empty());
 }
 
 TEST_F(FeatureLibrary, RefusesFeaturesThatDoNotFit) {
@@ -153,7 +150,7 @@ TEST_F(FeatureLibrary, RefusesOtherFiles) {
   other.save(folder() / "other.h5");
   expect_error([&] { read_feature_library(folder() / "other.h5"); }, {"no feature library"});
   const auto bytes = feature_library_bytes({ripple()});
-  const std::string_view whole = text_of(bytes);
+  const std::string_view whole = test::text_of(bytes);
   for (const std::size_t part : {2, 4, 8}) {
     EXPECT_THROW(read_feature_library(write("cut.h5", whole.substr(0, whole.size() / part))),
                  Error);
@@ -220,11 +217,11 @@ TEST_F(ExrMaps, GiveTheFeatureBackBitForBit) {
   EXPECT_EQ(pictures[2].name, "wake_0002.exr");
   std::vector<std::filesystem::path> files;
   for (const Artifact& picture : pictures)
-    files.push_back(write(picture.name, text_of(picture.bytes)));
+    files.push_back(write(picture.name, test::text_of(picture.bytes)));
   expect_equal(read_exr_maps(files), ripple());
   EXPECT_EQ(exr_maps(ripple(), "wake")[1].bytes, pictures[1].bytes);
   // Not the time of day, which would make each export another file.
-  EXPECT_NE(text_of(pictures[0].bytes).find("1970:01:01 00:00:00"), std::string_view::npos);
+  EXPECT_NE(test::text_of(pictures[0].bytes).find("1970:01:01 00:00:00"), std::string_view::npos);
 }
 
 TEST_F(ExrMaps, RefuseWhatIsNoMap) {
@@ -233,7 +230,7 @@ TEST_F(ExrMaps, RefuseWhatIsNoMap) {
   expect_error([&] { read_exr_maps({write("a.exr", "nothing")}); },
                {"a.exr", "no readable picture"});
   const auto pictures = exr_maps(ripple(), "a");
-  const auto first = write("a_0000.exr", text_of(pictures[0].bytes));
+  const auto first = write("a_0000.exr", test::text_of(pictures[0].bytes));
   expect_error([&] { read_exr_maps({first, first}); }, {"frame 1", "times that increase"});
   Feature other = ripple();
   other.resolution = 4;
@@ -241,7 +238,7 @@ TEST_F(ExrMaps, RefuseWhatIsNoMap) {
     map.displacement.conservativeResize(16, 3);
     map.alpha.conservativeResize(16);
   }
-  const auto small = write("b.exr", text_of(exr_maps(other, "b")[1].bytes));
+  const auto small = write("b.exr", test::text_of(exr_maps(other, "b")[1].bytes));
   expect_error([&] { read_exr_maps({first, small}); }, {"b.exr", "4 texels", "8, as the first"});
 }
 

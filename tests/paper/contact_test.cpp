@@ -11,8 +11,6 @@
 namespace geoprior::paper {
 namespace {
 
-constexpr std::array<Integration, 2> kIntegrations{Integration::linear, Integration::newton};
-
 Obstacle plane(const Eigen::Vector3d& normal) {
   Obstacle obstacle;
   obstacle.kind = Obstacle::Kind::plane;
@@ -40,7 +38,7 @@ double least_gap(const Obstacle& obstacle, const ShellState& state) {
 
 /// Pressure of the contact is weight per area: k (d_c - gap) = rho g.
 TEST(Contact, DroppedSheetRestsAtTheGapThatCarriesItsWeight) {
-  for (const Integration integration : kIntegrations) {
+  for (const Integration integration : sheets::kIntegrations) {
     Sheet sheet = sheets::free_sheet(0.1, 0.1);
     sheet.gravity = {0, 0, -9.81};
     sheet.placement.translation().z() = 0.05;
@@ -69,7 +67,7 @@ TEST(Contact, DroppedSheetRestsAtTheGapThatCarriesItsWeight) {
 
 /// A sheet on a slope, friction mu: sticks below atan(mu), accelerates with g (sin - mu cos) above.
 TEST(Contact, SheetOnASlopeSticksAndSlidesAsCoulombSays) {
-  for (const Integration integration : kIntegrations) {
+  for (const Integration integration : sheets::kIntegrations) {
     for (const double slope : {0.25, 0.6}) {
       const double angle = std::atan(slope);
       Sheet sheet = sheets::free_sheet(0.1, 0.1);
@@ -106,7 +104,7 @@ TEST(Contact, SheetOnASlopeSticksAndSlidesAsCoulombSays) {
 
 /// Two triangles whose corners pass the sphere far away: only samples inside can stop them.
 TEST(Contact, LongTrianglesDoNotSinkThroughASmallSphere) {
-  for (const Integration integration : kIntegrations) {
+  for (const Integration integration : sheets::kIntegrations) {
     Sheet sheet = sheets::free_sheet(0.4, 0.3);
     sheet.gravity = {0, 0, -9.81};
     sheet.material.damping = 1e-3;
@@ -141,7 +139,7 @@ TEST(Contact, LongTrianglesDoNotSinkThroughASmallSphere) {
 }
 
 TEST(Contact, RisingPlaneLiftsTheSheet) {
-  for (const Integration integration : kIntegrations) {
+  for (const Integration integration : sheets::kIntegrations) {
     Sheet sheet = sheets::free_sheet(0.1, 0.1);
     sheet.gravity = {0, 0, -9.81};
     sheet.placement.translation().z() = 1e-3;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,8 @@
 
 /// Small sheets in motion, for the tests of the stepper.
 namespace geoprior::paper::sheets {
+
+inline constexpr std::array<Integration, 2> kIntegrations{Integration::linear, Integration::newton};
 
 /// A sheet without handles, obstacles, gravity or imperfection.
 inline Sheet free_sheet(double width, double height) {

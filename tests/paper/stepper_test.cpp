@@ -18,8 +18,6 @@
 namespace geoprior::paper {
 namespace {
 
-constexpr std::array<Integration, 2> kSteppers{Integration::linear, Integration::newton};
-
 StepperOptions with(Integration integration) {
   StepperOptions options;
   options.integration = integration;
@@ -53,7 +51,7 @@ Sheet bent_sheet() {
 
 /// x_n = g dt^2 n (n + 1) / 2, the exact solution of implicit Euler's recursion.
 TEST(Stepper, FallsAsImplicitEulerDoes) {
-  for (const Integration integration : kSteppers) {
+  for (const Integration integration : sheets::kIntegrations) {
     Sheet sheet = sheets::free_sheet(0.3, 0.2);
     sheet.gravity = {1, 2, -9.81};
     ShellState state = sheets::at_rest(sheet, 60, UniformLayout::delaunay);
@@ -69,7 +67,7 @@ TEST(Stepper, FallsAsImplicitEulerDoes) {
 }
 
 TEST(Stepper, FreeFlightKeepsTheMomentum) {
-  for (const Integration integration : kSteppers) {
+  for (const Integration integration : sheets::kIntegrations) {
     const Sheet sheet = sheets::free_sheet(0.3, 0.2);
     ShellState state = sheets::at_rest(sheet, 80, UniformLayout::delaunay);
     RandomStream random(4, "velocities");
@@ -97,7 +95,7 @@ TEST(Stepper, FreeFlightKeepsTheMomentum) {
 }
 
 TEST(Stepper, HandleForceOfAHangingSheetIsItsWeight) {
-  for (const Integration integration : kSteppers) {
+  for (const Integration integration : sheets::kIntegrations) {
     Sheet sheet = sheets::free_sheet(0.3, 0.2);
     sheet.gravity = {0, -9.81, 0};
     sheet.material.damping = 0.02;
@@ -114,7 +112,7 @@ TEST(Stepper, HandleForceOfAHangingSheetIsItsWeight) {
 
 /// Every vertex is held and lifted: work = m g h + kinetic energy gained, whatever the elasticity.
 TEST(Stepper, LiftingTakesTheWorkOfTheWeight) {
-  for (const Integration integration : kSteppers) {
+  for (const Integration integration : sheets::kIntegrations) {
     Sheet sheet = sheets::free_sheet(0.2, 0.2);
     sheet.gravity = {0, 0, -9.81};
     Handle handle = sheets::point_handle("all", {{0, 0}});
@@ -235,7 +233,7 @@ TEST(Stepper, HandlesSwitchWithoutANewAnalysis) {
 
 TEST(Stepper, SameBitsOnOneAndTwoThreads) {
   const Sheet sheet = bent_sheet();
-  for (const Integration integration : kSteppers) {
+  for (const Integration integration : sheets::kIntegrations) {
     for (const LinearSolver solver :
          {LinearSolver::eigen, LinearSolver::cholmod, LinearSolver::supernodal}) {
       const auto run = [&](int threads) {
@@ -301,7 +299,7 @@ TEST(Stepper, LinearStepApproachesImplicitEuler) {
     const double dt = k == 0 ? 1e-4 : 5e-5;
     std::array<ShellState, 2> after{start, start};
     for (std::size_t i = 0; i < 2; ++i) {
-      StepperOptions options = with(kSteppers[i]);
+      StepperOptions options = with(sheets::kIntegrations[i]);
       options.newton_tolerance = 1e-11;
       ShellStepper stepper = stepper_for(sheet, after[i], options);
       sheets::advance(stepper, after[i], dt, 1);
@@ -339,7 +337,7 @@ TEST(Stepper, HalvesAStepThatTurnsTrianglesOver) {
   end.turn = Eigen::AngleAxisd(0.9 * std::numbers::pi, Eigen::Vector3d::UnitX());
   handle.motion = Trajectory{{Keyframe{}, end}};
   sheet.handles.push_back(handle);
-  for (const Integration integration : kSteppers) {
+  for (const Integration integration : sheets::kIntegrations) {
     ShellState turned = state;
     ShellStepper stepper = stepper_for(sheet, turned, with(integration));
     const StepReport report = sheets::advance(stepper, turned, 0.01, 1);
@@ -354,7 +352,7 @@ TEST(Stepper, HalvesAStepThatTurnsTrianglesOver) {
 }
 
 TEST(Stepper, GivesUpWithTheTimeAndLeavesTheStateAsItWas) {
-  for (const Integration integration : kSteppers) {
+  for (const Integration integration : sheets::kIntegrations) {
     Sheet sheet = bent_sheet();
     sheet.handles[0].motion->keys[1].shift.x() = 1e200;
     ShellState state = sheets::at_rest(sheet, 60);
@@ -378,7 +376,7 @@ TEST(Stepper, GivesUpWithTheTimeAndLeavesTheStateAsItWas) {
 
 TEST(Stepper, DoesNotStepFromNaN) {
   const Sheet sheet = bent_sheet();
-  for (const Integration integration : kSteppers) {
+  for (const Integration integration : sheets::kIntegrations) {
     ShellState state = sheets::at_rest(sheet, 60);
     ShellStepper stepper = stepper_for(sheet, state, with(integration));
     state.v(7, 1) = std::numeric_limits<double>::quiet_NaN();

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "experiments/skinning/characters.h"
+#include "tests/testbed/run_fixture.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -39,13 +40,7 @@ Frame Time: 0.5
 )";
 
 std::string bvh_error(const std::string& text) {
-  try {
-    parse_bvh(text, "test.bvh");
-  } catch (const Error& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "no Error";
-  return {};
+  return test::error_of([&] { parse_bvh(text, "test.bvh"); });
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

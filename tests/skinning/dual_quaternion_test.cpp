@@ -14,12 +14,6 @@ namespace {
 
 using fixtures::cylinder_options;
 
-Eigen::MatrixX3d blended_dual_quaternions(const RiggedMesh& rig, const Pose& pose) {
-  Eigen::MatrixX3d posed;
-  DualQuaternionBlend(rig).deform(pose, posed);
-  return posed;
-}
-
 /// A tube along x with joints every 0.2 m, weights linear between neighbours.
 RiggedMesh chain(int joints) {
   CylinderOptions options = cylinder_options();
@@ -50,7 +44,8 @@ RiggedMesh chain(int joints) {
 TEST(DualQuaternionBlend, RestPoseReturnsTheInput) {
   for (const RiggedMesh& rig : {two_bone_cylinder(cylinder_options()), capsule_finger(),
                                 fixtures::cylinder_of_many_influences(5)}) {
-    const Eigen::MatrixX3d posed = blended_dual_quaternions(rig, rest_pose(rig.skeleton.size()));
+    const Eigen::MatrixX3d posed =
+        fixtures::deformed<DualQuaternionBlend>(rig, rest_pose(rig.skeleton.size()));
     EXPECT_LE(fixtures::largest_distance(posed, rig.mesh.V),
               1e-15 * bounding_box_diagonal(rig.mesh.V));
   }
@@ -63,8 +58,8 @@ TEST(DualQuaternionBlend, MidRingKeepsItsRadiusUnderTwistAndBend) {
   for (const char* axis : {"twist", "flexion"}) {
     const Eigen::Vector3d about = rig.skeleton.joints[1].axes.at(axis);
     for (const double degrees : {10.0, 60.0, 90.0, 135.0, 175.0}) {
-      const Eigen::MatrixX3d posed =
-          blended_dual_quaternions(rig, fixtures::turned(rig, "upper", axis, degrees * kDegree));
+      const Eigen::MatrixX3d posed = fixtures::deformed<DualQuaternionBlend>(
+          rig, fixtures::turned(rig, "upper", axis, degrees * kDegree));
       const Eigen::Matrix3d half = Eigen::AngleAxisd(degrees * kDegree / 2, about).matrix();
       for (const int v : mid_ring(cylinder_options())) {
         const Eigen::Vector3d expected = half * Eigen::Vector3d(rig.mesh.V.row(v));
@@ -86,7 +81,7 @@ TEST(DualQuaternionBlend, ChainOf270DegreesTurnsSteadily) {
         {j, Eigen::Quaterniond(Eigen::AngleAxisd(30 * kDegree, Eigen::Vector3d::UnitX()))});
   }
   const Pose pose = pose_from_rotations(rig.skeleton, rotations);
-  const Eigen::MatrixX3d posed = blended_dual_quaternions(rig, pose);
+  const Eigen::MatrixX3d posed = fixtures::deformed<DualQuaternionBlend>(rig, pose);
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
     double turn = 0;
     for (SkinWeights::InnerIterator it(rig.weights, v); it; ++it)
@@ -109,12 +104,12 @@ TEST(DualQuaternionBlend, ShapeDoesNotDependOnTheSignsOfTheQuaternions) {
                                 50 * kDegree, Eigen::Vector3d(0.2, 1, 0.3).normalized()))});
   }
   const Pose pose = pose_from_rotations(rig.skeleton, rotations);
-  const Eigen::MatrixX3d still = blended_dual_quaternions(rig, pose);
+  const Eigen::MatrixX3d still = fixtures::deformed<DualQuaternionBlend>(rig, pose);
   for (int step = 1; step < 24; ++step) {
     const Eigen::AngleAxisd turn(15 * kDegree * step, Eigen::Vector3d(1, 2, -1).normalized());
     Pose turned = pose;
     for (Eigen::Affine3d& transform : turned) transform = turn * transform;
-    const Eigen::MatrixX3d posed = blended_dual_quaternions(rig, turned);
+    const Eigen::MatrixX3d posed = fixtures::deformed<DualQuaternionBlend>(rig, turned);
     const Eigen::MatrixX3d expected = still * turn.toRotationMatrix().transpose();
     EXPECT_LE(fixtures::largest_distance(posed, expected), 1e-13) << step;
   }
@@ -123,10 +118,10 @@ TEST(DualQuaternionBlend, ShapeDoesNotDependOnTheSignsOfTheQuaternions) {
 // Two joints of one vertex 200 degrees apart: the shorter way is the one of -160 degrees.
 TEST(DualQuaternionBlend, BeyondAHalfTurnTheShorterWayIsTaken) {
   const RiggedMesh rig = two_bone_cylinder(cylinder_options());
-  const Eigen::MatrixX3d beyond =
-      blended_dual_quaternions(rig, fixtures::turned(rig, "upper", "twist", 200 * kDegree));
-  const Eigen::MatrixX3d back =
-      blended_dual_quaternions(rig, fixtures::turned(rig, "upper", "twist", -160 * kDegree));
+  const Eigen::MatrixX3d beyond = fixtures::deformed<DualQuaternionBlend>(
+      rig, fixtures::turned(rig, "upper", "twist", 200 * kDegree));
+  const Eigen::MatrixX3d back = fixtures::deformed<DualQuaternionBlend>(
+      rig, fixtures::turned(rig, "upper", "twist", -160 * kDegree));
   EXPECT_LE(fixtures::largest_distance(beyond, back), 1e-14);
 }
 
@@ -141,7 +136,7 @@ TEST(DualQuaternionBlend, LanesAgreeWithTheFormula) {
       pose[j] = Eigen::AngleAxisd(0.4 * static_cast<double>(j), axis.normalized()) * pose[1];
     }
     // Weights are packed as floats: 6e-8 of the distances, which are below 2 m.
-    EXPECT_LE(fixtures::largest_distance(blended_dual_quaternions(rig, pose),
+    EXPECT_LE(fixtures::largest_distance(fixtures::deformed<DualQuaternionBlend>(rig, pose),
                                          dual_quaternion_blend(rig, pose)),
               2e-7)
         << copies;
@@ -155,8 +150,8 @@ TEST(DualQuaternionBlend, CopiesOfAJointActAsOne) {
   Pose copied(static_cast<std::size_t>(many.skeleton.size()), pose[1]);
   copied[0] = pose[0];
   // Weights are packed as floats.
-  EXPECT_LE(fixtures::largest_distance(blended_dual_quaternions(two, pose),
-                                       blended_dual_quaternions(many, copied)),
+  EXPECT_LE(fixtures::largest_distance(fixtures::deformed<DualQuaternionBlend>(two, pose),
+                                       fixtures::deformed<DualQuaternionBlend>(many, copied)),
             1e-7);
 }
 
@@ -168,8 +163,8 @@ TEST(DualQuaternionBlend, ScaleAndShearAreDroppedAboutTheJointsHead) {
   scaled[0] = Eigen::Translation3d(root) * Eigen::Scaling(1.5, 0.7, 1.1) *
               Eigen::Translation3d(-root) * scaled[0];
   scaled[1] = scaled[1] * Eigen::Scaling(2.0);
-  EXPECT_LE(fixtures::largest_distance(blended_dual_quaternions(rig, rigid),
-                                       blended_dual_quaternions(rig, scaled)),
+  EXPECT_LE(fixtures::largest_distance(fixtures::deformed<DualQuaternionBlend>(rig, rigid),
+                                       fixtures::deformed<DualQuaternionBlend>(rig, scaled)),
             1e-13);
 }
 

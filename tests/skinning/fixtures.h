@@ -13,6 +13,14 @@
 
 namespace geoprior::skinning::fixtures {
 
+/// The mesh as `Blend` (of a rig, with `deform`) poses it.
+template <class Blend>
+Eigen::MatrixX3d deformed(const RiggedMesh& rig, const Pose& pose) {
+  Eigen::MatrixX3d posed;
+  Blend(rig).deform(pose, posed);
+  return posed;
+}
+
 /// Two-bone cylinder, small enough for exhaustive checks; the ramp is 0.2 m wide.
 inline CylinderOptions cylinder_options() {
   CylinderOptions options;

@@ -13,28 +13,18 @@
 #include "testbed/formats/gltf_reader.h"
 #include "testbed/formats/gltf_writer.h"
 #include "tests/testbed/gltf_samples.h"
+#include "tests/testbed/run_fixture.h"
 
 namespace geoprior::skinning {
 namespace {
 
+using test::error_of;
 using test::GltfSample;
 using test::skinned_square;
 using testing::HasSubstr;
 
 GltfCharacter read(const GltfSample& sample, const GltfReadOptions& options = {}) {
   return read_gltf_bytes(sample.bytes(), "sample.glb", options);
-}
-
-/// The text of the Error that `action` throws; fails the test when it throws none.
-template <class Action>
-std::string error_of(Action action) {
-  try {
-    action();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "no Error";
-  return {};
 }
 
 std::string error_of(const GltfSample& sample) {

@@ -15,16 +15,11 @@ namespace {
 
 using fixtures::cylinder_options;
 
-Eigen::MatrixX3d blended_linearly(const RiggedMesh& rig, const Pose& pose) {
-  Eigen::MatrixX3d posed;
-  LinearBlend(rig).deform(pose, posed);
-  return posed;
-}
-
 TEST(LinearBlend, RestPoseReturnsTheInput) {
   for (const RiggedMesh& rig : {two_bone_cylinder(cylinder_options()), capsule_finger(),
                                 fixtures::cylinder_of_many_influences(5)}) {
-    const Eigen::MatrixX3d posed = blended_linearly(rig, rest_pose(rig.skeleton.size()));
+    const Eigen::MatrixX3d posed =
+        fixtures::deformed<LinearBlend>(rig, rest_pose(rig.skeleton.size()));
     // Weights sum to 1 in double, so only rounding is left: far below 1e-6.
     EXPECT_LE(fixtures::largest_distance(posed, rig.mesh.V),
               1e-15 * bounding_box_diagonal(rig.mesh.V));
@@ -36,8 +31,8 @@ TEST(LinearBlend, RestPoseReturnsTheInput) {
 TEST(LinearBlend, TwistShrinksMidRingToRCosHalfTheta) {
   const RiggedMesh rig = two_bone_cylinder(cylinder_options());
   for (const double degrees : {10.0, 45.0, 90.0, 135.0, 170.0}) {
-    const Eigen::MatrixX3d posed =
-        blended_linearly(rig, fixtures::turned(rig, "upper", "twist", degrees * kDegree));
+    const Eigen::MatrixX3d posed = fixtures::deformed<LinearBlend>(
+        rig, fixtures::turned(rig, "upper", "twist", degrees * kDegree));
     const double expected = cylinder_options().radius * std::cos(degrees * kDegree / 2);
     for (const int v : mid_ring(cylinder_options())) {
       EXPECT_NEAR(std::hypot(posed(v, 1), posed(v, 2)), expected, 1e-6 * expected) << degrees;
@@ -48,8 +43,8 @@ TEST(LinearBlend, TwistShrinksMidRingToRCosHalfTheta) {
 
 TEST(LinearBlend, HalfTurnOfTwistCollapsesMidRingToAPoint) {
   const RiggedMesh rig = two_bone_cylinder(cylinder_options());
-  const Eigen::MatrixX3d posed =
-      blended_linearly(rig, fixtures::turned(rig, "upper", "twist", std::numbers::pi));
+  const Eigen::MatrixX3d posed = fixtures::deformed<LinearBlend>(
+      rig, fixtures::turned(rig, "upper", "twist", std::numbers::pi));
   for (const int v : mid_ring(cylinder_options())) EXPECT_LE(posed.row(v).norm(), 1e-15);
 }
 
@@ -58,8 +53,8 @@ TEST(LinearBlend, BendCollapsesMidRingToRCosHalfTheta) {
   const RiggedMesh rig = two_bone_cylinder(cylinder_options());
   const double r = cylinder_options().radius;
   for (const double degrees : {10.0, 60.0, 90.0, 120.0, 160.0}) {
-    const Eigen::MatrixX3d posed =
-        blended_linearly(rig, fixtures::turned(rig, "upper", "flexion", degrees * kDegree));
+    const Eigen::MatrixX3d posed = fixtures::deformed<LinearBlend>(
+        rig, fixtures::turned(rig, "upper", "flexion", degrees * kDegree));
     for (const int v : mid_ring(cylinder_options())) {
       const double in_plane = std::hypot(posed(v, 0), posed(v, 2));
       const double expected = std::abs(rig.mesh.V(v, 2)) * std::cos(degrees * kDegree / 2);
@@ -77,7 +72,9 @@ TEST(LinearBlend, LanesAgreeWithTheFormulaForAnyTransforms) {
     for (int i = 0; i < 12; ++i) pose[j].matrix()(i / 4, i % 4) = random.normal();
   }
   // Weights are packed as floats: half a unit in the last place each, 11 of them.
-  EXPECT_LE(fixtures::largest_distance(blended_linearly(rig, pose), linear_blend(rig, pose)), 1e-6);
+  EXPECT_LE(fixtures::largest_distance(fixtures::deformed<LinearBlend>(rig, pose),
+                                       linear_blend(rig, pose)),
+            1e-6);
 }
 
 // The kernel is compiled apart for one to four influences and once for more.
@@ -87,7 +84,8 @@ TEST(LinearBlend, LanesAgreeWithTheFormulaForAnyNumberOfInfluences) {
     Pose pose = fixtures::turned(rig, "upper", "flexion", 1.1);
     for (std::size_t j = 2; j < pose.size(); ++j)
       pose[j] = Eigen::AngleAxisd(0.3 * static_cast<double>(j), Eigen::Vector3d::UnitX()) * pose[1];
-    EXPECT_LE(fixtures::largest_distance(blended_linearly(rig, pose), linear_blend(rig, pose)),
+    EXPECT_LE(fixtures::largest_distance(fixtures::deformed<LinearBlend>(rig, pose),
+                                         linear_blend(rig, pose)),
               1e-7)
         << copies;
   }
@@ -113,7 +111,9 @@ TEST(LinearBlend, LargeMeshesTakeTheStreamedPathAndAgree) {
   const RiggedMesh rig = two_bone_cylinder(options);
   ASSERT_GT(rig.mesh.vertex_count(), 500000);
   const Pose pose = fixtures::turned(rig, "upper", "twist", 0.8);
-  EXPECT_LE(fixtures::largest_distance(blended_linearly(rig, pose), linear_blend(rig, pose)), 1e-7);
+  EXPECT_LE(fixtures::largest_distance(fixtures::deformed<LinearBlend>(rig, pose),
+                                       linear_blend(rig, pose)),
+            1e-7);
 }
 
 TEST(LinearBlend, RefusesWrongInput) {

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/topology.h"
+#include "tests/testbed/run_fixture.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -16,13 +17,7 @@ std::shared_ptr<SkinningScene> load(const SkinningSceneOptions& options) {
 }
 
 std::string error_of(const SkinningSceneOptions& options) {
-  try {
-    load(options);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "no Error";
-  return {};
+  return test::error_of([&] { load(options); });
 }
 
 SkinningSceneOptions cylinder(const std::string& joint = "upper") {

@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "experiments/skinning/characters.h"
 #include "experiments/skinning/skeleton_file.h"
+#include "tests/testbed/run_fixture.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -11,13 +12,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string skeleton_error(const std::string& text) {
-  try {
-    parse_skeleton(text, "test.toml");
-  } catch (const Error& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "no Error";
-  return {};
+  return test::error_of([&] { parse_skeleton(text, "test.toml"); });
 }
 
 const SkeletonFile& human() {
