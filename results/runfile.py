@@ -221,7 +221,8 @@ def read_root(folder, file):
         **{name: text(attrs[name]) for name in ROOT_TEXTS},
         provenance={unquote(k): text(v) for k, v in sorted(attrs.items()) if k not in known},
         inputs=[(text(i["name"]), text(i["sha256"])) for i in file["inputs"][()]],
-        cases=[read_case(n, g) for n, g in by_index(file["cases"])],
+        cases=[read_case(n, g) for n, g in by_index(file["cases"])
+               if not g.attrs.get("claims_only", 0)],
         studies=[Study(n, text(g.attrs["kind"]), text(g.attrs["quantity"]),
                        float(g.attrs["value"]), float(g.attrs["low"]), float(g.attrs["high"]),
                        g["x"][()], g["y"][()], g["y_of"][()] if "y_of" in g else np.array([]))

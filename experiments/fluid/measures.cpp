@@ -228,6 +228,7 @@ std::optional<DamMeasures> dam_measures(const FluidScene& scene, const Frame& fr
   dam.height_time = frame.parameter * rate;
   const double front = dam_front(mesh, *columns, *scene.gauges, scene.tank->cell / 2);
   dam.front = (front - scene.tank->origin.x()) / *a;
+  dam.at_far_wall = front > scene.tank->origin.x() + (scene.tank->cells.x() - 1) * scene.tank->cell;
   dam.height = dam_height(*columns, *scene.gauges) / (2 * *a);
   return dam;
 }

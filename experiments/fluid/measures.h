@@ -41,6 +41,7 @@ std::optional<PasteMeasures> paste_measures(const FluidScene& scene, const Frame
 struct DamMeasures {
   double front_time = 0, height_time = 0;  ///< T and tau
   double front = 0, height = 0;
+  bool at_far_wall = false;  ///< within a cell: the front goes no further
 };
 std::optional<DamMeasures> dam_measures(const FluidScene& scene, const Frame& frame);
 

@@ -78,9 +78,11 @@ MetricGroup dam_break_group() {
       .row("dam_height", "1", "height of the water at the wall over that of the block", kNone,
            kChaotic, [](M m) { return if_finite(m.height); })
       .row("dam_front_error", "1",
-           "dam_front over the one that Martin and Moyce measured at that time, minus 1", kTarget,
-           kChaotic,
-           [](M m) {
+           "dam_front over the one that Martin and Moyce measured at that time, minus 1; absent "
+           "once the front is at the far wall",
+           kTarget, kChaotic,
+           [](M m) -> Value {
+             if (m.at_far_wall) return {};
              return if_finite(m.front / interpolate(measured_dam_front(), m.front_time) - 1);
            })
       .row("dam_height_error", "1",

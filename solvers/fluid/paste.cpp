@@ -216,7 +216,8 @@ SurfaceFrame paste(const SurfaceFrame& target, const std::vector<Insertion>& ins
                    PasteReport* report) {
   PasteReport own;
   for (const std::string& note : target.notes) own.warnings.push_back("target: " + note);
-  const std::vector<Present> present = present_at(insertions, time, up);
+  std::vector<Present> present;
+  if (!options.leave_out) present = present_at(insertions, time, up);
   std::vector<Present> maps, meshes;
   for (const Present& p : present) {
     (p.insertion->feature->kind == RegionKind::isolated ? meshes : maps).push_back(p);
@@ -265,6 +266,8 @@ void describe(OptionVisitor& v, PasteOptions& o) {
   v.value(
       "velocity", o.velocity,
       {.doc = "rates of the displacements are added to the target's velocity when it is known"});
+  v.value("leave_out", o.leave_out,
+          {.doc = "nothing is pasted: the target less what was cut out of it (a null control)"});
 }
 
 }  // namespace geoprior::fluid

@@ -22,6 +22,7 @@ struct PasteOptions {
       1;  ///< how far along the normal the target may lie from the map's plane, in extents
   int max_triangles = 4'000'000;  ///< refused beyond, with the size needed
   bool velocity = true;           ///< rates of the displacements are added to known velocities
+  bool leave_out = false;  ///< nothing is pasted: the null control of claims about pasted features
 };
 void describe(OptionVisitor& v, PasteOptions& options);
 

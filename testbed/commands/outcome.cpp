@@ -205,6 +205,7 @@ void say_studies(const RunRecord& record) {
 void say_summary(const RunRecord& record, std::size_t most_cases) {
   std::size_t shown = 0;
   for (const CaseRecord& in : record.cases) {
+    if (in.claims_only) continue;
     if (shown++ == most_cases) {
       say("  … and " + std::to_string(record.cases.size() - most_cases) +
           " more cases: see the report");

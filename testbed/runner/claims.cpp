@@ -187,14 +187,15 @@ std::map<std::string, std::string> without_seed(std::map<std::string, std::strin
 
 using Cases = std::vector<const CaseRecord*>;
 
+bool named_by(const ClaimSpec& claim, const CaseRecord& in) {
+  return std::find(claim.cases.begin(), claim.cases.end(), in.name) != claim.cases.end();
+}
+
 /// The cases that the claim is about: one a group, or all seeds of one.
 std::vector<Cases> groups_of(const ClaimSpec& claim, const RunRecord& record) {
-  const auto named = [&](const CaseRecord& in) {
-    return claim.cases.empty() ||
-           std::find(claim.cases.begin(), claim.cases.end(), in.name) != claim.cases.end();
-  };
   std::vector<Cases> groups;
   for (const CaseRecord& in : record.cases) {
+    if (in.claims_only && claim.over == ClaimOver::case_ && !named_by(claim, in)) continue;
     const auto same = [&](const Cases& group) {
       return claim.over == ClaimOver::seed &&
              without_seed(group.front()->swept) == without_seed(in.swept);
@@ -203,7 +204,9 @@ std::vector<Cases> groups_of(const ClaimSpec& claim, const RunRecord& record) {
     (found == groups.end() ? groups.emplace_back() : *found).push_back(&in);
   }
   std::erase_if(groups, [&](const Cases& group) {
-    return std::none_of(group.begin(), group.end(), [&](const auto* in) { return named(*in); });
+    return !claim.cases.empty() &&
+           std::none_of(group.begin(), group.end(),
+                        [&](const auto* in) { return named_by(claim, *in); });
   });
   return groups;
 }
@@ -298,8 +301,8 @@ std::optional<double> slack(const ClaimRecord& claim) {
 }
 
 bool is_sound(const ClaimRecord& claim) {
-  return claim.null.verdict != Discrimination::is_void &&
-         claim.null.verdict != Discrimination::undecided;
+  return claim.null.verdict == Discrimination::discriminates ||
+         claim.null.verdict == Discrimination::exempt;
 }
 
 }  // namespace geoprior

@@ -74,6 +74,7 @@ void add_counted_work(const Topic& topic, const VariantRecord& variant,
 GatedValues values_of_cases(const Topic& topic, const RunRecord& record) {
   GatedValues all;
   for (const CaseRecord& in : record.cases) {
+    if (in.claims_only) continue;
     for (const VariantRecord& variant : in.variants) {
       if (is_null_control(variant.role)) continue;
       std::map<std::string, GatedValue>& values = all[in.name][variant.name];

@@ -165,6 +165,7 @@ void write_case(H5Group& parent, const CaseRecord& record, std::size_t index,
   group.write_attribute("parameter_unit", record.parameter_unit);
   group.write_attribute("seed", record.seed);
   group.write_attribute("threads", static_cast<std::int64_t>(record.threads));
+  group.write_attribute("claims_only", static_cast<std::int64_t>(record.claims_only ? 1 : 0));
   group.write_attribute("scene", record.scene_json);
   group.write_attribute("warnings", record.warnings);
   write_each(group, "swept", record.swept);
@@ -423,6 +424,7 @@ CaseRecord read_case(const H5Group& group, const std::string& name, std::int64_t
   record.parameter_unit = group.read_text("parameter_unit");
   record.seed = group.read_unsigned("seed");
   record.threads = static_cast<int>(group.read_int("threads"));
+  record.claims_only = has_attribute(group, "claims_only") && group.read_int("claims_only") != 0;
   record.scene_json = group.read_text("scene");
   record.warnings = group.read_texts("warnings");
   const H5Group swept = group.open_group("swept");

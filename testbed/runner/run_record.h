@@ -94,6 +94,7 @@ struct CaseRecord {
   std::vector<std::string> warnings;
   std::vector<VariantRecord> variants;
   std::vector<TimingRatio> ratios;
+  bool claims_only = false;  ///< decides claims and studies: not blessed, timed again or drawn
 };
 
 /// The variant of that name, or null.

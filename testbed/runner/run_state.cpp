@@ -58,6 +58,7 @@ CaseState fresh(const CaseSpec& spec) {
   state.record.threads = spec.threads;
   state.record.scene_json = spec.scene_json;
   state.record.swept = spec.swept;
+  state.record.claims_only = spec.claims_only;
   for (const VariantSpec& variant : spec.variants) state.variants.push_back(fresh(variant));
   return state;
 }

@@ -36,6 +36,7 @@ struct CaseSpec {
   /// "file:line:column" of every key below [scene], by its dotted path ("scene.handles.0.keys").
   std::map<std::string, std::string> scene_places;
   std::vector<VariantSpec> variants;
+  bool claims_only = false;  ///< decides claims and studies: not blessed, timed again or drawn
 };
 
 /// A statement that the runner can decide: value (is) factor * value of the other side + offset.

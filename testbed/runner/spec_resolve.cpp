@@ -146,6 +146,7 @@ CaseSpec resolve_case(const SweptCase& swept, const Topic& topic,
   CaseSpec result;
   result.name = swept.name;
   result.swept = swept.swept;
+  result.claims_only = swept.claims_only;
   const HeaderTable values = read_header(swept.root);
   result.seed = static_cast<std::uint64_t>(values.seed);
   result.threads = values.threads;

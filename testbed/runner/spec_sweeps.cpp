@@ -126,6 +126,7 @@ void apply(SweptCase& result, const Sweep& sweep, std::size_t i) {
   result.name = result.name == "default" ? sweep.names[i] : result.name + "," + sweep.names[i];
   result.swept[sweep.table.key] = json_of(sweep.values[i]).dump();
   for (const std::string& name : sweep.table.variants) result.variants.push_back(name);
+  result.claims_only = result.claims_only || sweep.table.claims_only;
 }
 
 std::vector<SweptCase> grid_product(const SweptCase& base, const std::vector<Sweep>& sweeps) {

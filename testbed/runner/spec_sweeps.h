@@ -13,6 +13,7 @@ struct SweptCase {
   std::string name = "default";
   std::map<std::string, std::string> swept;
   std::vector<std::string> variants;  ///< empty: all
+  bool claims_only = false;
   TomlNode root;
 };
 

@@ -43,6 +43,8 @@ void describe(OptionVisitor& v, SweepTable& t) {
   v.value("variants", t.variants, {.doc = "that run in these cases; absent: all"});
   v.value("grid", t.grid, {.doc = "product with the other sweeps that say so"});
   v.value("base", t.base, {.doc = "false: no case 'default' beside the sweep's own"});
+  v.value("claims_only", t.claims_only,
+          {.doc = "its cases decide claims and studies: not blessed, timed again or drawn"});
 }
 
 void describe(OptionVisitor& v, ClaimTable& t) {

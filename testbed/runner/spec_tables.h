@@ -39,6 +39,7 @@ struct SweepTable {
   std::vector<std::string> variants;
   bool grid = false;
   bool base = true;
+  bool claims_only = false;
 };
 
 /// A reduction of the other side: `same`, or one of those that give a number.
