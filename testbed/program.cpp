@@ -76,6 +76,9 @@ void add_checks(CommandLine& line) {
   CLI::App* check = add_command(line, "check", "compare runs with their reference values");
   check->add_option("experiment", line.check.ids, "identifiers or files; none: all");
   check->add_flag("--quick", line.check.quick, "the small versions");
+  check->add_flag("--mutations", line.check.mutations,
+                  "an experiment fails, too, when no claim of it notices that a method is replaced "
+                  "by its null");
   CLI::App* bless = add_command(line, "bless", "make a run's values the reference values");
   bless->add_option("experiment", line.bless.id, "identifier or file")->required();
   bless->add_option("--reason", line.bless.reason, "why the new values are right")

@@ -27,18 +27,13 @@ struct Verdict {
   std::vector<std::string> failures;                    ///< of variants that an error ended
   std::map<std::string, std::string> known_shortfalls;  ///< text of a claim, why it falls short
   bool has_reference = true;
-  bool same_bytes = false;  ///< as the blessed run: its values need no comparison
-  std::string notice;       ///< why the values were compared although nothing need have changed
+  bool mutations = false;      ///< asked for: a method replaced by its null must be noticed
+  bool mutation_seen = false;  ///< by at least one claim
+  bool same_bytes = false;     ///< as the blessed run: its values need no comparison
+  std::string notice;          ///< why the values were compared although nothing need have changed
 
-  /// Whether a null makes at least one of its claims fail: times and oracles alone say nothing of
-  /// the methods that run.
-  [[nodiscard]] bool can_fail() const {
-    return std::any_of(claims.begin(), claims.end(), [](const ClaimRecord& claim) {
-      return claim.null.verdict == Discrimination::discriminates;
-    });
-  }
   [[nodiscard]] bool passed() const {
-    return has_reference && failures.empty() && can_fail() &&
+    return has_reference && failures.empty() && (mutation_seen || !mutations) &&
            std::none_of(mismatches.begin(), mismatches.end(),
                         [](const Mismatch& mismatch) { return mismatch.fails; }) &&
            std::all_of(claims.begin(), claims.end(), [&](const ClaimRecord& claim) {
@@ -58,12 +53,17 @@ void compare_contents(const RunRecord& record, const ContentHash& blessed, Verdi
   if (!verdict.same_bytes) verdict.notice = "frames or metrics are not those blessed, byte by byte";
 }
 
-Verdict check_one(const CommandContext& context, const std::string& id, bool quick) {
-  const BlessedRun run = run_without_clock(context, id, quick);
+Verdict check_one(const CommandContext& context, const std::string& id,
+                  const CheckRequest& request) {
+  const BlessedRun run = run_without_clock(context, id, request.quick);
   Verdict verdict;
   verdict.id = run.experiment.id;
   verdict.run = run.folder.string();
   verdict.claims = decide_claims(run.experiment, run.record);
+  verdict.mutations = request.mutations;
+  verdict.mutation_seen = std::any_of(
+      verdict.claims.begin(), verdict.claims.end(),
+      [](const ClaimRecord& claim) { return claim.null.verdict == Discrimination::discriminates; });
   verdict.failures = failures(run.record);
   for (const ClaimSpec& claim : run.experiment.claims) {
     if (claim.known_shortfall) verdict.known_shortfalls[claim.text] = *claim.known_shortfall;
@@ -102,8 +102,8 @@ void say_verdict(const Verdict& verdict, bool quick) {
     say(std::string("        ") + (mismatch.fails ? "" : "notice: ") +
         mismatch_text(verdict.id, mismatch));
   }
-  if (!verdict.can_fail()) {
-    say("        " + verdict.id + ": no claim has a null that fails it: nothing here can fail");
+  if (verdict.mutations && !verdict.mutation_seen) {
+    say("        " + verdict.id + ": no claim notices that a method is replaced by its null");
   }
   for (const ClaimRecord& claim : verdict.claims) {
     if (!is_sound(claim)) {
@@ -128,7 +128,7 @@ Json verdict_json(const Verdict& verdict) {
             {"compared", verdict.compared},
             {"failures", verdict.failures},
             {"same_bytes", verdict.same_bytes},
-            {"can_fail", verdict.can_fail()},
+            {"mutation_seen", verdict.mutation_seen},
             {"notice", verdict.notice},
             {"mismatches", Json::array()},
             {"claims", Json::array()}};
@@ -165,7 +165,7 @@ int check_command(const CommandContext& context, const CheckRequest& request) {
   Json json = Json::array();
   bool passed = true;
   for (const std::string& id : ids) {
-    const Verdict verdict = check_one(context, id, request.quick);
+    const Verdict verdict = check_one(context, id, request);
     say_verdict(verdict, request.quick);
     json.push_back(verdict_json(verdict));
     passed = passed && verdict.passed();

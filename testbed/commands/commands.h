@@ -36,6 +36,7 @@ struct RunRequest {
 struct CheckRequest {
   std::vector<std::string> ids;  ///< empty: all of the clone
   bool quick = false;
+  bool mutations = false;  ///< each experiment has a claim that a null fails
 };
 
 struct BlessRequest {

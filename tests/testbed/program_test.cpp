@@ -192,6 +192,9 @@ TEST_F(Program, CheckFailsOnAClaimAloneAndIgnoresClaimsAboutTime) {
   write(disc_experiment("segments = 16", slow));
   ASSERT_EQ(run("bless toy-circle/disc --reason x").code, 0);
   EXPECT_EQ(run("check toy-circle/disc").code, 0);
+  const Outcome mutations = run("check toy-circle/disc --mutations");
+  EXPECT_EQ(mutations.code, 1);
+  EXPECT_THAT(mutations.err, HasSubstr("no claim notices"));
   const std::string impossible =
       std::string(kSquare) +
       "[[claim]]\ntext = \"no error\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = "
@@ -229,6 +232,7 @@ TEST_F(Program, CheckFailsOnClaimsThatCannot) {
   with("value = 0.04\n");
   EXPECT_THAT(run("check toy-circle/disc").err, HasSubstr("names no null"));
   with("value = 0.04\nnull = \"square\"\n");
+  EXPECT_EQ(run("check toy-circle/disc --mutations").code, 0);
   write(toy::Home::read(home_.root() / "experiments/toy-circle/disc.toml") +
         "[[sweep]]\nkey = \"seed\"\nvalues = [2]\nvariants = [\"exact\", \"polygon\"]\n");
   const Outcome undecided = run("check toy-circle/disc");
