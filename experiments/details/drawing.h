@@ -15,7 +15,7 @@ class DetailsScene;
 /// `drawing`: details as geometry, in some of the recorded frames.
 struct DetailDrawingOptions {
   int frames = 1;      ///< beside the first, evenly over the motion
-  int pop_frames = 4;  ///< at which popping of the drawing is measured
+  int pop_frames = 2;  ///< at which popping of the drawing is measured
   DrawingOptions look;
   std::string file;  ///< of the mesh that is put onto the surface: kind mesh, shape given
 };

@@ -63,9 +63,10 @@ int triangle_of_details(const DetailMesh& d) {
 }
 
 /// Inserts a detail of that weight into the middle of a triangle.
-void insert(DetailMesh& d, double weight) {
+void insert(DetailMesh& d, double weight, int type = 0) {
   Detail like;
   like.weight = weight;
+  like.type = type;
   insert_detail(d, triangle_of_details(d), Eigen::Vector3d::Constant(1.0 / 3), like);
 }
 
@@ -178,11 +179,13 @@ TEST_F(DetailsMetrics, ASpikeThatComesAtOncePopsByItsHeight) {
 TEST_F(DetailsMetrics, AHoleThatIsCutAtOncePopsByItsRadius) {
   DetailMesh details = details_at(1);
   std::vector<Frame> frames{detail_frame(details, 0)};
-  insert(details, 1);
+  insert(details, 1, 1);
   for (const double time : {1, 2}) frames.push_back(detail_frame(details, time));
   scene.drawing.emplace();
   scene.drawing->look.kind = DrawnKind::hole;
-  scene.drawing->look.radius = 0.1;
+  scene.drawing->look.type = 1;  // no others, which would take some of its radius
+  scene.drawing->look.unit = DrawnUnit::metre;
+  scene.drawing->look.radius = 0.03;
   scene.drawing->pop_frames = 2;
   const double popping = over("drawn_popping", frames).value();
   EXPECT_LT(popping, 1 + 1e-9);
