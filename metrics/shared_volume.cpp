@@ -85,9 +85,10 @@ std::vector<Strip> strips_of(const Balls& balls, const TriMesh& surface, const C
 }
 
 void append_ball(const Balls& balls, int b, const ColumnGrid& grid, const Strip& strip,
-                 std::vector<Passage>* passages) {
+                 const Eigen::AlignedBox3d& room, std::vector<Passage>* passages) {
   const Eigen::Vector3d centre = balls.centres.row(b);
   const double r = balls.radii[b];
+  const Eigen::AlignedBox2d plan(room.min().head<2>(), room.max().head<2>());
   const auto first = [&](int axis, int least) {
     return std::max(
         least,
@@ -100,11 +101,14 @@ void append_ball(const Balls& balls, int b, const ColumnGrid& grid, const Strip&
   };
   for (int j = first(1, strip.first); j <= last(1, strip.last); ++j) {
     for (int i = first(0, 0); i <= last(0, grid.nx - 1); ++i) {
-      const double left = r * r - (grid.probe(i, j) - centre.head<2>()).squaredNorm();
-      if (left <= 0) continue;
-      const double half = std::sqrt(left);
-      passages->push_back({grid.index(i, j), centre.z() - half, 1, 0});
-      passages->push_back({grid.index(i, j), centre.z() + half, -1, 0});
+      const Eigen::Vector2d at = grid.probe(i, j);
+      const double left = r * r - (at - centre.head<2>()).squaredNorm();
+      if (left <= 0 || !plan.contains(at)) continue;
+      const double low = std::max(centre.z() - std::sqrt(left), room.min().z());
+      const double high = std::min(centre.z() + std::sqrt(left), room.max().z());
+      if (low >= high) continue;
+      passages->push_back({grid.index(i, j), low, 1, 0});
+      passages->push_back({grid.index(i, j), high, -1, 0});
     }
   }
 }
@@ -152,7 +156,8 @@ std::optional<double> SharedVolume::intersection_over_union() const {
   return both / either;
 }
 
-SharedVolume shared_volume(const Balls& balls, const TriMesh& surface, double spacing) {
+SharedVolume shared_volume(const Balls& balls, const TriMesh& surface, double spacing,
+                           const Eigen::AlignedBox3d& room) {
   require_valid(balls, surface, spacing);
   if (balls.radii.size() == 0 && surface.V.rows() == 0) return {};
   const ColumnGrid grid = grid_over(balls, surface, spacing);
@@ -162,7 +167,7 @@ SharedVolume shared_volume(const Balls& balls, const TriMesh& surface, double sp
     std::vector<Passage> passages;
     for (std::size_t s = begin; s < end; ++s) {
       passages.clear();
-      for (const int b : strips[s].balls) append_ball(balls, b, grid, strips[s], &passages);
+      for (const int b : strips[s].balls) append_ball(balls, b, grid, strips[s], room, &passages);
       append_surface(surface, grid, strips[s], &passages);
       partial[s] = lengths_along(&passages);
     }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <limits>
 #include <optional>
 
 #include "core/mesh.h"
@@ -12,6 +14,12 @@ struct Balls {
   Eigen::MatrixX3d centres;  ///< m
   Eigen::VectorXd radii;     ///< m, positive
 };
+
+/// The box that has every point in it.
+inline Eigen::AlignedBox3d everywhere() {
+  const Eigen::Vector3d far = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  return {-far, far};
+}
 
 /// Two volumes and what they share (m^3).
 struct SharedVolume {
@@ -33,9 +41,10 @@ struct SharedVolume {
 ///
 /// @param surface  closed, outward oriented
 /// @param spacing  of the columns (m), positive; half the smallest radius or less
+/// @param room     of the balls: what of them is outside does not count, as behind a tank's walls
 /// @throws Error   on numbers that are not finite, a radius or spacing that is not positive, or
-/// more
-///                 than 2^28 columns
-SharedVolume shared_volume(const Balls& balls, const TriMesh& surface, double spacing);
+///                 more than 2^28 columns
+SharedVolume shared_volume(const Balls& balls, const TriMesh& surface, double spacing,
+                           const Eigen::AlignedBox3d& room = everywhere());
 
 }  // namespace geoprior

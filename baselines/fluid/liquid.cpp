@@ -431,6 +431,8 @@ void describe(OptionVisitor& v, LiquidOptions& o) {
   describe_group(v, "pressure", o.pressure, {.doc = "the projection"});
   describe_group(v, "surface", o.surface, {.doc = "the surface that is recorded"});
   v.value("record_particles", o.record_particles, {.doc = "part \"particles\" of a frame"});
+  v.value("record_particles_every", o.record_particles_every,
+          {.doc = "frames from one with that part to the next", .min = 1});
 }
 
 }  // namespace geoprior::fluid

@@ -34,7 +34,8 @@ struct LiquidOptions {
   bool reseed = true;       ///< keep 3 … 2 x particles_per_cell particles in a full cell
   PressureOptions pressure;
   LiquidSurfaceOptions surface;
-  bool record_particles = false;  ///< part "particles" of a frame
+  bool record_particles = false;   ///< part "particles" of a frame
+  int record_particles_every = 1;  ///< frames: a splash has more bytes of particles than of surface
 };
 void describe(OptionVisitor& v, LiquidOptions& options);
 

@@ -95,7 +95,7 @@ class LiquidFrames final : public FrameModel {
       frame.parts["surface"] = std::move(part);
     }
     if (!tank_.solids.empty()) frame.parts["solids"] = solids_part(tank_, liquid_.solids());
-    if (options_.record_particles)
+    if (options_.record_particles && number % options_.record_particles_every == 0)
       frame.parts["particles"] = particles_part(tank_, liquid_.particles());
     measure_particles(tank_, options_.particles_per_cell, liquid_.shape(), liquid_.particles(), d);
     d["substeps"] = report_.substeps;

@@ -32,33 +32,11 @@ Part joined(const Part& a, const Part& b) {
   return part;
 }
 
-void draw(Frame& frame, const DetailsScene& scene) {
-  const double edge = spacing_of(scene.rest().require_part("detail_mesh"), 0).mean;
-  const DrawingOptions& look = scene.drawing->look;
-  const std::string name = add_drawing(frame, look, edge, scene.instance);
-  const Part drawing = std::move(frame.parts.extract(name).mapped());
-  Eigen::VectorXd kind = classes_of(drawing, frame.require_part("details"));
-  Part drawn;
-  if (look.kind == DrawnKind::hole) {
-    drawn.points = drawing.points;
-    drawn.triangles = drawing.triangles;
-    kind.setConstant(kSurface);
-  } else {
-    const Part& surface = frame.require_part("surface");
-    drawn = joined(surface, drawing);
-    const Eigen::VectorXd details = kind;
-    kind = Eigen::VectorXd::Constant(drawn.points.rows(), kSurface);
-    kind.tail(details.size()) = details;
-  }
-  drawn.arrays.push_back({"kind", "1", NamedArray::On::points, kind});
-  frame.parts["drawn"] = std::move(drawn);
-}
-
 class DrawingSink final : public FrameSink {
  public:
   DrawingSink(FrameSink& to, const DetailsScene& scene) : to_(to), scene_(scene) {}
   void frame(Frame frame) override {
-    if (scene_.is_drawn(frame.parameter)) draw(frame, scene_);
+    if (scene_.is_drawn(frame.parameter)) frame.parts["drawn"] = drawn_surface(frame, scene_);
     to_.frame(std::move(frame));
   }
   void event(const Event& event) override { to_.event(event); }
@@ -89,6 +67,10 @@ class DrawnProcess final : public Process {
 void describe(OptionVisitor& v, DetailDrawingOptions& options) {
   v.value("frames", options.frames,
           {.doc = "drawn beside the first, evenly over the motion", .min = 1});
+  v.value("pop_frames", options.pop_frames,
+          {.doc = "evenly over the motion, at which popping of the drawing since the frame before "
+                  "is measured",
+           .min = 1});
   describe_group(v, "look", options.look, {.doc = "what a detail is drawn as"});
   const bool given =
       options.look.kind == DrawnKind::mesh && options.look.instance.shape == InstanceShape::given;
@@ -96,6 +78,28 @@ void describe(OptionVisitor& v, DetailDrawingOptions& options) {
     v.value("file", options.file,
             {.doc = "mesh of a detail (z its normal): .obj, .ply, .off, .vtp", .required = true});
   }
+}
+
+Part drawn_surface(Frame& frame, const DetailsScene& scene) {
+  const double edge = spacing_of(scene.rest().require_part("detail_mesh"), 0).mean;
+  const DrawingOptions& look = scene.drawing->look;
+  const std::string name = add_drawing(frame, look, edge, scene.instance);
+  const Part drawing = std::move(frame.parts.extract(name).mapped());
+  Eigen::VectorXd kind = classes_of(drawing, frame.require_part("details"));
+  Part drawn;
+  if (look.kind == DrawnKind::hole) {
+    drawn.points = drawing.points;
+    drawn.triangles = drawing.triangles;
+    kind.setConstant(kSurface);
+  } else {
+    const Part& surface = frame.require_part("surface");
+    drawn = joined(surface, drawing);
+    const Eigen::VectorXd details = kind;
+    kind = Eigen::VectorXd::Constant(drawn.points.rows(), kSurface);
+    kind.tail(details.size()) = details;
+  }
+  drawn.arrays.push_back({"kind", "1", NamedArray::On::points, kind});
+  return drawn;
 }
 
 std::unique_ptr<Process> with_drawing(std::unique_ptr<Process> process, const DetailsScene& scene) {

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "experiments/details/drawing.h"
+#include "metrics/drawn_pop.h"
 
 namespace geoprior::details {
 namespace {
@@ -182,6 +184,25 @@ FrameState state_of(const FrameSequence& frames, std::size_t i) {
   return {frames.require_part(i, "surface"), FrameDetails(*details), 0};
 }
 
+/// Base and drawing of one frame.
+struct DrawnFrame {
+  TriMesh base, drawn;
+};
+
+DrawnFrame drawn_frame(const DetailsScene& scene, const FrameSequence& frames, std::size_t i) {
+  Frame frame;
+  for (const char* name : {"surface", "details"}) frame.parts[name] = *frames.require_part(i, name);
+  const Part drawn = drawn_surface(frame, scene);
+  const Part& surface = frame.require_part("surface");
+  return {{surface.points, surface.triangles}, {drawn.points, drawn.triangles}};
+}
+
+/// How far samples of a drawing may be apart: all its vertices are samples, among them the tips of
+/// spikes and meshes, but the deepest point of a hole is none.
+double pop_sample_spacing(DrawnKind kind, double size) {
+  return kind == DrawnKind::hole ? size / 4 : size;
+}
+
 Value worst_edge_change(const DetailsScene& scene, const FrameSequence& frames, const char* mesh) {
   std::vector<DetailSpacing> spacings{spacing_of(scene.rest().require_part(mesh), 0)};
   for (std::size_t i = 0; i < frames.size(); ++i)
@@ -285,6 +306,23 @@ MotionMeasures motion_measures(const DetailsScene& scene, const FrameSequence& f
   m.events = detail_events(changes);
   m.turns = turns(counts, std::max(1.0, 0.01 * counts.front()));
   return m;
+}
+
+Value drawn_popping(const DetailsScene& scene, const FrameSequence& frames) {
+  if (!scene.drawing) return {};
+  const double edge = spacing_of(scene.rest().require_part("detail_mesh"), 0).mean;
+  const double size = drawn_size(scene.drawing->look, edge);
+  const double spacing = pop_sample_spacing(scene.drawing->look.kind, size);
+  Value popping;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    if (!scene.measures_drawn_pop(frames.parameter(i))) continue;
+    const DrawnFrame before = drawn_frame(scene, frames, i - 1),
+                     now = drawn_frame(scene, frames, i);
+    const DrawnPop pop = drawn_pop(before.base, before.drawn, now.base, now.drawn, spacing);
+    const double step = frames.parameter(i) - frames.parameter(i - 1);
+    popping = std::max(popping.value_or(0), pop.largest() / size / step);
+  }
+  return popping;
 }
 
 }  // namespace geoprior::details

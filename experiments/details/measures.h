@@ -91,4 +91,12 @@ struct MotionMeasures {
 /// tenth a frame are then done.
 MotionMeasures motion_measures(const DetailsScene& scene, const FrameSequence& frames);
 
+/// Largest displacement of the drawn surface from one frame to the next that the deformation of the
+/// bare one does not explain (metrics/drawn_pop.h), over the size of a detail of weight 1, a unit
+/// of the parameter, at the frames that the scene chooses. Both frames are drawn from their parts
+/// "surface" and "details". Samples of surfaces with holes, whose deepest points are no vertices,
+/// are a quarter of a radius apart: a hole is missed by at most a sixth of its radius. Absent
+/// without a `drawing`.
+Value drawn_popping(const DetailsScene& scene, const FrameSequence& frames);
+
 }  // namespace geoprior::details

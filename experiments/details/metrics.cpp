@@ -146,11 +146,21 @@ MetricGroup motion_group() {
            kLow, kExact, [](const M& m) -> Value { return m.at_rest; });
 }
 
+MetricGroup drawn_popping_group() {
+  return sequence_metrics<DetailsScene>(drawn_popping)
+      .row("drawn_popping", "1/s",
+           "largest displacement of the drawn surface (spikes, meshes, holes) from one frame to "
+           "the next that the deformation does not explain, over the drawn size of a detail and "
+           "the step in time, at the frames that scene.drawing.pop_frames chooses; sampled at all "
+           "vertices and every size, over holes every quarter of it",
+           kLow, {1e-3, 0.01});
+}
+
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
-  return {spacing_group(), visible_spacing_group(), density_group(),
-          pair_group(),    spectrum_group(),        motion_group()};
+  return {spacing_group(),  visible_spacing_group(), density_group(),      pair_group(),
+          spectrum_group(), motion_group(),          drawn_popping_group()};
 }
 
 }  // namespace geoprior::details

@@ -173,6 +173,10 @@ bool DetailsScene::is_drawn(double parameter) const {
   return parameter == input.motion->parameter(0) || is_one_of(drawing->frames, parameter);
 }
 
+bool DetailsScene::measures_drawn_pop(double parameter) const {
+  return drawing && is_one_of(drawing->pop_frames, parameter);
+}
+
 std::map<std::string, double> DetailsScene::facts() const {
   const Eigen::VectorXd areas = triangle_areas(input.surface.V, input.surface.F);
   return {{"vertices", static_cast<double>(input.surface.vertex_count())},

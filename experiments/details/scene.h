@@ -37,6 +37,8 @@ class DetailsScene final : public ProcessScene {
   /// Whether the pair correlation is measured in the frame with that parameter.
   [[nodiscard]] bool measures_pairs(double parameter) const;
   [[nodiscard]] bool is_drawn(double parameter) const;
+  /// Whether popping of the drawing is measured there, since the frame before.
+  [[nodiscard]] bool measures_drawn_pop(double parameter) const;
 
   [[nodiscard]] std::map<std::string, double> facts() const override;
 

@@ -8,8 +8,8 @@
 
 #include "core/mesh.h"
 #include "metrics/dam_break.h"
-#include "metrics/seam.h"
 #include "metrics/self_contact.h"
+#include "metrics/shared_volume.h"
 #include "metrics/slosh.h"
 #include "metrics/surface_distance.h"
 #include "metrics/volume.h"
@@ -183,6 +183,17 @@ TrackedFrames true_objects(const InjectedSequence& injected) {
   return frames;
 }
 
+/// A flag a vertex: whether a feature moved it; absent for surfaces that none was pasted into.
+std::optional<std::vector<char>> moved_by_features(const Part& surface) {
+  const NamedArray* feature = surface.find_array("feature");
+  if (feature == nullptr) return {};
+  std::vector<char> moved(surface.points.rows());
+  for (std::size_t v = 0; v < moved.size(); ++v) {
+    moved[v] = feature->values(static_cast<Eigen::Index>(v), 0) != 0 ? 1 : 0;
+  }
+  return moved;
+}
+
 }  // namespace
 
 const Part& surface_part(const Frame& frame) {
@@ -206,14 +217,34 @@ LiquidMeasures liquid_measures(const FluidScene& scene, const Frame& frame) {
 
 std::optional<PasteMeasures> paste_measures(const FluidScene&, const Frame& frame) {
   const Part& surface = surface_part(frame);
-  const NamedArray* feature = surface.find_array("feature");
-  if (feature == nullptr) return {};
-  std::vector<char> moved(surface.points.rows());
-  for (std::size_t v = 0; v < moved.size(); ++v) {
-    moved[v] = feature->values(static_cast<Eigen::Index>(v), 0) != 0 ? 1 : 0;
-  }
-  return PasteMeasures{largest_seam_angle(mesh_of(surface), moved),
+  const std::optional<std::vector<char>> moved = moved_by_features(surface);
+  if (!moved) return {};
+  return PasteMeasures{largest_seam_angle(mesh_of(surface), *moved),
                        intersecting_pairs(surface.points, surface.triangles)};
+}
+
+std::optional<SeamJumps> paste_jumps(const FluidScene&, const Frame& frame) {
+  const Part& surface = surface_part(frame);
+  const std::optional<std::vector<char>> moved = moved_by_features(surface);
+  if (!moved) return {};
+  const SeamJumps jumps = seam_jumps(mesh_of(surface), *moved);
+  if (jumps.places == 0) return {};
+  return jumps;
+}
+
+Value particle_overlap(const FluidScene& scene, const Frame& frame) {
+  const Part* particles = frame.find_part("particles");
+  if (particles == nullptr || !scene.tank) return {};
+  const TriMesh mesh = mesh_of(frame);
+  if (closedness(mesh).defects() != 0) return {};
+  const Tank& tank = *scene.tank;
+  const double radius = tank.cell / 2;
+  const Eigen::AlignedBox3d room(tank.origin,
+                                 tank.origin + tank.cell * tank.cells.cast<double>().matrix());
+  const Eigen::Index count = particles->points.rows();
+  return shared_volume({particles->points, Eigen::VectorXd::Constant(count, radius)}, mesh,
+                       radius / 2, room)
+      .intersection_over_union();
 }
 
 std::optional<DamMeasures> dam_measures(const FluidScene& scene, const Frame& frame) {

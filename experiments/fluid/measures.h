@@ -6,6 +6,7 @@
 #include "experiments/fluid/scene.h"
 #include "metrics/closedness.h"
 #include "metrics/liquid_columns.h"
+#include "metrics/seam.h"
 #include "metrics/tracking_scores.h"
 #include "metrics/wave_modes.h"
 #include "testbed/frame_sequence.h"
@@ -35,6 +36,15 @@ struct PasteMeasures {
   int intersecting_pairs = 0;
 };
 std::optional<PasteMeasures> paste_measures(const FluidScene& scene, const Frame& frame);
+
+/// What differs between the sides of the border of what features moved, each continued by quadrics;
+/// absent for other surfaces, and where no place of the border has quadrics on both sides.
+std::optional<SeamJumps> paste_jumps(const FluidScene& scene, const Frame& frame);
+
+/// Intersection over union of the inside of the surface and balls of half a cell about the
+/// particles, as far as they are in the tank, along upright columns a quarter of a cell apart.
+/// Absent without the part "particles" and for surfaces that are not closed.
+Value particle_overlap(const FluidScene& scene, const Frame& frame);
 
 /// Front Z = x / a and height H = h / (2a) of a dam break (metrics/dam_break.h); absent for scenes
 /// that are none.

@@ -63,6 +63,36 @@ MetricGroup paste_group() {
            kCount, [](M m) { return m.intersecting_pairs; });
 }
 
+MetricGroup seam_jump_group() {
+  using M = const SeamJumps&;
+  const auto degrees = [](double radians) { return radians * 180 / std::numbers::pi; };
+  return frame_metrics<FluidScene>(paste_jumps)
+      .row("seam_position_jump", "m",
+           "largest distance between the two sides of the border of what features moved, each "
+           "continued by a quadric to the middle of an edge that crosses it",
+           kLow, kChaotic, [](M m) { return m.largest.position; })
+      .row("seam_position_rms", "m", "root mean square of the same over those edges", kLow,
+           kChaotic, [](M m) { return m.rms.position; })
+      .row("seam_angle_jump", "deg", "largest angle between the normals of the two sides there",
+           kLow, kChaotic, [degrees](M m) { return degrees(m.largest.angle); })
+      .row("seam_angle_rms", "deg", "root mean square of the same", kLow, kChaotic,
+           [degrees](M m) { return degrees(m.rms.angle); })
+      .row("seam_curvature_jump", "1/m",
+           "largest difference between the mean curvatures of the two sides there", kLow, kChaotic,
+           [](M m) { return m.largest.curvature; })
+      .row("seam_curvature_rms", "1/m", "root mean square of the same", kLow, kChaotic,
+           [](M m) { return m.rms.curvature; });
+}
+
+MetricGroup particle_group() {
+  return frame_metrics<FluidScene>(particle_overlap)
+      .row("particle_iou", "1",
+           "volume that balls of half a cell about the particles, inside the tank, share with the "
+           "inside of the surface, over that of either; frames that hold particles and a closed "
+           "surface",
+           kHigh, {1e-3, 0});
+}
+
 /// Absent where a front or a height could not be found.
 std::optional<double> if_finite(double value) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
@@ -198,9 +228,13 @@ MetricGroup tracking_group() {
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
-  return {surface_group(),     paste_group(),         dam_break_group(),  distance_group(),
-          height_group(),      volume_change_group(), tank_group(),       second_difference_group(),
-          seam_jitter_group(), sea_group(),           dispersion_group(), tracking_group()};
+  return {surface_group(),     paste_group(),
+          seam_jump_group(),   particle_group(),
+          dam_break_group(),   distance_group(),
+          height_group(),      volume_change_group(),
+          tank_group(),        second_difference_group(),
+          seam_jitter_group(), sea_group(),
+          dispersion_group(),  tracking_group()};
 }
 
 }  // namespace geoprior::fluid

@@ -32,13 +32,28 @@ std::string place(const Frame& frame) {
   return "frame at " + std::to_string(frame.parameter) + " s";
 }
 
-std::shared_ptr<const CurvatureFit> fit_of(FitMemo& fits, const SheetFrame& f) {
+/// What `make(pattern, triangles)` gives for the frame's mesh in the pattern, made once a mesh.
+template <class T, std::size_t Remembered, class Make>
+T of_pattern_mesh(Memo<T, Remembered>& memo, const SheetFrame& f, Make make) {
   ContentKey key;
   key.add_matrix(f.pattern);
   key.add_matrix(f.triangles());
-  return fits.get(key, [&] {
-    return std::make_shared<const CurvatureFit>(fit_curvature(f.pattern, f.triangles()));
-  });
+  return memo.get(key, [&] { return make(f.pattern, f.triangles()); });
+}
+
+bool has_turned_over(const SheetFrame& f) {
+  return pattern_mesh(f.pattern, f.triangles()).inverted != 0;
+}
+
+PlateStiffness plate_of(const PaperMaterial& material) {
+  return {material.membrane_stiffness(), material.bending_stiffness(), material.poisson_ratio};
+}
+
+/// The plastic curvature of every triangle (m x 3, 1/m); 0 where the frame has none.
+Eigen::MatrixX3d rest_curvature(const SheetFrame& f) {
+  const NamedArray* plastic = f.surface.find_array("plastic_curvature", NamedArray::On::cells);
+  if (plastic == nullptr) return Eigen::MatrixX3d::Zero(f.triangles().rows(), 3);
+  return plastic->values;
 }
 
 /// Two opposite sides of a rectangle, corner to corner: p(s, t) is at `s` along the sides, `t` from
@@ -125,21 +140,28 @@ CreaseMeasures crease_measures(const SheetFrame& f) {
 }
 
 std::optional<EnergyMeasures> energy_measures(FitMemo& fits, const SheetFrame& f) {
-  if (pattern_mesh(f.pattern, f.triangles()).inverted != 0) return std::nullopt;
-  const PaperMaterial& material = f.sheet.material;
-  const PlateStiffness plate{material.membrane_stiffness(), material.bending_stiffness(),
-                             material.poisson_ratio};
+  if (has_turned_over(f)) return std::nullopt;
+  const PlateStiffness plate = plate_of(f.sheet.material);
+  const auto fit = of_pattern_mesh(fits, f, [](const auto& pattern, const auto& triangles) {
+    return std::make_shared<const CurvatureFit>(fit_curvature(pattern, triangles));
+  });
   EnergyMeasures out;
   out.membrane = membrane_energy(f.pattern, f.x(), f.triangles(), plate);
-  const NamedArray* plastic = f.surface.find_array("plastic_curvature", NamedArray::On::cells);
-  const Eigen::MatrixX3d rest = plastic != nullptr
-                                    ? Eigen::MatrixX3d(plastic->values)
-                                    : Eigen::MatrixX3d::Zero(f.triangles().rows(), 3);
-  out.bending = bending_energy(*fit_of(fits, f), f.x(), rest, plate);
+  out.bending = bending_energy(*fit, f.x(), rest_curvature(f), plate);
   if (const NamedArray* v = f.surface.find_array("velocity", NamedArray::On::points)) {
-    out.kinetic = kinetic_energy(f.pattern, v->values, f.triangles(), material.area_density);
+    const double density = f.sheet.material.area_density;
+    out.kinetic = kinetic_energy(f.pattern, v->values, f.triangles(), density);
   }
   return out;
+}
+
+Value quadric_bending_energy(QuadricMemo& quadrics, const SheetFrame& f) {
+  if (!strip_of(f.sheet, f.frame.parameter) || has_turned_over(f)) return std::nullopt;
+  const auto curvature =
+      of_pattern_mesh(quadrics, f, [](const auto& pattern, const auto& triangles) {
+        return std::make_shared<const QuadricCurvature>(pattern, triangles);
+      });
+  return bending_energy(*curvature, f.x(), rest_curvature(f), plate_of(f.sheet.material));
 }
 
 MeshMeasures mesh_measures(const SheetFrame& f) {

@@ -6,6 +6,7 @@
 #include "core/curvature_fit.h"
 #include "core/frame.h"
 #include "experiments/paper/scene.h"
+#include "metrics/bending_energy.h"
 #include "metrics/developability.h"
 #include "metrics/isometry.h"
 #include "metrics/pattern_mesh.h"
@@ -55,6 +56,14 @@ struct EnergyMeasures {
 using FitMemo = Memo<std::shared_ptr<const CurvatureFit>, 4>;
 /// Absent when a triangle has no area in the pattern or is turned over there.
 std::optional<EnergyMeasures> energy_measures(FitMemo& fits, const SheetFrame& f);
+
+/// The same of the patches of quadrics (metrics/bending_energy.h).
+using QuadricMemo = Memo<std::shared_ptr<const QuadricCurvature>, 4>;
+/// Elastic energy of bending by quadrics (J). Only where every method has a smooth sheet: two
+/// opposite sides of a rectangle held as segments and nothing else at work, as for
+/// `elastica_error`. Creases and fans about an apex are not measured. Absent when a triangle has no
+/// area in the pattern or is turned over there.
+Value quadric_bending_energy(QuadricMemo& quadrics, const SheetFrame& f);
 
 /// The mesh in the pattern.
 struct MeshMeasures {

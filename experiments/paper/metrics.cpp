@@ -104,6 +104,16 @@ MetricGroup energy_group() {
            kNone, kSmooth, &M::kinetic);
 }
 
+MetricGroup quadric_bending_group() {
+  const auto quadrics = std::make_shared<QuadricMemo>();
+  return of_frame([quadrics](const SheetFrame& f) { return quadric_bending_energy(*quadrics, f); })
+      .row("bending_energy_quadric", "J",
+           "bending_energy by quadrics fitted to the places about each triangle, without dihedral "
+           "angles: apart from the element that solvers minimise; only for a rectangle bent by two "
+           "opposite sides alone, because creases and fans about an apex escape it",
+           kNone, kSmooth);
+}
+
 MetricGroup handle_work_group() {
   return of_frame(handle_work)
       .row("handle_work", "J",
@@ -194,9 +204,9 @@ MetricGroup distance_group() {
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
-  return {isometry_group(),    developability_group(), crease_group(),  energy_group(),
-          handle_work_group(), handle_force_group(),   mesh_group(),    contact_group(),
-          elastica_group(),    sector_group(),         distance_group()};
+  return {isometry_group(),        developability_group(), crease_group(),       energy_group(),
+          quadric_bending_group(), handle_work_group(),    handle_force_group(), mesh_group(),
+          contact_group(),         elastica_group(),       sector_group(),       distance_group()};
 }
 
 }  // namespace geoprior::paper

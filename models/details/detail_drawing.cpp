@@ -35,6 +35,14 @@ std::vector<DrawnAnchor> drawn_anchors(std::span<const DrawnAnchor> anchors,
   return drawn;
 }
 
+/// What lengths of the options are measured in (m).
+double unit_of(const DrawingOptions& options, double mean_edge) {
+  const double unit = options.unit == DrawnUnit::metre ? 1.0 : mean_edge;
+  if (!(unit > 0))
+    throw Error("mean edge " + std::to_string(mean_edge), "drawing", "a positive length");
+  return unit;
+}
+
 std::string part_name(DrawnKind kind) {
   return kind == DrawnKind::spike ? "spikes" : kind == DrawnKind::mesh ? "instances" : "holes";
 }
@@ -62,12 +70,15 @@ void describe(OptionVisitor& v, DrawingOptions& o) {
   }
 }
 
+double drawn_size(const DrawingOptions& options, double mean_edge) {
+  const bool is_spike = options.kind == DrawnKind::spike;
+  return unit_of(options, mean_edge) * (is_spike ? options.spike.height : options.radius);
+}
+
 DrawnDetails draw_details(const SurfaceTopology& surface, std::span<const Eigen::Vector3d> x,
                           std::span<const DrawnAnchor> anchors, const DrawingOptions& options,
                           double mean_edge, const TriMesh& instance) {
-  const double unit = options.unit == DrawnUnit::metre ? 1.0 : mean_edge;
-  if (!(unit > 0))
-    throw Error("mean edge " + std::to_string(mean_edge), "drawing", "a positive length");
+  const double unit = unit_of(options, mean_edge);
   const auto drawn = drawn_anchors(anchors, surface, options.type);
   const double radius = options.radius * unit;
   switch (options.kind) {

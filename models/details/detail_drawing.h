@@ -30,6 +30,12 @@ struct DrawingOptions {
 };
 void describe(OptionVisitor& v, DrawingOptions& options);
 
+/// Size of a detail of weight 1 (m): height of a spike, radius of a hole and of a mesh.
+///
+/// @param mean_edge  of M_d at rest (m)
+/// @throws Error     when the mean edge is needed and not positive
+double drawn_size(const DrawingOptions& options, double mean_edge);
+
 /// Draws details on a surface.
 ///
 /// @param surface    triangles of the surface; manifold

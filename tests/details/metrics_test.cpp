@@ -63,9 +63,10 @@ int triangle_of_details(const DetailMesh& d) {
 }
 
 /// Inserts a detail of that weight into the middle of a triangle.
-void insert(DetailMesh& d, double weight) {
+void insert(DetailMesh& d, double weight, int type = 0) {
   Detail like;
   like.weight = weight;
+  like.type = type;
   insert_detail(d, triangle_of_details(d), Eigen::Vector3d::Constant(1.0 / 3), like);
 }
 
@@ -154,6 +155,42 @@ TEST_F(DetailsMetrics, ADetailThatComesAtOncePops) {
   EXPECT_EQ(over("inserted_total", frames), 1);
   EXPECT_EQ(over("removed_total", frames), 0);
   EXPECT_EQ(over("churn", frames), 0);
+}
+
+// A spike of half its height stands there a second later; it is far from the others, so that the
+// surface is what is nearest to its tip.
+TEST_F(DetailsMetrics, ASpikeThatComesAtOncePopsByItsHeight) {
+  DetailMesh details = details_at(1);
+  std::vector<Frame> frames{detail_frame(details, 0)};
+  insert(details, 0.5);
+  for (const double time : {1, 2}) frames.push_back(detail_frame(details, time));
+  EXPECT_FALSE(over("drawn_popping", frames)) << "nothing is drawn";
+  scene.drawing.emplace();
+  scene.drawing->look.unit = DrawnUnit::metre;
+  scene.drawing->look.radius = 0.002;
+  scene.drawing->look.spike.height = 0.01;
+  scene.drawing->pop_frames = 2;
+  EXPECT_NEAR(over("drawn_popping", frames).value(), 0.5, 1e-9);
+  scene.drawing->pop_frames = 1;  // the last: nothing happens any more
+  EXPECT_NEAR(over("drawn_popping", frames).value(), 0, 1e-9);
+}
+
+// A hole of radius r is cut at once: its centre was surface, and is r from the rim.
+TEST_F(DetailsMetrics, AHoleThatIsCutAtOncePopsByItsRadius) {
+  DetailMesh details = details_at(1);
+  std::vector<Frame> frames{detail_frame(details, 0)};
+  insert(details, 1, 1);
+  for (const double time : {1, 2}) frames.push_back(detail_frame(details, time));
+  scene.drawing.emplace();
+  scene.drawing->look.kind = DrawnKind::hole;
+  scene.drawing->look.type = 1;  // no others, which would take some of its radius
+  scene.drawing->look.unit = DrawnUnit::metre;
+  scene.drawing->look.radius = 0.03;
+  scene.drawing->pop_frames = 2;
+  const double popping = over("drawn_popping", frames).value();
+  EXPECT_LT(popping, 1 + 1e-9);
+  // Samples are up to a sixth of the radius beside the centre; 40 chords are 0.3 % within the rim.
+  EXPECT_GT(popping, 1 - 1.0 / 6 - 0.004);
 }
 
 // Ten frames of rest are allowed for weights to end; what comes after is an oscillation.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 
 #include "experiments/fluid/measures.h"
@@ -217,6 +218,49 @@ TEST_F(TankMetrics, SeamJitterOfARidgeThatMovesIsItsHeight) {
     }
     EXPECT_NEAR(over("seam_jitter", frames).value(), step == 0 ? 1 : 5, 1e-9) << step;
   }
+}
+
+// Both sides of the ridge are planes, 0.02 m apart: no slope and no curvature between them,
+// whatever the triangles that bridge the step say.
+TEST_F(TankMetrics, TheSeamOfARidgeIsAStepOfItsHeight) {
+  const auto ridge = [](int i) { return i >= 8 && i < 12; };
+  const Frame frame = pool_with_a_ridge(*scene.gauges, 0.1, 0.02, ridge, 0);
+  EXPECT_NEAR(value("seam_position_jump", frame).value(), 0.02, 1e-12);
+  EXPECT_NEAR(value("seam_position_rms", frame).value(), 0.02, 1e-12);
+  EXPECT_NEAR(value("seam_angle_jump", frame).value(), 0, 1e-9);
+  EXPECT_NEAR(value("seam_curvature_jump", frame).value(), 0, 1e-9);
+  EXPECT_GT(value("seam_angle", frame).value(), 30);  // atan(0.02 / 0.025) = 38.7
+  const auto nowhere = [](int) { return false; };
+  EXPECT_FALSE(
+      value("seam_position_jump", pool_with_a_ridge(*scene.gauges, 0.1, 0.02, nowhere, 0)));
+  EXPECT_FALSE(value("seam_position_jump", block));
+}
+
+/// Particles as far apart as `spacing`, of which the first is that far from the wall by half.
+Part particles_of(const Eigen::Vector3d& size, double spacing) {
+  Part part;
+  part.kind = Part::Kind::points;
+  const Eigen::Vector3i count = (size / spacing).array().round().cast<int>();
+  part.points.resize(count.prod(), 3);
+  int row = 0;
+  for (int i = 0; i < count.x(); ++i)
+    for (int j = 0; j < count.y(); ++j)
+      for (int k = 0; k < count.z(); ++k)
+        part.points.row(row++) = spacing * Eigen::RowVector3d(i + 0.5, j + 0.5, k + 0.5);
+  return part;
+}
+
+// Balls of half a cell that stand a cell apart fill pi / 6 of the block; four columns a diameter
+// see 3 % more of each.
+TEST_F(TankMetrics, ParticlesShareTheBlockAsFarAsTheirBallsFillIt) {
+  EXPECT_FALSE(value("particle_iou", block).has_value());
+  block.parts["particles"] = particles_of({0.2, 0.4, 0.4}, 0.05);
+  EXPECT_NEAR(value("particle_iou", block).value(), std::numbers::pi / 6, 0.02);
+  // Half of the particles beside the block: b / 2 of it shared, of 1 + b / 2 together.
+  Part& particles = block.parts["particles"];
+  particles.points.bottomRows(128).col(0).array() += 0.5;
+  const double half = std::numbers::pi / 12;
+  EXPECT_NEAR(value("particle_iou", block).value(), half / (1 + half), 0.02);
 }
 
 /// Frames with an octahedron at every true object, labelled by `id_of(true id, frame)`, 0: none.

@@ -73,6 +73,17 @@ TEST(SharedVolume, OverlappingBallsCountOnce) {
   EXPECT_NEAR(v.intersection_over_union().value(), v.first / 8, 1e-12);
 }
 
+// A ball about the corner of a room: an eighth of it is inside, and lies in the surface.
+TEST(SharedVolume, BallsCountInsideTheirRoom) {
+  const double r = 0.1;
+  const Balls corner{Eigen::MatrixX3d::Zero(1, 3), Eigen::VectorXd::Constant(1, r)};
+  const TriMesh box = shapes::box({0, 0, 0}, {1, 1, 1});
+  const Eigen::AlignedBox3d room(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
+  const SharedVolume v = shared_volume(corner, box, r / 80, room);
+  EXPECT_NEAR(v.first / (ball_volume(r) / 8), 1, 0.01);  // half a column along two walls
+  EXPECT_NEAR(v.both, v.first, 1e-12);
+}
+
 TEST(SharedVolume, OfVolumesApartIsNoneAndOfNothingIsAbsent) {
   const TriMesh box = shapes::box({0, 0, 0}, {1, 1, 1});
   EXPECT_EQ(shared_volume(ball(0.5, {3, 0, 0}), box, 0.1).intersection_over_union().value(), 0);

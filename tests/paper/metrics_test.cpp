@@ -59,8 +59,9 @@ TEST_F(StripMetrics, AFlatSheetHasNothingToReport) {
   for (const char* name :
        {"isometry_rms", "isometry_max", "edge_length_error", "edge_length_error_max", "area_drift",
         "angle_defect_mean", "angle_defect_max", "hinge_energy_sum", "hinge_energy_max",
-        "crease_length", "dcone_count", "membrane_energy", "bending_energy", "inverted_triangles",
-        "uncovered_area", "intersecting_pairs", "intersection_depth"}) {
+        "crease_length", "dcone_count", "membrane_energy", "bending_energy",
+        "bending_energy_quadric", "inverted_triangles", "uncovered_area", "intersecting_pairs",
+        "intersection_depth"}) {
     EXPECT_NEAR(value(name, flat).value(), 0, 1e-7) << name;  // root of round-off at most
   }
   EXPECT_EQ(value("gauss_image_thinness", flat), 1);
@@ -90,6 +91,29 @@ TEST_F(StripMetrics, ACylinderHasTheEnergyOfThePlate) {
   creased.parts["surface"].arrays.push_back(
       array("plastic_curvature", NamedArray::On::cells, rest));
   EXPECT_LT(value("bending_energy", creased).value(), 1e-3 * plate);
+}
+
+// AD/(2R^2), of which edges of a fifth of the radius miss 2 % (docs/metrics.md).
+TEST_F(StripMetrics, ACylinderHasTheEnergyOfThePlateByQuadricsToo) {
+  const double radius = 0.05;
+  const Frame frame = frame_of(sheets::mapped(strip, sheets::cylinder(radius)));
+  const double plate = 0.02 * scene.sheet.material.bending_stiffness() / (2 * radius * radius);
+  EXPECT_NEAR(value("bending_energy_quadric", frame).value() / plate, 0.98, 0.005);
+  // Half of the curvature is plastic: a quarter of the energy is left.
+  Frame creased = frame;
+  Eigen::MatrixX3d rest = Eigen::MatrixX3d::Zero(strip.triangles.rows(), 3);
+  rest.col(0).setConstant(0.5 / radius);
+  creased.parts["surface"].arrays.push_back(
+      array("plastic_curvature", NamedArray::On::cells, rest));
+  EXPECT_NEAR(value("bending_energy_quadric", creased).value() / plate, 0.25, 0.01);
+}
+
+TEST_F(StripMetrics, QuadricsMeasureOnlySheetsThatTwoSidesBend) {
+  const Frame frame = frame_of(sheets::mapped(strip, sheets::cylinder(0.05)));
+  ASSERT_TRUE(value("bending_energy_quadric", frame).has_value());
+  scene.sheet.obstacles.emplace_back();
+  EXPECT_FALSE(value("bending_energy_quadric", frame).has_value());
+  EXPECT_TRUE(value("bending_energy", frame).has_value());
 }
 
 TEST_F(StripMetrics, KineticEnergyNeedsVelocities) {
@@ -208,6 +232,7 @@ TEST_F(StripMetrics, ATurnedOverTriangleIsCountedAndLeavesNoEnergies) {
   EXPECT_LT(value("min_altitude", frame).value(), 0);
   EXPECT_FALSE(value("membrane_energy", frame).has_value());
   EXPECT_FALSE(value("bending_energy", frame).has_value());
+  EXPECT_FALSE(value("bending_energy_quadric", frame).has_value());
   EXPECT_GT(value("isometry_max", frame).value(), 0.01);
 }
 
