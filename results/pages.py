@@ -109,13 +109,13 @@ def flat_options(options, prefix=""):
 
 
 def option_rows(sources, topic):
-    """What the experiments set by hand instead of a method's defaults."""
+    """What the experiments set by hand instead of a method's defaults; null controls show nothing."""
     rows = []
     for path in sorted((sources.root / "experiments" / topic).glob("*.toml")):
         spec = tomllib.loads(path.read_text(encoding="utf-8"))
         rows += [[f"`{path.stem}`", spec.get("figure") or "–", variant["name"],
                   ", ".join(flat_options(variant["options"]))]
-                 for variant in spec.get("variant", []) if variant.get("options")]
+                 for variant in spec.get("variant", []) if variant.get("options") and variant.get("role") != "null"]
     if not rows:
         raise ExpressionError(f"no experiment of topic '{topic}' sets options")
     return ["| experiment | figure | variant | options set by hand |", "|---|---|---|---|",
