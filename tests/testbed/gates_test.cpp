@@ -205,6 +205,15 @@ TEST(Gates, WhatBifurcatesIsComparedByItsMedianOverTheSeeds) {
   EXPECT_EQ(values.at("seed=*").at("v").at("diagnostic:iterations").value, 3);
 }
 
+TEST(Gates, CasesForClaimsOnlyHaveNoReferenceValues) {
+  RunRecord record;
+  record.cases = {case_of("default", 1, {1}), case_of("seed=2", 2, {2})};
+  record.cases[1].claims_only = true;
+  const GatedValues values = gated_values(Experiment(), wide_topic(), record, {});
+  EXPECT_TRUE(values.contains("default"));
+  EXPECT_FALSE(values.contains("seed=2"));
+}
+
 class Bifurcating : public test::RunTest {};
 
 TEST_F(Bifurcating, NeedsASweepOverTheSeed) {

@@ -208,6 +208,26 @@ TEST(SeedClaims, NineOfTenDecide) {
   EXPECT_FALSE(decided(over_seeds(), seeds(own, bad)).holds);
 }
 
+TEST(SeedClaims, CasesForClaimsOnlyDecideNothingByThemselves) {
+  RunRecord run = seeds({1, 1, 1}, {9, 9, 9});
+  for (CaseRecord& in : run.cases) in.claims_only = in.name != "default";
+  const auto decided_cases = [&](const ClaimSpec& claim) {
+    Experiment experiment;
+    experiment.quick = true;
+    experiment.claims = {claim};
+    std::vector<std::string> names;
+    for (const ClaimRecord& record : decide_claims(experiment, run)) {
+      names.push_back(record.case_name + ": " + record.detail.substr(0, 7));
+    }
+    return names;
+  };
+  EXPECT_THAT(decided_cases(at_most(2, "n")), testing::ElementsAre("default: error o"));
+  EXPECT_THAT(decided_cases(over_seeds()), testing::ElementsAre("default: 3 of 3 "));
+  ClaimSpec named = at_most(2, "n");
+  named.cases = {"seed=2"};
+  EXPECT_THAT(decided_cases(named), testing::ElementsAre("seed=2: error o"));
+}
+
 TEST(SeedClaims, TheNullFailsInNineOfTen) {
   const std::vector<double> own(10, 1);
   std::vector<double> null(10, 9);

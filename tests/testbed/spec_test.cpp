@@ -102,6 +102,12 @@ TEST_F(Spec, GridSweepsMakeTheirProduct) {
   EXPECT_EQ(json::parse(e.cases[4].scene_json)["points"], 12);
 }
 
+TEST_F(Spec, SweepsForClaimsOnlySayThatOfTheirCases) {
+  const Experiment e = load(toy::disc_experiment() + kSweep +
+                            "[[sweep]]\nkey = \"seed\"\nvalues = [7]\nclaims_only = true\n");
+  for (const CaseSpec& made : e.cases) EXPECT_EQ(made.claims_only, made.name == "seed=7");
+}
+
 TEST_F(Spec, QuickOverridesKeysAndSweepValues) {
   const std::string text = toy::disc_experiment() + kSweep +
                            "[timing]\nrepetitions = 9\n[quick]\n\"scene.motion.frames\" = 2\n"
