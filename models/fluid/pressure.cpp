@@ -334,7 +334,7 @@ void describe(OptionVisitor& v, PressureOptions& options) {
            .min = 1e-12,
            .max = 0.1});
   v.value("max_iterations", options.max_iterations,
-          {.doc = "of the conjugate gradients; 0: no projection (a null control)",
+          {.doc = "of the conjugate gradients; 0: the velocity stays as it is (a null control)",
            .min = 0,
            .max = 1e6});
   v.value("smallest_theta", options.smallest_theta,

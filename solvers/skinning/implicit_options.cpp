@@ -66,7 +66,9 @@ void describe_solve(OptionVisitor& v, ImplicitOptions& o) {
   v.value("tolerance", o.tolerance,
           {.doc = "|F - iso| at which a vertex is done", .min = 1e-6, .max = 0.1});
   v.value("max_iterations", o.max_iterations,
-          {.doc = "projection passes at most", .min = 0, .max = 1000});
+          {.doc = "projection passes at most; 0: nothing is projected (a null control)",
+           .min = 0,
+           .max = 1000});
   v.value("relaxation", o.relaxation, {.doc = "tangential relaxation after each projection pass"});
   v.value("diffusion_passes", o.diffusion_passes,
           {.doc = "passes that spread the contact mark beta", .min = 0, .max = 100});

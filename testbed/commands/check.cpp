@@ -61,9 +61,10 @@ Verdict check_one(const CommandContext& context, const std::string& id,
   verdict.run = run.folder.string();
   verdict.claims = decide_claims(run.experiment, run.record);
   verdict.mutations = request.mutations;
-  verdict.mutation_seen = std::any_of(
-      verdict.claims.begin(), verdict.claims.end(),
-      [](const ClaimRecord& claim) { return claim.null.verdict == Discrimination::discriminates; });
+  verdict.mutation_seen =
+      std::any_of(verdict.claims.begin(), verdict.claims.end(), [](const ClaimRecord& claim) {
+        return claim.holds && claim.null.verdict == Discrimination::discriminates;
+      });
   verdict.failures = failures(run.record);
   for (const ClaimSpec& claim : run.experiment.claims) {
     if (claim.known_shortfall) verdict.known_shortfalls[claim.text] = *claim.known_shortfall;

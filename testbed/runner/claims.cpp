@@ -129,15 +129,19 @@ bool most(std::size_t count, std::size_t of) {
   return static_cast<double>(count) >= kShareOfSeeds * static_cast<double>(of);
 }
 
-/// Names that stand in at least nine of ten of the lists.
-std::vector<std::string> in_most(const std::vector<Decision>& seeds) {
-  std::map<std::string, std::size_t> count;
+using Cases = std::vector<const CaseRecord*>;
+
+/// Variants that pass in at least nine of ten of the cases that have them.
+std::vector<std::string> that_mostly_pass(const std::vector<Decision>& seeds, const Cases& group) {
+  std::map<std::string, std::size_t> passed;
   for (const Decision& seed : seeds) {
-    for (const std::string& name : seed.passed_too) ++count[name];
+    for (const std::string& name : seed.passed_too) ++passed[name];
   }
   std::vector<std::string> names;
-  for (const auto& [name, n] : count) {
-    if (most(n, seeds.size())) names.push_back(name);
+  for (const auto& [name, n] : passed) {
+    const auto has = [&](const CaseRecord* in) { return find_variant(*in, name) != nullptr; };
+    const auto cases = static_cast<std::size_t>(std::count_if(group.begin(), group.end(), has));
+    if (most(n, cases)) names.push_back(name);
   }
   return names;
 }
@@ -164,7 +168,7 @@ NullRecord null_over(const std::vector<Decision>& seeds) {
 }
 
 /// "9 of 10 seeds; worst: …": the seed nearest to failing speaks for the claim.
-ClaimRecord over_seeds(const std::vector<Decision>& seeds) {
+ClaimRecord over_seeds(const std::vector<Decision>& seeds, const Cases& group) {
   const auto worst = std::min_element(
       seeds.begin(), seeds.end(), [](const auto& a, const auto& b) { return a.margin < b.margin; });
   const auto held = static_cast<std::size_t>(
@@ -175,7 +179,7 @@ ClaimRecord over_seeds(const std::vector<Decision>& seeds) {
   record.detail = std::to_string(held) + " of " + std::to_string(seeds.size()) +
                   " seeds; worst: " + worst->record.detail;
   record.null = null_over(seeds);
-  record.passed_too = joined(in_most(seeds));
+  record.passed_too = joined(that_mostly_pass(seeds, group));
   return record;
 }
 
@@ -184,8 +188,6 @@ std::map<std::string, std::string> without_seed(std::map<std::string, std::strin
   swept.erase("seed");
   return swept;
 }
-
-using Cases = std::vector<const CaseRecord*>;
 
 bool named_by(const ClaimSpec& claim, const CaseRecord& in) {
   return std::find(claim.cases.begin(), claim.cases.end(), in.name) != claim.cases.end();
@@ -204,9 +206,9 @@ std::vector<Cases> groups_of(const ClaimSpec& claim, const RunRecord& record) {
     (found == groups.end() ? groups.emplace_back() : *found).push_back(&in);
   }
   std::erase_if(groups, [&](const Cases& group) {
-    return !claim.cases.empty() &&
-           std::none_of(group.begin(), group.end(),
-                        [&](const auto* in) { return named_by(claim, *in); });
+    return !claim.cases.empty() && std::none_of(group.begin(), group.end(), [&](const auto* in) {
+      return named_by(claim, *in);
+    });
   });
   return groups;
 }
@@ -239,7 +241,7 @@ std::vector<ClaimRecord> decide_in_cases(const ClaimSpec& claim, const Experimen
                     "claim '" + claim.text + "', case '" + group.front()->name + "'",
                     "at least " + std::to_string(kLeastSeeds) + ", of a sweep over `seed`");
       }
-      decided.push_back(over_seeds(decisions));
+      decided.push_back(over_seeds(decisions, group));
     } else {
       decisions.front().record.passed_too = joined(decisions.front().passed_too);
       decided.push_back(std::move(decisions.front().record));
