@@ -203,18 +203,14 @@ void say_studies(const RunRecord& record) {
 }
 
 void say_summary(const RunRecord& record, std::size_t most_cases) {
-  const auto cases =
-      static_cast<std::size_t>(std::count_if(record.cases.begin(), record.cases.end(),
-                                             [](const CaseRecord& in) { return !in.claims_only; }));
-  std::size_t shown = 0;
+  std::size_t cases = 0;
   for (const CaseRecord& in : record.cases) {
-    if (in.claims_only) continue;
-    if (shown++ == most_cases) {
-      say("  … and " + std::to_string(cases - most_cases) + " more cases: see the report");
-      return;
-    }
+    if (in.claims_only || ++cases > most_cases) continue;
     say_case(in);
     say();
+  }
+  if (cases > most_cases) {
+    say("  … and " + std::to_string(cases - most_cases) + " more cases: see the report");
   }
 }
 
