@@ -377,8 +377,9 @@ def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("run", help="run folder or its run.h5")
     parser.add_argument("--out", help="SVG file; default: metrics.svg in the run folder")
+    runfile.add_force(parser)
     options = parser.parse_args(arguments)
-    run = runfile.read_run(options.run)
+    run = runfile.read_run(options.run, options.force)
     drawn = figures(run)
     target = Path(options.out) if options.out else run.folder / "metrics.svg"
     runfile.write_atomically(target, drawn.get("metrics") or empty_figure())

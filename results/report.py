@@ -74,8 +74,9 @@ def main(arguments):
     parser.add_argument("runs", nargs="+", metavar="run", help="run folder or its run.h5")
     parser.add_argument("--out", help="default: report.html in the run folder;"
                         " results/runs/report.html for several runs")
+    runfile.add_force(parser)
     options = parser.parse_args(arguments)
-    runs = [runfile.read_run(place) for place in options.runs]
+    runs = [runfile.read_run(place, options.force) for place in options.runs]
     target = target_of(runs, options.out)
     runfile.write_atomically(target, build(runs))
     if not options.out:

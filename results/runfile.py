@@ -1,5 +1,6 @@
 """Reads run.h5 (docs/file-formats.md) into plain Python objects. Needs h5py and numpy only."""
 
+import hashlib
 import json
 import sys
 import tomllib
@@ -11,6 +12,7 @@ import h5py
 import numpy as np
 
 SCHEMA_VERSION = 3  # and what came before it
+JOURNAL_TAIL = 4096  # more than its last line has
 
 
 class RunFileError(Exception):
@@ -235,15 +237,58 @@ def read_root(folder, file):
     return run
 
 
-def read_run(place):
-    """Reads a run folder (or its run.h5). Raises RunFileError with one clear line."""
+def recorded_result(folder):
+    """SHA-256 of the run.h5 that finished the run, by the last line of its journal; else None."""
+    journal = folder / "journal.jsonl"
+    if not journal.is_file():
+        return None
+    with open(journal, "rb") as file:
+        file.seek(max(0, journal.stat().st_size - JOURNAL_TAIL))
+        tail = file.read()
+    try:
+        line = json.loads(tail.rstrip(b"\n").rsplit(b"\n", 1)[-1])
+        return line["sha256"] if line["kind"] == "result" else None
+    except (ValueError, KeyError, TypeError):
+        return None
+
+
+def require_recorded(path):
+    """HDF5 crashes on many a damaged file: nothing is read but what the run wrote."""
+    recorded = recorded_result(path.parent)
+    if recorded is None:
+        raise RunFileError(f"{path}: its checksum is not in the journal beside it (allowed: the "
+                           "folder of a finished run as it was written, or --force)")
+    with open(path, "rb") as file:
+        if hashlib.file_digest(file, "sha256").hexdigest() != recorded:
+            raise RunFileError(f"{path}: is damaged or another file: its SHA-256 is not the "
+                               "recorded one (allowed: the file as the run wrote it, or --force)")
+
+
+def require_own(group):
+    """No link to another place, no values in other files."""
+    for name in group:
+        if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+            raise ValueError(f"{name} is a link to another place")
+        item = group[name]
+        if isinstance(item, h5py.Group):
+            require_own(item)
+        elif item.external or item.is_virtual:
+            raise ValueError(f"{name} has its values in another file")
+
+
+def read_run(place, force=False):
+    """Reads a run folder (or its run.h5); with `force` whether or not it is what was recorded.
+    Raises RunFileError with one clear line."""
     path = Path(place)
     path = path / "run.h5" if path.is_dir() else path
     if not path.is_file():
         raise RunFileError(f"{path}: no such file (a finished run has a run.h5; an interrupted one "
                            "goes on with --resume)")
+    if not force:
+        require_recorded(path)
     try:
         with h5py.File(path, "r") as file:
+            require_own(file)
             version = int(file.attrs.get("schema_version", -1))
             if not 1 <= version <= SCHEMA_VERSION:
                 raise RunFileError(f"{path}: schema version {version} "
@@ -269,6 +314,11 @@ def write_atomically(path, content):
     except OSError as error:
         temporary.unlink(missing_ok=True)
         raise RunFileError(f"{path}: cannot be written ({error.strerror or error})") from error
+
+
+def add_force(parser):
+    parser.add_argument("--force", action="store_true",
+                        help="read a run whose checksum is missing or wrong")
 
 
 def run_main(main):

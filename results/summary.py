@@ -95,8 +95,9 @@ def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("run", help="run folder or its run.h5")
     parser.add_argument("--out", help="default: summary.md in the run folder")
+    runfile.add_force(parser)
     options = parser.parse_args(arguments)
-    run = runfile.read_run(options.run)
+    run = runfile.read_run(options.run, options.force)
     target = Path(options.out) if options.out else run.folder / "summary.md"
     runfile.write_atomically(target, summary_text(run))
     return 0

@@ -87,6 +87,13 @@ void add_checks(CommandLine& line) {
   bless->add_flag("--quick", line.bless.quick, "the values of quick runs");
 }
 
+/// Lets a command read runs whose files are not what was recorded.
+void add_force(CLI::App& command, Unverified& unverified) {
+  command.add_flag_callback(
+      "--force", [&unverified] { unverified = Unverified::used; },
+      "use files whose checksums are missing or wrong, and say which");
+}
+
 void add_views(CommandLine& line) {
   const std::string what = "folder, run.h5, or experiment (its newest run)";
   CLI::App* render = add_command(line, "render", "draw figure.png of a run");
@@ -109,6 +116,10 @@ void add_views(CommandLine& line) {
       ->required()
       ->check(CLI::IsMember({"obj", "ply", "glb"}));
   exported->add_option("--out", line.exported.out, "folder")->type_name("DIR");
+  add_force(*render, line.render.unverified);
+  add_force(*video, line.video.unverified);
+  add_force(*report, line.report.unverified);
+  add_force(*exported, line.exported.unverified);
 }
 
 void build(CommandLine& line) {

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/error.h"
+#include "testbed/formats/hdf5_content.h"
 #include "testbed/formats/hdf5_file.h"
 
 namespace geoprior::fluid {
@@ -92,7 +93,7 @@ void write_feature(H5Group& features, const Feature& feature) {
 
 /// A data set of these extents.
 template <class T>
-std::vector<T> read(const H5Group& group, const char* name,
+std::vector<T> read(const H5Node& group, const char* name,
                     const std::vector<std::size_t>& extents) {
   H5Block<T> block = group.read_block<T>(name, extents.size());
   if (block.extents != extents) {
@@ -104,13 +105,13 @@ std::vector<T> read(const H5Group& group, const char* name,
 }
 
 template <class T>
-std::vector<T> read_rows(const H5Group& group, const char* name) {
+std::vector<T> read_rows(const H5Node& group, const char* name) {
   H5Block<T> block = group.read_block<T>(name, 2);
   if (block.extents[1] != 3) throw Error("has not three columns", group.place() + "/" + name);
   return std::move(block.values);
 }
 
-void read_placements(const H5Group& group, Feature& feature) {
+void read_placements(const H5Node& group, Feature& feature) {
   const std::size_t frames = feature.times.size();
   const std::vector<double> values = read<double>(group, "placement", {frames, 4, 4});
   feature.placement.resize(frames);
@@ -119,7 +120,7 @@ void read_placements(const H5Group& group, Feature& feature) {
   }
 }
 
-void read_maps(const H5Group& group, Feature& feature) {
+void read_maps(const H5Node& group, Feature& feature) {
   const std::int64_t resolution = group.read_int("resolution");
   if (resolution < 1 || resolution > 1 << 15) {
     throw Error("resolution is " + std::to_string(resolution), group.place());
@@ -146,7 +147,7 @@ void require_offsets(const std::vector<std::int64_t>& offsets, std::size_t rows,
   throw Error("are no offsets", where, "0, never falling, up to " + std::to_string(rows));
 }
 
-void read_meshes(const H5Group& group, Feature& feature) {
+void read_meshes(const H5Node& group, Feature& feature) {
   const std::size_t frames = feature.times.size();
   const auto vertex = read<std::int64_t>(group, "vertex_offset", {frames + 1});
   const auto triangle = read<std::int64_t>(group, "triangle_offset", {frames + 1});
@@ -163,7 +164,7 @@ void read_meshes(const H5Group& group, Feature& feature) {
   }
 }
 
-Feature read_feature(const H5Group& group, int id) {
+Feature read_feature(const H5Node& group, int id) {
   Feature feature;
   feature.id = id;
   feature.name = group.read_text("name");
@@ -189,7 +190,7 @@ Feature read_feature(const H5Group& group, int id) {
   return feature;
 }
 
-int id_of(const std::string& name, const H5Group& features) {
+int id_of(const std::string& name, const H5Node& features) {
   const bool digits = !name.empty() && name.size() <= 9 &&
                       name.find_first_not_of("0123456789") == std::string::npos;
   if (!digits) throw Error("has the feature '" + name + "'", features.place(), "whole numbers");
@@ -212,15 +213,14 @@ std::vector<std::byte> feature_library_bytes(const std::vector<Feature>& feature
 }
 
 std::vector<Feature> read_feature_library(const std::filesystem::path& path) {
-  const H5File file = H5File::open_for_reading(path);
-  const H5Group root = file.root();
+  const H5Node root = read_hdf5(path);
   if (root.read_text("kind") != kFileKind) throw Error("is no feature library", path.string());
   const std::int64_t schema = root.read_int("schema_version");
   if (schema != kSchema) {
     throw Error("has schema version " + std::to_string(schema), path.string(),
                 std::to_string(kSchema));
   }
-  const H5Group group = root.open_group("features");
+  const H5Node group = root.open_group("features");
   std::vector<Feature> features;
   for (const std::string& name : group.children()) {
     features.push_back(read_feature(group.open_group(name), id_of(name, group)));

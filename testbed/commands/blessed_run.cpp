@@ -8,6 +8,7 @@
 #include "testbed/commands/catalogue.h"
 #include "testbed/commands/console.h"
 #include "testbed/runner/execute.h"
+#include "testbed/runner/opened_run.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/sha256.h"
 
@@ -40,7 +41,7 @@ BlessedRun run_without_clock(const CommandContext& context, const std::string& i
   }
   if (folder) {
     run.folder = *folder;
-    run.record = read_run_file(*folder / "run.h5");
+    run.record = OpenedRun(*folder).record();
     return run;
   }
   say(tinted("running " + run.experiment.id + (quick ? " (quick)" : ""), Tint::faint));

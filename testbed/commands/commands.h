@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "testbed/runner/opened_run.h"
 #include "testbed/runner/run_record.h"
 #include "testbed/runner/spec.h"
 #include "testbed/topic.h"
@@ -48,6 +49,7 @@ struct BlessRequest {
 struct RenderRequest {
   std::string run;
   std::optional<std::string> view;  ///< experiment file whose [figure_view] is drawn
+  Unverified unverified = Unverified::refused;
 };
 
 struct VideoRequest {
@@ -55,17 +57,20 @@ struct VideoRequest {
   std::optional<std::string> view;
   std::optional<std::string> out;
   double frames_per_second = 25;
+  Unverified unverified = Unverified::refused;
 };
 
 struct ReportRequest {
   std::vector<std::string> runs;  ///< empty: the newest run of every experiment
   std::optional<std::string> out;
+  Unverified unverified = Unverified::refused;
 };
 
 struct ExportRequest {
   std::string run;
   std::string format;
   std::optional<std::string> out;
+  Unverified unverified = Unverified::refused;
 };
 
 int list_command(const CommandContext& context);

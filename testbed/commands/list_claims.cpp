@@ -8,6 +8,7 @@
 #include "testbed/commands/console.h"
 #include "testbed/runner/claims.h"
 #include "testbed/runner/number_text.h"
+#include "testbed/runner/opened_run.h"
 
 namespace geoprior {
 namespace {
@@ -16,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 std::optional<RunRecord> newest_run(const std::string& id) {
   try {
-    return read_run_file(run_folder_of(id) / "run.h5");
+    return OpenedRun(run_folder_of(id)).record();
   } catch (const Error&) {
     return std::nullopt;  // none yet
   }

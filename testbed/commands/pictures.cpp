@@ -10,8 +10,10 @@ namespace geoprior {
 
 namespace fs = std::filesystem;
 
-void make_report(const std::vector<fs::path>& run_folders, const fs::path& page) {
+void make_report(const std::vector<fs::path>& run_folders, const fs::path& page,
+                 Unverified unverified) {
   std::vector<std::string> arguments{"--out", page.string()};
+  if (unverified == Unverified::used) arguments.emplace_back("--force");
   for (const fs::path& folder : run_folders) arguments.push_back(folder.string());
   run_python("report", arguments);
 }
@@ -32,7 +34,7 @@ void attempt(std::string& problems, const std::function<void()>& step) {
 Pictures make_pictures(const fs::path& run_folder, const FigureView& view) {
   Pictures pictures;
   attempt(pictures.error, [&] {
-    render_run(run_folder, view);
+    render_run(OpenedRun(run_folder), view);
     pictures.figure = run_folder / "figure.png";
   });
   attempt(pictures.error, [&] { run_python("plots", {run_folder.string()}); });

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "testbed/runner/opened_run.h"
 #include "testbed/runner/spec.h"
 
 namespace geoprior {
@@ -21,6 +22,6 @@ Pictures make_pictures(const std::filesystem::path& run_folder, const FigureView
 
 /// One page about several runs. @throws Error  as run_python does
 void make_report(const std::vector<std::filesystem::path>& run_folders,
-                 const std::filesystem::path& page);
+                 const std::filesystem::path& page, Unverified unverified = Unverified::refused);
 
 }  // namespace geoprior

@@ -19,21 +19,22 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The view of another experiment, or the one that the run was recorded with.
-FigureView view_of(const fs::path& run_folder, const std::optional<std::string>& experiment,
+FigureView view_of(const OpenedRun& run, const std::optional<std::string>& experiment,
                    const std::vector<Topic>& topics) {
   if (experiment) return load_experiment(experiment_file(*experiment), topics, {}).view;
-  const fs::path file = run_folder / "run.h5";
-  return figure_view_of(read_run_file(file).experiment_toml, file.string(), topics);
+  const std::string file = (run.folder() / "run.h5").string();
+  return figure_view_of(run.record().experiment_toml, file, topics);
 }
 
 /// One line a run: its claims, and its picture where there is one. Damage is named here, before
 /// Python meets it.
-std::vector<std::vector<std::string>> overview(const std::vector<fs::path>& folders) {
+std::vector<std::vector<std::string>> overview(const std::vector<fs::path>& folders,
+                                               Unverified unverified) {
   std::vector<std::vector<std::string>> rows{{"experiment", "claims", "picture"}};
   for (const fs::path& folder : folders) {
-    const RunRecord record = read_run_file(folder / "run.h5");
+    const OpenedRun run(folder, unverified);
     const fs::path figure = folder / "figure.png";
-    rows.push_back({record.experiment_id, claim_count_text(count_claims(record)),
+    rows.push_back({run.record().experiment_id, claim_count_text(count_claims(run.record())),
                     fs::exists(figure) ? figure.string() : "-"});
   }
   return rows;
@@ -43,7 +44,8 @@ std::vector<std::vector<std::string>> overview(const std::vector<fs::path>& fold
 
 int render_command(const CommandContext& context, const RenderRequest& request) {
   const fs::path folder = run_folder_of(request.run);
-  render_run(folder, view_of(folder, request.view, context.topics));
+  const OpenedRun run(folder, request.unverified);
+  render_run(run, view_of(run, request.view, context.topics));
   const fs::path figure = folder / "figure.png";
   say("picture  " + figure.string());
   if (context.json) print_json({{"run", folder.string()}, {"figure", figure.string()}});
@@ -56,7 +58,8 @@ int video_command(const CommandContext& context, const VideoRequest& request) {
   options.frames_per_second = request.frames_per_second;
   options.out = request.out ? fs::path(*request.out) : folder / "video";
   install_stop_handler();
-  const Video video = make_video(folder, view_of(folder, request.view, context.topics), options);
+  const OpenedRun run(folder, request.unverified);
+  const Video video = make_video(run, view_of(run, request.view, context.topics), options);
   say("frames   " + std::to_string(video.frames) + " in " + options.out.string());
   if (video.stopped) {
     say("stopped before the last frame: no video");
@@ -87,11 +90,11 @@ int report_command(const CommandContext& context, const ReportRequest& request) 
     }
   }
   if (folders.empty()) throw Error("there are no runs", runs_root().string(), "geoprior run <id>");
-  const std::vector<std::vector<std::string>> runs_found = overview(folders);
+  const std::vector<std::vector<std::string>> runs_found = overview(folders, request.unverified);
   fs::path page =
       folders.size() == 1 ? folders.front() / "report.html" : runs_root() / "report.html";
   if (request.out) page = *request.out;
-  make_report(folders, page);
+  make_report(folders, page, request.unverified);
   say_table(runs_found);
   say("report   " + page.string());
   if (context.json) {
@@ -105,7 +108,7 @@ int report_command(const CommandContext& context, const ReportRequest& request) 
 int export_command(const CommandContext& context, const ExportRequest& request) {
   const fs::path folder = run_folder_of(request.run);
   const fs::path out = request.out ? fs::path(*request.out) : folder / ("export-" + request.format);
-  export_run(folder, request.format, out);
+  export_run(OpenedRun(folder, request.unverified), request.format, out);
   say("exported to " + out.string());
   if (context.json) {
     print_json({{"run", folder.string()}, {"format", request.format}, {"out", out.string()}});

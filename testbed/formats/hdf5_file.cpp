@@ -76,13 +76,6 @@ std::string encoded(std::string_view name) {
   return out;
 }
 
-}  // namespace h5
-
-using h5::check;
-using h5::Handle;
-
-namespace {
-
 std::string decoded(std::string_view name) {
   std::string out;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -97,17 +90,19 @@ std::string decoded(std::string_view name) {
   return out;
 }
 
+}  // namespace h5
+
+using h5::check;
+using h5::Handle;
+
+namespace {
+
 std::vector<std::byte> image_of(hid_t file, const std::string& name) {
   check(H5Fflush(file, H5F_SCOPE_LOCAL), "cannot be written", name);
   const ssize_t size = check(H5Fget_file_image(file, nullptr, 0), "cannot be written", name);
   std::vector<std::byte> image(size);
   check(H5Fget_file_image(file, image.data(), image.size()), "cannot be written", name);
   return image;
-}
-
-herr_t collect_link(hid_t, const char* name, const H5L_info_t*, void* client) {
-  static_cast<std::vector<std::string>*>(client)->push_back(decoded(name));
-  return 0;
 }
 
 }  // namespace
@@ -136,26 +131,6 @@ H5Group H5Group::create_group(std::string_view name) {
   return {id.give_up(), where};
 }
 
-H5Group H5Group::open_group(std::string_view name) const {
-  const std::string where = at(name);
-  Handle id(H5Gopen2(id_, h5::encoded(name).c_str(), H5P_DEFAULT), H5Gclose, "group is missing",
-            where);
-  return {id.give_up(), where};
-}
-
-bool H5Group::has(std::string_view name) const {
-  return check(H5Lexists(id_, h5::encoded(name).c_str(), H5P_DEFAULT), "cannot be read", at(name)) >
-         0;
-}
-
-std::vector<std::string> H5Group::children() const {
-  std::vector<std::string> names;
-  hsize_t next = 0;
-  check(H5Literate(id_, H5_INDEX_NAME, H5_ITER_INC, &next, collect_link, &names),
-        "group cannot be listed", place_);
-  return names;
-}
-
 void H5Group::write_array(std::string_view name, const H5Array& array) {
   const std::string where = at(name);
   std::size_t count = 1;
@@ -171,23 +146,6 @@ void H5Group::write_array(std::string_view name, const H5Array& array) {
         "data set cannot be written", where);
 }
 
-H5Array H5Group::read_array(std::string_view name) const {
-  const std::string where = at(name);
-  const Handle data(H5Dopen2(id_, h5::encoded(name).c_str(), H5P_DEFAULT), H5Dclose,
-                    "data set is missing", where);
-  const Handle space(H5Dget_space(data), H5Sclose, "data set cannot be read", where);
-  H5Array array;
-  array.extents = h5::extents_of(space, where);
-  array.attributes = h5::read_all_attributes(data, where);
-  std::size_t count = 1;
-  for (const std::size_t n : array.extents) count *= n;
-  array.values.resize(count);
-  if (count == 0) return array;
-  check(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()),
-        "data set cannot be read", where);
-  return array;
-}
-
 H5File H5File::create() {
   h5::silence();
   const std::string name = "new HDF5 file";
@@ -200,14 +158,6 @@ H5File H5File::create() {
   Handle id(H5Fcreate(unique.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
             "cannot be made", name);
   return {id.give_up(), name};
-}
-
-H5File H5File::open_for_reading(const std::filesystem::path& file) {
-  h5::silence();
-  if (!std::filesystem::is_regular_file(file)) throw Error("is no file", file.string());
-  Handle id(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
-            "is no HDF5 file, or is damaged", file.string());
-  return {id.give_up(), file.string()};
 }
 
 H5File::H5File(H5File&& other) noexcept
@@ -246,19 +196,6 @@ void write_number(hid_t owner, std::string_view name, hid_t file_type, hid_t mem
   check(H5Awrite(attribute, memory_type, value), "attribute cannot be written", where);
 }
 
-Handle open_attribute(hid_t owner, std::string_view name, const std::string& where) {
-  return {H5Aopen(owner, std::string(name).c_str(), H5P_DEFAULT), H5Aclose, "attribute is missing",
-          where};
-}
-
-void read_number(hid_t owner, std::string_view name, hid_t memory_type, void* value,
-                 const std::string& where) {
-  const Handle attribute = open_attribute(owner, name, where);
-  const Handle space(H5Aget_space(attribute), H5Sclose, "attribute cannot be read", where);
-  if (!h5::extents_of(space, where).empty()) h5::fail("attribute is no single number", where);
-  check(H5Aread(attribute, memory_type, value), "attribute cannot be read", where);
-}
-
 void write_texts(hid_t owner, std::string_view name, const std::vector<std::size_t>& extents,
                  const std::vector<const char*>& texts, const std::string& where) {
   const Handle type = h5::text_type(H5T_VARIABLE, where);
@@ -268,37 +205,6 @@ void write_texts(hid_t owner, std::string_view name, const std::vector<std::size
       "attribute cannot be made", where);
   if (texts.empty()) return;
   check(H5Awrite(attribute, type, texts.data()), "attribute cannot be written", where);
-}
-
-std::vector<std::string> read_all_texts(hid_t owner, std::string_view name,
-                                        const std::string& where) {
-  const Handle attribute = open_attribute(owner, name, where);
-  const Handle file_type(H5Aget_type(attribute), H5Tclose, "attribute cannot be read", where);
-  if (H5Tget_class(file_type) != H5T_STRING || H5Tis_variable_str(file_type) <= 0) {
-    h5::fail("attribute is no text of variable length", where);
-  }
-  const Handle space(H5Aget_space(attribute), H5Sclose, "attribute cannot be read", where);
-  std::size_t count = 1;
-  for (const std::size_t n : h5::extents_of(space, where)) count *= n;
-  std::vector<char*> texts(count, nullptr);
-  if (count == 0) return {};
-  const Handle type = h5::text_type(H5T_VARIABLE, where);
-  check(H5Aread(attribute, type, texts.data()), "attribute cannot be read", where);
-  std::vector<std::string> out;
-  for (const char* text : texts) out.emplace_back(text == nullptr ? "" : text);
-  H5Dvlen_reclaim(type, space, H5P_DEFAULT, texts.data());
-  return out;
-}
-
-std::string read_one_text(hid_t owner, std::string_view name, const std::string& where) {
-  const std::vector<std::string> texts = read_all_texts(owner, name, where);
-  if (texts.size() != 1) h5::fail("attribute is no single text", where);
-  return texts.front();
-}
-
-herr_t collect_attribute(hid_t, const char* name, const H5A_info_t*, void* client) {
-  static_cast<std::vector<std::string>*>(client)->emplace_back(name);
-  return 0;
 }
 
 }  // namespace
@@ -323,41 +229,6 @@ void H5Group::write_attribute(std::string_view name, std::uint64_t value) {
   write_number(id_, name, H5T_STD_U64LE, H5T_NATIVE_UINT64, &value, at(name));
 }
 
-std::string H5Group::read_text(std::string_view name) const {
-  return read_one_text(id_, name, at(name));
-}
-
-std::vector<std::string> H5Group::read_texts(std::string_view name) const {
-  return read_all_texts(id_, name, at(name));
-}
-
-double H5Group::read_double(std::string_view name) const {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  read_number(id_, name, H5T_NATIVE_DOUBLE, &value, at(name));
-  return value;
-}
-
-std::int64_t H5Group::read_int(std::string_view name) const {
-  std::int64_t value = 0;
-  read_number(id_, name, H5T_NATIVE_INT64, &value, at(name));
-  return value;
-}
-
-std::uint64_t H5Group::read_unsigned(std::string_view name) const {
-  std::uint64_t value = 0;
-  read_number(id_, name, H5T_NATIVE_UINT64, &value, at(name));
-  return value;
-}
-
-std::vector<std::string> H5Group::attributes() const {
-  std::vector<std::string> names;
-  hsize_t next = 0;
-  check(H5Aiterate2(id_, H5_INDEX_NAME, H5_ITER_INC, &next, collect_attribute, &names),
-        "attributes cannot be listed", place_);
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 namespace h5 {
 
 void write_text(hid_t owner, const std::string& name, const std::string& text,
@@ -372,24 +243,11 @@ void write_text_list(hid_t owner, std::string_view name, const std::vector<std::
   write_texts(owner, name, {texts.size()}, pointers, where);
 }
 
-std::map<std::string, std::string> read_all_attributes(hid_t owner, const std::string& where) {
-  std::vector<std::string> names;
-  hsize_t next = 0;
-  check(H5Aiterate2(owner, H5_INDEX_NAME, H5_ITER_INC, &next, collect_attribute, &names),
-        "attributes cannot be listed", where);
-  std::map<std::string, std::string> out;
-  for (const std::string& name : names) out[name] = read_one_text(owner, name, where + "@" + name);
-  return out;
-}
-
 }  // namespace h5
 
 namespace {
 
 constexpr unsigned kZlibLevel = 4;
-/// zlib makes zeros 1032 times smaller at most; what says more is damaged.
-constexpr std::size_t kLargestRatio = 1100;
-
 struct NumberType {
   hid_t file, memory;
 };
@@ -403,14 +261,6 @@ std::size_t product(const std::vector<std::size_t>& extents) {
   std::size_t count = 1;
   for (const std::size_t n : extents) count *= n;
   return count;
-}
-
-/// In floating point, because the product of the extents of a damaged file overflows.
-bool can_be_stored(const std::vector<std::size_t>& extents, std::size_t bytes_of_one,
-                   std::size_t stored) {
-  double bytes = static_cast<double>(bytes_of_one);
-  for (const std::size_t n : extents) bytes *= static_cast<double>(n);
-  return bytes <= static_cast<double>(stored) * kLargestRatio;
 }
 
 }  // namespace
@@ -439,37 +289,14 @@ void H5Group::write_block(std::string_view name, const std::vector<std::size_t>&
         "data set cannot be written", where);
 }
 
-template <class T>
-H5Block<T> H5Group::read_block(std::string_view name, std::size_t rank) const {
-  const std::string where = at(name);
-  const Handle data(H5Dopen2(id_, h5::encoded(name).c_str(), H5P_DEFAULT), H5Dclose,
-                    "data set is missing", where);
-  const Handle space(H5Dget_space(data), H5Sclose, "data set cannot be read", where);
-  H5Block<T> block;
-  block.extents = h5::extents_of(space, where);
-  if (block.extents.size() != rank) {
-    throw Error("has " + std::to_string(block.extents.size()) + " extents", where,
-                std::to_string(rank));
-  }
-  if (!can_be_stored(block.extents, sizeof(T), H5Dget_storage_size(data))) {
-    throw Error("says to be larger than the file", where);
-  }
-  block.values.resize(product(block.extents));
-  if (block.values.empty()) return block;
-  check(H5Dread(data, type_of(T()).memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, block.values.data()),
-        "data set cannot be read", where);
-  return block;
-}
-
-#define GEOPRIOR_BLOCK(T)                                                               \
-  template void H5Group::write_block(std::string_view, const std::vector<std::size_t>&, \
-                                     std::span<const T>);                               \
-  template H5Block<T> H5Group::read_block(std::string_view, std::size_t) const
-GEOPRIOR_BLOCK(float);
-GEOPRIOR_BLOCK(double);
-GEOPRIOR_BLOCK(std::int32_t);
-GEOPRIOR_BLOCK(std::int64_t);
-#undef GEOPRIOR_BLOCK
+template void H5Group::write_block(std::string_view, const std::vector<std::size_t>&,
+                                   std::span<const float>);
+template void H5Group::write_block(std::string_view, const std::vector<std::size_t>&,
+                                   std::span<const double>);
+template void H5Group::write_block(std::string_view, const std::vector<std::size_t>&,
+                                   std::span<const std::int32_t>);
+template void H5Group::write_block(std::string_view, const std::vector<std::size_t>&,
+                                   std::span<const std::int64_t>);
 
 namespace {
 
@@ -530,60 +357,6 @@ void pack(const H5Column& column, std::size_t offset, std::size_t stride,
              column.values);
 }
 
-void unpack(const std::vector<char>& buffer, std::size_t stride, std::size_t count,
-            H5Column& column) {
-  std::visit(Overloaded{
-                 [&](std::vector<std::string>& texts) {
-                   for (std::size_t i = 0; i < count; ++i) {
-                     const char* begin = buffer.data() + i * stride;
-                     texts.emplace_back(begin, strnlen(begin, stride));
-                   }
-                 },
-                 [&](auto& values) {
-                   values.resize(count);
-                   for (std::size_t i = 0; i < count; ++i) {
-                     std::memcpy(&values[i], buffer.data() + i * stride, stride);
-                   }
-                 },
-             },
-             column.values);
-}
-
-/// Type of a member of the table in the file, checked against what the caller wants.
-Handle stored_type(hid_t table, const H5Column& wanted, const std::string& where) {
-  const int index = H5Tget_member_index(table, wanted.name.c_str());
-  if (index < 0) h5::fail("table has no column '" + wanted.name + "'", where);
-  Handle type(H5Tget_member_type(table, static_cast<unsigned>(index)), H5Tclose, "table column",
-              where);
-  const H5T_class_t expected =
-      std::visit(Overloaded{
-                     [](const std::vector<double>&) { return H5T_FLOAT; },
-                     [](const std::vector<std::int64_t>&) { return H5T_INTEGER; },
-                     [](const std::vector<Vector3>&) { return H5T_ARRAY; },
-                     [](const std::vector<std::string>&) { return H5T_STRING; },
-                 },
-                 wanted.values);
-  if (H5Tget_class(type) != expected || H5Tis_variable_str(type) > 0) {
-    h5::fail("column '" + wanted.name + "' has another type", where);
-  }
-  if (expected == H5T_STRING) return type;
-  return column_type(wanted, where);
-}
-
-void read_column(hid_t data, hid_t table, std::size_t count, H5Column& column,
-                 const std::string& where) {
-  const Handle type = stored_type(table, column, where);
-  const std::size_t stride = H5Tget_size(type);
-  const Handle memory(H5Tcreate(H5T_COMPOUND, stride), H5Tclose, "table type", where);
-  check(H5Tinsert(memory, column.name.c_str(), 0, type), "table type", where);
-  std::vector<char> buffer(stride * count);
-  if (count > 0) {
-    check(H5Dread(data, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer.data()),
-          "table cannot be read", where);
-  }
-  unpack(buffer, stride, count, column);
-}
-
 }  // namespace
 
 void H5Group::write_table(std::string_view name, const std::vector<H5Column>& columns) {
@@ -633,18 +406,6 @@ void H5Group::write_matrix(std::string_view name, const std::vector<std::string>
   if (rows == 0) return;
   check(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
         "data set cannot be written", where);
-}
-
-void H5Group::read_table(std::string_view name, std::vector<H5Column>& columns) const {
-  const std::string where = at(name);
-  const Handle data(H5Dopen2(id_, h5::encoded(name).c_str(), H5P_DEFAULT), H5Dclose,
-                    "table is missing", where);
-  const Handle table(H5Dget_type(data), H5Tclose, "table cannot be read", where);
-  if (H5Tget_class(table) != H5T_COMPOUND) h5::fail("is no table", where);
-  const Handle space(H5Dget_space(data), H5Sclose, "table cannot be read", where);
-  const std::vector<std::size_t> extents = h5::extents_of(space, where);
-  if (extents.size() != 1) h5::fail("is no table", where);
-  for (H5Column& column : columns) read_column(data, table, extents[0], column, where);
 }
 
 }  // namespace geoprior

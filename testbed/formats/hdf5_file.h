@@ -37,7 +37,8 @@ struct H5Block {
   std::vector<T> values;
 };
 
-/// An open group of a file. Names are percent-encoded where HDF5 does not allow them (`/`).
+/// A group of a file that is written. Names are percent-encoded where HDF5 does not allow them
+/// (`/`).
 ///
 /// The library's own printing of errors is off; every failure throws Error with the file, the place
 /// in it and the text of the library's error stack.
@@ -50,28 +51,14 @@ class H5Group {
   ~H5Group();
 
   H5Group create_group(std::string_view name);
-  [[nodiscard]] H5Group open_group(std::string_view name) const;
-  /// "file: /group", for messages.
-  [[nodiscard]] const std::string& place() const { return place_; }
-  [[nodiscard]] bool has(std::string_view name) const;
-  /// Names of the groups and data sets inside, sorted.
-  [[nodiscard]] std::vector<std::string> children() const;
 
   void write_attribute(std::string_view name, const std::string& text);
   void write_attribute(std::string_view name, const std::vector<std::string>& texts);
   void write_attribute(std::string_view name, double value);
   void write_attribute(std::string_view name, std::int64_t value);
   void write_attribute(std::string_view name, std::uint64_t value);
-  [[nodiscard]] std::string read_text(std::string_view name) const;
-  [[nodiscard]] std::vector<std::string> read_texts(std::string_view name) const;
-  [[nodiscard]] double read_double(std::string_view name) const;
-  [[nodiscard]] std::int64_t read_int(std::string_view name) const;
-  [[nodiscard]] std::uint64_t read_unsigned(std::string_view name) const;
-  /// Names of the attributes, sorted.
-  [[nodiscard]] std::vector<std::string> attributes() const;
 
   void write_array(std::string_view name, const H5Array& array);
-  [[nodiscard]] H5Array read_array(std::string_view name) const;
   /// A data set rows x columns of float64 with the attribute `columns`, in chunks compressed by
   /// zlib. `values` are row by row.
   void write_matrix(std::string_view name, const std::vector<std::string>& columns,
@@ -81,14 +68,8 @@ class H5Group {
   template <class T>
   void write_block(std::string_view name, const std::vector<std::size_t>& extents,
                    std::span<const T> values);
-  /// @throws Error  when the data set has another rank, or says to be larger than what the file
-  ///                holds of it can be
-  template <class T>
-  [[nodiscard]] H5Block<T> read_block(std::string_view name, std::size_t rank) const;
   /// Columns of equal length become one compound data set.
   void write_table(std::string_view name, const std::vector<H5Column>& columns);
-  /// Reads the columns of these names; the alternatives that `columns` hold say the types.
-  void read_table(std::string_view name, std::vector<H5Column>& columns) const;
 
  private:
   friend class H5File;
@@ -99,14 +80,13 @@ class H5Group {
   std::string place_;  ///< "file: /group", for messages
 };
 
-/// An open HDF5 file in the default file format.
+/// An HDF5 file that is written, in the default file format; `read_hdf5` reads one.
 ///
-/// A new file is built in memory and saved as a whole: HDF5 1.10 crashes the program when the disk
+/// The file is built in memory and saved as a whole: HDF5 1.10 crashes the program when the disk
 /// refuses a write while it closes a file.
 class H5File {
  public:
   static H5File create();
-  static H5File open_for_reading(const std::filesystem::path& file);
   H5File(H5File&& other) noexcept;
   H5File& operator=(H5File&& other) noexcept;
   H5File(const H5File&) = delete;

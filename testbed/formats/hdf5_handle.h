@@ -4,7 +4,6 @@
 
 #include <hdf5.h>
 
-#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -59,12 +58,12 @@ std::vector<std::size_t> extents_of(hid_t space, const std::string& where);
 
 /// Percent-encodes what the name of a link cannot hold.
 std::string encoded(std::string_view name);
+std::string decoded(std::string_view name);
 
 /// Text attributes of a data set.
 void write_text(hid_t owner, const std::string& name, const std::string& text,
                 const std::string& where);
 void write_text_list(hid_t owner, std::string_view name, const std::vector<std::string>& texts,
                      const std::string& where);
-std::map<std::string, std::string> read_all_attributes(hid_t owner, const std::string& where);
 
 }  // namespace geoprior::h5

@@ -12,6 +12,7 @@
 #include "testbed/runner/content_hash.h"
 #include "testbed/runner/journal.h"
 #include "testbed/runner/measure.h"
+#include "testbed/runner/opened_run.h"
 #include "testbed/runner/progress.h"
 #include "testbed/runner/provenance.h"
 #include "testbed/runner/recorder.h"
@@ -19,6 +20,7 @@
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/run_inputs.h"
 #include "testbed/runner/run_state.h"
+#include "testbed/runner/sha256.h"
 #include "testbed/runner/spec_json.h"
 #include "testbed/runner/stop.h"
 #include "testbed/runner/studies.h"
@@ -41,18 +43,14 @@ void require_same_specification(const std::string& recorded, const Experiment& e
 
 /// The record of a run that is finished already; absent when there is work left.
 std::optional<RunRecord> finished_record(const Experiment& experiment, const fs::path& folder) {
-  const fs::path file = folder / "run.h5";
-  if (!fs::exists(file)) return std::nullopt;
-  std::optional<RunRecord> record;
+  if (!recorded_result(folder)) return std::nullopt;
+  require_same_specification(recorded_hash(folder).value_or(""), experiment, folder);
   try {
-    record = read_run_file(file);
+    return OpenedRun(folder).record();
   } catch (const Error&) {
-    // The journal has it all: a damaged run.h5 is assembled again.
-    if (!fs::exists(folder / "journal.jsonl")) throw;
+    // The journal has it all: a missing or damaged run.h5 is assembled again.
     return std::nullopt;
   }
-  require_same_specification(record->spec_hash, experiment, folder);
-  return record;
 }
 
 RunState restore(const Experiment& experiment, const Journal& journal, const fs::path& folder) {
@@ -167,7 +165,7 @@ bool run_cases(const Experiment& experiment, const std::vector<Topic>& topics,
 
 /// Studies, claims, run.h5. What cannot be decided must not cost the run: it is recorded as a claim
 /// that falls short, run.h5 is written, and the error is thrown after that.
-void finish(const Experiment& experiment, ExecuteResult& result) {
+void finish(const Experiment& experiment, Recorder& recorder, ExecuteResult& result) {
   std::optional<Error> undecided;
   try {
     result.record.studies = make_studies(experiment, result.record);
@@ -180,7 +178,9 @@ void finish(const Experiment& experiment, ExecuteResult& result) {
     result.record.claims.push_back(claim);
   }
   fs::remove_all(result.folder / "checkpoints");
-  write_run_file(result.record, result.folder / "run.h5", result.folder);
+  const fs::path file = result.folder / "run.h5";
+  write_run_file(result.record, file, result.folder);
+  recorder.add(journal::ResultLine{{file.filename().string(), sha256_of_file(file)}});
   if (undecided) throw Error(*undecided);
 }
 
@@ -231,7 +231,7 @@ ExecuteResult execute_in_chain(const Experiment& experiment, const std::vector<T
     throw;
   }
   result.record = assemble(experiment, topic, state);
-  if (!result.stopped) finish(experiment, result);
+  if (!result.stopped) finish(experiment, recorder, result);
   return result;
 }
 

@@ -199,6 +199,10 @@ SortedJson write(const ErrorLine& line) {
   return json;
 }
 
+SortedJson write(const ResultLine& line) {
+  return {{"kind", "result"}, {"name", line.file.name}, {"sha256", line.file.sha256}};
+}
+
 Line read_event(const SortedJson& json) {
   EventLine line{place(json), {}};
   line.event.time_s = number(json.at("time_s"));
@@ -246,6 +250,7 @@ Line read(const SortedJson& json) {
   if (kind == "timing") return read_timing(json);
   if (kind == "artifact") return ArtifactLine{place(json), file(json)};
   if (kind == "begin") return BeginLine{place(json), numbers(json.at("timing"))};
+  if (kind == "result") return ResultLine{file(json)};
   if (kind == "error") return ErrorLine{place(json), json.at("message")};
   if (kind == "run") {
     return RunLine{json.at("schema_version"), json.at("experiment_id"), json.at("spec_hash"),

@@ -90,9 +90,13 @@ struct ErrorLine {
   Place place;
   std::string message;
 };
+/// The last line of a finished run: what the journal says was assembled into this file.
+struct ResultLine {
+  StoredFile file;  ///< run.h5
+};
 
 using Line = std::variant<RunLine, CaseLine, BeginLine, FrameLine, EventLine, ArtifactLine,
-                          CheckpointLine, ResumeLine, EndLine, TimingLine, ErrorLine>;
+                          CheckpointLine, ResumeLine, EndLine, TimingLine, ErrorLine, ResultLine>;
 
 /// One JSON object without line break; numbers are exact.
 std::string to_text(const Line& line);

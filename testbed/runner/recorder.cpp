@@ -8,6 +8,7 @@
 #include "testbed/formats/vtk_files.h"
 #include "testbed/runner/frame_table.h"
 #include "testbed/runner/number_text.h"
+#include "testbed/runner/opened_run.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/sha256.h"
 
@@ -188,9 +189,7 @@ Frame Recorder::read_frame(const VariantRecord& variant, std::size_t index,
     const fs::path path = folder_ / file.name;
     const std::string name = without_number(path);
     if (parts && !parts->contains(name)) continue;
-    if (sha256_of_file(path) != file.sha256) {
-      throw Error("is damaged: its checksum is not the recorded one", path.string());
-    }
+    require_recorded(path, file.sha256);
     if (path.extension() == ".csv") {
       frame.tables[name] = table_from_csv(read_whole_file(path), path.string());
     } else {

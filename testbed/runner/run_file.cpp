@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "testbed/formats/hdf5_content.h"
 #include "testbed/formats/hdf5_file.h"
 #include "testbed/runner/run_tables.h"
 
@@ -271,7 +272,7 @@ using Integers = std::vector<std::int64_t>;
 using Positions = std::vector<std::array<double, 3>>;
 
 /// Names of the groups inside, ordered by their attribute `index`.
-std::vector<std::string> in_order(const H5Group& group) {
+std::vector<std::string> in_order(const H5Node& group) {
   std::vector<std::pair<std::int64_t, std::string>> names;
   for (const std::string& name : group.children()) {
     names.emplace_back(group.open_group(name).read_int("index"), name);
@@ -282,7 +283,7 @@ std::vector<std::string> in_order(const H5Group& group) {
   return out;
 }
 
-std::vector<StoredFile> read_stored_files(const H5Group& group, const std::string& name) {
+std::vector<StoredFile> read_stored_files(const H5Node& group, const std::string& name) {
   std::vector<H5Column> table{{"name", Texts{}}, {"sha256", Texts{}}};
   group.read_table(name, table);
   std::vector<StoredFile> files;
@@ -292,7 +293,7 @@ std::vector<StoredFile> read_stored_files(const H5Group& group, const std::strin
   return files;
 }
 
-std::vector<FrameRecord> read_frames(const H5Group& group) {
+std::vector<FrameRecord> read_frames(const H5Node& group) {
   const H5Array parameter = group.read_array("parameter");
   std::vector<FrameRecord> frames(parameter.values.size());
   for (std::size_t i = 0; i < frames.size(); ++i) frames[i].parameter = parameter.values[i];
@@ -310,7 +311,7 @@ std::vector<FrameRecord> read_frames(const H5Group& group) {
   return frames;
 }
 
-std::vector<Event> read_events(const H5Group& group) {
+std::vector<Event> read_events(const H5Node& group) {
   std::vector<H5Column> table{{"time_s", Numbers{}},
                               {"kind", Texts{}},
                               {"position", Positions{}},
@@ -341,48 +342,48 @@ std::vector<std::vector<double>> timing_rows(const H5Array& array) {
   return rows;
 }
 
-void read_numbers(const H5Group& group, VariantRecord& variant) {
-  const H5Group metrics = group.open_group("metrics");
+void read_numbers(const H5Node& group, VariantRecord& variant) {
+  const H5Node metrics = group.open_group("metrics");
   for (const std::string& name : metrics.children()) {
     H5Array array = metrics.read_array(name);
     variant.metrics[name] = {array.attributes.at("unit"), array.attributes.at("definition"),
                              array.attributes.at("direction"), std::move(array.values)};
   }
-  const H5Group summary = group.open_group("summary");
+  const H5Node summary = group.open_group("summary");
   for (const std::string& name : summary.children()) {
     const H5Array array = summary.read_array(name);
     variant.summary[name] = {array.values.at(0), array.attributes.at("unit"),
                              array.attributes.at("definition"), array.attributes.at("direction")};
   }
-  const H5Group diagnostics = group.open_group("diagnostics");
+  const H5Node diagnostics = group.open_group("diagnostics");
   for (const std::string& name : diagnostics.children()) {
     H5Array array = diagnostics.read_array(name);
     // Empty in runs that were written before the topics had tables of diagnostics.
     variant.diagnostics[name] = {array.attributes["unit"], array.attributes["definition"],
                                  std::move(array.values)};
   }
-  const H5Group timing = group.open_group("timing");
+  const H5Node timing = group.open_group("timing");
   for (const std::string& phase : timing.children()) {
     variant.timing[phase] = timing_rows(timing.read_array(phase));
   }
 }
 
-bool has_attribute(const H5Group& group, const std::string& name) {
+bool has_attribute(const H5Node& group, const std::string& name) {
   const std::vector<std::string> names = group.attributes();
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 /// What schema version 1 did not have.
-std::string read_text_or_none(const H5Group& group, const std::string& name) {
+std::string read_text_or_none(const H5Node& group, const std::string& name) {
   return has_attribute(group, name) ? group.read_text(name) : std::string();
 }
 
-std::optional<MemoryUse> read_memory(const H5Group& group) {
+std::optional<MemoryUse> read_memory(const H5Node& group) {
   if (!has_attribute(group, "memory_peak")) return std::nullopt;
   return MemoryUse{group.read_unsigned("memory_start"), group.read_unsigned("memory_peak")};
 }
 
-VariantRecord read_variant(const H5Group& group, const std::string& name) {
+VariantRecord read_variant(const H5Node& group, const std::string& name) {
   VariantRecord variant;
   variant.name = name;
   variant.method = group.read_text("method");
@@ -399,7 +400,7 @@ VariantRecord read_variant(const H5Group& group, const std::string& name) {
   return variant;
 }
 
-std::vector<TimingRatio> read_ratios(const H5Group& group, std::int64_t version) {
+std::vector<TimingRatio> read_ratios(const H5Node& group, std::int64_t version) {
   std::vector<H5Column> table{{"variant", Texts{}},
                               {"of", Texts{}},
                               {"median_ratio", Numbers{}},
@@ -417,7 +418,7 @@ std::vector<TimingRatio> read_ratios(const H5Group& group, std::int64_t version)
   return ratios;
 }
 
-CaseRecord read_case(const H5Group& group, const std::string& name, std::int64_t version) {
+CaseRecord read_case(const H5Node& group, const std::string& name, std::int64_t version) {
   CaseRecord record;
   record.name = name;
   record.parameter_name = group.read_text("parameter_name");
@@ -427,22 +428,22 @@ CaseRecord read_case(const H5Group& group, const std::string& name, std::int64_t
   record.claims_only = has_attribute(group, "claims_only") && group.read_int("claims_only") != 0;
   record.scene_json = group.read_text("scene");
   record.warnings = group.read_texts("warnings");
-  const H5Group swept = group.open_group("swept");
+  const H5Node swept = group.open_group("swept");
   for (const std::string& key : swept.attributes()) record.swept[key] = swept.read_text(key);
-  const H5Group facts = group.open_group("facts");
+  const H5Node facts = group.open_group("facts");
   for (const std::string& key : facts.attributes()) record.facts[key] = facts.read_double(key);
   record.ratios = read_ratios(group, version);
-  const H5Group variants = group.open_group("variants");
+  const H5Node variants = group.open_group("variants");
   for (const std::string& variant : in_order(variants)) {
     record.variants.push_back(read_variant(variants.open_group(variant), variant));
   }
   return record;
 }
 
-std::vector<StudyRecord> read_studies(const H5Group& parent) {
+std::vector<StudyRecord> read_studies(const H5Node& parent) {
   std::vector<StudyRecord> studies;
   for (const std::string& name : in_order(parent)) {
-    const H5Group group = parent.open_group(name);
+    const H5Node group = parent.open_group(name);
     StudyRecord& study = studies.emplace_back();
     study.name = name;
     study.kind = group.read_text("kind");
@@ -466,7 +467,7 @@ Discrimination discrimination_of(const std::string& text) {
 }
 
 /// What schema version 2 did not have.
-void read_nulls(const H5Group& root, std::vector<ClaimRecord>& claims) {
+void read_nulls(const H5Node& root, std::vector<ClaimRecord>& claims) {
   std::vector<H5Column> table{{"null", Texts{}},        {"null_verdict", Texts{}},
                               {"null_detail", Texts{}}, {"passed_too", Texts{}},
                               {"null_left", Numbers{}}, {"null_right", Numbers{}}};
@@ -482,7 +483,7 @@ void read_nulls(const H5Group& root, std::vector<ClaimRecord>& claims) {
   }
 }
 
-std::vector<ClaimRecord> read_claims(const H5Group& root, int schema_version) {
+std::vector<ClaimRecord> read_claims(const H5Node& root, int schema_version) {
   std::vector<H5Column> table{{"text", Texts{}},   {"case", Texts{}},    {"detail", Texts{}},
                               {"left", Numbers{}}, {"right", Numbers{}}, {"holds", Integers{}}};
   root.read_table("claims", table);
@@ -496,7 +497,7 @@ std::vector<ClaimRecord> read_claims(const H5Group& root, int schema_version) {
   return claims;
 }
 
-void check_version(const H5Group& root) {
+void check_version(const H5Node& root) {
   const std::int64_t version = root.read_int("schema_version");
   const int known = RunRecord{}.schema_version;
   if (version < 1 || version > known) {
@@ -505,7 +506,7 @@ void check_version(const H5Group& root) {
   }
 }
 
-RunRecord read_root(const H5Group& root) {
+RunRecord read_root(const H5Node& root) {
   check_version(root);
   RunRecord record;
   record.schema_version = static_cast<int>(root.read_int("schema_version"));
@@ -520,7 +521,7 @@ RunRecord read_root(const H5Group& root) {
     record.provenance[key] = root.read_text(key);
   }
   record.inputs = read_stored_files(root, "inputs");
-  const H5Group cases = root.open_group("cases");
+  const H5Node cases = root.open_group("cases");
   for (const std::string& name : in_order(cases)) {
     record.cases.push_back(read_case(cases.open_group(name), name, record.schema_version));
   }
@@ -529,31 +530,21 @@ RunRecord read_root(const H5Group& root) {
   return record;
 }
 
-/// Every failure becomes one Error that begins with the file's name.
-template <class Read>
-auto reading(const std::filesystem::path& file, Read read) {
+}  // namespace
+
+RunRecord read_run_file(const std::filesystem::path& file) {
+  // Every failure becomes one Error that begins with the file's name.
   const auto fail = [&](const std::string& reason) -> Error {
     const std::string name = file.string();
     return reason.starts_with(name) ? Error(reason) : Error(reason, name);
   };
   try {
-    const H5File in = H5File::open_for_reading(file);
-    return read(in.root());
+    return read_root(read_hdf5(file));
   } catch (const Error& error) {
     throw fail(error.what());
   } catch (const std::out_of_range&) {
     throw fail("is damaged: a unit, definition or direction is missing");
   }
-}
-
-}  // namespace
-
-RunRecord read_run_file(const std::filesystem::path& file) {
-  return reading(file, [](const H5Group& root) { return read_root(root); });
-}
-
-std::string read_spec_hash(const std::filesystem::path& run_file) {
-  return reading(run_file, [](const H5Group& root) { return root.read_text("spec_hash"); });
 }
 
 }  // namespace geoprior

@@ -21,10 +21,6 @@ inline constexpr std::array<std::pair<std::string_view, std::string RunRecord::*
     {"content_sha256", &RunRecord::content_sha256},
 }};
 
-/// The hash of the specification of a run.h5, without reading the rest. Throws Error naming the
-/// file when it is no finished run.
-std::string read_spec_hash(const std::filesystem::path& run_file);
-
 /// As `write_run_file(record, file)`, with the tables of the frames, which are read from
 /// `run_folder`. Throws Error naming the table's file that is missing or damaged.
 void write_run_file(const RunRecord& record, const std::filesystem::path& file,

@@ -13,7 +13,7 @@
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/home.h"
-#include "testbed/runner/run_file.h"
+#include "testbed/runner/opened_run.h"
 #include "testbed/runner/run_inputs.h"
 #include "testbed/runner/sha256.h"
 
@@ -55,20 +55,15 @@ std::vector<fs::path> folders_of(const Experiment& experiment) {
 }
 
 bool has_content(const fs::path& folder, const std::string& content_sha256) {
-  const fs::path file = folder / "run.h5";
   try {
-    return fs::exists(file) && read_run_file(file).content_sha256 == content_sha256;
+    return recorded_result(folder) && OpenedRun(folder).record().content_sha256 == content_sha256;
   } catch (const Error&) {
     return false;
   }
 }
 
 bool is_finished(const fs::path& folder, const std::string& hash) {
-  try {
-    return fs::exists(folder / "run.h5") && read_spec_hash(folder / "run.h5") == hash;
-  } catch (const Error&) {
-    return false;
-  }
+  return fs::exists(folder / "run.h5") && recorded_result(folder) && recorded_hash(folder) == hash;
 }
 
 fs::path new_default_folder(const Experiment& experiment) {
@@ -113,7 +108,7 @@ fs::path folder_to_resume(const Experiment& experiment, const ExecuteRequest& re
 /// specification in the hash.
 bool has_unchanged_inputs(const fs::path& folder) {
   try {
-    for (const StoredFile& input : read_run_file(folder / "run.h5").inputs) {
+    for (const StoredFile& input : OpenedRun(folder).record().inputs) {
       if (is_run_reference(input.name)) continue;
       if (sha256_of_file(geoprior_home() / input.name) != input.sha256) return false;
     }
@@ -183,7 +178,7 @@ fs::path find_run_of_content(const std::string& experiment_id, const std::string
 
 std::optional<fs::path> find_unfinished_run(const Experiment& experiment) {
   for (const fs::path& folder : folders_of(experiment)) {
-    if (!fs::exists(folder / "run.h5") && fs::exists(folder / "journal.jsonl")) return folder;
+    if (!recorded_result(folder) && fs::exists(folder / "journal.jsonl")) return folder;
   }
   return std::nullopt;
 }

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "testbed/home.h"
+#include "testbed/runner/opened_run.h"
 #include "testbed/runner/option_copy.h"
 #include "testbed/runner/run_folder.h"
 
@@ -36,25 +37,18 @@ std::string chain_text(const std::vector<std::string>& chain, const std::string&
   return text + last;
 }
 
-struct InputRun {
-  fs::path folder;
-  RunRecord record;
-};
-
 /// Finished already, or made now; nothing after a stop.
-std::optional<InputRun> find_or_make(const Experiment& input, const std::vector<Topic>& topics,
-                                     const ExecuteRequest& request,
-                                     const std::vector<std::string>& chain) {
-  if (const auto folder = find_run(input)) {
-    return InputRun{*folder, read_run_file(*folder / "run.h5")};
-  }
+std::optional<OpenedRun> find_or_make(const Experiment& input, const std::vector<Topic>& topics,
+                                      const ExecuteRequest& request,
+                                      const std::vector<std::string>& chain) {
+  if (const auto folder = find_run(input)) return OpenedRun(*folder);
   ExecuteRequest own = request;
   own.out.reset();
   own.resume = find_unfinished_run(input).has_value();
   std::fprintf(stderr, "%s is needed first\n", input.id.c_str());
   ExecuteResult made = execute_in_chain(input, topics, own, chain);
   if (made.stopped) return std::nullopt;
-  return InputRun{made.folder, std::move(made.record)};
+  return OpenedRun(made.folder, std::move(made.record));
 }
 
 const VariantRecord& require_variant(const RunRecord& record, const RunReference& reference,
@@ -69,12 +63,12 @@ const VariantRecord& require_variant(const RunRecord& record, const RunReference
   throw Error("the run has no such case or variant", "input \"" + text + "\"", allowed);
 }
 
-fs::path require_artifact(const VariantRecord& variant, const std::string& name,
-                          const std::string& text) {
+const StoredFile& require_artifact(const VariantRecord& variant, const std::string& name,
+                                   const std::string& text) {
   std::string allowed;
   for (const StoredFile& file : variant.artifacts) {
     const std::string known = fs::path(file.name).filename().string();
-    if (known == name) return file.name;
+    if (known == name) return file;
     allowed += (allowed.empty() ? "" : ", ") + known;
   }
   throw Error("the variant has no such artifact", "input \"" + text + "\"",
@@ -127,12 +121,15 @@ ResolvedScene resolve_run_inputs(const Experiment& experiment, const CaseSpec& s
       resolved.stopped = true;
       return text;
     }
-    const VariantRecord& variant = require_variant(run->record, reference, text);
-    resolved.inputs.push_back({text, run->record.content_sha256});
+    const VariantRecord& variant = require_variant(run->record(), reference, text);
+    resolved.inputs.push_back({text, run->record().content_sha256});
     if (!reference.artifact.empty()) {
-      return (run->folder / require_artifact(variant, reference.artifact, text)).string();
+      return run->file(require_artifact(variant, reference.artifact, text)).string();
     }
-    return (run->folder / "frames" / reference.case_name / reference.variant).string();
+    for (const FrameRecord& frame : variant.frames) {
+      for (const StoredFile& file : frame.files) (void)run->file(file);
+    }
+    return (run->folder() / "frames" / reference.case_name / reference.variant).string();
   };
   std::shared_ptr<OptionSet> copy = topic_of(experiment, topics).default_scene();
   copy_options(*spec.scene, *copy, file_of_run);

@@ -55,6 +55,7 @@ class RunState {
   void apply(const journal::EndLine& line);
   void apply(const journal::TimingLine& line);
   void apply(const journal::ErrorLine& /*line*/) {}
+  void apply(const journal::ResultLine& /*line*/) {}
 
   std::optional<journal::RunLine> run_;
   std::vector<CaseState> cases_;

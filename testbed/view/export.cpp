@@ -28,21 +28,19 @@ const std::string kMarker = "geoprior-export.txt";
 const std::vector<std::string> kFormats{"obj", "ply", "glb"};
 
 struct FrameFile {
-  fs::path file;
+  StoredFile file;
   std::string stem;  ///< "surface_0012"
   double parameter = 0;
 };
 
 /// Part name to its files, in order of frames.
-std::map<std::string, std::vector<FrameFile>> files_by_part(const VariantRecord& variant,
-                                                            const fs::path& run_folder) {
+std::map<std::string, std::vector<FrameFile>> files_by_part(const VariantRecord& variant) {
   std::map<std::string, std::vector<FrameFile>> parts;
   for (const FrameRecord& frame : variant.frames) {
     for (const StoredFile& stored : frame.files) {
-      const fs::path file = run_folder / stored.name;
-      if (file.extension() == ".csv") continue;  // a table, open as it is
-      const std::string stem = file.stem().string();
-      parts[stem.substr(0, stem.find_last_of('_'))].push_back({file, stem, frame.parameter});
+      if (fs::path(stored.name).extension() == ".csv") continue;  // a table, open as it is
+      const std::string stem = fs::path(stored.name).stem().string();
+      parts[stem.substr(0, stem.find_last_of('_'))].push_back({stored, stem, frame.parameter});
     }
   }
   return parts;
@@ -73,12 +71,12 @@ std::string describe_frame(const CaseRecord& c, const VariantRecord& variant,
 }
 
 /// Returns how many files were written.
-int export_texts(const CaseRecord& c, const VariantRecord& variant,
+int export_texts(const OpenedRun& run, const CaseRecord& c, const VariantRecord& variant,
                  const std::vector<FrameFile>& frames, const std::string& format,
                  const fs::path& folder) {
   int written = 0;
   for (const FrameFile& frame : frames) {
-    const Part part = read_vtk_part(frame.file);
+    const Part part = read_vtk_part(run.file(frame.file));
     if (!is_mesh(part)) continue;
     const std::string comment = describe_frame(c, variant, frame);
     const std::string text =
@@ -114,10 +112,11 @@ std::vector<double> animation_times(const CaseRecord& c, const std::vector<Frame
 TriMesh mesh_of(const Part& part) { return {part.points, part.triangles}; }
 
 /// One animation, or a still a frame where the topology changes.
-int export_glb(const CaseRecord& c, const VariantRecord& variant, const std::string& part_name,
-               const std::vector<FrameFile>& frames, const fs::path& folder) {
+int export_glb(const OpenedRun& run, const CaseRecord& c, const VariantRecord& variant,
+               const std::string& part_name, const std::vector<FrameFile>& frames,
+               const fs::path& folder) {
   std::vector<Part> parts;
-  for (const FrameFile& frame : frames) parts.push_back(read_vtk_part(frame.file));
+  for (const FrameFile& frame : frames) parts.push_back(read_vtk_part(run.file(frame.file)));
   const bool triangles = std::all_of(parts.begin(), parts.end(), [](const Part& part) {
     return part.kind == Part::Kind::triangles && part.triangles.rows() > 0;
   });
@@ -139,11 +138,11 @@ int export_glb(const CaseRecord& c, const VariantRecord& variant, const std::str
 
 }  // namespace
 
-void export_run(const fs::path& run_folder, const std::string& format, const fs::path& out) {
+void export_run(const OpenedRun& run, const std::string& format, const fs::path& out) {
   if (std::find(kFormats.begin(), kFormats.end(), format) == kFormats.end()) {
     throw Error("unknown format '" + format + "'", "export", "obj, ply, glb");
   }
-  const RunRecord record = read_run_file(run_folder / "run.h5");
+  const RunRecord& record = run.record();
   claim_folder(out, "Frames of " + record.experiment_id + " as " + format +
                         ", written by geoprior export from run content " + record.content_sha256 +
                         ".\nA later export into this folder replaces files of the same name.\n");
@@ -151,14 +150,14 @@ void export_run(const fs::path& run_folder, const std::string& format, const fs:
   for (const CaseRecord& c : record.cases) {
     for (const VariantRecord& variant : c.variants) {
       const fs::path folder = out / c.name / variant.name;
-      for (const auto& [name, frames] : files_by_part(variant, run_folder)) {
-        written += format == "glb" ? export_glb(c, variant, name, frames, folder)
-                                   : export_texts(c, variant, frames, format, folder);
+      for (const auto& [name, frames] : files_by_part(variant)) {
+        written += format == "glb" ? export_glb(run, c, variant, name, frames, folder)
+                                   : export_texts(run, c, variant, frames, format, folder);
       }
     }
   }
   if (written == 0) {
-    throw Error("no part of its frames can be written as " + format, run_folder.string(),
+    throw Error("no part of its frames can be written as " + format, run.folder().string(),
                 "grids stay .vti; glb holds triangles only");
   }
 }

@@ -67,17 +67,17 @@ std::string part_name(const StoredFile& file) {
 }
 
 std::optional<Part> load_part(const FrameRecord& frame, const std::string& name,
-                              const fs::path& folder) {
+                              const OpenedRun& run) {
   for (const StoredFile& file : frame.files) {
     if (fs::path(file.name).extension() != ".csv" && part_name(file) == name) {
-      return read_vtk_part(folder / file.name);
+      return read_vtk_part(run.file(file));
     }
   }
   return std::nullopt;
 }
 
-Part require_part(const FrameRecord& frame, const std::string& name, const fs::path& folder) {
-  if (auto part = load_part(frame, name, folder)) return *std::move(part);
+Part require_part(const FrameRecord& frame, const std::string& name, const OpenedRun& run) {
+  if (auto part = load_part(frame, name, run)) return *std::move(part);
   std::vector<std::string> available;
   for (const StoredFile& file : frame.files) available.push_back(part_name(file));
   throw Error("no part '" + name + "' in the frames", "figure_view.part", joined(available));
@@ -112,7 +112,7 @@ bool failed_before(const VariantRecord& variant, std::optional<double> state) {
 
 FigureCell make_cell(const CaseRecord& c, const std::string& variant_name,
                      std::optional<double> parameter, std::optional<double> state,
-                     const FigureView& view, const fs::path& folder) {
+                     const FigureView& view, const OpenedRun& run) {
   FigureCell cell;
   cell.label = display_name(variant_name);
   const VariantRecord* variant = find_variant(c, variant_name);
@@ -122,13 +122,13 @@ FigureCell make_cell(const CaseRecord& c, const std::string& variant_name,
     cell.note = "failed after " + with_unit(variant->frames.back().parameter, c.parameter_unit);
     return cell;
   }
-  cell.part = require_part(*frame, view.part, folder);
+  cell.part = require_part(*frame, view.part, run);
   for (const std::string& overlay : view.overlays) {
-    if (auto part = load_part(*frame, overlay, folder)) {
+    if (auto part = load_part(*frame, overlay, run)) {
       cell.overlays.push_back({overlay, *std::move(part)});
     }
   }
-  if (view.part != kObstacles) cell.obstacles = load_part(*frame, kObstacles, folder);
+  if (view.part != kObstacles) cell.obstacles = load_part(*frame, kObstacles, run);
   return cell;
 }
 
@@ -177,7 +177,7 @@ using Variants = std::vector<std::string>;
 
 /// Variants side by side, a row a state.
 std::vector<FigureRow> rows_of_states(const CaseRecord& c, const Variants& variants,
-                                      const FigureView& view, const fs::path& folder) {
+                                      const FigureView& view, const OpenedRun& run) {
   std::vector<FigureRow> rows;
   const auto blocks = wrap(variants);
   for (const DrawnState& state : drawn_states(c, view)) {
@@ -185,7 +185,7 @@ std::vector<FigureRow> rows_of_states(const CaseRecord& c, const Variants& varia
       FigureRow row;
       row.label = state.label;
       for (const std::string& variant : block) {
-        row.cells.push_back(make_cell(c, variant, state.wanted, state.parameter, view, folder));
+        row.cells.push_back(make_cell(c, variant, state.wanted, state.parameter, view, run));
       }
       rows.push_back(std::move(row));
     }
@@ -195,14 +195,14 @@ std::vector<FigureRow> rows_of_states(const CaseRecord& c, const Variants& varia
 
 /// States side by side, a row a variant.
 std::vector<FigureRow> rows_of_variants(const CaseRecord& c, const Variants& variants,
-                                        const FigureView& view, const fs::path& folder) {
+                                        const FigureView& view, const OpenedRun& run) {
   std::vector<FigureRow> rows;
   for (const std::string& variant : variants) {
     for (const std::vector<DrawnState>& block : wrap(drawn_states(c, view))) {
       FigureRow row;
       if (variants.size() > 1) row.label = display_name(variant);
       for (const DrawnState& state : block) {
-        row.cells.push_back(make_cell(c, variant, state.wanted, state.parameter, view, folder));
+        row.cells.push_back(make_cell(c, variant, state.wanted, state.parameter, view, run));
         row.cells.back().label = state.label;
       }
       rows.push_back(std::move(row));
@@ -247,16 +247,16 @@ std::string with_unit(double value, const std::string& unit) {
   return std::string(text.data()) + (unit.empty() || unit == "1" ? "" : " " + unit);
 }
 
-std::vector<FigureRow> collect_cells(const RunRecord& record, const fs::path& run_folder,
-                                     const FigureView& view) {
+std::vector<FigureRow> collect_cells(const OpenedRun& run, const FigureView& view) {
+  const RunRecord& record = run.record();
   const auto cases = choose(view.cases, case_names(record), "figure_view.cases");
   const Variants variants = choose(view.variants, variant_names(record), "figure_view.variants");
   std::vector<FigureRow> rows;
   for (const CaseRecord& c : record.cases) {
     if (std::find(cases.begin(), cases.end(), c.name) == cases.end()) continue;
     const bool states_across = view.across == FigureView::Across::states;
-    for (FigureRow& row : states_across ? rows_of_variants(c, variants, view, run_folder)
-                                        : rows_of_states(c, variants, view, run_folder)) {
+    for (FigureRow& row : states_across ? rows_of_variants(c, variants, view, run)
+                                        : rows_of_states(c, variants, view, run)) {
       if (rows.size() == kMostRows) return rows;
       if (cases.size() > 1) row.label += (row.label.empty() ? "" : ", ") + c.name;
       row.has_headings = rows.empty() || !same_labels(rows.back(), row);

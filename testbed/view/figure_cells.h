@@ -1,12 +1,11 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/frame.h"
-#include "testbed/runner/run_record.h"
+#include "testbed/runner/opened_run.h"
 #include "testbed/runner/spec.h"
 
 namespace geoprior {
@@ -37,9 +36,7 @@ struct FigureRow {
 /// variants as rows. The frame nearest to a wanted parameter is taken, and the label gives the
 /// parameter it really has; parameters with the same nearest frame make one row.
 /// @throws Error  naming the variant, case or part that the run does not have, or a damaged file
-std::vector<FigureRow> collect_cells(const RunRecord& record,
-                                     const std::filesystem::path& run_folder,
-                                     const FigureView& view);
+std::vector<FigureRow> collect_cells(const OpenedRun& run, const FigureView& view);
 
 /// Whether two rows name their cells alike.
 bool same_labels(const FigureRow& a, const FigureRow& b);

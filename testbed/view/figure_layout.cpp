@@ -159,10 +159,10 @@ BlockLook make_look(const std::vector<FigureRow>& rows, const FigureView& view) 
   return look;
 }
 
-FigureBlock make_block(const RunRecord& record, const fs::path& folder, const FigureView& view) {
-  FigureBlock block{view, collect_cells(record, folder, view), {}};
+FigureBlock make_block(const OpenedRun& run, const FigureView& view) {
+  FigureBlock block{view, collect_cells(run, view), {}};
   if (block.rows.empty() || all_parts(block.rows, false).empty()) {
-    throw Error("the run has no frames to draw", folder.string());
+    throw Error("the run has no frames to draw", run.folder().string());
   }
   block.look = make_look(block.rows, view);
   return block;
@@ -185,18 +185,18 @@ FigureView view_above(const FigureView& view) {
   return above;
 }
 
-std::optional<FigureBlock> make_block_above(const RunRecord& record, const fs::path& folder,
-                                            const FigureView& view) {
+std::optional<FigureBlock> make_block_above(const OpenedRun& run, const FigureView& view) {
   FigureView above = view_above(view);
-  if (!view.above->input) return make_block(record, folder, above);
-  const auto input = std::find_if(record.inputs.begin(), record.inputs.end(),
+  if (!view.above->input) return make_block(run, above);
+  const std::vector<StoredFile>& inputs = run.record().inputs;
+  const auto input = std::find_if(inputs.begin(), inputs.end(),
                                   [&](const auto& i) { return i.name == *view.above->input; });
-  if (input == record.inputs.end()) return std::nullopt;
+  if (input == inputs.end()) return std::nullopt;
   const RunReference reference = parse_run_reference(input->name);
   const fs::path source = find_run_of_content(reference.experiment_id, input->sha256);
   above.variants = {reference.variant};
   above.cases = {reference.case_name};
-  return make_block(read_run_file(source / "run.h5"), source, above);
+  return make_block(OpenedRun(source, run.unverified()), above);
 }
 
 int block_height(const FigureBlock& block, const Layout& layout) {
@@ -229,13 +229,12 @@ void draw_block(Picture& picture, const FigureBlock& block, const Layout& layout
 
 }  // namespace
 
-std::vector<FigureBlock> make_blocks(const RunRecord& record, const fs::path& folder,
-                                     const FigureView& view) {
+std::vector<FigureBlock> make_blocks(const OpenedRun& run, const FigureView& view) {
   std::vector<FigureBlock> blocks;
   if (view.above) {
-    if (auto above = make_block_above(record, folder, view)) blocks.push_back(*std::move(above));
+    if (auto above = make_block_above(run, view)) blocks.push_back(*std::move(above));
   }
-  blocks.push_back(make_block(record, folder, view));
+  blocks.push_back(make_block(run, view));
   if (blocks.size() == 1) return blocks;
   if (same_labels(blocks.front().rows.back(), blocks.back().rows.front())) {
     blocks.back().rows.front().has_headings = false;

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
-#include "testbed/runner/run_record.h"
+#include "testbed/runner/opened_run.h"
 #include "testbed/runner/spec.h"
 #include "testbed/view/figure_cells.h"
 #include "testbed/view/legend.h"
@@ -30,8 +29,7 @@ struct FigureBlock {
 /// What a figure shows, from top to bottom: the row above that the view may ask for, and the view's
 /// own rows. A row above of an input is left out when the run has no such input.
 /// @throws Error  when there is nothing to draw, or naming what the run does not have
-std::vector<FigureBlock> make_blocks(const RunRecord& record, const std::filesystem::path& folder,
-                                     const FigureView& view);
+std::vector<FigureBlock> make_blocks(const OpenedRun& run, const FigureView& view);
 
 /// Draws the blocks under each other, at the picture's usual width. Needs a Display.
 Picture draw_figure(const std::vector<FigureBlock>& blocks);

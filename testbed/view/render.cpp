@@ -10,15 +10,13 @@ namespace geoprior {
 
 namespace fs = std::filesystem;
 
-void render_run(const fs::path& run_folder, const FigureView& view) {
-  const RunRecord record = read_run_file(run_folder / "run.h5");
-  const std::vector<FigureBlock> blocks = make_blocks(record, run_folder, view);
+void render_run(const OpenedRun& run, const FigureView& view) {
+  const std::vector<FigureBlock> blocks = make_blocks(run, view);
   const Display display;
-  write_png(draw_figure(blocks), run_folder / "figure.png");
+  write_png(draw_figure(blocks), run.folder() / "figure.png");
   if (view.contact_sheet > 0) {
-    const FigureView sheet = contact_sheet_view(record, view);
-    write_png(draw_figure(make_blocks(record, run_folder, sheet)),
-              run_folder / "contact-sheet.png");
+    const FigureView sheet = contact_sheet_view(run.record(), view);
+    write_png(draw_figure(make_blocks(run, sheet)), run.folder() / "contact-sheet.png");
   }
 }
 

@@ -63,18 +63,18 @@ void encode(const std::string& ffmpeg, const VideoOptions& options, int frames,
 
 }  // namespace
 
-Video make_video(const fs::path& run_folder, const FigureView& view, const VideoOptions& options) {
-  const RunRecord record = read_run_file(run_folder / "run.h5");
+Video make_video(const OpenedRun& run, const FigureView& view, const VideoOptions& options) {
+  const RunRecord& record = run.record();
   const std::vector<double> parameters = frame_parameters(record, view);
-  const auto samples = make_blocks(
-      record, run_folder, frame_view(view, evenly_chosen(parameters, kSampledFrames), record));
+  const auto samples =
+      make_blocks(run, frame_view(view, evenly_chosen(parameters, kSampledFrames), record));
   make_folders(fs::absolute(options.out));
   const Display display;
   Video video;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     video.stopped = stop_requested();
     if (video.stopped) return video;
-    auto blocks = make_blocks(record, run_folder, frame_view(view, {parameters[i]}, record));
+    auto blocks = make_blocks(run, frame_view(view, {parameters[i]}, record));
     for (std::size_t b = 0; b < blocks.size(); ++b) blocks[b].look = samples[b].look;
     write_png(draw_figure(blocks), frame_file(options.out, i));
     ++video.frames;

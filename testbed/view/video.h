@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "testbed/figure_view.h"
+#include "testbed/runner/opened_run.h"
 
 namespace geoprior {
 
@@ -22,7 +23,6 @@ struct Video {
 /// and one colour range (those of eight frames, evenly spaced), and lets ffmpeg make a video of
 /// them. A file is there whole or not at all.
 /// @throws Error  when there is nothing to draw, or with the message of ffmpeg
-Video make_video(const std::filesystem::path& run_folder, const FigureView& view,
-                 const VideoOptions& options);
+Video make_video(const OpenedRun& run, const FigureView& view, const VideoOptions& options);
 
 }  // namespace geoprior

@@ -33,7 +33,7 @@ int count_files(const fs::path& folder, const std::string& extension) {
 TEST(Export, ObjKeepsEveryBitOfThePositions) {
   const TestFolder folder;
   make_fake_run(folder.path);
-  export_run(folder.path, "obj", folder.path / "out");
+  export_run(OpenedRun(folder.path), "obj", folder.path / "out");
   EXPECT_EQ(count_files(folder.path / "out", ".obj"), 6);
   std::ifstream in(folder.path / "out/default/second-box/surface_0002.obj");
   const Part expected = make_box({0, 0, 0}, {1.2, 1, 1.0 / 3});
@@ -83,7 +83,7 @@ TEST(Export, PlyHoldsPositionsArraysAndTriangles) {
 TEST(Export, GlbIsOneAnimationAVariant) {
   const TestFolder folder;
   make_fake_run(folder.path);
-  export_run(folder.path, "glb", folder.path / "out");
+  export_run(OpenedRun(folder.path), "glb", folder.path / "out");
   EXPECT_EQ(count_files(folder.path / "out", ".glb"), 2);
   const std::string bytes = read_whole_file(folder.path / "out/default/first-box/surface.glb");
   EXPECT_EQ(bytes.substr(0, 4), "glTF");
@@ -95,8 +95,8 @@ TEST(Export, GlbOfChangingTopologyIsOneFileAFrame) {
   VariantRecord& variant = record.cases[0].variants[0];
   add_frame(variant, folder.path, 135,
             join(make_box({0, 0, 0}, {1, 1, 1}), make_box({2, 0, 0}, {3, 1, 1})));
-  write_run_file(record, folder.path / "run.h5");
-  export_run(folder.path, "glb", folder.path / "out");
+  write_fake_run(record, folder.path);
+  export_run(OpenedRun(folder.path), "glb", folder.path / "out");
   EXPECT_EQ(count_files(folder.path / "out/default/first-box", ".glb"), 4);
   EXPECT_EQ(count_files(folder.path / "out/default/second-box", ".glb"), 1);
 }
@@ -107,7 +107,7 @@ TEST(Export, ForeignFolderIsRefusedAndLeftAlone) {
   const fs::path out = folder.path / "mine";
   fs::create_directories(out);
   std::ofstream(out / "thesis.tex") << "years of work";
-  EXPECT_THAT(test::error_of([&] { export_run(folder.path, "obj", out); }),
+  EXPECT_THAT(test::error_of([&] { export_run(OpenedRun(folder.path), "obj", out); }),
               HasSubstr(out.string()));
   EXPECT_EQ(count_files(out, ".obj"), 0);
   EXPECT_EQ(read_whole_file(out / "thesis.tex"), "years of work");
@@ -116,15 +116,16 @@ TEST(Export, ForeignFolderIsRefusedAndLeftAlone) {
 TEST(Export, AnEarlierExportMayBeReplaced) {
   const TestFolder folder;
   make_fake_run(folder.path);
-  export_run(folder.path, "ply", folder.path / "out");
-  EXPECT_NO_THROW(export_run(folder.path, "ply", folder.path / "out"));
+  export_run(OpenedRun(folder.path), "ply", folder.path / "out");
+  EXPECT_NO_THROW(export_run(OpenedRun(folder.path), "ply", folder.path / "out"));
 }
 
 TEST(Export, UnknownFormatListsTheAllowedOnes) {
   const TestFolder folder;
   make_fake_run(folder.path);
-  EXPECT_THAT(test::error_of([&] { export_run(folder.path, "stl", folder.path / "out"); }),
-              HasSubstr("obj, ply, glb"));
+  EXPECT_THAT(
+      test::error_of([&] { export_run(OpenedRun(folder.path), "stl", folder.path / "out"); }),
+      HasSubstr("obj, ply, glb"));
   EXPECT_FALSE(fs::exists(folder.path / "out"));
 }
 

@@ -13,7 +13,9 @@
 #include "core/frame.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/vtk_files.h"
+#include "testbed/runner/journal.h"
 #include "testbed/runner/run_record.h"
+#include "testbed/runner/sha256.h"
 
 namespace geoprior {
 
@@ -67,8 +69,19 @@ inline void add_frame(VariantRecord& variant, const std::filesystem::path& folde
   const std::string file =
       "frames/default/" + variant.name + "/" + name + index.data() + part_extension(part);
   make_folders((folder / file).parent_path());
-  write_file_atomically(folder / file, std::string_view(part_to_vtk_xml(part, parameter)));
-  variant.frames.push_back({parameter, {{file, std::string(64, '0')}}});
+  const std::string xml = part_to_vtk_xml(part, parameter);
+  write_file_atomically(folder / file, std::string_view(xml));
+  variant.frames.push_back({parameter, {{file, sha256(xml)}}});
+}
+
+/// run.h5, and a journal that says so.
+inline void write_fake_run(const RunRecord& record, const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "run.h5";
+  write_run_file(record, file);
+  const std::string lines =
+      journal::to_text(journal::RunLine{3, record.experiment_id, record.spec_hash, ""}) + '\n' +
+      journal::to_text(journal::ResultLine{{"run.h5", sha256_of_file(file)}}) + '\n';
+  write_file_atomically(folder / "journal.jsonl", std::string_view(lines));
 }
 
 /// Two variants, three frames at 0, 45 and 90 degrees: boxes that grow in x, with an array
@@ -96,7 +109,7 @@ inline RunRecord make_fake_run(const std::filesystem::path& folder) {
     c.variants.push_back(variant);
   }
   record.cases.push_back(c);
-  write_run_file(record, folder / "run.h5");
+  write_fake_run(record, folder);
   return record;
 }
 

@@ -9,8 +9,6 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import h5py
-
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(REPOSITORY / "results")]
@@ -19,7 +17,7 @@ import expressions  # noqa: E402
 import figures  # noqa: E402
 import pages  # noqa: E402
 import records  # noqa: E402
-from report_test import make_run  # noqa: E402
+from report_test import make_run, signed  # noqa: E402
 from runfile import RunFileError  # noqa: E402
 
 
@@ -90,7 +88,7 @@ class Scratch(unittest.TestCase):
         self.run = self.root / "run"
         self.run.mkdir()
         make_run(self.run)
-        with h5py.File(self.run / "run.h5", "a") as file:
+        with signed(self.run, "a") as file:
             file.attrs["quick"] = 0
 
     def publish(self):
@@ -125,7 +123,7 @@ class Publishing(Scratch):
         self.assertEqual(path.read_bytes(), first)
 
     def test_quick_runs_are_refused(self):
-        with h5py.File(self.run / "run.h5", "a") as file:
+        with signed(self.run, "a") as file:
             file.attrs["quick"] = 1
         with self.assertRaisesRegex(RunFileError, "a quick run is not published"):
             self.publish()

@@ -2,6 +2,9 @@
 clear line when the file is damaged. Run with Debian's python3."""
 
 import base64
+import contextlib
+import hashlib
+import json
 import re
 import shutil
 import subprocess
@@ -70,8 +73,18 @@ def add_variant(parent, index, name, overlap, seconds):
     group["artifacts"] = table([], [("name", "text"), ("sha256", "text")])
 
 
+@contextlib.contextmanager
+def signed(folder, mode):
+    """run.h5 to be written or changed; then the journal says that it is the run's result."""
+    with h5py.File(folder / "run.h5", mode) as file:
+        yield file
+    sha256 = hashlib.sha256((folder / "run.h5").read_bytes()).hexdigest()
+    lines = [{"kind": "run"}, {"kind": "result", "name": "run.h5", "sha256": sha256}]
+    (folder / "journal.jsonl").write_text("".join(json.dumps(x) + "\n" for x in lines))
+
+
 def make_run(folder, title="Knee <flexion> & more"):
-    with h5py.File(folder / "run.h5", "w") as file:
+    with signed(folder, "w") as file:
         file.attrs.update(schema_version=1, experiment_id="test/knee", title=title, figure="3.2",
                           topic="skinning", quick=1, spec_hash="a" * 64, content_sha256="b" * 64,
                           experiment='title = "x"\n[figure_view]\nmetrics = ["overlap_excess"]\n',
@@ -102,7 +115,7 @@ def make_run(folder, title="Knee <flexion> & more"):
 
 def make_processes(folder):
     """Makes the run one of processes as schema 2 has them, the second one failed."""
-    with h5py.File(folder / "run.h5", "a") as file:
+    with signed(folder, "a") as file:
         file.attrs["schema_version"] = 2
         case = file["cases/default"]
         for i, name in enumerate(["dual-quaternion", "implicit"]):
@@ -207,16 +220,42 @@ class RunTest(unittest.TestCase):
         whole = (self.folder / "run.h5").read_bytes()
         for content in (whole[:len(whole) // 2], b"", b"no HDF5 at all"):
             (self.folder / "run.h5").write_bytes(content)
-            with self.assertRaisesRegex(runfile.RunFileError, "run.h5: damaged"):
+            with self.assertRaisesRegex(runfile.RunFileError, "run.h5: is damaged or another"):
                 runfile.read_run(self.folder)
+            with self.assertRaisesRegex(runfile.RunFileError, "run.h5: damaged"):
+                runfile.read_run(self.folder, force=True)
         done = run_script("report", self.folder)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
         self.assertIn(str(self.folder / "run.h5"), done.stderr)
         self.assertFalse((self.folder / "report.html").exists())
 
+    def test_run_without_its_journal_needs_force(self):
+        (self.folder / "journal.jsonl").unlink()
+        with self.assertRaisesRegex(runfile.RunFileError, "run.h5: its checksum is not in the journal"):
+            runfile.read_run(self.folder)
+        self.assertEqual(runfile.read_run(self.folder, force=True).experiment_id, "test/knee")
+
+    def test_values_in_other_places_are_refused(self):
+        def soft(file):
+            file["cases/default/other"] = h5py.SoftLink("/cases/default")
+
+        def external_link(file):
+            file["cases/default/other"] = h5py.ExternalLink("/etc/passwd", "/")
+
+        def external_values(file):
+            file.create_dataset("cases/default/other", (1,), "u1", external=[("/etc/passwd", 0, 1)])
+
+        for change, word in ((soft, "link"), (external_link, "link"), (external_values, "another file")):
+            with self.subTest(change.__name__):
+                make_run(self.folder)
+                with signed(self.folder, "a") as file:
+                    change(file)
+                with self.assertRaisesRegex(runfile.RunFileError, word):
+                    runfile.read_run(self.folder)
+
     def test_missing_part_of_a_run_names_the_file(self):
-        with h5py.File(self.folder / "run.h5", "a") as file:
+        with signed(self.folder, "a") as file:
             del file["claims"]
         with self.assertRaisesRegex(runfile.RunFileError, "run.h5"):
             runfile.read_run(self.folder)
@@ -259,7 +298,7 @@ class RunTest(unittest.TestCase):
     def test_peak_memory_is_shown_where_it_was_measured(self):
         summary.main([str(self.folder)])
         self.assertNotIn("peak memory", (self.folder / "summary.md").read_text(encoding="utf-8"))
-        with h5py.File(self.folder / "run.h5", "a") as file:
+        with signed(self.folder, "a") as file:
             variants = file["cases/default/variants"]
             attrs = variants[list(variants)[0]].attrs
             attrs["memory_start"], attrs["memory_peak"] = np.uint64(100e6), np.uint64(164e6)
@@ -295,7 +334,7 @@ class RunTest(unittest.TestCase):
                       (self.folder / "summary.md").read_text(encoding="utf-8"))
 
     def test_a_version_this_program_does_not_know_is_refused(self):
-        with h5py.File(self.folder / "run.h5", "a") as file:
+        with signed(self.folder, "a") as file:
             file.attrs["schema_version"] = 99
         with self.assertRaisesRegex(runfile.RunFileError, "schema version 99"):
             runfile.read_run(self.folder)

@@ -356,7 +356,7 @@ TEST(Cells, ObstaclesComeWithTheFrameAndDoNotMoveTheWindow) {
   FigureView view;
   view.at_parameter = 0;
   view.variants = {variant.name};
-  const auto rows = collect_cells(record, folder.path, view);
+  const auto rows = collect_cells(OpenedRun(folder.path, record), view);
   ASSERT_TRUE(rows.at(0).cells.at(0).obstacles.has_value());
   EXPECT_TRUE(rows[0].cells[0].overlays.empty());
 }
@@ -431,11 +431,11 @@ TEST(Render, DrawsTheSameFigureTwiceWithoutADisplay) {
   view.parameters = {0, 90};
   view.color_by = "height";
   view.section = SectionView{{0.5, 0.5, 0.1}, {0, 0, 1}};
-  render_run(folder.path, view);
+  render_run(OpenedRun(folder.path), view);
   const std::string once = read_whole_file(folder.path / "figure.png");
   EXPECT_EQ(once.substr(1, 3), "PNG");
   EXPECT_LT(once.size(), 1u << 20);
-  render_run(folder.path, view);
+  render_run(OpenedRun(folder.path), view);
   EXPECT_EQ(read_whole_file(folder.path / "figure.png"), once);
 }
 
@@ -444,11 +444,12 @@ TEST(Render, NamesWhatTheRunDoesNotHave) {
   make_fake_run(folder.path);
   FigureView view;
   view.variants = {"third-box"};
-  EXPECT_THAT(test::error_of([&] { render_run(folder.path, view); }),
+  EXPECT_THAT(test::error_of([&] { render_run(OpenedRun(folder.path), view); }),
               HasSubstr("first-box, second-box"));
   view.variants = {};
   view.part = "strokes";
-  EXPECT_THAT(test::error_of([&] { render_run(folder.path, view); }), HasSubstr("surface"));
+  EXPECT_THAT(test::error_of([&] { render_run(OpenedRun(folder.path), view); }),
+              HasSubstr("surface"));
   EXPECT_FALSE(fs::exists(folder.path / "figure.png"));
 }
 
@@ -457,7 +458,7 @@ TEST(Cells, AFrameIsDrawnOnceThoughSeveralParametersAreNearestToIt) {
   const RunRecord record = make_fake_run(folder.path);
   FigureView view;
   view.parameters = {0, 90, 120, 180};
-  const auto rows = collect_cells(record, folder.path, view);
+  const auto rows = collect_cells(OpenedRun(folder.path, record), view);
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[1].label, "Angle 90\u00b0");
 }
@@ -470,7 +471,7 @@ TEST(Cells, AVariantThatFailedBeforeTheStateIsNotDrawnInAnother) {
   failed.frames.resize(2);  // 0 and 45 degrees
   FigureView view;
   view.parameters = {45, 90};
-  const auto rows = collect_cells(record, folder.path, view);
+  const auto rows = collect_cells(OpenedRun(folder.path, record), view);
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_TRUE(rows[0].cells[0].part.has_value());
   EXPECT_EQ(rows[1].label, "Angle 90\u00b0");
@@ -484,7 +485,7 @@ TEST(Cells, NearestFrameIsTakenAndLabelledWithItsOwnParameter) {
   const RunRecord record = make_fake_run(folder.path);
   FigureView view;
   view.parameters = {50};
-  const auto rows = collect_cells(record, folder.path, view);
+  const auto rows = collect_cells(OpenedRun(folder.path, record), view);
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].label, "Angle 45\u00b0");
   ASSERT_EQ(rows[0].cells.size(), 2u);
@@ -498,7 +499,7 @@ TEST(Cells, StatesStandSideBySideWhenTheViewSaysAcross) {
   FigureView view;
   view.parameters = {0, 45, 90, 180};  // 180 is nearest to 90, which is there
   view.across = FigureView::Across::states;
-  const auto rows = collect_cells(record, folder.path, view);
+  const auto rows = collect_cells(OpenedRun(folder.path, record), view);
   ASSERT_EQ(rows.size(), 2u) << "a row a variant";
   EXPECT_EQ(rows[1].label, "Second box");
   ASSERT_EQ(rows[1].cells.size(), 3u);
@@ -520,7 +521,7 @@ TEST(Blocks, ARowAboveHasItsOwnPartCameraAndLabel) {
   view.above->label = "Input";
   view.above->direction = {0, -1, 0};
   view.above->up = {0, 0, 1};
-  const auto blocks = make_blocks(record, folder.path, view);
+  const auto blocks = make_blocks(OpenedRun(folder.path, record), view);
   ASSERT_EQ(blocks.size(), 2u);
   EXPECT_EQ(blocks[0].rows[0].label, "Input");
   EXPECT_EQ(blocks[1].rows[0].label, "Heights");
@@ -544,15 +545,16 @@ TEST(Blocks, ARowAboveOfAnInputIsTakenFromTheRunOfThatContent) {
   view.at_parameter = 45;
   view.above = RowAbove{};
   view.above->input = "run:test/boxes/second-box";
-  const auto blocks = make_blocks(record, own, view);
+  const auto blocks = make_blocks(OpenedRun(own, record), view);
   ASSERT_EQ(blocks.size(), 2u);
   ASSERT_EQ(blocks[0].rows.at(0).cells.size(), 1u);
   EXPECT_EQ(blocks[0].rows[0].cells[0].label, "Second box");
   record.inputs[0].sha256 = std::string(64, 'c');
-  EXPECT_THAT(test::error_of([&] { make_blocks(record, own, view); }),
+  EXPECT_THAT(test::error_of([&] { make_blocks(OpenedRun(own, record), view); }),
               HasSubstr("no longer there"));
   record.inputs.clear();
-  EXPECT_EQ(make_blocks(record, own, view).size(), 1u) << "made of files: no run to show";
+  EXPECT_EQ(make_blocks(OpenedRun(own, record), view).size(), 1u)
+      << "made of files: no run to show";
   ::unsetenv("GEOPRIOR_RUNS");
 }
 
@@ -586,10 +588,10 @@ TEST(Render, DrawsAContactSheetWhereTheViewAsksForOne) {
   make_fake_run(folder.path);
   FigureView view;
   view.variants = {"first-box"};
-  render_run(folder.path, view);
+  render_run(OpenedRun(folder.path), view);
   EXPECT_FALSE(fs::exists(folder.path / "contact-sheet.png"));
   view.contact_sheet = 3;
-  render_run(folder.path, view);
+  render_run(OpenedRun(folder.path), view);
   EXPECT_EQ(read_whole_file(folder.path / "contact-sheet.png").substr(1, 3), "PNG");
 }
 
@@ -623,13 +625,13 @@ TEST(Video, HasAPictureAFrameAndIsWholeOrAbsent) {
   make_ffmpeg(folder.path, "echo half > \"$file\"; echo no encoder >&2; exit 1");
   const fs::path out = folder.path / "50% video";
   EXPECT_THAT(test::error_of([&] {
-                make_video(folder.path / "run", view, {25, out});
+                make_video(OpenedRun(folder.path / "run"), view, {25, out});
               }),
               HasSubstr("no encoder"));
   EXPECT_TRUE(fs::exists(out / "frame_0002.png"));
   EXPECT_EQ(std::distance(fs::directory_iterator(out), {}), 3) << "three frames, no half video";
   make_ffmpeg(folder.path, "echo \"$@\" > \"$file\"");
-  const Video video = make_video(folder.path / "run", view, {25, out});
+  const Video video = make_video(OpenedRun(folder.path / "run"), view, {25, out});
   EXPECT_EQ(video.frames, 3);
   ASSERT_EQ(video.file, out / "video.mp4");
   EXPECT_THAT(read_whole_file(out / "video.mp4"), HasSubstr("50%% video/frame_%04d.png"));
@@ -639,7 +641,7 @@ TEST(Video, IsLeftOutAfterCtrlC) {
   const TestFolder folder;
   make_fake_run(folder.path);
   request_stop();
-  const Video video = make_video(folder.path, {}, {25, folder.path / "video"});
+  const Video video = make_video(OpenedRun(folder.path), {}, {25, folder.path / "video"});
   clear_stop();
   EXPECT_TRUE(video.stopped);
   EXPECT_EQ(video.frames, 0);
