@@ -204,6 +204,13 @@ double mean_edge(const DetailMesh& d) {
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
+double total_area(const DetailMesh& d) {
+  double area = 0;
+  for (int t = 0; t < d.mesh.triangle_slots(); ++t)
+    if (d.mesh.triangle_alive(t)) area += d.mesh.area(t);
+  return area;
+}
+
 std::vector<std::array<int, 3>> visible_triangles(const DetailMesh& d, double weight) {
   IntrinsicTriangulation mesh = d.mesh;
   for (int i = 0; i < d.site_slots(); ++i)

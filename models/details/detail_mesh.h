@@ -116,6 +116,9 @@ bool among_details(const DetailMesh& details, int half_edge);
 /// Mean length of the edges of M_d among details, whatever their weights (m); 0 without any.
 double mean_edge(const DetailMesh& details);
 
+/// Area of all triangles of M_d (m^2).
+double total_area(const DetailMesh& details);
+
 /// Triangles of M_d with every site taken out that is no detail of weight above `weight`: the
 /// spacing that one sees. A copy is thinned; ghosts stay.
 std::vector<std::array<int, 3>> visible_triangles(const DetailMesh& details, double weight);

@@ -29,9 +29,7 @@ void PairCorrelation::add(double distance, Eigen::VectorXd& into) const {
 
 Eigen::VectorXd PairCorrelation::of(const DetailMesh& details, int stride) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(bins());
-  double area = 0;
-  for (int t = 0; t < details.mesh.triangle_slots(); ++t)
-    if (details.mesh.triangle_alive(t)) area += details.mesh.area(t);
+  const double area = total_area(details);
   int count = 0, centres = 0;
   for (int i = 0; i < details.site_slots(); ++i) {
     if (!counts(details, i)) continue;
@@ -63,6 +61,14 @@ void PairCorrelation::distances(const DetailMesh& details, int t,
     const double distance = (p.at - at).norm();
     if (distance < reach_ + 4 * sigma_ && counts(details, p.vertex)) into.push_back(distance);
   }
+}
+
+void describe(OptionVisitor& v, PairCorrelationOptions& options) {
+  v.value("radius", options.radius,
+          {.doc = "largest distance in mean edges of M_d", .min = 0.5, .max = 10});
+  v.value("bins", options.bins, {.doc = "of the distance", .min = 2, .max = 512});
+  v.value("bandwidth", options.bandwidth,
+          {.doc = "sigma of the Gaussian kernel in mean edges", .min = 0.01, .max = 1});
 }
 
 }  // namespace geoprior::details

@@ -2,28 +2,21 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 #include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "core/parallel.h"
 #include "core/state_bytes.h"
 #include "models/details/area_budget.h"
 #include "models/details/detail_step.h"
-#include "models/details/point_grid.h"
 #include "solvers/details/local_density.h"
-#include "solvers/details/pair_correlation.h"
-#include "solvers/details/triplet_table.h"
 
 namespace geoprior::details {
 namespace {
@@ -80,16 +73,8 @@ class SelfReplicating final : public DetailMethod {
   // Filling stretched triangles.
   void insert();
   [[nodiscard]] double largest_deficit(int triangle) const;
-  bool fill(int triangle);
-  [[nodiscard]] std::vector<NewDetail> copy_of(const TripletMatch& match, int triangle) const;
-  [[nodiscard]] bool strays(int triangle, const std::vector<NewDetail>& born) const;
-  [[nodiscard]] bool crowds(const std::vector<NewDetail>& born);
-  void carry_tangents(const TripletMatch& match, int triangle, std::vector<NewDetail>& born) const;
-  [[nodiscard]] double carried_angle(const TripletMatch& match, int source, int triangle,
-                                     const SurfacePoint& at) const;
+  void fill(int triangle);
   [[nodiscard]] bool within_budget(const std::vector<NewDetail>& born) const;
-  [[nodiscard]] double histogram_distance(int triangle, const std::vector<NewDetail>& born);
-  void measure_histogram();
 
   // Fading one of two close details.
   void merge();
@@ -101,16 +86,11 @@ class SelfReplicating final : public DetailMethod {
   [[nodiscard]] bool may_fade(int site) const;
 
   SelfReplicatingOptions options_;
-  DetailMesh original_;  ///< at rest: what triplets refer to
   DetailMesh now_;
-  TripletTable table_;
   AreaBudget budget_;
-  PairCorrelation correlation_;
-  Eigen::VectorXd histogram_at_rest_, histogram_now_;
-  double rest_edge_ = 0;        ///< mean edge of M_d at rest (m)
-  double rest_area_ = 0;        ///< mean area of its triangles
-  double least_gap_ = 0;        ///< half of the distance of the nearest two at rest (m)
-  double area_per_detail_ = 0;  ///< at rest
+  PatternCopier copier_;
+  double rest_edge_ = 0;  ///< mean edge of M_d at rest (m)
+  double rest_area_ = 0;  ///< mean area of its triangles (m^2)
   StepCounts counts_;
   StepReport report_;
   std::vector<int> mark_;  ///< frame mark of sites whose surroundings changed
@@ -121,13 +101,7 @@ class SelfReplicating final : public DetailMethod {
   std::vector<double> rank_;  ///< of triangles
   std::vector<int> patch_of_triangle_;
   std::vector<WantingTriangle> wanting_;  ///< by patch; those of a patch become a heap
-  std::vector<TripletMatch> matches_;
-  std::vector<double> distances_;
-  std::optional<PointGrid> near_;  ///< details of this frame, when surface is bare
 };
-
-/// Centres that stand for all in the histogram of a frame.
-constexpr int kHistogramCentres = 512;
 
 bool comes_later(const WantingTriangle& a, const WantingTriangle& b) {
   return a.rank > b.rank || (a.rank == b.rank && a.triangle > b.triangle);
@@ -136,37 +110,18 @@ bool comes_later(const WantingTriangle& a, const WantingTriangle& b) {
 /// Averages over neighbours of the density: over some twenty details.
 constexpr int kDensityRounds = 2;
 
-/// Between two details, so the distance of the nearest two (m).
-double shortest_edge(const DetailMesh& d) {
-  double shortest = std::numeric_limits<double>::infinity();
-  for (int h = 0; h < 3 * d.mesh.triangle_slots(); ++h) {
-    if (!d.mesh.triangle_alive(h / 3)) continue;
-    if (d.is_detail(d.mesh.origin(h)) && d.is_detail(d.mesh.tip(h)))
-      shortest = std::min(shortest, d.mesh.length(h));
-  }
-  return std::isfinite(shortest) ? shortest : 0;
-}
-
 }  // namespace
 
 SelfReplicating::SelfReplicating(const DetailScene& scene, const SelfReplicatingOptions& options,
                                  std::uint64_t seed)
     : options_(options),
-      original_(build_detail_mesh(scene.surface, scene.details)),
-      now_(original_),
-      table_(original_, options.triplets, seed),
-      budget_(original_, options.patch_details) {
+      now_(build_detail_mesh(scene.surface, scene.details)),
+      budget_(now_, options.patch_details),
+      copier_(now_, options.copies, budget_.leaves_bare(), seed),
+      rest_edge_(mean_edge(now_)),
+      rest_area_(total_area(now_) / now_.mesh.triangle_count()) {
   find_all_patches();
-  rest_edge_ = mean_edge(original_);
-  least_gap_ = 0.5 * shortest_edge(original_);
-  double area = 0;
-  for (int t = 0; t < original_.mesh.triangle_slots(); ++t)
-    if (original_.mesh.triangle_alive(t)) area += original_.mesh.area(t);
-  rest_area_ = area / original_.mesh.triangle_count();
-  area_per_detail_ = area / original_.detail_count();
-  correlation_ = PairCorrelation(rest_edge_, options.pair_correlation);
   if (options_.area_rule == AreaRule::budget) smooth_densities(now_, kDensityRounds);
-  if (options_.histogram) histogram_at_rest_ = correlation_.of(original_);
 }
 
 double SelfReplicating::wanted_area(int t) const {
@@ -293,11 +248,6 @@ void SelfReplicating::step(const Eigen::MatrixX3d& V, RunContext& context) {
   });
 }
 
-void SelfReplicating::measure_histogram() {
-  const int stride = std::max(1, now_.detail_count() / kHistogramCentres);
-  histogram_now_ = correlation_.of(now_, stride);
-}
-
 void SelfReplicating::diagnose(std::map<std::string, double>& into) const {
   into["inserted"] = counts_.inserted;
   into["revived"] = counts_.revived;
@@ -308,9 +258,9 @@ void SelfReplicating::diagnose(std::map<std::string, double>& into) const {
   into["refused_flips"] = static_cast<double>(now_.mesh.refused_flips());
   into["budget_target"] = budget_.total_target();
   if (now_.frame > 0) return;
-  into["triplets"] = table_.size();
-  into["triplets_met"] = static_cast<double>(table_.met());
-  into["table_bytes"] = static_cast<double>(table_.bytes());
+  into["triplets"] = copier_.table().size();
+  into["triplets_met"] = static_cast<double>(copier_.table().met());
+  into["table_bytes"] = static_cast<double>(copier_.table().bytes());
 }
 
 void SelfReplicating::save(StateWriter& out) const {
@@ -340,30 +290,6 @@ std::unique_ptr<Process> make_self_replicating_process(const DetailScene& scene,
   });
 }
 
-void describe(OptionVisitor& v, TripletOptions& options) {
-  v.value("radius", options.radius,
-          {.doc = "R: largest edge of a triplet in mean edges of M_d", .min = 1, .max = 10});
-  v.value("all", options.all,
-          {.doc = "all triplets whatever their size, as the thesis says (at most 400 details)"});
-  v.value("interior_only", options.interior_only,
-          {.doc = "only triplets with a detail strictly inside"});
-  v.value("cells", options.cells, {.doc = "of the grid along either key", .min = 4, .max = 1024});
-  v.value("cell_capacity", options.cell_capacity,
-          {.doc = "triplets kept in a cell", .min = 1, .max = 1024});
-  v.value("max_sources", options.max_sources,
-          {.doc = "details whose surroundings are searched for triplets", .min = 1});
-  v.value("interior_capacity", options.interior_capacity,
-          {.doc = "most details inside a triplet", .min = 1, .max = 64});
-}
-
-void describe(OptionVisitor& v, PairCorrelationOptions& options) {
-  v.value("radius", options.radius,
-          {.doc = "largest distance in mean edges of M_d", .min = 0.5, .max = 10});
-  v.value("bins", options.bins, {.doc = "of the distance", .min = 2, .max = 512});
-  v.value("bandwidth", options.bandwidth,
-          {.doc = "sigma of the Gaussian kernel in mean edges", .min = 0.01, .max = 1});
-}
-
 void describe(OptionVisitor& v, SelfReplicatingOptions& options) {
   static constexpr std::array<std::string_view, 3> kAreaRules{"own", "mean", "budget"};
   static constexpr std::array<std::string_view, 2> kWeightLaws{"frame", "motion"};
@@ -391,22 +317,8 @@ void describe(OptionVisitor& v, SelfReplicatingOptions& options) {
   v.value("motion_rate", options.motion_rate,
           {.doc = "law motion: change of weight per mean edge of displacement", .min = 0});
   describe_lengths(v, options.lengths);
-  v.value("histogram", options.histogram,
-          {.doc = "choose among candidate triplets by the pair correlation (the extension)"});
-  v.value("candidates", options.candidates,
-          {.doc = "m: triplets that the extension compares", .min = 1, .max = 64});
-  describe_group(v, "triplets", options.triplets, {.doc = "the table of triplets T"});
-  describe_group(v, "pair_correlation", options.pair_correlation,
-                 {.doc = "the histogram of the extension"});
+  describe(v, options.copies);
 }
-
-namespace {
-
-/// Triplets tried for a triangle before it is left for the next frame: copies may land in a patch
-/// that has enough.
-constexpr int kTries = 4;
-
-}  // namespace
 
 double SelfReplicating::largest_deficit(int t) const {
   double largest = 0;
@@ -422,8 +334,7 @@ void SelfReplicating::insert() {
     return r > threshold ? -r : kNotWanting;
   });
   if (wanting_.empty()) return;
-  if (options_.histogram) measure_histogram();
-  near_.reset();
+  copier_.begin_frame(now_);
   use_new_marks();
   act_in_order(Need::more, [&](int t) {
     if (options_.max_insertions && counts_.inserted >= *options_.max_insertions) return;
@@ -432,48 +343,28 @@ void SelfReplicating::insert() {
   });
 }
 
-bool SelfReplicating::fill(int t) {
+void SelfReplicating::fill(int t) {
   const bool budget = options_.area_rule == AreaRule::budget;
-  int room = options_.triplets.interior_capacity;
+  int room = std::numeric_limits<int>::max();
   if (budget) {
     const double deficit = largest_deficit(t);
-    if (deficit < limit()) return false;  // met by an insertion of this frame
-    room = std::min(room, std::max(1, static_cast<int>(deficit + 0.5)));
+    if (deficit < limit()) return;  // met by an insertion of this frame
+    room = std::max(1, static_cast<int>(deficit + 0.5));
   }
-  const std::array<double, 3> edges{now_.mesh.length(3 * t), now_.mesh.length(3 * t + 1),
-                                    now_.mesh.length(3 * t + 2)};
-  table_.closest(edges, room, options_.histogram ? options_.candidates : kTries, matches_);
-  if (matches_.empty()) {
-    ++counts_.failed_queries;
-    return false;
-  }
-  std::vector<NewDetail> chosen;
-  const TripletMatch* copied = nullptr;
-  double best = std::numeric_limits<double>::infinity();
-  for (const TripletMatch& match : matches_) {
-    std::vector<NewDetail> born = copy_of(match, t);
-    if ((budget && !within_budget(born)) || strays(t, born) || crowds(born)) continue;
-    const double distance = options_.histogram ? histogram_distance(t, born) : 0;
-    if (distance >= best) continue;
-    best = distance;
-    chosen = std::move(born);
-    copied = &match;
-    if (!options_.histogram) break;
-  }
-  if (chosen.empty()) return false;
-  carry_tangents(*copied, t, chosen);
+  const auto copies = copier_.copies_for(now_, t, room, [&](const std::vector<NewDetail>& born) {
+    return !budget || within_budget(born);
+  });
+  if (!copies) ++counts_.failed_queries;
+  if (!copies || copies->empty()) return;
   for (const int c : now_.mesh.corners(t)) mark(c);
-  const std::vector<int> sites = insert_details(now_, t, chosen);
+  const std::vector<int> sites = insert_details(now_, t, *copies);
   find_patches(sites);
   for (const int site : sites) {
     mark(site);
-    if (near_)
-      near_->add(now_.position[site],
-                 normal_of_face(now_.site[site].at.face, *now_.surface, now_.x));
+    copier_.add(now_, site);
     budget_.add(patch_of_site(site), 1);
     ++counts_.inserted;
   }
-  return true;
 }
 
 bool SelfReplicating::within_budget(const std::vector<NewDetail>& born) const {
@@ -485,117 +376,6 @@ bool SelfReplicating::within_budget(const std::vector<NewDetail>& born) const {
     if (budget_.deficit(patch) - static_cast<double>(before) < limit()) return false;
   }
   return true;
-}
-
-/// Whether a copy landed where the flat triangle does not have it: off the triangle's plane by a
-/// quarter of its shortest edge, or with a distance to a corner that is not half to one and a half
-/// of that in the triangle (to a quarter of the shortest edge). That is so where a triangle spans
-/// surface that it does not follow (bare, or bent within it): copies of many of its places would
-/// land on one.
-bool SelfReplicating::strays(int t, const std::vector<NewDetail>& born) const {
-  const double e01 = now_.mesh.length(3 * t), e12 = now_.mesh.length(3 * t + 1),
-               e20 = now_.mesh.length(3 * t + 2);
-  const double least = 0.25 * std::min({e01, e12, e20});
-  const auto corner = now_.mesh.corners(t);
-  return std::any_of(born.begin(), born.end(), [&](const NewDetail& one) {
-    const Eigen::Vector3d p = position_of(one.at, *now_.surface, now_.x);
-    Eigen::Vector3d on_plane = Eigen::Vector3d::Zero();
-    for (Eigen::Index k = 0; k < 3; ++k) on_plane += one.barycentric[k] * now_.position[corner[k]];
-    if ((p - on_plane).norm() > least) return true;
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      const Eigen::Vector3d v = one.barycentric - Eigen::Vector3d::Unit(k);
-      const double flat = std::sqrt(std::max(
-          0.0, -(e12 * e12 * v[1] * v[2] + e20 * e20 * v[2] * v[0] + e01 * e01 * v[0] * v[1])));
-      const double is = (p - now_.position[corner[k]]).norm();
-      if (is < 0.5 * flat || is > 1.5 * flat + least) return true;
-    }
-    return false;
-  });
-}
-
-/// Whether a copy is nearer to another detail than half of the nearest two of the original. Asked
-/// only where the original leaves surface bare: triangles that span it overlap the pattern, so that
-/// what is near in space need not be near in M_d.
-bool SelfReplicating::crowds(const std::vector<NewDetail>& born) {
-  if (!budget_.leaves_bare() || least_gap_ <= 0) return false;
-  if (!near_) {
-    near_.emplace(least_gap_, now_.site.size());
-    near_->add_details(now_);
-  }
-  std::vector<Eigen::Vector3d> places;
-  for (const NewDetail& one : born) {
-    const Eigen::Vector3d p = position_of(one.at, *now_.surface, now_.x);
-    const auto too_near = [&](const Eigen::Vector3d& other) {
-      return (p - other).norm() < least_gap_;
-    };
-    if (std::any_of(places.begin(), places.end(), too_near)) return true;
-    places.push_back(p);
-    if (!near_->is_free(p, normal_of_face(one.at.face, *now_.surface, now_.x), least_gap_))
-      return true;
-  }
-  return false;
-}
-
-std::vector<NewDetail> SelfReplicating::copy_of(const TripletMatch& match, int t) const {
-  std::vector<NewDetail> born;
-  for (const TripletInterior& inside : table_.interior(match.triplet)) {
-    const Eigen::Vector3d b = inside.barycentric();
-    NewDetail one;
-    for (std::size_t k = 0; k < 3; ++k)
-      one.barycentric[static_cast<Eigen::Index>(k)] = b[match.order[k]];
-    one.at = surface_point_in(now_, t, one.barycentric);
-    one.like = original_.site[inside.detail];
-    one.like.weight = 0;
-    one.like.target_weight = 1;
-    born.push_back(one);
-  }
-  return born;
-}
-
-void SelfReplicating::carry_tangents(const TripletMatch& match, int t,
-                                     std::vector<NewDetail>& born) const {
-  const auto inside = table_.interior(match.triplet);
-  for (std::size_t i = 0; i < born.size(); ++i)
-    born[i].like.tangent_angle = carried_angle(match, inside[i].detail, t, born[i].at);
-}
-
-/// The tangent keeps its angle to that of the first corner that is a detail (mirrored where the
-/// triplet is), so that aligned patterns stay aligned; without one, that to the first corner's
-/// direction.
-double SelfReplicating::carried_angle(const TripletMatch& match, int source, int t,
-                                      const SurfacePoint& at) const {
-  const Detail& from = original_.site[source];
-  const auto corner_now = now_.mesh.corners(t);
-  const auto corner_then = table_.corners(match.triplet);
-  const auto tangent = [](const DetailMesh& d, int site) {
-    const Detail& s = d.site[site];
-    return tangent_direction(s.at.face, s.tangent_angle, *d.surface, d.x);
-  };
-  Eigen::Vector3d then =
-      original_.position[corner_then[match.order[0]]] - original_.position[source];
-  Eigen::Vector3d now = now_.position[corner_now[0]] - position_of(at, *now_.surface, now_.x);
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (!now_.is_detail(corner_now[k])) continue;
-    then = tangent(original_, corner_then[match.order[k]]);
-    now = tangent(now_, corner_now[k]);
-    break;
-  }
-  const double was = tangent_angle(from.at.face, then, *original_.surface, original_.x);
-  const double is = tangent_angle(at.face, now, *now_.surface, now_.x);
-  const double offset = from.tangent_angle - was;
-  return is + (match.mirrored ? -offset : offset);
-}
-
-double SelfReplicating::histogram_distance(int t, const std::vector<NewDetail>& born) {
-  Eigen::VectorXd rows = Eigen::VectorXd::Zero(correlation_.bins());
-  for (const NewDetail& one : born) {
-    correlation_.distances(now_, t, one.barycentric, distances_);
-    for (const double r : distances_) correlation_.add(r, rows);
-  }
-  // The mean over centres with k more of them; a pair of a new and an old detail counts at both.
-  const double n = now_.detail_count(), k = static_cast<double>(born.size());
-  const Eigen::VectorXd after = (n * histogram_now_ + 2 * area_per_detail_ * rows) / (n + k);
-  return (after - histogram_at_rest_).lpNorm<1>();
 }
 
 bool SelfReplicating::may_fade(int site) const {

@@ -5,8 +5,7 @@
 
 #include "core/options.h"
 #include "models/details/detail_process.h"
-#include "solvers/details/pair_correlation.h"
-#include "solvers/details/triplet_table.h"
+#include "solvers/details/pattern_copier.h"
 
 namespace geoprior::details {
 
@@ -53,10 +52,7 @@ struct SelfReplicatingOptions {
   double weight_rate = 0.1;  ///< largest change of a weight in a frame
   double motion_rate = 1;    ///< law motion: change of weight per mean edge of displacement
   LengthRule lengths = LengthRule::chord;
-  bool histogram = false;  ///< choose among candidates by the pair correlation (the extension)
-  int candidates = 6;      ///< m: triplets compared by the extension
-  TripletOptions triplets;
-  PairCorrelationOptions pair_correlation;
+  PatternCopierOptions copies;
 };
 void describe(OptionVisitor& v, SelfReplicatingOptions& options);
 

@@ -159,4 +159,20 @@ void TripletTable::closest(const std::array<double, 3>& edges, int max_interior,
   }
 }
 
+void describe(OptionVisitor& v, TripletOptions& options) {
+  v.value("radius", options.radius,
+          {.doc = "R: largest edge of a triplet in mean edges of M_d", .min = 1, .max = 10});
+  v.value("all", options.all,
+          {.doc = "all triplets whatever their size, as the thesis says (at most 400 details)"});
+  v.value("interior_only", options.interior_only,
+          {.doc = "only triplets with a detail strictly inside"});
+  v.value("cells", options.cells, {.doc = "of the grid along either key", .min = 4, .max = 1024});
+  v.value("cell_capacity", options.cell_capacity,
+          {.doc = "triplets kept in a cell", .min = 1, .max = 1024});
+  v.value("max_sources", options.max_sources,
+          {.doc = "details whose surroundings are searched for triplets", .min = 1});
+  v.value("interior_capacity", options.interior_capacity,
+          {.doc = "most details inside a triplet", .min = 1, .max = 64});
+}
+
 }  // namespace geoprior::details

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <optional>
+#include <string>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -249,7 +251,9 @@ std::vector<Feature> lift_tracks(const SurfaceSequence& sequence, const Extracti
     pieces[t] = {};
     feature.id = tracks[t]->id;
     feature.kind = tracks[t]->kind;
-    feature.name = sequence.name() + "/" + std::to_string(feature.id);
+    // Without folders: the same sequence gives the same features wherever it lies.
+    const std::string source = std::filesystem::path(sequence.name()).filename().string();
+    feature.name = source + "/" + std::to_string(feature.id);
     result.push_back(std::move(feature));
   }
   return result;

@@ -59,7 +59,7 @@ TEST(DetailProcess, AResumedRunMakesTheSameFrames) {
   const DetailScene s = stretched_square(20);
   for (const bool histogram : {false, true}) {
     SelfReplicatingOptions options;
-    options.histogram = histogram;
+    options.copies.histogram = histogram;
     Collector whole, rest;
     RunContext context;
     make_self_replicating_process(s, options)->run(whole, context, {});

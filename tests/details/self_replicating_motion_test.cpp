@@ -95,7 +95,7 @@ TEST(SelfReplicatingMotion, OneThreadAndTwoMakeTheSameBytes) {
   const auto s = scene(mesh, even_details(mesh, 6000, 1), inflate(mesh, 20, 1.5));
   for (const bool histogram : {false, true}) {
     SelfReplicatingOptions options;
-    options.histogram = histogram;
+    options.copies.histogram = histogram;
     EXPECT_TRUE(state_after(s, options, 1) == state_after(s, options, 2)) << histogram;
   }
 }

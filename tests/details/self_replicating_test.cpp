@@ -139,7 +139,7 @@ TEST(SelfReplicating, TheHistogramKeepsClusters) {
   const double naive = correlation_change(s, nothing());
   SelfReplicatingOptions thesis, extension;
   thesis.area_rule = AreaRule::own;
-  extension.histogram = true;
+  extension.copies.histogram = true;
   EXPECT_GT(correlation_change(s, thesis), naive);  // the limit that the thesis states
   EXPECT_LT(correlation_change(s, extension), naive);
 }
