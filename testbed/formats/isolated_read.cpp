@@ -1,0 +1,315 @@
+#include "testbed/formats/isolated_read.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+#include "testbed/formats/atomic_file.h"
+
+namespace geoprior {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kAddressSanitizer = true;  // maps terabytes: no limit of the address space fits
+#elif defined(__has_feature)
+constexpr bool kAddressSanitizer = __has_feature(address_sanitizer);
+#else
+constexpr bool kAddressSanitizer = false;
+#endif
+
+constexpr int kPipeBytes = 1 << 20;
+constexpr std::size_t kLongestMessage = 1 << 16;
+
+/// What the child sends before its bytes.
+struct ReplyHeader {
+  enum class Kind : std::uint64_t { bytes, error, out_of_memory };
+  Kind kind = Kind::bytes;
+  std::uint64_t size = 0;
+};
+
+/// Bytes of the address space in use.
+std::size_t mapped_bytes() {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+/// Both ends of a pipe; what is left open is closed at the end.
+class Pipe {
+ public:
+  explicit Pipe(const fs::path& file) {
+    if (::pipe2(ends_.data(), O_CLOEXEC) != 0) {
+      throw Error("cannot be read in a process of its own: " + system_reason(errno), file.string());
+    }
+    (void)::fcntl(ends_[1], F_SETPIPE_SZ, kPipeBytes);  // only makes it faster
+  }
+  ~Pipe() {
+    ::close(ends_[0]);
+    close_writer();
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+
+  [[nodiscard]] int reader() const { return ends_[0]; }
+  [[nodiscard]] int writer() const { return ends_[1]; }
+  void close_writer() {
+    if (ends_[1] >= 0) ::close(std::exchange(ends_[1], -1));
+  }
+
+ private:
+  std::array<int, 2> ends_{-1, -1};
+};
+
+/// No signal reaches this thread, nor a child that it forks, before the child has left our
+/// handlers.
+class BlockedSignals {
+ public:
+  BlockedSignals() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~BlockedSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  BlockedSignals(const BlockedSignals&) = delete;
+  BlockedSignals& operator=(const BlockedSignals&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
+// In the child: nothing here returns to the caller of read_in_child.
+
+void default_signals() {
+  struct sigaction action {};
+  action.sa_handler = SIG_DFL;
+  for (int signal = 1; signal < NSIG; ++signal) (void)::sigaction(signal, &action, nullptr);
+  sigset_t none;
+  sigemptyset(&none);
+  pthread_sigmask(SIG_SETMASK, &none, nullptr);
+}
+
+void close_from(unsigned first, unsigned last) {
+  if (first > last || ::close_range(first, last, 0) == 0) return;
+  constexpr unsigned kMost = 1 << 16;  // a kernel without close_range
+  for (unsigned i = first; i <= std::min(last, kMost); ++i) ::close(static_cast<int>(i));
+}
+
+/// Keeps the pipe alone: a journal's lock must not outlive our parent, and the buffers of its
+/// streams must not be written twice. Returns the pipe's new descriptor.
+int keep_only(int pipe) {
+  const int kept = ::fcntl(pipe, F_DUPFD_CLOEXEC, 3);
+  const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  if (kept < 0 || nothing < 0) ::_exit(1);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (kAddressSanitizer && stream == STDERR_FILENO) continue;  // its reports are wanted
+    if (stream != nothing) ::dup2(nothing, stream);
+  }
+  const auto number = static_cast<unsigned>(kept);
+  close_from(3, number - 1);
+  close_from(number + 1, ~0U);
+  return kept;
+}
+
+void set_limit(decltype(RLIMIT_AS) resource, rlim_t value) {
+  rlimit limit{};
+  if (::getrlimit(resource, &limit) != 0) ::_exit(1);
+  limit.rlim_max = std::min(limit.rlim_max, value);
+  limit.rlim_cur = std::min(limit.rlim_cur, limit.rlim_max);
+  if (::setrlimit(resource, &limit) != 0) ::_exit(1);
+}
+
+void apply(const ChildLimits& limits, std::size_t mapped_before) {
+  set_limit(RLIMIT_CORE, 0);
+  set_limit(RLIMIT_FSIZE, 0);
+  set_limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.seconds)) + 1);
+  if (!kAddressSanitizer) set_limit(RLIMIT_AS, mapped_before + limits.memory);
+}
+
+void send(int pipe, ReplyHeader::Kind kind, std::string_view bytes) {
+  const ReplyHeader header{kind, bytes.size()};
+  write_all(pipe, {reinterpret_cast<const char*>(&header), sizeof header}, "pipe");
+  write_all(pipe, bytes, "pipe");
+}
+
+void reply(int pipe, const std::function<std::vector<std::byte>()>& read) {
+  try {
+    const std::vector<std::byte> bytes = read();
+    send(pipe, ReplyHeader::Kind::bytes,
+         {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  } catch (const Error& e) {
+    send(pipe, ReplyHeader::Kind::error, std::string_view(e.what()).substr(0, kLongestMessage));
+  } catch (const std::bad_alloc&) {
+    send(pipe, ReplyHeader::Kind::out_of_memory, {});
+  }
+}
+
+[[noreturn]] void run_as_child(const Pipe& pipe, pid_t parent, const ChildLimits& limits,
+                               std::size_t mapped_before,
+                               const std::function<std::vector<std::byte>()>& read) {
+  default_signals();
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);
+  const int kept = keep_only(pipe.writer());
+  apply(limits, mapped_before);
+  try {
+    reply(kept, read);
+  } catch (...) {  // of a library; the parent sees that there is no whole reply
+    ::_exit(1);
+  }
+  ::_exit(0);
+}
+
+// In the parent.
+
+/// A forked child. It is gone, and no zombie, when this is.
+class Child {
+ public:
+  explicit Child(pid_t pid) : pid_(pid) {}
+  ~Child() { (void)end(); }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  /// Kills it where it still runs. The signal it died of, or 0.
+  int end() {
+    if (pid_ <= 0) return 0;
+    ::kill(pid_, SIGKILL);
+    int status = 0;
+    while (::waitpid(pid_, &status, 0) < 0) {
+      if (errno != EINTR) break;
+    }
+    pid_ = 0;
+    return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  }
+
+ private:
+  pid_t pid_;
+};
+
+/// Thrown by `ReplyReader` when the child closes the pipe before its reply is whole.
+struct EndsEarly {};
+
+/// Bytes of the pipe, as long as there is time and nobody asks to stop.
+class ReplyReader {
+ public:
+  ReplyReader(int pipe, const fs::path& file, const ChildLimits& limits)
+      : pipe_(pipe),
+        file_(file),
+        limits_(limits),
+        end_(Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                std::chrono::duration<double>(limits.seconds))) {}
+
+  /// @throws EndsEarly, or Error after the time or on a stop
+  void fill(std::span<std::byte> bytes) const {
+    while (!bytes.empty()) {
+      await();
+      const ssize_t n = ::read(pipe_, bytes.data(), bytes.size());
+      if (n == 0 || (n < 0 && errno != EINTR)) throw EndsEarly();
+      if (n > 0) bytes = bytes.subspan(static_cast<std::size_t>(n));
+    }
+  }
+
+ private:
+  void await() const {
+    for (;;) {
+      const auto left =
+          std::chrono::duration_cast<std::chrono::milliseconds>(end_ - Clock::now()).count();
+      if (left <= 0) {
+        throw Error("is damaged, or made to hang the library that reads it: not read after " +
+                        std::to_string(std::lround(limits_.seconds)) + " s",
+                    file_.string());
+      }
+      pollfd ready{pipe_, POLLIN, 0};
+      constexpr long long kLongestWait_ms = 100;
+      if (::poll(&ready, 1, static_cast<int>(std::min<long long>(left, kLongestWait_ms))) > 0) {
+        return;
+      }
+      if (limits_.stop_requested != nullptr && limits_.stop_requested()) {
+        throw Error("was not read: stopped", file_.string());
+      }
+    }
+  }
+
+  int pipe_;
+  const fs::path& file_;
+  const ChildLimits& limits_;
+  Clock::time_point end_;
+};
+
+Error needs_memory(const fs::path& file, const ChildLimits& limits) {
+  return Error("is damaged, or made to exhaust the memory: reading it needs more than " +
+                   std::to_string(limits.memory >> 20) + " MB",
+               file.string());
+}
+
+/// Why a child ended without a whole reply.
+Error early_end(int signal, const fs::path& file) {
+  if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP) {
+    return Error("was not read: stopped", file.string());
+  }
+  return Error("is damaged, or made to crash the library that reads it" +
+                   (signal == 0 ? std::string() : " (" + std::string(strsignal(signal)) + ")"),
+               file.string());
+}
+
+std::vector<std::byte> receive(const ReplyReader& reader, const fs::path& file,
+                               const ChildLimits& limits) {
+  ReplyHeader header;
+  reader.fill(std::as_writable_bytes(std::span(&header, 1)));
+  if (header.kind == ReplyHeader::Kind::out_of_memory || header.size > limits.memory) {
+    throw needs_memory(file, limits);
+  }
+  const bool is_error = header.kind == ReplyHeader::Kind::error;
+  if (is_error && header.size > kLongestMessage) throw EndsEarly();
+  std::vector<std::byte> bytes(header.size);
+  reader.fill(bytes);
+  if (is_error) throw Error(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  return bytes;
+}
+
+}  // namespace
+
+std::vector<std::byte> read_in_child(const fs::path& file, const ChildLimits& limits,
+                                     const std::function<std::vector<std::byte>()>& read) {
+  Pipe pipe(file);
+  const std::size_t mapped = mapped_bytes();
+  const pid_t parent = ::getpid();
+  pid_t pid = 0;
+  {
+    const BlockedSignals blocked;
+    pid = ::fork();
+    if (pid == 0) run_as_child(pipe, parent, limits, mapped, read);
+  }
+  if (pid < 0) {
+    throw Error("cannot be read in a process of its own: " + system_reason(errno), file.string());
+  }
+  Child child(pid);
+  pipe.close_writer();
+  try {
+    return receive(ReplyReader(pipe.reader(), file, limits), file, limits);
+  } catch (const EndsEarly&) {
+    throw early_end(child.end(), file);
+  }
+}
+
+}  // namespace geoprior
