@@ -97,7 +97,7 @@ TEST_F(IsolatedRead, OfAnEndlessLoopEndsAfterItsTime) {
 
 TEST_F(IsolatedRead, HasNoMoreMemoryThanItsLimit) {
   const auto at_once = [] { return Bytes(std::size_t{100} << 30); };
-  const auto bit_by_bit = [] {
+  [[maybe_unused]] const auto bit_by_bit = [] {
     std::vector<Bytes> all;
     for (int i = 0; i < 10000; ++i) all.emplace_back(1 << 20, std::byte{1});
     return all.back();
