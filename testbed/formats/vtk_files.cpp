@@ -365,12 +365,11 @@ std::optional<double> time_value(vtkDataSet& data) {
   return time->GetComponent(0, 0);
 }
 
-ChildLimits limits_of(const std::filesystem::path& file) {
-  const std::uintmax_t size = std::filesystem::file_size(file);
+ChildLimits limits_of(std::size_t bytes) {
   constexpr double kBytesASecond = 4e6;
   ChildLimits limits;
-  limits.memory = (std::size_t{1} << 30) + 64 * size;
-  limits.seconds = 60 + static_cast<double>(size) / kBytesASecond;
+  limits.memory = (std::size_t{1} << 30) + 64 * bytes;
+  limits.seconds = 60 + static_cast<double>(bytes) / kBytesASecond;
   return limits;
 }
 
@@ -405,13 +404,19 @@ Part read_vtk_part(const std::filesystem::path& file, std::optional<double>& par
 
 Part read_foreign_vtk_part(const std::filesystem::path& file, std::optional<double>& parameter) {
   require_file(file);
-  const State bytes = read_in_child(file, limits_of(file), [&] {
+  return parse_foreign_vtk_part(read_whole_file(file), file.extension().string(), file.string(),
+                                parameter);
+}
+
+Part parse_foreign_vtk_part(const std::string& bytes, const std::string& extension,
+                            const std::string& where, std::optional<double>& parameter) {
+  const State reply = read_in_child(where, limits_of(bytes.size()), [&] {
     std::optional<double> time;
-    const Part part = read_vtk_part(file, time);
+    const Part part = parse_vtk_part(bytes, extension, where, time);
     return part_to_bytes(part, time);
   });
-  Part part = part_from_bytes(bytes, parameter, file.string());
-  require_finite(part, parameter, file.string());
+  Part part = part_from_bytes(reply, parameter, where);
+  require_finite(part, parameter, where);
   return part;
 }
 

@@ -36,6 +36,10 @@ Part parse_vtk_part(const std::string& bytes, const std::string& extension,
 /// @throws Error  naming the file, also for points that are not finite
 Part read_foreign_vtk_part(const std::filesystem::path& file, std::optional<double>& parameter);
 
+/// The same of the bytes of a file; arguments as those of `parse_vtk_part`.
+Part parse_foreign_vtk_part(const std::string& bytes, const std::string& extension,
+                            const std::string& where, std::optional<double>& parameter);
+
 /// Text of a ParaView .pvd collection over (parameter, relative file, part name).
 struct PvdEntry {
   double parameter;

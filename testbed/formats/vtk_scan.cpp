@@ -25,6 +25,19 @@ bool is_count(std::string_view attribute) {
   return std::find(kCounts.begin(), kCounts.end(), attribute) != kCounts.end();
 }
 
+/// VTK 9.1 follows a null pointer where an array has another type, or none.
+void require_type(std::string_view type, const std::string& place) {
+  static constexpr std::array<std::string_view, 12> kTypes{"Int8",    "UInt8",   "Int16",  "UInt16",
+                                                           "Int32",   "UInt32",  "Int64",  "UInt64",
+                                                           "Float32", "Float64", "String", "Bit"};
+  if (std::find(kTypes.begin(), kTypes.end(), type) != kTypes.end()) return;
+  std::string allowed;
+  for (const std::string_view known : kTypes) {
+    allowed += (allowed.empty() ? "" : ", ") + std::string(known);
+  }
+  throw Error("an array has the type '" + std::string(type.substr(0, 40)) + "'", place, allowed);
+}
+
 /// Goes through the elements. Sizes are compared as double: they need not be exact, and must not
 /// wrap.
 class VtkXmlScan {
@@ -54,8 +67,10 @@ class VtkXmlScan {
 
  private:
   [[noreturn]] void fail(const std::string& problem, const std::string& allowed = {}) const {
-    throw Error(problem, where_ + ": byte " + std::to_string(at_), allowed);
+    throw Error(problem, place(), allowed);
   }
+
+  [[nodiscard]] std::string place() const { return where_ + ": byte " + std::to_string(at_); }
 
   [[nodiscard]] bool next_is(std::string_view begin) const {
     return text_.substr(at_, begin.size()) == begin;
@@ -89,7 +104,9 @@ class VtkXmlScan {
       fail("has elements nested deeper than " + std::to_string(kDeepest), std::to_string(kDeepest));
     }
     if (name == "Piece") largest_of_piece_ = 0;
+    type_ = {};
     for (skip_space(); text_[at_] != '>' && text_[at_] != '/'; skip_space()) attribute();
+    if (name == "DataArray" || name == "Array") require_type(type_, place());
     if (text_[at_] == '/') --depth_;
     skip_behind(">");
     return true;
@@ -105,6 +122,7 @@ class VtkXmlScan {
     if (quote != '"' && quote != '\'') fail("has an attribute without quotes");
     ++at_;
     const std::string_view value = take_until({&quote, 1});
+    if (name == "type") type_ = value;
     if (is_count(name)) declare(name, number(name, value));
     if (name == "NumberOfComponents") {
       require_values(name, number(name, value) * std::max(largest_of_piece_, 1.0));
@@ -162,6 +180,7 @@ class VtkXmlScan {
   double most_values_;
   std::size_t at_ = 0;
   int depth_ = 0;
+  std::string_view type_;        ///< of the element
   double largest_of_piece_ = 0;  ///< points or cells, whatever is more
   double declared_ = 0;          ///< points, cells and tuples of all pieces
 };

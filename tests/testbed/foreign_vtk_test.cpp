@@ -98,6 +98,19 @@ TEST_F(ForeignVtk, OfOtherProgramsIsReadAsInThisProcess) {
                read_vtk_part(folder() / "foreign.vti"));
 }
 
+// A cube of four quadrilaterals and two strips, as VTK's own writer encodes it.
+TEST_F(ForeignVtk, IsTheSameInEveryEncodingOfVtk) {
+  const auto corpus = std::filesystem::path(GEOPRIOR_SOURCE_DIR) / "tests" / "fuzz" / "corpus";
+  std::optional<double> time;
+  const Part text = read_foreign_vtk_part(corpus / "cube-text.vtp", time);
+  EXPECT_EQ(text.points.rows(), 8);
+  EXPECT_EQ(text.triangles.rows(), 12);
+  EXPECT_EQ(text.require_array("velocity", NamedArray::On::points, 3).values(7, 2), -7);
+  for (const char* name : {"cube-zlib.vtp", "cube-raw.vtp", "cube-lz4.vtp", "cube-lzma.vtp"}) {
+    expect_equal(read_foreign_vtk_part(corpus / name, time), text);
+  }
+}
+
 // Raw data may hold anything that looks like an element.
 TEST_F(ForeignVtk, WithRawAppendedDataIsReadAsWell) {
   const std::array<float, 12> points{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
@@ -167,6 +180,8 @@ TEST_F(ForeignVtk, WhoseXmlIsMadeToHurtIsRefused) {
   EXPECT_THAT(refusal("<VTKFile type=\"PolyData\"><PolyData>" + deep), HasSubstr("nested deeper"));
   EXPECT_THAT(refusal("<!DOCTYPE x [<!ENTITY a \"aaaa\">]>" + strip("0 1 2 3", "4")),
               HasSubstr("document type"));
+  EXPECT_THAT(refusal(square("", R"(<PointData><DataArray type="Fl32" Name="a"/></PointData>)")),
+              HasSubstr("has the type 'Fl32'"));
   EXPECT_THAT(refusal(std::string("<\0V\0T\0K\0", 8)), HasSubstr("UTF-8"));
   EXPECT_THAT(refusal(""), HasSubstr("no readable VTK file"));
   EXPECT_THAT(refusal("<VTKFile type=\"PolyData\"><PolyData></VTKFile>"),
