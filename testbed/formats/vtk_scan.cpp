@@ -4,8 +4,10 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <vector>
 
 #include "core/error.h"
+#include "testbed/formats/vtk_blocks.h"
 
 namespace geoprior {
 namespace {
@@ -66,6 +68,12 @@ class VtkXmlScan {
   }
 
  private:
+  /// What is asked of an opening tag.
+  struct Tag {
+    std::string_view name, type, format, encoding;
+    std::uint64_t offset = 0;
+  };
+
   [[noreturn]] void fail(const std::string& problem, const std::string& allowed = {}) const {
     throw Error(problem, place(), allowed);
   }
@@ -98,21 +106,23 @@ class VtkXmlScan {
 
   /// An opening tag behind its '<'. False at the appended data: what follows is no XML.
   bool element() {
-    const std::string_view name = take_until(" \t\r\n/>");
-    if (name == "AppendedData") return false;
+    Tag tag;
+    tag.name = take_until(" \t\r\n/>");
     if (++depth_ > kDeepest) {
       fail("has elements nested deeper than " + std::to_string(kDeepest), std::to_string(kDeepest));
     }
-    if (name == "Piece") largest_of_piece_ = 0;
-    type_ = {};
-    for (skip_space(); text_[at_] != '>' && text_[at_] != '/'; skip_space()) attribute();
-    if (name == "DataArray" || name == "Array") require_type(type_, place());
-    if (text_[at_] == '/') --depth_;
+    if (tag.name == "Piece") largest_of_piece_ = 0;
+    for (skip_space(); text_[at_] != '>' && text_[at_] != '/'; skip_space()) attribute(tag);
+    const bool empty = text_[at_] == '/';
+    if (empty) --depth_;
     skip_behind(">");
-    return true;
+    if (tag.name == "DataArray" || tag.name == "Array") array(tag);
+    if (tag.name != "AppendedData" || empty) return true;
+    appended_data(tag);
+    return false;
   }
 
-  void attribute() {
+  void attribute(Tag& tag) {
     const std::string_view name = take_until(" \t\r\n=/>");
     skip_space();
     if (name.empty() || text_[at_] != '=') fail("has an attribute without a value");
@@ -122,22 +132,62 @@ class VtkXmlScan {
     if (quote != '"' && quote != '\'') fail("has an attribute without quotes");
     ++at_;
     const std::string_view value = take_until({&quote, 1});
-    if (name == "type") type_ = value;
-    if (is_count(name)) declare(name, number(name, value));
+    if (depth_ == 1) encoding_attribute(name, value);
+    if (name == "type") tag.type = value;
+    if (name == "format") tag.format = value;
+    if (name == "encoding") tag.encoding = value;
+    if (name == "offset") tag.offset = number(name, value);
+    if (is_count(name)) declare(name, static_cast<double>(number(name, value)));
     if (name == "NumberOfComponents") {
-      require_values(name, number(name, value) * std::max(largest_of_piece_, 1.0));
+      require_values(name,
+                     static_cast<double>(number(name, value)) * std::max(largest_of_piece_, 1.0));
     }
     if (name == "WholeExtent" || name == "Extent") declare(name, points_of_extent(name, value));
     ++at_;
   }
 
-  double number(std::string_view name, std::string_view text) const {
+  void encoding_attribute(std::string_view name, std::string_view value) {
+    if (name == "compressor") encoding_.compressed = !value.empty();
+    if (name == "byte_order") encoding_.big_endian = value == "BigEndian";
+    if (name == "header_type") encoding_.word_bytes = value == "UInt64" ? 8 : 4;
+  }
+
+  /// An array behind its tag.
+  void array(const Tag& tag) {
+    require_type(tag.type, place());
+    if (!encoding_.compressed) return;
+    if (tag.format == "appended") appended_.push_back(tag.offset);
+    if (tag.format == "binary") {
+      const std::size_t begin = std::min(text_.find_first_not_of(kSpace, at_), text_.size());
+      check_blocks(begin, true);
+    }
+  }
+
+  /// The data behind its tag: all arrays that lie in it.
+  void appended_data(const Tag& tag) const {
+    const std::size_t begin = text_.find('_', at_);
+    if (begin == std::string_view::npos) return;
+    for (const std::uint64_t offset : appended_) {
+      if (offset >= text_.size() - begin) {
+        fail("an array is at byte " + std::to_string(offset) + " of the appended data",
+             "up to the end of the file");
+      }
+      check_blocks(begin + 1 + offset, tag.encoding != "raw");
+    }
+  }
+
+  void check_blocks(std::size_t at, bool is_base64) const {
+    check_block_header(text_.substr(at), is_base64, encoding_, 8 * most_values_, text_.size(),
+                       where_ + ": byte " + std::to_string(at));
+  }
+
+  std::uint64_t number(std::string_view name, std::string_view text) const {
     std::uint64_t value = 0;
     const auto [end, code] = std::from_chars(text.begin(), text.end(), value);
     if (code != std::errc() || end != text.end()) {
       fail(std::string(name) + " is '" + std::string(text.substr(0, 40)) + "'", "a whole number");
     }
-    return static_cast<double>(value);
+    return value;
   }
 
   double points_of_extent(std::string_view name, std::string_view text) const {
@@ -180,9 +230,10 @@ class VtkXmlScan {
   double most_values_;
   std::size_t at_ = 0;
   int depth_ = 0;
-  std::string_view type_;        ///< of the element
-  double largest_of_piece_ = 0;  ///< points or cells, whatever is more
-  double declared_ = 0;          ///< points, cells and tuples of all pieces
+  VtkEncoding encoding_;
+  std::vector<std::uint64_t> appended_;  ///< offsets of compressed arrays
+  double largest_of_piece_ = 0;          ///< points or cells, whatever is more
+  double declared_ = 0;                  ///< points, cells and tuples of all pieces
 };
 
 }  // namespace
