@@ -62,7 +62,9 @@ struct Loading {
     if (options.surface.kind != DetailSurfaceKind::file || file.extension() != ".vtp") {
       throw Error("is in no file", where, "with scene.surface.file, a .vtp");
     }
-    const Part part = read_vtk_part(find_file(file.string(), folder, "data", "scene.surface.file"));
+    std::optional<double> time;
+    const Part part =
+        read_foreign_vtk_part(find_file(file.string(), folder, "data", "scene.surface.file"), time);
     const NamedArray* array = part.find_array(o.array);
     if (array == nullptr || array->on != NamedArray::On::points || array->values.cols() != 1) {
       throw Error("there is no array '" + o.array + "'", where, "one number a point");

@@ -28,7 +28,7 @@ namespace geoprior {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kAddressSanitizer = true;  // maps terabytes: no limit of the address space fits
@@ -216,8 +216,8 @@ class ReplyReader {
       : pipe_(pipe),
         file_(file),
         limits_(limits),
-        end_(Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                std::chrono::duration<double>(limits.seconds))) {}
+        end_(SteadyClock::now() + std::chrono::duration_cast<SteadyClock::duration>(
+                                      std::chrono::duration<double>(limits.seconds))) {}
 
   /// @throws EndsEarly, or Error after the time or on a stop
   void fill(std::span<std::byte> bytes) const {
@@ -233,18 +233,18 @@ class ReplyReader {
   void await() const {
     for (;;) {
       const auto left =
-          std::chrono::duration_cast<std::chrono::milliseconds>(end_ - Clock::now()).count();
+          std::chrono::duration_cast<std::chrono::milliseconds>(end_ - SteadyClock::now()).count();
       if (left <= 0) {
         throw Error("is damaged, or made to hang the library that reads it: not read after " +
                         std::to_string(std::lround(limits_.seconds)) + " s",
                     file_.string());
       }
       pollfd ready{pipe_, POLLIN, 0};
-      constexpr long long kLongestWait_ms = 1000;
+      constexpr long long kLongestWait_ms = 100;
       if (::poll(&ready, 1, static_cast<int>(std::min<long long>(left, kLongestWait_ms))) > 0) {
         return;
       }
-      if (limits_.stop_requested && limits_.stop_requested()) {
+      if (limits_.stop_requested != nullptr && limits_.stop_requested()) {
         throw Error("was not read: stopped", file_.string());
       }
     }
@@ -253,7 +253,7 @@ class ReplyReader {
   int pipe_;
   const fs::path& file_;
   const ChildLimits& limits_;
-  Clock::time_point end_;
+  SteadyClock::time_point end_;
 };
 
 Error needs_memory(const fs::path& file, const ChildLimits& limits) {

@@ -20,10 +20,16 @@
 #include <vtkXMLPolyDataWriter.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "core/error.h"
+#include "testbed/formats/atomic_file.h"
+#include "testbed/formats/isolated_read.h"
+#include "testbed/formats/part_bytes.h"
+#include "testbed/formats/vtk_checks.h"
 #include "testbed/formats/vtk_points.h"
+#include "testbed/formats/vtk_scan.h"
 
 namespace geoprior {
 namespace {
@@ -266,20 +272,6 @@ Part::Kind kind_of(vtkPolyData& data, const std::string& where) {
   return lines ? Part::Kind::lines : Part::Kind::points;
 }
 
-void check_cells(vtkCellArray& cells, vtkIdType points, const std::string& where) {
-  for (vtkIdType c = 0; c < cells.GetNumberOfCells(); ++c) {
-    vtkIdType size = 0;
-    const vtkIdType* ids = nullptr;
-    cells.GetCellAtId(c, size, ids);
-    for (vtkIdType k = 0; k < size; ++k) {
-      if (ids[k] < 0 || ids[k] >= points) {
-        throw Error("cell " + std::to_string(c) + " refers to point " + std::to_string(ids[k]),
-                    where, "0 to " + std::to_string(points - 1));
-      }
-    }
-  }
-}
-
 vtkSmartPointer<vtkPolyData> only_triangles(vtkPolyData& data) {
   vtkCellArray& polys = *data.GetPolys();
   if (data.GetNumberOfStrips() == 0 &&
@@ -295,9 +287,8 @@ vtkSmartPointer<vtkPolyData> only_triangles(vtkPolyData& data) {
 }
 
 Part from_poly_data(vtkPolyData& input, const std::string& where) {
-  for (vtkCellArray* cells : {input.GetPolys(), input.GetLines(), input.GetVerts()}) {
-    check_cells(*cells, input.GetNumberOfPoints(), where);
-  }
+  check_cells(input, where);
+  check_arrays(input, where);
   Part part;
   part.kind = kind_of(input, where);
   const auto data = part.kind == Part::Kind::triangles ? only_triangles(input)
@@ -320,7 +311,8 @@ Part from_poly_data(vtkPolyData& input, const std::string& where) {
   return part;
 }
 
-Part from_image(vtkImageData& data) {
+Part from_image(vtkImageData& data, const std::string& where) {
+  check_arrays(data, where);
   Part part;
   part.kind = Part::Kind::grid;
   data.GetDimensions(part.grid_size.data());
@@ -341,15 +333,17 @@ void keep_message(vtkObject*, unsigned long, void* client, void* text) {
   if (message.empty() && text != nullptr) message = static_cast<const char*>(text);
 }
 
-/// VTK's message without its "ERROR: In file, line" and with one line only.
+/// The last line of VTK's message without the class and address that it begins with.
 std::string last_line(std::string message) {
   while (!message.empty() && (message.back() == '\n' || message.back() == ' ')) message.pop_back();
-  const std::size_t begin = message.rfind('\n');
-  return begin == std::string::npos ? message : message.substr(begin + 1);
+  message.erase(0, message.rfind('\n') + 1);
+  const std::size_t address = message.find(" (0x"), end = message.find("): ", address);
+  return end == std::string::npos || address == std::string::npos ? message
+                                                                  : message.substr(end + 3);
 }
 
 template <class Reader>
-void update(Reader& reader, const std::filesystem::path& file) {
+void update(Reader& reader, const std::string& bytes, const std::string& where) {
   std::string message;
   vtkNew<vtkCallbackCommand> observer;
   observer->SetCallback(keep_message);
@@ -357,10 +351,11 @@ void update(Reader& reader, const std::filesystem::path& file) {
   reader.SetReaderErrorObserver(observer);
   reader.SetParserErrorObserver(observer);
   reader.AddObserver(vtkCommand::ErrorEvent, observer);
-  reader.SetFileName(file.c_str());
+  reader.ReadFromInputStringOn();
+  reader.SetInputString(bytes);
   reader.Update();
   if (!message.empty() || reader.GetOutput() == nullptr) {
-    throw Error("is no readable VTK file: " + last_line(message), file.string());
+    throw Error("is no readable VTK file: " + last_line(message), where);
   }
 }
 
@@ -368,6 +363,26 @@ std::optional<double> time_value(vtkDataSet& data) {
   vtkDataArray* time = data.GetFieldData()->GetArray("TimeValue");
   if (time == nullptr || time->GetNumberOfTuples() < 1) return std::nullopt;
   return time->GetComponent(0, 0);
+}
+
+ChildLimits limits_of(std::size_t bytes) {
+  constexpr double kBytesASecond = 4e6;
+  ChildLimits limits;
+  limits.memory = (std::size_t{1} << 30) + 64 * bytes;
+  limits.seconds = 60 + static_cast<double>(bytes) / kBytesASecond;
+  return limits;
+}
+
+void require_finite(const Part& part, std::optional<double> parameter, const std::string& where) {
+  if (parameter && !std::isfinite(*parameter)) throw Error("its TimeValue is not finite", where);
+  for (Eigen::Index i = 0; i < part.points.rows(); ++i) {
+    if (part.points.row(i).allFinite()) continue;
+    throw Error("point " + std::to_string(i) + " is not finite", where);
+  }
+}
+
+void require_file(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) throw Error("is no file", file.string());
 }
 
 }  // namespace
@@ -383,22 +398,44 @@ Part read_vtk_part(const std::filesystem::path& file, double* parameter) {
 }
 
 Part read_vtk_part(const std::filesystem::path& file, std::optional<double>& parameter) {
-  const std::string where = file.string();
-  const std::string extension = file.extension().string();
-  if (!std::filesystem::is_regular_file(file)) throw Error("is no file", where);
+  require_file(file);
+  return parse_vtk_part(read_whole_file(file), file.extension().string(), file.string(), parameter);
+}
+
+Part read_foreign_vtk_part(const std::filesystem::path& file, std::optional<double>& parameter) {
+  require_file(file);
+  return parse_foreign_vtk_part(read_whole_file(file), file.extension().string(), file.string(),
+                                parameter);
+}
+
+Part parse_foreign_vtk_part(const std::string& bytes, const std::string& extension,
+                            const std::string& where, std::optional<double>& parameter) {
+  const State reply = read_in_child(where, limits_of(bytes.size()), [&] {
+    std::optional<double> time;
+    const Part part = parse_vtk_part(bytes, extension, where, time);
+    return part_to_bytes(part, time);
+  });
+  Part part = part_from_bytes(reply, parameter, where);
+  require_finite(part, parameter, where);
+  return part;
+}
+
+Part parse_vtk_part(const std::string& bytes, const std::string& extension,
+                    const std::string& where, std::optional<double>& parameter) {
+  if (extension != ".vti" && extension != ".vtp") {
+    throw Error("has the extension '" + extension + "'", where, ".vtp, .vti");
+  }
+  check_vtk_xml(bytes, where);
   if (extension == ".vti") {
     vtkNew<vtkXMLImageDataReader> reader;
-    update(*reader.Get(), file);
+    update(*reader.Get(), bytes, where);
     parameter = time_value(*reader->GetOutput());
-    return from_image(*reader->GetOutput());
+    return from_image(*reader->GetOutput(), where);
   }
-  if (extension == ".vtp") {
-    vtkNew<vtkXMLPolyDataReader> reader;
-    update(*reader.Get(), file);
-    parameter = time_value(*reader->GetOutput());
-    return from_poly_data(*reader->GetOutput(), where);
-  }
-  throw Error("has the extension '" + extension + "'", where, ".vtp, .vti");
+  vtkNew<vtkXMLPolyDataReader> reader;
+  update(*reader.Get(), bytes, where);
+  parameter = time_value(*reader->GetOutput());
+  return from_poly_data(*reader->GetOutput(), where);
 }
 
 }  // namespace geoprior

@@ -123,6 +123,7 @@ TEST(Fuzz, TomlReadersAcceptOrThrowError) { run(".toml", fuzz_toml); }
 TEST(Fuzz, ObjReaderAcceptsOrThrowsError) { run(".obj", fuzz_obj); }
 TEST(Fuzz, PlyReaderAcceptsOrThrowsError) { run(".ply", fuzz_ply); }
 TEST(Fuzz, OffReaderAcceptsOrThrowsError) { run(".off", fuzz_off); }
+TEST(Fuzz, VtkReaderAcceptsOrThrowsError) { run(".vtp", fuzz_vtp); }
 TEST(Fuzz, CollectionReaderAcceptsOrThrowsError) { run(".pvd", fuzz_pvd); }
 TEST(Fuzz, SidecarReaderAcceptsOrThrowsError) { run(".json", fuzz_sidecar); }
 TEST(Fuzz, EditListReaderAcceptsOrThrowsError) { run(".toml", fuzz_edits); }
