@@ -1,5 +1,3 @@
-#include "tests/fuzz/mutation.h"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -7,7 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "experiments/fluid/exr_maps.h"
+#include "experiments/fluid/feature_files.h"
+#include "tests/fuzz/mutation.h"
+#include "tests/fuzz/sample_features.h"
 #include "tests/fuzz/targets.h"
+#include "tests/testbed/fake_run.h"
 
 // Seeded mutations of the files in tests/fuzz/corpus: every reader either accepts what it is given
 // or throws Error. The number of mutations is fixed; GEOPRIOR_FUZZ_SECONDS goes on for that long.
@@ -22,8 +25,9 @@ double seconds_asked() {
   return text == nullptr ? 0 : std::strtod(text, nullptr);
 }
 
-void run(const std::string& extension, Target target) {
-  const std::vector<std::string> seeds = corpus(extension);
+/// @param mutations  fewer for readers that take milliseconds
+void run_on(const std::string& name, const std::vector<std::string>& seeds, Target target,
+            std::uint64_t mutations = 3000) {
   ASSERT_FALSE(seeds.empty());
   for (const std::string& seed : seeds)
     target(reinterpret_cast<const std::uint8_t*>(seed.data()), seed.size());
@@ -31,9 +35,8 @@ void run(const std::string& extension, Target target) {
   const auto elapsed = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  constexpr std::uint64_t kMutations = 3000;
-  for (std::uint64_t i = 0; i < kMutations || elapsed() < seconds_asked(); ++i) {
-    RandomStream random(i, "fuzz" + extension);
+  for (std::uint64_t i = 0; i < mutations || elapsed() < seconds_asked(); ++i) {
+    RandomStream random(i, "fuzz" + name);
     const std::string text = mutated(seeds, random);
     try {
       target(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
@@ -41,6 +44,14 @@ void run(const std::string& extension, Target target) {
       FAIL() << "mutation " << i << ": " << e.what() << "\n" << text.substr(0, 2000);
     }
   }
+}
+
+void run(const std::string& extension, Target target) {
+  run_on(extension, corpus(extension), target);
+}
+
+std::string as_text(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 TEST(Fuzz, GltfReaderAcceptsOrThrowsError) {
@@ -55,6 +66,29 @@ TEST(Fuzz, OffReaderAcceptsOrThrowsError) { run(".off", fuzz_off); }
 TEST(Fuzz, CollectionReaderAcceptsOrThrowsError) { run(".pvd", fuzz_pvd); }
 TEST(Fuzz, SidecarReaderAcceptsOrThrowsError) { run(".json", fuzz_sidecar); }
 TEST(Fuzz, EditListReaderAcceptsOrThrowsError) { run(".toml", fuzz_edits); }
+TEST(Fuzz, JournalReaderAcceptsOrThrowsError) { run(".jsonl", fuzz_journal); }
+TEST(Fuzz, ReferenceReaderAcceptsOrThrowsError) { run(".txt", fuzz_reference); }
+TEST(Fuzz, PointReaderAcceptsOrThrowsError) { run(".csv", fuzz_points); }
+TEST(Fuzz, TableReaderAcceptsOrThrowsError) { run(".csv", fuzz_table); }
+
+TEST(Fuzz, MapReaderAcceptsOrThrowsError) {
+  const auto pictures = fluid::exr_maps(sample_features().front(), "map");
+  run_on(".exr", {as_text(pictures[0].bytes), as_text(pictures[1].bytes)}, fuzz_exr, 1000);
+}
+
+// A process for every file: HDF5 crashes on some of them, the reader must not.
+constexpr std::uint64_t kProcesses = 400;
+
+TEST(Fuzz, FeatureLibraryReaderAcceptsOrThrowsError) {
+  run_on("library", {as_text(fluid::feature_library_bytes(sample_features()))},
+         fuzz_feature_library, kProcesses);
+}
+
+TEST(Fuzz, RunFileReaderAcceptsOrThrowsError) {
+  const TestFolder folder;
+  make_fake_run(folder.path);
+  run_on("run", {read_whole_file(folder.path / "run.h5")}, fuzz_run_file, kProcesses);
+}
 
 }  // namespace
 }  // namespace geoprior::test

@@ -1,7 +1,6 @@
 #include "tests/fuzz/scratch_home.h"
 
 #include <stdlib.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -9,16 +8,12 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "tests/fuzz/scratch_file.h"
 
 namespace geoprior::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path fastest_scratch() {
-  const fs::path memory = "/dev/shm";
-  return ::access(memory.c_str(), W_OK) == 0 ? memory : fs::temp_directory_path();
-}
 
 std::string bytes_of_file(const fs::path& file) {
   std::ostringstream bytes;
