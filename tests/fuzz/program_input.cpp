@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/frame.h"
 #include "experiments/fluid/feature_files.h"
+#include "testbed/formats/atomic_file.h"
 #include "testbed/formats/vtk_files.h"
 #include "tests/fuzz/fuzzed_program.h"
 #include "tests/fuzz/mutation.h"
@@ -114,6 +115,15 @@ ProgramInput sculpt_input(const std::string& mutated) {
 
 // Inputs that are runs.
 
+/// The scripts that draw a report: a home has them.
+Files with_scripts(Files home) {
+  for (const auto& entry : fs::directory_iterator(kSource / "results")) {
+    if (entry.path().extension() != ".py") continue;
+    home["results/" + entry.path().filename().string()] = read_whole_file(entry.path());
+  }
+  return home;
+}
+
 // Below the home, which is the working folder.
 const std::string kRun = "results/runs/fuzzed";
 
@@ -154,7 +164,7 @@ Files interrupted_run() {
     while (!holds(journal, "\"kind\":\"checkpoint\"")) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
     program.signal(SIGKILL);
   });
   return read_files(home.path());
@@ -228,7 +238,8 @@ std::vector<InputKind> input_kinds() {
        }},
       {"RunFile", 2, [=] { return run_input(circle(), "run.h5", {kExport}); }},
       {"RunFileDrawn", kSlow, [=] { return run_input(circle(), "run.h5", {kRender}); }},
-      {"RunFileReported", kSlowest, [=] { return run_input(circle(), "run.h5", {kReport}); }},
+      {"RunFileReported", kSlowest,
+       [=] { return run_input(with_scripts(circle()), "run.h5", {kReport}); }},
       {"Frame", 1, [=] { return run_input(circle(), ".vtp", {kExport}); }},
       {"FrameDrawn", kSlow, [=] { return run_input(circle(), ".vtp", {kRender}); }},
       {"Grid", 1, [=] { return run_input(pendulum(), ".vti", {kExport}); }},

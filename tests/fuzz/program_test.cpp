@@ -173,24 +173,26 @@ TEST_P(ProgramFuzz, EndsInOrderWhateverIsInTheFile) {
   std::printf("%s:%s\n", GetParam().name.c_str(), tally().c_str());
 }
 
-// What the harness runs is what the program does: the files as they are end every command as the
-// executable does.
+// What the harness runs is what the program does: with the files as they are every command
+// succeeds, in a fork of this process and, the first, as a program of its own.
 TEST_P(ProgramFuzz, ReadsTheFileAsItIs) {
   const ProgramInput input = GetParam().make();
+  const auto expect_success = [&](const ReadingCommand& command, const auto& body) {
+    const ScratchHome home(with(input.home, command.file, input.seeds.front()));
+    ProgramProcess process([&] { return body(home.path()); }, home.output());
+    EXPECT_EQ(process.wait(), 0) << joined_words(command.arguments) << "\n"
+                                 << text_of(home.output());
+    EXPECT_EQ(home.change_outside_results(), std::nullopt);
+  };
   for (const ReadingCommand& command : input.commands) {
-    const auto outcome = [&](const std::function<int(const fs::path&)>& body) {
-      const ScratchHome home(with(input.home, command.file, input.seeds.front()));
-      ProgramProcess process([&] { return body(home.path()); }, home.output());
-      const int code = process.wait();
-      EXPECT_EQ(code, 0) << joined_words(command.arguments) << "\n" << text_of(home.output());
-      EXPECT_EQ(home.change_outside_results(), std::nullopt);
-    };
-    outcome([&](const fs::path& home) { return fuzzed_program(home, command.arguments); });
-    outcome([&](const fs::path& home) {
-      enter(home);
-      return become_program(command.program, command.arguments);
-    });
+    expect_success(command,
+                   [&](const fs::path& home) { return fuzzed_program(home, command.arguments); });
   }
+  const ReadingCommand& first = input.commands.front();
+  expect_success(first, [&](const fs::path& home) {
+    enter(home);
+    return become_program(first.program, first.arguments);
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, ProgramFuzz, ::testing::ValuesIn(input_kinds()),
