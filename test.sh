@@ -42,8 +42,8 @@ fi
 scripts/build.sh release
 ctest --test-dir build/release --output-on-failure -j 2 --timeout 300
 if [ "$mode" = --long ]; then
-  # Tests named Long… do more when GEOPRIOR_LONG is set: more seeds, more frames.
-  GEOPRIOR_LONG=1 GEOPRIOR_FUZZ_SECONDS=600 ctest --test-dir build/release --output-on-failure -R '[Ff]uzz|Long' --timeout 3600
+  # Tests named Long… do more when GEOPRIOR_LONG is set: more seeds, more frames, more kills.
+  GEOPRIOR_LONG=1 GEOPRIOR_FUZZ_SECONDS=600 GEOPRIOR_FUZZ_PROGRAM=100000 ctest --test-dir build/release --output-on-failure -R '[Ff]uzz|Long' --timeout 3600
   build/release/geoprior check --mutations
   build/release/benchmarks/geoprior_kernels
 else

@@ -108,7 +108,8 @@ fs::path folder_to_resume(const Experiment& experiment, const ExecuteRequest& re
 /// specification in the hash.
 bool has_unchanged_inputs(const fs::path& folder) {
   try {
-    for (const StoredFile& input : OpenedRun(folder).record().inputs) {
+    const OpenedRun run(folder);
+    for (const StoredFile& input : run.record().inputs) {
       if (is_run_reference(input.name)) continue;
       if (sha256_of_file(geoprior_home() / input.name) != input.sha256) return false;
     }

@@ -18,5 +18,13 @@ void fuzz_vtp(const std::uint8_t* data, std::size_t size);
 void fuzz_pvd(const std::uint8_t* data, std::size_t size);
 void fuzz_sidecar(const std::uint8_t* data, std::size_t size);
 void fuzz_edits(const std::uint8_t* data, std::size_t size);
+void fuzz_journal(const std::uint8_t* data, std::size_t size);
+void fuzz_reference(const std::uint8_t* data, std::size_t size);
+void fuzz_table(const std::uint8_t* data, std::size_t size);
+// These readers open a file: the bytes are written to one.
+void fuzz_points(const std::uint8_t* data, std::size_t size);
+void fuzz_exr(const std::uint8_t* data, std::size_t size);
+void fuzz_run_file(const std::uint8_t* data, std::size_t size);
+void fuzz_feature_library(const std::uint8_t* data, std::size_t size);
 
 }  // namespace geoprior::test

@@ -1,8 +1,5 @@
 #include "tests/testbed/run_fixture.h"
 
-#include <fcntl.h>
-#include <signal.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -77,37 +74,13 @@ ExecuteResult RunTest::run(const Experiment& experiment, const fs::path& out, bo
 }
 
 ToyProgram::ToyProgram(const std::vector<std::string>& arguments, const fs::path& output,
-                       const std::function<void()>& in_child) {
-  pid_ = ::fork();
-  if (pid_ < 0) throw Error("fork failed");
-  if (pid_ > 0) return;
-  const int out = ::open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  ::dup2(out, 1);
-  ::dup2(out, 2);
-  if (in_child) in_child();
-  std::vector<std::string> all{GEOPRIOR_TOY_PROGRAM};
-  all.insert(all.end(), arguments.begin(), arguments.end());
-  std::vector<char*> pointers;
-  for (std::string& argument : all) pointers.push_back(argument.data());
-  pointers.push_back(nullptr);
-  ::execv(GEOPRIOR_TOY_PROGRAM, pointers.data());
-  ::_exit(127);
-}
-
-ToyProgram::~ToyProgram() {
-  if (pid_ <= 0) return;
-  ::kill(pid_, SIGKILL);
-  wait();
-}
-
-void ToyProgram::signal(int number) const { ::kill(pid_, number); }
-
-int ToyProgram::wait() {
-  int status = 0;
-  ::waitpid(pid_, &status, 0);
-  pid_ = -1;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-}
+                       const std::function<void()>& in_child)
+    : ProgramProcess(
+          [&] {
+            if (in_child) in_child();
+            return become_program(GEOPRIOR_TOY_PROGRAM, arguments);
+          },
+          output) {}
 
 std::string text_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);

@@ -10,6 +10,7 @@
 
 #include "testbed/runner/execute.h"
 #include "testbed/runner/spec.h"
+#include "tests/testbed/program_process.h"
 
 namespace geoprior::test {
 
@@ -37,22 +38,12 @@ class RunTest : public ::testing::Test {
 };
 
 /// `geoprior_toy` as a program of its own.
-class ToyProgram {
+class ToyProgram : public ProgramProcess {
  public:
   /// @param output    file that gets stdout and stderr
   /// @param in_child  called before the program starts (limits, signals)
   ToyProgram(const std::vector<std::string>& arguments, const std::filesystem::path& output,
              const std::function<void()>& in_child = {});
-  ~ToyProgram();
-  ToyProgram(const ToyProgram&) = delete;
-  ToyProgram& operator=(const ToyProgram&) = delete;
-
-  void signal(int number) const;
-  /// Exit code, or minus the signal that ended it.
-  int wait();
-
- private:
-  int pid_ = -1;
 };
 
 /// Bytes of every file of a run that must not depend on how often it was interrupted: all but the

@@ -1,0 +1,48 @@
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include "experiments/details/position_file.h"
+#include "experiments/fluid/exr_maps.h"
+#include "experiments/fluid/feature_files.h"
+#include "testbed/runner/run_file.h"
+#include "tests/fuzz/allow_error.h"
+#include "tests/fuzz/scratch_file.h"
+#include "tests/fuzz/targets.h"
+#include "tests/testbed/octahedron.h"
+
+namespace geoprior::test {
+namespace {
+
+using Reader = std::function<void(const std::filesystem::path&)>;
+
+void read_as_file(const std::uint8_t* data, std::size_t size, const char* extension,
+                  const Reader& read) {
+  const ScratchFile file(extension, text_of(data, size));
+  allow_error([&] { read(file.path()); });
+}
+
+}  // namespace
+
+void fuzz_points(const std::uint8_t* data, std::size_t size) {
+  static const TriMesh surface = octahedron();
+  read_as_file(data, size, ".csv", [](const std::filesystem::path& file) {
+    constexpr double kAnywhere = 1e300;
+    details::details_of_file(file, surface, kAnywhere);
+  });
+}
+
+void fuzz_exr(const std::uint8_t* data, std::size_t size) {
+  read_as_file(data, size, ".exr",
+               [](const std::filesystem::path& file) { fluid::read_exr_maps({file}); });
+}
+
+void fuzz_run_file(const std::uint8_t* data, std::size_t size) {
+  read_as_file(data, size, ".h5", read_run_file);
+}
+
+void fuzz_feature_library(const std::uint8_t* data, std::size_t size) {
+  read_as_file(data, size, ".h5", fluid::read_feature_library);
+}
+
+}  // namespace geoprior::test

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/random.h"
+
+namespace geoprior::test {
+
+/// The files of tests/fuzz/corpus with this extension (".ply"), in order of their names.
+std::vector<std::string> corpus(const std::string& extension);
+
+/// Uniform in 0 … n-1; 0 for n = 0.
+std::size_t below(RandomStream& random, std::size_t n);
+
+/// One to six random changes of one of the seeds: flipped bits, bytes and pieces that are replaced,
+/// dropped, repeated or taken from another seed, and words that readers trip over.
+std::string mutated(const std::vector<std::string>& seeds, RandomStream& random);
+
+}  // namespace geoprior::test

@@ -1,0 +1,202 @@
+// Mutated files of every kind that the program reads, given to the command that reads them.
+//
+// The number of mutations of all kinds together is GEOPRIOR_FUZZ_PROGRAM, else 2000. A file that
+// provokes a fault is kept in tests/fuzz/faults of the build folder.
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <list>
+#include <memory>
+#include <thread>
+
+#include "tests/fuzz/fuzzed_program.h"
+#include "tests/fuzz/mutation.h"
+#include "tests/fuzz/program_input.h"
+#include "tests/testbed/run_fixture.h"
+
+namespace geoprior::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+std::size_t mutations_asked() {
+  const char* text = std::getenv("GEOPRIOR_FUZZ_PROGRAM");
+  return text == nullptr ? 2000 : std::strtoul(text, nullptr, 10);
+}
+
+/// Its part of all mutations.
+std::size_t mutations_of(const InputKind& kind) {
+  double all = 0;
+  for (const InputKind& each : input_kinds()) all += each.share;
+  const double part = static_cast<double>(mutations_asked()) * kind.share / all;
+  return static_cast<std::size_t>(std::ceil(part));
+}
+
+Files with(Files files, const std::string& name, const std::string& bytes) {
+  files[name] = bytes;
+  return files;
+}
+
+/// A command on a home of its own that has the mutated file.
+class Attempt {
+ public:
+  Attempt(const ProgramInput& input, ReadingCommand command, std::string bytes)
+      : command_(std::move(command)),
+        bytes_(std::move(bytes)),
+        home_(with(input.home, command_.file, bytes_)),
+        process_([this] { return fuzzed_program(home_.path(), command_.arguments); },
+                 home_.output()) {}
+
+  /// What became of it, once it has ended; interrupts what takes long.
+  std::optional<CommandEnd> poll() {
+    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (seconds > kPatience && !end_.interrupted) {
+      end_.interrupted = true;
+      process_.signal(SIGINT);
+    }
+    if (seconds > kHang && !end_.hung) {
+      end_.hung = true;
+      process_.signal(SIGKILL);
+    }
+    const std::optional<int> code = process_.poll();
+    if (!code) return std::nullopt;
+    end_.code = *code;
+    end_.text = text_of(home_.output());
+    return end_;
+  }
+
+  /// Of the command's end and of what it left behind; empty: none.
+  [[nodiscard]] std::string fault(const CommandEnd& end) const {
+    const std::string fault = fault_of(end);
+    if (!fault.empty()) return fault;
+    if (const auto changed = home_.change_outside_results()) return "changed " + *changed;
+    if (end.code != 2 || end.interrupted) return {};
+    const auto empty = home_.empty_run_folder();
+    return empty ? "left the empty folder " + *empty : "";
+  }
+
+  [[nodiscard]] const ReadingCommand& command() const { return command_; }
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+ private:
+  ReadingCommand command_;
+  std::string bytes_;
+  ScratchHome home_;
+  CommandEnd end_;
+  Clock::time_point start_ = Clock::now();
+  ProgramProcess process_;
+};
+
+std::string joined_words(const std::vector<std::string>& words) {
+  std::string line = "geoprior";
+  for (const std::string& word : words) line += " " + word;
+  return line;
+}
+
+/// Keeps what provoked a fault; returns its name.
+fs::path keep(const InputKind& kind, std::size_t number, const Attempt& attempt) {
+  const fs::path folder = fs::path(GEOPRIOR_BINARY_DIR) / "tests/fuzz/faults";
+  fs::create_directories(folder);
+  const std::string extension = fs::path(attempt.command().file).extension().string();
+  const fs::path file = folder / (kind.name + "-" + std::to_string(number) + extension);
+  std::ofstream(file, std::ios::binary) << attempt.bytes();
+  return file;
+}
+
+class ProgramFuzz : public ::testing::TestWithParam<InputKind> {
+ protected:
+  /// Two commands at a time, as many mutations as are asked for; ends early after many faults.
+  void run_mutations(const ProgramInput& input, std::size_t count) {
+    std::size_t next = 0;
+    while (next < count || !running_.empty()) {
+      while (next < count && running_.size() < kAtATime && faults_ < kMostFaults)
+        start(input, next++);
+      if (running_.empty()) break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      running_.remove_if([this](Running& each) { return judge(each); });
+    }
+  }
+
+  /// How often each exit code came; Ctrl-C counts apart.
+  [[nodiscard]] std::string tally() const {
+    std::string text;
+    for (const auto& [end, count] : ends_) text += " " + end + ": " + std::to_string(count);
+    return text;
+  }
+
+ private:
+  struct Running {
+    std::size_t number;
+    std::unique_ptr<Attempt> attempt;
+  };
+  static constexpr std::size_t kAtATime = 2;
+  static constexpr std::size_t kMostFaults = 20;
+
+  void start(const ProgramInput& input, std::size_t number) {
+    RandomStream random(number, "program " + GetParam().name);
+    const ReadingCommand& command = input.commands[below(random, input.commands.size())];
+    running_.push_back(
+        {number, std::make_unique<Attempt>(input, command, mutated(input.seeds, random))});
+  }
+
+  /// Whether it has ended.
+  bool judge(Running& running) {
+    const std::optional<CommandEnd> end = running.attempt->poll();
+    if (!end) return false;
+    ++ends_[end->interrupted ? "interrupted" : "exit " + std::to_string(end->code)];
+    const std::string fault = running.attempt->fault(*end);
+    if (fault.empty()) return true;
+    ++faults_;
+    constexpr std::size_t kShown = 1500;
+    ADD_FAILURE() << "mutation " << running.number << " of " << running.attempt->command().file
+                  << ": " << fault << "\n  " << joined_words(running.attempt->command().arguments)
+                  << "\n  file kept as " << keep(GetParam(), running.number, *running.attempt)
+                  << "\n"
+                  << end->text.substr(0, kShown);
+    return true;
+  }
+
+  std::list<Running> running_;
+  std::map<std::string, std::size_t> ends_;
+  std::size_t faults_ = 0;
+};
+
+TEST_P(ProgramFuzz, EndsInOrderWhateverIsInTheFile) {
+  const ProgramInput input = GetParam().make();
+  run_mutations(input, mutations_of(GetParam()));
+  std::printf("%s:%s\n", GetParam().name.c_str(), tally().c_str());
+}
+
+// What the harness runs is what the program does: with the files as they are every command
+// succeeds, in a fork of this process and, the first, as a program of its own.
+TEST_P(ProgramFuzz, ReadsTheFileAsItIs) {
+  const ProgramInput input = GetParam().make();
+  const auto expect_success = [&](const ReadingCommand& command, const auto& body) {
+    const ScratchHome home(with(input.home, command.file, input.seeds.front()));
+    ProgramProcess process([&] { return body(home.path()); }, home.output());
+    EXPECT_EQ(process.wait(), 0) << joined_words(command.arguments) << "\n"
+                                 << text_of(home.output());
+    EXPECT_EQ(home.change_outside_results(), std::nullopt);
+  };
+  for (const ReadingCommand& command : input.commands) {
+    expect_success(command,
+                   [&](const fs::path& home) { return fuzzed_program(home, command.arguments); });
+  }
+  const ReadingCommand& first = input.commands.front();
+  expect_success(first, [&](const fs::path& home) {
+    enter(home);
+    return become_program(first.program, first.arguments);
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ProgramFuzz, ::testing::ValuesIn(input_kinds()),
+                         [](const auto& kind) { return kind.param.name; });
+
+}  // namespace
+}  // namespace geoprior::test
