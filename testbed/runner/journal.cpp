@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -294,6 +295,7 @@ Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) throw Error("cannot be opened: " + system_reason(errno), file_.string());
   try {
+    require_regular_file();
     lock();
     if (is_new) flush_to_disk(file_.parent_path());
     read();
@@ -304,6 +306,12 @@ Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
 }
 
 Journal::~Journal() { ::close(descriptor_); }
+
+void Journal::require_regular_file() const {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode)) return;
+  throw Error("is no file", file_.string(), "the log of a run");
+}
 
 void Journal::lock() {
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
@@ -326,12 +334,19 @@ void Journal::read() {
       throw Error(error.what(), file_.string() + ":" + std::to_string(lines_.size() + 1));
     }
   }
-  if (begin < text.size() && ::ftruncate(descriptor_, static_cast<off_t>(begin)) != 0) {
+  if (begin < text.size()) torn_at_ = static_cast<off_t>(begin);
+}
+
+void Journal::cut_torn_line() {
+  if (!torn_at_) return;
+  if (::ftruncate(descriptor_, *torn_at_) != 0) {
     throw Error("cannot be repaired: " + system_reason(errno), file_.string());
   }
+  torn_at_.reset();
 }
 
 void Journal::append(const journal::Line& line, bool flush) {
+  cut_torn_line();
   const off_t before = ::lseek(descriptor_, 0, SEEK_END);
   try {
     write_all(descriptor_, journal::to_text(line) + '\n', file_);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -104,7 +106,7 @@ Line from_text(std::string_view text);
 /// The append-only log of a run folder, locked against other programs as long as it lives.
 class Journal {
  public:
-  /// Opens or makes `file`, locks it, and cuts off a torn last line.
+  /// Opens or makes `file` and locks it; the first `append` cuts off a torn last line.
   /// @throws Error  when another program writes this run, or a line but the last is damaged
   explicit Journal(std::filesystem::path file);
   ~Journal();
@@ -118,12 +120,15 @@ class Journal {
   void append(const journal::Line& line, bool flush);
 
  private:
+  void require_regular_file() const;
   void lock();
   void read();
+  void cut_torn_line();
 
   std::filesystem::path file_;
   int descriptor_ = -1;
   std::vector<journal::Line> lines_;
+  std::optional<off_t> torn_at_;  ///< where a torn last line begins that no append has cut off
 };
 
 }  // namespace geoprior

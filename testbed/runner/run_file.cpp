@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/hdf5_file.h"
+#include "testbed/runner/names.h"
 #include "testbed/runner/run_tables.h"
 
 namespace geoprior {
@@ -549,7 +550,11 @@ auto reading(const std::filesystem::path& file, Read read) {
 }  // namespace
 
 RunRecord read_run_file(const std::filesystem::path& file) {
-  return reading(file, [](const H5Group& root) { return read_root(root); });
+  return reading(file, [&](const H5Group& root) {
+    RunRecord record = read_root(root);
+    require_names(record, file.string());
+    return record;
+  });
 }
 
 std::string read_spec_hash(const std::filesystem::path& run_file) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "testbed/formats/folders.h"
 #include "testbed/formats/vtk_files.h"
 #include "testbed/joined.h"
 #include "testbed/runner/quantity.h"
@@ -70,7 +71,7 @@ std::optional<Part> load_part(const FrameRecord& frame, const std::string& name,
                               const fs::path& folder) {
   for (const StoredFile& file : frame.files) {
     if (fs::path(file.name).extension() != ".csv" && part_name(file) == name) {
-      return read_vtk_part(folder / file.name);
+      return read_vtk_part(path_below(folder, file.name));
     }
   }
   return std::nullopt;
