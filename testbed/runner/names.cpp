@@ -67,7 +67,7 @@ Error no_name(std::string_view name, const std::string& what, const std::string&
               const std::string& allowed) {
   const std::string length =
       name.size() > kLongestName ? " (" + std::to_string(name.size()) + " characters)" : "";
-  return Error(in_quotes(name) + length + " is no name of " + what, where, allowed);
+  return Error(quoted_name(name) + length + " is no name of " + what, where, allowed);
 }
 
 void require_file_of_variant(const std::vector<StoredFile>& files, std::string_view room,
@@ -91,7 +91,7 @@ void require_names(const CaseRecord& one, const std::string& cases) {
 
 }  // namespace
 
-std::string in_quotes(std::string_view text) {
+std::string quoted_name(std::string_view text) {
   std::string out = "'";
   while (!text.empty() && out.size() <= kLongestQuote) {
     const std::size_t length = printable_length(text);
@@ -142,7 +142,7 @@ bool is_experiment_id(std::string_view id) {
 
 void require_experiment_id(std::string_view id, const std::string& where) {
   if (is_experiment_id(id)) return;
-  throw Error(in_quotes(id) + " is no identifier of an experiment", where,
+  throw Error(quoted_name(id) + " is no identifier of an experiment", where,
               "two names, \"<topic>/<name>\", each of " + allowed_name("_ - . + = ,"));
 }
 
@@ -164,7 +164,7 @@ void require_stored_file(const StoredFile& file, std::string_view room, const jo
   const std::string folder = std::string(room) + "/" + place.case_name + "/" + place.variant + "/";
   const std::string_view name = file.name;
   if (name.starts_with(folder) && is_file_name(name.substr(folder.size()))) return;
-  throw Error(in_quotes(name) + " is no file of this place of a run", where, folder + "<name>");
+  throw Error(quoted_name(name) + " is no file of this place of a run", where, folder + "<name>");
 }
 
 void require_names(const RunRecord& record, const std::string& file) {

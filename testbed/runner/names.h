@@ -41,7 +41,7 @@ std::string with_name_characters(std::string_view text);
 std::string name_from(std::string_view text);
 
 /// The text on one line and not too long, in quotes, for messages about names that are none.
-std::string in_quotes(std::string_view text);
+std::string quoted_name(std::string_view text);
 
 /// @param room  "frames", "artifacts" or "checkpoints"
 /// @throws Error  unless the file is `<room>/<case>/<variant>/<name>`

@@ -155,7 +155,7 @@ void require_own_beginning(const Experiment& experiment, const fs::path& folder)
         ((name == "spec.toml" && holds_text(entry.path(), experiment.resolved_toml)) ||
          (name == "spec.json" && holds_text(entry.path(), spec_json(experiment))));
     if (ours) continue;
-    throw Error("the journal is empty, and " + in_quotes(name.string()) +
+    throw Error("the journal is empty, and " + quoted_name(name.string()) +
                     " is not what this run begins with: it cannot be resumed",
                 folder.string(), "a new folder, without --resume");
   }

@@ -98,7 +98,7 @@ RunReference parse_run_reference(const std::string& text) {
   const std::string artifact = text.substr(std::min(hash + 1, text.size()));
   if (!named || !(artifact.empty() || is_name(artifact)) || parts.size() < 3 || parts.size() > 4 ||
       place.ends_with('/') || text.ends_with('#')) {
-    throw Error("no reference to a run: " + in_quotes(text), "",
+    throw Error("no reference to a run: " + quoted_name(text), "",
                 "\"run:<topic>/<experiment>/<variant>\" or "
                 "\"run:<topic>/<experiment>/<case>/<variant>\", and \"#<file>\" for an artifact");
   }
