@@ -77,8 +77,8 @@ RunState restore(const Experiment& experiment, const Journal& journal, const fs:
 void begin_run(const Experiment& experiment, Recorder& recorder) {
   write_file_atomically(recorder.folder() / "spec.toml", experiment.resolved_toml);
   write_file_atomically(recorder.folder() / "spec.json", spec_json(experiment));
-  recorder.add(
-      journal::RunLine{RunRecord{}.schema_version, experiment.id, experiment.hash, utc_now()});
+  recorder.add(journal::RunLine{RunRecord{}.schema_version, experiment.id, experiment.hash,
+                                utc_now(), input_name(experiment.file)});
 }
 
 std::vector<StoredFile> all_inputs(const RunState& state) {
@@ -121,7 +121,7 @@ RunRecord assemble(const Experiment& experiment, const Topic& topic, const RunSt
   record.provenance = provenance();
   record.provenance["start"] = state.run()->start;
   record.provenance["finish"] = utc_now();
-  record.provenance["experiment_file"] = input_name(experiment.file);
+  record.provenance["experiment_file"] = state.run()->experiment_file;
   record.inputs = all_inputs(state);
   for (const CaseState& one : state.cases()) record.cases.push_back(case_record(one, topic));
   record.content_sha256 = content_sha256(record);

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -98,7 +99,8 @@ SortedJson write(const RunLine& line) {
           {"schema_version", line.schema_version},
           {"experiment_id", line.experiment_id},
           {"spec_hash", line.spec_hash},
-          {"start", line.start}};
+          {"start", line.start},
+          {"experiment_file", line.experiment_file}};
 }
 
 SortedJson write(const CaseLine& line) {
@@ -250,7 +252,7 @@ Line read(const SortedJson& json) {
   if (kind == "error") return ErrorLine{place(json), json.at("message")};
   if (kind == "run") {
     return RunLine{json.at("schema_version"), json.at("experiment_id"), json.at("spec_hash"),
-                   json.at("start")};
+                   json.at("start"), json.value("experiment_file", "")};
   }
   if (kind == "case") {
     return CaseLine{json.at("case"),           json.at("parameter_name"), json.at("parameter_unit"),
@@ -283,6 +285,19 @@ Line from_text(std::string_view text) {
     return read(SortedJson::parse(text));
   } catch (const SortedJson::exception& error) {
     throw Error(std::string("damaged line: ") + error.what());
+  }
+}
+
+std::optional<RunLine> read_head(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string text;
+  if (!std::getline(in, text) || in.eof()) return std::nullopt;
+  try {
+    const Line line = from_text(text);
+    const auto* head = std::get_if<RunLine>(&line);
+    return head == nullptr ? std::nullopt : std::optional(*head);
+  } catch (const Error&) {
+    return std::nullopt;
   }
 }
 

@@ -29,7 +29,8 @@ struct RunLine {
   int schema_version = 1;
   std::string experiment_id;
   std::string spec_hash;
-  std::string start;  ///< UTC, "2025-01-31T12:00:00Z"
+  std::string start;                 ///< UTC, "2025-01-31T12:00:00Z"
+  std::string experiment_file = {};  ///< as `input_name`; empty in older journals
 };
 struct CaseLine {
   std::string case_name;
@@ -100,6 +101,9 @@ using Line = std::variant<RunLine, CaseLine, BeginLine, FrameLine, EventLine, Ar
 std::string to_text(const Line& line);
 /// @throws Error  when the text is no line of a journal
 Line from_text(std::string_view text);
+
+/// The first line of a journal that somebody may be writing; absent when it is not whole.
+std::optional<RunLine> read_head(const std::filesystem::path& file);
 
 }  // namespace journal
 

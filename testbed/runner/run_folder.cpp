@@ -8,11 +8,13 @@
 #include <cstdlib>
 #include <ctime>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/home.h"
+#include "testbed/runner/journal.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/run_file.h"
 #include "testbed/runner/run_inputs.h"
@@ -104,6 +106,13 @@ void require_writable(const fs::path& folder) {
   ::close(descriptor);
 }
 
+/// Whether no other file began the run: a copy of the file elsewhere has other inputs beside it.
+bool is_begun_by(const Experiment& experiment, const fs::path& folder) {
+  const auto head = journal::read_head(folder / "journal.jsonl");
+  return !head || head->experiment_file.empty() ||
+         head->experiment_file == input_name(experiment.file);
+}
+
 fs::path folder_to_resume(const Experiment& experiment, const ExecuteRequest& request) {
   if (request.out) {
     if (!fs::exists(*request.out / "journal.jsonl")) {
@@ -112,12 +121,11 @@ fs::path folder_to_resume(const Experiment& experiment, const ExecuteRequest& re
     }
     return *request.out;
   }
-  const std::vector<fs::path> folders = folders_of(experiment);
-  if (folders.empty()) {
-    throw Error("there is no run of '" + experiment.id + "' with this specification to resume",
-                (runs_root() / experiment.id).string(), "a run without --resume");
+  for (const fs::path& folder : folders_of(experiment)) {
+    if (is_begun_by(experiment, folder)) return folder;
   }
-  return folders.front();
+  throw Error("there is no run of '" + experiment.id + "' with this specification to resume",
+              (runs_root() / experiment.id).string(), "a run without --resume");
 }
 
 /// Whether the run is of this very file, and every input is what it was when the run read it. A
@@ -137,6 +145,15 @@ bool is_run_of(const Experiment& experiment, const fs::path& folder) {
     return true;
   } catch (const Error&) {
     return false;
+  }
+}
+
+/// Experiments that need nothing of a clone run without one.
+std::optional<fs::path> home_if_any() {
+  try {
+    return geoprior_home();
+  } catch (const Error&) {
+    return std::nullopt;
   }
 }
 
@@ -163,7 +180,9 @@ void require_own_beginning(const Experiment& experiment, const fs::path& folder)
 
 std::string input_name(const fs::path& file) {
   const fs::path full = fs::weakly_canonical(file);
-  const fs::path relative = full.lexically_relative(fs::weakly_canonical(geoprior_home()));
+  const std::optional<fs::path> home = home_if_any();
+  if (!home) return full.string();
+  const fs::path relative = full.lexically_relative(fs::weakly_canonical(*home));
   return relative.empty() || *relative.begin() == ".." ? full.string() : relative.string();
 }
 
@@ -220,7 +239,10 @@ fs::path find_run_of_content(const std::string& experiment_id, const std::string
 
 std::optional<fs::path> find_unfinished_run(const Experiment& experiment) {
   for (const fs::path& folder : folders_of(experiment)) {
-    if (!fs::exists(folder / "run.h5") && fs::exists(folder / "journal.jsonl")) return folder;
+    if (!fs::exists(folder / "run.h5") && fs::exists(folder / "journal.jsonl") &&
+        is_begun_by(experiment, folder)) {
+      return folder;
+    }
   }
   return std::nullopt;
 }

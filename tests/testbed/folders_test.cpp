@@ -16,6 +16,7 @@
 #include "testbed/runner/journal.h"
 #include "testbed/runner/run_file.h"
 #include "testbed/runner/run_folder.h"
+#include "testbed/runner/stop.h"
 #include "testbed/view/export.h"
 #include "tests/testbed/fake_run.h"
 #include "tests/testbed/run_fixture.h"
@@ -242,6 +243,23 @@ TEST_F(OwnFiles, OfAForeignCopyAreNotTakenForThoseOfTheExperiment) {
   execute(foreign, toy::topics(), {});
   EXPECT_TRUE(find_run(foreign).has_value());
   EXPECT_FALSE(find_run(ours).has_value());
+}
+
+TEST_F(OwnFiles, OfAStoppedForeignCopyAreNotGoneOnWith) {
+  const Experiment ours = load(pendulum());
+  const fs::path copy = folder() / "copy/experiments/toy-pendulum/swing.toml";
+  fs::create_directories(copy.parent_path());
+  fs::copy_file(ours.file, copy);
+  const Experiment foreign = load(copy);
+  request_stop();
+  EXPECT_TRUE(execute(foreign, toy::topics(), {}).stopped);
+  clear_stop();
+  EXPECT_TRUE(find_unfinished_run(foreign).has_value());
+  EXPECT_FALSE(find_unfinished_run(ours).has_value());
+  ExecuteRequest resume;
+  resume.resume = true;
+  EXPECT_THAT(error_of([&] { execute(ours, toy::topics(), resume); }),
+              HasSubstr("there is no run"));
 }
 
 TEST_F(OwnFiles, AnExportFollowsNoLink) {
