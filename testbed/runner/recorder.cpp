@@ -162,6 +162,11 @@ std::optional<State> Recorder::prepare_resume(const journal::Place& place, bool 
   const VariantState& variant = state_.variant_of(place);
   const std::optional<journal::CheckpointLine> checkpoint = variant.checkpoint;
   const VariantRecord& record = variant.record;
+  const std::array<fs::path, 3> folders{folder_of("frames", place), folder_of("artifacts", place),
+                                        folder_of(kCheckpoints, place)};
+  // Every link is found before the first file goes.
+  for (const fs::path& folder : folders) (void)path_below(folder_, folder);
+  for (const fs::path& folder : folders) remove_temporary_files(folder);
   if (is_process) {
     const journal::ResumeLine keep{place, checkpoint ? checkpoint->frames : 0,
                                    checkpoint ? checkpoint->events : 0,
@@ -172,9 +177,6 @@ std::optional<State> Recorder::prepare_resume(const journal::Place& place, bool 
         keep.artifacts != record.artifacts.size()) {
       drop(keep);
     }
-  }
-  for (const char* room : {"frames", "artifacts", kCheckpoints}) {
-    remove_temporary_files(folder_of(room, place));
   }
   if (!checkpoint) return std::nullopt;
   return read_checkpoint(*checkpoint);
