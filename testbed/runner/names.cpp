@@ -60,7 +60,7 @@ std::size_t printable_length(std::string_view text) {
 
 std::string allowed_name(std::string_view characters) {
   return "1 to " + std::to_string(kLongestName) + " characters: letters, digits and " +
-         std::string(characters) + ", no dot in front";
+         std::string(characters);
 }
 
 Error no_name(std::string_view name, const std::string& what, const std::string& where,
@@ -114,7 +114,8 @@ bool is_plain_name(std::string_view name) {
 }
 
 void require_name(std::string_view name, const std::string& what, const std::string& where) {
-  if (!is_name(name)) throw no_name(name, what, where, allowed_name("_ - . + = ,"));
+  if (!is_name(name))
+    throw no_name(name, what, where, allowed_name("_ - . + = , but no dot in front"));
 }
 
 void require_plain_name(std::string_view name, const std::string& what, const std::string& where) {
@@ -142,8 +143,9 @@ bool is_experiment_id(std::string_view id) {
 
 void require_experiment_id(std::string_view id, const std::string& where) {
   if (is_experiment_id(id)) return;
-  throw Error(quoted_name(id) + " is no identifier of an experiment", where,
-              "two names, \"<topic>/<name>\", each of " + allowed_name("_ - . + = ,"));
+  throw Error(
+      quoted_name(id) + " is no identifier of an experiment", where,
+      "two names, \"<topic>/<name>\", each of " + allowed_name("_ - . + = , but no dot in front"));
 }
 
 std::string with_name_characters(std::string_view text) {
