@@ -115,7 +115,7 @@ bool is_plain_name(std::string_view name) {
 
 void require_name(std::string_view name, const std::string& what, const std::string& where) {
   if (!is_name(name))
-    throw no_name(name, what, where, allowed_name("_ - . + = , but no dot in front"));
+    throw no_name(name, what, where, allowed_name("_ - . + = , (no dot in front)"));
 }
 
 void require_plain_name(std::string_view name, const std::string& what, const std::string& where) {
@@ -145,7 +145,7 @@ void require_experiment_id(std::string_view id, const std::string& where) {
   if (is_experiment_id(id)) return;
   throw Error(
       quoted_name(id) + " is no identifier of an experiment", where,
-      "two names, \"<topic>/<name>\", each of " + allowed_name("_ - . + = , but no dot in front"));
+      "two names, \"<topic>/<name>\", each of " + allowed_name("_ - . + = , (no dot in front)"));
 }
 
 std::string with_name_characters(std::string_view text) {
