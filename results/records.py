@@ -3,6 +3,7 @@ the pages show (docs/file-formats.md). Made from a run by `record_of`, read by `
 
 import json
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -164,6 +165,8 @@ def write_record(root, data):
 
 
 def record_path(root, experiment):
+    if not re.fullmatch(r"[\w=,+-][\w=,+.-]*/[\w=,+-][\w=,+.-]*", experiment, re.ASCII):
+        raise RunFileError(f"{experiment!r} is no identifier of an experiment (allowed: two names, topic/name)")
     return Path(root) / "results" / "published" / f"{experiment}.json"
 
 

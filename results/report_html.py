@@ -45,7 +45,9 @@ def figure(uri, alt, caption):
 
 
 def png_figure(path, alt, caption):
-    """An inlined PNG; nothing when the run has none."""
+    """An inlined PNG; nothing when the run has none. A link is not followed: it may lead out of the run."""
+    if path.is_symlink():
+        raise runfile.RunFileError(f"{path}: is a symbolic link: below a run none is followed")
     try:
         content = path.read_bytes()
     except FileNotFoundError:

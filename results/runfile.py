@@ -302,14 +302,13 @@ def read_run(place, force=False):
 
 
 def write_atomically(path, content):
-    """Writes text or bytes as temporary + rename."""
+    """Writes text or bytes as temporary + rename; what stands at either name is not written through."""
     path = Path(path)
     temporary = path.with_name(path.name + ".geoprior-tmp")
     try:
-        if isinstance(content, bytes):
-            temporary.write_bytes(content)
-        else:
-            temporary.write_text(content, encoding="utf-8")
+        temporary.unlink(missing_ok=True)
+        with temporary.open("xb") as file:
+            file.write(content if isinstance(content, bytes) else content.encode("utf-8"))
         temporary.replace(path)
     except OSError as error:
         temporary.unlink(missing_ok=True)

@@ -1,12 +1,15 @@
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/error.h"
 #include "testbed/commands/blessed_run.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
 #include "testbed/commands/outcome.h"
+#include "testbed/home.h"
 #include "testbed/runner/build_info.h"
 #include "testbed/runner/claims.h"
 #include "testbed/runner/reference_diff.h"
@@ -25,12 +28,25 @@ void require_reason(const BlessRequest& request) {
               "--reason \"why the new values are right\"");
 }
 
+/// A reference belongs to the experiment of the clone that has this identifier; a file elsewhere
+/// may call itself what it likes.
+void require_file_of_clone(const Experiment& experiment) {
+  namespace fs = std::filesystem;
+  const fs::path own = geoprior_home() / "experiments" / (experiment.id + ".toml");
+  if (fs::weakly_canonical(experiment.file) == fs::weakly_canonical(own)) return;
+  throw Error("is not the file of the experiment '" + experiment.id +
+                  "': it has no reference values to bless",
+              experiment.file.string(), own.string());
+}
+
 }  // namespace
 
 int bless_command(const CommandContext& context, const BlessRequest& request) {
   require_reason(request);
   install_stop_handler();
-  const BlessedRun run = run_without_clock(context, request.id, request.quick);
+  Experiment experiment = load_without_clock(context, request.id, request.quick);
+  require_file_of_clone(experiment);
+  const BlessedRun run = run_without_clock(context, std::move(experiment));
   const std::filesystem::path file = reference_file(run.experiment.id);
   Reference reference = read_reference(file);
   const std::string size = run.experiment.quick ? "quick" : "full";

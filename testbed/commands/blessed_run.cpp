@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/error.h"
 #include "testbed/commands/catalogue.h"
@@ -26,13 +27,19 @@ void drop_timing(Experiment& experiment) {
 
 }  // namespace
 
-BlessedRun run_without_clock(const CommandContext& context, const std::string& id, bool quick) {
-  BlessedRun run;
+Experiment load_without_clock(const CommandContext& context, const std::string& id_or_file,
+                              bool quick) {
   LoadRequest load;
   load.quick = quick;
-  run.experiment = load_experiment(experiment_file(id), context.topics, load);
+  Experiment experiment = load_experiment(experiment_file(id_or_file), context.topics, load);
+  drop_timing(experiment);
+  return experiment;
+}
+
+BlessedRun run_without_clock(const CommandContext& context, Experiment experiment) {
+  BlessedRun run;
+  run.experiment = std::move(experiment);
   run.topic = &topic_of(run.experiment, context.topics);
-  drop_timing(run.experiment);
   std::optional<fs::path> folder = find_run(run.experiment);
   if (!folder) {
     // A run without times is not the run that `geoprior run` would make: it has a hash of its own.
@@ -44,7 +51,8 @@ BlessedRun run_without_clock(const CommandContext& context, const std::string& i
     run.record = OpenedRun(*folder).record();
     return run;
   }
-  say(tinted("running " + run.experiment.id + (quick ? " (quick)" : ""), Tint::faint));
+  say(tinted("running " + run.experiment.id + (run.experiment.quick ? " (quick)" : ""),
+             Tint::faint));
   ExecuteRequest request;
   request.timing = false;
   request.only_declared = true;

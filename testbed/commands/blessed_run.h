@@ -16,9 +16,14 @@ struct BlessedRun {
   std::filesystem::path folder;
 };
 
-/// The run of an experiment by this build: the one that is there, else a new one without timing.
-/// Claims and studies about time are left out: no check depends on a clock.
-/// @throws Error  when Ctrl-C stopped the run, and as load_experiment and execute do
-BlessedRun run_without_clock(const CommandContext& context, const std::string& id, bool quick);
+/// An experiment without its claims and studies about time: no check depends on a clock.
+/// @throws Error  as load_experiment does
+Experiment load_without_clock(const CommandContext& context, const std::string& id_or_file,
+                              bool quick);
+
+/// The run of such an experiment by this build: the one that is there, else a new one without
+/// timing.
+/// @throws Error  when Ctrl-C stopped the run, and as execute does
+BlessedRun run_without_clock(const CommandContext& context, Experiment experiment);
 
 }  // namespace geoprior

@@ -55,7 +55,7 @@ void compare_contents(const RunRecord& record, const ContentHash& blessed, Verdi
 
 Verdict check_one(const CommandContext& context, const std::string& id,
                   const CheckRequest& request) {
-  const BlessedRun run = run_without_clock(context, id, request.quick);
+  const BlessedRun run = run_without_clock(context, load_without_clock(context, id, request.quick));
   Verdict verdict;
   verdict.id = run.experiment.id;
   verdict.run = run.folder.string();

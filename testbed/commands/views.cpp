@@ -6,6 +6,7 @@
 #include "testbed/commands/console.h"
 #include "testbed/commands/outcome.h"
 #include "testbed/commands/pictures.h"
+#include "testbed/formats/folders.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/stop.h"
 #include "testbed/view/export.h"
@@ -56,7 +57,7 @@ int video_command(const CommandContext& context, const VideoRequest& request) {
   const fs::path folder = run_folder_of(request.run);
   VideoOptions options;
   options.frames_per_second = request.frames_per_second;
-  options.out = request.out ? fs::path(*request.out) : folder / "video";
+  options.out = request.out ? fs::path(*request.out) : path_below(folder, "video");
   install_stop_handler();
   const OpenedRun run(folder, request.unverified);
   const Video video = make_video(run, view_of(run, request.view, context.topics), options);
@@ -107,7 +108,8 @@ int report_command(const CommandContext& context, const ReportRequest& request) 
 
 int export_command(const CommandContext& context, const ExportRequest& request) {
   const fs::path folder = run_folder_of(request.run);
-  const fs::path out = request.out ? fs::path(*request.out) : folder / ("export-" + request.format);
+  const fs::path out =
+      request.out ? fs::path(*request.out) : path_below(folder, "export-" + request.format);
   export_run(OpenedRun(folder, request.unverified), request.format, out);
   say("exported to " + out.string());
   if (context.json) {

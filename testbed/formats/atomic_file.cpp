@@ -17,8 +17,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kTemporarySuffix = ".geoprior-tmp";
-
 class Descriptor {
  public:
   Descriptor(const fs::path& file, int flags, mode_t mode = 0)
@@ -84,6 +82,9 @@ void flush_to_disk(const fs::path& file_or_folder) {
 
 PendingFile::PendingFile(fs::path target) : target_(std::move(target)), temporary_(target_) {
   temporary_ += kTemporarySuffix;
+  // What stands there is a killed program's, or a link that must not be written through.
+  std::error_code ignored;
+  if (!fs::is_directory(fs::symlink_status(temporary_, ignored))) fs::remove(temporary_, ignored);
 }
 
 PendingFile::~PendingFile() {
@@ -106,7 +107,7 @@ void PendingFile::commit() {
 void write_file_atomically(const fs::path& file, std::string_view bytes) {
   PendingFile pending(file);
   {
-    Descriptor out(pending.temporary(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    Descriptor out(pending.temporary(), O_WRONLY | O_CREAT | O_EXCL, 0666);
     write_all(out.get(), bytes, file);
     out.close(file);
   }

@@ -33,6 +33,8 @@ class PendingFile {
 void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);
 void write_file_atomically(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
+/// What ends the name of a file that is not whole; no other file of ours ends so.
+inline constexpr std::string_view kTemporarySuffix = ".geoprior-tmp";
 /// True for the names that PendingFile uses while a file is not whole.
 bool is_temporary_file(const std::filesystem::path& file);
 

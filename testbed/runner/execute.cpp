@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/folders.h"
 #include "testbed/runner/case_runner.h"
 #include "testbed/runner/claims.h"
 #include "testbed/runner/content_hash.h"
@@ -74,8 +75,8 @@ RunState restore(const Experiment& experiment, const Journal& journal, const fs:
 void begin_run(const Experiment& experiment, Recorder& recorder) {
   write_file_atomically(recorder.folder() / "spec.toml", experiment.resolved_toml);
   write_file_atomically(recorder.folder() / "spec.json", spec_json(experiment));
-  recorder.add(
-      journal::RunLine{RunRecord{}.schema_version, experiment.id, experiment.hash, utc_now()});
+  recorder.add(journal::RunLine{RunRecord{}.schema_version, experiment.id, experiment.hash,
+                                utc_now(), input_name(experiment.file)});
 }
 
 std::vector<StoredFile> all_inputs(const RunState& state) {
@@ -118,6 +119,7 @@ RunRecord assemble(const Experiment& experiment, const Topic& topic, const RunSt
   record.provenance = provenance();
   record.provenance["start"] = state.run()->start;
   record.provenance["finish"] = utc_now();
+  record.provenance["experiment_file"] = state.run()->experiment_file;
   record.inputs = all_inputs(state);
   for (const CaseState& one : state.cases()) record.cases.push_back(case_record(one, topic));
   record.content_sha256 = content_sha256(record);
@@ -177,7 +179,6 @@ void finish(const Experiment& experiment, Recorder& recorder, ExecuteResult& res
     claim.detail = error.what();
     result.record.claims.push_back(claim);
   }
-  fs::remove_all(result.folder / "checkpoints");
   const fs::path file = result.folder / "run.h5";
   write_run_file(result.record, file, result.folder);
   recorder.add(journal::ResultLine{{file.filename().string(), sha256_of_file(file)}});
@@ -192,8 +193,9 @@ bool has_results(const RunState& state) {
   });
 }
 
-/// Takes back what a run wrote that broke off without a result: bad input leaves no folder.
-void discard(const fs::path& folder, bool made_folder) {
+/// Takes back what a run wrote that broke off without a result: bad input leaves no folder. Nothing
+/// of this was there when the run began (`require_own_beginning`).
+void discard(const fs::path& folder, bool chosen_by_us) {
   std::error_code ignored;
   for (const char* name : {"frames", "artifacts", "checkpoints"}) {
     fs::remove_all(folder / name, ignored);
@@ -201,7 +203,7 @@ void discard(const fs::path& folder, bool made_folder) {
   for (const char* name : {"spec.toml", "spec.json", "journal.jsonl"}) {
     fs::remove(folder / name, ignored);
   }
-  if (made_folder) fs::remove(folder, ignored);
+  if (chosen_by_us) fs::remove(folder, ignored);
 }
 
 }  // namespace
@@ -211,27 +213,30 @@ ExecuteResult execute_in_chain(const Experiment& experiment, const std::vector<T
   const Topic& topic = topic_of(experiment, topics);
   chain.push_back(experiment.id);
   ExecuteResult result;
-  const bool made_folder = !request.out || !fs::exists(*request.out);
-  result.folder = open_run_folder(experiment, request);
+  const RunFolder opened = open_run_folder(experiment, request);
+  result.folder = opened.path;
   if (auto record = finished_record(experiment, result.folder)) {
     std::fprintf(stderr, "%s is finished: nothing to do\n", result.folder.c_str());
     result.record = std::move(*record);
     result.was_finished = true;
     return result;
   }
-  Journal journal(result.folder / "journal.jsonl");
+  Journal journal(path_below(result.folder, "journal.jsonl"));
   RunState state = restore(experiment, journal, result.folder);
   Recorder recorder(result.folder, journal, state);
   const bool is_new = !state.run();
+  if (is_new) require_own_beginning(experiment, result.folder);
   try {
     if (is_new) begin_run(experiment, recorder);
     result.stopped = !run_cases(experiment, topics, request, chain, recorder, state);
   } catch (const Error&) {
-    if (is_new && !has_results(state)) discard(result.folder, made_folder);
+    if (is_new && !has_results(state)) discard(result.folder, !request.out);
     throw;
   }
   result.record = assemble(experiment, topic, state);
-  if (!result.stopped) finish(experiment, recorder, result);
+  if (result.stopped) return result;
+  recorder.remove_checkpoints();
+  finish(experiment, recorder, result);
   return result;
 }
 

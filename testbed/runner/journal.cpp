@@ -2,10 +2,12 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -97,7 +99,8 @@ SortedJson write(const RunLine& line) {
           {"schema_version", line.schema_version},
           {"experiment_id", line.experiment_id},
           {"spec_hash", line.spec_hash},
-          {"start", line.start}};
+          {"start", line.start},
+          {"experiment_file", line.experiment_file}};
 }
 
 SortedJson write(const CaseLine& line) {
@@ -254,7 +257,7 @@ Line read(const SortedJson& json) {
   if (kind == "error") return ErrorLine{place(json), json.at("message")};
   if (kind == "run") {
     return RunLine{json.at("schema_version"), json.at("experiment_id"), json.at("spec_hash"),
-                   json.at("start")};
+                   json.at("start"), json.value("experiment_file", "")};
   }
   if (kind == "case") {
     return CaseLine{json.at("case"),           json.at("parameter_name"), json.at("parameter_unit"),
@@ -290,6 +293,19 @@ Line from_text(std::string_view text) {
   }
 }
 
+std::optional<RunLine> read_head(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string text;
+  if (!std::getline(in, text) || in.eof()) return std::nullopt;
+  try {
+    const Line line = from_text(text);
+    const auto* head = std::get_if<RunLine>(&line);
+    return head == nullptr ? std::nullopt : std::optional(*head);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace geoprior::journal
 
 namespace geoprior {
@@ -299,6 +315,7 @@ Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) throw Error("cannot be opened: " + system_reason(errno), file_.string());
   try {
+    require_regular_file();
     lock();
     if (is_new) flush_to_disk(file_.parent_path());
     read();
@@ -309,6 +326,12 @@ Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
 }
 
 Journal::~Journal() { ::close(descriptor_); }
+
+void Journal::require_regular_file() const {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode)) return;
+  throw Error("is no file", file_.string(), "the log of a run");
+}
 
 void Journal::lock() {
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
@@ -331,12 +354,19 @@ void Journal::read() {
       throw Error(error.what(), file_.string() + ":" + std::to_string(lines_.size() + 1));
     }
   }
-  if (begin < text.size() && ::ftruncate(descriptor_, static_cast<off_t>(begin)) != 0) {
+  if (begin < text.size()) torn_at_ = static_cast<off_t>(begin);
+}
+
+void Journal::cut_torn_line() {
+  if (!torn_at_) return;
+  if (::ftruncate(descriptor_, *torn_at_) != 0) {
     throw Error("cannot be repaired: " + system_reason(errno), file_.string());
   }
+  torn_at_.reset();
 }
 
 void Journal::append(const journal::Line& line, bool flush) {
+  cut_torn_line();
   const off_t before = ::lseek(descriptor_, 0, SEEK_END);
   try {
     write_all(descriptor_, journal::to_text(line) + '\n', file_);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -27,7 +29,8 @@ struct RunLine {
   int schema_version = 1;
   std::string experiment_id;
   std::string spec_hash;
-  std::string start;  ///< UTC, "2025-01-31T12:00:00Z"
+  std::string start;                 ///< UTC, "2025-01-31T12:00:00Z"
+  std::string experiment_file = {};  ///< as `input_name`; empty in older journals
 };
 struct CaseLine {
   std::string case_name;
@@ -103,12 +106,15 @@ std::string to_text(const Line& line);
 /// @throws Error  when the text is no line of a journal
 Line from_text(std::string_view text);
 
+/// The first line of a journal that somebody may be writing; absent when it is not whole.
+std::optional<RunLine> read_head(const std::filesystem::path& file);
+
 }  // namespace journal
 
 /// The append-only log of a run folder, locked against other programs as long as it lives.
 class Journal {
  public:
-  /// Opens or makes `file`, locks it, and cuts off a torn last line.
+  /// Opens or makes `file` and locks it; the first `append` cuts off a torn last line.
   /// @throws Error  when another program writes this run, or a line but the last is damaged
   explicit Journal(std::filesystem::path file);
   ~Journal();
@@ -122,12 +128,15 @@ class Journal {
   void append(const journal::Line& line, bool flush);
 
  private:
+  void require_regular_file() const;
   void lock();
   void read();
+  void cut_torn_line();
 
   std::filesystem::path file_;
   int descriptor_ = -1;
   std::vector<journal::Line> lines_;
+  std::optional<off_t> torn_at_;  ///< where a torn last line begins that no append has cut off
 };
 
 }  // namespace geoprior

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "testbed/formats/folders.h"
 #include "testbed/runner/journal.h"
 #include "testbed/runner/sha256.h"
 
@@ -95,7 +96,7 @@ void OpenedRun::require_result() const {
 }
 
 fs::path OpenedRun::file(const StoredFile& stored) const {
-  const fs::path path = folder_ / stored.name;
+  fs::path path = path_below(folder_, stored.name);
   verify(path, stored.sha256);
   return path;
 }

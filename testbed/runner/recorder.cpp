@@ -1,15 +1,18 @@
 #include "testbed/runner/recorder.h"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <system_error>
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/folders.h"
 #include "testbed/formats/vtk_files.h"
 #include "testbed/runner/frame_table.h"
+#include "testbed/runner/names.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/opened_run.h"
-#include "testbed/runner/run_folder.h"
 #include "testbed/runner/sha256.h"
 
 namespace geoprior {
@@ -19,17 +22,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kNumberWidth = 5;  // "_0000", and more digits past 9999
-
-void require_file_name(const std::string& name, const char* what) {
-  const bool fine = !name.empty() && name.front() != '.' &&
-                    name.find_first_not_of(
-                        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                        "0123456789_-.+=") == std::string::npos;
-  if (!fine) {
-    throw Error(std::string("the name of ") + what + " is no file name: '" + name + "'", "",
-                "letters, digits and _ - . + =");
-  }
-}
+constexpr const char* kCheckpoints = "checkpoints";
+constexpr std::array<const char*, 2> kStates{"a.state", "b.state"};
 
 std::string numbered(const std::string& name, std::size_t index) {
   char number[24];
@@ -49,6 +43,21 @@ std::string without_number(const fs::path& file) {
 
 fs::path folder_of(const char* room, const journal::Place& place) {
   return fs::path(room) / place.case_name / place.variant;
+}
+
+/// Of the frames and artifacts, relative to the run folder.
+std::set<std::string> files_of(const VariantRecord& record) {
+  std::set<std::string> names;
+  for (const FrameRecord& frame : record.frames) {
+    for (const StoredFile& file : frame.files) names.insert(file.name);
+  }
+  for (const StoredFile& file : record.artifacts) names.insert(file.name);
+  return names;
+}
+
+void remove_if_empty(const fs::path& folder) {
+  std::error_code stays;
+  fs::remove(folder, stays);
 }
 
 }  // namespace
@@ -76,34 +85,34 @@ void Recorder::add(const journal::Line& line, bool flush) {
 }
 
 StoredFile Recorder::write(const fs::path& relative, std::string_view bytes) {
-  write_file_atomically(folder_ / relative, bytes);
+  const fs::path file = path_below(folder_, relative);
+  make_folders(file.parent_path());
+  write_file_atomically(file, bytes);
   return {relative.string(), sha256(bytes)};
 }
 
 std::vector<StoredFile> Recorder::write_frame(const journal::Place& place, std::size_t index,
                                               const Frame& frame) {
   const fs::path relative = folder_of("frames", place);
-  make_folders(folder_ / relative);
   std::vector<StoredFile> files;
   for (const auto& [name, part] : frame.parts) {
-    require_file_name(name, "a part");
+    require_name(name, "a part", "frame " + std::to_string(index));
     files.push_back(write(relative / (numbered(name, index) + part_extension(part)),
                           part_to_vtk_xml(part, frame.parameter)));
   }
   for (const auto& [name, table] : frame.tables) {
-    require_file_name(name, "a table");
+    require_name(name, "a table", "frame " + std::to_string(index));
     files.push_back(write(relative / (numbered(name, index) + ".csv"), table_to_csv(table)));
   }
   return files;
 }
 
 void Recorder::write_artifact(const journal::Place& place, const Artifact& artifact) {
-  require_file_name(artifact.name, "an artifact");
+  require_name(artifact.name, "an artifact", "");
   const fs::path relative = folder_of("artifacts", place) / artifact.name;
   for (const StoredFile& file : state_.variant_of(place).record.artifacts) {
     if (file.name == relative) throw Error("is written twice", "artifact '" + artifact.name + "'");
   }
-  make_folders((folder_ / relative).parent_path());
   const std::string_view bytes(reinterpret_cast<const char*>(artifact.bytes.data()),
                                artifact.bytes.size());
   add(journal::ArtifactLine{place, write(relative, bytes)});
@@ -118,16 +127,15 @@ void Recorder::write_checkpoint(const journal::Place& place, const State& state,
       place, {}, record.frames.size(), record.events.size(), record.artifacts.size(), seconds,
   };
   // Two names in turn: the last checkpoint stays whole until its successor is logged.
-  const bool first = before && before->file.name.ends_with("a.state");
-  const fs::path relative = folder_of("checkpoints", place) / (first ? "b.state" : "a.state");
-  make_folders((folder_ / relative).parent_path());
+  const bool first = before && before->file.name.ends_with(kStates[0]);
+  const fs::path relative = folder_of(kCheckpoints, place) / kStates[first ? 1 : 0];
   line.file = write(relative, {reinterpret_cast<const char*>(state.data()), state.size()});
   add(line);
-  if (before) fs::remove(folder_ / before->file.name);
+  if (before) remove(before->file.name);
 }
 
 State Recorder::read_checkpoint(const journal::CheckpointLine& checkpoint) const {
-  const fs::path file = folder_ / checkpoint.file.name;
+  const fs::path file = path_below(folder_, checkpoint.file.name);
   const std::string bytes = read_whole_file(file);
   if (sha256(bytes) != checkpoint.file.sha256) {
     throw Error("is damaged: its checksum is not the one in the journal", file.string());
@@ -148,14 +156,18 @@ void Recorder::write_collection(const journal::Place& place) {
           {frame.parameter, name.lexically_relative(folder).string(), without_number(name)});
     }
   }
-  make_folders(folder_ / folder);
-  write_file_atomically(folder_ / folder / (place.variant + ".pvd"), pvd_text(entries));
+  write(folder / (place.variant + ".pvd"), pvd_text(entries));
 }
 
 std::optional<State> Recorder::prepare_resume(const journal::Place& place, bool is_process) {
   const VariantState& variant = state_.variant_of(place);
   const std::optional<journal::CheckpointLine> checkpoint = variant.checkpoint;
   const VariantRecord& record = variant.record;
+  const std::array<fs::path, 3> folders{folder_of("frames", place), folder_of("artifacts", place),
+                                        folder_of(kCheckpoints, place)};
+  // Every link is found before the first file goes.
+  for (const fs::path& folder : folders) (void)path_below(folder_, folder);
+  for (const fs::path& folder : folders) remove_temporary_files(folder);
   if (is_process) {
     const journal::ResumeLine keep{place, checkpoint ? checkpoint->frames : 0,
                                    checkpoint ? checkpoint->events : 0,
@@ -164,20 +176,51 @@ std::optional<State> Recorder::prepare_resume(const journal::Place& place, bool 
     // the next frame includes reading the state, and this is what tells.
     if (checkpoint || keep.frames != record.frames.size() || keep.events != record.events.size() ||
         keep.artifacts != record.artifacts.size()) {
-      add(keep);
+      drop(keep);
     }
-  }
-  std::set<std::string> keep;
-  for (const FrameRecord& frame : record.frames) {
-    for (const StoredFile& file : frame.files) keep.insert(file.name);
-  }
-  for (const StoredFile& file : record.artifacts) keep.insert(file.name);
-  if (checkpoint) keep.insert(checkpoint->file.name);
-  for (const char* room : {"frames", "artifacts", "checkpoints"}) {
-    remove_unlisted(folder_, folder_of(room, place), keep);
   }
   if (!checkpoint) return std::nullopt;
   return read_checkpoint(*checkpoint);
+}
+
+void Recorder::drop(const journal::ResumeLine& keep) {
+  const std::set<std::string> before = files_of(state_.variant_of(keep.place).record);
+  add(keep);
+  const std::set<std::string> after = files_of(state_.variant_of(keep.place).record);
+  for (const std::string& name : before) {
+    if (!after.contains(name)) remove(name);
+  }
+}
+
+void Recorder::remove(const fs::path& relative) {
+  const fs::path file = path_below(folder_, relative);
+  std::error_code code;
+  fs::remove(file, code);
+  if (code) throw Error("cannot be removed: " + system_reason(code.value()), file.string());
+}
+
+void Recorder::remove_temporary_files(const fs::path& relative) {
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(path_below(folder_, relative), none)) {
+    const fs::path name = entry.path().filename();
+    if (is_temporary_file(name) && fs::is_regular_file(entry.symlink_status(none))) {
+      remove(relative / name);
+    }
+  }
+}
+
+void Recorder::remove_checkpoints() {
+  for (const CaseState& one : state_.cases()) {
+    for (const VariantState& variant : one.variants) {
+      const journal::Place place{one.record.name, variant.record.name};
+      const fs::path folder = folder_of(kCheckpoints, place);
+      remove_temporary_files(folder);
+      for (const char* name : kStates) remove(folder / name);
+      remove_if_empty(path_below(folder_, folder));
+    }
+    remove_if_empty(path_below(folder_, fs::path(kCheckpoints) / one.record.name));
+  }
+  remove_if_empty(path_below(folder_, kCheckpoints));
 }
 
 Frame Recorder::read_frame(const VariantRecord& variant, std::size_t index,
@@ -186,7 +229,7 @@ Frame Recorder::read_frame(const VariantRecord& variant, std::size_t index,
   Frame frame;
   frame.parameter = record.parameter;
   for (const StoredFile& file : record.files) {
-    const fs::path path = folder_ / file.name;
+    const fs::path path = path_below(folder_, file.name);
     const std::string name = without_number(path);
     if (parts && !parts->contains(name)) continue;
     require_recorded(path, file.sha256);

@@ -14,7 +14,7 @@ namespace geoprior {
 
 /// Writes what a run makes into its folder, each file whole and then logged. A program killed at
 /// any moment leaves a folder that holds exactly what its journal says, and perhaps one frame in
-/// flight that the next program overwrites.
+/// flight that the next program overwrites. No path leads through a symbolic link below the folder.
 class Recorder {
  public:
   Recorder(std::filesystem::path folder, Journal& journal, RunState& state);
@@ -37,8 +37,11 @@ class Recorder {
   /// frames/<case>/<variant>.pvd
   void write_collection(const journal::Place& place);
 
-  /// Drops what cannot be continued and files that no line names. Returns the state to go on from.
+  /// Drops what cannot be continued: frames and artifacts of the journal past the point to go on
+  /// from, and temporary files. No other file is removed. Returns the state to go on from.
   std::optional<State> prepare_resume(const journal::Place& place, bool is_process);
+  /// Of a run that is complete; folders that hold something else stay.
+  void remove_checkpoints();
 
   /// Reads a frame back: equal, bit by bit, to the one that was recorded.
   /// @param parts  only these of its parts and tables; absent: all. Those it has not are left out
@@ -49,6 +52,9 @@ class Recorder {
 
  private:
   StoredFile write(const std::filesystem::path& relative, std::string_view bytes);
+  void drop(const journal::ResumeLine& keep);
+  void remove(const std::filesystem::path& relative);
+  void remove_temporary_files(const std::filesystem::path& relative);
 
   std::filesystem::path folder_;
   Journal& journal_;

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "testbed/formats/hdf5_content.h"
 #include "testbed/formats/hdf5_file.h"
+#include "testbed/runner/names.h"
 #include "testbed/runner/run_tables.h"
 
 namespace geoprior {
@@ -539,7 +540,9 @@ RunRecord read_run_file(const std::filesystem::path& file) {
     return reason.starts_with(name) ? Error(reason) : Error(reason, name);
   };
   try {
-    return read_root(read_hdf5(file));
+    RunRecord record = read_root(read_hdf5(file));
+    require_names(record, file.string());
+    return record;
   } catch (const Error& error) {
     throw fail(error.what());
   } catch (const std::out_of_range&) {

@@ -8,14 +8,18 @@
 #include <cstdlib>
 #include <ctime>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/home.h"
+#include "testbed/runner/journal.h"
+#include "testbed/runner/names.h"
 #include "testbed/runner/opened_run.h"
 #include "testbed/runner/run_inputs.h"
 #include "testbed/runner/sha256.h"
+#include "testbed/runner/spec_json.h"
 
 namespace geoprior {
 
@@ -74,18 +78,34 @@ fs::path new_default_folder(const Experiment& experiment) {
   return folder;
 }
 
+/// What a killed program can leave before its run begins: temporary files, and the file by which
+/// earlier versions tried whether a folder is writable.
+bool is_leftover(const fs::path& name) { return is_temporary_file(name) || name == "probe"; }
+
 bool is_empty_or_absent(const fs::path& folder) {
-  return !fs::exists(folder) || (fs::is_directory(folder) && fs::is_empty(folder));
+  if (!fs::exists(folder)) return true;
+  return std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
+                     [](const auto& entry) { return is_leftover(entry.path().filename()); });
 }
 
-/// A folder can be unwritable although it exists: better now than after an hour.
+/// A folder can be unwritable although it exists: better now than after an hour. The file that
+/// tries it has no name of anybody's, and none at all after this.
 void require_writable(const fs::path& folder) {
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw Error("the output folder is " + system_reason(errno), folder.string(),
-                "a folder in which files can be made");
+  std::string file = (folder / "XXXXXX").string() + std::string(kTemporarySuffix);
+  const int descriptor = ::mkostemps(file.data(), static_cast<int>(kTemporarySuffix.size()), 0);
+  if (descriptor < 0) {
+    throw Error("no file can be made in the output folder: " + system_reason(errno),
+                folder.string());
   }
-  write_file_atomically(folder / "probe", std::string_view{});
-  fs::remove(folder / "probe");
+  ::unlink(file.c_str());
+  ::close(descriptor);
+}
+
+/// Whether no other file began the run: a copy of the file elsewhere has other inputs beside it.
+bool is_begun_by(const Experiment& experiment, const fs::path& folder) {
+  const auto head = journal::read_head(folder / "journal.jsonl");
+  return !head || head->experiment_file.empty() ||
+         head->experiment_file == input_name(experiment.file);
 }
 
 fs::path folder_to_resume(const Experiment& experiment, const ExecuteRequest& request) {
@@ -96,20 +116,25 @@ fs::path folder_to_resume(const Experiment& experiment, const ExecuteRequest& re
     }
     return *request.out;
   }
-  const std::vector<fs::path> folders = folders_of(experiment);
-  if (folders.empty()) {
-    throw Error("there is no run of '" + experiment.id + "' with this specification to resume",
-                (runs_root() / experiment.id).string(), "a run without --resume");
+  for (const fs::path& folder : folders_of(experiment)) {
+    if (is_begun_by(experiment, folder)) return folder;
   }
-  return folders.front();
+  throw Error("there is no run of '" + experiment.id + "' with this specification to resume",
+              (runs_root() / experiment.id).string(), "a run without --resume");
 }
 
-/// Whether every input file is what it was when the run read it. Runs that were inputs have their
+/// Whether the run is of this very file, and every input is what it was when the run read it. A
+/// copy of the file elsewhere has other inputs beside it. Runs that were inputs have their
 /// specification in the hash.
-bool has_unchanged_inputs(const fs::path& folder) {
+bool is_run_of(const Experiment& experiment, const fs::path& folder) {
   try {
     const OpenedRun run(folder);
-    for (const StoredFile& input : run.record().inputs) {
+    const RunRecord& record = run.record();
+    const auto file = record.provenance.find("experiment_file");
+    if (file == record.provenance.end() || file->second != input_name(experiment.file)) {
+      return false;
+    }
+    for (const StoredFile& input : record.inputs) {
       if (is_run_reference(input.name)) continue;
       if (sha256_of_file(geoprior_home() / input.name) != input.sha256) return false;
     }
@@ -119,11 +144,41 @@ bool has_unchanged_inputs(const fs::path& folder) {
   }
 }
 
+/// Experiments that need nothing of a clone run without one.
+std::optional<fs::path> home_if_any() {
+  try {
+    return geoprior_home();
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+bool holds_text(const fs::path& file, const std::string& text) {
+  return read_whole_file(file) == text;
+}
+
 }  // namespace
+
+void require_own_beginning(const Experiment& experiment, const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path name = entry.path().filename();
+    if (is_leftover(name) || name == "journal.jsonl") continue;
+    const bool ours =
+        fs::is_regular_file(entry.symlink_status()) &&
+        ((name == "spec.toml" && holds_text(entry.path(), experiment.resolved_toml)) ||
+         (name == "spec.json" && holds_text(entry.path(), spec_json(experiment))));
+    if (ours) continue;
+    throw Error("the journal is empty, and " + quoted_name(name.string()) +
+                    " is not what this run begins with: it cannot be resumed",
+                folder.string(), "a new folder, without --resume");
+  }
+}
 
 std::string input_name(const fs::path& file) {
   const fs::path full = fs::weakly_canonical(file);
-  const fs::path relative = full.lexically_relative(fs::weakly_canonical(geoprior_home()));
+  const std::optional<fs::path> home = home_if_any();
+  if (!home) return full.string();
+  const fs::path relative = full.lexically_relative(fs::weakly_canonical(*home));
   return relative.empty() || *relative.begin() == ".." ? full.string() : relative.string();
 }
 
@@ -136,8 +191,9 @@ fs::path runs_root() {
 
 std::string utc_now() { return utc_text("%Y-%m-%dT%H:%M:%SZ"); }
 
-fs::path open_run_folder(const Experiment& experiment, const ExecuteRequest& request) {
-  fs::path folder;
+RunFolder open_run_folder(const Experiment& experiment, const ExecuteRequest& request) {
+  RunFolder opened;
+  fs::path& folder = opened.path;
   try {
     if (request.resume) {
       folder = folder_to_resume(experiment, request);
@@ -151,19 +207,19 @@ fs::path open_run_folder(const Experiment& experiment, const ExecuteRequest& req
                     "a new folder, or --resume to go on with this run");
       }
     }
-    make_folders(fs::absolute(folder));
+    opened.made = MadeFolders(folder);
   } catch (const fs::filesystem_error& error) {
     throw Error("cannot be used as output folder: " + system_reason(error.code().value()),
                 folder.string());
   }
   folder = fs::canonical(folder);
   if (!is_finished(folder, experiment.hash)) require_writable(folder);
-  return folder;
+  return opened;
 }
 
 std::optional<fs::path> find_run(const Experiment& experiment) {
   for (const fs::path& folder : folders_of(experiment)) {
-    if (is_finished(folder, experiment.hash) && has_unchanged_inputs(folder)) return folder;
+    if (is_finished(folder, experiment.hash) && is_run_of(experiment, folder)) return folder;
   }
   return std::nullopt;
 }
@@ -179,19 +235,12 @@ fs::path find_run_of_content(const std::string& experiment_id, const std::string
 
 std::optional<fs::path> find_unfinished_run(const Experiment& experiment) {
   for (const fs::path& folder : folders_of(experiment)) {
-    if (!recorded_result(folder) && fs::exists(folder / "journal.jsonl")) return folder;
+    if (!recorded_result(folder) && fs::exists(folder / "journal.jsonl") &&
+        is_begun_by(experiment, folder)) {
+      return folder;
+    }
   }
   return std::nullopt;
-}
-
-void remove_unlisted(const fs::path& run_folder, const fs::path& relative,
-                     const std::set<std::string>& keep) {
-  const fs::path folder = run_folder / relative;
-  if (!fs::exists(folder)) return;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = (relative / entry.path().filename()).string();
-    if (entry.is_regular_file() && !keep.contains(name)) fs::remove(entry.path());
-  }
 }
 
 }  // namespace geoprior

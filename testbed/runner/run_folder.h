@@ -2,9 +2,9 @@
 
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <string>
 
+#include "testbed/formats/folders.h"
 #include "testbed/runner/execute.h"
 #include "testbed/runner/spec.h"
 
@@ -16,12 +16,23 @@ std::filesystem::path runs_root();
 /// Time of now in UTC, "2025-01-31T12:00:00Z".
 std::string utc_now();
 
+struct RunFolder {
+  std::filesystem::path path;  ///< absolute, links resolved
+  MadeFolders made;            ///< of these the folders that stay empty go again
+};
+
 /// Folder of a run that shall be written: makes a new one, or finds the one to go on with.
 ///
 /// Without `resume` the folder must not exist or be empty. With `resume` and without `out` it is
 /// the newest folder of the same hash below runs_root().
 /// @throws Error  naming the folder and what is allowed; before anything is computed
-std::filesystem::path open_run_folder(const Experiment& experiment, const ExecuteRequest& request);
+RunFolder open_run_folder(const Experiment& experiment, const ExecuteRequest& request);
+
+/// A run writes its specification before the first line of its journal, and nothing else: only such
+/// a folder may be gone on with while the journal is empty. What else is there is not ours to
+/// replace or remove.
+/// @throws Error  naming a file that is not of this beginning
+void require_own_beginning(const Experiment& experiment, const std::filesystem::path& folder);
 
 /// Name under which a run records an input file: relative to the clone where it lies inside, else
 /// absolute.
@@ -34,10 +45,5 @@ std::filesystem::path find_run_of_content(const std::string& experiment_id,
 
 /// The newest folder of the experiment that an interrupted run of the same hash left.
 std::optional<std::filesystem::path> find_unfinished_run(const Experiment& experiment);
-
-/// Removes temporary files and files that `keep` (paths relative to the run folder) does not name
-/// from a folder of the run: what a killed program wrote and did not log.
-void remove_unlisted(const std::filesystem::path& run_folder, const std::filesystem::path& relative,
-                     const std::set<std::string>& keep);
 
 }  // namespace geoprior

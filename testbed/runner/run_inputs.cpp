@@ -5,7 +5,9 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "testbed/formats/folders.h"
 #include "testbed/home.h"
+#include "testbed/runner/names.h"
 #include "testbed/runner/opened_run.h"
 #include "testbed/runner/option_copy.h"
 #include "testbed/runner/run_folder.h"
@@ -85,16 +87,17 @@ RunReference parse_run_reference(const std::string& text) {
   const std::string place = text.substr(kPrefix.size(), hash - kPrefix.size());
   std::istringstream in(place);
   for (std::string part; std::getline(in, part, '/');) parts.push_back(part);
-  const bool named = std::none_of(parts.begin(), parts.end(),
-                                  [](const std::string& part) { return part.empty(); });
-  if (!named || parts.size() < 3 || parts.size() > 4 || place.ends_with('/') ||
-      text.ends_with('#')) {
-    throw Error("no reference to a run: \"" + text + "\"", "",
+  const bool named = std::all_of(parts.begin(), parts.end(),
+                                 [](const std::string& part) { return is_name(part); });
+  const std::string artifact = text.substr(std::min(hash + 1, text.size()));
+  if (!named || !(artifact.empty() || is_name(artifact)) || parts.size() < 3 || parts.size() > 4 ||
+      place.ends_with('/') || text.ends_with('#')) {
+    throw Error("no reference to a run: " + quoted_name(text), "",
                 "\"run:<topic>/<experiment>/<variant>\" or "
                 "\"run:<topic>/<experiment>/<case>/<variant>\", and \"#<file>\" for an artifact");
   }
   RunReference reference;
-  if (hash < text.size()) reference.artifact = text.substr(hash + 1);
+  reference.artifact = artifact;
   reference.experiment_id = parts[0] + "/" + parts[1];
   if (parts.size() == 4) reference.case_name = parts[2];
   reference.variant = parts.back();
@@ -129,7 +132,8 @@ ResolvedScene resolve_run_inputs(const Experiment& experiment, const CaseSpec& s
     for (const FrameRecord& frame : variant.frames) {
       for (const StoredFile& file : frame.files) (void)run->file(file);
     }
-    return (run->folder() / "frames" / reference.case_name / reference.variant).string();
+    const fs::path frames = fs::path("frames") / reference.case_name / reference.variant;
+    return path_below(run->folder(), frames).string();
   };
   std::shared_ptr<OptionSet> copy = topic_of(experiment, topics).default_scene();
   copy_options(*spec.scene, *copy, file_of_run);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "testbed/runner/names.h"
 
 namespace geoprior {
 
@@ -112,6 +113,8 @@ void RunState::apply(const journal::FrameLine& line) {
     throw Error("frame " + std::to_string(line.index) + " of variant '" + line.place.variant +
                 "' follows " + std::to_string(record.frames.size()) + " frames");
   }
+  for (const StoredFile& file : line.files)
+    require_stored_file(file, "frames", line.place, "files");
   record.frames.push_back({line.parameter, line.files});
   for (const auto& [name, value] : line.metrics)
     put(record.metrics[name].values, line.index, value);
@@ -126,11 +129,15 @@ void RunState::apply(const journal::EventLine& line) {
 }
 
 void RunState::apply(const journal::ArtifactLine& line) {
-  variant_of(line.place).record.artifacts.push_back(line.file);
+  VariantRecord& record = variant_of(line.place).record;
+  require_stored_file(line.file, "artifacts", line.place, "name");
+  record.artifacts.push_back(line.file);
 }
 
 void RunState::apply(const journal::CheckpointLine& line) {
-  variant_of(line.place).checkpoint = line;
+  VariantState& state = variant_of(line.place);
+  require_stored_file(line.file, "checkpoints", line.place, "name");
+  state.checkpoint = line;
 }
 
 void RunState::apply(const journal::ResumeLine& line) {

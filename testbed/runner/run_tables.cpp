@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/folders.h"
 #include "testbed/runner/frame_table.h"
 #include "testbed/runner/recorder.h"
 #include "testbed/runner/sha256.h"
@@ -20,7 +21,7 @@ struct TableOfFrame {
 };
 
 FrameTable read_table(const StoredFile& file, const fs::path& run_folder) {
-  const fs::path path = run_folder / file.name;
+  const fs::path path = path_below(run_folder, file.name);
   const std::string text = read_whole_file(path);
   if (sha256(text) != file.sha256) {
     throw Error("is damaged: its checksum is not the recorded one", path.string());

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "testbed/runner/build_info.h"
+#include "testbed/runner/names.h"
 #include "testbed/runner/option_json.h"
 #include "testbed/runner/option_toml.h"
 #include "testbed/runner/sha256.h"
@@ -37,13 +38,20 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// experiments/<folder>/<stem>.toml is <folder>/<stem>.
-std::string id_of(const std::filesystem::path& file) {
+/// experiments/<folder>/<stem>.toml is <folder>/<stem>; any other file is <topic>/<stem>.
+std::string id_of(const std::filesystem::path& file, const std::string& topic) {
   const std::filesystem::path whole = std::filesystem::absolute(file).lexically_normal();
   const std::filesystem::path folder = whole.parent_path();
-  const std::string stem = whole.stem().string();
-  const bool ours = folder.parent_path().filename() == "experiments";
-  return ours ? folder.filename().string() + "/" + stem : stem;
+  const bool placed = folder.parent_path().filename() == "experiments";
+  return name_from(placed ? folder.filename().string() : topic) + "/" +
+         name_from(whole.stem().string());
+}
+
+std::string read_id(const TomlNode& root, const HeaderTable& header,
+                    const std::filesystem::path& file) {
+  if (!header.id) return id_of(file, header.topic);
+  require_experiment_id(*header.id, place_of(root, "id"));
+  return *header.id;
 }
 
 template <class Table>
@@ -243,7 +251,7 @@ Experiment load_experiment(const std::filesystem::path& file, const std::vector<
                        parse_toml_value(std::to_string(*request.threads), "--threads"));
   }
   const HeaderTable header = read_header(root);
-  experiment.id = header.id.value_or(id_of(file));
+  experiment.id = read_id(root, header, file);
   experiment.title = header.title;
   experiment.figure = header.figure;
   experiment.topic = header.topic;

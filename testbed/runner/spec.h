@@ -124,9 +124,9 @@ struct LoadRequest {
 /// Parses, applies [quick] and --set, expands sweeps, resolves options. Throws Error naming file,
 /// line, key, allowed.
 ///
-/// The identifier is <folder>/<stem> for a file in experiments/<folder>/, else its stem. Selecting
-/// variants keeps the references that they are compared with, and drops claims and studies about
-/// the others.
+/// The identifier is `id`, else <folder>/<stem> for a file in experiments/<folder>/, else
+/// <topic>/<stem>: always two names (testbed/runner/names.h). Selecting variants keeps the
+/// references that they are compared with, and drops claims and studies about the others.
 Experiment load_experiment(const std::filesystem::path& file, const std::vector<Topic>& topics,
                            const LoadRequest& request);
 

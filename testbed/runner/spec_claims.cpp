@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "testbed/runner/names.h"
 #include "testbed/runner/option_toml.h"
 #include "testbed/runner/spec_overrides.h"
 #include "testbed/runner/spec_tables.h"
@@ -227,6 +228,7 @@ std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
   for (const TomlNode& node : tables_of(root, "study")) {
     StudyTable table;
     read_options(node, "study", table);
+    require_text_name(table.name, "a study", place_of(node, "name"));
     if (contains(seen, table.name)) {
       throw Error("two studies are called '" + table.name + "'", place_of(node, "name"),
                   "names of their own");

@@ -1,10 +1,10 @@
 #include "testbed/runner/spec_resolve.h"
 
 #include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "testbed/runner/names.h"
 #include "testbed/runner/option_json.h"
 #include "testbed/runner/option_toml.h"
 #include "testbed/runner/spec_overrides.h"
@@ -44,14 +44,7 @@ VariantTable read_variant_table(const TomlNode& node) {
   plain.erase("options");
   VariantTable table;
   read_options(plain, "variant", table);
-  const bool safe =
-      !table.name.empty() && std::all_of(table.name.begin(), table.name.end(), [](unsigned char c) {
-        return std::isalnum(c) != 0 || c == '-' || c == '_';
-      });
-  if (!safe) {
-    throw Error("'" + table.name + "' is no name", place_of(node, "name"),
-                "letters, digits, '-' and '_': it names folders");
-  }
+  require_plain_name(table.name, "a variant", place_of(node, "name"));
   return table;
 }
 

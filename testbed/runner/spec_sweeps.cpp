@@ -1,11 +1,11 @@
 #include "testbed/runner/spec_sweeps.h"
 
 #include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/error.h"
+#include "testbed/runner/names.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/option_toml.h"
 #include "testbed/runner/spec_json.h"
@@ -20,16 +20,6 @@ struct Sweep {
   std::vector<TomlNode> values;
   std::vector<std::string> names;  ///< one a value
 };
-
-std::string folder_safe(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    const bool keep = std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-                      std::string_view("._=,+-").find(c) != std::string_view::npos;
-    safe += keep ? c : '-';
-  }
-  return safe;
-}
 
 std::string value_text(const TomlNode& value, std::size_t index) {
   switch (value.kind) {
@@ -65,16 +55,25 @@ std::vector<TomlNode> values_of(const TomlNode& table, const char* key, bool req
   return node->items;
 }
 
+/// The `names` of the sweep, in which a space is a hyphen.
+void read_names(const TomlNode& node, Sweep& sweep) {
+  for (std::size_t i = 0; i < sweep.table.names.size(); ++i) {
+    std::string& name = sweep.table.names[i];
+    std::replace(name.begin(), name.end(), ' ', '-');
+    require_name(name, "a case", node.find("names")->items[i].place + ": sweep.names");
+  }
+}
+
 /// Names of the values; a quick value that is also a full one keeps its name.
 std::vector<std::string> value_names(const Sweep& sweep, const std::vector<TomlNode>& full,
                                      const std::string& label) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < sweep.values.size(); ++i) {
-    std::string name = label + "=" + value_text(sweep.values[i], i);
+    std::string name = with_name_characters(label + "=" + value_text(sweep.values[i], i));
     for (std::size_t j = 0; j < sweep.table.names.size(); ++j) {
       if (json_of(full[j]) == json_of(sweep.values[i])) name = sweep.table.names[j];
     }
-    names.push_back(folder_safe(name));
+    names.push_back(std::move(name));
   }
   return names;
 }
@@ -103,6 +102,7 @@ Sweep read_sweep(const TomlNode& node, bool quick) {
     throw Error(std::to_string(sweep.table.names.size()) + " names", node.place + ": sweep.names",
                 std::to_string(full.size()) + ", one a value");
   }
+  read_names(node, sweep);
   sweep.values = quick && node.find("quick_values") != nullptr ? reduced : full;
   const std::string& key = sweep.table.key;
   sweep.names = value_names(sweep, full, key.substr(key.rfind('.') + 1));
@@ -124,6 +124,7 @@ void apply(SweptCase& result, const Sweep& sweep, std::size_t i) {
     set_experiment_key(result.root, sweep.table.key, value);
   }
   result.name = result.name == "default" ? sweep.names[i] : result.name + "," + sweep.names[i];
+  require_name(result.name, "a case (give the sweeps `names`)", value.place + ": sweep.values");
   result.swept[sweep.table.key] = json_of(sweep.values[i]).dump();
   for (const std::string& name : sweep.table.variants) result.variants.push_back(name);
   result.claims_only = result.claims_only || sweep.table.claims_only;
@@ -160,7 +161,7 @@ void make_names_unique(std::vector<Sweep>& sweeps) {
                                    [&](const auto& name) { return keys_of_name[name].size() > 1; });
     if (!clash) continue;
     for (std::size_t i = 0; i < sweep.names.size(); ++i) {
-      sweep.names[i] = folder_safe(sweep.table.key + "=" + value_text(sweep.values[i], i));
+      sweep.names[i] = with_name_characters(sweep.table.key + "=" + value_text(sweep.values[i], i));
     }
   }
 }

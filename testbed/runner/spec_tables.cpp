@@ -18,7 +18,8 @@ void describe(OptionVisitor& v, HeaderTable& t) {
   v.value("title", t.title, {.doc = "what is shown, one line", .required = true});
   v.value("figure", t.figure, {.doc = "figure of the thesis; empty for a study of our own"});
   v.value("topic", t.topic, {.doc = "which scenes, methods and metrics", .required = true});
-  v.value("id", t.id, {.doc = "identifier; absent: from the file's folder and name"});
+  v.value("id", t.id,
+          {.doc = "identifier, two names: topic/name; absent: from the file's folder and name"});
   describe_choice(v, "size", t.size, kSizes, {.doc = "quick in the resolved text of a quick run"});
   v.value("seed", t.seed, {.doc = "of every random stream", .min = 0});
   v.value("threads", t.threads, {.doc = "0: all", .min = 0, .max = 1024});

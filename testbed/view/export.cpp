@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/mesh.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/folders.h"
 #include "testbed/formats/gltf_writer.h"
 #include "testbed/formats/vtk_files.h"
 #include "testbed/runner/run_record.h"
@@ -46,21 +47,42 @@ std::map<std::string, std::vector<FrameFile>> files_by_part(const VariantRecord&
   return parts;
 }
 
-/// Refuses a folder with anything in it that is not an earlier export: its files would be mixed
-/// with foreign ones or take their place.
-void claim_folder(const fs::path& out, const std::string& text) {
-  std::error_code ignored;
-  if (fs::exists(out, ignored) && !fs::is_directory(out, ignored)) {
-    throw Error("is a file", out.string(), "a new or empty folder, or an earlier export");
+/// Where an export goes: out/<case>/<variant>/, and a file that says whose it is.
+///
+/// A folder with anything in it that is not an earlier export is refused: its files would be mixed
+/// with foreign ones or take their place. Nothing is made before the first file is asked for.
+class ExportFolder {
+ public:
+  ExportFolder(fs::path out, std::string marker) : out_(std::move(out)), text_(std::move(marker)) {
+    std::error_code ignored;
+    if (fs::exists(out_, ignored) && !fs::is_directory(out_, ignored)) {
+      throw Error("is a file", out_.string(), "a new or empty folder, or an earlier export");
+    }
+    if (fs::is_directory(out_, ignored) && !fs::is_empty(out_, ignored) &&
+        !fs::exists(out_ / kMarker, ignored)) {
+      throw Error("has files that no export made", out_.string(),
+                  "a new or empty folder, or an earlier export");
+    }
   }
-  if (fs::is_directory(out, ignored) && !fs::is_empty(out, ignored) &&
-      !fs::exists(out / kMarker, ignored)) {
-    throw Error("has files that no export made", out.string(),
-                "a new or empty folder, or an earlier export");
+
+  /// The folder of a variant, which is there from now on.
+  fs::path folder_of(const CaseRecord& c, const VariantRecord& variant) {
+    const fs::path folder = path_below(out_, fs::path(c.name) / variant.name);
+    if (!marked_) {
+      made_ = MadeFolders(out_);
+      write_file_atomically(out_ / kMarker, std::string_view(text_));
+      marked_ = true;
+    }
+    make_folders(folder);
+    return folder;
   }
-  make_folders(out);
-  write_file_atomically(out / kMarker, std::string_view(text));
-}
+
+ private:
+  fs::path out_;
+  std::string text_;
+  MadeFolders made_;
+  bool marked_ = false;
+};
 
 std::string describe_frame(const CaseRecord& c, const VariantRecord& variant,
                            const FrameFile& frame) {
@@ -73,7 +95,7 @@ std::string describe_frame(const CaseRecord& c, const VariantRecord& variant,
 /// Returns how many files were written.
 int export_texts(const OpenedRun& run, const CaseRecord& c, const VariantRecord& variant,
                  const std::vector<FrameFile>& frames, const std::string& format,
-                 const fs::path& folder) {
+                 ExportFolder& out) {
   int written = 0;
   for (const FrameFile& frame : frames) {
     const Part part = read_vtk_part(run.file(frame.file));
@@ -81,8 +103,8 @@ int export_texts(const OpenedRun& run, const CaseRecord& c, const VariantRecord&
     const std::string comment = describe_frame(c, variant, frame);
     const std::string text =
         format == "obj" ? part_to_obj(part, comment) : part_to_ply(part, comment);
-    make_folders(folder);
-    write_file_atomically(folder / (frame.stem + "." + format), std::string_view(text));
+    write_file_atomically(out.folder_of(c, variant) / (frame.stem + "." + format),
+                          std::string_view(text));
     ++written;
   }
   return written;
@@ -114,14 +136,14 @@ TriMesh mesh_of(const Part& part) { return {part.points, part.triangles}; }
 /// One animation, or a still a frame where the topology changes.
 int export_glb(const OpenedRun& run, const CaseRecord& c, const VariantRecord& variant,
                const std::string& part_name, const std::vector<FrameFile>& frames,
-               const fs::path& folder) {
+               ExportFolder& out) {
   std::vector<Part> parts;
   for (const FrameFile& frame : frames) parts.push_back(read_vtk_part(run.file(frame.file)));
   const bool triangles = std::all_of(parts.begin(), parts.end(), [](const Part& part) {
     return part.kind == Part::Kind::triangles && part.triangles.rows() > 0;
   });
   if (parts.empty() || !triangles) return 0;
-  make_folders(folder);
+  const fs::path folder = out.folder_of(c, variant);
   if (same_topology(parts)) {
     std::vector<Eigen::MatrixX3d> positions;
     for (const Part& part : parts) positions.push_back(part.points);
@@ -143,13 +165,13 @@ void export_run(const OpenedRun& run, const std::string& format, const fs::path&
     throw Error("unknown format '" + format + "'", "export", "obj, ply, glb");
   }
   const RunRecord& record = run.record();
-  claim_folder(out, "Frames of " + record.experiment_id + " as " + format +
-                        ", written by geoprior export from run content " + record.content_sha256 +
-                        ".\nA later export into this folder replaces files of the same name.\n");
+  ExportFolder folder(out,
+                      "Frames of " + record.experiment_id + " as " + format +
+                          ", written by geoprior export from run content " + record.content_sha256 +
+                          ".\nA later export into this folder replaces files of the same name.\n");
   int written = 0;
   for (const CaseRecord& c : record.cases) {
     for (const VariantRecord& variant : c.variants) {
-      const fs::path folder = out / c.name / variant.name;
       for (const auto& [name, frames] : files_by_part(variant)) {
         written += format == "glb" ? export_glb(run, c, variant, name, frames, folder)
                                    : export_texts(run, c, variant, frames, format, folder);

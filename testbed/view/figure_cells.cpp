@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "testbed/formats/folders.h"
 #include "testbed/formats/vtk_files.h"
 #include "testbed/joined.h"
 #include "testbed/runner/quantity.h"

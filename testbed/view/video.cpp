@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/folders.h"
 #include "testbed/runner/stop.h"
 #include "testbed/view/child_process.h"
 #include "testbed/view/display.h"
@@ -68,7 +69,7 @@ Video make_video(const OpenedRun& run, const FigureView& view, const VideoOption
   const std::vector<double> parameters = frame_parameters(record, view);
   const auto samples =
       make_blocks(run, frame_view(view, evenly_chosen(parameters, kSampledFrames), record));
-  make_folders(fs::absolute(options.out));
+  const MadeFolders made(options.out);
   const Display display;
   Video video;
   for (std::size_t i = 0; i < parameters.size(); ++i) {

@@ -115,6 +115,11 @@ class Publishing(Scratch):
         self.assertIn("-->2.00 mm³<!-- -->", self.page.read_text(encoding="utf-8"))
         self.assertEqual(run_figures("--root", self.root, "--check"), (0, "", ""))
 
+    def test_a_record_lies_where_its_identifier_says(self):
+        for name in ("../../x", "/tmp/x", "x", "a/..", "a/b/c", "../x", ".a/b", "a/b\n"):
+            with self.assertRaisesRegex(RunFileError, "two names"):
+                records.record_path(self.root, name)
+
     def test_publishing_twice_gives_the_same_bytes(self):
         self.publish()
         path = records.record_path(self.root, "test/knee")

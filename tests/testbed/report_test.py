@@ -333,6 +333,22 @@ class RunTest(unittest.TestCase):
         self.assertIn("**Implicit failed after 3 frames: time 0.5 s",
                       (self.folder / "summary.md").read_text(encoding="utf-8"))
 
+    def test_nothing_is_read_or_written_through_a_link(self):
+        victim = self.folder.with_name(self.folder.name + "-victim")
+        self.addCleanup(lambda: victim.unlink(missing_ok=True))
+        victim.write_text("years of work", encoding="utf-8")
+        for name in ("report.html", "report.html.geoprior-tmp", "summary.md", "summary.md.geoprior-tmp"):
+            (self.folder / name).unlink(missing_ok=True)
+            (self.folder / name).symlink_to(victim)
+        report.main([str(self.folder), "--out", str(self.folder / "report.html")])
+        summary.main([str(self.folder)])
+        self.assertEqual(victim.read_text(encoding="utf-8"), "years of work")
+        self.assertFalse((self.folder / "report.html").is_symlink())
+        (self.folder / "figure.png").unlink(missing_ok=True)
+        (self.folder / "figure.png").symlink_to(victim)
+        with self.assertRaisesRegex(runfile.RunFileError, "figure.png: is a symbolic link"):
+            report.main([str(self.folder), "--out", str(self.folder / "report.html")])
+
     def test_a_version_this_program_does_not_know_is_refused(self):
         with signed(self.folder, "a") as file:
             file.attrs["schema_version"] = 99

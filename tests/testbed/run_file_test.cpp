@@ -31,9 +31,12 @@ VariantRecord sample_variant(const std::string& name) {
   variant.options_json = R"({"step": 0.35})";
   variant.status = "failed";
   variant.error = "time 0.5 s: does not converge";
-  variant.frames = {{0.1, {{"frames/default/a/surface_0000.vtp", std::string(64, 'a')}}},
+  const std::string place = "/stop_angle_deg=26/" + name + "/";
+  variant.frames = {{0.1, {{"frames" + place + "surface_0000.vtp", std::string(64, 'a')}}},
                     {-0.0, {}},
-                    {90, {{"x.vtp", std::string(64, 'b')}, {"y.csv", std::string(64, 'c')}}}};
+                    {90,
+                     {{"frames" + place + "x.vtp", std::string(64, 'b')},
+                      {"frames" + place + "y.csv", std::string(64, 'c')}}}};
   variant.metrics["overlap_volume"] = {
       "m^3", "∫max(0, w−1)", "lower_is_better", {kNan, 0.1, 1e-300}};
   variant.summary["overlap_volume.max"] = {0.1, "m^3", "Largest.", "lower_is_better"};
@@ -41,7 +44,7 @@ VariantRecord sample_variant(const std::string& name) {
   variant.timing["solve"] = {{0.25, 0.5}, {1, 2}, {3, kNan}};
   variant.timing["a/b 100%"] = {{1.5}};
   variant.events = {{0.5, "crossing", {1, 2, 3}, 0.25, 0.125}, {0.75, "", {0, 0, 0}, 0, 0}};
-  variant.artifacts = {{"artifacts/default/a/swing.wav", std::string(64, 'd')}};
+  variant.artifacts = {{"artifacts" + place + "swing.wav", std::string(64, 'd')}};
   return variant;
 }
 

@@ -219,7 +219,7 @@ TEST_F(Spec, MistakesNameFileLineKeyAndWhatIsAllowed) {
   EXPECT_THAT(error_of(good + "[[variant]]\nname = \"exact\"\nmethod = \"exact\"\n"),
               HasSubstr("two variants are called 'exact'"));
   EXPECT_THAT(error_of(good + "[[variant]]\nname = \"a/b\"\nmethod = \"exact\"\n"),
-              HasSubstr("it names folders"));
+              HasSubstr("is no name of a variant"));
   EXPECT_THAT(error_of(good + "[[variant]]\nname = \"c\"\nmethod = \"exat\"\n"),
               HasSubstr("did you mean 'exact'"));
   EXPECT_THAT(error_of(good + "[variant2]\n"), HasSubstr("unknown key"));

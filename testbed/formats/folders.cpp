@@ -1,0 +1,58 @@
+#include "testbed/formats/folders.h"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "core/error.h"
+#include "testbed/formats/atomic_file.h"
+
+namespace geoprior {
+
+namespace fs = std::filesystem;
+
+fs::path path_below(const fs::path& folder, const fs::path& relative) {
+  fs::path path = folder;
+  for (const fs::path& name : relative) {
+    if (relative.is_absolute() || name == "..") {
+      throw Error("leaves its folder: '" + relative.string() + "'", folder.string(),
+                  "a path inside of it");
+    }
+    path /= name;
+    std::error_code ignored;
+    if (fs::is_symlink(fs::symlink_status(path, ignored))) {
+      throw Error("is a symbolic link: below a run or an export none is followed", path.string(),
+                  "files and folders");
+    }
+  }
+  return path;
+}
+
+MadeFolders::MadeFolders(const fs::path& folder) {
+  std::error_code ignored;
+  for (fs::path missing = fs::absolute(folder); !fs::exists(missing, ignored);
+       missing = missing.parent_path()) {
+    made_.insert(made_.begin(), missing);
+  }
+  try {
+    make_folders(fs::absolute(folder));
+  } catch (...) {
+    remove_empty();
+    throw;
+  }
+}
+
+MadeFolders::~MadeFolders() { remove_empty(); }
+
+MadeFolders& MadeFolders::operator=(MadeFolders&& other) noexcept {
+  std::swap(made_, other.made_);
+  return *this;
+}
+
+void MadeFolders::remove_empty() {
+  std::error_code stays;
+  std::for_each(made_.rbegin(), made_.rend(),
+                [&](const fs::path& folder) { fs::remove(folder, stays); });
+}
+
+}  // namespace geoprior

@@ -1,0 +1,179 @@
+#include "testbed/runner/names.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <functional>
+
+#include "core/error.h"
+#include "testbed/formats/atomic_file.h"
+
+namespace geoprior {
+
+namespace {
+
+constexpr std::string_view kPlainCharacters =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+constexpr std::string_view kFurtherCharacters = ".+=,";
+constexpr std::size_t kLongestTextName = 200;
+constexpr std::size_t kLongestQuote = 60;
+/// Of a file of a frame behind the name of its part: "_00012.vtp".
+constexpr std::size_t kLongestEnding = 32;
+
+bool has_only(std::string_view text, std::string_view characters) {
+  return text.find_first_not_of(characters) == std::string_view::npos;
+}
+
+bool is_name_character(char c) {
+  return kPlainCharacters.find(c) != std::string_view::npos ||
+         kFurtherCharacters.find(c) != std::string_view::npos;
+}
+
+bool has_name_length(std::string_view name) { return !name.empty() && name.size() <= kLongestName; }
+
+bool is_file_name(std::string_view name) {
+  return !name.empty() && name.size() <= kLongestName + kLongestEnding && name.front() != '.' &&
+         std::all_of(name.begin(), name.end(), is_name_character) && !is_temporary_file(name);
+}
+
+bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
+
+/// Bytes of the UTF-8 sequence that this byte begins; 0: it begins none.
+std::size_t sequence_length(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  if (byte < 0x80U) return 1;
+  if (byte >= 0xC2U && byte < 0xE0U) return 2;
+  if (byte >= 0xE0U && byte < 0xF0U) return 3;
+  if (byte >= 0xF0U && byte < 0xF5U) return 4;
+  return 0;
+}
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; }
+
+/// Length of the printable character in front, 0 where a byte is control or no UTF-8.
+std::size_t printable_length(std::string_view text) {
+  const std::size_t length = sequence_length(text.front());
+  if (length == 0 || length > text.size() || is_control(text.front())) return 0;
+  const std::string_view rest = text.substr(1, length - 1);
+  return std::all_of(rest.begin(), rest.end(), is_continuation) ? length : 0;
+}
+
+std::string allowed_name(std::string_view characters) {
+  return "1 to " + std::to_string(kLongestName) + " characters: letters, digits and " +
+         std::string(characters);
+}
+
+Error no_name(std::string_view name, const std::string& what, const std::string& where,
+              const std::string& allowed) {
+  const std::string length =
+      name.size() > kLongestName ? " (" + std::to_string(name.size()) + " characters)" : "";
+  return Error(quoted_name(name) + length + " is no name of " + what, where, allowed);
+}
+
+void require_file_of_variant(const std::vector<StoredFile>& files, std::string_view room,
+                             const journal::Place& place, const std::string& where) {
+  for (const StoredFile& file : files) require_stored_file(file, room, place, where);
+}
+
+void require_names(const CaseRecord& one, const std::string& cases) {
+  require_name(one.name, "a case", cases);
+  const std::string variants = cases + "/" + one.name + "/variants";
+  for (const VariantRecord& variant : one.variants) {
+    require_plain_name(variant.name, "a variant", variants);
+    const journal::Place place{one.name, variant.name};
+    const std::string group = variants + "/" + variant.name;
+    for (const FrameRecord& frame : variant.frames) {
+      require_file_of_variant(frame.files, "frames", place, group + "/frames");
+    }
+    require_file_of_variant(variant.artifacts, "artifacts", place, group + "/artifacts");
+  }
+}
+
+}  // namespace
+
+std::string quoted_name(std::string_view text) {
+  std::string out = "'";
+  while (!text.empty() && out.size() <= kLongestQuote) {
+    const std::size_t length = printable_length(text);
+    if (length > 0) {
+      out += text.substr(0, length);
+    } else {
+      std::array<char, 8> code{};
+      std::snprintf(code.data(), code.size(), "\\x%02x", static_cast<unsigned char>(text.front()));
+      out += code.data();
+    }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return out + (text.empty() ? "'" : "…'");
+}
+
+bool is_name(std::string_view name) { return has_name_length(name) && is_file_name(name); }
+
+bool is_plain_name(std::string_view name) {
+  return has_name_length(name) && has_only(name, kPlainCharacters);
+}
+
+void require_name(std::string_view name, const std::string& what, const std::string& where) {
+  if (!is_name(name))
+    throw no_name(name, what, where, allowed_name("_ - . + = , (no dot in front)"));
+}
+
+void require_plain_name(std::string_view name, const std::string& what, const std::string& where) {
+  if (!is_plain_name(name)) throw no_name(name, what, where, allowed_name("- _"));
+}
+
+void require_text_name(std::string_view name, const std::string& what, const std::string& where) {
+  bool fine = !name.empty() && name.size() <= kLongestTextName;
+  for (std::string_view rest = name; fine && !rest.empty();) {
+    const std::size_t length = printable_length(rest);
+    fine = length > 0;
+    rest.remove_prefix(length);
+  }
+  if (!fine) {
+    throw no_name(name, what, where,
+                  "1 to " + std::to_string(kLongestTextName) + " bytes of text on one line");
+  }
+}
+
+bool is_experiment_id(std::string_view id) {
+  const std::size_t slash = id.find('/');
+  return slash != std::string_view::npos && is_name(id.substr(0, slash)) &&
+         is_name(id.substr(slash + 1));
+}
+
+void require_experiment_id(std::string_view id, const std::string& where) {
+  if (is_experiment_id(id)) return;
+  throw Error(
+      quoted_name(id) + " is no identifier of an experiment", where,
+      "two names, \"<topic>/<name>\", each of " + allowed_name("_ - . + = , (no dot in front)"));
+}
+
+std::string with_name_characters(std::string_view text) {
+  std::string name(text);
+  std::replace_if(name.begin(), name.end(), std::not_fn(is_name_character), '-');
+  return name;
+}
+
+std::string name_from(std::string_view text) {
+  std::string name = with_name_characters(text.substr(0, kLongestName));
+  if (name.empty() || name.front() == '.') name.replace(0, 1, "-");
+  if (is_temporary_file(name)) name.back() = '-';
+  return name;
+}
+
+void require_stored_file(const StoredFile& file, std::string_view room, const journal::Place& place,
+                         const std::string& where) {
+  const std::string folder = std::string(room) + "/" + place.case_name + "/" + place.variant + "/";
+  const std::string_view name = file.name;
+  if (name.starts_with(folder) && is_file_name(name.substr(folder.size()))) return;
+  throw Error(quoted_name(name) + " is no file of this place of a run", where, folder + "<name>");
+}
+
+void require_names(const RunRecord& record, const std::string& file) {
+  for (const CaseRecord& one : record.cases) require_names(one, file + ": /cases");
+  for (const StudyRecord& study : record.studies) {
+    require_text_name(study.name, "a study", file + ": /study");
+  }
+}
+
+}  // namespace geoprior
