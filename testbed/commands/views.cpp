@@ -31,6 +31,7 @@ FigureView view_of(const fs::path& run_folder, const std::optional<std::string>&
 std::vector<std::vector<std::string>> overview(const std::vector<fs::path>& folders) {
   std::vector<std::vector<std::string>> rows{{"experiment", "claims", "picture"}};
   for (const fs::path& folder : folders) {
+    throw_if_stopped();
     const RunRecord record = read_run_file(folder / "run.h5");
     const fs::path figure = folder / "figure.png";
     rows.push_back({record.experiment_id, claim_count_text(count_claims(record)),
@@ -42,6 +43,7 @@ std::vector<std::vector<std::string>> overview(const std::vector<fs::path>& fold
 }  // namespace
 
 int render_command(const CommandContext& context, const RenderRequest& request) {
+  install_stop_handler();
   const fs::path folder = run_folder_of(request.run);
   render_run(folder, view_of(folder, request.view, context.topics));
   const fs::path figure = folder / "figure.png";
@@ -75,6 +77,7 @@ int video_command(const CommandContext& context, const VideoRequest& request) {
 }
 
 int report_command(const CommandContext& context, const ReportRequest& request) {
+  install_stop_handler();
   std::vector<fs::path> folders;
   for (const std::string& run : request.runs) folders.push_back(run_folder_of(run));
   if (request.runs.empty()) {
@@ -103,6 +106,7 @@ int report_command(const CommandContext& context, const ReportRequest& request) 
 }
 
 int export_command(const CommandContext& context, const ExportRequest& request) {
+  install_stop_handler();
   const fs::path folder = run_folder_of(request.run);
   const fs::path out = request.out ? fs::path(*request.out) : folder / ("export-" + request.format);
   export_run(folder, request.format, out);

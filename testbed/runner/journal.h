@@ -126,4 +126,7 @@ class Journal {
   std::vector<journal::Line> lines_;
 };
 
+/// Whether some program has the journal of the run open at the moment.
+bool is_being_written(const std::filesystem::path& run_folder);
+
 }  // namespace geoprior

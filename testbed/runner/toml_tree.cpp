@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <sstream>
 
 #include "core/error.h"
+#include "testbed/formats/atomic_file.h"
 #include "testbed/joined.h"
 
 namespace geoprior {
@@ -137,11 +137,7 @@ TomlNode parse_toml_text(std::string_view text, const std::string& source) {
 }
 
 TomlNode parse_toml_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream || !text) throw Error("cannot be read", file.string(), "a TOML file");
-  return parse_toml_text(text.str(), file.string());
+  return parse_toml_text(read_whole_file(file), file.string());
 }
 
 TomlNode parse_toml_value(const std::string& value, const std::string& source) {
