@@ -14,6 +14,7 @@
 #include "testbed/runner/spec_resolve.h"
 #include "testbed/runner/spec_sweeps.h"
 #include "testbed/runner/spec_tables.h"
+#include "testbed/streams.h"
 
 namespace geoprior {
 
@@ -37,13 +38,14 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// experiments/<folder>/<stem>.toml is <folder>/<stem>.
+/// experiments/<folder>/<stem>.toml is <folder>/<stem>. An identifier is UTF-8, a file's name need
+/// not be.
 std::string id_of(const std::filesystem::path& file) {
   const std::filesystem::path whole = std::filesystem::absolute(file).lexically_normal();
   const std::filesystem::path folder = whole.parent_path();
-  const std::string stem = whole.stem().string();
+  const std::string stem = printable(whole.stem().string());
   const bool ours = folder.parent_path().filename() == "experiments";
-  return ours ? folder.filename().string() + "/" + stem : stem;
+  return ours ? printable(folder.filename().string()) + "/" + stem : stem;
 }
 
 template <class Table>

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/joined.h"
+#include "testbed/streams.h"
 
 namespace geoprior {
 namespace {
@@ -152,6 +153,7 @@ TomlNode parse_toml_value(const std::string& value, const std::string& source) {
     if (!is_bare_word(value)) throw Error("is no TOML value: " + value, source);
   }
   if (!is_bare_word(value)) throw Error("is no TOML value: " + value, source);
+  if (printable(value) != value) throw Error("is no UTF-8: " + value, source);
   TomlNode word;
   word.kind = TomlNode::Kind::text;
   word.text = value;

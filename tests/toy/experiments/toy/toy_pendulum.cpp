@@ -309,8 +309,12 @@ Topic pendulum_topic() {
   topic.default_scene = [] { return std::make_unique<TypedOptions<PendulumSceneOptions>>(); };
   topic.load = [](const OptionSet& set, const std::filesystem::path&,
                   std::uint64_t) -> std::shared_ptr<Scene> {
-    return std::make_shared<PendulumScene>(
-        dynamic_cast<const TypedOptions<PendulumSceneOptions>&>(set).options);
+    const auto& options = dynamic_cast<const TypedOptions<PendulumSceneOptions>&>(set).options;
+    std::this_thread::sleep_for(std::chrono::milliseconds(options.load_delay_ms));
+    if (!options.input.empty() && !std::filesystem::is_directory(options.input)) {
+      throw Error("is no folder of frames: " + options.input, "scene.input");
+    }
+    return std::make_shared<PendulumScene>(options);
   };
   topic.methods = {
       pendulum_method("implicit-midpoint", false, "second order, symplectic without damping",
