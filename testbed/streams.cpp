@@ -72,19 +72,12 @@ void reserve_standard_streams() {
 std::string printable(std::string_view text) {
   std::string out;
   while (!text.empty()) {
-    std::size_t length = colour_length(text);
-    if (length == 0) {
-      length = character_length(text);
-      const bool shown = length > 0 && !is_control(text.substr(0, length));
-      length = std::max<std::size_t>(length, 1);
-      if (!shown) {
-        out += escaped_bytes(text.substr(0, length));
-        text.remove_prefix(length);
-        continue;
-      }
-    }
-    out += text.substr(0, length);
-    text.remove_prefix(length);
+    const std::size_t colour = colour_length(text);
+    const std::size_t character = character_length(text);
+    const std::string_view next = text.substr(0, std::max({colour, character, std::size_t{1}}));
+    const bool is_shown = colour > 0 || (character > 0 && !is_control(next));
+    out += is_shown ? std::string(next) : escaped_bytes(next);
+    text.remove_prefix(next.size());
   }
   return out;
 }

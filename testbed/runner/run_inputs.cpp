@@ -100,10 +100,10 @@ struct InputRun {
   RunRecord record;
 };
 
-/// A folder to make an input in, while the lock is ours; or the finished run of another program.
+/// Where an input is when nobody else is making it.
 struct Turn {
   std::optional<fs::path> finished;
-  std::optional<fs::path> unfinished;
+  std::optional<fs::path> unfinished;  ///< to go on with; neither: to be made
 };
 
 /// Waits while another program makes the same run; nothing after a stop.
