@@ -10,7 +10,6 @@
 #include "testbed/runner/execute.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/sha256.h"
-#include "testbed/runner/stop.h"
 
 namespace fs = std::filesystem;
 
@@ -50,12 +49,10 @@ BlessedRun run_without_clock(const CommandContext& context, const std::string& i
   request.only_declared = true;
   request.resume = find_unfinished_run(run.experiment).has_value();
   request.show_progress = isatty(STDERR_FILENO) == 1;
-  request.farewell = [](const fs::path&) { say("stopped; the same command goes on"); };
+  const Error stopped("stopped", run.experiment.id, "the same command again");
+  request.farewell = [&](const fs::path&) { say(std::string("error: ") + stopped.what()); };
   ExecuteResult result = execute(run.experiment, context.topics, request);
-  if (result.stopped) {
-    request.farewell(result.folder);
-    throw Stopped();
-  }
+  if (result.stopped) throw stopped;
   run.folder = result.folder;
   run.record = std::move(result.record);
   return run;

@@ -71,6 +71,10 @@ class CircleSearch {
                   chain_.back().file.string());
     }
     if (!sound_.insert(file).second) return;
+    if (chain_.size() == kLongestChain) {
+      throw Error("more runs wait for one another than can be made", file.string(),
+                  "at most " + std::to_string(kLongestChain) + " in a chain");
+    }
     chain_.push_back({experiment.id, file});
     for (const std::string& text : references_of(experiment, topic_of(experiment, topics_))) {
       visit(load_input(parse_run_reference(text), experiment, topics_));
@@ -79,6 +83,7 @@ class CircleSearch {
   }
 
  private:
+  static constexpr std::size_t kLongestChain = 100;
   struct Link {
     std::string id;
     fs::path file;

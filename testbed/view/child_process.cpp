@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include "core/error.h"
@@ -58,12 +59,16 @@ class Child {
 
   ChildResult result() {
     ChildResult result;
-    while (read_some(result.errors)) tell_of_stop();
-    int status = 0;
-    while (::waitpid(pid_, &status, 0) < 0) {
-      if (errno != EINTR) return {127, std::move(result.errors)};
+    bool is_writing = true;
+    while (is_writing || !exit_code_) {
+      is_writing = is_writing && read_some(result.errors);
+      if (!is_writing) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      tell_of_stop();
+      look_for_end();
+      // Programs that it started itself may keep its stream open.
+      if (told_ && exit_code_) break;
     }
-    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    result.exit_code = *exit_code_;
     return result;
   }
 
@@ -80,19 +85,30 @@ class Child {
     return n > 0 || (n < 0 && errno == EINTR);
   }
 
+  void look_for_end() {
+    if (exit_code_) return;
+    int status = 0;
+    const pid_t ended = ::waitpid(pid_, &status, WNOHANG);
+    if (ended == pid_) {
+      exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    } else if (ended < 0 && errno != EINTR) {
+      exit_code_ = 127;
+    }
+  }
+
   void tell_of_stop() {
     if (!stop_requested()) return;
     const auto now = std::chrono::steady_clock::now();
-    if (!told_) {
-      told_ = now;
-      ::kill(pid_, SIGTERM);
-    } else if (now - *told_ > kPatience) {
-      ::kill(pid_, SIGKILL);
-    }
+    const bool is_news = !told_;
+    if (is_news) told_ = now;
+    if (exit_code_) return;
+    if (is_news) ::kill(pid_, SIGTERM);
+    if (now - *told_ > kPatience) ::kill(pid_, SIGKILL);
   }
 
   pid_t pid_;
   int errors_;
+  std::optional<int> exit_code_;
   std::optional<std::chrono::steady_clock::time_point> told_;
 };
 

@@ -257,7 +257,7 @@ TEST_F(Stop, WhileDrawingTellsTheChildAndLeavesNoHalfFile) {
 }
 
 TEST_F(Stop, WhileThePicturesOfARunAreDrawnTheRunIsComplete) {
-  use_slow_python("");
+  use_slow_python("exec 2>&-  # waited for although it says nothing more");
   const auto file = circle();
   ToyProgram program({"run", file.string(), "--out", out().string()}, log());
   await(pid_file(), "\n");
@@ -360,6 +360,22 @@ TEST_F(SharedInput, IsNoLongerWaitedForAfterAStop) {
   EXPECT_EQ(stop(second), 2);
   EXPECT_THAT(text_of(log_of("second")), HasSubstr("stopped; go on with:"));
   EXPECT_EQ(first.wait(), 0);
+}
+
+TEST_F(Streams, ChainOfInputsHasALimit) {
+  constexpr int kFiles = 120;
+  const auto link = [&](int i) {
+    return write_experiment(
+        "toy-pendulum/link-" + std::to_string(i),
+        "title = \"l\"\ntopic = \"toy-pendulum\"\n[scene]\ninput = \"run:toy-pendulum/link-" +
+            std::to_string(i + 1) + "/v\"\n[[variant]]\nname = \"v\"\nmethod = \"closed-form\"\n");
+  };
+  for (int i = 1; i < kFiles; ++i) (void)link(i);
+  ToyProgram program(run_of(link(0)), log());
+  EXPECT_EQ(program.wait(), 2);
+  EXPECT_THAT(text_of(log()),
+              AllOf(HasSubstr("link-100.toml: more runs wait"), HasSubstr("at most 100")));
+  EXPECT_FALSE(fs::exists(out()));
 }
 
 TEST_F(Streams, CircleOfInputsWithOtherIdentifiersIsCalledACircle) {
