@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 
 #include "testbed/formats/atomic_file.h"
@@ -80,6 +81,19 @@ std::string printable(std::string_view text) {
     text.remove_prefix(next.size());
   }
   return out;
+}
+
+std::string from_printable(std::string_view text) {
+  std::string bytes;
+  while (!text.empty()) {
+    unsigned value = 0;
+    const char* digits = text.data() + 2;
+    const bool is_code = text.starts_with("\\x") && text.size() >= 4 &&
+                         std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2;
+    bytes += is_code ? static_cast<char>(value) : text.front();
+    text.remove_prefix(is_code ? 4 : 1);
+  }
+  return bytes;
 }
 
 void say(std::string_view line) {

@@ -22,4 +22,7 @@ void print_out(std::string_view text);
 /// become "\xNN". Line ends, tabs and the colours of `tinted` stay.
 std::string printable(std::string_view text);
 
+/// The bytes that `printable` made the text of, where they had no "\xNN" of their own.
+std::string from_printable(std::string_view text);
+
 }  // namespace geoprior

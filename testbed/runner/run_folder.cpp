@@ -16,6 +16,7 @@
 #include "testbed/runner/run_file.h"
 #include "testbed/runner/run_inputs.h"
 #include "testbed/runner/sha256.h"
+#include "testbed/streams.h"
 
 namespace geoprior {
 
@@ -109,13 +110,19 @@ fs::path folder_to_resume(const Experiment& experiment, const ExecuteRequest& re
   return folders.front();
 }
 
+/// The file that a run recorded under `input_name`.
+fs::path input_file(const std::string& name) {
+  const fs::path file = geoprior_home() / name;
+  return fs::exists(file) ? file : geoprior_home() / from_printable(name);
+}
+
 /// Whether every input file is what it was when the run read it. Runs that were inputs have their
 /// specification in the hash.
 bool has_unchanged_inputs(const fs::path& folder) {
   try {
     for (const StoredFile& input : read_run_file(folder / "run.h5").inputs) {
       if (is_run_reference(input.name)) continue;
-      if (sha256_of_file(geoprior_home() / input.name) != input.sha256) return false;
+      if (sha256_of_file(input_file(input.name)) != input.sha256) return false;
     }
     return true;
   } catch (const Error&) {
@@ -128,7 +135,8 @@ bool has_unchanged_inputs(const fs::path& folder) {
 std::string input_name(const fs::path& file) {
   const fs::path full = fs::weakly_canonical(file);
   const fs::path relative = full.lexically_relative(fs::weakly_canonical(geoprior_home()));
-  return relative.empty() || *relative.begin() == ".." ? full.string() : relative.string();
+  const bool is_outside = relative.empty() || *relative.begin() == "..";
+  return printable((is_outside ? full : relative).string());
 }
 
 fs::path runs_root() {

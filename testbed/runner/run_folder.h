@@ -24,7 +24,7 @@ std::string utc_now();
 std::filesystem::path open_run_folder(const Experiment& experiment, const ExecuteRequest& request);
 
 /// Name under which a run records an input file: relative to the clone where it lies inside, else
-/// absolute.
+/// absolute; `printable`, as it goes into JSON.
 std::string input_name(const std::filesystem::path& file);
 
 /// The newest run of an experiment with that `content_sha256`.

@@ -135,6 +135,12 @@ TEST_F(Streams, TextForPeopleIsPrintable) {
   EXPECT_EQ(printable("\033]0;title\007\033[2J"), "\\x1b]0;title\\x07\\x1b[2J");
 }
 
+TEST_F(Streams, PrintableTextGivesTheBytesBack) {
+  for (const std::string bytes : {"", "90°", "a\xff\xfe\x62", "\x07\xc2\x9b", "\\x", "\\xg1"}) {
+    EXPECT_EQ(from_printable(printable(bytes)), bytes);
+  }
+}
+
 TEST_F(Streams, NamesThatAreNoUtf8AreNamesLikeOthers) {
   const fs::path strange = folder() / "caf\xe9 \xff\xfe";
   fs::create_directories(strange);
