@@ -7,6 +7,7 @@ processes: the time of each frame by phase; studies.svg: slopes in log-log plots
 import argparse
 import io
 import math
+import warnings
 from pathlib import Path
 
 import matplotlib
@@ -26,6 +27,10 @@ MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
 METHOD_COLOR = "#D55E00"
 MOST_CASES = 6
 MOST_METRICS = 12
+MOST_VARIANTS = 24
+MOST_STUDIES = 24
+MOST_POINTS = 5000
+MOST_CHARACTERS = 80
 
 STYLE = {
     "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 9.5, "axes.titleweight": "bold",
@@ -37,16 +42,35 @@ STYLE = {
 }
 
 
+# A character that the font lacks is drawn as an empty box, which needs no further words.
+warnings.filterwarnings("ignore", message="Glyph .* missing from current font")
+
+
+def plain(text):
+    """The text as matplotlib shall set it: as it stands on one line, no mathematics between dollars,
+    and not longer than a panel."""
+    text = " ".join(text.split())
+    if len(text) > MOST_CHARACTERS:
+        text = text[:MOST_CHARACTERS - 1] + "…"
+    return text.replace("$", r"\$")
+
+
+def drawn_name(name):
+    return plain(display_name(name))
+
+
 def styles(run):
     """Colour, dash and marker of every variant: by its place in the experiment, the same in every
     panel. The thesis' methods are drawn in one warm colour first, above the baselines."""
     roles = {v.name: v.role for case in run.cases for v in case.variants}
     out = {}
     cool = [c for c in COLORS if c != METHOD_COLOR]
-    methods = [n for n in run.variant_names() if roles[n] == "method"]
-    for i, name in enumerate(run.variant_names()):
-        j = i - sum(1 for m in methods if run.variant_names().index(m) < i)
-        color = METHOD_COLOR if methods[:1] == [name] else cool[j % len(cool)]
+    names = run.variant_names()
+    methods = [n for n in names if roles[n] == "method"]
+    methods_before = 0
+    for i, name in enumerate(names):
+        color = METHOD_COLOR if methods[:1] == [name] else cool[(i - methods_before) % len(cool)]
+        methods_before += roles[name] == "method"
         out[name] = {"color": color, "linestyle": DASHES[(i // len(COLORS) + i) % len(DASHES)],
                      "marker": MARKERS[i % len(MARKERS)],
                      "zorder": 4 if roles[name] == "method" else 3}
@@ -111,13 +135,18 @@ def mark_every(count):
     return max(1, math.ceil(count / 12))
 
 
+def thinned(count):
+    """Every so many points that at most MOST_POINTS are drawn."""
+    return slice(None, None, max(1, math.ceil(count / MOST_POINTS)))
+
+
 def draw_metric(axes, case, name, names, look):
     curves = [(v, v.metrics[name]) for v in case.variants if name in v.metrics and v.name in names]
     curves = [(v, m) for v, m in curves if np.isfinite(m.values).any()]
     if not curves:
         axes.text(0.5, 0.5, "no values", ha="center", va="center", transform=axes.transAxes,
                   color="#888888")
-        axes.set_title(display_name(name))
+        axes.set_title(drawn_name(name))
         return
     unit = curves[0][1].unit
     size, symbol = scale_for(np.concatenate([m.values for _, m in curves]), unit)
@@ -126,8 +155,9 @@ def draw_metric(axes, case, name, names, look):
         style = dict(look[variant.name])
         if values.size == 1:
             style["linestyle"] = "none"
-        axes.plot(variant.parameter, values, label=display_name(variant.name),
-                  markevery=mark_every(values.size), markeredgewidth=0, **style)
+        few = thinned(values.size)
+        axes.plot(variant.parameter[few], values[few], label=drawn_name(variant.name),
+                  markevery=mark_every(values[few].size), markeredgewidth=0, **style)
     if not any(values[np.isfinite(values)].any() for values in scaled):
         # Nothing to scale an axis by: the zero, and room above it.
         axes.set_ylim(-0.1, 1)
@@ -145,16 +175,16 @@ def draw_metric(axes, case, name, names, look):
         axes.axhspan(0, floor, color="#d9d9d9", zorder=1, linewidth=0)
         axes.annotate("noise floor", (1, floor), xycoords=("axes fraction", "data"), ha="right",
                       va="bottom", fontsize=7, color="#777777")
-    axes.set_title(labelled(display_name(name), symbol))
+    axes.set_title(labelled(drawn_name(name), plain(symbol)))
 
 
 def parameter_label(case):
-    return labelled(display_name(case.parameter_name), unit_symbol(case.parameter_unit))
+    return labelled(drawn_name(case.parameter_name), plain(unit_symbol(case.parameter_unit)))
 
 
 def variants_shown(run):
     wanted = run.view.get("variants", [])
-    return [n for n in run.variant_names() if not wanted or n in wanted]
+    return [n for n in run.variant_names() if not wanted or n in wanted][:MOST_VARIANTS]
 
 
 def add_legend(figure, all_axes, names, height):
@@ -163,7 +193,7 @@ def add_legend(figure, all_axes, names, height):
     for axes in all_axes:
         for handle, label in zip(*axes.get_legend_handles_labels()):
             found.setdefault(label, handle)
-    labels = [display_name(n) for n in names]
+    labels = [drawn_name(n) for n in names]
     handles = {label: found[label] for label in labels if label in found}
     if len(handles) > 0:
         figure.legend(handles.values(), handles.keys(), loc="upper left", fontsize=9,
@@ -191,7 +221,7 @@ def curves_figure(run):
     for axes, (case, metric) in zip(flat, panels):
         draw_metric(axes, case, metric, names, look)
         if many:
-            axes.set_title(f"{axes.get_title(loc='left')}\n{case.name}", fontsize=8)
+            axes.set_title(f"{axes.get_title(loc='left')}\n{plain(case.name)}", fontsize=8)
     for i, axes in enumerate(flat):
         if i >= len(panels):
             axes.set_visible(False)
@@ -232,22 +262,24 @@ def largest_phases(variant):
 def draw_phases(axes, variant, look, order):
     """A phase has the same colour in every panel: its place in `order`."""
     whole = frame_times(variant.timing["run"])
-    axes.plot(variant.parameter, whole, color="#222222", linewidth=1.6, label="whole frame")
+    few = thinned(whole.size)
+    axes.plot(variant.parameter[few], whole[few], color="#222222", linewidth=1.6, label="whole frame")
     for phase, ms in largest_phases(variant).items():
         i = order.index(phase)
         # Dots show a phase that some frames enter alone.
         dots = {"marker": ".", "markersize": 3} if np.isnan(ms[1:]).any() else {}
-        axes.plot(variant.parameter, ms, color=COLORS[i % (len(COLORS) - 1)], linewidth=1.0,
-                  linestyle="-" if i < len(COLORS) - 1 else ":", label=display_name(phase), **dots)
-    axes.set_title(display_name(variant.name), color=look[variant.name]["color"])
+        axes.plot(variant.parameter[few], ms[few], color=COLORS[i % (len(COLORS) - 1)], linewidth=1.0,
+                  linestyle="-" if i < len(COLORS) - 1 else ":", label=drawn_name(phase), **dots)
+    axes.set_title(drawn_name(variant.name), color=look[variant.name]["color"])
     axes.legend(loc="best", fontsize=6.5, handlelength=2.2, labelspacing=0.25)
 
 
 def draw_whole_frames(axes, variants, look):
     for variant in variants:
         style = {k: v for k, v in look[variant.name].items() if k in ("color", "zorder")}
-        axes.plot(variant.parameter, frame_times(variant.timing["run"]),
-                  label=display_name(variant.name), **style)
+        few = thinned(variant.parameter.size)
+        axes.plot(variant.parameter[few], frame_times(variant.timing["run"])[few],
+                  label=drawn_name(variant.name), **style)
     axes.set_title("Whole frames")
     axes.legend(loc="best", fontsize=7, handlelength=2.6)
 
@@ -294,7 +326,7 @@ def times_figure(run):
 
 def studies_with_points(run):
     return [s for s in run.studies if s.x.size > 1
-            and (s.kind in ("exponent", "order") or s.y_of.size > 1)]
+            and (s.kind in ("exponent", "order") or s.y_of.size > 1)][:MOST_STUDIES]
 
 
 def draw_spreads(axes, study):
@@ -308,9 +340,9 @@ def draw_spreads(axes, study):
                     zorder=4)
     axes.set_xlim(-0.6, 1.6)
     axes.set_xticks([0, 1], ["variant", "yardstick"])
-    axes.set_title(display_name(study.name))
+    axes.set_title(drawn_name(study.name))
     axes.set_xlabel(f"distance over half range {interval(study.value, study.low, study.high)}")
-    axes.set_ylabel(display_name(study.quantity.removeprefix("timing:")))
+    axes.set_ylabel(drawn_name(study.quantity.removeprefix("timing:")))
 
 
 def draw_study(axes, study):
@@ -328,8 +360,8 @@ def draw_study(axes, study):
                     label=f"slope {interval(study.value, study.low, study.high)}")
         axes.legend(loc="best", fontsize=8)
     name = study.quantity.removeprefix("timing:")
-    axes.set_title(display_name(study.name))
-    axes.set_ylabel(labelled(f"{display_name(name)} time" if is_time else display_name(name),
+    axes.set_title(drawn_name(study.name))
+    axes.set_ylabel(labelled(f"{drawn_name(name)} time" if is_time else drawn_name(name),
                              symbol))
     axes.grid(True, which="both")
 

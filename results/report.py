@@ -9,7 +9,7 @@ from pathlib import Path
 
 import report_parts as parts
 import runfile
-from report_html import escape, page
+from report_html import MOST_RUNS, escape, left_out, page
 from wording import display_name
 
 
@@ -52,10 +52,12 @@ def comparison(runs):
     return "\n".join(blocks)
 
 
-def build(runs):
+def build(runs, more=0):
+    """The page; `more` runs were asked for than it can hold."""
     if len(runs) == 1:
         return page(runs[0].title, run_section(runs[0], "run-0", True))
-    body = ["<h1>Report of " + str(len(runs)) + " runs</h1>", contents(runs), comparison(runs)]
+    body = ["<h1>Report of " + str(len(runs)) + " runs</h1>", contents(runs),
+            left_out(more, "runs were asked for; their numbers are"), comparison(runs)]
     body += [run_section(run, f"run-{i}", False) for i, run in enumerate(runs)]
     return page("geoprior report", "\n".join(b for b in body if b))
 
@@ -76,9 +78,9 @@ def main(arguments):
                         " results/runs/report.html for several runs")
     runfile.add_force(parser)
     options = parser.parse_args(arguments)
-    runs = [runfile.read_run(place, options.force) for place in options.runs]
+    runs = [runfile.read_run(place, options.force) for place in options.runs[:MOST_RUNS]]
     target = target_of(runs, options.out)
-    runfile.write_atomically(target, build(runs))
+    runfile.write_atomically(target, build(runs, len(options.runs) - len(runs)))
     if not options.out:
         print(target)
     return 0

@@ -5,10 +5,28 @@ import html
 from pathlib import Path
 
 import runfile
+from wording import printable
+
+# What a page holds at most: what is beyond stays in run.h5, and the page says so where it was cut.
+MOST_CHARACTERS = 2000        # of a text
+MOST_LONG_CHARACTERS = 200_000  # of a whole experiment, of the options of a variant
+MOST_ROWS = 500
+MOST_COLUMNS = 64
+MOST_CASES = 100
+MOST_RUNS = 100
+MOST_PICTURE_BYTES = 50_000_000
 
 
-def escape(text):
-    return html.escape(str(text))
+def escape(text, most=MOST_CHARACTERS):
+    """The text as HTML, cut where it is longer than `most` characters."""
+    text = str(text)
+    more = f" … ({len(text) - most} more characters in run.h5)" if len(text) > most else ""
+    return html.escape(printable(text[:most]) + more)
+
+
+def left_out(count, what):
+    """A line that says what the page does not hold; nothing when it holds all."""
+    return f'<p class="note">{count} more {what} in run.h5.</p>' if count > 0 else ""
 
 
 def page(title, body):
@@ -22,12 +40,15 @@ def page(title, body):
 def table(head, rows, classes=()):
     """A table that scrolls when it is wide. Cells are HTML; `classes` name one class a column."""
     def cells(tag, row):
+        row = row[:MOST_COLUMNS]
         names = list(classes) + [""] * (len(row) - len(classes))
         return "".join(f'<{tag} class="{c}">{x}</{tag}>' if c else f"<{tag}>{x}</{tag}>"
                        for x, c in zip(row, names))
     header = f"<thead><tr>{cells('th', head)}</tr></thead>" if head else ""
-    lines = "\n".join(f"<tr>{cells('td', row)}</tr>" for row in rows)
-    return f'<div class="scroll"><table>{header}<tbody>\n{lines}\n</tbody></table></div>'
+    lines = "\n".join(f"<tr>{cells('td', row)}</tr>" for row in rows[:MOST_ROWS])
+    width = max((len(row) for row in [head, *rows]), default=0)
+    return (f'<div class="scroll"><table>{header}<tbody>\n{lines}\n</tbody></table></div>'
+            + left_out(len(rows) - MOST_ROWS, "rows") + left_out(width - MOST_COLUMNS, "columns"))
 
 
 def details(summary, content, is_open=False):
@@ -48,7 +69,11 @@ def png_figure(path, alt, caption):
     """An inlined PNG; nothing when the run has none. A link is not followed: it may lead out of the run."""
     if path.is_symlink():
         raise runfile.RunFileError(f"{path}: is a symbolic link: below a run none is followed")
+    runfile.require_regular_file(path)
     try:
+        if path.stat().st_size > MOST_PICTURE_BYTES:
+            return (f'<p class="note">{escape(path.name)} has more than '
+                    f"{MOST_PICTURE_BYTES // 1_000_000} MB: it is in the run's folder.</p>")
         content = path.read_bytes()
     except FileNotFoundError:
         return ""

@@ -5,7 +5,8 @@ import json
 import numpy as np
 
 import plots
-from report_html import details, escape, png_figure, svg_figure, table
+from report_html import (MOST_CASES, MOST_LONG_CHARACTERS, MOST_ROWS, details, escape, left_out,
+                         png_figure, svg_figure, table)
 from tables import event_counts, failures, metric_rows, phase_rows, timing_rows
 from wording import beside, display_name, interval, labelled, number, unit_symbol, with_unit
 
@@ -22,6 +23,15 @@ def meta_line(run):
     return f'<p class="meta">{" · ".join(bits)}</p>'
 
 
+def page_cases(run):
+    """The cases that the page speaks of."""
+    return run.cases[:MOST_CASES]
+
+
+def cases_left_out(run):
+    return left_out(len(run.cases) - MOST_CASES, "cases")
+
+
 def case_heading(run, case):
     return f"<h3>{escape(case.name)}</h3>" if len(run.cases) > 1 else ""
 
@@ -31,7 +41,7 @@ def claims(run):
         return ""
     held = sum(c.holds for c in run.claims)
     items = []
-    for claim in run.claims:
+    for claim in run.claims[:MOST_ROWS]:
         badge = '<span class="badge good">✓ holds</span>' if claim.holds \
             else '<span class="badge bad">✗ falls short</span>'
         case = f' <span class="note">({escape(claim.case)})</span>' if claim.case and len(run.cases) > 1 else ""
@@ -39,7 +49,8 @@ def claims(run):
         items.append(f"<li><div>{badge}</div><div>{escape(claim.text)}{case}<br>"
                      f"<code>{escape(claim.detail)}</code>{notes}</div></li>")
     return (f"<h2>Claims: {held} of {len(run.claims)} hold</h2>\n"
-            f'<ul class="claims">{"".join(items)}</ul>')
+            f'<ul class="claims">{"".join(items)}</ul>'
+            + left_out(len(run.claims) - MOST_ROWS, "claims"))
 
 
 def picture(run):
@@ -50,6 +61,16 @@ def picture(run):
     return f"<h2>Picture</h2>\n{image}" if image else ""
 
 
+def not_drawn(run):
+    """How many cases and variants the curves leave out, and whether they leave out points."""
+    counts = {"further cases": len(run.cases) - len(plots.shown_cases(run)),
+              "further variants": len(run.variant_names()) - plots.MOST_VARIANTS}
+    texts = [f" {count} {what} are in run.h5." for what, count in counts.items() if count > 0]
+    if any(v.parameter.size > plots.MOST_POINTS for c in plots.shown_cases(run) for v in c.variants):
+        texts.append(f" Of longer curves at most {plots.MOST_POINTS} points are drawn.")
+    return "".join(texts)
+
+
 def curves(run):
     with plots.plt.rc_context(plots.STYLE):
         drawn = plots.curves_figure(run)
@@ -58,9 +79,7 @@ def curves(run):
         svg = plots.to_svg(drawn)
     case = run.cases[0]
     names = ", ".join(display_name(m).lower() for m in plots.frame_metrics(run))
-    left_out = len(run.cases) - len(plots.shown_cases(run))
-    more = f" {left_out} further cases are in run.h5." if left_out > 0 else ""
-    caption = f"Metrics over {escape(case.parameter_name)}; one line a variant.{more}"
+    caption = f"Metrics over {escape(case.parameter_name)}; one line a variant." + not_drawn(run)
     return "<h2>Metrics over the frames</h2>\n" + svg_figure(svg, f"Curves of {names}", caption)
 
 
@@ -77,7 +96,7 @@ def marked(row):
 
 def metrics(run):
     blocks, rows = [], []
-    for case in run.cases:
+    for case in page_cases(run):
         rows = metric_rows(case)
         if not rows:
             continue
@@ -88,7 +107,7 @@ def metrics(run):
         return ""
     note = '<p class="note">Worst value over the frames where a metric has a better side; the best ' \
         "variant of a line is <b>bold</b>.</p>"
-    return "\n".join(["<h2>Metrics</h2>", note, *blocks, definitions(rows)])
+    return "\n".join(["<h2>Metrics</h2>", note, *blocks, cases_left_out(run), definitions(rows)])
 
 
 def ratio_text(row):
@@ -116,7 +135,7 @@ def times_over_frames(run):
 
 def timing(run):
     blocks = []
-    for case in run.cases:
+    for case in page_cases(run):
         rows = timing_rows(case)
         if not rows:
             continue
@@ -142,7 +161,7 @@ def timing(run):
         f'{", ".join("all" if t == 0 else str(t) for t in sorted(threads))}. Methods interleaved, ' \
         "recording excluded; a ratio is the median of paired ratios. Peak memory is that of one run " \
         "on top of what was resident before it, recording and measuring included.</p>"
-    return "\n".join(["<h2>Times</h2>", note, times_over_frames(run), *blocks])
+    return "\n".join(["<h2>Times</h2>", note, times_over_frames(run), *blocks, cases_left_out(run)])
 
 
 def studies(run):
@@ -153,7 +172,9 @@ def studies(run):
         image = "" if drawn is None else svg_figure(
             plots.to_svg(drawn), "Plots of the studies",
             "Slopes: both axes logarithmic, the line has the fitted slope. Spreads: one dot a case, "
-            "medians as bars, the range of the variant compared with in grey.")
+            "medians as bars, the range of the variant compared with in grey."
+            + (f" Drawn are at most {plots.MOST_STUDIES} studies."
+               if len(run.studies) > plots.MOST_STUDIES else ""))
     rows = [[escape(display_name(s.name)), escape(s.kind), f"<code>{escape(s.quantity)}</code>",
              interval(s.value, s.low, s.high)] for s in run.studies]
     head = ["Study", "Kind", "Quantity", "Value [95 % interval]"]
@@ -162,7 +183,7 @@ def studies(run):
 
 def diagnostics(run):
     blocks = []
-    for case in run.cases:
+    for case in page_cases(run):
         rows = []
         for variant in case.variants:
             for name, diagnostic in variant.diagnostics.items():
@@ -182,7 +203,7 @@ def diagnostics(run):
 
 def events(run):
     rows = [[escape(case.name), escape(display_name(v.name)), escape(kind), number(float(count))]
-            for case in run.cases for v in case.variants
+            for case in page_cases(run) for v in case.variants
             for kind, count in event_counts(v).items()]
     if not rows:
         return ""
@@ -190,9 +211,10 @@ def events(run):
 
 
 def warnings(run):
-    found = dict.fromkeys(w for case in run.cases for w in case.warnings)
-    lines = "".join(f'<p class="warning">{escape(w)}</p>' for w in [*failures(run), *found])
-    return f"<h2>Warnings</h2>\n{lines}" if lines else ""
+    found = [*failures(run), *dict.fromkeys(w for case in run.cases for w in case.warnings)]
+    lines = "".join(f'<p class="warning">{escape(w)}</p>' for w in found[:MOST_ROWS])
+    more = left_out(len(found) - MOST_ROWS, "warnings")
+    return f"<h2>Warnings</h2>\n{lines}{more}" if lines else ""
 
 
 def rerun(run):
@@ -214,15 +236,16 @@ def facts(run):
 
 def options(run):
     seen, rows = set(), []
-    for case in run.cases:
+    for case in page_cases(run):
         for v in case.variants:
             text = json.dumps(v.options, indent=1, ensure_ascii=False)
             if (v.name, text) not in seen:
                 seen.add((v.name, text))
                 rows.append(f"<h3>{escape(display_name(v.name))} "
                             f'<span class="note">{escape(v.method)}, {escape(v.role)}</span></h3>'
-                            f"<pre>{escape(text)}</pre>")
-    return details("Options of every variant", "\n".join(rows)) if rows else ""
+                            f"<pre>{escape(text, MOST_LONG_CHARACTERS)}</pre>")
+    more = left_out(len(rows) - MOST_ROWS, "variants")
+    return details("Options of every variant", "\n".join([*rows[:MOST_ROWS], more])) if rows else ""
 
 
 def provenance(run):
@@ -233,7 +256,7 @@ def provenance(run):
     return "\n".join(b for b in [
         "<h2>Provenance</h2>", inputs, facts(run), options(run),
         details("Program and machine", table([], rows, ["text", "text wrap"])),
-        details("The experiment as it ran", f"<pre>{escape(run.experiment)}</pre>")] if b)
+        details("The experiment as it ran", f"<pre>{escape(run.experiment, MOST_LONG_CHARACTERS)}</pre>")] if b)
 
 
 def comparison_table(name, runs):

@@ -2,14 +2,19 @@
 
 import hashlib
 import json
+import os
+import signal
 import sys
 import tomllib
+import traceback
 from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import unquote
 
 import h5py
 import numpy as np
+
+from wording import printable
 
 SCHEMA_VERSION = 3  # and what came before it
 JOURNAL_TAIL = 4096  # more than its last line has
@@ -141,7 +146,8 @@ ROOT_TEXTS = ("experiment_id", "title", "figure", "topic", "experiment", "spec_h
 
 
 def text(value):
-    return value.decode("utf-8") if isinstance(value, bytes) else str(value)
+    return printable(value.decode("utf-8", "surrogateescape") if isinstance(value, bytes)
+                     else str(value))
 
 
 def read_json(value):
@@ -152,9 +158,13 @@ def read_json(value):
         return {"text": value}
 
 
+def decoded(name):
+    return printable(unquote(name))
+
+
 def by_index(group):
     """Members of a group in the order of their `index` attribute, with their decoded names."""
-    members = [(unquote(name), group[name]) for name in group]
+    members = [(decoded(name), group[name]) for name in group]
     return sorted(members, key=lambda m: (int(m[1].attrs.get("index", 0)), m[0]))
 
 
@@ -163,7 +173,7 @@ def read_metrics(group):
     for name in group:
         data = group[name]
         values = data[()]
-        out[unquote(name)] = Metric(float(values) if np.ndim(values) == 0 else values,
+        out[decoded(name)] = Metric(float(values) if np.ndim(values) == 0 else values,
                                     text(data.attrs["unit"]), text(data.attrs["definition"]),
                                     text(data.attrs["direction"]))
     return out
@@ -182,8 +192,8 @@ def read_variant(name, group):
         reference=text(attrs.get("reference", "")), options=read_json(attrs["options"]),
         status=text(attrs["status"]), error=text(attrs.get("error", "")), parameter=group["parameter"][()],
         metrics=read_metrics(group["metrics"]), summary=read_metrics(group["summary"]),
-        diagnostics={unquote(n): read_diagnostic(d) for n, d in group["diagnostics"].items()},
-        timing={unquote(n): np.atleast_2d(group["timing"][n][()]) for n in group["timing"]},
+        diagnostics={decoded(n): read_diagnostic(d) for n, d in group["diagnostics"].items()},
+        timing={decoded(n): np.atleast_2d(group["timing"][n][()]) for n in group["timing"]},
         memory=float(attrs.get("memory_peak", np.nan)) - float(attrs.get("memory_start", np.nan)),
         events=group["events"][()],
         frames=[(int(f["frame"]), text(f["name"]), text(f["sha256"])) for f in group["frames"][()]],
@@ -198,8 +208,8 @@ def read_case(name, group):
         parameter_unit=text(attrs["parameter_unit"]), seed=int(attrs["seed"]),
         threads=int(attrs["threads"]), scene=read_json(attrs["scene"]),
         warnings=[text(w) for w in np.atleast_1d(attrs["warnings"])],
-        swept={unquote(k): read_json(v) for k, v in group["swept"].attrs.items()},
-        facts={unquote(k): float(v) for k, v in group["facts"].attrs.items()},
+        swept={decoded(k): read_json(v) for k, v in group["swept"].attrs.items()},
+        facts={decoded(k): float(v) for k, v in group["facts"].attrs.items()},
         variants=[v for v in variants if v.role != "null"],
         nulls=[v for v in variants if v.role == "null"],
         ratios=[Ratio(text(r["variant"]), text(r["of"]), float(r["median_ratio"]),
@@ -221,7 +231,7 @@ def read_root(folder, file):
     run = Run(
         folder=folder, quick=bool(attrs["quick"]),
         **{name: text(attrs[name]) for name in ROOT_TEXTS},
-        provenance={unquote(k): text(v) for k, v in sorted(attrs.items()) if k not in known},
+        provenance={decoded(k): text(v) for k, v in sorted(attrs.items()) if k not in known},
         inputs=[(text(i["name"]), text(i["sha256"])) for i in file["inputs"][()]],
         cases=[read_case(n, g) for n, g in by_index(file["cases"])
                if not g.attrs.get("claims_only", 0)],
@@ -308,11 +318,27 @@ def write_atomically(path, content):
     try:
         temporary.unlink(missing_ok=True)
         with temporary.open("xb") as file:
-            file.write(content if isinstance(content, bytes) else content.encode("utf-8"))
+            file.write(content if isinstance(content, bytes) else content.encode("utf-8", errors="backslashreplace"))
         temporary.replace(path)
     except OSError as error:
-        temporary.unlink(missing_ok=True)
         raise RunFileError(f"{path}: cannot be written ({error.strerror or error})") from error
+    finally:  # also when a signal ends the script
+        temporary.unlink(missing_ok=True)
+
+
+def require_regular_file(path):
+    """Refuses pipes and devices, which may never end. A file that is not there is no concern of it."""
+    if os.path.lexists(path) and not Path(path).is_file():
+        raise RunFileError(f"{path}: is no file (allowed: a file, or a link to one)")
+
+
+def defect_line(error):
+    """One line of what broke a script that should have refused its input: on which files, where."""
+    place = traceback.extract_tb(error.__traceback__)[-1]
+    reason = " ".join(str(error).split())
+    files = ", ".join(a for a in sys.argv[1:] if not a.startswith("-"))
+    return (f"{files}: cannot be shown ({type(error).__name__}{': ' if reason else ''}{reason}, at "
+            f"{Path(place.filename).name}:{place.lineno}; GEOPRIOR_DEBUG=1 shows the whole trace)")
 
 
 def add_force(parser):
@@ -321,9 +347,18 @@ def add_force(parser):
 
 
 def run_main(main):
-    """Runs a script's main: one line on stderr and exit code 2 for what the user can mend."""
+    """Runs a script's main: one line on stderr and exit code 2 for whatever breaks it, and no file
+    left half-written by a signal."""
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
+    sys.stdout.reconfigure(errors="backslashreplace")
     try:
         sys.exit(main(sys.argv[1:]))
     except RunFileError as error:
-        print(error, file=sys.stderr)
-        sys.exit(2)
+        print(printable(str(error)), file=sys.stderr)
+    except KeyboardInterrupt:
+        sys.exit(128 + signal.SIGINT)
+    except Exception as error:
+        if os.environ.get("GEOPRIOR_DEBUG"):
+            raise
+        print(printable(defect_line(error)), file=sys.stderr)
+    sys.exit(2)

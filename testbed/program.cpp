@@ -4,12 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <iostream>
+#include <sstream>
 
 #include "core/error.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
 #include "testbed/runner/build_info.h"
+#include "testbed/runner/stop.h"
+#include "testbed/streams.h"
 
 namespace geoprior {
 namespace {
@@ -167,20 +169,37 @@ int fail(const char* kind, const std::string& what, int code) {
   return code;
 }
 
+/// --help and --version go to stdout, what is wrong with the arguments to stderr.
+int end_of_parsing(const CommandLine& line, const CLI::ParseError& error) {
+  std::ostringstream out, err;
+  const bool asked_for = line.app.exit(error, out, err) == 0;
+  print_out(out.str());
+  std::string problem = err.str();
+  while (problem.ends_with('\n')) problem.pop_back();
+  if (!problem.empty()) say(problem);
+  return asked_for ? done : wrong_use;
+}
+
 }  // namespace
 
 int run_program(int argc, const char* const* argv, const std::vector<Topic>& topics) {
-  // A file size limit (ulimit -f) shall be an error of the write that hits it, not a death.
+  reserve_standard_streams();
+  // A file size limit (ulimit -f) and a pipe that nobody reads shall be errors of the write that
+  // meets them, not deaths.
   ::signal(SIGXFSZ, SIG_IGN);
+  ::signal(SIGPIPE, SIG_IGN);
   try {
     CommandLine line;
     build(line);
     try {
       line.app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-      return line.app.exit(error, std::cout, std::cerr) == 0 ? done : wrong_use;
+      return end_of_parsing(line, error);
     }
     return dispatch(line, topics);
+  } catch (const Stopped&) {
+    say("stopped");
+    return wrong_use;
   } catch (const Error& error) {
     return fail("error: ", error.what(), wrong_use);
   } catch (const std::filesystem::filesystem_error& error) {

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "experiments/fluid/feature_files.h"
+#include "testbed/formats/input_file.h"
 
 namespace geoprior::fluid {
 namespace {
@@ -87,8 +88,9 @@ std::vector<std::byte> encode(const oiio::ImageSpec& spec, const std::vector<flo
 /// One picture on its way into a feature.
 class Picture {
  public:
-  explicit Picture(const std::filesystem::path& file)
-      : name_(file.string()), input_(oiio::ImageInput::open(name_)) {
+  explicit Picture(const std::filesystem::path& file) : name_(file.string()) {
+    require_regular_file(file);
+    input_ = oiio::ImageInput::open(name_);
     if (!input_) throw Error("is no readable picture: " + oiio::geterror(), name_);
     if (input_->spec().width != input_->spec().height) throw Error("is not square", name_);
     for (const char* channel : kChannels) {

@@ -58,8 +58,10 @@ BlessedRun run_without_clock(const CommandContext& context, Experiment experimen
   request.only_declared = true;
   request.resume = find_unfinished_run(run.experiment).has_value();
   request.show_progress = isatty(STDERR_FILENO) == 1;
+  const Error stopped("stopped", run.experiment.id, "the same command again");
+  request.farewell = [&](const fs::path&) { say(std::string("error: ") + stopped.what()); };
   ExecuteResult result = execute(run.experiment, context.topics, request);
-  if (result.stopped) throw Error("stopped", run.experiment.id, "the same command again");
+  if (result.stopped) throw stopped;
   run.folder = result.folder;
   run.record = std::move(result.record);
   return run;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "testbed/formats/input_file.h"
 #include "testbed/home.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/toml_tree.h"
@@ -45,6 +46,7 @@ std::vector<CatalogueEntry> catalogue() {
 
 fs::path experiment_file(const std::string& id_or_file) {
   if (fs::is_regular_file(id_or_file)) return id_or_file;
+  if (fs::exists(id_or_file) && !fs::is_directory(id_or_file)) require_regular_file(id_or_file);
   const fs::path file = geoprior_home() / "experiments" / (id_or_file + ".toml");
   if (fs::is_regular_file(file)) return file;
   std::vector<std::string> ids;

@@ -166,6 +166,7 @@ int check_command(const CommandContext& context, const CheckRequest& request) {
   Json json = Json::array();
   bool passed = true;
   for (const std::string& id : ids) {
+    throw_if_stopped();
     const Verdict verdict = check_one(context, id, request);
     say_verdict(verdict, request.quick);
     json.push_back(verdict_json(verdict));

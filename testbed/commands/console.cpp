@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <iostream>
 #include <nlohmann/json.hpp>
 
 namespace geoprior {
@@ -24,8 +23,6 @@ std::size_t width(const std::string& text) {
 }
 
 }  // namespace
-
-void say(const std::string& line) { std::cerr << line << '\n'; }
 
 std::string tinted(const std::string& text, Tint tint) {
   if (!on_terminal()) return text;
@@ -53,8 +50,7 @@ void say_table(const std::vector<std::vector<std::string>>& rows, const std::str
 }
 
 void print_json(const nlohmann::ordered_json& json) {
-  std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n'
-            << std::flush;
+  print_out(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
 }
 
 nlohmann::ordered_json json_number(double x) {

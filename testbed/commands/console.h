@@ -4,11 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "testbed/streams.h"
+
 namespace geoprior {
 
-/// Words for people go to stderr, coloured on a terminal only; JSON for programs goes to stdout.
-
-void say(const std::string& line = {});
+/// Words for people go to stderr (`say`), coloured on a terminal only; JSON for programs goes to
+/// stdout.
 
 enum class Tint { good, bad, strong, faint };
 /// The text in a colour when stderr is a terminal (and NO_COLOR is not set).

@@ -1,4 +1,3 @@
-#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -195,7 +194,7 @@ int describe_command(const CommandContext& context, const std::string& name, boo
   }
   for (const Described& described : found) {
     if (markdown) {
-      std::cout << "### " << described.title << "\n\n" << markdown_table(described.options) << "\n";
+      print_out("### " + described.title + "\n\n" + markdown_table(described.options) + "\n");
     } else {
       say_described(described);
     }

@@ -16,11 +16,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Quotes of bash in which every byte can be written as something that a terminal shows.
+std::string ansi_c_word(const std::string& word) {
+  std::string escaped;
+  for (const char c : word) escaped += (c == '\'' || c == '\\' ? "\\" : "") + std::string(1, c);
+  return "$'" + printable(escaped) + "'";
+}
+
 /// A word as a shell reads it back: in quotes unless it is plain.
 std::string shell_word(const std::string& word) {
   const std::string plain =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./:,@%";
   if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  if (printable(word) != word) return ansi_c_word(word);
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
@@ -40,12 +48,11 @@ std::string resume_command(const RunRequest& request, const fs::path& folder) {
   return command + " --out " + shell_word(folder.string()) + " --resume";
 }
 
-int report_stop(const CommandContext& context, const RunRequest& request,
-                const ExecuteResult& result) {
-  const std::string command = resume_command(request, result.folder);
+int report_stop(const CommandContext& context, const RunRequest& request, const fs::path& folder) {
+  const std::string command = resume_command(request, folder);
   say("stopped; go on with:  " + command);
   if (context.json) {
-    print_json({{"stopped", true}, {"run", result.folder.string()}, {"resume", command}});
+    print_json({{"stopped", true}, {"run", folder.string()}, {"resume", command}});
   }
   return wrong_use;
 }
@@ -77,13 +84,18 @@ int run_command(const CommandContext& context, const RunRequest& request) {
   if (request.out) execution.out = *request.out;
   execution.resume = request.resume;
   execution.show_progress = isatty(STDERR_FILENO) == 1;
+  execution.farewell = [&](const fs::path& folder) { report_stop(context, request, folder); };
   say(tinted(experiment.id, Tint::strong) + (experiment.quick ? " (quick)" : "") + "  " +
       experiment.title);
   const ExecuteResult result = execute(experiment, context.topics, execution);
-  if (result.stopped) return report_stop(context, request, result);
+  if (result.stopped) return report_stop(context, request, result.folder);
 
   Pictures pictures;
-  if (request.pictures) pictures = make_pictures(result.folder, experiment.view);
+  try {
+    if (request.pictures) pictures = make_pictures(result.folder, experiment.view);
+  } catch (const Stopped&) {
+    return report_stop(context, request, result.folder);
+  }
   say_outcome(result, pictures, request.table || !pictures.summary);
   if (context.json) {
     nlohmann::ordered_json json = outcome_json(result.record, result.folder);

@@ -33,6 +33,7 @@ std::vector<std::vector<std::string>> overview(const std::vector<fs::path>& fold
                                                Unverified unverified) {
   std::vector<std::vector<std::string>> rows{{"experiment", "claims", "picture"}};
   for (const fs::path& folder : folders) {
+    throw_if_stopped();
     const OpenedRun run(folder, unverified);
     const fs::path figure = folder / "figure.png";
     rows.push_back({run.record().experiment_id, claim_count_text(count_claims(run.record())),
@@ -44,6 +45,7 @@ std::vector<std::vector<std::string>> overview(const std::vector<fs::path>& fold
 }  // namespace
 
 int render_command(const CommandContext& context, const RenderRequest& request) {
+  install_stop_handler();
   const fs::path folder = run_folder_of(request.run);
   const OpenedRun run(folder, request.unverified);
   render_run(run, view_of(run, request.view, context.topics));
@@ -79,6 +81,7 @@ int video_command(const CommandContext& context, const VideoRequest& request) {
 }
 
 int report_command(const CommandContext& context, const ReportRequest& request) {
+  install_stop_handler();
   std::vector<fs::path> folders;
   for (const std::string& run : request.runs) folders.push_back(run_folder_of(run));
   if (request.runs.empty()) {
@@ -107,6 +110,7 @@ int report_command(const CommandContext& context, const ReportRequest& request) 
 }
 
 int export_command(const CommandContext& context, const ExportRequest& request) {
+  install_stop_handler();
   const fs::path folder = run_folder_of(request.run);
   const fs::path out =
       request.out ? fs::path(*request.out) : path_below(folder, "export-" + request.format);

@@ -4,12 +4,12 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <fstream>
 #include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "core/error.h"
+#include "testbed/formats/input_file.h"
 
 namespace geoprior {
 
@@ -124,10 +124,7 @@ bool is_temporary_file(const fs::path& file) {
 }
 
 std::string read_whole_file(const fs::path& file) {
-  std::error_code code;
-  if (fs::is_directory(file, code)) throw Error("is a folder", file.string(), "a file");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error("cannot be read: " + system_reason(errno), file.string());
+  std::ifstream in = open_input_file(file);
   std::ostringstream text;
   text << in.rdbuf();
   if (in.bad()) throw Error("cannot be read: " + system_reason(errno), file.string());

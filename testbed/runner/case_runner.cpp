@@ -133,6 +133,7 @@ CaseRunner::CaseRunner(const Experiment& experiment, const CaseSpec& spec, const
 void CaseRunner::load(const OptionSet& options, std::vector<StoredFile> inputs) {
   const auto begin = std::chrono::steady_clock::now();
   try {
+    const LeaveAtOnce section(farewell_);
     scene_ = topic_.load(options, experiment_.file.parent_path(), spec_.seed);
   } catch (const Error& error) {
     const std::string place = place_of_scene_key(spec_.scene_places, error.what());
@@ -174,6 +175,7 @@ MethodEntry::Instance& CaseRunner::prepare(const VariantSpec& variant, bool log)
   const MethodEntry& entry = method_of(topic_, variant.method);
   std::optional<MethodEntry::Instance> instance;
   {
+    const LeaveAtOnce section(farewell_);
     const Phase phase(context, "prepare");
     instance = entry.make(*scene_, *variant.options, context);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -32,6 +33,8 @@ class CaseRunner {
   bool run(const OptionSet& options, std::vector<StoredFile> inputs, bool timing);
   /// Makes a diagnostic that the topic's table lacks an error.
   void require_declared_diagnostics() { only_declared_ = true; }
+  /// Lets a stop request end the program while the scene is loaded or a method prepared.
+  void leave_at_once_after(std::function<void()> farewell) { farewell_ = std::move(farewell); }
 
  private:
   [[nodiscard]] journal::Place place(const VariantSpec& variant) const {
@@ -63,6 +66,7 @@ class CaseRunner {
   std::shared_ptr<Scene> scene_;
   std::map<std::string, MethodEntry::Instance> prepared_;  ///< by variant, kept for the benchmark
   bool only_declared_ = false;
+  std::function<void()> farewell_;
   KeptFrames kept_;  ///< of the current variant, for sequence metrics
 };
 

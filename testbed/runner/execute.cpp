@@ -1,7 +1,6 @@
 #include "testbed/runner/execute.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <numeric>
 
 #include "core/error.h"
@@ -25,6 +24,7 @@
 #include "testbed/runner/spec_json.h"
 #include "testbed/runner/stop.h"
 #include "testbed/runner/studies.h"
+#include "testbed/streams.h"
 
 namespace geoprior {
 
@@ -128,8 +128,8 @@ RunRecord assemble(const Experiment& experiment, const Topic& topic, const RunSt
 
 /// One case: false after a stop request.
 bool run_case(const Experiment& experiment, const CaseSpec& spec, const std::vector<Topic>& topics,
-              const ExecuteRequest& request, const std::vector<std::string>& chain,
-              Recorder& recorder, RunState& state, Progress& progress) {
+              const ExecuteRequest& request, Recorder& recorder, RunState& state,
+              Progress& progress) {
   const CaseState& known = state.case_of(spec.name);
   const bool timed = known.timed || !request.timing;
   if (timed && std::all_of(known.variants.begin(), known.variants.end(),
@@ -139,10 +139,13 @@ bool run_case(const Experiment& experiment, const CaseSpec& spec, const std::vec
     return true;
   }
   if (stop_requested()) return false;
-  const ResolvedScene scene = resolve_run_inputs(experiment, spec, topics, request, chain);
+  const ResolvedScene scene = resolve_run_inputs(experiment, spec, topics, request);
   if (scene.stopped) return false;
   CaseRunner runner(experiment, spec, topic_of(experiment, topics), recorder, state, progress);
   if (request.only_declared) runner.require_declared_diagnostics();
+  if (request.farewell) {
+    runner.leave_at_once_after([&] { request.farewell(recorder.folder()); });
+  }
   bool complete = false;
   with_threads(spec.threads,
                [&] { complete = runner.run(*scene.options, scene.inputs, request.timing); });
@@ -150,15 +153,14 @@ bool run_case(const Experiment& experiment, const CaseSpec& spec, const std::vec
 }
 
 bool run_cases(const Experiment& experiment, const std::vector<Topic>& topics,
-               const ExecuteRequest& request, const std::vector<std::string>& chain,
-               Recorder& recorder, RunState& state) {
+               const ExecuteRequest& request, Recorder& recorder, RunState& state) {
   const std::size_t timings = request.timing ? experiment.cases.size() : 0;
   const std::size_t steps =
       std::accumulate(experiment.cases.begin(), experiment.cases.end(), timings,
                       [](std::size_t n, const CaseSpec& spec) { return n + spec.variants.size(); });
   Progress progress(request.show_progress, steps);
   for (const CaseSpec& spec : experiment.cases) {
-    if (!run_case(experiment, spec, topics, request, chain, recorder, state, progress)) {
+    if (!run_case(experiment, spec, topics, request, recorder, state, progress)) {
       return false;
     }
   }
@@ -193,6 +195,16 @@ bool has_results(const RunState& state) {
   });
 }
 
+/// The request for the cases of a run in `folder`: its farewell speaks of that folder, also while
+/// inputs are made in others.
+ExecuteRequest told_of(const fs::path& folder, ExecuteRequest request) {
+  if (!request.farewell) return request;
+  request.farewell = [folder, farewell = std::move(request.farewell)](const fs::path&) {
+    farewell(folder);
+  };
+  return request;
+}
+
 /// Takes back what a run wrote that broke off without a result: bad input leaves no folder. Nothing
 /// of this was there when the run began (`require_own_beginning`).
 void discard(const fs::path& folder, bool chosen_by_us) {
@@ -208,15 +220,15 @@ void discard(const fs::path& folder, bool chosen_by_us) {
 
 }  // namespace
 
-ExecuteResult execute_in_chain(const Experiment& experiment, const std::vector<Topic>& topics,
-                               const ExecuteRequest& request, std::vector<std::string> chain) {
+ExecuteResult execute(const Experiment& experiment, const std::vector<Topic>& topics,
+                      const ExecuteRequest& request) {
   const Topic& topic = topic_of(experiment, topics);
-  chain.push_back(experiment.id);
+  require_no_circle(experiment, topics);
   ExecuteResult result;
   const RunFolder opened = open_run_folder(experiment, request);
   result.folder = opened.path;
   if (auto record = finished_record(experiment, result.folder)) {
-    std::fprintf(stderr, "%s is finished: nothing to do\n", result.folder.c_str());
+    say(result.folder.string() + " is finished: nothing to do");
     result.record = std::move(*record);
     result.was_finished = true;
     return result;
@@ -228,7 +240,8 @@ ExecuteResult execute_in_chain(const Experiment& experiment, const std::vector<T
   if (is_new) require_own_beginning(experiment, result.folder);
   try {
     if (is_new) begin_run(experiment, recorder);
-    result.stopped = !run_cases(experiment, topics, request, chain, recorder, state);
+    result.stopped =
+        !run_cases(experiment, topics, told_of(result.folder, request), recorder, state);
   } catch (const Error&) {
     if (is_new && !has_results(state)) discard(result.folder, !request.out);
     throw;
@@ -238,11 +251,6 @@ ExecuteResult execute_in_chain(const Experiment& experiment, const std::vector<T
   recorder.remove_checkpoints();
   finish(experiment, recorder, result);
   return result;
-}
-
-ExecuteResult execute(const Experiment& experiment, const std::vector<Topic>& topics,
-                      const ExecuteRequest& request) {
-  return execute_in_chain(experiment, topics, request, {});
 }
 
 }  // namespace geoprior

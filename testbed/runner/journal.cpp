@@ -6,12 +6,15 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/input_file.h"
 
 namespace geoprior::journal {
 
@@ -312,6 +315,7 @@ namespace geoprior {
 
 Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
   const bool is_new = !std::filesystem::exists(file_);
+  if (!is_new) require_regular_file(file_);
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) throw Error("cannot be opened: " + system_reason(errno), file_.string());
   try {
@@ -334,7 +338,13 @@ void Journal::require_regular_file() const {
 }
 
 void Journal::lock() {
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  // Who asks `is_being_written` holds the lock for an instant.
+  constexpr int kAttempts = 10;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (attempt > 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+    if (errno != EWOULDBLOCK) break;
+  }
   if (errno == EWOULDBLOCK) {
     throw Error("another program is writing this run", file_.parent_path().string(),
                 "wait for it, or choose another --out");
@@ -378,6 +388,15 @@ void Journal::append(const journal::Line& line, bool flush) {
   if (flush && ::fsync(descriptor_) != 0) {
     throw Error("cannot be flushed to the disk: " + system_reason(errno), file_.string());
   }
+}
+
+bool is_being_written(const std::filesystem::path& run_folder) {
+  const std::filesystem::path file = run_folder / "journal.jsonl";
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return false;
+  const bool is_locked = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(descriptor);
+  return is_locked;
 }
 
 }  // namespace geoprior

@@ -139,4 +139,7 @@ class Journal {
   std::optional<off_t> torn_at_;  ///< where a torn last line begins that no append has cut off
 };
 
+/// Whether some program has the journal of the run open at the moment.
+bool is_being_written(const std::filesystem::path& run_folder);
+
 }  // namespace geoprior

@@ -1,7 +1,6 @@
 #include "testbed/runner/opened_run.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "testbed/formats/folders.h"
 #include "testbed/runner/journal.h"
 #include "testbed/runner/sha256.h"
+#include "testbed/streams.h"
 
 namespace geoprior {
 
@@ -24,14 +24,11 @@ constexpr const char* kAllowed =
 /// More than a line of kind `result` has.
 constexpr std::streamoff kTail = 4096;
 
-std::ifstream open_journal(const fs::path& run_folder) {
-  const fs::path file = run_folder / "journal.jsonl";
-  return fs::is_regular_file(file) ? std::ifstream(file, std::ios::binary) : std::ifstream();
-}
-
 /// Without its line break; empty for an empty or missing journal, and for a line beyond the tail.
 std::string last_line(const fs::path& run_folder) {
-  std::ifstream in = open_journal(run_folder);
+  const fs::path file = run_folder / "journal.jsonl";
+  if (!fs::is_regular_file(file)) return {};
+  std::ifstream in(file, std::ios::binary);
   if (!in.seekg(0, std::ios::end)) return {};
   in.seekg(-std::min<std::streamoff>(kTail, in.tellg()), std::ios::end);
   std::string text(std::istreambuf_iterator<char>(in), {});
@@ -39,18 +36,6 @@ std::string last_line(const fs::path& run_folder) {
   text.pop_back();
   const std::size_t before = text.rfind('\n');
   return before == std::string::npos ? std::string() : text.substr(before + 1);
-}
-
-/// A line of a journal as the kind T; absent when it is of another kind, or damaged.
-template <class T>
-std::optional<T> line_as(const std::string& text) {
-  try {
-    const journal::Line line = journal::from_text(text);
-    const T* found = std::get_if<T>(&line);
-    return found == nullptr ? std::nullopt : std::optional<T>(*found);
-  } catch (const Error&) {
-    return std::nullopt;
-  }
 }
 
 }  // namespace
@@ -62,16 +47,18 @@ void require_recorded(const fs::path& file, const std::string& sha256) {
 }
 
 std::optional<std::string> recorded_result(const fs::path& run_folder) {
-  const auto result = line_as<journal::ResultLine>(last_line(run_folder));
-  return result ? std::optional(result->file.sha256) : std::nullopt;
+  try {
+    const journal::Line last = journal::from_text(last_line(run_folder));
+    const auto* result = std::get_if<journal::ResultLine>(&last);
+    return result == nullptr ? std::nullopt : std::optional(result->file.sha256);
+  } catch (const Error&) {
+    return std::nullopt;  // empty or damaged
+  }
 }
 
 std::optional<std::string> recorded_hash(const fs::path& run_folder) {
-  std::ifstream in = open_journal(run_folder);
-  std::string line;
-  if (!std::getline(in, line)) return std::nullopt;
-  const auto run = line_as<journal::RunLine>(line);
-  return run ? std::optional(run->spec_hash) : std::nullopt;
+  const auto head = journal::read_head(run_folder / "journal.jsonl");
+  return head ? std::optional(head->spec_hash) : std::nullopt;
 }
 
 OpenedRun::OpenedRun(fs::path folder, RunRecord record)
@@ -90,8 +77,7 @@ void OpenedRun::require_result() const {
   } else if (unverified_ == Unverified::refused) {
     throw Error("its checksum is not in the journal beside it", file.string(), kAllowed);
   } else {
-    std::fprintf(stderr, "warning: --force: %s is read without a recorded checksum\n",
-                 file.c_str());
+    say("warning: --force: " + file.string() + " is read without a recorded checksum");
   }
 }
 
@@ -108,7 +94,7 @@ void OpenedRun::verify(const fs::path& file, const std::string& sha256) const {
     if (unverified_ == Unverified::refused) {
       throw Error(error.what(), "", kAllowed);
     }
-    std::fprintf(stderr, "warning: --force: %s\n", error.what());
+    say(std::string("warning: --force: ") + error.what());
   }
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "testbed/streams.h"
+
 namespace geoprior {
 
 namespace {
@@ -49,7 +51,9 @@ void Progress::end() {
   ++done_;
   fraction_ = 0;
   if (!bar_) {
-    std::fprintf(stderr, "%s: %.1f s\n", what_.c_str(), seconds_since(step_start_));
+    char seconds[32];
+    std::snprintf(seconds, sizeof seconds, ": %.1f s", seconds_since(step_start_));
+    geoprior::say(what_ + seconds);
   }
   draw(true);
 }
@@ -61,7 +65,7 @@ void Progress::skip() {
 
 void Progress::say(const std::string& line) {
   clear();
-  std::fprintf(stderr, "%s\n", line.c_str());
+  geoprior::say(line);
 }
 
 void Progress::draw(bool now) {
@@ -75,7 +79,7 @@ void Progress::draw(bool now) {
   line.append(static_cast<std::size_t>(kBarWidth - filled), ' ').append("] ");
   char percent[16];
   std::snprintf(percent, sizeof percent, "%3.0f %% ", 100 * share);
-  line.append(percent).append(what_);
+  line.append(percent).append(printable(what_));
   // Steps of an earlier program cost this one nothing and say nothing of its speed.
   const double own = static_cast<double>(done_ - skipped_) + fraction_;
   const double left = steps - static_cast<double>(done_) - fraction_;

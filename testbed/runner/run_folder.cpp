@@ -20,6 +20,7 @@
 #include "testbed/runner/run_inputs.h"
 #include "testbed/runner/sha256.h"
 #include "testbed/runner/spec_json.h"
+#include "testbed/streams.h"
 
 namespace geoprior {
 
@@ -123,6 +124,12 @@ fs::path folder_to_resume(const Experiment& experiment, const ExecuteRequest& re
               (runs_root() / experiment.id).string(), "a run without --resume");
 }
 
+/// The file that a run recorded under `input_name`.
+fs::path input_file(const std::string& name) {
+  const fs::path file = geoprior_home() / name;
+  return fs::exists(file) ? file : geoprior_home() / from_printable(name);
+}
+
 /// Whether the run is of this very file, and every input is what it was when the run read it. A
 /// copy of the file elsewhere has other inputs beside it. Runs that were inputs have their
 /// specification in the hash.
@@ -136,7 +143,7 @@ bool is_run_of(const Experiment& experiment, const fs::path& folder) {
     }
     for (const StoredFile& input : record.inputs) {
       if (is_run_reference(input.name)) continue;
-      if (sha256_of_file(geoprior_home() / input.name) != input.sha256) return false;
+      if (sha256_of_file(input_file(input.name)) != input.sha256) return false;
     }
     return true;
   } catch (const Error&) {
@@ -177,9 +184,10 @@ void require_own_beginning(const Experiment& experiment, const fs::path& folder)
 std::string input_name(const fs::path& file) {
   const fs::path full = fs::weakly_canonical(file);
   const std::optional<fs::path> home = home_if_any();
-  if (!home) return full.string();
+  if (!home) return printable(full.string());
   const fs::path relative = full.lexically_relative(fs::weakly_canonical(*home));
-  return relative.empty() || *relative.begin() == ".." ? full.string() : relative.string();
+  const bool is_outside = relative.empty() || *relative.begin() == "..";
+  return printable((is_outside ? full : relative).string());
 }
 
 fs::path runs_root() {

@@ -35,7 +35,7 @@ RunFolder open_run_folder(const Experiment& experiment, const ExecuteRequest& re
 void require_own_beginning(const Experiment& experiment, const std::filesystem::path& folder);
 
 /// Name under which a run records an input file: relative to the clone where it lies inside, else
-/// absolute.
+/// absolute; `printable`, as it goes into JSON.
 std::string input_name(const std::filesystem::path& file);
 
 /// The newest run of an experiment with that `content_sha256`.

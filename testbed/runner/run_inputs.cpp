@@ -1,16 +1,22 @@
 #include "testbed/runner/run_inputs.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <chrono>
+#include <set>
 #include <sstream>
+#include <thread>
 
 #include "core/error.h"
 #include "testbed/formats/folders.h"
 #include "testbed/home.h"
+#include "testbed/runner/journal.h"
+#include "testbed/runner/making_lock.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/opened_run.h"
 #include "testbed/runner/option_copy.h"
 #include "testbed/runner/run_folder.h"
+#include "testbed/runner/stop.h"
+#include "testbed/streams.h"
 
 namespace geoprior {
 
@@ -33,22 +39,109 @@ fs::path file_of(const std::string& id, const Experiment& needed_by) {
               "an experiment of the testbed, or a file beside this one");
 }
 
-std::string chain_text(const std::vector<std::string>& chain, const std::string& last) {
-  std::string text;
-  for (const std::string& id : chain) text += id + " -> ";
-  return text + last;
+Experiment load_input(const RunReference& reference, const Experiment& needed_by,
+                      const std::vector<Topic>& topics) {
+  LoadRequest load;
+  load.quick = needed_by.quick;
+  return load_experiment(file_of(reference.experiment_id, needed_by), topics, load);
+}
+
+/// The run references among the options of all scenes, each once.
+std::set<std::string> references_of(const Experiment& experiment, const Topic& topic) {
+  std::set<std::string> references;
+  const auto collect = [&](const std::string& text) {
+    if (is_run_reference(text)) references.insert(text);
+    return text;
+  };
+  for (const CaseSpec& spec : experiment.cases) {
+    copy_options(*spec.scene, *topic.default_scene(), collect);
+  }
+  return references;
+}
+
+/// Looks for a way along inputs that comes back. Files are compared, not identifiers, which two
+/// files may share and a reference need not repeat.
+class CircleSearch {
+ public:
+  explicit CircleSearch(const std::vector<Topic>& topics) : topics_(topics) {}
+
+  void visit(const Experiment& experiment) {
+    const fs::path file = fs::weakly_canonical(experiment.file);
+    const auto waits = std::find_if(chain_.begin(), chain_.end(),
+                                    [&](const Link& link) { return link.file == file; });
+    if (waits != chain_.end()) {
+      throw Error("runs need each other in a circle: " + chain_text() + experiment.id,
+                  chain_.back().file.string());
+    }
+    if (!sound_.insert(file).second) return;
+    if (chain_.size() == kLongestChain) {
+      throw Error("more runs wait for one another than can be made", file.string(),
+                  "at most " + std::to_string(kLongestChain) + " in a chain");
+    }
+    chain_.push_back({experiment.id, file});
+    for (const std::string& text : references_of(experiment, topic_of(experiment, topics_))) {
+      visit(load_input(parse_run_reference(text), experiment, topics_));
+    }
+    chain_.pop_back();
+  }
+
+ private:
+  static constexpr std::size_t kLongestChain = 100;
+  struct Link {
+    std::string id;
+    fs::path file;
+  };
+
+  [[nodiscard]] std::string chain_text() const {
+    std::string text;
+    for (const Link& link : chain_) text += link.id + " -> ";
+    return text;
+  }
+
+  const std::vector<Topic>& topics_;
+  std::vector<Link> chain_;   ///< that wait for the experiment which is visited
+  std::set<fs::path> sound_;  ///< visited already, or in the chain
+};
+
+/// Where an input is when nobody else is making it.
+struct Turn {
+  std::optional<fs::path> finished;
+  std::optional<fs::path> unfinished;  ///< to go on with; neither: to be made
+};
+
+/// Waits while another program makes the same run; nothing after a stop.
+std::optional<Turn> wait_for_turn(const Experiment& input, MakingLock& lock) {
+  constexpr std::chrono::milliseconds kPause{200};
+  for (bool told = false; !stop_requested(); told = true) {
+    const bool is_ours = lock.try_lock();
+    Turn turn;
+    turn.unfinished = find_unfinished_run(input);
+    // It may be a run of its own, which needs no lock to be made.
+    const bool is_written = turn.unfinished && is_being_written(*turn.unfinished);
+    turn.finished = find_run(input);
+    if (turn.finished || (is_ours && !is_written)) return turn;
+    if (!told) {
+      say("waiting for " + (turn.unfinished ? turn.unfinished->string() : "a run of " + input.id) +
+          ", which another program is making");
+    }
+    std::this_thread::sleep_for(kPause);
+  }
+  return std::nullopt;
 }
 
 /// Finished already, or made now; nothing after a stop.
 std::optional<OpenedRun> find_or_make(const Experiment& input, const std::vector<Topic>& topics,
-                                      const ExecuteRequest& request,
-                                      const std::vector<std::string>& chain) {
+                                     const ExecuteRequest& request) {
   if (const auto folder = find_run(input)) return OpenedRun(*folder);
+  MakingLock lock(input.hash);
+  const std::optional<Turn> turn = wait_for_turn(input, lock);
+  if (!turn) return std::nullopt;
+  if (turn->finished) return OpenedRun(*turn->finished);
   ExecuteRequest own = request;
-  own.out.reset();
-  own.resume = find_unfinished_run(input).has_value();
-  std::fprintf(stderr, "%s is needed first\n", input.id.c_str());
-  ExecuteResult made = execute_in_chain(input, topics, own, chain);
+  own.out = turn->unfinished;
+  own.resume = turn->unfinished.has_value();
+  say(input.id + " is needed first");
+  ExecuteResult made = execute(input, topics, own);
   if (made.stopped) return std::nullopt;
   return OpenedRun(made.folder, std::move(made.record));
 }
@@ -104,22 +197,17 @@ RunReference parse_run_reference(const std::string& text) {
   return reference;
 }
 
+void require_no_circle(const Experiment& experiment, const std::vector<Topic>& topics) {
+  CircleSearch(topics).visit(experiment);
+}
+
 ResolvedScene resolve_run_inputs(const Experiment& experiment, const CaseSpec& spec,
-                                 const std::vector<Topic>& topics, const ExecuteRequest& request,
-                                 const std::vector<std::string>& chain) {
+                                 const std::vector<Topic>& topics, const ExecuteRequest& request) {
   ResolvedScene resolved;
   const auto file_of_run = [&](const std::string& text) -> std::string {
     if (!is_run_reference(text) || resolved.stopped) return text;
     const RunReference reference = parse_run_reference(text);
-    if (std::find(chain.begin(), chain.end(), reference.experiment_id) != chain.end()) {
-      throw Error("runs need each other in a circle: " + chain_text(chain, reference.experiment_id),
-                  experiment.file.string());
-    }
-    LoadRequest load;
-    load.quick = experiment.quick;
-    const Experiment input =
-        load_experiment(file_of(reference.experiment_id, experiment), topics, load);
-    const auto run = find_or_make(input, topics, request, chain);
+    const auto run = find_or_make(load_input(reference, experiment, topics), topics, request);
     if (!run) {
       resolved.stopped = true;
       return text;

@@ -27,17 +27,15 @@ RunReference parse_run_reference(const std::string& text);
 struct ResolvedScene {
   std::shared_ptr<const OptionSet> options;
   std::vector<StoredFile> inputs;  ///< the reference and the input run's content_sha256
-  bool stopped = false;            ///< Ctrl-C while an input was made
+  bool stopped = false;            ///< Ctrl-C while an input was made or waited for
 };
 
-/// Finds the finished run of each reference, or makes it first. `chain` are the ids of the runs
-/// that wait for this one: an input that is among them is an Error.
-ResolvedScene resolve_run_inputs(const Experiment& experiment, const CaseSpec& spec,
-                                 const std::vector<Topic>& topics, const ExecuteRequest& request,
-                                 const std::vector<std::string>& chain);
+/// @throws Error  naming the experiments, when runs need each other in a circle
+void require_no_circle(const Experiment& experiment, const std::vector<Topic>& topics);
 
-/// `execute` for a run that others wait for.
-ExecuteResult execute_in_chain(const Experiment& experiment, const std::vector<Topic>& topics,
-                               const ExecuteRequest& request, std::vector<std::string> chain);
+/// Finds the finished run of each reference, or makes it first; waits where another program is
+/// making it. The experiment must be in no circle.
+ResolvedScene resolve_run_inputs(const Experiment& experiment, const CaseSpec& spec,
+                                 const std::vector<Topic>& topics, const ExecuteRequest& request);
 
 }  // namespace geoprior

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "testbed/formats/input_file.h"
 
 namespace geoprior {
 
@@ -64,8 +65,7 @@ std::string sha256(std::span<const std::byte> bytes) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error("cannot be read", file.string());
+  std::ifstream stream = open_input_file(file);
   Sha256 hash;
   std::vector<char> block(1U << 16U);
   while (stream) {

@@ -15,6 +15,7 @@
 #include "testbed/runner/spec_resolve.h"
 #include "testbed/runner/spec_sweeps.h"
 #include "testbed/runner/spec_tables.h"
+#include "testbed/streams.h"
 
 namespace geoprior {
 

@@ -75,7 +75,7 @@ std::string spec_json(const Experiment& experiment) {
             {"timing_repetitions", experiment.timing_repetitions},
             {"cases", cases}};
   if (experiment.timing_warm_up) json["timing_warm_up"] = *experiment.timing_warm_up;
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace geoprior

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <sstream>
 
 #include "core/error.h"
+#include "testbed/formats/atomic_file.h"
 #include "testbed/joined.h"
+#include "testbed/streams.h"
 
 namespace geoprior {
 namespace {
@@ -137,11 +138,7 @@ TomlNode parse_toml_text(std::string_view text, const std::string& source) {
 }
 
 TomlNode parse_toml_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream || !text) throw Error("cannot be read", file.string(), "a TOML file");
-  return parse_toml_text(text.str(), file.string());
+  return parse_toml_text(read_whole_file(file), file.string());
 }
 
 TomlNode parse_toml_value(const std::string& value, const std::string& source) {
@@ -156,6 +153,7 @@ TomlNode parse_toml_value(const std::string& value, const std::string& source) {
     if (!is_bare_word(value)) throw Error("is no TOML value: " + value, source);
   }
   if (!is_bare_word(value)) throw Error("is no TOML value: " + value, source);
+  if (printable(value) != value) throw Error("is no UTF-8: " + value, source);
   TomlNode word;
   word.kind = TomlNode::Kind::text;
   word.text = value;

@@ -1,6 +1,8 @@
 #include "testbed/view/child_process.h"
 
 #include <fcntl.h>
+#include <poll.h>
+#include <signal.h>  // NOLINT: POSIX, not <csignal>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -8,11 +10,15 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
+#include <thread>
+#include <utility>
 
 #include "core/error.h"
+#include "testbed/runner/stop.h"
 
 extern char** environ;  // NOLINT: POSIX
 
@@ -38,25 +44,82 @@ std::vector<std::string> merged_environment(const std::vector<std::string>& adde
   return out;
 }
 
-std::string read_to_end(int descriptor) {
-  std::string text;
-  std::array<char, 4096> block;
-  for (;;) {
-    const ssize_t n = ::read(descriptor, block.data(), block.size());
-    if (n > 0) {
-      text.append(block.data(), static_cast<std::size_t>(n));
-    } else if (n == 0 || errno != EINTR) {
-      return text;
+constexpr auto kPatience = std::chrono::seconds(5);  ///< between SIGTERM and SIGKILL
+
+/// A program that was started: told to end when we are asked to stop, and waited for in any case.
+class Child {
+ public:
+  Child(pid_t pid, int errors) : pid_(pid), errors_(errors) { end_with_us(pid); }
+  ~Child() {
+    end_with_us(0);
+    ::close(errors_);
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  ChildResult result() {
+    ChildResult result;
+    bool is_writing = true;
+    while (is_writing || !exit_code_) {
+      is_writing = is_writing && read_some(result.errors);
+      if (!is_writing) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      tell_of_stop();
+      look_for_end();
+      // Programs that it started itself may keep its stream open.
+      if (told_ && exit_code_) break;
+    }
+    result.exit_code = *exit_code_;
+    return result;
+  }
+
+ private:
+  /// What it wrote within a tenth of a second; false at the end.
+  bool read_some(std::string& text) const {
+    constexpr int kMilliseconds = 100;
+    pollfd ready{errors_, POLLIN, 0};
+    const int count = ::poll(&ready, 1, kMilliseconds);
+    if (count == 0 || (count < 0 && errno == EINTR)) return true;
+    std::array<char, 4096> block;
+    const ssize_t n = ::read(errors_, block.data(), block.size());
+    if (n > 0) text.append(block.data(), static_cast<std::size_t>(n));
+    return n > 0 || (n < 0 && errno == EINTR);
+  }
+
+  void look_for_end() {
+    if (exit_code_) return;
+    int status = 0;
+    const pid_t ended = ::waitpid(pid_, &status, WNOHANG);
+    if (ended == pid_) {
+      exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    } else if (ended < 0 && errno != EINTR) {
+      exit_code_ = 127;
     }
   }
-}
 
-int wait_for(pid_t child) {
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) return 127;
+  void tell_of_stop() {
+    if (!stop_requested()) return;
+    const auto now = std::chrono::steady_clock::now();
+    const bool is_news = !told_;
+    if (is_news) told_ = now;
+    if (exit_code_) return;
+    if (is_news) ::kill(pid_, SIGTERM);
+    if (now - *told_ > kPatience) ::kill(pid_, SIGKILL);
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+
+  pid_t pid_;
+  int errors_;
+  std::optional<int> exit_code_;
+  std::optional<std::chrono::steady_clock::time_point> told_;
+};
+
+/// Signals that we ignore (run_program) mean to a child what they usually mean.
+void set_usual_signals(posix_spawnattr_t& attributes) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGPIPE);
+  sigaddset(&signals, SIGXFSZ);
+  posix_spawnattr_setsigdefault(&attributes, &signals);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
 }
 
 }  // namespace
@@ -76,6 +139,7 @@ std::optional<std::string> find_program(const std::string& name) {
 
 ChildResult run_child(const std::vector<std::string>& command,
                       const std::vector<std::string>& environment) {
+  throw_if_stopped();
   std::vector<std::string> arguments = command;
   std::vector<std::string> variables = merged_environment(environment);
   std::array<int, 2> errors{};
@@ -86,20 +150,21 @@ ChildResult run_child(const std::vector<std::string>& command,
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, errors[1], STDERR_FILENO);
-  pid_t child = 0;
-  const int failure = ::posix_spawnp(&child, command.front().c_str(), &actions, nullptr,
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  set_usual_signals(attributes);
+  pid_t pid = 0;
+  const int failure = ::posix_spawnp(&pid, command.front().c_str(), &actions, &attributes,
                                      pointers(arguments).data(), pointers(variables).data());
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   ::close(errors[1]);
-  ChildResult result;
   if (failure != 0) {
-    result.exit_code = 127;
-    result.errors = std::strerror(failure);
-  } else {
-    result.errors = read_to_end(errors[0]);
-    result.exit_code = wait_for(child);
+    ::close(errors[0]);
+    return {127, std::strerror(failure)};
   }
-  ::close(errors[0]);
+  ChildResult result = Child(pid, errors[0]).result();
+  throw_if_stopped();
   return result;
 }
 

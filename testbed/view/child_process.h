@@ -17,6 +17,7 @@ struct ChildResult {
 /// Runs a program to its end without a shell: arguments arrive as they are given. Its standard
 /// output goes to our standard error, so that ours stays machine-readable. `environment` adds
 /// "NAME=value" entries to ours.
+/// @throws Stopped  after a stop request, once the program has been told (SIGTERM) and has ended
 ChildResult run_child(const std::vector<std::string>& command,
                       const std::vector<std::string>& environment = {});
 

@@ -17,6 +17,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "testbed/runner/stop.h"
 #include "testbed/view/child_process.h"
 
 namespace geoprior {
@@ -50,7 +51,7 @@ std::string read_display_number(int descriptor) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
         deadline - std::chrono::steady_clock::now());
     pollfd wait{descriptor, POLLIN, 0};
-    if (left.count() <= 0) return {};
+    if (left.count() <= 0 || stop_requested()) return {};
     if (::poll(&wait, 1, static_cast<int>(left.count())) < 0 && errno == EINTR) continue;
     std::array<char, 16> block{};
     const ssize_t n = ::read(descriptor, block.data(), block.size());
@@ -93,6 +94,7 @@ class Display::Server {
     ::close(number[0]);
     if (text.empty()) {
       stop();
+      throw_if_stopped();
       throw Error("the virtual display did not start", program, kInstall);
     }
     if (const char* old = std::getenv("DISPLAY")) old_display_ = old;

@@ -18,6 +18,7 @@
 #include "testbed/formats/gltf_writer.h"
 #include "testbed/formats/vtk_files.h"
 #include "testbed/runner/run_record.h"
+#include "testbed/runner/stop.h"
 #include "testbed/view/mesh_text.h"
 
 namespace geoprior {
@@ -98,6 +99,7 @@ int export_texts(const OpenedRun& run, const CaseRecord& c, const VariantRecord&
                  ExportFolder& out) {
   int written = 0;
   for (const FrameFile& frame : frames) {
+    throw_if_stopped();
     const Part part = read_vtk_part(run.file(frame.file));
     if (!is_mesh(part)) continue;
     const std::string comment = describe_frame(c, variant, frame);
@@ -138,7 +140,10 @@ int export_glb(const OpenedRun& run, const CaseRecord& c, const VariantRecord& v
                const std::string& part_name, const std::vector<FrameFile>& frames,
                ExportFolder& out) {
   std::vector<Part> parts;
-  for (const FrameFile& frame : frames) parts.push_back(read_vtk_part(run.file(frame.file)));
+  for (const FrameFile& frame : frames) {
+    throw_if_stopped();
+    parts.push_back(read_vtk_part(run.file(frame.file)));
+  }
   const bool triangles = std::all_of(parts.begin(), parts.end(), [](const Part& part) {
     return part.kind == Part::Kind::triangles && part.triangles.rows() > 0;
   });
@@ -152,6 +157,7 @@ int export_glb(const OpenedRun& run, const CaseRecord& c, const VariantRecord& v
     return 1;
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {
+    throw_if_stopped();
     write_glb_animation(folder / (frames[i].stem + ".glb"), mesh_of(parts[i]), {}, {},
                         variant.name + " " + frames[i].stem);
   }

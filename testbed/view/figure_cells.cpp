@@ -11,6 +11,7 @@
 #include "testbed/formats/vtk_files.h"
 #include "testbed/joined.h"
 #include "testbed/runner/quantity.h"
+#include "testbed/runner/stop.h"
 
 namespace geoprior {
 namespace {
@@ -69,6 +70,7 @@ std::string part_name(const StoredFile& file) {
 
 std::optional<Part> load_part(const FrameRecord& frame, const std::string& name,
                               const OpenedRun& run) {
+  throw_if_stopped();
   for (const StoredFile& file : frame.files) {
     if (fs::path(file.name).extension() != ".csv" && part_name(file) == name) {
       return read_vtk_part(run.file(file));

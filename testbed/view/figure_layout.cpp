@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/run_inputs.h"
+#include "testbed/runner/stop.h"
 #include "testbed/view/section.h"
 #include "testbed/view/view_window.h"
 
@@ -209,6 +210,7 @@ void draw_block(Picture& picture, const FigureBlock& block, const Layout& layout
     if (line.has_headings) y += kHeading;
     int x = layout.left;
     for (const FigureCell& cell : line.row->cells) {
+      throw_if_stopped();
       if (line.has_headings) {
         draw_text(picture, cell.label, x + layout.panel_width / 2, y - 20, Align::center,
                   fitted(cell.label, kHeadingStyle, layout.panel_width));

@@ -2,12 +2,12 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <iostream>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "testbed/home.h"
+#include "testbed/streams.h"
 #include "testbed/view/child_process.h"
 
 namespace geoprior {
@@ -54,7 +54,7 @@ void run_python(const std::string& script, const std::vector<std::string>& argum
     throw Error(text.empty() ? "ended with code " + std::to_string(result.exit_code) : text,
                 script + ".py");
   }
-  if (!text.empty()) std::cerr << text << '\n';
+  if (!text.empty()) say(text);
 }
 
 }  // namespace geoprior

@@ -62,19 +62,16 @@ void encode(const std::string& ffmpeg, const VideoOptions& options, int frames,
   pending.commit();
 }
 
-}  // namespace
-
-Video make_video(const OpenedRun& run, const FigureView& view, const VideoOptions& options) {
+void draw_video(const OpenedRun& run, const FigureView& view, const VideoOptions& options,
+                Video& video) {
   const RunRecord& record = run.record();
   const std::vector<double> parameters = frame_parameters(record, view);
   const auto samples =
       make_blocks(run, frame_view(view, evenly_chosen(parameters, kSampledFrames), record));
   const MadeFolders made(options.out);
   const Display display;
-  Video video;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    video.stopped = stop_requested();
-    if (video.stopped) return video;
+    throw_if_stopped();
     auto blocks = make_blocks(run, frame_view(view, {parameters[i]}, record));
     for (std::size_t b = 0; b < blocks.size(); ++b) blocks[b].look = samples[b].look;
     write_png(draw_figure(blocks), frame_file(options.out, i));
@@ -83,6 +80,17 @@ Video make_video(const OpenedRun& run, const FigureView& view, const VideoOption
   if (const auto ffmpeg = find_program("ffmpeg")) {
     encode(*ffmpeg, options, video.frames, options.out / "video.mp4");
     video.file = options.out / "video.mp4";
+  }
+}
+
+}  // namespace
+
+Video make_video(const OpenedRun& run, const FigureView& view, const VideoOptions& options) {
+  Video video;
+  try {
+    draw_video(run, view, options, video);
+  } catch (const Stopped&) {
+    video.stopped = true;
   }
   return video;
 }

@@ -1,6 +1,7 @@
 // Bad surfaces, details and motions given to a whole run: one error that names file and place, or a
 // variant that ends with it and keeps its frames.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <fstream>
@@ -71,6 +72,15 @@ TEST_F(BadDetails, IsNoneWhenAllIsWell) {
   EXPECT_EQ(in.facts.at("details"), 3);
   EXPECT_EQ(in.variants.front().status, "done");
   EXPECT_EQ(in.variants.front().frames.size(), 5U);
+}
+
+TEST_F(BadDetails, InAPipeAreRefused) {
+  write("other.csv", "");
+  const fs::path pipe = folder() / "experiments/details/d.csv";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(refusal(kPlane + kCsv + kStretch), HasSubstr("d.csv: is a pipe"));
+  ASSERT_EQ(::mkfifo((pipe.parent_path() / "s.ply").c_str(), 0600), 0);
+  EXPECT_THAT(refusal(kFile + kFew + kStretch), HasSubstr("s.ply: is a pipe"));
 }
 
 TEST_F(BadDetails, AreNamedByTheirLine) {

@@ -1,6 +1,7 @@
 // Features on disk: the HDF5 library, pictures of maps, edit lists.
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -229,6 +230,10 @@ TEST_F(ExrMaps, RefuseWhatIsNoMap) {
   expect_error([] { read_exr_maps({}); }, {"no pictures"});
   expect_error([&] { read_exr_maps({write("a.exr", "nothing")}); },
                {"a.exr", "no readable picture"});
+  const auto pipe = write("pipe.exr", "");
+  std::filesystem::remove(pipe);
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  expect_error([&] { read_exr_maps({pipe}); }, {"pipe.exr", "is a pipe"});
   const auto pictures = exr_maps(ripple(), "a");
   const auto first = write("a_0000.exr", test::text_of(pictures[0].bytes));
   expect_error([&] { read_exr_maps({first, first}); }, {"frame 1", "times that increase"});

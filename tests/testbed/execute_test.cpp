@@ -431,6 +431,18 @@ TEST_F(Inputs, MayBeAnArtifact) {
               HasSubstr("#<file>"));
 }
 
+TEST_F(Inputs, InFoldersThatAreNoUtf8AreKnownAgain) {
+  ::setenv("GEOPRIOR_RUNS", (folder() / "runs\xe9 \xff").c_str(), 1);
+  (void)pendulum();
+  const auto file = follower("f",
+                             "input = \"run:toy-pendulum/swing/exact\"\n"
+                             "second = \"run:toy-pendulum/swing/exact#swing.wav\"");
+  const Experiment experiment = load_experiment(file, topics, {});
+  const ExecuteResult result = execute(experiment, topics, {});
+  EXPECT_EQ(find_run(experiment), result.folder);
+  EXPECT_THAT(text_of(result.folder / "journal.jsonl"), HasSubstr(R"(runs\\xe9 \\xff/toy)"));
+}
+
 TEST_F(Inputs, NamingAVariantThatIsNotThereIsAnError) {
   (void)pendulum();
   const auto file = follower("f", "input = \"run:toy-pendulum/swing/default/nobody\"");

@@ -20,6 +20,8 @@ struct PendulumSceneOptions {
   double duration_s = 2;
   int frames = 8;
   int frame_delay_ms = 0;
+  int load_delay_ms = 0;
+  std::string input;
 };
 
 void describe(OptionVisitor& v, PendulumSceneOptions& o) {
@@ -31,6 +33,9 @@ void describe(OptionVisitor& v, PendulumSceneOptions& o) {
   v.value("frames", o.frames, {.doc = "recorded frames after the first", .min = 1, .max = 10000});
   v.value("frame_delay_ms", o.frame_delay_ms,
           {.doc = "waiting time before each frame, to be killed in", .unit = "ms", .min = 0});
+  v.value("load_delay_ms", o.load_delay_ms,
+          {.doc = "waiting time while loading, to be stopped in", .unit = "ms", .min = 0});
+  v.value("input", o.input, {.doc = "frames of another run, which must be there"});
 }
 
 struct PendulumOptions {
@@ -304,8 +309,12 @@ Topic pendulum_topic() {
   topic.default_scene = [] { return std::make_unique<TypedOptions<PendulumSceneOptions>>(); };
   topic.load = [](const OptionSet& set, const std::filesystem::path&,
                   std::uint64_t) -> std::shared_ptr<Scene> {
-    return std::make_shared<PendulumScene>(
-        dynamic_cast<const TypedOptions<PendulumSceneOptions>&>(set).options);
+    const auto& options = dynamic_cast<const TypedOptions<PendulumSceneOptions>&>(set).options;
+    std::this_thread::sleep_for(std::chrono::milliseconds(options.load_delay_ms));
+    if (!options.input.empty() && !std::filesystem::is_directory(options.input)) {
+      throw Error("is no folder of frames: " + options.input, "scene.input");
+    }
+    return std::make_shared<PendulumScene>(options);
   };
   topic.methods = {
       pendulum_method("implicit-midpoint", false, "second order, symplectic without damping",

@@ -1,0 +1,50 @@
+#include "testbed/formats/input_file.h"
+
+#include <cerrno>
+#include <system_error>
+
+#include "core/error.h"
+#include "testbed/formats/atomic_file.h"
+
+namespace geoprior {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const char* kind_text(fs::file_type type) {
+  switch (type) {
+    case fs::file_type::directory:
+      return "a folder";
+    case fs::file_type::fifo:
+      return "a pipe";
+    case fs::file_type::socket:
+      return "a socket";
+    case fs::file_type::block:
+    case fs::file_type::character:
+      return "a device";
+    default:
+      return "of an unknown kind";
+  }
+}
+
+}  // namespace
+
+void require_regular_file(const fs::path& file) {
+  std::error_code code;
+  const fs::file_status status = fs::status(file, code);
+  if (fs::is_regular_file(status)) return;
+  if (!fs::exists(status)) {
+    throw Error("cannot be read: " + system_reason(code ? code.value() : ENOENT), file.string());
+  }
+  throw Error(std::string("is ") + kind_text(status.type()), file.string(), "a file");
+}
+
+std::ifstream open_input_file(const fs::path& file) {
+  require_regular_file(file);
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw Error("cannot be read: " + system_reason(errno), file.string());
+  return in;
+}
+
+}  // namespace geoprior

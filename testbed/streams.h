@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace geoprior {
+
+/// The standard streams of the program: words for people go to stderr, results for programs to
+/// stdout. What people read is never an error when it cannot be written, what programs read always.
+
+/// Opens /dev/null in the place of closed standard streams, so that no file that is opened later is
+/// taken for one of them. Writing to a stdout that was closed stays an error. First of all in main.
+void reserve_standard_streams();
+
+/// Writes a line to stderr, `printable`.
+void say(std::string_view line = {});
+
+/// Writes results to stdout. @throws Error  with the system's reason: disk full, closed pipe …
+void print_out(std::string_view text);
+
+/// The text as UTF-8 that a terminal does not obey: bytes that are no UTF-8 and control characters
+/// become "\xNN". Line ends, tabs and the colours of `tinted` stay.
+std::string printable(std::string_view text);
+
+/// The bytes that `printable` made the text of, where they had no "\xNN" of their own.
+std::string from_printable(std::string_view text);
+
+}  // namespace geoprior
