@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <string>
 
 #include "core/error.h"
 #include "core/triangle_tree.h"
+#include "testbed/formats/atomic_file.h"
 #include "testbed/formats/mesh_file.h"
 #include "testbed/formats/text_lines.h"
 
@@ -29,14 +28,6 @@ struct Position {
 };
 
 constexpr std::array<std::string_view, 5> kColumns{"x", "y", "z", "weight", "type"};
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in) throw Error("cannot be read", file.string());
-  return text.str();
-}
 
 /// Words between commas, without blanks around them.
 std::vector<std::string> cells_of(std::string_view line) {
@@ -100,7 +91,7 @@ Position position_of_row(const std::vector<std::string>& cells, const Columns& c
 }
 
 std::vector<Position> read_csv(const fs::path& file) {
-  const std::string text = text_of(file);
+  const std::string text = read_whole_file(file);
   TextLines lines(text, file.string());
   std::optional<Columns> columns;
   std::vector<Position> positions;

@@ -1,6 +1,7 @@
 #include "baselines/fluid/liquid.h"
 #include "baselines/fluid/liquid_process.h"
 #include "baselines/fluid/ocean.h"
+#include "core/limits.h"
 #include "experiments/fluid/extract_files.h"
 #include "experiments/fluid/scene.h"
 #include "experiments/fluid/topic.h"
@@ -18,8 +19,7 @@ std::vector<MethodEntry> methods() {
           "Zhu and Bridson 2005; Batty, Bertails and Bridson 2007; Jiang et al. 2015",
           [](const S& scene, const LiquidOptions& options, RunContext&) {
             const Tank& tank = scene.require_tank("the method 'liquid'");
-            require_valid(tank, options.particles_per_cell, simulation_memory_limit(),
-                          "scene.tank");
+            require_valid(tank, options.particles_per_cell, memory_limit(), "scene.tank");
             return make_liquid(tank, options);
           }),
       method_entry<S, OceanOptions>(

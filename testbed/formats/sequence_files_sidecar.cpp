@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/nesting.h"
 
 namespace geoprior {
 namespace {
@@ -28,6 +29,7 @@ bool is_y(const Json& value, const std::string& name) {
 }  // namespace
 
 SequenceSidecar parse_sidecar(std::string_view text, const std::string& name) {
+  require_shallow_json(text, name);
   Json json;
   try {
     json = Json::parse(text);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/option_toml.h"
 #include "testbed/runner/spec_json.h"
@@ -19,6 +20,7 @@ struct Sweep {
   SweepTable table;
   std::vector<TomlNode> values;
   std::vector<std::string> names;  ///< one a value
+  std::string place;               ///< of the values
 };
 
 std::string folder_safe(const std::string& text) {
@@ -68,13 +70,15 @@ std::vector<TomlNode> values_of(const TomlNode& table, const char* key, bool req
 /// Names of the values; a quick value that is also a full one keeps its name.
 std::vector<std::string> value_names(const Sweep& sweep, const std::vector<TomlNode>& full,
                                      const std::string& label) {
+  std::map<std::string, std::string> given;  // by the value's text
+  for (std::size_t j = 0; j < sweep.table.names.size(); ++j) {
+    given[json_of(full[j]).dump()] = sweep.table.names[j];
+  }
   std::vector<std::string> names;
   for (std::size_t i = 0; i < sweep.values.size(); ++i) {
-    std::string name = label + "=" + value_text(sweep.values[i], i);
-    for (std::size_t j = 0; j < sweep.table.names.size(); ++j) {
-      if (json_of(full[j]) == json_of(sweep.values[i])) name = sweep.table.names[j];
-    }
-    names.push_back(folder_safe(name));
+    const auto found = given.find(json_of(sweep.values[i]).dump());
+    names.push_back(folder_safe(
+        found != given.end() ? found->second : label + "=" + value_text(sweep.values[i], i)));
   }
   return names;
 }
@@ -103,7 +107,9 @@ Sweep read_sweep(const TomlNode& node, bool quick) {
     throw Error(std::to_string(sweep.table.names.size()) + " names", node.place + ": sweep.names",
                 std::to_string(full.size()) + ", one a value");
   }
-  sweep.values = quick && node.find("quick_values") != nullptr ? reduced : full;
+  const bool is_reduced = quick && node.find("quick_values") != nullptr;
+  sweep.values = is_reduced ? reduced : full;
+  sweep.place = place_of(node, is_reduced ? "quick_values" : "values");
   const std::string& key = sweep.table.key;
   sweep.names = value_names(sweep, full, key.substr(key.rfind('.') + 1));
   return sweep;
@@ -118,10 +124,10 @@ void apply(SweptCase& result, const Sweep& sweep, std::size_t i) {
                   "tables of scene keys");
     }
     for (std::size_t k = 0; k < value.keys.size(); ++k) {
-      set_experiment_key(result.root, "scene." + value.keys[k], value.items[k]);
+      result.changes.emplace_back("scene." + value.keys[k], value.items[k]);
     }
   } else {
-    set_experiment_key(result.root, sweep.table.key, value);
+    result.changes.emplace_back(sweep.table.key, value);
   }
   result.name = result.name == "default" ? sweep.names[i] : result.name + "," + sweep.names[i];
   result.swept[sweep.table.key] = json_of(sweep.values[i]).dump();
@@ -129,8 +135,22 @@ void apply(SweptCase& result, const Sweep& sweep, std::size_t i) {
   result.claims_only = result.claims_only || sweep.table.claims_only;
 }
 
-std::vector<SweptCase> grid_product(const SweptCase& base, const std::vector<Sweep>& sweeps) {
-  std::vector<SweptCase> cases{base};
+/// Counts the cases before any is made.
+void require_few_cases(const std::vector<Sweep>& sweeps) {
+  double alone = 1, grid = 0;
+  for (const Sweep& sweep : sweeps) {
+    const auto values = static_cast<double>(sweep.values.size());
+    if (sweep.table.grid) {
+      grid = std::max(grid, 1.0) * values;
+    } else {
+      alone += values;
+    }
+    require_count(alone + grid, "cases", kMostCases, sweep.place);
+  }
+}
+
+std::vector<SweptCase> grid_product(const std::vector<Sweep>& sweeps) {
+  std::vector<SweptCase> cases(1);
   bool any = false;
   for (const Sweep& sweep : sweeps) {
     if (!sweep.table.grid) continue;
@@ -170,21 +190,20 @@ void make_names_unique(std::vector<Sweep>& sweeps) {
 std::vector<SweptCase> expand_sweeps(const TomlNode& root, bool quick) {
   std::vector<Sweep> sweeps;
   for (const TomlNode& node : tables_of(root, "sweep")) sweeps.push_back(read_sweep(node, quick));
+  require_few_cases(sweeps);
   make_names_unique(sweeps);
 
-  SweptCase base;
-  base.root = root;
   std::vector<SweptCase> cases;
   const bool with_base = std::all_of(sweeps.begin(), sweeps.end(),
                                      [](const Sweep& sweep) { return sweep.table.base; });
-  if (with_base) cases.push_back(base);
+  if (with_base) cases.emplace_back();
   for (const Sweep& sweep : sweeps) {
     for (std::size_t i = 0; !sweep.table.grid && i < sweep.values.size(); ++i) {
-      cases.push_back(base);
+      cases.emplace_back();
       apply(cases.back(), sweep, i);
     }
   }
-  for (SweptCase& made : grid_product(base, sweeps)) cases.push_back(std::move(made));
+  for (SweptCase& made : grid_product(sweeps)) cases.push_back(std::move(made));
 
   std::set<std::string> names;
   for (const SweptCase& made : cases) {
@@ -194,6 +213,12 @@ std::vector<SweptCase> expand_sweeps(const TomlNode& root, bool quick) {
     }
   }
   return cases;
+}
+
+TomlNode root_of(const SweptCase& swept, const TomlNode& plain) {
+  TomlNode root = plain;
+  for (const auto& [key, value] : swept.changes) set_experiment_key(root, key, value);
+  return root;
 }
 
 }  // namespace geoprior

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <sstream>
 
 #include "core/error.h"
+#include "testbed/formats/atomic_file.h"
+#include "testbed/formats/nesting.h"
 #include "testbed/joined.h"
 
 namespace geoprior {
@@ -128,6 +128,7 @@ std::string TomlNode::kind_name() const {
 }
 
 TomlNode parse_toml_text(std::string_view text, const std::string& source) {
+  require_shallow_toml(text, source);
   try {
     const toml::table table = toml::parse(text);
     return convert(table, source, source);
@@ -137,11 +138,7 @@ TomlNode parse_toml_text(std::string_view text, const std::string& source) {
 }
 
 TomlNode parse_toml_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream || !text) throw Error("cannot be read", file.string(), "a TOML file");
-  return parse_toml_text(text.str(), file.string());
+  return parse_toml_text(read_whole_file(file), file.string());
 }
 
 TomlNode parse_toml_value(const std::string& value, const std::string& source) {
