@@ -116,6 +116,7 @@ std::shared_ptr<const SurfaceSequence> make_target(const TargetOptions& options,
       return open_sequence(options.sequence, loading.folder, scene.load_warnings,
                            scene.input_files);
     case TargetKind::ocean:
+      require_vertices(vertices_of(options.ocean), "scene.target.ocean.samples");
       return std::make_shared<OceanSequence>(
           options.ocean, scene_seed(loading.seed, options.ocean_seed), scene.sculpt.times);
     case TargetKind::mesh: {
@@ -143,6 +144,7 @@ void load_sources(const FluidSceneOptions& options, Loading& loading) {
     InjectedOptions injected = *options.injected;
     injected.seed = scene_seed(loading.seed);
     loading.scene.injected = std::make_shared<InjectedSequence>(injected);
+    require_vertices(loading.scene.injected->layer_nodes(), "scene.injected.resolution");
     loading.scene.injected_resolution = options.injected->resolution;
     sculpt.sources["injected"] = loading.scene.injected;
   }

@@ -306,7 +306,8 @@ bool CaseRunner::run(const OptionSet& options, std::vector<StoredFile> inputs, b
       if (!run_variant(*variant)) return false;
     } catch (const Error& error) {
       log_error(place(*variant), error.what());
-      const std::string key = place_of_scene_key(spec_.scene_places, error.what());
+      std::string key = place_of_scene_key(spec_.scene_places, error.what());
+      if (key.empty()) key = place_of_key(variant->option_places, "options", error.what());
       throw Error(error.what(), (key.empty() ? key : key + ": ") + name_of(*variant));
     } catch (const std::bad_alloc&) {
       throw out_of_memory(name_of(*variant));

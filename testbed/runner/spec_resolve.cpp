@@ -85,6 +85,9 @@ VariantSpec resolve_variant(const TomlNode& node, const Topic& topic) {
   variant.reference = table.reference;
   variant.options = read_set(method.default_options(), node.find("options"), node.place,
                              "variant." + table.name + ".options", variant.options_json);
+  if (const TomlNode* options = node.find("options")) {
+    add_places(*options, "options", variant.option_places);
+  }
   return variant;
 }
 
