@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "experiments/fluid/feature_files.h"
 
 namespace geoprior::fluid {
@@ -123,6 +124,7 @@ class Picture {
   [[nodiscard]] MapFrame map() {
     const int n = size(), channels = input_->spec().nchannels;
     const auto width = static_cast<std::size_t>(channels);
+    require_justified(static_cast<double>(n) * n * channels * sizeof(float));
     std::vector<float> pixels(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) * width);
     if (!input_->read_image(0, 0, 0, channels, oiio::TypeDesc::FLOAT, pixels.data())) {
       throw Error("cannot be read: " + input_->geterror(), name_);
@@ -143,6 +145,17 @@ class Picture {
   }
 
  private:
+  /// Pixels that no compression has in so small a file are not allocated.
+  void require_justified(double bytes) const {
+    constexpr double kMostCompression = 2000;  // deflate reaches about 1000
+    const auto file = static_cast<double>(std::filesystem::file_size(name_));
+    if (bytes > kMostCompression * file) {
+      throw Error("says that it has " + bytes_text(bytes) + " of pixels in " + bytes_text(file),
+                  name_, "a whole picture");
+    }
+    require_memory(bytes, size(), "texels along an edge", name_);
+  }
+
   std::string name_;
   std::unique_ptr<oiio::ImageInput> input_;
 };
