@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class Action>
-std::string error_of(const Action& action) {
+std::string refusal_of(const Action& action) {
   try {
     action();
   } catch (const Error& error) {
@@ -44,7 +44,7 @@ TEST_F(Limits, MemoryIsWhatTheEnvironmentOrTheMachineHas) {
   EXPECT_LT(memory_limit(), 1e15);
   for (const char* wrong : {"much", "-1", "0", "nan", "inf", "4 GB"}) {
     ::setenv("GEOPRIOR_MEMORY_GB", wrong, 1);
-    EXPECT_THAT(error_of([] { (void)memory_limit(); }), HasSubstr("GEOPRIOR_MEMORY_GB"));
+    EXPECT_THAT(refusal_of([] { (void)memory_limit(); }), HasSubstr("GEOPRIOR_MEMORY_GB"));
   }
 }
 
@@ -62,22 +62,22 @@ TEST_F(Limits, WhatFitsIsLetPass) {
 }
 
 TEST_F(Limits, WhatDoesNotFitIsNamedWithItsNumbers) {
-  EXPECT_EQ(error_of([] { require_count(11, "cases", 10, "sweep"); }),
+  EXPECT_EQ(refusal_of([] { require_count(11, "cases", 10, "sweep"); }),
             "sweep: asks for 11 cases (allowed: at most 10)");
-  EXPECT_THAT(error_of([] { require_memory(4e9, 4e6, "vertices", "scene"); }),
+  EXPECT_THAT(refusal_of([] { require_memory(4e9, 4e6, "vertices", "scene"); }),
               AllOf(HasSubstr("scene: asks for 4000000 vertices, about 4.0 GB of memory"),
                     HasSubstr("at most 2.0 GB"), HasSubstr("GEOPRIOR_MEMORY_GB")));
-  EXPECT_THAT(error_of([] { require_frames(1e6, 1e-9, "scene.duration"); }),
+  EXPECT_THAT(refusal_of([] { require_frames(1e6, 1e-9, "scene.duration"); }),
               HasSubstr("asks for 1e+15 frames of 1e-09 s"));
-  EXPECT_THAT(error_of([] { require_frames(1e12, 0.04, "scene.duration"); }),
+  EXPECT_THAT(refusal_of([] { require_frames(1e12, 0.04, "scene.duration"); }),
               HasSubstr("scene.duration: asks for 25000000000001 frames"));
 }
 
 TEST_F(Limits, NoNumberIsMoreThanAny) {
-  EXPECT_NE(error_of([] { require_count(NAN, "cases", 10, ""); }), "no error");
-  EXPECT_NE(error_of([] { require_frames(kInfinity, kInfinity, ""); }), "no error");
-  EXPECT_NE(error_of([] { require_frames(1, 0, ""); }), "no error");
-  EXPECT_NE(error_of([] { require_vertices(kInfinity, ""); }), "no error");
+  EXPECT_NE(refusal_of([] { require_count(NAN, "cases", 10, ""); }), "no error");
+  EXPECT_NE(refusal_of([] { require_frames(kInfinity, kInfinity, ""); }), "no error");
+  EXPECT_NE(refusal_of([] { require_frames(1, 0, ""); }), "no error");
+  EXPECT_NE(refusal_of([] { require_vertices(kInfinity, ""); }), "no error");
 }
 
 // 100000 segments times 20001 rings do not fit into 32 bits, nor into the machine.
@@ -85,7 +85,7 @@ TEST_F(Limits, CylinderOfAllItsRangesIsRefused) {
   CylinderOptions options;
   options.segments = 100000;
   options.rings_per_half = 10000;
-  const auto refusal = [&] { return error_of([&] { (void)two_bone_cylinder(options); }); };
+  const auto refusal = [&] { return refusal_of([&] { (void)two_bone_cylinder(options); }); };
   EXPECT_THAT(refusal(), AllOf(HasSubstr("scene.cylinder.segments: asks for"),
                                HasSubstr("vertices, about"), HasSubstr("TB of memory")));
   options.segments = 3;
@@ -98,7 +98,7 @@ TEST_F(Limits, LongFingerIsRefused) {
   FingerOptions options;
   options.phalanx_length = {1e9, 1, 1};
   options.ring_spacing = 0.01;
-  EXPECT_THAT(error_of([&] { (void)capsule_finger(options); }),
+  EXPECT_THAT(refusal_of([&] { (void)capsule_finger(options); }),
               HasSubstr("scene.finger.segments: asks for"));
 }
 

@@ -30,14 +30,14 @@ using ::testing::Not;
 
 namespace fs = std::filesystem;
 
-std::string numbers(int count) {
+std::string first_numbers(int count) {
   std::string text;
   for (int i = 0; i < count; ++i) text += (i == 0 ? "" : ", ") + std::to_string(i);
   return "[" + text + "]";
 }
 
 std::string sweep_of(const std::string& key, int count, const std::string& more = "") {
-  return "[[sweep]]\nkey = \"" + key + "\"\nvalues = " + numbers(count) + "\n" + more;
+  return "[[sweep]]\nkey = \"" + key + "\"\nvalues = " + first_numbers(count) + "\n" + more;
 }
 
 class Memory : public ::testing::Test {
