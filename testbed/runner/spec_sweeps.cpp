@@ -135,8 +135,16 @@ void apply(SweptCase& result, const Sweep& sweep, std::size_t i) {
   result.claims_only = result.claims_only || sweep.table.claims_only;
 }
 
+double values_in(const TomlNode& node) {
+  double count = 1;
+  for (const TomlNode& item : node.items) count += values_in(item);
+  return count;
+}
+
 /// Counts the cases before any is made.
-void require_few_cases(const std::vector<Sweep>& sweeps) {
+/// @param values_of_case  that the file has beside its sweeps: every case resolves them
+void require_few_cases(const std::vector<Sweep>& sweeps, double values_of_case) {
+  constexpr double kBytesPerValue = 500;  // as an option, as text, with its place
   double alone = 1, grid = 0;
   for (const Sweep& sweep : sweeps) {
     const auto values = static_cast<double>(sweep.values.size());
@@ -145,7 +153,9 @@ void require_few_cases(const std::vector<Sweep>& sweeps) {
     } else {
       alone += values;
     }
-    require_count(alone + grid, "cases", kMostCases, sweep.place);
+    const double cases = alone + grid;
+    require_count(cases, "cases", kMostCases, sweep.place);
+    require_memory(cases * values_of_case * kBytesPerValue, cases, "cases", sweep.place);
   }
 }
 
@@ -190,7 +200,8 @@ void make_names_unique(std::vector<Sweep>& sweeps) {
 std::vector<SweptCase> expand_sweeps(const TomlNode& root, bool quick) {
   std::vector<Sweep> sweeps;
   for (const TomlNode& node : tables_of(root, "sweep")) sweeps.push_back(read_sweep(node, quick));
-  require_few_cases(sweeps);
+  const TomlNode* tables = root.find("sweep");
+  require_few_cases(sweeps, values_in(root) - (tables != nullptr ? values_in(*tables) : 0));
   make_names_unique(sweeps);
 
   std::vector<SweptCase> cases;
