@@ -79,10 +79,9 @@ double drawn_size(const DrawingOptions& options, double mean_edge) {
 void require_drawable(const DrawingOptions& options, std::size_t details, const TriMesh& instance) {
   const auto count = static_cast<double>(details);
   switch (options.kind) {
-    case DrawnKind::spike: {
-      const auto& [sectors, rings] = std::pair(options.spike.sectors, options.spike.rings);
-      return require_vertices(count * sectors * (rings + 1.0), "scene.drawing.look.spike");
-    }
+    case DrawnKind::spike:
+      return require_vertices(count * options.spike.sectors * (options.spike.rings + 1.0),
+                              "scene.drawing.look.spike");
     case DrawnKind::hole:
       return require_vertices(count * options.hole.segments, "scene.drawing.look.hole.segments");
     case DrawnKind::mesh:

@@ -70,13 +70,13 @@ std::vector<TomlNode> values_of(const TomlNode& table, const char* key, bool req
 /// Names of the values; a quick value that is also a full one keeps its name.
 std::vector<std::string> value_names(const Sweep& sweep, const std::vector<TomlNode>& full,
                                      const std::string& label) {
-  std::map<std::string, std::string> given;  // by the value's text
+  std::map<nlohmann::ordered_json, std::string> given;
   for (std::size_t j = 0; j < sweep.table.names.size(); ++j) {
-    given[json_of(full[j]).dump()] = sweep.table.names[j];
+    given[json_of(full[j])] = sweep.table.names[j];
   }
   std::vector<std::string> names;
   for (std::size_t i = 0; i < sweep.values.size(); ++i) {
-    const auto found = given.find(json_of(sweep.values[i]).dump());
+    const auto found = given.find(json_of(sweep.values[i]));
     names.push_back(folder_safe(
         found != given.end() ? found->second : label + "=" + value_text(sweep.values[i], i)));
   }
