@@ -109,7 +109,8 @@ Sweep read_sweep(const TomlNode& node, bool quick) {
   }
   const bool is_reduced = quick && node.find("quick_values") != nullptr;
   sweep.values = is_reduced ? reduced : full;
-  sweep.place = place_of(node, is_reduced ? "quick_values" : "values");
+  const char* key_of_values = is_reduced ? "quick_values" : "values";
+  sweep.place = node.find(key_of_values)->place + ": sweep." + key_of_values;
   const std::string& key = sweep.table.key;
   sweep.names = value_names(sweep, full, key.substr(key.rfind('.') + 1));
   return sweep;
@@ -141,22 +142,32 @@ double values_in(const TomlNode& node) {
   return count;
 }
 
-/// Counts the cases before any is made.
-/// @param values_of_case  that the file has beside its sweeps: every case resolves them
-void require_few_cases(const std::vector<Sweep>& sweeps, double values_of_case) {
-  constexpr double kBytesPerValue = 500;  // as an option, as text, with its place
+/// Cases of the first `count` sweeps, the base case among them.
+double case_count(const std::vector<Sweep>& sweeps, std::size_t count) {
   double alone = 1, grid = 0;
-  for (const Sweep& sweep : sweeps) {
-    const auto values = static_cast<double>(sweep.values.size());
-    if (sweep.table.grid) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto values = static_cast<double>(sweeps[i].values.size());
+    if (sweeps[i].table.grid) {
       grid = std::max(grid, 1.0) * values;
     } else {
       alone += values;
     }
-    const double cases = alone + grid;
-    require_count(cases, "cases", kMostCases, sweep.place);
-    require_memory(cases * values_of_case * kBytesPerValue, cases, "cases", sweep.place);
   }
+  return alone + grid;
+}
+
+/// Counts the cases before any is made; an error names the sweep with which they are too many.
+/// @param values_of_case  that the file has beside its sweeps: every case resolves them
+void require_few_cases(const std::vector<Sweep>& sweeps, double values_of_case) {
+  constexpr double kBytesPerValue = 500;  // as an option, as text, with its place
+  const double most = std::min(kMostCases, memory_limit() / (values_of_case * kBytesPerValue));
+  std::size_t too_many = 1;
+  while (too_many <= sweeps.size() && case_count(sweeps, too_many) <= most) ++too_many;
+  if (too_many > sweeps.size()) return;
+  const double cases = case_count(sweeps, sweeps.size());
+  const std::string& place = sweeps[too_many - 1].place;
+  require_count(cases, "cases", kMostCases, place);
+  require_memory(cases * values_of_case * kBytesPerValue, cases, "cases", place);
 }
 
 std::vector<SweptCase> grid_product(const std::vector<Sweep>& sweeps) {

@@ -62,9 +62,15 @@ TEST_F(Memory, CasesAreCountedBeforeTheyAreMade) {
   const std::string grid = "grid = true\n";
   const std::string cube = sweep_of("seed", 100, grid) + sweep_of("scene.points", 100, grid) +
                            sweep_of("variant.polygon.options.segments", 100, grid);
-  EXPECT_THAT(error_of(cube), AllOf(HasSubstr("disc.toml:"), HasSubstr("values: asks for 1000000 "),
-                                    HasSubstr("cases (allowed: at most 10000)")));
-  EXPECT_THAT(error_of(sweep_of("seed", 10001)), HasSubstr("disc.toml:17:1: values: asks for"));
+  EXPECT_THAT(error_of(cube),
+              AllOf(HasSubstr("disc.toml:22:1: sweep.values: asks for 1000001 cases"),
+                    HasSubstr("at most 10000")));
+  EXPECT_THAT(error_of(sweep_of("seed", 10001)),
+              HasSubstr("disc.toml:18:1: sweep.values: asks for 10002 cases"));
+  ::setenv("GEOPRIOR_MEMORY_GB", "0.001", 1);
+  EXPECT_THAT(error_of(sweep_of("seed", 1000)),
+              AllOf(HasSubstr("sweep.values: asks for 1001 cases"), HasSubstr("MB of memory")));
+  ::unsetenv("GEOPRIOR_MEMORY_GB");
 }
 
 // Each case kept a copy of the file with all values: 2.8 GB.
