@@ -164,7 +164,8 @@ void require_few_cases(const std::vector<Sweep>& sweeps, double values_of_case) 
   std::size_t too_many = 1;
   while (too_many <= sweeps.size() && case_count(sweeps, too_many) <= most) ++too_many;
   if (too_many > sweeps.size()) return;
-  const double cases = case_count(sweeps, sweeps.size());
+  // A later sweep without values makes none of the grid; it would be made up to there.
+  const double cases = std::max(case_count(sweeps, too_many), case_count(sweeps, sweeps.size()));
   const std::string& place = sweeps[too_many - 1].place;
   require_count(cases, "cases", kMostCases, place);
   require_memory(cases * values_of_case * kBytesPerValue, cases, "cases", place);
