@@ -308,9 +308,9 @@ TEST_F(BadFluid, AsksForNoGridThatDoesNotFit) {
   EXPECT_THAT(refusal("liquid", "tank = { size = [1e18, 1, 1], cell = 1e-3, " + kPool + " }\n"),
               AllOf(HasSubstr("bad.toml:4:"), HasSubstr("scene.tank.size.0: asks for"),
                     HasSubstr("cells")));
-  ::setenv("GEOPRIOR_MEMORY_GB", "0.01", 1);
+  ::setenv("GEOPRIOR_MEMORY_GB", "0.004", 1);
   EXPECT_THAT(refusal("ocean", "duration = 1\n", "samples = 1024, tiles = 8"),
-              AllOf(HasSubstr("bad.toml:8:"), HasSubstr("options.samples: asks for 67125249"),
+              AllOf(HasSubstr("bad.toml:9:"), HasSubstr("options.samples: asks for 67125249"),
                     HasSubstr("GB of memory")));
   EXPECT_THAT(refusal("ocean", "target = { kind = \"ocean\", ocean = { samples = 1024 } }\n"),
               AllOf(HasSubstr("bad.toml:4:"), HasSubstr("scene.target.ocean.samples: asks for")));

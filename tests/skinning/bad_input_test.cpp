@@ -204,10 +204,11 @@ TEST_F(BadCharacter, AsksForNoMeshThatDoesNotFit) {
       refused("refine = [{ levels = 5 }, { levels = 0 }, { levels = 5 }, { levels = 5 }]\n"),
       AllOf(HasSubstr("bad.toml:5:"), HasSubstr("scene.refine."), HasSubstr(".levels: asks for"),
             HasSubstr("vertices")));
-  EXPECT_THAT(
-      refused("refine = [{ region = [\"upper\"], levels = 5 }, { region = [\"upper\"], levels = "
-              "5, extent = 20 }]\n"),
-      HasSubstr("scene.refine.1.levels: asks for"));
+  ::setenv("GEOPRIOR_MEMORY_GB", "0.1", 1);
+  EXPECT_THAT(refused("refine = [{ region = [\"upper\"], levels = 1 }, { region = [\"upper\"], "
+                      "levels = 5 }]\n"),
+              HasSubstr("scene.refine.1.levels: asks for"));
+  ::unsetenv("GEOPRIOR_MEMORY_GB");
 }
 
 TEST_F(BadCharacter, NamesTheSkeletonThatIsNestedTooDeep) {
