@@ -4,8 +4,10 @@
 #include <OpenImageIO/imageio.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <sstream>
 
 #include "core/error.h"
@@ -121,6 +123,14 @@ class Picture {
   }
   [[nodiscard]] double number(const char* key) const { return numbers<1>(key)[0]; }
 
+  [[nodiscard]] int whole_number(const char* key) const {
+    const double x = number(key);
+    if (x >= 0 && x == std::floor(x) && x <= std::numeric_limits<int>::max()) {
+      return static_cast<int>(x);
+    }
+    throw Error(std::string(kPrefix) + key + " is " + text(key), name_, "a whole number");
+  }
+
   [[nodiscard]] MapFrame map() {
     const int n = size(), channels = input_->spec().nchannels;
     const auto width = static_cast<std::size_t>(channels);
@@ -162,7 +172,7 @@ class Picture {
 
 void add_frame(Feature& feature, Picture& picture) {
   if (feature.times.empty()) {
-    feature.id = static_cast<int>(picture.number("id"));
+    feature.id = picture.whole_number("id");
     feature.name = picture.text("name");
     feature.cell = picture.number("cell");
     feature.extent = picture.number("extent");
