@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/limits.h"
 
 namespace geoprior {
 namespace {
@@ -65,11 +66,18 @@ TriMesh surface_of_revolution(const Profile& profile, int segments) {
   return mesh;
 }
 
+/// Steps of about `spacing` along `length`, at least two. A double: it is estimated before it is
+/// made.
+double steps(double length, double spacing) { return std::max(2.0, std::round(length / spacing)); }
+
+double cap_steps(double radius, double height, double spacing) {
+  return steps(std::max(radius, 0.5 * std::numbers::pi * std::sqrt(radius * height)), spacing);
+}
+
 /// Rings of a half ellipsoid from just after its pole up to, not including, its equator, as
 /// (height above the equator, radius); concentric circles when `height` is 0.
 std::vector<Eigen::Vector2d> cap_rings(double radius, double height, double spacing) {
-  const double arc = std::max(radius, 0.5 * std::numbers::pi * std::sqrt(radius * height));
-  const int n = std::max(2, static_cast<int>(std::lround(arc / spacing)));
+  const int n = static_cast<int>(cap_steps(radius, height, spacing));
   std::vector<Eigen::Vector2d> rings;
   for (int i = 1; i < n; ++i) {
     const double t = static_cast<double>(i) / n;
@@ -131,8 +139,24 @@ void check(const CylinderOptions& o) {
   if (o.rings_per_half < 1) throw Error("a cylinder without rings", "", ">= 1");
 }
 
+double ring_edge(double radius, int segments) { return 2 * std::numbers::pi * radius / segments; }
+
+void require_size(const CylinderOptions& o) {
+  const double rings = 2.0 * o.rings_per_half + 1 +
+                       2 * cap_steps(o.radius, o.cap_height, ring_edge(o.radius, o.segments));
+  require_vertices(rings * o.segments, "scene.cylinder.segments");
+}
+
+void require_size(const FingerOptions& o) {
+  const double spacing = o.ring_spacing * ring_edge(o.radius[0], o.segments);
+  double rings = steps(o.hand_length, spacing) + cap_steps(o.radius[0], o.radius[0], spacing) +
+                 cap_steps(o.radius[3], o.radius[3], spacing);
+  for (const double length : o.phalanx_length) rings += steps(length, spacing);
+  require_vertices(rings * o.segments, "scene.finger.segments");
+}
+
 Profile cylinder_profile(const CylinderOptions& o) {
-  const double spacing = 2 * std::numbers::pi * o.radius / o.segments;
+  const double spacing = ring_edge(o.radius, o.segments);
   Profile profile;
   append_first_cap(profile, -o.half_length, o.radius, o.cap_height, spacing);
   for (int i = -o.rings_per_half; i <= o.rings_per_half; ++i)
@@ -143,11 +167,11 @@ Profile cylinder_profile(const CylinderOptions& o) {
 
 /// Straight tapered pieces between the joints, half spheres at both ends.
 Profile finger_profile(const FingerOptions& o) {
-  const double spacing = o.ring_spacing * 2 * std::numbers::pi * o.radius[0] / o.segments;
+  const double spacing = o.ring_spacing * ring_edge(o.radius[0], o.segments);
   Profile profile;
   append_first_cap(profile, -o.hand_length, o.radius[0], o.radius[0], spacing);
   const auto piece = [&](double begin, double length, double r0, double r1) {
-    const int n = std::max(2, static_cast<int>(std::lround(length / spacing)));
+    const int n = static_cast<int>(steps(length, spacing));
     for (int i = 0; i < n; ++i) {
       const double t = static_cast<double>(i) / n;
       profile.rings.emplace_back(begin + t * length, r0 + t * (r1 - r0));
@@ -168,6 +192,7 @@ Profile finger_profile(const FingerOptions& o) {
 
 RiggedMesh two_bone_cylinder(const CylinderOptions& options) {
   check(options);
+  require_size(options);
   RiggedMesh rig;
   rig.mesh = surface_of_revolution(cylinder_profile(options), options.segments);
   rig.skeleton.joints = {joint_on_x_axis("lower", -1, -options.half_length, 0),
@@ -180,6 +205,7 @@ RiggedMesh two_bone_cylinder(const CylinderOptions& options) {
 
 std::vector<int> mid_ring(const CylinderOptions& options) {
   check(options);
+  require_size(options);
   const auto rings = static_cast<int>(cylinder_profile(options).rings.size());
   std::vector<int> ring;
   for (int k = 0; k < options.segments; ++k) ring.push_back(1 + rings / 2 * options.segments + k);
@@ -193,6 +219,7 @@ RiggedMesh capsule_finger(const FingerOptions& options) {
   for (const double length : options.phalanx_length) require_positive(length, "phalanx length");
   for (const double radius : options.radius) require_positive(radius, "finger radius");
   if (options.segments < 3) throw Error("a finger of fewer than 3 segments", "", ">= 3");
+  require_size(options);
 
   RiggedMesh rig;
   rig.mesh = surface_of_revolution(finger_profile(options), options.segments);

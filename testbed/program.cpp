@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
 #include "testbed/runner/build_info.h"
@@ -164,6 +165,13 @@ int dispatch(CommandLine& line, const std::vector<Topic>& topics) {
   return export_command(context, line.exported);
 }
 
+/// "run skinning/knee": what was asked for, for messages.
+std::string command_text(int argc, const char* const* argv) {
+  std::string text;
+  for (int i = 1; i < argc; ++i) text += (text.empty() ? "" : " ") + std::string(argv[i]);
+  return text;
+}
+
 int fail(const char* kind, const std::string& what, int code) {
   say(tinted(kind, Tint::bad) + what);
   return code;
@@ -204,6 +212,8 @@ int run_program(int argc, const char* const* argv, const std::vector<Topic>& top
     return fail("error: ", error.what(), wrong_use);
   } catch (const std::filesystem::filesystem_error& error) {
     return fail("error: ", error.what(), wrong_use);
+  } catch (const std::bad_alloc&) {
+    return fail("error: ", out_of_memory(command_text(argc, argv)).what(), wrong_use);
   } catch (const std::exception& error) {
     return fail("internal error: ", error.what(), internal_error);
   }

@@ -272,6 +272,11 @@ void describe(OptionVisitor& v, OceanOptions& o) {
   v.value("tiles", o.tiles, {.doc = "patches along x and y", .min = 1, .max = 64});
 }
 
+double vertices_of(const OceanOptions& o) {
+  const double along = static_cast<double>(o.samples) * o.tiles + 1;
+  return along * along;
+}
+
 void require_valid(const OceanOptions& o, const std::string& where) {
   require(o.samples >= 4 && o.samples <= kMostSamples &&
               std::has_single_bit(static_cast<unsigned>(o.samples)),

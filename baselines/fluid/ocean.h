@@ -77,6 +77,9 @@ class Ocean {
   std::unique_ptr<Data> data_;
 };
 
+/// Vertices of the tiled surface.
+double vertices_of(const OceanOptions& options);
+
 /// Directional spectrum P(k) (m^4) at a wave vector (rad/m), before scaling to `amplitude`:
 /// P = S(w) D(theta) (dw/dk) / k, integral over the plane = m0.
 ///

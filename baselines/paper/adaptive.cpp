@@ -34,6 +34,7 @@ class AdaptiveMesher final : public SheetMesher {
 
   ShellState start(const Sheet& sheet, RunContext& context) override {
     const double edge = kStartSize * options_.size_max;
+    require_lattice(sheet.pattern, edge);
     const double triangles = signed_area(sheet.pattern) / (std::sqrt(3.0) / 4 * edge * edge);
     return resting_state(
         sheet,

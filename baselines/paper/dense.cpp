@@ -21,6 +21,7 @@ class UniformMesher final : public SheetMesher {
   ShellState start(const Sheet& sheet, RunContext& context) override {
     const double edge =
         std::sqrt(4 / std::sqrt(3.0) * signed_area(sheet.pattern) / options_.triangles);
+    require_lattice(sheet.pattern, edge);
     const std::vector<Eigen::Vector2d> anchors = handle_points(sheet, edge);
     return resting_state(
         sheet,

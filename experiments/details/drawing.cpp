@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/limits.h"
 #include "experiments/details/measures.h"
 #include "experiments/details/scene.h"
 
@@ -66,11 +67,12 @@ class DrawnProcess final : public Process {
 
 void describe(OptionVisitor& v, DetailDrawingOptions& options) {
   v.value("frames", options.frames,
-          {.doc = "drawn beside the first, evenly over the motion", .min = 1});
+          {.doc = "drawn beside the first, evenly over the motion", .min = 1, .max = kMostFrames});
   v.value("pop_frames", options.pop_frames,
           {.doc = "evenly over the motion, at which popping of the drawing since the frame before "
                   "is measured",
-           .min = 1});
+           .min = 1,
+           .max = kMostFrames});
   describe_group(v, "look", options.look, {.doc = "what a detail is drawn as"});
   const bool given =
       options.look.kind == DrawnKind::mesh && options.look.instance.shape == InstanceShape::given;

@@ -9,6 +9,7 @@
 
 #include "core/angles.h"
 #include "core/error.h"
+#include "core/limits.h"
 #include "core/random.h"
 #include "core/triangle_tree.h"
 #include "models/details/point_grid.h"
@@ -22,6 +23,8 @@ namespace {
 constexpr int kDartsPerDetail = 400;
 /// Smallest distance in a cluster over its radius.
 constexpr double kApartInCluster = 0.25;
+/// Of a grid: on a surface that fills its box about as many as details.
+constexpr double kMostGridCells = 2e7;
 
 /// The surface as what is drawn on: density per area, random places.
 class Ground {
@@ -127,8 +130,10 @@ Places jittered_grid(const Ground& ground, const DetailPatternOptions& options,
     throw Error("is the same everywhere on a grid", "scene.pattern.density", "constant");
   }
   const double spacing = std::sqrt(ground.area() / options.count);
-  const int nx = std::max(1, static_cast<int>(std::lround(size.x() / spacing)));
-  const int ny = std::max(1, static_cast<int>(std::lround(size.y() / spacing)));
+  const double columns = std::max(1.0, std::round(size.x() / spacing));
+  const double rows = std::max(1.0, std::round(size.y() / spacing));
+  require_count(columns * rows, "cells of a grid", kMostGridCells, "scene.pattern.count");
+  const int nx = static_cast<int>(columns), ny = static_cast<int>(rows);
   const TriangleTree tree(ground.mesh());
   Places places;
   for (int j = 0; j < ny; ++j) {
@@ -336,7 +341,7 @@ void describe(OptionVisitor& v, DetailPatternOptions& options) {
   v.value("aligned", options.aligned, {.doc = "tangents along `direction`, else at random"});
   v.value("direction", options.direction, {.doc = "of aligned tangents"});
   v.value("seed", options.seed,
-          {.doc = "of places, types and tangents, beside the experiment's", .min = 0});
+          {.doc = "of places, types and tangents, beside the experiment's", .min = 0, .max = 2e9});
 }
 
 }  // namespace geoprior::details

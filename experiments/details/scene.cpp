@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "experiments/details/position_file.h"
 #include "models/details/detail_process.h"
 #include "testbed/formats/mesh_file.h"
@@ -108,11 +109,14 @@ struct Loading {
 
   void load_drawing() {
     result.drawing = options.drawing;
-    if (!options.drawing || options.drawing->look.kind != DrawnKind::mesh) return;
-    if (options.drawing->look.instance.shape != InstanceShape::given) return;
-    result.input_files.push_back(
-        find_file(options.drawing->file, folder, "data", "scene.drawing.file"));
-    result.instance = read_mesh_file(result.input_files.back()).mesh;
+    if (!options.drawing) return;
+    const DrawingOptions& look = options.drawing->look;
+    if (look.kind == DrawnKind::mesh && look.instance.shape == InstanceShape::given) {
+      result.input_files.push_back(
+          find_file(options.drawing->file, folder, "data", "scene.drawing.file"));
+      result.instance = read_mesh_file(result.input_files.back()).mesh;
+    }
+    require_drawable(look, result.input.details.size(), result.instance);
   }
 
   void align(std::vector<Detail>& details) const {
@@ -124,10 +128,18 @@ struct Loading {
     for (Detail& d : details) d.tangent_angle = tangent_angle(d.at.face, direction, topology, x);
   }
 
+  /// What is dragged or read is kept, one position a vertex and frame.
+  void require_positions(int frames, const std::string& where) const {
+    const int vertices = result.input.surface.vertex_count();
+    require_memory(static_cast<double>(frames) * vertices * 3 * sizeof(double), frames,
+                   "frames of " + std::to_string(vertices) + " vertices", where);
+  }
+
   void load_motion() {
     const DetailMotionOptions& o = options.motion;
     DetailScene& scene = result.input;
     if (sequence) {
+      require_positions(sequence->frame_count(), "scene.motion.sequence");
       if (!o.deform.empty() || o.drag)
         throw Error("stands beside a sequence", "scene.motion", "sequence, or deform and drag");
       scene.motion = motion_of_sequence(*sequence);
@@ -137,6 +149,7 @@ struct Loading {
     for (int i = 0; i <= o.frames; ++i) times.push_back(o.duration * i / o.frames);
     std::shared_ptr<const SurfaceMotion> base =
         std::make_shared<StoredMotion>(std::vector{scene.surface.V}, std::vector{0.0});
+    if (o.drag) require_positions(o.frames + 1, "scene.motion.frames");
     if (o.drag) base = drag_handles(scene.surface, *o.drag, times);
     scene.motion = std::make_shared<ScriptedMotion>(scene.surface, base, o.deform, times);
   }

@@ -1,10 +1,12 @@
 #include "experiments/details/scene_options.h"
 
+#include "core/limits.h"
+
 namespace geoprior::details {
 
 void describe(OptionVisitor& v, DetailMotionOptions& options) {
   v.value("frames", options.frames,
-          {.doc = "after the first, which is the surface at rest", .min = 1, .max = 100000});
+          {.doc = "after the first, which is the surface at rest", .min = 1, .max = kMostFrames});
   v.value("duration", options.duration, {.doc = "of the motion", .unit = "s", .min = 1e-9});
   describe_list(v, "deform", options.deform, {.doc = "operations, one after the other"});
   describe_group(v, "drag", options.drag,
@@ -23,7 +25,8 @@ void describe(OptionVisitor& v, DetailSceneOptions& options) {
            .min = 1e-9});
   v.value("pair_frames", options.pair_frames,
           {.doc = "frames, evenly over the motion, at which the pair correlation is measured",
-           .min = 1});
+           .min = 1,
+           .max = kMostFrames});
   v.value("pair_sources", options.pair_sources,
           {.doc = "details, evenly spread, that distances are then measured from", .min = 2});
   describe_group(v, "drawing", options.drawing,

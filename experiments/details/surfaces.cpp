@@ -9,6 +9,7 @@
 
 #include "core/angles.h"
 #include "core/error.h"
+#include "core/limits.h"
 #include "core/procedural.h"
 #include "core/subdivision.h"
 
@@ -19,16 +20,24 @@ constexpr double kMostTriangles = 1e7;
 constexpr double kSmallest = 1e-6;
 constexpr double kLargest = 1e6;
 
-void require_size(double area, double edge) {
-  // Two triangles of a square of one edge.
-  const double triangles = 2 * area / (edge * edge);
-  if (triangles <= kMostTriangles) return;
-  throw Error("asks for " + std::to_string(std::llround(triangles)) + " triangles",
-              "scene.surface.edge", "at most ten million: longer edges");
+void require_triangles(double triangles) {
+  require_count(triangles, "triangles", kMostTriangles, "scene.surface.edge");
 }
 
-int steps(double length, double edge, int least) {
-  return std::max(least, static_cast<int>(std::lround(length / edge)));
+void require_area(double area, double edge) {
+  // Two triangles of a square of one edge.
+  require_triangles(2 * area / (edge * edge));
+}
+
+/// Steps of about an edge: a double, as long as nobody has looked how many.
+double steps(double length, double edge, double least) {
+  return std::max(least, std::round(length / edge));
+}
+
+/// Squares along two directions.
+std::array<int, 2> grid_of(double along, double across) {
+  require_triangles(2 * along * across);
+  return {static_cast<int>(along), static_cast<int>(across)};
 }
 
 /// Squares (i, j) of a grid, cut along diagonals that alternate. `vertex(i, j)` numbers the
@@ -104,8 +113,8 @@ void describe(OptionVisitor& v, DetailSurfaceOptions& options) {
 }
 
 TriMesh plane_surface(double width, double height, double edge) {
-  require_size(width * height, edge);
-  const int nx = steps(width, edge, 1), ny = steps(height, edge, 1);
+  const auto [columns, rows] = grid_of(steps(width, edge, 1), steps(height, edge, 1));
+  const int nx = columns, ny = rows;  // a lambda cannot capture a binding
   TriMesh mesh;
   mesh.V.resize((nx + 1) * (ny + 1), 3);
   for (int j = 0; j <= ny; ++j) {
@@ -119,7 +128,7 @@ TriMesh plane_surface(double width, double height, double edge) {
 }
 
 TriMesh sphere_surface(double radius, double edge) {
-  require_size(4 * std::numbers::pi * radius * radius, edge);
+  require_area(4 * std::numbers::pi * radius * radius, edge);
   TriMesh mesh = icosahedron();
   // An edge of the icosahedron subtends atan(2).
   for (double e = radius * std::atan(2.0); e > edge; e /= 2) {
@@ -136,10 +145,10 @@ TriMesh torus_surface(double radius, double tube_radius, double edge) {
     throw Error("is not smaller than the ring's", "scene.surface.tube_radius",
                 "less than scene.surface.radius");
   }
-  require_size(kFullTurn * radius * kFullTurn * tube_radius, edge);
   // Even numbers, so that diagonals alternate across the seams too.
-  const int nu = 2 * steps(kFullTurn * radius / 2, edge, 4);
-  const int nv = 2 * steps(kFullTurn * tube_radius / 2, edge, 3);
+  const auto [around, along] = grid_of(2 * steps(kFullTurn * radius / 2, edge, 4),
+                                       2 * steps(kFullTurn * tube_radius / 2, edge, 3));
+  const int nu = around, nv = along;
   TriMesh mesh;
   mesh.V.resize(nu * nv, 3);
   for (int j = 0; j < nv; ++j) {
@@ -154,12 +163,14 @@ TriMesh torus_surface(double radius, double tube_radius, double edge) {
 }
 
 TriMesh capsule_surface(double radius, double length, double edge) {
-  require_size(2 * std::numbers::pi * radius * (length + 2 * radius), edge);
+  require_area(2 * std::numbers::pi * radius * (length + 2 * radius), edge);
+  const auto [segments, rings] =
+      grid_of(steps(2 * std::numbers::pi * radius, edge, 6), steps(length / 2, edge, 1));
   CylinderOptions cylinder;
   cylinder.radius = cylinder.cap_height = radius;
   cylinder.half_length = length / 2;
-  cylinder.segments = steps(2 * std::numbers::pi * radius, edge, 6);
-  cylinder.rings_per_half = steps(length / 2, edge, 1);
+  cylinder.segments = segments;
+  cylinder.rings_per_half = rings;
   return two_bone_cylinder(cylinder).mesh;
 }
 

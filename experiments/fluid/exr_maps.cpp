@@ -4,11 +4,14 @@
 #include <OpenImageIO/imageio.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <sstream>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "experiments/fluid/feature_files.h"
 #include "testbed/formats/input_file.h"
 
@@ -122,9 +125,18 @@ class Picture {
   }
   [[nodiscard]] double number(const char* key) const { return numbers<1>(key)[0]; }
 
+  [[nodiscard]] int whole_number(const char* key) const {
+    const double x = number(key);
+    if (x >= 0 && x == std::floor(x) && x <= std::numeric_limits<int>::max()) {
+      return static_cast<int>(x);
+    }
+    throw Error(std::string(kPrefix) + key + " is " + text(key), name_, "a whole number");
+  }
+
   [[nodiscard]] MapFrame map() {
     const int n = size(), channels = input_->spec().nchannels;
     const auto width = static_cast<std::size_t>(channels);
+    require_justified(static_cast<double>(n) * n * channels * sizeof(float));
     std::vector<float> pixels(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) * width);
     if (!input_->read_image(0, 0, 0, channels, oiio::TypeDesc::FLOAT, pixels.data())) {
       throw Error("cannot be read: " + input_->geterror(), name_);
@@ -145,13 +157,24 @@ class Picture {
   }
 
  private:
+  /// Pixels that no compression has in so small a file are not allocated.
+  void require_justified(double bytes) const {
+    constexpr double kMostCompression = 2000;  // deflate reaches about 1000
+    const auto file = static_cast<double>(std::filesystem::file_size(name_));
+    if (bytes > kMostCompression * file) {
+      throw Error("says that it has " + bytes_text(bytes) + " of pixels in " + bytes_text(file),
+                  name_, "a whole picture");
+    }
+    require_memory(bytes, size(), "texels along an edge", name_);
+  }
+
   std::string name_;
   std::unique_ptr<oiio::ImageInput> input_;
 };
 
 void add_frame(Feature& feature, Picture& picture) {
   if (feature.times.empty()) {
-    feature.id = static_cast<int>(picture.number("id"));
+    feature.id = picture.whole_number("id");
     feature.name = picture.text("name");
     feature.cell = picture.number("cell");
     feature.extent = picture.number("extent");

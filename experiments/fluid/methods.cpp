@@ -1,6 +1,9 @@
+#include <cmath>
+
 #include "baselines/fluid/liquid.h"
 #include "baselines/fluid/liquid_process.h"
 #include "baselines/fluid/ocean.h"
+#include "core/limits.h"
 #include "experiments/fluid/extract_files.h"
 #include "experiments/fluid/scene.h"
 #include "experiments/fluid/topic.h"
@@ -8,6 +11,18 @@
 #include "solvers/fluid/sculpt.h"
 
 namespace geoprior::fluid {
+namespace {
+
+/// A node of the field whose contour is the surface: value, weights and a copy (B).
+constexpr double kBytesPerNode = 16;
+
+void require_surface_grid(const Tank& tank, const LiquidSurfaceOptions& options) {
+  const double nodes = tank.cells.cast<double>().prod() * std::pow(options.cells_per_cell, 3);
+  require_memory(nodes * kBytesPerNode, nodes, "nodes of the surface's grid",
+                 "options.surface.cells_per_cell");
+}
+
+}  // namespace
 
 std::vector<MethodEntry> methods() {
   using S = FluidScene;
@@ -18,14 +33,15 @@ std::vector<MethodEntry> methods() {
           "Zhu and Bridson 2005; Batty, Bertails and Bridson 2007; Jiang et al. 2015",
           [](const S& scene, const LiquidOptions& options, RunContext&) {
             const Tank& tank = scene.require_tank("the method 'liquid'");
-            require_valid(tank, options.particles_per_cell, simulation_memory_limit(),
-                          "scene.tank");
+            require_valid(tank, options.particles_per_cell, memory_limit(), "scene.tank");
+            require_surface_grid(tank, options.surface);
             return make_liquid(tank, options);
           }),
       method_entry<S, OceanOptions>(
           "ocean", true, "procedural ocean: waves of a wind spectrum by Fourier synthesis",
           "Tessendorf 2004; Horvath 2015",
           [](const S& scene, const OceanOptions& options, RunContext&) {
+            require_vertices(vertices_of(options), "options.samples");
             return make_ocean(options, scene.sculpt.times);
           }),
       method_entry<S, StoredExtractOptions>(

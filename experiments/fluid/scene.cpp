@@ -1,12 +1,11 @@
 #include "experiments/fluid/scene.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <system_error>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "core/random.h"
 #include "experiments/fluid/edit_list.h"
 #include "experiments/fluid/feature_files.h"
@@ -56,10 +55,13 @@ LiquidShape make_shape(const LiquidShapeOptions& options, Loading& loading,
   return shape;
 }
 
+constexpr double kMostCellsAlong = 1e6;
+
 /// Whole cells along an edge. @throws Error  when the size is not a multiple of the cell
 int cells_along(double size, double cell, const std::string& where) {
   const double cells = size / cell;
   const double whole = std::round(cells);
+  require_count(whole, "cells", kMostCellsAlong, where);
   if (whole >= 1 && std::abs(cells - whole) < 1e-6 * whole) return static_cast<int>(whole);
   throw Error("is " + std::to_string(cells) + " cells long", where,
               "a whole number of cells of " + std::to_string(cell) + " m");
@@ -114,6 +116,7 @@ std::shared_ptr<const SurfaceSequence> make_target(const TargetOptions& options,
       return open_sequence(options.sequence, loading.folder, scene.load_warnings,
                            scene.input_files);
     case TargetKind::ocean:
+      require_vertices(vertices_of(options.ocean), "scene.target.ocean.samples");
       return std::make_shared<OceanSequence>(
           options.ocean, scene_seed(loading.seed, options.ocean_seed), scene.sculpt.times);
     case TargetKind::mesh: {
@@ -141,6 +144,7 @@ void load_sources(const FluidSceneOptions& options, Loading& loading) {
     InjectedOptions injected = *options.injected;
     injected.seed = scene_seed(loading.seed);
     loading.scene.injected = std::make_shared<InjectedSequence>(injected);
+    require_vertices(loading.scene.injected->layer_nodes(), "scene.injected.resolution");
     loading.scene.injected_resolution = options.injected->resolution;
     sculpt.sources["injected"] = loading.scene.injected;
   }
@@ -273,11 +277,6 @@ std::optional<double> FluidScene::dam_width() const {
   return high - wall;
 }
 
-double simulation_memory_limit() {
-  return 0.8 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
-         static_cast<double>(sysconf(_SC_PAGE_SIZE));
-}
-
 std::shared_ptr<FluidScene> load_fluid_scene(const FluidSceneOptions& options,
                                              const fs::path& folder, std::uint64_t seed) {
   auto scene = std::make_shared<FluidScene>();
@@ -286,6 +285,7 @@ std::shared_ptr<FluidScene> load_fluid_scene(const FluidSceneOptions& options,
   scene->frame_interval = options.frame_interval;
   scene->gravity = to_vector(options.gravity);
   if (scene->gravity.norm() > 0) scene->sculpt.up = -scene->gravity.normalized();
+  require_frames(options.duration, options.frame_interval, "scene.duration");
   const int frames =
       1 + static_cast<int>(std::floor(options.duration / options.frame_interval + 1e-9));
   for (int i = 0; i < frames; ++i) {
@@ -293,7 +293,7 @@ std::shared_ptr<FluidScene> load_fluid_scene(const FluidSceneOptions& options,
   }
   if (options.tank) {
     scene->tank = make_tank(*options.tank, options, loading);
-    require_valid(*scene->tank, 1, simulation_memory_limit(), "scene.tank");
+    require_valid(*scene->tank, 1, memory_limit(), "scene.tank");
   }
   load_sources(options, loading);
   if (options.target) scene->sculpt.target = make_target(*options.target, loading);

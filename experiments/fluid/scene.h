@@ -41,9 +41,6 @@ class FluidScene final : public ProcessScene {
   [[nodiscard]] std::map<std::string, double> facts() const override;
 };
 
-/// Bytes of memory that a simulation may take: four fifths of the machine's.
-double simulation_memory_limit();
-
 /// @param folder  of the experiment file, against which relative files are tried first
 /// @param seed    of the experiment: of injected features, their noise, and an ocean's waves
 /// @throws Error  naming key or file, and place

@@ -27,7 +27,7 @@ void describe(OptionVisitor& v, PatternOptions& options) {
     case PatternKind::disc:
       v.value("radius", options.radius,
               {.doc = "of the circle about the origin", .unit = "m", .min = 1e-6, .max = kLargest});
-      v.value("corners", options.corners, {.doc = "of its outline", .min = 3, .max = 100000});
+      v.value("corners", options.corners, {.doc = "of its outline", .min = 3, .max = kMostCorners});
       break;
     case PatternKind::polygon:
       describe_list(v, "points", options.points,

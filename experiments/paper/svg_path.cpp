@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "experiments/paper/svg_curves.h"
+#include "models/paper/pattern.h"
 
 namespace geoprior::paper {
 namespace {
@@ -97,6 +98,9 @@ class PathReader {
         text_.fail("a second subpath begins", "one closed outline");
       }
       draw(c);
+      if (points_.size() > kMostCorners) {
+        text_.fail("the outline has too many corners", std::to_string(kMostCorners));
+      }
       last = c;
     }
     if (last == 0) text_.fail("path data is empty", "M …");

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "experiments/paper/svg_path.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/nesting.h"
 
 namespace geoprior::paper {
 namespace {
@@ -73,6 +74,7 @@ void require_no_transform(const pugi::xml_node& path, const std::string& where) 
 
 Pattern read_svg_pattern(const std::filesystem::path& file, const SvgPatternOptions& options) {
   const std::string text = read_whole_file(file);
+  require_shallow_xml(text, kFileKey + file.string());
   pugi::xml_document document;
   const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
   if (!parsed) {

@@ -3,9 +3,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "core/mesh.h"
 #include "core/simplify.h"
 #include "core/subdivision.h"
@@ -189,9 +191,16 @@ void take_procedural(const CharacterOptions& options, RiggedMesh rig, const fs::
   choose_weights(options, options.character, std::move(given), character);
 }
 
+/// Beyond so many levels in all, every mesh is too large.
+constexpr int kMostLevels = 30;
+
+bool is_whole(const RefineOptions& options) {
+  return options.region.empty() || options.region == std::vector<std::string>{"all"};
+}
+
 /// Triangles of the skin about the named joints; empty for "all".
 std::vector<bool> marks_of(const RefineOptions& options, const RiggedMesh& rig) {
-  if (options.region.empty() || options.region == std::vector<std::string>{"all"}) return {};
+  if (is_whole(options)) return {};
   std::vector<bool> marks(rig.mesh.triangle_count(), false);
   std::vector<int> joints;
   for (const std::string& name : options.region) joints.push_back(rig.skeleton.index_of(name));
@@ -201,11 +210,32 @@ std::vector<bool> marks_of(const RefineOptions& options, const RiggedMesh& rig) 
   return marks;
 }
 
-void refine(const RefineOptions& options, Character& character) {
+/// Vertices after steps of subdivision that split each marked triangle in four; of a closed mesh
+/// there are half as many as triangles.
+double refined_vertices(const RiggedMesh& rig, double marked, int levels) {
+  return rig.mesh.vertex_count() + 0.5 * marked * (std::pow(4.0, levels) - 1);
+}
+
+/// Steps that refine the whole mesh multiply, wherever they stand in the list.
+void require_refinable(const std::vector<RefineOptions>& steps, const RiggedMesh& rig) {
+  int levels = 0;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (!is_whole(steps[i])) continue;
+    levels = std::min(levels + steps[i].levels, kMostLevels);
+    require_vertices(refined_vertices(rig, rig.mesh.triangle_count(), levels),
+                     "scene.refine." + std::to_string(i) + ".levels");
+  }
+}
+
+void refine(const RefineOptions& options, const std::string& where, Character& character) {
   if (options.levels == 0) return;
+  const std::vector<bool> marks = marks_of(options, character.rig);
+  const auto marked = marks.empty() ? character.rig.mesh.triangle_count()
+                                    : std::count(marks.begin(), marks.end(), true);
+  require_vertices(refined_vertices(character.rig, static_cast<double>(marked), options.levels),
+                   where + ".levels");
   TriMesh welded = character.rig.mesh;
-  RefinedRig refined =
-      loop_subdivide_region(character.rig, marks_of(options, character.rig), options.levels);
+  RefinedRig refined = loop_subdivide_region(character.rig, marks, options.levels);
   for (const Subdivision& step : refined.steps) {
     welded.V = Eigen::MatrixX3d(step.stencil * welded.V);
     SplitSubdivision split =
@@ -258,7 +288,10 @@ Character load_character(const CharacterOptions& options, const fs::path& folder
     load_file(options, find_input(options.character, folder), folder, character);
   }
   if (options.simplify_to) simplify_character(options, *options.simplify_to, character);
-  for (const RefineOptions& r : options.refine) refine(r, character);
+  require_refinable(options.refine, character.rig);
+  for (std::size_t i = 0; i < options.refine.size(); ++i) {
+    refine(options.refine[i], "scene.refine." + std::to_string(i), character);
+  }
   return character;
 }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "experiments/skinning/bvh.h"
 
 namespace geoprior::skinning {
@@ -28,7 +30,15 @@ std::vector<JointRamp> ramps_of(const MotionOptions& options) {
   return ramps;
 }
 
+/// Poses of all frames are made at once.
+void require_poses(int frames, int joints) {
+  const double bytes = static_cast<double>(frames) * joints * sizeof(Pose::value_type);
+  require_memory(bytes, frames, "poses of " + std::to_string(joints) + " joints",
+                 "scene.motion.frames");
+}
+
 Motion make_ramp(const MotionOptions& options, const Skeleton& skeleton) {
+  require_poses(options.frames, skeleton.size());
   const std::vector<JointRamp> ramps = ramps_of(options);
   Motion motion;
   for (const JointRamp& ramp : ramps) {
@@ -130,6 +140,7 @@ const GltfClip& find_clip(const MotionOptions& options, const Character& charact
 
 Motion make_clip(const MotionOptions& options, const Character& character) {
   const GltfClip& clip = find_clip(options, character);
+  require_poses(options.frames, character.rig.skeleton.size());
   const double start = options.start_s.value_or(clip.start_s);
   const double end = options.end_s.value_or(clip.end_s);
   if (start < clip.start_s || end > clip.end_s || (end <= start && options.frames > 1)) {
@@ -171,7 +182,8 @@ Motion make_bvh(const MotionOptions& options, const Character& character,
   motion.parameter_name = "time";
   motion.parameter_unit = "s";
   motion.files.push_back(file);
-  for (int f = options.first_frame; f <= last; f += options.stride) {
+  for (std::int64_t next = options.first_frame; next <= last; next += options.stride) {
+    const int f = static_cast<int>(next);
     motion.parameters.push_back(f * capture.frame_time_s);
     motion.poses.push_back(retarget.pose(f));
   }
@@ -186,7 +198,7 @@ void describe_ramp(OptionVisitor& v, MotionOptions& options) {
   describe_list(v, "joints", options.joints,
                 {.doc = "further joints that turn at the same time; the parameter is the angle of "
                         "the first of all"});
-  v.value("frames", options.frames, {.doc = "equally spaced", .min = 1, .max = 100000});
+  v.value("frames", options.frames, {.doc = "equally spaced", .min = 1, .max = kMostFrames});
 }
 
 }  // namespace
@@ -216,7 +228,7 @@ void describe(OptionVisitor& v, MotionOptions& options) {
       v.value("name", options.name, {.doc = "animation of the file; absent: its first"});
       v.value("start_s", options.start_s, {.doc = "absent: the clip's start", .unit = "s"});
       v.value("end_s", options.end_s, {.doc = "absent: the clip's end", .unit = "s"});
-      v.value("frames", options.frames, {.doc = "equally spaced", .min = 1, .max = 100000});
+      v.value("frames", options.frames, {.doc = "equally spaced", .min = 1, .max = kMostFrames});
       break;
     case MotionKind::bvh:
       v.value("file", options.file, {.doc = "motion capture file"});

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/nesting.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -18,6 +19,7 @@ std::string place(const std::string& name, const toml::source_region& source) {
 }
 
 toml::table parse(std::string_view text, const std::string& name) {
+  require_shallow_toml(text, name);
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& e) {

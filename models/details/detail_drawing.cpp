@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/limits.h"
 
 namespace geoprior::details {
 namespace {
@@ -75,12 +76,30 @@ double drawn_size(const DrawingOptions& options, double mean_edge) {
   return unit_of(options, mean_edge) * (is_spike ? options.spike.height : options.radius);
 }
 
+void require_drawable(const DrawingOptions& options, std::size_t details, const TriMesh& instance) {
+  const auto count = static_cast<double>(details);
+  switch (options.kind) {
+    case DrawnKind::spike:
+      return require_vertices(count * options.spike.sectors * (options.spike.rings + 1.0),
+                              "scene.drawing.look.spike");
+    case DrawnKind::hole:
+      return require_vertices(count * options.hole.segments, "scene.drawing.look.hole.segments");
+    case DrawnKind::mesh:
+      break;
+  }
+  const bool given = options.instance.shape == InstanceShape::given;
+  const TriMesh own = given ? TriMesh{} : instance_mesh(options.instance.shape);
+  require_vertices(count * (given ? instance : own).vertex_count(),
+                   "scene.drawing.look.instance.shape");
+}
+
 DrawnDetails draw_details(const SurfaceTopology& surface, std::span<const Eigen::Vector3d> x,
                           std::span<const DrawnAnchor> anchors, const DrawingOptions& options,
                           double mean_edge, const TriMesh& instance) {
   const double unit = unit_of(options, mean_edge);
   const auto drawn = drawn_anchors(anchors, surface, options.type);
   const double radius = options.radius * unit;
+  require_drawable(options, drawn.size(), instance);
   switch (options.kind) {
     case DrawnKind::spike:
       return draw_spikes(surface, x, drawn, options.spike, radius, options.spike.height * unit);

@@ -36,6 +36,12 @@ void describe(OptionVisitor& v, DrawingOptions& options);
 /// @throws Error     when the mean edge is needed and not positive
 double drawn_size(const DrawingOptions& options, double mean_edge);
 
+/// Refuses a drawing of so many details that its mesh is too large (core/limits.h).
+/// @param instance  for kind `mesh` with shape `given`, else unused
+/// @throws Error    naming scene.drawing.look and the number of vertices
+void require_drawable(const DrawingOptions& options, std::size_t details,
+                      const TriMesh& instance = {});
+
 /// Draws details on a surface.
 ///
 /// @param surface    triangles of the surface; manifold

@@ -59,6 +59,8 @@ class InjectedSequence final : public SurfaceSequence {
   /// Ordered by frame, then id.
   [[nodiscard]] const std::vector<InjectedTruth>& truth() const { return truth_; }
   [[nodiscard]] const std::vector<InjectedCause>& causes() const { return causes_; }
+  /// Nodes of a layer of the lattice, about the vertices of a frame.
+  [[nodiscard]] double layer_nodes() const { return size_.prod() / (cell() * cell()); }
   /// Spacing of the lattice (m).
   [[nodiscard]] double cell() const { return options_.cell / options_.resolution; }
 

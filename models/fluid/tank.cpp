@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "core/parallel.h"
 #include "core/topology.h"
 
@@ -130,6 +131,7 @@ void require_domain(const Tank& tank, const std::string& where) {
   require_positive(tank.frame_interval, where + ".frame_interval");
   if (!(tank.duration >= 0) || !std::isfinite(tank.duration))
     throw Error(text(tank.duration), where + ".duration", "0 or more seconds");
+  require_frames(tank.duration, tank.frame_interval, where + ".duration");
 }
 
 void require_memory(const Tank& tank, int particles_per_cell, double limit,

@@ -60,8 +60,8 @@ class ObstacleContact final : public ContactTerm {
     const Eigen::Vector2d b = p(1) - p(0), c = p(2) - p(0);
     const double area = cross(b, c) / 2;
     const double longest = std::max({b.norm(), c.norm(), (c - b).norm()});
-    const int m = std::clamp(static_cast<int>(std::ceil(longest / options_.spacing)), 1,
-                             options_.most_divisions);
+    const int m = static_cast<int>(std::clamp(std::ceil(longest / options_.spacing), 1.0,
+                                              static_cast<double>(options_.most_divisions)));
     const double small = area / (m * m);
     for (const int i : v) corner_area_[i] += small / 3;
     for (int i = 0; i <= m; ++i) {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "core/planar.h"
 
 namespace geoprior::paper {
@@ -28,6 +29,7 @@ void require_finite(const Pattern& pattern, const std::string& where) {
     throw Error("pattern has " + std::to_string(pattern.border.size()) + " corners", where,
                 "at least 3");
   }
+  require_count(static_cast<double>(pattern.border.size()), "corners", kMostCorners, where);
   for (std::size_t i = 0; i < pattern.border.size(); ++i) {
     if (!pattern.border[i].allFinite()) {
       throw Error("corner of the pattern is not finite", corner(where, i), "finite numbers");

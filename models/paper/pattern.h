@@ -12,6 +12,9 @@ struct Pattern {
   std::vector<Eigen::Vector2d> border;
 };
 
+/// Most corners of a pattern: every pair of edges is looked at.
+inline constexpr int kMostCorners = 10000;
+
 /// Axis-aligned rectangle centred at the origin.
 Pattern rectangle_pattern(double width, double height);
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/limits.h"
 
 namespace geoprior::paper {
 namespace {
@@ -330,6 +331,7 @@ void require_valid(const Sheet& sheet, const std::string& where) {
   require_range(sheet.imperfection, 0, width(sheet.pattern), false, inside(where, "imperfection"));
   require_range(sheet.duration, 0, 1e6, true, inside(where, "duration"));
   require_range(sheet.frame_interval, 0, sheet.duration, true, inside(where, "frame_interval"));
+  require_frames(sheet.duration, sheet.frame_interval, inside(where, "duration"));
   require_range(sheet.substeps, 1, 1e6, false, inside(where, "substeps"));
   require_handles(sheet, inside(where, "handles"));
   require_obstacles(sheet, inside(where, "obstacles"));

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "core/planar.h"
 #include "core/random.h"
 #include "models/paper/grid_anchors.h"
@@ -20,11 +22,34 @@ constexpr double kOnBorder = 1e-9;
 /// Free points keep this distance from border and anchors, in edge lengths: nearer ones would make
 /// triangles much smaller than asked for.
 constexpr double kClearance = 0.55;
+/// Most points of a lattice: a sheet of so many vertices takes hours a frame.
+constexpr double kMostPoints = 5e6;
 /// Radius of the jitter of the Delaunay layout, in edge lengths.
 constexpr double kJitter = 0.3;
 
 double equilateral_edge(double area, double triangles) {
   return std::sqrt(4 * area / (std::sqrt(3.0) * triangles));
+}
+
+struct Extent {
+  Vector2d low, size;
+};
+
+Extent extent_of(const Pattern& pattern) {
+  Vector2d low = pattern.border.front(), high = low;
+  for (const Vector2d& p : pattern.border) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return {low, high - low};
+}
+
+double perimeter(const Pattern& pattern) {
+  double sum = (pattern.border.front() - pattern.border.back()).norm();
+  for (std::size_t i = 1; i < pattern.border.size(); ++i) {
+    sum += (pattern.border[i] - pattern.border[i - 1]).norm();
+  }
+  return sum;
 }
 
 /// Points of a triangulation to be made: the closed border chain first.
@@ -81,14 +106,10 @@ bool is_clear(const Pattern& pattern, const Sites& sites, const Vector2d& p, dou
 
 /// Hexagonal lattice of this spacing over the bounding box; rows are `row` apart.
 std::vector<Vector2d> lattice(const Pattern& pattern, const Vector2d& spacing) {
-  Vector2d low = pattern.border.front(), high = low;
-  for (const Vector2d& p : pattern.border) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+  const auto [low, size] = extent_of(pattern);
   std::vector<Vector2d> points;
-  const int rows = static_cast<int>((high.y() - low.y()) / spacing.y() + 1e-6);
-  const int columns = static_cast<int>((high.x() - low.x()) / spacing.x() + 1e-6);
+  const int rows = static_cast<int>(size.y() / spacing.y() + 1e-6);
+  const int columns = static_cast<int>(size.x() / spacing.x() + 1e-6);
   for (int j = 0; j <= rows; ++j) {
     for (int i = 0; i <= columns; ++i) {
       points.emplace_back(low.x() + (i + 0.5 * (j % 2)) * spacing.x(), low.y() + j * spacing.y());
@@ -100,12 +121,7 @@ std::vector<Vector2d> lattice(const Pattern& pattern, const Vector2d& spacing) {
 /// Horizontal and vertical spacing of a lattice of about this edge length; on a rectangle both
 /// divide its sides, so that its rows meet the border.
 Vector2d lattice_spacing(const Pattern& pattern, double edge) {
-  Vector2d low = pattern.border.front(), high = low;
-  for (const Vector2d& p : pattern.border) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const Vector2d size = high - low;
+  const Vector2d size = extent_of(pattern).size;
   const double row = edge * std::sqrt(3.0) / 2;
   // An even number of rows: the last one then starts at the corner, as the first does.
   return {size.x() / std::max(1.0, std::round(size.x() / edge)),
@@ -224,10 +240,20 @@ std::vector<Vector2d> distinct(const std::vector<Vector2d>& points, double toler
 
 }  // namespace
 
+void require_lattice(const Pattern& pattern, double edge) {
+  const Vector2d size = extent_of(pattern).size;
+  const double row = edge * std::sqrt(3.0) / 2;
+  const double points = (size.x() / edge + 1) * (size.y() / row + 1) + perimeter(pattern) / edge;
+  std::ostringstream what;
+  what << "points of a mesh with edges of " << edge << " m";
+  require_count(points, what.str(), kMostPoints, "scene.pattern");
+}
+
 ShellMesh uniform_mesh(const Pattern& pattern, int triangles, UniformLayout layout,
                        const std::vector<Vector2d>& anchors, std::uint64_t seed) {
   require_simple(pattern, "pattern");
   if (triangles < 2) throw Error("uniform mesh of too few triangles", "triangles", ">= 2");
+  require_lattice(pattern, equilateral_edge(signed_area(pattern), triangles));
   const double tolerance = kOnBorder * width(pattern);
   for (std::size_t i = 0; i < anchors.size(); ++i) {
     if (!contains(pattern, anchors[i], tolerance)) {

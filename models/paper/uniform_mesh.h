@@ -21,6 +21,11 @@ enum class UniformLayout { automatic, structured, equilateral, delaunay };
 ShellMesh uniform_mesh(const Pattern& pattern, int triangles, UniformLayout layout,
                        const std::vector<Eigen::Vector2d>& anchors, std::uint64_t seed);
 
+/// Refuses edges so short that the lattice over the pattern's box, or its border, has more points
+/// than a sheet can: before any is made.
+/// @throws Error  naming the pattern and the number of points
+void require_lattice(const Pattern& pattern, double edge);
+
 /// Places where a mesh of this edge length needs a vertex for the sheet's handles: their anchors,
 /// and points along the segments that cross the inside. (Border vertices of a segment on the
 /// border are held as they come.)

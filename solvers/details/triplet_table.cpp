@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "core/parallel.h"
 #include "solvers/details/triplet_builder.h"
 
@@ -27,6 +28,17 @@ std::vector<int> sources_of(const DetailMesh& original, const TripletOptions& op
   std::vector<int> some;
   for (std::size_t i = 0; i < most; ++i) some.push_back(details[i * details.size() / most]);
   return some;
+}
+
+/// A full table: its interiors are numbered with 32 bits.
+void require_table(const TripletOptions& options) {
+  const double triplets =
+      static_cast<double>(options.cells) * options.cells * options.cell_capacity;
+  const double interiors = triplets * options.interior_capacity;
+  const std::string where = "options.triplets.cells";
+  require_memory(triplets * sizeof(FoundTriplet) + interiors * sizeof(TripletInterior), triplets,
+                 "triplets", where);
+  require_count(interiors, "details inside of triplets", std::numeric_limits<int>::max(), where);
 }
 
 /// Keeps a random choice of the triplets met in every cell (reservoir sampling, Vitter 1985).
@@ -62,6 +74,7 @@ class Reservoirs {
 TripletTable::TripletTable(const DetailMesh& original, const TripletOptions& options,
                            std::uint64_t seed)
     : cells_(options.cells) {
+  require_table(options);
   const double mean = mean_edge(original);
   const std::vector<int> sources = sources_of(original, options);
   Reservoirs reservoirs(cells_, options.cell_capacity, seed);

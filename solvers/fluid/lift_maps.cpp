@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/limits.h"
 #include "core/parallel.h"
 #include "solvers/fluid/displacement_map.h"
 #include "solvers/fluid/exponential_map.h"
@@ -255,6 +256,21 @@ void fill_gaps(const Timeline& line, Feature& feature) {
   }
 }
 
+/// @param wish  texels along an edge that `texel` asks for
+int resolution_of(const MapOptions& options, double wish) {
+  const double most = std::max(options.min_resolution, options.max_resolution);
+  return static_cast<int>(std::clamp<double>(std::ceil(wish) + 4, options.min_resolution, most));
+}
+
+/// Displacement, alpha, bed and what is covered, of all texels of all frames.
+void require_maps(const Feature& feature) {
+  constexpr double kBytesPerTexel = 4 * sizeof(float) + 4 * sizeof(float);
+  const auto frames = static_cast<double>(feature.times.size());
+  const double texels = static_cast<double>(feature.resolution) * feature.resolution * frames;
+  require_memory(texels * kBytesPerTexel, texels, "texels of a feature's maps",
+                 "options.extraction.map.max_resolution");
+}
+
 }  // namespace
 
 Feature feature_of_patches(std::vector<LiftPatch> patches, const std::vector<double>& times,
@@ -284,10 +300,8 @@ Feature feature_of_patches(std::vector<LiftPatch> patches, const std::vector<dou
   for (std::size_t p = 0; p < patches.size(); ++p) {
     half = std::max(half, half_extent(patches[p], placed(p), options.margin));
   }
-  const double wish = options.texel * cell;
-  feature.resolution =
-      std::clamp(static_cast<int>(std::ceil(2 * half / wish)) + 4, options.min_resolution,
-                 std::max(options.min_resolution, options.max_resolution));
+  feature.resolution = resolution_of(options, 2 * half / (options.texel * cell));
+  require_maps(feature);
   // Two texels around the patch: interpolation never looks over the map's edge.
   feature.extent = 2 * half * feature.resolution / (feature.resolution - 4);
   std::vector<LiftedFrame> frames(patches.size());

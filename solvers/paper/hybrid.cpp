@@ -11,6 +11,7 @@
 
 #include "baselines/paper/dense.h"
 #include "core/connectivity.h"
+#include "core/limits.h"
 #include "models/paper/handle_map.h"
 #include "models/paper/pattern_locator.h"
 #include "models/paper/transfer.h"
@@ -49,6 +50,8 @@ constexpr int kAttempts = 4;
 /// Strain that is left even so is given as much time as it takes, within reason.
 constexpr double kUnacceptableStrain = 5e-3;
 constexpr int kPatientIterations = 200;
+/// Most rulings side by side over the pattern.
+constexpr double kMostRulings = 1e6;
 /// How far a new singular point is moved out of the sheet, in seeding distances.
 constexpr double kDent = 0.05;
 
@@ -99,6 +102,9 @@ RulingEditor HybridMesher::editor() {
 
 void HybridMesher::take_scene(const Sheet& sheet) {
   pattern_ = sheet.pattern;
+  require_lattice(pattern_, options_.flat_size);
+  require_count(width(pattern_) / options_.seeding_distance, "parallel rulings", kMostRulings,
+                "scene.pattern");
   anchors_ = handle_points(sheet, options_.flat_size);
 }
 

@@ -1,14 +1,17 @@
 #include "testbed/formats/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
-#include <sstream>
+#include <new>
 #include <system_error>
 #include <utility>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "testbed/formats/input_file.h"
 
 namespace geoprior {
@@ -19,9 +22,10 @@ namespace {
 
 class Descriptor {
  public:
-  Descriptor(const fs::path& file, int flags, mode_t mode = 0)
+  Descriptor(const fs::path& file, int flags, mode_t mode = 0, const char* done = "opened")
       : value_(::open(file.c_str(), flags | O_CLOEXEC, mode)) {
-    if (value_ < 0) throw Error("cannot be opened: " + system_reason(errno), file.string());
+    if (value_ >= 0) return;
+    throw Error(std::string("cannot be ") + done + ": " + system_reason(errno), file.string());
   }
   ~Descriptor() {
     if (value_ >= 0) ::close(value_);
@@ -40,6 +44,47 @@ class Descriptor {
  private:
   int value_;
 };
+
+/// Bytes that the file has by its size; 0 for what has none (a pipe, files of /proc).
+std::size_t file_bytes(const Descriptor& descriptor, const fs::path& file) {
+  struct stat status {};
+  if (::fstat(descriptor.get(), &status) != 0) {
+    throw Error("cannot be read: " + system_reason(errno), file.string());
+  }
+  return S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) : 0;
+}
+
+/// Up to `size` bytes; fewer at the end of the file only.
+std::size_t read_up_to(const Descriptor& descriptor, char* to, std::size_t size,
+                       const fs::path& file) {
+  std::size_t have = 0;
+  while (have < size) {
+    const ssize_t more = ::read(descriptor.get(), to + have, size - have);
+    if (more == 0) break;
+    if (more < 0 && errno != EINTR) {
+      throw Error("cannot be read: " + system_reason(errno), file.string());
+    }
+    if (more > 0) have += static_cast<std::size_t>(more);
+  }
+  return have;
+}
+
+/// The file's size is asked for first, so that a file that shrinks meanwhile is noticed.
+std::string read_all(const Descriptor& descriptor, const fs::path& file) {
+  const std::size_t size = file_bytes(descriptor, file);
+  require_memory(static_cast<double>(size), static_cast<double>(size), "bytes", file.string());
+  std::string text(size, '\0');
+  const std::size_t have = read_up_to(descriptor, text.data(), size, file);
+  if (have < size) {
+    throw Error("ends after " + std::to_string(have) + " of its " + std::to_string(size) + " bytes",
+                file.string(), "a file that nobody is writing");
+  }
+  std::array<char, 1U << 16U> block{};
+  while (const std::size_t more = read_up_to(descriptor, block.data(), block.size(), file)) {
+    text.append(block.data(), more);
+  }
+  return text;
+}
 
 }  // namespace
 
@@ -124,11 +169,13 @@ bool is_temporary_file(const fs::path& file) {
 }
 
 std::string read_whole_file(const fs::path& file) {
-  std::ifstream in = open_input_file(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (in.bad()) throw Error("cannot be read: " + system_reason(errno), file.string());
-  return std::move(text).str();
+  require_regular_file(file);
+  const Descriptor in(file, O_RDONLY, 0, "read");
+  try {
+    return read_all(in, file);
+  } catch (const std::bad_alloc&) {
+    throw Error("cannot be read: it does not fit into memory", file.string());
+  }
 }
 
 void make_folders(const fs::path& folder) {

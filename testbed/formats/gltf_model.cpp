@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/gltf_container.h"
+#include "testbed/formats/nesting.h"
 
 namespace geoprior::gltf {
 namespace {
@@ -532,6 +533,7 @@ std::string place(const Model& model, const std::string& pointer) {
 Model parse_gltf(const std::vector<std::byte>& bytes, const std::filesystem::path& file,
                  bool other_files_allowed) {
   const Container container = split_container(bytes, file);
+  require_shallow_json(container.json, file.string());
   json document;
   try {
     document = json::parse(container.json);

@@ -4,12 +4,14 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/nesting.h"
 #include "testbed/formats/text_lines.h"
 
 namespace geoprior {
 
 std::vector<PvdDataSet> parse_pvd(std::string_view text, const std::filesystem::path& file) {
   const std::string name = file.string();
+  require_shallow_xml(text, name);
   pugi::xml_document document;
   const auto result = document.load_buffer(text.data(), text.size());
   if (!result) {

@@ -5,16 +5,20 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/nesting.h"
 
 namespace geoprior {
 namespace {
 
 using Json = nlohmann::json;
 
+/// The beginning of a value, for messages.
+std::string beginning_of(const Json& value) { return value.dump().substr(0, 60); }
+
 double number(const Json& value, const std::string& key, bool positive, const std::string& name) {
   const double x = value.is_number() ? value.get<double>() : std::nan("");
   if (!std::isfinite(x) || (positive && !(x > 0))) {
-    throw Error("\"" + key + "\" is " + value.dump(), name,
+    throw Error("\"" + key + "\" is " + beginning_of(value), name,
                 positive ? "a positive number" : "a number");
   }
   return x;
@@ -22,12 +26,13 @@ double number(const Json& value, const std::string& key, bool positive, const st
 
 bool is_y(const Json& value, const std::string& name) {
   if (value == "y" || value == "z") return value == "y";
-  throw Error("\"up\" is " + value.dump(), name, "\"y\", \"z\"");
+  throw Error("\"up\" is " + beginning_of(value), name, "\"y\", \"z\"");
 }
 
 }  // namespace
 
 SequenceSidecar parse_sidecar(std::string_view text, const std::string& name) {
+  require_shallow_json(text, name);
   Json json;
   try {
     json = Json::parse(text);

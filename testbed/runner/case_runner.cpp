@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "testbed/runner/benchmark.h"
 #include "testbed/runner/frames_text.h"
 #include "testbed/runner/measure.h"
@@ -139,6 +140,8 @@ void CaseRunner::load(const OptionSet& options, std::vector<StoredFile> inputs) 
     const std::string place = place_of_scene_key(spec_.scene_places, error.what());
     throw Error(error.what(), (place.empty() ? experiment_.file.string() : place) +
                                   ": scene of case '" + spec_.name + "'");
+  } catch (const std::bad_alloc&) {
+    throw out_of_memory(experiment_.file.string() + ": scene of case '" + spec_.name + "'");
   }
   journal::CaseLine line;
   line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -304,9 +307,12 @@ bool CaseRunner::run(const OptionSet& options, std::vector<StoredFile> inputs, b
     try {
       if (!run_variant(*variant)) return false;
     } catch (const Error& error) {
-      const std::string where = "case '" + spec_.name + "', variant '" + variant->name + "'";
       log_error(place(*variant), error.what());
-      throw Error(error.what(), where);
+      std::string key = place_of_scene_key(spec_.scene_places, error.what());
+      if (key.empty()) key = place_of_key(variant->option_places, "options", error.what());
+      throw Error(error.what(), (key.empty() ? key : key + ": ") + name_of(*variant));
+    } catch (const std::bad_alloc&) {
+      throw out_of_memory(name_of(*variant));
     }
   }
   if (!timing || state_.case_of(spec_.name).timed) return true;

@@ -40,6 +40,9 @@ class CaseRunner {
   [[nodiscard]] journal::Place place(const VariantSpec& variant) const {
     return {spec_.name, variant.name};
   }
+  [[nodiscard]] std::string name_of(const VariantSpec& variant) const {
+    return "case '" + spec_.name + "', variant '" + variant.name + "'";
+  }
   VariantState& state_of(const VariantSpec& variant) { return state_.variant_of(place(variant)); }
   void load(const OptionSet& options, std::vector<StoredFile> inputs);
   MethodEntry::Instance& prepare(const VariantSpec& variant, bool log);

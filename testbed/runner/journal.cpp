@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/input_file.h"
+#include "testbed/formats/nesting.h"
 
 namespace geoprior::journal {
 
@@ -289,6 +290,7 @@ std::string to_text(const Line& line) {
 }
 
 Line from_text(std::string_view text) {
+  require_shallow_json(text, "damaged line");
   try {
     return read(SortedJson::parse(text));
   } catch (const SortedJson::exception& error) {

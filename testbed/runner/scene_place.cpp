@@ -17,9 +17,9 @@ bool is_of_key(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0
 
 }  // namespace
 
-std::string place_of_scene_key(const std::map<std::string, std::string>& places,
-                               const std::string& message) {
-  std::string path = "scene";
+std::string place_of_key(const std::map<std::string, std::string>& places, const std::string& root,
+                         const std::string& message) {
+  std::string path = root;
   std::size_t at = message.find(path + ".");
   if (at == std::string::npos || !places.contains(path)) return {};
   at += path.size();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/error.h"
 #include "testbed/runner/build_info.h"
@@ -154,8 +155,9 @@ KnownNames known_names(const TomlNode& root, const std::vector<std::string>& sel
   for (const SweptCase& swept : expand_sweeps(root, quick)) names.cases.push_back(swept.name);
   if (!quick) return names;
   // What is claimed of cases that only the full version has is no mistake of the file.
+  const std::set<std::string> known(names.cases.begin(), names.cases.end());
   for (const SweptCase& swept : expand_sweeps(root, false)) {
-    if (!has(names.cases, swept.name)) names.cases.push_back(swept.name);
+    if (!known.contains(swept.name)) names.cases.push_back(swept.name);
   }
   return names;
 }
@@ -261,8 +263,10 @@ Experiment load_experiment(const std::filesystem::path& file, const std::vector<
 
   KnownNames names = known_names(root, selected, experiment.quick);
   drop_sweeps(root, names.dropped);
+  TomlNode plain = root;
+  plain.erase("sweep");
   for (const SweptCase& swept : expand_sweeps(root, experiment.quick)) {
-    CaseSpec made = resolve_case(swept, topic, selected);
+    CaseSpec made = resolve_case(swept, plain, topic, selected);
     if (!made.variants.empty()) experiment.cases.push_back(std::move(made));
   }
   read_timing(root, experiment);
@@ -276,10 +280,8 @@ Experiment load_experiment(const std::filesystem::path& file, const std::vector<
   experiment.view = read_figure_view(root, topic);
   keep_only(experiment.view.variants, names.dropped);
 
-  SweptCase base;
-  base.root = root;
-  Json resolved =
-      resolved_json(root, experiment, header, resolve_case(base, topic, selected), names);
+  Json resolved = resolved_json(root, experiment, header,
+                                resolve_case(SweptCase{}, plain, topic, selected), names);
   experiment.hash = spec_hash(toml_text(resolved));
   for (const char* key : {"figure_view", "check"}) {
     if (const TomlNode* table = root.find(key)) resolved[key] = json_of(*table);

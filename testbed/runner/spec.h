@@ -23,6 +23,8 @@ struct VariantSpec {
   std::optional<std::string> reference;  ///< variant that metrics with needs_reference compare with
   std::shared_ptr<const OptionSet> options;
   std::string options_json;  ///< resolved: every option, defaults included
+  /// "file:line:column" of every option that is written, by its dotted path ("options.step").
+  std::map<std::string, std::string> option_places;
 };
 
 /// One point of the sweeps: a scene and the variants that run on it.

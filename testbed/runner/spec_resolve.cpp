@@ -78,6 +78,9 @@ VariantSpec resolve_variant(const TomlNode& node, const Topic& topic) {
   variant.reference = table.reference;
   variant.options = read_set(method.default_options(), node.find("options"), node.place,
                              "variant." + table.name + ".options", variant.options_json);
+  if (const TomlNode* options = node.find("options")) {
+    add_places(*options, "options", variant.option_places);
+  }
   return variant;
 }
 
@@ -134,25 +137,26 @@ std::vector<std::string> select_variants(const TomlNode& root,
   return selected;
 }
 
-CaseSpec resolve_case(const SweptCase& swept, const Topic& topic,
+CaseSpec resolve_case(const SweptCase& swept, const TomlNode& plain, const Topic& topic,
                       const std::vector<std::string>& selected) {
+  const TomlNode root = root_of(swept, plain);
   CaseSpec result;
   result.name = swept.name;
   result.swept = swept.swept;
   result.claims_only = swept.claims_only;
-  const HeaderTable values = read_header(swept.root);
+  const HeaderTable values = read_header(root);
   result.seed = static_cast<std::uint64_t>(values.seed);
   result.threads = values.threads;
-  result.scene = read_set(topic.default_scene(), swept.root.find("scene"), swept.root.place,
-                          "scene", result.scene_json);
-  if (const TomlNode* scene = swept.root.find("scene")) {
+  result.scene =
+      read_set(topic.default_scene(), root.find("scene"), root.place, "scene", result.scene_json);
+  if (const TomlNode* scene = root.find("scene")) {
     add_places(*scene, "scene", result.scene_places);
   }
   const auto runs = [](const std::vector<std::string>& names, const std::string& name) {
     return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
   };
   std::vector<std::string> names;
-  for (const TomlNode& node : tables_of(swept.root, "variant")) {
+  for (const TomlNode& node : tables_of(root, "variant")) {
     VariantSpec variant = resolve_variant(node, topic);
     names.push_back(variant.name);
     if (runs(selected, variant.name) && runs(swept.variants, variant.name)) {
@@ -161,7 +165,7 @@ CaseSpec resolve_case(const SweptCase& swept, const Topic& topic,
   }
   for (const std::string& name : swept.variants) {
     if (std::find(names.begin(), names.end(), name) == names.end()) {
-      throw Error("there is no variant '" + name + "'", swept.root.place + ": sweep.variants",
+      throw Error("there is no variant '" + name + "'", root.place + ": sweep.variants",
                   allowed_names(name, names));
     }
   }

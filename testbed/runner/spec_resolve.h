@@ -14,7 +14,8 @@ namespace geoprior {
 HeaderTable read_header(const TomlNode& root);
 
 /// Reads scene and variants of one case.
-CaseSpec resolve_case(const SweptCase& swept, const Topic& topic,
+/// @param plain  the experiment file, without [[sweep]]
+CaseSpec resolve_case(const SweptCase& swept, const TomlNode& plain, const Topic& topic,
                       const std::vector<std::string>& selected);
 
 /// Names of the selected variants and of the references that they need; empty: all.

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/option_toml.h"
@@ -19,6 +20,7 @@ struct Sweep {
   SweepTable table;
   std::vector<TomlNode> values;
   std::vector<std::string> names;  ///< one a value
+  std::string place;               ///< of the values
 };
 
 std::string value_text(const TomlNode& value, std::size_t index) {
@@ -67,13 +69,16 @@ void read_names(const TomlNode& node, Sweep& sweep) {
 /// Names of the values; a quick value that is also a full one keeps its name.
 std::vector<std::string> value_names(const Sweep& sweep, const std::vector<TomlNode>& full,
                                      const std::string& label) {
+  std::map<nlohmann::ordered_json, std::string> given;
+  for (std::size_t j = 0; j < sweep.table.names.size(); ++j) {
+    given[json_of(full[j])] = sweep.table.names[j];
+  }
   std::vector<std::string> names;
   for (std::size_t i = 0; i < sweep.values.size(); ++i) {
-    std::string name = with_name_characters(label + "=" + value_text(sweep.values[i], i));
-    for (std::size_t j = 0; j < sweep.table.names.size(); ++j) {
-      if (json_of(full[j]) == json_of(sweep.values[i])) name = sweep.table.names[j];
-    }
-    names.push_back(std::move(name));
+    const auto found = given.find(json_of(sweep.values[i]));
+    names.push_back(found != given.end()
+                        ? found->second
+                        : with_name_characters(label + "=" + value_text(sweep.values[i], i)));
   }
   return names;
 }
@@ -103,7 +108,10 @@ Sweep read_sweep(const TomlNode& node, bool quick) {
                 std::to_string(full.size()) + ", one a value");
   }
   read_names(node, sweep);
-  sweep.values = quick && node.find("quick_values") != nullptr ? reduced : full;
+  const bool is_reduced = quick && node.find("quick_values") != nullptr;
+  sweep.values = is_reduced ? reduced : full;
+  const char* key_of_values = is_reduced ? "quick_values" : "values";
+  sweep.place = node.find(key_of_values)->place + ": sweep." + key_of_values;
   const std::string& key = sweep.table.key;
   sweep.names = value_names(sweep, full, key.substr(key.rfind('.') + 1));
   return sweep;
@@ -118,10 +126,10 @@ void apply(SweptCase& result, const Sweep& sweep, std::size_t i) {
                   "tables of scene keys");
     }
     for (std::size_t k = 0; k < value.keys.size(); ++k) {
-      set_experiment_key(result.root, "scene." + value.keys[k], value.items[k]);
+      result.changes.emplace_back("scene." + value.keys[k], value.items[k]);
     }
   } else {
-    set_experiment_key(result.root, sweep.table.key, value);
+    result.changes.emplace_back(sweep.table.key, value);
   }
   result.name = result.name == "default" ? sweep.names[i] : result.name + "," + sweep.names[i];
   require_name(result.name, "a case (give the sweeps `names`)", value.place + ": sweep.values");
@@ -130,8 +138,43 @@ void apply(SweptCase& result, const Sweep& sweep, std::size_t i) {
   result.claims_only = result.claims_only || sweep.table.claims_only;
 }
 
-std::vector<SweptCase> grid_product(const SweptCase& base, const std::vector<Sweep>& sweeps) {
-  std::vector<SweptCase> cases{base};
+double values_in(const TomlNode& node) {
+  double count = 1;
+  for (const TomlNode& item : node.items) count += values_in(item);
+  return count;
+}
+
+/// Cases of the first `count` sweeps, the base case among them.
+double case_count(const std::vector<Sweep>& sweeps, std::size_t count) {
+  double alone = 1, grid = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto values = static_cast<double>(sweeps[i].values.size());
+    if (sweeps[i].table.grid) {
+      grid = std::max(grid, 1.0) * values;
+    } else {
+      alone += values;
+    }
+  }
+  return alone + grid;
+}
+
+/// Counts the cases before any is made; an error names the sweep with which they are too many.
+/// @param values_of_case  that the file has beside its sweeps: every case resolves them
+void require_few_cases(const std::vector<Sweep>& sweeps, double values_of_case) {
+  constexpr double kBytesPerValue = 500;  // as an option, as text, with its place
+  const double most = std::min(kMostCases, memory_limit() / (values_of_case * kBytesPerValue));
+  std::size_t too_many = 1;
+  while (too_many <= sweeps.size() && case_count(sweeps, too_many) <= most) ++too_many;
+  if (too_many > sweeps.size()) return;
+  // A later sweep without values makes none of the grid; it would be made up to there.
+  const double cases = std::max(case_count(sweeps, too_many), case_count(sweeps, sweeps.size()));
+  const std::string& place = sweeps[too_many - 1].place;
+  require_count(cases, "cases", kMostCases, place);
+  require_memory(cases * values_of_case * kBytesPerValue, cases, "cases", place);
+}
+
+std::vector<SweptCase> grid_product(const std::vector<Sweep>& sweeps) {
+  std::vector<SweptCase> cases(1);
   bool any = false;
   for (const Sweep& sweep : sweeps) {
     if (!sweep.table.grid) continue;
@@ -171,21 +214,21 @@ void make_names_unique(std::vector<Sweep>& sweeps) {
 std::vector<SweptCase> expand_sweeps(const TomlNode& root, bool quick) {
   std::vector<Sweep> sweeps;
   for (const TomlNode& node : tables_of(root, "sweep")) sweeps.push_back(read_sweep(node, quick));
+  const TomlNode* tables = root.find("sweep");
+  require_few_cases(sweeps, values_in(root) - (tables != nullptr ? values_in(*tables) : 0));
   make_names_unique(sweeps);
 
-  SweptCase base;
-  base.root = root;
   std::vector<SweptCase> cases;
   const bool with_base = std::all_of(sweeps.begin(), sweeps.end(),
                                      [](const Sweep& sweep) { return sweep.table.base; });
-  if (with_base) cases.push_back(base);
+  if (with_base) cases.emplace_back();
   for (const Sweep& sweep : sweeps) {
     for (std::size_t i = 0; !sweep.table.grid && i < sweep.values.size(); ++i) {
-      cases.push_back(base);
+      cases.emplace_back();
       apply(cases.back(), sweep, i);
     }
   }
-  for (SweptCase& made : grid_product(base, sweeps)) cases.push_back(std::move(made));
+  for (SweptCase& made : grid_product(sweeps)) cases.push_back(std::move(made));
 
   std::set<std::string> names;
   for (const SweptCase& made : cases) {
@@ -195,6 +238,12 @@ std::vector<SweptCase> expand_sweeps(const TomlNode& root, bool quick) {
     }
   }
   return cases;
+}
+
+TomlNode root_of(const SweptCase& swept, const TomlNode& plain) {
+  TomlNode root = plain;
+  for (const auto& [key, value] : swept.changes) set_experiment_key(root, key, value);
+  return root;
 }
 
 }  // namespace geoprior

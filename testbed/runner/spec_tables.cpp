@@ -91,7 +91,7 @@ void describe(OptionVisitor& v, StudyTable& t) {
 
 void describe(OptionVisitor& v, TimingTable& t) {
   v.value("repetitions", t.repetitions,
-          {.doc = "of each solve; whole runs of processes", .min = 1, .max = 100000});
+          {.doc = "of each solve; whole runs of processes", .min = 1, .max = 1000});
   v.value("warm_up", t.warm_up,
           {.doc = "rounds that are not counted; absent: 1 of pose methods, 0 of processes",
            .min = 0,

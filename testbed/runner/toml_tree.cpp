@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <sstream>
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/nesting.h"
 #include "testbed/joined.h"
 #include "testbed/streams.h"
 
@@ -129,6 +129,7 @@ std::string TomlNode::kind_name() const {
 }
 
 TomlNode parse_toml_text(std::string_view text, const std::string& source) {
+  require_shallow_toml(text, source);
   try {
     const toml::table table = toml::parse(text);
     return convert(table, source, source);

@@ -41,18 +41,22 @@ class BadDetails : public RunTest {
   }
   void write_ply(const std::string& name, const TriMesh& mesh) const { write(name, ply_of(mesh)); }
 
-  [[nodiscard]] ExecuteResult run_details(const std::string& scene_lines) const {
+  [[nodiscard]] ExecuteResult run_details(const std::string& scene_lines,
+                                          const std::string& options = "") const {
     const fs::path file = write_experiment(
-        "details/bad", "title = \"Bad input\"\ntopic = \"details\"\n[scene]\n" + scene_lines +
-                           "\n[[variant]]\nname = \"v\"\nmethod = \"self-replicating\"\n");
+        "details/bad",
+        "title = \"Bad input\"\ntopic = \"details\"\n[scene]\n" + scene_lines +
+            "\n[[variant]]\nname = \"v\"\nmethod = \"self-replicating\"\noptions = { " + options +
+            " }\n");
     ExecuteRequest request;
     request.out = folder() / "out";
     request.timing = false;
     return execute(load_experiment(file, {make_topic()}, {}), {make_topic()}, request);
   }
   /// The error of a run that leaves nothing.
-  [[nodiscard]] std::string refusal(const std::string& scene_lines) const {
-    const std::string error = error_of([&] { (void)run_details(scene_lines); });
+  [[nodiscard]] std::string refusal(const std::string& scene_lines,
+                                    const std::string& options = "") const {
+    const std::string error = error_of([&] { (void)run_details(scene_lines, options); });
     EXPECT_FALSE(fs::exists(folder() / "out")) << error;
     return error;
   }
@@ -212,6 +216,36 @@ TEST_F(BadDetails, NameTheKeyInTheFile) {
               HasSubstr("scene.surface.edge: asks for 20000000000 triangles"));
   EXPECT_THAT(refusal("surface = { kind = \"torus\", radius = 0.1, tube_radius = 0.2 }\n" + kFew),
               HasSubstr("scene.surface.tube_radius"));
+}
+
+TEST_F(BadDetails, AskForNoSurfaceAndNoGridThatWraps) {
+  // Long and thin: few triangles by the area, 2e9 by the steps.
+  EXPECT_THAT(
+      refusal("surface = { kind = \"plane\", width = 1e6, height = 1e-6, edge = 1e-3 }\n" + kFew),
+      AllOf(HasSubstr("bad.toml:4:"),
+            HasSubstr("scene.surface.edge: asks for 2000000000 triangles")));
+  EXPECT_THAT(
+      refusal("surface = { kind = \"capsule\", radius = 1e-6, length = 1e6, edge = 0.01 }\n" +
+              kFew),
+      HasSubstr("scene.surface.edge: asks for"));
+  EXPECT_THAT(refusal("surface = { kind = \"plane\", width = 1e6, height = 1e-6, edge = 10 }\n"
+                      "pattern = { kind = \"grid\", count = 2000000 }\n"),
+              HasSubstr("scene.pattern.count: asks for"));
+}
+
+TEST_F(BadDetails, AskForNoDrawingAndNoTableThatDoesNotFit) {
+  ::setenv("GEOPRIOR_MEMORY_GB", "0.02", 1);
+  EXPECT_THAT(refusal(kPlane + kFew + kStretch +
+                      "drawing = { look = { spike = { sectors = 256, rings = 256 } } }\n"),
+              AllOf(HasSubstr("bad.toml:7:"), HasSubstr("scene.drawing.look.spike: asks for")));
+  EXPECT_THAT(refusal(kPlane + kFew +
+                      "motion = { frames = 100000, drag = { handles = [{ radius = "
+                      "0.1 }] } }\n"),
+              AllOf(HasSubstr("bad.toml:6:"), HasSubstr("scene.motion.frames: asks for 100001")));
+  ::unsetenv("GEOPRIOR_MEMORY_GB");
+  EXPECT_THAT(refusal(kPlane + kFew + kStretch,
+                      "triplets = { cells = 1024, cell_capacity = 1024, interior_capacity = 64 }"),
+              AllOf(HasSubstr("bad.toml:11:"), HasSubstr("options.triplets.cells: asks for")));
 }
 
 }  // namespace

@@ -298,5 +298,28 @@ TEST_F(KilledLiquid, GoesOnAtItsLastFrameAndEndsAsUndisturbed) {
   EXPECT_EQ(lasting_files(out), lasting_files(undisturbed.folder));
 }
 
+TEST_F(BadFluid, AsksForNoMoreFramesThanCanBeNumbered) {
+  EXPECT_THAT(refusal("liquid", "duration = 1e12\ntank = { " + kPool + " }\n"),
+              AllOf(HasSubstr("bad.toml:4:1"), HasSubstr("scene.duration: asks for"),
+                    HasSubstr("frames of 0.04 s"), HasSubstr("at most 100000")));
+}
+
+TEST_F(BadFluid, AsksForNoGridThatDoesNotFit) {
+  EXPECT_THAT(refusal("liquid", "tank = { size = [1e18, 1, 1], cell = 1e-3, " + kPool + " }\n"),
+              AllOf(HasSubstr("bad.toml:4:"), HasSubstr("scene.tank.size.0: asks for"),
+                    HasSubstr("cells")));
+  ::setenv("GEOPRIOR_MEMORY_GB", "0.004", 1);
+  EXPECT_THAT(refusal("ocean", "duration = 1\n", "samples = 1024, tiles = 8"),
+              AllOf(HasSubstr("bad.toml:9:"), HasSubstr("options.samples: asks for 67125249"),
+                    HasSubstr("GB of memory")));
+  EXPECT_THAT(refusal("ocean", "target = { kind = \"ocean\", ocean = { samples = 1024 } }\n"),
+              AllOf(HasSubstr("bad.toml:4:"), HasSubstr("scene.target.ocean.samples: asks for")));
+  EXPECT_THAT(refusal("liquid", tank_of(kPool), "surface = { cells_per_cell = 8 }"),
+              AllOf(HasSubstr("bad.toml:"), HasSubstr("options.surface.cells_per_cell: asks for")));
+  EXPECT_THAT(refusal("extract", "injected = { resolution = 16 }\n"),
+              HasSubstr("scene.injected.resolution: asks for"));
+  ::unsetenv("GEOPRIOR_MEMORY_GB");
+}
+
 }  // namespace
 }  // namespace geoprior::fluid

@@ -191,5 +191,34 @@ TEST_F(BadSheet, NamesTheDrawingAndItsPath) {
               AllOf(HasSubstr("scene.pattern.file"), HasSubstr(drawing.string())));
 }
 
+TEST_F(BadSheet, AsksForNoMoreFramesThanCanBeNumbered) {
+  const fs::path file = write_experiment(
+      "paper/bad",
+      "title = \"Bad input\"\ntopic = \"paper\"\n[scene]\nduration = 1e6\nframe_interval = 1e-9\n" +
+          kRectangle + kEdges + "[[variant]]\nname = \"dense\"\nmethod = \"dense\"\n");
+  EXPECT_THAT(error_of([&] { run_paper(file); }),
+              AllOf(HasSubstr("bad.toml:4:1"), HasSubstr("scene.duration: asks for 1e+15 frames"),
+                    HasSubstr("at most 100000")));
+  EXPECT_FALSE(fs::exists(folder() / "out"));
+}
+
+TEST_F(BadSheet, AsksForNoMeshLargerThanItsPatternJustifies) {
+  const std::string thin = "pattern = { kind = \"rectangle\", width = 1e6, height = 1e-6 }\n";
+  EXPECT_THAT(refusal(thin), AllOf(HasSubstr("bad.toml:5"), HasSubstr("scene.pattern: asks for"),
+                                   HasSubstr("points of a mesh with edges of")));
+  EXPECT_THAT(refusal("pattern = { kind = \"disc\", corners = 10001 }\n"),
+              AllOf(HasSubstr("scene.pattern.corners"), HasSubstr("between 3 and 10000")));
+}
+
+TEST_F(BadSheet, NamesTheDrawingThatIsNestedTooDeep) {
+  std::string svg;
+  for (int i = 0; i < 100000; ++i) svg += "<g>";
+  const fs::path drawing = folder() / "experiments" / "paper" / "deep.svg";
+  fs::create_directories(drawing.parent_path());
+  std::ofstream(drawing) << svg;
+  EXPECT_THAT(refusal("pattern = { kind = \"svg\", file = \"deep.svg\" }\n"),
+              AllOf(HasSubstr("deep.svg, byte"), HasSubstr("nested too deep")));
+}
+
 }  // namespace
 }  // namespace geoprior::paper

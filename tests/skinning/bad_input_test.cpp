@@ -189,5 +189,40 @@ TEST_F(BadCharacter, FileGivenAsFolderIsNamed) {
   EXPECT_EQ(text_of(out()), "precious");
 }
 
+TEST_F(BadCharacter, AsksForNoMeshThatDoesNotFit) {
+  const std::string motion = "motion = { joint = \"upper\", frames = 2 }\n";
+  const auto refused = [&](const std::string& lines) {
+    const auto file = experiment("character = \"cylinder\"\n" + lines + motion);
+    const std::string error = error_of([&] { run_skinning(file); });
+    EXPECT_FALSE(fs::exists(out())) << error;
+    return error;
+  };
+  EXPECT_THAT(refused("cylinder = { segments = 100000, rings_per_half = 10000 }\n"),
+              AllOf(HasSubstr("bad.toml:5:"), HasSubstr("scene.cylinder.segments: asks for"),
+                    HasSubstr("TB of memory")));
+  EXPECT_THAT(
+      refused("refine = [{ levels = 5 }, { levels = 0 }, { levels = 5 }, { levels = 5 }]\n"),
+      AllOf(HasSubstr("bad.toml:5:"), HasSubstr("scene.refine."), HasSubstr(".levels: asks for"),
+            HasSubstr("vertices")));
+  ::setenv("GEOPRIOR_MEMORY_GB", "0.1", 1);
+  EXPECT_THAT(refused("refine = [{ region = [\"upper\"], levels = 1 }, { region = [\"upper\"], "
+                      "levels = 5 }]\n"),
+              HasSubstr("scene.refine.1.levels: asks for"));
+  ::unsetenv("GEOPRIOR_MEMORY_GB");
+}
+
+TEST_F(BadCharacter, NamesTheSkeletonThatIsNestedTooDeep) {
+  std::string deep = "[joint.a";
+  for (int i = 0; i < 100000; ++i) deep += ".a";
+  const fs::path skeleton = folder() / "experiments" / "skinning" / "deep.skeleton.toml";
+  fs::create_directories(skeleton.parent_path());
+  std::ofstream(skeleton) << deep << "]\n";
+  const auto file = experiment(
+      "character = \"cylinder\"\nskeleton = \"deep.skeleton.toml\"\n"
+      "motion = { joint = \"upper\", frames = 2 }\n");
+  EXPECT_THAT(error_of([&] { run_skinning(file); }),
+              AllOf(HasSubstr("deep.skeleton.toml:1"), HasSubstr("too many parts")));
+}
+
 }  // namespace
 }  // namespace geoprior::skinning
