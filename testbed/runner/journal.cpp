@@ -321,7 +321,6 @@ Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) throw Error("cannot be opened: " + system_reason(errno), file_.string());
   try {
-    require_regular_file();
     lock();
     if (is_new) flush_to_disk(file_.parent_path());
     read();
@@ -332,12 +331,6 @@ Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
 }
 
 Journal::~Journal() { ::close(descriptor_); }
-
-void Journal::require_regular_file() const {
-  struct stat status {};
-  if (::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode)) return;
-  throw Error("is no file", file_.string(), "the log of a run");
-}
 
 void Journal::lock() {
   // Who asks `is_being_written` holds the lock for an instant.

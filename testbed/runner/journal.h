@@ -128,7 +128,6 @@ class Journal {
   void append(const journal::Line& line, bool flush);
 
  private:
-  void require_regular_file() const;
   void lock();
   void read();
   void cut_torn_line();

@@ -131,7 +131,7 @@ std::optional<Turn> wait_for_turn(const Experiment& input, MakingLock& lock) {
 
 /// Finished already, or made now; nothing after a stop.
 std::optional<OpenedRun> find_or_make(const Experiment& input, const std::vector<Topic>& topics,
-                                     const ExecuteRequest& request) {
+                                      const ExecuteRequest& request) {
   if (const auto folder = find_run(input)) return OpenedRun(*folder);
   MakingLock lock(input.hash);
   const std::optional<Turn> turn = wait_for_turn(input, lock);

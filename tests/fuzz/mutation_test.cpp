@@ -1,3 +1,5 @@
+#include "tests/fuzz/mutation.h"
+
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -7,7 +9,6 @@
 
 #include "experiments/fluid/exr_maps.h"
 #include "experiments/fluid/feature_files.h"
-#include "tests/fuzz/mutation.h"
 #include "tests/fuzz/sample_features.h"
 #include "tests/fuzz/targets.h"
 #include "tests/testbed/fake_run.h"
