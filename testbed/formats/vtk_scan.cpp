@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/error.h"
@@ -71,7 +72,7 @@ class VtkXmlScan {
   /// What is asked of an opening tag.
   struct Tag {
     std::string_view name, type, format, encoding;
-    std::uint64_t offset = 0;
+    std::optional<std::uint64_t> offset;
   };
 
   [[noreturn]] void fail(const std::string& problem, const std::string& allowed = {}) const {
@@ -156,8 +157,9 @@ class VtkXmlScan {
   void array(const Tag& tag) {
     require_type(tag.type, place());
     if (!encoding_.compressed) return;
-    if (tag.format == "appended") appended_.push_back(tag.offset);
-    if (tag.format == "binary") {
+    if (tag.offset) {  // whatever the format says: VTK looks for this alone
+      appended_.push_back(*tag.offset);
+    } else if (tag.format == "binary") {
       const std::size_t begin = std::min(text_.find_first_not_of(kSpace, at_), text_.size());
       check_blocks(begin, true);
     }

@@ -51,6 +51,35 @@ std::string polygons(const std::string& connectivity, const std::string& offsets
   return square(R"(NumberOfPolys="2")", cells("Polys", connectivity, offsets));
 }
 
+std::string base64(const std::vector<std::uint32_t>& words) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes(4 * words.size(), '\0');
+  std::memcpy(bytes.data(), words.data(), bytes.size());
+  std::string out;
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); bit += 6) {
+    unsigned digit = 0;
+    for (std::size_t b = bit; b < bit + 6; ++b) {
+      const unsigned byte = b / 8 < bytes.size() ? static_cast<unsigned char>(bytes[b / 8]) : 0U;
+      digit = 2 * digit + (byte >> (7 - b % 8) & 1U);
+    }
+    out.push_back(kDigits[digit]);
+  }
+  return out;
+}
+
+/// A compressed array that begins with this text, inline or appended.
+std::string compressed(const std::string& begin, bool inline_data) {
+  const std::string array = R"(<DataArray type="Float64" NumberOfComponents="3" )" +
+                            (inline_data ? "format=\"binary\">" + begin + "</DataArray>"
+                                         : std::string("format=\"ascii\" offset=\"0\"/>"));
+  return R"(<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" compressor="vtkZLibDataCompressor"><PolyData>
+<Piece NumberOfPoints="1"><Points>)" +
+         array + "</Points></Piece></PolyData>" +
+         (inline_data ? "" : R"(<AppendedData encoding="base64">_)" + begin + "</AppendedData>") +
+         "</VTKFile>";
+}
+
 class ForeignVtk : public RunTest {
  protected:
   [[nodiscard]] std::filesystem::path write(const std::string& name,
@@ -172,6 +201,22 @@ TEST_F(ForeignVtk, ThatDeclaresMoreThanItHoldsIsRefused) {
   EXPECT_THAT(refusal(image("0 1 0 1 0 1", "-2147483648 2147483647 0 1 0 1"), ".vti"), declares);
   EXPECT_THAT(refusal(image("0 1 0 1 0 99999999999", "0 1 0 1 0 1"), ".vti"), HasSubstr("32 bits"));
   EXPECT_THAT(refusal(image("0 1 1 0 0 1", "0 1 0 1 0 1"), ".vti"), HasSubstr("before it begins"));
+}
+
+// VTK divides by the size of a block, and takes the number of whole blocks for one less.
+TEST_F(ForeignVtk, WithBlocksThatContradictEachOtherIsRefused) {
+  for (const bool inline_data : {true, false}) {
+    const auto of = [&](const std::vector<std::uint32_t>& header) {
+      return refusal(compressed(base64(header), inline_data));
+    };
+    EXPECT_THAT(of({1, 0, 24, 10}), HasSubstr("1 compressed blocks of 0 bytes"));
+    EXPECT_THAT(of({0, 32768, 24}), HasSubstr("0 compressed blocks"));
+    EXPECT_THAT(of({1, 32768, 32769, 10}), HasSubstr("the last of 32769"));
+    EXPECT_THAT(of({4000000000, 32768, 0}), HasSubstr("can hold"));
+    EXPECT_THAT(of({1, 4000000000, 0, 10}), HasSubstr("can hold"));
+    EXPECT_THAT(of({1, 32768, 24, 4000000000}), HasSubstr("block has 4000000000 bytes"));
+    EXPECT_THAT(refusal(compressed("AAAA==AQAAAAAAAAAAAA", inline_data)), HasSubstr("base64"));
+  }
 }
 
 TEST_F(ForeignVtk, WhoseXmlIsMadeToHurtIsRefused) {
