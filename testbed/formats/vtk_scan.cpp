@@ -28,6 +28,13 @@ bool is_count(std::string_view attribute) {
   return std::find(kCounts.begin(), kCounts.end(), attribute) != kCounts.end();
 }
 
+/// Attributes that say where data begin and how they are encoded.
+bool is_encoding(std::string_view attribute) {
+  static constexpr std::array<std::string_view, 5> kEncodings{"compressor", "byte_order",
+                                                              "header_type", "format", "encoding"};
+  return std::find(kEncodings.begin(), kEncodings.end(), attribute) != kEncodings.end();
+}
+
 /// VTK 9.1 follows a null pointer where an array has another type, or none.
 void require_type(std::string_view type, const std::string& place) {
   static constexpr std::array<std::string_view, 12> kTypes{"Int8",    "UInt8",   "Int16",  "UInt16",
@@ -133,6 +140,9 @@ class VtkXmlScan {
     if (quote != '"' && quote != '\'') fail("has an attribute without quotes");
     ++at_;
     const std::string_view value = take_until({&quote, 1});
+    if (is_encoding(name) && value.find('&') != std::string_view::npos) {
+      fail(std::string(name) + " is '" + std::string(value.substr(0, 40)) + "'", "plain words");
+    }
     if (depth_ == 1) encoding_attribute(name, value);
     if (name == "type") tag.type = value;
     if (name == "format") tag.format = value;
