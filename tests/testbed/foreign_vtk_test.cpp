@@ -273,8 +273,10 @@ TEST_F(ForeignVtk, WithFlippedBitsIsReadOrAnError) {
         ++read_anyway;
       } catch (const Error& e) {
         ++refused;
-        EXPECT_THAT(e.what(), AllOf(HasSubstr("foreign" + extension), Not(HasSubstr("(0x")),
-                                    Not(HasSubstr("made to crash"))));
+        EXPECT_THAT(e.what(), AllOf(HasSubstr("foreign" + extension), Not(HasSubstr("(0x"))));
+#ifndef __SANITIZE_ADDRESS__  // which ends the child where it has no memory
+        EXPECT_THAT(e.what(), Not(HasSubstr("made to crash")));
+#endif
       }
     }
   }
