@@ -30,8 +30,10 @@ namespace {
 namespace fs = std::filesystem;
 using SteadyClock = std::chrono::steady_clock;
 
+// The sanitizer maps terabytes, so that no limit of the address space fits, and its reports are
+// wanted, though standard error be a file.
 #if defined(__SANITIZE_ADDRESS__)
-constexpr bool kAddressSanitizer = true;  // maps terabytes: no limit of the address space fits
+constexpr bool kAddressSanitizer = true;
 #elif defined(__has_feature)
 constexpr bool kAddressSanitizer = __has_feature(address_sanitizer);
 #else
@@ -122,7 +124,7 @@ int keep_only(int pipe) {
   const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   if (kept < 0 || nothing < 0) ::_exit(1);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (kAddressSanitizer && stream == STDERR_FILENO) continue;  // its reports are wanted
+    if (kAddressSanitizer && stream == STDERR_FILENO) continue;
     if (stream != nothing) ::dup2(nothing, stream);
   }
   const auto number = static_cast<unsigned>(kept);
@@ -141,9 +143,10 @@ void set_limit(decltype(RLIMIT_AS) resource, rlim_t value) {
 
 void apply(const ChildLimits& limits, std::size_t mapped_before) {
   set_limit(RLIMIT_CORE, 0);
-  set_limit(RLIMIT_FSIZE, 0);
   set_limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.seconds)) + 1);
-  if (!kAddressSanitizer) set_limit(RLIMIT_AS, mapped_before + limits.memory);
+  if (kAddressSanitizer) return;
+  set_limit(RLIMIT_FSIZE, 0);
+  set_limit(RLIMIT_AS, mapped_before + limits.memory);
 }
 
 void send(int pipe, ReplyHeader::Kind kind, std::string_view bytes) {

@@ -21,7 +21,7 @@ std::string lower(std::string text) {
 
 MeshFile read_vtp(const std::filesystem::path& file) {
   MeshFile out;
-  Part part = read_foreign_vtk_part(file, out.time);
+  Part part = parse_foreign_vtk_part(read_whole_file(file), ".vtp", file.string(), out.time);
   if (part.kind != Part::Kind::triangles && part.points.rows() > 0) {
     throw Error("holds no surface", file.string(), "polygons or strips");
   }

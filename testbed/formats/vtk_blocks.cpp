@@ -18,13 +18,16 @@ std::optional<unsigned> sextet(char c) {
   return static_cast<unsigned>(at);
 }
 
-/// The first bytes of base64 text, fewer where it ends or has other characters.
-std::string first_bytes_of_base64(std::string_view text, std::size_t count) {
+/// The first bytes of base64 text, fewer where it ends or has other characters. VTK takes padding
+/// at the beginning of a group of four for a digit, and reads on.
+std::string first_bytes_of_base64(std::string_view text, std::size_t count,
+                                  const std::string& where) {
   std::string out;
   unsigned bits = 0, held = 0;
-  for (const char c : text) {
-    const std::optional<unsigned> value = sextet(c);
-    if (out.size() >= count || !value) break;
+  for (std::size_t i = 0; i < text.size() && out.size() < count; ++i) {
+    if (text[i] == '=' && i % 4 < 2) throw Error("an array is no base64", where);
+    const std::optional<unsigned> value = sextet(text[i]);
+    if (!value) break;
     bits = (bits << 6 | *value) & 0xFFFFFF;
     held += 6;
     if (held < 8) continue;
@@ -35,9 +38,10 @@ std::string first_bytes_of_base64(std::string_view text, std::size_t count) {
 }
 
 std::vector<std::uint64_t> first_words(std::string_view data, bool is_base64,
-                                       const VtkEncoding& encoding, std::size_t count) {
+                                       const VtkEncoding& encoding, std::size_t count,
+                                       const std::string& where) {
   const std::size_t bytes_wanted = count * encoding.word_bytes;
-  const std::string bytes = is_base64 ? first_bytes_of_base64(data, bytes_wanted)
+  const std::string bytes = is_base64 ? first_bytes_of_base64(data, bytes_wanted, where)
                                       : std::string(data.substr(0, bytes_wanted));
   std::vector<std::uint64_t> words(bytes.size() / encoding.word_bytes);
   for (std::size_t w = 0; w < words.size(); ++w) {
@@ -54,7 +58,7 @@ std::vector<std::uint64_t> first_words(std::string_view data, bool is_base64,
 void check_block_header(std::string_view data, bool is_base64, const VtkEncoding& encoding,
                         double most_bytes, std::size_t file_bytes, const std::string& where) {
   constexpr std::size_t kFixedWords = 3;
-  std::vector<std::uint64_t> words = first_words(data, is_base64, encoding, kFixedWords);
+  std::vector<std::uint64_t> words = first_words(data, is_base64, encoding, kFixedWords, where);
   if (words.size() < kFixedWords) return;
   const std::uint64_t blocks = words[0], size = words[1], last = words[2];
   const bool fits = blocks == 0 ? last == 0 : size > 0 && last <= size;
@@ -71,7 +75,7 @@ void check_block_header(std::string_view data, bool is_base64, const VtkEncoding
                     " bytes can hold",
                 where);
   }
-  words = first_words(data, is_base64, encoding, kFixedWords + blocks);
+  words = first_words(data, is_base64, encoding, kFixedWords + blocks, where);
   const auto longest = std::max_element(words.begin() + kFixedWords, words.end());
   if (longest != words.end() && *longest > file_bytes) {
     throw Error("a compressed block has " + std::to_string(*longest) + " bytes", where,

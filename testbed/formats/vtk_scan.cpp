@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/error.h"
@@ -25,6 +26,13 @@ bool is_count(std::string_view attribute) {
                                                            "NumberOfLines",  "NumberOfStrips",
                                                            "NumberOfPolys",  "NumberOfTuples"};
   return std::find(kCounts.begin(), kCounts.end(), attribute) != kCounts.end();
+}
+
+/// Attributes that say where data begin and how they are encoded.
+bool is_encoding(std::string_view attribute) {
+  static constexpr std::array<std::string_view, 5> kEncodings{"compressor", "byte_order",
+                                                              "header_type", "format", "encoding"};
+  return std::find(kEncodings.begin(), kEncodings.end(), attribute) != kEncodings.end();
 }
 
 /// VTK 9.1 follows a null pointer where an array has another type, or none.
@@ -71,7 +79,7 @@ class VtkXmlScan {
   /// What is asked of an opening tag.
   struct Tag {
     std::string_view name, type, format, encoding;
-    std::uint64_t offset = 0;
+    std::optional<std::uint64_t> offset;
   };
 
   [[noreturn]] void fail(const std::string& problem, const std::string& allowed = {}) const {
@@ -132,6 +140,9 @@ class VtkXmlScan {
     if (quote != '"' && quote != '\'') fail("has an attribute without quotes");
     ++at_;
     const std::string_view value = take_until({&quote, 1});
+    if (is_encoding(name) && value.find('&') != std::string_view::npos) {
+      fail(std::string(name) + " is '" + std::string(value.substr(0, 40)) + "'", "plain words");
+    }
     if (depth_ == 1) encoding_attribute(name, value);
     if (name == "type") tag.type = value;
     if (name == "format") tag.format = value;
@@ -156,8 +167,9 @@ class VtkXmlScan {
   void array(const Tag& tag) {
     require_type(tag.type, place());
     if (!encoding_.compressed) return;
-    if (tag.format == "appended") appended_.push_back(tag.offset);
-    if (tag.format == "binary") {
+    if (tag.offset) {  // whatever the format says: VTK looks for this alone
+      appended_.push_back(*tag.offset);
+    } else if (tag.format == "binary") {
       const std::size_t begin = std::min(text_.find_first_not_of(kSpace, at_), text_.size());
       check_blocks(begin, true);
     }

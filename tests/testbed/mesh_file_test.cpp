@@ -232,7 +232,7 @@ TEST_F(MeshFiles, AreReadByExtension) {
   part.points = ball.V;
   part.triangles = ball.F;
   part.arrays.push_back({"velocity", "m/s", NamedArray::On::points, 2 * ball.V});
-  const MeshFile file = read_mesh_file(write("a.vtp", part_to_vtk_xml(part, 0.75)));
+  const MeshFile file = read_mesh_file(write("a.VTP", part_to_vtk_xml(part, 0.75)));
   EXPECT_EQ(file.mesh.V, ball.V);
   EXPECT_EQ(file.velocity, 2 * ball.V);
   EXPECT_EQ(file.time, 0.75);
