@@ -54,7 +54,8 @@ fs::path find_file(const std::string& name, const fs::path& folder, const fs::pa
     const fs::path candidate = (base / name).lexically_normal();
     std::error_code ignored;
     if (fs::is_regular_file(candidate, ignored)) return candidate;
-    const bool may_be_elsewhere = !fs::exists(candidate, ignored) || fs::is_directory(candidate);
+    const bool may_be_elsewhere =
+        !fs::exists(candidate, ignored) || fs::is_directory(candidate, ignored);
     if (!may_be_elsewhere) require_regular_file(candidate);
     tried += (tried.empty() ? "" : ", ") + candidate.string();
   }

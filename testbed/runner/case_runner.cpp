@@ -186,6 +186,11 @@ MethodEntry::Instance& CaseRunner::prepare(const VariantSpec& variant, bool log)
   return prepared_.emplace(variant.name, std::move(*instance)).first->second;
 }
 
+std::function<void()> CaseRunner::farewell_within_frame(const VariantSpec& variant) {
+  const bool is_pose = std::holds_alternative<std::unique_ptr<PoseMethod>>(prepare(variant, false));
+  return is_pose ? farewell_ : nullptr;
+}
+
 std::optional<Frame> CaseRunner::reference_frame(const VariantSpec& variant, double parameter) {
   if (!variant.reference || !has_reference_metrics(topic_)) return std::nullopt;
   const VariantSpec* reference = find_variant(spec_.variants, *variant.reference);
@@ -206,7 +211,10 @@ void CaseRunner::record_frame(const VariantSpec& variant, Frame frame,
   line.parameter = frame.parameter;
   line.files = recorder_.write_frame(line.place, index, frame);
   const std::optional<Frame> reference = reference_frame(variant, frame.parameter);
-  line.metrics = measure_frame(topic_, *scene_, frame, reference ? &*reference : nullptr);
+  {
+    const LeaveAtOnce section(farewell_within_frame(variant));
+    line.metrics = measure_frame(topic_, *scene_, frame, reference ? &*reference : nullptr);
+  }
   line.diagnostics = frame.diagnostics;
   line.timing = seconds;
   recorder_.add(line);
@@ -217,7 +225,10 @@ bool CaseRunner::run_poses(const VariantSpec& variant, PoseMethod& method, Timed
   const std::vector<double> parameters = scene_->parameters();
   for (std::size_t i = state_of(variant).record.frames.size(); i < parameters.size(); ++i) {
     if (stop_requested()) return false;
-    method.solve(parameters[i], context);
+    {
+      const LeaveAtOnce section(farewell_within_frame(variant));
+      method.solve(parameters[i], context);
+    }
     // A method that broke off its solve has no state worth recording.
     if (context.stop_was_told()) return false;
     Frame frame = method.frame();

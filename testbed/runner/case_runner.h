@@ -33,7 +33,8 @@ class CaseRunner {
   bool run(const OptionSet& options, std::vector<StoredFile> inputs, bool timing);
   /// Makes a diagnostic that the topic's table lacks an error.
   void require_declared_diagnostics() { only_declared_ = true; }
-  /// Lets a stop request end the program while the scene is loaded or a method prepared.
+  /// Lets a stop request end the program while the scene is loaded, a method prepared, a pose
+  /// solved or measured.
   void leave_at_once_after(std::function<void()> farewell) { farewell_ = std::move(farewell); }
 
  private:
@@ -51,6 +52,9 @@ class CaseRunner {
   bool run_process(const VariantSpec& variant, Process& process, TimedContext& context,
                    journal::EndLine& end);
   void finish(const VariantSpec& variant, journal::EndLine end);
+  /// A pose that is not recorded yet costs its own time only; a process would have to go on at its
+  /// last checkpoint.
+  std::function<void()> farewell_within_frame(const VariantSpec& variant);
   void record_frame(const VariantSpec& variant, Frame frame, const journal::Numbers& seconds = {});
   std::optional<Frame> reference_frame(const VariantSpec& variant, double parameter);
   void log_error(const journal::Place& at, const std::string& message);

@@ -31,7 +31,7 @@ void throw_if_stopped();
 
 /// While one lives, a stop request ends the program at once with exit code 2, after `farewell`
 /// (none: nothing changes). For computations that poll nothing and leave nothing behind: loading a
-/// scene, preparing a method. Not while a file is being written.
+/// scene, preparing a method, a pose. Not while a file is being written.
 class LeaveAtOnce {
  public:
   explicit LeaveAtOnce(const std::function<void()>& farewell);

@@ -17,6 +17,7 @@
 #include "testbed/formats/atomic_file.h"
 #include "testbed/runner/journal.h"
 #include "testbed/runner/run_file.h"
+#include "testbed/runner/run_folder.h"
 #include "tests/testbed/run_fixture.h"
 
 namespace geoprior::test {
@@ -333,11 +334,10 @@ TEST_F(SharedInput, IsMadeOnceForTwoProgramsThatNeedItTogether) {
 
 TEST_F(SharedInput, IsWaitedForWhereItIsARunOfItsOwn) {
   ToyProgram own({"run", base().string(), "--no-pictures"}, log_of("own"));
-  while (!fs::exists(folder() / "runs/toy-pendulum/swing")) {
+  while (!find_unfinished_run(load(base()))) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  await(fs::directory_iterator(folder() / "runs/toy-pendulum/swing")->path() / "journal.jsonl",
-        "\"kind\":\"frame\"");
+  await(*find_unfinished_run(load(base())) / "journal.jsonl", "\"kind\":\"frame\"");
   ToyProgram second(run_of_needy("second"), log_of("second"));
   EXPECT_EQ(own.wait(), 0);
   EXPECT_EQ(second.wait(), 0) << text_of(log_of("second"));
