@@ -51,6 +51,8 @@ class Ground {
     if (!(area_ > 0)) throw Error("holds no triangle", "scene.pattern.region", "a part of it");
     if (!(sum > 0))
       throw Error("is 0 everywhere", "scene.pattern.density", "0 at some places only");
+    if (!std::isfinite(sum))
+      throw Error("is too large", "scene.pattern.density", "values whose sum is finite");
     density_ *= options.count / sum;
     sums_ /= sum;
   }
