@@ -23,6 +23,8 @@ namespace {
 constexpr int kDartsPerDetail = 400;
 /// Smallest distance in a cluster over its radius.
 constexpr double kApartInCluster = 0.25;
+/// Relative: sums of larger ones over a surface would not stay finite.
+constexpr double kMostDensity = 1e9;
 /// Of a grid: on a surface that fills its box about as many as details.
 constexpr double kMostGridCells = 2e7;
 
@@ -49,6 +51,8 @@ class Ground {
     if (!(area_ > 0)) throw Error("holds no triangle", "scene.pattern.region", "a part of it");
     if (!(sum > 0))
       throw Error("is 0 everywhere", "scene.pattern.density", "0 at some places only");
+    if (!std::isfinite(sum))
+      throw Error("is too large", "scene.pattern.density", "values whose sum is finite");
     density_ *= options.count / sum;
     sums_ /= sum;
   }
@@ -272,8 +276,10 @@ void describe(OptionVisitor& v, DensityOptions& options) {
                   {.doc = "constant; gradient: axis, from, to; array: array"});
   if (options.kind == DensityKind::gradient) {
     v.value("axis", options.axis, {.doc = "along which it changes, any length"});
-    v.value("from", options.from, {.doc = "at the lower end of the surface", .min = 0});
-    v.value("to", options.to, {.doc = "at the upper end, linear between", .min = 0});
+    v.value("from", options.from,
+            {.doc = "at the lower end of the surface", .min = 0, .max = kMostDensity});
+    v.value("to", options.to,
+            {.doc = "at the upper end, linear between", .min = 0, .max = kMostDensity});
   }
   if (options.kind == DensityKind::array) {
     v.value("array", options.array,

@@ -2,7 +2,10 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
+#include <string>
 
+#include "core/limits.h"
 #include "core/parallel.h"
 
 namespace geoprior::skinning {
@@ -33,6 +36,13 @@ Eigen::Matrix3d box_axes(const FieldBone& bone, const Eigen::MatrixX3d& V) {
   return axes;
 }
 
+/// Of a box that is longer than wide there are more than `grid`^3; they are numbered with 32 bits.
+void require_nodes(double nodes) {
+  const std::string what = "nodes of a bone's field";
+  require_memory(nodes * sizeof(Float4), nodes, what, "options.grid");
+  require_count(nodes, what, std::numeric_limits<int>::max(), "options.grid");
+}
+
 }  // namespace
 
 FieldBox field_box(const FieldBone& bone, const Eigen::MatrixX3d& V) {
@@ -55,11 +65,9 @@ FieldBox field_box(const FieldBone& bone, const Eigen::MatrixX3d& V) {
 FieldCache::FieldCache(const Hrbf& field, const FieldBox& box, int grid) {
   const Eigen::Vector3d size = box.high - box.low;
   cell_ = std::cbrt(size.prod()) / std::max(1, grid - 1);
-  for (int k = 0; k < 3; ++k) {
-    const int cells = std::max(1, static_cast<int>(std::ceil(size(k) / cell_ - 1e-9)));
-    size_[k] = cells + 1;
-    extent_(k) = cells;
-  }
+  extent_ = (size.array() / cell_ - 1e-9).ceil().max(1);
+  require_nodes((extent_.array() + 1).prod());
+  for (int k = 0; k < 3; ++k) size_[k] = static_cast<int>(extent_(k)) + 1;
   stride_j_ = size_[0];
   stride_k_ = size_[0] * size_[1];
   nodes_.resize(static_cast<std::size_t>(stride_k_) * static_cast<std::size_t>(size_[2]));

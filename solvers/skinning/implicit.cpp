@@ -5,6 +5,7 @@
 
 #include "baselines/skinning/dual_quaternion.h"
 #include "core/error.h"
+#include "core/limits.h"
 #include "core/parallel.h"
 #include "core/topology.h"
 #include "solvers/skinning/composition.h"
@@ -40,10 +41,18 @@ std::vector<JointOperator> joint_operators(const BonePartition& partition, const
   return operators;
 }
 
+/// Caches of all bones are made together.
+void require_caches(std::size_t bones, int grid) {
+  const double nodes = static_cast<double>(bones) * std::pow(grid, 3);
+  require_memory(nodes * sizeof(Float4), nodes,
+                 "nodes of the fields of " + std::to_string(bones) + " bones", "options.grid");
+}
+
 std::vector<BoneField> fit_fields(const RiggedMesh& rig, const BonePartition& partition,
                                   const ImplicitOptions& options, const RunContext& context) {
   const Eigen::MatrixX3d normals = vertex_normals(rig.mesh);
   std::vector<BoneField> fields(partition.bones.size());
+  require_caches(fields.size(), options.grid);
   parallel_blocks(fields.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       BoneField& field = fields[b];

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/option_toml.h"
 #include "testbed/runner/spec_overrides.h"
@@ -285,6 +286,9 @@ std::map<std::string, Tolerance> read_tolerances(const TomlNode& root, const Top
   return tolerances;
 }
 
+/// Most frames of a figure, each a row or a column of panels.
+constexpr double kMostFigureFrames = 100;
+
 FigureView read_figure_view(const TomlNode& root, const Topic& topic) {
   FigureViewTable table(topic.view);
   FigureView& view = table.view;
@@ -299,6 +303,8 @@ FigureView read_figure_view(const TomlNode& root, const Topic& topic) {
       throw Error("has " + std::to_string(table.target.size()) + " elements",
                   place_of(*node, "target"), "an array of 3 numbers");
     }
+    require_count(static_cast<double>(view.parameters.size()), "frames of a figure",
+                  kMostFigureFrames, place_of(*node, "parameters"));
     if (view.color_by && view.color_by->empty()) view.color_by.reset();
     if (!view.classes.empty() && !view.color_by) {
       throw Error("names the values of no array", place_of(*node, "classes"), "with `color_by`");

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/run_inputs.h"
 #include "testbed/runner/stop.h"
@@ -68,6 +69,13 @@ std::vector<DrawnRow> drawn_rows(const std::vector<FigureRow>& rows, bool with_s
   return out;
 }
 
+/// Cases and frames are rows of one picture.
+void require_picture(double width, double height) {
+  constexpr double kBytesPerPixel = 6;  // in memory, and while it is encoded
+  require_memory(width * height * kBytesPerPixel, width * height, "pixels of a figure",
+                 "figure_view");
+}
+
 /// All but the height of the scalar bar or the legend.
 Layout make_layout(const std::vector<DrawnRow>& rows, const ViewWindow& window) {
   Layout layout;
@@ -83,6 +91,8 @@ Layout make_layout(const std::vector<DrawnRow>& rows, const ViewWindow& window) 
   layout.panel_height = std::max(2, static_cast<int>(std::lround(width / aspect)));
   layout.width = layout.left + layout.columns * layout.panel_width +
                  (layout.columns - 1) * kPanelGap + kFigureMargin;
+  require_picture(layout.width,
+                  static_cast<double>(rows.size()) * (layout.panel_height + kPanelGap + kHeading));
   layout.height = 2 * kFigureMargin;
   for (const DrawnRow& row : rows) {
     layout.height += layout.panel_height + kPanelGap + (row.has_headings ? kHeading : 0);

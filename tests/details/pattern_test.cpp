@@ -187,6 +187,9 @@ TEST(DetailPattern, WhatHasNoPlaceIsNamed) {
   EXPECT_THAT(
       test::error_of([&] { scatter(sphere, options, Eigen::VectorXd::Zero(sphere.V.rows())); }),
       HasSubstr("scene.pattern.density: is 0 everywhere"));
+  const Eigen::VectorXd largest = Eigen::VectorXd::Constant(sphere.V.rows(), 1.7e308);
+  EXPECT_THAT(test::error_of([&] { scatter(sphere, options, largest); }),
+              HasSubstr("scene.pattern.density: is too large"));
   options.region.resize(1);
   options.region[0].direction = {0, 0, 0};
   EXPECT_THAT(test::error_of([&] { sampled(sphere, options); }),

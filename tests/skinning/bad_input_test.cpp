@@ -211,6 +211,20 @@ TEST_F(BadCharacter, AsksForNoMeshThatDoesNotFit) {
   ::unsetenv("GEOPRIOR_MEMORY_GB");
 }
 
+TEST_F(BadCharacter, AsksForNoFieldsThatDoNotFit) {
+  const auto file = write_experiment(
+      "skinning/bad",
+      "title = \"Bad input\"\ntopic = \"skinning\"\n[scene]\ncharacter = \"cylinder\"\n"
+      "motion = { joint = \"upper\", frames = 2 }\n[[variant]]\nname = \"a\"\n"
+      "method = \"implicit\"\noptions = { grid = 256 }\n");
+  ::setenv("GEOPRIOR_MEMORY_GB", "0.3", 1);
+  EXPECT_THAT(error_of([&] { run_skinning(file); }),
+              AllOf(HasSubstr("bad.toml:9:13"), HasSubstr("options.grid: asks for 33554432 nodes "
+                                                          "of the fields of 2 bones")));
+  ::unsetenv("GEOPRIOR_MEMORY_GB");
+  EXPECT_FALSE(fs::exists(out()));
+}
+
 TEST_F(BadCharacter, NamesTheSkeletonThatIsNestedTooDeep) {
   std::string deep = "[joint.a";
   for (int i = 0; i < 100000; ++i) deep += ".a";

@@ -73,6 +73,11 @@ TEST_F(Memory, CasesAreCountedBeforeTheyAreMade) {
   ::unsetenv("GEOPRIOR_MEMORY_GB");
 }
 
+TEST_F(Memory, FramesOfAFigureAreCounted) {
+  EXPECT_THAT(error_of("[figure_view]\nparameters = " + first_numbers(101)),
+              AllOf(HasSubstr("disc.toml:17:1"), HasSubstr("asks for 101 frames of a figure")));
+}
+
 // Each case kept a copy of the file with all values: 2.8 GB.
 TEST_F(Memory, OfASweepIsInProportionToItsValues) {
   if (!test::allocations_of([] {})) GTEST_SKIP() << "the sanitizers keep what is freed";
