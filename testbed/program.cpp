@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
+#include "testbed/commands/printable.h"
 #include "testbed/runner/build_info.h"
 
 namespace geoprior {
@@ -163,7 +164,7 @@ int dispatch(CommandLine& line, const std::vector<Topic>& topics) {
 }
 
 int fail(const char* kind, const std::string& what, int code) {
-  say(tinted(kind, Tint::bad) + what);
+  say(tinted(kind, Tint::bad) + printable(what));
   return code;
 }
 

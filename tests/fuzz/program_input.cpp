@@ -71,6 +71,13 @@ ProgramInput experiment_input() {
   return input;
 }
 
+/// The skinned one first: it is a character by itself.
+ProgramInput gltf_input() {
+  std::vector<std::string> seeds = corpus(".gltf");
+  std::reverse(seeds.begin(), seeds.end());
+  return input_of("skinning", "gltf", "character.gltf", seeds);
+}
+
 ProgramInput capture_input() {
   return input_of("skinning", "capture", "capture.bvh", corpus(".bvh"));
 }
@@ -115,10 +122,10 @@ ProgramInput sculpt_input(const std::string& mutated) {
 
 // Inputs that are runs.
 
-/// The scripts that draw a report: a home has them.
+/// What draws a report: a home has it.
 Files with_scripts(Files home) {
   for (const auto& entry : fs::directory_iterator(kSource / "results")) {
-    if (entry.path().extension() != ".py") continue;
+    if (!entry.is_regular_file()) continue;
     home["results/" + entry.path().filename().string()] = read_whole_file(entry.path());
   }
   return home;
@@ -148,6 +155,13 @@ Files finished_run(const std::string& experiment) {
       {{"experiments/small.toml", small_experiments().at(experiment + ".toml")}});
   make_run(home, kRunSmall);
   return read_files(home.path());
+}
+
+/// The same without run.h5: to resume it is to read what the journal names, and assemble it.
+Files unassembled_run() {
+  Files files = finished_run("toy-pendulum");
+  files.erase(kRun + "/run.h5");
+  return files;
 }
 
 bool holds(const fs::path& file, const std::string& word) {
@@ -217,7 +231,7 @@ std::vector<InputKind> input_kinds() {
       {"Skeleton", 1, [] { return input_of("skinning", "poses", "bones.data.toml"); }},
       {"Poses", 1, [] { return input_of("skinning", "poses", "poses.data.toml"); }},
       {"Bvh", 1, capture_input},
-      {"Gltf", 1, [] { return input_of("skinning", "gltf", "character.gltf", corpus(".gltf")); }},
+      {"Gltf", 1, gltf_input},
       {"Glb", 1, [] { return input_of("skinning", "glb", "character.glb", corpus(".glb")); }},
       {"Obj", 1, [] { return mesh_input(".obj", corpus(".obj")); }},
       {"Ply", 1, [] { return mesh_input(".ply", corpus(".ply")); }},
@@ -243,7 +257,7 @@ std::vector<InputKind> input_kinds() {
       {"Frame", 1, [=] { return run_input(circle(), ".vtp", {kExport}); }},
       {"FrameDrawn", kSlow, [=] { return run_input(circle(), ".vtp", {kRender}); }},
       {"Grid", 1, [=] { return run_input(pendulum(), ".vti", {kExport}); }},
-      {"Table", 0.3, [=] { return run_input(pendulum(), ".csv", {kExport}); }},
+      {"Table", 0.3, [] { return run_input(unassembled_run(), ".csv", {kResume}); }},
   };
 }
 
