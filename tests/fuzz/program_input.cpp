@@ -157,7 +157,8 @@ Files finished_run(const std::string& experiment) {
   return read_files(home.path());
 }
 
-/// The same without run.h5: to resume it is to read what the journal names, and assemble it.
+/// One of the pendulum without run.h5: to resume it is to read what the journal names, and assemble
+/// it.
 Files unassembled_run() {
   Files files = finished_run("toy-pendulum");
   files.erase(kRun + "/run.h5");
@@ -170,15 +171,16 @@ bool holds(const fs::path& file, const std::string& word) {
   return text.find(word) != std::string::npos;
 }
 
-/// The same of a run that was killed after a checkpoint.
+/// A home with a run of the pendulum that was killed after a checkpoint.
 Files interrupted_run() {
   const ScratchHome home({{"experiments/small.toml", small_experiments().at("toy-pendulum.toml")}});
   make_run(home, kRunSmall, [&](ProgramProcess& program) {
     const fs::path journal = home.path() / kRun / "journal.jsonl";
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (!holds(journal, "\"kind\":\"checkpoint\"")) {
+      if (std::chrono::steady_clock::now() > deadline) throw Error("the run made no checkpoint");
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
     program.signal(SIGKILL);
   });
   return read_files(home.path());
@@ -194,7 +196,7 @@ std::vector<std::string> named(const Files& files, const std::string& end) {
   return names;
 }
 
-/// Every file of the run with this ending is mutated, each command reads it.
+/// One of the run's files with this ending is mutated, and a command reads it.
 ProgramInput run_input(Files home, const std::string& end, const std::vector<Words>& commands) {
   ProgramInput input;
   input.home = std::move(home);

@@ -181,7 +181,9 @@ TEST_P(ProgramFuzz, EndsInOrderWhateverIsInTheFile) {
 TEST_P(ProgramFuzz, ReadsTheFileAsItIs) {
   const ProgramInput input = GetParam().make();
   const auto expect_success = [&](const ReadingCommand& command, const auto& body) {
-    const ScratchHome home(with(input.home, command.file, input.seeds.front()));
+    Files files = input.home;
+    files.emplace(command.file, input.seeds.front());  // where it is not there yet
+    const ScratchHome home(files);
     ProgramProcess process([&] { return body(home.path()); }, home.output());
     EXPECT_EQ(process.wait(), 0) << joined_words(command.arguments) << "\n"
                                  << text_of(home.output());
