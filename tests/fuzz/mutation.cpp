@@ -95,8 +95,15 @@ std::size_t below(RandomStream& random, std::size_t n) {
 
 std::string mutated(const std::vector<std::string>& seeds, RandomStream& random) {
   std::string text = seeds[below(random, seeds.size())];
-  const std::uint32_t count = 1 + random.below(6);
-  for (std::uint32_t k = 0; k < count; ++k) mutate(text, seeds, random);
+  const bool words_only = random.below(2) == 0;
+  const std::uint32_t count = 1 + random.below(words_only ? 3 : 6);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    if (words_only) {
+      replace_word(text, random);
+    } else {
+      mutate(text, seeds, random);
+    }
+  }
   return text;
 }
 
