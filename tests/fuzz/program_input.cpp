@@ -257,7 +257,8 @@ std::vector<InputKind> input_kinds() {
       {"RunFileReported", kSlowest,
        [=] { return run_input(with_scripts(circle()), "run.h5", {kReport}); }},
       {"Frame", 1, [=] { return run_input(circle(), ".vtp", {kExport}); }},
-      {"FrameDrawn", kSlow, [=] { return run_input(circle(), ".vtp", {kRender}); }},
+      {"FrameDrawn", kSlow,
+       [=] { return run_input(circle(), "default/polygon/surface_0002.vtp", {kRender}); }},
       {"Grid", 1, [=] { return run_input(pendulum(), ".vti", {kExport}); }},
       {"Table", 0.3, [] { return run_input(unassembled_run(), ".csv", {kResume}); }},
   };
