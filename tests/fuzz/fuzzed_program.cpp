@@ -37,7 +37,7 @@ bool is_control(char c) {
 }
 
 /// Of the lines of an error, "error: " begins one: the last.
-std::string fault_of_error(const std::string& text) {
+Fault fault_of_error(const std::string& text) {
   std::istringstream in(text);
   std::size_t errors = 0;
   std::string line, last;
@@ -45,10 +45,10 @@ std::string fault_of_error(const std::string& text) {
     if (line.starts_with("error: ")) ++errors;
     last = line;
   }
-  if (errors != 1 || !last.starts_with("error: "))
-    return "exit code 2 without one line that says why";
+  if (errors != 1 || !last.starts_with("error: ")) return {"exit code 2 without one line why", ""};
   constexpr std::size_t kLongest = 2000;
-  return last.size() > kLongest ? "an error of " + std::to_string(last.size()) + " bytes" : "";
+  if (last.size() > kLongest) return {"a very long error", std::to_string(last.size()) + " bytes"};
+  return {};
 }
 
 }  // namespace
@@ -67,18 +67,18 @@ int fuzzed_program(const std::filesystem::path& home, const std::vector<std::str
   return run_as_program(arguments, fuzzed_topics());
 }
 
-std::string fault_of(const CommandEnd& end) {
-  if (end.hung) return "hangs";
+Fault fault_of(const CommandEnd& end) {
+  if (end.hung) return {"hangs", ""};
   if (end.interrupted && end.code == -SIGINT) return {};
-  if (end.code < 0) return "died of signal " + std::to_string(-end.code);
-  if (end.code > 2) return "exit code " + std::to_string(end.code);
-  if (std::any_of(end.text.begin(), end.text.end(), is_control)) return "control characters";
+  if (end.code < 0) return {"died of a signal", std::to_string(-end.code)};
+  if (end.code > 2) return {"exit code", std::to_string(end.code)};
+  if (std::any_of(end.text.begin(), end.text.end(), is_control)) return {"control characters", ""};
   static const std::regex kDump(
       "Traceback|terminate called|HDF5-DIAG|ERROR: In |std::|bad_alloc|internal error|"
       "\\b0x[0-9a-fA-F]{6,}");
   std::smatch dump;
-  if (std::regex_search(end.text, dump, kDump)) return "tells users of '" + dump.str() + "'";
-  return end.code == 2 && !end.interrupted ? fault_of_error(end.text) : "";
+  if (std::regex_search(end.text, dump, kDump)) return {"words for developers", dump.str()};
+  return end.code == 2 && !end.interrupted ? fault_of_error(end.text) : Fault{};
 }
 
 }  // namespace geoprior::test

@@ -25,10 +25,16 @@ struct CommandEnd {
   std::string text;  ///< of both streams
 };
 
-/// What a user must never see of a command, whatever file it was given; empty: all is well.
+/// What a user must never see of a command, whatever file it was given.
+struct Fault {
+  std::string kind;    ///< "hangs"; empty: all is well
+  std::string detail;  ///< of this one
+};
+
+/// Of a command that has ended.
 ///
 /// Exit code 0, 1 or 2, in time; where it is 2 the last line, and no other, begins with "error: ".
 /// No control characters, no pointers, no dumps of libraries.
-std::string fault_of(const CommandEnd& end);
+Fault fault_of(const CommandEnd& end);
 
 }  // namespace geoprior::test

@@ -10,7 +10,8 @@
 namespace geoprior::test {
 namespace {
 
-/// Replaces the number (or word) at a random place by one that readers trip over.
+/// Replaces the word, or every other time the next number, at a random place by one that readers
+/// trip over.
 void replace_word(std::string& text, RandomStream& random) {
   static constexpr std::array<const char*, 20> kWords{
       "-1",     "0",          "1e999", "nan",  "4294967295", "18446744073709551615",
@@ -20,8 +21,12 @@ void replace_word(std::string& text, RandomStream& random) {
   const auto is_word = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '+';
   };
+  const bool number_only = random.below(2) == 0;
+  const auto begins = [&](char c) {
+    return number_only ? std::isdigit(static_cast<unsigned char>(c)) != 0 : is_word(c);
+  };
   std::size_t begin = below(random, text.size());
-  while (begin < text.size() && !is_word(text[begin])) ++begin;
+  while (begin < text.size() && !begins(text[begin])) ++begin;
   std::size_t end = begin;
   while (end < text.size() && is_word(text[end])) ++end;
   text.replace(begin, end - begin, kWords[below(random, kWords.size())]);
@@ -95,8 +100,15 @@ std::size_t below(RandomStream& random, std::size_t n) {
 
 std::string mutated(const std::vector<std::string>& seeds, RandomStream& random) {
   std::string text = seeds[below(random, seeds.size())];
-  const std::uint32_t count = 1 + random.below(6);
-  for (std::uint32_t k = 0; k < count; ++k) mutate(text, seeds, random);
+  const bool words_only = random.below(2) == 0;
+  const std::uint32_t count = 1 + random.below(words_only ? 3 : 6);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    if (words_only) {
+      replace_word(text, random);
+    } else {
+      mutate(text, seeds, random);
+    }
+  }
   return text;
 }
 

@@ -14,8 +14,9 @@ std::vector<std::string> corpus(const std::string& extension);
 /// Uniform in 0 … n-1; 0 for n = 0.
 std::size_t below(RandomStream& random, std::size_t n);
 
-/// One to six random changes of one of the seeds: flipped bits, bytes and pieces that are replaced,
-/// dropped, repeated or taken from another seed, and words that readers trip over.
+/// Random changes of one of the seeds. Every other time up to six of any kind: flipped bits, bytes
+/// and pieces that are replaced, dropped, repeated or taken from another seed; else up to three
+/// words that readers trip over in the place of others, which keeps the grammar of a text.
 std::string mutated(const std::vector<std::string>& seeds, RandomStream& random);
 
 }  // namespace geoprior::test

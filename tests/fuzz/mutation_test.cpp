@@ -75,11 +75,11 @@ TEST(Fuzz, TableReaderAcceptsOrThrowsError) { run(".csv", fuzz_table); }
 
 TEST(Fuzz, MapReaderAcceptsOrThrowsError) {
   const auto pictures = fluid::exr_maps(sample_features().front(), "map");
-  run_on(".exr", {as_text(pictures[0].bytes), as_text(pictures[1].bytes)}, fuzz_exr, 1000);
+  run_on(".exr", {as_text(pictures[0].bytes), as_text(pictures[1].bytes)}, fuzz_exr, 300);
 }
 
 // A process for every file: HDF5 crashes on some of them, the reader must not.
-constexpr std::uint64_t kProcesses = 400;
+constexpr std::uint64_t kProcesses = 200;
 
 TEST(Fuzz, FeatureLibraryReaderAcceptsOrThrowsError) {
   run_on("library", {as_text(fluid::feature_library_bytes(sample_features()))},

@@ -71,6 +71,13 @@ ProgramInput experiment_input() {
   return input;
 }
 
+/// The skinned one first: it is a character by itself.
+ProgramInput gltf_input() {
+  std::vector<std::string> seeds = corpus(".gltf");
+  std::reverse(seeds.begin(), seeds.end());
+  return input_of("skinning", "gltf", "character.gltf", seeds);
+}
+
 ProgramInput capture_input() {
   return input_of("skinning", "capture", "capture.bvh", corpus(".bvh"));
 }
@@ -115,10 +122,10 @@ ProgramInput sculpt_input(const std::string& mutated) {
 
 // Inputs that are runs.
 
-/// The scripts that draw a report: a home has them.
+/// What draws a report: a home has it.
 Files with_scripts(Files home) {
   for (const auto& entry : fs::directory_iterator(kSource / "results")) {
-    if (entry.path().extension() != ".py") continue;
+    if (!entry.is_regular_file()) continue;
     home["results/" + entry.path().filename().string()] = read_whole_file(entry.path());
   }
   return home;
@@ -150,21 +157,30 @@ Files finished_run(const std::string& experiment) {
   return read_files(home.path());
 }
 
+/// One of the pendulum without run.h5: to resume it is to read what the journal names, and assemble
+/// it.
+Files unassembled_run() {
+  Files files = finished_run("toy-pendulum");
+  files.erase(kRun + "/run.h5");
+  return files;
+}
+
 bool holds(const fs::path& file, const std::string& word) {
   std::ifstream in(file);
   const std::string text(std::istreambuf_iterator<char>(in), {});
   return text.find(word) != std::string::npos;
 }
 
-/// The same of a run that was killed after a checkpoint.
+/// A home with a run of the pendulum that was killed after a checkpoint.
 Files interrupted_run() {
   const ScratchHome home({{"experiments/small.toml", small_experiments().at("toy-pendulum.toml")}});
   make_run(home, kRunSmall, [&](ProgramProcess& program) {
     const fs::path journal = home.path() / kRun / "journal.jsonl";
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (!holds(journal, "\"kind\":\"checkpoint\"")) {
+      if (std::chrono::steady_clock::now() > deadline) throw Error("the run made no checkpoint");
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
     program.signal(SIGKILL);
   });
   return read_files(home.path());
@@ -180,7 +196,7 @@ std::vector<std::string> named(const Files& files, const std::string& end) {
   return names;
 }
 
-/// Every file of the run with this ending is mutated, each command reads it.
+/// One of the run's files with this ending is mutated, and a command reads it.
 ProgramInput run_input(Files home, const std::string& end, const std::vector<Words>& commands) {
   ProgramInput input;
   input.home = std::move(home);
@@ -217,7 +233,7 @@ std::vector<InputKind> input_kinds() {
       {"Skeleton", 1, [] { return input_of("skinning", "poses", "bones.data.toml"); }},
       {"Poses", 1, [] { return input_of("skinning", "poses", "poses.data.toml"); }},
       {"Bvh", 1, capture_input},
-      {"Gltf", 1, [] { return input_of("skinning", "gltf", "character.gltf", corpus(".gltf")); }},
+      {"Gltf", 1, gltf_input},
       {"Glb", 1, [] { return input_of("skinning", "glb", "character.glb", corpus(".glb")); }},
       {"Obj", 1, [] { return mesh_input(".obj", corpus(".obj")); }},
       {"Ply", 1, [] { return mesh_input(".ply", corpus(".ply")); }},
@@ -241,9 +257,10 @@ std::vector<InputKind> input_kinds() {
       {"RunFileReported", kSlowest,
        [=] { return run_input(with_scripts(circle()), "run.h5", {kReport}); }},
       {"Frame", 1, [=] { return run_input(circle(), ".vtp", {kExport}); }},
-      {"FrameDrawn", kSlow, [=] { return run_input(circle(), ".vtp", {kRender}); }},
+      {"FrameDrawn", kSlow,
+       [=] { return run_input(circle(), "default/polygon/surface_0002.vtp", {kRender}); }},
       {"Grid", 1, [=] { return run_input(pendulum(), ".vti", {kExport}); }},
-      {"Table", 0.3, [=] { return run_input(pendulum(), ".csv", {kExport}); }},
+      {"Table", 0.3, [] { return run_input(unassembled_run(), ".csv", {kResume}); }},
   };
 }
 

@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <list>
@@ -71,14 +72,14 @@ class Attempt {
     return end_;
   }
 
-  /// Of the command's end and of what it left behind; empty: none.
-  [[nodiscard]] std::string fault(const CommandEnd& end) const {
-    const std::string fault = fault_of(end);
-    if (!fault.empty()) return fault;
-    if (const auto changed = home_.change_outside_results()) return "changed " + *changed;
+  /// Of the command's end and of what it left behind.
+  [[nodiscard]] Fault fault(const CommandEnd& end) const {
+    const Fault fault = fault_of(end);
+    if (!fault.kind.empty()) return fault;
+    if (const auto changed = home_.change_outside_results()) return {"wrote outside", *changed};
     if (end.code != 2 || end.interrupted) return {};
     const auto empty = home_.empty_run_folder();
-    return empty ? "left the empty folder " + *empty : "";
+    return empty ? Fault{"left an empty folder", *empty} : Fault{};
   }
 
   [[nodiscard]] const ReadingCommand& command() const { return command_; }
@@ -111,22 +112,22 @@ fs::path keep(const InputKind& kind, std::size_t number, const Attempt& attempt)
 
 class ProgramFuzz : public ::testing::TestWithParam<InputKind> {
  protected:
-  /// Two commands at a time, as many mutations as are asked for; ends early after many faults.
+  /// Two commands at a time.
   void run_mutations(const ProgramInput& input, std::size_t count) {
     std::size_t next = 0;
     while (next < count || !running_.empty()) {
-      while (next < count && running_.size() < kAtATime && faults_ < kMostFaults)
-        start(input, next++);
-      if (running_.empty()) break;
+      while (next < count && running_.size() < kAtATime) start(input, next++);
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       running_.remove_if([this](Running& each) { return judge(each); });
     }
   }
 
-  /// How often each exit code came; Ctrl-C counts apart.
+  /// How often each exit code came, with Ctrl-C apart, and each fault.
   [[nodiscard]] std::string tally() const {
     std::string text;
-    for (const auto& [end, count] : ends_) text += " " + end + ": " + std::to_string(count);
+    for (const auto& counts : {ends_, faults_}) {
+      for (const auto& [what, count] : counts) text += ", " + what + " " + std::to_string(count);
+    }
     return text;
   }
 
@@ -136,7 +137,7 @@ class ProgramFuzz : public ::testing::TestWithParam<InputKind> {
     std::unique_ptr<Attempt> attempt;
   };
   static constexpr std::size_t kAtATime = 2;
-  static constexpr std::size_t kMostFaults = 20;
+  static constexpr std::size_t kShownFaults = 3;  ///< of a kind
 
   void start(const ProgramInput& input, std::size_t number) {
     RandomStream random(number, "program " + GetParam().name);
@@ -150,27 +151,29 @@ class ProgramFuzz : public ::testing::TestWithParam<InputKind> {
     const std::optional<CommandEnd> end = running.attempt->poll();
     if (!end) return false;
     ++ends_[end->interrupted ? "interrupted" : "exit " + std::to_string(end->code)];
-    const std::string fault = running.attempt->fault(*end);
-    if (fault.empty()) return true;
-    ++faults_;
-    constexpr std::size_t kShown = 1500;
-    ADD_FAILURE() << "mutation " << running.number << " of " << running.attempt->command().file
-                  << ": " << fault << "\n  " << joined_words(running.attempt->command().arguments)
-                  << "\n  file kept as " << keep(GetParam(), running.number, *running.attempt)
-                  << "\n"
-                  << end->text.substr(0, kShown);
+    const Fault fault = running.attempt->fault(*end);
+    if (!fault.kind.empty() && ++faults_[fault.kind] <= kShownFaults) tell(fault, *end, running);
     return true;
   }
 
+  static void tell(const Fault& fault, const CommandEnd& end, const Running& running) {
+    const Attempt& attempt = *running.attempt;
+    constexpr std::size_t kShown = 1500;
+    ADD_FAILURE() << fault.kind << ": " << fault.detail << "\n  mutation " << running.number
+                  << " of " << attempt.command().file << "\n  "
+                  << joined_words(attempt.command().arguments) << "\n  file kept as "
+                  << keep(GetParam(), running.number, attempt) << "\n"
+                  << end.text.substr(0, kShown);
+  }
+
   std::list<Running> running_;
-  std::map<std::string, std::size_t> ends_;
-  std::size_t faults_ = 0;
+  std::map<std::string, std::size_t> ends_, faults_;
 };
 
 TEST_P(ProgramFuzz, EndsInOrderWhateverIsInTheFile) {
   const ProgramInput input = GetParam().make();
   run_mutations(input, mutations_of(GetParam()));
-  std::printf("%s:%s\n", GetParam().name.c_str(), tally().c_str());
+  std::printf("%s%s\n", GetParam().name.c_str(), tally().c_str());
 }
 
 // What the harness runs is what the program does: with the files as they are every command
@@ -178,7 +181,9 @@ TEST_P(ProgramFuzz, EndsInOrderWhateverIsInTheFile) {
 TEST_P(ProgramFuzz, ReadsTheFileAsItIs) {
   const ProgramInput input = GetParam().make();
   const auto expect_success = [&](const ReadingCommand& command, const auto& body) {
-    const ScratchHome home(with(input.home, command.file, input.seeds.front()));
+    Files files = input.home;
+    files.emplace(command.file, input.seeds.front());  // where it is not there yet
+    const ScratchHome home(files);
     ProgramProcess process([&] { return body(home.path()); }, home.output());
     EXPECT_EQ(process.wait(), 0) << joined_words(command.arguments) << "\n"
                                  << text_of(home.output());

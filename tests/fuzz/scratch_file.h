@@ -8,19 +8,15 @@
 #include <string_view>
 #include <system_error>
 
-namespace geoprior::test {
+#include "tests/testbed/scratch_place.h"
 
-/// In memory where the system has such a place, else the folder for temporary files.
-inline std::filesystem::path fastest_scratch() {
-  const std::filesystem::path memory = "/dev/shm";
-  return ::access(memory.c_str(), W_OK) == 0 ? memory : std::filesystem::temp_directory_path();
-}
+namespace geoprior::test {
 
 /// A file of this process alone that goes when this does.
 class ScratchFile {
  public:
   ScratchFile(const std::string& extension, std::string_view bytes)
-      : path_(fastest_scratch() / ("geoprior-fuzz-" + std::to_string(::getpid()) + extension)) {
+      : path_(scratch_place() / ("geoprior-fuzz-" + std::to_string(::getpid()) + extension)) {
     std::ofstream(path_, std::ios::binary) << bytes;
   }
   ~ScratchFile() {

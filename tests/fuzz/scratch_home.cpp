@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "core/error.h"
-#include "tests/fuzz/scratch_file.h"
+#include "tests/testbed/scratch_place.h"
 
 namespace geoprior::test {
 namespace {
@@ -43,7 +43,7 @@ Files read_files(const fs::path& folder) {
 }
 
 ScratchHome::ScratchHome(const Files& files) {
-  std::string pattern = (fastest_scratch() / "geoprior-fuzz-XXXXXX").string();
+  std::string pattern = (scratch_place() / "geoprior-fuzz-XXXXXX").string();
   if (::mkdtemp(pattern.data()) == nullptr) throw Error("no temporary folder", pattern);
   around_ = pattern;
   home_ = around_ / "some/way/down/home";
@@ -66,14 +66,15 @@ std::optional<std::string> ScratchHome::change_outside_results() const {
   const Files after = outside_results();
   const auto [was, is] = std::mismatch(before_.begin(), before_.end(), after.begin(), after.end());
   if (was == before_.end() && is == after.end()) return std::nullopt;
-  if (is == after.end()) return was->first;
-  if (was == before_.end()) return is->first;
-  return std::min(was->first, is->first);
+  const bool gone = is == after.end() || (was != before_.end() && was->first < is->first);
+  return gone ? was->first : is->first;
 }
 
 std::optional<std::string> ScratchHome::empty_run_folder() const {
-  for (const auto& entry : fs::recursive_directory_iterator(home_ / "results/runs")) {
-    if (entry.is_directory() && fs::is_empty(entry)) return entry.path().string();
+  for (fs::recursive_directory_iterator it(home_ / "results/runs"), end; it != end; ++it) {
+    if (!it->is_directory()) continue;
+    if (fs::is_empty(*it)) return it->path().lexically_relative(home_).string();
+    if (fs::exists(it->path() / "journal.jsonl")) it.disable_recursion_pending();
   }
   return std::nullopt;
 }

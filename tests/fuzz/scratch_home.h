@@ -14,8 +14,6 @@ using Files = std::map<std::string, std::string>;
 Files read_files(const std::filesystem::path& folder);
 
 /// A folder like a clone, deep inside a folder of its own, with some files; it goes when this does.
-///
-/// It lies in memory where the system has such a place: runs flush every file to the disk.
 class ScratchHome {
  public:
   explicit ScratchHome(const Files& files);
@@ -29,7 +27,7 @@ class ScratchHome {
 
   /// The first file or folder that is new, gone or changed, but for those in results/.
   [[nodiscard]] std::optional<std::string> change_outside_results() const;
-  /// A folder below results/runs in which there is nothing.
+  /// A folder below results/runs in which there is nothing, but for those of a run.
   [[nodiscard]] std::optional<std::string> empty_run_folder() const;
 
  private:

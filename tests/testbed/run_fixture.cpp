@@ -9,13 +9,14 @@
 #include "core/error.h"
 #include "experiments/toy/toy_topic.h"
 #include "testbed/runner/stop.h"
+#include "tests/testbed/scratch_place.h"
 
 namespace geoprior::test {
 
 namespace fs = std::filesystem;
 
 void RunTest::SetUp() {
-  std::string name = (fs::temp_directory_path() / "geoprior-test-XXXXXX").string();
+  std::string name = (scratch_place() / "geoprior-test-XXXXXX").string();
   ASSERT_NE(::mkdtemp(name.data()), nullptr);
   folder_ = name;
   ::setenv("GEOPRIOR_RUNS", (folder_ / "runs").c_str(), 1);
