@@ -10,7 +10,7 @@
 #include "core/limits.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
-#include "testbed/commands/printable.h"
+#include "testbed/commands/one_line.h"
 #include "testbed/runner/build_info.h"
 #include "testbed/runner/stop.h"
 #include "testbed/streams.h"
@@ -174,7 +174,7 @@ std::string command_text(int argc, const char* const* argv) {
 }
 
 int fail(const char* kind, const std::string& what, int code) {
-  say(tinted(kind, Tint::bad) + printable(what));
+  say(tinted(kind, Tint::bad) + one_line(what));
   return code;
 }
 
