@@ -271,15 +271,15 @@ TEST_F(OwnFiles, OfAStoppedForeignCopyAreNotGoneOnWith) {
 TEST_F(OwnFiles, AnExportFollowsNoLink) {
   make_fake_run(out());
   const fs::path to = folder() / "to";
-  export_run(out(), "obj", to);
+  export_run(OpenedRun(out()), "obj", to);
   fs::remove_all(to / "default");
   fs::create_directory_symlink(victim(), to / "default");
-  EXPECT_THAT(error_of([&] { export_run(out(), "obj", to); }),
+  EXPECT_THAT(error_of([&] { export_run(OpenedRun(out()), "obj", to); }),
               HasSubstr((to / "default").string() + ": is a symbolic link"));
   expect_victim_is_whole();
   fs::remove_all(out() / "frames/default/first-box");
   fs::create_directory_symlink(victim(), out() / "frames/default/first-box");
-  EXPECT_THAT(error_of([&] { export_run(out(), "obj", folder() / "new"); }),
+  EXPECT_THAT(error_of([&] { export_run(OpenedRun(out()), "obj", folder() / "new"); }),
               HasSubstr("first-box: is a symbolic link"));
   EXPECT_FALSE(fs::exists(folder() / "new"));
 }
@@ -305,7 +305,7 @@ TEST_F(OwnFiles, AnExportOfNothingLeavesNoFolder) {
   RunRecord record = make_fake_run(out());
   for (VariantRecord& variant : record.cases[0].variants) variant.frames.clear();
   write_run_file(record, out() / "run.h5");
-  EXPECT_THAT(error_of([&] { export_run(out(), "obj", folder() / "to/deep"); }),
+  EXPECT_THAT(error_of([&] { export_run(OpenedRun(out()), "obj", folder() / "to/deep"); }),
               HasSubstr("no part"));
   EXPECT_FALSE(fs::exists(folder() / "to"));
 }

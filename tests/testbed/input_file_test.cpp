@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 
 #include "testbed/formats/atomic_file.h"
-#include "testbed/formats/hdf5_file.h"
+#include "testbed/formats/hdf5_content.h"
 #include "testbed/formats/mesh_file.h"
 #include "testbed/formats/vtk_files.h"
 #include "testbed/runner/sha256.h"
@@ -53,8 +53,7 @@ TEST_F(InputFile, ThatIsAPipeADeviceOrAFolderIsRefusedByEveryReader) {
   }
   EXPECT_THAT(error_of([&] { (void)read_mesh_file(folder() / "pipe.obj"); }), HasSubstr("no file"));
   EXPECT_THAT(error_of([&] { (void)read_vtk_part(pipe("part.vtp")); }), HasSubstr("no file"));
-  EXPECT_THAT(error_of([&] { (void)H5File::open_for_reading(pipe("run.h5")); }),
-              HasSubstr("no file"));
+  EXPECT_THAT(error_of([&] { (void)read_hdf5(pipe("run.h5")); }), HasSubstr("no file"));
 }
 
 TEST_F(InputFile, MayBeALinkToAFile) {

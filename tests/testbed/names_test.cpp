@@ -278,7 +278,7 @@ TEST(ForeignRun, NamesThatLeaveItAreRefusedWithFileAndPlace) {
     fs::create_directories(run);
     RunRecord record = make_fake_run(run);
     change(record);
-    write_run_file(record, run / "run.h5");
+    write_fake_run(record, run);
     const auto count = [&] {
       return std::distance(fs::recursive_directory_iterator(folder.path), {});
     };
@@ -287,7 +287,7 @@ TEST(ForeignRun, NamesThatLeaveItAreRefusedWithFileAndPlace) {
                 AllOf(StartsWith((run / "run.h5").string()), HasSubstr(place + ": "),
                       HasSubstr("(allowed: "), Not(HasSubstr("\n"))));
     for (const char* format : {"obj", "ply", "glb"}) {
-      EXPECT_THROW(export_run(run, format, folder.path / "a/out"), Error);
+      EXPECT_THROW(export_run(OpenedRun(run), format, folder.path / "a/out"), Error);
     }
     EXPECT_EQ(count(), before) << place;
   }
