@@ -304,7 +304,7 @@ TEST_F(OwnFiles, TheDefaultFoldersOfExportAndVideoAreNoLinks) {
 TEST_F(OwnFiles, AnExportOfNothingLeavesNoFolder) {
   RunRecord record = make_fake_run(out());
   for (VariantRecord& variant : record.cases[0].variants) variant.frames.clear();
-  write_run_file(record, out() / "run.h5");
+  write_fake_run(record, out());
   EXPECT_THAT(error_of([&] { export_run(OpenedRun(out()), "obj", folder() / "to/deep"); }),
               HasSubstr("no part"));
   EXPECT_FALSE(fs::exists(folder() / "to"));

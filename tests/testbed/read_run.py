@@ -196,8 +196,9 @@ def make_schema_1(file):
 
 def check_older_schema(program, folder, environment):
     make_schema_1(folder / "run.h5")
-    subprocess.run([program, "export", str(folder), "--format", "obj", "--out", str(folder / "obj")],
-                   check=True, env=environment)
+    export = [program, "export", str(folder), "--format", "obj", "--out", str(folder / "obj")]
+    assert subprocess.run(export, env=environment).returncode == 2, "it is not what was recorded"
+    subprocess.run([*export, "--force"], check=True, env=environment)
     assert list((folder / "obj").rglob("*.obj"))
 
 

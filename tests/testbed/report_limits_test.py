@@ -14,14 +14,13 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from unittest import mock
 
-import h5py
 import numpy as np
 from matplotlib import cbook
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import report_test  # noqa: E402
-from report_test import Page, RESULTS, add_metric, make_processes, make_run, run_script  # noqa: E402
+from report_test import Page, RESULTS, add_metric, make_processes, make_run, run_script, signed  # noqa: E402
 
 import plots  # noqa: E402
 import report  # noqa: E402
@@ -41,7 +40,7 @@ def rename(group, old, new):
 
 def rename_everything(folder, text):
     """Gives the text to all that has a name or a unit of its own."""
-    with h5py.File(folder / "run.h5", "a") as file:
+    with signed(folder, "a") as file:
         file.attrs.update(title=text, figure=text)
         del file.attrs["experiment"]
         file.attrs["experiment"] = "[figure_view]\n"
@@ -81,7 +80,7 @@ class StrangeTextTest(unittest.TestCase):
 
     def test_a_character_that_the_font_lacks_costs_no_words(self):
         make_run(self.folder)
-        with h5py.File(self.folder / "run.h5", "a") as file:
+        with signed(self.folder, "a") as file:
             file["cases/default"].attrs["parameter_name"] = "漢字 🙂"
         done = run_script("plots", self.folder)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -112,7 +111,7 @@ class StrangeTextTest(unittest.TestCase):
         done = subprocess.run([sys.executable, "-B", RESULTS / "report.py", folder],
                               capture_output=True, timeout=120, check=False)
         self.assertEqual(done.returncode, 2)
-        self.assertIn(rb"caf\xe9 \xff/run.h5: damaged", done.stderr)
+        self.assertIn(rb"caf\xe9 \xff/run.h5: is damaged", done.stderr)
 
 
 class BrokenScriptTest(unittest.TestCase):
@@ -124,7 +123,7 @@ class BrokenScriptTest(unittest.TestCase):
 
     def make_inconsistent(self):
         """Three parameters, two values: nothing that reading notices."""
-        with h5py.File(self.folder / "run.h5", "a") as file:
+        with signed(self.folder, "a") as file:
             metrics = file["cases/default/variants/implicit/metrics"]
             del metrics["overlap_excess"]
             add_metric(metrics, "overlap_excess", np.array([1.0, 2.0]), "m^3", "lower_is_better")
@@ -183,7 +182,7 @@ class LimitsTest(unittest.TestCase):
         return text
 
     def test_long_texts_are_cut_with_a_word_of_it(self):
-        with h5py.File(self.folder / "run.h5", "a") as file:
+        with signed(self.folder, "a") as file:
             file["cases/default"].attrs["warnings"] = ["w" * 3000]
             file.attrs["title"] = "t" * 60_000
         text = self.page()
@@ -192,7 +191,7 @@ class LimitsTest(unittest.TestCase):
         self.assertLess(len(text), 1_000_000)
 
     def test_many_claims_and_warnings_are_cut_with_a_word_of_it(self):
-        with h5py.File(self.folder / "run.h5", "a") as file:
+        with signed(self.folder, "a") as file:
             row = np.array(file["claims"])[:1]
             del file["claims"]
             file["claims"] = np.repeat(row, 5000)
@@ -203,7 +202,7 @@ class LimitsTest(unittest.TestCase):
         self.assertIn("200 more warnings in run.h5.", text)
 
     def test_many_cases_are_cut_with_a_word_of_it(self):
-        with h5py.File(self.folder / "run.h5", "a") as file:
+        with signed(self.folder, "a") as file:
             for i in range(1, 300):
                 file.copy("cases/default", f"cases/case-{i}")
         text = self.page()
@@ -211,7 +210,7 @@ class LimitsTest(unittest.TestCase):
         self.assertIn("294 further cases are in run.h5.", text)
 
     def test_many_variants_are_cut_with_a_word_of_it(self):
-        with h5py.File(self.folder / "run.h5", "a") as file:
+        with signed(self.folder, "a") as file:
             variants = file["cases/default/variants"]
             for i in range(300):
                 variants.copy("implicit", f"variant-{i}")
@@ -221,7 +220,7 @@ class LimitsTest(unittest.TestCase):
 
     def test_long_curves_are_thinned_with_a_word_of_it(self):
         count = 400_000
-        with h5py.File(self.folder / "run.h5", "a") as file:
+        with signed(self.folder, "a") as file:
             for variant in file["cases/default/variants"].values():
                 del variant["parameter"]
                 variant["parameter"] = np.arange(count, dtype=float)
