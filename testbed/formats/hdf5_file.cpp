@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
@@ -27,13 +28,23 @@ herr_t collect_message(unsigned depth, const H5E_error2_t* entry, void* client) 
   return 0;
 }
 
+/// HDF5 tells addresses of its memory, which say nothing to a user.
+std::string without_addresses(std::string text) {
+  constexpr std::string_view kPrefix = "0x", kHex = "0123456789abcdefABCDEF";
+  for (std::size_t at = 0; (at = text.find(kPrefix, at)) != std::string::npos;) {
+    const std::size_t end = text.find_first_not_of(kHex, at + kPrefix.size());
+    text.replace(at, std::min(end, text.size()) - at, "…");
+  }
+  return text;
+}
+
 }  // namespace
 
 void fail(const std::string& what, const std::string& where) {
   std::string stack;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, collect_message, &stack);
   H5Eclear2(H5E_DEFAULT);
-  throw Error(what + (stack.empty() ? "" : ": " + stack), where);
+  throw Error(what + (stack.empty() ? "" : ": " + without_addresses(stack)), where);
 }
 
 void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }

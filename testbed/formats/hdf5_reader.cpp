@@ -304,11 +304,22 @@ class Reader {
   double total_ = 0;  ///< bytes of the values met so far
 };
 
+/// A damaged file can send HDF5 round in circles: it is stopped after a time that reading a whole
+/// file of this size does not take, on a busy machine either.
+ChildLimits limits_of(const std::filesystem::path& file) {
+  constexpr double kStart_s = 10, kBytesPerSecond = 2e6;
+  ChildLimits limits;
+  limits.seconds =
+      kStart_s + static_cast<double>(std::filesystem::file_size(file)) / kBytesPerSecond;
+  return limits;
+}
+
 }  // namespace
 
 H5Node read_hdf5(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) throw Error("is no file", file.string());
-  const State bytes = read_in_child(file, {}, [&] { return bytes_of(Reader(file).read()); });
+  const State bytes =
+      read_in_child(file, limits_of(file), [&] { return bytes_of(Reader(file).read()); });
   return {std::make_shared<const H5Content>(content_of(bytes)), file.string() + ": /"};
 }
 

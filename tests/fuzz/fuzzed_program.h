@@ -7,7 +7,7 @@
 namespace geoprior::test {
 
 /// Seconds after which a command gets Ctrl-C, and after which it hangs.
-inline constexpr double kPatience = 4;
+inline constexpr double kPatience = 2;
 inline constexpr double kHang = 20;
 
 /// Makes a home that of this process, and its working folder.

@@ -10,26 +10,30 @@
 namespace geoprior::test {
 namespace {
 
-/// Replaces the word, or every other time the next number, at a random place by one that readers
-/// trip over.
+constexpr std::array kNumbers{
+    "0",    "1",   "2",     "3",     "-1",         "-0",
+    "0.5",  "10",  "100",   "99999", "2147483648", "4294967295",
+    "1e-9", "1e9", "1e999", "nan",   "1e-400",     "18446744073709551615"};
+constexpr std::array kWords{"[]",  "null", "{}", "true", "\"\"", "..", "../../../escape",
+                            "a/b", "%2F"};
+
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+bool is_of_word(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '+';
+}
+
+/// Replaces a word at a random place by one that readers trip over; mostly a number by a number.
 void replace_word(std::string& text, RandomStream& random) {
-  static constexpr std::array<const char*, 20> kWords{
-      "-1",     "0",          "1e999", "nan",  "4294967295", "18446744073709551615",
-      "1e-400", "2147483648", "[]",    "null", "{}",         "true",
-      "\"\"",   "0.5",        "99999", "-0",   "..",         "../../../escape",
-      "a/b",    "%2F"};
-  const auto is_word = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '+';
-  };
-  const bool number_only = random.below(2) == 0;
-  const auto begins = [&](char c) {
-    return number_only ? std::isdigit(static_cast<unsigned char>(c)) != 0 : is_word(c);
-  };
+  const bool number = random.below(4) != 0;
   std::size_t begin = below(random, text.size());
-  while (begin < text.size() && !begins(text[begin])) ++begin;
+  while (begin < text.size() && !(number ? is_digit(text[begin]) : is_of_word(text[begin])))
+    ++begin;
   std::size_t end = begin;
-  while (end < text.size() && is_word(text[end])) ++end;
-  text.replace(begin, end - begin, kWords[below(random, kWords.size())]);
+  while (end < text.size() && is_of_word(text[end])) ++end;
+  text.replace(
+      begin, end - begin,
+      number ? kNumbers[below(random, kNumbers.size())] : kWords[below(random, kWords.size())]);
 }
 
 /// A short piece many times over: what is nested gets deep, what is counted gets long.
