@@ -75,6 +75,9 @@ void require_uncrossed(const Pattern& pattern, const std::string& where) {
   }
 }
 
+/// Area over the square of the diameter, below which the mesher's coordinates run out of digits.
+constexpr double kThinnest = 1e-6;
+
 /// Whether the border passes `p` upwards (+1) or downwards (-1) on its right along edge a b.
 int winding(const Vector2d& a, const Vector2d& b, const Vector2d& p) {
   if (a.y() <= p.y() && b.y() > p.y()) return orientation(a, b, p) > 0 ? 1 : 0;
@@ -111,6 +114,11 @@ void require_simple(const Pattern& pattern, const std::string& where) {
   require_uncrossed(pattern, where);
   if (!(signed_area(pattern) > 0)) {
     throw Error("border of the pattern runs clockwise", where, "counter-clockwise");
+  }
+  const double length = diameter(pattern);
+  if (signed_area(pattern) < kThinnest * length * length) {
+    throw Error("pattern is too thin for its length", where,
+                "an area of at least 1e-6 of the square of its diameter");
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/folders.h"
+#include "testbed/formats/vtk_files.h"
 #include "testbed/runner/journal.h"
 #include "testbed/runner/sha256.h"
 #include "testbed/streams.h"
@@ -79,6 +80,13 @@ void OpenedRun::require_result() const {
   } else {
     say("warning: --force: " + file.string() + " is read without a recorded checksum");
   }
+}
+
+Part OpenedRun::part(const StoredFile& stored) const {
+  const fs::path path = file(stored);
+  if (unverified_ == Unverified::refused) return read_vtk_part(path);
+  std::optional<double> parameter;
+  return read_foreign_vtk_part(path, parameter);
 }
 
 fs::path OpenedRun::file(const StoredFile& stored) const {

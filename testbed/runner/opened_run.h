@@ -37,6 +37,10 @@ class OpenedRun {
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] const RunRecord& record() const { return record_; }
   [[nodiscard]] Unverified unverified() const { return unverified_; }
+  /// A recorded part of a frame. Of a run that need not be what was recorded it is read as a
+  /// stranger's.
+  /// @throws Error  when it is missing, unreadable, or not what was recorded
+  [[nodiscard]] Part part(const StoredFile& stored) const;
   /// Path of a recorded file.
   /// @throws Error  when it is missing, or not what was recorded
   [[nodiscard]] std::filesystem::path file(const StoredFile& stored) const;

@@ -16,7 +16,6 @@
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/folders.h"
 #include "testbed/formats/gltf_writer.h"
-#include "testbed/formats/vtk_files.h"
 #include "testbed/runner/run_record.h"
 #include "testbed/runner/stop.h"
 #include "testbed/view/mesh_text.h"
@@ -100,7 +99,7 @@ int export_texts(const OpenedRun& run, const CaseRecord& c, const VariantRecord&
   int written = 0;
   for (const FrameFile& frame : frames) {
     throw_if_stopped();
-    const Part part = read_vtk_part(run.file(frame.file));
+    const Part part = run.part(frame.file);
     if (!is_mesh(part)) continue;
     const std::string comment = describe_frame(c, variant, frame);
     const std::string text =
@@ -142,7 +141,7 @@ int export_glb(const OpenedRun& run, const CaseRecord& c, const VariantRecord& v
   std::vector<Part> parts;
   for (const FrameFile& frame : frames) {
     throw_if_stopped();
-    parts.push_back(read_vtk_part(run.file(frame.file)));
+    parts.push_back(run.part(frame.file));
   }
   const bool triangles = std::all_of(parts.begin(), parts.end(), [](const Part& part) {
     return part.kind == Part::Kind::triangles && part.triangles.rows() > 0;

@@ -8,7 +8,6 @@
 
 #include "core/error.h"
 #include "testbed/formats/folders.h"
-#include "testbed/formats/vtk_files.h"
 #include "testbed/joined.h"
 #include "testbed/runner/quantity.h"
 #include "testbed/runner/stop.h"
@@ -73,7 +72,7 @@ std::optional<Part> load_part(const FrameRecord& frame, const std::string& name,
   throw_if_stopped();
   for (const StoredFile& file : frame.files) {
     if (fs::path(file.name).extension() != ".csv" && part_name(file) == name) {
-      return read_vtk_part(run.file(file));
+      return run.part(file);
     }
   }
   return std::nullopt;

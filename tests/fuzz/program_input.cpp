@@ -209,14 +209,15 @@ ProgramInput run_input(Files home, const std::string& end, const std::vector<Wor
 
 /// A finished run, its reference, and the commands that hold them against each other.
 ProgramInput reference_input() {
-  const ScratchHome home({{"experiments/small.toml", small_experiments().at("toy-circle.toml")}});
-  make_run(home, {"bless", "small", "--reason", "first values"});
+  const ScratchHome home(
+      {{"experiments/toy-circle/small.toml", small_experiments().at("toy-circle.toml")}});
+  make_run(home, {"bless", "toy-circle/small", "--reason", "first values"});
   ProgramInput input;
   input.home = read_files(home.path());
-  const std::string file = "results/reference/small.txt";
+  const std::string file = "results/reference/toy-circle/small.txt";
   input.seeds = {input.home.at(file)};
-  input.commands = {{{"check", "small"}, file, kToyProgram},
-                    {{"bless", "small", "--reason", "again"}, file, kToyProgram}};
+  input.commands = {{{"check", "toy-circle/small"}, file, kToyProgram},
+                    {{"bless", "toy-circle/small", "--reason", "again"}, file, kToyProgram}};
   return input;
 }
 

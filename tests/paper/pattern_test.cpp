@@ -56,6 +56,12 @@ TEST(Pattern, NamesTheCornerThatIsNotFinite) {
   EXPECT_NE(complaint({{{0, 0}, {1, 0}, {nan, 1}}}).find("sheet.toml corner 2"), std::string::npos);
 }
 
+TEST(Pattern, IsRefusedWhenItIsTooThinToBeMeshed) {
+  EXPECT_EQ(complaint({{{0, 0}, {1000, 0}, {1000, 0.01}, {0, 0.01}}}), "");
+  EXPECT_NE(complaint({{{0, 0}, {1e6, 0}, {1e6, 0.01}, {0, 0.01}}}).find("too thin"),
+            std::string::npos);
+}
+
 TEST(Pattern, NeedsThreeCornersThatAreNotCollinear) {
   EXPECT_NE(complaint({{{0, 0}, {1, 0}}}).find("2 corners"), std::string::npos);
   EXPECT_NE(complaint({{{0, 0}, {1, 1}, {3, 3}}}).find("collinear"), std::string::npos);
