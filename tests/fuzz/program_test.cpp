@@ -189,7 +189,10 @@ TEST_P(ProgramFuzz, ReadsTheFileAsItIs) {
                                  << text_of(home.output());
     EXPECT_EQ(home.change_outside_results(), std::nullopt);
   };
+  std::set<std::vector<std::string>> done;
   for (const ReadingCommand& command : input.commands) {
+    // Files that are there already are all read by one call.
+    if (input.home.contains(command.file) && !done.insert(command.arguments).second) continue;
     expect_success(command,
                    [&](const fs::path& home) { return fuzzed_program(home, command.arguments); });
   }

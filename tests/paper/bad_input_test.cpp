@@ -203,7 +203,10 @@ TEST_F(BadSheet, AsksForNoMoreFramesThanCanBeNumbered) {
 }
 
 TEST_F(BadSheet, AsksForNoMeshLargerThanItsPatternJustifies) {
-  const std::string thin = "pattern = { kind = \"rectangle\", width = 1e6, height = 1e-6 }\n";
+  const std::string thin =
+      "pattern = { kind = \"polygon\", points = [{ u = 0, v = 0 }, { u = 3e2, v = 3e2 }, { u = "
+      "3e2, v = 300.01 }, { u = 0, v = 0.01 }] "
+      "}\n";
   EXPECT_THAT(refusal(thin), AllOf(HasSubstr("bad.toml:5"), HasSubstr("scene.pattern: asks for"),
                                    HasSubstr("points of a mesh with edges of")));
   EXPECT_THAT(refusal("pattern = { kind = \"disc\", corners = 10001 }\n"),
