@@ -203,12 +203,15 @@ TEST_F(BadSheet, AsksForNoMoreFramesThanCanBeNumbered) {
 }
 
 TEST_F(BadSheet, AsksForNoMeshLargerThanItsPatternJustifies) {
+  ::setenv("GEOPRIOR_MEMORY_GB", "1", 1);
   const std::string thin =
-      "pattern = { kind = \"polygon\", points = [{ u = 0, v = 0 }, { u = 3e2, v = 3e2 }, { u = "
-      "3e2, v = 300.01 }, { u = 0, v = 0.01 }] "
-      "}\n";
+      "pattern = { kind = \"polygon\", points = [{ u = 0, v = 0 }, { u = 3e2, v = 3e2 }, "
+      "{ u = 3e2, v = 300.0012 }, { u = 0, v = 0.0012 }] }\n";
   EXPECT_THAT(refusal(thin), AllOf(HasSubstr("bad.toml:5"), HasSubstr("scene.pattern: asks for"),
                                    HasSubstr("points of a mesh with edges of")));
+  ::unsetenv("GEOPRIOR_MEMORY_GB");
+  EXPECT_THAT(refusal("pattern = { kind = \"rectangle\", width = 1e6, height = 1e-6 }\n"),
+              AllOf(HasSubstr("bad.toml:5"), HasSubstr("too thin for its length")));
   EXPECT_THAT(refusal("pattern = { kind = \"disc\", corners = 10001 }\n"),
               AllOf(HasSubstr("scene.pattern.corners"), HasSubstr("between 3 and 10000")));
 }
