@@ -250,7 +250,7 @@ def read_root(folder, file):
 def recorded_result(folder):
     """SHA-256 of the run.h5 that finished the run, by the last line of its journal; else None."""
     journal = folder / "journal.jsonl"
-    if not journal.is_file():
+    if journal.is_symlink() or not journal.is_file():
         return None
     with open(journal, "rb") as file:
         file.seek(max(0, journal.stat().st_size - JOURNAL_TAIL))
@@ -264,6 +264,8 @@ def recorded_result(folder):
 
 def require_recorded(path):
     """HDF5 crashes on many a damaged file: nothing is read but what the run wrote."""
+    if path.is_symlink():
+        raise RunFileError(f"{path}: is a symbolic link: below a run none is followed")
     recorded = recorded_result(path.parent)
     if recorded is None:
         raise RunFileError(f"{path}: its checksum is not in the journal beside it (allowed: the "
@@ -314,6 +316,7 @@ def read_run(place, force=False):
 def write_atomically(path, content):
     """Writes text or bytes as temporary + rename; what stands at either name is not written through."""
     path = Path(path)
+    require_regular_file(path)  # a pipe or a device would be replaced by a file
     temporary = path.with_name(path.name + ".geoprior-tmp")
     try:
         temporary.unlink(missing_ok=True)

@@ -10,7 +10,7 @@
 #include "core/limits.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
-#include "testbed/commands/one_line.h"
+#include "testbed/commands/message_line.h"
 #include "testbed/runner/build_info.h"
 #include "testbed/runner/stop.h"
 #include "testbed/streams.h"
@@ -174,19 +174,18 @@ std::string command_text(int argc, const char* const* argv) {
 }
 
 int fail(const char* kind, const std::string& what, int code) {
-  say(tinted(kind, Tint::bad) + one_line(what));
+  say(tinted(kind, Tint::bad) + message_line(what));
   return code;
 }
 
 /// --help and --version go to stdout, what is wrong with the arguments to stderr.
 int end_of_parsing(const CommandLine& line, const CLI::ParseError& error) {
-  std::ostringstream out, err;
-  const bool asked_for = line.app.exit(error, out, err) == 0;
+  std::ostringstream out, problem;
+  if (line.app.exit(error, out, problem) != 0) {
+    return fail("error: ", std::string(error.what()) + " (geoprior --help)", wrong_use);
+  }
   print_out(out.str());
-  std::string problem = err.str();
-  while (problem.ends_with('\n')) problem.pop_back();
-  if (!problem.empty()) say(problem);
-  return asked_for ? done : wrong_use;
+  return done;
 }
 
 }  // namespace

@@ -49,6 +49,17 @@ bool is_control(std::string_view character) {
          (first == 0x7F || (first < 0x20 && first != '\n' && first != '\t'));
 }
 
+}  // namespace
+
+void reserve_standard_streams() {
+  constexpr std::array<int, 3> kModes{O_RDONLY, O_RDONLY, O_WRONLY};
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+    // `open` takes the lowest free descriptor: this one, as those below are taken.
+    if (::open("/dev/null", kModes[static_cast<std::size_t>(stream)]) != stream) ::_exit(2);
+  }
+}
+
 std::string escaped_bytes(std::string_view bytes) {
   std::string text;
   for (const char byte : bytes) {
@@ -59,15 +70,11 @@ std::string escaped_bytes(std::string_view bytes) {
   return text;
 }
 
-}  // namespace
-
-void reserve_standard_streams() {
-  constexpr std::array<int, 3> kModes{O_RDONLY, O_RDONLY, O_WRONLY};
-  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
-    if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
-    // `open` takes the lowest free descriptor: this one, as those below are taken.
-    if (::open("/dev/null", kModes[static_cast<std::size_t>(stream)]) != stream) ::_exit(2);
-  }
+std::size_t printable_length(std::string_view text) {
+  const std::size_t length = character_length(text);
+  const bool is_shown =
+      length > 0 && !is_control(text.substr(0, length)) && text[0] != '\n' && text[0] != '\t';
+  return is_shown ? length : 0;
 }
 
 std::string printable(std::string_view text) {

@@ -22,6 +22,13 @@ void print_out(std::string_view text);
 /// become "\xNN". Line ends, tabs and the colours of `tinted` stay.
 std::string printable(std::string_view text);
 
+/// Length of the character that the text begins with, where a line may show it: UTF-8, no control
+/// character, line end or tab; else 0.
+std::size_t printable_length(std::string_view text);
+
+/// Each byte as "\xNN".
+std::string escaped_bytes(std::string_view bytes);
+
 /// The bytes that `printable` made the text of, where they had no "\xNN" of their own.
 std::string from_printable(std::string_view text);
 

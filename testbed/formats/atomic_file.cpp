@@ -126,6 +126,8 @@ void flush_to_disk(const fs::path& file_or_folder) {
 }
 
 PendingFile::PendingFile(fs::path target) : target_(std::move(target)), temporary_(target_) {
+  // A pipe or a device would be replaced by a file.
+  if (std::error_code missing; fs::exists(target_, missing)) require_regular_file(target_);
   temporary_ += kTemporarySuffix;
   // What stands there is a killed program's, or a link that must not be written through.
   std::error_code ignored;

@@ -30,7 +30,8 @@ fs::path path_below(const fs::path& folder, const fs::path& relative) {
 
 MadeFolders::MadeFolders(const fs::path& folder) {
   std::error_code ignored;
-  for (fs::path missing = fs::absolute(folder); !fs::exists(missing, ignored);
+  // A link to nothing is there: it is nothing that we made.
+  for (fs::path missing = fs::absolute(folder); !fs::exists(fs::symlink_status(missing, ignored));
        missing = missing.parent_path()) {
     made_.insert(made_.begin(), missing);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <set>
 
 #include "core/error.h"
@@ -30,8 +31,8 @@ constexpr const char* kOwn = "what this program writes";
   throw Error(what, where, kOwn);
 }
 
-/// Collects names; what is not a link of its own file throws after the iteration, because
-/// exceptions must not cross the library.
+/// Collects names. Exceptions must not cross the library: what is no link of its own file throws
+/// after the iteration, and memory that runs out ends it.
 struct Links {
   std::vector<std::string> names;
   std::string foreign;
@@ -39,13 +40,21 @@ struct Links {
 
 herr_t collect_own_link(hid_t, const char* name, const H5L_info_t* info, void* client) {
   auto& links = *static_cast<Links*>(client);
-  if (info->type != H5L_TYPE_HARD && links.foreign.empty()) links.foreign = name;
-  links.names.emplace_back(name);
+  try {
+    if (info->type != H5L_TYPE_HARD && links.foreign.empty()) links.foreign = name;
+    links.names.emplace_back(name);
+  } catch (const std::bad_alloc&) {
+    return -1;
+  }
   return 0;
 }
 
 herr_t collect_attribute_name(hid_t, const char* name, const H5A_info_t*, void* client) {
-  static_cast<std::vector<std::string>*>(client)->emplace_back(name);
+  try {
+    static_cast<std::vector<std::string>*>(client)->emplace_back(name);
+  } catch (const std::bad_alloc&) {
+    return -1;
+  }
   return 0;
 }
 

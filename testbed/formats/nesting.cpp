@@ -37,7 +37,11 @@ std::size_t past_quoted(std::string_view text, std::size_t at, bool triple_allow
     if (quote == '"' && text[at] == '\\') {
       ++at;
     } else if (text.substr(at, mark.size()) == mark) {
-      return at + mark.size();
+      at += mark.size();
+      // A text of several lines may end in one or two quotes of its own.
+      for (int more = 0; triple && more < 2 && text.substr(at, 1) == mark.substr(0, 1); ++more)
+        ++at;
+      return at;
     } else if (triple_allowed && !triple && text[at] == '\n') {
       return at;  // not closed: the parser says so
     }

@@ -48,8 +48,9 @@ std::optional<RunRecord> finished_record(const Experiment& experiment, const fs:
   require_same_specification(recorded_hash(folder).value_or(""), experiment, folder);
   try {
     return OpenedRun(folder).record();
-  } catch (const Error&) {
-    // The journal has it all: a missing or damaged run.h5 is assembled again.
+  } catch (const Error& error) {
+    // The journal has it all.
+    say(std::string(error.what()) + ": assembled again from the journal");
     return std::nullopt;
   }
 }
@@ -242,12 +243,13 @@ ExecuteResult execute(const Experiment& experiment, const std::vector<Topic>& to
     if (is_new) begin_run(experiment, recorder);
     result.stopped =
         !run_cases(experiment, topics, told_of(result.folder, request), recorder, state);
-  } catch (const Error&) {
+  } catch (const std::exception&) {
     if (is_new && !has_results(state)) discard(result.folder, !request.out);
     throw;
   }
   result.record = assemble(experiment, topic, state);
   if (result.stopped) return result;
+  if (!is_new) require_recorded_files(OpenedRun(result.folder, result.record));
   recorder.remove_checkpoints();
   finish(experiment, recorder, result);
   return result;

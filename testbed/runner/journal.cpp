@@ -299,11 +299,17 @@ Line from_text(std::string_view text) {
 }
 
 std::optional<RunLine> read_head(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::string text;
-  if (!std::getline(in, text) || in.eof()) return std::nullopt;
+  constexpr std::size_t kMost = 1 << 16;  // more than a head has
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(file, code)) return std::nullopt;
+  std::ifstream in(file, std::ios::binary);
+  std::string text(kMost, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  const std::size_t end = text.find('\n');
+  if (end == std::string::npos) return std::nullopt;
   try {
-    const Line line = from_text(text);
+    const Line line = from_text(std::string_view(text).substr(0, end));
     const auto* head = std::get_if<RunLine>(&line);
     return head == nullptr ? std::nullopt : std::optional(*head);
   } catch (const Error&) {

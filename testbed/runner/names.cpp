@@ -1,12 +1,11 @@
 #include "testbed/runner/names.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <functional>
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/streams.h"
 
 namespace geoprior {
 
@@ -36,26 +35,13 @@ bool is_file_name(std::string_view name) {
          std::all_of(name.begin(), name.end(), is_name_character) && !is_temporary_file(name);
 }
 
-bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
-
-/// Bytes of the UTF-8 sequence that this byte begins; 0: it begins none.
-std::size_t sequence_length(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  if (byte < 0x80U) return 1;
-  if (byte >= 0xC2U && byte < 0xE0U) return 2;
-  if (byte >= 0xE0U && byte < 0xF0U) return 3;
-  if (byte >= 0xF0U && byte < 0xF5U) return 4;
-  return 0;
-}
-
-bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; }
-
-/// Length of the printable character in front, 0 where a byte is control or no UTF-8.
-std::size_t printable_length(std::string_view text) {
-  const std::size_t length = sequence_length(text.front());
-  if (length == 0 || length > text.size() || is_control(text.front())) return 0;
-  const std::string_view rest = text.substr(1, length - 1);
-  return std::all_of(rest.begin(), rest.end(), is_continuation) ? length : 0;
+bool is_line(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = printable_length(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
+  }
+  return true;
 }
 
 std::string allowed_name(std::string_view characters) {
@@ -98,9 +84,7 @@ std::string quoted_name(std::string_view text) {
     if (length > 0) {
       out += text.substr(0, length);
     } else {
-      std::array<char, 8> code{};
-      std::snprintf(code.data(), code.size(), "\\x%02x", static_cast<unsigned char>(text.front()));
-      out += code.data();
+      out += escaped_bytes(text.substr(0, 1));
     }
     text.remove_prefix(std::max<std::size_t>(length, 1));
   }
@@ -123,16 +107,16 @@ void require_plain_name(std::string_view name, const std::string& what, const st
 }
 
 void require_text_name(std::string_view name, const std::string& what, const std::string& where) {
-  bool fine = !name.empty() && name.size() <= kLongestTextName;
-  for (std::string_view rest = name; fine && !rest.empty();) {
-    const std::size_t length = printable_length(rest);
-    fine = length > 0;
-    rest.remove_prefix(length);
-  }
-  if (!fine) {
+  if (name.empty() || name.size() > kLongestTextName || !is_line(name)) {
     throw no_name(name, what, where,
                   "1 to " + std::to_string(kLongestTextName) + " bytes of text on one line");
   }
+}
+
+void require_line(std::string_view text, const std::string& what, const std::string& where) {
+  if (is_line(text)) return;
+  throw Error("the text of " + what + " is no line: " + quoted_name(text), where,
+              "UTF-8 without line breaks and control characters");
 }
 
 bool is_experiment_id(std::string_view id) {
@@ -170,6 +154,7 @@ void require_stored_file(const StoredFile& file, std::string_view room, const jo
 }
 
 void require_names(const RunRecord& record, const std::string& file) {
+  require_experiment_id(record.experiment_id, file + ": /@experiment_id");
   for (const CaseRecord& one : record.cases) require_names(one, file + ": /cases");
   for (const StudyRecord& study : record.studies) {
     require_text_name(study.name, "a study", file + ": /study");

@@ -31,6 +31,9 @@ void require_plain_name(std::string_view name, const std::string& what, const st
 /// A name that is no file's (a study's): UTF-8 of 1 to 200 bytes on one line.
 void require_text_name(std::string_view name, const std::string& what, const std::string& where);
 
+/// Words for people, a title or a claim: UTF-8 on one line, of any length.
+void require_line(std::string_view text, const std::string& what, const std::string& where);
+
 /// An experiment's identifier is two names: "skinning/knee".
 bool is_experiment_id(std::string_view id);
 void require_experiment_id(std::string_view id, const std::string& where);

@@ -27,7 +27,7 @@ constexpr std::streamoff kTail = 4096;
 
 /// Without its line break; empty for an empty or missing journal, and for a line beyond the tail.
 std::string last_line(const fs::path& run_folder) {
-  const fs::path file = run_folder / "journal.jsonl";
+  const fs::path file = path_below(run_folder, "journal.jsonl");
   if (!fs::is_regular_file(file)) return {};
   std::ifstream in(file, std::ios::binary);
   if (!in.seekg(0, std::ios::end)) return {};
@@ -68,7 +68,7 @@ OpenedRun::OpenedRun(fs::path folder, RunRecord record)
 OpenedRun::OpenedRun(fs::path folder, Unverified unverified)
     : folder_(std::move(folder)), unverified_(unverified) {
   require_result();
-  record_ = read_run_file(folder_ / kRunFile);
+  record_ = read_run_file(path_below(folder_, kRunFile));
 }
 
 void OpenedRun::require_result() const {
@@ -103,6 +103,21 @@ void OpenedRun::verify(const fs::path& file, const std::string& sha256) const {
       throw Error(error.what(), "", kAllowed);
     }
     say(std::string("warning: --force: ") + error.what());
+  }
+}
+
+void require_recorded_frames(const OpenedRun& run, const VariantRecord& variant) {
+  for (const FrameRecord& frame : variant.frames) {
+    for (const StoredFile& file : frame.files) (void)run.file(file);
+  }
+}
+
+void require_recorded_files(const OpenedRun& run) {
+  for (const CaseRecord& one : run.record().cases) {
+    for (const VariantRecord& variant : one.variants) {
+      require_recorded_frames(run, variant);
+      for (const StoredFile& file : variant.artifacts) (void)run.file(file);
+    }
   }
 }
 

@@ -54,4 +54,10 @@ class OpenedRun {
   RunRecord record_;
 };
 
+/// Verifies every frame and artifact of a run.
+/// @throws Error  naming the first that is missing, or not what was recorded
+void require_recorded_files(const OpenedRun& run);
+/// … of one variant's frames.
+void require_recorded_frames(const OpenedRun& run, const VariantRecord& variant);
+
 }  // namespace geoprior

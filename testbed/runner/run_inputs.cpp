@@ -217,9 +217,7 @@ ResolvedScene resolve_run_inputs(const Experiment& experiment, const CaseSpec& s
     if (!reference.artifact.empty()) {
       return run->file(require_artifact(variant, reference.artifact, text)).string();
     }
-    for (const FrameRecord& frame : variant.frames) {
-      for (const StoredFile& file : frame.files) (void)run->file(file);
-    }
+    require_recorded_frames(*run, variant);
     const fs::path frames = fs::path("frames") / reference.case_name / reference.variant;
     return path_below(run->folder(), frames).string();
   };

@@ -255,6 +255,7 @@ Experiment load_experiment(const std::filesystem::path& file, const std::vector<
   }
   const HeaderTable header = read_header(root);
   experiment.id = read_id(root, header, file);
+  require_line(header.title, "the title", place_of(root, "title"));
   experiment.title = header.title;
   experiment.figure = header.figure;
   experiment.topic = header.topic;

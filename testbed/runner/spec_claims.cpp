@@ -86,6 +86,7 @@ Reduction reduction_of(OfReduction x) { return static_cast<Reduction>(static_cas
 
 ClaimSpec claim_of(const ClaimTable& table, const TomlNode& node) {
   ClaimSpec claim;
+  require_line(table.text, "a claim", place_of(node, "text"));
   claim.text = table.text;
   claim.metric = table.metric;
   claim.variant = table.variant.value_or("");

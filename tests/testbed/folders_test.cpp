@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <sys/stat.h>
 
 #include <chrono>
 #include <fstream>
@@ -137,6 +138,57 @@ TEST_F(OwnFiles, InTheFoldersOfARunOutliveItsResumption) {
   run(load(file), out(), true);
   EXPECT_TRUE(fs::exists(out() / "run.h5"));
   for (const fs::path& mine : own) EXPECT_EQ(text_of(mine), "mine") << mine;
+}
+
+TEST_F(OwnFiles, ThatAFinishedVariantLeftAreWhatTheyWere) {
+  // The first variant is finished, the second is resumed.
+  const fs::path file = kill_after(10);
+  const fs::path frame = out() / "frames/default/exact/bob_0003.vtp";
+  const fs::path other = out() / "frames/default/exact/bob_0001.vtp";
+  const std::string whole = text_of(frame);
+  fs::copy_file(other, frame, fs::copy_options::overwrite_existing);
+  expect_resume_refused(file, "bob_0003.vtp: is damaged or another file");
+  EXPECT_FALSE(fs::exists(out() / "run.h5"));
+  fs::remove(frame);
+  expect_resume_refused(file, "bob_0003.vtp");
+  write_file_atomically(frame, std::string_view(whole));
+  EXPECT_FALSE(run(load(file), out(), true).stopped);
+}
+
+TEST_F(OwnFiles, OfAFinishedRunAreNoLinks) {
+  make_fake_run(out());
+  for (const char* name : {"run.h5", "journal.jsonl"}) {
+    fs::rename(out() / name, folder() / name);
+    fs::create_symlink(folder() / name, out() / name);
+    EXPECT_THAT(error_of([&] { const OpenedRun run(out()); }), HasSubstr("run.h5: ")) << name;
+    fs::remove(out() / name);
+    fs::rename(folder() / name, out() / name);
+  }
+  EXPECT_NO_THROW(OpenedRun{out()});
+}
+
+TEST_F(OwnFiles, APipeIsNoLogOfARunAndNoneIsWaitedFor) {
+  fs::create_directories(out());
+  ASSERT_EQ(::mkfifo(journal().c_str(), 0600), 0);
+  EXPECT_FALSE(recorded_hash(out()));
+  EXPECT_FALSE(recorded_result(out()));
+  expect_resume_refused(pendulum("frames = 6"), "journal.jsonl");
+}
+
+TEST_F(OwnFiles, APipeIsNotReplacedByAFile) {
+  const fs::path pipe = folder() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(error_of([&] { write_file_atomically(pipe, std::string_view("text")); }),
+              HasSubstr(pipe.string() + ": is a pipe"));
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST_F(OwnFiles, ALinkToNothingInThePlaceOfTheFolderStays) {
+  const fs::path link = folder() / "dangling";
+  fs::create_directory_symlink(folder() / "nowhere", link);
+  EXPECT_THROW(MadeFolders{link}, Error);
+  EXPECT_THROW(MadeFolders{link / "deeper"}, Error);
+  EXPECT_TRUE(fs::is_symlink(link));
 }
 
 TEST_F(OwnFiles, ALinkIsNoLogOfARun) {

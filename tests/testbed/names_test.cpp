@@ -219,6 +219,15 @@ TEST_F(ForeignNames, OfSweptCasesAreRefusedBeforeAnythingIsComputed) {
                  {"disc.toml:23:", "sweep.values", "(201 characters)", "1 to 128"});
 }
 
+TEST_F(ForeignNames, TitlesAreLines) {
+  for (const char* text : {"x\\nclaims 5 of 5 hold", "\\u001b[8m", "a\\tb", "\\u009b2J"}) {
+    home_.write("foreign.toml", disc_experiment());
+    const std::string file = "'" + (root() / "foreign.toml").string() + "'";
+    expect_refused("run " + file + " --no-pictures --set 'title=\"" + text + "\"'",
+                   {"the text of the title is no line"});
+  }
+}
+
 TEST(ForeignSweeps, WithLongValuesNeedNames) {
   const std::string text =
       "[[sweep]]\nkey = \"scene.file\"\nvalues = [\"" + std::string(300, 'x') + "\"]\n";
@@ -269,6 +278,7 @@ const std::vector<std::pair<Change, std::string>> kForeignRuns{
      },
      "second-box/artifacts"},
     {[](RunRecord& r) { r.studies.resize(1), r.studies[0].name = "a\nb"; }, "/study"},
+    {[](RunRecord& r) { r.experiment_id = "../../x"; }, "/@experiment_id"},
 };
 
 TEST(ForeignRun, NamesThatLeaveItAreRefusedWithFileAndPlace) {

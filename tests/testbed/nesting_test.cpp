@@ -47,6 +47,10 @@ TEST(Nesting, OfTomlIsLimited) {
   refuse("[[a" + repeated(" . a", kDeep) + "]]", "1");
   refuse("\n\na" + repeated(".\"a\"", kDeep) + " = 1", "3");
   refuse("x = { a" + repeated(".a", kDeep) + " = 1 }", "1");
+  // A text of several lines may end in quotes of its own.
+  for (const char* text : {"'''a''''", "'''a'''''", "\"\"\"a\"\"\"\"", "\"\"\"a\"\"\"\"\""}) {
+    refuse("y = [" + std::string(text) + ", { a" + repeated(".a", kDeep) + " = 1 }]", "1");
+  }
 }
 
 TEST(Nesting, OfTomlCountsNoTextsCommentsAndNumbers) {

@@ -1,4 +1,4 @@
-#include "testbed/commands/one_line.h"
+#include "testbed/commands/message_line.h"
 
 #include <array>
 #include <cstdio>
@@ -40,7 +40,7 @@ std::string shortened(std::string text) {
 
 }  // namespace
 
-std::string one_line(std::string_view text) {
+std::string message_line(std::string_view text) {
   std::string out;
   while (!text.empty()) {
     const std::size_t control = control_character(text);
