@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <regex>
 
 #include "core/error.h"
 #include "testbed/runner/reference.h"
@@ -221,10 +222,12 @@ TEST_F(ForeignNames, OfSweptCasesAreRefusedBeforeAnythingIsComputed) {
 
 TEST_F(ForeignNames, TitlesAreLines) {
   for (const char* text : {"x\\nclaims 5 of 5 hold", "\\u001b[8m", "a\\tb", "\\u009b2J"}) {
-    home_.write("foreign.toml", disc_experiment());
+    const std::string line = "title = \"" + std::string(text) + "\"";
+    home_.write("foreign.toml",
+                std::regex_replace(disc_experiment(), std::regex("title[^\n]*"), line));
     const std::string file = "'" + (root() / "foreign.toml").string() + "'";
-    expect_refused("run " + file + " --no-pictures --set 'title=\"" + text + "\"'",
-                   {"the text of the title is no line"});
+    expect_refused("run " + file + " --no-pictures",
+                   {"foreign.toml:1:", "the text of the title is no line"});
   }
 }
 
