@@ -5,6 +5,7 @@
 #include "experiments/details/position_file.h"
 #include "experiments/fluid/exr_maps.h"
 #include "experiments/fluid/feature_files.h"
+#include "experiments/paper/svg_pattern.h"
 #include "testbed/runner/run_file.h"
 #include "tests/fuzz/allow_error.h"
 #include "tests/fuzz/scratch_file.h"
@@ -29,6 +30,16 @@ void fuzz_points(const std::uint8_t* data, std::size_t size) {
   read_as_file(data, size, ".csv", [](const std::filesystem::path& file) {
     constexpr double kAnywhere = 1e300;
     details::details_of_file(file, surface, kAnywhere);
+  });
+}
+
+void fuzz_svg(const std::uint8_t* data, std::size_t size) {
+  read_as_file(data, size, ".svg", [](const std::filesystem::path& file) {
+    paper::SvgPatternOptions only_path;
+    allow_error([&] { paper::read_svg_pattern(file, only_path); });
+    paper::SvgPatternOptions named;
+    named.path = "a";
+    paper::read_svg_pattern(file, named);
   });
 }
 
