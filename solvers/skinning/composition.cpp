@@ -8,12 +8,17 @@
 namespace geoprior::skinning {
 namespace {
 
-/// At most this many positive fields are composed at one point; a body has a handful.
-constexpr int kMaxOverlap = 24;
-
 Float4 to_float4(const Eigen::Vector3d& v) {
   return Float4{static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
                 0.0F};
+}
+
+/// p turned about an axis through a point.
+Float4 turned(Float4 v, Float4 axis, AxisTurn turn) {
+  const Float4 cross = {axis[1] * v[2] - axis[2] * v[1], axis[2] * v[0] - axis[0] * v[2],
+                        axis[0] * v[1] - axis[1] * v[0], 0.0F};
+  return splat(turn.cosine) * v + splat(turn.sine) * cross +
+         splat((1 - turn.cosine) * dot3(axis, v)) * axis;
 }
 
 /// The rigid motion of a bone: scale and shear are dropped about the image of its head, as in the
@@ -88,6 +93,15 @@ void FieldComposition::set_pose(const Pose& pose) {
     posed.extent = to_float4(extent);
     posed.centre = posed.extent * 0.5F;
     posed.half_extent = posed.centre;
+    const Eigen::Vector3d along = field.bone.tail - field.bone.head;
+    const Eigen::Vector3d axis =
+        along.norm() > 0 ? Eigen::Vector3d(along.normalized()) : Eigen::Vector3d::UnitX();
+    const Eigen::Quaterniond q(rigid.linear());
+    posed.head = to_float4(rigid * field.bone.head);
+    posed.rest_axis = to_float4(axis);
+    posed.axis = to_float4(rigid.linear() * axis);
+    posed.quaternion = to_float4(q.vec());
+    posed.quaternion[3] = static_cast<float>(q.w());
   }
 }
 
@@ -134,9 +148,11 @@ bool FieldComposition::sample_bone(int bone, Float4 p, Sampled& out) const {
   const SupportValue f = compact_support(support_, static_cast<double>(d[3]));
   const auto slope = static_cast<float>(f.derivative / field.bone.radius);
   out.f = static_cast<float>(f.value);
-  out.gradient = (posed.rotation[0] * splat(d[0]) + posed.rotation[1] * splat(d[1]) +
-                  posed.rotation[2] * splat(d[2])) *
-                 splat(slope);
+  const Float4 outward = posed.rotation[0] * splat(d[0]) + posed.rotation[1] * splat(d[1]) +
+                         posed.rotation[2] * splat(d[2]);
+  out.gradient = outward * splat(slope);
+  out.inward = -outward;
+  out.depth = -d[3] * static_cast<float>(field.bone.radius);
   out.bone = bone;
   return true;
 }
@@ -145,7 +161,7 @@ FieldComposition::Composed FieldComposition::compose(std::span<const Sampled> fi
   Composed result;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const Sampled& child = fields[i];
-    if (child.f > result.value) result = {child.f, child.gradient, child.bone};
+    if (child.f > result.value) result = Composed{child.f, child.gradient, child.bone};
     const JointOperator& op = operators_[child.bone];
     const int parent = parent_[child.bone];
     if (parent < 0 || op.is_union()) continue;
@@ -195,6 +211,41 @@ FieldAt FieldComposition::at(Float4 p, int owner, std::span<const int> bones) co
     result.other_bone = outside.bone;
   }
   return result;
+}
+
+AxisTurn FieldComposition::turn_to(int bone, Float4 rotation) const {
+  // q_bone* q_vertex, of which the part about the axis is kept (swing-twist decomposition).
+  constexpr float kNoTwist = 1e-4F;  // of a half turn across the axis, where it is undefined
+  const Float4 q = posed_[bone].quaternion;
+  const Float4 cross = {q[1] * rotation[2] - q[2] * rotation[1],
+                        q[2] * rotation[0] - q[0] * rotation[2],
+                        q[0] * rotation[1] - q[1] * rotation[0], 0.0F};
+  const float w = q[3] * rotation[3] + dot3(q, rotation);
+  const Float4 v = splat(q[3]) * rotation - splat(rotation[3]) * q - cross;
+  const float a = dot3(v, posed_[bone].rest_axis);
+  const float scale = 1 / (w * w + a * a + kNoTwist);
+  return {(w * w - a * a + kNoTwist) * scale, 2 * w * a * scale};
+}
+
+int FieldComposition::samples_at(Float4 p, int owner, Float4 rotation, std::span<const int> bones,
+                                 BoneSample* out) const {
+  const std::uint8_t* part = same_part_.data() + static_cast<std::size_t>(owner) * fields_.size();
+  int count = 0;
+  for (const int bone : bones) {
+    if (count == kMaxOverlap) break;
+    if (part[bone] == 0) {
+      if (sample_bone(bone, p, out[count])) ++count;
+      continue;
+    }
+    const PosedBone& posed = posed_[bone];
+    const AxisTurn turn = turn_to(bone, rotation);
+    const Float4 back = posed.head + turned(p - posed.head, posed.axis, {turn.cosine, -turn.sine});
+    if (!sample_bone(bone, back, out[count])) continue;
+    out[count].gradient = turned(out[count].gradient, posed.axis, turn);
+    out[count].inward = turned(out[count].inward, posed.axis, turn);
+    ++count;
+  }
+  return count;
 }
 
 float FieldComposition::rest_value(Float4 rest, int bone) const {

@@ -34,6 +34,21 @@ struct FieldAt {
   int evaluations = 0;  ///< bone fields sampled
 };
 
+/// The field of one bone at a point.
+struct BoneSample {
+  float f = 0;
+  Float4 gradient{};  ///< 1/m
+  int bone = -1;
+  float depth = 0;   ///< -d: how deep inside (m, as far as d is a distance)
+  Float4 inward{};  ///< -grad d
+};
+
+/// A turn about a bone's own axis.
+struct AxisTurn {
+  float cosine = 1;
+  float sine = 0;
+};
+
 /// The field of a posed skeleton: every bone's field moves rigidly, and
 ///
 ///   F = max over bones k of g_k(f_k, f_parent(k)),   grad F = g_1 grad f_k + g_2 grad f_parent
@@ -63,6 +78,19 @@ class FieldComposition {
 
   /// @param owner  bone of the vertex that asks
   [[nodiscard]] FieldAt at(Float4 p, int owner, std::span<const int> bones) const;
+
+  /// Fields of `bones` that are positive at p, in their order. Those of the vertex' own part of the
+  /// body are turned about their axes to the vertex' own twist (`turn_to`), so that skin which
+  /// slides around a bone meets the section that it left.
+  /// @param rotation  of the vertex, unit quaternion (x, y, z, w)
+  /// @param out       room for `kMaxOverlap`
+  int samples_at(Float4 p, int owner, Float4 rotation, std::span<const int> bones,
+                 BoneSample* out) const;
+  /// At most this many positive fields are composed at one point; a body has a handful.
+  static constexpr int kMaxOverlap = 24;
+
+  /// What a turn of `rotation` against a bone is about that bone's axis.
+  [[nodiscard]] AxisTurn turn_to(int bone, Float4 rotation) const;
 
   /// f_a - f_b at p: zero on the contact surface of two bones.
   [[nodiscard]] float difference(Float4 p, int a, int b) const;
@@ -97,12 +125,14 @@ class FieldComposition {
     Float4 extent;  // grid coordinates of the far corner
     Float4 half_extent;
     Float4 centre;  // of the box, grid coordinates
+    Float4 head;        // posed
+    Float4 axis;        // posed, unit
+    Float4 quaternion;  // of the rotation: x, y, z, w
+    Float4 rest_axis;
   };
-  struct Sampled {
-    float f;
-    Float4 gradient;
-    int bone;
-  };
+  using Sampled = BoneSample;
+
+ public:
   struct Composed {
     float value = 0;
     Float4 gradient{};
@@ -110,6 +140,8 @@ class FieldComposition {
   };
   /// @param fields  sorted by bone
   [[nodiscard]] Composed compose(std::span<const Sampled> fields) const;
+
+ private:
   [[nodiscard]] bool sample_bone(int bone, Float4 p, Sampled& out) const;
   [[nodiscard]] Float4 exact_distance(int bone, Float4 p) const;
 

@@ -13,6 +13,7 @@
 #include "solvers/skinning/projection.h"
 #include "solvers/skinning/relaxation.h"
 #include "solvers/skinning/skin_state.h"
+#include "solvers/skinning/smooth_projection.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -90,7 +91,8 @@ struct ImplicitSkinning::Impl {
               joint_operators(partition, rig.skeleton, options), options.support,
               partition.bone_of_vertex, graph, options.limb_contact),
         projection(field, options),
-        state(rig, graph, partition.bone_of_vertex) {
+        state(rig, graph, partition.bone_of_vertex),
+        smooth_projection(rig, partition, field, options, state) {
     if (partition.bones.empty()) {
       throw Error("no joint moves enough vertices for a field", "implicit skinning",
                   "at least " + std::to_string(kMinBoneVertices) + " vertices a joint");
@@ -105,11 +107,13 @@ struct ImplicitSkinning::Impl {
       state.position[s] = row_of(rig.mesh.V, state.vertex[s]);
     }
     projection.record_rest(state);
+    smooth_projection.record_rest(state);
     prepare_relaxation(state);
   }
 
   void start(const Pose& pose, Eigen::MatrixX3d& posed);
   void turn_normals();
+  void correct();
   void fit(RunContext& context);
   void smooth(int diffusion, int passes);
   void finish(Eigen::MatrixX3d& posed);
@@ -122,6 +126,8 @@ struct ImplicitSkinning::Impl {
   FieldComposition field;
   Projection projection;
   SkinState state;
+  SmoothProjection smooth_projection;
+  std::vector<Float4> quaternion;  // of the joints
   std::vector<Float4> rotation;  // columns of the joints' rotations
   int iterations = 0;
 };
@@ -161,6 +167,15 @@ void ImplicitSkinning::Impl::turn_normals() {
       state.outward[s] = sum;
     }
   });
+}
+
+void ImplicitSkinning::Impl::correct() {
+  quaternion.clear();
+  for (const Eigen::Matrix3d& turn : field.rotations()) {
+    const Eigen::Vector4f q = Eigen::Quaterniond(turn).coeffs().cast<float>();
+    quaternion.push_back(Float4{q(0), q(1), q(2), q(3)});
+  }
+  iterations = smooth_projection.solve(state, quaternion);
 }
 
 void ImplicitSkinning::Impl::fit(RunContext& context) {
@@ -212,6 +227,12 @@ void ImplicitSkinning::deform(const Pose& pose, Eigen::MatrixX3d& posed, RunCont
   {
     const Phase phase(context, "start");
     impl.start(pose, posed);
+  }
+  if (impl.options.projection == ProjectionKind::smooth) {
+    const Phase phase(context, "projection");
+    impl.correct();
+    impl.finish(posed);
+    return;
   }
   impl.fit(context);
   const bool released = impl.options.schedule == Schedule::released_code;

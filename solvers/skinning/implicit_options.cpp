@@ -13,6 +13,7 @@ constexpr std::array<std::string_view, 7> kOpeningNames{
 constexpr std::array<std::string_view, 3> kCapNames{"none", "point", "dome"};
 constexpr std::array<std::string_view, 2> kPartitionNames{"highest-weight", "closest-bone"};
 constexpr std::array<std::string_view, 3> kSupportNames{"quintic", "cubic", "logistic"};
+constexpr std::array<std::string_view, 2> kProjectionNames{"smooth", "marching"};
 constexpr std::array<std::string_view, 2> kScheduleNames{"paper", "released-code"};
 
 void describe_fields(OptionVisitor& v, ImplicitOptions& o) {
@@ -47,6 +48,9 @@ void describe_fields(OptionVisitor& v, ImplicitOptions& o) {
 }
 
 void describe_solve(OptionVisitor& v, ImplicitOptions& o) {
+  describe_choice(v, "projection", o.projection, kProjectionNames,
+                  {.doc = "one smooth correction, or every vertex along its own gradient"});
+  describe_group(v, "smooth", o.smooth, {.doc = "of the smooth correction"});
   describe_choice(v, "schedule", o.schedule, kScheduleNames,
                   {.doc = "order of the passes: the paper's, or the authors' released code's"});
   v.value("step", o.step, {.doc = "Delta L of eq. 3.2", .min = 1e-3, .max = 1.5});
@@ -104,6 +108,70 @@ void describe(OptionVisitor& v, SamplingOptions& o) {
   v.value(
       "cap_scale", o.cap_scale,
       {.doc = "its distance from the joint over that of the nearest sample", .min = 0.1, .max = 5});
+}
+
+void describe(OptionVisitor& v, SmoothOptions& o) {
+  v.value("section", o.section,
+          {.doc = "share of what the fields of limbs ask for that is followed; 0: contact alone",
+           .min = 0,
+           .max = 1});
+  v.value("cutoff", o.cutoff,
+          {.doc = "wavelength, in local radii, of which half the amplitude is left",
+           .min = 0.05,
+           .max = 10});
+  v.value("contact_cutoff", o.contact_cutoff,
+          {.doc = "the same of the displacement in contact", .min = 0.05, .max = 10});
+  v.value("anchor", o.anchor,
+          {.doc = "what draws the correction to zero, over the weight of a field's demand",
+           .min = 1e-6,
+           .max = 1});
+  v.value("contact_anchor", o.contact_anchor,
+          {.doc = "the same in contact", .min = 1e-6, .max = 10});
+  v.value("contact_penalty", o.contact_penalty,
+          {.doc = "of the alternating directions in contact", .min = 1e-3, .max = 1000});
+  v.value("contact_reach", o.contact_reach,
+          {.doc = "within which skin that faces a vertex is looked for, in local radii",
+           .min = 0,
+           .max = 10});
+  v.value("dead_zone", o.dead_zone,
+          {.doc = "smaller demands fade out, in local radii", .min = 0, .max = 1});
+  v.value("largest", o.largest,
+          {.doc = "largest demand of a field, in local radii", .min = 0, .max = 10});
+  v.value("trunk_ratio", o.trunk_ratio,
+          {.doc = "length over thickness up to which a bone's field says nothing of the section",
+           .min = 0,
+           .max = 100});
+  v.value("limb_ratio", o.limb_ratio,
+          {.doc = "and from which it says all", .min = 0, .max = 100});
+  v.value("agree_low", o.agree_low,
+          {.doc = "cosine of gradient and skinned normal up to which a field is not believed",
+           .min = -1,
+           .max = 1});
+  v.value("agree_high", o.agree_high, {.doc = "and from which it is", .min = -1, .max = 1});
+  v.value("facing_low", o.facing_low,
+          {.doc = "cosine of the other field's gradient and the skinned normal up to which there is "
+                  "no contact",
+           .min = -1,
+           .max = 1});
+  v.value("facing_high", o.facing_high, {.doc = "and from which there is", .min = -1, .max = 1});
+  v.value("crowd", o.crowd,
+          {.doc = "how far below contact another bone's field already silences the own one",
+           .min = 0,
+           .max = 1});
+  v.value("preparation_passes", o.preparation_passes,
+          {.doc = "smoothing of radii and trust over the skin", .min = 0, .max = 100});
+  v.value("evaluations", o.evaluations,
+          {.doc = "of the fields; 0: nothing is corrected (a null control)", .min = 0, .max = 100});
+  v.value("contact_evaluations", o.contact_evaluations,
+          {.doc = "of the fields in contact; 0: contact is not resolved (a null control)",
+           .min = 0,
+           .max = 100});
+  v.value("contact_iterations", o.contact_iterations,
+          {.doc = "of the alternating directions between them", .min = 1, .max = 1000});
+  v.value("contact_steps", o.contact_steps,
+          {.doc = "of the linear solver in each at most", .min = 1, .max = 1000});
+  v.value("iterations", o.iterations,
+          {.doc = "steps of the linear solver after an evaluation at most", .min = 1, .max = 10000});
 }
 
 void describe(OptionVisitor& v, ImplicitOptions& o) {

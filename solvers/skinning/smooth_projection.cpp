@@ -1,0 +1,354 @@
+#include "solvers/skinning/smooth_projection.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.h"
+
+namespace geoprior::skinning {
+namespace {
+
+constexpr std::size_t kBlocksOfTask = 4;
+constexpr std::size_t kSlotsOfTask = 512;
+
+/// Least local radius, over the largest distance of the bone's skin.
+constexpr double kLeastRadius = 0.3;
+
+float ramp(float low, float high, float x) {
+  const float t = std::clamp((x - low) / (high - low), 0.0F, 1.0F);
+  return t * t * (3 - 2 * t);
+}
+
+float length_of(Float4 v) { return std::sqrt(dot3(v, v)); }
+
+/// 1 for a limb, longer than thick, 0 for a part of the trunk.
+std::vector<double> limb_likeness(const BonePartition& partition, const SmoothOptions& options) {
+  std::vector<double> likeness;
+  for (const FieldBone& bone : partition.bones) {
+    const double ratio = (bone.tail - bone.head).norm() / (2 * bone.radius);
+    likeness.push_back(static_cast<double>(ramp(static_cast<float>(options.trunk_ratio),
+                                                static_cast<float>(options.limb_ratio),
+                                                static_cast<float>(ratio))));
+  }
+  return likeness;
+}
+
+/// Means over one rings, `passes` times.
+void smooth_values(std::vector<float>& values, const SkinState& state, int passes) {
+  std::vector<float> next(values.size());
+  for (int i = 0; i < passes; ++i) {
+    for (std::size_t s = 0; s < values.size(); ++s) {
+      float sum = values[s];
+      for (int j = state.ring_offset[s]; j < state.ring_offset[s + 1]; ++j)
+        sum += values[static_cast<std::size_t>(state.ring[j])];
+      next[s] = sum / static_cast<float>(1 + state.ring_offset[s + 1] - state.ring_offset[s]);
+    }
+    values.swap(next);
+  }
+}
+
+/// What the fields of limbs know about the skin near the two ends of each bone: a joint is known as
+/// well as the less limb-like of its bones.
+struct EndTrust {
+  std::vector<double> head, tail;
+};
+
+EndTrust end_trust(const BonePartition& partition, const std::vector<double>& limb) {
+  EndTrust trust{limb, limb};
+  for (std::size_t b = 0; b < limb.size(); ++b) {
+    const int parent = partition.bones[b].parent;
+    if (parent < 0) continue;
+    const auto p = static_cast<std::size_t>(parent);
+    trust.head[b] = std::min(limb[b], limb[p]);
+    trust.tail[p] = std::min(trust.tail[p], trust.head[b]);
+  }
+  return trust;
+}
+
+std::vector<float> local_radii(const RiggedMesh& rig, const BonePartition& partition,
+                               const SkinState& state, int passes) {
+  std::vector<float> radius;
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    double r = 0;
+    if (state.owner[s] >= 0) {
+      const FieldBone& bone = partition.bones[static_cast<std::size_t>(state.owner[s])];
+      r = std::max(kLeastRadius * bone.radius,
+                   segment_distance(rig.mesh.V.row(state.vertex[s]), bone.head, bone.tail));
+    }
+    radius.push_back(static_cast<float>(r));
+  }
+  smooth_values(radius, state, passes);
+  return radius;
+}
+
+}  // namespace
+
+SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& partition,
+                                   const FieldComposition& field, const ImplicitOptions& options,
+                                   const SkinState& state)
+    : field_(field),
+      options_(options.smooth),
+      gap_(static_cast<float>(options.contact_gap)),
+      radius_(local_radii(rig, partition, state, options.smooth.preparation_passes)),
+      system_(rig.mesh, state, radius_),
+      rotation_(state.size()),
+      demand_(state.size()),
+      moved_(state.size()),
+      pull_(state.size()),
+      nothing_(state.size()) {
+  const EndTrust trust = end_trust(partition, limb_likeness(partition, options_));
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    if (state.owner[s] < 0) {
+      trust_.push_back(0);
+      continue;
+    }
+    const auto b = static_cast<std::size_t>(state.owner[s]);
+    const FieldBone& bone = partition.bones[b];
+    const double along =
+        segment_parameter(rig.mesh.V.row(state.vertex[s]), bone.head, bone.tail);
+    const auto share = static_cast<double>(ramp(0.3F, 0.7F, static_cast<float>(along)));
+    trust_.push_back(
+        static_cast<float>(trust.head[b] + share * (trust.tail[b] - trust.head[b])));
+  }
+  smooth_values(trust_, state, options_.preparation_passes);
+}
+
+void SmoothProjection::blend_rotations(const SkinState& state,
+                                       const std::vector<Float4>& rotations) {
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    Float4 sum{}, pivot{};
+    float largest = -1;
+    for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i) {
+      if (state.influence_weight[i] <= largest) continue;
+      largest = state.influence_weight[i];
+      pivot = rotations[static_cast<std::size_t>(state.influence_joint[i])];
+    }
+    for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i) {
+      const Float4 q = rotations[static_cast<std::size_t>(state.influence_joint[i])];
+      const float same = dot3(q, pivot) + q[3] * pivot[3];
+      sum += splat(same < 0 ? -state.influence_weight[i] : state.influence_weight[i]) * q;
+    }
+    rotation_[s] = sum / splat(std::sqrt(dot3(sum, sum) + sum[3] * sum[3]));
+  }
+}
+
+void SmoothProjection::record_rest(const SkinState& state) {
+  overlap_offset_.assign(1, 0);
+  overlap_.clear();
+  std::array<int, kMaxFieldBones> near;
+  std::array<BoneSample, FieldComposition::kMaxOverlap> samples;
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    const int owner = state.owner[s];
+    if (owner >= 0) {
+      const Float4 p = state.position[s];
+      const int bones = field_.bones_near(p, p, near.data());
+      const int count = field_.samples_at(p, owner, Float4{0, 0, 0, 1},
+                                          {near.data(), static_cast<std::size_t>(bones)},
+                                          samples.data());
+      float own = 0;
+      for (int i = 0; i < count; ++i)
+        if (samples[i].bone == owner) own = std::max(own, samples[i].depth);
+      for (int i = 0; i < count; ++i) {
+        const float slack = samples[i].depth + gap_ * radius_[s] - own;
+        if (samples[i].bone != owner && slack > 0) overlap_.push_back({samples[i].bone, slack});
+      }
+    }
+    overlap_offset_.push_back(static_cast<int>(overlap_.size()));
+  }
+}
+
+float SmoothProjection::slack_of(std::size_t slot, int bone) const {
+  for (int i = overlap_offset_[slot]; i < overlap_offset_[slot + 1]; ++i)
+    if (overlap_[static_cast<std::size_t>(i)].bone == bone)
+      return overlap_[static_cast<std::size_t>(i)].slack;
+  return 0;
+}
+
+float SmoothProjection::facing_of(const BoneSample& other, Float4 outward) const {
+  const float lengths = length_of(other.inward) * length_of(outward);
+  if (!(lengths > 0)) return 0;
+  return ramp(static_cast<float>(options_.facing_low), static_cast<float>(options_.facing_high),
+              dot3(other.inward, outward) / lengths);
+}
+
+float SmoothProjection::crowding(const SkinState& state, std::size_t slot, const Sampled& at,
+                                 float margin) const {
+  const Float4 outward = state.outward[slot];
+  const float own = std::max(0.0F, at.own.depth);
+  float crowd = 0;
+  for (const BoneSample& other : at.all()) {
+    if (other.bone == state.owner[slot]) continue;
+    const float facing = facing_of(other, outward);
+    const float excess =
+        other.depth + gap_ * radius_[slot] - own - slack_of(slot, other.bone);
+    crowd = std::max(crowd, facing * ramp(-margin, 0, excess));
+  }
+  return crowd;
+}
+
+Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot,
+                                        const Sampled& at) const {
+  const Float4 outward = state.outward[slot];
+  const float radius = radius_[slot];
+  const float gap = gap_ * radius;
+  const float own = std::max(0.0F, at.own.depth);
+  const float reach = static_cast<float>(options_.largest) * radius;
+  Demand demand;
+  for (const BoneSample& other : at.all()) {
+    if (other.bone == state.owner[slot]) continue;
+    const float excess = other.depth + gap - own - slack_of(slot, other.bone);
+    if (excess <= 0) continue;
+    const float facing = facing_of(other, outward);
+    // Both sides yield as their own fields do: towards the surface where both are equally deep.
+    const Float4 way = at.own.depth > 0 ? at.own.inward - other.inward : -other.inward;
+    const float slope = length_of(way);
+    if (facing <= 0 || !(slope > 0.05F)) continue;
+    const float missing =
+        facing * std::min(reach, excess / std::max(slope, length_of(other.inward)));
+    if (missing <= demand.amount) continue;
+    demand = {way / splat(slope), missing, 1};
+  }
+  if (demand.weight <= 0) return {};
+  // Fields may be fuller than the skin that is there: only what has met is parted.
+  const auto met =
+      proximity_.facing(state, slot, static_cast<float>(options_.contact_reach) * radius);
+  if (!met) return {};
+  demand.amount = std::min(demand.amount, met->depth + gap);
+  return demand.amount > 0 ? demand : Demand{};
+}
+
+Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot,
+                                        const Sampled& at) const {
+  const int owner = state.owner[slot];
+  const Float4 outward = state.outward[slot];
+  const float radius = radius_[slot];
+  std::array<BoneSample, FieldComposition::kMaxOverlap> own_part;
+  std::size_t own_count = 0;
+  for (const BoneSample& sample : at.all())
+    if (field_.same_part(owner, sample.bone)) own_part[own_count++] = sample;
+  const FieldComposition::Composed all = field_.compose({own_part.data(), own_count});
+  const float slope = length_of(all.gradient);
+  const float outward_length = length_of(outward);
+  if (!(slope * radius > 1e-3F) || !(outward_length > 0)) return {};
+  const float agree = ramp(static_cast<float>(options_.agree_low),
+                           static_cast<float>(options_.agree_high),
+                           -dot3(all.gradient, outward) / (slope * outward_length));
+  const float known = ramp(0.02F, 0.15F, all.value) * (1 - ramp(0.85F, 0.98F, all.value));
+  const float free = 1 - crowding(state, slot, at, static_cast<float>(options_.crowd) * radius);
+  const Float4 n = all.gradient / splat(slope);
+  const float before = dot3(n, moved_[slot]);
+  const float dead = static_cast<float>(options_.dead_zone) * radius;
+  const float reach = static_cast<float>(options_.largest) * radius;
+  float wanted = (state.iso[slot] - all.value) / slope + before;
+  wanted *= wanted * wanted / (wanted * wanted + dead * dead);
+  wanted /= std::sqrt(1 + wanted * wanted / (reach * reach));
+  wanted *= static_cast<float>(options_.section);
+  return {n, wanted, trust_[slot] * known * free * agree};
+}
+
+void SmoothProjection::ask(SkinState& state, Stage stage) {
+  parallel_blocks(state.block_count(), kBlocksOfTask, [&](std::size_t begin, std::size_t end) {
+    std::array<int, kMaxFieldBones> near;
+    for (std::size_t b = begin; b < end; ++b) {
+      const std::size_t first = b * SkinState::kBlock;
+      const std::size_t last = std::min(state.size(), first + SkinState::kBlock);
+      Float4 low = splat(std::numeric_limits<float>::max()), high = -low;
+      for (std::size_t s = first; s < last; ++s) {
+        low = state.position[s] < low ? state.position[s] : low;
+        high = state.position[s] > high ? state.position[s] : high;
+      }
+      const int count = field_.bones_near(low, high, near.data());
+      const std::span<const int> bones{near.data(), static_cast<std::size_t>(count)};
+      for (std::size_t s = first; s < last; ++s) {
+        demand_[s] = {};
+        if (state.owner[s] < 0 || (stage == Stage::section && trust_[s] <= 0)) continue;
+        const Sampled at = sampled(state, s, bones);
+        state.evaluations[b] += count;
+        if (at.count == 0) continue;
+        if (stage == Stage::section) {
+          demand_[s] = section_demand(state, s, at);
+          continue;
+        }
+        demand_[s] = contact_demand(state, s, at);
+        demand_[s].amount += dot3(demand_[s].direction, moved_[s]);
+      }
+    }
+  });
+}
+
+SmoothProjection::Sampled SmoothProjection::sampled(const SkinState& state, std::size_t slot,
+                                                    std::span<const int> bones) const {
+  Sampled at;
+  at.count = field_.samples_at(state.position[slot], state.owner[slot], rotation_[slot], bones,
+                               at.samples.data());
+  for (const BoneSample& sample : at.all())
+    if (sample.bone == state.owner[slot]) at.own = sample;
+  return at;
+}
+
+int SmoothProjection::correct_sections(SkinState& state) {
+  std::fill(moved_.begin(), moved_.end(), Float4{});
+  system_.close();
+  int steps = 0;
+  for (int i = 0; i < options_.evaluations; ++i) {
+    ask(state, Stage::section);
+    system_.open(demand_);
+    steps += system_.solve(
+        demand_, {}, {options_.cutoff, options_.anchor, 0, options_.iterations}, moved_);
+    place(state);
+  }
+  return steps;
+}
+
+void SmoothProjection::place(SkinState& state) const {
+  for (std::size_t s = 0; s < state.size(); ++s) state.position[s] = base_[s] + moved_[s];
+}
+
+int SmoothProjection::resolve_contacts(SkinState& state) {
+  std::fill(moved_.begin(), moved_.end(), Float4{});
+  local_ = dual_ = moved_;
+  system_.close();
+  int steps = 0;
+  for (int i = 0; i < options_.contact_evaluations; ++i) {
+    proximity_.build(state.position);
+    ask(state, Stage::contact);
+    system_.open(demand_);
+    for (int k = 0; k < options_.contact_iterations; ++k) {
+      // Alternating directions: each vertex to its own side of the contact, then all together.
+      system_.each_open([&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+          const Demand& demand = demand_[s];
+          const Float4 free = moved_[s] + dual_[s];
+          const float missing = demand.amount - dot3(demand.direction, free);
+          local_[s] = free;
+          if (demand.weight > 0 && missing > 0)
+            local_[s] += demand.direction * splat(missing * demand.weight);
+          dual_[s] = free - local_[s];
+          pull_[s] = local_[s] - dual_[s];
+        }
+      });
+      steps += system_.solve(nothing_, pull_,
+                             {options_.contact_cutoff, options_.contact_anchor,
+                              options_.contact_penalty, options_.contact_steps},
+                             moved_);
+    }
+    place(state);
+    for (std::size_t s = 0; s < state.size(); ++s)
+      if (demand_[s].weight > 0) state.stop[s] = VertexStop::contact;
+  }
+  return steps;
+}
+
+int SmoothProjection::solve(SkinState& state, const std::vector<Float4>& rotations) {
+  blend_rotations(state, rotations);
+  std::fill(state.stop.begin(), state.stop.end(), VertexStop::converged);
+  base_ = state.start;
+  int steps = correct_sections(state);
+  base_ = state.position;
+  steps += resolve_contacts(state);
+  return steps;
+}
+
+}  // namespace geoprior::skinning

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/rig.h"
+#include "solvers/skinning/composition.h"
+#include "solvers/skinning/implicit_options.h"
+#include "solvers/skinning/skin_proximity.h"
+#include "solvers/skinning/skin_state.h"
+#include "solvers/skinning/smooth_system.h"
+
+namespace geoprior::skinning {
+
+/// The correction of a skin as a smooth displacement of all vertices together, instead of a march
+/// of each.
+///
+/// Section: where the field of a limb knows the skin, it asks for its iso-value along its gradient
+/// (a Newton step, eq. 3.2); neighbours follow by bending energy (smooth_system.h). It is asked
+/// nothing where the gradient does not agree with the skinned normal (a vertex beyond a medial
+/// axis), where the support ends, near contact, and about the trunk, whose bones are shorter than
+/// thick: skin there is no tube about a bone.
+/// Contact: vertices whose own bone's field is not deeper than another's, and that meet skin which
+/// faces them, are moved half of the way out, both sides alike.
+/// Skin that twists slides around its bone: fields are turned about their axis to each vertex' own
+/// twist before they are asked.
+class SmoothProjection {
+ public:
+  SmoothProjection(const RiggedMesh& rig, const BonePartition& partition,
+                   const FieldComposition& field, const ImplicitOptions& options,
+                   const SkinState& state);
+
+  /// What overlaps at rest: `state` holds the rest pose and its iso-values, the field is at rest.
+  void record_rest(const SkinState& state);
+
+  /// Moves `state.position` from `state.start`; marks vertices in contact.
+  /// @param rotations  of the joints, unit quaternions (x, y, z, w)
+  /// @return steps of the linear solver
+  int solve(SkinState& state, const std::vector<Float4>& rotations);
+
+ private:
+  enum class Stage { section, contact };
+  struct Overlap {
+    int bone;
+    float slack;
+  };
+  struct Sampled {
+    std::array<BoneSample, FieldComposition::kMaxOverlap> samples;
+    int count = 0;
+    BoneSample own;
+    [[nodiscard]] std::span<const BoneSample> all() const {
+      return {samples.data(), static_cast<std::size_t>(count)};
+    }
+  };
+
+  void blend_rotations(const SkinState& state, const std::vector<Float4>& rotations);
+  int correct_sections(SkinState& state);
+  int resolve_contacts(SkinState& state);
+  void place(SkinState& state) const;
+  void ask(SkinState& state, Stage stage);
+  [[nodiscard]] Sampled sampled(const SkinState& state, std::size_t slot,
+                                std::span<const int> bones) const;
+  [[nodiscard]] Demand section_demand(const SkinState& state, std::size_t slot,
+                                      const Sampled& at) const;
+  [[nodiscard]] Demand contact_demand(const SkinState& state, std::size_t slot,
+                                      const Sampled& at) const;
+  /// Whether another bone faces a vertex, in [0, 1]: its field grows along the skinned normal.
+  [[nodiscard]] float facing_of(const BoneSample& other, Float4 outward) const;
+  /// How far other bones crowd a vertex, in [0, 1]: 1 in contact, 0 `margin` (m) before it.
+  [[nodiscard]] float crowding(const SkinState& state, std::size_t slot, const Sampled& at,
+                               float margin) const;
+  [[nodiscard]] float slack_of(std::size_t slot, int bone) const;
+
+  const FieldComposition& field_;
+  SmoothOptions options_;
+  float gap_;
+  std::vector<float> radius_;  // local, per slot
+  std::vector<float> trust_;   // what a limb's field knows about the slot's skin
+  SmoothSystem system_;
+  SkinProximity proximity_;
+  std::vector<int> overlap_offset_;
+  std::vector<Overlap> overlap_;  // at rest, per slot
+  std::vector<Float4> rotation_;  // blended, per slot
+  std::vector<Demand> demand_;
+  std::vector<Float4> base_;   // where a stage starts
+  std::vector<Float4> moved_;  // from there
+  std::vector<Float4> local_, dual_, pull_;
+  std::vector<Demand> nothing_;
+};
+
+}  // namespace geoprior::skinning

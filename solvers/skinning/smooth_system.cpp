@@ -1,0 +1,201 @@
+#include "solvers/skinning/smooth_system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "models/skinning/laplacian.h"
+
+namespace geoprior::skinning {
+namespace {
+
+/// Residual over that of the start at which the solution is good enough for a skin.
+constexpr double kEnough = 1e-3;
+
+/// Steps from a block that is asked something to blocks that still move.
+constexpr int kReach = 3;
+
+}  // namespace
+
+SmoothSystem::SmoothSystem(const TriMesh& mesh, const SkinState& state,
+                           const std::vector<float>& radius)
+    : size_(state.size()) {
+  const SurfaceLaplacian surface = positive_cotangent_laplacian(mesh);
+  const double mean_area = surface.area.mean();
+  std::vector<int> slot_of(size_);
+  for (std::size_t s = 0; s < size_; ++s)
+    slot_of[static_cast<std::size_t>(state.vertex[s])] = static_cast<int>(s);
+  offset_.push_back(0);
+  for (std::size_t s = 0; s < size_; ++s) {
+    const int v = state.vertex[s];
+    for (Eigen::SparseMatrix<double>::InnerIterator it(surface.stiffness, v); it; ++it) {
+      if (it.row() == v) {
+        diagonal_.push_back(static_cast<float>(it.value()));
+        continue;
+      }
+      neighbour_.push_back(slot_of[static_cast<std::size_t>(it.row())]);
+      conductance_.push_back(static_cast<float>(-it.value()));
+    }
+    offset_.push_back(static_cast<int>(neighbour_.size()));
+    const double area = std::max(1e-3 * mean_area, surface.area(v));
+    const double r2 = static_cast<double>(radius[s]) * static_cast<double>(radius[s]);
+    area_.push_back(static_cast<float>(area / mean_area));
+    bend_.push_back(static_cast<float>(r2 * r2 / (area * mean_area)));
+  }
+  for (std::size_t s = 0; s < size_; ++s) {
+    float sum = diagonal_[s] * diagonal_[s] * bend_[s];
+    for (auto j = static_cast<std::size_t>(offset_[s]);
+         j < static_cast<std::size_t>(offset_[s + 1]); ++j)
+      sum += conductance_[j] * conductance_[j] * bend_[static_cast<std::size_t>(neighbour_[j])];
+    bend_diagonal_.push_back(sum);
+  }
+  near_blocks_.resize(state.block_count());
+  for (std::size_t s = 0; s < size_; ++s) {
+    std::vector<int>& near = near_blocks_[s / SkinState::kBlock];
+    for (int j = offset_[s]; j < offset_[s + 1]; ++j)
+      near.push_back(neighbour_[static_cast<std::size_t>(j)] / static_cast<int>(SkinState::kBlock));
+  }
+  for (std::vector<int>& near : near_blocks_) {
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+  }
+  chosen_.assign(near_blocks_.size(), 0);
+  partial_.assign(near_blocks_.size(), 0);
+  reached_ = chosen_;
+  residual_.assign(size_, Float4{});
+  search_ = bent_ = image_ = direction_ = residual_;
+  inverse_.assign(size_, 0);
+}
+
+void SmoothSystem::close() {
+  std::fill(chosen_.begin(), chosen_.end(), std::uint8_t{0});
+  blocks_.clear();
+}
+
+void SmoothSystem::open(const std::vector<Demand>& demands) {
+  std::vector<int>& fresh = fresh_;
+  fresh.clear();
+  for (std::size_t b = 0; b < chosen_.size(); ++b) {
+    const std::size_t begin = b * SkinState::kBlock;
+    const std::size_t end = std::min(size_, begin + SkinState::kBlock);
+    bool asked = false;
+    for (std::size_t s = begin; s < end && !asked; ++s)
+      asked = demands[s].weight * std::abs(demands[s].amount) > 0;
+    if (asked) fresh.push_back(static_cast<int>(b));
+  }
+  std::size_t first = 0;
+  std::fill(reached_.begin(), reached_.end(), std::uint8_t{0});
+  for (const int b : fresh) reached_[static_cast<std::size_t>(b)] = 1;
+  for (int step = 0; step < kReach; ++step) {
+    const std::size_t last = fresh.size();
+    for (; first < last; ++first) {
+      for (const int near : near_blocks_[static_cast<std::size_t>(fresh[first])]) {
+        if (reached_[static_cast<std::size_t>(near)] != 0) continue;
+        reached_[static_cast<std::size_t>(near)] = 1;
+        fresh.push_back(near);
+      }
+    }
+  }
+  for (const int b : fresh) {
+    if (chosen_[static_cast<std::size_t>(b)] != 0) continue;
+    chosen_[static_cast<std::size_t>(b)] = 1;
+    blocks_.push_back(b);
+  }
+  std::sort(blocks_.begin(), blocks_.end());
+}
+
+void SmoothSystem::bend(const std::vector<Float4>& x, float kappa) {
+  each_slot([&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      Float4 sum = splat(diagonal_[s]) * x[s];
+      for (auto j = static_cast<std::size_t>(offset_[s]);
+           j < static_cast<std::size_t>(offset_[s + 1]); ++j)
+        sum -= splat(conductance_[j]) * x[static_cast<std::size_t>(neighbour_[j])];
+      bent_[s] = splat(kappa * bend_[s]) * sum;
+    }
+  });
+}
+
+double SmoothSystem::apply(const std::vector<Demand>& demands, const std::vector<Float4>& x,
+                           float kappa, float diagonal) {
+  bend(x, kappa);
+  each_slot([&](std::size_t block, std::size_t begin, std::size_t end) {
+    double product = 0;
+    for (std::size_t s = begin; s < end; ++s) {
+      Float4 sum = splat(diagonal_[s]) * bent_[s];
+      for (auto j = static_cast<std::size_t>(offset_[s]);
+           j < static_cast<std::size_t>(offset_[s + 1]); ++j)
+        sum -= splat(conductance_[j]) * bent_[static_cast<std::size_t>(neighbour_[j])];
+      const Demand& demand = demands[s];
+      sum += splat(area_[s]) *
+             (splat(diagonal) * x[s] +
+              demand.direction * splat(demand.weight * dot3(demand.direction, x[s])));
+      image_[s] = sum;
+      product += static_cast<double>(dot3(sum, x[s]));
+    }
+    partial_[block] = product;
+  });
+  return sum();
+}
+
+double SmoothSystem::sum() const {
+  double total = 0;
+  for (const int block : blocks_) total += partial_[static_cast<std::size_t>(block)];
+  return total;
+}
+
+double SmoothSystem::precondition() {
+  each_slot([&](std::size_t block, std::size_t begin, std::size_t end) {
+    double product = 0;
+    for (std::size_t s = begin; s < end; ++s) {
+      direction_[s] = residual_[s] * splat(inverse_[s]);
+      product += static_cast<double>(dot3(direction_[s], residual_[s]));
+    }
+    partial_[block] = product;
+  });
+  return sum();
+}
+
+int SmoothSystem::solve(const std::vector<Demand>& demands, const std::vector<Float4>& pulls,
+                        const Options& options, std::vector<Float4>& u) {
+  if (blocks_.empty()) return 0;
+  const auto kappa = static_cast<float>(std::pow(options.cutoff / 7.85, 4));
+  const auto penalty = static_cast<float>(options.penalty);
+  const float diagonal = static_cast<float>(options.anchor) + penalty;
+  // Slots of closed blocks are read as neighbours: they hold zero.
+  std::fill(search_.begin(), search_.end(), Float4{});
+  std::fill(bent_.begin(), bent_.end(), Float4{});
+  apply(demands, u, kappa, diagonal);
+  each_open([&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const Demand& demand = demands[s];
+      Float4 asked = demand.direction * splat(demand.weight * demand.amount);
+      if (penalty > 0) asked += splat(penalty) * pulls[s];
+      residual_[s] = splat(area_[s]) * asked - image_[s];
+      inverse_[s] = 1 / (kappa * bend_diagonal_[s] + area_[s] * (diagonal + demand.weight));
+    }
+  });
+  double energy = precondition();
+  const double enough = kEnough * kEnough * energy;
+  double last = 1;
+  int done = 0;
+  for (; done < options.iterations && energy > enough; ++done) {
+    const auto keep = static_cast<float>(done == 0 ? 0 : energy / last);
+    each_open([&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s)
+        search_[s] = direction_[s] + splat(keep) * search_[s];
+    });
+    const auto step = static_cast<float>(energy / apply(demands, search_, kappa, diagonal));
+    each_open([&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) {
+        u[s] += splat(step) * search_[s];
+        residual_[s] -= splat(step) * image_[s];
+      }
+    });
+    last = energy;
+    energy = precondition();
+  }
+  return done;
+}
+
+}  // namespace geoprior::skinning
