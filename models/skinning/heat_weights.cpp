@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "models/skinning/bone_visibility.h"
+#include "models/skinning/cotangent_laplacian.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -24,10 +25,6 @@ struct Contact {
 
 /// Distances that differ by less than this share are equal (the two bones at a joint).
 constexpr double kTie = 1e-4;
-
-/// Least conductance of an edge: positive, so that heat reaches every vertex of a component; small
-/// beside the cotangent weight of a regular edge (0.58).
-constexpr double kLeastConductance = 1e-5;
 
 /// The nearest bones that `visible(bone, nearest point)` accepts.
 template <class Visible>
@@ -87,46 +84,25 @@ std::vector<Contact> bone_contacts(const TriMesh& mesh, const std::vector<Bone>&
   return contacts;
 }
 
-/// Cotangent Laplacian without negative edge weights, and a third of the area around each vertex.
-Sparse positive_cotangent_laplacian(const TriMesh& mesh, Eigen::VectorXd& area) {
-  std::vector<Eigen::Triplet<double>> entries;
-  area.setZero(mesh.vertex_count());
+/// A third of the area of the triangles around each vertex (m^2).
+Eigen::VectorXd barycentric_areas(const TriMesh& mesh) {
+  Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh.vertex_count());
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
-      const int a = mesh.F(t, (k + 1) % 3), b = mesh.F(t, (k + 2) % 3);
-      const Eigen::RowVector3d to_a = mesh.V.row(a) - mesh.V.row(mesh.F(t, k));
-      const Eigen::RowVector3d to_b = mesh.V.row(b) - mesh.V.row(mesh.F(t, k));
-      const double twice_area = to_a.cross(to_b).norm();
-      // A sliver counts as one of a thousandth of its edges' rectangle: its cotangent stays finite.
-      const double floor = 1e-3 * to_a.norm() * to_b.norm();
-      const double cotangent = floor > 0 ? to_a.dot(to_b) / std::max(twice_area, floor) : 0;
-      entries.emplace_back(std::min(a, b), std::max(a, b), 0.5 * cotangent);
-      area(mesh.F(t, k)) += twice_area / 6;
+      const Eigen::RowVector3d p = mesh.V.row(mesh.F(t, k));
+      const Eigen::RowVector3d to_a = mesh.V.row(mesh.F(t, (k + 1) % 3)) - p;
+      const Eigen::RowVector3d to_b = mesh.V.row(mesh.F(t, (k + 2) % 3)) - p;
+      area(mesh.F(t, k)) += to_a.cross(to_b).norm() / 6;
     }
   }
-  Sparse edges(mesh.vertex_count(), mesh.vertex_count());
-  edges.setFromTriplets(entries.begin(), entries.end());
-  entries.clear();
-  for (int column = 0; column < edges.outerSize(); ++column) {
-    for (Sparse::InnerIterator it(edges, column); it; ++it) {
-      const double w = std::max(it.value(), kLeastConductance);
-      const auto a = static_cast<int>(it.row()), b = static_cast<int>(it.col());
-      entries.emplace_back(a, a, w);
-      entries.emplace_back(b, b, w);
-      entries.emplace_back(a, b, -w);
-      entries.emplace_back(b, a, -w);
-    }
-  }
-  Sparse laplacian(mesh.vertex_count(), mesh.vertex_count());
-  laplacian.setFromTriplets(entries.begin(), entries.end());
-  return laplacian;
+  return area;
 }
 
 /// Temperatures, one column a bone.
 Eigen::MatrixXd equilibrium(const TriMesh& mesh, const std::vector<Contact>& contacts,
                             std::size_t bone_count) {
-  Eigen::VectorXd area;
-  Sparse system = positive_cotangent_laplacian(mesh, area);
+  const Eigen::VectorXd area = barycentric_areas(mesh);
+  Sparse system = positive_cotangent_laplacian(mesh);
   const double smallest_area = 1e-9 * area.mean();
   Eigen::MatrixXd rhs =
       Eigen::MatrixXd::Zero(mesh.vertex_count(), static_cast<Eigen::Index>(bone_count));
