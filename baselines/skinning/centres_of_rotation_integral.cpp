@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -21,22 +23,49 @@ namespace {
 using lanes::Double4;
 using JointPair = std::pair<int, int>;
 
-/// Pieces of the surface that two joints share: weights a and b, area times a b, centroid. Padded
-/// to a multiple of four with pieces of no area.
-struct SharedPieces {
+/// Pieces of the surface that two joints share: weights a and b, area times a b, centroid. Those of
+/// one cell of weights are taken together at their mean.
+class SharedPieces {
+ public:
   std::vector<double> a, b, share, x, y, z;
 
-  void add(double weight_a, double weight_b, double area, const Eigen::Vector3d& centroid) {
-    a.push_back(weight_a);
-    b.push_back(weight_b);
-    share.push_back(area * weight_a * weight_b);
-    x.push_back(centroid.x());
-    y.push_back(centroid.y());
-    z.push_back(centroid.z());
+  /// @param cell  width of the cells; 0 keeps every piece
+  void add(double weight_a, double weight_b, double area, const Eigen::Vector3d& centroid,
+           double cell) {
+    const double s = area * weight_a * weight_b;
+    const std::size_t i = index_of(weight_a, weight_b, cell);
+    share[i] += s;
+    a[i] += s * weight_a;
+    b[i] += s * weight_b;
+    x[i] += s * centroid.x();
+    y[i] += s * centroid.y();
+    z[i] += s * centroid.z();
   }
-  void pad() {
-    while (a.size() % 4 != 0) add(0, 0, 0, Eigen::Vector3d::Zero());
+
+  /// Sums become means; the number of entries a multiple of four.
+  void finish() {
+    for (std::size_t i = 0; i < share.size(); ++i) {
+      if (!(share[i] > 0)) continue;
+      for (std::vector<double>* mean : {&a, &b, &x, &y, &z}) (*mean)[i] /= share[i];
+    }
+    while (share.size() % 4 != 0) append();
   }
+
+ private:
+  std::size_t append() {
+    for (std::vector<double>* values : {&a, &b, &share, &x, &y, &z}) values->push_back(0);
+    return share.size() - 1;
+  }
+
+  std::size_t index_of(double weight_a, double weight_b, double cell) {
+    if (!(cell > 0)) return append();
+    const auto number = [cell](double w) { return static_cast<std::uint64_t>(w / cell); };
+    const auto [at, is_new] =
+        cells_.try_emplace((number(weight_a) << 32U) | number(weight_b), share.size());
+    return is_new ? append() : at->second;
+  }
+
+  std::unordered_map<std::uint64_t, std::size_t> cells_;
 };
 
 using PiecesOfPairs = std::map<JointPair, SharedPieces>;
@@ -86,7 +115,7 @@ int pieces_along_an_edge(const TriangleWeights& weights, double step) {
   return std::max(1, static_cast<int>(std::ceil(change.maxCoeff() / step - 1e-9)));
 }
 
-PiecesOfPairs pieces_by_pair(const RiggedMesh& rig, double weight_step) {
+PiecesOfPairs pieces_by_pair(const RiggedMesh& rig, const CentresOfRotationOptions& options) {
   PiecesOfPairs pairs;
   for (Eigen::Index t = 0; t < rig.mesh.F.rows(); ++t) {
     const TriangleWeights weights = weights_of(rig, t);
@@ -95,7 +124,7 @@ PiecesOfPairs pieces_by_pair(const RiggedMesh& rig, double weight_step) {
     for (int c = 0; c < 3; ++c) corners.col(c) = rig.mesh.V.row(rig.mesh.F(t, c));
     const double area =
         (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0)).norm() / 2;
-    const int k = pieces_along_an_edge(weights, weight_step);
+    const int k = pieces_along_an_edge(weights, options.weight_step);
     for_pieces(k, [&](const Eigen::Vector3d& barycentric) {
       const Eigen::VectorXd w = weights.of_corner * barycentric;
       for (Eigen::Index a = 0; a < w.size(); ++a) {
@@ -103,12 +132,12 @@ PiecesOfPairs pieces_by_pair(const RiggedMesh& rig, double weight_step) {
           if (!(w(a) * w(b) > 0)) continue;
           pairs[{weights.joints[static_cast<std::size_t>(a)],
                  weights.joints[static_cast<std::size_t>(b)]}]
-              .add(w(a), w(b), area / (k * k), corners * barycentric);
+              .add(w(a), w(b), area / (k * k), corners * barycentric, options.weight_cell);
         }
       }
     });
   }
-  for (auto& [pair, pieces] : pairs) pieces.pad();
+  for (auto& [pair, pieces] : pairs) pieces.finish();
   return pairs;
 }
 
@@ -181,6 +210,8 @@ void check_options(const CentresOfRotationOptions& options) {
     throw Error("similarity_width of centres of rotation is not positive", "", "> 0");
   if (!(options.weight_step >= 0.01 && options.weight_step <= 1))
     throw Error("weight_step of centres of rotation is out of range", "", "0.01 to 1");
+  if (!(options.weight_cell >= 0 && options.weight_cell <= 0.1))
+    throw Error("weight_cell of centres of rotation is out of range", "", "0 to 0.1");
 }
 
 }  // namespace
@@ -193,6 +224,10 @@ void describe(OptionVisitor& v, CentresOfRotationOptions& options) {
           {.doc = "largest change of a weight over a piece of a triangle in the integral",
            .min = 0.01,
            .max = 1});
+  v.value("weight_cell", options.weight_cell,
+          {.doc = "pieces whose weights fall in one cell of this width are taken together; 0: none",
+           .min = 0,
+           .max = 0.1});
 }
 
 double weight_similarity(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double sigma) {
@@ -214,7 +249,7 @@ Eigen::MatrixX3d centres_of_rotation(const RiggedMesh& rig,
                                      const CentresOfRotationOptions& options) {
   check_options(options);
   require_skinnable(rig);
-  const PiecesOfPairs pairs = pieces_by_pair(rig, options.weight_step);
+  const PiecesOfPairs pairs = pieces_by_pair(rig, options);
   Eigen::MatrixX3d centres(rig.mesh.vertex_count(), 3);
   parallel_blocks(static_cast<std::size_t>(centres.rows()), 64,
                   [&](std::size_t begin, std::size_t end) {

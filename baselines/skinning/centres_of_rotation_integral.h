@@ -10,6 +10,7 @@ namespace geoprior::skinning {
 struct CentresOfRotationOptions {
   double similarity_width = 0.1;  ///< sigma: how different the weights of similar places may be
   double weight_step = 0.1;       ///< largest change of a weight over a piece of the integral
+  double weight_cell = 0.01;      ///< pieces this near in weight are taken together; 0: none
 };
 void describe(OptionVisitor& v, CentresOfRotationOptions& options);
 
@@ -29,16 +30,19 @@ double weight_similarity(const Eigen::VectorXd& a, const Eigen::VectorXd& b, dou
 ///
 /// Weights are linear on a triangle. It is cut into k^2 equal ones so that no weight changes by
 /// more than `weight_step` over a piece, and each piece counts with its area, centroid and weights
-/// there. Every piece that shares two joints with a vertex is summed: nothing is clustered or left
-/// out. A vertex that is not blended (one influence, or no piece like it) keeps its own place.
+/// there. A vertex that is not blended (one influence, or no piece like it) keeps its own place.
 ///
-/// Cost: the pieces are listed by pair of joints, and a vertex visits the lists of its own pairs.
+/// s is a sum over pairs of joints: pieces are listed by pair, and a vertex visits the lists of its
+/// own pairs. In a list, pieces whose two weights fall in one cell of width `weight_cell` are
+/// replaced by their mean, so that a list is no longer than there are cells. With a cell of 1/10
+/// sigma this moves centres by less than a thousandth of the length over which weights change
+/// (tested); with `weight_cell = 0` every piece is summed.
 ///
 /// @param rig  welded mesh of n vertices, skeleton of m joints, weights n x m
 /// @return     n x 3 (m)
 /// @throws Error  as require_skinnable(), and for options out of range
 /// Source: Le and Hodgins 2016, section 3; the paper subdivides where weights differ by more than
-/// 0.1 and restricts the sum to neighbours in weight space, which is not needed here.
+/// 0.1 and restricts the sum to neighbours in weight space, where this has cells.
 Eigen::MatrixX3d centres_of_rotation(const RiggedMesh& rig,
                                      const CentresOfRotationOptions& options = {});
 

@@ -17,32 +17,22 @@ namespace {
 
 using fixtures::cylinder_options;
 
-/// Weights of one vertex, one entry a joint.
-Eigen::VectorXd dense_row(const SkinWeights& weights, int vertex) {
-  return Eigen::VectorXd(weights.row(vertex).transpose());
-}
-
-/// The header's quotient with one piece a triangle, every vertex with every triangle.
-Eigen::MatrixX3d centres_by_definition(const RiggedMesh& rig, double sigma) {
-  Eigen::MatrixX3d centres = rig.mesh.V;
-  for (int i = 0; i < rig.mesh.vertex_count(); ++i) {
-    double mass = 0;
-    Eigen::RowVector3d moment = Eigen::RowVector3d::Zero();
-    for (Eigen::Index t = 0; t < rig.mesh.F.rows(); ++t) {
-      const Eigen::RowVector3i f = rig.mesh.F.row(t);
-      const Eigen::RowVector3d a = rig.mesh.V.row(f(0)), b = rig.mesh.V.row(f(1)),
-                               c = rig.mesh.V.row(f(2));
-      const Eigen::VectorXd mean = (dense_row(rig.weights, f(0)) + dense_row(rig.weights, f(1)) +
-                                    dense_row(rig.weights, f(2))) /
-                                   3;
-      const double s = weight_similarity(dense_row(rig.weights, i), mean, sigma) *
-                       (b - a).cross(c - a).norm() / 2;
-      mass += s;
-      moment += s * (a + b + c) / 3;
-    }
-    if (mass > 0) centres.row(i) = moment / mass;
+/// The header's quotient for one vertex with one piece a triangle, every triangle visited.
+Eigen::RowVector3d centre_by_definition(const RiggedMesh& rig, const Eigen::MatrixXd& weights,
+                                        int vertex, double sigma) {
+  double mass = 0;
+  Eigen::RowVector3d moment = Eigen::RowVector3d::Zero();
+  for (Eigen::Index t = 0; t < rig.mesh.F.rows(); ++t) {
+    const Eigen::RowVector3i f = rig.mesh.F.row(t);
+    const Eigen::RowVector3d a = rig.mesh.V.row(f(0)), b = rig.mesh.V.row(f(1)),
+                             c = rig.mesh.V.row(f(2));
+    const Eigen::VectorXd mean = (weights.row(f(0)) + weights.row(f(1)) + weights.row(f(2))) / 3;
+    const double s =
+        weight_similarity(weights.row(vertex), mean, sigma) * (b - a).cross(c - a).norm() / 2;
+    mass += s;
+    moment += s * (a + b + c) / 3;
   }
-  return centres;
+  return mass > 0 ? Eigen::RowVector3d(moment / mass) : rig.mesh.V.row(vertex);
 }
 
 TEST(WeightSimilarity, IsSymmetricLargestAtEqualWeightsAndZeroWithoutTwoCommonJoints) {
@@ -61,13 +51,31 @@ TEST(WeightSimilarity, IsSymmetricLargestAtEqualWeightsAndZeroWithoutTwoCommonJo
 TEST(CentresOfRotation, ListsOfPairsAgreeWithTheDefinition) {
   CentresOfRotationOptions options;
   options.weight_step = 1;
+  options.weight_cell = 0;
   FingerOptions finger;
   finger.segments = 10;
   for (const RiggedMesh& rig : {capsule_finger(finger), fixtures::cylinder_of_many_influences(4)}) {
-    EXPECT_LE(fixtures::largest_distance(centres_of_rotation(rig, options),
-                                         centres_by_definition(rig, options.similarity_width)),
-              1e-12 * bounding_box_diagonal(rig.mesh.V));
+    const Eigen::MatrixX3d centres = centres_of_rotation(rig, options);
+    const Eigen::MatrixXd weights = rig.weights;
+    for (int v = 0; v < rig.mesh.vertex_count(); v += 7) {
+      EXPECT_LE(
+          (centres.row(v) - centre_by_definition(rig, weights, v, options.similarity_width)).norm(),
+          1e-12 * bounding_box_diagonal(rig.mesh.V))
+          << v;
+    }
   }
+}
+
+// Weights of the finger change over a radius (1 cm), those of the tube over 0.2 m.
+TEST(CentresOfRotation, CellsOfWeightMoveCentresByAThousandthOfTheRampAtMost) {
+  CentresOfRotationOptions every;
+  every.weight_cell = 0;
+  const RiggedMesh finger = capsule_finger(), tube = two_bone_cylinder(cylinder_options());
+  EXPECT_LE(
+      fixtures::largest_distance(centres_of_rotation(finger), centres_of_rotation(finger, every)),
+      1e-3 * FingerOptions{}.radius[0]);
+  EXPECT_LE(fixtures::largest_distance(centres_of_rotation(tube), centres_of_rotation(tube, every)),
+            1e-3 * cylinder_options().ramp_width);
 }
 
 // On a tube with the weight b = 1/2 + x / W the integral is one over b:
@@ -77,6 +85,7 @@ TEST(CentresOfRotation, OfATubeLieOnItsAxisWhereTheIntegralOverTheRampSays) {
   const RiggedMesh rig = two_bone_cylinder(cylinder_options());
   CentresOfRotationOptions options;
   options.weight_step = 0.01;
+  options.weight_cell = 0;
   const Eigen::MatrixX3d centres = centres_of_rotation(rig, options);
   int blended = 0;
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
@@ -239,6 +248,11 @@ TEST(CentresOfRotation, RefusesWrongInput) {
     CentresOfRotationOptions options;
     options.weight_step = step;
     EXPECT_THROW(CentresOfRotation(rig, options), Error) << step;
+  }
+  for (const double cell : {-0.1, 0.5, std::nan("")}) {
+    CentresOfRotationOptions options;
+    options.weight_cell = cell;
+    EXPECT_THROW(CentresOfRotation(rig, options), Error) << cell;
   }
   RiggedMesh nan = rig;
   nan.mesh.V(5, 1) = std::nan("");
