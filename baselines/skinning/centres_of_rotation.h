@@ -27,8 +27,8 @@ Eigen::MatrixX3d blend_about_centres(const RiggedMesh& rig, const Eigen::MatrixX
 ///
 /// The centre of a limb's ring lies on the limb's axis, so that a twist keeps the ring's radius, as
 /// dual quaternions do; but the ring is carried by the linear blend of its centre, which does not
-/// run on a circle about the joint: no bulge outside a bend. Inside it, rings overlap as they do
-/// with dual quaternions. Nothing prevents self-contact.
+/// run on a circle about the joint: less bulge outside a bend. For the same reason the two sides
+/// inside a bend meet earlier than with dual quaternions. Nothing prevents self-contact.
 ///
 /// Limits: the rotation of a transform that is not rigid is blended without its scale and shear
 /// (a vertex with one influence follows it exactly); two joints more than 180 degrees apart turn

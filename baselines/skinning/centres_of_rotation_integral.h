@@ -20,7 +20,7 @@ void describe(OptionVisitor& v, CentresOfRotationOptions& options);
 ///
 /// Zero where the two share fewer than two joints, largest along the curves of equal weights.
 /// @throws Error  unless both have the same size and sigma > 0
-/// Source: Le and Hodgins 2016, equation 4.
+/// Source: Le and Hodgins 2016.
 double weight_similarity(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double sigma);
 
 /// Optimised centre of rotation of every vertex: the mean place of the skin whose weights are
@@ -41,7 +41,7 @@ double weight_similarity(const Eigen::VectorXd& a, const Eigen::VectorXd& b, dou
 /// @param rig  welded mesh of n vertices, skeleton of m joints, weights n x m
 /// @return     n x 3 (m)
 /// @throws Error  as require_skinnable(), and for options out of range
-/// Source: Le and Hodgins 2016, section 3; the paper subdivides where weights differ by more than
+/// Source: Le and Hodgins 2016; the paper subdivides where weights differ by more than
 /// 0.1 and restricts the sum to neighbours in weight space, where this has cells.
 Eigen::MatrixX3d centres_of_rotation(const RiggedMesh& rig,
                                      const CentresOfRotationOptions& options = {});

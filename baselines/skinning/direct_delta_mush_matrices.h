@@ -57,7 +57,7 @@ struct DirectDeltaMushMatrices {
 ///
 /// @param rig  welded mesh of n vertices, skeleton of m joints, weights n x m
 /// @throws Error  as require_skinnable(), and for options out of range
-/// Source: Le and Lewis 2019, sections 3.2 to 3.4, variant 0. Ours: matrices relative to p_i, the
+/// Source: Le and Lewis 2019, variant 0. Ours: matrices relative to p_i, the
 /// clamped edge weights, what is done with small influences and degenerate patches.
 DirectDeltaMushMatrices direct_delta_mush_matrices(const RiggedMesh& rig,
                                                    const DirectDeltaMushOptions& options = {});
