@@ -10,7 +10,7 @@ namespace geoprior::skinning {
 struct CentresOfRotationOptions {
   double similarity_width = 0.1;  ///< sigma: how different the weights of similar places may be
   double weight_step = 0.1;       ///< largest change of a weight over a piece of the integral
-  double weight_cell = 0.01;      ///< pieces this near in weight are taken together; 0: none
+  double weight_cell = 0.005;     ///< pieces this near in weight are taken together; 0: none
 };
 void describe(OptionVisitor& v, CentresOfRotationOptions& options);
 
@@ -34,7 +34,7 @@ double weight_similarity(const Eigen::VectorXd& a, const Eigen::VectorXd& b, dou
 ///
 /// s is a sum over pairs of joints: pieces are listed by pair, and a vertex visits the lists of its
 /// own pairs. In a list, pieces whose two weights fall in one cell of width `weight_cell` are
-/// replaced by their mean, so that a list is no longer than there are cells. With a cell of 1/10
+/// replaced by their mean, so that a list is no longer than there are cells. With a cell of 1/20
 /// sigma this moves centres by less than a thousandth of the length over which weights change
 /// (tested); with `weight_cell = 0` every piece is summed.
 ///

@@ -14,7 +14,7 @@ struct DirectDeltaMushOptions {
   double lambda = 3;    ///< length of a step for the shape around a vertex
   double kappa = 1;     ///< length of a step for the weights that carry it; at most lambda
   double alpha = 0.8;   ///< share of the smoothed weights in the translation, 0 to below 1
-  double smallest_influence = 1e-4;  ///< smoothed weights below it move with the strongest joint
+  double smallest_influence = 1e-5;  ///< smoothed weights below it move with the strongest joint
 };
 void describe(OptionVisitor& v, DirectDeltaMushOptions& options);
 
@@ -50,7 +50,8 @@ struct DirectDeltaMushMatrices {
 /// Laplacian are at least 1e-5, so that B and C have no negative entries.
 ///
 /// Influences of which both smoothed weights, (B w)_ij and w'_ij, are below `smallest_influence`
-/// are given to the vertex's strongest joint: sums over joints stay exact.
+/// are given to the vertex's strongest joint: sums over joints stay exact. Vertices move by up to
+/// 0.02 % of the limb's radius for it at 115 degrees of flexion (1e-4: 0.15 %, 1e-3: 0.7 %).
 ///
 /// To the shape of the strongest joint a millionth of the vertex's whole covariance is added in all
 /// directions: a patch that degenerates to a line or a point turns with that joint.
