@@ -19,7 +19,9 @@
 #include <numbers>
 #include <vector>
 
+#include "baselines/skinning/centres_of_rotation.h"
 #include "baselines/skinning/delta_mush.h"
+#include "baselines/skinning/direct_delta_mush.h"
 #include "baselines/skinning/dual_quaternion.h"
 #include "baselines/skinning/linear_blend.h"
 #include "core/parallel.h"
@@ -178,6 +180,34 @@ void skin_delta_mush(benchmark::State& state) {
   measure(state, 0, [&] { method.deform(pose, posed); });
 }
 
+void skin_centres_of_rotation(benchmark::State& state) {
+  const RiggedMesh& rig = shared_tube(static_cast<int>(state.range(0)));
+  const CentresOfRotation method(rig);
+  const Pose pose = curled(rig.skeleton);
+  Eigen::MatrixX3d posed;
+  // The arms are read beside what linear blending moves.
+  const double bytes =
+      bytes_of(method.influences()) + 3.0 * sizeof(double) * rig.mesh.vertex_count();
+  measure(state, bytes, [&] { method.deform(pose, posed); });
+}
+
+void skin_direct_delta_mush(benchmark::State& state) {
+  const RiggedMesh& rig = shared_tube(static_cast<int>(state.range(0)));
+  static const DirectDeltaMush method(rig);  // prepared once: its one size takes seconds
+  const Pose pose = curled(rig.skeleton);
+  Eigen::MatrixX3d posed;
+  measure(state, 0, [&] { method.deform(pose, posed); });
+  state.counters["influences_per_vertex"] = method.influences_per_vertex();
+}
+
+/// What a rig costs once.
+template <class Method>
+void prepare(benchmark::State& state) {
+  const RiggedMesh& rig = shared_tube(static_cast<int>(state.range(0)));
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, kThreads);
+  for (auto _ : state) benchmark::DoNotOptimize(Method(rig));
+}
+
 void copy_same_bytes(benchmark::State& state) {
   const double bytes = bytes_of(PackedInfluences(shared_tube(static_cast<int>(state.range(0)))));
   Copy copy(bytes);
@@ -187,6 +217,18 @@ void copy_same_bytes(benchmark::State& state) {
 BENCHMARK(copy_same_bytes)->Arg(18000)->Arg(1000000)->Arg(4000000)->UseRealTime();
 BENCHMARK(skin_linear_blend)->Arg(18000)->Arg(1000000)->Arg(4000000)->UseRealTime();
 BENCHMARK(skin_dual_quaternion)->Arg(18000)->Arg(1000000)->Arg(4000000)->UseRealTime();
+BENCHMARK(skin_centres_of_rotation)->Arg(18000)->UseRealTime();
+BENCHMARK(skin_direct_delta_mush)->Arg(18000)->UseRealTime();
+BENCHMARK(prepare<CentresOfRotation>)
+    ->Arg(18000)
+    ->Iterations(1)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(prepare<DirectDeltaMush>)
+    ->Arg(18000)
+    ->Iterations(1)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(skin_delta_mush)->Arg(18000)->Arg(1000000)->UseRealTime();
 
 }  // namespace

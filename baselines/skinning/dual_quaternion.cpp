@@ -1,12 +1,10 @@
 #include "baselines/skinning/dual_quaternion.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <string>
 
 #include "baselines/skinning/dual_quaternion_lanes.h"
-#include "core/error.h"
 #include "core/parallel.h"
+#include "models/skinning/rigid_joints.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
@@ -17,38 +15,12 @@ struct DualQuaternion {
   Eigen::Quaterniond real, dual;
 };
 
-/// Rotation of a transform. Rounding of a rotation is removed by steps of Newton's iteration for
-/// the polar factor (Higham 1986), which square the error; anything else takes the full polar
-/// decomposition.
-Eigen::Matrix3d rotation_of(const Eigen::Affine3d& transform) {
-  Eigen::Matrix3d R = transform.linear();
-  for (int step = 0; step < 3; ++step) {
-    const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-    if (!(error < 1e-3) || R.determinant() < 0) break;
-    if (error < 1e-14) return R;
-    R = 0.5 * (R + Eigen::Matrix3d(R.inverse().transpose()));
-    if (error < 1e-7) return R;
-  }
-  return rigid_part(transform).linear();
-}
-
 /// Unit dual quaternion r + eps t r / 2 of the rigid part x -> r x r* + t of a joint's transform.
 DualQuaternion dual_quaternion(const Eigen::Affine3d& transform, const Eigen::Vector3d& head) {
   const Eigen::Matrix3d R = rotation_of(transform);
   const Eigen::Vector3d t = transform * head - R * head;
   const Eigen::Quaterniond q = Eigen::Quaterniond(R).normalized();
   return {q, Eigen::Quaterniond(0, 0.5 * t.x(), 0.5 * t.y(), 0.5 * t.z()) * q};
-}
-
-void require_valid(const Pose& pose, int joints) {
-  if (static_cast<int>(pose.size()) != joints) {
-    throw Error("pose of " + std::to_string(pose.size()) + " transforms", "dual quaternion blend",
-                std::to_string(joints));
-  }
-  for (std::size_t j = 0; j < pose.size(); ++j) {
-    if (!pose[j].matrix().allFinite())
-      throw Error("transform is not finite", "joint " + std::to_string(j) + " of the pose");
-  }
 }
 
 /// b = sum_j w_j s_j q_j of one vertex.
@@ -68,7 +40,7 @@ DualQuaternion blend(const std::vector<DualQuaternion>& q, const SkinWeights& we
 }  // namespace
 
 Eigen::MatrixX3d dual_quaternion_blend(const RiggedMesh& rig, const Pose& pose) {
-  require_valid(pose, rig.skeleton.size());
+  require_finite_pose(pose, rig.skeleton.size(), "dual quaternion blend");
   std::vector<DualQuaternion> q;
   for (std::size_t j = 0; j < pose.size(); ++j)
     q.push_back(dual_quaternion(pose[j], rig.skeleton.joints[j].head));
@@ -87,7 +59,7 @@ DualQuaternionBlend::DualQuaternionBlend(const RiggedMesh& rig) : influences_(ri
 }
 
 void DualQuaternionBlend::deform(const Pose& pose, Eigen::MatrixX3d& posed) const {
-  require_valid(pose, influences_.joint_count);
+  require_finite_pose(pose, influences_.joint_count, "dual quaternion blend");
   lanes::JointTable<lanes::DualQuaternion> table(pose.size());
   for (std::size_t j = 0; j < pose.size(); ++j) {
     const auto [q, d] = dual_quaternion(pose[j], heads_[j]);

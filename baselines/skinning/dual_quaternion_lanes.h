@@ -25,8 +25,9 @@ struct Four {
   Double4 x, y, z, w;
 };
 
-[[gnu::always_inline]] inline Four real_parts(const DualQuaternion* table,
-                                              const std::uint16_t* joint) {
+/// A `Joint` has `real`, as DualQuaternion.
+template <class Joint>
+[[gnu::always_inline]] inline Four real_parts(const Joint* table, const std::uint16_t* joint) {
   return {load(table[joint[0]].real.data()), load(table[joint[1]].real.data()),
           load(table[joint[2]].real.data()), load(table[joint[3]].real.data())};
 }
@@ -44,6 +45,13 @@ struct Four {
           load(table[joint[2]].dual.data()), load(table[joint[3]].dual.data())};
 }
 
+/// Weights of four quaternions with the signs that take the shorter way from the pivots.
+[[gnu::always_inline]] inline Double4 signed_weights(const Double4& w, const Four& pivot,
+                                                     const Four& q) {
+  const Double4 dot = sums(pivot.x * q.x, pivot.y * q.y, pivot.z * q.z, pivot.w * q.w);
+  return dot < 0 ? -w : w;
+}
+
 /// Blends the dual quaternions of four vertices; on return component by component.
 [[gnu::always_inline]] inline void blend(const DualQuaternion* table, const Block& block,
                                          Four& real, Four& dual) {
@@ -54,9 +62,7 @@ struct Four {
   add(dual, first, dual_parts(table, block.joints));
   for (int s = 1; s < block.slots; ++s) {
     const Four q = real_parts(table, block.joints + 4 * s);
-    const Double4 dot = sums(pivot.x * q.x, pivot.y * q.y, pivot.z * q.z, pivot.w * q.w);
-    Double4 w = load(block.weights + 4 * (s - 1));
-    w = dot < 0 ? -w : w;
+    const Double4 w = signed_weights(load(block.weights + 4 * (s - 1)), pivot, q);
     add(real, w, q);
     add(dual, w, dual_parts(table, block.joints + 4 * s));
   }

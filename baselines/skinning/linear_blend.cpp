@@ -41,18 +41,7 @@ void LinearBlend::deform(const Pose& pose, Eigen::MatrixX3d& posed) const {
   posed.resize(influences_.vertex_count, 3);
   const auto kernel = [T = table.data()](const lanes::Block& block, lanes::Double4& x,
                                          lanes::Double4& y, lanes::Double4& z) {
-    switch (block.slots) {
-      case 1:
-        return lanes::blend_block<1>(T, block, x, y, z);
-      case 2:
-        return lanes::blend_block<2>(T, block, x, y, z);
-      case 3:
-        return lanes::blend_block<3>(T, block, x, y, z);
-      case 4:
-        return lanes::blend_block<4>(T, block, x, y, z);
-      default:
-        return lanes::blend_block<0>(T, block, x, y, z);
-    }
+    lanes::blend_block(T, block, x, y, z);
   };
   parallel_blocks(influences_.chunk_slots.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk)

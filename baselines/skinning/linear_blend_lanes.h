@@ -22,8 +22,8 @@ struct BlendedRows {
   Double4 row0, row1, row2;
 };
 
-template <int lane>
-[[gnu::always_inline]] inline void add(const MatrixRows* table, std::uint16_t joint,
+template <int lane, class Joint>
+[[gnu::always_inline]] inline void add(const Joint* table, std::uint16_t joint,
                                        const Double4& weights, BlendedRows& sum) {
   const double* row = table[joint].row.data();
   const Double4 w = spread<lane>(weights);
@@ -33,9 +33,10 @@ template <int lane>
 }
 
 /// Rows of the blended matrix of one vertex. `Slots` > 0 is the number of influences known when
-/// compiling; 0 asks the block. The strongest influence comes last: its weight is known last.
-template <int Slots, int lane>
-[[gnu::always_inline]] inline BlendedRows blend_rows(const MatrixRows* table, const Block& block,
+/// compiling; 0 asks the block. A `Joint` has `row`, as MatrixRows. The strongest influence comes
+/// last: its weight is known last.
+template <int Slots, int lane, class Joint>
+[[gnu::always_inline]] inline BlendedRows blend_rows(const Joint* table, const Block& block,
                                                      const Double4& first_weight) {
   BlendedRows sum{all(0), all(0), all(0)};
   const int slots = Slots > 0 ? Slots : block.slots;
@@ -54,9 +55,9 @@ template <int Slots, int lane>
   return multiply_add(a, x, multiply_add(b, y, multiply_add(c, z, d)));
 }
 
-template <int Slots>
-[[gnu::always_inline]] inline void blend_block(const MatrixRows* table, const Block& block,
-                                               Double4& x, Double4& y, Double4& z) {
+template <int Slots, class Joint>
+[[gnu::always_inline]] inline void blend_slots(const Joint* table, const Block& block, Double4& x,
+                                               Double4& y, Double4& z) {
   const Double4 w = first_weight(block);
   const BlendedRows a = blend_rows<Slots, 0>(table, block, w),
                     b = blend_rows<Slots, 1>(table, block, w),
@@ -67,6 +68,24 @@ template <int Slots>
   x = apply(a.row0, b.row0, c.row0, d.row0, rest_x, rest_y, rest_z);
   y = apply(a.row1, b.row1, c.row1, d.row1, rest_x, rest_y, rest_z);
   z = apply(a.row2, b.row2, c.row2, d.row2, rest_x, rest_y, rest_z);
+}
+
+/// The rest positions of a block, moved by their blended matrices.
+template <class Joint>
+[[gnu::always_inline]] inline void blend_block(const Joint* table, const Block& block, Double4& x,
+                                               Double4& y, Double4& z) {
+  switch (block.slots) {
+    case 1:
+      return blend_slots<1>(table, block, x, y, z);
+    case 2:
+      return blend_slots<2>(table, block, x, y, z);
+    case 3:
+      return blend_slots<3>(table, block, x, y, z);
+    case 4:
+      return blend_slots<4>(table, block, x, y, z);
+    default:
+      return blend_slots<0>(table, block, x, y, z);
+  }
 }
 
 }  // namespace geoprior::skinning::lanes

@@ -1,4 +1,6 @@
+#include "baselines/skinning/centres_of_rotation.h"
 #include "baselines/skinning/delta_mush.h"
+#include "baselines/skinning/direct_delta_mush.h"
 #include "baselines/skinning/dual_quaternion.h"
 #include "baselines/skinning/linear_blend.h"
 #include "core/topology.h"
@@ -120,11 +122,25 @@ std::vector<MethodEntry> methods() {
           [](const S& scene, const NoOptions&, RunContext&) {
             return std::make_unique<SkinningMethod<DualQuaternionBlend>>(scene);
           }),
+      method_entry<S, CentresOfRotationOptions>(
+          "centers-of-rotation", true,
+          "blended rotation about the place of the skin with similar weights",
+          "Le and Hodgins 2016",
+          [](const S& scene, const CentresOfRotationOptions& options, RunContext&) {
+            return std::make_unique<SkinningMethod<CentresOfRotation>>(scene, options);
+          }),
       method_entry<S, DeltaMushOptions>(
           "delta-mush", true, "smoothed linear blend with the rest pose's detail put back",
           "Mancewicz et al. 2014",
           [](const S& scene, const DeltaMushOptions& options, RunContext&) {
             return std::make_unique<SkinningMethod<DeltaMush>>(scene, options);
+          }),
+      method_entry<S, DirectDeltaMushOptions>(
+          "direct-delta-mush", true,
+          "rigid motion that fits the smoothed skin around each vertex, from precomputed matrices",
+          "Le and Lewis 2019",
+          [](const S& scene, const DirectDeltaMushOptions& options, RunContext&) {
+            return std::make_unique<SkinningMethod<DirectDeltaMush>>(scene, options);
           }),
       method_entry<S, ImplicitOptions>(
           "implicit", false, "dual quaternions, then projection onto a field of blended bones",

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "models/skinning/bone_visibility.h"
-#include "models/skinning/laplacian.h"
+#include "models/skinning/cotangent_laplacian.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -84,10 +84,25 @@ std::vector<Contact> bone_contacts(const TriMesh& mesh, const std::vector<Bone>&
   return contacts;
 }
 
+/// A third of the area of the triangles around each vertex (m^2).
+Eigen::VectorXd barycentric_areas(const TriMesh& mesh) {
+  Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh.vertex_count());
+  for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::RowVector3d p = mesh.V.row(mesh.F(t, k));
+      const Eigen::RowVector3d to_a = mesh.V.row(mesh.F(t, (k + 1) % 3)) - p;
+      const Eigen::RowVector3d to_b = mesh.V.row(mesh.F(t, (k + 2) % 3)) - p;
+      area(mesh.F(t, k)) += to_a.cross(to_b).norm() / 6;
+    }
+  }
+  return area;
+}
+
 /// Temperatures, one column a bone.
 Eigen::MatrixXd equilibrium(const TriMesh& mesh, const std::vector<Contact>& contacts,
                             std::size_t bone_count) {
-  auto [system, area] = positive_cotangent_laplacian(mesh);
+  const Eigen::VectorXd area = barycentric_areas(mesh);
+  Sparse system = positive_cotangent_laplacian(mesh);
   const double smallest_area = 1e-9 * area.mean();
   Eigen::MatrixXd rhs =
       Eigen::MatrixXd::Zero(mesh.vertex_count(), static_cast<Eigen::Index>(bone_count));

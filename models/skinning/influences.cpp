@@ -27,7 +27,9 @@ void sorted_influences(const SkinWeights& weights, int vertex, std::vector<Influ
                    [](const Influence& a, const Influence& b) { return a.weight > b.weight; });
 }
 
-void check(const RiggedMesh& rig) {
+}  // namespace
+
+void require_skinnable(const RiggedMesh& rig) {
   validate(rig.weights, rig.mesh.vertex_count(), rig.skeleton.size());
   if (rig.skeleton.size() > std::numeric_limits<std::uint16_t>::max())
     throw Error("too many joints", "skeleton", "at most 65535");
@@ -37,11 +39,9 @@ void check(const RiggedMesh& rig) {
   }
 }
 
-}  // namespace
-
 PackedInfluences::PackedInfluences(const RiggedMesh& rig)
     : vertex_count(rig.mesh.vertex_count()), joint_count(rig.skeleton.size()) {
-  check(rig);
+  require_skinnable(rig);
   const int blocks = (vertex_count + kLanes - 1) / kLanes;
   std::array<std::vector<Influence>, kLanes> lane;
   std::size_t total_slots = 0;

@@ -8,6 +8,10 @@
 
 namespace geoprior::skinning {
 
+/// @throws Error  when the weights are no partition of unity (names the vertex), a position is not
+/// finite, or there are more than 65535 joints
+void require_skinnable(const RiggedMesh& rig);
+
 /// Rest positions and influences of every vertex, packed for streaming: what linear and dual
 /// quaternion blending read.
 ///
@@ -20,8 +24,7 @@ struct PackedInfluences {
   static constexpr int kLanes = 4;
   static constexpr int kChunkBlocks = 128;  ///< blocks of a task: 512 vertices
 
-  /// @throws Error  when the weights are no partition of unity (names the vertex), a position is
-  /// not finite, or there are more than 65535 joints
+  /// @throws Error  as require_skinnable()
   explicit PackedInfluences(const RiggedMesh& rig);
 
   int vertex_count = 0;

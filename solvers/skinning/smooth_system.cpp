@@ -4,10 +4,19 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "models/skinning/laplacian.h"
+#include "models/skinning/cotangent_laplacian.h"
 
 namespace geoprior::skinning {
 namespace {
+
+/// A third of the area of its triangles, for each vertex (m^2).
+Eigen::VectorXd vertex_areas(const TriMesh& mesh) {
+  const Eigen::VectorXd triangle = triangle_areas(mesh.V, mesh.F);
+  Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh.vertex_count());
+  for (Eigen::Index t = 0; t < mesh.F.rows(); ++t)
+    for (int k = 0; k < 3; ++k) area(mesh.F(t, k)) += triangle(t) / 3;
+  return area;
+}
 
 /// Residual over that of the start at which the solution is good enough for a skin.
 constexpr double kEnough = 1e-3;
@@ -20,15 +29,16 @@ constexpr int kReach = 3;
 SmoothSystem::SmoothSystem(const TriMesh& mesh, const SkinState& state,
                            const std::vector<float>& radius)
     : size_(state.size()) {
-  const SurfaceLaplacian surface = positive_cotangent_laplacian(mesh);
-  const double mean_area = surface.area.mean();
+  const Eigen::SparseMatrix<double> stiffness = positive_cotangent_laplacian(mesh);
+  const Eigen::VectorXd areas = vertex_areas(mesh);
+  const double mean_area = areas.mean();
   std::vector<int> slot_of(size_);
   for (std::size_t s = 0; s < size_; ++s)
     slot_of[static_cast<std::size_t>(state.vertex[s])] = static_cast<int>(s);
   offset_.push_back(0);
   for (std::size_t s = 0; s < size_; ++s) {
     const int v = state.vertex[s];
-    for (Eigen::SparseMatrix<double>::InnerIterator it(surface.stiffness, v); it; ++it) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(stiffness, v); it; ++it) {
       if (it.row() == v) {
         diagonal_.push_back(static_cast<float>(it.value()));
         continue;
@@ -37,7 +47,7 @@ SmoothSystem::SmoothSystem(const TriMesh& mesh, const SkinState& state,
       conductance_.push_back(static_cast<float>(-it.value()));
     }
     offset_.push_back(static_cast<int>(neighbour_.size()));
-    const double area = std::max(1e-3 * mean_area, surface.area(v));
+    const double area = std::max(1e-3 * mean_area, areas(v));
     const double r2 = static_cast<double>(radius[s]) * static_cast<double>(radius[s]);
     area_.push_back(static_cast<float>(area / mean_area));
     bend_.push_back(static_cast<float>(r2 * r2 / (area * mean_area)));

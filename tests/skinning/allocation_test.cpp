@@ -1,7 +1,9 @@
 // A pose is solved in the buffers of the one before it.
 #include <gtest/gtest.h>
 
+#include "baselines/skinning/centres_of_rotation.h"
 #include "baselines/skinning/delta_mush.h"
+#include "baselines/skinning/direct_delta_mush.h"
 #include "baselines/skinning/dual_quaternion.h"
 #include "baselines/skinning/linear_blend.h"
 #include "core/parallel.h"
@@ -53,6 +55,16 @@ TEST_F(AllocationsOfAPose, DualQuaternionsMakeNone) {
 
 TEST_F(AllocationsOfAPose, DeltaMushMakesNone) {
   DeltaMush method(rig, {});
+  expect_none([&](const Pose& pose) { method.deform(pose, posed); });
+}
+
+TEST_F(AllocationsOfAPose, CentresOfRotationMakeNone) {
+  const CentresOfRotation method(rig);
+  expect_none([&](const Pose& pose) { method.deform(pose, posed); });
+}
+
+TEST_F(AllocationsOfAPose, DirectDeltaMushMakesNone) {
+  const DirectDeltaMush method(rig);
   expect_none([&](const Pose& pose) { method.deform(pose, posed); });
 }
 

@@ -142,7 +142,8 @@ TEST_F(BadCharacter, ClosedSkinThatFacesInwardsIsTurnedWithAWarning) {
 }
 
 TEST_F(BadCharacter, OpenMeshOfTheTestModelsRunsThroughTheBaselines) {
-  for (const char* method : {"linear-blend", "dual-quaternion", "delta-mush"}) {
+  for (const char* method : {"linear-blend", "dual-quaternion", "centers-of-rotation", "delta-mush",
+                             "direct-delta-mush"}) {
     fs::remove_all(out());
     const auto result =
         run_skinning(experiment("character = \"glTF2/simple_skin/simple_skin.gltf\"\n"

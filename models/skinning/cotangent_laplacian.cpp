@@ -1,13 +1,10 @@
-#include "models/skinning/laplacian.h"
+#include "models/skinning/cotangent_laplacian.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <vector>
 
 namespace geoprior::skinning {
 namespace {
-
-using Sparse = Eigen::SparseMatrix<double>;
 
 /// Least conductance of an edge: positive, so that heat reaches every vertex of a component; small
 /// beside the cotangent weight of a regular edge (0.58).
@@ -15,10 +12,9 @@ constexpr double kLeastConductance = 1e-5;
 
 }  // namespace
 
-SurfaceLaplacian positive_cotangent_laplacian(const TriMesh& mesh) {
-  Eigen::VectorXd area;
+Eigen::SparseMatrix<double> positive_cotangent_laplacian(const TriMesh& mesh) {
+  using Sparse = Eigen::SparseMatrix<double>;
   std::vector<Eigen::Triplet<double>> entries;
-  area.setZero(mesh.vertex_count());
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const int a = mesh.F(t, (k + 1) % 3), b = mesh.F(t, (k + 2) % 3);
@@ -29,7 +25,6 @@ SurfaceLaplacian positive_cotangent_laplacian(const TriMesh& mesh) {
       const double floor = 1e-3 * to_a.norm() * to_b.norm();
       const double cotangent = floor > 0 ? to_a.dot(to_b) / std::max(twice_area, floor) : 0;
       entries.emplace_back(std::min(a, b), std::max(a, b), 0.5 * cotangent);
-      area(mesh.F(t, k)) += twice_area / 6;
     }
   }
   Sparse edges(mesh.vertex_count(), mesh.vertex_count());
@@ -47,7 +42,7 @@ SurfaceLaplacian positive_cotangent_laplacian(const TriMesh& mesh) {
   }
   Sparse laplacian(mesh.vertex_count(), mesh.vertex_count());
   laplacian.setFromTriplets(entries.begin(), entries.end());
-  return {std::move(laplacian), std::move(area)};
+  return laplacian;
 }
 
 }  // namespace geoprior::skinning
