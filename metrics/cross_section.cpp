@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "metrics/bend_side.h"
 
 namespace geoprior {
 namespace {
@@ -64,16 +65,12 @@ PosedHinge pose_hinge(const JointRegion& region, const JointRegion::Hinge& hinge
   const Eigen::Vector3d m =
       p.distal_transform.linear() * hinge.distal - p.proximal_transform.linear() * hinge.proximal;
   p.bisector = m.norm() > 1e-6 ? Eigen::Vector3d(m.normalized()) : Eigen::Vector3d::Zero();
-  const Eigen::Vector3d across_distal = hinge.bend_axis.cross(hinge.distal);
-  const Eigen::Vector3d across_proximal = hinge.bend_axis.cross(hinge.proximal);
-  p.has_halves = across_distal.norm() > 0.2 && across_proximal.norm() > 0.2;
-  if (p.has_halves) {
-    const Eigen::Matrix3d turn =
-        p.proximal_transform.linear().transpose() * p.distal_transform.linear();
-    const Eigen::Quaterniond q(turn);
-    p.bend_sign = q.vec().dot(hinge.bend_axis) * q.w() < 0 ? -1 : 1;
-    p.outer_distal = -p.bend_sign * across_distal.normalized();
-    p.outer_proximal = p.bend_sign * across_proximal.normalized();
+  const std::optional<BendSides> sides = bend_sides(hinge, pose);
+  p.has_halves = sides.has_value();
+  if (sides) {
+    p.bend_sign = sides->sign;
+    p.outer_distal = sides->distal;
+    p.outer_proximal = sides->proximal;
   } else {
     p.outer_distal = any_orthogonal(hinge.distal);
     p.outer_proximal = any_orthogonal(hinge.proximal);
