@@ -240,6 +240,13 @@ std::vector<double> bisector_limit(const PosedHinge& hinge, const PlaneFrame& po
   return limit;
 }
 
+/// Whether a section at rest is a limb's: rays meet skin all round. Where a palm or a web begins
+/// they do not, and what those of one half meet is no limb's outline.
+bool goes_round(const std::vector<double>& rest) {
+  const auto met = std::count_if(rest.begin(), rest.end(), [](double r) { return !std::isnan(r); });
+  return static_cast<double>(met) >= kEnoughDirections * static_cast<double>(rest.size());
+}
+
 /// Everything the sections of one region read.
 struct Surface {
   const JointRegion& region;
@@ -274,6 +281,7 @@ SectionRatio bone_section(const Surface& surface, const PosedHinge& hinge, doubl
   SectionRatio section;
   section.place = is_distal ? SectionRatio::Place::distal : SectionRatio::Place::proximal;
   section.s = s;
+  if (!goes_round(profiles.rest)) return section;
   section.whole = half_area(profiles, 1, 1).ratio(surface.options.min_share);
   if (!hinge.has_halves) return section;
   section.outer = half_area(profiles, 1, 0).ratio(surface.options.min_share);

@@ -35,7 +35,8 @@ std::vector<int> unasked_vertices(const BoneRings& rings, const Eigen::MatrixX3i
     const std::optional<double> radius = rings.radius(v);
     if (!radius || std::abs(section(v) - 1) > options.section_change) continue;
     const double clear = options.clear_radii * *radius;
-    if (overlap && overlap->meets_ball(reference.row(v).transpose(), clear * clear)) continue;
+    const Eigen::Vector3d x = reference.row(v).transpose();
+    if (overlap && overlap->squared_distance(x) <= clear * clear) continue;
     unasked.push_back(v);
   }
   return unasked;
