@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -18,6 +19,14 @@ constexpr int kEnoughVertices = 6;       // of a ring
 /// Squared distance from the line through the origin along the direction.
 double squared_distance_from_axis(const Eigen::Vector3d& x, const Eigen::Vector3d& direction) {
   return (x - x.dot(direction) * direction).squaredNorm();
+}
+
+/// Quarter about the direction that x lies in.
+int quarter(const Eigen::Vector3d& x, const Eigen::Vector3d& direction) {
+  Eigen::Index least = 0;
+  direction.cwiseAbs().minCoeff(&least);
+  const Eigen::Vector3d u = direction.cross(Eigen::Vector3d::Unit(least));
+  return (x.dot(u) > 0 ? 1 : 0) + (x.dot(direction.cross(u)) > 0 ? 2 : 0);
 }
 
 int strongest_joint(const SkinWeights& weights, int v) {
@@ -35,6 +44,7 @@ int strongest_joint(const SkinWeights& weights, int v) {
 
 BoneRings::BoneRings(const RiggedMesh& rig)
     : ring_of_(rig.mesh.vertex_count(), -1),
+      quarter_of_(rig.mesh.vertex_count(), 0),
       vertex_area_(Eigen::VectorXd::Zero(rig.mesh.vertex_count())) {
   const Eigen::VectorXd areas = triangle_areas(rig.mesh.V, rig.mesh.F);
   for (Eigen::Index t = 0; t < rig.mesh.F.rows(); ++t) {
@@ -86,21 +96,24 @@ void BoneRings::make_rings(const RiggedMesh& rig) {
     const Eigen::Vector3d x = from_head(v);
     const long slice = std::lround(x.dot(axes_[j].direction) / (kSliceShare * radius));
     const auto [it, is_new] = ring_at.emplace(std::pair{j, slice}, static_cast<int>(rings_.size()));
-    if (is_new) rings_.push_back({j, 0, 0, 0});
+    if (is_new) rings_.push_back({j, 0, {}, {}});
     ring_of_[v] = it->second;
+    quarter_of_[v] = quarter(x, axes_[j].direction);
     Ring& ring = rings_[it->second];
     ++ring.vertices;
-    ring.area += vertex_area_(v);
-    ring.mean_square += vertex_area_(v) * squared_distance_from_axis(x, axes_[j].direction);
+    const double moment = vertex_area_(v) * squared_distance_from_axis(x, axes_[j].direction);
+    for (Sector* sector : {&ring.whole, &ring.quarters[quarter_of_[v]]}) {
+      sector->area += vertex_area_(v);
+      sector->moment += moment;
+    }
   }
-  for (Ring& ring : rings_) ring.mean_square /= ring.area;
 }
 
 std::optional<double> BoneRings::radius(int vertex) const {
   if (ring_of_[vertex] < 0) return std::nullopt;
   const Ring& ring = rings_[ring_of_[vertex]];
-  if (ring.vertices < kEnoughVertices || !(ring.mean_square > 0)) return std::nullopt;
-  return std::sqrt(ring.mean_square);
+  if (ring.vertices < kEnoughVertices || !(ring.whole.moment > 0)) return std::nullopt;
+  return std::sqrt(ring.whole.moment / ring.whole.area);
 }
 
 Eigen::VectorXd BoneRings::section_ratios(const Eigen::MatrixX3d& posed, const Pose& pose) const {
@@ -108,22 +121,31 @@ Eigen::VectorXd BoneRings::section_ratios(const Eigen::MatrixX3d& posed, const P
     throw Error(std::to_string(posed.rows()) + " posed vertices", "rings of skin",
                 std::to_string(ring_of_.size()) + ", as at rest");
   }
-  std::vector<double> moment(rings_.size(), 0.0);
+  std::vector<std::array<double, kQuarters>> moments(rings_.size(), {0, 0, 0, 0});
   for (int v = 0; v < vertex_count(); ++v) {
     if (ring_of_[v] < 0) continue;
     const int j = rings_[ring_of_[v]].joint;
     const Eigen::Vector3d x = posed.row(v).transpose() - pose[j] * axes_[j].origin;
     const Eigen::Vector3d direction = (pose[j].linear() * axes_[j].direction).normalized();
-    moment[ring_of_[v]] += vertex_area_(v) * squared_distance_from_axis(x, direction);
+    moments[ring_of_[v]][quarter_of_[v]] +=
+        vertex_area_(v) * squared_distance_from_axis(x, direction);
   }
   Eigen::VectorXd ratios(posed.rows());
   for (int v = 0; v < vertex_count(); ++v) {
     ratios(v) = std::numeric_limits<double>::quiet_NaN();
-    if (!radius(v)) continue;
-    const Ring& ring = rings_[ring_of_[v]];
-    ratios(v) = moment[ring_of_[v]] / ring.area / ring.mean_square;
+    if (radius(v)) ratios(v) = most_changed(rings_[ring_of_[v]], moments[ring_of_[v]]);
   }
   return ratios;
+}
+
+double BoneRings::most_changed(const Ring& ring, const std::array<double, kQuarters>& moments) {
+  double most = std::accumulate(moments.begin(), moments.end(), 0.0) / ring.whole.moment;
+  for (int q = 0; q < kQuarters; ++q) {
+    if (!(ring.quarters[q].moment > 0)) continue;
+    const double ratio = moments[q] / ring.quarters[q].moment;
+    if (std::abs(ratio - 1) > std::abs(most - 1)) most = ratio;
+  }
+  return most;
 }
 
 }  // namespace geoprior

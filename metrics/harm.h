@@ -13,8 +13,9 @@ namespace geoprior {
 ///
 /// Decided on the reference's pose alone, so that it is the same for every method.
 struct HarmOptions {
-  double clear_radii = 1;        ///< distance from any overlap of the reference, in local radii
-  double section_change = 0.02;  ///< of the vertex' ring of skin in the reference's pose
+  double clear_radii = 1;  ///< distance from any overlap of the reference, in local radii
+  double section_change =
+      0.02;  ///< of the vertex' ring, or of any quarter of it, in the reference's pose
 };
 
 /// Vertices that nothing asks a correction of; ascending. A vertex without a ring (BoneRings) is

@@ -233,15 +233,19 @@ std::optional<OverlapStudy> overlap_excess_body(Shared& shared, const Measured& 
 }
 
 std::optional<RegionOverlaps> overlap_of_regions(Shared& shared, const Measured& m) {
-  if (m.scene.regions.empty()) return std::nullopt;
+  const std::optional<OverlapStudy> body = excess(shared, m, nullptr);
+  if (m.scene.regions.empty() || !body) return std::nullopt;
   RegionOverlaps overlaps;
+  OverlapStudy outside = *body;
   for (const JointRegion& region : m.scene.regions) {
     const std::optional<OverlapStudy> study = excess(shared, m, &region);
-    if (!study) return std::nullopt;
+    outside.volume -= study->volume;
+    outside.noise_floor += study->noise_floor;
     overlaps.largest = std::max(overlaps.largest, clipped(*study));
     overlaps.sum += clipped(*study);
     overlaps.cut_area = std::max(overlaps.cut_area, study->cut_area);
   }
+  overlaps.outside = clipped(outside);
   return overlaps;
 }
 

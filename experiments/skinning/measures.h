@@ -85,6 +85,7 @@ Value overlap_excess_ratio(Shared& shared, const Measured& m, const Measured& re
 struct RegionOverlaps {
   double largest = 0;   ///< excess of the region that overlaps most (m^3)
   double sum = 0;       ///< over the regions; where their boxes overlap it counts twice (m^3)
+  double outside = 0;   ///< what the whole body has more than that; 0 up to the noise floors (m^3)
   double cut_area = 0;  ///< of the faces of a region's box that overlap goes through, largest (m^2)
 };
 /// Absent without a region or for an open mesh.

@@ -114,6 +114,10 @@ MetricGroup region_overlaps_group(const SharedPtr& shared) {
            "sum of overlap_excess over the regions of the motion; where their boxes overlap it "
            "counts twice",
            kLow, kVolume, &RegionOverlaps::sum)
+      .row("overlap_excess_outside", "m^3",
+           "overlap_excess_raw_body minus that of all regions of the motion; 0 where it does not "
+           "exceed their noise floors; too small where boxes of regions share an overlap",
+           kLow, kVolume, &RegionOverlaps::outside)
       .row("overlap_cut_area", "m^2",
            "largest area of the faces of a region's box through which its overlap goes on outside, "
            "minus the same at rest: above 0, overlap_excess misses a part that "
