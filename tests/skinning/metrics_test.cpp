@@ -59,9 +59,9 @@ TEST_F(BentTube, RestFrameHasNothingToReport) {
   for (const char* name :
        {"volume_change", "volume_change_global", "overlap_excess", "overlap_excess_raw",
         "intersecting_pairs", "rest_identity", "volume_change_union", "volume_change_union_body",
-        "overlap_excess_body", "overlap_excess_largest", "overlap_excess_sum", "overlap_cut_area",
-        "intersecting_pairs_body", "roughness_max", "roughness_max_outer", "lumps_max",
-        "lumps_rms_outer", "harm"}) {
+        "overlap_excess_body", "overlap_excess_largest", "overlap_excess_sum",
+        "overlap_excess_outside", "overlap_cut_area", "intersecting_pairs_body", "roughness_max",
+        "roughness_max_outer", "lumps_max", "lumps_rms_outer", "harm"}) {
     EXPECT_NEAR(value(name, rest).value(), 0, 1e-12) << name;  // weights that sum to 1 by round-off
   }
   for (const char* name : {"mid_ring_min", "mid_ring_max", "section_shrink", "area_ratio_p05"}) {
@@ -92,6 +92,7 @@ TEST_F(BentTube, OverlapOfTheWholeBodyIsThatOfItsOnlyRegion) {
   const double region = value("overlap_excess_raw", deep).value();
   const double body = value("overlap_excess_raw_body", deep).value();
   EXPECT_EQ(value("overlap_cut_area", deep).value(), 0);
+  EXPECT_EQ(value("overlap_excess_outside", deep).value(), 0);
   EXPECT_NEAR(
       body, region,
       value("overlap_noise_floor", deep).value() + value("overlap_noise_floor_body", deep).value());
@@ -110,6 +111,9 @@ TEST_F(BentTube, OverlapThatARegionsBoxCutsIsSaid) {
   scene.regions.front().extent = -0.5;  // a box of half a radius about the joint
   EXPECT_LT(value("overlap_excess_raw", deep).value(), 0.9 * whole);
   EXPECT_GT(value("overlap_cut_area", deep).value(), 1e-4);
+  EXPECT_DOUBLE_EQ(
+      value("overlap_excess_outside", deep).value(),
+      value("overlap_excess_raw_body", deep).value() - value("overlap_excess_raw", deep).value());
   EXPECT_NEAR(value("overlap_excess_raw_body", deep).value(), whole, 0.02 * whole);
 }
 
