@@ -58,6 +58,7 @@ ContentKey key_of(const RiggedMesh& rig) {
   key.add_matrix(
       Eigen::Map<const Eigen::VectorXi>(rig.weights.innerIndexPtr(), rig.weights.nonZeros()));
   for (const Joint& joint : rig.skeleton.joints) {
+    key.add(static_cast<std::uint64_t>(joint.parent));
     key.add_matrix(joint.head);
     if (joint.tail) key.add_matrix(*joint.tail);
   }
@@ -108,14 +109,6 @@ std::shared_ptr<const TrianglePairList> pairs_of(Shared& shared, const TriMesh& 
   return shared.pairs.get(key_of(mesh, V), [&] {
     return std::make_shared<const TrianglePairList>(intersecting_triangles(V, mesh.F));
   });
-}
-
-std::vector<bool> in_region(const TriMesh& mesh, const JointRegion* region) {
-  std::vector<bool> inside(mesh.F.rows(), region == nullptr);
-  if (region) {
-    for (const int t : region->triangles) inside[t] = true;
-  }
-  return inside;
 }
 
 /// Dual quaternions' overlaps are bounded by, or cross in, these triangles.
@@ -263,17 +256,14 @@ Value overlap_excess_ratio(Shared& shared, const Measured& m, const Measured& re
 }
 
 PairsExcess pairs_excess(Shared& shared, const Measured& m) {
-  const std::vector<bool> inside = in_region(m.mesh(), m.region());
-  PairsExcess pairs;
-  const auto add = [&](const Eigen::MatrixX3d& V, double sign) {
-    for (const auto& [a, b] : *pairs_of(shared, m.mesh(), V)) {
-      pairs.body += sign;
-      if (inside[a] || inside[b]) pairs.region += sign;
-    }
+  const auto count = [&](const Eigen::MatrixX3d& V) -> PairsExcess {
+    const auto pairs = pairs_of(shared, m.mesh(), V);
+    const auto all = static_cast<int>(pairs->size());
+    return {m.region() ? pairs_in_region(*pairs, *m.region()) : all, all};
   };
-  add(m.posed, 1);
-  add(m.mesh().V, -1);
-  return pairs;
+  const PairsExcess posed = count(m.posed);
+  const PairsExcess rest = count(m.mesh().V);
+  return {posed.region - rest.region, posed.body - rest.body};
 }
 
 std::optional<RoughnessMeasures> roughness(Shared& shared, const Measured& m) {

@@ -93,8 +93,8 @@ std::optional<RegionOverlaps> overlap_of_regions(Shared& shared, const Measured&
 
 /// Intersecting pairs above rest.
 struct PairsExcess {
-  double region = 0;  ///< one of the two in the first region; anywhere without one
-  double body = 0;
+  int region = 0;  ///< one of the two in the first region; anywhere without one
+  int body = 0;
 };
 PairsExcess pairs_excess(Shared& shared, const Measured& m);
 
