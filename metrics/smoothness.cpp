@@ -21,9 +21,9 @@ bool equally_spaced(std::span<const double> parameters) {
 namespace {
 
 /// Rows that are looked at, checked against all frames.
-std::vector<int> rows_of(const std::vector<Eigen::MatrixX3d>& positions,
-                         std::span<const double> parameters, const std::vector<int>& vertices,
-                         const std::string& who) {
+std::vector<int> checked_rows(const std::vector<Eigen::MatrixX3d>& positions,
+                              std::span<const double> parameters, const std::vector<int>& vertices,
+                              const std::string& who) {
   if (positions.size() != parameters.size()) {
     throw Error(std::to_string(parameters.size()) + " parameters", who,
                 std::to_string(positions.size()) + ", one a frame");
@@ -53,7 +53,7 @@ void require_monotone(std::span<const double> parameters) {
 
 double second_difference_max(const std::vector<Eigen::MatrixX3d>& positions,
                              std::span<const double> parameters, const std::vector<int>& vertices) {
-  const std::vector<int> rows = rows_of(positions, parameters, vertices, "second difference");
+  const std::vector<int> rows = checked_rows(positions, parameters, vertices, "second difference");
   if (!equally_spaced(parameters)) {
     throw Error("parameters are not equally spaced", "second difference", "equal steps");
   }
@@ -71,7 +71,8 @@ double second_difference_max(const std::vector<Eigen::MatrixX3d>& positions,
 std::optional<MotionSmoothness> motion_smoothness(const std::vector<Eigen::MatrixX3d>& positions,
                                                   std::span<const double> parameters,
                                                   const std::vector<int>& vertices) {
-  const std::vector<int> rows = rows_of(positions, parameters, vertices, "smoothness of motion");
+  const std::vector<int> rows =
+      checked_rows(positions, parameters, vertices, "smoothness of motion");
   require_monotone(parameters);
   const std::size_t steps = parameters.empty() ? 0 : parameters.size() - 1;
   if (steps < 3) return std::nullopt;
