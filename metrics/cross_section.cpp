@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "metrics/bend_side.h"
 
 namespace geoprior {
 namespace {
@@ -64,16 +65,12 @@ PosedHinge pose_hinge(const JointRegion& region, const JointRegion::Hinge& hinge
   const Eigen::Vector3d m =
       p.distal_transform.linear() * hinge.distal - p.proximal_transform.linear() * hinge.proximal;
   p.bisector = m.norm() > 1e-6 ? Eigen::Vector3d(m.normalized()) : Eigen::Vector3d::Zero();
-  const Eigen::Vector3d across_distal = hinge.bend_axis.cross(hinge.distal);
-  const Eigen::Vector3d across_proximal = hinge.bend_axis.cross(hinge.proximal);
-  p.has_halves = across_distal.norm() > 0.2 && across_proximal.norm() > 0.2;
-  if (p.has_halves) {
-    const Eigen::Matrix3d turn =
-        p.proximal_transform.linear().transpose() * p.distal_transform.linear();
-    const Eigen::Quaterniond q(turn);
-    p.bend_sign = q.vec().dot(hinge.bend_axis) * q.w() < 0 ? -1 : 1;
-    p.outer_distal = -p.bend_sign * across_distal.normalized();
-    p.outer_proximal = p.bend_sign * across_proximal.normalized();
+  const std::optional<BendSides> sides = bend_sides(hinge, pose);
+  p.has_halves = sides.has_value();
+  if (sides) {
+    p.bend_sign = sides->sign;
+    p.outer_distal = sides->distal;
+    p.outer_proximal = sides->proximal;
   } else {
     p.outer_distal = any_orthogonal(hinge.distal);
     p.outer_proximal = any_orthogonal(hinge.proximal);
@@ -243,6 +240,13 @@ std::vector<double> bisector_limit(const PosedHinge& hinge, const PlaneFrame& po
   return limit;
 }
 
+/// Whether a section at rest is a limb's: rays meet skin all round. Where a palm or a web begins
+/// they do not, and what those of one half meet is no limb's outline.
+bool goes_round(const std::vector<double>& rest) {
+  const auto met = std::count_if(rest.begin(), rest.end(), [](double r) { return !std::isnan(r); });
+  return static_cast<double>(met) >= kEnoughDirections * static_cast<double>(rest.size());
+}
+
 /// Everything the sections of one region read.
 struct Surface {
   const JointRegion& region;
@@ -277,6 +281,7 @@ SectionRatio bone_section(const Surface& surface, const PosedHinge& hinge, doubl
   SectionRatio section;
   section.place = is_distal ? SectionRatio::Place::distal : SectionRatio::Place::proximal;
   section.s = s;
+  if (!goes_round(profiles.rest)) return section;
   section.whole = half_area(profiles, 1, 1).ratio(surface.options.min_share);
   if (!hinge.has_halves) return section;
   section.outer = half_area(profiles, 1, 0).ratio(surface.options.min_share);

@@ -19,9 +19,11 @@ struct CrossSectionOptions {
 /// Area of one posed section over that of the same section at rest; both halves apart.
 ///
 /// A section is the radial profile rho(phi) of the skin in a plane about a centre: the distance at
-/// which a ray first meets the skin of the region; its area is the sum of rho^2 dphi / 2. A half of
-/// which more than 5 % of the rays meet nothing (a palm, that is no limb) is not compared. Three
-/// families of planes, all moved with the bones:
+/// which a ray first meets the skin of the region; its area is the sum of rho^2 dphi / 2. Where
+/// more than 5 % of the rays meet nothing at rest the section is no limb's (a palm, a web between
+/// fingers): neither half of it is compared, because the rays of the other may run along the web.
+/// Nor is a half that more than 5 % of its rays miss in the pose. Three families of planes, all
+/// moved with the bones:
 ///  - `proximal`, `distal`: planes orthogonal to a bone at distance s from the joint; the centre is
 ///    the centroid of the rest section, carried by the bone;
 ///  - `wedge`: half planes that contain the bend axis and point outwards, between the two bones'

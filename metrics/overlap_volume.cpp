@@ -1,6 +1,7 @@
 #include "metrics/overlap_volume.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -23,6 +24,15 @@ struct OverlapGrid {
   double x0, y0, spacing;  // of column (0, 0)
   int width, height;
   double z_low, z_high;
+
+  [[nodiscard]] std::size_t strips() const {
+    return static_cast<std::size_t>((height + kRowsOfStrip - 1) / kRowsOfStrip);
+  }
+  /// Whether the column stands beside a side face of the box.
+  [[nodiscard]] bool is_border(int column) const {
+    const int i = column % width, j = column / width;
+    return i == 0 || j == 0 || i == width - 1 || j == height - 1;
+  }
 };
 
 OverlapGrid make_grid(const Eigen::AlignedBox3d& box, double spacing, int axis) {
@@ -58,6 +68,7 @@ struct Corner {
 struct Crossing {
   double z;
   int column;
+  int triangle;
   int sign;  ///< +1 where w rises with z
 };
 
@@ -88,7 +99,7 @@ RowRange rows_of(const std::array<Corner, 3>& c, int height) {
 }
 
 /// The crossings of one triangle with the columns of rows [first, last].
-void rasterise(const std::array<Corner, 3>& c, RowRange rows, const OverlapGrid& grid,
+void rasterise(const std::array<Corner, 3>& c, int triangle, RowRange rows, const OverlapGrid& grid,
                std::vector<Crossing>& crossings) {
   const auto [low, high] = std::minmax({c[0].x, c[1].x, c[2].x});
   const int first = static_cast<int>(std::ceil(std::max(low, 0.0)));
@@ -102,23 +113,50 @@ void rasterise(const std::array<Corner, 3>& c, RowRange rows, const OverlapGrid&
       if (l0 != l1 || l1 != l2) continue;
       // Counter-clockwise seen from +z is a surface that faces +z: w falls there.
       const double z = (a0 * c[0].z + a1 * c[1].z + a2 * c[2].z) / (a0 + a1 + a2);
-      crossings.push_back({z, j * grid.width + i, l0 ? -1 : 1});
+      crossings.push_back({z, j * grid.width + i, triangle, l0 ? -1 : 1});
     }
   }
 }
 
-/// Integral of max(0, w - 1) between z_low and z_high along one column, its crossings sorted by z.
-double integrate(const Crossing* begin, const Crossing* end, const OverlapGrid& grid) {
-  double sum = 0;
+/// Lengths along one column between z_low and z_high (m).
+struct ColumnSums {
+  double overlap = 0;     ///< integral of max(0, w - 1)
+  double inside_out = 0;  ///< integral of max(0, -w)
+  int cut_ends = 0;       ///< times that an overlap goes on beyond z_low or z_high
+};
+
+/// Over the crossings of a column, sorted by z.
+ColumnSums integrate(const Crossing* begin, const Crossing* end, const OverlapGrid& grid) {
+  ColumnSums sums;
   int winding = 0;
   for (const Crossing* c = begin; c + 1 < end; ++c) {
     winding += c->sign;
-    if (winding < 2) continue;
+    if (winding == 0 || winding == 1) continue;
     const double low = std::max(c->z, grid.z_low);
     const double high = std::min((c + 1)->z, grid.z_high);
-    if (high > low) sum += (winding - 1) * (high - low);
+    if (!(high > low)) continue;
+    if (winding < 0) {
+      sums.inside_out -= winding * (high - low);
+      continue;
+    }
+    sums.overlap += (winding - 1) * (high - low);
+    sums.cut_ends += (c->z < grid.z_low ? 1 : 0) + ((c + 1)->z > grid.z_high ? 1 : 0);
   }
-  return sum;
+  return sums;
+}
+
+/// Marks the triangles in which a column enters or leaves an overlap within the box.
+void mark_overlap(const Crossing* begin, const Crossing* end, const OverlapGrid& grid,
+                  std::vector<int>& triangles) {
+  int below = 0;
+  for (const Crossing* c = begin; c != end; ++c) {
+    const int above = below + c->sign;
+    const bool bounds_overlap = (below >= 2) != (above >= 2);
+    if (bounds_overlap && c->z >= grid.z_low && c->z <= grid.z_high) {
+      triangles.push_back(c->triangle);
+    }
+    below = above;
+  }
 }
 
 /// What a thread needs for one strip after another.
@@ -141,13 +179,15 @@ void sort_by_column(StripBuffers& b, int first_column, int columns) {
   for (const Crossing& c : b.crossings) b.sorted[b.end_of_column[slot(c)]++] = c;
 }
 
-OverlapVolume integrate_strip(StripBuffers& b, int first_column, int columns,
-                              const OverlapGrid& grid) {
+/// Calls `visit(column, first, last)` with the crossings of each column, sorted by z; returns how
+/// many columns crossed anything, and how many of those did not balance and were left out.
+template <class Visit>
+OverlapVolume visit_columns(StripBuffers& b, int first_column, int columns, const Visit& visit) {
   sort_by_column(b, first_column, columns);
   OverlapVolume strip;
   std::size_t begin = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(columns); ++i) {
-    const std::size_t end = b.end_of_column[i];
+  for (int i = 0; i < columns; ++i) {
+    const std::size_t end = b.end_of_column[static_cast<std::size_t>(i)];
     if (begin == end) continue;
     Crossing* first = b.sorted.data() + begin;
     Crossing* last = b.sorted.data() + end;
@@ -160,9 +200,26 @@ OverlapVolume integrate_strip(StripBuffers& b, int first_column, int columns,
       continue;
     }
     std::sort(first, last, [](const Crossing& l, const Crossing& r) { return l.z < r.z; });
-    strip.volume += integrate(first, last, grid);
+    visit(first_column + i, first, last);
   }
   return strip;
+}
+
+/// Sums over the columns of a strip; lengths are not yet multiplied by the spacing.
+OverlapVolume integrate_strip(StripBuffers& b, int first_column, int columns,
+                              const OverlapGrid& grid) {
+  OverlapVolume sums;
+  const auto add = [&](int column, const Crossing* first, const Crossing* last) {
+    const ColumnSums c = integrate(first, last, grid);
+    sums.volume += c.overlap * grid.spacing * grid.spacing;
+    sums.inside_out += c.inside_out * grid.spacing * grid.spacing;
+    sums.cut_area += c.cut_ends * grid.spacing * grid.spacing;
+    if (grid.is_border(column)) sums.cut_area += c.overlap * grid.spacing;
+  };
+  const OverlapVolume counted = visit_columns(b, first_column, columns, add);
+  sums.columns = counted.columns;
+  sums.unbalanced_columns = counted.unbalanced_columns;
+  return sums;
 }
 
 std::vector<Corner> project(const Eigen::MatrixX3d& V, const OverlapGrid& grid) {
@@ -184,8 +241,7 @@ std::array<Corner, 3> corners_of(const std::vector<Corner>& corners, const Eigen
 std::vector<std::vector<int>> triangles_of_strips(const std::vector<Corner>& corners,
                                                   const Eigen::MatrixX3i& F,
                                                   const OverlapGrid& grid) {
-  const int strips = (grid.height + kRowsOfStrip - 1) / kRowsOfStrip;
-  std::vector<std::vector<int>> of_strip(strips);
+  std::vector<std::vector<int>> of_strip(grid.strips());
   for (Eigen::Index t = 0; t < F.rows(); ++t) {
     const std::array<Corner, 3> c = corners_of(corners, F, t);
     const auto [low, high] = std::minmax({c[0].x, c[1].x, c[2].x});
@@ -198,18 +254,12 @@ std::vector<std::vector<int>> triangles_of_strips(const std::vector<Corner>& cor
   return of_strip;
 }
 
-}  // namespace
-
-OverlapVolume overlap_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
-                             const Eigen::AlignedBox3d& box, double spacing, int axis) {
-  if (!(spacing > 0)) {
-    throw Error("column spacing " + std::to_string(spacing), "overlap volume", "a positive length");
-  }
-  if (box.isEmpty() || F.rows() == 0) return {};
-  const OverlapGrid grid = make_grid(box, spacing, axis);
+/// Calls `finish(strip, buffers, first column, columns)` for every strip of the grid, in parallel.
+template <class Finish>
+void each_strip(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F, const OverlapGrid& grid,
+                const Finish& finish) {
   const std::vector<Corner> corners = project(V, grid);
   const std::vector<std::vector<int>> of_strip = triangles_of_strips(corners, F, grid);
-  std::vector<OverlapVolume> partial(of_strip.size());
   parallel_blocks(of_strip.size(), 1, [&](std::size_t begin, std::size_t end) {
     StripBuffers buffers;
     for (std::size_t s = begin; s < end; ++s) {
@@ -220,20 +270,76 @@ OverlapVolume overlap_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& 
         RowRange rows = rows_of(c, grid.height);
         rows.first = std::max(rows.first, strip_first);
         rows.last = std::min(rows.last, strip_first + kRowsOfStrip - 1);
-        rasterise(c, rows, grid, buffers.crossings);
+        rasterise(c, t, rows, grid, buffers.crossings);
       }
       const int rows_here = std::min(kRowsOfStrip, grid.height - strip_first);
-      partial[s] = integrate_strip(buffers, strip_first * grid.width, rows_here * grid.width, grid);
+      finish(s, buffers, strip_first * grid.width, rows_here * grid.width);
     }
+  });
+}
+
+void require_spacing(double spacing) {
+  if (spacing > 0) return;
+  throw Error("column spacing " + std::to_string(spacing), "overlap volume", "a positive length");
+}
+
+Eigen::AlignedBox3d bounds_of_triangles(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F) {
+  Eigen::AlignedBox3d box;
+  for (const int v : F.reshaped()) box.extend(V.row(v).transpose());
+  return box;
+}
+
+int longest_axis(const Eigen::AlignedBox3d& box) {
+  Eigen::Index axis = 0;
+  if (!box.isEmpty()) box.sizes().maxCoeff(&axis);
+  return static_cast<int>(axis);
+}
+
+}  // namespace
+
+OverlapVolume overlap_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
+                             const Eigen::AlignedBox3d& box, double spacing, int axis) {
+  require_spacing(spacing);
+  if (box.isEmpty() || F.rows() == 0) return {};
+  const OverlapGrid grid = make_grid(box, spacing, axis);
+  std::vector<OverlapVolume> partial(grid.strips());
+  each_strip(V, F, grid, [&](std::size_t s, StripBuffers& buffers, int first, int columns) {
+    partial[s] = integrate_strip(buffers, first, columns, grid);
   });
   OverlapVolume total;
   for (const OverlapVolume& p : partial) {
     total.volume += p.volume;
+    total.inside_out += p.inside_out;
+    total.cut_area += p.cut_area;
     total.columns += p.columns;
     total.unbalanced_columns += p.unbalanced_columns;
   }
-  total.volume *= spacing * spacing;
   return total;
+}
+
+std::vector<int> triangles_about_overlap(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
+                                         double spacing) {
+  require_spacing(spacing);
+  const Eigen::AlignedBox3d box = bounds_of_triangles(V, F);
+  if (box.isEmpty()) return {};
+  const OverlapGrid grid = make_grid(box, spacing, longest_axis(box));
+  std::vector<std::vector<int>> partial(grid.strips());
+  each_strip(V, F, grid, [&](std::size_t s, StripBuffers& buffers, int first, int columns) {
+    visit_columns(buffers, first, columns, [&](int, const Crossing* begin, const Crossing* end) {
+      mark_overlap(begin, end, grid, partial[s]);
+    });
+  });
+  std::vector<int> triangles;
+  for (const std::vector<int>& p : partial) triangles.insert(triangles.end(), p.begin(), p.end());
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  return triangles;
+}
+
+double union_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F, double spacing) {
+  const Eigen::AlignedBox3d box = bounds_of_triangles(V, F);
+  const OverlapVolume overlap = overlap_volume(V, F, box, spacing, longest_axis(box));
+  return signed_volume(V, F) - overlap.volume + overlap.inside_out;
 }
 
 OverlapStudy overlap_study(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
@@ -248,6 +354,8 @@ OverlapStudy overlap_study(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
   const OverlapVolume across = overlap_volume(V, F, box, spacing, axes[1]);
   OverlapStudy study;
   study.volume = fine.volume;
+  study.inside_out = fine.inside_out;
+  study.cut_area = fine.cut_area;
   study.noise_floor =
       std::max({std::abs(coarse.volume - fine.volume), std::abs(coarse.volume - across.volume),
                 spacing * spacing / 4 * depth_scale});

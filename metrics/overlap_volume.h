@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
+#include <vector>
 
 #include "core/mesh.h"
 #include "core/skeleton.h"
@@ -25,6 +25,8 @@ namespace geoprior {
 /// The result does not depend on the number of threads.
 struct OverlapVolume {
   double volume = 0;           ///< m^3
+  double inside_out = 0;       ///< integral of max(0, -w) (m^3)
+  double cut_area = 0;         ///< of the box's faces that lie in the overlap (m^2): 0 unless cut
   int columns = 0;             ///< that crossed anything
   int unbalanced_columns = 0;  ///< left out
 };
@@ -41,6 +43,8 @@ OverlapVolume overlap_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& 
 struct OverlapStudy {
   double volume = 0;       ///< along the first axis at half the spacing (m^3)
   double noise_floor = 0;  ///< what cannot be told from nothing (m^3)
+  double inside_out = 0;   ///< of the same columns, as `cut_area` (m^3)
+  double cut_area = 0;     ///< overlap goes on outside the box across this area (m^2)
   int unbalanced_columns = 0;
 };
 
@@ -52,6 +56,17 @@ struct OverlapStudy {
 /// `depth_scale` long, may be missed or seen twice.
 OverlapStudy overlap_study(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
                            const Eigen::AlignedBox3d& box, double spacing, double depth_scale);
+
+/// Triangles of a closed mesh in which columns enter or leave an overlap: they bound it. Ascending.
+/// Overlaps that fit between the columns are missed: `intersecting_triangles` finds those.
+/// @throws Error   as `overlap_volume`
+std::vector<int> triangles_about_overlap(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
+                                         double spacing);
+
+/// Volume of the points inside a closed mesh, however often they are (m^3): the signed volume less
+/// the overlap, plus what the signed volume takes off where the surface is inside out.
+/// @throws Error   as `overlap_volume`
+double union_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F, double spacing);
 
 /// Box in which a region's overlap counts: the axis-aligned box of the balls of (extent + 1) radii
 /// about the region's posed joints. It depends on the pose alone, so it is the same for every

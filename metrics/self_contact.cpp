@@ -34,18 +34,16 @@ class TrianglePairs {
     }
   }
 
-  /// Calls `found(a, b)` for every intersecting pair for which `wanted(a, b)`, in no useful order.
-  template <class Wanted, class Found>
-  void each(const Wanted& wanted, const Found& found) const {
+  /// Calls `found(a, b)` for every intersecting pair, in no useful order.
+  template <class Found>
+  void each(const Found& found) const {
     std::vector<const Box*> pointers;
     pointers.reserve(boxes_.size());
     for (const Box& box : boxes_) pointers.push_back(&box);
-    CGAL::box_self_intersection_d(
-        pointers.begin(), pointers.end(), [&](const Box* a, const Box* b) {
-          if (wanted(a->info(), b->info()) && meet(a->info(), b->info())) {
-            found(a->info(), b->info());
-          }
-        });
+    CGAL::box_self_intersection_d(pointers.begin(), pointers.end(),
+                                  [&](const Box* a, const Box* b) {
+                                    if (meet(a->info(), b->info())) found(a->info(), b->info());
+                                  });
   }
 
  private:
@@ -97,10 +95,9 @@ class TrianglePairs {
 std::vector<std::array<int, 2>> intersecting_triangles(const Eigen::MatrixX3d& V,
                                                        const Eigen::MatrixX3i& F) {
   std::vector<std::array<int, 2>> pairs;
-  TrianglePairs(V, F).each([](int, int) { return true; },
-                           [&](int a, int b) {
-                             pairs.push_back({std::min(a, b), std::max(a, b)});
-                           });
+  TrianglePairs(V, F).each([&](int a, int b) {
+    pairs.push_back({std::min(a, b), std::max(a, b)});
+  });
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
@@ -109,14 +106,13 @@ int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F) {
   return static_cast<int>(intersecting_triangles(V, F).size());
 }
 
-int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
-                       const JointRegion& region) {
-  std::vector<bool> inside(F.rows(), false);
-  for (const int t : region.triangles) inside[t] = true;
-  int count = 0;
-  TrianglePairs(V, F).each([&](int a, int b) { return inside[a] || inside[b]; },
-                           [&](int, int) { ++count; });
-  return count;
+int pairs_in_region(std::span<const std::array<int, 2>> pairs, const JointRegion& region) {
+  const auto inside = [&](int t) {
+    return std::binary_search(region.triangles.begin(), region.triangles.end(), t);
+  };
+  return static_cast<int>(std::count_if(pairs.begin(), pairs.end(), [&](const auto& pair) {
+    return inside(pair[0]) || inside(pair[1]);
+  }));
 }
 
 }  // namespace geoprior

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "core/mesh.h"
@@ -25,8 +26,7 @@ int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F);
 std::vector<std::array<int, 2>> intersecting_triangles(const Eigen::MatrixX3d& V,
                                                        const Eigen::MatrixX3i& F);
 
-/// Number of intersecting pairs of which at least one triangle belongs to the region.
-int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
-                       const JointRegion& region);
+/// Number of the pairs of which at least one triangle belongs to the region.
+int pairs_in_region(std::span<const std::array<int, 2>> pairs, const JointRegion& region);
 
 }  // namespace geoprior

@@ -6,31 +6,33 @@
 
 namespace geoprior {
 
+TriMesh region_surface(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
+                       const JointRegion& region) {
+  std::size_t fan_triangles = 0;
+  for (const std::vector<int>& loop : region.border_loops) fan_triangles += loop.size();
+  TriMesh closed;
+  closed.V.resize(V.rows() + static_cast<Eigen::Index>(region.border_loops.size()), 3);
+  closed.V.topRows(V.rows()) = V;
+  closed.F.resize(static_cast<Eigen::Index>(region.triangles.size() + fan_triangles), 3);
+  Eigen::Index t = 0;
+  for (const int of_mesh : region.triangles) closed.F.row(t++) = F.row(of_mesh);
+  int centre = static_cast<int>(V.rows());
+  for (const std::vector<int>& loop : region.border_loops) {
+    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      sum += V.row(loop[i]);
+      // The region has the edge from loop[i] on, so its fan has it the other way round.
+      closed.F.row(t++) << loop[(i + 1) % loop.size()], loop[i], centre;
+    }
+    closed.V.row(centre++) = sum / static_cast<double>(loop.size());
+  }
+  return closed;
+}
+
 double region_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
                      const JointRegion& region) {
-  if (region.triangles.empty()) return 0;
-  // About a point of the region: the sum keeps its digits far from the origin.
-  const Eigen::RowVector3d origin = V.row(F(region.triangles.front(), 0));
-  const auto six_volumes = [&](const Eigen::RowVector3d& a, const Eigen::RowVector3d& b,
-                               const Eigen::RowVector3d& c) {
-    return (a - origin).dot((b - origin).cross(c - origin));
-  };
-  double sum = 0;
-  for (const int t : region.triangles) {
-    sum += six_volumes(V.row(F(t, 0)), V.row(F(t, 1)), V.row(F(t, 2)));
-  }
-  for (const std::vector<int>& loop : region.border_loops) {
-    Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
-    for (const int v : loop) centre += V.row(v);
-    centre /= static_cast<double>(loop.size());
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      // The region has the edge from -> to, so its fan has it the other way round.
-      const int from = loop[i];
-      const int to = loop[(i + 1) % loop.size()];
-      sum += six_volumes(V.row(to), V.row(from), centre);
-    }
-  }
-  return sum / 6;
+  const TriMesh closed = region_surface(V, F, region);
+  return signed_volume(closed.V, closed.F);
 }
 
 Eigen::Vector3d volume_centroid(const TriMesh& mesh) {

@@ -5,8 +5,12 @@
 
 namespace geoprior {
 
-/// Volume of a joint's region: its triangles, closed by a fan from the centroid of each border loop
-/// to the loop's edges (m^3).
+/// A joint's region as a closed surface: its triangles, and a fan from the centroid of each border
+/// loop to the loop's edges. Vertices are those of the mesh, then one centroid a loop.
+TriMesh region_surface(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
+                       const JointRegion& region);
+
+/// Volume of a joint's region: of `region_surface` (m^3).
 ///
 /// Exact to round-off for the closed surface so made. Because the loops lie where the skin moves
 /// with one bone, the fans move rigidly and a change of this volume is one of the skin between

@@ -5,10 +5,11 @@
 #include <cstdint>
 #include <string>
 
+#include "baselines/skinning/dual_quaternion.h"
 #include "core/error.h"
 #include "core/topology.h"
+#include "metrics/bend_side.h"
 #include "metrics/self_contact.h"
-#include "metrics/smoothness.h"
 #include "metrics/volume.h"
 
 namespace geoprior::skinning {
@@ -28,20 +29,38 @@ const Eigen::MatrixX3d& surface_of(const SkinningScene& scene, const Frame& fram
   return points;
 }
 
-ContentKey key_of(const Measured& m, const Eigen::MatrixX3d& posed, const Pose& pose) {
+ContentKey key_of(const TriMesh& mesh, const Eigen::MatrixX3d& posed) {
   ContentKey key;
-  key.add_matrix(m.mesh().V);
-  key.add_matrix(m.mesh().F);
+  key.add_matrix(mesh.V);
+  key.add_matrix(mesh.F);
   key.add_matrix(posed);
+  return key;
+}
+
+void add_pose(ContentKey& key, const Pose& pose) {
   for (const Eigen::Affine3d& T : pose) key.add_matrix(T.matrix());
-  if (const JointRegion* region = m.region()) {
-    for (const int t : region->triangles) key.add(static_cast<std::uint64_t>(t));
-    for (const JointRegion::Hinge& h : region->hinges) {
-      key.add(static_cast<std::uint64_t>(h.joint));
-      key.add_matrix(h.bend_axis);
-      key.add(std::bit_cast<std::uint64_t>(h.radius));
-    }
-    key.add(std::bit_cast<std::uint64_t>(region->extent));
+}
+
+void add_region(ContentKey& key, const JointRegion& region) {
+  for (const int t : region.triangles) key.add(static_cast<std::uint64_t>(t));
+  for (const JointRegion::Hinge& h : region.hinges) {
+    key.add(static_cast<std::uint64_t>(h.joint));
+    key.add_matrix(h.bend_axis);
+    key.add(std::bit_cast<std::uint64_t>(h.radius));
+  }
+  key.add(std::bit_cast<std::uint64_t>(region.extent));
+}
+
+/// Of what follows from the rig alone.
+ContentKey key_of(const RiggedMesh& rig) {
+  ContentKey key = key_of(rig.mesh, rig.mesh.V);
+  key.add_matrix(Eigen::Map<const Eigen::VectorXd>(rig.weights.valuePtr(), rig.weights.nonZeros()));
+  key.add_matrix(
+      Eigen::Map<const Eigen::VectorXi>(rig.weights.innerIndexPtr(), rig.weights.nonZeros()));
+  for (const Joint& joint : rig.skeleton.joints) {
+    key.add(static_cast<std::uint64_t>(joint.parent));
+    key.add_matrix(joint.head);
+    if (joint.tail) key.add_matrix(*joint.tail);
   }
   return key;
 }
@@ -52,16 +71,88 @@ bool is_closed(Shared& shared, const TriMesh& mesh) {
   return shared.closed.get(key, [&] { return boundary_edges(mesh.F).empty(); });
 }
 
-OverlapStudy compute_overlap(const Measured& m, const Eigen::MatrixX3d& V, const Pose& pose) {
-  if (const JointRegion* region = m.region()) {
-    const double spacing = region_column_spacing(*region);
-    return overlap_study(V, m.mesh().F, joint_box(*region, pose), spacing,
-                         smallest_radius(*region));
-  }
+double body_spacing(const TriMesh& mesh) { return bounding_box_diagonal(mesh.V) / kGlobalSpacings; }
+
+OverlapStudy body_overlap(const TriMesh& mesh, const Eigen::MatrixX3d& V) {
   Eigen::AlignedBox3d box;
   for (Eigen::Index v = 0; v < V.rows(); ++v) box.extend(V.row(v).transpose());
-  const double spacing = bounding_box_diagonal(m.mesh().V) / kGlobalSpacings;
-  return overlap_study(V, m.mesh().F, box, spacing, kGlobalDepth * spacing);
+  const double spacing = body_spacing(mesh);
+  return overlap_study(V, mesh.F, box, spacing, kGlobalDepth * spacing);
+}
+
+/// About the region's joints, or of the whole body (null); above rest.
+std::optional<OverlapStudy> excess(Shared& shared, const Measured& m, const JointRegion* region) {
+  if (!is_closed(shared, m.mesh())) return std::nullopt;
+  const auto study = [&](const Eigen::MatrixX3d& V, const Pose& pose) {
+    ContentKey key = key_of(m.mesh(), V);
+    if (region) add_pose(key, pose);
+    if (region) add_region(key, *region);
+    return shared.overlap.get(key, [&] {
+      if (!region) return body_overlap(m.mesh(), V);
+      return overlap_study(V, m.mesh().F, joint_box(*region, pose), region_column_spacing(*region),
+                           smallest_radius(*region));
+    });
+  };
+  const OverlapStudy rest = study(m.mesh().V, rest_pose(m.scene.rig.skeleton.size()));
+  OverlapStudy above = study(m.posed, m.pose);
+  above.volume -= rest.volume;
+  above.noise_floor += rest.noise_floor;  // errors of a difference add up at worst
+  above.inside_out -= rest.inside_out;
+  above.cut_area = std::max(above.cut_area - rest.cut_area, 0.0);
+  return above;
+}
+
+/// All pairs of triangles that intersect; remembered, because the rest pose and dual quaternions'
+/// are asked for again.
+std::shared_ptr<const TrianglePairList> pairs_of(Shared& shared, const TriMesh& mesh,
+                                                 const Eigen::MatrixX3d& V) {
+  return shared.pairs.get(key_of(mesh, V), [&] {
+    return std::make_shared<const TrianglePairList>(intersecting_triangles(V, mesh.F));
+  });
+}
+
+/// Dual quaternions' overlaps are bounded by, or cross in, these triangles.
+std::vector<int> overlapping_triangles(Shared& shared, const TriMesh& mesh,
+                                       const Eigen::MatrixX3d& V) {
+  std::vector<int> triangles;
+  if (is_closed(shared, mesh)) triangles = triangles_about_overlap(V, mesh.F, body_spacing(mesh));
+  for (const auto& [a, b] : *pairs_of(shared, mesh, V)) {
+    triangles.push_back(a);
+    triangles.push_back(b);
+  }
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  return triangles;
+}
+
+std::shared_ptr<const BoneRings> rings_of(Shared& shared, const RiggedMesh& rig) {
+  return shared.rings.get(key_of(rig), [&] { return std::make_shared<const BoneRings>(rig); });
+}
+
+std::shared_ptr<const PlainPose> plain_pose(Shared& shared, const Measured& m) {
+  ContentKey key = key_of(m.scene.rig);
+  add_pose(key, m.pose);
+  return shared.plain.get(key, [&] {
+    auto plain = std::make_shared<PlainPose>();
+    DualQuaternionBlend(m.scene.rig).deform(m.pose, plain->posed);
+    plain->unasked =
+        unasked_vertices(*rings_of(shared, m.scene.rig), m.mesh().F, plain->posed, m.pose,
+                         overlapping_triangles(shared, m.mesh(), plain->posed));
+    return plain;
+  });
+}
+
+/// Vertices of all regions that `of_region` chooses; ascending.
+template <class OfRegion>
+std::vector<int> vertices_of_regions(const SkinningScene& scene, const OfRegion& of_region) {
+  std::vector<int> vertices;
+  for (const JointRegion& region : scene.regions) {
+    const std::vector<int> own = of_region(region);
+    vertices.insert(vertices.end(), own.begin(), own.end());
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
 }
 
 /// Posed vertices carried back to rest by the joint of largest weight each: rigid motion drops out.
@@ -102,17 +193,53 @@ Value volume_change_global(Shared& shared, const Measured& m) {
   return relative_change(signed_volume(m.mesh().V, m.mesh().F), signed_volume(m.posed, m.mesh().F));
 }
 
-std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m) {
-  const Pose at_rest = rest_pose(m.scene.rig.skeleton.size());
-  const auto study = [&](const Eigen::MatrixX3d& V, const Pose& pose) {
-    return shared.overlap.get(key_of(m, V, pose), [&] { return compute_overlap(m, V, pose); });
+Value volume_change_union(Shared& shared, const Measured& m) {
+  if (!m.region()) return std::nullopt;
+  const auto volume = [&](const Eigen::MatrixX3d& V) {
+    ContentKey key = key_of(m.mesh(), V);
+    add_region(key, *m.region());
+    return shared.union_volume.get(key, [&] {
+      const TriMesh closed = region_surface(V, m.mesh().F, *m.region());
+      return union_volume(closed.V, closed.F, region_column_spacing(*m.region()));
+    });
   };
-  if (!is_closed(shared, m.mesh())) return std::nullopt;
-  const OverlapStudy rest = study(m.mesh().V, at_rest);
-  OverlapStudy excess = study(m.posed, m.pose);
-  excess.volume -= rest.volume;
-  excess.noise_floor += rest.noise_floor;  // errors of a difference add up at worst
-  return excess;
+  return relative_change(volume(m.mesh().V), volume(m.posed));
+}
+
+Value volume_change_union_body(Shared& shared, const Measured& m) {
+  const std::optional<OverlapStudy> above = excess(shared, m, nullptr);
+  if (!above) return std::nullopt;
+  const double spacing = body_spacing(m.mesh());
+  const double rest = shared.union_volume.get(
+      key_of(m.mesh(), m.mesh().V), [&] { return union_volume(m.mesh().V, m.mesh().F, spacing); });
+  const double change = signed_volume(m.posed, m.mesh().F) - signed_volume(m.mesh().V, m.mesh().F) -
+                        above->volume + above->inside_out;
+  return change / rest;
+}
+
+std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m) {
+  return excess(shared, m, m.region());
+}
+
+std::optional<OverlapStudy> overlap_excess_body(Shared& shared, const Measured& m) {
+  return excess(shared, m, nullptr);
+}
+
+std::optional<RegionOverlaps> overlap_of_regions(Shared& shared, const Measured& m) {
+  const std::optional<OverlapStudy> body = excess(shared, m, nullptr);
+  if (m.scene.regions.empty() || !body) return std::nullopt;
+  RegionOverlaps overlaps;
+  OverlapStudy outside = *body;
+  for (const JointRegion& region : m.scene.regions) {
+    const std::optional<OverlapStudy> study = excess(shared, m, &region);
+    outside.volume -= study->volume;
+    outside.noise_floor += study->noise_floor;
+    overlaps.largest = std::max(overlaps.largest, clipped(*study));
+    overlaps.sum += clipped(*study);
+    overlaps.cut_area = std::max(overlaps.cut_area, study->cut_area);
+  }
+  overlaps.outside = clipped(outside);
+  return overlaps;
 }
 
 double clipped(const OverlapStudy& study) {
@@ -128,14 +255,37 @@ Value overlap_excess_ratio(Shared& shared, const Measured& m, const Measured& re
   return own->volume / std::max(other->volume, floor);
 }
 
-double pairs_excess(Shared& shared, const Measured& m) {
-  const auto count = [&](const Eigen::MatrixX3d& V) {
-    return m.region() ? intersecting_pairs(V, m.mesh().F, *m.region())
-                      : intersecting_pairs(V, m.mesh().F);
+PairsExcess pairs_excess(Shared& shared, const Measured& m) {
+  const auto count = [&](const Eigen::MatrixX3d& V) -> PairsExcess {
+    const auto pairs = pairs_of(shared, m.mesh(), V);
+    const auto all = static_cast<int>(pairs->size());
+    return {m.region() ? pairs_in_region(*pairs, *m.region()) : all, all};
   };
-  const int at_rest =
-      shared.pairs_at_rest.get(key_of(m, m.mesh().V, {}), [&] { return count(m.mesh().V); });
-  return count(m.posed) - at_rest;
+  const PairsExcess posed = count(m.posed);
+  const PairsExcess rest = count(m.mesh().V);
+  return {posed.region - rest.region, posed.body - rest.body};
+}
+
+std::optional<RoughnessMeasures> roughness(Shared& shared, const Measured& m) {
+  const auto surface = shared.roughness.get(
+      key_of(m.mesh(), m.mesh().V), [&] { return std::make_shared<const Roughness>(m.mesh()); });
+  const Eigen::VectorXd folds = surface->folds(m.posed);
+  const Eigen::VectorXd lumps = surface->lumps(m.posed);
+  const std::vector<int> all = vertices_of_regions(
+      m.scene, [&](const JointRegion& region) { return region_vertices(region, m.mesh().F); });
+  const std::vector<int> outer = vertices_of_regions(m.scene, [&](const JointRegion& region) {
+    return outer_vertices(region, m.mesh().F, m.mesh().V, m.pose);
+  });
+  const auto whole = summarize(*surface, folds, lumps, all);
+  if (!whole) return std::nullopt;
+  RoughnessMeasures measures{*whole, std::nullopt};
+  if (!outer.empty()) measures.outer = summarize(*surface, folds, lumps, outer);
+  return measures;
+}
+
+std::optional<Harm> harm_of(Shared& shared, const Measured& m) {
+  const auto plain = plain_pose(shared, m);
+  return harm(*rings_of(shared, m.scene.rig), plain->unasked, m.posed, plain->posed);
 }
 
 std::optional<SectionSummary> section_summary(const Measured& m) {
@@ -171,16 +321,18 @@ VertexDistance reference_distance(const Measured& m, const Measured& reference) 
   return vertex_distance(m.posed, reference.posed, vertices);
 }
 
-Value second_difference(const SkinningScene& scene, const FrameSequence& frames) {
+Pops pops(const SkinningScene& scene, const FrameSequence& frames) {
   std::vector<Eigen::MatrixX3d> positions;
   const std::vector<double> parameters = frames.parameters();
-  if (frames.size() < 3 || !equally_spaced(parameters) || scene.regions.empty())
-    return std::nullopt;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     positions.push_back(in_bone_frame(measured(scene, *frames.frame(i))));
   }
-  return second_difference_max(positions, parameters,
-                               region_vertices(scene.regions.front(), scene.rig.mesh.F));
+  Pops pops;
+  if (scene.parameter_unit_label == "deg") pops.motion = motion_smoothness(positions, parameters);
+  if (frames.size() < 3 || !equally_spaced(parameters) || scene.regions.empty()) return pops;
+  pops.second_difference = second_difference_max(
+      positions, parameters, region_vertices(scene.regions.front(), scene.rig.mesh.F));
+  return pops;
 }
 
 }  // namespace geoprior::skinning

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -8,8 +10,11 @@
 #include "metrics/cross_section.h"
 #include "metrics/distance.h"
 #include "metrics/distortion.h"
+#include "metrics/harm.h"
 #include "metrics/mid_ring.h"
 #include "metrics/overlap_volume.h"
+#include "metrics/roughness.h"
+#include "metrics/smoothness.h"
 #include "testbed/memo.h"
 
 namespace geoprior::skinning {
@@ -34,13 +39,26 @@ struct Measured {
 /// @throws Error  when the frame has no part "surface" with as many vertices as the scene's mesh
 Measured measured(const SkinningScene& scene, const Frame& frame);
 
-/// What groups of metrics and frames share: overlap_excess is the numerator of its ratio to the
-/// reference's, the overlap of a reference frame the denominator of every variant that is compared
-/// with it, and the rest pose that of all frames. Each takes longer than all other measures.
+using TrianglePairList = std::vector<std::array<int, 2>>;
+
+/// Dual quaternions' skin in a pose, and where nothing asks for another.
+struct PlainPose {
+  Eigen::MatrixX3d posed;
+  std::vector<int> unasked;  ///< vertices
+};
+
+/// What groups of metrics, frames and variants share: the rest pose is that of all frames, what is
+/// made of a scene's rig that of all its frames, dual quaternions' pose that of every variant, the
+/// overlap of a reference frame the denominator of all that are compared with it. Each takes longer
+/// than all other measures.
 struct Shared {
   Memo<bool> closed;
   Memo<OverlapStudy> overlap;
-  Memo<int> pairs_at_rest;
+  Memo<double> union_volume;
+  Memo<std::shared_ptr<const TrianglePairList>, 8> pairs;
+  Memo<std::shared_ptr<const Roughness>, 4> roughness;
+  Memo<std::shared_ptr<const BoneRings>, 4> rings;
+  Memo<std::shared_ptr<const PlainPose>, 64> plain;
 };
 
 /// Absent without a region.
@@ -48,14 +66,48 @@ Value volume_change(const Measured& m);
 /// Absent for an open mesh.
 Value volume_change_global(Shared& shared, const Measured& m);
 
-/// Overlap above rest (raw) with its noise floor; absent for an open mesh.
+/// Change of the volume of what is inside, however often: of the first region, closed by fans, and
+/// of the whole body. Absent without a region, or for an open mesh.
+Value volume_change_union(Shared& shared, const Measured& m);
+Value volume_change_union_body(Shared& shared, const Measured& m);
+
+/// Overlap above rest (raw) with its noise floor, about the region's joints (of the whole body
+/// without a region); absent for an open mesh.
 std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m);
+/// The same of the whole body.
+std::optional<OverlapStudy> overlap_excess_body(Shared& shared, const Measured& m);
 /// The excess, 0 where it does not exceed the floor.
 double clipped(const OverlapStudy& study);
 /// 0 up to the floor, else over the reference's excess or the floor, whichever is larger.
 Value overlap_excess_ratio(Shared& shared, const Measured& m, const Measured& reference);
+
+/// Overlaps of all regions of the motion.
+struct RegionOverlaps {
+  double largest = 0;   ///< excess of the region that overlaps most (m^3)
+  double sum = 0;       ///< over the regions; where their boxes overlap it counts twice (m^3)
+  double outside = 0;   ///< what the whole body has more than that; 0 up to the noise floors (m^3)
+  double cut_area = 0;  ///< of the faces of a region's box that overlap goes through, largest (m^2)
+};
+/// Absent without a region or for an open mesh.
+std::optional<RegionOverlaps> overlap_of_regions(Shared& shared, const Measured& m);
+
 /// Intersecting pairs above rest.
-double pairs_excess(Shared& shared, const Measured& m);
+struct PairsExcess {
+  int region = 0;  ///< one of the two in the first region; anywhere without one
+  int body = 0;
+};
+PairsExcess pairs_excess(Shared& shared, const Measured& m);
+
+/// Folds and lumps over the regions of the motion (the whole body without one) and over their outer
+/// halves (absent where no hinge bends about a single axis).
+struct RoughnessMeasures {
+  RoughnessSummary all;
+  std::optional<RoughnessSummary> outer;
+};
+std::optional<RoughnessMeasures> roughness(Shared& shared, const Measured& m);
+
+/// Against dual quaternions in the same pose; absent where they ask for something everywhere.
+std::optional<Harm> harm_of(Shared& shared, const Measured& m);
 
 /// Absent without a region, as the next.
 std::optional<SectionSummary> section_summary(const Measured& m);
@@ -65,7 +117,12 @@ Value rest_identity(const Measured& m);
 /// Absent unless the region is a tube made by formula, with one joint.
 std::optional<RingRatio> mid_ring(const Measured& m);
 VertexDistance reference_distance(const Measured& m, const Measured& reference);
-/// Absent for fewer than three frames, unequal steps or no region.
-Value second_difference(const SkinningScene& scene, const FrameSequence& frames);
+/// Pops over a sweep, in the frame of each vertex' joint.
+struct Pops {
+  Value second_difference;  ///< of the first region; absent for unequal steps or no region
+  /// Of the whole body; absent for fewer than four frames, or a parameter that is no angle.
+  std::optional<MotionSmoothness> motion;
+};
+Pops pops(const SkinningScene& scene, const FrameSequence& frames);
 
 }  // namespace geoprior::skinning

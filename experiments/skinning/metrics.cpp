@@ -1,6 +1,8 @@
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "experiments/skinning/measures.h"
@@ -14,6 +16,8 @@ constexpr Tolerance kRatio{1e-6, 1e-6};
 constexpr Tolerance kFineRatio{1e-9, 1e-6};
 constexpr Tolerance kVolume{1e-12, 1e-6};
 constexpr Tolerance kLength{1e-9, 1e-6};
+constexpr Tolerance kAngle{1e-6, 1e-6};
+constexpr Tolerance kPairs{2, 0.01};
 
 constexpr Direction kLow = Direction::lower_is_better;
 constexpr Direction kTarget = Direction::closer_to_target;
@@ -55,6 +59,23 @@ MetricGroup global_volume_group(const SharedPtr& shared) {
            kFineRatio);
 }
 
+/// Overlap counted once: a skin that swells into itself keeps its signed volume.
+MetricGroup union_volume_group(const SharedPtr& shared) {
+  return of_frame([shared](const Measured& m) { return volume_change_union(*shared, m); })
+      .row("volume_change_union", "1",
+           "change of the volume inside the joint's region, closed by fans, over its rest volume; "
+           "what is inside twice counts once",
+           kTarget, kRatio);
+}
+
+MetricGroup body_union_volume_group(const SharedPtr& shared) {
+  return of_frame([shared](const Measured& m) { return volume_change_union_body(*shared, m); })
+      .row("volume_change_union_body", "1",
+           "change of the volume inside the whole closed surface over its rest volume; what is "
+           "inside twice counts once",
+           kTarget, kRatio);
+}
+
 MetricGroup overlap_group(const SharedPtr& shared) {
   return of_frame([shared](const Measured& m) { return overlap_excess(*shared, m); })
       .row("overlap_excess", "m^3",
@@ -68,6 +89,40 @@ MetricGroup overlap_group(const SharedPtr& shared) {
            "largest difference of the overlap between column spacings h and h/2 and "
            "between two column axes, at least the overlap that fits between columns",
            Direction::none, kVolume, &OverlapStudy::noise_floor);
+}
+
+MetricGroup body_overlap_group(const SharedPtr& shared) {
+  return of_frame([shared](const Measured& m) { return overlap_excess_body(*shared, m); })
+      .row("overlap_excess_body", "m^3",
+           "integral of max(0, winding number - 1) over the whole body minus the same at rest; 0 "
+           "where it does not exceed overlap_noise_floor_body",
+           kLow, kVolume, clipped)
+      .row("overlap_excess_raw_body", "m^3", "overlap_excess_body before it is set to 0", kLow,
+           kVolume, &OverlapStudy::volume)
+      .row("overlap_noise_floor_body", "m^3",
+           "of overlap_excess_body, as overlap_noise_floor; columns a 768th of the body's diagonal "
+           "apart, and half of that",
+           Direction::none, kVolume, &OverlapStudy::noise_floor);
+}
+
+MetricGroup region_overlaps_group(const SharedPtr& shared) {
+  return of_frame([shared](const Measured& m) { return overlap_of_regions(*shared, m); })
+      .row("overlap_excess_largest", "m^3",
+           "overlap_excess of the region of the motion that has most", kLow, kVolume,
+           &RegionOverlaps::largest)
+      .row("overlap_excess_sum", "m^3",
+           "sum of overlap_excess over the regions of the motion; where their boxes overlap it "
+           "counts twice",
+           kLow, kVolume, &RegionOverlaps::sum)
+      .row("overlap_excess_outside", "m^3",
+           "overlap_excess_raw_body minus that of all regions of the motion; 0 where it does not "
+           "exceed their noise floors; too small where boxes of regions share an overlap",
+           kLow, kVolume, &RegionOverlaps::outside)
+      .row("overlap_cut_area", "m^2",
+           "largest area of the faces of a region's box through which its overlap goes on outside, "
+           "minus the same at rest: above 0, overlap_excess misses a part that "
+           "overlap_excess_body has",
+           Direction::none, {1e-7, 1e-3}, &RegionOverlaps::cut_area);
 }
 
 MetricGroup overlap_ratio_group(const SharedPtr& shared) {
@@ -85,7 +140,66 @@ MetricGroup pairs_group(const SharedPtr& shared) {
       .row("intersecting_pairs", "1",
            "pairs of triangles that intersect, at least one of them in the region "
            "(anywhere without a region), minus the same at rest",
-           kLow, {2, 0.01});
+           kLow, kPairs, &PairsExcess::region)
+      .row("intersecting_pairs_body", "1",
+           "pairs of triangles of the whole body that intersect, minus the same at rest", kLow,
+           kPairs, &PairsExcess::body);
+}
+
+/// Rows of one part of the skin.
+template <class Rows, class Part>
+void add_roughness_rows(Rows& rows, const std::string& suffix, const std::string& where,
+                        const Part& part) {
+  const auto read = [part](double RoughnessSummary::*quantity, double scale) {
+    return [part, quantity, scale](const RoughnessMeasures& m) -> Value {
+      const std::optional<RoughnessSummary> summary = part(m);
+      if (!summary) return std::nullopt;
+      return (*summary).*quantity * scale;
+    };
+  };
+  const auto degrees = [&](double RoughnessSummary::*quantity) {
+    return read(quantity, 180 / std::numbers::pi);
+  };
+  const auto metres = [&](double RoughnessSummary::*quantity) { return read(quantity, 1); };
+  const std::string change = " of the change of an edge's dihedral angle against rest, " + where;
+  const std::string lump =
+      " difference of a vertex from the mean of its neighbours in the change against rest of the "
+      "normal component of the umbrella vector, " +
+      where;
+  using S = RoughnessSummary;
+  rows.row("roughness_p50" + suffix, "deg", "median, by rest area," + change, kLow, kAngle,
+           degrees(&S::fold_p50))
+      .row("roughness_p95" + suffix, "deg", "95th percentile, by rest area," + change, kLow, kAngle,
+           degrees(&S::fold_p95))
+      .row("roughness_p99" + suffix, "deg", "99th percentile, by rest area," + change, kLow, kAngle,
+           degrees(&S::fold_p99))
+      .row("roughness_max" + suffix, "deg", "largest size" + change, kLow, kAngle,
+           degrees(&S::fold_max))
+      .row("lumps_rms" + suffix, "m", "root mean square, by rest area, of the" + lump, kLow,
+           kLength, metres(&S::lump_rms))
+      .row("lumps_p95" + suffix, "m", "95th percentile, by rest area, of the" + lump, kLow, kLength,
+           metres(&S::lump_p95))
+      .row("lumps_max" + suffix, "m", "largest" + lump, kLow, kLength, metres(&S::lump_max));
+}
+
+MetricGroup roughness_group(const SharedPtr& shared) {
+  auto rows = of_frame([shared](const Measured& m) { return roughness(*shared, m); });
+  add_roughness_rows(rows, "", "over the regions of the motion (all of the body without one)",
+                     [](const RoughnessMeasures& m) { return std::optional(m.all); });
+  add_roughness_rows(rows, "_outer", "over the halves of the regions on the outer side of the bend",
+                     [](const RoughnessMeasures& m) { return m.outer; });
+  return rows;
+}
+
+MetricGroup harm_group(const SharedPtr& shared) {
+  return of_frame([shared](const Measured& m) { return harm_of(*shared, m); })
+      .row("harm", "1",
+           "largest distance of a vertex from where dual quaternions have it, over the local "
+           "radius, where they ask for no correction: farther than a local radius from any of "
+           "their overlaps, section within 2 % of rest",
+           kLow, kRatio, &Harm::max)
+      .row("harm_area", "1", "share of the skin, by rest area, on which harm is measured",
+           Direction::none, {1e-3, 0}, &Harm::unasked_share);
 }
 
 MetricGroup section_group() {
@@ -151,12 +265,28 @@ MetricGroup mid_ring_group() {
       .oracle();
 }
 
+auto of_motion(double MotionSmoothness::*quantity) {
+  return [quantity](const Pops& pops) -> Value {
+    if (!pops.motion) return std::nullopt;
+    return (*pops.motion).*quantity;
+  };
+}
+
 MetricGroup pops_group() {
-  return sequence_metrics<SkinningScene>(second_difference)
+  return sequence_metrics<SkinningScene>(pops)
       .row("second_difference_max", "m",
            "largest second difference of a vertex of the region over three successive frames of "
-           "equal steps, in the frame of the joint of largest weight",
-           kLow, kLength);
+           "equal steps, in the frame of the joint of largest weight; falls with the step",
+           kLow, kLength, &Pops::second_difference)
+      .row("velocity_change_max", "m/deg^2",
+           "largest change of a vertex' velocity (m per degree) per degree over three successive "
+           "frames, in the frame of the joint of largest weight, over the whole body",
+           kLow, {1e-9, 1e-6}, of_motion(&MotionSmoothness::velocity_change))
+      .row("pop_max", "m",
+           "largest distance, in the middle of a step, of where the two frames before and the two "
+           "after it lead a vertex, in the frame of the joint of largest weight, over the whole "
+           "body",
+           kLow, kLength, of_motion(&MotionSmoothness::jump));
 }
 
 MetricGroup distance_group() {
@@ -175,11 +305,22 @@ MetricGroup distance_group() {
 
 std::vector<MetricGroup> metrics() {
   const auto shared = std::make_shared<Shared>();
-  return {region_volume_group(), global_volume_group(shared),
-          overlap_group(shared), overlap_ratio_group(shared),
-          pairs_group(shared),   section_group(),
-          distortion_group(),    rest_group(),
-          mid_ring_group(),      pops_group(),
+  return {region_volume_group(),
+          global_volume_group(shared),
+          union_volume_group(shared),
+          body_union_volume_group(shared),
+          overlap_group(shared),
+          body_overlap_group(shared),
+          region_overlaps_group(shared),
+          overlap_ratio_group(shared),
+          pairs_group(shared),
+          roughness_group(shared),
+          harm_group(shared),
+          section_group(),
+          distortion_group(),
+          rest_group(),
+          mid_ring_group(),
+          pops_group(),
           distance_group()};
 }
 

@@ -171,6 +171,35 @@ TEST(CrossSection, HalvesAreToldApart) {
   }
 }
 
+TEST(CrossSection, WithoutSkinAllRoundIsNoLimbsAndHasNoHalves) {
+  // The skin of the inner side is another part's between x = 0.1 and 0.15, as where fingers meet;
+  // the rest of the outer side is drawn out there, as a web is by the bend.
+  Tube tube;
+  const Eigen::MatrixX3d& V = tube.rig.mesh.V;
+  const auto middle = [&](int t) -> Eigen::RowVector3d {
+    const auto corner = [&](int k) { return V.row(tube.rig.mesh.F(t, k)); };
+    return (corner(0) + corner(1) + corner(2)) / 3;
+  };
+  std::erase_if(tube.region.triangles, [&](int t) {
+    const Eigen::RowVector3d x = middle(t);
+    return x.x() > 0.1 && x.x() < 0.15 && x.z() < -0.02;
+  });
+  Eigen::MatrixX3d posed = V;
+  for (Eigen::Index v = 0; v < posed.rows(); ++v) {
+    if (V(v, 0) > 0.11 && V(v, 0) < 0.14) posed(v, 1) *= 4;
+  }
+  const std::vector<SectionRatio> sections =
+      cross_sections(tube.region, tube.rig.mesh.F, V, posed, rest_pose(2));
+  int left_out = 0;
+  for (const SectionRatio& s : sections) {
+    if (s.place != Place::distal || s.s < 0.115 || s.s > 0.135) continue;
+    EXPECT_FALSE(s.whole || s.outer || s.inner || s.outer_point) << s.s;
+    ++left_out;
+  }
+  EXPECT_GT(left_out, 0);
+  EXPECT_LT(summarize(sections).outer_bulge.value(), 0.5);
+}
+
 TEST(CrossSection, RefusesOptionsThatMakeNoSense) {
   const Tube tube;
   const auto with = [&](CrossSectionOptions options) {

@@ -141,6 +141,62 @@ TEST(OverlapVolume, CountsOnlyInsideTheBox) {
   EXPECT_NEAR(overlap_volume(m.V, m.F, box, 1.0 / 64, 1).volume, 0.5 * 0.125 * 0.5, 1e-12);
 }
 
+TEST(OverlapVolume, SaysWhereTheBoxCutsIt) {
+  // Boxes that share [0.6, 1] x [0.3, 1] x [0.5, 1].
+  const TriMesh m =
+      shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}), shapes::box({0.6, 0.3, 0.5}, {2, 2, 2}));
+  const double h = 0.01;
+  const auto cut_area = [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high, int axis) {
+    return overlap_volume(m.V, m.F, {low, high}, h, axis).cut_area;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(cut_area({0.5, 0.2, 0.4}, {1.1, 1.1, 1.1}, axis), 0) << axis;
+    // Ended at x = 0.8 the overlap goes on through a face of 0.7 x 0.5; at z = 0.6 of 0.4 x 0.7.
+    EXPECT_NEAR(cut_area({0.5, 0.2, 0.4}, {0.8, 1.1, 1.1}, axis), 0.35, 0.02) << axis;
+    EXPECT_NEAR(cut_area({0.5, 0.2, 0.6}, {1.1, 1.1, 1.1}, axis), 0.28, 0.02) << axis;
+  }
+}
+
+TEST(OverlapVolume, TrianglesAboutItAreThoseThatBoundIt) {
+  const TriMesh m =
+      shapes::together(shapes::sphere(1, {0, 0, 0}, 4), shapes::sphere(1, {1.2, 0, 0}, 4));
+  const double h = 0.02;
+  const std::vector<int> found = triangles_about_overlap(m.V, m.F, h);
+  std::vector<bool> is_found(m.F.rows(), false);
+  for (const int t : found) is_found[t] = true;
+  for (int t = 0; t < m.triangle_count(); ++t) {
+    // Inside the other sphere, or outside of it, by more than an edge.
+    const Eigen::RowVector3d other(t < m.triangle_count() / 2 ? 1.2 : 0, 0, 0);
+    const Eigen::RowVector3d middle =
+        (m.V.row(m.F(t, 0)) + m.V.row(m.F(t, 1)) + m.V.row(m.F(t, 2))) / 3;
+    const double depth = 1 - (middle - other).norm();
+    if (depth < -0.1) {
+      EXPECT_FALSE(is_found[t]) << t;
+    }
+    // Nearly parallel to the columns a triangle may lie between them.
+    const bool is_steep = std::abs(middle.x() - (t < m.triangle_count() / 2 ? 0 : 1.2)) < 0.3;
+    if (depth > 0.1 && !is_steep) {
+      EXPECT_TRUE(is_found[t]) << t;
+    }
+  }
+  EXPECT_TRUE(triangles_about_overlap(m.V, m.F.topRows(m.F.rows() / 2), h).empty());
+  EXPECT_THROW((void)triangles_about_overlap(m.V, m.F, 0), Error);
+}
+
+TEST(UnionVolume, CountsWhatIsInsideTwiceOnce) {
+  const TriMesh a = shapes::sphere(1, {0, 0, 0}, 5);
+  const TriMesh b = shapes::sphere(1, {1.1, 0.2, 0.1}, 5);
+  const TriMesh m = shapes::together(a, b);
+  const double sphere = signed_volume(a.V, a.F);
+  const double d = Eigen::Vector3d(1.1, 0.2, 0.1).norm();
+  EXPECT_NEAR(union_volume(m.V, m.F, 0.01), 2 * sphere - lens(1, d), 5e-3);
+  EXPECT_NEAR(union_volume(a.V, a.F, 0.01), sphere, 1e-12);
+  // An inside-out box beside the sphere holds nothing; its signed volume is -1.
+  const TriMesh beside = shapes::together(a, shapes::inverted(shapes::box({2, 0, 0}, {3, 1, 1})));
+  EXPECT_NEAR(signed_volume(beside.V, beside.F), sphere - 1, 1e-12);
+  EXPECT_NEAR(union_volume(beside.V, beside.F, 0.01), sphere, 0.02);
+}
+
 TEST(OverlapVolume, ErrorFallsWithTheSpacing) {
   const TriMesh m =
       shapes::together(shapes::sphere(1, {0, 0, 0}, 4), shapes::sphere(1, {1.1, 0.3, 0.2}, 4));

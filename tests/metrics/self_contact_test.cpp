@@ -79,15 +79,16 @@ TEST(IntersectingPairs, OfARegionNeedOneTriangleInIt) {
   JointRegion second;
   for (int t = 0; t < 12; ++t) first.triangles.push_back(t);
   for (int t = 12; t < 24; ++t) second.triangles.push_back(t);
+  const std::vector<std::array<int, 2>> pairs = intersecting_triangles(m.V, m.F);
   const int all = intersecting_pairs(m.V, m.F);
   // Every pair has one triangle of either box.
-  EXPECT_EQ(intersecting_pairs(m.V, m.F, first), all);
-  EXPECT_EQ(intersecting_pairs(m.V, m.F, second), all);
-  EXPECT_EQ(intersecting_pairs(m.V, m.F, JointRegion{}), 0);
+  EXPECT_EQ(pairs_in_region(pairs, first), all);
+  EXPECT_EQ(pairs_in_region(pairs, second), all);
+  EXPECT_EQ(pairs_in_region(pairs, JointRegion{}), 0);
   JointRegion low;
   JointRegion high;
   for (int t = 0; t < 12; ++t) (t < 6 ? low : high).triangles.push_back(t);
-  EXPECT_EQ(intersecting_pairs(m.V, m.F, low) + intersecting_pairs(m.V, m.F, high), all);
+  EXPECT_EQ(pairs_in_region(pairs, low) + pairs_in_region(pairs, high), all);
 }
 
 TEST(IntersectingPairs, NeighboursCountOnlyBeyondWhatTheyShare) {

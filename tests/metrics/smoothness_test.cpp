@@ -63,6 +63,59 @@ TEST(SecondDifference, NeedsEqualSteps) {
   EXPECT_TRUE(equally_spaced(std::vector<double>{0, 0.1, 0.2, 0.30000000000000004}));
 }
 
+/// Positions along x(p) = 0.2 sin(p / 20) over 0 to 120, a kink and a jump of place as asked.
+std::vector<Eigen::MatrixX3d> motion(double step, double kink = 0, double jump = 0) {
+  return sweep(static_cast<int>(120 / step) + 1, [&](int i) {
+    const double p = step * i;
+    const double after = std::max(p - 61.25, 0.0);
+    return Eigen::Vector3d(0.2 * std::sin(p / 20), kink * after, after > 0 ? jump : 0);
+  });
+}
+
+MotionSmoothness smoothness_of(double step, const std::vector<Eigen::MatrixX3d>& positions) {
+  return motion_smoothness(positions, parameters(static_cast<int>(positions.size()), step)).value();
+}
+
+TEST(MotionSmoothness, OfASmoothMotionIsItsSecondDerivativeAtAnyStep) {
+  for (const double step : {1.0, 2.0, 5.0}) {
+    const MotionSmoothness s = smoothness_of(step, motion(step));
+    EXPECT_NEAR(s.velocity_change, 0.2 / 400, 0.03 * 0.2 / 400) << step;
+    EXPECT_LE(s.jump, step * step * step * 0.2 / 8000 / 2 * 1.001) << step;
+  }
+}
+
+TEST(MotionSmoothness, OfAJumpIsItsSizeAtAnyStep) {
+  for (const double step : {1.0, 2.0, 5.0}) {
+    const MotionSmoothness s = smoothness_of(step, motion(step, 0, 0.01));
+    EXPECT_NEAR(s.jump, 0.01, 0.0003) << step;
+    EXPECT_NEAR(s.velocity_change, 0.01 / (step * step), 0.02 * 0.01 / (step * step) + 0.2 / 400)
+        << step;
+  }
+}
+
+TEST(MotionSmoothness, OfAKinkGrowsAsTheStepFalls) {
+  // The kink is a quarter of a step of 5 after a frame: the largest change of velocity is 3/4 of
+  // it.
+  const double kink = 0.01;
+  EXPECT_NEAR(smoothness_of(5, motion(5, kink)).velocity_change, 0.75 * kink / 5, 2e-4);
+  EXPECT_GT(smoothness_of(1, motion(1, kink)).velocity_change, 0.7 * kink);
+  EXPECT_LT(smoothness_of(1, motion(1, kink)).jump, kink);
+}
+
+TEST(MotionSmoothness, UnequalAndFallingStepsAreTaken) {
+  const std::vector<double> p{0, 1, 3, 4, 8, 9};
+  std::vector<Eigen::MatrixX3d> positions;
+  for (const double at : p) positions.push_back(Eigen::MatrixX3d::Constant(1, 3, at * at));
+  // Divided differences are exact for a parabola.
+  EXPECT_NEAR(motion_smoothness(positions, p)->velocity_change, 2 * std::sqrt(3.0), 1e-12);
+  const std::vector<double> falling{9, 8, 6, 5, 1, 0};
+  EXPECT_NEAR(motion_smoothness(positions, falling)->velocity_change, 2 * std::sqrt(3.0), 1e-12);
+  EXPECT_THROW((void)motion_smoothness(positions, std::vector<double>{0, 1, 3, 3, 8, 9}), Error);
+  EXPECT_THROW((void)motion_smoothness(positions, std::vector<double>{0, 1}), Error);
+  positions.resize(3);
+  EXPECT_FALSE(motion_smoothness(positions, std::vector<double>{0, 1, 2}).has_value());
+}
+
 TEST(VertexDistance, OfAShiftIsItsLength) {
   Eigen::MatrixX3d a = Eigen::MatrixX3d::Random(10, 3);
   Eigen::MatrixX3d b = a;
