@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 constexpr double kBend = 3;        ///< degrees; less is a straight limb
 constexpr double kFolded = 150;    ///< degrees; more is no bend of a limb
 constexpr double kClearBend = 20;  ///< degrees; less may be a limb that is bent to its side
-constexpr double kAgree = 45;      ///< degrees between such a bend and the straight limb's axis
+constexpr double kAgree = 25;      ///< degrees between such a bend and the straight limb's axis
 constexpr double kSnap = 10;       ///< degrees between a guess and an axis of the joint's own
 constexpr double kFoot = 0.15;     ///< share of the height that feet are in
 
@@ -40,6 +40,14 @@ struct Body {
     return is_symmetric && std::abs(left.dot(p) - middle) <= tolerance;
   }
 };
+
+/// The middle coordinate: of a body's joints that of its trunk, wherever the hands are.
+double median(const Skeleton& skeleton, int axis) {
+  std::vector<double> values;
+  for (const Joint& joint : skeleton.joints) values.push_back(joint.head[axis]);
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
 
 /// Joints off the plane (axis, offset) that have an image of another joint across it.
 int mirrored_joints(const Skeleton& skeleton, int axis, double offset, double tolerance) {
@@ -76,14 +84,14 @@ Body find_body(const Skeleton& skeleton) {
   int most = 0;
   int sides = 0;
   for (const int axis : {0, 2}) {
-    const int count = mirrored_joints(skeleton, axis, box.center()[axis], body.tolerance);
+    const int count = mirrored_joints(skeleton, axis, median(skeleton, axis), body.tolerance);
     if (count > most) sides = axis;
     most = std::max(most, count);
   }
   // A third of the joints: an accidental pair makes no body.
   body.is_symmetric = 3 * most >= skeleton.size();
   if (!body.is_symmetric) return body;
-  body.middle = box.center()[sides];
+  body.middle = median(skeleton, sides);
   body.front = Vector3d::Unit(2 - sides);
   if (feet(skeleton, body).dot(body.front) < 0) body.front = -body.front;
   body.left = body.up.cross(body.front);

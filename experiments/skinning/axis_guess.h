@@ -33,7 +33,7 @@ struct JointAxes {
 ///         forward for hips and arms, backward below the hip, and for fingers (beyond a joint with
 ///         three or more children) the palm's side: down, or the body's middle where they hang
 ///     a limb bent by >= 3 degrees at rest    u x d            bends further; below 20 degrees only
-///         within 45 degrees of the straight limb's axis, as knees are bent to their sides too
+///         within 25 degrees of the straight limb's axis, as knees are bent to their sides too
 ///
 /// Riggers put a hinge on an axis of the joint's own: the nearest of the frame's axes is taken when
 /// it is within 10 degrees of the guess, and the others are the alternatives. A joint without tail

@@ -59,22 +59,25 @@ BvhMotion turned(BvhMotion motion, int up) {
   return motion;
 }
 
-/// How well the body stands with an axis up: the better correlation of the two that count.
-double standing(const BvhMotion& motion, const SkeletonFile& skeleton, const DrivenJoints& joints,
-                int up, int origin_frame) {
-  const BvhMotion upright = turned(motion, up);
-  const std::vector<Eigen::Vector3d> rest = rest_positions(upright);
-  const Pose pose = BvhRetarget(upright, skeleton, origin_frame).pose(origin_frame);
+/// Correlation of the heights of the character's driven joints with those of the motion's joints at
+/// `positions`.
+double agreement(const SkeletonFile& skeleton, const DrivenJoints& joints,
+                 const std::vector<Eigen::Vector3d>& positions) {
   const auto n = static_cast<Eigen::Index>(joints.ours.size());
-  Eigen::VectorXd ours(n), theirs(n), posed(n);
+  Eigen::VectorXd ours(n), theirs(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const int j = joints.ours[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d& head = skeleton.skeleton.joints[j].head;
-    ours[i] = head.y();
-    theirs[i] = rest[joints.theirs[static_cast<std::size_t>(i)]].y();
-    posed[i] = (pose[j] * head).y();
+    const auto k = static_cast<std::size_t>(i);
+    ours[i] = skeleton.skeleton.joints[joints.ours[k]].head.y();
+    theirs[i] = positions[joints.theirs[k]].y();
   }
-  return std::max(correlation(ours, theirs), correlation(ours, posed));
+  return correlation(ours, theirs);
+}
+
+/// How well the body stands: the better agreement of the two that count.
+double standing(const BvhMotion& upright, const SkeletonFile& skeleton, const DrivenJoints& joints,
+                int origin_frame) {
+  return std::max(agreement(skeleton, joints, rest_positions(upright)),
+                  agreement(skeleton, joints, bvh_frame(upright, origin_frame).position));
 }
 
 [[noreturn]] void refuse(const std::array<double, 3>& score, int up, const std::string& name) {
@@ -102,7 +105,7 @@ BvhMotion stand_up(BvhMotion motion, const SkeletonFile& skeleton, BvhUp up, int
   if (!tells_up(skeleton, joints)) return turned(std::move(motion), named);
   std::array<double, 3> score{};
   for (int axis = 0; axis < 3; ++axis)
-    score[axis] = standing(motion, skeleton, joints, axis, origin_frame);
+    score[axis] = standing(turned(motion, axis), skeleton, joints, origin_frame);
   int chosen = named;
   if (up == BvhUp::guess && score[kY] < kStands) {
     chosen = static_cast<int>(std::max_element(score.begin(), score.end()) - score.begin());

@@ -10,10 +10,10 @@ enum class BvhUp { guess, x, y, z };
 /// Turns the coordinates of a motion so that its up axis is y, the character's.
 ///
 /// An axis makes the body stand when the heights of the character's driven joints correlate by 0.5
-/// or more with those of the motion: at its rest pose, or of the retargeted body at `origin_frame`
-/// (a rest pose may be any; a capture may begin on the floor). `guess` takes y, the format's
-/// custom, where it does, else the axis that agrees best. A skeleton of which fewer than three
-/// joints are driven, or that lie on a line, says nothing: it is taken as it is.
+/// or more with those of the motion's joints, at its rest pose or at `origin_frame` (a rest pose
+/// may be any; a capture may begin on the floor). `guess` takes y, the format's custom, where it
+/// does, else the axis that agrees best. A skeleton of which fewer than three joints are driven, or
+/// that lie on a line, says nothing: it is taken as it is.
 ///
 /// @param name  of the motion's file, for messages
 /// @throws Error  when the body would lie down or stand on its head, with the axes' correlations

@@ -133,8 +133,7 @@ void take_skeleton_file(const Skeleton& own, const std::string& where,
                                    ": its skeleton replaces that of the character");
     } else if (!joints.missing.empty()) {
       kept = std::move(joints.is_missing);
-      character.warnings.push_back(name + " lacks " + std::to_string(joints.missing.size()) +
-                                   " joints that carry weights of " + where +
+      character.warnings.push_back(name + " lacks joints that carry weights of " + where +
                                    ", which are kept: " + quoted_names(joints.missing));
     }
   }

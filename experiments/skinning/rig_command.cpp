@@ -15,10 +15,11 @@ namespace {
 constexpr int kDigits = 7;  ///< of positions: those of the files' floats
 
 std::string vector_text(const Eigen::Vector3d& x, int digits) {
+  const double least = 0.5 * std::pow(10, -digits) * x.cwiseAbs().maxCoeff();
   std::string text;
   for (const double value : x) {
-    // Round-off of a zero, and no "-0".
-    const double shown = std::abs(value) < 1e-12 ? 0 : value;
+    // What the largest coordinate's digits do not reach is round-off.
+    const double shown = std::abs(value) <= least ? 0 : value;
     text += (text.empty() ? "[" : ", ") + rounded_text(shown, digits);
   }
   return text + "]";
