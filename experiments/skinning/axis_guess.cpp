@@ -10,12 +10,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBend = 3;        ///< degrees; less is a straight limb
-constexpr double kFolded = 150;    ///< degrees; more is no bend of a limb
-constexpr double kClearBend = 20;  ///< degrees; less may be a limb that is bent to its side
-constexpr double kAgree = 25;      ///< degrees between such a bend and the straight limb's axis
-constexpr double kSnap = 10;       ///< degrees between a guess and an axis of the joint's own
-constexpr double kFoot = 0.15;     ///< share of the height that feet are in
+constexpr double kBend = 3;         ///< degrees; less is a straight limb
+constexpr double kFolded = 150;     ///< degrees; more is no bend of a limb
+constexpr double kClearBend = 20;   ///< degrees; less may be a limb that is bent to its side
+constexpr double kAgree = 25;       ///< degrees between such a bend and the straight limb's axis
+constexpr double kSnap = 10;        ///< degrees between a guess and an axis of the joint's own
+constexpr double kAlongBone = 0.9;  ///< cosine; about such an axis a bone twists
+constexpr double kFoot = 0.15;      ///< share of the height that feet are in
 
 double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
@@ -115,7 +116,8 @@ class Rig {
   [[nodiscard]] const Vector3d& bone(int joint) const { return bone_[joint]; }
 
   [[nodiscard]] GuessedAxis flexion(int joint) const {
-    if (body_.in_plane(joints_[joint].head) && std::abs(body_.left.dot(bone_[joint])) < 0.9) {
+    if (body_.in_plane(joints_[joint].head) &&
+        std::abs(body_.left.dot(bone_[joint])) < kAlongBone) {
       return {body_.left, "in the plane of symmetry: the trunk bends forward"};
     }
     GuessedAxis straight = flexion_of_straight(joint);
@@ -213,6 +215,7 @@ JointAxes axes_of(const Joint& joint, const Vector3d& bone, GuessedAxis guess) {
   for (int axis = 0; joint.frame && axis < 3; ++axis) {
     GuessedAxis own = own_axis(*joint.frame, axis, first);
     const double angle = angle_between(own.direction, first);
+    if (std::abs(own.direction.dot(bone)) > kAlongBone) continue;
     if (angle > kSnap || snapped) {
       axes.alternatives.push_back(std::move(own));
     } else {

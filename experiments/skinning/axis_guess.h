@@ -36,7 +36,7 @@ struct JointAxes {
 ///         within 25 degrees of the straight limb's axis, as knees are bent to their sides too
 ///
 /// Riggers put a hinge on an axis of the joint's own: the nearest of the frame's axes is taken when
-/// it is within 10 degrees of the guess, and the others are the alternatives. A joint without tail
+/// it is within 10 degrees of the guess, and the others across the bone are the alternatives. A joint without tail
 /// (a leaf) has the direction of its parent's bone.
 ///
 /// @return one for each joint; what cannot be told (a single point) gets unit axes all the same
