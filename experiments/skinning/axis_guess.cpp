@@ -1,5 +1,6 @@
 #include "experiments/skinning/axis_guess.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,13 +11,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBend = 3;         ///< degrees; less is a straight limb
-constexpr double kFolded = 150;     ///< degrees; more is no bend of a limb
-constexpr double kClearBend = 20;   ///< degrees; less may be a limb that is bent to its side
-constexpr double kAgree = 25;       ///< degrees between such a bend and the straight limb's axis
-constexpr double kSnap = 10;        ///< degrees between a guess and an axis of the joint's own
-constexpr double kAlongBone = 0.9;  ///< cosine; about such an axis a bone twists
-constexpr double kFoot = 0.15;      ///< share of the height that feet are in
+constexpr double kBend = 3;          ///< degrees; less is a straight limb
+constexpr double kFolded = 150;      ///< degrees; more is no bend of a limb
+constexpr double kClearBend = 20;    ///< degrees; less may be a limb that is bent to its side
+constexpr double kAgree = 25;        ///< degrees between such a bend and the straight limb's axis
+constexpr double kSnap = 10;         ///< degrees between a guess and an axis of the joint's own
+constexpr double kAlongBone = 0.9;   ///< cosine; about such an axis a bone twists
+constexpr double kHandWidth = 0.15;  ///< of the knuckles (deviation), over their distance
+constexpr double kFoot = 0.15;       ///< share of the height that feet are in
 
 double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
@@ -89,10 +91,14 @@ Body find_body(const Skeleton& skeleton) {
     if (count > most) sides = axis;
     most = std::max(most, count);
   }
-  // A third of the joints: an accidental pair makes no body.
-  body.is_symmetric = 3 * most >= skeleton.size();
-  if (!body.is_symmetric) return body;
+  // A third of the joints that lie off the plane, and two pairs: one may be an accident.
   body.middle = median(skeleton, sides);
+  const auto off_plane =
+      std::count_if(skeleton.joints.begin(), skeleton.joints.end(), [&](const Joint& joint) {
+        return std::abs(joint.head[sides] - body.middle) > body.tolerance;
+      });
+  body.is_symmetric = most >= 4 && 3 * most >= off_plane;
+  if (!body.is_symmetric) return body;
   body.front = Vector3d::Unit(2 - sides);
   if (feet(skeleton, body).dot(body.front) < 0) body.front = -body.front;
   body.left = body.up.cross(body.front);
@@ -131,11 +137,61 @@ class Rig {
 
  private:
   [[nodiscard]] GuessedAxis flexion_of_straight(int joint) const {
+    if (const auto closing = flexion_of_hand(joint)) return *closing;
     const auto [direction, words] = goal(joint);
     Vector3d axis = bone_[joint].cross(direction);
     if (axis.norm() < 0.1) axis = bone_[joint].cross(body_.left);
     if (axis.norm() < 0.1) axis = bone_[joint].cross(body_.up);
     return {axis.normalized(), "the bone turns " + words};
+  }
+
+  /// Of a hand and what lies beyond it: about the line of its knuckles, to the palm's side.
+  [[nodiscard]] std::optional<GuessedAxis> flexion_of_hand(int joint) const {
+    const int hand = hand_of(joint);
+    if (hand < 0) return std::nullopt;
+    const Vector3d& bone = bone_[joint];
+    const Vector3d line = knuckle_line(hand);
+    const Vector3d axis = line - line.dot(bone) * bone;
+    if (!(axis.norm() > 0.3)) return std::nullopt;  // a bone along the knuckles, or no hand
+    const double side = axis.cross(bone).dot(palm(joint)) < 0 ? -1 : 1;
+    return GuessedAxis{side * axis.normalized(), "about the line of the knuckles, to the palm"};
+  }
+
+  /// The joint itself or its nearest ancestor of the same limb that has three or more children; -1
+  /// where there is none.
+  [[nodiscard]] int hand_of(int joint) const {
+    for (int j = joint; j >= 0 && !body_.in_plane(joints_[j].head); j = joints_[j].parent) {
+      if (children_[j].size() >= 3) return j;
+    }
+    return -1;
+  }
+
+  /// The direction in which the children of a hand lie side by side; zero where they lie behind one
+  /// another (joints that twist an arm).
+  [[nodiscard]] Vector3d knuckle_line(int hand) const {
+    const std::vector<int>& fingers = children_[hand];
+    Vector3d mean = Vector3d::Zero();
+    for (const int finger : fingers) mean += joints_[finger].head;
+    mean /= static_cast<double>(fingers.size());
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const int finger : fingers) {
+      const Vector3d from_mean = joints_[finger].head - mean;
+      const Vector3d across = from_mean - from_mean.dot(bone_[hand]) * bone_[hand];
+      spread += across * across.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
+    const double width = std::sqrt(axes.eigenvalues()[2] / static_cast<double>(fingers.size()));
+    const bool is_wide = width > kHandWidth * (mean - joints_[hand].head).norm();
+    return is_wide ? Vector3d(axes.eigenvectors().col(2)) : Vector3d::Zero();
+  }
+
+  /// Where the palm of an arm at the side of the body faces: down when the arm is stretched out,
+  /// inwards when it hangs.
+  [[nodiscard]] Vector3d palm(int joint) const {
+    const double side = body_.left.dot(joints_[joint].head) > body_.middle ? 1 : -1;
+    const double out = side * body_.left.dot(bone_[joint]);
+    const double up = body_.up.dot(bone_[joint]);
+    return side * up * body_.left - out * body_.up;
   }
 
   [[nodiscard]] Vector3d bone_direction(int joint) const {
@@ -162,11 +218,6 @@ class Rig {
   /// Where a straight bone turns to.
   [[nodiscard]] std::pair<Vector3d, std::string> goal(int joint) const {
     const bool hangs = body_.up.dot(bone_[joint]) < -0.7;
-    if (is_of_hand(joint)) {
-      if (!hangs) return {-body_.up, "down, to the palm"};
-      const double side = body_.left.dot(joints_[joint].head) - body_.middle;
-      return {side > 0 ? -body_.left : body_.left, "inwards, to the palm"};
-    }
     if (hangs && reaches_ground(joint) && is_below_hip(joint)) {
       return {-body_.front, "backward, as a knee"};
     }
@@ -182,14 +233,6 @@ class Rig {
     for (int p = joints_[joint].parent; p >= 0 && !body_.in_plane(joints_[p].head);
          p = joints_[p].parent) {
       if (body_.up.dot(bone_[p]) < -0.7) return true;
-    }
-    return false;
-  }
-
-  [[nodiscard]] bool is_of_hand(int joint) const {
-    for (int p = joints_[joint].parent; p >= 0 && !body_.in_plane(joints_[p].head);
-         p = joints_[p].parent) {
-      if (children_[p].size() >= 3) return true;
     }
     return false;
   }

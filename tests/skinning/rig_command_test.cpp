@@ -54,13 +54,32 @@ std::string rig_text(const std::string& file) {
 TEST(AxisGuess, AgreesWithTheAuthoredFlexionOfTheBody) {
   const Skeleton authored = read_skeleton_file(find_input("human.skeleton.toml", ".")).skeleton;
   const std::vector<JointAxes> guessed = guess_axes(human_without_axes());
-  for (const char* name : {"spine-1", "spine-2", "neck", "hip-left", "hip-right", "knee-left",
-                           "knee-right", "ankle-left", "elbow-left", "elbow-right", "index-2-left",
-                           "middle-2-left", "ring-2-right"}) {
+  for (const char* name :
+       {"spine-1", "spine-2", "neck", "hip-left", "hip-right", "knee-left", "knee-right",
+        "ankle-left", "elbow-left", "elbow-right", "shoulder-left", "wrist-left", "index-1-left",
+        "index-2-left", "middle-2-left", "ring-2-right", "pinky-3-right"}) {
     const int j = authored.index_of(name);
     EXPECT_LT(degrees_between(guessed[j].flexion.direction, authored.joints[j].axes.at("flexion")),
-              30)
+              15)
         << name << ": " << guessed[j].flexion.reason;
+  }
+}
+
+TEST(AxisGuess, JointsThatTwistAnArmMakeNoHand) {
+  // The arm of the body with two joints along its upper bone, as riggers spread a twist.
+  Skeleton body = human_without_axes();
+  const std::vector<JointAxes> plain = guess_axes(body);
+  const int shoulder = body.index_of("shoulder-left");
+  const Joint upper = body.joints[shoulder];
+  for (const double at : {0.3, 0.6}) {
+    body.joints.push_back(joint_at("twist " + std::to_string(at), shoulder,
+                                   upper.head + at * (*upper.tail - upper.head)));
+  }
+  const std::vector<JointAxes> with_twists = guess_axes(body);
+  for (const char* name : {"shoulder-left", "elbow-left", "index-2-left"}) {
+    const int j = body.index_of(name);
+    EXPECT_LT(degrees_between(with_twists[j].flexion.direction, plain[j].flexion.direction), 10)
+        << name << ": " << with_twists[j].flexion.reason;
   }
 }
 
