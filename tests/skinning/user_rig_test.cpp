@@ -36,6 +36,7 @@ class UserRig : public test::ScratchFolder {
     options.motion.joint = "knee";
     options.motion.axis = axis;
     options.motion.frames = 2;
+    options.regions = {"hip"};  // of a root there is none: a square is no limb
     return options;
   }
   [[nodiscard]] static SkinningSceneOptions helped(const std::string& axis = "flexion") {
