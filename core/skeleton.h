@@ -12,8 +12,8 @@ namespace geoprior {
 
 /// One joint of a skeleton, in the rest pose and in the coordinates of the mesh (metres).
 ///
-/// The bone of a joint runs from its head to its tail and moves with the joint. Rest frames are not
-/// needed: a pose is given by the transforms that carry the rest pose to the posed one, and
+/// The bone of a joint runs from its head to its tail and moves with the joint. Poses need no rest
+/// frames: a pose is given by the transforms that carry the rest pose to the posed one, and
 /// rotations turn about `head`.
 struct Joint {
   std::string name;
@@ -23,6 +23,9 @@ struct Joint {
   /// Anatomical axes: name ("flexion", "twist", …) to the unit axis about which a positive angle
   /// turns, right-handed.
   std::map<std::string, Eigen::Vector3d> axes;
+  /// The joint's own axes x, y, z at rest: unit columns, not always at right angles. Only for what
+  /// is said in them ("local +x"); absent where the source gives positions alone.
+  std::optional<Eigen::Matrix3d> frame = std::nullopt;
 };
 
 /// Joints, parents before children.

@@ -27,6 +27,15 @@ struct RowAbove {
   std::vector<std::string> overlays;
 };
 
+/// Where a picture is looked at from, as a scene suggests it: the keys of figure_view of these
+/// names.
+struct Camera {
+  std::array<double, 3> target{0, 0, 0};
+  std::array<double, 3> direction{0, 0, 1};
+  std::array<double, 3> up{0, 1, 0};
+  double height_m = 1;
+};
+
 /// How the picture of a run is drawn: what the experiment file says, over what its topic says.
 /// Positions in metres; absent: fitted to the part.
 struct FigureView {
@@ -49,7 +58,9 @@ struct FigureView {
   std::optional<std::array<double, 3>> target;
   std::array<double, 3> direction{0, 0, 1};  ///< from the target to the eye
   std::array<double, 3> up{0, 1, 0};
-  std::optional<double> height_m;      ///< height of the view (parallel projection)
+  std::optional<double> height_m;  ///< height of the view (parallel projection)
+  /// The experiment file gives none of the last four: a scene may suggest them.
+  bool camera_is_free = true;
   std::optional<SectionView> section;  ///< adds a row with the cut, overlaps of the solid in red
   std::optional<RowAbove> above;       ///< with a camera and colours of its own
   std::vector<std::string> overlays;   ///< further parts drawn over `part` ("rulings", "strokes")

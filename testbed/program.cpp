@@ -3,6 +3,7 @@
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 
@@ -46,6 +47,7 @@ struct CommandLine {
   VideoRequest video;
   ReportRequest report;
   ExportRequest exported;
+  std::vector<TopicCommandRequest> of_topics;
 };
 
 CLI::App* add_command(CommandLine& line, const std::string& name, const std::string& what) {
@@ -126,7 +128,31 @@ void add_views(CommandLine& line) {
   add_force(*exported, line.exported.unverified);
 }
 
-void build(CommandLine& line) {
+/// "unit_m" as a flag: "--unit-m".
+std::string flag_of(std::string key) {
+  std::replace(key.begin(), key.end(), '_', '-');
+  return "--" + key;
+}
+
+void add_topic_command(CommandLine& line, TopicCommandRequest& request) {
+  const TopicCommand& about = *request.command;
+  CLI::App* command = add_command(line, about.name, about.summary);
+  command->add_option(about.input, request.input, about.input_meaning)->required();
+  const auto options = about.default_options();
+  for (const OptionRow& row : list_options([&](OptionVisitor& v) { options->visit(v); })) {
+    command->add_option(flag_of(row.key), request.options[row.key], row.doc)->type_name(row.type);
+  }
+}
+
+void add_topic_commands(CommandLine& line, const std::vector<Topic>& topics) {
+  for (const Topic& topic : topics) {
+    for (const TopicCommand& command : topic.commands) line.of_topics.push_back({&command, {}, {}});
+  }
+  // The command line keeps references to the requests.
+  for (TopicCommandRequest& request : line.of_topics) add_topic_command(line, request);
+}
+
+void build(CommandLine& line, const std::vector<Topic>& topics) {
   line.app.footer(kFooter);
   line.app.set_version_flag("--version", version_line());
   line.app.require_subcommand(1);
@@ -140,13 +166,14 @@ void build(CommandLine& line) {
   describe
       ->add_option(
           "name", line.described,
-          "method, topic, metric or diagnostic, with topic/ before it if need be, or the word "
-          "experiment (the keys of its file)")
+          "method, topic, metric, diagnostic or kind of file, with topic/ before it if need be, or "
+          "the word experiment (the keys of its file)")
       ->required();
   describe->add_flag("--markdown", line.markdown, "a table for the documentation, on stdout");
   add_run(line);
   add_checks(line);
   add_views(line);
+  add_topic_commands(line, topics);
 }
 
 int dispatch(CommandLine& line, const std::vector<Topic>& topics) {
@@ -163,6 +190,9 @@ int dispatch(CommandLine& line, const std::vector<Topic>& topics) {
   if (command == "render") return render_command(context, line.render);
   if (command == "video") return video_command(context, line.video);
   if (command == "report") return report_command(context, line.report);
+  for (const TopicCommandRequest& request : line.of_topics) {
+    if (command == request.command->name) return topic_command(context, request);
+  }
   return export_command(context, line.exported);
 }
 
@@ -198,7 +228,7 @@ int run_program(int argc, const char* const* argv, const std::vector<Topic>& top
   ::signal(SIGPIPE, SIG_IGN);
   try {
     CommandLine line;
-    build(line);
+    build(line, topics);
     try {
       line.app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

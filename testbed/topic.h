@@ -16,6 +16,7 @@
 #include "core/options.h"
 #include "testbed/figure_view.h"
 #include "testbed/frame_sequence.h"
+#include "testbed/runner/option_listing.h"
 
 namespace geoprior {
 
@@ -33,6 +34,8 @@ class Scene {
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
   /// Plain numbers worth recording (vertices, triangles, regions), shown in the report.
   [[nodiscard]] virtual std::map<std::string, double> facts() const { return {}; }
+  /// What shows best what happens, where the experiment file says nothing of the camera; recorded.
+  [[nodiscard]] virtual std::optional<Camera> camera() const { return std::nullopt; }
 };
 
 /// A scene of processes, whose frames are times: what all such scenes say alike.
@@ -149,6 +152,45 @@ struct DiagnosticEntry {
   Tolerance tolerance = {};
 };
 
+/// What a command of a topic has to say: a text for standard output, and lines for people.
+struct CommandText {
+  std::string text;
+  std::vector<std::string> notices;
+};
+
+/// A command of the program that a topic brings: `geoprior <name> <input> [--option …]`, with a
+/// flag for each option of its struct (`unit_m` as --unit-m).
+struct TopicCommand {
+  std::string name;
+  std::string summary;        ///< one line
+  std::string input;          ///< what its argument is called
+  std::string input_meaning;  ///< one line
+  std::function<std::unique_ptr<OptionSet>()> default_options;
+  std::function<CommandText(const std::string& input, const OptionSet&)> run;
+};
+
+/// Builds a TopicCommand from typed pieces: `run(input, const Options&)` returns a CommandText.
+template <class Options, class Run>
+TopicCommand topic_command(std::string name, std::string summary, std::string input,
+                           std::string input_meaning, Run run) {
+  return {std::move(name),
+          std::move(summary),
+          std::move(input),
+          std::move(input_meaning),
+          [] { return std::make_unique<TypedOptions<Options>>(); },
+          [run](const std::string& given, const OptionSet& set) {
+            return run(given, dynamic_cast<const TypedOptions<Options>&>(set).options);
+          }};
+}
+
+/// A kind of file that only the topic reads, for `geoprior describe <name>`.
+struct TopicFile {
+  std::string name;     ///< "skeleton"
+  std::string summary;  ///< one line
+  std::string table;    ///< that the keys stand in: "[joint.<name>]"
+  std::vector<OptionRow> keys;
+};
+
 /// Everything the runner knows of a topic: one instance each, listed in ONE table
 /// (experiments/topics.cpp).
 struct Topic {
@@ -167,6 +209,8 @@ struct Topic {
   std::vector<DiagnosticEntry> diagnostics;
   /// What is drawn where the experiment file does not say.
   FigureView view;
+  std::vector<TopicCommand> commands = {};
+  std::vector<TopicFile> files = {};
 };
 
 /// Rows of all groups of the topic's metric table, in their order.

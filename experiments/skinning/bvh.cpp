@@ -161,14 +161,15 @@ void parse_motion(Words& words, BvhMotion& motion, int columns) {
   }
 }
 
-/// From the joint to the mean of its children's offsets, or to its end site; zero without either.
+/// From the joint to the mean of its children's offsets, or to its end site, in world coordinates;
+/// zero without either.
 Eigen::Vector3d rest_bone(const BvhMotion& motion, int joint) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const BvhJoint& child : motion.joints) {
     if (child.parent == joint) sum += child.offset;
   }
   const auto& end = motion.joints[joint].end_site;
-  return end ? Eigen::Vector3d(sum + *end) : sum;
+  return motion.to_y_up * (end ? Eigen::Vector3d(sum + *end) : sum);
 }
 
 int driver_of(const BvhMotion& motion, const std::string& bvh, const std::string& joint) {
@@ -202,6 +203,16 @@ BvhMotion read_bvh(const std::filesystem::path& file) {
   return parse_bvh(read_whole_file(file), file.string());
 }
 
+std::vector<Eigen::Vector3d> rest_positions(const BvhMotion& motion) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const BvhJoint& joint : motion.joints) {
+    const Eigen::Vector3d offset = motion.to_y_up * joint.offset;
+    positions.push_back(joint.parent < 0 ? offset
+                                         : Eigen::Vector3d(positions[joint.parent] + offset));
+  }
+  return positions;
+}
+
 BvhFrame bvh_frame(const BvhMotion& motion, int frame) {
   BvhFrame result;
   for (const BvhJoint& joint : motion.joints) {
@@ -225,6 +236,9 @@ BvhFrame bvh_frame(const BvhMotion& motion, int frame) {
       result.rotation.push_back((result.rotation[p] * local).normalized());
     }
   }
+  for (Eigen::Quaterniond& rotation : result.rotation)
+    rotation = motion.to_y_up * rotation * motion.to_y_up.conjugate();
+  for (Eigen::Vector3d& position : result.position) position = motion.to_y_up * position;
   return result;
 }
 
@@ -245,12 +259,7 @@ BvhRetarget::BvhRetarget(const BvhMotion& motion, const SkeletonFile& skeleton, 
   if (!any) throw Error("no joint of the skeleton names a joint of the motion", "", "bvh = \"…\"");
   std::vector<Eigen::Vector3d> ours;
   for (const Joint& joint : joints) ours.push_back(joint.head);
-  std::vector<Eigen::Vector3d> theirs;
-  for (const BvhJoint& joint : motion.joints) {
-    theirs.push_back(joint.parent < 0 ? joint.offset
-                                      : Eigen::Vector3d(theirs[joint.parent] + joint.offset));
-  }
-  const double height = root_height(theirs);
+  const double height = root_height(rest_positions(motion));
   if (height > 0 && root_height(ours) > 0) scale_ = root_height(ours) / height;
   origin_ = bvh_frame(motion, origin_frame).position[0];
   // The root is at rest at the height at which the lowest joint would stand as high as ours.

@@ -29,6 +29,8 @@ struct BvhMotion {
   std::vector<BvhJoint> joints;
   double frame_time_s = 0;
   Eigen::MatrixXd values;  ///< one row a frame; degrees, and lengths in the file's unit
+  /// Turns the file's coordinates into those of the world, where y is up (bvh_up.h).
+  Eigen::Quaterniond to_y_up = Eigen::Quaterniond::Identity();
 
   [[nodiscard]] int frame_count() const { return static_cast<int>(values.rows()); }
 };
@@ -45,6 +47,9 @@ struct BvhFrame {
   std::vector<Eigen::Vector3d> position;
 };
 BvhFrame bvh_frame(const BvhMotion& motion, int frame);
+
+/// Where the joints are in the file's rest pose, in world coordinates (file's unit).
+std::vector<Eigen::Vector3d> rest_positions(const BvhMotion& motion);
 
 /// Carries a motion over to a skeleton by the names in its file.
 ///

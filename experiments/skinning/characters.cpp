@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <numeric>
 
@@ -12,6 +13,7 @@
 #include "core/simplify.h"
 #include "core/subdivision.h"
 #include "core/topology.h"
+#include "experiments/skinning/skeleton_size.h"
 #include "metrics/joint_region.h"
 #include "testbed/home.h"
 
@@ -61,30 +63,83 @@ SkinWeights weld_weights(const SkinWeights& split, const Weld& weld, std::string
   return welded;
 }
 
-/// Weights of the file on the joints of another skeleton, by name; absent when a joint that carries
-/// weight has no namesake.
-std::optional<SkinWeights> rename_columns(const SkinWeights& weights, const Skeleton& from,
-                                          const Skeleton& to, std::string& missing) {
-  std::vector<int> column(from.size(), -1);
-  for (int i = 0; i < from.size(); ++i) {
-    for (int j = 0; j < to.size(); ++j) {
-      if (to.joints[j].name == from.joints[i].name) column[i] = j;
-    }
-  }
+/// Weights of the file on the joints of another skeleton, by name; joints that carry weight are all
+/// there.
+SkinWeights rename_columns(const SkinWeights& weights, const Skeleton& from, const Skeleton& to) {
   std::vector<Eigen::Triplet<double>> triplets;
+  std::vector<int> column;
+  for (const Joint& joint : from.joints) column.push_back(find_joint(to, joint.name).value_or(-1));
   for (int v = 0; v < weights.rows(); ++v) {
-    for (SkinWeights::InnerIterator it(weights, v); it; ++it) {
-      const int j = column[it.col()];
-      if (j < 0) {
-        missing = from.joints[it.col()].name;
-        return std::nullopt;
-      }
-      triplets.emplace_back(v, j, it.value());
-    }
+    for (SkinWeights::InnerIterator it(weights, v); it; ++it)
+      triplets.emplace_back(v, column[it.col()], it.value());
   }
   SkinWeights renamed(weights.rows(), to.size());
   renamed.setFromTriplets(triplets.begin(), triplets.end());
   return renamed;
+}
+
+std::vector<bool> weighted_joints(const SkinWeights& weights) {
+  std::vector<bool> weighted(weights.cols(), false);
+  for (int v = 0; v < weights.rows(); ++v)
+    for (SkinWeights::InnerIterator it(weights, v); it; ++it) weighted[it.col()] = true;
+  return weighted;
+}
+
+/// "'a', 'b' and 3 more": names of joints for a line.
+std::string quoted_names(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 12;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
+    text += (i == 0 ? "'" : ", '") + names[i] + "'";
+  return names.size() <= kShown ? text
+                                : text + " and " + std::to_string(names.size() - kShown) + " more";
+}
+
+/// Joints of a character that carry weight, by whether a skeleton file has them.
+struct WeightedJoints {
+  std::vector<bool> is_missing;
+  std::vector<std::string> missing;
+  bool any_shared = false;
+};
+
+WeightedJoints compare(const SkinWeights& weights, const Skeleton& own, const Skeleton& file) {
+  WeightedJoints result{weighted_joints(weights), {}, false};
+  for (int j = 0; j < own.size(); ++j) {
+    if (!result.is_missing[j]) continue;
+    if (find_joint(file, own.joints[j].name)) {
+      result.is_missing[j] = false;
+      result.any_shared = true;
+    } else {
+      result.missing.push_back(own.joints[j].name);
+    }
+  }
+  return result;
+}
+
+/// Puts the skeleton file, already read, over the character's own skeleton. The file helps a rig
+/// that has weights: joints that carry weight and are not in the file stay. A file that has none of
+/// them replaces the rig, and with it the weights.
+void take_skeleton_file(const Skeleton& own, const std::string& where,
+                        std::optional<SkinWeights>& given, Character& character) {
+  SkeletonFile& file = *character.skeleton_file;
+  require_size(file.skeleton, own, character.rig.mesh, character.files.back().string());
+  const std::string name = character.files.back().filename().string();
+  std::vector<bool> kept(own.joints.size(), false);
+  if (given) {
+    WeightedJoints joints = compare(*given, own, file.skeleton);
+    if (!joints.any_shared) {
+      given.reset();
+      character.warnings.push_back(name + " has no joint that carries weights of " + where +
+                                   ": its skeleton replaces that of the character");
+    } else if (!joints.missing.empty()) {
+      kept = std::move(joints.is_missing);
+      character.warnings.push_back(name + " lacks joints that carry weights of " + where +
+                                   ", which are kept: " + quoted_names(joints.missing));
+    }
+  }
+  file = with_kept_joints(file, own, kept, character.files.back().string());
+  if (given) given = rename_columns(*given, own, file.skeleton);
+  character.rig.skeleton = file.skeleton;
 }
 
 /// Weights that came with the character, on its skeleton; absent: there are none.
@@ -131,9 +186,19 @@ void scale_to_metres(Skeleton& skeleton, double unit_m) {
   }
 }
 
+GltfCharacter read_character_file(const fs::path& file, const std::optional<std::string>& mesh) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".glb" || extension == ".gltf") return read_gltf(file, {mesh});
+  throw Error("is no file that a character is read from", file.string(),
+              "glTF 2.0 (.glb, .gltf), skinned or, without skin, with skeleton = "
+              "\"<name>.skeleton.toml\"; programs such as Blender write it");
+}
+
 void load_file(const CharacterOptions& options, const fs::path& file, const fs::path& folder,
                Character& character) {
-  GltfCharacter gltf = read_gltf(file, {options.mesh});
+  GltfCharacter gltf = read_character_file(file, options.mesh);
   character.files = gltf.files;
   character.warnings = gltf.warnings;
   character.unit_m = options.unit_m;
@@ -157,13 +222,8 @@ void load_file(const CharacterOptions& options, const fs::path& file, const fs::
   if (!character.skeleton_file) {
     character.rig.skeleton = *gltf.skeleton;
   } else {
-    character.rig.skeleton = character.skeleton_file->skeleton;
-    std::string missing;
-    if (given) given = rename_columns(*given, *gltf.skeleton, character.rig.skeleton, missing);
-    if (!missing.empty() && options.weights == WeightSource::file_or_heat) {
-      character.warnings.push_back("the skeleton file has no joint '" + missing + "' of " +
-                                   file.string() + ": heat weights are used");
-    }
+    if (options.weights == WeightSource::heat) given.reset();
+    take_skeleton_file(gltf.skeleton.value_or(Skeleton{}), file.string(), given, character);
   }
   choose_weights(options, file.string(), std::move(given), character);
   character.gltf = std::move(gltf);
@@ -183,10 +243,9 @@ void take_procedural(const CharacterOptions& options, RiggedMesh rig, const fs::
   std::optional<SkinWeights> given = std::move(character.rig.weights);
   if (options.skeleton) {
     read_skeleton_option(*options.skeleton, folder, character);
-    std::string missing;
-    given =
-        rename_columns(*given, character.rig.skeleton, character.skeleton_file->skeleton, missing);
-    character.rig.skeleton = character.skeleton_file->skeleton;
+    const Skeleton own = std::move(character.rig.skeleton);
+    if (options.weights == WeightSource::heat) given.reset();
+    take_skeleton_file(own, "character '" + options.character + "'", given, character);
   }
   choose_weights(options, options.character, std::move(given), character);
 }
@@ -293,6 +352,15 @@ Character load_character(const CharacterOptions& options, const fs::path& folder
     refine(options.refine[i], "scene.refine." + std::to_string(i), character);
   }
   return character;
+}
+
+CharacterSkeleton read_character_skeleton(const fs::path& file,
+                                          const std::optional<std::string>& mesh, double unit_m) {
+  GltfCharacter gltf = read_character_file(file, mesh);
+  if (!gltf.skeleton)
+    throw Error("no skin: the file has no skeleton", file.string(), "a skinned file");
+  scale_to_metres(*gltf.skeleton, unit_m);
+  return {std::move(*gltf.skeleton), std::move(gltf.warnings)};
 }
 
 fs::path data_folder() { return geoprior_home() / "data"; }

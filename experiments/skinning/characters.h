@@ -56,6 +56,16 @@ struct Character {
 /// @throws Error  naming the file: no skin and no skeleton file; weights = "file" without any; …
 Character load_character(const CharacterOptions& options, const std::filesystem::path& folder);
 
+/// The skeleton that comes with a character's file, in metres.
+struct CharacterSkeleton {
+  Skeleton skeleton;
+  std::vector<std::string> warnings;
+};
+
+/// @throws Error  naming the file: no glTF, no skin
+CharacterSkeleton read_character_skeleton(const std::filesystem::path& file,
+                                          const std::optional<std::string>& mesh, double unit_m);
+
 /// A file named in an experiment: absolute, or relative to `folder`, to experiments/skinning, to
 /// data/ or to the models of Debian's assimp-testmodels.
 /// @throws Error  listing where it was looked for

@@ -6,7 +6,6 @@
 
 #include "core/error.h"
 #include "core/limits.h"
-#include "experiments/skinning/bvh.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -167,7 +166,7 @@ Motion make_bvh(const MotionOptions& options, const Character& character,
   if (!character.skeleton_file)
     throw Error("a motion capture file needs a skeleton file with 'bvh' names", file.string(),
                 "skeleton = \"<name>.skeleton.toml\"");
-  const BvhMotion capture = read_bvh(file);
+  BvhMotion capture = read_bvh(file);
   const int last = options.last_frame.value_or(capture.frame_count() - 1);
   if (last >= capture.frame_count() || options.first_frame > last ||
       options.origin_frame >= capture.frame_count()) {
@@ -177,6 +176,8 @@ Motion make_bvh(const MotionOptions& options, const Character& character,
         file.string(),
         "first_frame <= last_frame, all at most " + std::to_string(capture.frame_count() - 1));
   }
+  capture = stand_up(std::move(capture), *character.skeleton_file, options.bvh_up,
+                     options.origin_frame, file.string());
   const BvhRetarget retarget(capture, *character.skeleton_file, options.origin_frame);
   Motion motion;
   motion.parameter_name = "time";
@@ -192,7 +193,9 @@ Motion make_bvh(const MotionOptions& options, const Character& character,
 
 void describe_ramp(OptionVisitor& v, MotionOptions& options) {
   v.value("joint", options.joint, {.doc = "joint that turns"});
-  v.value("axis", options.axis, {.doc = "named axis of the skeleton"});
+  v.value("axis", options.axis,
+          {.doc = "name that the skeleton file gives, or \"+x\" … \"-z\" (of the mesh), \"local "
+                  "+x\" … (the joint's own)"});
   v.value("from_deg", options.from_deg, {.doc = "first angle", .unit = "deg"});
   v.value("to_deg", options.to_deg, {.doc = "last angle", .unit = "deg"});
   describe_list(v, "joints", options.joints,
@@ -205,17 +208,20 @@ void describe_ramp(OptionVisitor& v, MotionOptions& options) {
 
 void describe(OptionVisitor& v, JointRamp& options) {
   v.value("joint", options.joint, {.doc = "joint that turns", .required = true});
-  v.value("axis", options.axis, {.doc = "named axis of the skeleton"});
+  v.value("axis", options.axis,
+          {.doc = "name that the skeleton file gives, or \"+x\" … \"-z\" (of the mesh), \"local "
+                  "+x\" … (the joint's own)"});
   v.value("from_deg", options.from_deg, {.doc = "first angle", .unit = "deg"});
   v.value("to_deg", options.to_deg, {.doc = "last angle", .unit = "deg"});
 }
 
 void describe(OptionVisitor& v, MotionOptions& options) {
   static constexpr std::array<std::string_view, 4> kKinds{"ramp", "poses", "clip", "bvh"};
+  static constexpr std::array<std::string_view, 4> kUps{"guess", "x", "y", "z"};
   describe_choice(v, "kind", options.kind, kKinds,
                   {.doc = "ramp: joint angles; poses: file, names; clip: name, start_s, end_s, "
                           "frames of the character's file; bvh: file, first_frame, last_frame, "
-                          "stride, origin_frame"});
+                          "stride, origin_frame, bvh_up"});
   switch (options.kind) {
     case MotionKind::ramp:
       describe_ramp(v, options);
@@ -237,6 +243,8 @@ void describe(OptionVisitor& v, MotionOptions& options) {
       v.value("stride", options.stride, {.doc = "every n-th frame", .min = 1});
       v.value("origin_frame", options.origin_frame,
               {.doc = "frame at which the root stands over the origin", .min = 0});
+      describe_choice(v, "bvh_up", options.bvh_up, kUps,
+                      {.doc = "axis of the file that is up; guess: by the heights of the joints"});
       break;
   }
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/options.h"
+#include "experiments/skinning/bvh_up.h"
 #include "experiments/skinning/characters.h"
 
 namespace geoprior::skinning {
@@ -44,6 +45,7 @@ struct MotionOptions {
   std::optional<int> last_frame;
   int stride = 1;
   int origin_frame = 0;
+  BvhUp bvh_up = BvhUp::guess;
 };
 void describe(OptionVisitor& v, MotionOptions& options);
 

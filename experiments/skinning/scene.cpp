@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/topology.h"
+#include "experiments/skinning/scene_view.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -111,6 +112,7 @@ std::shared_ptr<SkinningScene> load_skinning_scene(const SkinningSceneOptions& o
   Character character = load_character(options.character, folder);
   Motion motion = make_motion(options.motion, character, folder);
   scene->regions = make_regions(options, character.rig, motion);
+  scene->bending_view = bending_camera(character.rig, motion, scene->regions);
   scene->rig = std::move(character.rig);
   scene->input_mesh = std::move(character.input_mesh);
   scene->welded_of_input = std::move(character.welded_of_input);

@@ -39,6 +39,7 @@ class SkinningScene final : public Scene {
   std::string parameter_unit_label = "deg";
   std::vector<std::filesystem::path> input_files;
   std::vector<std::string> load_warnings;
+  std::optional<Camera> bending_view;
 
   [[nodiscard]] std::vector<double> parameters() const override { return frame_parameter; }
   [[nodiscard]] std::string parameter_name() const override { return parameter_label; }
@@ -46,6 +47,7 @@ class SkinningScene final : public Scene {
   [[nodiscard]] std::vector<std::filesystem::path> inputs() const override { return input_files; }
   [[nodiscard]] std::vector<std::string> warnings() const override { return load_warnings; }
   [[nodiscard]] std::map<std::string, double> facts() const override;
+  [[nodiscard]] std::optional<Camera> camera() const override { return bending_view; }
 
   /// Pose at a parameter: that of the frame whose parameter is equal; throws Error when there is
   /// none.

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "experiments/skinning/literal_axis.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/nesting.h"
 
@@ -85,13 +86,9 @@ Eigen::Vector3d parse_axis(const Value& value) {
     }
     return axis.normalized();
   }
-  static const std::map<std::string, Eigen::Vector3d> kAxes{
-      {"+x", Eigen::Vector3d::UnitX()}, {"-x", -Eigen::Vector3d::UnitX()},
-      {"+y", Eigen::Vector3d::UnitY()}, {"-y", -Eigen::Vector3d::UnitY()},
-      {"+z", Eigen::Vector3d::UnitZ()}, {"-z", -Eigen::Vector3d::UnitZ()}};
-  const auto it = kAxes.find(value.text());
-  if (it == kAxes.end()) value.fail("is no axis", "\"+x\" … \"-z\" or [x, y, z]");
-  return it->second;
+  const std::optional<LiteralAxis> literal = parse_literal_axis(value.text());
+  if (!literal || literal->is_local) value.fail("is no axis", "\"+x\" … \"-z\" or [x, y, z]");
+  return literal->direction;
 }
 
 /// A joint before the joints are sorted.
@@ -118,14 +115,20 @@ Entry parse_joint(const std::string& name, const Value& value) {
     } else if (key == "tail") {
       entry.joint.tail = member.vector();
     } else if (key == "axes") {
-      for (const auto& [axis, axis_node] : in_file_order(member.table()))
-        entry.joint.axes[axis] = parse_axis({*axis_node, axis, value.file});
+      for (const auto& [axis, axis_node] : in_file_order(member.table())) {
+        const Value axis_value{*axis_node, axis, value.file};
+        if (parse_literal_axis(axis)) axis_value.fail("means itself", "another name");
+        entry.joint.axes[axis] = parse_axis(axis_value);
+      }
     } else if (key == "bvh") {
       entry.bvh = member.text();
     } else if (key == "bvh_align") {
       entry.bvh_align = member.flag();
     } else {
-      member.fail("is no key of a joint", "parent, head, tail, axes, bvh, bvh_align");
+      std::string keys;
+      for (const OptionRow& row : skeleton_keys().keys)
+        keys += (keys.empty() ? "" : ", ") + row.key;
+      member.fail("is no key of a joint", keys);
     }
   }
   if (!has_head) throw Error("joint '" + name + "' has no 'head'", entry.place, "head = [x, y, z]");
@@ -157,7 +160,7 @@ void add_with_ancestors(const std::map<std::string, std::size_t>& by_name,
   for (auto it = chain.rbegin(); it != chain.rend(); ++it) {
     const Entry& entry = entries[*it];
     Joint joint = entry.joint;
-    if (entry.parent) joint.parent = index[by_name.at(*entry.parent)];
+    joint.parent = entry.parent ? index[by_name.at(*entry.parent)] : -1;
     index[*it] = result.skeleton.size();
     result.skeleton.joints.push_back(std::move(joint));
     result.bvh_joint.push_back(entry.bvh);
@@ -166,21 +169,10 @@ void add_with_ancestors(const std::map<std::string, std::size_t>& by_name,
   }
 }
 
-}  // namespace
-
-SkeletonFile parse_skeleton(std::string_view text, const std::string& name) {
-  const toml::table root = parse(text, name);
-  std::vector<Entry> entries;
+/// The joints sorted, parents first.
+SkeletonFile assemble(const std::vector<Entry>& entries) {
   std::map<std::string, std::size_t> by_name;
-  for (const auto& [key, node] : in_file_order(root)) {
-    const Value value{*node, key, name};
-    if (key != "joint") value.fail("is no key of a skeleton file", "[joint.<name>] tables");
-    for (const auto& [joint, joint_node] : in_file_order(value.table())) {
-      by_name[joint] = entries.size();
-      entries.push_back(parse_joint(joint, {*joint_node, joint, name}));
-    }
-  }
-  if (entries.empty()) throw Error("no joints", name, "[joint.<name>] tables");
+  for (std::size_t i = 0; i < entries.size(); ++i) by_name[entries[i].joint.name] = i;
   SkeletonFile result;
   std::vector<int> state(entries.size(), 0);
   std::vector<int> index(entries.size(), -1);
@@ -188,6 +180,83 @@ SkeletonFile parse_skeleton(std::string_view text, const std::string& name) {
     add_with_ancestors(by_name, entries, i, state, index, result);
   validate(result.skeleton);
   return result;
+}
+
+}  // namespace
+
+TopicFile skeleton_keys() {
+  return {
+      "skeleton",
+      "joints of a character: where they are, how they turn, what of a motion capture file "
+      "drives them; `geoprior rig` writes one",
+      "[joint.<name>]",
+      {{"parent", "text", "", "", "", "joint that it hangs on; absent: a root"},
+       {"head", "3 numbers", "required", "", "m", "where it turns, in the mesh's coordinates"},
+       {"tail", "3 numbers", "", "", "m", "end of its bone; absent: no bone of its own"},
+       {"axes", "table", "", "", "",
+        "name = axis: \"+x\" … \"-z\" of the mesh, or [x, y, z] of any length; a positive angle "
+        "turns right-handed"},
+       {"bvh", "text", "", "", "", "joint of a motion capture file that drives it"},
+       {"bvh_align", "boolean", "true", "", "",
+        "turn the rest bone into the direction of the file's bone first"}}};
+}
+
+TopicFile pose_keys() {
+  return {"poses",
+          "poses by joint angles, in the order of the file",
+          "[pose.<name>]",
+          {{"<joint>", "table", "", "", "deg",
+            std::string("axis = angle; axes: names of the skeleton file, ") + kLiteralAxes +
+                "; angles of one joint turn in the order of the file"}}};
+}
+
+std::optional<int> find_joint(const Skeleton& skeleton, const std::string& name) {
+  for (int j = 0; j < skeleton.size(); ++j) {
+    if (skeleton.joints[j].name == name) return j;
+  }
+  return std::nullopt;
+}
+
+SkeletonFile parse_skeleton(std::string_view text, const std::string& name) {
+  const toml::table root = parse(text, name);
+  std::vector<Entry> entries;
+  for (const auto& [key, node] : in_file_order(root)) {
+    const Value value{*node, key, name};
+    if (key != "joint") value.fail("is no key of a skeleton file", "[joint.<name>] tables");
+    for (const auto& [joint, joint_node] : in_file_order(value.table()))
+      entries.push_back(parse_joint(joint, {*joint_node, joint, name}));
+  }
+  if (entries.empty()) throw Error("no joints", name, "[joint.<name>] tables");
+  return assemble(entries);
+}
+
+SkeletonFile with_kept_joints(const SkeletonFile& file, const Skeleton& own,
+                              const std::vector<bool>& kept, const std::string& name) {
+  const auto is_there = [&](int j) {
+    return kept[j] || find_joint(file.skeleton, own.joints[j].name);
+  };
+  const auto nearest_ancestor = [&](int j, const auto& accepted) -> std::optional<std::string> {
+    for (j = own.joints[j].parent; j >= 0; j = own.joints[j].parent) {
+      if (accepted(j)) return own.joints[j].name;
+    }
+    return std::nullopt;
+  };
+  std::vector<Entry> entries;
+  for (int i = 0; i < file.skeleton.size(); ++i) {
+    const Joint& joint = file.skeleton.joints[i];
+    Entry entry{joint, std::nullopt, file.bvh_joint[i], file.bvh_align[i], name};
+    if (joint.parent >= 0) entry.parent = file.skeleton.joints[joint.parent].name;
+    const std::optional<int> namesake = find_joint(own, joint.name);
+    if (namesake) entry.joint.frame = own.joints[*namesake].frame;
+    if (namesake && !entry.parent) {
+      entry.parent = nearest_ancestor(*namesake, [&](int j) { return kept[j]; });
+    }
+    entries.push_back(std::move(entry));
+  }
+  for (int j = 0; j < own.size(); ++j) {
+    if (kept[j]) entries.push_back({own.joints[j], nearest_ancestor(j, is_there), {}, true, name});
+  }
+  return assemble(entries);
 }
 
 SkeletonFile read_skeleton_file(const std::filesystem::path& file) {
@@ -223,10 +292,12 @@ Eigen::Vector3d joint_axis(const Skeleton& skeleton, const std::string& joint,
   const Joint& found = skeleton.joints[skeleton.index_of(joint)];
   const auto it = found.axes.find(axis);
   if (it != found.axes.end()) return it->second;
+  if (const auto literal = parse_literal_axis(axis)) return rest_direction(*literal, found);
   std::string names;
-  for (const auto& [name, direction] : found.axes) names += (names.empty() ? "" : ", ") + name;
-  throw Error("no axis '" + axis + "'", "joint '" + joint + "'",
-              names.empty() ? "none: the skeleton file names no axes for it" : names);
+  for (const auto& [name, direction] : found.axes) names += name + ", ";
+  throw Error(
+      "no axis '" + axis + "'", "joint '" + joint + "'",
+      names + kLiteralAxes + (names.empty() ? ", or a name that a skeleton file gives" : ""));
 }
 
 JointRotation joint_rotation(const Skeleton& skeleton, const JointAngle& angle) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/skeleton.h"
+#include "testbed/topic.h"
 
 namespace geoprior::skinning {
 
@@ -32,6 +33,21 @@ struct SkeletonFile {
 SkeletonFile read_skeleton_file(const std::filesystem::path& file);
 SkeletonFile parse_skeleton(std::string_view text, const std::string& name);
 
+/// The file's joints, with the frames of their namesakes in the character's own skeleton, and those
+/// joints of it that are marked as kept. A kept joint, and a root of the file that has a kept
+/// ancestor there, hang on their nearest ancestor that remains.
+/// @param name  of the file, for messages
+/// @throws Error  when that makes a joint its own ancestor
+SkeletonFile with_kept_joints(const SkeletonFile& file, const Skeleton& own,
+                              const std::vector<bool>& kept, const std::string& name);
+
+/// Index of the joint of that name.
+std::optional<int> find_joint(const Skeleton& skeleton, const std::string& name);
+
+/// The keys of a skeleton file and of a pose file, for `geoprior describe`.
+TopicFile skeleton_keys();
+TopicFile pose_keys();
+
 /// One angle of a pose.
 struct JointAngle {
   std::string joint;
@@ -56,11 +72,12 @@ struct NamedPose {
 std::vector<NamedPose> read_pose_file(const std::filesystem::path& file);
 std::vector<NamedPose> parse_poses(std::string_view text, const std::string& name);
 
-/// The rotation by an angle about a named axis of a joint.
+/// The rotation by an angle about an axis of a joint (`joint_axis`).
 /// @throws Error  when there is no such joint or axis, listing those there are
 JointRotation joint_rotation(const Skeleton& skeleton, const JointAngle& angle);
 
-/// The named axis of a joint, unit, in rest coordinates; throws as above.
+/// The axis of a joint that the skeleton file names, or a literal one (literal_axis.h); unit, in
+/// rest coordinates. Throws as above.
 Eigen::Vector3d joint_axis(const Skeleton& skeleton, const std::string& joint,
                            const std::string& axis);
 

@@ -1,6 +1,8 @@
 #include "experiments/skinning/topic.h"
 
+#include "experiments/skinning/rig_command.h"
 #include "experiments/skinning/scene.h"
+#include "experiments/skinning/skeleton_file.h"
 
 namespace geoprior::skinning {
 
@@ -17,6 +19,8 @@ Topic make_topic() {
   topic.methods = methods();
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
+  topic.commands = {rig_command()};
+  topic.files = {skeleton_keys(), pose_keys()};
   return topic;
 }
 

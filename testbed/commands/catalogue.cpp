@@ -44,11 +44,23 @@ std::vector<CatalogueEntry> catalogue() {
   return entries;
 }
 
+namespace {
+
+/// Whether a name means a file and no identifier: by its ending, or by where it begins.
+bool is_file_name(const std::string& name) {
+  const fs::path path = name;
+  return path.extension() == ".toml" || path.extension() == ".h5" || path.is_absolute() ||
+         name.starts_with("./") || name.starts_with("../");
+}
+
+}  // namespace
+
 fs::path experiment_file(const std::string& id_or_file) {
   if (fs::is_regular_file(id_or_file)) return id_or_file;
   if (fs::exists(id_or_file) && !fs::is_directory(id_or_file)) require_regular_file(id_or_file);
   const fs::path file = geoprior_home() / "experiments" / (id_or_file + ".toml");
   if (fs::is_regular_file(file)) return file;
+  if (is_file_name(id_or_file)) throw Error("no such file", id_or_file);
   std::vector<std::string> ids;
   for (const CatalogueEntry& entry : catalogue()) ids.push_back(entry.id);
   throw Error("there is no experiment '" + id_or_file + "'", "", allowed_names(id_or_file, ids));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,6 +47,13 @@ struct BlessRequest {
   bool quick = false;
 };
 
+/// A command that a topic brings, as it was called.
+struct TopicCommandRequest {
+  const TopicCommand* command = nullptr;
+  std::string input;
+  std::map<std::string, std::string> options;  ///< by key; as written
+};
+
 struct RenderRequest {
   std::string run;
   std::optional<std::string> view;  ///< experiment file whose [figure_view] is drawn
@@ -82,6 +90,7 @@ int bless_command(const CommandContext& context, const BlessRequest& request);
 int render_command(const CommandContext& context, const RenderRequest& request);
 int video_command(const CommandContext& context, const VideoRequest& request);
 int report_command(const CommandContext& context, const ReportRequest& request);
+int topic_command(const CommandContext& context, const TopicCommandRequest& request);
 int export_command(const CommandContext& context, const ExportRequest& request);
 
 }  // namespace geoprior

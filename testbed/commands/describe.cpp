@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 /// One thing that has a name and perhaps options.
 struct Described {
-  std::string kind;   ///< "method", "topic", "metric", "diagnostic", "experiment"
+  std::string kind;   ///< "method", "topic", "metric", "diagnostic", "file", "experiment"
   std::string title;  ///< "skinning/implicit"
   std::vector<std::pair<std::string, std::string>> facts;
   std::string options_place;  ///< "[scene]", "options of a [[variant]]"
@@ -98,6 +98,10 @@ Described describe_diagnostic(const Topic& topic, const DiagnosticEntry& entry) 
   return result;
 }
 
+Described describe_file(const Topic& topic, const TopicFile& file) {
+  return {"file", topic.name + "/" + file.name, {{"summary", file.summary}}, file.table, file.keys};
+}
+
 std::vector<Described> experiment_tables() {
   const OptionRow options{"options", "table", "", "", "", "geoprior describe <method>"};
   const OptionRow at{"at", "table", "", "", "", "one frame by its parameter, { angle_deg = 90 }"};
@@ -143,6 +147,9 @@ std::vector<Described> find_described(const std::vector<Topic>& topics, const st
     }
     for (const DiagnosticEntry& entry : topic.diagnostics) {
       if (matches(topic, entry.name)) found.push_back(describe_diagnostic(topic, entry));
+    }
+    for (const TopicFile& file : topic.files) {
+      if (matches(topic, file.name)) found.push_back(describe_file(topic, file));
     }
   }
   if (found.empty()) throw Error("unknown name '" + name + "'", "", allowed_names(name, names));

@@ -68,8 +68,9 @@ struct GltfCharacter {
 ///
 /// The rest pose is the bind pose of the skin, placed in the scene by the transform of the skin's
 /// first root joint; without a skin, the meshes placed by their nodes. Heads of joints come from
-/// the inverse bind matrices, the tail of a joint is the mean of its children's heads; a leaf has
-/// none. The parent of a joint is its nearest ancestor that is a joint of the skin.
+/// the inverse bind matrices, and with them the joints' own axes; the tail of a joint is the mean
+/// of its children's heads; a leaf has none. The parent of a joint is its nearest ancestor that is
+/// a joint of the skin.
 ///
 /// @throws Error  naming the file and the place in it: anything that is not valid, and a file
 ///                without triangles

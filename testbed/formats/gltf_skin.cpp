@@ -55,6 +55,15 @@ std::string unique_name(const Node& node, int joint, std::set<std::string>& used
   return name;
 }
 
+/// Directions at rest of a joint's own axes; absent where they are beyond the numbers' range.
+std::optional<Eigen::Matrix3d> unit_axes(const Eigen::Affine3d& from_rest) {
+  Eigen::Matrix3d axes = from_rest.linear().inverse();
+  axes /= axes.cwiseAbs().maxCoeff();
+  axes.colwise().normalize();
+  const bool are_unit = ((axes.colwise().norm().array() - 1).abs() < 1e-6).all();
+  return are_unit ? std::optional(axes) : std::nullopt;
+}
+
 void set_tails(Skeleton& skeleton) {
   const auto children = skeleton.children();
   for (std::size_t j = 0; j < children.size(); ++j) {
@@ -145,6 +154,7 @@ SkinData read_skin(const Model& model, std::size_t skin_index) {
     const Eigen::Affine3d& inverse = inverse_bind[entry_of_joint[j]];
     result.skeleton.joints[j].head = result.to_rest * inverse.inverse().translation();
     result.from_rest.push_back(inverse * from_rest_to_mesh);
+    result.skeleton.joints[j].frame = unit_axes(result.from_rest.back());
   }
   set_tails(result.skeleton);
   validate(result.skeleton);

@@ -9,6 +9,7 @@
 #include "testbed/runner/measure.h"
 #include "testbed/runner/peak_memory.h"
 #include "testbed/runner/run_folder.h"
+#include "testbed/runner/scene_camera.h"
 #include "testbed/runner/scene_place.h"
 #include "testbed/runner/sha256.h"
 #include "testbed/runner/stop.h"
@@ -150,6 +151,7 @@ void CaseRunner::load(const OptionSet& options, std::vector<StoredFile> inputs) 
   line.parameter_unit = scene_->parameter_unit();
   line.facts = scene_->facts();
   line.warnings = scene_->warnings();
+  if (const auto camera = scene_->camera()) line.camera = camera_text(*camera);
   for (const auto& file : scene_->inputs()) {
     inputs.push_back({input_name(file), sha256_of_file(file)});
   }

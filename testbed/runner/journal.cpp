@@ -114,7 +114,8 @@ SortedJson write(const CaseLine& line) {
           {"facts", numbers(line.facts)},
           {"warnings", line.warnings},
           {"inputs", files(line.inputs)},
-          {"seconds", number(line.seconds)}};
+          {"seconds", number(line.seconds)},
+          {"camera", line.camera}};
 }
 
 SortedJson write(const BeginLine& line) {
@@ -263,9 +264,14 @@ Line read(const SortedJson& json) {
                    json.at("start"), json.value("experiment_file", "")};
   }
   if (kind == "case") {
-    return CaseLine{json.at("case"),           json.at("parameter_name"), json.at("parameter_unit"),
-                    numbers(json.at("facts")), json.at("warnings"),       files(json.at("inputs")),
-                    number(json.at("seconds"))};
+    return CaseLine{json.at("case"),
+                    json.at("parameter_name"),
+                    json.at("parameter_unit"),
+                    numbers(json.at("facts")),
+                    json.at("warnings"),
+                    files(json.at("inputs")),
+                    number(json.at("seconds")),
+                    json.value("camera", "")};
   }
   if (kind == "checkpoint") {
     return CheckpointLine{place(json),       file(json),           json.at("frames"),

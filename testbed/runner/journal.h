@@ -40,6 +40,7 @@ struct CaseLine {
   std::vector<std::string> warnings;
   std::vector<StoredFile> inputs;
   double seconds = 0;  ///< of loading
+  std::string camera;  ///< as in CaseRecord
 };
 struct BeginLine {
   Place place;

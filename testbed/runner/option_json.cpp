@@ -68,19 +68,12 @@ void OptionJsonWriter::list(std::string_view key, std::size_t count, const Optio
 
 namespace {
 
-std::string key_text(const std::string& key) {
-  const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-';
-  });
-  return bare ? key : Json(key).dump();
-}
-
 bool is_table_list(const Json& value) {
   return value.is_array() && !value.empty() &&
          std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_object(); });
 }
 
-/// A value on one line. JSON's escapes of texts are all escapes of TOML's basic strings too.
+/// A value on one line.
 std::string inline_text(const Json& value) {
   if (value.is_number_float()) {
     std::string number = number_text(value.get<double>());
@@ -96,20 +89,20 @@ std::string inline_text(const Json& value) {
     std::string text = "{";
     for (const auto& [key, item] : value.items()) {
       if (item.is_null()) continue;
-      text += (text.size() > 1 ? ", " : " ") + key_text(key) + " = " + inline_text(item);
+      text += (text.size() > 1 ? ", " : " ") + toml_key(key) + " = " + inline_text(item);
     }
     return text + (text.size() > 1 ? " }" : "}");
   }
-  return value.dump();
+  return value.is_string() ? toml_string(value.get<std::string>()) : value.dump();
 }
 
 void write_table(const Json& table, const std::string& path, std::string& out) {
   for (const auto& [key, value] : table.items()) {
     if (value.is_null() || value.is_object() || is_table_list(value)) continue;
-    out += key_text(key) + " = " + inline_text(value) + "\n";
+    out += toml_key(key) + " = " + inline_text(value) + "\n";
   }
   for (const auto& [key, value] : table.items()) {
-    const std::string name = path.empty() ? key_text(key) : path + "." + key_text(key);
+    const std::string name = path.empty() ? toml_key(key) : path + "." + toml_key(key);
     if (value.is_object()) {
       out += "\n[" + name + "]\n";
       write_table(value, name, out);
@@ -123,6 +116,20 @@ void write_table(const Json& table, const std::string& path, std::string& out) {
 }
 
 }  // namespace
+
+std::string toml_key(const std::string& key) {
+  const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-';
+  });
+  return bare ? key : toml_string(key);
+}
+
+std::string toml_string(const std::string& text) {
+  // JSON's escapes are all escapes of TOML's basic strings; DEL is escaped by TOML alone.
+  std::string quoted;
+  for (const char c : Json(text).dump()) quoted += c == '\x7f' ? "\\u007f" : std::string(1, c);
+  return quoted;
+}
 
 std::string toml_text(const Json& object) {
   std::string text;

@@ -46,4 +46,9 @@ class OptionJsonWriter final : public OptionValues<OptionJsonWriter> {
 /// headers; nulls are left out. The same object gives the same text.
 std::string toml_text(const nlohmann::ordered_json& object);
 
+/// A key of a TOML table, and a text, as TOML writes them: in quotes with escapes where need be.
+/// The text is UTF-8.
+std::string toml_key(const std::string& key);
+std::string toml_string(const std::string& text);
+
 }  // namespace geoprior

@@ -170,6 +170,7 @@ void write_case(H5Group& parent, const CaseRecord& record, std::size_t index,
   group.write_attribute("claims_only", static_cast<std::int64_t>(record.claims_only ? 1 : 0));
   group.write_attribute("scene", record.scene_json);
   group.write_attribute("warnings", record.warnings);
+  if (!record.camera.empty()) group.write_attribute("camera", record.camera);
   write_each(group, "swept", record.swept);
   write_each(group, "facts", record.facts);
   write_ratios(group, record.ratios);
@@ -429,6 +430,7 @@ CaseRecord read_case(const H5Node& group, const std::string& name, std::int64_t 
   record.claims_only = has_attribute(group, "claims_only") && group.read_int("claims_only") != 0;
   record.scene_json = group.read_text("scene");
   record.warnings = group.read_texts("warnings");
+  if (has_attribute(group, "camera")) record.camera = group.read_text("camera");
   const H5Node swept = group.open_group("swept");
   for (const std::string& key : swept.attributes()) record.swept[key] = swept.read_text(key);
   const H5Node facts = group.open_group("facts");

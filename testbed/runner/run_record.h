@@ -92,6 +92,7 @@ struct CaseRecord {
   std::map<std::string, std::string> swept;
   std::map<std::string, double> facts;
   std::vector<std::string> warnings;
+  std::string camera;  ///< that the scene suggests: keys of [figure_view] as TOML; empty: none
   std::vector<VariantRecord> variants;
   std::vector<TimingRatio> ratios;
   bool claims_only = false;  ///< decides claims and studies: not blessed, timed again or drawn

@@ -97,6 +97,7 @@ void RunState::apply(const journal::CaseLine& line) {
   state.record.parameter_unit = line.parameter_unit;
   state.record.facts = line.facts;
   state.record.warnings = line.warnings;
+  state.record.camera = line.camera;
   state.inputs = line.inputs;
   state.load_seconds = line.seconds;
 }

@@ -294,6 +294,9 @@ FigureView read_figure_view(const TomlNode& root, const Topic& topic) {
   FigureViewTable table(topic.view);
   FigureView& view = table.view;
   if (const TomlNode* node = root.find("figure_view")) {
+    for (const char* key : {"target", "direction", "up", "height_m"}) {
+      if (node->find(key) != nullptr) view.camera_is_free = false;
+    }
     // The topic's classes are those of its own array.
     if (node->find("color_by") != nullptr) view.classes.clear();
     TomlNode plain = *node;

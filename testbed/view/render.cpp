@@ -2,6 +2,7 @@
 
 // figure.png and contact-sheet.png of a run.
 
+#include "testbed/runner/scene_camera.h"
 #include "testbed/view/display.h"
 #include "testbed/view/figure_layout.h"
 #include "testbed/view/frame_times.h"
@@ -10,7 +11,9 @@ namespace geoprior {
 
 namespace fs = std::filesystem;
 
-void render_run(const OpenedRun& run, const FigureView& view) {
+void render_run(const OpenedRun& run, const FigureView& wanted) {
+  const FigureView view =
+      with_scene_camera(wanted, run.record(), (run.folder() / "run.h5").string());
   const std::vector<FigureBlock> blocks = make_blocks(run, view);
   const Display display;
   write_png(draw_figure(blocks), run.folder() / "figure.png");

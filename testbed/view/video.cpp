@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/folders.h"
+#include "testbed/runner/scene_camera.h"
 #include "testbed/runner/stop.h"
 #include "testbed/view/child_process.h"
 #include "testbed/view/display.h"
@@ -87,8 +88,9 @@ void draw_video(const OpenedRun& run, const FigureView& view, const VideoOptions
 
 Video make_video(const OpenedRun& run, const FigureView& view, const VideoOptions& options) {
   Video video;
+  const std::string file = (run.folder() / "run.h5").string();
   try {
-    draw_video(run, view, options, video);
+    draw_video(run, with_scene_camera(view, run.record(), file), options, video);
   } catch (const Stopped&) {
     video.stopped = true;
   }

@@ -82,6 +82,11 @@ ProgramInput capture_input() {
   return input_of("skinning", "capture", "capture.bvh", corpus(".bvh"));
 }
 
+/// A character whose skeleton file is written.
+ProgramInput rig_input(const std::string& file, const std::vector<std::string>& seeds) {
+  return {seeds, {}, {{{"rig", file}, file, kProgram}}};
+}
+
 /// A mesh is the surface of details, or a body in a tank.
 ProgramInput mesh_input(const std::string& extension, const std::vector<std::string>& seeds) {
   ProgramInput input;
@@ -236,6 +241,8 @@ std::vector<InputKind> input_kinds() {
       {"Bvh", 1, capture_input},
       {"Gltf", 1, gltf_input},
       {"Glb", 1, [] { return input_of("skinning", "glb", "character.glb", corpus(".glb")); }},
+      {"Rig", 1, [] { return rig_input("rig.glb", corpus(".glb")); }},
+      {"RigOfText", 1, [] { return rig_input("rig.gltf", {corpus(".gltf").back()}); }},
       {"Obj", 1, [] { return mesh_input(".obj", corpus(".obj")); }},
       {"Ply", 1, [] { return mesh_input(".ply", corpus(".ply")); }},
       {"Off", 1, [] { return mesh_input(".off", corpus(".off")); }},

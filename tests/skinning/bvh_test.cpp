@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "experiments/skinning/bvh_up.h"
 #include "experiments/skinning/characters.h"
 #include "tests/testbed/run_fixture.h"
 
@@ -120,6 +121,84 @@ TEST(Bvh, UnknownJointsOfTheMotionAreNamed) {
   EXPECT_THROW(BvhRetarget(motion, skeleton, 0), Error);
   skeleton.bvh_joint = {std::nullopt, std::nullopt};
   EXPECT_THROW(BvhRetarget(motion, skeleton, 0), Error);
+}
+
+/// A motion as a file whose coordinates are turned: the world's y is the file's `up`.
+BvhMotion with_up(BvhMotion motion, int up) {
+  const auto turn =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), Eigen::Vector3d::Unit(up));
+  for (BvhJoint& joint : motion.joints) {
+    joint.offset = turn * joint.offset;
+    if (joint.end_site) joint.end_site = turn * *joint.end_site;
+    for (std::size_t c = 0; c < joint.channels.size(); ++c) {
+      BvhChannel& channel = joint.channels[c];
+      const Eigen::Vector3d axis = turn * Eigen::Vector3d::Unit(channel.axis);
+      Eigen::Index where = 0;
+      axis.cwiseAbs().maxCoeff(&where);
+      channel.axis = static_cast<int>(where);
+      if (axis[where] < 0) {
+        motion.values.col(joint.first_column + static_cast<Eigen::Index>(c)) *= -1;
+      }
+    }
+  }
+  return motion;
+}
+
+class CapturedMotion : public testing::Test {
+ protected:
+  const BvhMotion captured_ = read_bvh(test_models_folder() / "BVH/01_01.bvh");
+  const SkeletonFile skeleton_ = read_skeleton_file(find_input("human.skeleton.toml", "."));
+
+  BvhMotion stand(const BvhMotion& motion, BvhUp up) const {
+    return stand_up(motion, skeleton_, up, 0, "walk.bvh");
+  }
+};
+
+class BvhUpAxis : public CapturedMotion, public testing::WithParamInterface<int> {};
+
+TEST_P(BvhUpAxis, IsGuessedAndGivesTheSamePoses) {
+  const BvhMotion turned = with_up(captured_, GetParam());
+  const auto named = static_cast<BvhUp>(static_cast<int>(BvhUp::x) + GetParam());
+  const BvhMotion expected = stand(captured_, BvhUp::guess);
+  for (const BvhUp up : {BvhUp::guess, named}) {
+    const BvhMotion standing = stand(turned, up);
+    for (const int frame : {0, 500, 1500}) {
+      const Pose a = BvhRetarget(expected, skeleton_, 0).pose(frame);
+      const Pose b = BvhRetarget(standing, skeleton_, 0).pose(frame);
+      for (std::size_t j = 0; j < a.size(); ++j) EXPECT_TRUE(a[j].isApprox(b[j], 1e-9)) << frame;
+    }
+  }
+}
+
+TEST_P(BvhUpAxis, AnotherThatLaysTheBodyDownIsRefused) {
+  const BvhMotion turned = with_up(captured_, GetParam());
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis == GetParam()) continue;
+    const auto wrong = static_cast<BvhUp>(static_cast<int>(BvhUp::x) + axis);
+    EXPECT_THAT(test::error_of([&] { stand(turned, wrong); }),
+                testing::AllOf(HasSubstr("walk.bvh: with bvh_up = \""),
+                               HasSubstr("the body would lie down"), HasSubstr("bvh_up: \"x\"")));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Axes, BvhUpAxis, testing::Values(0, 1, 2));
+
+TEST_F(CapturedMotion, ABodyOnItsHeadIsRefusedWithEveryAxis) {
+  BvhMotion motion = captured_;
+  for (BvhJoint& joint : motion.joints) joint.offset.y() *= -1;
+  for (const BvhUp up : {BvhUp::guess, BvhUp::y}) {
+    EXPECT_THAT(test::error_of([&] { stand(motion, up); }), HasSubstr("walk.bvh: with bvh_up"));
+  }
+  EXPECT_THAT(test::error_of([&] { stand(motion, BvhUp::y); }), HasSubstr("stand on its head"));
+}
+
+TEST(BvhUpOfALine, IsWhatTheFileSays) {
+  const BvhMotion motion = parse_bvh(kLeg, "leg.bvh");
+  const SkeletonFile leg = leg_skeleton("[0, 0.2, 0]", "true");
+  EXPECT_TRUE(stand_up(motion, leg, BvhUp::guess, 0, "leg.bvh")
+                  .to_y_up.isApprox(Eigen::Quaterniond::Identity(), 1e-15));
+  EXPECT_TRUE((stand_up(motion, leg, BvhUp::z, 0, "leg.bvh").to_y_up * Eigen::Vector3d::UnitZ())
+                  .isApprox(Eigen::Vector3d::UnitY(), 1e-12));
 }
 
 TEST(Bvh, MistakesNameTheLine) {

@@ -95,6 +95,38 @@ TEST_F(Program, DescribesMethodsTopicsMetricsAndFiles) {
   EXPECT_THAT(unknown.err, HasSubstr("did you mean 'polygon'"));
 }
 
+TEST_F(Program, CommandsOfATopicHaveAFlagForEachOption) {
+  const Outcome plain = run("greet Ann");
+  EXPECT_EQ(plain.code, 0) << plain.err;
+  EXPECT_EQ(plain.out, "hello Ann\n");
+  const Outcome twice = run("greet Ann --words '1 = 2' --times-said 2");
+  EXPECT_EQ(twice.out, "1 = 2 Ann\n1 = 2 Ann\n");
+  EXPECT_THAT(twice.err, HasSubstr("warning: said more than once"));
+  const Outcome as_json = run("greet Ann --times-said 2 --json");
+  EXPECT_EQ(json::parse(as_json.out)["notices"][0], "said more than once");
+  EXPECT_EQ(run("greet").code, 2);
+  const Outcome bad = run("greet Ann --times-said 4");
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_THAT(bad.err, AllOf(HasSubstr("times_said"), HasSubstr("between 1 and 3")));
+  EXPECT_THAT(run("greet --help").out, AllOf(HasSubstr("--times-said"), HasSubstr("how often")));
+}
+
+TEST_F(Program, DescribesTheFilesOfATopic) {
+  EXPECT_THAT(run("describe rim").err, AllOf(HasSubstr("points of a rim"), HasSubstr("[rim]"),
+                                             HasSubstr("angle"), HasSubstr("deg")));
+  EXPECT_EQ(json::parse(run("describe toy-circle/rim --json").out)[0]["kind"], "file");
+}
+
+TEST_F(Program, AFileThatIsMissingIsNoUnknownExperiment) {
+  for (const char* arguments :
+       {"run nofile.toml", "run ./nofile", "check sub/nofile.toml", "render nofile/run.h5"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("no such file"), HasSubstr("nofile"))) << arguments;
+  }
+  EXPECT_THAT(run("run toy-circle/nothing").err, HasSubstr("there is no experiment"));
+}
+
 TEST_F(Program, RunRecordsAndDecidesClaims) {
   write(disc_experiment("segments = 16", kClaim));
   const Outcome good = run("run toy-circle/disc --no-pictures --json");

@@ -70,6 +70,7 @@ RunRecord sample_record() {
   one.swept = {{"variant.implicit.options.stop_angle_deg", "26"}};
   one.facts = {{"vertices", 13380}};
   one.warnings = {"one", "two lines\nof it"};
+  one.camera = "target = [0.0, 1.0, 0.0]\n";
   one.variants = {sample_variant("zeta"), sample_variant("alpha")};  // not sorted by name
   one.ratios = {{"zeta", "alpha", 1.5, 1.25, 2, "run"}, {"zeta", "beta", 1, kNan, kNan, "frame"}};
   record.cases = {one, {}};
@@ -135,6 +136,7 @@ std::string dump(const CaseRecord& c) {
   for (const auto& [key, value] : c.swept) text += key + value + "\n";
   for (const auto& [key, value] : c.facts) text += key + numbers({value});
   for (const auto& warning : c.warnings) text += warning + "\n";
+  text += c.camera;
   for (const auto& r : c.ratios)
     text += r.variant + r.of + r.paired + numbers({r.median_ratio, r.low, r.high});
   for (const auto& v : c.variants) text += dump(v);

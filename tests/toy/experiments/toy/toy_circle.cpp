@@ -13,6 +13,7 @@ namespace {
 struct CircleSceneOptions {
   double radius_m = 1;
   int points = 24;
+  bool suggests_camera = false;
   struct Motion {
     double from_deg = 0;
     double to_deg = 90;
@@ -29,6 +30,7 @@ void describe(OptionVisitor& v, CircleSceneOptions::Motion& o) {
 void describe(OptionVisitor& v, CircleSceneOptions& o) {
   v.value("radius_m", o.radius_m, {.doc = "radius r", .unit = "m", .min = 1e-6, .max = 1e6});
   v.value("points", o.points, {.doc = "points on the rim", .min = 3, .max = 1000000});
+  v.value("suggests_camera", o.suggests_camera, {.doc = "a camera at the right of the rim"});
   describe_group(v, "motion", o.motion, {.doc = "angles at which the disc is posed"});
 }
 
@@ -51,6 +53,24 @@ void describe(OptionVisitor& v, PolygonOptions& o) {
   v.value("scale", o.scale, {.doc = "factor on the radius", .min = 0.5, .max = 2});
 }
 
+struct GreetingOptions {
+  std::string words = "hello";
+  int times_said = 1;
+};
+
+void describe(OptionVisitor& v, GreetingOptions& o) {
+  v.value("words", o.words, {.doc = "what is said"});
+  v.value("times_said", o.times_said, {.doc = "how often", .min = 1, .max = 3});
+}
+
+/// A command of a topic: says something to its argument.
+CommandText greet(const std::string& name, const GreetingOptions& options) {
+  CommandText result;
+  for (int i = 0; i < options.times_said; ++i) result.text += options.words + " " + name + "\n";
+  if (options.times_said > 1) result.notices.emplace_back("said more than once");
+  return result;
+}
+
 class CircleScene final : public Scene {
  public:
   explicit CircleScene(const CircleSceneOptions& o) : options(o) {}
@@ -68,6 +88,10 @@ class CircleScene final : public Scene {
   [[nodiscard]] std::vector<std::filesystem::path> inputs() const override { return {}; }
   [[nodiscard]] std::map<std::string, double> facts() const override {
     return {{"vertices", options.points + 1.0}};
+  }
+  [[nodiscard]] std::optional<Camera> camera() const override {
+    if (!options.suggests_camera) return std::nullopt;
+    return Camera{{options.radius_m, 0, 0}, {0, 0, 1}, {0, 1, 0}, options.radius_m};
   }
   CircleSceneOptions options;
 };
@@ -188,6 +212,10 @@ Topic circle_topic() {
   topic.methods = circle_methods();
   topic.metrics = circle_metrics();
   topic.diagnostics = {{"evaluations", "1", "points of the rim", true, {0.5, 0}}};
+  topic.commands = {topic_command<GreetingOptions>("greet", "say something to somebody", "name",
+                                                   "who is meant", greet)};
+  topic.files = {
+      {"rim", "points of a rim", "[rim]", {{"angle", "number", "", "", "deg", "where"}}}};
   return topic;
 }
 
