@@ -9,11 +9,12 @@
 #include "core/procedural.h"
 #include "experiments/skinning/skeleton_file.h"
 #include "models/skinning/heat_weights.h"
+#include "models/skinning/narrow_weights.h"
 #include "testbed/formats/gltf_reader.h"
 
 namespace geoprior::skinning {
 
-enum class WeightSource { file_or_heat, file, heat };
+enum class WeightSource { file_or_heat, file, heat, narrow };
 
 /// Refinement of a part of the mesh before anything else is done with it.
 struct RefineOptions {
@@ -31,6 +32,7 @@ struct CharacterOptions {
   double unit_m = 1;
   WeightSource weights = WeightSource::file_or_heat;
   HeatWeightsOptions heat;
+  NarrowWeightsOptions narrow;
   CylinderOptions cylinder;
   FingerOptions finger;
   std::vector<RefineOptions> refine;
