@@ -93,8 +93,16 @@ bool takes_given(WeightSource source) {
 
 /// Weights computed from mesh and skeleton; by heat where those of the file were asked for.
 SkinWeights computed_weights(const CharacterOptions& options, const RiggedMesh& rig) {
-  if (options.weights == WeightSource::narrow)
-    return narrow_weights(rig.mesh, rig.skeleton, options.narrow);
+  switch (options.weights) {
+    case WeightSource::bounded:
+      return bounded_weights(rig.mesh, rig.skeleton, options.bounded);
+    case WeightSource::narrow:
+      return narrow_weights(rig.mesh, rig.skeleton, options.narrow);
+    case WeightSource::file_or_heat:
+    case WeightSource::file:
+    case WeightSource::heat:
+      break;
+  }
   return heat_weights(rig.mesh, rig.skeleton, options.heat);
 }
 
@@ -335,8 +343,8 @@ void describe(OptionVisitor& v, RefineOptions& options) {
 }
 
 void describe(OptionVisitor& v, CharacterOptions& options) {
-  static constexpr std::array<std::string_view, 4> kWeights{"file-or-heat", "file", "heat",
-                                                            "narrow"};
+  static constexpr std::array<std::string_view, 5> kWeights{"file-or-heat", "file", "heat",
+                                                            "bounded", "narrow"};
   v.value("character", options.character,
           {.doc = "\"human\", \"cylinder\", \"finger\", or a .glb or .gltf file"});
   v.value("mesh", options.mesh,
@@ -345,10 +353,11 @@ void describe(OptionVisitor& v, CharacterOptions& options) {
           {.doc = "skeleton file that overrides the file's hierarchy"});
   v.value("unit_m", options.unit_m,
           {.doc = "metres for one unit of the file", .unit = "m", .min = 1e-9, .max = 1e9});
-  describe_choice(
-      v, "weights", options.weights, kWeights,
-      {.doc = "weights of the file, by bone heat diffusion, or narrow as a hand paints them"});
+  describe_choice(v, "weights", options.weights, kWeights,
+                  {.doc = "weights of the file, or computed: by heat diffusion, bounded and "
+                          "smooth, or narrow as a hand paints them"});
   describe_group(v, "heat", options.heat, {.doc = "bone heat diffusion"});
+  describe_group(v, "bounded", options.bounded, {.doc = "biharmonic weights within bounds"});
   describe_group(v, "narrow", options.narrow, {.doc = "nearest bones with a painted-like falloff"});
   describe_group(v, "cylinder", options.cylinder, {.doc = "shape of character = \"cylinder\""});
   describe_group(v, "finger", options.finger, {.doc = "shape of character = \"finger\""});

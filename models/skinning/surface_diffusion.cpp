@@ -91,6 +91,15 @@ Sparse positive_cotangent_laplacian(const TriMesh& mesh) {
   return positive_cotangent_laplacian(mesh, Eigen::VectorXd::Ones(mesh.triangle_count()));
 }
 
+Eigen::VectorXd squared_at_triangles(const TriMesh& mesh, const Eigen::VectorXd& length) {
+  Eigen::VectorXd squared(mesh.triangle_count());
+  for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
+    const double mean = (length(mesh.F(t, 0)) + length(mesh.F(t, 1)) + length(mesh.F(t, 2))) / 3;
+    squared(t) = mean * mean;
+  }
+  return squared;
+}
+
 Eigen::MatrixXd solve_columns(const Sparse& system, const Eigen::MatrixXd& rhs,
                               const std::string& what) {
   const Eigen::SimplicialLDLT<Sparse> factor(system);

@@ -20,6 +20,9 @@ Eigen::SparseMatrix<double> positive_cotangent_laplacian(const TriMesh& mesh,
 /// The same with conductivity 1.
 Eigen::SparseMatrix<double> positive_cotangent_laplacian(const TriMesh& mesh);
 
+/// Square of a length given at the vertices, at the triangles: of the mean of their corners.
+Eigen::VectorXd squared_at_triangles(const TriMesh& mesh, const Eigen::VectorXd& length);
+
 /// Solutions of a symmetric positive definite system, one column a right-hand side: in parallel,
 /// with the same bytes at any thread count.
 /// @throws Error  when it is singular, naming what was to be solved
