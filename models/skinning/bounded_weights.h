@@ -10,7 +10,7 @@ namespace geoprior::skinning {
 struct BoundedWeightsOptions {
   double length = 0.75;    ///< l: how far a joint is smoothed to both sides, in local radii
   int max_influences = 4;  ///< strongest kept and renormalised; 0 keeps all
-  int max_pivots = 1000;   ///< changes of a bone's active set, after which weights are refused
+  int max_pivots = 300;    ///< changes of a bone's active set, after which weights are refused
 };
 void describe(OptionVisitor& v, BoundedWeightsOptions& options);
 
@@ -23,7 +23,7 @@ void describe(OptionVisitor& v, BoundedWeightsOptions& options);
 /// normalised over the bones. chi_b is 1 on the skin nearest to bone b through the volume
 /// (`bone_skins`) and l = length R in local radii. Discretised with linear elements: Q = L A^-1 l^4
 /// L
-/// + A, solved to round-off (`solve_in_box`).
+/// + A (`solve_in_box`).
 ///
 /// Between heat weights and the bounded biharmonic weights of Jacobson et al. (2011): heat weights
 /// are the same problem with the harmonic energy, where the bounds hold by themselves; theirs has

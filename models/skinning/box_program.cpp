@@ -17,6 +17,14 @@ using Factor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
 /// Multipliers and bounds that are violated by less, in units of x, are round-off.
 constexpr double kRoundOff = 1e-11;
 
+/// Unknowns whose unbounded values are this near to a bound, or beyond it, are held there at first.
+constexpr double kHeldAtFirst = 0.01;
+
+/// Where changes of all violating unknowns go round in circles, conditions that hold to this are
+/// met, and of what violates them only what does so by this share of the largest violation changes.
+constexpr double kNegligible = 1e-5;
+constexpr double kLargeShare = 0.3;
+
 /// Changes of all violating unknowns in a row that may leave no fewer of them.
 constexpr int kBlockChances = 10;
 
@@ -32,7 +40,7 @@ class ActiveSet {
   ActiveSet(const Eigen::SparseMatrix<double>& Q, const Eigen::VectorXd& diagonal,
             const Eigen::VectorXd& c, const Eigen::VectorXd& unbounded)
       : Q_(Q), diagonal_(diagonal), c_(c), x_(unbounded), bound_(unbounded.size(), Bound::none) {
-    for (Eigen::Index i = 0; i < x_.size(); ++i) hold_outside(i);
+    for (Eigen::Index i = 0; i < x_.size(); ++i) hold_outside(i, kHeldAtFirst);
   }
 
   /// Solves for the free unknowns and lists those that violate a condition.
@@ -57,11 +65,17 @@ class ActiveSet {
 
   [[nodiscard]] const std::vector<Eigen::Index>& violating() const { return violating_; }
 
-  void change(Eigen::Index i) {
-    if (bound_[i] == Bound::none) {
-      hold_outside(i);
-    } else {
-      bound_[i] = Bound::none;
+  /// Changes the unknowns that violate a condition by at least this share of the largest violation.
+  void change_violating(double share) {
+    double largest = 0;
+    for (const Eigen::Index i : violating_) largest = std::max(largest, violation(i));
+    for (const Eigen::Index i : violating_) {
+      if (violation(i) < share * largest) continue;
+      if (bound_[i] == Bound::none) {
+        hold_outside(i);
+      } else {
+        bound_[i] = Bound::none;
+      }
     }
   }
 
@@ -69,8 +83,8 @@ class ActiveSet {
   [[nodiscard]] double residual() const {
     double worst = 0;
     for (Eigen::Index i = 0; i < x_.size(); ++i) {
-      const bool is_free = bound_[i] == Bound::none;
-      worst = std::max(worst, is_free ? std::abs(gradient_(i)) / diagonal_(i) : violation(i));
+      worst = std::max(worst, violation(i));
+      if (bound_[i] == Bound::none) worst = std::max(worst, std::abs(gradient_(i)) / diagonal_(i));
     }
     return worst;
   }
@@ -78,9 +92,9 @@ class ActiveSet {
  private:
   enum class Bound : char { none, lower, upper };
 
-  void hold_outside(Eigen::Index i) {
-    if (x_(i) < 0) bound_[i] = Bound::lower;
-    if (x_(i) > 1) bound_[i] = Bound::upper;
+  void hold_outside(Eigen::Index i, double margin = 0) {
+    if (x_(i) < margin) bound_[i] = Bound::lower;
+    if (x_(i) > 1 - margin) bound_[i] = Bound::upper;
   }
 
   [[nodiscard]] double violation(Eigen::Index i) const {
@@ -131,11 +145,8 @@ int pivot(ActiveSet& set, int max_pivots) {
     const bool fewer = violating.size() < fewest;
     if (fewer) fewest = violating.size();
     chances = fewer ? kBlockChances : chances - 1;
-    if (chances >= 0) {
-      for (const Eigen::Index i : violating) set.change(i);
-    } else {
-      set.change(violating.back());
-    }
+    if (chances < 0 && set.residual() <= kNegligible) return pivots;
+    set.change_violating(chances < 0 ? kLargeShare : 0);
   }
   throw Error("the bounded weights of a bone were not found in " + std::to_string(max_pivots) +
                   " changes of the active set: " + std::to_string(set.violating().size()) +

@@ -15,16 +15,16 @@ struct BoxProgram {
 struct BoxSolution {
   Eigen::MatrixXd X;  ///< n x m, within the bounds
   int pivots = 0;     ///< changes of the active set: the most of any column
-  /// Largest violation of the optimality conditions Qx - c >= 0 where x = 0, <= 0 where x = 1, = 0
-  /// between, over the diagonal of Q: in units of x.
+  /// Largest violation of the bounds and of the optimality conditions Qx - c >= 0 where x = 0, <= 0
+  /// where x = 1, = 0 between, these over the diagonal of Q: in units of x.
   double residual = 0;
 };
 
 /// Block principal pivoting (Júdice and Pires 1994): unknowns are free or held at a bound; the free
 /// ones are solved for, and all that then violate a bound or the sign of a multiplier change over.
-/// When ten such changes in a row leave no fewer of them, single changes by least index follow,
-/// which end after finitely many for any positive definite matrix (Murty 1974). The solution is
-/// exact to round-off, unknowns at the bounds exactly 0 and 1.
+/// The solution is exact to round-off, unknowns at the bounds exactly 0 and 1. Where ten such
+/// changes in a row leave no fewer violations (they may go round in circles), only the larger ones
+/// change over, and the solution is one whose violations are all below 1e-5.
 ///
 /// Columns are solved in parallel, with the same bytes at any thread count.
 ///
