@@ -170,6 +170,23 @@ TEST(SkinningScene, ForeignSkinnedFileIsConvertedAndMoves) {
   expect_split_follows_weld(*scene);
 }
 
+// Three parts and their open seams, mouth and eyes, made one closed skin at set-up; the weights are
+// the file's.
+TEST(SkinningScene, SecondCharacterIsClosedAndKeepsItsWeights) {
+  SkinningSceneOptions options;
+  options.character.character = "bcn_epileptic.glb";
+  options.character.weights = WeightSource::file;
+  options.motion.kind = MotionKind::clip;
+  options.motion.frames = 3;
+  const auto scene = load(options);
+  EXPECT_EQ(scene->rig.skeleton.size(), 54);
+  EXPECT_EQ(scene->rig.mesh.vertex_count(), 2591);
+  EXPECT_TRUE(boundary_edges(scene->rig.mesh.F).empty());
+  EXPECT_TRUE(non_manifold_edges(scene->rig.mesh.F).empty());
+  EXPECT_GT(signed_volume(scene->rig.mesh.V, scene->rig.mesh.F), 0);
+  expect_split_follows_weld(*scene);
+}
+
 TEST(SkinningScene, PosesOfTheBodyArePlausible) {
   SkinningSceneOptions options;
   options.motion.kind = MotionKind::poses;
