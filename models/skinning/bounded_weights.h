@@ -21,9 +21,8 @@ void describe(OptionVisitor& v, BoundedWeightsOptions& options);
 ///   subject to  0 <= w_b <= 1
 ///
 /// normalised over the bones. chi_b is 1 on the skin nearest to bone b through the volume
-/// (`bone_skins`) and l = length R in local radii. Discretised with linear elements: Q = L A^-1 l^4
-/// L
-/// + A (`solve_in_box`).
+/// (`bone_skins`) and l = length R in local radii. With linear elements the matrix of the program
+/// (`solve_in_box`) is L A^-1 l^4 L + A.
 ///
 /// Between heat weights and the bounded biharmonic weights of Jacobson et al. (2011): heat weights
 /// are the same problem with the harmonic energy, where the bounds hold by themselves; theirs has

@@ -16,8 +16,8 @@ void describe(OptionVisitor& v, NarrowWeightsOptions& options);
 /// smoothstep over a band of stated width.
 ///
 ///   ((A + K) u_b)_i = integral of phi_i over the skin of bone b
-///   w_b = smoothstep(1/2 + d_b / (width R)),   d_b = +-l ln(2 min(u_b, 1 - u_b)),   l = width R /
-///   3
+///   |d_b| = -l ln(2 min(u_b, 1 - u_b)),  positive where u_b > 1/2,  l = width R / 3
+///   w_b = smoothstep(1/2 + d_b / (width R))
 ///
 /// normalised over the bones. The skin of a bone is what is nearest to it among the bones that are
 /// seen through the inside of the mesh; where two bones meet, what is equally near to both (the
