@@ -15,7 +15,7 @@ if ! command -v assimp >/dev/null; then
   exit 2
 fi
 
-# convert <source below the models> <target in data/>
+# convert <source below the models> <target in data/> [<distance of seams that are closed>]
 convert() {
   local source="$models/$1" target="data/$2" temporary log
   if [[ -s "$target" && ! "$source" -nt "$target" ]]; then
@@ -34,6 +34,10 @@ convert() {
     echo "convert_data: assimp could not convert $source" >&2
     exit 2
   fi
+  if [[ -n "${3:-}" ]] && ! /usr/bin/python3 scripts/close_seams.py "$temporary" "$temporary" "$3"; then
+    echo "convert_data: $source could not be closed" >&2
+    exit 2
+  fi
   chmod 644 "$temporary"
   mv "$temporary" "$target"
   trap - EXIT
@@ -42,6 +46,7 @@ convert() {
 
 convert Collada/human.zae human.glb
 convert FBX/animation_with_skeleton.fbx animation_with_skeleton.glb
+convert X/BCN_Epileptic.X bcn_epileptic.glb 1e-4
 
 # unpack <member of libcgal-demo's data.tar.gz> <target in data/>
 archive="$(dpkg -L libcgal-dev libcgal-demo 2>/dev/null | grep -m1 '/data\.tar\.gz$' || true)"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "models/skinning/cotangent_laplacian.h"
+#include "models/skinning/surface_diffusion.h"
 #include "models/skinning/lanes.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"

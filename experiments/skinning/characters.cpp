@@ -142,17 +142,33 @@ void take_skeleton_file(const Skeleton& own, const std::string& where,
   character.rig.skeleton = file.skeleton;
 }
 
-/// Weights that came with the character, on its skeleton; absent: there are none.
+bool takes_given(WeightSource source) {
+  return source == WeightSource::file_or_heat || source == WeightSource::file;
+}
+
+/// Weights computed from mesh and skeleton; by heat where those of the file were asked for.
+SkinWeights computed_weights(const CharacterOptions& options, const RiggedMesh& rig) {
+  switch (options.weights) {
+    case WeightSource::bounded:
+      return bounded_weights(rig.mesh, rig.skeleton, options.bounded);
+    case WeightSource::narrow:
+      return narrow_weights(rig.mesh, rig.skeleton, options.narrow);
+    case WeightSource::file_or_heat:
+    case WeightSource::file:
+    case WeightSource::heat:
+      break;
+  }
+  return heat_weights(rig.mesh, rig.skeleton, options.heat);
+}
+
+/// @param given  weights that came with the character, on its skeleton; absent: there are none
 void choose_weights(const CharacterOptions& options, const std::string& file,
                     std::optional<SkinWeights> given, Character& character) {
   if (options.weights == WeightSource::file && !given) {
     throw Error("no weights for the joints of the skeleton", file, "weights = \"heat\"");
   }
-  if (given && options.weights != WeightSource::heat) {
-    character.rig.weights = std::move(*given);
-  } else {
-    character.rig.weights = heat_weights(character.rig.mesh, character.rig.skeleton, options.heat);
-  }
+  const bool keep = given && takes_given(options.weights);
+  character.rig.weights = keep ? std::move(*given) : computed_weights(options, character.rig);
 }
 
 void take_mesh(TriMesh split, Character& character, Weld& weld) {
@@ -306,19 +322,19 @@ void refine(const RefineOptions& options, const std::string& where, Character& c
   character.rig = std::move(refined.rig);
 }
 
-/// Coarser mesh with heat weights: quadric collapse carries no weights and no seams along.
+/// Coarser mesh with computed weights: quadric collapse carries no weights and no seams along.
 void simplify_character(const CharacterOptions& options, int target, Character& character) {
   if (options.weights == WeightSource::file)
     throw Error("weights of the file do not survive simplify_to", "scene.weights",
-                "\"heat\" or \"file-or-heat\"");
+                "weights that are computed");
   const int before = character.rig.mesh.vertex_count();
   character.rig.mesh = simplify(character.rig.mesh, target);
   character.input_mesh = character.rig.mesh;
   character.welded_of_input = identity(character.rig.mesh.vertex_count());
-  character.rig.weights = heat_weights(character.rig.mesh, character.rig.skeleton, options.heat);
+  character.rig.weights = computed_weights(options, character.rig);
   character.warnings.push_back("simplified from " + std::to_string(before) + " to " +
                                std::to_string(character.rig.mesh.vertex_count()) +
-                               " vertices, with heat weights and without the file's seams");
+                               " vertices, with computed weights and without the file's seams");
 }
 
 /// The body of Debian's assimp-testmodels, converted at set-up.
@@ -395,7 +411,8 @@ void describe(OptionVisitor& v, RefineOptions& options) {
 }
 
 void describe(OptionVisitor& v, CharacterOptions& options) {
-  static constexpr std::array<std::string_view, 3> kWeights{"file-or-heat", "file", "heat"};
+  static constexpr std::array<std::string_view, 5> kWeights{"file-or-heat", "file", "heat",
+                                                            "bounded", "narrow"};
   v.value("character", options.character,
           {.doc = "\"human\", \"cylinder\", \"finger\", or a .glb or .gltf file"});
   v.value("mesh", options.mesh,
@@ -405,12 +422,16 @@ void describe(OptionVisitor& v, CharacterOptions& options) {
   v.value("unit_m", options.unit_m,
           {.doc = "metres for one unit of the file", .unit = "m", .min = 1e-9, .max = 1e9});
   describe_choice(v, "weights", options.weights, kWeights,
-                  {.doc = "weights of the file, or by bone heat diffusion"});
+                  {.doc = "weights of the file, or computed: by heat diffusion, bounded and "
+                          "smooth, or narrow as a hand paints them"});
   describe_group(v, "heat", options.heat, {.doc = "bone heat diffusion"});
+  describe_group(v, "bounded", options.bounded, {.doc = "biharmonic weights within bounds"});
+  describe_group(v, "narrow", options.narrow, {.doc = "nearest bones with a painted-like falloff"});
   describe_group(v, "cylinder", options.cylinder, {.doc = "shape of character = \"cylinder\""});
   describe_group(v, "finger", options.finger, {.doc = "shape of character = \"finger\""});
   v.value("simplify_to", options.simplify_to,
-          {.doc = "collapse edges until so many vertices are left (heat weights), before refining",
+          {.doc = "collapse edges until so many vertices are left (weights computed anew), before "
+                  "refining",
            .min = 4});
   describe_list(v, "refine", options.refine,
                 {.doc = "Loop subdivision of the whole mesh or of regions, in order"});

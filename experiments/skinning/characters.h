@@ -8,12 +8,14 @@
 #include "core/options.h"
 #include "core/procedural.h"
 #include "experiments/skinning/skeleton_file.h"
+#include "models/skinning/bounded_weights.h"
 #include "models/skinning/heat_weights.h"
+#include "models/skinning/narrow_weights.h"
 #include "testbed/formats/gltf_reader.h"
 
 namespace geoprior::skinning {
 
-enum class WeightSource { file_or_heat, file, heat };
+enum class WeightSource { file_or_heat, file, heat, bounded, narrow };
 
 /// Refinement of a part of the mesh before anything else is done with it.
 struct RefineOptions {
@@ -31,6 +33,8 @@ struct CharacterOptions {
   double unit_m = 1;
   WeightSource weights = WeightSource::file_or_heat;
   HeatWeightsOptions heat;
+  BoundedWeightsOptions bounded;
+  NarrowWeightsOptions narrow;
   CylinderOptions cylinder;
   FingerOptions finger;
   std::vector<RefineOptions> refine;

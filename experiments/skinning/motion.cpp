@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 
 #include "core/error.h"
 #include "core/limits.h"
@@ -60,6 +61,18 @@ Motion make_ramp(const MotionOptions& options, const Skeleton& skeleton) {
     motion.parameters.push_back(at_fraction(ramps[0].from_deg, ramps[0].to_deg, i, options.frames));
     motion.poses.push_back(pose_from_rotations(skeleton, rotations));
   }
+  return motion;
+}
+
+/// A ramp, and back to where it began: 2 frames - 1 poses.
+Motion make_loop(const MotionOptions& options, const Skeleton& skeleton) {
+  require_poses(2 * options.frames - 1, skeleton.size());
+  Motion motion = make_ramp(options, skeleton);
+  for (std::size_t i = motion.poses.size() - 1; i-- > 0;) motion.poses.push_back(motion.poses[i]);
+  motion.parameters.resize(motion.poses.size());
+  std::iota(motion.parameters.begin(), motion.parameters.end(), 0.0);
+  motion.parameter_name = "step";
+  motion.parameter_unit = "1";
   return motion;
 }
 
@@ -201,7 +214,8 @@ void describe_ramp(OptionVisitor& v, MotionOptions& options) {
   describe_list(v, "joints", options.joints,
                 {.doc = "further joints that turn at the same time; the parameter is the angle of "
                         "the first of all"});
-  v.value("frames", options.frames, {.doc = "equally spaced", .min = 1, .max = kMostFrames});
+  v.value("frames", options.frames,
+          {.doc = "equally spaced; of a loop: those on the way out", .min = 1, .max = kMostFrames});
 }
 
 }  // namespace
@@ -216,14 +230,16 @@ void describe(OptionVisitor& v, JointRamp& options) {
 }
 
 void describe(OptionVisitor& v, MotionOptions& options) {
-  static constexpr std::array<std::string_view, 4> kKinds{"ramp", "poses", "clip", "bvh"};
+  static constexpr std::array<std::string_view, 5> kKinds{"ramp", "loop", "poses", "clip", "bvh"};
   static constexpr std::array<std::string_view, 4> kUps{"guess", "x", "y", "z"};
   describe_choice(v, "kind", options.kind, kKinds,
-                  {.doc = "ramp: joint angles; poses: file, names; clip: name, start_s, end_s, "
+                  {.doc = "ramp: joint angles; loop: a ramp out and back, by steps; poses: file, "
+                          "names; clip: name, start_s, end_s, "
                           "frames of the character's file; bvh: file, first_frame, last_frame, "
                           "stride, origin_frame, bvh_up"});
   switch (options.kind) {
     case MotionKind::ramp:
+    case MotionKind::loop:
       describe_ramp(v, options);
       break;
     case MotionKind::poses:
@@ -254,6 +270,8 @@ Motion make_motion(const MotionOptions& options, const Character& character,
   switch (options.kind) {
     case MotionKind::ramp:
       return make_ramp(options, character.rig.skeleton);
+    case MotionKind::loop:
+      return make_loop(options, character.rig.skeleton);
     case MotionKind::poses:
       return make_poses(options, character.rig.skeleton, folder);
     case MotionKind::clip:
@@ -261,7 +279,7 @@ Motion make_motion(const MotionOptions& options, const Character& character,
     case MotionKind::bvh:
       return make_bvh(options, character, folder);
   }
-  throw Error("unknown kind of motion", "scene.motion", "ramp, poses, clip, bvh");
+  throw Error("unknown kind of motion", "scene.motion", "ramp, loop, poses, clip, bvh");
 }
 
 }  // namespace geoprior::skinning

@@ -11,7 +11,7 @@
 
 namespace geoprior::skinning {
 
-enum class MotionKind { ramp, poses, clip, bvh };
+enum class MotionKind { ramp, loop, poses, clip, bvh };
 
 /// One joint of a ramp of several.
 struct JointRamp {
@@ -27,6 +27,7 @@ void describe(OptionVisitor& v, JointRamp& options);
 struct MotionOptions {
   MotionKind kind = MotionKind::ramp;
   // ramp: linear in the parameter, which is the first joint's angle
+  // loop: a ramp and the same poses back; the parameter is the step, for angles repeat
   std::optional<std::string> joint;
   std::string axis = "flexion";
   double from_deg = 0;

@@ -4,19 +4,10 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "models/skinning/cotangent_laplacian.h"
+#include "models/skinning/surface_diffusion.h"
 
 namespace geoprior::skinning {
 namespace {
-
-/// A third of the area of its triangles, for each vertex (m^2).
-Eigen::VectorXd vertex_areas(const TriMesh& mesh) {
-  const Eigen::VectorXd triangle = triangle_areas(mesh.V, mesh.F);
-  Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh.vertex_count());
-  for (Eigen::Index t = 0; t < mesh.F.rows(); ++t)
-    for (int k = 0; k < 3; ++k) area(mesh.F(t, k)) += triangle(t) / 3;
-  return area;
-}
 
 /// Residual over that of the start at which the solution is good enough for a skin.
 constexpr double kEnough = 1e-3;

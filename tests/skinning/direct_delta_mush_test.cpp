@@ -14,7 +14,7 @@
 #include "core/angles.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "models/skinning/cotangent_laplacian.h"
+#include "models/skinning/surface_diffusion.h"
 #include "tests/skinning/fixtures.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"

@@ -73,6 +73,22 @@ TEST(SkinningScene, RampOfZeroIsTheRestPoseAndTurnsAboutTheJoint) {
   EXPECT_THROW(static_cast<void>(scene->pose_at(45)), Error);
 }
 
+TEST(SkinningScene, LoopGoesOutAndReturnsByTheSamePoses) {
+  SkinningSceneOptions options = cylinder();
+  options.motion.kind = MotionKind::loop;
+  const auto loop = load(options);
+  options.motion.kind = MotionKind::ramp;
+  const auto ramp = load(options);
+  EXPECT_THAT(loop->parameters(), testing::ElementsAre(0, 1, 2, 3, 4, 5, 6));
+  EXPECT_EQ(loop->parameter_name(), "step");
+  EXPECT_EQ(loop->regions.size(), ramp->regions.size());
+  for (int step = 0; step < 7; ++step) {
+    const Pose& there = ramp->frame_pose[std::min(step, 6 - step)];
+    for (std::size_t j = 0; j < there.size(); ++j)
+      EXPECT_EQ(loop->pose_at(step)[j].matrix(), there[j].matrix()) << step;
+  }
+}
+
 TEST(SkinningScene, SeamsFollowRefinementOfARegion) {
   SkinningSceneOptions options;
   options.motion.joint = "knee-left";
@@ -110,12 +126,16 @@ TEST(SkinningScene, NeighbouringJointsShareARegionOthersDoNot) {
   EXPECT_EQ(scene->regions[1].name, "knee-right");
 }
 
-TEST(SkinningScene, WeightsComeFromTheCharacterOrFromHeat) {
+TEST(SkinningScene, WeightsComeFromTheCharacterOrFromTheFamilyAskedFor) {
   SkinningSceneOptions options = cylinder();
-  const auto analytic = load(options);
-  options.character.weights = WeightSource::heat;
-  const auto heat = load(options);
-  EXPECT_GT((analytic->rig.weights - heat->rig.weights).norm(), 0.1);
+  std::vector<SkinWeights> families{load(options)->rig.weights};
+  for (const WeightSource source :
+       {WeightSource::heat, WeightSource::bounded, WeightSource::narrow}) {
+    options.character.weights = source;
+    const SkinWeights weights = load(options)->rig.weights;
+    for (const SkinWeights& other : families) EXPECT_GT((weights - other).norm(), 0.1);
+    families.push_back(weights);
+  }
   SkinningSceneOptions body;
   body.motion.joint = "knee-left";
   body.character.weights = WeightSource::file;
@@ -147,6 +167,23 @@ TEST(SkinningScene, ForeignSkinnedFileIsConvertedAndMoves) {
   const auto scene = load(options);
   EXPECT_EQ(scene->rig.mesh.vertex_count(), 1058);
   EXPECT_GT(scene->input_mesh.vertex_count(), 1058);
+  expect_split_follows_weld(*scene);
+}
+
+// Three parts and their open seams, mouth and eyes, made one closed skin at set-up; the weights are
+// the file's.
+TEST(SkinningScene, SecondCharacterIsClosedAndKeepsItsWeights) {
+  SkinningSceneOptions options;
+  options.character.character = "bcn_epileptic.glb";
+  options.character.weights = WeightSource::file;
+  options.motion.kind = MotionKind::clip;
+  options.motion.frames = 3;
+  const auto scene = load(options);
+  EXPECT_EQ(scene->rig.skeleton.size(), 54);
+  EXPECT_EQ(scene->rig.mesh.vertex_count(), 2591);
+  EXPECT_TRUE(boundary_edges(scene->rig.mesh.F).empty());
+  EXPECT_TRUE(non_manifold_edges(scene->rig.mesh.F).empty());
+  EXPECT_GT(signed_volume(scene->rig.mesh.V, scene->rig.mesh.F), 0);
   expect_split_follows_weld(*scene);
 }
 
