@@ -62,7 +62,7 @@ enum class ProjectionKind { smooth, marching };
 /// The smooth correction. Lengths are shares of the local radius: the distance of the skin from its
 /// bone.
 struct SmoothOptions {
-  double section = 0.6;  ///< share of what fields ask for that is followed
+  double section = 0.5;  ///< share of what fields ask for that is followed
   double cutoff = 2.5;      ///< wavelength whose amplitude is halved
   double contact_cutoff = 0.8;
   double anchor = 0.02;     ///< mu, over the weight of what fields ask
