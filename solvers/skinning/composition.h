@@ -39,7 +39,7 @@ struct BoneSample {
   float f = 0;
   Float4 gradient{};  ///< 1/m
   int bone = -1;
-  float depth = 0;   ///< -d: how deep inside (m, as far as d is a distance)
+  float depth = 0;  ///< -d: how deep inside (m, as far as d is a distance)
   Float4 inward{};  ///< -grad d
 };
 
@@ -124,7 +124,7 @@ class FieldComposition {
     Float4 translation;
     Float4 extent;  // grid coordinates of the far corner
     Float4 half_extent;
-    Float4 centre;  // of the box, grid coordinates
+    Float4 centre;      // of the box, grid coordinates
     Float4 head;        // posed
     Float4 axis;        // posed, unit
     Float4 quaternion;  // of the rotation: x, y, z, w

@@ -128,7 +128,7 @@ struct ImplicitSkinning::Impl {
   SkinState state;
   SmoothProjection smooth_projection;
   std::vector<Float4> quaternion;  // of the joints
-  std::vector<Float4> rotation;  // columns of the joints' rotations
+  std::vector<Float4> rotation;    // columns of the joints' rotations
   int iterations = 0;
 };
 

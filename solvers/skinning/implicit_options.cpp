@@ -141,18 +141,18 @@ void describe(OptionVisitor& v, SmoothOptions& o) {
           {.doc = "length over thickness up to which a bone's field says nothing of the section",
            .min = 0,
            .max = 100});
-  v.value("limb_ratio", o.limb_ratio,
-          {.doc = "and from which it says all", .min = 0, .max = 100});
+  v.value("limb_ratio", o.limb_ratio, {.doc = "and from which it says all", .min = 0, .max = 100});
   v.value("agree_low", o.agree_low,
           {.doc = "cosine of gradient and skinned normal up to which a field is not believed",
            .min = -1,
            .max = 1});
   v.value("agree_high", o.agree_high, {.doc = "and from which it is", .min = -1, .max = 1});
-  v.value("facing_low", o.facing_low,
-          {.doc = "cosine of the other field's gradient and the skinned normal up to which there is "
-                  "no contact",
-           .min = -1,
-           .max = 1});
+  v.value(
+      "facing_low", o.facing_low,
+      {.doc = "cosine of the other field's gradient and the skinned normal up to which there is "
+              "no contact",
+       .min = -1,
+       .max = 1});
   v.value("facing_high", o.facing_high, {.doc = "and from which there is", .min = -1, .max = 1});
   v.value("crowd", o.crowd,
           {.doc = "how far below contact another bone's field already silences the own one",
@@ -170,8 +170,9 @@ void describe(OptionVisitor& v, SmoothOptions& o) {
           {.doc = "of the alternating directions between them", .min = 1, .max = 1000});
   v.value("contact_steps", o.contact_steps,
           {.doc = "of the linear solver in each at most", .min = 1, .max = 1000});
-  v.value("iterations", o.iterations,
-          {.doc = "steps of the linear solver after an evaluation at most", .min = 1, .max = 10000});
+  v.value(
+      "iterations", o.iterations,
+      {.doc = "steps of the linear solver after an evaluation at most", .min = 1, .max = 10000});
 }
 
 void describe(OptionVisitor& v, ImplicitOptions& o) {

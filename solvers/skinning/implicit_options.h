@@ -63,27 +63,27 @@ enum class ProjectionKind { smooth, marching };
 /// bone.
 struct SmoothOptions {
   double section = 0.5;  ///< share of what fields ask for that is followed
-  double cutoff = 2.5;      ///< wavelength whose amplitude is halved
-  double contact_cutoff = 0.8;
-  double anchor = 0.02;     ///< mu, over the weight of what fields ask
+  double cutoff = 2.5;   ///< wavelength whose amplitude is halved
+  double contact_cutoff = 1.2;
+  double anchor = 0.02;  ///< mu, over the weight of what fields ask
   double contact_anchor = 0.02;
   double contact_penalty = 0.5;  ///< of the alternating directions
-  double contact_reach = 1;  ///< within which skin that faces a vertex is looked for
-  double dead_zone = 0.01;  ///< what asks for less is not followed
-  double largest = 0.5;     ///< correction that a field may ask for
-  double trunk_ratio = 1.0;  ///< length over thickness up to which a bone's field is no limb's
-  double limb_ratio = 1.4;   ///< and from which it is
-  double agree_low = 0.3;    ///< cosine of gradient and skinned normal: below it nothing is known
+  double contact_reach = 1;      ///< within which skin that faces a vertex is looked for
+  double dead_zone = 0.01;       ///< what asks for less is not followed
+  double largest = 0.5;          ///< correction that a field may ask for
+  double trunk_ratio = 1.0;      ///< length over thickness up to which a bone's field is no limb's
+  double limb_ratio = 1.4;       ///< and from which it is
+  double agree_low = 0.3;  ///< cosine of gradient and skinned normal: below it nothing is known
   double agree_high = 0.8;
-  double facing_low = 0.0;  ///< cosine at which a contact begins to hold
-  double facing_high = 0.5;
+  double facing_low = -0.5;  ///< cosine at which a contact begins to hold
+  double facing_high = 0;
   double crowd = 0.5;  ///< of a field below contact: within it nothing is asked of the section
   int preparation_passes = 5;
   int evaluations = 3;  ///< of the fields
   int contact_evaluations = 8;
   int contact_iterations = 8;
   int contact_steps = 5;
-  int iterations = 45;   ///< of the linear solver at most
+  int iterations = 45;  ///< of the linear solver at most
 };
 void describe(OptionVisitor& v, SmoothOptions& options);
 
@@ -104,7 +104,7 @@ struct ImplicitOptions {
   double radius_scale = 1;  ///< support radius r over the largest distance of skin from bone
   int grid = 32;            ///< nodes of the field cache: grid^3 a bone; 0 evaluates exactly
 
-  ProjectionKind projection = ProjectionKind::smooth;
+  ProjectionKind projection = ProjectionKind::marching;
   SmoothOptions smooth;
 
   Schedule schedule = Schedule::paper;

@@ -7,9 +7,9 @@
 namespace geoprior::skinning {
 namespace {
 
-constexpr int kMostCells = 64;          // along an axis
-constexpr float kOpposed = -0.2F;       // cosine of two normals that face each other
-constexpr float kCameNearer = 0.5F;     // share of the distance at rest
+constexpr int kMostCells = 64;       // along an axis
+constexpr float kOpposed = 0.4F;     // cosine of two normals that face each other
+constexpr float kCameNearer = 0.5F;  // share of the distance at rest
 
 }  // namespace
 
@@ -47,8 +47,8 @@ void SkinProximity::build(const std::vector<Float4>& position) {
   }
 }
 
-std::optional<SkinProximity::Facing> SkinProximity::facing(const SkinState& state,
-                                                           std::size_t slot, float reach) const {
+std::optional<SkinProximity::Facing> SkinProximity::facing(const SkinState& state, std::size_t slot,
+                                                           float reach) const {
   const Float4 p = (*position_)[slot];
   const Float4 normal = state.outward[slot];
   const float normal2 = dot3(normal, normal);

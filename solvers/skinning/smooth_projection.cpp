@@ -10,6 +10,9 @@
 namespace geoprior::skinning {
 namespace {
 
+/// Of the local radius: what is asked below is none.
+constexpr float kNothing = 1e-5F;
+
 constexpr std::size_t kBlocksOfTask = 4;
 constexpr std::size_t kSlotsOfTask = 512;
 
@@ -106,11 +109,9 @@ SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& p
     }
     const auto b = static_cast<std::size_t>(state.owner[s]);
     const FieldBone& bone = partition.bones[b];
-    const double along =
-        segment_parameter(rig.mesh.V.row(state.vertex[s]), bone.head, bone.tail);
+    const double along = segment_parameter(rig.mesh.V.row(state.vertex[s]), bone.head, bone.tail);
     const auto share = static_cast<double>(ramp(0.3F, 0.7F, static_cast<float>(along)));
-    trust_.push_back(
-        static_cast<float>(trust.head[b] + share * (trust.tail[b] - trust.head[b])));
+    trust_.push_back(static_cast<float>(trust.head[b] + share * (trust.tail[b] - trust.head[b])));
   }
   smooth_values(trust_, state, options_.preparation_passes);
 }
@@ -144,9 +145,9 @@ void SmoothProjection::record_rest(const SkinState& state) {
     if (owner >= 0) {
       const Float4 p = state.position[s];
       const int bones = field_.bones_near(p, p, near.data());
-      const int count = field_.samples_at(p, owner, Float4{0, 0, 0, 1},
-                                          {near.data(), static_cast<std::size_t>(bones)},
-                                          samples.data());
+      const int count =
+          field_.samples_at(p, owner, Float4{0, 0, 0, 1},
+                            {near.data(), static_cast<std::size_t>(bones)}, samples.data());
       float own = 0;
       for (int i = 0; i < count; ++i)
         if (samples[i].bone == owner) own = std::max(own, samples[i].depth);
@@ -181,8 +182,7 @@ float SmoothProjection::crowding(const SkinState& state, std::size_t slot, const
   for (const BoneSample& other : at.all()) {
     if (other.bone == state.owner[slot]) continue;
     const float facing = facing_of(other, outward);
-    const float excess =
-        other.depth + gap_ * radius_[slot] - own - slack_of(slot, other.bone);
+    const float excess = other.depth + gap_ * radius_[slot] - own - slack_of(slot, other.bone);
     crowd = std::max(crowd, facing * ramp(-margin, 0, excess));
   }
   return crowd;
@@ -216,7 +216,7 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
       proximity_.facing(state, slot, static_cast<float>(options_.contact_reach) * radius);
   if (!met) return {};
   demand.amount = std::min(demand.amount, met->depth + gap);
-  return demand.amount > 0 ? demand : Demand{};
+  return demand.amount > kNothing * radius ? demand : Demand{};
 }
 
 Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot,
@@ -232,9 +232,9 @@ Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot
   const float slope = length_of(all.gradient);
   const float outward_length = length_of(outward);
   if (!(slope * radius > 1e-3F) || !(outward_length > 0)) return {};
-  const float agree = ramp(static_cast<float>(options_.agree_low),
-                           static_cast<float>(options_.agree_high),
-                           -dot3(all.gradient, outward) / (slope * outward_length));
+  const float agree =
+      ramp(static_cast<float>(options_.agree_low), static_cast<float>(options_.agree_high),
+           -dot3(all.gradient, outward) / (slope * outward_length));
   const float known = ramp(0.02F, 0.15F, all.value) * (1 - ramp(0.85F, 0.98F, all.value));
   const float free = 1 - crowding(state, slot, at, static_cast<float>(options_.crowd) * radius);
   const Float4 n = all.gradient / splat(slope);
@@ -245,6 +245,7 @@ Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot
   wanted *= wanted * wanted / (wanted * wanted + dead * dead);
   wanted /= std::sqrt(1 + wanted * wanted / (reach * reach));
   wanted *= static_cast<float>(options_.section);
+  if (std::abs(wanted) < kNothing * radius) return {};
   return {n, wanted, trust_[slot] * known * free * agree};
 }
 
@@ -295,8 +296,8 @@ int SmoothProjection::correct_sections(SkinState& state) {
   for (int i = 0; i < options_.evaluations; ++i) {
     ask(state, Stage::section);
     system_.open(demand_);
-    steps += system_.solve(
-        demand_, {}, {options_.cutoff, options_.anchor, 0, options_.iterations}, moved_);
+    steps += system_.solve(demand_, {}, {options_.cutoff, options_.anchor, 0, options_.iterations},
+                           moved_);
     place(state);
   }
   return steps;

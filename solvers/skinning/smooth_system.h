@@ -25,8 +25,8 @@ struct Demand {
 ///                    + w_i (d_i . u_i - a_i)^2 )
 ///
 /// L is the cotangent stiffness of the rest surface, M = diag(A_i) its vertex areas, r_i the local
-/// radius, kappa = (cutoff / 7.85)^4: of a demand w = 1 whose wavelength is 0.8 `cutoff` local radii
-/// half the amplitude is followed.
+/// radius, kappa = (cutoff / 7.85)^4: of a demand w = 1 whose wavelength is 0.8 `cutoff` local
+/// radii half the amplitude is followed.
 ///
 /// Conjugate gradients with a diagonal preconditioner, from the u of before, over the blocks of the
 /// skin (skin_state.h) that were opened; u is zero elsewhere. Sums go over blocks in their order,
