@@ -107,15 +107,16 @@ SortedJson write(const RunLine& line) {
 }
 
 SortedJson write(const CaseLine& line) {
-  return {{"kind", "case"},
-          {"case", line.case_name},
-          {"parameter_name", line.parameter_name},
-          {"parameter_unit", line.parameter_unit},
-          {"facts", numbers(line.facts)},
-          {"warnings", line.warnings},
-          {"inputs", files(line.inputs)},
-          {"seconds", number(line.seconds)},
-          {"camera", line.camera}};
+  SortedJson json = {{"kind", "case"},
+                     {"case", line.case_name},
+                     {"parameter_name", line.parameter_name},
+                     {"parameter_unit", line.parameter_unit},
+                     {"facts", numbers(line.facts)},
+                     {"warnings", line.warnings},
+                     {"inputs", files(line.inputs)},
+                     {"seconds", number(line.seconds)}};
+  if (!line.camera.empty()) json["camera"] = line.camera;
+  return json;
 }
 
 SortedJson write(const BeginLine& line) {
