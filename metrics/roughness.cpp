@@ -30,8 +30,14 @@ struct Sample {
     return weighted_quantile(value_vector(), area_vector(), share);
   }
   [[nodiscard]] double max() const { return value_vector().maxCoeff(); }
+  /// Summed in order: sums over vectors depend on where these happen to lie in memory.
   [[nodiscard]] double rms() const {
-    return std::sqrt(area_vector().dot(value_vector().cwiseAbs2()) / area_vector().sum());
+    double squares = 0, area = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      squares += areas[i] * values[i] * values[i];
+      area += areas[i];
+    }
+    return std::sqrt(squares / area);
   }
 
  private:
