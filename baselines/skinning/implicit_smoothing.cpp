@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "models/skinning/surface_diffusion.h"
 #include "models/skinning/lanes.h"
+#include "models/skinning/surface_diffusion.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
