@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/error.h"
@@ -68,8 +69,9 @@ DistortionSummary distortion(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3
   const Eigen::ArrayX2d clamped = values.array().max(kSmallestSingularValue);
   const Eigen::ArrayX2d energy = clamped.square() + clamped.square().inverse();
   DistortionSummary s;
-  s.area_ratio_p05 = weighted_quantile(ratio, area, 0.05);
-  s.area_ratio_p95 = weighted_quantile(ratio, area, 0.95);
+  const std::vector<double> quantiles = weighted_quantiles(ratio, area, std::array{0.05, 0.95});
+  s.area_ratio_p05 = quantiles[0];
+  s.area_ratio_p95 = quantiles[1];
   s.area_ratio_max = ratio.maxCoeff();
   s.singular_value_max = values.col(0).maxCoeff();
   s.singular_value_min = values.col(1).minCoeff();

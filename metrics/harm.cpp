@@ -50,10 +50,11 @@ std::optional<Harm> harm(const BoneRings& rings, const std::vector<int>& unasked
   }
   if (unasked.empty()) return std::nullopt;
   Harm harm;
+  const double whole_area = rings.vertex_area().sum();
   for (const int v : unasked) {
     const double displacement = (posed.row(v) - reference.row(v)).norm();
     harm.max = std::max(harm.max, displacement / rings.radius(v).value());
-    harm.unasked_share += rings.vertex_area()(v) / rings.vertex_area().sum();
+    harm.unasked_share += rings.vertex_area()(v) / whole_area;
   }
   return harm;
 }

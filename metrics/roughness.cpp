@@ -26,8 +26,9 @@ struct Sample {
   }
   [[nodiscard]] auto value_vector() const { return as_vector(values); }
   [[nodiscard]] auto area_vector() const { return as_vector(areas); }
-  [[nodiscard]] double percentile(double share) const {
-    return weighted_quantile(value_vector(), area_vector(), share);
+  /// @param shares  ascending
+  [[nodiscard]] std::vector<double> percentiles(std::vector<double> shares) const {
+    return weighted_quantiles(value_vector(), area_vector(), shares);
   }
   [[nodiscard]] double max() const { return value_vector().maxCoeff(); }
   /// Summed in order: sums over vectors depend on where these happen to lie in memory.
@@ -151,12 +152,9 @@ std::optional<RoughnessSummary> summarize(const Roughness& surface, const Eigen:
     if (is_chosen[v]) lump.add(lumps(v), surface.vertex_area()(v));
   }
   if (fold.values.empty() || lump.values.empty()) return std::nullopt;
-  return RoughnessSummary{fold.percentile(0.5),
-                          fold.percentile(0.95),
-                          fold.percentile(0.99),
-                          fold.max(),
-                          lump.rms(),
-                          lump.percentile(0.95),
+  const std::vector<double> folded = fold.percentiles({0.5, 0.95, 0.99});
+  return RoughnessSummary{folded[0],  folded[1],  folded[2],
+                          fold.max(), lump.rms(), lump.percentiles({0.95}).front(),
                           lump.max()};
 }
 

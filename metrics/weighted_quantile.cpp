@@ -9,8 +9,9 @@
 
 namespace geoprior {
 
-double weighted_quantile(const Eigen::VectorXd& values, const Eigen::VectorXd& weights,
-                         double share) {
+std::vector<double> weighted_quantiles(const Eigen::VectorXd& values,
+                                       const Eigen::VectorXd& weights,
+                                       std::span<const double> shares) {
   if (values.size() == 0 || values.size() != weights.size()) {
     throw Error(std::to_string(values.size()) + " values and " + std::to_string(weights.size()) +
                     " weights",
@@ -20,13 +21,21 @@ double weighted_quantile(const Eigen::VectorXd& values, const Eigen::VectorXd& w
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](Eigen::Index a, Eigen::Index b) { return values(a) < values(b); });
-  const double wanted = share * weights.sum();
+  const double whole = weights.sum();
+  std::vector<double> quantiles;
   double passed = 0;
   for (const Eigen::Index i : order) {
     passed += weights(i);
-    if (passed >= wanted) return values(i);
+    while (quantiles.size() < shares.size() && passed >= shares[quantiles.size()] * whole)
+      quantiles.push_back(values(i));
   }
-  return values(order.back());
+  quantiles.resize(shares.size(), values(order.back()));
+  return quantiles;
+}
+
+double weighted_quantile(const Eigen::VectorXd& values, const Eigen::VectorXd& weights,
+                         double share) {
+  return weighted_quantiles(values, weights, {&share, 1}).front();
 }
 
 }  // namespace geoprior

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
+#include <vector>
 
 namespace geoprior {
 
@@ -13,5 +15,10 @@ namespace geoprior {
 /// @throws Error   on no values or unequal sizes
 double weighted_quantile(const Eigen::VectorXd& values, const Eigen::VectorXd& weights,
                          double share);
+
+/// The same of several shares, ascending: values are sorted once.
+std::vector<double> weighted_quantiles(const Eigen::VectorXd& values,
+                                       const Eigen::VectorXd& weights,
+                                       std::span<const double> shares);
 
 }  // namespace geoprior

@@ -6,7 +6,6 @@
 
 #include "baselines/skinning/centres_of_rotation_lanes.h"
 #include "core/error.h"
-#include "core/parallel.h"
 #include "models/skinning/rigid_joints.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -75,17 +74,13 @@ void CentresOfRotation::deform(const Pose& pose, Eigen::MatrixX3d& posed) const 
     Eigen::Map<Eigen::Vector4d>(table[j].real.data()) =
         Eigen::Quaterniond(rotation_of(pose[j])).normalized().coeffs();
   }
-  posed.resize(influences_.vertex_count, 3);
   const auto kernel = [joints = table.data(), arms = arms_.data(), rest = influences_.rest.data()](
                           const lanes::Block& block, lanes::Double4& x, lanes::Double4& y,
                           lanes::Double4& z) {
     lanes::blend_block(joints, block, x, y, z);
     lanes::add_turned(lanes::blend_rotations(joints, block), arms + (block.rest - rest), x, y, z);
   };
-  parallel_blocks(influences_.chunk_slots.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t chunk = begin; chunk < end; ++chunk)
-      lanes::for_chunk(influences_, chunk, posed, kernel);
-  });
+  lanes::for_all_chunks(influences_, posed, kernel);
 }
 
 }  // namespace geoprior::skinning

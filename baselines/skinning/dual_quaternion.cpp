@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 
 #include "baselines/skinning/dual_quaternion_lanes.h"
-#include "core/parallel.h"
 #include "models/skinning/rigid_joints.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -65,17 +64,13 @@ void DualQuaternionBlend::deform(const Pose& pose, Eigen::MatrixX3d& posed) cons
     const auto [q, d] = dual_quaternion(pose[j], heads_[j]);
     table[j] = {{q.x(), q.y(), q.z(), q.w()}, {d.x(), d.y(), d.z(), d.w()}};
   }
-  posed.resize(influences_.vertex_count, 3);
   const auto kernel = [q = table.data()](const lanes::Block& block, lanes::Double4& x,
                                          lanes::Double4& y, lanes::Double4& z) {
     lanes::Four real, dual;
     lanes::blend(q, block, real, dual);
     lanes::transform(real, dual, block.rest, x, y, z);
   };
-  parallel_blocks(influences_.chunk_slots.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t chunk = begin; chunk < end; ++chunk)
-      lanes::for_chunk(influences_, chunk, posed, kernel);
-  });
+  lanes::for_all_chunks(influences_, posed, kernel);
 }
 
 }  // namespace geoprior::skinning

@@ -4,7 +4,6 @@
 
 #include "baselines/skinning/linear_blend_lanes.h"
 #include "core/error.h"
-#include "core/parallel.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
@@ -38,15 +37,11 @@ void LinearBlend::deform(const Pose& pose, Eigen::MatrixX3d& posed) const {
   for (std::size_t j = 0; j < pose.size(); ++j)
     Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(table[j].row.data()) =
         pose[j].matrix().topRows<3>();
-  posed.resize(influences_.vertex_count, 3);
   const auto kernel = [T = table.data()](const lanes::Block& block, lanes::Double4& x,
                                          lanes::Double4& y, lanes::Double4& z) {
     lanes::blend_block(T, block, x, y, z);
   };
-  parallel_blocks(influences_.chunk_slots.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t chunk = begin; chunk < end; ++chunk)
-      lanes::for_chunk(influences_, chunk, posed, kernel);
-  });
+  lanes::for_all_chunks(influences_, posed, kernel);
 }
 
 }  // namespace geoprior::skinning

@@ -21,8 +21,7 @@ Eigen::SparseMatrix<double> biharmonic_energy(const TriMesh& mesh, const Eigen::
 void require_bounded_options(const BoundedWeightsOptions& options) {
   if (!(options.length > 0) || !std::isfinite(options.length))
     throw Error("length is not positive", "bounded weights", "> 0");
-  if (options.max_influences < 0)
-    throw Error("max_influences is negative", "bounded weights", ">= 0");
+  require_influence_limit(options.max_influences, "bounded weights");
   if (options.max_pivots < 1) throw Error("max_pivots is not positive", "bounded weights", ">= 1");
 }
 
@@ -33,11 +32,7 @@ void describe(OptionVisitor& v, BoundedWeightsOptions& options) {
           {.doc = "l: how far a joint is smoothed to both sides, in local radii",
            .min = 0.01,
            .max = 20});
-  v.value("max_influences", options.max_influences,
-          {.doc = "strongest influences kept, less the largest left out, and renormalised; 0 keeps "
-                  "all",
-           .min = 0,
-           .max = 65535});
+  describe_influence_limit(v, options.max_influences);
   v.value("max_pivots", options.max_pivots,
           {.doc = "changes of a bone's active set, after which the weights are refused", .min = 1});
 }

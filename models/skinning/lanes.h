@@ -11,6 +11,7 @@
 #include <immintrin.h>
 #endif
 
+#include "core/parallel.h"
 #include "models/skinning/influences.h"
 
 // Four doubles at a time, for the sources of this folder only. GCC's vector types compile for every
@@ -192,6 +193,15 @@ template <class Kernel>
     }
   }
   if (packed.vertex_count >= kStreamedVertices) stream_fence();
+}
+
+/// The same for all chunks, in parallel; sizes `posed`.
+template <class Kernel>
+void for_all_chunks(const PackedInfluences& packed, Eigen::MatrixX3d& posed, const Kernel& kernel) {
+  posed.resize(packed.vertex_count, 3);
+  parallel_blocks(packed.chunk_slots.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk) for_chunk(packed, chunk, posed, kernel);
+  });
 }
 
 }  // namespace geoprior::skinning::lanes

@@ -31,8 +31,7 @@ double falloff(double u) {
 void check(const NarrowWeightsOptions& options) {
   if (!(options.width > 0) || !std::isfinite(options.width))
     throw Error("width is not positive", "narrow weights", "> 0");
-  if (options.max_influences < 0)
-    throw Error("max_influences is negative", "narrow weights", ">= 0");
+  require_influence_limit(options.max_influences, "narrow weights");
 }
 
 }  // namespace
@@ -43,11 +42,7 @@ void describe(OptionVisitor& v, NarrowWeightsOptions& options) {
                   "local radii",
            .min = 0.01,
            .max = 20});
-  v.value("max_influences", options.max_influences,
-          {.doc = "strongest influences kept, less the largest left out, and renormalised; 0 keeps "
-                  "all",
-           .min = 0,
-           .max = 65535});
+  describe_influence_limit(v, options.max_influences);
 }
 
 SkinWeights narrow_weights(const TriMesh& mesh, const Skeleton& skeleton,

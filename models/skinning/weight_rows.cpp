@@ -56,4 +56,16 @@ SkinWeights strongest_influences(const Eigen::MatrixXd& values, const std::vecto
   return weights;
 }
 
+void describe_influence_limit(OptionVisitor& v, int& max_influences) {
+  v.value("max_influences", max_influences,
+          {.doc = "strongest influences kept, less the largest left out, and renormalised; 0 keeps "
+                  "all",
+           .min = 0,
+           .max = 65535});
+}
+
+void require_influence_limit(int max_influences, const std::string& who) {
+  if (max_influences < 0) throw Error("max_influences is negative", who, ">= 0");
+}
+
 }  // namespace geoprior::skinning

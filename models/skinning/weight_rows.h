@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
+#include "core/options.h"
 #include "core/rig.h"
 #include "models/skinning/bone_visibility.h"
 
@@ -15,5 +17,11 @@ namespace geoprior::skinning {
 /// @throws Error  on a row without a positive value (names the vertex)
 SkinWeights strongest_influences(const Eigen::MatrixXd& values, const std::vector<Bone>& bones,
                                  int joint_count, int max_influences);
+
+/// The option `max_influences` of weights made by `strongest_influences`.
+void describe_influence_limit(OptionVisitor& v, int& max_influences);
+/// @param who  for the error
+/// @throws Error  when it is negative
+void require_influence_limit(int max_influences, const std::string& who);
 
 }  // namespace geoprior::skinning

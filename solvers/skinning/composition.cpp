@@ -134,7 +134,7 @@ Float4 FieldComposition::exact_distance(int bone, Float4 p) const {
   return result;
 }
 
-bool FieldComposition::sample_bone(int bone, Float4 p, Sampled& out) const {
+bool FieldComposition::sample_bone(int bone, Float4 p, BoneSample& out) const {
   const PosedBone& posed = posed_[bone];
   const Float4 u = posed.to_grid[0] * splat(p[0]) + posed.to_grid[1] * splat(p[1]) +
                    posed.to_grid[2] * splat(p[2]) + posed.to_grid[3];
@@ -157,16 +157,16 @@ bool FieldComposition::sample_bone(int bone, Float4 p, Sampled& out) const {
   return true;
 }
 
-FieldComposition::Composed FieldComposition::compose(std::span<const Sampled> fields) const {
+FieldComposition::Composed FieldComposition::compose(std::span<const BoneSample> fields) const {
   Composed result;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const Sampled& child = fields[i];
+    const BoneSample& child = fields[i];
     if (child.f > result.value) result = Composed{child.f, child.gradient, child.bone};
     const JointOperator& op = operators_[child.bone];
     const int parent = parent_[child.bone];
     if (parent < 0 || op.is_union()) continue;
     for (std::size_t j = 0; j < i; ++j) {  // parents come before children
-      const Sampled& up = fields[j];
+      const BoneSample& up = fields[j];
       if (up.bone != parent) continue;
       const float lengths = dot3(child.gradient, child.gradient) * dot3(up.gradient, up.gradient);
       if (!(lengths > 0)) break;
@@ -186,12 +186,12 @@ FieldComposition::Composed FieldComposition::compose(std::span<const Sampled> fi
 }
 
 FieldAt FieldComposition::at(Float4 p, int owner, std::span<const int> bones) const {
-  std::array<Sampled, kMaxOverlap> own, other;
+  std::array<BoneSample, kMaxOverlap> own, other;
   std::size_t own_count = 0, other_count = 0;
   FieldAt result;
   const std::uint8_t* part = same_part_.data() + static_cast<std::size_t>(owner) * fields_.size();
   for (const int bone : bones) {
-    Sampled sampled;
+    BoneSample sampled;
     ++result.evaluations;
     if (!sample_bone(bone, p, sampled)) continue;
     if (part[bone] != 0) {
@@ -250,7 +250,7 @@ int FieldComposition::samples_at(Float4 p, int owner, Float4 rotation, std::span
 
 float FieldComposition::rest_value(Float4 rest, int bone) const {
   // The field moves rigidly: carry the point along.
-  Sampled sampled;
+  BoneSample sampled;
   return sample_bone(bone, carry(bone, rest), sampled) ? sampled.f : 0.0F;
 }
 
@@ -259,7 +259,7 @@ Float4 FieldComposition::carry(int bone, Float4 rest) const {
 }
 
 float FieldComposition::difference(Float4 p, int a, int b) const {
-  Sampled sa, sb;
+  BoneSample sa, sb;
   return (sample_bone(a, p, sa) ? sa.f : 0.0F) - (sample_bone(b, p, sb) ? sb.f : 0.0F);
 }
 

@@ -89,6 +89,15 @@ class FieldComposition {
   /// At most this many positive fields are composed at one point; a body has a handful.
   static constexpr int kMaxOverlap = 24;
 
+  /// The operators of all joints applied to fields at one point.
+  struct Composed {
+    float value = 0;
+    Float4 gradient{};
+    int bone = -1;
+  };
+  /// @param fields  sorted by bone
+  [[nodiscard]] Composed compose(std::span<const BoneSample> fields) const;
+
   /// What a turn of `rotation` against a bone is about that bone's axis.
   [[nodiscard]] AxisTurn turn_to(int bone, Float4 rotation) const;
 
@@ -130,19 +139,7 @@ class FieldComposition {
     Float4 quaternion;  // of the rotation: x, y, z, w
     Float4 rest_axis;
   };
-  using Sampled = BoneSample;
-
- public:
-  struct Composed {
-    float value = 0;
-    Float4 gradient{};
-    int bone = -1;
-  };
-  /// @param fields  sorted by bone
-  [[nodiscard]] Composed compose(std::span<const Sampled> fields) const;
-
- private:
-  [[nodiscard]] bool sample_bone(int bone, Float4 p, Sampled& out) const;
+  [[nodiscard]] bool sample_bone(int bone, Float4 p, BoneSample& out) const;
   [[nodiscard]] Float4 exact_distance(int bone, Float4 p) const;
 
   std::vector<BoneField> fields_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "baselines/skinning/dual_quaternion.h"
 #include "core/error.h"
@@ -91,8 +92,7 @@ struct ImplicitSkinning::Impl {
               joint_operators(partition, rig.skeleton, options), options.support,
               partition.bone_of_vertex, graph, options.limb_contact),
         projection(field, options),
-        state(rig, graph, partition.bone_of_vertex),
-        smooth_projection(rig, partition, field, options, state) {
+        state(rig, graph, partition.bone_of_vertex) {
     if (partition.bones.empty()) {
       throw Error("no joint moves enough vertices for a field", "implicit skinning",
                   "at least " + std::to_string(kMinBoneVertices) + " vertices a joint");
@@ -107,7 +107,10 @@ struct ImplicitSkinning::Impl {
       state.position[s] = row_of(rig.mesh.V, state.vertex[s]);
     }
     projection.record_rest(state);
-    smooth_projection.record_rest(state);
+    if (options.projection == ProjectionKind::smooth) {
+      smooth_projection.emplace(rig, partition, field, options, state);
+      smooth_projection->record_rest(state);
+    }
     prepare_relaxation(state);
   }
 
@@ -126,7 +129,7 @@ struct ImplicitSkinning::Impl {
   FieldComposition field;
   Projection projection;
   SkinState state;
-  SmoothProjection smooth_projection;
+  std::optional<SmoothProjection> smooth_projection;
   std::vector<Float4> quaternion;  // of the joints
   std::vector<Float4> rotation;    // columns of the joints' rotations
   int iterations = 0;
@@ -175,7 +178,7 @@ void ImplicitSkinning::Impl::correct() {
     const Eigen::Vector4f q = Eigen::Quaterniond(turn).coeffs().cast<float>();
     quaternion.push_back(Float4{q(0), q(1), q(2), q(3)});
   }
-  iterations = smooth_projection.solve(state, quaternion);
+  iterations = smooth_projection->solve(state, quaternion);
 }
 
 void ImplicitSkinning::Impl::fit(RunContext& context) {
@@ -228,7 +231,7 @@ void ImplicitSkinning::deform(const Pose& pose, Eigen::MatrixX3d& posed, RunCont
     const Phase phase(context, "start");
     impl.start(pose, posed);
   }
-  if (impl.options.projection == ProjectionKind::smooth) {
+  if (impl.smooth_projection) {
     const Phase phase(context, "projection");
     impl.correct();
     impl.finish(posed);

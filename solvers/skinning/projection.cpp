@@ -3,22 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "core/parallel.h"
 
 namespace geoprior::skinning {
 namespace {
-
-struct Bounds {
-  Float4 low = splat(std::numeric_limits<float>::max());
-  Float4 high = splat(std::numeric_limits<float>::lowest());
-  void include(Float4 p) {
-    low = p < low ? p : low;
-    high = p > high ? p : high;
-  }
-};
 
 constexpr std::size_t kLiveBlocksPerTask = 4;
 
@@ -88,7 +78,7 @@ void Projection::step(SkinState& state) const {
 void Projection::step_block(SkinState& state, std::size_t block) const {
   const std::size_t begin = block * SkinState::kBlock;
   const auto count = static_cast<std::size_t>(state.active_count[block]);
-  Bounds bounds;
+  Float4Bounds bounds;
   for (std::size_t i = begin; i < begin + count; ++i) {
     bounds.include(state.position[state.active[i]]);
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 namespace geoprior::skinning {
 
 /// Four floats in one register (x, y, z and one more): the unit in which the per-frame passes work.
@@ -13,6 +15,16 @@ inline float dot3(Float4 a, Float4 b) {
   const Float4 product = a * b;
   return product[0] + product[1] + product[2];
 }
+
+/// Box around points.
+struct Float4Bounds {
+  Float4 low = splat(std::numeric_limits<float>::max());
+  Float4 high = splat(std::numeric_limits<float>::lowest());
+  void include(Float4 p) {
+    low = p < low ? p : low;
+    high = p > high ? p : high;
+  }
+};
 
 /// First three components; the fourth set to zero.
 inline Float4 xyz(Float4 a) { return Float4{a[0], a[1], a[2], 0.0F}; }

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace geoprior::skinning {
 namespace {
 
 constexpr int kMostCells = 64;       // along an axis
-constexpr float kOpposed = 0.4F;     // cosine of two normals that face each other
+constexpr float kOpposed = 0.4F;     // cosine of two normals up to which they face each other
 constexpr float kCameNearer = 0.5F;  // share of the distance at rest
 
 }  // namespace
@@ -19,13 +18,10 @@ int SkinProximity::cell_of(float x, int axis) const {
 
 void SkinProximity::build(const std::vector<Float4>& position) {
   position_ = &position;
-  Float4 high = splat(std::numeric_limits<float>::lowest());
-  low_ = -high;
-  for (const Float4 p : position) {
-    low_ = p < low_ ? p : low_;
-    high = p > high ? p : high;
-  }
-  const Float4 extent = high - low_;
+  Float4Bounds bounds;
+  for (const Float4 p : position) bounds.include(p);
+  low_ = bounds.low;
+  const Float4 extent = bounds.high - bounds.low;
   cell_ = std::max({extent[0], extent[1], extent[2], 1e-12F}) / kMostCells;
   for (int k = 0; k < 3; ++k) size_[k] = 1 + static_cast<int>(extent[k] / cell_);
   const auto cells = static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/parallel.h"
 
@@ -86,6 +85,24 @@ std::vector<float> local_radii(const RiggedMesh& rig, const BonePartition& parti
   return radius;
 }
 
+/// Normalised weighted mean of the joints' quaternions, with the signs of dual quaternion blending.
+Float4 blended_rotation(const SkinState& state, std::size_t s,
+                        const std::vector<Float4>& rotations) {
+  Float4 sum{}, pivot{};
+  float largest = -1;
+  for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i) {
+    if (state.influence_weight[i] <= largest) continue;
+    largest = state.influence_weight[i];
+    pivot = rotations[static_cast<std::size_t>(state.influence_joint[i])];
+  }
+  for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i) {
+    const Float4 q = rotations[static_cast<std::size_t>(state.influence_joint[i])];
+    const float same = dot3(q, pivot) + q[3] * pivot[3];
+    sum += splat(same < 0 ? -state.influence_weight[i] : state.influence_weight[i]) * q;
+  }
+  return sum / splat(std::sqrt(dot3(sum, sum) + sum[3] * sum[3]));
+}
+
 }  // namespace
 
 SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& partition,
@@ -118,46 +135,33 @@ SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& p
 
 void SmoothProjection::blend_rotations(const SkinState& state,
                                        const std::vector<Float4>& rotations) {
-  for (std::size_t s = 0; s < state.size(); ++s) {
-    Float4 sum{}, pivot{};
-    float largest = -1;
-    for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i) {
-      if (state.influence_weight[i] <= largest) continue;
-      largest = state.influence_weight[i];
-      pivot = rotations[static_cast<std::size_t>(state.influence_joint[i])];
-    }
-    for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i) {
-      const Float4 q = rotations[static_cast<std::size_t>(state.influence_joint[i])];
-      const float same = dot3(q, pivot) + q[3] * pivot[3];
-      sum += splat(same < 0 ? -state.influence_weight[i] : state.influence_weight[i]) * q;
-    }
-    rotation_[s] = sum / splat(std::sqrt(dot3(sum, sum) + sum[3] * sum[3]));
-  }
+  parallel_blocks(state.size(), kSlotsOfTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) rotation_[s] = blended_rotation(state, s, rotations);
+  });
 }
 
 void SmoothProjection::record_rest(const SkinState& state) {
+  std::fill(rotation_.begin(), rotation_.end(), Float4{0, 0, 0, 1});
   overlap_offset_.assign(1, 0);
   overlap_.clear();
   std::array<int, kMaxFieldBones> near;
-  std::array<BoneSample, FieldComposition::kMaxOverlap> samples;
   for (std::size_t s = 0; s < state.size(); ++s) {
-    const int owner = state.owner[s];
-    if (owner >= 0) {
+    if (state.owner[s] >= 0) {
       const Float4 p = state.position[s];
       const int bones = field_.bones_near(p, p, near.data());
-      const int count =
-          field_.samples_at(p, owner, Float4{0, 0, 0, 1},
-                            {near.data(), static_cast<std::size_t>(bones)}, samples.data());
-      float own = 0;
-      for (int i = 0; i < count; ++i)
-        if (samples[i].bone == owner) own = std::max(own, samples[i].depth);
-      for (int i = 0; i < count; ++i) {
-        const float slack = samples[i].depth + gap_ * radius_[s] - own;
-        if (samples[i].bone != owner && slack > 0) overlap_.push_back({samples[i].bone, slack});
+      const Sampled at = sampled(state, s, {near.data(), static_cast<std::size_t>(bones)});
+      for (const BoneSample& other : at.all()) {
+        const float slack = depth_beyond_own(s, at, other);
+        if (other.bone != state.owner[s] && slack > 0) overlap_.push_back({other.bone, slack});
       }
     }
     overlap_offset_.push_back(static_cast<int>(overlap_.size()));
   }
+}
+
+float SmoothProjection::depth_beyond_own(std::size_t slot, const Sampled& at,
+                                         const BoneSample& other) const {
+  return other.depth + gap_ * radius_[slot] - std::max(0.0F, at.own.depth);
 }
 
 float SmoothProjection::slack_of(std::size_t slot, int bone) const {
@@ -174,15 +178,15 @@ float SmoothProjection::facing_of(const BoneSample& other, Float4 outward) const
               dot3(other.inward, outward) / lengths);
 }
 
-float SmoothProjection::crowding(const SkinState& state, std::size_t slot, const Sampled& at,
-                                 float margin) const {
+float SmoothProjection::crowding(const SkinState& state, std::size_t slot,
+                                 const Sampled& at) const {
   const Float4 outward = state.outward[slot];
-  const float own = std::max(0.0F, at.own.depth);
+  const float margin = static_cast<float>(options_.crowd) * radius_[slot];
   float crowd = 0;
   for (const BoneSample& other : at.all()) {
     if (other.bone == state.owner[slot]) continue;
     const float facing = facing_of(other, outward);
-    const float excess = other.depth + gap_ * radius_[slot] - own - slack_of(slot, other.bone);
+    const float excess = depth_beyond_own(slot, at, other) - slack_of(slot, other.bone);
     crowd = std::max(crowd, facing * ramp(-margin, 0, excess));
   }
   return crowd;
@@ -192,13 +196,11 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
                                         const Sampled& at) const {
   const Float4 outward = state.outward[slot];
   const float radius = radius_[slot];
-  const float gap = gap_ * radius;
-  const float own = std::max(0.0F, at.own.depth);
   const float reach = static_cast<float>(options_.largest) * radius;
   Demand demand;
   for (const BoneSample& other : at.all()) {
     if (other.bone == state.owner[slot]) continue;
-    const float excess = other.depth + gap - own - slack_of(slot, other.bone);
+    const float excess = depth_beyond_own(slot, at, other) - slack_of(slot, other.bone);
     if (excess <= 0) continue;
     const float facing = facing_of(other, outward);
     // Both sides yield as their own fields do: towards the surface where both are equally deep.
@@ -215,7 +217,7 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
   const auto met =
       proximity_.facing(state, slot, static_cast<float>(options_.contact_reach) * radius);
   if (!met) return {};
-  demand.amount = std::min(demand.amount, met->depth + gap);
+  demand.amount = std::min(demand.amount, met->depth + gap_ * radius);
   return demand.amount > kNothing * radius ? demand : Demand{};
 }
 
@@ -236,7 +238,7 @@ Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot
       ramp(static_cast<float>(options_.agree_low), static_cast<float>(options_.agree_high),
            -dot3(all.gradient, outward) / (slope * outward_length));
   const float known = ramp(0.02F, 0.15F, all.value) * (1 - ramp(0.85F, 0.98F, all.value));
-  const float free = 1 - crowding(state, slot, at, static_cast<float>(options_.crowd) * radius);
+  const float free = 1 - crowding(state, slot, at);
   const Float4 n = all.gradient / splat(slope);
   const float before = dot3(n, moved_[slot]);
   const float dead = static_cast<float>(options_.dead_zone) * radius;
@@ -255,12 +257,9 @@ void SmoothProjection::ask(SkinState& state, Stage stage) {
     for (std::size_t b = begin; b < end; ++b) {
       const std::size_t first = b * SkinState::kBlock;
       const std::size_t last = std::min(state.size(), first + SkinState::kBlock);
-      Float4 low = splat(std::numeric_limits<float>::max()), high = -low;
-      for (std::size_t s = first; s < last; ++s) {
-        low = state.position[s] < low ? state.position[s] : low;
-        high = state.position[s] > high ? state.position[s] : high;
-      }
-      const int count = field_.bones_near(low, high, near.data());
+      Float4Bounds bounds;
+      for (std::size_t s = first; s < last; ++s) bounds.include(state.position[s]);
+      const int count = field_.bones_near(bounds.low, bounds.high, near.data());
       const std::span<const int> bones{near.data(), static_cast<std::size_t>(count)};
       for (std::size_t s = first; s < last; ++s) {
         demand_[s] = {};

@@ -21,8 +21,9 @@ namespace geoprior::skinning {
 /// nothing where the gradient does not agree with the skinned normal (a vertex beyond a medial
 /// axis), where the support ends, near contact, and about the trunk, whose bones are shorter than
 /// thick: skin there is no tube about a bone.
-/// Contact: vertices whose own bone's field is not deeper than another's, and that meet skin which
-/// faces them, are moved half of the way out, both sides alike.
+/// Contact: vertices where another bone's field is deeper than their own, and that have met skin
+/// which faces them, move to where both fields are equally deep, no farther than they stand behind
+/// that skin.
 /// Skin that twists slides around its bone: fields are turned about their axis to each vertex' own
 /// twist before they are asked.
 class SmoothProjection {
@@ -67,9 +68,12 @@ class SmoothProjection {
                                       const Sampled& at) const;
   /// Whether another bone faces a vertex, in [0, 1]: its field grows along the skinned normal.
   [[nodiscard]] float facing_of(const BoneSample& other, Float4 outward) const;
-  /// How far other bones crowd a vertex, in [0, 1]: 1 in contact, 0 `margin` (m) before it.
-  [[nodiscard]] float crowding(const SkinState& state, std::size_t slot, const Sampled& at,
-                               float margin) const;
+  /// How far other bones crowd a vertex, in [0, 1]: 1 in contact, 0 well before it.
+  [[nodiscard]] float crowding(const SkinState& state, std::size_t slot, const Sampled& at) const;
+  /// How much deeper a vertex is in another bone's field than in its own, the gap included (m).
+  [[nodiscard]] float depth_beyond_own(std::size_t slot, const Sampled& at,
+                                       const BoneSample& other) const;
+  /// The same at rest, where it is positive.
   [[nodiscard]] float slack_of(std::size_t slot, int bone) const;
 
   const FieldComposition& field_;

@@ -15,13 +15,7 @@ namespace {
 
 using fixtures::cylinder_options;
 
-CylinderOptions tube() {
-  CylinderOptions options;
-  options.segments = 32;
-  options.rings_per_half = 100;
-  options.radius = 0.05;
-  return options;
-}
+CylinderOptions tube() { return fixtures::fine_cylinder_options(32, 100); }
 
 /// Half of the weight's profile across a straight joint, v(s) = weight of the other bone at s = x /
 /// (sqrt(2) l): v'''' = -4 v up to the contact s0 with v = v' = v'' = 0, and v(0) = 1/2, v''(0) =

@@ -139,11 +139,7 @@ TEST(DeltaMush, WithoutIterationsItIsLinearBlend) {
 // Weights of one bone or the other and nothing between leave a tear at the joint; smoothing must
 // remove most of its roughness.
 TEST(DeltaMush, SmoothsTheTearThatRigidWeightsLeave) {
-  RiggedMesh rig = two_bone_cylinder(cylinder_options());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int v = 0; v < rig.mesh.vertex_count(); ++v)
-    entries.emplace_back(v, rig.mesh.V(v, 0) < 0 ? 0 : 1, 1.0);
-  rig.weights.setFromTriplets(entries.begin(), entries.end());
+  const RiggedMesh rig = fixtures::torn_cylinder();
   const Pose pose = fixtures::turned(rig, "upper", "flexion", 1.2);
   Eigen::MatrixX3d blended;
   LinearBlend(rig).deform(pose, blended);

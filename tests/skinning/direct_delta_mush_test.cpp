@@ -230,11 +230,7 @@ TEST(DirectDeltaMush, TwistTurnsTheMidRingByHalfTheAngle) {
 }
 
 TEST(DirectDeltaMush, SmoothsTheTearThatRigidWeightsLeave) {
-  RiggedMesh rig = two_bone_cylinder(cylinder_options());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int v = 0; v < rig.mesh.vertex_count(); ++v)
-    entries.emplace_back(v, rig.mesh.V(v, 0) < 0 ? 0 : 1, 1.0);
-  rig.weights.setFromTriplets(entries.begin(), entries.end());
+  const RiggedMesh rig = fixtures::torn_cylinder();
   const Pose pose = fixtures::turned(rig, "upper", "flexion", 1.2);
   const auto longest_edge = [&](const Eigen::MatrixX3d& V) {
     double longest = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,26 @@ inline CylinderOptions cylinder_options() {
   options.segments = 24;
   options.rings_per_half = 20;
   return options;
+}
+
+/// Two-bone cylinder of 5 cm radius, fine enough for profiles of weights.
+inline CylinderOptions fine_cylinder_options(int segments, int rings_per_half) {
+  CylinderOptions options;
+  options.segments = segments;
+  options.rings_per_half = rings_per_half;
+  options.radius = 0.05;
+  return options;
+}
+
+/// The cylinder whose vertices belong to one bone or the other, and nothing between: a bend tears
+/// it.
+inline RiggedMesh torn_cylinder() {
+  RiggedMesh rig = two_bone_cylinder(cylinder_options());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int v = 0; v < rig.mesh.vertex_count(); ++v)
+    entries.emplace_back(v, rig.mesh.V(v, 0) < 0 ? 0 : 1, 1.0);
+  rig.weights.setFromTriplets(entries.begin(), entries.end());
+  return rig;
 }
 
 /// Turns joint "upper" of the two-bone cylinder by `angle` radians about one of its named axes.
@@ -80,6 +101,20 @@ inline RiggedMesh cylinder_of_many_influences(int copies) {
   rig.weights.resize(rig.mesh.vertex_count(), 2 + copies);
   rig.weights.setFromTriplets(entries.begin(), entries.end());
   return rig;
+}
+
+/// Largest distance of a vertex from the input in the rest pose, over the diagonal of the bounding
+/// box, of three rigs.
+template <class Blend>
+double rest_pose_error() {
+  double largest = 0;
+  for (const RiggedMesh& rig :
+       {two_bone_cylinder(cylinder_options()), capsule_finger(), cylinder_of_many_influences(5)}) {
+    const Eigen::MatrixX3d posed = deformed<Blend>(rig, rest_pose(rig.skeleton.size()));
+    largest =
+        std::max(largest, largest_distance(posed, rig.mesh.V) / bounding_box_diagonal(rig.mesh.V));
+  }
+  return largest;
 }
 
 }  // namespace geoprior::skinning::fixtures

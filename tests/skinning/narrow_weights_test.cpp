@@ -13,13 +13,7 @@ namespace {
 
 using fixtures::cylinder_options;
 
-CylinderOptions fine_tube() {
-  CylinderOptions options;
-  options.segments = 96;
-  options.rings_per_half = 120;
-  options.radius = 0.05;
-  return options;
-}
+CylinderOptions fine_tube() { return fixtures::fine_cylinder_options(96, 120); }
 
 double smoothstep_across(double x, double width) {
   const double t = std::clamp(0.5 + x / width, 0.0, 1.0);
