@@ -54,6 +54,18 @@ std::vector<std::uint8_t> body_parts(const std::vector<int>& parent,
   return same;
 }
 
+/// Numbers of the joints, equal where their transforms are.
+void number_groups(const Pose& pose, std::vector<int>& groups) {
+  constexpr double kSame = 1e-7;
+  groups.clear();
+  for (std::size_t j = 0; j < pose.size(); ++j) {
+    std::size_t same = 0;
+    while (same < j && (pose[same].matrix() - pose[j].matrix()).cwiseAbs().maxCoeff() > kSame)
+      ++same;
+    groups.push_back(static_cast<int>(same));
+  }
+}
+
 }  // namespace
 
 FieldComposition::FieldComposition(std::vector<BoneField> fields,
@@ -68,6 +80,7 @@ FieldComposition::FieldComposition(std::vector<BoneField> fields,
 }
 
 void FieldComposition::set_pose(const Pose& pose) {
+  number_groups(pose, groups_);
   rotations_.resize(pose.size());
   for (std::size_t j = 0; j < pose.size(); ++j) rotations_[j] = rigid_part(pose[j]).linear();
   for (std::size_t b = 0; b < fields_.size(); ++b) {

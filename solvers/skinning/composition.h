@@ -72,6 +72,9 @@ class FieldComposition {
   /// Rotations of the joints in that pose.
   [[nodiscard]] const std::vector<Eigen::Matrix3d>& rotations() const { return rotations_; }
 
+  /// Joints that move as one in that pose have the same number.
+  [[nodiscard]] const std::vector<int>& groups() const { return groups_; }
+
   /// Bones whose box meets the axis-aligned box [low, high]; writes their indices to `bones`
   /// (room for `bone_count`) and returns how many.
   int bones_near(Float4 low, Float4 high, int* bones) const;
@@ -148,6 +151,7 @@ class FieldComposition {
   std::vector<std::uint8_t> same_part_;  // bones x bones
   std::vector<int> parent_;
   std::vector<Eigen::Matrix3d> rotations_;  // by joint
+  std::vector<int> groups_;                 // by joint
   std::vector<PosedBone> posed_;
   std::vector<Eigen::Isometry3d> to_rest_;  // exact evaluation
 };

@@ -103,6 +103,39 @@ Float4 blended_rotation(const SkinState& state, std::size_t s,
   return sum / splat(std::sqrt(dot3(sum, sum) + sum[3] * sum[3]));
 }
 
+std::size_t end_of_block(const SkinState& state, std::size_t block) {
+  return std::min(state.size(), (block + 1) * SkinState::kBlock);
+}
+
+Float4Bounds bounds_of(const SkinState& state, std::size_t block) {
+  Float4Bounds bounds;
+  for (std::size_t s = block * SkinState::kBlock; s < end_of_block(state, block); ++s)
+    bounds.include(state.position[s]);
+  return bounds;
+}
+
+/// Joints that move a block's vertices, and those of the bones about it at rest. Empty for a block
+/// none of whose vertices has a bone.
+std::vector<int> joints_about(const SkinState& state, const FieldComposition& field,
+                              std::size_t block) {
+  std::vector<int> joints;
+  bool owned = false;
+  for (std::size_t s = block * SkinState::kBlock; s < end_of_block(state, block); ++s) {
+    owned = owned || state.owner[s] >= 0;
+    for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i)
+      joints.push_back(state.influence_joint[i]);
+  }
+  if (!owned) return {};
+  std::array<int, kMaxFieldBones> near;
+  const Float4Bounds bounds = bounds_of(state, block);
+  const int count = field.bones_near(bounds.low, bounds.high, near.data());
+  for (int i = 0; i < count; ++i)
+    joints.push_back(field.fields()[static_cast<std::size_t>(near[i])].bone.joint);
+  std::sort(joints.begin(), joints.end());
+  joints.erase(std::unique(joints.begin(), joints.end()), joints.end());
+  return joints;
+}
+
 }  // namespace
 
 SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& partition,
@@ -142,6 +175,10 @@ void SmoothProjection::blend_rotations(const SkinState& state,
 
 void SmoothProjection::record_rest(const SkinState& state) {
   std::fill(rotation_.begin(), rotation_.end(), Float4{0, 0, 0, 1});
+  joints_.clear();
+  for (std::size_t b = 0; b < state.block_count(); ++b)
+    joints_.push_back(joints_about(state, field_, b));
+  is_awake_.assign(state.block_count(), 0);
   overlap_offset_.assign(1, 0);
   overlap_.clear();
   std::array<int, kMaxFieldBones> near;
@@ -251,17 +288,46 @@ Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot
   return {n, wanted, trust_[slot] * known * free * agree};
 }
 
-void SmoothProjection::ask(SkinState& state, Stage stage) {
+void SmoothProjection::find_awake(const SkinState& state) {
+  const std::vector<int>& groups = field_.groups();
   parallel_blocks(state.block_count(), kBlocksOfTask, [&](std::size_t begin, std::size_t end) {
     std::array<int, kMaxFieldBones> near;
     for (std::size_t b = begin; b < end; ++b) {
-      const std::size_t first = b * SkinState::kBlock;
-      const std::size_t last = std::min(state.size(), first + SkinState::kBlock);
-      Float4Bounds bounds;
-      for (std::size_t s = first; s < last; ++s) bounds.include(state.position[s]);
+      const std::vector<int>& joints = joints_[b];
+      is_awake_[b] = 0;
+      if (joints.empty()) continue;
+      const auto group = [&](int joint) { return groups[static_cast<std::size_t>(joint)]; };
+      bool awake = false;
+      for (const int joint : joints) awake = awake || group(joint) != group(joints.front());
+      if (!awake) {
+        const Float4Bounds bounds = bounds_of(state, b);
+        const int count = field_.bones_near(bounds.low, bounds.high, near.data());
+        for (int i = 0; i < count; ++i) {
+          const int joint = field_.fields()[static_cast<std::size_t>(near[i])].bone.joint;
+          awake = awake || group(joint) != group(joints.front());
+        }
+      }
+      is_awake_[b] = awake ? 1 : 0;
+    }
+  });
+}
+
+void SmoothProjection::list_awake() {
+  for (const int b : system_.open_blocks()) is_awake_[static_cast<std::size_t>(b)] = 1;
+  awake_.clear();
+  for (std::size_t b = 0; b < is_awake_.size(); ++b)
+    if (is_awake_[b] != 0) awake_.push_back(static_cast<int>(b));
+}
+
+void SmoothProjection::ask(SkinState& state, Stage stage, const std::vector<int>& blocks) {
+  parallel_blocks(blocks.size(), kBlocksOfTask, [&](std::size_t begin, std::size_t end) {
+    std::array<int, kMaxFieldBones> near;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto b = static_cast<std::size_t>(blocks[i]);
+      const Float4Bounds bounds = bounds_of(state, b);
       const int count = field_.bones_near(bounds.low, bounds.high, near.data());
       const std::span<const int> bones{near.data(), static_cast<std::size_t>(count)};
-      for (std::size_t s = first; s < last; ++s) {
+      for (std::size_t s = b * SkinState::kBlock; s < end_of_block(state, b); ++s) {
         demand_[s] = {};
         if (state.owner[s] < 0 || (stage == Stage::section && trust_[s] <= 0)) continue;
         const Sampled at = sampled(state, s, bones);
@@ -288,12 +354,18 @@ SmoothProjection::Sampled SmoothProjection::sampled(const SkinState& state, std:
   return at;
 }
 
-int SmoothProjection::correct_sections(SkinState& state) {
-  std::fill(moved_.begin(), moved_.end(), Float4{});
+void SmoothProjection::start_stage() {
+  list_awake();
   system_.close();
+  std::fill(moved_.begin(), moved_.end(), Float4{});
+  std::fill(demand_.begin(), demand_.end(), Demand{});
+}
+
+int SmoothProjection::correct_sections(SkinState& state) {
+  start_stage();
   int steps = 0;
   for (int i = 0; i < options_.evaluations; ++i) {
-    ask(state, Stage::section);
+    ask(state, Stage::section, i == 0 ? awake_ : system_.open_blocks());
     system_.open(demand_);
     steps += system_.solve(demand_, {}, {options_.cutoff, options_.anchor, 0, options_.iterations},
                            moved_);
@@ -303,17 +375,18 @@ int SmoothProjection::correct_sections(SkinState& state) {
 }
 
 void SmoothProjection::place(SkinState& state) const {
-  for (std::size_t s = 0; s < state.size(); ++s) state.position[s] = base_[s] + moved_[s];
+  system_.each_open([&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) state.position[s] = base_[s] + moved_[s];
+  });
 }
 
 int SmoothProjection::resolve_contacts(SkinState& state) {
-  std::fill(moved_.begin(), moved_.end(), Float4{});
+  start_stage();
   local_ = dual_ = moved_;
-  system_.close();
   int steps = 0;
   for (int i = 0; i < options_.contact_evaluations; ++i) {
     proximity_.build(state.position);
-    ask(state, Stage::contact);
+    ask(state, Stage::contact, i == 0 ? awake_ : system_.open_blocks());
     system_.open(demand_);
     for (int k = 0; k < options_.contact_iterations; ++k) {
       // Alternating directions: each vertex to its own side of the contact, then all together.
@@ -345,6 +418,8 @@ int SmoothProjection::solve(SkinState& state, const std::vector<Float4>& rotatio
   blend_rotations(state, rotations);
   std::fill(state.stop.begin(), state.stop.end(), VertexStop::converged);
   base_ = state.start;
+  system_.close();
+  find_awake(state);
   int steps = correct_sections(state);
   base_ = state.position;
   steps += resolve_contacts(state);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -59,7 +60,11 @@ class SmoothProjection {
   int correct_sections(SkinState& state);
   int resolve_contacts(SkinState& state);
   void place(SkinState& state) const;
-  void ask(SkinState& state, Stage stage);
+  /// Blocks of the skin about which something moved against something else.
+  void find_awake(const SkinState& state);
+  void list_awake();
+  void start_stage();
+  void ask(SkinState& state, Stage stage, const std::vector<int>& blocks);
   [[nodiscard]] Sampled sampled(const SkinState& state, std::size_t slot,
                                 std::span<const int> bones) const;
   [[nodiscard]] Demand section_demand(const SkinState& state, std::size_t slot,
@@ -83,6 +88,9 @@ class SmoothProjection {
   std::vector<float> trust_;   // what a limb's field knows about the slot's skin
   SmoothSystem system_;
   SkinProximity proximity_;
+  std::vector<std::vector<int>> joints_;  // per block, whose motion decides what fields ask
+  std::vector<std::uint8_t> is_awake_;    // per block
+  std::vector<int> awake_;                // blocks
   std::vector<int> overlap_offset_;
   std::vector<Overlap> overlap_;  // at rest, per slot
   std::vector<Float4> rotation_;  // blended, per slot

@@ -9,8 +9,8 @@
 namespace geoprior::skinning {
 namespace {
 
-/// Residual over that of the start at which the solution is good enough for a skin.
-constexpr double kEnough = 1e-3;
+/// Residual over what is asked at which the solution is good enough for a skin.
+constexpr double kEnough = 1e-2;
 
 /// Steps from a block that is asked something to blocks that still move.
 constexpr int kReach = 3;
@@ -66,6 +66,7 @@ SmoothSystem::SmoothSystem(const TriMesh& mesh, const SkinState& state,
   residual_.assign(size_, Float4{});
   search_ = bent_ = image_ = direction_ = residual_;
   inverse_.assign(size_, 0);
+  share_ = inverse_;
 }
 
 void SmoothSystem::close() {
@@ -145,12 +146,16 @@ double SmoothSystem::sum() const {
   return total;
 }
 
-double SmoothSystem::precondition() {
+double SmoothSystem::precondition(const std::vector<Demand>& demands,
+                                  const std::vector<Float4>& residual) {
   each_slot([&](std::size_t block, std::size_t begin, std::size_t end) {
     double product = 0;
     for (std::size_t s = begin; s < end; ++s) {
-      direction_[s] = residual_[s] * splat(inverse_[s]);
-      product += static_cast<double>(dot3(direction_[s], residual_[s]));
+      // (a I + b d d^T)^-1 by Sherman and Morrison.
+      const Float4 d = demands[s].direction;
+      direction_[s] =
+          splat(inverse_[s]) * (residual[s] - splat(share_[s] * dot3(d, residual[s])) * d);
+      product += static_cast<double>(dot3(direction_[s], residual[s]));
     }
     partial_[block] = product;
   });
@@ -173,11 +178,15 @@ int SmoothSystem::solve(const std::vector<Demand>& demands, const std::vector<Fl
       Float4 asked = demand.direction * splat(demand.weight * demand.amount);
       if (penalty > 0) asked += splat(penalty) * pulls[s];
       residual_[s] = splat(area_[s]) * asked - image_[s];
-      inverse_[s] = 1 / (kappa * bend_diagonal_[s] + area_[s] * (diagonal + demand.weight));
+      const float same = kappa * bend_diagonal_[s] + area_[s] * diagonal;
+      const float along = area_[s] * demand.weight;
+      inverse_[s] = 1 / same;
+      share_[s] = along / (same + along);
+      search_[s] = splat(area_[s]) * asked;
     }
   });
-  double energy = precondition();
-  const double enough = kEnough * kEnough * energy;
+  const double enough = kEnough * kEnough * precondition(demands, search_);
+  double energy = precondition(demands, residual_);
   double last = 1;
   int done = 0;
   for (; done < options.iterations && energy > enough; ++done) {
@@ -194,7 +203,7 @@ int SmoothSystem::solve(const std::vector<Demand>& demands, const std::vector<Fl
       }
     });
     last = energy;
-    energy = precondition();
+    energy = precondition(demands, residual_);
   }
   return done;
 }

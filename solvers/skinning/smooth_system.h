@@ -48,6 +48,8 @@ class SmoothSystem {
   /// Opens the blocks where something is asked and those around them.
   void open(const std::vector<Demand>& demands);
 
+  [[nodiscard]] const std::vector<int>& open_blocks() const { return blocks_; }
+
   /// @param pulls  p; read only when rho > 0
   /// @param u      in: the start, zero in closed blocks; out: the solution
   /// @return iterations done
@@ -65,7 +67,8 @@ class SmoothSystem {
   /// image_ = system times x. @return its product with x
   double apply(const std::vector<Demand>& demands, const std::vector<Float4>& x, float kappa,
                float diagonal);
-  double precondition();
+  /// direction_ = preconditioner times residual. @return its product with the residual
+  double precondition(const std::vector<Demand>& demands, const std::vector<Float4>& residual);
   [[nodiscard]] double sum() const;
   template <class Body>
   void each_slot(const Body& body) const {
@@ -89,7 +92,7 @@ class SmoothSystem {
   std::vector<int> fresh_;
   std::vector<double> partial_;  // one a block
   std::vector<Float4> residual_, search_, bent_, image_, direction_;
-  std::vector<float> inverse_;
+  std::vector<float> inverse_, share_;  // of the preconditioner
 };
 
 }  // namespace geoprior::skinning
