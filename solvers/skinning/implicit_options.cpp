@@ -127,6 +127,7 @@ void describe(OptionVisitor& v, SmoothOptions& o) {
            .max = 1});
   v.value("contact_anchor", o.contact_anchor,
           {.doc = "the same in contact", .min = 1e-6, .max = 10});
+  v.value("contact_weight", o.contact_weight, {.doc="w", .min=0, .max=1000});
   v.value("contact_penalty", o.contact_penalty,
           {.doc = "of the alternating directions in contact", .min = 1e-3, .max = 1000});
   v.value("contact_reach", o.contact_reach,

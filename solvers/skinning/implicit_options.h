@@ -67,6 +67,7 @@ struct SmoothOptions {
   double contact_cutoff = 1.2;
   double anchor = 0.02;  ///< mu, over the weight of what fields ask
   double contact_anchor = 0.02;
+  double contact_weight = 10;
   double contact_penalty = 0.5;  ///< of the alternating directions
   double contact_reach = 1;      ///< within which skin that faces a vertex is looked for
   double dead_zone = 0.01;       ///< what asks for less is not followed

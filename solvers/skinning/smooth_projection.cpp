@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/parallel.h"
 
@@ -149,8 +150,7 @@ SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& p
       rotation_(state.size()),
       demand_(state.size()),
       moved_(state.size()),
-      pull_(state.size()),
-      nothing_(state.size()) {
+      seen_(state.size()) {
   const EndTrust trust = end_trust(partition, limb_likeness(partition, options_));
   for (std::size_t s = 0; s < state.size(); ++s) {
     if (state.owner[s] < 0) {
@@ -247,7 +247,7 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
     const float missing =
         facing * std::min(reach, excess / std::max(slope, length_of(other.inward)));
     if (missing <= demand.amount) continue;
-    demand = {way / splat(slope), missing, 1};
+    demand = {way / splat(slope), missing, static_cast<float>(options_.contact_weight)};
   }
   if (demand.weight <= 0) return {};
   // Fields may be fuller than the skin that is there: only what has met is parted.
@@ -319,6 +319,24 @@ void SmoothProjection::list_awake() {
     if (is_awake_[b] != 0) awake_.push_back(static_cast<int>(b));
 }
 
+float SmoothProjection::nearest_contact(const SkinState& state, std::size_t slot,
+                                        const Sampled& at) const {
+  float nearest = -radius_[slot];
+  for (const BoneSample& other : at.all()) {
+    if (other.bone == state.owner[slot]) continue;
+    nearest =
+        std::max(nearest, depth_beyond_own(slot, at, other) - slack_of(slot, other.bone));
+  }
+  return nearest;
+}
+
+bool SmoothProjection::is_free(std::size_t slot) const {
+  // Two depths, each of which grows with the way by little more than its length.
+  constexpr float kSteepest = 3;
+  const float excess = seen_[slot].excess;
+  return excess < 0 && excess + kSteepest * length_of(moved_[slot] - seen_[slot].moved) < 0;
+}
+
 void SmoothProjection::ask(SkinState& state, Stage stage, const std::vector<int>& blocks) {
   parallel_blocks(blocks.size(), kBlocksOfTask, [&](std::size_t begin, std::size_t end) {
     std::array<int, kMaxFieldBones> near;
@@ -329,14 +347,15 @@ void SmoothProjection::ask(SkinState& state, Stage stage, const std::vector<int>
       const std::span<const int> bones{near.data(), static_cast<std::size_t>(count)};
       for (std::size_t s = b * SkinState::kBlock; s < end_of_block(state, b); ++s) {
         demand_[s] = {};
-        if (state.owner[s] < 0 || (stage == Stage::section && trust_[s] <= 0)) continue;
+        if (state.owner[s] < 0 || (stage == Stage::section ? trust_[s] <= 0 : is_free(s))) continue;
         const Sampled at = sampled(state, s, bones);
         state.evaluations[b] += count;
-        if (at.count == 0) continue;
         if (stage == Stage::section) {
-          demand_[s] = section_demand(state, s, at);
+          if (at.count > 0) demand_[s] = section_demand(state, s, at);
           continue;
         }
+        seen_[s] = {moved_[s], nearest_contact(state, s, at)};
+        if (seen_[s].excess <= 0) continue;
         demand_[s] = contact_demand(state, s, at);
         demand_[s].amount += dot3(demand_[s].direction, moved_[s]);
       }
@@ -356,19 +375,19 @@ SmoothProjection::Sampled SmoothProjection::sampled(const SkinState& state, std:
 
 void SmoothProjection::start_stage() {
   list_awake();
-  system_.close();
-  std::fill(moved_.begin(), moved_.end(), Float4{});
+  system_.close(moved_);
   std::fill(demand_.begin(), demand_.end(), Demand{});
+  std::fill(seen_.begin(), seen_.end(), Seen{});
 }
 
 int SmoothProjection::correct_sections(SkinState& state) {
+  const SmoothSystem::Options options{options_.cutoff, options_.anchor, 0, options_.iterations};
   start_stage();
   int steps = 0;
   for (int i = 0; i < options_.evaluations; ++i) {
-    ask(state, Stage::section, i == 0 ? awake_ : system_.open_blocks());
-    system_.open(demand_);
-    steps += system_.solve(demand_, {}, {options_.cutoff, options_.anchor, 0, options_.iterations},
-                           moved_);
+    ask(state, Stage::section, awake_);
+    system_.open(demand_, options);
+    steps += system_.solve(demand_, {}, options, moved_);
     place(state);
   }
   return steps;
@@ -381,32 +400,16 @@ void SmoothProjection::place(SkinState& state) const {
 }
 
 int SmoothProjection::resolve_contacts(SkinState& state) {
+  const SmoothSystem::Options options{options_.contact_cutoff, options_.contact_anchor, 0,
+                                      options_.contact_steps};
   start_stage();
-  local_ = dual_ = moved_;
   int steps = 0;
   for (int i = 0; i < options_.contact_evaluations; ++i) {
     proximity_.build(state.position);
-    ask(state, Stage::contact, i == 0 ? awake_ : system_.open_blocks());
-    system_.open(demand_);
-    for (int k = 0; k < options_.contact_iterations; ++k) {
-      // Alternating directions: each vertex to its own side of the contact, then all together.
-      system_.each_open([&](std::size_t begin, std::size_t end) {
-        for (std::size_t s = begin; s < end; ++s) {
-          const Demand& demand = demand_[s];
-          const Float4 free = moved_[s] + dual_[s];
-          const float missing = demand.amount - dot3(demand.direction, free);
-          local_[s] = free;
-          if (demand.weight > 0 && missing > 0)
-            local_[s] += demand.direction * splat(missing * demand.weight);
-          dual_[s] = free - local_[s];
-          pull_[s] = local_[s] - dual_[s];
-        }
-      });
-      steps += system_.solve(nothing_, pull_,
-                             {options_.contact_cutoff, options_.contact_anchor,
-                              options_.contact_penalty, options_.contact_steps},
-                             moved_);
-    }
+    ask(state, Stage::contact, awake_);
+    system_.open(demand_, options);
+    if (system_.open_blocks().empty()) break;
+    steps += system_.solve(demand_, {}, options, moved_);
     place(state);
     for (std::size_t s = 0; s < state.size(); ++s)
       if (demand_[s].weight > 0) state.stop[s] = VertexStop::contact;
@@ -418,7 +421,7 @@ int SmoothProjection::solve(SkinState& state, const std::vector<Float4>& rotatio
   blend_rotations(state, rotations);
   std::fill(state.stop.begin(), state.stop.end(), VertexStop::converged);
   base_ = state.start;
-  system_.close();
+  system_.close(moved_);
   find_awake(state);
   int steps = correct_sections(state);
   base_ = state.position;

@@ -56,6 +56,12 @@ class SmoothProjection {
     }
   };
 
+  /// What a vertex saw of contact when it last was asked.
+  struct Seen {
+    Float4 moved{};
+    float excess = 0;  ///< over the nearest contact (m); 0: it was not asked
+  };
+
   void blend_rotations(const SkinState& state, const std::vector<Float4>& rotations);
   int correct_sections(SkinState& state);
   int resolve_contacts(SkinState& state);
@@ -73,6 +79,11 @@ class SmoothProjection {
                                       const Sampled& at) const;
   /// Whether another bone faces a vertex, in [0, 1]: its field grows along the skinned normal.
   [[nodiscard]] float facing_of(const BoneSample& other, Float4 outward) const;
+  /// Largest excess over contact with another bone (m), negative before it; at least -radius.
+  [[nodiscard]] float nearest_contact(const SkinState& state, std::size_t slot,
+                                      const Sampled& at) const;
+  /// Whether a vertex has not moved far enough to be in contact now.
+  [[nodiscard]] bool is_free(std::size_t slot) const;
   /// How far other bones crowd a vertex, in [0, 1]: 1 in contact, 0 well before it.
   [[nodiscard]] float crowding(const SkinState& state, std::size_t slot, const Sampled& at) const;
   /// How much deeper a vertex is in another bone's field than in its own, the gap included (m).
@@ -97,8 +108,7 @@ class SmoothProjection {
   std::vector<Demand> demand_;
   std::vector<Float4> base_;   // where a stage starts
   std::vector<Float4> moved_;  // from there
-  std::vector<Float4> local_, dual_, pull_;
-  std::vector<Demand> nothing_;
+  std::vector<Seen> seen_;
 };
 
 }  // namespace geoprior::skinning

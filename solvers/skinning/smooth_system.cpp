@@ -12,8 +12,20 @@ namespace {
 /// Residual over what is asked at which the solution is good enough for a skin.
 constexpr double kEnough = 1e-2;
 
-/// Steps from a block that is asked something to blocks that still move.
-constexpr int kReach = 3;
+/// Lengths over which a displacement decays between what is asked and what stands still.
+constexpr double kReach = 1.5;
+
+double bending(double cutoff) { return std::pow(cutoff / 7.85, 4); }
+
+/// Squared distance of two boxes.
+float gap2(const Float4Bounds& a, const Float4Bounds& b) {
+  float sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const float gap = std::max({0.0F, a.low[k] - b.high[k], b.low[k] - a.high[k]});
+    sum += gap * gap;
+  }
+  return sum;
+}
 
 }  // namespace
 
@@ -51,8 +63,13 @@ SmoothSystem::SmoothSystem(const TriMesh& mesh, const SkinState& state,
     bend_diagonal_.push_back(sum);
   }
   near_blocks_.resize(state.block_count());
+  bounds_.resize(near_blocks_.size());
+  radius_.assign(near_blocks_.size(), 0);
   for (std::size_t s = 0; s < size_; ++s) {
-    std::vector<int>& near = near_blocks_[s / SkinState::kBlock];
+    const std::size_t block = s / SkinState::kBlock;
+    bounds_[block].include(state.rest[s]);
+    radius_[block] = std::max(radius_[block], radius[s]);
+    std::vector<int>& near = near_blocks_[block];
     for (int j = offset_[s]; j < offset_[s + 1]; ++j)
       near.push_back(neighbour_[static_cast<std::size_t>(j)] / static_cast<int>(SkinState::kBlock));
   }
@@ -60,50 +77,76 @@ SmoothSystem::SmoothSystem(const TriMesh& mesh, const SkinState& state,
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
   }
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t s = 0; s < size_; ++s) {
+    const int row = static_cast<int>(s);
+    entries.emplace_back(row, row, static_cast<double>(diagonal_[s]));
+    for (int j = offset_[s]; j < offset_[s + 1]; ++j) {
+      const auto k = static_cast<std::size_t>(j);
+      entries.emplace_back(row, neighbour_[k], -static_cast<double>(conductance_[k]));
+    }
+  }
+  Eigen::SparseMatrix<double> laplace(static_cast<Eigen::Index>(size_),
+                                      static_cast<Eigen::Index>(size_));
+  laplace.setFromTriplets(entries.begin(), entries.end());
+  coarse_.emplace(state, CoarseSpace::Rings{offset_, neighbour_}, radius, laplace, bend_, area_);
   chosen_.assign(near_blocks_.size(), 0);
   partial_.assign(near_blocks_.size(), 0);
   reached_ = chosen_;
+  seen_.assign(near_blocks_.size(), 0);
   residual_.assign(size_, Float4{});
   search_ = bent_ = image_ = direction_ = residual_;
   inverse_.assign(size_, 0);
   share_ = inverse_;
 }
 
-void SmoothSystem::close() {
+void SmoothSystem::close(std::vector<Float4>& u) {
+  each_open([&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) u[s] = search_[s] = bent_[s] = Float4{};
+  });
   std::fill(chosen_.begin(), chosen_.end(), std::uint8_t{0});
   blocks_.clear();
 }
 
-void SmoothSystem::open(const std::vector<Demand>& demands) {
-  std::vector<int>& fresh = fresh_;
-  fresh.clear();
+void SmoothSystem::open(const std::vector<Demand>& demands, const Options& options) {
+  // kappa r^4 / l^4 = mu: the length l at which bending and anchor are equal.
+  const double decay = std::sqrt(2.0) * std::pow(bending(options.cutoff) / options.anchor, 0.25);
+  const auto reach = static_cast<float>(kReach * decay);
+  asked_.clear();
   for (std::size_t b = 0; b < chosen_.size(); ++b) {
     const std::size_t begin = b * SkinState::kBlock;
     const std::size_t end = std::min(size_, begin + SkinState::kBlock);
     bool asked = false;
     for (std::size_t s = begin; s < end && !asked; ++s)
       asked = demands[s].weight * std::abs(demands[s].amount) > 0;
-    if (asked) fresh.push_back(static_cast<int>(b));
+    if (asked) asked_.push_back(static_cast<int>(b));
   }
-  std::size_t first = 0;
   std::fill(reached_.begin(), reached_.end(), std::uint8_t{0});
-  for (const int b : fresh) reached_[static_cast<std::size_t>(b)] = 1;
-  for (int step = 0; step < kReach; ++step) {
-    const std::size_t last = fresh.size();
-    for (; first < last; ++first) {
-      for (const int near : near_blocks_[static_cast<std::size_t>(fresh[first])]) {
-        if (reached_[static_cast<std::size_t>(near)] != 0) continue;
-        reached_[static_cast<std::size_t>(near)] = 1;
-        fresh.push_back(near);
+  for (const int from : asked_) {
+    // Through blocks that touch: what is near across a gap belongs to another part of the skin.
+    const auto first = static_cast<std::size_t>(from);
+    const float limit = reach * radius_[first];
+    front_.assign(1, from);
+    for (std::size_t i = 0; i < front_.size(); ++i) {
+      const auto b = static_cast<std::size_t>(front_[i]);
+      seen_[b] = static_cast<int>(first) + 1;
+      reached_[b] = 1;
+      for (const int near : near_blocks_[b]) {
+        const auto n = static_cast<std::size_t>(near);
+        if (seen_[n] == static_cast<int>(first) + 1) continue;
+        seen_[n] = static_cast<int>(first) + 1;
+        if (gap2(bounds_[first], bounds_[n]) <= limit * limit) front_.push_back(near);
       }
     }
   }
-  for (const int b : fresh) {
-    if (chosen_[static_cast<std::size_t>(b)] != 0) continue;
-    chosen_[static_cast<std::size_t>(b)] = 1;
-    blocks_.push_back(b);
+  for (std::size_t b = 0; b < chosen_.size(); ++b) {
+    if (reached_[b] == 0 || chosen_[b] != 0) continue;
+    chosen_[b] = 1;
+    blocks_.push_back(static_cast<int>(b));
   }
   std::sort(blocks_.begin(), blocks_.end());
+  coarse_->open(chosen_);
+  std::fill(seen_.begin(), seen_.end(), 0);
 }
 
 void SmoothSystem::bend(const std::vector<Float4>& x, float kappa) {
@@ -165,12 +208,10 @@ double SmoothSystem::precondition(const std::vector<Demand>& demands,
 int SmoothSystem::solve(const std::vector<Demand>& demands, const std::vector<Float4>& pulls,
                         const Options& options, std::vector<Float4>& u) {
   if (blocks_.empty()) return 0;
-  const auto kappa = static_cast<float>(std::pow(options.cutoff / 7.85, 4));
+  const auto kappa = static_cast<float>(bending(options.cutoff));
   const auto penalty = static_cast<float>(options.penalty);
   const float diagonal = static_cast<float>(options.anchor) + penalty;
-  // Slots of closed blocks are read as neighbours: they hold zero.
-  std::fill(search_.begin(), search_.end(), Float4{});
-  std::fill(bent_.begin(), bent_.end(), Float4{});
+  // Slots of closed blocks are read as neighbours: they hold zero (`close`).
   apply(demands, u, kappa, diagonal);
   each_open([&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
@@ -186,6 +227,20 @@ int SmoothSystem::solve(const std::vector<Demand>& demands, const std::vector<Fl
     }
   });
   const double enough = kEnough * kEnough * precondition(demands, search_);
+  slots_.clear();
+  for (const int block : blocks_) {
+    const std::size_t first = static_cast<std::size_t>(block) * SkinState::kBlock;
+    for (std::size_t s = first; s < std::min(size_, first + SkinState::kBlock); ++s)
+      if (demands[s].weight > 0) slots_.push_back(static_cast<int>(s));
+  }
+  coarse_->solve(demands, slots_, area_, residual_, kappa, diagonal, blocks_, search_);
+  apply(demands, search_, kappa, diagonal);
+  each_open([&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      u[s] += search_[s];
+      residual_[s] -= image_[s];
+    }
+  });
   double energy = precondition(demands, residual_);
   double last = 1;
   int done = 0;

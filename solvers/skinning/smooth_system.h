@@ -3,21 +3,17 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/mesh.h"
 #include "core/parallel.h"
+#include "solvers/skinning/coarse_space.h"
+#include "solvers/skinning/demand.h"
 #include "solvers/skinning/simd.h"
 #include "solvers/skinning/skin_state.h"
 
 namespace geoprior::skinning {
-
-/// What is asked of one vertex of the skin: a displacement u with `direction` . u = `amount`.
-struct Demand {
-  Float4 direction{};  ///< unit
-  float amount = 0;    ///< metres
-  float weight = 0;    ///< beside the others' and the smoothness; 0: nothing is asked
-};
 
 /// Displacements u of the skin that follow what is asked smoothly:
 ///
@@ -43,10 +39,11 @@ class SmoothSystem {
     int iterations = 20;
   };
 
-  /// Closes all blocks.
-  void close();
-  /// Opens the blocks where something is asked and those around them.
-  void open(const std::vector<Demand>& demands);
+  /// Closes all blocks: u becomes zero there.
+  void close(std::vector<Float4>& u);
+  /// Opens the blocks where something is asked and those around them, as far as a displacement
+  /// decays.
+  void open(const std::vector<Demand>& demands, const Options& options);
 
   [[nodiscard]] const std::vector<int>& open_blocks() const { return blocks_; }
 
@@ -87,9 +84,13 @@ class SmoothSystem {
   std::vector<float> area_, bend_;             // over the mean area; r^4 / (A mean A)
   std::vector<float> bend_diagonal_;           // of L bend L
   std::vector<std::vector<int>> near_blocks_;
+  std::vector<Float4Bounds> bounds_;  // of blocks at rest
+  std::vector<float> radius_;         // largest of a block
+  std::optional<CoarseSpace> coarse_;
   std::vector<int> blocks_;
+  std::vector<int> slots_;  // where something is asked
   std::vector<std::uint8_t> chosen_, reached_;
-  std::vector<int> fresh_;
+  std::vector<int> asked_, front_, seen_;
   std::vector<double> partial_;  // one a block
   std::vector<Float4> residual_, search_, bent_, image_, direction_;
   std::vector<float> inverse_, share_;  // of the preconditioner
