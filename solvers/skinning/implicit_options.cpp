@@ -127,9 +127,19 @@ void describe(OptionVisitor& v, SmoothOptions& o) {
            .max = 1});
   v.value("contact_anchor", o.contact_anchor,
           {.doc = "the same in contact", .min = 1e-6, .max = 10});
-  v.value("contact_weight", o.contact_weight, {.doc="w", .min=0, .max=1000});
-  v.value("contact_penalty", o.contact_penalty,
-          {.doc = "of the alternating directions in contact", .min = 1e-3, .max = 1000});
+  v.value("contact_gap", o.contact_gap,
+          {.doc = "by how much a vertex is deeper in its own field than in another's, in local "
+                  "radii",
+           .min = 0,
+           .max = 1});
+  v.value("contact_weight", o.contact_weight,
+          {.doc = "of what contact asks, over the weight of a section's demand",
+           .min = 1e-3,
+           .max = 1000});
+  v.value("contact_band", o.contact_band,
+          {.doc = "before contact, within which skin that was moved is held, in local radii",
+           .min = 0,
+           .max = 1});
   v.value("contact_reach", o.contact_reach,
           {.doc = "within which skin that faces a vertex is looked for, in local radii",
            .min = 0,
@@ -167,13 +177,10 @@ void describe(OptionVisitor& v, SmoothOptions& o) {
           {.doc = "of the fields in contact; 0: contact is not resolved (a null control)",
            .min = 0,
            .max = 100});
-  v.value("contact_iterations", o.contact_iterations,
-          {.doc = "of the alternating directions between them", .min = 1, .max = 1000});
-  v.value("contact_steps", o.contact_steps,
-          {.doc = "of the linear solver in each at most", .min = 1, .max = 1000});
-  v.value(
-      "iterations", o.iterations,
-      {.doc = "steps of the linear solver after an evaluation at most", .min = 1, .max = 10000});
+  v.value("iterations", o.iterations,
+          {.doc = "steps of the linear solver after its coarse level at most",
+           .min = 1,
+           .max = 10000});
 }
 
 void describe(OptionVisitor& v, ImplicitOptions& o) {

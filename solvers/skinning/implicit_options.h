@@ -67,8 +67,9 @@ struct SmoothOptions {
   double contact_cutoff = 1.2;
   double anchor = 0.02;  ///< mu, over the weight of what fields ask
   double contact_anchor = 0.02;
-  double contact_weight = 10;
-  double contact_penalty = 0.5;  ///< of the alternating directions
+  double contact_gap = 0.06;   ///< by how much a vertex is deeper in its own field than in another
+  double contact_weight = 3;   ///< of what contact asks, over the weight of what sections ask
+  double contact_band = 0.1;   ///< before contact, within which skin that was moved is held
   double contact_reach = 1;      ///< within which skin that faces a vertex is looked for
   double dead_zone = 0.01;       ///< what asks for less is not followed
   double largest = 0.5;          ///< correction that a field may ask for
@@ -80,11 +81,9 @@ struct SmoothOptions {
   double facing_high = 0;
   double crowd = 0.5;  ///< of a field below contact: within it nothing is asked of the section
   int preparation_passes = 5;
-  int evaluations = 3;  ///< of the fields
+  int evaluations = 2;  ///< of the fields
   int contact_evaluations = 8;
-  int contact_iterations = 8;
-  int contact_steps = 5;
-  int iterations = 45;  ///< of the linear solver at most
+  int iterations = 6;  ///< of the linear solver after its coarse level
 };
 void describe(OptionVisitor& v, SmoothOptions& options);
 

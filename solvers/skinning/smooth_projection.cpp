@@ -144,7 +144,7 @@ SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& p
                                    const SkinState& state)
     : field_(field),
       options_(options.smooth),
-      gap_(static_cast<float>(options.contact_gap)),
+      gap_(static_cast<float>(options.smooth.contact_gap)),
       radius_(local_radii(rig, partition, state, options.smooth.preparation_passes)),
       system_(rig.mesh, state, radius_),
       rotation_(state.size()),
@@ -235,10 +235,12 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
   const float radius = radius_[slot];
   const float reach = static_cast<float>(options_.largest) * radius;
   Demand demand;
+  const float band = band_of(slot);
+  float deepest = -1e30F;
   for (const BoneSample& other : at.all()) {
     if (other.bone == state.owner[slot]) continue;
     const float excess = depth_beyond_own(slot, at, other) - slack_of(slot, other.bone);
-    if (excess <= 0) continue;
+    if (excess <= -band) continue;
     const float facing = facing_of(other, outward);
     // Both sides yield as their own fields do: towards the surface where both are equally deep.
     const Float4 way = at.own.depth > 0 ? at.own.inward - other.inward : -other.inward;
@@ -246,8 +248,10 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
     if (facing <= 0 || !(slope > 0.05F)) continue;
     const float missing =
         facing * std::min(reach, excess / std::max(slope, length_of(other.inward)));
-    if (missing <= demand.amount) continue;
-    demand = {way / splat(slope), missing, static_cast<float>(options_.contact_weight)};
+    if (missing <= deepest) continue;
+    deepest = missing;
+    const float hold = band > 0 ? ramp(-band, 0, excess) : 1;
+    demand = {way / splat(slope), missing, hold * static_cast<float>(options_.contact_weight)};
   }
   if (demand.weight <= 0) return {};
   // Fields may be fuller than the skin that is there: only what has met is parted.
@@ -255,7 +259,7 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
       proximity_.facing(state, slot, static_cast<float>(options_.contact_reach) * radius);
   if (!met) return {};
   demand.amount = std::min(demand.amount, met->depth + gap_ * radius);
-  return demand.amount > kNothing * radius ? demand : Demand{};
+  return demand.amount + dot3(demand.direction, moved_[slot]) > kNothing * radius ? demand : Demand{};
 }
 
 Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot,
@@ -330,11 +334,16 @@ float SmoothProjection::nearest_contact(const SkinState& state, std::size_t slot
   return nearest;
 }
 
+float SmoothProjection::band_of(std::size_t slot) const {
+  const bool displaced = dot3(moved_[slot], moved_[slot]) > 0;
+  return displaced ? static_cast<float>(options_.contact_band) * radius_[slot] : 0;
+}
+
 bool SmoothProjection::is_free(std::size_t slot) const {
   // Two depths, each of which grows with the way by little more than its length.
   constexpr float kSteepest = 3;
   const float excess = seen_[slot].excess;
-  return excess < 0 && excess + kSteepest * length_of(moved_[slot] - seen_[slot].moved) < 0;
+  return excess < 0 && band_of(slot) + excess + kSteepest * length_of(moved_[slot] - seen_[slot].moved) < 0;
 }
 
 void SmoothProjection::ask(SkinState& state, Stage stage, const std::vector<int>& blocks) {
@@ -355,7 +364,7 @@ void SmoothProjection::ask(SkinState& state, Stage stage, const std::vector<int>
           continue;
         }
         seen_[s] = {moved_[s], nearest_contact(state, s, at)};
-        if (seen_[s].excess <= 0) continue;
+        if (seen_[s].excess <= -band_of(s)) continue;
         demand_[s] = contact_demand(state, s, at);
         demand_[s].amount += dot3(demand_[s].direction, moved_[s]);
       }
@@ -381,13 +390,13 @@ void SmoothProjection::start_stage() {
 }
 
 int SmoothProjection::correct_sections(SkinState& state) {
-  const SmoothSystem::Options options{options_.cutoff, options_.anchor, 0, options_.iterations};
+  const SmoothSystem::Options options{options_.cutoff, options_.anchor, options_.iterations};
   start_stage();
   int steps = 0;
   for (int i = 0; i < options_.evaluations; ++i) {
     ask(state, Stage::section, awake_);
     system_.open(demand_, options);
-    steps += system_.solve(demand_, {}, options, moved_);
+    steps += system_.solve(demand_, options, moved_);
     place(state);
   }
   return steps;
@@ -400,8 +409,8 @@ void SmoothProjection::place(SkinState& state) const {
 }
 
 int SmoothProjection::resolve_contacts(SkinState& state) {
-  const SmoothSystem::Options options{options_.contact_cutoff, options_.contact_anchor, 0,
-                                      options_.contact_steps};
+  const SmoothSystem::Options options{options_.contact_cutoff, options_.contact_anchor,
+                                      options_.iterations};
   start_stage();
   int steps = 0;
   for (int i = 0; i < options_.contact_evaluations; ++i) {
@@ -409,7 +418,7 @@ int SmoothProjection::resolve_contacts(SkinState& state) {
     ask(state, Stage::contact, awake_);
     system_.open(demand_, options);
     if (system_.open_blocks().empty()) break;
-    steps += system_.solve(demand_, {}, options, moved_);
+    steps += system_.solve(demand_, options, moved_);
     place(state);
     for (std::size_t s = 0; s < state.size(); ++s)
       if (demand_[s].weight > 0) state.stop[s] = VertexStop::contact;

@@ -205,19 +205,17 @@ double SmoothSystem::precondition(const std::vector<Demand>& demands,
   return sum();
 }
 
-int SmoothSystem::solve(const std::vector<Demand>& demands, const std::vector<Float4>& pulls,
-                        const Options& options, std::vector<Float4>& u) {
+int SmoothSystem::solve(const std::vector<Demand>& demands, const Options& options,
+                        std::vector<Float4>& u) {
   if (blocks_.empty()) return 0;
   const auto kappa = static_cast<float>(bending(options.cutoff));
-  const auto penalty = static_cast<float>(options.penalty);
-  const float diagonal = static_cast<float>(options.anchor) + penalty;
+  const auto diagonal = static_cast<float>(options.anchor);
   // Slots of closed blocks are read as neighbours: they hold zero (`close`).
   apply(demands, u, kappa, diagonal);
   each_open([&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const Demand& demand = demands[s];
-      Float4 asked = demand.direction * splat(demand.weight * demand.amount);
-      if (penalty > 0) asked += splat(penalty) * pulls[s];
+      const Float4 asked = demand.direction * splat(demand.weight * demand.amount);
       residual_[s] = splat(area_[s]) * asked - image_[s];
       const float same = kappa * bend_diagonal_[s] + area_[s] * diagonal;
       const float along = area_[s] * demand.weight;

@@ -17,8 +17,7 @@ namespace geoprior::skinning {
 
 /// Displacements u of the skin that follow what is asked smoothly:
 ///
-///   min  sum_i A_i ( kappa r_i^4 |(M^-1 L u)_i|^2 + mu |u_i|^2 + rho |u_i - p_i|^2
-///                    + w_i (d_i . u_i - a_i)^2 )
+///   min  sum_i A_i ( kappa r_i^4 |(M^-1 L u)_i|^2 + mu |u_i|^2 + w_i (d_i . u_i - a_i)^2 )
 ///
 /// L is the cotangent stiffness of the rest surface, M = diag(A_i) its vertex areas, r_i the local
 /// radius, kappa = (cutoff / 7.85)^4: of a demand w = 1 whose wavelength is 0.8 `cutoff` local
@@ -35,7 +34,6 @@ class SmoothSystem {
   struct Options {
     double cutoff = 1;   ///< in local radii
     double anchor = 0;   ///< mu
-    double penalty = 0;  ///< rho
     int iterations = 20;
   };
 
@@ -47,11 +45,9 @@ class SmoothSystem {
 
   [[nodiscard]] const std::vector<int>& open_blocks() const { return blocks_; }
 
-  /// @param pulls  p; read only when rho > 0
   /// @param u      in: the start, zero in closed blocks; out: the solution
   /// @return iterations done
-  int solve(const std::vector<Demand>& demands, const std::vector<Float4>& pulls,
-            const Options& options, std::vector<Float4>& u);
+  int solve(const std::vector<Demand>& demands, const Options& options, std::vector<Float4>& u);
 
   /// Calls body(begin, end) for the slots of every open block, in parallel.
   template <class Body>
