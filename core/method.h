@@ -11,7 +11,7 @@
 namespace geoprior {
 
 /// First shape of a method: a closed formula or a local solve, random access, no memory between
-/// calls.
+/// calls unless it says so (`path_dependent`).
 ///
 /// `solve` leaves its result inside the object; `frame` copies it out. They are apart because the
 /// benchmark times `solve` alone: recording is no part of a method's cost. Constructing one is
@@ -21,6 +21,11 @@ class PoseMethod {
   virtual ~PoseMethod() = default;
   /// Computes the state at a parameter of the scene. No allocation once warm.
   virtual void solve(double parameter, RunContext& context) = 0;
+  /// Whether a solve begins where the one before ended. Such a method is asked for the parameters
+  /// in their order, each once, after `restart`.
+  [[nodiscard]] virtual bool path_dependent() const { return false; }
+  /// Forgets what was solved: the next `solve` begins a path.
+  virtual void restart() {}
   /// The state that the last `solve` left.
   [[nodiscard]] virtual Frame frame() const = 0;
 };

@@ -85,6 +85,15 @@ class SkinningMethod final : public PoseMethod {
     }
   }
 
+  [[nodiscard]] bool path_dependent() const override {
+    if constexpr (requires { deformer_.path_dependent(); }) return deformer_.path_dependent();
+    return false;
+  }
+
+  void restart() override {
+    if constexpr (requires { deformer_.restart(); }) deformer_.restart();
+  }
+
   [[nodiscard]] Frame frame() const override {
     Frame frame;
     frame.parameter = parameter_;

@@ -138,8 +138,8 @@ CoarseSpace::CoarseSpace(const SkinState& state, const Rings& rings,
     for (Eigen::SparseMatrix<double>::InnerIterator it(bent, n); it; ++it) {
       while (m && m.row() < it.row()) ++m;
       const double both = m && m.row() == it.row() ? m.value() : 0;
-      pair_.push_back({static_cast<int>(it.row()), static_cast<float>(it.value()),
-                       static_cast<float>(both)});
+      pair_.push_back(
+          {static_cast<int>(it.row()), static_cast<float>(it.value()), static_cast<float>(both)});
     }
     pair_offset_.push_back(pair_.size());
   }

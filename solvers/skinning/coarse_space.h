@@ -14,9 +14,9 @@ namespace geoprior::skinning {
 /// Smooth displacements of the skin that few nodes describe: u_i = sum_n P_in c_n.
 ///
 /// Nodes stand `kSpacing` local radii apart on the rest surface. P holds bumps (1 - (d / R)^2)^3 of
-/// the distance at rest, R = `kBump` spacings, normalised to sum one at every vertex; a bump reaches
-/// along the surface, not across a gap. A displacement that bending makes smooth is found here in
-/// a twentieth of the unknowns; what is left is of short waves (SmoothSystem).
+/// the distance at rest, R = `kBump` spacings, normalised to sum one at every vertex; a bump
+/// reaches along the surface, not across a gap. A displacement that bending makes smooth is found
+/// here in a twentieth of the unknowns; what is left is of short waves (SmoothSystem).
 class CoarseSpace {
  public:
   /// The one rings of the skin, in slots.

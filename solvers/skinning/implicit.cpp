@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "baselines/skinning/dual_quaternion.h"
@@ -11,6 +12,7 @@
 #include "core/topology.h"
 #include "solvers/skinning/composition.h"
 #include "solvers/skinning/contact_smoothing.h"
+#include "solvers/skinning/pose_path.h"
 #include "solvers/skinning/projection.h"
 #include "solvers/skinning/relaxation.h"
 #include "solvers/skinning/skin_state.h"
@@ -107,13 +109,18 @@ struct ImplicitSkinning::Impl {
       state.position[s] = row_of(rig.mesh.V, state.vertex[s]);
     }
     projection.record_rest(state);
-    if (options.projection == ProjectionKind::smooth) {
+    if (options.projection != ProjectionKind::marching) {
       smooth_projection.emplace(rig, partition, field, options, state);
       smooth_projection->record_rest(state);
+    }
+    if (options.projection == ProjectionKind::tracking) {
+      smooth_projection->follow();
+      path.emplace(rig.skeleton);
     }
     prepare_relaxation(state);
   }
 
+  void follow(const Pose& pose, Eigen::MatrixX3d& posed);
   void start(const Pose& pose, Eigen::MatrixX3d& posed);
   void turn_normals();
   void correct();
@@ -130,6 +137,7 @@ struct ImplicitSkinning::Impl {
   Projection projection;
   SkinState state;
   std::optional<SmoothProjection> smooth_projection;
+  std::optional<PosePath> path;    // of poses that are tracked
   std::vector<Float4> quaternion;  // of the joints
   std::vector<Float4> rotation;    // columns of the joints' rotations
   int iterations = 0;
@@ -147,6 +155,15 @@ void ImplicitSkinning::Impl::start(const Pose& pose, Eigen::MatrixX3d& posed) {
   }
   state.position = state.start;
   turn_normals();
+}
+
+void ImplicitSkinning::Impl::follow(const Pose& pose, Eigen::MatrixX3d& posed) {
+  const double largest_turn = options.smooth.tracking_step_deg * std::numbers::pi / 180;
+  const int steps = path->go_to(pose, largest_turn);
+  for (int step = 1; step < steps; ++step) {
+    start(path->at(step), posed);
+    correct();
+  }
 }
 
 void ImplicitSkinning::Impl::turn_normals() {
@@ -227,6 +244,10 @@ ImplicitSkinning& ImplicitSkinning::operator=(ImplicitSkinning&&) noexcept = def
 
 void ImplicitSkinning::deform(const Pose& pose, Eigen::MatrixX3d& posed, RunContext& context) {
   Impl& impl = *impl_;
+  if (impl.path) {
+    const Phase phase(context, "tracking");
+    impl.follow(pose, posed);
+  }
   {
     const Phase phase(context, "start");
     impl.start(pose, posed);
@@ -249,6 +270,14 @@ void ImplicitSkinning::deform(const Pose& pose, Eigen::MatrixX3d& posed, RunCont
     impl.smooth(impl.options.diffusion_passes, impl.options.smoothing_passes);
   }
   impl.finish(posed);
+}
+
+bool ImplicitSkinning::path_dependent() const { return impl_->path.has_value(); }
+
+void ImplicitSkinning::restart() {
+  if (!impl_->path) return;
+  impl_->path->restart();
+  impl_->smooth_projection->forget();
 }
 
 std::map<std::string, double> ImplicitSkinning::diagnostics() const {

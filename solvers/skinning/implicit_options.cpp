@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, 7> kOpeningNames{
 constexpr std::array<std::string_view, 3> kCapNames{"none", "point", "dome"};
 constexpr std::array<std::string_view, 2> kPartitionNames{"highest-weight", "closest-bone"};
 constexpr std::array<std::string_view, 3> kSupportNames{"quintic", "cubic", "logistic"};
-constexpr std::array<std::string_view, 2> kProjectionNames{"smooth", "marching"};
+constexpr std::array<std::string_view, 3> kProjectionNames{"smooth", "tracking", "marching"};
 constexpr std::array<std::string_view, 2> kScheduleNames{"paper", "released-code"};
 
 void describe_fields(OptionVisitor& v, ImplicitOptions& o) {
@@ -177,10 +177,13 @@ void describe(OptionVisitor& v, SmoothOptions& o) {
           {.doc = "of the fields in contact; 0: contact is not resolved (a null control)",
            .min = 0,
            .max = 100});
-  v.value("iterations", o.iterations,
-          {.doc = "steps of the linear solver after its coarse level at most",
-           .min = 1,
-           .max = 10000});
+  v.value("tracking_step_deg", o.tracking_step_deg,
+          {.doc = "largest turn of a joint from one pose to the next that is tracked in one step",
+           .min = 0.1,
+           .max = 180});
+  v.value(
+      "iterations", o.iterations,
+      {.doc = "steps of the linear solver after its coarse level at most", .min = 1, .max = 10000});
 }
 
 void describe(OptionVisitor& v, ImplicitOptions& o) {

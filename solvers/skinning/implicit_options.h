@@ -56,8 +56,9 @@ struct SamplingOptions {
 void describe(OptionVisitor& v, SamplingOptions& options);
 
 /// How vertices come to their iso-values: all together, as one smooth correction
-/// (smooth_projection.h), or each along its own gradient, as published (projection.h).
-enum class ProjectionKind { smooth, marching };
+/// (smooth_projection.h), the same with contact that begins where the pose before left it, or each
+/// along its own gradient, as published (projection.h).
+enum class ProjectionKind { smooth, tracking, marching };
 
 /// The smooth correction. Lengths are shares of the local radius: the distance of the skin from its
 /// bone.
@@ -67,15 +68,15 @@ struct SmoothOptions {
   double contact_cutoff = 1.2;
   double anchor = 0.02;  ///< mu, over the weight of what fields ask
   double contact_anchor = 0.02;
-  double contact_gap = 0.06;   ///< by how much a vertex is deeper in its own field than in another
-  double contact_weight = 3;   ///< of what contact asks, over the weight of what sections ask
-  double contact_band = 0.1;   ///< before contact, within which skin that was moved is held
-  double contact_reach = 1;      ///< within which skin that faces a vertex is looked for
-  double dead_zone = 0.01;       ///< what asks for less is not followed
-  double largest = 0.5;          ///< correction that a field may ask for
-  double trunk_ratio = 1.0;      ///< length over thickness up to which a bone's field is no limb's
-  double limb_ratio = 1.4;       ///< and from which it is
-  double agree_low = 0.3;  ///< cosine of gradient and skinned normal: below it nothing is known
+  double contact_gap = 0.06;  ///< by how much a vertex is deeper in its own field than in another
+  double contact_weight = 3;  ///< of what contact asks, over the weight of what sections ask
+  double contact_band = 0.1;  ///< before contact, within which skin that was moved is held
+  double contact_reach = 1;   ///< within which skin that faces a vertex is looked for
+  double dead_zone = 0.01;    ///< what asks for less is not followed
+  double largest = 0.5;       ///< correction that a field may ask for
+  double trunk_ratio = 1.0;   ///< length over thickness up to which a bone's field is no limb's
+  double limb_ratio = 1.4;    ///< and from which it is
+  double agree_low = 0.3;     ///< cosine of gradient and skinned normal: below it nothing is known
   double agree_high = 0.8;
   double facing_low = -0.5;  ///< cosine at which a contact begins to hold
   double facing_high = 0;
@@ -83,7 +84,8 @@ struct SmoothOptions {
   int preparation_passes = 5;
   int evaluations = 2;  ///< of the fields
   int contact_evaluations = 8;
-  int iterations = 6;  ///< of the linear solver after its coarse level
+  double tracking_step_deg = 10;  ///< largest turn of a joint between two poses that are followed
+  int iterations = 6;             ///< of the linear solver after its coarse level
 };
 void describe(OptionVisitor& v, SmoothOptions& options);
 

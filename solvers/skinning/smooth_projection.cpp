@@ -13,6 +13,9 @@ namespace {
 /// Of the local radius: what is asked below is none.
 constexpr float kNothing = 1e-5F;
 
+/// Of the local radius: a displacement that is no more than this is not kept for the next pose.
+constexpr float kKept = 1e-4F;
+
 constexpr std::size_t kBlocksOfTask = 4;
 constexpr std::size_t kSlotsOfTask = 512;
 
@@ -137,6 +140,16 @@ std::vector<int> joints_about(const SkinState& state, const FieldComposition& fi
   return joints;
 }
 
+/// v turned by a unit quaternion.
+Float4 turned(Float4 q, Float4 v) {
+  const auto cross = [](Float4 a, Float4 b) {
+    return Float4{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0],
+                  0.0F};
+  };
+  const Float4 t = splat(2) * cross(q, v);
+  return v + splat(q[3]) * t + cross(q, t);
+}
+
 }  // namespace
 
 SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& partition,
@@ -150,7 +163,8 @@ SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& p
       rotation_(state.size()),
       demand_(state.size()),
       moved_(state.size()),
-      seen_(state.size()) {
+      seen_(state.size()),
+      kept_(state.size()) {
   const EndTrust trust = end_trust(partition, limb_likeness(partition, options_));
   for (std::size_t s = 0; s < state.size(); ++s) {
     if (state.owner[s] < 0) {
@@ -259,7 +273,8 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
       proximity_.facing(state, slot, static_cast<float>(options_.contact_reach) * radius);
   if (!met) return {};
   demand.amount = std::min(demand.amount, met->depth + gap_ * radius);
-  return demand.amount + dot3(demand.direction, moved_[slot]) > kNothing * radius ? demand : Demand{};
+  return demand.amount + dot3(demand.direction, moved_[slot]) > kNothing * radius ? demand
+                                                                                  : Demand{};
 }
 
 Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot,
@@ -328,8 +343,7 @@ float SmoothProjection::nearest_contact(const SkinState& state, std::size_t slot
   float nearest = -radius_[slot];
   for (const BoneSample& other : at.all()) {
     if (other.bone == state.owner[slot]) continue;
-    nearest =
-        std::max(nearest, depth_beyond_own(slot, at, other) - slack_of(slot, other.bone));
+    nearest = std::max(nearest, depth_beyond_own(slot, at, other) - slack_of(slot, other.bone));
   }
   return nearest;
 }
@@ -343,7 +357,8 @@ bool SmoothProjection::is_free(std::size_t slot) const {
   // Two depths, each of which grows with the way by little more than its length.
   constexpr float kSteepest = 3;
   const float excess = seen_[slot].excess;
-  return excess < 0 && band_of(slot) + excess + kSteepest * length_of(moved_[slot] - seen_[slot].moved) < 0;
+  return excess < 0 &&
+         band_of(slot) + excess + kSteepest * length_of(moved_[slot] - seen_[slot].moved) < 0;
 }
 
 void SmoothProjection::ask(SkinState& state, Stage stage, const std::vector<int>& blocks) {
@@ -408,10 +423,41 @@ void SmoothProjection::place(SkinState& state) const {
   });
 }
 
+void SmoothProjection::forget() {
+  std::fill(kept_.begin(), kept_.end(), Float4{});
+  kept_blocks_.clear();
+}
+
+void SmoothProjection::recall() {
+  system_.open(kept_blocks_);
+  system_.each_open([&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) moved_[s] = turned(rotation_[s], kept_[s]);
+  });
+}
+
+void SmoothProjection::keep() {
+  forget();
+  for (const int block : system_.open_blocks()) {
+    const std::size_t begin = static_cast<std::size_t>(block) * SkinState::kBlock;
+    const std::size_t end = std::min(kept_.size(), begin + SkinState::kBlock);
+    bool displaced = false;
+    for (std::size_t s = begin; s < end; ++s)
+      displaced = displaced || length_of(moved_[s]) > kKept * radius_[s];
+    if (!displaced) continue;
+    kept_blocks_.push_back(block);
+    for (std::size_t s = begin; s < end; ++s)
+      kept_[s] = turned(rotation_[s] * Float4{-1, -1, -1, 1}, moved_[s]);
+  }
+}
+
 int SmoothProjection::resolve_contacts(SkinState& state) {
   const SmoothSystem::Options options{options_.contact_cutoff, options_.contact_anchor,
                                       options_.iterations};
   start_stage();
+  if (follows_) {
+    recall();
+    place(state);
+  }
   int steps = 0;
   for (int i = 0; i < options_.contact_evaluations; ++i) {
     proximity_.build(state.position);
@@ -423,6 +469,7 @@ int SmoothProjection::resolve_contacts(SkinState& state) {
     for (std::size_t s = 0; s < state.size(); ++s)
       if (demand_[s].weight > 0) state.stop[s] = VertexStop::contact;
   }
+  if (follows_) keep();
   return steps;
 }
 

@@ -36,6 +36,11 @@ class SmoothProjection {
   /// What overlaps at rest: `state` holds the rest pose and its iso-values, the field is at rest.
   void record_rest(const SkinState& state);
 
+  /// Contact begins at the next solves where the one before left it.
+  void follow() { follows_ = true; }
+  /// The next solve begins without any displacement.
+  void forget();
+
   /// Moves `state.position` from `state.start`; marks vertices in contact.
   /// @param rotations  of the joints, unit quaternions (x, y, z, w)
   /// @return steps of the linear solver
@@ -65,6 +70,8 @@ class SmoothProjection {
   void blend_rotations(const SkinState& state, const std::vector<Float4>& rotations);
   int correct_sections(SkinState& state);
   int resolve_contacts(SkinState& state);
+  void recall();
+  void keep();
   void place(SkinState& state) const;
   /// Blocks of the skin about which something moved against something else.
   void find_awake(const SkinState& state);
@@ -95,7 +102,7 @@ class SmoothProjection {
 
   const FieldComposition& field_;
   SmoothOptions options_;
-  float gap_;   // of contacts, in local radii
+  float gap_;                  // of contacts, in local radii
   std::vector<float> radius_;  // local, per slot
   std::vector<float> trust_;   // what a limb's field knows about the slot's skin
   SmoothSystem system_;
@@ -110,6 +117,9 @@ class SmoothProjection {
   std::vector<Float4> base_;   // where a stage starts
   std::vector<Float4> moved_;  // from there
   std::vector<Seen> seen_;
+  bool follows_ = false;
+  std::vector<Float4> kept_;      // displacement by contact, turned back to rest
+  std::vector<int> kept_blocks_;  // that hold any
 };
 
 }  // namespace geoprior::skinning

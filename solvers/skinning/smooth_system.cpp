@@ -139,14 +139,21 @@ void SmoothSystem::open(const std::vector<Demand>& demands, const Options& optio
       }
     }
   }
-  for (std::size_t b = 0; b < chosen_.size(); ++b) {
-    if (reached_[b] == 0 || chosen_[b] != 0) continue;
-    chosen_[b] = 1;
-    blocks_.push_back(static_cast<int>(b));
+  std::fill(seen_.begin(), seen_.end(), 0);
+  front_.clear();
+  for (std::size_t b = 0; b < reached_.size(); ++b)
+    if (reached_[b] != 0) front_.push_back(static_cast<int>(b));
+  open(front_);
+}
+
+void SmoothSystem::open(const std::vector<int>& blocks) {
+  for (const int block : blocks) {
+    std::uint8_t& chosen = chosen_[static_cast<std::size_t>(block)];
+    if (chosen == 0) blocks_.push_back(block);
+    chosen = 1;
   }
   std::sort(blocks_.begin(), blocks_.end());
   coarse_->open(chosen_);
-  std::fill(seen_.begin(), seen_.end(), 0);
 }
 
 void SmoothSystem::bend(const std::vector<Float4>& x, float kappa) {

@@ -32,8 +32,8 @@ class SmoothSystem {
   SmoothSystem(const TriMesh& mesh, const SkinState& state, const std::vector<float>& radius);
 
   struct Options {
-    double cutoff = 1;   ///< in local radii
-    double anchor = 0;   ///< mu
+    double cutoff = 1;  ///< in local radii
+    double anchor = 0;  ///< mu
     int iterations = 20;
   };
 
@@ -43,6 +43,8 @@ class SmoothSystem {
   /// decays.
   void open(const std::vector<Demand>& demands, const Options& options);
 
+  /// Opens blocks besides, and no others.
+  void open(const std::vector<int>& blocks);
   [[nodiscard]] const std::vector<int>& open_blocks() const { return blocks_; }
 
   /// @param u      in: the start, zero in closed blocks; out: the solution

@@ -26,7 +26,8 @@ struct BenchmarkOptions {
 
 /// Times `solve` of several methods interleaved: for every round, for every parameter, each method
 /// in turn, so that a disturbance of the machine meets all of them. The order rotates by one every
-/// round, so that none is always first. Result: variant: timing, with phase "solve" and those that
+/// round, so that none is always first. A path-dependent method begins its path anew every round:
+/// its times are those of whole sweeps. Result: variant: timing, with phase "solve" and those that
 /// the method marks. Empty after a stop request.
 ///
 /// @param context   hands the seed and the stop request to the methods

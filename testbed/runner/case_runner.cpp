@@ -225,7 +225,10 @@ void CaseRunner::record_frame(const VariantSpec& variant, Frame frame,
 
 bool CaseRunner::run_poses(const VariantSpec& variant, PoseMethod& method, TimedContext& context) {
   const std::vector<double> parameters = scene_->parameters();
-  for (std::size_t i = state_of(variant).record.frames.size(); i < parameters.size(); ++i) {
+  const std::size_t recorded = state_of(variant).record.frames.size();
+  const bool follows = method.path_dependent();
+  if (follows) method.restart();
+  for (std::size_t i = follows ? 0 : recorded; i < parameters.size(); ++i) {
     if (stop_requested()) return false;
     {
       const LeaveAtOnce section(farewell_within_frame(variant));
@@ -233,6 +236,7 @@ bool CaseRunner::run_poses(const VariantSpec& variant, PoseMethod& method, Timed
     }
     // A method that broke off its solve has no state worth recording.
     if (context.stop_was_told()) return false;
+    if (i < recorded) continue;
     Frame frame = method.frame();
     frame.parameter = parameters[i];
     require_finite(frame, i, variant.method);
