@@ -83,7 +83,7 @@ struct SmoothOptions {
   double crowd = 0.5;  ///< of a field below contact: within it nothing is asked of the section
   int preparation_passes = 5;
   int evaluations = 2;  ///< of the fields
-  int contact_evaluations = 8;
+  int contact_evaluations = 5;
   double tracking_step_deg = 10;  ///< largest turn of a joint between two poses that are followed
   int iterations = 6;             ///< of the linear solver after its coarse level
 };

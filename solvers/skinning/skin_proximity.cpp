@@ -9,6 +9,13 @@ namespace {
 constexpr int kMostCells = 64;       // along an axis
 constexpr float kOpposed = 0.4F;     // cosine of two normals up to which they face each other
 constexpr float kCameNearer = 0.5F;  // share of the distance at rest
+constexpr float kRim = 0.3F;         // of these limits, within which certainty falls
+
+/// 1 well below a limit, 0 at it.
+float below(float x, float limit, float rim) {
+  const float t = std::clamp((limit - x) / rim, 0.0F, 1.0F);
+  return t * t * (3 - 2 * t);
+}
 
 }  // namespace
 
@@ -71,7 +78,11 @@ std::optional<SkinProximity::Facing> SkinProximity::facing(const SkinState& stat
         const Float4 at_rest = state.rest[other] - state.rest[slot];
         if (distance2 > kCameNearer * kCameNearer * dot3(at_rest, at_rest)) continue;
         nearest = distance2;
-        found = Facing{other, dot3(way, facing) / std::sqrt(dot3(facing, facing))};
+        const float share = std::sqrt(distance2 / dot3(at_rest, at_rest));
+        const float sure = below(dot3(normal, facing) / lengths, kOpposed, kRim) *
+                           below(share, kCameNearer, kRim * kCameNearer) *
+                           below(std::sqrt(distance2), reach, kRim * reach);
+        found = Facing{other, dot3(way, facing) / std::sqrt(dot3(facing, facing)), sure};
       }
     }
   }

@@ -21,6 +21,7 @@ class SkinProximity {
   struct Facing {
     std::size_t slot;
     float depth;  ///< how far the vertex is behind it (m), negative: in front of it
+    float sure;   ///< that it faces, has come nearer and is within reach: in (0, 1], without jumps
   };
   /// The nearest vertex within `reach` whose normal opposes that of `slot`, and which is less than
   /// half as far as at rest: the other side of the own limb has not come nearer.

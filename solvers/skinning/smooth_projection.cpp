@@ -247,34 +247,38 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
                                         const Sampled& at) const {
   const Float4 outward = state.outward[slot];
   const float radius = radius_[slot];
-  const float reach = static_cast<float>(options_.largest) * radius;
-  Demand demand;
-  const float band = band_of(slot);
-  float deepest = -1e30F;
+  const float band = static_cast<float>(options_.contact_band) * radius;
+  float deepest = -band, facing = 0;
+  Float4 direction{};
   for (const BoneSample& other : at.all()) {
     if (other.bone == state.owner[slot]) continue;
     const float excess = depth_beyond_own(slot, at, other) - slack_of(slot, other.bone);
     if (excess <= -band) continue;
-    const float facing = facing_of(other, outward);
+    const float towards = facing_of(other, outward);
     // Both sides yield as their own fields do: towards the surface where both are equally deep.
     const Float4 way = at.own.depth > 0 ? at.own.inward - other.inward : -other.inward;
     const float slope = length_of(way);
-    if (facing <= 0 || !(slope > 0.05F)) continue;
-    const float missing =
-        facing * std::min(reach, excess / std::max(slope, length_of(other.inward)));
-    if (missing <= deepest) continue;
-    deepest = missing;
-    const float hold = band > 0 ? ramp(-band, 0, excess) : 1;
-    demand = {way / splat(slope), missing, hold * static_cast<float>(options_.contact_weight)};
+    if (towards <= 0 || !(slope > 0.05F)) continue;
+    const float depth = excess / std::max(slope, length_of(other.inward));
+    if (depth <= deepest) continue;
+    deepest = depth;
+    facing = towards;
+    direction = way / splat(slope);
   }
-  if (demand.weight <= 0) return {};
+  if (facing <= 0) return {};
   // Fields may be fuller than the skin that is there: only what has met is parted.
   const auto met =
       proximity_.facing(state, slot, static_cast<float>(options_.contact_reach) * radius);
   if (!met) return {};
-  demand.amount = std::min(demand.amount, met->depth + gap_ * radius);
-  return demand.amount + dot3(demand.direction, moved_[slot]) > kNothing * radius ? demand
-                                                                                  : Demand{};
+  const float depth = std::min(
+      {deepest, met->depth + gap_ * radius, static_cast<float>(options_.largest) * radius});
+  if (depth <= -band) return {};
+  // A Newton step on a hinge that bends within the band, so that contact does not switch.
+  const bool bends = depth < band;
+  const float stiffness = bends ? (depth + band) / (2 * band) : 1;
+  const float amount = bends ? (depth + band) / 2 : depth;
+  const float weight = facing * met->sure * static_cast<float>(options_.contact_weight);
+  return {direction, amount, weight * stiffness};
 }
 
 Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot,
@@ -348,17 +352,13 @@ float SmoothProjection::nearest_contact(const SkinState& state, std::size_t slot
   return nearest;
 }
 
-float SmoothProjection::band_of(std::size_t slot) const {
-  const bool displaced = dot3(moved_[slot], moved_[slot]) > 0;
-  return displaced ? static_cast<float>(options_.contact_band) * radius_[slot] : 0;
-}
-
 bool SmoothProjection::is_free(std::size_t slot) const {
   // Two depths, each of which grows with the way by little more than its length.
   constexpr float kSteepest = 3;
-  const float excess = seen_[slot].excess;
-  return excess < 0 &&
-         band_of(slot) + excess + kSteepest * length_of(moved_[slot] - seen_[slot].moved) < 0;
+  const float band = static_cast<float>(options_.contact_band) * radius_[slot];
+  const float excess = seen_[slot].excess + band;
+  return seen_[slot].excess < 0 &&
+         excess + kSteepest * length_of(moved_[slot] - seen_[slot].moved) < 0;
 }
 
 void SmoothProjection::ask(SkinState& state, Stage stage, const std::vector<int>& blocks) {
@@ -379,7 +379,7 @@ void SmoothProjection::ask(SkinState& state, Stage stage, const std::vector<int>
           continue;
         }
         seen_[s] = {moved_[s], nearest_contact(state, s, at)};
-        if (seen_[s].excess <= -band_of(s)) continue;
+        if (is_free(s)) continue;
         demand_[s] = contact_demand(state, s, at);
         demand_[s].amount += dot3(demand_[s].direction, moved_[s]);
       }

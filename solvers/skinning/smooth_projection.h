@@ -89,7 +89,6 @@ class SmoothProjection {
   /// Largest excess over contact with another bone (m), negative before it; at least -radius.
   [[nodiscard]] float nearest_contact(const SkinState& state, std::size_t slot,
                                       const Sampled& at) const;
-  [[nodiscard]] float band_of(std::size_t slot) const;
   /// Whether a vertex has not moved far enough to be in contact now.
   [[nodiscard]] bool is_free(std::size_t slot) const;
   /// How far other bones crowd a vertex, in [0, 1]: 1 in contact, 0 well before it.
