@@ -1,5 +1,6 @@
 #include "solvers/skinning/coarse_space.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,7 +11,7 @@ namespace geoprior::skinning {
 namespace {
 
 constexpr float kSpacing = 0.45F;  // of nodes, in local radii
-constexpr float kBump = 1.9F;      // reach of a bump, in spacings
+constexpr float kBump = 2.2F;      // reach of a bump, in spacings
 constexpr float kDetour = 1.5F;    // along edges, over the reach of a bump
 
 constexpr int kIterations = 40;
@@ -58,10 +59,48 @@ class Walk {
   std::priority_queue<Step, std::vector<Step>, std::greater<>> queue_;
 };
 
+/// Moving least squares (Lancaster and Salkauskas 1981): weights about a slot become those that
+/// give back functions which are linear in its tangent plane.
+void reproduce_lines(const SkinState& state, std::size_t slot, const Eigen::Vector3d& normal,
+                     const std::vector<int>& nodes, std::vector<CoarseSpace::Entry>& entries) {
+  if (entries.empty()) return;
+  // Of the second moments: keeps few or aligned nodes from large weights of both signs.
+  constexpr double kStiff = 1e-3;
+  Eigen::Matrix<double, 3, 2> tangents;
+  tangents.col(0) = normal.unitOrthogonal();
+  tangents.col(1) = normal.cross(tangents.col(0));
+  std::vector<Eigen::Vector3d> basis;
+  double reach2 = 1e-30;
+  for (const CoarseSpace::Entry& entry : entries) {
+    const Float4 way =
+        state.rest[static_cast<std::size_t>(nodes[static_cast<std::size_t>(entry.at)])] -
+        state.rest[slot];
+    const Eigen::Vector2d along =
+        tangents.transpose() * Eigen::Vector3d(static_cast<double>(way[0]),
+                                               static_cast<double>(way[1]),
+                                               static_cast<double>(way[2]));
+    basis.emplace_back(1, along.x(), along.y());
+    reach2 = std::max(reach2, along.squaredNorm());
+  }
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    basis[i].tail<2>() /= std::sqrt(reach2);
+    moments += static_cast<double>(entries[i].weight) * basis[i] * basis[i].transpose();
+  }
+  moments.diagonal().tail<2>().array() += kStiff * moments(0, 0);
+  const Eigen::Vector3d factors = moments.ldlt().solve(Eigen::Vector3d::UnitX());
+  double sum = 0;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    entries[i].weight *= static_cast<float>(factors.dot(basis[i]));
+    sum += static_cast<double>(entries[i].weight);
+  }
+  for (CoarseSpace::Entry& entry : entries) entry.weight /= static_cast<float>(sum);
+}
+
 }  // namespace
 
 void CoarseSpace::place_nodes(const SkinState& state, const Rings& rings,
-                              const std::vector<float>& radius) {
+                              const std::vector<float>& radius, const Eigen::MatrixX3d& normals) {
   Walk walk(state, rings);
   std::vector<int> nodes;
   std::vector<std::uint8_t> covered(size_, 0);
@@ -86,10 +125,8 @@ void CoarseSpace::place_nodes(const SkinState& state, const Rings& rings,
   row_offset_.assign(1, 0);
   std::vector<std::vector<Entry>> columns(nodes.size());
   for (std::size_t s = 0; s < size_; ++s) {
-    float sum = 0;
-    for (const Entry& entry : rows[s]) sum += entry.weight;
-    for (Entry entry : rows[s]) {
-      entry.weight /= sum;
+    reproduce_lines(state, s, normals.row(state.vertex[s]), nodes, rows[s]);
+    for (const Entry& entry : rows[s]) {
       row_.push_back(entry);
       columns[static_cast<std::size_t>(entry.at)].push_back({static_cast<int>(s), entry.weight});
     }
@@ -109,11 +146,11 @@ void CoarseSpace::place_nodes(const SkinState& state, const Rings& rings,
 }
 
 CoarseSpace::CoarseSpace(const SkinState& state, const Rings& rings,
-                         const std::vector<float>& radius,
+                         const std::vector<float>& radius, const Eigen::MatrixX3d& normals,
                          const Eigen::SparseMatrix<double>& laplace, const std::vector<float>& bend,
                          const std::vector<float>& area)
     : size_(state.size()) {
-  place_nodes(state, rings, radius);
+  place_nodes(state, rings, radius, normals);
   const auto nodes = static_cast<Eigen::Index>(node_count());
   Eigen::SparseMatrix<double> P(static_cast<Eigen::Index>(size_), nodes);
   std::vector<Eigen::Triplet<double>> entries;

@@ -19,18 +19,23 @@ namespace geoprior::skinning {
 /// here in a twentieth of the unknowns; what is left is of short waves (SmoothSystem).
 class CoarseSpace {
  public:
+  struct Entry {
+    int at;
+    float weight;
+  };
   /// The one rings of the skin, in slots.
   struct Rings {
     const std::vector<int>& offset;
     const std::vector<int>& neighbour;
   };
   /// @param radius   local radius of each slot (m)
+  /// @param normals  of the vertices at rest
   /// @param laplace  L over slots
   /// @param bend     weights of (L u)^2, one a slot
   /// @param area     weights of u^2, one a slot
   CoarseSpace(const SkinState& state, const Rings& rings, const std::vector<float>& radius,
-              const Eigen::SparseMatrix<double>& laplace, const std::vector<float>& bend,
-              const std::vector<float>& area);
+              const Eigen::MatrixX3d& normals, const Eigen::SparseMatrix<double>& laplace,
+              const std::vector<float>& bend, const std::vector<float>& area);
 
   /// Chooses the nodes whose bumps lie in the chosen blocks.
   void open(const std::vector<std::uint8_t>& chosen);
@@ -46,15 +51,12 @@ class CoarseSpace {
   [[nodiscard]] std::size_t node_count() const { return blocks_of_.size(); }
 
  private:
-  struct Entry {
-    int at;
-    float weight;
-  };
   struct Pair {
     int node;
     float bend, mass;
   };
-  void place_nodes(const SkinState& state, const Rings& rings, const std::vector<float>& radius);
+  void place_nodes(const SkinState& state, const Rings& rings, const std::vector<float>& radius,
+                   const Eigen::MatrixX3d& normals);
   void apply(const std::vector<Demand>& demands, const std::vector<int>& slots,
              const std::vector<float>& area, float kappa, float diagonal);
   [[nodiscard]] std::span<const Entry> row(std::size_t slot) const {

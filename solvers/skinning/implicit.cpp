@@ -105,9 +105,6 @@ struct ImplicitSkinning::Impl {
     }
     rotation.resize(3 * static_cast<std::size_t>(joint_count));
     field.set_pose(rest_pose(joint_count));
-    for (std::size_t s = 0; s < state.size(); ++s) {
-      state.position[s] = row_of(rig.mesh.V, state.vertex[s]);
-    }
     projection.record_rest(state);
     if (options.projection != ProjectionKind::marching) {
       smooth_projection.emplace(rig, partition, field, options, state);

@@ -48,7 +48,6 @@ FieldAt Projection::field_of(const SkinState& state, std::size_t slot, Float4 p)
 }
 
 void Projection::record_rest(SkinState& state) const {
-  state.rest = state.position;
   for (std::size_t s = 0; s < state.size(); ++s) {
     if (state.owner[s] < 0) continue;
     const FieldAt at = field_of(state, s, state.position[s]);

@@ -68,7 +68,12 @@ SkinState::SkinState(const RiggedMesh& rig, const VertexGraph& graph,
   iso.assign(n, 0);
   rest_other.assign(n, 0);
   start.assign(n, Float4{});
-  position = next = outward = rest = rest_normal = last_position = gradient = start;
+  next = outward = rest_normal = last_position = gradient = start;
+  for (const int v : vertex) {
+    const Eigen::Vector3f at = rig.mesh.V.row(v).transpose().cast<float>();
+    rest.push_back(Float4{at.x(), at.y(), at.z(), 0.0F});
+  }
+  position = rest;
   last_bone.assign(n, -1);
   contact_bone.assign(n, -1);
   stop.assign(n, VertexStop::active);

@@ -89,7 +89,8 @@ SmoothSystem::SmoothSystem(const TriMesh& mesh, const SkinState& state,
   Eigen::SparseMatrix<double> laplace(static_cast<Eigen::Index>(size_),
                                       static_cast<Eigen::Index>(size_));
   laplace.setFromTriplets(entries.begin(), entries.end());
-  coarse_.emplace(state, CoarseSpace::Rings{offset_, neighbour_}, radius, laplace, bend_, area_);
+  coarse_.emplace(state, CoarseSpace::Rings{offset_, neighbour_}, radius, vertex_normals(mesh),
+                  laplace, bend_, area_);
   chosen_.assign(near_blocks_.size(), 0);
   partial_.assign(near_blocks_.size(), 0);
   reached_ = chosen_;

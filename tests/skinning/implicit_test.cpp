@@ -378,6 +378,69 @@ TEST(SmoothProjection, GivesTheSameBitsForAnyNumberOfThreadsAndNoMatterWhatCameB
   EXPECT_TRUE((one.array() == two.array()).all());
 }
 
+ImplicitOptions tracking() {
+  ImplicitOptions options;
+  options.projection = ProjectionKind::tracking;
+  return options;
+}
+
+/// Bends the finger's middle joint through angles, one pose after the other.
+Eigen::MatrixX3d after(ImplicitSkinning& skin, const std::vector<double>& angles) {
+  Eigen::MatrixX3d posed;
+  RunContext context;
+  for (const double angle : angles) skin.deform(bend(finger(), "middle", angle), posed, context);
+  return posed;
+}
+
+// Acceptance figure: a loop returns within half a percent of the local radius.
+TEST(Tracking, ComesBackWhereItWas) {
+  ImplicitSkinning skin = make(finger(), tracking());
+  const Eigen::MatrixX3d out = after(skin, {0, 40, 80});
+  const Eigen::MatrixX3d back = after(skin, {120, 80});
+  EXPECT_LE((out - back).rowwise().norm().maxCoeff(), 0.005 * kFingerRadius);
+  const Eigen::MatrixX3d rest = after(skin, {40, 0});
+  EXPECT_LE((rest - finger().mesh.V).rowwise().norm().maxCoeff(), 0.005 * kFingerRadius);
+}
+
+TEST(Tracking, TakesALongWayInSteps) {
+  ImplicitSkinning one = make(finger(), tracking()), many = make(finger(), tracking());
+  const Eigen::MatrixX3d jump = after(one, {0, 110});
+  const Eigen::MatrixX3d walk = after(many, {0, 10, 20, 30, 40, 50, 60, 70, 80, 90, 100, 110});
+  EXPECT_LE((jump - walk).rowwise().norm().maxCoeff(), 1e-3 * kFingerRadius);
+}
+
+TEST(Tracking, ForgetsWhatWasBeforeARestart) {
+  ImplicitSkinning fresh = make(finger(), tracking()), used = make(finger(), tracking());
+  EXPECT_TRUE(fresh.path_dependent());
+  after(used, {0, 115});
+  used.restart();
+  Eigen::MatrixX3d one, two;
+  with_threads(1, [&] { one = after(fresh, {0, 50, 100}); });
+  with_threads(2, [&] { two = after(used, {0, 50, 100}); });
+  EXPECT_TRUE((one.array() == two.array()).all());
+}
+
+TEST(Tracking, RefusesPosesThatBeginAwayFromRest) {
+  ImplicitSkinning skin = make(finger(), tracking());
+  try {
+    after(skin, {30});
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("joint 'middle' is turned by 30 degrees"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(Tracking, MayBeginAnywhereInSpace) {
+  ImplicitSkinning skin = make(finger(), tracking());
+  const Eigen::Isometry3d motion(Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -1).normalized()));
+  const Pose pose(static_cast<std::size_t>(finger().skeleton.size()), Eigen::Affine3d(motion));
+  Eigen::MatrixX3d posed;
+  RunContext context;
+  EXPECT_NO_THROW(skin.deform(pose, posed, context));
+}
+
 // A null: without evaluations there is nothing to follow.
 TEST(SmoothProjection, WithoutEvaluationsIsWhereItStarted) {
   ImplicitOptions options = smooth_projection();

@@ -256,6 +256,28 @@ TEST_F(Benchmark, InterleavesMethodsAndRotatesTheirOrder) {
   }
 }
 
+/// Begins each path with the call "restart".
+class LoggedPath final : public PoseMethod {
+ public:
+  explicit LoggedPath(std::string& log) : log_(log) {}
+  void solve(double parameter, RunContext&) override {
+    log_ += std::to_string(static_cast<int>(parameter));
+  }
+  [[nodiscard]] bool path_dependent() const override { return true; }
+  void restart() override { log_ += "restart"; }
+  [[nodiscard]] Frame frame() const override { return {}; }
+
+ private:
+  std::string& log_;
+};
+
+TEST_F(Benchmark, TimesWholeSweepsOfAMethodThatDependsOnItsPath) {
+  std::string order;
+  LoggedPath path(order);
+  benchmark_poses({{"a", &a}, {"path", &path}}, {0, 1, 2}, {1, 1}, context, [](double) {});
+  EXPECT_EQ(order, "restart012restart012");
+}
+
 TEST_F(Benchmark, PhaseThatAFrameDidNotEnterHasNoTimeThere) {
   const auto timing = benchmark_poses({{"a", &a}}, {1, 2}, {1, 0}, context, [](double) {});
   const auto& inner = timing.at("a").at("inner");

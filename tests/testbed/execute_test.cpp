@@ -353,6 +353,29 @@ class Follower final : public PoseMethod {
   Frame frame_;
 };
 
+/// Its frame holds the sum of the parameters since it began its path; asks once to stop, at 2.
+class Walker final : public PoseMethod {
+ public:
+  explicit Walker(bool stops) : stops_(stops) {}
+  void solve(double parameter, RunContext&) override {
+    sum_ += parameter;
+    if (stops_ && parameter == 2) request_stop();
+  }
+  [[nodiscard]] bool path_dependent() const override { return true; }
+  void restart() override { sum_ = 0; }
+  [[nodiscard]] Frame frame() const override {
+    Frame frame;
+    Part& bob = frame.parts["bob"];
+    bob.kind = Part::Kind::points;
+    bob.points = Eigen::MatrixX3d::Constant(1, 3, sum_);
+    return frame;
+  }
+
+ private:
+  bool stops_;
+  double sum_ = 0;
+};
+
 Topic follower_topic() {
   Topic topic;
   topic.name = "follower";
@@ -369,6 +392,11 @@ Topic follower_topic() {
           return std::make_unique<Follower>(scene, breaks);
         }));
   }
+  topic.methods.push_back(method_entry<FollowerScene, NoOptions>(
+      "walk", false, "of the tests", "none",
+      [stops = std::make_shared<bool>(true)](const FollowerScene&, const NoOptions&, RunContext&) {
+        return std::make_unique<Walker>(std::exchange(*stops, false));
+      }));
   return topic;
 }
 
@@ -392,6 +420,21 @@ class Inputs : public Execute {
   }
   std::vector<Topic> topics;
 };
+
+TEST_F(Inputs, AMethodThatDependsOnItsPathWalksItAgainWhenARunIsResumed) {
+  const auto file = follower("walk", "input = \"\"\nframes = 5", "walk");
+  const Experiment experiment = load_experiment(file, topics, {});
+  ExecuteRequest request;
+  request.out = out();
+  (void)execute(experiment, topics, request);
+  clear_stop();
+  EXPECT_TRUE(fs::exists(out() / "frames/default/v/bob_0002.vtp"));
+  EXPECT_FALSE(fs::exists(out() / "frames/default/v/bob_0003.vtp"));
+  request.resume = true;
+  (void)execute(experiment, topics, request);
+  // 0 + 1 + 2 + 3 + 4; a walk that began at the third frame would end at 7.
+  EXPECT_EQ(read_vtk_part(out() / "frames/default/v/bob_0004.vtp").points(0, 0), 10);
+}
 
 TEST_F(Inputs, AreMadeWhenMissingAndFoundAgain) {
   (void)pendulum();
