@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "baselines/skinning/dual_quaternion.h"
 #include "core/error.h"
 #include "core/topology.h"
 #include "metrics/bend_side.h"
+#include "metrics/pose_return.h"
 #include "metrics/self_contact.h"
 #include "metrics/volume.h"
 
@@ -127,6 +129,15 @@ std::vector<int> overlapping_triangles(Shared& shared, const TriMesh& mesh,
 
 std::shared_ptr<const BoneRings> rings_of(Shared& shared, const RiggedMesh& rig) {
   return shared.rings.get(key_of(rig), [&] { return std::make_shared<const BoneRings>(rig); });
+}
+
+/// Of every vertex; NaN without a ring.
+Eigen::VectorXd local_radii(Shared& shared, const SkinningScene& scene) {
+  const auto rings = rings_of(shared, scene.rig);
+  Eigen::VectorXd radius(scene.rig.mesh.vertex_count());
+  for (int v = 0; v < scene.rig.mesh.vertex_count(); ++v)
+    radius(v) = rings->radius(v).value_or(std::numeric_limits<double>::quiet_NaN());
+  return radius;
 }
 
 std::shared_ptr<const PlainPose> plain_pose(Shared& shared, const Measured& m) {
@@ -321,13 +332,18 @@ VertexDistance reference_distance(const Measured& m, const Measured& reference) 
   return vertex_distance(m.posed, reference.posed, vertices);
 }
 
-Pops pops(const SkinningScene& scene, const FrameSequence& frames) {
+Pops pops(Shared& shared, const SkinningScene& scene, const FrameSequence& frames) {
   std::vector<Eigen::MatrixX3d> positions;
+  std::vector<Pose> poses;
   const std::vector<double> parameters = frames.parameters();
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    positions.push_back(in_bone_frame(measured(scene, *frames.frame(i))));
+    const std::shared_ptr<const Frame> frame = frames.frame(i);
+    const Measured m = measured(scene, *frame);
+    positions.push_back(in_bone_frame(m));
+    poses.push_back(m.pose);
   }
   Pops pops;
+  pops.pose_return = pose_return(positions, poses, local_radii(shared, scene));
   if (scene.parameter_unit_label == "deg") pops.motion = motion_smoothness(positions, parameters);
   if (frames.size() < 3 || !equally_spaced(parameters) || scene.regions.empty()) return pops;
   pops.second_difference = second_difference_max(

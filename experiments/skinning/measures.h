@@ -122,7 +122,9 @@ struct Pops {
   Value second_difference;  ///< of the first region; absent for unequal steps or no region
   /// Of the whole body; absent for fewer than four frames, or a parameter that is no angle.
   std::optional<MotionSmoothness> motion;
+  /// Absent when no pose comes twice.
+  std::optional<double> pose_return;
 };
-Pops pops(const SkinningScene& scene, const FrameSequence& frames);
+Pops pops(Shared& shared, const SkinningScene& scene, const FrameSequence& frames);
 
 }  // namespace geoprior::skinning

@@ -272,8 +272,11 @@ auto of_motion(double MotionSmoothness::*quantity) {
   };
 }
 
-MetricGroup pops_group() {
-  return sequence_metrics<SkinningScene>(pops)
+MetricGroup pops_group(const SharedPtr& shared) {
+  return sequence_metrics<SkinningScene>(
+             [shared](const SkinningScene& scene, const FrameSequence& frames) {
+               return pops(*shared, scene, frames);
+             })
       .row("second_difference_max", "m",
            "largest second difference of a vertex of the region over three successive frames of "
            "equal steps, in the frame of the joint of largest weight; falls with the step",
@@ -286,7 +289,11 @@ MetricGroup pops_group() {
            "largest distance, in the middle of a step, of where the two frames before and the two "
            "after it lead a vertex, in the frame of the joint of largest weight, over the whole "
            "body",
-           kLow, kLength, of_motion(&MotionSmoothness::jump));
+           kLow, kLength, of_motion(&MotionSmoothness::jump))
+      .row("pose_return", "1",
+           "largest distance of a vertex from where it was when the skeleton was in the same pose "
+           "before, over the local radius",
+           kLow, kRatio, &Pops::pose_return);
 }
 
 MetricGroup distance_group() {
@@ -320,7 +327,7 @@ std::vector<MetricGroup> metrics() {
           distortion_group(),
           rest_group(),
           mid_ring_group(),
-          pops_group(),
+          pops_group(shared),
           distance_group()};
 }
 
