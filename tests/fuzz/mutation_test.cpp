@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <iostream>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ void run_on(const std::string& name, const std::vector<std::string>& seeds, Targ
   const auto elapsed = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  for (std::uint64_t i = 0; i < mutations || elapsed() < seconds_asked(); ++i) {
+  std::uint64_t i = 0;
+  for (; i < mutations || elapsed() < seconds_asked(); ++i) {
     RandomStream random(i, "fuzz" + name);
     const std::string text = mutated(seeds, random);
     try {
@@ -45,6 +47,7 @@ void run_on(const std::string& name, const std::vector<std::string>& seeds, Targ
       FAIL() << "mutation " << i << ": " << e.what() << "\n" << text.substr(0, 2000);
     }
   }
+  std::cout << name << ": " << i << " inputs\n";
 }
 
 void run(const std::string& extension, Target target) {
