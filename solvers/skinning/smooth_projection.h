@@ -22,9 +22,11 @@ namespace geoprior::skinning {
 /// nothing where the gradient does not agree with the skinned normal (a vertex beyond a medial
 /// axis), where the support ends, near contact, and about the trunk, whose bones are shorter than
 /// thick: skin there is no tube about a bone.
-/// Contact: vertices where another bone's field is deeper than their own, and that have met skin
-/// which faces them, move to where both fields are equally deep, no farther than they stand behind
-/// that skin.
+/// Contact: vertices where another bone's field is about as deep as their own, and that have met
+/// skin which faces them, are pushed to where both fields are equally deep, no farther than they
+/// stand behind that skin. The force grows smoothly within a band about contact: a smooth convex
+/// potential, on which every evaluation is a Newton step. With `follow` that begins where the pose
+/// before ended.
 /// Skin that twists slides around its bone: fields are turned about their axis to each vertex' own
 /// twist before they are asked.
 class SmoothProjection {

@@ -23,9 +23,10 @@ namespace geoprior::skinning {
 /// radius, kappa = (cutoff / 7.85)^4: of a demand w = 1 whose wavelength is 0.8 `cutoff` local
 /// radii half the amplitude is followed.
 ///
-/// Conjugate gradients with a diagonal preconditioner, from the u of before, over the blocks of the
-/// skin (skin_state.h) that were opened; u is zero elsewhere. Sums go over blocks in their order,
-/// so the result has the same bits for any number of threads. Allocates nothing once warm.
+/// A coarse level (coarse_space.h), then conjugate gradients, preconditioned by the 3 x 3 diagonal,
+/// from the u of before, over the blocks of the skin (skin_state.h) that were opened; u is zero
+/// elsewhere. Sums go over blocks in their order, so the result has the same bits for any number of
+/// threads. Allocates nothing once warm.
 class SmoothSystem {
  public:
   /// @param radius  local radius of each slot (m)
