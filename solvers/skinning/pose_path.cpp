@@ -1,7 +1,9 @@
 #include "solvers/skinning/pose_path.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -15,6 +17,12 @@ namespace {
 constexpr double kAtRest = 1e-6;
 
 double angle_of(const Eigen::Matrix3d& rotation) { return Eigen::AngleAxisd(rotation).angle(); }
+
+std::string short_number(double x) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", x);
+  return text.data();
+}
 
 }  // namespace
 
@@ -35,11 +43,14 @@ int PosePath::go_to(const Pose& pose, double largest_turn) {
       if (joint.parent < 0) continue;
       const Eigen::Isometry3d local = against_parent(pose, j);
       const double angle = angle_of(local.linear());
-      const double off = std::max(angle, (local * joint.head - joint.head).norm());
+      const double away = (local * joint.head - joint.head).norm();
+      // A joint that is carried away a little counts less than one that is turned.
+      const double off = std::max(angle, std::min(away, 0.01));
       if (off <= farthest) continue;
       farthest = off;
       turned = "joint '" + joint.name + "' is turned by " +
-               std::to_string(std::lround(angle * 180 / std::numbers::pi)) + " degrees";
+               short_number(angle * 180 / std::numbers::pi) + " degrees and moved by " +
+               short_number(1000 * away) + " mm against its parent";
     }
     if (!turned.empty()) {
       throw Error("the poses begin away from rest: " + turned,
