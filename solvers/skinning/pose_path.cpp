@@ -13,8 +13,10 @@
 namespace geoprior::skinning {
 namespace {
 
-/// Of a first pose: what a joint may be turned (radians) and carried away (m) by round-off.
-constexpr double kAtRest = 1e-6;
+/// Of a first pose: what a joint may be turned (radians) and carried away (m) by the round-off of
+/// files.
+constexpr double kTurnAtRest = 0.1 * std::numbers::pi / 180;
+constexpr double kAwayAtRest = 1e-4;
 
 double angle_of(const Eigen::Matrix3d& rotation) { return Eigen::AngleAxisd(rotation).angle(); }
 
@@ -36,7 +38,7 @@ Eigen::Isometry3d PosePath::against_parent(const Pose& pose, std::size_t joint) 
 
 int PosePath::go_to(const Pose& pose, double largest_turn) {
   if (!begun_) {
-    double farthest = kAtRest;
+    double farthest = 1;
     std::string turned;
     for (std::size_t j = 0; j < pose.size(); ++j) {
       const Joint& joint = skeleton_.joints[j];
@@ -44,8 +46,7 @@ int PosePath::go_to(const Pose& pose, double largest_turn) {
       const Eigen::Isometry3d local = against_parent(pose, j);
       const double angle = angle_of(local.linear());
       const double away = (local * joint.head - joint.head).norm();
-      // A joint that is carried away a little counts less than one that is turned.
-      const double off = std::max(angle, std::min(away, 0.01));
+      const double off = std::max(angle / kTurnAtRest, away / kAwayAtRest);
       if (off <= farthest) continue;
       farthest = off;
       turned = "joint '" + joint.name + "' is turned by " +

@@ -18,7 +18,8 @@ class PosePath {
   /// Goes on to `pose`.
   /// @param largest_turn  of a joint against its parent in one step (radians)
   /// @return steps, at least 1
-  /// @throws Error  when `pose` begins a path and is not the rest pose, moved as a whole or not:
+  /// @throws Error  when `pose` begins a path and is not the rest pose, moved as a whole or
+  ///                not, within 0.1 degrees and 0.1 mm:
   ///                names the joint that is turned farthest
   int go_to(const Pose& pose, double largest_turn);
 
