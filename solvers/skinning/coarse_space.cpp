@@ -66,9 +66,12 @@ void reproduce_lines(const SkinState& state, std::size_t slot, const Eigen::Vect
   if (entries.empty()) return;
   // Of the second moments: keeps few or aligned nodes from large weights of both signs.
   constexpr double kStiff = 1e-3;
+  // Among triangles without area there is no normal: any plane does.
+  const Eigen::Vector3d up =
+      normal.squaredNorm() > 0 ? normal : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
   Eigen::Matrix<double, 3, 2> tangents;
-  tangents.col(0) = normal.unitOrthogonal();
-  tangents.col(1) = normal.cross(tangents.col(0));
+  tangents.col(0) = up.unitOrthogonal();
+  tangents.col(1) = up.cross(tangents.col(0));
   std::vector<Eigen::Vector3d> basis;
   double reach2 = 1e-30;
   for (const CoarseSpace::Entry& entry : entries) {

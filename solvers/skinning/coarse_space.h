@@ -13,10 +13,11 @@ namespace geoprior::skinning {
 
 /// Smooth displacements of the skin that few nodes describe: u_i = sum_n P_in c_n.
 ///
-/// Nodes stand `kSpacing` local radii apart on the rest surface. P holds bumps (1 - (d / R)^2)^3 of
-/// the distance at rest, R = `kBump` spacings, normalised to sum one at every vertex; a bump
-/// reaches along the surface, not across a gap. A displacement that bending makes smooth is found
-/// here in a twentieth of the unknowns; what is left is of short waves (SmoothSystem).
+/// Nodes stand some half a local radius apart on the rest surface. P are moving least squares in
+/// the tangent plane, with weights (1 - (d / R)^2)^3 of the distance at rest: functions that are
+/// linear there are reproduced. A node reaches along the surface, not across a gap. A displacement
+/// that bending makes smooth is found here in a tenth of the unknowns; what is left is of short
+/// waves (SmoothSystem).
 class CoarseSpace {
  public:
   struct Entry {
