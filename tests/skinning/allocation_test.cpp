@@ -73,5 +73,12 @@ TEST_F(AllocationsOfAPose, ImplicitSkinningMakesNone) {
   expect_none([&](const Pose& pose) { method.deform(pose, posed, context); });
 }
 
+TEST_F(AllocationsOfAPose, TheSmoothCorrectionMakesNone) {
+  ImplicitOptions options;
+  options.projection = ProjectionKind::smooth;
+  ImplicitSkinning method(rig, options, context);
+  expect_none([&](const Pose& pose) { method.deform(pose, posed, context); });
+}
+
 }  // namespace
 }  // namespace geoprior::skinning
