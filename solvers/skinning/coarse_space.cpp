@@ -23,7 +23,7 @@ class Walk {
   Walk(const SkinState& state, const CoarseSpace::Rings& rings)
       : state_(state), rings_(rings), distance_(state.size(), kFar) {}
 
-  /// Calls visit(slot, distance) for the slots within `reach` of one, nearest first.
+  /// Calls visit(slot) for the slots within `reach` of one, nearest first.
   template <class Visit>
   void from(int start, float reach, const Visit& visit) {
     touched_.assign(1, start);
@@ -34,7 +34,7 @@ class Walk {
       queue_.pop();
       const auto s = static_cast<std::size_t>(slot);
       if (distance > distance_[s]) continue;
-      visit(slot, distance);
+      visit(slot);
       for (int j = rings_.offset[s]; j < rings_.offset[s + 1]; ++j) {
         const int next = rings_.neighbour[static_cast<std::size_t>(j)];
         const auto n = static_cast<std::size_t>(next);
@@ -112,13 +112,13 @@ void CoarseSpace::place_nodes(const SkinState& state, const Rings& rings,
     if (covered[s] != 0 || !(radius[s] > 0)) continue;
     nodes.push_back(static_cast<int>(s));
     walk.from(static_cast<int>(s), kSpacing * radius[s],
-              [&](int slot, float) { covered[static_cast<std::size_t>(slot)] = 1; });
+              [&](int slot) { covered[static_cast<std::size_t>(slot)] = 1; });
   }
   std::vector<std::vector<Entry>> rows(size_);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const auto centre = static_cast<std::size_t>(nodes[n]);
     const float reach = kBump * kSpacing * radius[centre];
-    walk.from(nodes[n], kDetour * reach, [&](int slot, float) {
+    walk.from(nodes[n], kDetour * reach, [&](int slot) {
       const auto s = static_cast<std::size_t>(slot);
       const Float4 way = state.rest[s] - state.rest[centre];
       const float inside = 1 - dot3(way, way) / (reach * reach);

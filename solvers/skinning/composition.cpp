@@ -15,9 +15,7 @@ Float4 to_float4(const Eigen::Vector3d& v) {
 
 /// p turned about an axis through a point.
 Float4 turned(Float4 v, Float4 axis, AxisTurn turn) {
-  const Float4 cross = {axis[1] * v[2] - axis[2] * v[1], axis[2] * v[0] - axis[0] * v[2],
-                        axis[0] * v[1] - axis[1] * v[0], 0.0F};
-  return splat(turn.cosine) * v + splat(turn.sine) * cross +
+  return splat(turn.cosine) * v + splat(turn.sine) * cross3(axis, v) +
          splat((1 - turn.cosine) * dot3(axis, v)) * axis;
 }
 
@@ -230,11 +228,8 @@ AxisTurn FieldComposition::turn_to(int bone, Float4 rotation) const {
   // q_bone* q_vertex, of which the part about the axis is kept (swing-twist decomposition).
   constexpr float kNoTwist = 1e-4F;  // of a half turn across the axis, where it is undefined
   const Float4 q = posed_[bone].quaternion;
-  const Float4 cross = {q[1] * rotation[2] - q[2] * rotation[1],
-                        q[2] * rotation[0] - q[0] * rotation[2],
-                        q[0] * rotation[1] - q[1] * rotation[0], 0.0F};
   const float w = q[3] * rotation[3] + dot3(q, rotation);
-  const Float4 v = splat(q[3]) * rotation - splat(rotation[3]) * q - cross;
+  const Float4 v = splat(q[3]) * rotation - splat(rotation[3]) * q - cross3(q, rotation);
   const float a = dot3(v, posed_[bone].rest_axis);
   const float scale = 1 / (w * w + a * a + kNoTwist);
   return {(w * w - a * a + kNoTwist) * scale, 2 * w * a * scale};

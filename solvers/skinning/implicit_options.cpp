@@ -48,8 +48,10 @@ void describe_fields(OptionVisitor& v, ImplicitOptions& o) {
 }
 
 void describe_solve(OptionVisitor& v, ImplicitOptions& o) {
-  describe_choice(v, "projection", o.projection, kProjectionNames,
-                  {.doc = "one smooth correction, or every vertex along its own gradient"});
+  describe_choice(
+      v, "projection", o.projection, kProjectionNames,
+      {.doc = "one smooth correction, the same with contact that is tracked from pose to pose, or "
+              "every vertex along its own gradient"});
   describe_group(v, "smooth", o.smooth, {.doc = "of the smooth correction"});
   describe_choice(v, "schedule", o.schedule, kScheduleNames,
                   {.doc = "order of the passes: the paper's, or the authors' released code's"});

@@ -16,6 +16,12 @@ inline float dot3(Float4 a, Float4 b) {
   return product[0] + product[1] + product[2];
 }
 
+/// Cross product of the first three components; the fourth is zero.
+inline Float4 cross3(Float4 a, Float4 b) {
+  return Float4{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0],
+                0.0F};
+}
+
 /// Box around points.
 struct Float4Bounds {
   Float4 low = splat(std::numeric_limits<float>::max());

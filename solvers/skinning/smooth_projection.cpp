@@ -142,12 +142,8 @@ std::vector<int> joints_about(const SkinState& state, const FieldComposition& fi
 
 /// v turned by a unit quaternion.
 Float4 turned(Float4 q, Float4 v) {
-  const auto cross = [](Float4 a, Float4 b) {
-    return Float4{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0],
-                  0.0F};
-  };
-  const Float4 t = splat(2) * cross(q, v);
-  return v + splat(q[3]) * t + cross(q, t);
+  const Float4 t = splat(2) * cross3(q, v);
+  return v + splat(q[3]) * t + cross3(q, t);
 }
 
 }  // namespace
@@ -215,6 +211,11 @@ float SmoothProjection::depth_beyond_own(std::size_t slot, const Sampled& at,
   return other.depth + gap_ * radius_[slot] - std::max(0.0F, at.own.depth);
 }
 
+float SmoothProjection::excess_of(std::size_t slot, const Sampled& at,
+                                  const BoneSample& other) const {
+  return depth_beyond_own(slot, at, other) - slack_of(slot, other.bone);
+}
+
 float SmoothProjection::slack_of(std::size_t slot, int bone) const {
   for (int i = overlap_offset_[slot]; i < overlap_offset_[slot + 1]; ++i)
     if (overlap_[static_cast<std::size_t>(i)].bone == bone)
@@ -237,7 +238,7 @@ float SmoothProjection::crowding(const SkinState& state, std::size_t slot,
   for (const BoneSample& other : at.all()) {
     if (other.bone == state.owner[slot]) continue;
     const float facing = facing_of(other, outward);
-    const float excess = depth_beyond_own(slot, at, other) - slack_of(slot, other.bone);
+    const float excess = excess_of(slot, at, other);
     crowd = std::max(crowd, facing * ramp(-margin, 0, excess));
   }
   return crowd;
@@ -252,7 +253,7 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
   Float4 direction{};
   for (const BoneSample& other : at.all()) {
     if (other.bone == state.owner[slot]) continue;
-    const float excess = depth_beyond_own(slot, at, other) - slack_of(slot, other.bone);
+    const float excess = excess_of(slot, at, other);
     if (excess <= -band) continue;
     const float towards = facing_of(other, outward);
     // Both sides yield as their own fields do: towards the surface where both are equally deep.
@@ -347,7 +348,7 @@ float SmoothProjection::nearest_contact(const SkinState& state, std::size_t slot
   float nearest = -radius_[slot];
   for (const BoneSample& other : at.all()) {
     if (other.bone == state.owner[slot]) continue;
-    nearest = std::max(nearest, depth_beyond_own(slot, at, other) - slack_of(slot, other.bone));
+    nearest = std::max(nearest, excess_of(slot, at, other));
   }
   return nearest;
 }
@@ -361,11 +362,11 @@ bool SmoothProjection::is_free(std::size_t slot) const {
          excess + kSteepest * length_of(moved_[slot] - seen_[slot].moved) < 0;
 }
 
-void SmoothProjection::ask(SkinState& state, Stage stage, const std::vector<int>& blocks) {
-  parallel_blocks(blocks.size(), kBlocksOfTask, [&](std::size_t begin, std::size_t end) {
+void SmoothProjection::ask(SkinState& state, Stage stage) {
+  parallel_blocks(awake_.size(), kBlocksOfTask, [&](std::size_t begin, std::size_t end) {
     std::array<int, kMaxFieldBones> near;
     for (std::size_t i = begin; i < end; ++i) {
-      const auto b = static_cast<std::size_t>(blocks[i]);
+      const auto b = static_cast<std::size_t>(awake_[i]);
       const Float4Bounds bounds = bounds_of(state, b);
       const int count = field_.bones_near(bounds.low, bounds.high, near.data());
       const std::span<const int> bones{near.data(), static_cast<std::size_t>(count)};
@@ -409,7 +410,7 @@ int SmoothProjection::correct_sections(SkinState& state) {
   start_stage();
   int steps = 0;
   for (int i = 0; i < options_.evaluations; ++i) {
-    ask(state, Stage::section, awake_);
+    ask(state, Stage::section);
     system_.open(demand_, options);
     steps += system_.solve(demand_, options, moved_);
     place(state);
@@ -461,7 +462,7 @@ int SmoothProjection::resolve_contacts(SkinState& state) {
   int steps = 0;
   for (int i = 0; i < options_.contact_evaluations; ++i) {
     proximity_.build(state.position);
-    ask(state, Stage::contact, awake_);
+    ask(state, Stage::contact);
     system_.open(demand_, options);
     if (system_.open_blocks().empty()) break;
     steps += system_.solve(demand_, options, moved_);

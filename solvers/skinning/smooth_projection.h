@@ -79,7 +79,8 @@ class SmoothProjection {
   void find_awake(const SkinState& state);
   void list_awake();
   void start_stage();
-  void ask(SkinState& state, Stage stage, const std::vector<int>& blocks);
+  /// What the fields ask of the blocks that are awake.
+  void ask(SkinState& state, Stage stage);
   [[nodiscard]] Sampled sampled(const SkinState& state, std::size_t slot,
                                 std::span<const int> bones) const;
   [[nodiscard]] Demand section_demand(const SkinState& state, std::size_t slot,
@@ -100,6 +101,8 @@ class SmoothProjection {
                                        const BoneSample& other) const;
   /// The same at rest, where it is positive.
   [[nodiscard]] float slack_of(std::size_t slot, int bone) const;
+  /// `depth_beyond_own` over that at rest (m): positive in contact.
+  [[nodiscard]] float excess_of(std::size_t slot, const Sampled& at, const BoneSample& other) const;
 
   const FieldComposition& field_;
   SmoothOptions options_;

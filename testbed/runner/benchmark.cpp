@@ -146,7 +146,7 @@ std::map<std::string, Timing> benchmark_poses(const std::vector<BenchmarkEntry>&
     for (std::size_t frame = 0; frame < parameters.size(); ++frame) {
       for (std::size_t turn = 0; turn < count; ++turn) {
         const BenchmarkEntry& entry = entries[(turn + static_cast<std::size_t>(round)) % count];
-        if (frame == 0 && entry.method->path_dependent()) entry.method->restart();
+        if (frame == 0) entry.method->restart();
         const auto seconds = time_solve(*entry.method, parameters[frame], context);
         if (context.stop_requested()) return {};
         if (repetition < 0) continue;

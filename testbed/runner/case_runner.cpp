@@ -226,9 +226,8 @@ void CaseRunner::record_frame(const VariantSpec& variant, Frame frame,
 bool CaseRunner::run_poses(const VariantSpec& variant, PoseMethod& method, TimedContext& context) {
   const std::vector<double> parameters = scene_->parameters();
   const std::size_t recorded = state_of(variant).record.frames.size();
-  const bool follows = method.path_dependent();
-  if (follows) method.restart();
-  for (std::size_t i = follows ? 0 : recorded; i < parameters.size(); ++i) {
+  method.restart();
+  for (std::size_t i = method.path_dependent() ? 0 : recorded; i < parameters.size(); ++i) {
     if (stop_requested()) return false;
     {
       const LeaveAtOnce section(farewell_within_frame(variant));
