@@ -64,9 +64,9 @@ enum class ProjectionKind { smooth, tracking, marching };
 /// bone.
 struct SmoothOptions {
   double section = 0.5;  ///< share of what fields ask for that is followed
-  double cutoff = 2.5;   ///< wavelength whose amplitude is halved
+  double cutoff = 2.2;   ///< wavelength whose amplitude is halved
   double contact_cutoff = 1.2;
-  double anchor = 0.02;  ///< mu, over the weight of what fields ask
+  double anchor = 0.15;  ///< mu, over the weight of what fields ask
   double contact_anchor = 0.02;
   double contact_gap = 0.06;  ///< by how much a vertex is deeper in its own field than in another
   double contact_weight = 3;  ///< of what contact asks, over the weight of what sections ask
