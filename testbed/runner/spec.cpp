@@ -63,7 +63,8 @@ Json table_json(Table table) {
   return writer.json();
 }
 
-/// Sweeps with the values they were expanded with; names belong to the values of full runs.
+/// Sweeps with the values they were expanded with; names belong to the values of full runs, and to
+/// quick ones that stand in for them one for one.
 Json sweep_tables(const TomlNode& root, bool quick) {
   Json list = Json::array();
   for (const TomlNode& node : tables_of(root, "sweep")) {
@@ -71,8 +72,9 @@ Json sweep_tables(const TomlNode& root, bool quick) {
     if (const TomlNode* reduced = node.find("quick_values"); reduced != nullptr && quick) {
       if (reduced->items.empty()) continue;
       const TomlNode values = *reduced;
+      const bool one_for_one = values.items.size() == node.find("values")->items.size();
       kept.set("values", values);
-      kept.erase("names");
+      if (!one_for_one) kept.erase("names");
     }
     kept.erase("quick_values");
     list.push_back(json_of(kept));

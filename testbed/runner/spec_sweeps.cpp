@@ -66,19 +66,25 @@ void read_names(const TomlNode& node, Sweep& sweep) {
   }
 }
 
-/// Names of the values; a quick value that is also a full one keeps its name.
+/// Names of the values; a quick value keeps the name of the full one that it equals, or that it
+/// stands in for where there are as many.
 std::vector<std::string> value_names(const Sweep& sweep, const std::vector<TomlNode>& full,
                                      const std::string& label) {
   std::map<nlohmann::ordered_json, std::string> given;
   for (std::size_t j = 0; j < sweep.table.names.size(); ++j) {
     given[json_of(full[j])] = sweep.table.names[j];
   }
+  const bool one_for_one = sweep.table.names.size() == sweep.values.size();
   std::vector<std::string> names;
   for (std::size_t i = 0; i < sweep.values.size(); ++i) {
     const auto found = given.find(json_of(sweep.values[i]));
-    names.push_back(found != given.end()
-                        ? found->second
-                        : with_name_characters(label + "=" + value_text(sweep.values[i], i)));
+    if (found != given.end()) {
+      names.push_back(found->second);
+    } else if (one_for_one) {
+      names.push_back(sweep.table.names[i]);
+    } else {
+      names.push_back(with_name_characters(label + "=" + value_text(sweep.values[i], i)));
+    }
   }
   return names;
 }

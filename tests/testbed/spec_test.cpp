@@ -121,6 +121,15 @@ TEST_F(Spec, QuickOverridesKeysAndSweepValues) {
   EXPECT_NE(full.hash, quick.hash);
 }
 
+TEST_F(Spec, QuickValuesThatStandInOneForOneKeepTheNames) {
+  const std::string sweep = toy::disc_experiment() +
+                            "[[sweep]]\nkey = \"seed\"\nvalues = [4, 5]\nnames = [\"a\", \"b\"]\n";
+  EXPECT_THAT(case_names(load(sweep + "quick_values = [6, 7]\n", sized(true))),
+              ElementsAre("default", "a", "b"));
+  EXPECT_THAT(case_names(load(sweep + "quick_values = [6]\n", sized(true))),
+              ElementsAre("default", "seed=6"));
+}
+
 TEST_F(Spec, QuickVersionLeavesOutWhatOnlyTheFullOneHas) {
   const auto claim = [](const std::string& text) {
     return "[[claim]]\ntext = \"" + text +
