@@ -21,8 +21,8 @@ enum class StrokeKind {
   arc,             ///< circular edge of a rigid layer
 };
 
-/// On which side of the hull a stroke that is drawn inside the silhouette lies.
-enum class DepthSide { front, back };
+/// On which sides of the hull a stroke that is drawn inside the silhouette lies.
+enum class DepthSide { front, back, both };
 
 /// One stroke, flattened to chords.
 struct Stroke {
