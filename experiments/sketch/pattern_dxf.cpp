@@ -175,9 +175,10 @@ void write_dxf_line(const SheetLine& line, DxfWriter& out) {
 }
 
 void write_dxf_label(const SheetText& text, DxfWriter& out) {
-  const Eigen::Vector2d to_left(-helvetica_width(text.text) / 2, -kCapitalMiddle);
+  const double before = text.anchor == TextAnchor::middle ? helvetica_width(text.text) / 2 : 0;
+  const Eigen::Vector2d to_left(-before, -kCapitalMiddle);
   // The size of a font is larger than its capitals, which DXF measures.
-  out.text("15", text.middle + text.height * to_left, 2 * kCapitalMiddle * text.height,
+  out.text("15", text.at + text.height * to_left, 2 * kCapitalMiddle * text.height,
            dxf_text(text.text));
 }
 

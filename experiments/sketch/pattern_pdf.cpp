@@ -30,7 +30,7 @@ class PdfPageWriter {
     out_ += "Q\n";
     set_colour(SheetLayer::text);
     for (const SheetLine& mark : page_.marks) write_path(mark, {0, 0});
-    for (const SheetText& text : page_.texts) write_text(text.middle, text);
+    for (const SheetText& text : page_.texts) write_text(text.at, text);
     return std::move(out_);
   }
 
@@ -53,14 +53,14 @@ class PdfPageWriter {
       }
       if (layer != SheetLayer::text) continue;
       for (const SheetText& text : piece.texts) {
-        write_text(page_.on_page(text.middle + piece.place), text);
+        write_text(page_.on_page(text.at + piece.place), text);
       }
     }
     for (const SheetLine& line : sheet_.lines) {
       if (line.layer == layer) write_path(line, {0, 0});
     }
     if (layer != SheetLayer::text) return;
-    for (const SheetText& text : sheet_.texts) write_text(page_.on_page(text.middle), text);
+    for (const SheetText& text : sheet_.texts) write_text(page_.on_page(text.at), text);
   }
 
   void write_path(const SheetLine& line, const Eigen::Vector2d& place) {
@@ -70,10 +70,11 @@ class PdfPageWriter {
     out_ += line.closed ? "s\n" : "S\n";
   }
 
-  void write_text(const Eigen::Vector2d& middle, const SheetText& text) {
-    const Eigen::Vector2d left(-helvetica_width(text.text) / 2, -kCapitalMiddle);
-    out_ += "BT /F1 " + written_number(text.height) + " Tf " +
-            pdf_point(middle + text.height * left) + "Td " + pdf_text(text.text) + " Tj ET\n";
+  void write_text(const Eigen::Vector2d& at, const SheetText& text) {
+    const double before = text.anchor == TextAnchor::middle ? helvetica_width(text.text) / 2 : 0;
+    const Eigen::Vector2d left(-before, -kCapitalMiddle);
+    out_ += "BT /F1 " + written_number(text.height) + " Tf " + pdf_point(at + text.height * left) +
+            "Td " + pdf_text(text.text) + " Tj ET\n";
   }
 
   const PatternSheet& sheet_;

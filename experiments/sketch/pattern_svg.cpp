@@ -61,14 +61,14 @@ class SvgPageWriter {
       }
       if (layer != SheetLayer::text) continue;
       for (const SheetText& text : piece.texts) {
-        write_text(page_.on_page(text.middle + piece.place), text, of);
+        write_text(page_.on_page(text.at + piece.place), text, of);
       }
     }
     for (const SheetLine& line : sheet_.lines) {
       if (line.layer == layer) write_path(line, {0, 0}, " class=\"scale-bar\"");
     }
     if (layer != SheetLayer::text) return;
-    for (const SheetText& text : sheet_.texts) write_text(page_.on_page(text.middle), text, "");
+    for (const SheetText& text : sheet_.texts) write_text(page_.on_page(text.at), text, "");
   }
 
   static std::string number_of(const SheetLine& line) {
@@ -88,7 +88,7 @@ class SvgPageWriter {
 
   void write_marks() {
     for (const SheetLine& mark : page_.marks) write_path(mark, {0, 0}, " class=\"mark\"");
-    for (const SheetText& text : page_.texts) write_text(text.middle, text, "");
+    for (const SheetText& text : page_.texts) write_text(text.at, text, "");
   }
 
   void write_path(const SheetLine& line, const Eigen::Vector2d& place,
@@ -102,13 +102,14 @@ class SvgPageWriter {
     out_ += line.closed ? "Z\"/>\n" : "\"/>\n";
   }
 
-  void write_text(const Eigen::Vector2d& middle, const SheetText& text,
-                  const std::string& attributes) {
-    const double base = page_.paper.y() - middle.y() + kCapitalMiddle * text.height;
-    out_ += "<text" + attributes + " x=\"" + written_number(middle.x()) + "\" y=\"" +
+  void write_text(const Eigen::Vector2d& at, const SheetText& text, const std::string& attributes) {
+    const double base = page_.paper.y() - at.y() + kCapitalMiddle * text.height;
+    out_ += "<text" + attributes + " x=\"" + written_number(at.x()) + "\" y=\"" +
             written_number(base) + "\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"" +
-            written_number(text.height) + "\" text-anchor=\"middle\" stroke=\"none\" fill=\"" +
-            style_.colour(SheetLayer::text) + "\">" + xml_text(text.text) + "</text>\n";
+            written_number(text.height) + "\" text-anchor=\"" +
+            (text.anchor == TextAnchor::middle ? "middle" : "start") +
+            "\" stroke=\"none\" fill=\"" + style_.colour(SheetLayer::text) + "\">" +
+            xml_text(text.text) + "</text>\n";
   }
 
   const PatternSheet& sheet_;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "models/sketch/sheet_text.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -85,10 +84,10 @@ SheetText page_label(const SheetPage& page, const PatternSheet& sheet, int numbe
   std::u32string line(text.begin(), text.end());
   if (!sheet.title.empty()) line += U"   " + sheet.title.substr(0, 40);
   const double height = 3.5;
-  return {{page.place.x() + helvetica_width(line) * height / 2,
-           page.place.y() >= 6 ? page.place.y() / 2 : page.place.y() + 4},
+  return {{page.place.x(), page.place.y() >= 6 ? page.place.y() / 2 : page.place.y() + 4},
           height,
-          line};
+          line,
+          TextAnchor::left};
 }
 
 }  // namespace

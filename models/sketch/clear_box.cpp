@@ -122,9 +122,4 @@ bool is_clear(const Eigen::AlignedBox2d& box, const std::vector<PlaneLoop>& loop
   return room(box.center()) >= sizes.y() / 2;
 }
 
-std::vector<PlaneSegment> sides_of(const Eigen::AlignedBox2d& box) {
-  const Eigen::Vector2d a = box.min(), c = box.max(), b(c.x(), a.y()), d(a.x(), c.y());
-  return {{a, b}, {b, c}, {c, d}, {d, a}};
-}
-
 }  // namespace geoprior::sketch

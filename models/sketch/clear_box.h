@@ -29,7 +29,4 @@ Eigen::AlignedBox2d largest_clear_box(const std::vector<PlaneLoop>& loops,
 bool is_clear(const Eigen::AlignedBox2d& box, const std::vector<PlaneLoop>& loops,
               const std::vector<PlaneSegment>& obstacles);
 
-/// The four sides.
-std::vector<PlaneSegment> sides_of(const Eigen::AlignedBox2d& box);
-
 }  // namespace geoprior::sketch

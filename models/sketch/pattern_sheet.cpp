@@ -65,8 +65,7 @@ void draw_scale_bar(PatternSheet& sheet, const Eigen::Vector2d& at) {
         {SheetLayer::text, false, {foot, foot + Eigen::Vector2d(0, i % 5 == 0 ? 4 : 2)}});
   }
   const std::u32string length = widened(millimetres_text(kScaleBar));
-  sheet.texts.push_back(
-      {at + Eigen::Vector2d(kScaleBar + 3 + helvetica_width(length) * 2, 2), 4, length});
+  sheet.texts.push_back({at + Eigen::Vector2d(kScaleBar + 3, 2), 4, length, TextAnchor::left});
 }
 
 /// Begins at the left margin, set smaller where the sheet is too narrow for it.
@@ -75,7 +74,7 @@ void write_line(PatternSheet& sheet, const Eigen::Vector2d& left, double height,
   if (text.empty()) return;
   const double width = helvetica_width(text);
   const double h = std::min(height, (sheet.size.x() - 2 * left.x()) / (1.15 * width));
-  sheet.texts.push_back({left + Eigen::Vector2d(h * width / 2, 0), h, text});
+  sheet.texts.push_back({left, h, text, TextAnchor::left});
 }
 
 }  // namespace

@@ -47,11 +47,14 @@ struct SheetLine {
   int number = 0;  ///< of its border (outer 0, holes from 1), its fold from 0, its notch from 1
 };
 
-/// Text on the base line's middle. Millimetres.
+enum class TextAnchor { middle, left };
+
+/// One line of text. Millimetres.
 struct SheetText {
-  Eigen::Vector2d middle{0, 0};  ///< of the box around the text
-  double height = 5;             ///< size of the font
-  std::u32string text;           ///< one line without control characters (sheet_text.h)
+  Eigen::Vector2d at{0, 0};  ///< middle of the text, or of its left end
+  double height = 5;         ///< size of the font
+  std::u32string text;       ///< without control characters (sheet_text.h)
+  TextAnchor anchor = TextAnchor::middle;
 };
 
 /// Where a notch is cut. Millimetres, in the piece's own coordinates.

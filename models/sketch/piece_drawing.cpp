@@ -75,6 +75,7 @@ class PieceDrawing {
     for (const AllowanceBorder& border : borders) sewn_.push_back(own(border.points));
     add_loops(SheetLayer::cut, cut_);
     add_loops(SheetLayer::sew, sewn_);
+    free_ = sewn_;
   }
 
   void add_loops(SheetLayer layer, const std::vector<PlaneLoop>& loops) {
@@ -146,15 +147,15 @@ class PieceDrawing {
     const Eigen::Vector2d half(kTextRoom * helvetica_width(text) * height / 2 + 0.4,
                                height / 2 + 0.2);
     const Eigen::AlignedBox2d box(Eigen::Vector2d(middle - half), Eigen::Vector2d(middle + half));
-    if (!is_clear(box, sewn_, obstacles_)) return false;
+    if (!is_clear(box, free_, obstacles_)) return false;
     add_text(box, middle, height, text);
     return true;
   }
 
   void add_text(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& middle, double height,
                 const std::u32string& text) {
-    const auto sides = sides_of(box);
-    obstacles_.insert(obstacles_.end(), sides.begin(), sides.end());
+    free_.push_back(
+        {box.min(), {box.max().x(), box.min().y()}, box.max(), {box.min().x(), box.max().y()}});
     drawing_.texts.push_back({middle, height, text});
   }
 
@@ -188,7 +189,7 @@ class PieceDrawing {
       const double width =
           kTextRoom * std::max(helvetica_width(name), 0.6 * helvetica_width(below)) + 0.6;
       const double height = 1 + 0.3 + 0.6 + 0.6;
-      const auto box = largest_clear_box(sewn_, obstacles_, width / height);
+      const auto box = largest_clear_box(free_, obstacles_, width / height);
       if (box.isEmpty()) return;
       const double h = std::min(options_.text_mm, box.sizes().y() / height);
       if (h < kLeastLegible / 0.6) {
@@ -206,7 +207,7 @@ class PieceDrawing {
   /// An upright arrow in the tallest room that is left.
   void draw_grain() {
     for (const double aspect : {0.2, 0.4, 0.8}) {
-      const auto box = largest_clear_box(sewn_, obstacles_, aspect);
+      const auto box = largest_clear_box(free_, obstacles_, aspect);
       if (box.isEmpty()) return;
       const double length = std::min(0.86 * box.sizes().y(), kLongestGrain);
       if (length < kLeastGrain && aspect < 0.8) continue;
@@ -225,6 +226,7 @@ class PieceDrawing {
   const SheetOptions& options_;
   SheetPiece drawing_;
   std::vector<PlaneLoop> cut_, sewn_;
+  std::vector<PlaneLoop> free_;  ///< sewing lines and, as holes, boxes around texts
   std::vector<PlaneSegment> obstacles_;
   std::vector<Eigen::Vector2d> inward_;  ///< of each notch that is drawn
   std::size_t numbered_ = 0;
