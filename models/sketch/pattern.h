@@ -24,6 +24,7 @@ struct PatternPiece {
   std::vector<std::vector<int>> borders;  ///< closed loops of points; the outer one first
   std::vector<PieceEdge> edges;           ///< the outer and inner borders, cut at seams' ends
   Eigen::Vector2d grain{0, 1};            ///< direction of the material's grain, unit
+  std::vector<std::vector<int>> folds;    ///< chains of points along which it is folded
 };
 
 /// What is cut out and sewn together.
