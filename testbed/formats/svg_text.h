@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace geoprior {
 
@@ -14,7 +15,7 @@ inline constexpr double kMostSvgNumber = 1e15;
 /// reader stands. Errors name `where` and the character.
 class SvgText {
  public:
-  SvgText(std::string_view text, const std::string& where) : text_(text), where_(where) {}
+  SvgText(std::string_view text, std::string where) : text_(text), where_(std::move(where)) {}
 
   [[noreturn]] void fail(const std::string& problem, const std::string& allowed) const;
 
@@ -37,7 +38,7 @@ class SvgText {
   void skip_space();
 
   std::string_view text_;
-  const std::string& where_;
+  std::string where_;
   std::size_t at_ = 0;
 };
 
