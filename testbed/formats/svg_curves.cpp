@@ -1,12 +1,13 @@
-#include "experiments/paper/svg_curves.h"
+#include "testbed/formats/svg_curves.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/planar.h"
 
-namespace geoprior::paper {
+namespace geoprior {
 namespace {
 
 constexpr int kMostChords = 4096;
@@ -15,7 +16,7 @@ constexpr int kMostChords = 4096;
 Eigen::Vector2d unit_circle_centre(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                                    bool far_side) {
   const Eigen::Vector2d half = (to - from) / 2;
-  const double squared = half.squaredNorm();
+  const double squared = std::max(half.squaredNorm(), std::numeric_limits<double>::min());
   const double height = std::sqrt(std::max(0.0, 1 / squared - 1));
   const Eigen::Vector2d normal(-half.y(), half.x());
   return (from + to) / 2 + (far_side ? height : -height) * normal;
@@ -50,6 +51,11 @@ void flatten_arc(const SvgArc& arc, double tolerance, std::vector<Eigen::Vector2
     return (rotation.transpose() * p).cwiseQuotient(radii);
   };
   const double reach = (to_circle(arc.to) - to_circle(arc.from)).norm() / 2;
+  constexpr double kFarthest = 1e12;  // in radii; the rest of the number is noise beyond it
+  if (!(reach < kFarthest)) {
+    out.push_back(arc.to);
+    return;
+  }
   if (reach > 1) radii *= reach;
   const Eigen::Vector2d from = to_circle(arc.from), to = to_circle(arc.to);
   const Eigen::Vector2d centre = unit_circle_centre(from, to, arc.large != arc.sweep);
@@ -70,4 +76,4 @@ void flatten_arc(const SvgArc& arc, double tolerance, std::vector<Eigen::Vector2
   out.push_back(arc.to);
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior
