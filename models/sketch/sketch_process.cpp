@@ -163,6 +163,10 @@ class SketchFrames final : public FrameModel {
                             seam_edges(prepared_.surface), input_.pattern);
       }
       add_pattern(frame, made);
+      if (input_.files) {
+        const Phase phase(context, "record");
+        for (Artifact& file : input_.files(made.pattern)) sink.artifact(std::move(file));
+      }
     }
     const Phase phase(context, "record");
     method_->diagnose(frame.diagnostics);

@@ -31,6 +31,8 @@ struct SketchInput {
   TaubinOptions smoothing;
   PatternOptions pattern;
   bool patterns = true;  ///< the last frame has the flat pieces
+  /// Files that are made of the pattern; none when empty.
+  std::function<std::vector<Artifact>(const Pattern&)> files = {};
 };
 
 /// The surface that methods begin with.
