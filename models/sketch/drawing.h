@@ -19,7 +19,8 @@ enum class ViewKind {
 
 /// A bitmap that a view was traced from.
 struct Picture {
-  std::string file;              ///< as the drawing names it; empty: none
+  std::string file;              ///< path of it; empty: none, or embedded
+  std::string content;           ///< bytes of an embedded one (PNG, JPEG)
   Eigen::Vector2d origin{0, 0};  ///< lower left corner in the view (m)
   Eigen::Vector2d size{0, 0};    ///< in the view (m)
 };

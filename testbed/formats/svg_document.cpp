@@ -61,6 +61,9 @@ struct Surroundings {
   int depth = 0;
 };
 
+/// Most comparisons of elements with rules of style: a second or two.
+constexpr double kMostSvgMatches = 5e7;
+
 /// Elements that draw nothing by themselves.
 bool only_serves(std::string_view element) {
   constexpr std::array<std::string_view, 18> kServing{
@@ -230,6 +233,8 @@ class SvgReader {
     const std::string_view element = xml_.element(node);
     if (element.empty() || only_serves(element)) return;
     require_count(++elements_, "elements", kMostSvgElements, document_.name);
+    require_count(elements_ * static_cast<double>(sheet_.size()),
+                  "comparisons of elements with rules of style", kMostSvgMatches, document_.name);
     if (++around.depth > kMostNesting) {
       throw Error("elements are nested too deep", xml_.place(node),
                   "at most " + std::to_string(kMostNesting) + " levels");

@@ -43,6 +43,8 @@ class SvgStyleSheet {
                                       const SvgProperties& attributes,
                                       std::string_view style) const;
 
+  [[nodiscard]] std::size_t size() const { return rules_.size(); }
+
   static constexpr std::size_t kMostRules = 2000;
 
  private:
