@@ -25,8 +25,8 @@ struct DrawingFile {
   std::vector<std::filesystem::path> inputs;  ///< the file, and the pictures beside it
 };
 
-/// Most points of one stroke.
-inline constexpr std::size_t kMostStrokePoints = 20000;
+/// Most strokes of a view.
+inline constexpr int kMostViewStrokes = 5000;
 
 /// Reads the annotated views of one object from an SVG file.
 ///

@@ -21,7 +21,11 @@ double twice_signed_area(const std::vector<Eigen::Vector2d>& points) {
 class Chain {
  public:
   Chain(Stroke first, std::vector<Stroke>& open, double snap)
-      : chain_(std::move(first)), last_(chain_.id), open_(open), snap_(snap) {}
+      : chain_(std::move(first)),
+        last_(chain_.id),
+        length_(length(chain_)),
+        open_(open),
+        snap_(snap) {}
 
   std::optional<SilhouetteGap> close() {
     while (true) {
@@ -51,7 +55,7 @@ class Chain {
     std::pair<std::size_t, bool> nearest{open_.size(), false};
     double least = (chain_.points.front() - end).norm();
     // A chain that has not yet left its start is not closed by it.
-    if (length(chain_) <= 2 * snap_) least = std::numeric_limits<double>::infinity();
+    if (length_ <= 2 * snap_) least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < open_.size(); ++i) {
       for (const bool last : {false, true}) {
         const double distance =
@@ -71,11 +75,13 @@ class Chain {
     if (backwards) std::reverse(next.points.begin(), next.points.end());
     chain_.points.insert(chain_.points.end(), next.points.begin() + 1, next.points.end());
     chain_.id += "+" + next.id;
+    length_ += length(next);
     last_ = next.id;
   }
 
   Stroke chain_;
   std::string last_;  ///< id of the stroke at its end
+  double length_;
   std::vector<Stroke>& open_;
   double snap_;
 };

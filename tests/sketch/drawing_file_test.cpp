@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/sketch/drawn_stroke.h"
 #include "experiments/sketch/stroke_kinds.h"
 #include "experiments/sketch/view_picture.h"
 #include "tests/testbed/scratch_folder.h"
@@ -329,7 +330,10 @@ TEST_F(DrawingFileTest, PassesOnWhatTheFileGetsWrong) {
   expect_error([&] { read_drawing(file, {}); }, {"entity.svg:1", "never read"});
 }
 
-TEST_F(DrawingFileTest, LimitsThePointsOfAStroke) {
+TEST_F(DrawingFileTest, LimitsStrokesAndPoints) {
+  std::string many = "<path id='a' d='M0 0 1 1'" + kBlack + "/>";
+  for (int i = 0; i < kMostViewStrokes; ++i) many += "<path d='M0 0 1 1' class='seam'/>";
+  refuse(many, {"boot.svg: view:front", "5001 strokes", "at most 5000"});
   std::string d = "M0 0";
   for (std::size_t i = 0; i <= kMostStrokePoints; ++i) d += i % 2 == 0 ? "l1 1" : "l1-1";
   refuse(kOutline + "<path id='long' d='" + d + "' stroke='red'/>",
