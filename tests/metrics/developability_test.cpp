@@ -164,7 +164,7 @@ TriMesh schwarz_lantern(double radius, double height, int n, int bands) {
 }
 
 /// Cone over a regular polygon, apex down at vertex 0, its sides rising by `slope`.
-TriMesh cone(double slope, int rings, int spokes) {
+TriMesh polygonal_cone(double slope, int rings, int spokes) {
   sheets::Sheet s = sheets::disc(1, rings, spokes);
   s.x.col(2) = slope * s.pattern.rowwise().norm();
   return s.mesh();
@@ -202,7 +202,7 @@ TEST(DevelopabilitySpread, TheSchwarzLanternIsCrumpledWithoutADefect) {
 
 TEST(DevelopabilitySpread, OfAConeIsItsApexUntilThatIsLeftOut) {
   const int rings = 5, spokes = 36;
-  const TriMesh mesh = cone(0.75, rings, spokes);
+  const TriMesh mesh = polygonal_cone(0.75, rings, spokes);
   const DevelopabilitySpread d = developability_spread(mesh);
   // Chords of 2 sin(pi / n) between sides of length 1.25: the angle of a facet at the apex.
   const double apex = 2 * pi - spokes * 2 * std::asin(std::sin(pi / spokes) / 1.25);
@@ -256,7 +256,7 @@ TEST(DevelopabilitySpread, QuantilesCountVertices) {
 }
 
 TEST(DevelopabilitySpread, RefusesAMaskOfAnotherMesh) {
-  const TriMesh mesh = cone(0.5, 2, 6);
+  const TriMesh mesh = polygonal_cone(0.5, 2, 6);
   EXPECT_THROW(developability_spread(mesh, std::vector<bool>(3)), Error);
   const DevelopabilitySpread none =
       developability_spread(mesh, std::vector<bool>(mesh.vertex_count(), true));
@@ -285,7 +285,7 @@ TEST(GaussImage, OfAConeIsASmallCircle) {
   const int spokes = 60;
   const double slope = 2.5;
   const double angle = std::atan(slope / std::cos(pi / spokes));
-  const GaussImage g = gauss_image(cone(slope, 3, spokes));
+  const GaussImage g = gauss_image(polygonal_cone(slope, 3, spokes));
   EXPECT_NEAR(g.great_circle_thinness, 2 / std::pow(std::tan(angle), 2), 1e-12);
   EXPECT_LT(g.small_circle_thinness, 1e-12);
   EXPECT_NEAR(g.great_circle_rms, pi / 2 - angle, 1e-12);

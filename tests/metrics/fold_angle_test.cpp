@@ -14,7 +14,7 @@
 namespace geoprior {
 namespace {
 
-std::vector<int> all_of(const TriMesh& mesh) {
+std::vector<int> numbers_of_triangles(const TriMesh& mesh) {
   std::vector<int> all;
   for (int t = 0; t < mesh.triangle_count(); ++t) all.push_back(t);
   return all;
@@ -26,7 +26,7 @@ TEST(FoldAngle, OfATentIsTheSlopeOfItsSides) {
   const TriMesh mesh = s.mesh();
   const Eigen::Vector3d up(0, 0, 2);
   std::vector<int> flat, sloped;
-  for (const int t : all_of(mesh)) {
+  for (const int t : numbers_of_triangles(mesh)) {
     const double middle =
         (mesh.V(mesh.F(t, 0), 0) + mesh.V(mesh.F(t, 1), 0) + mesh.V(mesh.F(t, 2), 0));
     (middle < 0 ? flat : sloped).push_back(t);
@@ -35,7 +35,7 @@ TEST(FoldAngle, OfATentIsTheSlopeOfItsSides) {
   EXPECT_NEAR(fold_angle(mesh, sloped, up, 60 * kDegree).mean, 10 * kDegree, 1e-12);
   EXPECT_NEAR(fold_angle(mesh, flat, up, 60 * kDegree).mean, 60 * kDegree, 1e-12);
   // Both sides have the same area.
-  const FoldAngle both = fold_angle(mesh, all_of(mesh), up, 60 * kDegree);
+  const FoldAngle both = fold_angle(mesh, numbers_of_triangles(mesh), up, 60 * kDegree);
   EXPECT_NEAR(both.mean, 35 * kDegree, 1e-12);
   EXPECT_NEAR(both.max, 60 * kDegree, 1e-12);
   // From below the back is seen: 130 degrees.
@@ -48,7 +48,7 @@ TEST(FoldAngle, OnACylinderIsTheAzimuth) {
   const sheets::Sheet s = sheets::mapped(sheets::rectangle(radius * 150 * kDegree, 0.2, 50, 2),
                                          sheets::cylinder(radius));
   const TriMesh mesh = s.mesh();
-  for (const int t : all_of(mesh)) {
+  for (const int t : numbers_of_triangles(mesh)) {
     const int facet = t / 4;  // four triangles each
     const double azimuth = std::abs(-75 + 3 * (facet + 0.5)) * kDegree;
     EXPECT_NEAR(fold_angle(mesh, std::array{t}, {0, 0, 1}, 60 * kDegree).max,

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "tests/metrics/shapes.h"
 #include "tests/metrics/sheets.h"
 
@@ -33,7 +34,7 @@ PlanarLoop rectangle_loop(double width, double height, const Eigen::Vector2d& ce
 }
 
 /// Area that two circles have in common, their centres d apart.
-double lens(double r, double s, double d) {
+double lens_area(double r, double s, double d) {
   if (d >= r + s) return 0;
   if (d <= std::abs(r - s)) return pi * std::pow(std::min(r, s), 2);
   const double a = std::acos((d * d + r * r - s * s) / (2 * d * r));
@@ -61,7 +62,7 @@ TEST(Silhouette, IouOfADiscAndAShiftedOneIsTheLens) {
   const TriMesh disc = flat_disc(1);
   for (const double shift : {0.0, 0.01, 0.5, 1.7}) {
     const PlanarLoop drawn = circle(1, {0.6 * shift, 0.8 * shift});
-    const double common = lens(1, 1, shift);
+    const double common = lens_area(1, 1, shift);
     // Polygons of 2000 and 4000 corners: 1.6e-6 of the area; rows: less.
     EXPECT_NEAR(match_of(disc, drawn).iou, common / (2 * pi - common), 4e-6);
   }
@@ -73,7 +74,7 @@ TEST(Silhouette, IouOfAnAnnulusAndAShiftedOne) {
   for (const double d : {0.1, 0.3}) {
     const Eigen::Vector2d shift(0, d);
     const std::array drawn{circle(1, shift), circle(0.5, shift)};
-    const double common = lens(1, 1, d) - 2 * lens(1, 0.5, d) + lens(0.5, 0.5, d);
+    const double common = lens_area(1, 1, d) - 2 * lens_area(1, 0.5, d) + lens_area(0.5, 0.5, d);
     const double one = pi * 0.75;
     const SilhouetteMatch m = silhouette_match(annulus, kFront, drawn);
     EXPECT_NEAR(m.iou, common / (2 * one - common), 1e-5);
@@ -181,6 +182,20 @@ TEST(Silhouette, AHoleThatIsDrawnMustBeOpen) {
   EXPECT_NEAR(m.drawn_to_mesh, 0.5, 1e-9);
   EXPECT_LT(m.mesh_to_drawn, 1e-9);
   EXPECT_NEAR(m.gap_share, 4.0 / 12, 1e-9);
+}
+
+TEST(Silhouette, IsTheSameAtAnyNumberOfThreads) {
+  const TriMesh torus = shapes::torus(1, 0.35, 90, 50);
+  Eigen::Matrix3d view;
+  view = Eigen::AngleAxisd(0.6, Eigen::Vector3d(1, 2, -1).normalized());
+  const PlanarLoop drawn = circle(1.2, {0.1, 0}, 300);
+  SilhouetteMatch one, many;
+  with_threads(1, [&] { one = silhouette_match(torus, view, {&drawn, 1}); });
+  with_threads(4, [&] { many = silhouette_match(torus, view, {&drawn, 1}); });
+  EXPECT_EQ(one.iou, many.iou);
+  EXPECT_EQ(one.hausdorff, many.hausdorff);
+  EXPECT_EQ(one.gap_share, many.gap_share);
+  EXPECT_EQ(one.gap_longest, many.gap_longest);
 }
 
 TEST(Silhouette, RefusesWhatItCannotCompare) {
