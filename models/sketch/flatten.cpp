@@ -1,51 +1,18 @@
 #include "models/sketch/flatten.h"
 
 #include <cmath>
-#include <string>
+#include <vector>
 
-#include "core/connectivity.h"
-#include "core/error.h"
 #include "models/sketch/conformal_energy.h"
 #include "models/sketch/convex_layout.h"
-#include "models/sketch/cut_surface.h"
 #include "models/sketch/flat_overlap.h"
 #include "models/sketch/flat_triangles.h"
+#include "models/sketch/piece_borders.h"
 #include "models/sketch/rigid_layout.h"
 #include "models/sketch/symmetric_dirichlet.h"
 
 namespace geoprior::sketch {
 namespace {
-
-std::string flatten_problem(const CutPiece& piece, std::size_t parts) {
-  if (parts != 1) return std::to_string(parts) + " parts";
-  if (piece.borders.empty()) return "no border";
-  if (piece.genus() != 0) return std::to_string(piece.genus()) + " handles";
-  return {};
-}
-
-/// The outer border, in the piece's own vertices.
-std::vector<int> checked_outer_border(const TriMesh& piece,
-                                      const std::vector<FlatTriangle>& triangles) {
-  const std::vector<CutPiece> parts = cut_surface(piece, {});
-  const std::string problem =
-      parts.empty() ? "no triangles" : flatten_problem(parts[0], parts.size());
-  if (!problem.empty()) {
-    throw Error("a piece of surface with " + problem + " cannot be laid flat", "flattening",
-                "one part with a border and without handles");
-  }
-  if (parts[0].mesh.vertex_count() != piece.vertex_count()) {
-    throw Error("a vertex is in no triangle or touches another part", "flattening",
-                "one fan of triangles at each");
-  }
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    if (triangles[t].edge == std::array<Complex, 3>{}) {
-      throw Error("corners coincide", "triangle " + std::to_string(t), "a triangle with a length");
-    }
-  }
-  std::vector<int> border;
-  for (const int v : parts[0].borders[0]) border.push_back(parts[0].surface_vertex[v]);
-  return border;
-}
 
 /// A map that turns nothing over, from the conformal one or a convex layout, made as isometric as
 /// the symmetric Dirichlet energy can; nothing when both turn something over.
@@ -105,8 +72,8 @@ void describe(OptionVisitor& v, FlattenOptions& options) {
 }
 
 Flattening flatten(const TriMesh& piece, const FlattenOptions& options) {
+  const std::vector<int> border = piece_borders(piece, "flattening").front();
   const std::vector<FlatTriangle> triangles = flat_triangles(piece, options.largest_cotangent);
-  const std::vector<int> border = checked_outer_border(piece, triangles);
   Flattening flat;
   FlattenReport& report = flat.report;
   Eigen::VectorXcd start =

@@ -156,7 +156,7 @@ TEST(Flatten, HemisphereIsSymmetricAndCannotBeIsometric) {
   EXPECT_LT(worst, 1e-4);
 }
 
-// A spike six times as high as wide: neither conformal nor rigid layouts keep its triangles up.
+// A spike much higher than wide: neither the conformal nor the rigid layout keeps its triangles up.
 TEST(Flatten, MendsTurnedTrianglesAndSaysSo) {
   const TriMesh mesh = spike(24, 2);
   FlattenOptions options;
