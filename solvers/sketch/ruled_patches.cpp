@@ -85,6 +85,19 @@ RulingsOfBorders read_rulings(const View& view, const CurveNet& net) {
   return rulings;
 }
 
+/// The steps of a mesh along a map from the nodes of one run to places on another: each node is
+/// joined to the node nearest to its place.
+std::vector<std::array<int, 2>> cells_of(const std::vector<double>& image) {
+  std::vector<std::array<int, 2>> cells{{0, static_cast<int>(std::lround(image.front()))}};
+  for (std::size_t i = 1; i < image.size(); ++i) {
+    const int to = static_cast<int>(std::lround(image[i]));
+    int j = std::min(cells.back()[1] + 1, to);
+    cells.push_back({static_cast<int>(i), j});
+    while (j < to) cells.push_back({static_cast<int>(i), ++j});
+  }
+  return cells;
+}
+
 /// Sweeps the patch between two borders.
 class PatchSweep {
  public:
@@ -153,8 +166,9 @@ void PatchSweep::sweep(const NodeRun& a, const NodeRun& b) {
   for (std::size_t i = begin; i < path.image.size(); ++i)
     patch_.rulings.push_back({a.number(static_cast<int>(i)), b.begin + b.way * path.image[i],
                               i == 0 || i + 1 == path.image.size()});
-  for (std::size_t k = begin; k < path.cells.size(); ++k)
-    patch_.cells.push_back({a.number(path.cells[k][0]), b.number(path.cells[k][1])});
+  const std::vector<std::array<int, 2>> cells = cells_of(path.image);
+  for (std::size_t k = begin; k < cells.size(); ++k)
+    patch_.cells.push_back({a.number(cells[k][0]), b.number(cells[k][1])});
 }
 
 /// From one drawn ruling forward to the next; a way of no nodes leads once around a closed border.
