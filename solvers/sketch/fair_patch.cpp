@@ -114,23 +114,33 @@ void solve_inner(const Eigen::MatrixX3d& shape, const Eigen::MatrixX3i& F, Eigen
   V.bottomRows(n) = factor.solve(right);
 }
 
-}  // namespace
-
-TriMesh fair_patch(const Eigen::MatrixX3d& border, double spacing, int solves,
-                   const std::string& where) {
-  if (border.rows() < 3) throw Error("border of a panel has less than three points", where);
-  if (!(spacing > 0)) throw Error("spacing is not positive", where, "above 0 m");
-  const Eigen::MatrixX2d flat = points_inside(border_layout(border, where), spacing);
+/// Triangles between points whose first `count` are the border.
+Eigen::MatrixX3i triangles_inside(const Eigen::MatrixX2d& points, int count,
+                                  const std::string& where) {
   std::vector<Eigen::Vector2i> segments;
-  const auto n = static_cast<int>(border.rows());
-  for (int i = 0; i < n; ++i) segments.emplace_back(i, (i + 1) % n);
-  TriMesh mesh;
+  for (int i = 0; i < count; ++i) segments.emplace_back(i, (i + 1) % count);
   try {
-    mesh.F = constrained_delaunay(flat, segments);
+    return constrained_delaunay(points, segments);
   } catch (const Error& crossing) {
     throw Error("border of a panel crosses itself: " + std::string(crossing.what()), where,
                 "a border that is simple seen along its mean normal");
   }
+}
+
+void require_border(const Eigen::MatrixX3d& border, const std::string& where) {
+  if (border.rows() < 3) throw Error("border of a panel has less than three points", where);
+}
+
+}  // namespace
+
+TriMesh fair_patch(const Eigen::MatrixX3d& border, double spacing, int solves,
+                   const std::string& where) {
+  require_border(border, where);
+  if (!(spacing > 0)) throw Error("spacing is not positive", where, "above 0 m");
+  const Eigen::MatrixX2d flat = points_inside(border_layout(border, where), spacing);
+  const auto n = static_cast<int>(border.rows());
+  TriMesh mesh;
+  mesh.F = triangles_inside(flat, n, where);
   mesh.V = Eigen::MatrixX3d::Zero(flat.rows(), 3);
   mesh.V.topRows(n) = border;
   if (flat.rows() == border.rows()) return mesh;
@@ -142,6 +152,12 @@ TriMesh fair_patch(const Eigen::MatrixX3d& border, double spacing, int solves,
     solve_inner(shape, mesh.F, n, mesh.V);
   }
   return mesh;
+}
+
+TriMesh flat_patch(const Eigen::MatrixX3d& border, const std::string& where) {
+  require_border(border, where);
+  const auto n = static_cast<int>(border.rows());
+  return {border, triangles_inside(border_layout(border, where), n, where)};
 }
 
 }  // namespace geoprior::sketch

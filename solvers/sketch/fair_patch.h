@@ -28,4 +28,8 @@ namespace geoprior::sketch {
 TriMesh fair_patch(const Eigen::MatrixX3d& border, double spacing, int solves,
                    const std::string& where);
 
+/// The inside of a closed border that is plane, up to drawing noise, without inner vertices: it can
+/// be laid flat whatever the noise. Other conditions as for `fair_patch`.
+TriMesh flat_patch(const Eigen::MatrixX3d& border, const std::string& where);
+
 }  // namespace geoprior::sketch

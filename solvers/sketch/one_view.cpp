@@ -27,7 +27,7 @@ class SurfaceBuilder {
       positions_.push_back(result.depth.nodes.row(v).transpose());
   }
   void add_strip(const RuledStrip& strip, int patch);
-  void add_fair(const std::vector<int>& loop, const TriMesh& mesh, int patch);
+  void add_panel(const std::vector<int>& loop, const TriMesh& mesh, int patch);
   [[nodiscard]] TexturedSurface surface(const Eigen::AlignedBox2d& picture) const;
 
  private:
@@ -45,7 +45,7 @@ void SurfaceBuilder::add_strip(const RuledStrip& strip, int patch) {
   }
 }
 
-void SurfaceBuilder::add_fair(const std::vector<int>& loop, const TriMesh& mesh, int patch) {
+void SurfaceBuilder::add_panel(const std::vector<int>& loop, const TriMesh& mesh, int patch) {
   std::vector<int> vertex = loop;
   for (Eigen::Index v = static_cast<Eigen::Index>(loop.size()); v < mesh.V.rows(); ++v) {
     vertex.push_back(static_cast<int>(positions_.size()));
@@ -183,9 +183,11 @@ void fill_patches(const View& view, const std::vector<DrawnPanel>& panels,
     Eigen::MatrixX3d border(static_cast<Eigen::Index>(panel.loop.size()), 3);
     for (std::size_t k = 0; k < panel.loop.size(); ++k)
       border.row(static_cast<Eigen::Index>(k)) = nodes.row(panel.loop[k]);
-    const TriMesh mesh =
-        fair_patch(border, result.net.spacing, options.fair_solves, "panel '" + panel.name + "'");
-    builder.add_fair(panel.loop, mesh, static_cast<int>(result.patches.size()));
+    const std::string where = "panel '" + panel.name + "'";
+    const TriMesh mesh = panel.flat
+                             ? flat_patch(border, where)
+                             : fair_patch(border, result.net.spacing, options.fair_solves, where);
+    builder.add_panel(panel.loop, mesh, static_cast<int>(result.patches.size()));
     result.patches.push_back({panel.name, false, panel.flat, {}, {}});
   }
   result.surface = builder.surface(picture_box(view, result.net));

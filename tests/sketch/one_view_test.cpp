@@ -107,6 +107,60 @@ SyntheticViewOptions tent() {
   return drawn;
 }
 
+/// Cuts the hidden part away from the lower circle and drops the stroke that marks it.
+void keep_front_of_lower_circle(SyntheticView& drawing) {
+  std::vector<Stroke>& strokes = drawing.view.strokes;
+  const auto at = [&](const std::string& id) {
+    return static_cast<std::size_t>(
+        std::find_if(strokes.begin(), strokes.end(), [&](const Stroke& s) { return s.id == id; }) -
+        strokes.begin());
+  };
+  const std::size_t circle = at("bottom"), back = at("bottom-back");
+  const std::size_t n = strokes[circle].points.size();
+  const auto nearest = [&](const Eigen::Vector3d& p) {
+    const std::vector<Eigen::Vector3d>& all = drawing.truth[circle];
+    return static_cast<std::size_t>(std::min_element(all.begin(), all.end(),
+                                                     [&](const auto& a, const auto& b) {
+                                                       return (a - p).norm() < (b - p).norm();
+                                                     }) -
+                                    all.begin());
+  };
+  const std::size_t from = nearest(drawing.truth[back].back());
+  const std::size_t to = nearest(drawing.truth[back].front());
+  std::vector<Eigen::Vector2d> points;
+  std::vector<Eigen::Vector3d> truth;
+  for (std::size_t k = from; k % n != to; ++k) {
+    points.push_back(strokes[circle].points[k % n]);
+    truth.push_back(drawing.truth[circle][k % n]);
+  }
+  strokes[circle].closed = false;
+  strokes[circle].points = points;
+  drawing.truth[circle] = truth;
+  strokes.erase(strokes.begin() + static_cast<std::ptrdiff_t>(back));
+  drawing.truth.erase(drawing.truth.begin() + static_cast<std::ptrdiff_t>(back));
+}
+
+// As in a photograph: the hidden part of the lower circle is not drawn. All pairs are on the upper
+// one, which is seen whole, and one point of the mirror plane is marked on the front of the lower.
+TEST(OneView, FrontOfTheLowerCircleIsEnough) {
+  SyntheticViewOptions drawn;
+  drawn.lower_pairs = 0;
+  drawn.upper_pairs = 4;
+  drawn.upper_point = false;
+  SyntheticView drawing = synthetic_view(drawn);
+  Stroke point;
+  point.id = "bottom-plane-point";
+  point.kind = StrokeKind::symmetric_pair;
+  // Azimuth pi / 2, a quarter of the way around.
+  point.points = {drawing.view.strokes.front().points[60]};
+  keep_front_of_lower_circle(drawing);
+  drawing.view.strokes.push_back(point);
+  const OneViewResult result = reconstruct_one_view(drawing.view, {});
+  EXPECT_LT(depth_error(drawing, result), 0.02);
+  ASSERT_EQ(result.rulings.size(), 1u);
+  EXPECT_FALSE(result.rulings.front().around);
+}
+
 // Every corner of the tent is in a pair, and everything between is straight.
 TEST(OneView, TentIsExact) {
   const SyntheticView drawing = synthetic_view(tent());
@@ -291,7 +345,29 @@ TEST(OneViewBadInput, PairAcrossTheNormal) {
                     HasSubstr("misses the normal by")));
 }
 
-// The ends of the tent's ridge are paired with a corner each; a second partner contradicts that.
+// A pair led along the normal to another place of the circle: its order along the circle differs.
+TEST(OneViewBadInput, PairsThatCross) {
+  SyntheticViewOptions drawn;
+  drawn.lower_pairs = 6;
+  EXPECT_THAT(refusal(drawn,
+                      [](View& view) {
+                        Stroke& pair = stroke_of(view, "bottom-pair-3");
+                        const Eigen::Vector2d start = pair.points[0], end = pair.points[1];
+                        const Eigen::Vector2d along = (end - start).normalized();
+                        const Eigen::Vector2d across(-along.y(), along.x());
+                        double least = 1e9;
+                        for (const Eigen::Vector2d& p : stroke_of(view, "bottom").points) {
+                          const double off = std::abs(across.dot(p - start));
+                          if ((p - start).norm() < 0.3 || (p - end).norm() < 0.3 || off >= least)
+                            continue;
+                          least = off;
+                          pair.points[1] = p;
+                        }
+                      }),
+              HasSubstr("symmetric pair"));
+}
+
+// A point of the tent has one partner only; a second one contradicts it.
 TEST(OneViewBadInput, OnePointWithTwoPartners) {
   EXPECT_THAT(refusal(tent(),
                       [](View& view) {
