@@ -19,12 +19,11 @@ namespace {
 /// trembling chords of a traced curve are none.
 constexpr double kLongChord = 3;
 
-double distance_to_chord(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
-                         const Eigen::Vector2d& b) {
-  const Eigen::Vector2d d = b - a;
-  const double square = d.squaredNorm();
-  const double t = square > 0 ? std::clamp(d.dot(p - a) / square, 0.0, 1.0) : 0.0;
-  return (a + t * d - p).norm();
+/// Parameter in [0, 1] of the point of a chord nearest to p.
+double nearest_on_chord(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
+                        const Eigen::Vector2d& b) {
+  const double square = (b - a).squaredNorm();
+  return square > 0 ? std::clamp((b - a).dot(p - a) / square, 0.0, 1.0) : 0.0;
 }
 
 /// Part of a stroke between corners, with the number of each point in the stroke.
@@ -187,8 +186,12 @@ std::vector<std::string> panel_names(const std::string& text) {
 double distance_to_stroke(const Eigen::Vector2d& p, const Stroke& stroke) {
   const std::size_t n = stroke.points.size();
   double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i + (stroke.closed ? 0 : 1) < n; ++i)
-    nearest = std::min(nearest, distance_to_chord(p, stroke.points[i], stroke.points[(i + 1) % n]));
+  for (std::size_t i = 0; i + (stroke.closed ? 0 : 1) < n; ++i) {
+    const Eigen::Vector2d& a = stroke.points[i];
+    const Eigen::Vector2d& b = stroke.points[(i + 1) % n];
+    const double t = nearest_on_chord(p, a, b);
+    nearest = std::min(nearest, ((1 - t) * a + t * b - p).norm());
+  }
   return nearest;
 }
 
@@ -394,23 +397,27 @@ Eigen::Vector2d evaluate(const CurveNet& net, const NodeForm& form) {
   return sum;
 }
 
+NearestOnNet nearest_on_curve(const CurveNet& net, int curve, const Eigen::Vector2d& point) {
+  const SketchCurve& border = net.curves[curve];
+  NearestOnNet best{{}, std::numeric_limits<double>::infinity()};
+  const int chords = border.closed ? border.size() : border.size() - 1;
+  for (int i = 0; i < chords; ++i) {
+    const Eigen::Vector2d& a = net.points[node_of(border, i)];
+    const Eigen::Vector2d& b = net.points[node_of(border, i + 1)];
+    const double t = nearest_on_chord(point, a, b);
+    const double distance = ((1 - t) * a + t * b - point).norm();
+    if (distance < best.distance) best = {{curve, i + t}, distance};
+  }
+  return best;
+}
+
 NearestOnNet nearest_on_net(const CurveNet& net, const Eigen::Vector2d& point, double reach,
                             int skip_curve) {
   NearestOnNet best{{}, reach};
-  for (std::size_t c = 0; c < net.curves.size(); ++c) {
-    if (static_cast<int>(c) == skip_curve) continue;
-    const SketchCurve& curve = net.curves[c];
-    const int chords = curve.closed ? curve.size() : curve.size() - 1;
-    for (int i = 0; i < chords; ++i) {
-      const Eigen::Vector2d& a = net.points[node_of(curve, i)];
-      const Eigen::Vector2d d = net.points[node_of(curve, i + 1)] - a;
-      const double square = d.squaredNorm();
-      const double t = square > 0 ? std::clamp(d.dot(point - a) / square, 0.0, 1.0) : 0.0;
-      const double distance = (a + t * d - point).norm();
-      if (distance > best.distance || (best.place.curve >= 0 && distance == best.distance))
-        continue;
-      best = {{static_cast<int>(c), i + t}, distance};
-    }
+  for (int c = 0; c < static_cast<int>(net.curves.size()); ++c) {
+    if (c == skip_curve) continue;
+    const NearestOnNet near = nearest_on_curve(net, c, point);
+    if (near.distance < best.distance) best = near;
   }
   return best;
 }

@@ -75,11 +75,14 @@ NodeForm tangent_form(const SketchCurve& curve, double at, int half_width);
 /// Value of a form on positions in the view.
 Eigen::Vector2d evaluate(const CurveNet& net, const NodeForm& form);
 
-/// Nearest place on any border, or none within `reach` (m). Ties: the first curve.
+/// A place on a border near a point.
 struct NearestOnNet {
   CurvePoint place;  ///< curve -1: none
   double distance = 0;
 };
+/// Nearest place on one border.
+NearestOnNet nearest_on_curve(const CurveNet& net, int curve, const Eigen::Vector2d& point);
+/// Nearest place on any border but `skip_curve`, or none within `reach` (m). Ties: the first curve.
 NearestOnNet nearest_on_net(const CurveNet& net, const Eigen::Vector2d& point, double reach,
                             int skip_curve = -1);
 

@@ -99,7 +99,9 @@ MirrorPlanes mirror_planes(const Stroke& a, const Stroke& b, double ratio) {
 }
 
 MirrorPlanes drawn_mirror_planes(const View& view, double ratio) {
-  return mirror_planes(named_vector(view, "sym-a"), named_vector(view, "sym-b"), ratio);
+  const Stroke& a = named_vector(view, "sym-a");
+  const Stroke& b = named_vector(view, "sym-b");
+  return mirror_planes(a, b, ratio);
 }
 
 }  // namespace geoprior::sketch

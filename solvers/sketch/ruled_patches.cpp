@@ -1,6 +1,7 @@
 #include "solvers/sketch/ruled_patches.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -58,15 +59,27 @@ int node_near(const CurveNet& net, const CurvePoint& place) {
   return node;
 }
 
-CurvePoint border_at(const CurveNet& net, const Eigen::Vector2d& end, const std::string& id,
-                     int skip_curve) {
-  const NearestOnNet near = nearest_on_net(net, end, kRulingReach * net.snap, skip_curve);
-  if (near.place.curve >= 0) return near.place;
-  throw Error(skip_curve < 0 ? "an end of the ruling joins no border"
-                             : "the ruling does not join two different borders",
-              "stroke '" + id + "'",
-              "each end within " + std::to_string(kRulingReach * net.snap) +
-                  " m of a border of its own; borders end at corners");
+/// Places of the two ends on two different borders, with the least sum of distances.
+std::array<CurvePoint, 2> borders_of_ruling(const CurveNet& net, const Stroke& stroke) {
+  const double reach = kRulingReach * net.snap;
+  const auto near = [&](bool front, int skip) {
+    return nearest_on_net(net, front ? stroke.points.front() : stroke.points.back(), reach, skip);
+  };
+  const NearestOnNet a = near(true, -1), b = near(false, -1);
+  const std::string where = "stroke '" + stroke.id + "'";
+  const std::string allowed = "each end within " + std::to_string(reach) +
+                              " m of a border of its own; borders end at corners";
+  if (a.place.curve < 0 || b.place.curve < 0)
+    throw Error("an end of the ruling joins no border", where, allowed);
+  if (a.place.curve != b.place.curve) return {a.place, b.place};
+  const NearestOnNet other_a = near(true, a.place.curve), other_b = near(false, b.place.curve);
+  if (other_a.place.curve < 0 && other_b.place.curve < 0)
+    throw Error("the ruling does not join two different borders", where, allowed);
+  const bool move_a =
+      other_b.place.curve < 0 ||
+      (other_a.place.curve >= 0 && other_a.distance + b.distance < a.distance + other_b.distance);
+  if (move_a) return {other_a.place, b.place};
+  return {a.place, other_b.place};
 }
 
 using RulingsOfBorders = std::map<std::pair<int, int>, std::vector<DrawnRuling>>;
@@ -76,13 +89,24 @@ RulingsOfBorders read_rulings(const View& view, const CurveNet& net) {
   for (const Stroke& stroke : view.strokes) {
     if (stroke.kind != StrokeKind::ruling && stroke.kind != StrokeKind::silhouette) continue;
     require_straight(stroke, net.snap);
-    CurvePoint a = border_at(net, stroke.points.front(), stroke.id, -1);
-    CurvePoint b = border_at(net, stroke.points.back(), stroke.id, -1);
-    if (a.curve == b.curve) b = border_at(net, stroke.points.back(), stroke.id, a.curve);
+    auto [a, b] = borders_of_ruling(net, stroke);
     if (a.curve > b.curve) std::swap(a, b);
     rulings[{a.curve, b.curve}].push_back({stroke.id, node_near(net, a), node_near(net, b)});
   }
   return rulings;
+}
+
+/// The steps of a mesh along a map from the nodes of one run to places on another: each node is
+/// joined to the node nearest to its place.
+std::vector<std::array<int, 2>> cells_of(const std::vector<double>& image) {
+  std::vector<std::array<int, 2>> cells{{0, static_cast<int>(std::lround(image.front()))}};
+  for (std::size_t i = 1; i < image.size(); ++i) {
+    const int to = static_cast<int>(std::lround(image[i]));
+    int j = std::min(cells.back()[1] + 1, to);
+    cells.push_back({static_cast<int>(i), j});
+    while (j < to) cells.push_back({static_cast<int>(i), ++j});
+  }
+  return cells;
 }
 
 /// Sweeps the patch between two borders.
@@ -153,8 +177,9 @@ void PatchSweep::sweep(const NodeRun& a, const NodeRun& b) {
   for (std::size_t i = begin; i < path.image.size(); ++i)
     patch_.rulings.push_back({a.number(static_cast<int>(i)), b.begin + b.way * path.image[i],
                               i == 0 || i + 1 == path.image.size()});
-  for (std::size_t k = begin; k < path.cells.size(); ++k)
-    patch_.cells.push_back({a.number(path.cells[k][0]), b.number(path.cells[k][1])});
+  const std::vector<std::array<int, 2>> cells = cells_of(path.image);
+  for (std::size_t k = begin; k < cells.size(); ++k)
+    patch_.cells.push_back({a.number(cells[k][0]), b.number(cells[k][1])});
 }
 
 /// From one drawn ruling forward to the next; a way of no nodes leads once around a closed border.

@@ -1,6 +1,7 @@
 #include "solvers/sketch/symmetric_pairs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -34,14 +35,31 @@ std::vector<CurvePoint> all_places(const CurveNet& net, const CurvePoint& place)
   return places;
 }
 
-std::vector<CurvePoint> places_of_end(const CurveNet& net, const Eigen::Vector2d& end,
-                                      const std::string& where) {
+NearestOnNet border_of_end(const CurveNet& net, const Eigen::Vector2d& end,
+                           const std::string& where) {
   const NearestOnNet near = nearest_on_net(net, end, kPairReach * net.snap);
-  if (near.place.curve < 0) {
-    throw Error("an end of the symmetric pair lies on no border", where,
-                "within " + std::to_string(kPairReach * net.snap) + " m of one");
+  if (near.place.curve >= 0) return near;
+  throw Error("an end of the symmetric pair lies on no border", where,
+              "within " + std::to_string(kPairReach * net.snap) + " m of one");
+}
+
+/// Puts the ends onto the nearest borders, or both onto one that is about as near: where the images
+/// of two borders cross, a pair most likely belongs to one border that is its own mirror image.
+std::array<CurvePoint, 2> borders_of_ends(const CurveNet& net, const SymmetricPair& pair,
+                                          const std::string& where) {
+  const NearestOnNet point = border_of_end(net, pair.point, where);
+  const NearestOnNet image = border_of_end(net, pair.image, where);
+  std::array<CurvePoint, 2> best{point.place, image.place};
+  double least = point.distance + image.distance + net.snap;
+  if (point.place.curve == image.place.curve) return best;
+  for (int c = 0; c < static_cast<int>(net.curves.size()); ++c) {
+    const NearestOnNet a = nearest_on_curve(net, c, pair.point);
+    const NearestOnNet b = nearest_on_curve(net, c, pair.image);
+    if (a.distance + b.distance >= least) continue;
+    least = a.distance + b.distance;
+    best = {a.place, b.place};
   }
-  return all_places(net, near.place);
+  return best;
 }
 
 SymmetricPair read_pair(const Stroke& stroke, const CurveNet& net) {
@@ -49,8 +67,9 @@ SymmetricPair read_pair(const Stroke& stroke, const CurveNet& net) {
   if (stroke.points.empty()) throw Error("symmetric pair without points", where, "two points");
   SymmetricPair pair{stroke.id, stroke.points.front(), stroke.points.back(), false, {}, {}};
   pair.in_plane = (pair.image - pair.point).norm() <= net.snap / 4;
-  pair.point_at = places_of_end(net, pair.point, where);
-  pair.image_at = pair.in_plane ? pair.point_at : places_of_end(net, pair.image, where);
+  const std::array<CurvePoint, 2> ends = borders_of_ends(net, pair, where);
+  pair.point_at = all_places(net, ends[0]);
+  pair.image_at = pair.in_plane ? pair.point_at : all_places(net, ends[1]);
   pair.point = evaluate(net, position_form(net, pair.point_at.front()));
   pair.image = evaluate(net, position_form(net, pair.image_at.front()));
   return pair;
