@@ -26,13 +26,6 @@ Eigen::VectorXd hold_weights(const TriMesh& mesh, double closeness) {
   return hold * (closeness / (areas.sum() * edge * edge));
 }
 
-PositionEnergy defect_energy_of(const TriMesh& mesh, double closeness) {
-  auto energy = std::make_shared<AngleDefectEnergy>(mesh, closeness);
-  return [energy](const Eigen::MatrixX3d& x, Eigen::MatrixX3d* gradient) {
-    return (*energy)(x, gradient);
-  };
-}
-
 }  // namespace
 
 AngleDefectEnergy::AngleDefectEnergy(const TriMesh& mesh, double closeness)
@@ -70,6 +63,6 @@ void describe(OptionVisitor& v, AngleDefectFlowOptions& options) {
 }
 
 AngleDefectFlow::AngleDefectFlow(const TriMesh& mesh, const AngleDefectFlowOptions& options)
-    : descent_(mesh, defect_energy_of(mesh, options.closeness), options.descent) {}
+    : descent_(mesh, AngleDefectEnergy(mesh, options.closeness), options.descent) {}
 
 }  // namespace geoprior::sketch

@@ -8,13 +8,6 @@ namespace {
 
 constexpr std::size_t kHingesTogether = 256;
 
-PositionEnergy hinge_energy_of(const TriMesh& mesh) {
-  auto energy = std::make_shared<HingeEnergy>(mesh.F, mesh.vertex_count());
-  return [energy](const Eigen::MatrixX3d& x, Eigen::MatrixX3d* gradient) {
-    return (*energy)(x, gradient);
-  };
-}
-
 }  // namespace
 
 double HingeEnergy::add_vertex(int v) {
@@ -56,6 +49,6 @@ void describe(OptionVisitor& v, DevelopabilityFlowOptions& options) {
 
 DevelopabilityFlow::DevelopabilityFlow(const TriMesh& mesh,
                                        const DevelopabilityFlowOptions& options)
-    : descent_(mesh, hinge_energy_of(mesh), options.descent) {}
+    : descent_(mesh, HingeEnergy(mesh.F, mesh.vertex_count()), options.descent) {}
 
 }  // namespace geoprior::sketch

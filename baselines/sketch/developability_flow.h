@@ -1,7 +1,5 @@
 #pragma once
 
-#include <memory>
-
 #include "baselines/sketch/star_geometry.h"
 #include "baselines/sketch/surface_descent.h"
 #include "core/mesh.h"

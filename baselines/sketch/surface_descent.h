@@ -29,7 +29,8 @@ struct DescentOptions {
 };
 void describe(OptionVisitor& v, DescentOptions& options);
 
-/// Value of an energy at positions (n x 3), and its gradient when it is asked for.
+/// Value of an energy at positions (n x 3), and its gradient when it is asked for. A function
+/// object may keep scratch: it is never called by two threads at once.
 using PositionEnergy = std::function<double(const Eigen::MatrixX3d& x, Eigen::MatrixX3d* gradient)>;
 
 /// Descent of an energy of a mesh's positions: L-BFGS on a factorised Sobolev metric, backtracking
@@ -42,7 +43,6 @@ using PositionEnergy = std::function<double(const Eigen::MatrixX3d& x, Eigen::Ma
 class SurfaceDescent {
  public:
   /// @param mesh    manifold, open or closed, no degenerate triangles
-  /// @param energy  lives as long as this
   /// @throws Error  on a degenerate triangle (names it)
   SurfaceDescent(const TriMesh& mesh, PositionEnergy energy, const DescentOptions& options);
 

