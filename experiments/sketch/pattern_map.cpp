@@ -9,14 +9,14 @@
 namespace geoprior::sketch {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using PatternJson = nlohmann::ordered_json;
 
-Json json_point(const Eigen::Vector2d& p) { return Json::array({p.x(), p.y()}); }
+PatternJson json_point(const Eigen::Vector2d& p) { return PatternJson::array({p.x(), p.y()}); }
 
-Json json_edges(const PatternPiece& piece) {
-  Json edges = Json::array();
+PatternJson json_edges(const PatternPiece& piece) {
+  PatternJson edges = PatternJson::array();
   for (const PieceEdge& edge : piece.edges) {
-    Json one{{"points", edge.vertices}, {"length_mm", 1000 * edge_length(piece, edge)}};
+    PatternJson one{{"points", edge.vertices}, {"length_mm", 1000 * edge_length(piece, edge)}};
     if (edge.partner_piece >= 0) {
       one["seam"] = edge.seam;
       one["sewn_to"] = {{"piece", edge.partner_piece}, {"edge", edge.partner_edge}};
@@ -26,8 +26,8 @@ Json json_edges(const PatternPiece& piece) {
   return edges;
 }
 
-Json json_notches(const SheetPiece& drawn) {
-  Json notches = Json::array();
+PatternJson json_notches(const SheetPiece& drawn) {
+  PatternJson notches = PatternJson::array();
   for (const SheetNotch& notch : drawn.notches) {
     notches.push_back({{"pair", notch.label},
                        {"direction", notch.direction},
@@ -37,8 +37,8 @@ Json json_notches(const SheetPiece& drawn) {
   return notches;
 }
 
-Json json_piece(const PatternPiece& piece, const SheetPiece& drawn) {
-  Json points = Json::array();
+PatternJson json_piece(const PatternPiece& piece, const SheetPiece& drawn) {
+  PatternJson points = PatternJson::array();
   for (Eigen::Index i = 0; i < piece.points.rows(); ++i) {
     points.push_back(json_point(1000 * piece.points.row(i).transpose()));
   }
@@ -95,16 +95,16 @@ std::string pattern_map_csv(const Pattern& pattern, const PatternSheet& sheet) {
 
 std::string pattern_json(const Pattern& pattern, const PatternSheet& sheet) {
   require_map(pattern, sheet);
-  Json pieces = Json::array();
+  PatternJson pieces = PatternJson::array();
   for (std::size_t k = 0; k < pattern.pieces.size(); ++k) {
     pieces.push_back(json_piece(pattern.pieces[k], sheet.pieces[k]));
   }
-  const Json root{{"format", "geoprior pattern"},
-                  {"version", 1},
-                  {"unit", "mm"},
-                  {"sheet_mm", json_point(sheet.size)},
-                  {"pieces", std::move(pieces)}};
-  return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const PatternJson root{{"format", "geoprior pattern"},
+                         {"version", 1},
+                         {"unit", "mm"},
+                         {"sheet_mm", json_point(sheet.size)},
+                         {"pieces", std::move(pieces)}};
+  return root.dump(1, ' ', false, PatternJson::error_handler_t::replace) + "\n";
 }
 
 }  // namespace geoprior::sketch

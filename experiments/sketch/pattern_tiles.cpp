@@ -13,7 +13,7 @@ constexpr int kMostPages = 2000;
 constexpr double kCrossSize = 0.35;  // half a registration cross, of the overlap
 
 /// A, B, … Z, AA, AB, …
-std::string row_letters(int row) {
+std::string tile_row_letters(int row) {
   std::string letters;
   for (int k = row; k >= 0; k = k / 26 - 1) {
     letters.insert(letters.begin(), static_cast<char>('A' + k % 26));
@@ -55,7 +55,7 @@ TileGrid tile_grid(const PatternSheet& sheet, const TileOptions& options) {
   return grid;
 }
 
-void add_cross(const Eigen::Vector2d& at, double size, std::vector<SheetLine>& marks) {
+void add_tile_cross(const Eigen::Vector2d& at, double size, std::vector<SheetLine>& marks) {
   for (const Eigen::Vector2d& arm : {Eigen::Vector2d(size, 0), Eigen::Vector2d(0, size)}) {
     marks.push_back({SheetLayer::text, false, {at - arm, at + arm}});
   }
@@ -69,16 +69,16 @@ std::vector<SheetLine> tile_marks(const TileGrid& grid, const Eigen::AlignedBox2
   const double half = grid.overlap / 2, size = kCrossSize * grid.overlap;
   for (const double share : {0.25, 0.75}) {
     const double x = a.x() + share * grid.window.x(), y = a.y() + share * grid.window.y();
-    if (column > 0) add_cross({a.x() + half, y}, size, marks);
-    if (column + 1 < grid.columns) add_cross({c.x() - half, y}, size, marks);
-    if (row + 1 < grid.rows) add_cross({x, a.y() + half}, size, marks);
-    if (row > 0) add_cross({x, c.y() - half}, size, marks);
+    if (column > 0) add_tile_cross({a.x() + half, y}, size, marks);
+    if (column + 1 < grid.columns) add_tile_cross({c.x() - half, y}, size, marks);
+    if (row + 1 < grid.rows) add_tile_cross({x, a.y() + half}, size, marks);
+    if (row > 0) add_tile_cross({x, c.y() - half}, size, marks);
   }
   return marks;
 }
 
 /// In the lower margin, or just inside of it when there is hardly one.
-SheetText page_label(const SheetPage& page, const PatternSheet& sheet, int number, int count) {
+SheetText tile_page_label(const SheetPage& page, const PatternSheet& sheet, int number, int count) {
   const std::string text =
       page.label + "   page " + std::to_string(number) + " of " + std::to_string(count);
   std::u32string line(text.begin(), text.end());
@@ -122,10 +122,10 @@ std::vector<SheetPage> sheet_pages(const PatternSheet& sheet, const TileOptions&
       page.paper = grid.paper;
       page.window = grid.window_of(row, column, sheet.size.y());
       page.place.setConstant(options.margin_mm);
-      page.label = row_letters(row) + std::to_string(column + 1);
+      page.label = tile_row_letters(row) + std::to_string(column + 1);
       page.marks = tile_marks(grid, page.window, row, column);
-      page.texts.push_back(
-          page_label(page, sheet, static_cast<int>(pages.size()) + 1, grid.rows * grid.columns));
+      page.texts.push_back(tile_page_label(page, sheet, static_cast<int>(pages.size()) + 1,
+                                           grid.rows * grid.columns));
       pages.push_back(std::move(page));
     }
   }

@@ -10,7 +10,7 @@ namespace geoprior::sketch {
 namespace {
 
 constexpr double kClearPrecision = 0.02;  // of the box, or of a hundredth of the loops' height
-constexpr int kMostCells = 20000;
+constexpr int kMostClearCells = 20000;
 
 /// Distance of the origin from a segment in the maximum norm.
 ///
@@ -31,7 +31,7 @@ double maximum_norm_distance(const Eigen::Vector2d& a, const Eigen::Vector2d& b)
   return least;
 }
 
-std::vector<PlaneSegment> segments_of(const std::vector<PlaneLoop>& loops) {
+std::vector<PlaneSegment> segments_of_loops(const std::vector<PlaneLoop>& loops) {
   std::vector<PlaneSegment> segments;
   for (const PlaneLoop& loop : loops) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -41,7 +41,7 @@ std::vector<PlaneSegment> segments_of(const std::vector<PlaneLoop>& loops) {
   return segments;
 }
 
-bool is_inside(const Eigen::Vector2d& p, const std::vector<PlaneSegment>& borders) {
+bool is_inside_loops(const Eigen::Vector2d& p, const std::vector<PlaneSegment>& borders) {
   bool inside = false;
   for (const auto& [a, b] : borders) {
     if ((a.y() > p.y()) == (b.y() > p.y())) continue;
@@ -55,7 +55,7 @@ class ClearRoom {
  public:
   ClearRoom(const std::vector<PlaneLoop>& loops, const std::vector<PlaneSegment>& obstacles,
             double aspect)
-      : borders_(segments_of(loops)), all_(borders_), scale_(1 / aspect, 1) {
+      : borders_(segments_of_loops(loops)), all_(borders_), scale_(1 / aspect, 1) {
     all_.insert(all_.end(), obstacles.begin(), obstacles.end());
   }
 
@@ -65,7 +65,7 @@ class ClearRoom {
       least = std::min(
           least, maximum_norm_distance((a - p).cwiseProduct(scale_), (b - p).cwiseProduct(scale_)));
     }
-    return is_inside(p, borders_) ? least : -least;
+    return is_inside_loops(p, borders_) ? least : -least;
   }
 
  private:
@@ -96,7 +96,7 @@ Eigen::AlignedBox2d largest_clear_box(const std::vector<PlaneLoop>& loops,
   ClearCell best{box.center(), height / 2, room(box.center())};
   std::priority_queue<ClearCell> open;
   open.push(best);
-  for (int cells = 0; !open.empty() && cells < kMostCells; ++cells) {
+  for (int cells = 0; !open.empty() && cells < kMostClearCells; ++cells) {
     const ClearCell cell = open.top();
     open.pop();
     if (cell.most() <= best.room + kClearPrecision * std::max(best.room, 0.01 * height)) break;

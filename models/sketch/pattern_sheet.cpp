@@ -13,12 +13,12 @@
 namespace geoprior::sketch {
 namespace {
 
-constexpr double kSheetTitle = 6;   // height of the title (mm)
-constexpr double kSheetNote = 3.5;  // height of the line below it (mm)
-constexpr double kFooter = 20;      // title, note and scale bar (mm)
-constexpr double kBarText = 25;     // room for "100 mm" beside the bar (mm)
+constexpr double kSheetTitle = 6;    // height of the title (mm)
+constexpr double kSheetNote = 3.5;   // height of the line below it (mm)
+constexpr double kSheetFooter = 20;  // title, note and scale bar (mm)
+constexpr double kBarText = 25;      // room for "100 mm" beside the bar (mm)
 
-std::u32string widened(std::string_view ascii) { return {ascii.begin(), ascii.end()}; }
+std::u32string widened_ascii(std::string_view ascii) { return {ascii.begin(), ascii.end()}; }
 
 std::string millimetres_text(double x) {
   std::array<char, 32> buffer{};
@@ -28,7 +28,7 @@ std::string millimetres_text(double x) {
 }
 
 /// Rows from the bottom up, highest pieces first; gives the sheet's size.
-void place_pieces(PatternSheet& sheet, const SheetOptions& options) {
+void place_sheet_pieces(PatternSheet& sheet, const SheetOptions& options) {
   const double gap = options.gap_mm;
   double area = 0, widest = kScaleBar + kBarText;
   for (const SheetPiece& piece : sheet.pieces) {
@@ -41,7 +41,7 @@ void place_pieces(PatternSheet& sheet, const SheetOptions& options) {
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return sheet.pieces[a].size.y() > sheet.pieces[b].size.y();
   });
-  double x = gap, y = kFooter + 2 * gap, highest = 0, right = gap + kScaleBar + kBarText;
+  double x = gap, y = kSheetFooter + 2 * gap, highest = 0, right = gap + kScaleBar + kBarText;
   for (const std::size_t k : order) {
     SheetPiece& piece = sheet.pieces[k];
     if (x > gap && x + piece.size.x() > gap + row) {
@@ -64,13 +64,13 @@ void draw_scale_bar(PatternSheet& sheet, const Eigen::Vector2d& at) {
     sheet.lines.push_back(
         {SheetLayer::text, false, {foot, foot + Eigen::Vector2d(0, i % 5 == 0 ? 4 : 2)}});
   }
-  const std::u32string length = widened(millimetres_text(kScaleBar));
+  const std::u32string length = widened_ascii(millimetres_text(kScaleBar));
   sheet.texts.push_back({at + Eigen::Vector2d(kScaleBar + 3, 2), 4, length, TextAnchor::left});
 }
 
 /// Begins at the left margin, set smaller where the sheet is too narrow for it.
-void write_line(PatternSheet& sheet, const Eigen::Vector2d& left, double height,
-                const std::u32string& text) {
+void write_sheet_line(PatternSheet& sheet, const Eigen::Vector2d& left, double height,
+                      const std::u32string& text) {
   if (text.empty()) return;
   const double width = helvetica_width(text);
   const double h = std::min(height, (sheet.size.x() - 2 * left.x()) / (1.15 * width));
@@ -119,15 +119,16 @@ PatternSheet pattern_sheet(const Pattern& pattern, const SheetOptions& options) 
   for (int k = 0; k < static_cast<int>(pattern.pieces.size()); ++k) {
     sheet.pieces.push_back(draw_piece(pattern, k, notches, options));
   }
-  place_pieces(sheet, options);
+  place_sheet_pieces(sheet, options);
   const Eigen::Vector2d corner(options.gap_mm, options.gap_mm);
   draw_scale_bar(sheet, corner);
-  write_line(sheet, corner + Eigen::Vector2d(0, 15), kSheetTitle, sheet.title);
+  write_sheet_line(sheet, corner + Eigen::Vector2d(0, 15), kSheetTitle, sheet.title);
   const std::size_t n = pattern.pieces.size();
-  write_line(sheet, corner + Eigen::Vector2d(0, 8), kSheetNote,
-             widened("Seam allowance " + millimetres_text(options.allowance_mm) + ", hem " +
-                     millimetres_text(options.hem_mm) + ", " + std::to_string(n) +
-                     (n == 1 ? " piece" : " pieces") + ", true scale"));
+  write_sheet_line(
+      sheet, corner + Eigen::Vector2d(0, 8), kSheetNote,
+      widened_ascii("Seam allowance " + millimetres_text(options.allowance_mm) + ", hem " +
+                    millimetres_text(options.hem_mm) + ", " + std::to_string(n) +
+                    (n == 1 ? " piece" : " pieces") + ", true scale"));
   return sheet;
 }
 

@@ -11,18 +11,18 @@ namespace {
 
 constexpr double kFarthestPoint = 1000;  // m
 
-std::string edge_label(const Pattern& pattern, int piece, std::size_t edge) {
+std::string piece_edge_label(const Pattern& pattern, int piece, std::size_t edge) {
   return piece_label(pattern, piece) + ", edge " + std::to_string(edge);
 }
 
-PlaneLoop points_of(const PatternPiece& piece, const std::vector<int>& chain) {
+PlaneLoop border_points(const PatternPiece& piece, const std::vector<int>& chain) {
   PlaneLoop points;
   for (const int v : chain) points.emplace_back(piece.points.row(v).transpose());
   return points;
 }
 
-void require_indices(const PatternPiece& piece, const std::vector<int>& chain, std::size_t least,
-                     const std::string& where) {
+void require_chain(const PatternPiece& piece, const std::vector<int>& chain, std::size_t least,
+                   const std::string& where) {
   if (chain.size() < least) {
     throw Error("has " + std::to_string(chain.size()) + " points", where,
                 std::to_string(least) + " or more");
@@ -35,7 +35,7 @@ void require_indices(const PatternPiece& piece, const std::vector<int>& chain, s
   }
 }
 
-void require_shape(const Pattern& pattern, int k) {
+void require_piece_shape(const Pattern& pattern, int k) {
   const PatternPiece& piece = pattern.pieces[static_cast<std::size_t>(k)];
   const std::string where = piece_label(pattern, k);
   for (Eigen::Index i = 0; i < piece.points.rows(); ++i) {
@@ -46,23 +46,23 @@ void require_shape(const Pattern& pattern, int k) {
   }
   if (piece.borders.empty()) throw Error("has no border", where, "an outer border");
   for (std::size_t b = 0; b < piece.borders.size(); ++b) {
-    require_indices(piece, piece.borders[b], 3, where + ", border " + std::to_string(b));
+    require_chain(piece, piece.borders[b], 3, where + ", border " + std::to_string(b));
   }
   for (std::size_t f = 0; f < piece.folds.size(); ++f) {
-    require_indices(piece, piece.folds[f], 2, where + ", fold " + std::to_string(f));
+    require_chain(piece, piece.folds[f], 2, where + ", fold " + std::to_string(f));
   }
   if (!(std::abs(piece.grain.norm() - 1) < 1e-6)) {
     throw Error("grain is no direction", where, "a unit vector");
   }
 }
 
-void require_edges(const Pattern& pattern, int k) {
+void require_piece_edges(const Pattern& pattern, int k) {
   const PatternPiece& piece = pattern.pieces[static_cast<std::size_t>(k)];
   const auto segments = directed_segments(piece);
   for (std::size_t e = 0; e < piece.edges.size(); ++e) {
     const PieceEdge& edge = piece.edges[e];
-    const std::string where = edge_label(pattern, k, e);
-    require_indices(piece, edge.vertices, 2, where);
+    const std::string where = piece_edge_label(pattern, k, e);
+    require_chain(piece, edge.vertices, 2, where);
     for (std::size_t i = 0; i + 1 < edge.vertices.size(); ++i) {
       const int a = edge.vertices[i], b = edge.vertices[i + 1];
       if (!segments.contains({a, b}) && !segments.contains({b, a})) {
@@ -94,14 +94,14 @@ std::string piece_label(const Pattern& pattern, int piece) {
 
 void require_drawable(const Pattern& pattern) {
   const int n = static_cast<int>(pattern.pieces.size());
-  for (int k = 0; k < n; ++k) require_shape(pattern, k);
-  for (int k = 0; k < n; ++k) require_edges(pattern, k);
+  for (int k = 0; k < n; ++k) require_piece_shape(pattern, k);
+  for (int k = 0; k < n; ++k) require_piece_edges(pattern, k);
 }
 
 std::vector<std::vector<int>> oriented_borders(const PatternPiece& piece) {
   std::vector<std::vector<int>> borders = piece.borders;
   for (std::size_t b = 0; b < borders.size(); ++b) {
-    const bool counter_clockwise = loop_area(points_of(piece, borders[b])) > 0;
+    const bool counter_clockwise = loop_area(border_points(piece, borders[b])) > 0;
     if (counter_clockwise != (b == 0)) std::reverse(borders[b].begin(), borders[b].end());
   }
   return borders;

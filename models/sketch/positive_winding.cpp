@@ -25,7 +25,7 @@ using WindingFace = WindingArrangement::Face_const_handle;
 /// Of every face by its address: only looked up, never walked through.
 using WindingNumbers = std::map<const void*, int>;
 
-WindingArrangement arrangement_of(const std::vector<PlaneLoop>& curves) {
+WindingArrangement winding_arrangement(const std::vector<PlaneLoop>& curves) {
   std::vector<WindingTraits::Curve_2> segments;
   for (const PlaneLoop& curve : curves) {
     for (std::size_t i = 0; i < curve.size(); ++i) {
@@ -82,7 +82,7 @@ WindingNumbers winding_numbers(const WindingArrangement& arrangement) {
   return winding;
 }
 
-PlaneLoop from_leftmost(PlaneLoop loop) {
+PlaneLoop loop_from_leftmost(PlaneLoop loop) {
   const auto left = std::min_element(loop.begin(), loop.end(),
                                      [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
                                        return std::tuple(a.x(), a.y()) < std::tuple(b.x(), b.y());
@@ -93,7 +93,8 @@ PlaneLoop from_leftmost(PlaneLoop loop) {
 
 /// The loop of border half-edges that `start` begins; points in the middle of a straight stretch
 /// are left out, exactly.
-PlaneLoop walk_border(WindingHalfedge start, const auto& is_border, std::set<const void*>& done) {
+PlaneLoop walk_winding_border(WindingHalfedge start, const auto& is_border,
+                              std::set<const void*>& done) {
   std::vector<WindingPoint> corners;
   WindingHalfedge edge = start;
   do {
@@ -132,7 +133,7 @@ double loop_area(const PlaneLoop& loop) {
 }
 
 std::vector<PlaneLoop> positive_winding_border(const std::vector<PlaneLoop>& curves) {
-  const WindingArrangement arrangement = arrangement_of(curves);
+  const WindingArrangement arrangement = winding_arrangement(curves);
   const WindingNumbers winding = winding_numbers(arrangement);
   const auto is_border = [&](WindingHalfedge edge) {
     return winding.at(&*edge->face()) > 0 && winding.at(&*edge->twin()->face()) <= 0;
@@ -141,9 +142,9 @@ std::vector<PlaneLoop> positive_winding_border(const std::vector<PlaneLoop>& cur
   std::set<const void*> done;
   for (auto edge = arrangement.halfedges_begin(); edge != arrangement.halfedges_end(); ++edge) {
     if (!is_border(edge) || done.contains(&*edge)) continue;
-    PlaneLoop loop = walk_border(edge, is_border, done);
+    PlaneLoop loop = walk_winding_border(edge, is_border, done);
     // Rounding may flatten a sliver that exact coordinates still enclose.
-    if (loop.size() >= 3) loops.push_back(from_leftmost(std::move(loop)));
+    if (loop.size() >= 3) loops.push_back(loop_from_leftmost(std::move(loop)));
   }
   std::sort(loops.begin(), loops.end(), [](const PlaneLoop& a, const PlaneLoop& b) {
     return std::tuple(-loop_extent(a), a[0].x(), a[0].y()) <

@@ -21,13 +21,13 @@ struct BorderSegment {
   [[nodiscard]] double right() const { return std::max(a.x(), b.x()); }
 };
 
-bool are_neighbours(const BorderSegment& s, const BorderSegment& t) {
+bool border_neighbours(const BorderSegment& s, const BorderSegment& t) {
   return s.border == t.border &&
          ((s.index + 1) % s.count == t.index || (t.index + 1) % t.count == s.index);
 }
 
 /// Neighbours share an end; they cross when one folds back onto the other.
-bool folds_back(const BorderSegment& s, const BorderSegment& t) {
+bool border_folds_back(const BorderSegment& s, const BorderSegment& t) {
   const bool s_first = s.b == t.a;
   const BorderSegment& first = s_first ? s : t;
   const BorderSegment& second = s_first ? t : s;
@@ -36,7 +36,7 @@ bool folds_back(const BorderSegment& s, const BorderSegment& t) {
 }
 
 /// Sweeps the segments by their left ends, so that only those that overlap in x are compared.
-void require_simple(const std::vector<AllowanceBorder>& borders, const std::string& where) {
+void require_simple_borders(const std::vector<AllowanceBorder>& borders, const std::string& where) {
   std::vector<BorderSegment> segments;
   for (std::size_t k = 0; k < borders.size(); ++k) {
     const PlaneLoop& p = borders[k].points;
@@ -51,7 +51,7 @@ void require_simple(const std::vector<AllowanceBorder>& borders, const std::stri
     const BorderSegment& s = segments[i];
     for (std::size_t j = i + 1; j < segments.size() && segments[j].left() <= s.right(); ++j) {
       const BorderSegment& t = segments[j];
-      if (are_neighbours(s, t) ? folds_back(s, t) : segments_meet(s.a, s.b, t.a, t.b)) {
+      if (border_neighbours(s, t) ? border_folds_back(s, t) : segments_meet(s.a, s.b, t.a, t.b)) {
         throw Error("the border meets itself at segment " + std::to_string(s.index) + " of loop " +
                         std::to_string(s.border) + " and segment " + std::to_string(t.index) +
                         " of loop " + std::to_string(t.border),
@@ -92,7 +92,7 @@ void require_offsettable(const std::vector<AllowanceBorder>& borders, double mit
                   "outer border counter-clockwise, holes clockwise");
     }
   }
-  require_simple(borders, where);
+  require_simple_borders(borders, where);
 }
 
 /// A corner of the border: what lies before and behind it.

@@ -6,7 +6,7 @@
 namespace geoprior::sketch {
 namespace {
 
-constexpr char32_t kReplacement = 0xFFFD;
+constexpr char32_t kReplacementCharacter = 0xFFFD;
 
 /// Widths of the characters 32 to 126, in thousandths of the size.
 constexpr std::array<int, 95> kHelveticaWidths{
@@ -16,20 +16,21 @@ constexpr std::array<int, 95> kHelveticaWidths{
     667, 611, 278, 278, 278, 469, 556, 333, 556, 556, 500, 556, 556, 278,  556, 556, 222, 222, 500,
     222, 833, 556, 556, 556, 556, 333, 500, 278, 556, 500, 722, 500, 500,  500, 334, 260, 334, 584};
 
-/// The next code point and how many bytes it takes; kReplacement and 1 for what is no UTF-8.
+/// The next code point and how many bytes it takes; kReplacementCharacter and 1 for what is no
+/// UTF-8.
 std::pair<char32_t, std::size_t> next_code_point(std::string_view utf8) {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(utf8[i]); };
   const std::uint8_t first = byte(0);
   if (first < 0x80) return {first, 1};
   const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  if (first < 0xC2 || first > 0xF4 || utf8.size() < length) return {kReplacement, 1};
+  if (first < 0xC2 || first > 0xF4 || utf8.size() < length) return {kReplacementCharacter, 1};
   char32_t code = first & (0x7FU >> length);
   for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) return {kReplacement, 1};
+    if ((byte(i) & 0xC0) != 0x80) return {kReplacementCharacter, 1};
     code = (code << 6) | (byte(i) & 0x3FU);
   }
   constexpr std::array<char32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
-  if (code < kLeast[length]) return {kReplacement, 1};
+  if (code < kLeast[length]) return {kReplacementCharacter, 1};
   return {code, length};
 }
 
@@ -39,7 +40,7 @@ char32_t fit_for_label(char32_t c) {
                      (c >= 0x2060 && c <= 0x206F) || c == 0xFEFF;
   const bool none = (c >= 0xD800 && c <= 0xDFFF) || (c & 0xFFFE) == 0xFFFE || c > 0x10FFFF ||
                     (c >= 0xFDD0 && c <= 0xFDEF);
-  return turns || none ? kReplacement : c;
+  return turns || none ? kReplacementCharacter : c;
 }
 
 }  // namespace

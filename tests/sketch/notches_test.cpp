@@ -16,7 +16,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-double length_of(const Pattern& pattern, const Notch& notch) {
+double notched_length(const Pattern& pattern, const Notch& notch) {
   const PatternPiece& piece = pattern.pieces[static_cast<std::size_t>(notch.piece)];
   return edge_length(piece, piece.edges[static_cast<std::size_t>(notch.edge)]);
 }
@@ -32,7 +32,7 @@ TEST(Notches, LieAtEqualLengthsOnBothSides) {
     EXPECT_EQ(a.label, b.label);
     EXPECT_EQ(a.direction, b.direction);
     EXPECT_NE(std::pair(a.piece, a.edge), std::pair(b.piece, b.edge));
-    EXPECT_NEAR(a.arc, length_of(pattern, b) - b.arc, 1e-14);
+    EXPECT_NEAR(a.arc, notched_length(pattern, b) - b.arc, 1e-14);
   }
 }
 
@@ -70,7 +70,7 @@ TEST(Notches, ShowWhenAnEdgeIsReversed) {
     std::map<std::pair<int, int>, double> lengths;
     for (const Notch& notch : paired_notches(pattern, {.spacing = spacing})) {
       arcs[{notch.piece, notch.edge}].push_back(notch.arc);
-      lengths[{notch.piece, notch.edge}] = length_of(pattern, notch);
+      lengths[{notch.piece, notch.edge}] = notched_length(pattern, notch);
     }
     ASSERT_EQ(arcs.size(), 4U) << "two seams";
     for (const auto& [edge, along] : arcs) {

@@ -6,7 +6,7 @@
     units 4
     block NAME LAYER KIND CLOSED x y x y …      entities of blocks
     model - LAYER KIND CLOSED x y x y …         entities of the drawing itself
-    text BLOCK LAYER TEXT                       in UTF-8
+    text BLOCK LAYER TEXT                       in UTF-8, \\U+XXXX decoded
     errors N                                    what the auditor found
 
 A file that ezdxf cannot read ends it with exit code 1.
@@ -32,7 +32,7 @@ def points_of(entity):
 
 def describe(where, name, entity):
     if entity.dxftype() == "TEXT":
-        print("text", name, entity.dxf.layer, entity.dxf.text)
+        print("text", name, entity.dxf.layer, ezdxf.decode_dxf_unicode(entity.dxf.text))
         return
     closed = int(entity.dxftype() == "POLYLINE" and entity.is_closed)
     numbers = " ".join(f"{x:.9f}" for p in points_of(entity) for x in (p[0], p[1]))

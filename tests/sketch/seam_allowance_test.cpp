@@ -27,7 +27,7 @@ std::vector<PlaneLoop> cut_evenly(const PlaneLoop& points, double allowance, dou
 }
 
 /// Even-odd over all loops.
-bool covers(const std::vector<PlaneLoop>& loops, const Eigen::Vector2d& p) {
+bool loops_cover(const std::vector<PlaneLoop>& loops, const Eigen::Vector2d& p) {
   bool inside = false;
   for (const PlaneLoop& loop : loops) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -39,7 +39,7 @@ bool covers(const std::vector<PlaneLoop>& loops, const Eigen::Vector2d& p) {
   return inside;
 }
 
-bool crosses_itself(const PlaneLoop& loop) {
+bool loop_crosses_itself(const PlaneLoop& loop) {
   const std::size_t n = loop.size();
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 2; j < n; ++j) {
@@ -51,7 +51,7 @@ bool crosses_itself(const PlaneLoop& loop) {
 }
 
 /// A star-shaped polygon with spikes and bays.
-PlaneLoop random_star(RandomStream& random, int corners) {
+PlaneLoop random_star_loop(RandomStream& random, int corners) {
   PlaneLoop loop;
   for (int i = 0; i < corners; ++i) {
     const double angle = 2 * std::numbers::pi * i / corners;
@@ -61,10 +61,10 @@ PlaneLoop random_star(RandomStream& random, int corners) {
   return loop;
 }
 
-const PlaneLoop kSquare{{0, 0}, {0.1, 0}, {0.1, 0.1}, {0, 0.1}};
+const PlaneLoop kAllowanceSquare{{0, 0}, {0.1, 0}, {0.1, 0.1}, {0, 0.1}};
 
 TEST(SeamAllowance, OfASquareIsALargerSquare) {
-  const auto loops = cut_evenly(kSquare, 0.01);
+  const auto loops = cut_evenly(kAllowanceSquare, 0.01);
   ASSERT_EQ(loops.size(), 1U);
   const PlaneLoop expected{{-0.01, -0.01}, {0.11, -0.01}, {0.11, 0.11}, {-0.01, 0.11}};
   ASSERT_EQ(loops[0].size(), 4U);
@@ -73,8 +73,9 @@ TEST(SeamAllowance, OfASquareIsALargerSquare) {
 
 TEST(SeamAllowance, OfNothingIsTheBorderPointForPoint) {
   const PlaneLoop hole{{0.02, 0.02}, {0.02, 0.05}, {0.05, 0.05}};
-  const auto loops = cut_lines({even_border(kSquare, 0), even_border(hole, 0)}, 2.5, "piece");
-  EXPECT_EQ(loops, (std::vector<PlaneLoop>{kSquare, hole}));
+  const auto loops =
+      cut_lines({even_border(kAllowanceSquare, 0), even_border(hole, 0)}, 2.5, "piece");
+  EXPECT_EQ(loops, (std::vector<PlaneLoop>{kAllowanceSquare, hole}));
 }
 
 // A regular polygon with in-radius r becomes the same polygon with in-radius r + a.
@@ -93,12 +94,12 @@ TEST(SeamAllowance, OfARegularPolygonKeepsItsShape) {
   }
 }
 
-// The cut never comes nearer to the border than asked, covers the piece, does not cross itself, and
-// reaches no further than the limit of mitres.
+// The cut never comes nearer to the border than asked, loops_cover the piece, does not cross
+// itself, and reaches no further than the limit of mitres.
 TEST(SeamAllowance, IsAtLeastAsWideAsAskedEverywhere) {
   RandomStream random(3, "stars");
   for (int round = 0; round < 200; ++round) {
-    const PlaneLoop star = random_star(random, 5 + static_cast<int>(random.below(40)));
+    const PlaneLoop star = random_star_loop(random, 5 + static_cast<int>(random.below(40)));
     const double allowance = 0.001 + 0.02 * random.below(1000) / 1000.0;
     const double limit = 1 + 3.0 * random.below(1000) / 1000.0;
     const auto loops = cut_evenly(star, allowance, limit);
@@ -106,7 +107,7 @@ TEST(SeamAllowance, IsAtLeastAsWideAsAskedEverywhere) {
     EXPECT_GT(loop_area(loops[0]), loop_area(star));
     for (std::size_t k = 0; k < loops.size(); ++k) {
       EXPECT_GE(test::distance_of_closed(loops[k], star), allowance - 1e-12) << round;
-      EXPECT_FALSE(crosses_itself(loops[k])) << round;
+      EXPECT_FALSE(loop_crosses_itself(loops[k])) << round;
       EXPECT_EQ(loop_area(loops[k]) > 0, k == 0) << round;
       for (const Eigen::Vector2d& p : loops[k]) {
         // A corner of a straight cap: the cap's middle is at the limit, its half width less.
@@ -114,7 +115,7 @@ TEST(SeamAllowance, IsAtLeastAsWideAsAskedEverywhere) {
             << round;
       }
     }
-    for (const Eigen::Vector2d& p : star) EXPECT_TRUE(covers(loops, p));
+    for (const Eigen::Vector2d& p : star) EXPECT_TRUE(loops_cover(loops, p));
   }
 }
 
@@ -122,7 +123,7 @@ TEST(SeamAllowance, IsAtLeastAsWideAsAskedEverywhere) {
 TEST(SeamAllowance, CoversTheStripOfEachSegment) {
   RandomStream random(4, "strips");
   for (int round = 0; round < 100; ++round) {
-    AllowanceBorder border{random_star(random, 5 + static_cast<int>(random.below(20))), {}};
+    AllowanceBorder border{random_star_loop(random, 5 + static_cast<int>(random.below(20))), {}};
     const std::size_t n = border.points.size();
     for (std::size_t i = 0; i < n; ++i) {
       border.allowance.push_back(random.below(3) == 0 ? 0 : 0.02 * random.below(1000) / 1000.0);
@@ -133,7 +134,7 @@ TEST(SeamAllowance, CoversTheStripOfEachSegment) {
       const Eigen::Vector2d d = (b - a).normalized(), outward(d.y(), -d.x());
       for (const double t : {0.01, 0.5, 0.99}) {
         const double width = border.allowance[i] * (1 - 1e-9) - 1e-12;
-        EXPECT_TRUE(covers(loops, a + t * (b - a) + width * outward)) << round << " " << i;
+        EXPECT_TRUE(loops_cover(loops, a + t * (b - a) + width * outward)) << round << " " << i;
       }
     }
   }
@@ -141,7 +142,7 @@ TEST(SeamAllowance, CoversTheStripOfEachSegment) {
 
 // A strip of 10 mm beside sides that are cut on the line: only one side moves.
 TEST(SeamAllowance, ProlongsALineThatHasNone) {
-  const auto loops = cut_lines({{kSquare, {0.01, 0, 0, 0}}}, 2.5, "piece");
+  const auto loops = cut_lines({{kAllowanceSquare, {0.01, 0, 0, 0}}}, 2.5, "piece");
   ASSERT_EQ(loops.size(), 1U);
   EXPECT_NEAR(loop_area(loops[0]), 0.1 * 0.11, 1e-15);
   EXPECT_EQ(loops[0].size(), 4U);
@@ -178,10 +179,10 @@ TEST(SeamAllowance, ClosesNarrowDarts) {
   const auto closed = cut_evenly(with_dart(0.004), 0.007);
   ASSERT_EQ(closed.size(), 1U);
   EXPECT_NEAR(loop_area(closed[0]), 0.214 * 0.114, 1e-4);
-  EXPECT_TRUE(covers(closed, {0.1, 0.08}));
+  EXPECT_TRUE(loops_cover(closed, {0.1, 0.08}));
   const auto open = cut_evenly(with_dart(0.08), 0.007);
   ASSERT_EQ(open.size(), 1U);
-  EXPECT_FALSE(covers(open, {0.1, 0.08}));
+  EXPECT_FALSE(loops_cover(open, {0.1, 0.08}));
 }
 
 // A ring with a slit of 10 mm: allowances of 7 mm close the slit, what is left inside is a hole of
@@ -199,7 +200,8 @@ TEST(SeamAllowance, LeavesAHoleBehindAClosedSlit) {
 TEST(SeamAllowance, NarrowsHolesUntilTheyAreGone) {
   const PlaneLoop hole{{0.03, 0.03}, {0.03, 0.06}, {0.06, 0.06}, {0.06, 0.03}};
   const auto with_hole = [&](double allowance) {
-    return cut_lines({even_border(kSquare, 0), even_border(hole, allowance)}, 2.5, "piece");
+    return cut_lines({even_border(kAllowanceSquare, 0), even_border(hole, allowance)}, 2.5,
+                     "piece");
   };
   const auto loops = with_hole(0.005);
   ASSERT_EQ(loops.size(), 2U);
@@ -217,13 +219,13 @@ TEST(SeamAllowance, NamesWhatCannotBeCut) {
   EXPECT_THAT(refusal({even_border(bow, 0.01)}), HasSubstr("meets itself"));
   EXPECT_THAT(refusal({even_border({{0, 0}, {0.1, 0}, {0.05, 0}, {0.05, 0.1}}, 0)}),
               HasSubstr("segment 0 of loop 0"));
-  PlaneLoop turned = kSquare;
+  PlaneLoop turned = kAllowanceSquare;
   std::reverse(turned.begin(), turned.end());
   EXPECT_THAT(refusal({even_border(turned, 0)}), HasSubstr("wrong way"));
   EXPECT_THAT(refusal({even_border({{0, 0}, {1, 0}}, 0)}), HasSubstr("three points"));
-  EXPECT_THAT(refusal({even_border(kSquare, -1)}), HasSubstr("allowance of segment 0"));
-  EXPECT_THAT(refusal({even_border(kSquare, NAN)}), HasSubstr("allowance of segment 0"));
-  EXPECT_THAT(refusal({even_border(kSquare, 0.01)}, 0.5), HasSubstr("miter limit"));
+  EXPECT_THAT(refusal({even_border(kAllowanceSquare, -1)}), HasSubstr("allowance of segment 0"));
+  EXPECT_THAT(refusal({even_border(kAllowanceSquare, NAN)}), HasSubstr("allowance of segment 0"));
+  EXPECT_THAT(refusal({even_border(kAllowanceSquare, 0.01)}, 0.5), HasSubstr("miter limit"));
   EXPECT_THAT(refusal({even_border({{0, 0}, {1, 0}, {1, 0}, {0, 1}}, 0)}), HasSubstr("repeats"));
 }
 
