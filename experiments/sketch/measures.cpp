@@ -1,10 +1,13 @@
 #include "experiments/sketch/measures.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <span>
 
+#include "metrics/depth_error.h"
 #include "metrics/seam_lengths.h"
 #include "metrics/silhouette.h"
 
@@ -110,6 +113,31 @@ PatternMeasures pattern_measures(const SketchScene& /*scene*/, const Frame& fram
   measures.pieces = static_cast<double>(pieces.size());
   measures.piece_overlaps = static_cast<double>(piece_overlaps(pieces).size());
   measures.seam_mismatch = largest_mismatch(frame);
+  return measures;
+}
+
+TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame) {
+  TruthMeasures measures;
+  if (!scene.truth || frame.find_part("strokes") == nullptr) return measures;
+  const SyntheticView& truth = *scene.truth;
+  const Part& curves = frame.require_part("strokes", Part::Kind::lines);
+  const auto& stroke = curves.require_array("stroke", NamedArray::On::points, 1).values;
+  const auto& drawn_at = curves.require_array("drawn_at", NamedArray::On::points, 1).values;
+  Eigen::MatrixX3d real(curves.points.rows(), 3);
+  double left = std::numeric_limits<double>::infinity(), right = -left;
+  for (Eigen::Index i = 0; i < real.rows(); ++i) {
+    const auto& points = truth.truth[static_cast<std::size_t>(stroke(i))];
+    const double at = std::floor(drawn_at(i));
+    const Eigen::Vector3d a = points[static_cast<std::size_t>(at) % points.size()];
+    const Eigen::Vector3d b = points[(static_cast<std::size_t>(at) + 1) % points.size()];
+    real.row(i) = (a + (drawn_at(i) - at) * (b - a)).transpose();
+    left = std::min(left, real(i, 0));
+    right = std::max(right, real(i, 0));
+  }
+  const DepthError error = depth_error(curves.points, real, Eigen::Vector3d::UnitZ(), truth.height);
+  measures.depth_rms = error.share;
+  measures.depth_max = error.max / truth.height;
+  measures.reprojection = error.in_plane_rms / (right - left);
   return measures;
 }
 

@@ -29,4 +29,11 @@ struct PatternMeasures {
 };
 PatternMeasures pattern_measures(const SketchScene& scene, const Frame& frame);
 
+/// Of a reconstruction from one view of a known shape; nothing elsewhere.
+struct TruthMeasures {
+  std::optional<double> depth_rms, depth_max;  ///< over the height of the shape
+  std::optional<double> reprojection;          ///< over the width of the drawing
+};
+TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame);
+
 }  // namespace geoprior::sketch

@@ -9,6 +9,7 @@
 #include "baselines/sketch/hull_surface.h"
 #include "experiments/sketch/scene.h"
 #include "experiments/sketch/topic.h"
+#include "solvers/sketch/one_view_process.h"
 #include "solvers/sketch/several_views.h"
 
 namespace geoprior::sketch {
@@ -71,6 +72,12 @@ std::vector<MethodEntry> methods() {
           [](const S& scene, const SeveralViewsOptions& options, RunContext&) {
             return make_several_views_process(scene.input, options);
           }),
+      method_entry<S, OneViewOptions>(
+          "one-view", false, "depth of one annotated view by symmetry and rulings, mirrored",
+          "thesis 2.1.3; Fondevilla et al. 2017",
+          [](const S& scene, const OneViewOptions& options, RunContext&) {
+            return make_one_view_process(scene.photo(), options);
+          }),
       method_entry<S, HullSurfaceOptions>(
           "visual-hull", true, "all points that every view sees, as it is or smoothed",
           "Rivers, Durand and Igarashi 2010; Taubin 1995",
@@ -95,6 +102,15 @@ std::vector<DiagnosticEntry> diagnostics() {
       {"silhouette_edges", "1", "edges that carry the silhouettes of all views", true, kWork},
       {"gaps", "1", "stretches of silhouettes that no edge of the surface can cover"},
       {"gap_length", "m", "their length in all"},
+      {"residual_accuracy", "m", "root mean square of the rows of the term, as all of these"},
+      {"residual_variation", "m", "of even variation of depth along curves"},
+      {"residual_pairs", "m", "of drawn symmetric pairs"},
+      {"residual_dense", "m", "of matches between them"},
+      {"residual_developability", "m", "of tangent planes along rulings"},
+      {"residual_planarity", "m", "of flat panels"},
+      {"residual_parallel", "m", "of parallel ends of patches"},
+      {"condition", "1", "greatest over least eigenvalue of the normal matrix"},
+      {"matches", "1", "dense symmetric correspondences"},
       {"flow_energy", "1", "what a flow descends, as it defines it"},
   };
 }

@@ -102,10 +102,24 @@ MetricGroup pattern_group() {
            kLow, {1e-3, 0.05}, &M::seam_mismatch);
 }
 
+MetricGroup truth_group() {
+  using M = TruthMeasures;
+  return frame_metrics<SketchScene>(truth_measures)
+      .row("depth_rms", "1",
+           "root mean square error of the depth of drawn borders over the height of the shape, "
+           "without its mean, which one view cannot tell",
+           kLow, {1e-4, 0.02}, &M::depth_rms)
+      .row("depth_max", "1", "the largest such error", kLow, {1e-3, 0.05}, &M::depth_max)
+      .row("reprojection", "1",
+           "root mean square distance in the view from where the borders really are, over the "
+           "width of the drawing",
+           kLow, {1e-5, 0.02}, &M::reprojection);
+}
+
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
-  return {surface_group(), silhouette_group(), pattern_group()};
+  return {surface_group(), silhouette_group(), pattern_group(), truth_group()};
 }
 
 }  // namespace geoprior::sketch

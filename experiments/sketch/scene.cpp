@@ -26,6 +26,7 @@ void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& fold
   scene.input.drawing = std::move(read.drawing);
   scene.load_warnings = std::move(read.warnings);
   scene.input_files = std::move(read.inputs);
+  if (scene.input.drawing.find(ViewKind::photo) != nullptr) return;
   for (const OutlinedView& view : outlined_views(align_views(scene.input.drawing, o.align)))
     scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
 }
@@ -47,6 +48,8 @@ void describe(OptionVisitor& v, SketchSceneOptions& o) {
   v.value("drawing", o.drawing, {.doc = "SVG file with the annotated views"});
   v.value("surface", o.surface,
           {.doc = "mesh file in place of a drawing, for methods that need none"});
+  describe_group(v, "synthetic", o.synthetic,
+                 {.doc = "one view of a shape that is known, in place of both"});
   v.value("surface_scale", o.surface_scale,
           {.doc = "metres for one unit of that mesh", .unit = "m", .min = 1e-9, .max = 1e9});
   describe_group(v, "read", o.read, {.doc = "how the drawing becomes strokes"});
@@ -65,10 +68,21 @@ std::map<std::string, double> SketchScene::facts() const {
   return facts;
 }
 
+const View& SketchScene::photo() const {
+  const View* view = input.drawing.find(ViewKind::photo);
+  if (view == nullptr) throw Error("has no view of kind photo", "scene", "a drawing with one view");
+  return *view;
+}
+
 std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options,
-                                               const std::filesystem::path& folder) {
-  if (options.drawing.empty() == options.surface.empty())
-    throw Error("neither or both are given", "scene.drawing and scene.surface", "one of them");
+                                               const std::filesystem::path& folder,
+                                               std::uint64_t seed) {
+  const int given =
+      !options.drawing.empty() + !options.surface.empty() + options.synthetic.has_value();
+  if (given != 1) {
+    throw Error(std::to_string(given) + " of them are given",
+                "scene.drawing, scene.surface and scene.synthetic", "one");
+  }
   auto scene = std::make_shared<SketchScene>();
   scene->input.align = options.align;
   scene->input.hull = options.hull;
@@ -79,7 +93,12 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
       return pattern_artifacts(pattern, fabrication);
     };
   }
-  if (options.drawing.empty()) {
+  if (options.synthetic) {
+    SyntheticViewOptions drawn = *options.synthetic;
+    drawn.seed = static_cast<int>(scene_seed(seed, drawn.seed));
+    scene->truth = synthetic_view(drawn);
+    scene->input.drawing = {"scene.synthetic", {scene->truth->view}};
+  } else if (options.drawing.empty()) {
     load_surface(options, folder, *scene);
     scene->input.patterns = false;
   } else {

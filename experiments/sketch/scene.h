@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -12,15 +13,18 @@
 #include "experiments/sketch/fabrication.h"
 #include "metrics/planar_overlap.h"
 #include "models/sketch/sketch_process.h"
+#include "models/sketch/synthetic_views.h"
 #include "testbed/topic.h"
 
 namespace geoprior::sketch {
 
-/// `[scene]` of a sketch experiment: a drawing, or a surface in its place.
+/// `[scene]` of a sketch experiment: a drawing, a drawing of a shape that is known, or a surface in
+/// its place.
 struct SketchSceneOptions {
   std::string drawing;  ///< SVG file
   std::string surface;  ///< mesh file instead, for methods that need no drawing
   double surface_scale = 1;
+  std::optional<SyntheticViewOptions> synthetic;  ///< instead of both
   DrawingFileOptions read;
   AlignOptions align;
   HullOptions hull;
@@ -41,6 +45,11 @@ class SketchScene final : public ProcessScene {
  public:
   SketchInput input;  ///< what a method is given
   std::vector<DrawnSilhouette> silhouettes;
+  std::optional<SyntheticView> truth;  ///< of a synthetic view
+
+  /// The one view of a drawing that has no others.
+  /// @throws Error  when the scene has none
+  [[nodiscard]] const View& photo() const;
 
   [[nodiscard]] std::string parameter_name() const override { return "iteration"; }
   [[nodiscard]] std::string parameter_unit() const override { return "1"; }
@@ -49,7 +58,9 @@ class SketchScene final : public ProcessScene {
 
 /// @param folder  of the experiment file, against which relative files are tried first
 /// @throws Error  naming key or file, and place
+/// @param seed    of the experiment: of the noise of a synthetic view, beside its own
 std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options,
-                                               const std::filesystem::path& folder);
+                                               const std::filesystem::path& folder,
+                                               std::uint64_t seed);
 
 }  // namespace geoprior::sketch

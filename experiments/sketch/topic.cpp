@@ -9,10 +9,9 @@ Topic make_topic() {
   topic.name = "sketch";
   topic.summary = "developable surfaces and flat patterns from annotated drawings (thesis 2.1)";
   topic.default_scene = [] { return std::make_unique<TypedOptions<SketchSceneOptions>>(); };
-  topic.load = [](const OptionSet& set, const std::filesystem::path& folder,
-                  std::uint64_t /*seed*/) {
+  topic.load = [](const OptionSet& set, const std::filesystem::path& folder, std::uint64_t seed) {
     return load_sketch_scene(dynamic_cast<const TypedOptions<SketchSceneOptions>&>(set).options,
-                             folder);
+                             folder, seed);
   };
   topic.methods = methods();
   topic.metrics = metrics();
