@@ -16,7 +16,7 @@ namespace {
 constexpr double kSamePoint = 1e-9;  // m
 
 /// As much of a text of the file as an error quotes.
-std::string quoted(const std::string& text) {
+std::string quoted_value(const std::string& text) {
   constexpr std::size_t kMostQuoted = 100;
   return "'" + text.substr(0, kMostQuoted) + "'";
 }
@@ -67,7 +67,7 @@ class TaggedShape {
   [[nodiscard]] std::optional<StrokeKind> kind_of_data(const std::string& name) const {
     const auto kind = kind_of_name(name);
     if (kind || name == "none") return kind;
-    throw Error("unknown kind " + quoted(name), place() + ": data-kind",
+    throw Error("unknown kind " + quoted_value(name), place() + ": data-kind",
                 stroke_kind_names() + ", none");
   }
 
@@ -102,21 +102,21 @@ std::string stroke_name(const TaggedShape& tagged, const SvgTags& tags, StrokeKi
 DepthSide depth_side(const std::string& text, const std::string& place) {
   if (text.empty() || text == "front") return DepthSide::front;
   if (text == "back") return DepthSide::back;
-  throw Error("unknown side " + quoted(text), place + ": data-depth", "front, back");
+  throw Error("unknown side " + quoted_value(text), place + ": data-depth", "front, back");
 }
 
-std::optional<double> fold_angle(const std::string& text, const std::string& place) {
+std::optional<double> written_fold_angle(const std::string& text, const std::string& place) {
   if (text.empty()) return std::nullopt;
   const auto angle = finite_number(text);
   if (!angle || *angle < 0 || *angle > 90) {
-    throw Error(quoted(text) + " is no angle of a fold", place + ": data-fold-angle",
+    throw Error(quoted_value(text) + " is no angle of a fold", place + ": data-fold-angle",
                 "0 to 90 (degrees)");
   }
   return angle;
 }
 
 /// A number alone is in mm.
-std::optional<double> fold_width(const std::string& text, const std::string& place) {
+std::optional<double> written_fold_width(const std::string& text, const std::string& place) {
   if (text.empty()) return std::nullopt;
   const std::string where = place + ": data-fold-width";
   const auto plain = finite_number(text);
@@ -135,8 +135,8 @@ Stroke common_stroke(const TaggedShape& tagged, const SvgShape& shape, StrokeKin
   stroke.name = stroke_name(tagged, shape.tags, kind);
   stroke.side = depth_side(tagged.data("depth"), place);
   if (kind == StrokeKind::fold) {
-    stroke.fold_angle_deg = fold_angle(tagged.data("fold-angle"), place);
-    stroke.fold_width = fold_width(tagged.data("fold-width"), place);
+    stroke.fold_angle_deg = written_fold_angle(tagged.data("fold-angle"), place);
+    stroke.fold_width = written_fold_width(tagged.data("fold-width"), place);
   }
   return stroke;
 }

@@ -18,9 +18,9 @@ double twice_signed_area(const std::vector<Eigen::Vector2d>& points) {
 }
 
 /// Grows a stroke at its last point until that is its first.
-class Chain {
+class SilhouetteChain {
  public:
-  Chain(Stroke first, std::vector<Stroke>& open, double snap)
+  SilhouetteChain(Stroke first, std::vector<Stroke>& open, double snap)
       : chain_(std::move(first)),
         last_(chain_.id),
         length_(length(chain_)),
@@ -93,10 +93,10 @@ Eigen::Vector2d meeting_point(const Eigen::Vector2d& a, const Eigen::Vector2d& b
   return a + std::clamp(cross(c - a, d - c) / turn, 0.0, 1.0) * (b - a);
 }
 
-/// Chords of a stroke by their index.
-class Chords {
+/// StrokeChords of a stroke by their index.
+class StrokeChords {
  public:
-  explicit Chords(const Stroke& stroke)
+  explicit StrokeChords(const Stroke& stroke)
       : points_(stroke.points), closed_(stroke.closed && stroke.points.size() > 2) {}
 
   [[nodiscard]] std::size_t size() const { return points_.size() - (closed_ ? 0 : 1); }
@@ -138,7 +138,7 @@ SilhouetteLoops join_silhouettes(std::span<const Stroke> strokes, double snap) {
   while (!open.empty() && !result.gap) {
     Stroke first = std::move(open.front());
     open.erase(open.begin());
-    Chain chain(std::move(first), open, snap);
+    SilhouetteChain chain(std::move(first), open, snap);
     result.gap = chain.close();
     if (!result.gap) result.loops.push_back(chain.take());
   }
@@ -150,7 +150,7 @@ SilhouetteLoops join_silhouettes(std::span<const Stroke> strokes, double snap) {
 
 std::optional<Eigen::Vector2d> self_crossing(const Stroke& stroke) {
   if (stroke.points.size() < 3) return std::nullopt;
-  const Chords chords(stroke);
+  const StrokeChords chords(stroke);
   std::vector<std::size_t> by_x(chords.size());
   std::iota(by_x.begin(), by_x.end(), std::size_t{0});
   std::stable_sort(by_x.begin(), by_x.end(),

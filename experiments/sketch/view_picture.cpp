@@ -67,7 +67,7 @@ std::string head_of(const std::filesystem::path& file, const std::string& where)
 }  // namespace
 
 std::optional<Eigen::Vector2i> picture_size(std::string_view bytes) {
-  if (bytes.starts_with("\x89PNG\r\n\x1a\n") && bytes.substr(12, 4) == "IHDR")
+  if (bytes.starts_with("\x89PNG\r\n\x1a\n") && bytes.size() >= 24 && bytes.substr(12, 4) == "IHDR")
     return of_sides(big_endian(bytes, 16, 4), big_endian(bytes, 20, 4));
   if (bytes.starts_with("\xff\xd8")) return jpeg_size(bytes);
   return std::nullopt;

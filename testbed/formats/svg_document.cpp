@@ -62,7 +62,7 @@ struct Surroundings {
 };
 
 /// Most comparisons of elements with rules of style: a second or two.
-constexpr double kMostSvgMatches = 5e7;
+constexpr double kMostSvgMatches = 1e7;
 
 /// Elements that draw nothing by themselves.
 bool only_serves(std::string_view element) {

@@ -10,9 +10,9 @@ namespace geoprior {
 namespace {
 
 /// Draws the commands: keeps the pen and the control point that S and T reflect.
-class PathReader {
+class SvgPathReader {
  public:
-  PathReader(std::string_view d, double tolerance, const std::string& where)
+  SvgPathReader(std::string_view d, double tolerance, const std::string& where)
       : text_(d, where), tolerance_(tolerance) {}
 
   std::vector<SvgSubpath> read() {
@@ -185,7 +185,7 @@ class PathReader {
 std::vector<SvgSubpath> flatten_svg_subpaths(std::string_view d, double tolerance,
                                              const std::string& where) {
   if (!(tolerance > 0)) throw Error("tolerance is not positive", where, "more than 0");
-  return PathReader(d, tolerance, where).read();
+  return SvgPathReader(d, tolerance, where).read();
 }
 
 }  // namespace geoprior

@@ -51,9 +51,11 @@ class ShapeLengths {
 };
 
 /// A closed line through quarters of ellipses, with straight lines between them.
-class Outline {
+class ShapeOutline {
  public:
-  Outline(const Eigen::Vector2d& start, double tolerance) : tolerance_(tolerance) { add(start); }
+  ShapeOutline(const Eigen::Vector2d& start, double tolerance) : tolerance_(tolerance) {
+    add(start);
+  }
 
   void line_to(const Eigen::Vector2d& p) { add(p); }
   /// Clockwise on the page, as SVG draws its shapes.
@@ -78,9 +80,10 @@ class Outline {
   SvgSubpath line_;
 };
 
-SvgSubpath ellipse(const Eigen::Vector2d& centre, const Eigen::Vector2d& radii, double tolerance) {
+SvgSubpath ellipse_outline(const Eigen::Vector2d& centre, const Eigen::Vector2d& radii,
+                           double tolerance) {
   const Eigen::Vector2d right(radii.x(), 0), down(0, radii.y());
-  Outline outline(centre + right, tolerance);
+  ShapeOutline outline(centre + right, tolerance);
   for (const Eigen::Vector2d& p : {Eigen::Vector2d(centre + down), Eigen::Vector2d(centre - right),
                                    Eigen::Vector2d(centre - down), Eigen::Vector2d(centre + right)})
     outline.quarter_to(p, radii);
@@ -88,11 +91,11 @@ SvgSubpath ellipse(const Eigen::Vector2d& centre, const Eigen::Vector2d& radii, 
 }
 
 /// @param radii  of the corners, at most half the size
-SvgSubpath rectangle(const Eigen::Vector2d& low, const Eigen::Vector2d& size,
-                     const Eigen::Vector2d& radii, double tolerance) {
+SvgSubpath rectangle_outline(const Eigen::Vector2d& low, const Eigen::Vector2d& size,
+                             const Eigen::Vector2d& radii, double tolerance) {
   const Eigen::Vector2d high = low + size;
   const double rx = radii.x(), ry = radii.y();
-  Outline outline({low.x() + rx, low.y()}, tolerance);
+  ShapeOutline outline({low.x() + rx, low.y()}, tolerance);
   outline.line_to({high.x() - rx, low.y()});
   outline.quarter_to({high.x(), low.y() + ry}, radii);
   outline.line_to({high.x(), high.y() - ry});
@@ -113,7 +116,7 @@ std::vector<SvgSubpath> rectangle_lines(const ShapeLengths& lengths, const SvgSh
   Eigen::Vector2d radii(rx.value_or(ry.value_or(0)), ry.value_or(rx.value_or(0)));
   radii = radii.cwiseMin(size / 2);
   if (radii.minCoeff() == 0) radii.setZero();
-  return {rectangle(low, size, radii, frame.tolerance)};
+  return {rectangle_outline(low, size, radii, frame.tolerance)};
 }
 
 std::vector<SvgSubpath> ellipse_lines(std::string_view element, const ShapeLengths& lengths,
@@ -128,7 +131,7 @@ std::vector<SvgSubpath> ellipse_lines(std::string_view element, const ShapeLengt
     radii = {rx.value_or(ry.value_or(0)), ry.value_or(rx.value_or(0))};
   }
   if (radii.minCoeff() == 0) return {};
-  return {ellipse(centre, radii, frame.tolerance)};
+  return {ellipse_outline(centre, radii, frame.tolerance)};
 }
 
 std::vector<SvgSubpath> corner_lines(std::string_view points, bool closed,

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kFunctions = "matrix, translate, scale, rotate, skewX, skewY";
 
-double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+double svg_radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 /// The numbers between brackets.
 std::vector<double> arguments_of(SvgText& text) {
@@ -25,30 +25,32 @@ std::vector<double> arguments_of(SvgText& text) {
   return values;
 }
 
-Eigen::Affine2d matrix(double a, double b, double c, double d, double e, double f) {
+Eigen::Affine2d svg_matrix(double a, double b, double c, double d, double e, double f) {
   Eigen::Affine2d map;
   map.matrix() << a, c, e, b, d, f, 0, 0, 1;
   return map;
 }
 
-Eigen::Affine2d rotation(double degrees, const Eigen::Vector2d& about) {
-  const double c = std::cos(radians(degrees)), s = std::sin(radians(degrees));
-  const Eigen::Affine2d turn = matrix(c, s, -s, c, 0, 0);
+Eigen::Affine2d svg_rotation(double degrees, const Eigen::Vector2d& about) {
+  const double c = std::cos(svg_radians(degrees)), s = std::sin(svg_radians(degrees));
+  const Eigen::Affine2d turn = svg_matrix(c, s, -s, c, 0, 0);
   return Eigen::Translation2d(about) * turn * Eigen::Translation2d(-about);
 }
 
-Eigen::Affine2d function(SvgText& text) {
+Eigen::Affine2d svg_function(SvgText& text) {
   const std::string_view name = text.word();
   if (name.empty()) text.fail("a transformation is missing", kFunctions);
   const std::vector<double> v = arguments_of(text);
   const std::size_t n = v.size();
-  if (name == "matrix" && n == 6) return matrix(v[0], v[1], v[2], v[3], v[4], v[5]);
-  if (name == "translate" && (n == 1 || n == 2)) return matrix(1, 0, 0, 1, v[0], n == 2 ? v[1] : 0);
-  if (name == "scale" && (n == 1 || n == 2)) return matrix(v[0], 0, 0, n == 2 ? v[1] : v[0], 0, 0);
-  if (name == "rotate" && n == 1) return rotation(v[0], Eigen::Vector2d::Zero());
-  if (name == "rotate" && n == 3) return rotation(v[0], {v[1], v[2]});
-  if (name == "skewX" && n == 1) return matrix(1, 0, std::tan(radians(v[0])), 1, 0, 0);
-  if (name == "skewY" && n == 1) return matrix(1, std::tan(radians(v[0])), 0, 1, 0, 0);
+  if (name == "matrix" && n == 6) return svg_matrix(v[0], v[1], v[2], v[3], v[4], v[5]);
+  if (name == "translate" && (n == 1 || n == 2))
+    return svg_matrix(1, 0, 0, 1, v[0], n == 2 ? v[1] : 0);
+  if (name == "scale" && (n == 1 || n == 2))
+    return svg_matrix(v[0], 0, 0, n == 2 ? v[1] : v[0], 0, 0);
+  if (name == "rotate" && n == 1) return svg_rotation(v[0], Eigen::Vector2d::Zero());
+  if (name == "rotate" && n == 3) return svg_rotation(v[0], {v[1], v[2]});
+  if (name == "skewX" && n == 1) return svg_matrix(1, 0, std::tan(svg_radians(v[0])), 1, 0, 0);
+  if (name == "skewY" && n == 1) return svg_matrix(1, std::tan(svg_radians(v[0])), 0, 1, 0, 0);
   text.fail("no transformation '" + std::string(name) + "' of " + std::to_string(n) + " numbers",
             kFunctions);
 }
@@ -59,7 +61,7 @@ Eigen::Affine2d parse_svg_transform(std::string_view text, const std::string& wh
   SvgText reader(text, where);
   Eigen::Affine2d map = Eigen::Affine2d::Identity();
   while (reader.peek() != 0) {
-    map = map * function(reader);
+    map = map * svg_function(reader);
     reader.skip(',');
   }
   return map;

@@ -351,7 +351,8 @@ std::string png_head() {
 
 TEST(PictureSize, IsInTheHeadOfPngAndJpeg) {
   EXPECT_EQ(picture_size(png_head()), Eigen::Vector2i(200, 100));
-  EXPECT_EQ(picture_size(png_head().substr(0, 20)), std::nullopt);
+  for (std::size_t n = 0; n < 24; ++n)
+    EXPECT_EQ(picture_size(png_head().substr(0, n)), std::nullopt);
   // Start, a comment of 2 bytes, a filling byte, a baseline frame of 3 x 2 with 8 bits.
   const std::string jpeg("\xff\xd8\xff\xfe\0\x04hi\xff\xff\xc0\0\x0b\x08\0\x02\0\x03\x01\x01\x11\0",
                          22);
