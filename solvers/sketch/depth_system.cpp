@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "core/planar.h"
 
@@ -153,6 +154,7 @@ void DepthRows::add_developability(const RuledPatch& patch) {
                           ur = evaluate(net, r) / lr;
     const Eigen::Vector3d a(cross(u2, ur), cross(ur, u1), cross(u1, u2));
     if (a.norm() < kClearRuling) continue;
+    if (std::abs(signed_angle(u1, u2)) > options_.end_angle_deg * kDegree) continue;
     Row row{DepthTerm::developability, options_.developability, {}, 0};
     add(row, t1, 2, net.diagonal * a(0) / l1);
     add(row, t2, 2, net.diagonal * a(1) / l2);
@@ -293,6 +295,11 @@ void describe(OptionVisitor& v, DepthOptions& o) {
          "weight of parallel planes of both borders of a ruled patch");
   v.value("tangent_half_width", o.tangent_half_width,
           {.doc = "nodes on either side in the fit of a tangent", .min = 1, .max = 100});
+  v.value("end_angle_deg", o.end_angle_deg,
+          {.doc = "rulings whose end angles differ by more are left out",
+           .unit = "deg",
+           .min = 0,
+           .max = 180});
   v.value("singular", o.singular,
           {.doc = "least over greatest eigenvalue below which depth is undetermined",
            .min = 0,

@@ -26,6 +26,7 @@ struct DepthOptions {
   double planarity = 1;
   double parallel_planes = 0;
   int tangent_half_width = 4;  ///< nodes on either side
+  double end_angle_deg = 1;    ///< rulings whose end angles differ by more are not trusted
   double singular = 1e-13;     ///< least over greatest eigenvalue below which depth is undetermined
 };
 void describe(OptionVisitor& v, DepthOptions& options);
@@ -68,7 +69,8 @@ struct DepthSolution {
 ///   of the drawn angles, whatever their size, so that a row counts as much as it is sure of.
 ///   Nothing follows where the images are parallel, at a silhouette, since the tangent plane is
 ///   seen edge on; rulings that were held while others were sought are left out too, since they end
-///   at the nearest nodes.
+///   at the nearest nodes, and so are those whose end angles differ by more than `end_angle_deg`:
+///   the warping was led astray, most often by a silhouette drawn beside where it touches.
 /// - planarity: the border of a flat panel, z = a x + b y + c with unknown a, b, c.
 /// - parallel: both borders of a ruled patch are plane and parallel, z = a x + b y + c1 and
 ///   z = a x + b y + c2. The thesis assumes it of cones but does not list it as a term: weight 0.

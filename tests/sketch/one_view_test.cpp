@@ -60,7 +60,7 @@ OneViewOptions without_developability() {
 }
 
 // Four pairs on the lower circle fix it; of the upper one a single point is known, and the rulings
-// must carry depth across. Measured 0.59 % with and 25 % without them.
+// must carry depth across. Measured 0.67 % with and 25 % without them.
 TEST(OneView, FrustumDepthComesFromDevelopability) {
   EXPECT_LT(depth_error({}), 0.01);
   EXPECT_GT(depth_error({}, without_developability()), 0.09);
@@ -74,6 +74,25 @@ TEST(OneView, FrustumDepthHoldsUnderDrawingNoise) {
     drawn.seed = seed;
     EXPECT_LT(depth_error(drawn), 0.02) << "seed " << seed;
     EXPECT_GT(depth_error(drawn, without_developability()), 0.09) << "seed " << seed;
+  }
+}
+
+// Over views in which the ellipses are open and the mirror plane is not seen edge on. Measured:
+// means of ten seeds from 0.7 to 1.7 %, largest 2.9 % (pitch 20, yaw 35). A pair or a silhouette
+// that is put onto the wrong place costs 7 % and more.
+TEST(OneView, FrustumDepthHoldsInEveryGenericView) {
+  for (const double pitch : {20.0, 30.0, 45.0}) {
+    for (const double yaw : {35.0, 60.0, 80.0}) {
+      for (int seed = 1; seed <= 10; ++seed) {
+        SyntheticViewOptions drawn;
+        drawn.pitch_deg = pitch;
+        drawn.yaw_deg = yaw;
+        drawn.noise = 0.003;
+        drawn.seed = seed;
+        EXPECT_LT(depth_error(drawn), 0.035)
+            << "pitch " << pitch << ", yaw " << yaw << ", seed " << seed;
+      }
+    }
   }
 }
 
