@@ -39,7 +39,9 @@ void require_piece_shape(const Pattern& pattern, int k) {
   const PatternPiece& piece = pattern.pieces[static_cast<std::size_t>(k)];
   const std::string where = piece_label(pattern, k);
   for (Eigen::Index i = 0; i < piece.points.rows(); ++i) {
-    if (!(piece.points.row(i).cwiseAbs().maxCoeff() <= kFarthestPoint)) {
+    // Not by the larger coordinate: Eigen's maximum may pass over a NaN.
+    if (!(std::abs(piece.points(i, 0)) <= kFarthestPoint &&
+          std::abs(piece.points(i, 1)) <= kFarthestPoint)) {
       throw Error("point " + std::to_string(i) + " is not finite or too far away", where,
                   "within 1000 m");
     }

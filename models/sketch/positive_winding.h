@@ -17,7 +17,8 @@ using PlaneLoop = std::vector<Eigen::Vector2d>;
 /// @param curves  closed chains; segments may cross and coincide, points may repeat
 /// @return        the region on the left: outer loops counter-clockwise, those of holes clockwise,
 ///                longest extent first, each from its leftmost point on; empty for an empty region
-/// Source: CGAL, 2D arrangements; positive fill rule of polygon clipping.
+/// Source: positive fill rule of polygon clipping; de Berg et al., Computational Geometry,
+/// chapter 2.
 std::vector<PlaneLoop> positive_winding_border(const std::vector<PlaneLoop>& curves);
 
 /// Area that the loop encloses (m²); negative when it runs clockwise.

@@ -142,6 +142,7 @@ TEST(Notches, NameThePieceOfABrokenPattern) {
               }),
               HasSubstr("not joined by the border"));
   EXPECT_THAT(refusal([](Pattern& p) { p.pieces[0].points(3, 0) = NAN; }), HasSubstr("point 3"));
+  EXPECT_THAT(refusal([](Pattern& p) { p.pieces[0].points(4, 1) = NAN; }), HasSubstr("point 4"));
   EXPECT_THAT(refusal([](Pattern& p) { p.pieces[1].borders[0][2] = 99; }),
               HasSubstr("point 99 of 6"));
   EXPECT_THAT(refusal([](Pattern& p) { p.pieces[1].borders.clear(); }), HasSubstr("no border"));
