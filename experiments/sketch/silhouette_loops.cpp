@@ -104,8 +104,18 @@ class StrokeChords {
   [[nodiscard]] const Eigen::Vector2d& to(std::size_t i) const {
     return points_[(i + 1) % points_.size()];
   }
-  [[nodiscard]] double low_x(std::size_t i) const { return std::min(from(i).x(), to(i).x()); }
-  [[nodiscard]] double high_x(std::size_t i) const { return std::max(from(i).x(), to(i).x()); }
+  [[nodiscard]] double low(std::size_t i, int axis) const {
+    return std::min(from(i)[axis], to(i)[axis]);
+  }
+  [[nodiscard]] double high(std::size_t i, int axis) const {
+    return std::max(from(i)[axis], to(i)[axis]);
+  }
+  /// The axis along which they are shorter all together: there fewer of them overlap.
+  [[nodiscard]] int short_axis() const {
+    Eigen::Vector2d extent(0, 0);
+    for (std::size_t i = 0; i < size(); ++i) extent += (to(i) - from(i)).cwiseAbs();
+    return extent.x() <= extent.y() ? 0 : 1;
+  }
 
   /// Where chord i meets chord j, a later one.
   [[nodiscard]] std::optional<Eigen::Vector2d> meeting(std::size_t i, std::size_t j) const {
@@ -117,10 +127,10 @@ class StrokeChords {
       if (orientation(a, b, c) == 0 && (b - a).dot(c - b) < 0) return b;
       return std::nullopt;
     }
-    if (std::max(from(i).y(), to(i).y()) < std::min(from(j).y(), to(j).y()) ||
-        std::max(from(j).y(), to(j).y()) < std::min(from(i).y(), to(i).y()) ||
-        !segments_meet(from(i), to(i), from(j), to(j)))
-      return std::nullopt;
+    for (const int axis : {0, 1}) {
+      if (high(i, axis) < low(j, axis) || high(j, axis) < low(i, axis)) return std::nullopt;
+    }
+    if (!segments_meet(from(i), to(i), from(j), to(j))) return std::nullopt;
     return meeting_point(from(i), to(i), from(j), to(j));
   }
 
@@ -151,16 +161,19 @@ SilhouetteLoops join_silhouettes(std::span<const Stroke> strokes, double snap) {
 std::optional<Eigen::Vector2d> self_crossing(const Stroke& stroke) {
   if (stroke.points.size() < 3) return std::nullopt;
   const StrokeChords chords(stroke);
-  std::vector<std::size_t> by_x(chords.size());
-  std::iota(by_x.begin(), by_x.end(), std::size_t{0});
-  std::stable_sort(by_x.begin(), by_x.end(),
-                   [&](std::size_t a, std::size_t b) { return chords.low_x(a) < chords.low_x(b); });
+  const int axis = chords.short_axis();
+  std::vector<std::size_t> in_order(chords.size());
+  std::iota(in_order.begin(), in_order.end(), std::size_t{0});
+  std::stable_sort(in_order.begin(), in_order.end(), [&](std::size_t a, std::size_t b) {
+    return chords.low(a, axis) < chords.low(b, axis);
+  });
   std::pair<std::size_t, std::size_t> first{chords.size(), 0};
   std::optional<Eigen::Vector2d> point;
-  for (std::size_t k = 0; k < by_x.size(); ++k) {
-    for (std::size_t m = k + 1; m < by_x.size() && chords.low_x(by_x[m]) <= chords.high_x(by_x[k]);
+  for (std::size_t k = 0; k < in_order.size(); ++k) {
+    for (std::size_t m = k + 1;
+         m < in_order.size() && chords.low(in_order[m], axis) <= chords.high(in_order[k], axis);
          ++m) {
-      const std::pair<std::size_t, std::size_t> pair = std::minmax({by_x[k], by_x[m]});
+      const std::pair<std::size_t, std::size_t> pair = std::minmax({in_order[k], in_order[m]});
       if (pair >= first) continue;
       if (const auto meeting = chords.meeting(pair.first, pair.second)) {
         first = pair;

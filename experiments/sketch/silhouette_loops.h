@@ -33,7 +33,7 @@ SilhouetteLoops join_silhouettes(std::span<const Stroke> strokes, double snap);
 
 /// A point where a stroke meets itself other than at the common ends of neighbouring chords. Which
 /// one of several: of the first chord that meets another. Exact but for the point's rounding.
-/// Chords are compared when their extents in x overlap, so that it takes up to n^2 time.
+/// Chords are compared when their extents along one axis overlap: up to n^2 time for long ones.
 std::optional<Eigen::Vector2d> self_crossing(const Stroke& stroke);
 
 }  // namespace geoprior::sketch
