@@ -1,6 +1,7 @@
 #include "experiments/sketch/topic.h"
 
 #include "experiments/sketch/scene.h"
+#include "experiments/sketch/stroke_kinds.h"
 
 namespace geoprior::sketch {
 
@@ -16,6 +17,7 @@ Topic make_topic() {
   topic.methods = methods();
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
+  topic.files = {drawing_keys()};
   topic.view.direction = {0.8, 0.5, 1};
   topic.view.up = {0, 1, 0};
   topic.view.shading = FigureView::Shading::flat;
