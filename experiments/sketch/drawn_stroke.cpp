@@ -102,7 +102,8 @@ std::string stroke_name(const TaggedShape& tagged, const SvgTags& tags, StrokeKi
 DepthSide depth_side(const std::string& text, const std::string& place) {
   if (text.empty() || text == "front") return DepthSide::front;
   if (text == "back") return DepthSide::back;
-  throw Error("unknown side " + quoted_value(text), place + ": data-depth", "front, back");
+  if (text == "both") return DepthSide::both;
+  throw Error("unknown side " + quoted_value(text), place + ": data-depth", "front, back, both");
 }
 
 std::optional<double> written_fold_angle(const std::string& text, const std::string& place) {

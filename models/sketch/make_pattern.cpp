@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "core/planar.h"
 #include "models/sketch/pattern_layout.h"
+#include "models/sketch/piece_border.h"
 #include "models/sketch/shortest_cut.h"
 
 namespace geoprior::sketch {
@@ -182,13 +183,6 @@ MadePattern make_pattern(const TriMesh& surface, std::span<const SeamEdge> seams
   lay_pieces(pieces, options, made);
   lay_on_shelves(made.pattern, {.gap = options.gap, .width = options.width});
   return made;
-}
-
-double edge_length(const PatternPiece& piece, const PieceEdge& edge) {
-  double length = 0;
-  for (std::size_t i = 1; i < edge.vertices.size(); ++i)
-    length += (piece.points.row(edge.vertices[i]) - piece.points.row(edge.vertices[i - 1])).norm();
-  return length;
 }
 
 std::vector<SeamMismatch> seam_mismatches(const Pattern& pattern) {

@@ -53,9 +53,6 @@ struct MadePattern {
 MadePattern make_pattern(const TriMesh& surface, std::span<const SeamEdge> seams,
                          const PatternOptions& options = {});
 
-/// Length of a stretch of a piece's border in the pattern (m).
-double edge_length(const PatternPiece& piece, const PieceEdge& edge);
-
 /// Difference of the lengths of the two stretches of a seam over their mean, without sign.
 struct SeamMismatch {
   int piece = -1, edge = -1;  ///< the first of the two

@@ -134,29 +134,60 @@ std::vector<Eigen::Vector2d> corners_of(const Outline& outline) {
   return corners;
 }
 
+/// Nearest point of a silhouette, or its corner where that is no farther than `reach` from it.
+Eigen::Vector2d place_to_go(const std::vector<Eigen::Vector2d>& corners,
+                            const Outline::Nearest& nearest, double reach) {
+  Eigen::Vector2d to = nearest.point;
+  for (const Eigen::Vector2d& corner : corners) {
+    const double distance = (corner - nearest.point).norm();
+    if (distance < reach) {
+      reach = distance;
+      to = corner;
+    }
+  }
+  return to;
+}
+
 /// Moves vertices near a silhouette onto it, and those near its corners onto them. Half a spacing
-/// is what surface nets stay away from an edge between two faces.
+/// is what surface nets stay away from an edge between two faces. A vertex inside of a silhouette
+/// goes out to it only if no other view loses sight of it: where two views see the same side of the
+/// shape, the hull is what both see.
 void move_onto_silhouettes(Eigen::MatrixX3d& V, const std::vector<OutlinedView>& views,
                            double spacing) {
-  for (int pass = 0; pass < 2; ++pass) {
-    for (const OutlinedView& view : views) {
-      const std::vector<Eigen::Vector2d> corners = corners_of(view.outline);
-      for (Eigen::Index v = 0; v < V.rows(); ++v) {
-        const Eigen::Vector2d q = view.project(V.row(v).transpose());
-        const Outline::Nearest nearest = view.outline.nearest(q);
-        if (std::abs(nearest.distance) > 0.5 * spacing) continue;
-        Eigen::Vector2d to = nearest.point;
-        double best = 0.5 * spacing;
-        for (const Eigen::Vector2d& corner : corners) {
-          const double distance = (corner - nearest.point).norm();
-          if (distance < best) {
-            best = distance;
-            to = corner;
-          }
+  std::vector<std::vector<Eigen::Vector2d>> corners;
+  for (const OutlinedView& view : views) corners.push_back(corners_of(view.outline));
+  const double reach = 0.5 * spacing, seen = 1e-6 * spacing;
+  const auto stays_seen = [&](const Eigen::Vector3d& x, const Eigen::Vector3d& from,
+                              std::size_t mover) {
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      if (v == mover) continue;
+      const double distance = views[v].outline.nearest(views[v].project(x)).distance;
+      if (distance > seen &&
+          distance > views[v].outline.nearest(views[v].project(from)).distance + seen)
+        return false;
+    }
+    return true;
+  };
+  for (Eigen::Index row = 0; row < V.rows(); ++row) {
+    Eigen::Vector3d x = V.row(row).transpose();
+    for (int pass = 0; pass < 3; ++pass) {
+      for (std::size_t v = 0; v < views.size(); ++v) {
+        const Eigen::Vector2d q = views[v].project(x);
+        const Outline::Nearest nearest = views[v].outline.nearest(q);
+        if (std::abs(nearest.distance) > reach) continue;
+        const auto moved = [&](const Eigen::Vector2d& to) -> Eigen::Vector3d {
+          return x + views[v].frame.topRows<2>().transpose() * (to - q);
+        };
+        const Eigen::Vector3d at_corner = moved(place_to_go(corners[v], nearest, reach));
+        const Eigen::Vector3d at_nearest = moved(nearest.point);
+        if (stays_seen(at_corner, x, v)) {
+          x = at_corner;
+        } else if (nearest.distance > 0 || stays_seen(at_nearest, x, v)) {
+          x = at_nearest;
         }
-        V.row(v) += (view.frame.topRows<2>().transpose() * (to - q)).transpose();
       }
     }
+    V.row(row) = x.transpose();
   }
 }
 

@@ -66,7 +66,7 @@ class SeveralViews final : public SketchMethod {
       pin_strokes(pins);
     }
     if (options_.order == StepOrder::alternating) {
-      const Phase phase(context, "solve");
+      const Phase phase(context, "transfer");
       const std::vector<Eigen::Matrix3d> unturned(
           static_cast<std::size_t>(surface_.hull.mesh.F.rows()), Eigen::Matrix3d::Identity());
       X_ = transfer_.solve(X_, unturned, pins);
@@ -78,7 +78,7 @@ class SeveralViews final : public SketchMethod {
       rotations = rotation_.rotations(normals);
       fold_.blend(X_, normals, rotations);
     }
-    const Phase phase(context, "solve");
+    const Phase phase(context, "transfer");
     X_ = transfer_.solve(X_, rotations, pins);
   }
 

@@ -271,7 +271,7 @@ TEST_F(DrawingFileTest, NamesTheStrokeOfAnUnknownKind) {
   refuse(kOutline + line + "class='seam fold'/>", {"path 'x'", "two kinds", "seam, fold"});
   refuse(kOutline + line + "stroke='url(#a)'/>", {"path 'x'", "no single one"});
   refuse(kOutline + line + "stroke='red' data-depth='behind'/>",
-         {"path 'x': data-depth", "front, back"});
+         {"path 'x': data-depth", "front, back, both"});
   refuse(kOutline + line + "stroke='green' data-fold-angle='120'/>",
          {"path 'x': data-fold-angle", "0 to 90"});
   refuse(kOutline + line + "stroke='green' data-fold-width='0'/>", {"path 'x': data-fold-width"});
