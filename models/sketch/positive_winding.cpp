@@ -5,9 +5,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
+#include <string>
 #include <tuple>
 #include <utility>
 
+#include "core/error.h"
 #include "core/planar.h"
 
 namespace geoprior::sketch {
@@ -44,6 +46,17 @@ struct CurveSegment {
   [[nodiscard]] double right() const { return std::max(a.x(), b.x()); }
   [[nodiscard]] bool has_end(const Eigen::Vector2d& p) const { return p == a || p == b; }
 };
+
+void require_finite_curves(const std::vector<PlaneLoop>& curves) {
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    for (std::size_t i = 0; i < curves[k].size(); ++i) {
+      if (!curves[k][i].allFinite()) {
+        throw Error("point " + std::to_string(i) + " of curve " + std::to_string(k) +
+                    " is not finite");
+      }
+    }
+  }
+}
 
 std::vector<CurveSegment> curve_segments(const std::vector<PlaneLoop>& curves) {
   std::vector<CurveSegment> segments;
@@ -286,6 +299,7 @@ double loop_area(const PlaneLoop& loop) {
 }
 
 std::vector<PlaneLoop> positive_winding_border(const std::vector<PlaneLoop>& curves) {
+  require_finite_curves(curves);
   const WindingGraph graph(curves);
   std::vector<PlaneLoop> loops;
   std::vector<bool> done(graph.half_edge_count(), false);

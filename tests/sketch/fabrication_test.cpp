@@ -183,6 +183,11 @@ TEST(PatternSheet, KeepsTextClearOfLines) {
                                                {{0, 0}, {0.3, 0}, {0.3, 0.012}, {0, 0.012}}));
   pattern.pieces.push_back(
       test::polygon_piece("wedge", {{0, 0}, {0.2, 0.01}, {0.03, 0.03}, {0.02, 0.15}}));
+  PatternPiece tube = test::polygon_piece(
+      "tube", {{0, 0}, {0.09, 0.002}, {0.09, 0.005}, {0.04, 0.006}, {0, 0.004}});
+  const int index = static_cast<int>(pattern.pieces.size());
+  tube.edges = {{{0, 1}, 5, index, 1}, {{2, 3, 4}, 5, index, 0}};
+  pattern.pieces.push_back(tube);
   for (const double spacing : {80.0, 10.0}) {
     SheetOptions options;
     options.notch_spacing_mm = spacing;

@@ -82,7 +82,11 @@ TEST(Notches, ShowWhenAnEdgeIsReversed) {
         }
         worst = std::max(worst, nearest);
       }
-      EXPECT_GT(worst, 0.1 * std::min(spacing, lengths[edge])) << spacing;
+      const double part = std::min(spacing, lengths[edge]);
+      EXPECT_GT(worst, 0.1 * part) << spacing;
+      for (const double arc : along) {
+        EXPECT_GT(std::min(arc, lengths[edge] - arc), 0.2 * part) << "no mark at a corner";
+      }
     }
   }
 }

@@ -1,5 +1,6 @@
 #include "models/sketch/positive_winding.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 
 #include "core/planar.h"
 #include "core/random.h"
+#include "tests/testbed/run_fixture.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -102,6 +104,15 @@ TEST(PositiveWinding, AgreesWithTheAngleOfTheCurves) {
       EXPECT_EQ(winding_by_angles(loops, p), winding_by_angles(curves, p) > 0 ? 1 : 0) << round;
     }
   }
+}
+
+TEST(PositiveWinding, NamesAPointThatIsNotFinite) {
+  PlaneLoop broken = box_loop(0, 0, 1, 1);
+  broken[2].y() = NAN;
+  EXPECT_THAT(test::error_of([&] {
+                positive_winding_border({box_loop(0, 0, 1, 1), broken});
+              }),
+              ::testing::HasSubstr("point 2 of curve 1"));
 }
 
 // n boxes in a row, each over half of the next: one long box.

@@ -119,6 +119,35 @@ TEST(SeamAllowance, IsAtLeastAsWideAsAskedEverywhere) {
   }
 }
 
+// Teeth of up to 3 mm and segments much shorter than the allowance.
+TEST(SeamAllowance, PassesOverSmallTeeth) {
+  RandomStream random(9, "teeth");
+  for (int round = 0; round < 30; ++round) {
+    PlaneLoop rough;
+    for (int i = 0; i < 150; ++i) {
+      const double angle = 2 * std::numbers::pi * i / 150;
+      const double radius = 0.03 + 0.003 * random.below(1000) / 1000.0;
+      rough.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    }
+    const auto loops = cut_evenly(rough, 0.007);
+    EXPECT_GE(test::distance_of_closed(loops[0], rough), 0.007 - 1e-12) << round;
+  }
+}
+
+// A bay of 6 mm radius, narrower than its allowance of 7 mm, is closed.
+TEST(SeamAllowance, ClosesNarrowBays) {
+  PlaneLoop plate{{0, 0}, {0.1, 0}, {0.1, 0.06}};
+  for (int i = 0; i <= 40; ++i) {
+    const double angle = std::numbers::pi * i / 40;
+    plate.emplace_back(0.05 + 0.006 * std::cos(angle), 0.06 - 0.006 * std::sin(angle));
+  }
+  plate.emplace_back(0, 0.06);
+  const auto loops = cut_evenly(plate, 0.007);
+  ASSERT_EQ(loops.size(), 1U);
+  EXPECT_GE(test::distance_of_closed(loops[0], plate), 0.007 - 1e-12);
+  EXPECT_TRUE(loops_cover(loops, {0.05, 0.06}));
+}
+
 // Each segment's own strip is covered, whatever its neighbours' allowances are, none included.
 TEST(SeamAllowance, CoversTheStripOfEachSegment) {
   RandomStream random(4, "strips");
@@ -138,6 +167,15 @@ TEST(SeamAllowance, CoversTheStripOfEachSegment) {
       }
     }
   }
+}
+
+// A step of 1 mm, with 7 mm before and on it and none behind: below the step the strip before it
+// is the only one.
+TEST(SeamAllowance, KeepsAStripBesideASmallStep) {
+  const PlaneLoop step{{0, 0}, {0.05, 0}, {0.05, -0.001}, {0.1, -0.001}, {0.1, 0.05}, {0, 0.05}};
+  const auto loops = cut_lines({{step, {0.007, 0.007, 0, 0, 0, 0}}}, 2.5, "piece");
+  ASSERT_EQ(loops.size(), 1U);
+  EXPECT_NEAR(loop_area(loops[0]), loop_area(step) + 0.05 * 0.007, 1e-15);
 }
 
 // A strip of 10 mm beside sides that are cut on the line: only one side moves.
