@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/limits.h"
+#include "core/planar.h"
 #include "core/topology.h"
 #include "models/sketch/surface_nets.h"
 
@@ -122,74 +123,100 @@ GridFunction hull_function(const std::vector<OutlinedView>& views, const HullGri
   return f;
 }
 
-/// Corners of an outline that turn by more than 30 degrees.
-std::vector<Eigen::Vector2d> corners_of(const Outline& outline) {
+/// A corner of an outline that turns by more than 30 degrees, and its sides.
+struct OutlineCorner {
+  Eigen::Vector2d at;
+  std::array<Eigen::Vector2d, 2> along;  ///< directions of the segments before and after it, unit
+};
+
+std::vector<OutlineCorner> corners_of(const Outline& outline) {
   const std::vector<Eigen::Vector2d>& p = outline.points();
-  std::vector<Eigen::Vector2d> corners;
+  std::vector<OutlineCorner> corners;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const Eigen::Vector2d in = p[i] - p[(i + p.size() - 1) % p.size()];
-    const Eigen::Vector2d out = p[(i + 1) % p.size()] - p[i];
-    if (in.dot(out) < std::cos(0.5236) * in.norm() * out.norm()) corners.push_back(p[i]);
+    const Eigen::Vector2d in = (p[i] - p[(i + p.size() - 1) % p.size()]).normalized();
+    const Eigen::Vector2d out = (p[(i + 1) % p.size()] - p[i]).normalized();
+    if (in.dot(out) < std::cos(0.5236)) corners.push_back({p[i], {in, out}});
   }
   return corners;
 }
 
-/// Nearest point of a silhouette, or its corner where that is no farther than `reach` from it.
-Eigen::Vector2d place_to_go(const std::vector<Eigen::Vector2d>& corners,
-                            const Outline::Nearest& nearest, double reach) {
-  Eigen::Vector2d to = nearest.point;
-  for (const Eigen::Vector2d& corner : corners) {
-    const double distance = (corner - nearest.point).norm();
-    if (distance < reach) {
-      reach = distance;
-      to = corner;
+/// Where a vertex may go in a view, the best first: onto a corner near it, onto both sides of that
+/// corner, onto the nearest point.
+std::vector<Eigen::Vector2d> places_to_go(const OutlinedView& view,
+                                          const std::vector<OutlineCorner>& corners,
+                                          const Eigen::Vector2d& q, double reach) {
+  std::vector<Eigen::Vector2d> places;
+  for (const OutlineCorner& corner : corners) {
+    const Eigen::Vector2d off = q - corner.at;
+    if (off.norm() > 2 * reach) continue;
+    const std::array<double, 2> beside{cross(corner.along[0], off), cross(corner.along[1], off)};
+    const bool near_both = std::abs(beside[0]) < reach && std::abs(beside[1]) < reach;
+    if (near_both) places.push_back(corner.at);
+    for (int side = 0; side < 2; ++side) {
+      const double along = corner.along[side].dot(off);
+      if (std::abs(beside[side]) < reach && (side == 0 ? along < 0 : along > 0))
+        places.push_back(corner.at + along * corner.along[side]);
     }
   }
-  return to;
+  const Outline::Nearest nearest = view.outline.nearest(q);
+  if (std::abs(nearest.distance) < reach) places.push_back(nearest.point);
+  return places;
 }
 
-/// Moves vertices near a silhouette onto it, and those near its corners onto them. Half a spacing
-/// is what surface nets stay away from an edge between two faces. A vertex inside of a silhouette
-/// goes out to it only if no other view loses sight of it: where two views see the same side of the
-/// shape, the hull is what both see.
-void move_onto_silhouettes(Eigen::MatrixX3d& V, const std::vector<OutlinedView>& views,
-                           double spacing) {
-  std::vector<std::vector<Eigen::Vector2d>> corners;
-  for (const OutlinedView& view : views) corners.push_back(corners_of(view.outline));
-  const double reach = 0.5 * spacing, seen = 1e-6 * spacing;
-  const auto stays_seen = [&](const Eigen::Vector3d& x, const Eigen::Vector3d& from,
-                              std::size_t mover) {
-    for (std::size_t v = 0; v < views.size(); ++v) {
-      if (v == mover) continue;
-      const double distance = views[v].outline.nearest(views[v].project(x)).distance;
-      if (distance > seen &&
-          distance > views[v].outline.nearest(views[v].project(from)).distance + seen)
-        return false;
-    }
-    return true;
-  };
-  for (Eigen::Index row = 0; row < V.rows(); ++row) {
-    Eigen::Vector3d x = V.row(row).transpose();
+/// Moves the vertices of the nets onto the silhouettes, their corners, and the edges between what
+/// two views ask: a vertex goes to every silhouette within 0.72 spacings. Nets stay half a spacing
+/// away from such an edge where its faces lie along the grid, and more where they are slanted. It
+/// goes out to a silhouette only if no other view loses sight of it: where two views see the same
+/// side of the shape, the hull is what both see.
+class SilhouetteFit {
+ public:
+  SilhouetteFit(const std::vector<OutlinedView>& views, double spacing)
+      : views_(views), reach_(0.72 * spacing), seen_(1e-6 * spacing) {
+    for (const OutlinedView& view : views) corners_.push_back(corners_of(view.outline));
+  }
+
+  [[nodiscard]] Eigen::Vector3d fitted(Eigen::Vector3d x) const {
     for (int pass = 0; pass < 3; ++pass) {
-      for (std::size_t v = 0; v < views.size(); ++v) {
-        const Eigen::Vector2d q = views[v].project(x);
-        const Outline::Nearest nearest = views[v].outline.nearest(q);
-        if (std::abs(nearest.distance) > reach) continue;
-        const auto moved = [&](const Eigen::Vector2d& to) -> Eigen::Vector3d {
-          return x + views[v].frame.topRows<2>().transpose() * (to - q);
-        };
-        const Eigen::Vector3d at_corner = moved(place_to_go(corners[v], nearest, reach));
-        const Eigen::Vector3d at_nearest = moved(nearest.point);
-        if (stays_seen(at_corner, x, v)) {
-          x = at_corner;
-        } else if (nearest.distance > 0 || stays_seen(at_nearest, x, v)) {
-          x = at_nearest;
+      for (std::size_t v = 0; v < views_.size(); ++v) {
+        for (std::size_t turn = 0; turn < 2; ++turn) {
+          const Eigen::Vector2d q = views_[v].project(x);
+          for (const Eigen::Vector2d& to : places_to_go(views_[v], corners_[v], q, reach_)) {
+            const Eigen::Vector3d moved = x + views_[v].frame.topRows<2>().transpose() * (to - q);
+            if ((to - q).norm() < seen_ || !is_seen_as_before(moved, x)) continue;
+            x = moved;
+            break;
+          }
         }
       }
     }
-    V.row(row) = x.transpose();
+    return inside(x);
   }
-}
+
+ private:
+  /// Whether no view has the point farther outside than before.
+  [[nodiscard]] bool is_seen_as_before(const Eigen::Vector3d& x,
+                                       const Eigen::Vector3d& from) const {
+    return std::all_of(views_.begin(), views_.end(), [&](const OutlinedView& view) {
+      const double distance = view.outline.nearest(view.project(x)).distance;
+      return distance < seen_ ||
+             distance < view.outline.nearest(view.project(from)).distance + seen_;
+    });
+  }
+
+  /// What is still outside of a silhouette comes in.
+  [[nodiscard]] Eigen::Vector3d inside(Eigen::Vector3d x) const {
+    for (const OutlinedView& view : views_) {
+      const Eigen::Vector2d q = view.project(x);
+      const Outline::Nearest nearest = view.outline.nearest(q);
+      if (nearest.distance > 0) x += view.frame.topRows<2>().transpose() * (nearest.point - q);
+    }
+    return x;
+  }
+
+  const std::vector<OutlinedView>& views_;
+  std::vector<std::vector<OutlineCorner>> corners_;
+  double reach_, seen_;
+};
 
 /// Splits quadrilaterals along their shorter diagonals.
 TriMesh split_quads(const QuadMesh& quads) {
@@ -266,7 +293,9 @@ VisualHull visual_hull(const Drawing& aligned, const HullOptions& options) {
   hull.spacing =
       coarse * std::sqrt(2.0 * static_cast<double>(trial.quads.size()) / options.triangles);
   QuadMesh quads = manifold_nets(hull.views, box, hull.spacing);
-  move_onto_silhouettes(quads.V, hull.views, hull.spacing);
+  const SilhouetteFit fit(hull.views, hull.spacing);
+  for (Eigen::Index v = 0; v < quads.V.rows(); ++v)
+    quads.V.row(v) = fit.fitted(quads.V.row(v).transpose()).transpose();
   hull.mesh = split_quads(quads);
   for (const OutlinedView& view : hull.views)
     hull.places.push_back(places_on(view, hull.mesh.V, 0.02 * hull.spacing));

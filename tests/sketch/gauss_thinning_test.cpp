@@ -66,7 +66,7 @@ TEST(GaussThinning, ShrinksItsConeToTheFinalAngle) {
 TEST(GaussThinning, NeighbourhoodsGrowWithTheRadius) {
   // Without a radius: the triangle and all that share a vertex with it; 13 where all vertices have
   // six neighbours.
-  const TriMesh torus = shapes::torus(2, 0.7, 24, 16);
+  const TriMesh torus = ::geoprior::shapes::torus(2, 0.7, 24, 16);
   GaussThinningOptions options;
   options.radius = 0;
   const GaussThinning ring(torus, options);

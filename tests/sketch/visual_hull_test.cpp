@@ -92,7 +92,9 @@ TEST(SurfaceNets, SphereConvergesAndIsClosed) {
     EXPECT_TRUE(non_manifold_edges(mesh.F).empty());
     EXPECT_EQ(mesh.vertex_count() - mesh.triangle_count() / 2, 2) << "genus 0";
     const double error = std::abs(signed_volume(mesh.V, mesh.F) - 4 * std::numbers::pi / 3);
-    if (before > 0) EXPECT_NEAR(std::log2(before / error), 2, 0.3);
+    if (before > 0) {
+      EXPECT_NEAR(std::log2(before / error), 2, 0.3);
+    }
     before = error;
   }
 }
