@@ -1,6 +1,7 @@
 #include "models/sketch/surface_nets.h"
 
 #include <cstddef>
+#include <utility>
 
 #include "core/disjoint_sets.h"
 #include "core/error.h"
@@ -107,20 +108,21 @@ class Netting {
     inside_[cell] = static_cast<unsigned char>(inside);
     if (inside == 0 || inside == 255) return;
     first_[cell] = static_cast<int>(points_.size());
-    std::array<Eigen::Vector3d, 4> sum;
-    sum.fill(Eigen::Vector3d::Zero());
-    std::array<int, 4> count{};
+    std::array<std::vector<Eigen::Vector3d>, 4> of_sheet;
     const std::array<signed char, 12>& sheet = sheet_table()[inside];
     for (int e = 0; e < 12; ++e) {
       if (sheet[e] < 0) continue;
       const int a = kEdgeStart[e], b = a | 1 << e / 4;
       Eigen::Vector3d at(a & 1, a >> 1 & 1, a >> 2 & 1);
       at[e / 4] += value[a] / (value[a] - value[b]);
-      sum[sheet[e]] += at;
-      ++count[sheet[e]];
+      of_sheet[sheet[e]].emplace_back(f_.origin + f_.spacing * (Eigen::Vector3d(i, j, k) + at));
     }
-    for (int s = 0; s < 4 && count[s] > 0; ++s) {
-      points_.emplace_back(f_.origin + f_.spacing * (Eigen::Vector3d(i, j, k) + sum[s] / count[s]));
+    for (std::vector<Eigen::Vector3d>& crossings : of_sheet) {
+      if (crossings.empty()) break;
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (const Eigen::Vector3d& x : crossings) sum += x;
+      points_.emplace_back(sum / static_cast<double>(crossings.size()));
+      mesh_.crossings.push_back(std::move(crossings));
     }
   }
 

@@ -20,6 +20,8 @@ struct GridFunction {
 struct QuadMesh {
   Eigen::MatrixX3d V;
   std::vector<std::array<int, 4>> quads;
+  /// Of each vertex: where its sheet crosses the edges of the cell; their mean is the vertex.
+  std::vector<std::vector<Eigen::Vector3d>> crossings;
 };
 
 /// The zero surface of the function: one vertex for every sheet of it in a cell, at the mean of the

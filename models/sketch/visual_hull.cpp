@@ -5,12 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "core/error.h"
 #include "core/limits.h"
-#include "core/planar.h"
 #include "core/topology.h"
 #include "models/sketch/surface_nets.h"
 
@@ -123,87 +123,81 @@ GridFunction hull_function(const std::vector<OutlinedView>& views, const HullGri
   return f;
 }
 
-/// A corner of an outline that turns by more than 30 degrees, and its sides.
-struct OutlineCorner {
-  Eigen::Vector2d at;
-  std::array<Eigen::Vector2d, 2> along;  ///< directions of the segments before and after it, unit
-};
-
-std::vector<OutlineCorner> corners_of(const Outline& outline) {
+/// Arc lengths of the corners of an outline: where it turns by more than 30 degrees. Ascending.
+std::vector<double> corners_of(const Outline& outline) {
   const std::vector<Eigen::Vector2d>& p = outline.points();
-  std::vector<OutlineCorner> corners;
+  std::vector<double> corners;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const Eigen::Vector2d in = (p[i] - p[(i + p.size() - 1) % p.size()]).normalized();
-    const Eigen::Vector2d out = (p[(i + 1) % p.size()] - p[i]).normalized();
-    if (in.dot(out) < std::cos(0.5236)) corners.push_back({p[i], {in, out}});
+    const Eigen::Vector2d in = p[i] - p[(i + p.size() - 1) % p.size()];
+    const Eigen::Vector2d out = p[(i + 1) % p.size()] - p[i];
+    if (in.dot(out) < std::cos(0.5236) * in.norm() * out.norm())
+      corners.push_back(outline.arc_length(static_cast<int>(i)));
   }
   return corners;
 }
 
-/// Where a vertex may go in a view, the best first: onto a corner near it, onto both sides of that
-/// corner, onto the nearest point.
-std::vector<Eigen::Vector2d> places_to_go(const OutlinedView& view,
-                                          const std::vector<OutlineCorner>& corners,
-                                          const Eigen::Vector2d& q, double reach) {
-  std::vector<Eigen::Vector2d> places;
-  for (const OutlineCorner& corner : corners) {
-    const Eigen::Vector2d off = q - corner.at;
-    if (off.norm() > 2 * reach) continue;
-    const std::array<double, 2> beside{cross(corner.along[0], off), cross(corner.along[1], off)};
-    const bool near_both = std::abs(beside[0]) < reach && std::abs(beside[1]) < reach;
-    if (near_both) places.push_back(corner.at);
-    for (int side = 0; side < 2; ++side) {
-      const double along = corner.along[side].dot(off);
-      if (std::abs(beside[side]) < reach && (side == 0 ? along < 0 : along > 0))
-        places.push_back(corner.at + along * corner.along[side]);
-    }
-  }
-  const Outline::Nearest nearest = view.outline.nearest(q);
-  if (std::abs(nearest.distance) < reach) places.push_back(nearest.point);
-  return places;
-}
-
-/// Moves the vertices of the nets onto the silhouettes, their corners, and the edges between what
-/// two views ask: a vertex goes to every silhouette within 0.72 spacings. Nets stay half a spacing
-/// away from such an edge where its faces lie along the grid, and more where they are slanted. It
-/// goes out to a silhouette only if no other view loses sight of it: where two views see the same
-/// side of the shape, the hull is what both see.
+/// Moves vertices of the nets onto the faces of the hull that their cells cross: a face is a view
+/// and a run of its silhouette between two corners. A vertex of two faces comes to lie on the edge
+/// between them, exactly.
 class SilhouetteFit {
  public:
   SilhouetteFit(const std::vector<OutlinedView>& views, double spacing)
-      : views_(views), reach_(0.72 * spacing), seen_(1e-6 * spacing) {
+      : views_(views), same_(0.02 * spacing) {
     for (const OutlinedView& view : views) corners_.push_back(corners_of(view.outline));
   }
 
-  [[nodiscard]] Eigen::Vector3d fitted(Eigen::Vector3d x) const {
-    for (int pass = 0; pass < 3; ++pass) {
+  [[nodiscard]] Eigen::Vector3d fitted(Eigen::Vector3d x,
+                                       const std::vector<Eigen::Vector3d>& crossings) const {
+    std::vector<std::set<std::size_t>> runs(views_.size());
+    for (const Eigen::Vector3d& crossing : crossings) add_faces_at(crossing, runs);
+    // Two faces that are not at right angles are met in turns.
+    for (int pass = 0; pass < 8; ++pass) {
       for (std::size_t v = 0; v < views_.size(); ++v) {
-        for (std::size_t turn = 0; turn < 2; ++turn) {
-          const Eigen::Vector2d q = views_[v].project(x);
-          for (const Eigen::Vector2d& to : places_to_go(views_[v], corners_[v], q, reach_)) {
-            const Eigen::Vector3d moved = x + views_[v].frame.topRows<2>().transpose() * (to - q);
-            if ((to - q).norm() < seen_ || !is_seen_as_before(moved, x)) continue;
-            x = moved;
-            break;
-          }
-        }
+        if (runs[v].empty()) continue;
+        const Eigen::Vector2d q = views_[v].project(x);
+        const Outline& outline = views_[v].outline;
+        const Eigen::Vector2d to = runs[v].size() == 1
+                                       ? outline.nearest(q).point
+                                       : outline.at(nearest_corner(v, outline.nearest(q)));
+        x += views_[v].frame.topRows<2>().transpose() * (to - q);
       }
     }
     return inside(x);
   }
 
  private:
-  /// Whether no view has the point farther outside than before.
-  [[nodiscard]] bool is_seen_as_before(const Eigen::Vector3d& x,
-                                       const Eigen::Vector3d& from) const {
-    return std::all_of(views_.begin(), views_.end(), [&](const OutlinedView& view) {
-      const double distance = view.outline.nearest(view.project(x)).distance;
-      return distance < seen_ ||
-             distance < view.outline.nearest(view.project(from)).distance + seen_;
-    });
+  /// Adds the runs of all silhouettes that a point of the hull is on; views may share a face.
+  void add_faces_at(const Eigen::Vector3d& x, std::vector<std::set<std::size_t>>& runs) const {
+    std::vector<Outline::Nearest> nearest;
+    double outermost = -std::numeric_limits<double>::infinity();
+    for (const OutlinedView& view : views_) {
+      nearest.push_back(view.outline.nearest(view.project(x)));
+      outermost = std::max(outermost, nearest.back().distance);
+    }
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+      if (nearest[v].distance < outermost - same_) continue;
+      const std::vector<double>& corners = corners_[v];
+      const auto after = std::upper_bound(corners.begin(), corners.end(), nearest[v].arc_length);
+      const auto run = static_cast<std::size_t>(after - corners.begin());
+      runs[v].insert(run == corners.size() ? 0 : run);  // the last run goes on past the first point
+    }
   }
 
-  /// What is still outside of a silhouette comes in.
+  /// Arc length of the corner that is nearest along the outline.
+  [[nodiscard]] double nearest_corner(std::size_t view, const Outline::Nearest& from) const {
+    const double length = views_[view].outline.length();
+    double best = from.arc_length, least = std::numeric_limits<double>::infinity();
+    for (const double corner : corners_[view]) {
+      const double way = std::abs(std::remainder(corner - from.arc_length, length));
+      if (way < least) {
+        least = way;
+        best = corner;
+      }
+    }
+    return best;
+  }
+
+  /// What is outside of a silhouette comes in.
   [[nodiscard]] Eigen::Vector3d inside(Eigen::Vector3d x) const {
     for (const OutlinedView& view : views_) {
       const Eigen::Vector2d q = view.project(x);
@@ -214,9 +208,18 @@ class SilhouetteFit {
   }
 
   const std::vector<OutlinedView>& views_;
-  std::vector<std::vector<OutlineCorner>> corners_;
-  double reach_, seen_;
+  std::vector<std::vector<double>> corners_;  ///< of each view
+  double same_;  ///< difference of distances at which two views see the same face (m)
 };
+
+void fit_to_silhouettes(QuadMesh& nets, const std::vector<OutlinedView>& views, double spacing) {
+  const SilhouetteFit fit(views, spacing);
+  for (Eigen::Index v = 0; v < nets.V.rows(); ++v) {
+    nets.V.row(v) =
+        fit.fitted(nets.V.row(v).transpose(), nets.crossings[static_cast<std::size_t>(v)])
+            .transpose();
+  }
+}
 
 /// Splits quadrilaterals along their shorter diagonals.
 TriMesh split_quads(const QuadMesh& quads) {
@@ -293,9 +296,7 @@ VisualHull visual_hull(const Drawing& aligned, const HullOptions& options) {
   hull.spacing =
       coarse * std::sqrt(2.0 * static_cast<double>(trial.quads.size()) / options.triangles);
   QuadMesh quads = manifold_nets(hull.views, box, hull.spacing);
-  const SilhouetteFit fit(hull.views, hull.spacing);
-  for (Eigen::Index v = 0; v < quads.V.rows(); ++v)
-    quads.V.row(v) = fit.fitted(quads.V.row(v).transpose()).transpose();
+  fit_to_silhouettes(quads, hull.views, hull.spacing);
   hull.mesh = split_quads(quads);
   for (const OutlinedView& view : hull.views)
     hull.places.push_back(places_on(view, hull.mesh.V, 0.02 * hull.spacing));

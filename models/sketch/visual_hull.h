@@ -47,8 +47,9 @@ struct VisualHull {
 std::vector<OutlinedView> outlined_views(const Drawing& aligned);
 
 /// The hull as the zero set of max over the views of their signed distances, by surface nets, then
-/// moved onto the silhouettes exactly: a vertex near a silhouette goes to its nearest point in that
-/// view, so that edges between two views' faces are sharp.
+/// moved onto the silhouettes exactly: a vertex goes to every silhouette that the surface is on in
+/// its cell, and to the corner where it is on both sides of one, so that edges between faces are
+/// sharp.
 ///
 /// Its error against the drawing is that of chords of the length of an edge.
 /// @param aligned  of `align_views`: at least two views that are not `photo`

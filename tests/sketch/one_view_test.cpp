@@ -281,7 +281,7 @@ TEST(OneView, FrustumUnrollsIntoTheSectorOfItsCone) {
 
 TEST(OneView, HiddenHalfHasTheTextureOfTheVisibleOne) {
   SyntheticView drawing = synthetic_view({});
-  drawing.view.picture = {"photo.png", {-2, -2}, {4, 5}};
+  drawing.view.picture = {.file = "photo.png", .content = {}, .origin = {-2, -2}, .size = {4, 5}};
   const OneViewResult result = reconstruct_one_view(drawing.view, {});
   const TexturedSurface& surface = result.surface;
   const auto half = surface.mesh.F.rows() / 2;

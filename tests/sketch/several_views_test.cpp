@@ -155,7 +155,7 @@ TEST(Zippering, ChoosesTheEdgeThatProtrudesMost) {
   EXPECT_EQ(elsewhere, 0);
 }
 
-TEST(SeveralViews, ChosenEdgesLieOnTheSilhouettesAndBordersOnTheirStrokes) {
+TEST(SeveralViews, SurfaceEndsAtTheSilhouettesAndBordersStayOnTheirStrokes) {
   Drawing drawing = drawn_bottle();
   drawing.views[0].strokes.push_back(
       test::stroke_of("mouth", StrokeKind::border, {{0.03, 0.3}, {0.07, 0.3}}, false));
@@ -167,8 +167,10 @@ TEST(SeveralViews, ChosenEdgesLieOnTheSilhouettesAndBordersOnTheirStrokes) {
   for (int i = 0; i < 3; ++i) method->step(context);
   for (const Edge& e : boundary_edges(prepared.surface.hull.mesh.F))
     EXPECT_NEAR(method->positions()(e[0], 1), 0.3, 1e-12);
-  EXPECT_NEAR(method->positions().col(0).maxCoeff(), 0.05, 1e-12);
-  EXPECT_NEAR(method->positions().col(1).minCoeff(), 0, 1e-12);
+  // What lies between chosen edges is off by what chords of the bottom's circle are, h^2 / 8r.
+  const double chord = prepared.surface.hull.spacing * prepared.surface.hull.spacing / 0.4;
+  EXPECT_NEAR(method->positions().col(0).maxCoeff(), 0.05, chord);
+  EXPECT_NEAR(method->positions().col(1).minCoeff(), 0, chord);
 }
 
 TEST(SeveralViews, GivesTheSameBytesAtAnyThreadCount) {

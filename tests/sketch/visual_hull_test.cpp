@@ -122,15 +122,17 @@ TEST(SurfaceNets, RefusesASurfaceThatLeavesTheGrid) {
   EXPECT_THROW(surface_nets(f), Error);
 }
 
-// Vertices near edges and corners of the drawing are put onto them: a box comes out exactly.
-TEST(VisualHull, BoxIsExact) {
+// Vertices of cells that the box's edges and corners pass are put onto them.
+TEST(VisualHull, BoxHasItsEdgesAndCorners) {
   const VisualHull hull =
       visual_hull(align_views(test::drawn_box(0.2, 0.3, 0.1)), {.triangles = 1500});
-  EXPECT_NEAR(signed_volume(hull.mesh.V, hull.mesh.F), 0.2 * 0.3 * 0.1, 1e-15);
+  // A quadrilateral at a corner may be split across an edge of the box, never by more than a cell.
+  EXPECT_NEAR(signed_volume(hull.mesh.V, hull.mesh.F), 0.2 * 0.3 * 0.1, 1e-4 * 0.006);
   EXPECT_EQ(hull.mesh.V.colwise().minCoeff(), Eigen::RowVector3d(-0.1, 0, -0.05));
   EXPECT_EQ(hull.mesh.V.colwise().maxCoeff(), Eigen::RowVector3d(0.1, 0.3, 0.05));
   EXPECT_NEAR(hull.mesh.triangle_count(), 1500, 300);
   EXPECT_TRUE(boundary_edges(hull.mesh.F).empty());
+  EXPECT_GT(triangle_areas(hull.mesh.V, hull.mesh.F).minCoeff(), 0);
 }
 
 // Chords of a circle of radius r with edges of length h lie h^2 / 8r inside.
