@@ -6,7 +6,8 @@
   TOPIC(skinning)              \
   TOPIC(paper)                 \
   TOPIC(fluid)                 \
-  TOPIC(details)
+  TOPIC(details)               \
+  TOPIC(sketch)
 
 /// What experiments/<name> defines.
 #define GEOPRIOR_DECLARE(name) \

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
+#include <vector>
 
 #include "core/mesh.h"
 
@@ -51,5 +53,70 @@ struct DevelopabilitySummary {
   double thinness = 1;  ///< within one degree
 };
 DevelopabilitySummary developability(const TriMesh& mesh);
+
+/// How the two values are spread over the interior vertices that count. All are 0, and the share 1,
+/// when none does.
+struct DevelopabilitySpread {
+  int vertices = 0;              ///< that count
+  double defect_sum = 0;         ///< of |angle defect| (rad); 4 pi or more on a closed genus 0
+  double defect_max = 0;         ///< rad
+  double defect_median = 0;      ///< rad
+  double defect_p90 = 0;         ///< that 90 % of the vertices stay under (rad)
+  double defect_flat_share = 1;  ///< of the vertices with |angle defect| below `kFlatDefect`
+  double hinge_sum = 0;          ///< of `hinge_energy` (rad)
+  double hinge_max = 0;
+  double hinge_median = 0;
+};
+
+/// |angle defect| below which a vertex counts as flat (rad).
+inline constexpr double kFlatDefect = 0.005;
+
+/// Sum, largest value and quantiles over the vertices: the sum alone says little, because curvature
+/// that gathers in few vertices leaves it as it is while the median falls.
+///
+/// Vertices are counted, not their area: values of two meshes compare at equal edge lengths only
+/// (on a smooth surface a single defect falls with the area of its star, the sum does not). The
+/// signs of defects are lost, and a crumpled star without defect is seen by the hinge energy alone.
+/// What is left out hides what it holds: give the numbers with and without the mask.
+///
+/// @param left_out  per vertex, true for those that may bend freely (seams, folds); empty: none.
+///                  Border vertices never count.
+/// @throws Error    when `left_out` is neither empty nor as long as the mesh has vertices
+DevelopabilitySpread developability_spread(const TriMesh& mesh,
+                                           const std::vector<bool>& left_out = {});
+
+/// How near the normals of a whole panel, points of the unit sphere weighted by area, lie to one
+/// circle of it.
+///
+/// Great circle: plane of the smallest eigenvalue of E[n n'], the normals of a general cylinder.
+/// Small circle: the same about the mean, E[(n - m)(n - m)'], the normals of a general cone.
+struct GaussImage {
+  /// Smallest over middle eigenvalue of E[n n']: 0 for a cylinder, 1 for a spherical cap.
+  double great_circle_thinness = 0;
+  /// Of E[(n - m)(n - m)']: 0 for a cone and a cylinder. It takes a small spherical cap for a flat
+  /// cone, since the cap's image is a nearly flat disc: (1 - c) / (2 (2 + c)) for a cap of half
+  /// angle acos(c).
+  double small_circle_thinness = 0;
+  /// Root mean square of the normals' angles from that great circle (rad).
+  double great_circle_rms = 0;
+  /// From a small circle: of the circles about the four axes at hand (the great circle's, and the
+  /// eigenvectors about the mean) the best one, so not the best of all. Does not take a cap for a
+  /// cone as readily: a quarter of the half angle.
+  double small_circle_rms = 0;
+  Eigen::Vector3d axis{0, 0, 1};  ///< of that small circle, unit
+  double half_angle = 0;          ///< mean angle of the normals to `axis` (rad)
+};
+
+/// Blind to how the normals are laid out over the panel: a panel may be creased across its rulings
+/// and still have a thin image, and one of several cylinders is not thin though each of them is.
+/// The ratios depend on the extent of the image, and mean little for a nearly flat panel with
+/// noise, whose ratio is that of the noise; one whose normals lie within about 1e-5 rad of a point
+/// has thinness 0, and of two points too (a fold) about the mean.
+///
+/// @param triangles  of the panel; empty: all
+/// @throws Error     when none of them has an area
+/// Source: thesis 2.1.2 (equation 2.1 is the small circle of a star); cones as in Decaudin et al.
+/// 2006.
+GaussImage gauss_image(const TriMesh& mesh, std::span<const int> triangles = {});
 
 }  // namespace geoprior

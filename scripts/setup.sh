@@ -19,7 +19,7 @@ packages=(
   libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   # plots, report and the checks that a run needs nothing of ours
-  python3 python3-numpy python3-h5py python3-matplotlib
+  python3 python3-numpy python3-h5py python3-matplotlib python3-ezdxf
   # pictures without a display
   xvfb libgl1-mesa-dri fonts-dejavu-core
   # models that nobody here made, and the converter that reads them

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "experiments/paper/svg_path.h"
+#include "experiments/paper/svg_outline.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/nesting.h"
 

@@ -21,7 +21,7 @@ fs::path path_below(const fs::path& folder, const fs::path& relative) {
     path /= name;
     std::error_code ignored;
     if (fs::is_symlink(fs::symlink_status(path, ignored))) {
-      throw Error("is a symbolic link: below a run or an export none is followed", path.string(),
+      throw Error("is a symbolic link: none is followed here", path.string(),
                   "files and folders");
     }
   }

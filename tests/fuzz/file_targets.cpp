@@ -6,6 +6,8 @@
 #include "experiments/fluid/exr_maps.h"
 #include "experiments/fluid/feature_files.h"
 #include "experiments/paper/svg_pattern.h"
+#include "experiments/sketch/drawing_file.h"
+#include "testbed/formats/svg_document.h"
 #include "testbed/runner/run_file.h"
 #include "tests/fuzz/allow_error.h"
 #include "tests/fuzz/scratch_file.h"
@@ -40,6 +42,13 @@ void fuzz_svg(const std::uint8_t* data, std::size_t size) {
     paper::SvgPatternOptions named;
     named.path = "a";
     paper::read_svg_pattern(file, named);
+  });
+}
+
+void fuzz_sketch(const std::uint8_t* data, std::size_t size) {
+  read_as_file(data, size, ".svg", [](const std::filesystem::path& file) {
+    allow_error([&] { read_svg_document(file, {}); });
+    sketch::read_drawing(file, {});
   });
 }
 

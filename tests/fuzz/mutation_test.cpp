@@ -75,6 +75,7 @@ TEST(Fuzz, JournalReaderAcceptsOrThrowsError) { run(".jsonl", fuzz_journal); }
 TEST(Fuzz, ReferenceReaderAcceptsOrThrowsError) { run(".txt", fuzz_reference); }
 TEST(Fuzz, PointReaderAcceptsOrThrowsError) { run(".csv", fuzz_points); }
 TEST(Fuzz, DrawingReaderAcceptsOrThrowsError) { run(".svg", fuzz_svg); }
+TEST(Fuzz, SketchReaderAcceptsOrThrowsError) { run(".svg", fuzz_sketch); }
 TEST(Fuzz, TableReaderAcceptsOrThrowsError) { run(".csv", fuzz_table); }
 
 TEST(Fuzz, MapReaderAcceptsOrThrowsError) {

@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "experiments/paper/svg_path.h"
+#include "experiments/paper/svg_outline.h"
 #include "tests/testbed/run_fixture.h"
 
 namespace geoprior::paper {

@@ -1,0 +1,144 @@
+#include "experiments/sketch/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <span>
+
+#include "metrics/depth_error.h"
+#include "metrics/seam_lengths.h"
+#include "metrics/silhouette.h"
+
+namespace geoprior::sketch {
+namespace {
+
+TriMesh surface_mesh(const Frame& frame) {
+  const Part& part = frame.require_part("surface", Part::Kind::triangles);
+  return {part.points, part.triangles};
+}
+
+std::vector<FlatPiece> flat_pieces(const Frame& frame) {
+  const Part& pattern = frame.require_part("pattern", Part::Kind::triangles);
+  const Part& surface = frame.require_part("surface", Part::Kind::triangles);
+  const auto& piece = pattern.require_array("piece", NamedArray::On::cells, 1).values;
+  const auto& vertex = pattern.require_array("surface_vertex", NamedArray::On::points, 1).values;
+  std::map<int, std::vector<Eigen::Index>> triangles;
+  for (Eigen::Index t = 0; t < piece.rows(); ++t)
+    triangles[static_cast<int>(piece(t))].push_back(t);
+  std::vector<FlatPiece> pieces;
+  for (const auto& [number, rows] : triangles) {
+    FlatPiece flat;
+    std::map<int, int> local;
+    flat.triangles.resize(static_cast<Eigen::Index>(rows.size()), 3);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const int v = pattern.triangles(rows[i], k);
+        flat.triangles(static_cast<Eigen::Index>(i), k) =
+            local.try_emplace(v, static_cast<int>(local.size())).first->second;
+      }
+    }
+    flat.points.resize(static_cast<Eigen::Index>(local.size()), 2);
+    flat.x.resize(static_cast<Eigen::Index>(local.size()), 3);
+    for (const auto& [v, l] : local) {
+      flat.points.row(l) = pattern.points.row(v).head<2>();
+      flat.x.row(l) = surface.points.row(static_cast<Eigen::Index>(vertex(v)));
+    }
+    pieces.push_back(std::move(flat));
+  }
+  return pieces;
+}
+
+/// Largest relative difference of two stretches that are sewn together.
+std::optional<double> largest_mismatch(const Frame& frame) {
+  const FrameTable& sewn = frame.require_table("sewn");
+  const Part& pattern = frame.require_part("pattern");
+  std::map<int, std::vector<int>> points;
+  std::map<int, int> partner;
+  for (Eigen::Index i = 0; i < sewn.rows.rows(); ++i) {
+    const int stretch = static_cast<int>(sewn.rows(i, 0));
+    points[stretch].push_back(static_cast<int>(sewn.rows(i, 3)));
+    partner[stretch] = static_cast<int>(sewn.rows(i, 1));
+  }
+  const auto line = [&](std::vector<int> vertices, bool reversed) {
+    if (reversed) std::reverse(vertices.begin(), vertices.end());
+    Eigen::MatrixX2d xy(static_cast<Eigen::Index>(vertices.size()), 2);
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      xy.row(static_cast<Eigen::Index>(i)) = pattern.points.row(vertices[i]).head<2>();
+    return xy;
+  };
+  std::optional<double> largest;
+  for (const auto& [stretch, other] : partner) {
+    if (stretch >= other) continue;  // the two sides of a dart included: each pair once
+    const double relative =
+        seam_mismatch(line(points[stretch], false), line(points[other], true)).relative;
+    largest = std::max(largest.value_or(0), relative);
+  }
+  return largest;
+}
+
+}  // namespace
+
+SurfaceMeasures surface_measures(const SketchScene& /*scene*/, const Frame& frame) {
+  const TriMesh mesh = surface_mesh(frame);
+  const Part& part = frame.require_part("surface");
+  const auto& seam = part.require_array("seam", NamedArray::On::points, 1).values;
+  const auto& fold = part.require_array("fold", NamedArray::On::points, 1).values;
+  std::vector<bool> left_out(static_cast<std::size_t>(mesh.V.rows()));
+  for (Eigen::Index v = 0; v < mesh.V.rows(); ++v)
+    left_out[static_cast<std::size_t>(v)] = seam(v) > 0 || fold(v) > 0;
+  return {developability_spread(mesh), developability_spread(mesh, left_out)};
+}
+
+SilhouetteMeasures silhouette_measures(const SketchScene& scene, const Frame& frame) {
+  const TriMesh mesh = surface_mesh(frame);
+  SilhouetteMeasures worst;
+  for (const DrawnSilhouette& drawn : scene.silhouettes) {
+    const SilhouetteMatch match =
+        silhouette_match(mesh, drawn.frame, std::span<const PlanarLoop>(&drawn.outline, 1));
+    worst.iou = std::min(worst.iou.value_or(1), match.iou);
+    worst.hausdorff_percent =
+        std::max(worst.hausdorff_percent.value_or(0), match.hausdorff_percent);
+    worst.gap_share = std::max(worst.gap_share.value_or(0), match.gap_share);
+  }
+  return worst;
+}
+
+PatternMeasures pattern_measures(const SketchScene& /*scene*/, const Frame& frame) {
+  PatternMeasures measures;
+  if (frame.find_part("pattern") == nullptr) return measures;
+  const std::vector<FlatPiece> pieces = flat_pieces(frame);
+  measures.flat = flattening(pieces);
+  measures.pieces = static_cast<double>(pieces.size());
+  measures.piece_overlaps = static_cast<double>(piece_overlaps(pieces).size());
+  measures.seam_mismatch = largest_mismatch(frame);
+  return measures;
+}
+
+TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame) {
+  TruthMeasures measures;
+  if (!scene.truth || frame.find_part("strokes") == nullptr) return measures;
+  const SyntheticView& truth = *scene.truth;
+  const Part& curves = frame.require_part("strokes", Part::Kind::lines);
+  const auto& stroke = curves.require_array("stroke", NamedArray::On::points, 1).values;
+  const auto& drawn_at = curves.require_array("drawn_at", NamedArray::On::points, 1).values;
+  Eigen::MatrixX3d real(curves.points.rows(), 3);
+  double left = std::numeric_limits<double>::infinity(), right = -left;
+  for (Eigen::Index i = 0; i < real.rows(); ++i) {
+    const auto& points = truth.truth[static_cast<std::size_t>(stroke(i))];
+    const double at = std::floor(drawn_at(i));
+    const Eigen::Vector3d a = points[static_cast<std::size_t>(at) % points.size()];
+    const Eigen::Vector3d b = points[(static_cast<std::size_t>(at) + 1) % points.size()];
+    real.row(i) = (a + (drawn_at(i) - at) * (b - a)).transpose();
+    left = std::min(left, real(i, 0));
+    right = std::max(right, real(i, 0));
+  }
+  const DepthError error = depth_error(curves.points, real, Eigen::Vector3d::UnitZ(), truth.height);
+  measures.depth_rms = error.share;
+  measures.depth_max = error.max / truth.height;
+  measures.reprojection = error.in_plane_rms / (right - left);
+  return measures;
+}
+
+}  // namespace geoprior::sketch

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/frame.h"
+#include "experiments/sketch/scene.h"
+#include "metrics/developability.h"
+#include "metrics/flattening.h"
+
+namespace geoprior::sketch {
+
+/// Of the surface: over all interior vertices, and without those of seams and folds.
+struct SurfaceMeasures {
+  DevelopabilitySpread all, panels;
+};
+SurfaceMeasures surface_measures(const SketchScene& scene, const Frame& frame);
+
+/// Of all views the worst.
+struct SilhouetteMeasures {
+  std::optional<double> iou, hausdorff_percent, gap_share;
+};
+SilhouetteMeasures silhouette_measures(const SketchScene& scene, const Frame& frame);
+
+/// Of the pattern of the last frame; nothing in the others.
+struct PatternMeasures {
+  std::optional<FlatteningSummary> flat;
+  std::optional<double> pieces, piece_overlaps, seam_mismatch;
+};
+PatternMeasures pattern_measures(const SketchScene& scene, const Frame& frame);
+
+/// Of a reconstruction from one view of a known shape; nothing elsewhere.
+struct TruthMeasures {
+  std::optional<double> depth_rms, depth_max;  ///< over the height of the shape
+  std::optional<double> reprojection;          ///< over the width of the drawing
+};
+TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame);
+
+}  // namespace geoprior::sketch

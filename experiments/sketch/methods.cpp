@@ -1,0 +1,118 @@
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "baselines/sketch/angle_defect_flow.h"
+#include "baselines/sketch/developability_flow.h"
+#include "baselines/sketch/gauss_thinning.h"
+#include "baselines/sketch/hull_surface.h"
+#include "experiments/sketch/scene.h"
+#include "experiments/sketch/topic.h"
+#include "solvers/sketch/one_view_process.h"
+#include "solvers/sketch/several_views.h"
+
+namespace geoprior::sketch {
+namespace {
+
+/// A flow of baselines/sketch as a method of the topic.
+template <class Options>
+struct FlowRun {
+  int iterations = 100;
+  Options flow;
+};
+
+template <class Options>
+void describe(OptionVisitor& v, FlowRun<Options>& o) {
+  v.value("iterations", o.iterations, {.doc = "steps; a frame each", .min = 1, .max = 100000});
+  describe(v, o.flow);
+}
+
+template <class Flow>
+class FlowMethod final : public SketchMethod {
+ public:
+  template <class Options>
+  FlowMethod(const PreparedSketch& prepared, const Options& options)
+      : flow_({prepared.start, prepared.surface.hull.mesh.F}, options) {}
+  void step(RunContext& /*context*/) override { flow_.step(); }
+  [[nodiscard]] const Eigen::MatrixX3d& positions() const override { return flow_.surface().V; }
+  void load(StateReader& /*in*/) override {}
+  /// What a flow remembers of its steps is its own.
+  [[nodiscard]] bool can_resume() const override { return false; }
+  void diagnose(std::map<std::string, double>& into) const override {
+    into["flow_energy"] = flow_.energy();
+  }
+
+ private:
+  Flow flow_;
+};
+
+template <class Flow, class Options>
+MethodEntry flow_entry(std::string name, std::string summary, std::string source) {
+  return method_entry<SketchScene, FlowRun<Options>>(
+      std::move(name), true, std::move(summary), std::move(source),
+      [](const SketchScene& scene, const FlowRun<Options>& options, RunContext&) {
+        return make_sketch_process(
+            scene.input, options.iterations,
+            [flow = options.flow](const PreparedSketch& prepared, RunContext&) {
+              return std::make_unique<FlowMethod<Flow>>(prepared, flow);
+            });
+      });
+}
+
+}  // namespace
+
+std::vector<MethodEntry> methods() {
+  using S = SketchScene;
+  return {
+      method_entry<S, SeveralViewsOptions>(
+          "several-views", false,
+          "the hull is pulled onto the silhouettes and made developable, in turns",
+          "thesis 2.1.2; Jung et al. 2015",
+          [](const S& scene, const SeveralViewsOptions& options, RunContext&) {
+            return make_several_views_process(scene.input, options);
+          }),
+      method_entry<S, OneViewOptions>(
+          "one-view", false, "depth of one annotated view by symmetry and rulings, mirrored",
+          "thesis 2.1.3; Fondevilla et al. 2017",
+          [](const S& scene, const OneViewOptions& options, RunContext&) {
+            return make_one_view_process(scene.photo(), options);
+          }),
+      method_entry<S, HullSurfaceOptions>(
+          "visual-hull", true, "all points that every view sees, as it is or smoothed",
+          "Rivers, Durand and Igarashi 2010; Taubin 1995",
+          [](const S& scene, const HullSurfaceOptions& options, RunContext&) {
+            return make_hull_process(scene.input, options);
+          }),
+      flow_entry<GaussThinning, GaussThinningOptions>(
+          "gauss-thinning", "normals are turned onto great circles, silhouettes are not known",
+          "Binninger, Verhoeven, Herholz and Sorkine-Hornung 2021"),
+      flow_entry<DevelopabilityFlow, DevelopabilityFlowOptions>(
+          "developability-flow", "the hinge energy is descended, silhouettes are not known",
+          "Stein, Grinspun and Crane 2018"),
+      flow_entry<AngleDefectFlow, AngleDefectFlowOptions>(
+          "angle-defect-flow", "the squared angle defects are descended, silhouettes are not known",
+          "Wang and Tang 2004"),
+  };
+}
+
+std::vector<DiagnosticEntry> diagnostics() {
+  constexpr Tolerance kWork{1, 0.1};
+  return {
+      {"silhouette_edges", "1", "edges that carry the silhouettes of all views", true, kWork},
+      {"gaps", "1", "stretches of silhouettes that no edge of the surface can cover"},
+      {"gap_length", "m", "their length in all"},
+      {"residual_accuracy", "m", "root mean square of the rows of the term, as all of these"},
+      {"residual_variation", "m", "of even variation of depth along curves"},
+      {"residual_pairs", "m", "of drawn symmetric pairs"},
+      {"residual_dense", "m", "of matches between them"},
+      {"residual_developability", "m", "of tangent planes along rulings"},
+      {"residual_planarity", "m", "of flat panels"},
+      {"residual_parallel", "m", "of parallel ends of patches"},
+      {"condition", "1", "greatest over least eigenvalue of the normal matrix"},
+      {"matches", "1", "dense symmetric correspondences"},
+      {"flow_energy", "1", "what a flow descends, as it defines it"},
+  };
+}
+
+}  // namespace geoprior::sketch

@@ -1,0 +1,110 @@
+#include "experiments/sketch/scene.h"
+
+#include <cstring>
+#include <utility>
+
+#include "core/error.h"
+#include "core/topology.h"
+#include "testbed/formats/mesh_file.h"
+#include "testbed/home.h"
+
+namespace geoprior::sketch {
+namespace {
+
+void load_surface(const SketchSceneOptions& o, const std::filesystem::path& folder,
+                  SketchScene& scene) {
+  const std::filesystem::path file = find_file(o.surface, folder, "data", "scene.surface");
+  scene.input_files.push_back(file);
+  TriMesh mesh = weld_by_position(read_mesh_file(file).mesh).mesh;
+  mesh.V *= o.surface_scale;
+  scene.input.surface = std::move(mesh);
+}
+
+void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& folder,
+                  SketchScene& scene) {
+  DrawingFile read = read_drawing(find_file(o.drawing, folder, "data", "scene.drawing"), o.read);
+  scene.input.drawing = std::move(read.drawing);
+  scene.load_warnings = std::move(read.warnings);
+  scene.input_files = std::move(read.inputs);
+  if (scene.input.drawing.find(ViewKind::photo) != nullptr) return;
+  for (const OutlinedView& view : outlined_views(align_views(scene.input.drawing, o.align)))
+    scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
+}
+
+std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const FabricationOptions& options) {
+  std::vector<Artifact> artifacts;
+  for (const FabricationFile& file : fabrication_files(pattern, options)) {
+    Artifact& artifact = artifacts.emplace_back();
+    artifact.name = file.name;
+    artifact.bytes.resize(file.bytes.size());
+    std::memcpy(artifact.bytes.data(), file.bytes.data(), file.bytes.size());
+  }
+  return artifacts;
+}
+
+}  // namespace
+
+void describe(OptionVisitor& v, SketchSceneOptions& o) {
+  v.value("drawing", o.drawing, {.doc = "SVG file with the annotated views"});
+  v.value("surface", o.surface,
+          {.doc = "mesh file in place of a drawing, for methods that need none"});
+  describe_group(v, "synthetic", o.synthetic,
+                 {.doc = "one view of a shape that is known, in place of both"});
+  v.value("surface_scale", o.surface_scale,
+          {.doc = "metres for one unit of that mesh", .unit = "m", .min = 1e-9, .max = 1e9});
+  describe_group(v, "read", o.read, {.doc = "how the drawing becomes strokes"});
+  describe_group(v, "align", o.align, {.doc = "how views are put together"});
+  describe_group(v, "hull", o.hull, {.doc = "the visual hull that all methods begin with"});
+  describe_group(v, "smoothing", o.smoothing, {.doc = "of the hull, before the first step"});
+  describe_group(v, "pattern", o.pattern, {.doc = "how pieces are laid flat"});
+  describe_group(v, "fabrication", o.fabrication, {.doc = "files to cut and sew by"});
+}
+
+std::map<std::string, double> SketchScene::facts() const {
+  std::map<std::string, double> facts;
+  facts["views"] = static_cast<double>(silhouettes.size());
+  facts["triangles_asked"] = input.hull.triangles;
+  if (input.surface) facts["triangles"] = input.surface->triangle_count();
+  return facts;
+}
+
+const View& SketchScene::photo() const {
+  const View* view = input.drawing.find(ViewKind::photo);
+  if (view == nullptr) throw Error("has no view of kind photo", "scene", "a drawing with one view");
+  return *view;
+}
+
+std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options,
+                                               const std::filesystem::path& folder,
+                                               std::uint64_t seed) {
+  const int given =
+      !options.drawing.empty() + !options.surface.empty() + options.synthetic.has_value();
+  if (given != 1) {
+    throw Error(std::to_string(given) + " of them are given",
+                "scene.drawing, scene.surface and scene.synthetic", "one");
+  }
+  auto scene = std::make_shared<SketchScene>();
+  scene->input.align = options.align;
+  scene->input.hull = options.hull;
+  scene->input.smoothing = options.smoothing;
+  scene->input.pattern = options.pattern;
+  if (options.fabrication) {
+    scene->input.files = [fabrication = *options.fabrication](const Pattern& pattern) {
+      return pattern_artifacts(pattern, fabrication);
+    };
+  }
+  if (options.synthetic) {
+    SyntheticViewOptions drawn = *options.synthetic;
+    drawn.seed = static_cast<int>(scene_seed(seed, drawn.seed));
+    scene->truth = synthetic_view(drawn);
+    scene->input.drawing = {"scene.synthetic", {scene->truth->view}};
+  } else if (options.drawing.empty()) {
+    load_surface(options, folder, *scene);
+    scene->input.patterns = false;
+  } else {
+    load_drawing(options, folder, *scene);
+  }
+  return scene;
+}
+
+}  // namespace geoprior::sketch

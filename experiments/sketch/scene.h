@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+#include "experiments/sketch/drawing_file.h"
+#include "experiments/sketch/fabrication.h"
+#include "metrics/planar_overlap.h"
+#include "models/sketch/sketch_process.h"
+#include "models/sketch/synthetic_views.h"
+#include "testbed/topic.h"
+
+namespace geoprior::sketch {
+
+/// `[scene]` of a sketch experiment: a drawing, a drawing of a shape that is known, or a surface in
+/// its place.
+struct SketchSceneOptions {
+  std::string drawing;  ///< SVG file
+  std::string surface;  ///< mesh file instead, for methods that need no drawing
+  double surface_scale = 1;
+  std::optional<SyntheticViewOptions> synthetic;  ///< instead of both
+  DrawingFileOptions read;
+  AlignOptions align;
+  HullOptions hull;
+  TaubinOptions smoothing;
+  PatternOptions pattern;
+  std::optional<FabricationOptions> fabrication;
+};
+void describe(OptionVisitor& v, SketchSceneOptions& options);
+
+/// A silhouette that the surface is to have.
+struct DrawnSilhouette {
+  ViewKind view = ViewKind::front;
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
+  PlanarLoop outline;
+};
+
+class SketchScene final : public ProcessScene {
+ public:
+  SketchInput input;  ///< what a method is given
+  std::vector<DrawnSilhouette> silhouettes;
+  std::optional<SyntheticView> truth;  ///< of a synthetic view
+
+  /// The one view of a drawing that has no others.
+  /// @throws Error  when the scene has none
+  [[nodiscard]] const View& photo() const;
+
+  [[nodiscard]] std::string parameter_name() const override { return "iteration"; }
+  [[nodiscard]] std::string parameter_unit() const override { return "1"; }
+  [[nodiscard]] std::map<std::string, double> facts() const override;
+};
+
+/// @param folder  of the experiment file, against which relative files are tried first
+/// @throws Error  naming key or file, and place
+/// @param seed    of the experiment: of the noise of a synthetic view, beside its own
+std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options,
+                                               const std::filesystem::path& folder,
+                                               std::uint64_t seed);
+
+}  // namespace geoprior::sketch

@@ -1,0 +1,59 @@
+#include "models/sketch/drawing.h"
+
+#include <cstddef>
+
+namespace geoprior::sketch {
+
+double length(const Stroke& stroke) {
+  double sum = 0;
+  for (std::size_t i = 1; i < stroke.points.size(); ++i)
+    sum += (stroke.points[i] - stroke.points[i - 1]).norm();
+  if (stroke.closed && !stroke.points.empty())
+    sum += (stroke.points.front() - stroke.points.back()).norm();
+  return sum;
+}
+
+const View* Drawing::find(ViewKind kind) const {
+  for (const View& view : views) {
+    if (view.kind == kind) return &view;
+  }
+  return nullptr;
+}
+
+Eigen::Matrix3d view_frame(ViewKind kind) {
+  Eigen::Matrix3d frame;
+  switch (kind) {
+    case ViewKind::side:
+      frame << 0, 0, -1, 0, 1, 0, 1, 0, 0;
+      break;
+    case ViewKind::top:
+      frame << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+      break;
+    default:
+      frame.setIdentity();
+  }
+  return frame;
+}
+
+const char* view_name(ViewKind kind) {
+  switch (kind) {
+    case ViewKind::front:
+      return "front";
+    case ViewKind::side:
+      return "side";
+    case ViewKind::top:
+      return "top";
+    default:
+      return "photo";
+  }
+}
+
+std::vector<const Stroke*> strokes_of(const View& view, StrokeKind kind) {
+  std::vector<const Stroke*> found;
+  for (const Stroke& stroke : view.strokes) {
+    if (stroke.kind == kind) found.push_back(&stroke);
+  }
+  return found;
+}
+
+}  // namespace geoprior::sketch

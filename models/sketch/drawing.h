@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "models/sketch/stroke.h"
+
+namespace geoprior::sketch {
+
+/// From where a view is drawn. The object stands on y up, looks along +z, and its left is +x.
+enum class ViewKind {
+  front,  ///< seen from +z: right = x, up = y
+  side,   ///< seen from +x: right = -z, up = y
+  top,    ///< seen from +y: right = x, up = -z
+  photo,  ///< one view, seen from +z: right = x, up = y, depth unknown
+};
+
+/// A bitmap that a view was traced from.
+struct Picture {
+  std::string file;              ///< path of it; empty: none, or embedded
+  std::string content;           ///< bytes of an embedded one (PNG, JPEG)
+  Eigen::Vector2d origin{0, 0};  ///< lower left corner in the view (m)
+  Eigen::Vector2d size{0, 0};    ///< in the view (m)
+};
+
+struct View {
+  ViewKind kind = ViewKind::front;
+  std::vector<Stroke> strokes;
+  Picture picture = {};
+};
+
+/// All that was drawn of one model.
+struct Drawing {
+  std::string name;         ///< of the file, for errors
+  std::vector<View> views;  ///< one a kind
+
+  /// Null when it was not drawn.
+  [[nodiscard]] const View* find(ViewKind kind) const;
+};
+
+/// Orthonormal frame of a view: rows are the directions in space of right, up and towards the eye.
+Eigen::Matrix3d view_frame(ViewKind kind);
+
+/// Name as it is written in drawings: "front", …
+const char* view_name(ViewKind kind);
+
+/// The strokes of a view that are of one kind, in their order.
+std::vector<const Stroke*> strokes_of(const View& view, StrokeKind kind);
+
+}  // namespace geoprior::sketch

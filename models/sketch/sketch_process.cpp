@@ -1,0 +1,252 @@
+#include "models/sketch/sketch_process.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "core/frame_loop.h"
+#include "core/topology.h"
+
+namespace geoprior::sketch {
+namespace {
+
+NamedArray vertex_flags(const char* name, Eigen::Index count) {
+  return {name, "1", NamedArray::On::points, Eigen::MatrixXd::Zero(count, 1)};
+}
+
+Part surface_of(const PreparedSketch& prepared, const Eigen::MatrixX3d& X) {
+  const SketchSurface& s = prepared.surface;
+  Part part;
+  part.points = X;
+  part.triangles = s.hull.mesh.F;
+  NamedArray border = vertex_flags("border", X.rows()), seam = vertex_flags("seam", X.rows()),
+             fold = vertex_flags("fold", X.rows());
+  for (const Edge& e : boundary_edges(s.hull.mesh.F)) border.values(e[0]) = border.values(e[1]) = 1;
+  const auto mark = [](const std::vector<StrokePath>& paths, NamedArray& flags) {
+    for (const StrokePath& path : paths) {
+      for (const Edge& e : path.edges) flags.values(e[0]) = flags.values(e[1]) = 1;
+    }
+  };
+  mark(s.seams, seam);
+  mark(s.folds, fold);
+  part.arrays = {std::move(border), std::move(seam), std::move(fold)};
+  return part;
+}
+
+Part strokes_of_surface(const PreparedSketch& prepared, const Eigen::MatrixX3d& X) {
+  const SketchSurface& s = prepared.surface;
+  Part part;
+  part.kind = Part::Kind::lines;
+  part.points = X;
+  std::vector<double> kinds;
+  const auto add = [&](const Edge& e, StrokeKind kind) {
+    part.lines.push_back({e[0], e[1]});
+    kinds.push_back(static_cast<double>(kind));
+  };
+  for (const Edge& e : boundary_edges(s.hull.mesh.F)) add(e, StrokeKind::border);
+  for (const StrokePath& path : s.seams) {
+    for (const Edge& e : path.edges) add(e, StrokeKind::seam);
+  }
+  for (const StrokePath& path : s.folds) {
+    for (const Edge& e : path.edges) add(e, StrokeKind::fold);
+  }
+  NamedArray kind{
+      "kind", "1", NamedArray::On::cells,
+      Eigen::Map<Eigen::VectorXd>(kinds.data(), static_cast<Eigen::Index>(kinds.size()))};
+  part.arrays.push_back(std::move(kind));
+  return part;
+}
+
+/// First point of each piece in the part that holds all of them.
+std::vector<int> first_points(const Pattern& pattern) {
+  std::vector<int> first{0};
+  for (const PatternPiece& piece : pattern.pieces)
+    first.push_back(first.back() + static_cast<int>(piece.points.rows()));
+  return first;
+}
+
+Part pattern_part(const Pattern& pattern) {
+  const std::vector<int> first = first_points(pattern);
+  Eigen::Index triangles = 0;
+  for (const PatternPiece& piece : pattern.pieces) triangles += piece.triangles.rows();
+  Part part;
+  part.points = Eigen::MatrixX3d::Zero(first.back(), 3);
+  part.triangles.resize(triangles, 3);
+  NamedArray vertex = vertex_flags("surface_vertex", first.back());
+  NamedArray of_triangle{"surface_triangle", "1", NamedArray::On::cells,
+                         Eigen::MatrixXd(triangles, 1)};
+  NamedArray of_piece{"piece", "1", NamedArray::On::cells, Eigen::MatrixXd(triangles, 1)};
+  Eigen::Index t = 0;
+  for (std::size_t p = 0; p < pattern.pieces.size(); ++p) {
+    const PatternPiece& piece = pattern.pieces[p];
+    part.points.block(first[p], 0, piece.points.rows(), 2) = piece.points;
+    for (Eigen::Index v = 0; v < piece.points.rows(); ++v)
+      vertex.values(first[p] + v) = piece.surface_vertex[v];
+    for (Eigen::Index i = 0; i < piece.triangles.rows(); ++i, ++t) {
+      part.triangles.row(t) = piece.triangles.row(i).array() + first[p];
+      of_triangle.values(t) = piece.surface_triangle[i];
+      of_piece.values(t) = static_cast<double>(p);
+    }
+  }
+  part.arrays = {std::move(vertex), std::move(of_triangle), std::move(of_piece)};
+  return part;
+}
+
+FrameTable sewn_table(const Pattern& pattern) {
+  const std::vector<int> first = first_points(pattern);
+  std::vector<int> first_stretch{0};
+  for (const PatternPiece& piece : pattern.pieces)
+    first_stretch.push_back(first_stretch.back() + static_cast<int>(piece.edges.size()));
+  std::vector<std::array<double, 4>> rows;
+  for (std::size_t p = 0; p < pattern.pieces.size(); ++p) {
+    const PatternPiece& piece = pattern.pieces[p];
+    for (std::size_t e = 0; e < piece.edges.size(); ++e) {
+      const PieceEdge& edge = piece.edges[e];
+      if (edge.partner_piece < 0) continue;
+      for (const int v : edge.vertices) {
+        rows.push_back({static_cast<double>(first_stretch[p]) + static_cast<double>(e),
+                        static_cast<double>(first_stretch[edge.partner_piece] + edge.partner_edge),
+                        static_cast<double>(edge.seam), static_cast<double>(first[p] + v)});
+      }
+    }
+  }
+  FrameTable table{{"stretch", "partner", "seam", "point"},
+                   Eigen::MatrixXd(static_cast<Eigen::Index>(rows.size()), 4)};
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    table.rows.row(static_cast<Eigen::Index>(i)) = Eigen::Map<Eigen::RowVector4d>(rows[i].data());
+  return table;
+}
+
+/// Logarithm of a triangle's strain from the pattern to the surface, the one farther from 0.
+double log_stretch(const Eigen::Matrix<double, 3, 2>& flat_edges,
+                   const Eigen::Matrix<double, 3, 2>& edges) {
+  const Eigen::Matrix2d flat = flat_edges.topRows<2>();
+  const Eigen::Matrix<double, 3, 2> J = edges * flat.inverse();
+  const Eigen::Matrix2d metric = J.transpose() * J;
+  const double half = metric.trace() / 2;
+  const double root = std::sqrt(std::max(0.0, half * half - metric.determinant()));
+  const double larger = 0.5 * std::log(half + root);
+  const double smaller = 0.5 * std::log(std::max(half - root, 1e-12));
+  return std::abs(larger) >= std::abs(smaller) ? larger : smaller;
+}
+
+class SketchFrames final : public FrameModel {
+ public:
+  SketchFrames(const SketchInput& input, int steps, const SketchMethodFactory& factory,
+               RunContext& context)
+      : input_(input), steps_(steps) {
+    const Phase phase(context, "prepare");
+    prepared_ = prepare_sketch(input);
+    method_ = factory(prepared_, context);
+  }
+
+  [[nodiscard]] int frame_count() const override { return steps_ + 1; }
+  void load(StateReader& in, int /*next_frame*/) override { method_->load(in); }
+  void save(StateWriter& out) const override { method_->save(out); }
+  [[nodiscard]] bool can_resume() const override { return method_->can_resume(); }
+
+  void advance(int /*frame*/, FrameSink& /*sink*/, RunContext& context) override {
+    const Phase phase(context, "step");
+    method_->step(context);
+  }
+
+  void record(int number, FrameSink& sink, RunContext& context) override {
+    Frame frame = sketch_frame(prepared_, method_->positions(), number);
+    if (number == steps_ && input_.patterns) {
+      MadePattern made;
+      {
+        const Phase phase(context, "flatten");
+        made = make_pattern({method_->positions(), prepared_.surface.hull.mesh.F},
+                            seam_edges(prepared_.surface), input_.pattern);
+      }
+      add_pattern(frame, made);
+      if (input_.files) {
+        const Phase phase(context, "record");
+        for (Artifact& file : input_.files(made.pattern)) sink.artifact(std::move(file));
+      }
+    }
+    const Phase phase(context, "record");
+    method_->diagnose(frame.diagnostics);
+    sink.frame(std::move(frame));
+  }
+
+ private:
+  const SketchInput& input_;  ///< of the process, which outlives its model
+  int steps_;
+  PreparedSketch prepared_;
+  std::unique_ptr<SketchMethod> method_;
+};
+
+}  // namespace
+
+PreparedSketch prepare_sketch(const SketchInput& input) {
+  PreparedSketch prepared;
+  if (input.surface) {
+    prepared.surface.hull.mesh = *input.surface;
+    prepared.surface.border_of.assign(static_cast<std::size_t>(input.surface->V.rows()), -1);
+    prepared.start = input.surface->V;
+    return prepared;
+  }
+  prepared.surface = sketch_surface(align_views(input.drawing, input.align), input.hull);
+  prepared.start = taubin_smoothed(prepared.surface.hull.mesh, input.smoothing);
+  return prepared;
+}
+
+std::vector<SeamEdge> seam_edges(const SketchSurface& surface) {
+  std::vector<SeamEdge> edges;
+  for (std::size_t s = 0; s < surface.seams.size(); ++s) {
+    for (const Edge& e : surface.seams[s].edges) edges.push_back({e, static_cast<int>(s)});
+  }
+  return edges;
+}
+
+Frame sketch_frame(const PreparedSketch& prepared, const Eigen::MatrixX3d& X, double parameter) {
+  Frame frame;
+  frame.parameter = parameter;
+  frame.parts["surface"] = surface_of(prepared, X);
+  Part strokes = strokes_of_surface(prepared, X);
+  if (!strokes.lines.empty()) frame.parts["strokes"] = std::move(strokes);
+  return frame;
+}
+
+void add_pattern(Frame& frame, const MadePattern& made) {
+  Part pattern = pattern_part(made.pattern);
+  Part& surface = frame.parts.at("surface");
+  NamedArray piece{"piece", "1", NamedArray::On::cells,
+                   Eigen::MatrixXd::Constant(surface.triangles.rows(), 1, -1)};
+  NamedArray stretch{"stretch", "1", NamedArray::On::cells,
+                     Eigen::MatrixXd::Zero(surface.triangles.rows(), 1)};
+  NamedArray flat_stretch{"stretch", "1", NamedArray::On::cells,
+                          Eigen::MatrixXd::Zero(pattern.triangles.rows(), 1)};
+  const NamedArray& of = *pattern.find_array("surface_triangle");
+  const NamedArray& pieces = *pattern.find_array("piece");
+  for (Eigen::Index t = 0; t < pattern.triangles.rows(); ++t) {
+    const auto s = static_cast<Eigen::Index>(of.values(t));
+    const auto edges = [](const Part& part, Eigen::Index triangle) {
+      const Eigen::RowVector3d a = part.points.row(part.triangles(triangle, 0));
+      Eigen::Matrix<double, 3, 2> e;
+      e.col(0) = (part.points.row(part.triangles(triangle, 1)) - a).transpose();
+      e.col(1) = (part.points.row(part.triangles(triangle, 2)) - a).transpose();
+      return e;
+    };
+    piece.values(s) = pieces.values(t);
+    stretch.values(s) = flat_stretch.values(t) = log_stretch(edges(pattern, t), edges(surface, s));
+  }
+  surface.arrays.push_back(std::move(piece));
+  surface.arrays.push_back(std::move(stretch));
+  pattern.arrays.push_back(std::move(flat_stretch));
+  frame.tables["sewn"] = sewn_table(made.pattern);
+  frame.parts["pattern"] = std::move(pattern);
+}
+
+std::unique_ptr<Process> make_sketch_process(const SketchInput& input, int steps,
+                                             SketchMethodFactory factory) {
+  return frame_process([input, steps, factory = std::move(factory)](RunContext& context) {
+    return std::make_unique<SketchFrames>(input, steps, factory, context);
+  });
+}
+
+}  // namespace geoprior::sketch

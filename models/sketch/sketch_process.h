@@ -1,0 +1,94 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/context.h"
+#include "core/frame.h"
+#include "core/method.h"
+#include "core/options.h"
+#include "core/state_bytes.h"
+#include "models/sketch/align_views.h"
+#include "models/sketch/drawing.h"
+#include "models/sketch/make_pattern.h"
+#include "models/sketch/pattern.h"
+#include "models/sketch/sketch_surface.h"
+#include "models/sketch/taubin.h"
+
+namespace geoprior::sketch {
+
+/// What methods of several views are given: a drawing, or a surface in its place, and how both are
+/// prepared, alike for all of them.
+struct SketchInput {
+  Drawing drawing;
+  std::optional<TriMesh> surface;  ///< instead of a drawing
+  AlignOptions align;
+  HullOptions hull;
+  TaubinOptions smoothing;
+  PatternOptions pattern;
+  bool patterns = true;  ///< the last frame has the flat pieces
+  /// Files that are made of the pattern; none when empty.
+  std::function<std::vector<Artifact>(const Pattern&)> files = {};
+};
+
+/// The surface that methods begin with.
+struct PreparedSketch {
+  SketchSurface surface;   ///< its mesh: the hull
+  Eigen::MatrixX3d start;  ///< n x 3, smoothed
+};
+
+/// Views aligned, hull meshed, opened at borders, seams traced, smoothed.
+/// @throws Error  naming view and stroke
+PreparedSketch prepare_sketch(const SketchInput& input);
+
+/// A method of the topic that improves a surface step by step.
+class SketchMethod {
+ public:
+  virtual ~SketchMethod() = default;
+  /// This is what is timed.
+  virtual void step(RunContext& context) = 0;
+  [[nodiscard]] virtual const Eigen::MatrixX3d& positions() const = 0;
+  /// All that `step` depends on, so that a run can go on after a stop. A method that remembers more
+  /// than it writes says so, and is begun anew.
+  virtual void save(StateWriter& out) const { out.matrix(positions()); }
+  virtual void load(StateReader& in) = 0;
+  [[nodiscard]] virtual bool can_resume() const { return true; }
+  /// What only the method knows of its last step (gaps, residual of pins …).
+  virtual void diagnose(std::map<std::string, double>& /*into*/) const {}
+};
+
+using SketchMethodFactory =
+    std::function<std::unique_ptr<SketchMethod>(const PreparedSketch&, RunContext&)>;
+
+/// One recorded state. Metrics of the topic read these parts and nothing else:
+///
+/// - "surface" (triangles): point arrays "border", "seam", "fold" (0 or 1); cell arrays
+/// "fold_angle"
+///   [rad] (asked of the triangle, absent where no fold was drawn: -1), "fold_view" (of the views);
+/// - "strokes" (lines): borders, seams and folds on the surface, cell array "kind" (StrokeKind);
+/// - "pattern" (triangles, z = 0, m), in the last frame: point arrays "surface_vertex" and "piece",
+/// cell
+///   arrays "surface_triangle" and "piece";
+/// - table "sewn", in the last frame: a row for each vertex of a stretch of the pattern's borders
+/// that
+///   is sewn: stretch, partner stretch, seam, point of "pattern"; in the order along the stretch.
+Frame sketch_frame(const PreparedSketch& prepared, const Eigen::MatrixX3d& X, double parameter);
+
+/// Adds the parts of the flat pieces to a frame, and to its surface the cell arrays "piece" and
+/// "stretch" (logarithm of the larger singular value, or of the smaller one where that is farther
+/// from 0: positive where the surface is longer than the pattern).
+void add_pattern(Frame& frame, const MadePattern& made);
+
+/// The drawn seams as edges to be cut, numbered in their order.
+std::vector<SeamEdge> seam_edges(const SketchSurface& surface);
+
+/// The loop around a method: frame 0 is the start, every other one a step; the last one has the
+/// pattern. Phases: "prepare", "step", "flatten", "record".
+std::unique_ptr<Process> make_sketch_process(const SketchInput& input, int steps,
+                                             SketchMethodFactory factory);
+
+}  // namespace geoprior::sketch

@@ -1,0 +1,195 @@
+#include "models/sketch/sketch_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "core/error.h"
+#include "core/topology.h"
+#include "models/sketch/polyline.h"
+#include "models/sketch/traced_stroke.h"
+
+namespace geoprior::sketch {
+namespace {
+
+std::vector<Eigen::Vector2d> polyline_of(const Stroke& stroke) {
+  std::vector<Eigen::Vector2d> points = stroke.points;
+  if (stroke.closed) points.push_back(points.front());
+  return points;
+}
+
+std::string stroke_place(const Drawing& drawing, ViewKind view, const Stroke& stroke) {
+  return drawing.name + ", view " + view_name(view) + ", stroke '" + stroke.id + "'";
+}
+
+/// Whether the vertex lies on the silhouette where the border stroke was drawn along it.
+bool lies_on_border(const SketchSurface& s, int vertex, const BorderPlace& border) {
+  if (!s.hull.places[border.view][vertex]) return false;
+  const Eigen::Vector2d q =
+      s.hull.views[border.view].project(s.hull.mesh.V.row(vertex).transpose());
+  const BesideStroke at = beside(border.points, q);
+  const double near = 0.1 * s.hull.spacing;
+  return std::abs(at.distance) < near && at.along > -near &&
+         at.along < length(border.points) + near;
+}
+
+/// Takes out triangles, and vertices that none is left of.
+void remove_triangles(SketchSurface& s, const std::vector<char>& removed) {
+  TriMesh& mesh = s.hull.mesh;
+  std::vector<int> renamed(static_cast<std::size_t>(mesh.V.rows()), -1);
+  Eigen::Index kept = 0;
+  for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
+    if (removed[t]) continue;
+    mesh.F.row(kept++) = mesh.F.row(t);
+    for (int k = 0; k < 3; ++k) renamed[mesh.F(t, k)] = 0;
+  }
+  mesh.F.conservativeResize(kept, 3);
+  int next = 0;
+  for (std::size_t v = 0; v < renamed.size(); ++v) {
+    if (renamed[v] < 0) continue;
+    mesh.V.row(next) = mesh.V.row(static_cast<Eigen::Index>(v));
+    for (auto& places : s.hull.places) places[next] = places[v];
+    renamed[v] = next++;
+  }
+  mesh.V.conservativeResize(next, 3);
+  for (auto& places : s.hull.places) places.resize(static_cast<std::size_t>(next));
+  mesh.F = mesh.F.unaryExpr([&](int v) { return renamed[v]; });
+}
+
+/// Opens the hull where borders were drawn: triangles all of whose corners lie on borders close an
+/// opening that the drawing leaves.
+void open_borders(SketchSurface& s, const Drawing& drawing) {
+  for (std::size_t view = 0; view < s.hull.views.size(); ++view) {
+    const View& drawn = *drawing.find(s.hull.views[view].kind);
+    for (const Stroke* stroke : strokes_of(drawn, StrokeKind::border))
+      s.borders.push_back({static_cast<int>(view), polyline_of(*stroke)});
+  }
+  TriMesh& mesh = s.hull.mesh;
+  std::vector<char> on(static_cast<std::size_t>(mesh.V.rows()), 0);
+  for (const BorderPlace& border : s.borders) {
+    bool met = false;
+    for (int v = 0; v < mesh.V.rows(); ++v) {
+      if (!lies_on_border(s, v, border)) continue;
+      on[v] = 1;
+      met = true;
+    }
+    if (!met) {
+      const ViewKind kind = s.hull.views[border.view].kind;
+      const auto strokes = strokes_of(*drawing.find(kind), StrokeKind::border);
+      std::size_t i = 0;
+      for (const BorderPlace& b : s.borders) {
+        if (&b == &border) break;
+        if (b.view == border.view) ++i;
+      }
+      throw Error("is not drawn along the silhouette", stroke_place(drawing, kind, *strokes[i]),
+                  "a border on the silhouette, where the surface is open");
+    }
+  }
+  std::vector<char> removed(static_cast<std::size_t>(mesh.F.rows()), 0);
+  for (Eigen::Index t = 0; t < mesh.F.rows(); ++t)
+    removed[t] = static_cast<char>(on[mesh.F(t, 0)] && on[mesh.F(t, 1)] && on[mesh.F(t, 2)]);
+  remove_triangles(s, removed);
+}
+
+/// Drops what a path has beyond its stroke's ends, but for what leads up to a border or to another
+/// path; and, near an end, what lies beyond such a meeting.
+void trim_ends(std::vector<Edge>& edges, const std::vector<Eigen::Vector2d>& points,
+               const OutlinedView& view, const TriMesh& mesh, const std::vector<char>& meets,
+               double reach) {
+  const double whole = length(points);
+  const auto along = [&](int v) {
+    return beside(points, view.project(mesh.V.row(v).transpose())).along;
+  };
+  double low = 0, high = whole;
+  double low_met = -std::numeric_limits<double>::infinity();
+  double high_met = std::numeric_limits<double>::infinity();
+  for (const Edge& e : edges) {
+    for (const int v : e) {
+      if (!meets[v]) continue;
+      const double a = along(v);
+      if (a < 2 * reach) low_met = std::max(low_met, a);
+      if (a > whole - 2 * reach) high_met = std::min(high_met, a);
+    }
+  }
+  if (std::isfinite(low_met)) low = low_met - 1e-9 * reach;
+  if (std::isfinite(high_met)) high = high_met + 1e-9 * reach;
+  std::erase_if(edges, [&](const Edge& e) {
+    const double a = along(e[0]), b = along(e[1]);
+    return std::min(a, b) < low - 0.5 * reach * !std::isfinite(low_met) ||
+           std::max(a, b) > high + 0.5 * reach * !std::isfinite(high_met);
+  });
+}
+
+/// Seams first, then folds, so that folds do not end at what is not there yet.
+void trace_strokes(SketchSurface& s, const Drawing& drawing) {
+  TriMesh& mesh = s.hull.mesh;
+  const double reach = 1.5 * s.hull.spacing;
+  for (const StrokeKind kind : {StrokeKind::seam, StrokeKind::fold}) {
+    std::vector<StrokePath>& paths = kind == StrokeKind::seam ? s.seams : s.folds;
+    for (std::size_t view = 0; view < s.hull.views.size(); ++view) {
+      const OutlinedView& seen = s.hull.views[view];
+      for (const Stroke* stroke : strokes_of(*drawing.find(seen.kind), kind)) {
+        std::vector<std::vector<Edge>*> kept;
+        for (StrokePath& path : s.seams) kept.push_back(&path.edges);
+        for (StrokePath& path : s.folds) kept.push_back(&path.edges);
+        StrokePath path{stroke->id, static_cast<int>(view), polyline_of(*stroke), {},
+                        0,          stroke->fold_angle_deg, stroke->fold_width};
+        TracedStroke traced = trace_stroke(path.points, stroke->side, seen, reach, mesh, kept);
+        std::vector<char> meets(static_cast<std::size_t>(mesh.V.rows()), 0);
+        for (const Edge& e : boundary_edges(mesh.F)) meets[e[0]] = meets[e[1]] = 1;
+        for (const StrokePath& other : s.seams) {
+          for (const Edge& e : other.edges) meets[e[0]] = meets[e[1]] = 1;
+        }
+        if (!stroke->closed) trim_ends(traced.edges, path.points, seen, mesh, meets, reach);
+        path.edges = std::move(traced.edges);
+        path.missed = traced.missed;
+        if (path.edges.empty() || path.missed > 0.2) {
+          throw Error("leaves the surface: " +
+                          std::to_string(static_cast<int>(std::lround(100 * path.missed))) +
+                          " % of it lie beside no triangle that faces the view",
+                      stroke_place(drawing, seen.kind, *stroke), "inside the silhouette");
+        }
+        paths.push_back(std::move(path));
+      }
+    }
+  }
+}
+
+/// New vertices lie on edges of the hull: on a silhouette where both ends do.
+void place_anew(SketchSurface& s) {
+  const Eigen::MatrixX3d& V = s.hull.mesh.V;
+  for (std::size_t view = 0; view < s.hull.views.size(); ++view) {
+    auto& places = s.hull.places[view];
+    for (auto v = static_cast<Eigen::Index>(places.size()); v < V.rows(); ++v) {
+      const Outline::Nearest nearest =
+          s.hull.views[view].outline.nearest(s.hull.views[view].project(V.row(v).transpose()));
+      places.emplace_back();
+      if (std::abs(nearest.distance) < 0.05 * s.hull.spacing)
+        places.back() = SilhouettePlace{nearest.arc_length, nearest.normal};
+    }
+  }
+  s.border_of.assign(static_cast<std::size_t>(V.rows()), -1);
+  for (const Edge& e : boundary_edges(s.hull.mesh.F)) {
+    for (const int v : e) {
+      for (std::size_t b = 0; b < s.borders.size() && s.border_of[v] < 0; ++b) {
+        if (lies_on_border(s, v, s.borders[b])) s.border_of[v] = static_cast<int>(b);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+SketchSurface sketch_surface(const Drawing& aligned, const HullOptions& options) {
+  SketchSurface surface;
+  surface.hull = visual_hull(aligned, options);
+  open_borders(surface, aligned);
+  trace_strokes(surface, aligned);
+  place_anew(surface);
+  return surface;
+}
+
+}  // namespace geoprior::sketch

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/connectivity.h"
+#include "core/mesh.h"
+#include "models/sketch/visual_hull.h"
+
+namespace geoprior::sketch {
+
+/// A drawn stroke as a path of edges of the surface.
+struct StrokePath {
+  std::string id;                       ///< of the stroke
+  int view = 0;                         ///< it was drawn in, of SketchSurface::views
+  std::vector<Eigen::Vector2d> points;  ///< as drawn, aligned (m)
+  std::vector<Edge> edges;              ///< lower vertex first, ascending
+  double missed = 0;  ///< share of the stroke's length beside which there is no edge
+  std::optional<double> fold_angle_deg = {}, fold_width = {};  ///< of the stroke
+};
+
+/// A stretch of the surface's border that a stroke asks for.
+struct BorderPlace {
+  int view = 0;
+  std::vector<Eigen::Vector2d> points;  ///< the stroke, aligned (m)
+};
+
+/// The hull as a surface to work on: open where borders were drawn, with seams along its edges.
+struct SketchSurface {
+  VisualHull hull;
+  std::vector<StrokePath> seams;
+  std::vector<StrokePath> folds;     ///< drawn folds; edges that they cross
+  std::vector<BorderPlace> borders;  ///< drawn borders
+  std::vector<int> border_of;        ///< of each vertex: of `borders`, or -1
+};
+
+/// @param aligned  of `align_views`
+/// @throws Error   naming stroke and view: a border that is not on the silhouette, a seam or fold
+///                 that leaves the surface
+SketchSurface sketch_surface(const Drawing& aligned, const HullOptions& options);
+
+}  // namespace geoprior::sketch

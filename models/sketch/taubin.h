@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/mesh.h"
+#include "core/options.h"
+
+namespace geoprior::sketch {
+
+/// How much a neighbour counts in the mean of a vertex's neighbours.
+enum class NeighbourWeight {
+  umbrella,   ///< all the same; also evens out the triangles
+  cotangent,  ///< cotangents of the mesh that is given, those below zero as zero; keeps triangles
+};
+
+/// Low-pass filter of a mesh that does not shrink (Taubin, A Signal Processing Approach to Fair
+/// Surface Design, 1995):
+///
+///   x <- x + lambda L x,  x <- x + mu L x,  (L x)_i = sum_j w_ij (x_j - x_i) / sum_j w_ij
+///
+/// with lambda > 0 > mu. One double step multiplies what varies at the frequency k (eigenvalue of
+/// -L, 0 ... 2) by (1 - lambda k)(1 - mu k): by 1 at k = 0 and at the pass frequency
+/// 1 / lambda + 1 / mu (0.113 with the defaults), by slightly more between them, by less above.
+struct TaubinOptions {
+  double lambda = 0.5;    ///< of the step that shrinks
+  double mu = -0.53;      ///< of the step that swells
+  int double_steps = 50;  ///< pairs of such steps
+  NeighbourWeight weight = NeighbourWeight::umbrella;
+  bool fixed_border = true;  ///< vertices of the border stay; otherwise neighbours along it count
+};
+void describe(OptionVisitor& v, TaubinOptions& options);
+
+/// Positions after smoothing (n x 3); a vertex without triangles stays.
+///
+/// @param mesh    triangle mesh, open or closed
+/// @throws Error  for lambda not above 0, mu not below -lambda, or a negative number of steps
+/// Source: Taubin 1995; thesis 2.1.2.
+Eigen::MatrixX3d taubin_smoothed(const TriMesh& mesh, const TaubinOptions& options = {});
+
+}  // namespace geoprior::sketch

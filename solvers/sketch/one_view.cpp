@@ -1,0 +1,243 @@
+#include "solvers/sketch/one_view.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/connectivity.h"
+#include "core/error.h"
+#include "solvers/sketch/dense_matches.h"
+#include "solvers/sketch/fair_patch.h"
+#include "solvers/sketch/ruled_patches.h"
+#include "solvers/sketch/symmetric_pairs.h"
+
+namespace geoprior::sketch {
+namespace {
+
+/// Vertices nearer to the mirror plane than this share of the spacing are put onto it.
+constexpr double kPlaneReach = 0.1;
+/// Halves whose visible borders differ by less than this share are equally visible.
+constexpr double kEvenHalves = 0.02;
+
+/// Triangles of all patches over the nodes of the net, then inner vertices.
+class SurfaceBuilder {
+ public:
+  explicit SurfaceBuilder(const OneViewResult& result) : result_(result) {
+    for (Eigen::Index v = 0; v < result.depth.nodes.rows(); ++v)
+      positions_.push_back(result.depth.nodes.row(v).transpose());
+  }
+  void add_strip(const RuledStrip& strip, int patch);
+  void add_panel(const std::vector<int>& loop, const TriMesh& mesh, int patch);
+  [[nodiscard]] TexturedSurface surface(const Eigen::AlignedBox2d& picture) const;
+
+ private:
+  const OneViewResult& result_;
+  std::vector<Eigen::Vector3d> positions_;
+  std::vector<Eigen::Vector3i> triangles_;
+  std::vector<int> patch_;
+};
+
+void SurfaceBuilder::add_strip(const RuledStrip& strip, int patch) {
+  for (Eigen::Index t = 0; t < strip.triangles.rows(); ++t) {
+    triangles_.emplace_back(strip.node[strip.triangles(t, 0)], strip.node[strip.triangles(t, 1)],
+                            strip.node[strip.triangles(t, 2)]);
+    patch_.push_back(patch);
+  }
+}
+
+void SurfaceBuilder::add_panel(const std::vector<int>& loop, const TriMesh& mesh, int patch) {
+  std::vector<int> vertex = loop;
+  for (Eigen::Index v = static_cast<Eigen::Index>(loop.size()); v < mesh.V.rows(); ++v) {
+    vertex.push_back(static_cast<int>(positions_.size()));
+    positions_.push_back(mesh.V.row(v).transpose());
+  }
+  for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
+    triangles_.emplace_back(vertex[mesh.F(t, 0)], vertex[mesh.F(t, 1)], vertex[mesh.F(t, 2)]);
+    patch_.push_back(patch);
+  }
+}
+
+/// Only vertices that triangles use, in the order of the triangles.
+TexturedSurface SurfaceBuilder::surface(const Eigen::AlignedBox2d& picture) const {
+  TexturedSurface s;
+  std::vector<int> number(positions_.size(), -1);
+  std::vector<int> used;
+  s.mesh.F.resize(static_cast<Eigen::Index>(triangles_.size()), 3);
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const int v = triangles_[t](k);
+      if (number[v] < 0) {
+        number[v] = static_cast<int>(used.size());
+        used.push_back(v);
+      }
+      s.mesh.F(static_cast<Eigen::Index>(t), k) = number[v];
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(used.size());
+  s.mesh.V.resize(count, 3);
+  s.texture.resize(count, 2);
+  const Eigen::Vector2d size = picture.sizes().cwiseMax(1e-300);
+  for (Eigen::Index v = 0; v < count; ++v) {
+    const int source = used[static_cast<std::size_t>(v)];
+    s.mesh.V.row(v) = positions_[source].transpose();
+    // What was drawn is textured where it was drawn, not where the solution moved it.
+    const bool is_node = source < static_cast<int>(result_.net.points.size());
+    const Eigen::Vector2d at =
+        is_node ? result_.net.points[source] : Eigen::Vector2d(positions_[source].head<2>());
+    s.texture.row(v) = (at - picture.min()).cwiseQuotient(size).transpose();
+  }
+  s.patch = patch_;
+  s.mirror_image.assign(patch_.size(), false);
+  return s;
+}
+
+/// Sum of area times height over the centre: positive when triangles face outward.
+double outwardness(const TriMesh& mesh, const std::vector<int>& triangles) {
+  Eigen::RowVector3d centre(0, 0, 0);
+  for (const int t : triangles)
+    for (int k = 0; k < 3; ++k)
+      centre += mesh.V.row(mesh.F(t, k)) / (3.0 * static_cast<double>(triangles.size()));
+  double sum = 0;
+  double depth = 0;
+  double scale = 0;
+  for (const int t : triangles) {
+    const Eigen::Vector3d a = (mesh.V.row(mesh.F(t, 0)) - centre).transpose();
+    const Eigen::Vector3d b = (mesh.V.row(mesh.F(t, 1)) - centre).transpose();
+    const Eigen::Vector3d c = (mesh.V.row(mesh.F(t, 2)) - centre).transpose();
+    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    sum += normal.dot(a);
+    depth += normal.z();
+    scale += normal.norm() * std::max({a.norm(), b.norm(), c.norm()});
+  }
+  return std::abs(sum) > 1e-6 * scale ? sum : depth;  // a plane piece faces the eye
+}
+
+/// Turns triangles so that neighbours agree and every connected piece faces outward.
+void orient_surface(TriMesh& mesh) {
+  const EdgeConnectivity edges(mesh.F);
+  const Eigen::MatrixX3i F = mesh.F;
+  std::vector<int> sense(static_cast<std::size_t>(F.rows()), 0);
+  for (Eigen::Index seed = 0; seed < F.rows(); ++seed) {
+    if (sense[static_cast<std::size_t>(seed)] != 0) continue;
+    sense[static_cast<std::size_t>(seed)] = 1;
+    std::vector<int> piece{static_cast<int>(seed)};
+    for (std::size_t next = 0; next < piece.size(); ++next) {
+      for (int k = 0; k < 3; ++k) {
+        const int h = 3 * piece[next] + k;
+        const int twin = edges.twin(h);
+        if (twin < 0 || sense[twin / 3] != 0) continue;
+        const bool agree = edges.origin(h) != edges.origin(twin);
+        sense[twin / 3] = agree ? sense[piece[next]] : -sense[piece[next]];
+        piece.push_back(twin / 3);
+      }
+    }
+    for (const int t : piece)
+      if (sense[t] < 0) std::swap(mesh.F(t, 1), mesh.F(t, 2));
+    if (outwardness(mesh, piece) < 0)
+      for (const int t : piece) std::swap(mesh.F(t, 1), mesh.F(t, 2));
+  }
+}
+
+/// Length of the borders that nothing hides, on the positive side and on the other (m).
+std::array<double, 2> visible_lengths(const OneViewResult& result) {
+  std::array<double, 2> length{0, 0};
+  const CurveNet& net = result.net;
+  for (const SketchCurve& curve : net.curves) {
+    const int chords = curve.closed ? curve.size() : curve.size() - 1;
+    for (int i = 0; i < chords; ++i) {
+      const int a = node_of(curve, i), b = node_of(curve, i + 1);
+      if (net.hidden[a] && net.hidden[b]) continue;
+      const Eigen::Vector3d p = result.depth.nodes.row(a).transpose();
+      const Eigen::Vector3d q = result.depth.nodes.row(b).transpose();
+      const bool positive = signed_distance(result.planes.chosen, (p + q) / 2) > 0;
+      length[positive ? 0 : 1] += (q - p).norm();
+    }
+  }
+  return length;
+}
+
+Eigen::AlignedBox2d picture_box(const View& view, const CurveNet& net) {
+  Eigen::AlignedBox2d box;
+  const Picture& picture = view.picture;
+  if ((picture.size.array() > 0).all()) {
+    box.extend(picture.origin);
+    box.extend(picture.origin + picture.size);
+  } else {
+    for (const Eigen::Vector2d& p : net.points) box.extend(p);
+  }
+  return box;
+}
+
+/// Fills the patches and welds them.
+void fill_patches(const View& view, const std::vector<DrawnPanel>& panels,
+                  const OneViewOptions& options, OneViewResult& result) {
+  SurfaceBuilder builder(result);
+  const Eigen::MatrixX3d& nodes = result.depth.nodes;
+  for (const RuledPatch& ruled : result.rulings) {
+    OneViewPatch patch{ruled.id, true, false, ruled_strip(result.net, ruled, nodes), {}};
+    patch.unrolled = unroll_strip(patch.strip, nodes);
+    builder.add_strip(patch.strip, static_cast<int>(result.patches.size()));
+    result.patches.push_back(std::move(patch));
+  }
+  for (const DrawnPanel& panel : panels) {
+    Eigen::MatrixX3d border(static_cast<Eigen::Index>(panel.loop.size()), 3);
+    for (std::size_t k = 0; k < panel.loop.size(); ++k)
+      border.row(static_cast<Eigen::Index>(k)) = nodes.row(panel.loop[k]);
+    const std::string where = "panel '" + panel.name + "'";
+    const TriMesh mesh = panel.flat
+                             ? flat_patch(border, where)
+                             : fair_patch(border, result.net.spacing, options.fair_solves, where);
+    builder.add_panel(panel.loop, mesh, static_cast<int>(result.patches.size()));
+    result.patches.push_back({panel.name, false, panel.flat, {}, {}});
+  }
+  result.surface = builder.surface(picture_box(view, result.net));
+  orient_surface(result.surface.mesh);
+}
+
+}  // namespace
+
+void describe(OptionVisitor& v, OneViewOptions& o) {
+  describe_group(v, "curves", o.curves, {.doc = "sampling of borders"});
+  describe_group(v, "rulings", o.rulings, {.doc = "time warping of rulings"});
+  describe_group(v, "depth", o.depth, {.doc = "weights of the quadratic energy"});
+  v.value("vector_ratio", o.vector_ratio,
+          {.doc = "length in space of sym-a over that of sym-b", .min = 1e-3, .max = 1e3});
+  v.value("pair_tolerance", o.pair_tolerance,
+          {.doc = "of the direction of a symmetric pair, of the drawing's diagonal",
+           .min = 1e-6,
+           .max = 1});
+  v.value("fair_solves", o.fair_solves,
+          {.doc = "solves with the surface's own Laplacian in panels without rulings",
+           .min = 0,
+           .max = 1000});
+  v.value("mirror", o.mirror, {.doc = "keep the more visible half and mirror it"});
+}
+
+OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& options) {
+  if (view.kind != ViewKind::photo)
+    throw Error("reconstruction from one view needs a photo view", view_name(view.kind), "photo");
+  OneViewResult result;
+  const int half_width = options.depth.tangent_half_width;
+  result.planes = drawn_mirror_planes(view, options.vector_ratio);
+  const MirrorPlane& plane = result.planes.chosen;
+  result.net = build_curve_net(view, options.curves);
+  DepthProblem problem{result.net, plane, {}, {}, {}, {}};
+  problem.pairs = read_symmetric_pairs(view, result.net, plane, options.pair_tolerance);
+  problem.matches = dense_matches(result.net, problem.pairs, plane, half_width);
+  result.matches = static_cast<int>(problem.matches.size());
+  problem.ruled = sweep_ruled_patches(view, result.net, half_width, options.rulings);
+  result.rulings = problem.ruled;
+  const std::vector<DrawnPanel> panels = find_drawn_panels(result.net, problem.ruled);
+  for (const DrawnPanel& panel : panels)
+    if (panel.flat) problem.planar.push_back(panel.loop);
+  result.depth = solve_depth(problem, options.depth);
+  fill_patches(view, panels, options, result);
+  if (!options.mirror || result.surface.mesh.F.rows() == 0) return result;
+  const auto [positive, negative] = visible_lengths(result);
+  result.kept_positive = positive >= (1 - kEvenHalves) * negative;
+  result.surface =
+      mirror_half(result.surface, plane, result.kept_positive, kPlaneReach * result.net.spacing);
+  return result;
+}
+
+}  // namespace geoprior::sketch

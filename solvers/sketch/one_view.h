@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+#include "models/sketch/drawing.h"
+#include "solvers/sketch/curve_net.h"
+#include "solvers/sketch/depth_system.h"
+#include "solvers/sketch/drawn_panels.h"
+#include "solvers/sketch/mirror_plane.h"
+#include "solvers/sketch/mirror_surface.h"
+#include "solvers/sketch/ruled_fill.h"
+#include "solvers/sketch/ruling_warp.h"
+
+namespace geoprior::sketch {
+
+/// Parameters of the reconstruction from one view.
+struct OneViewOptions {
+  CurveNetOptions curves;
+  RulingWarpOptions rulings;
+  DepthOptions depth;
+  double vector_ratio = 1;       ///< length in space of sym-a over that of sym-b
+  double pair_tolerance = 0.03;  ///< of a pair's direction, of the drawing's diagonal
+  int fair_solves = 6;           ///< with the surface's own Laplacian, in panels without rulings
+  bool mirror = true;            ///< keep one half and mirror it
+};
+void describe(OptionVisitor& v, OneViewOptions& options);
+
+/// A patch of the surface.
+struct OneViewPatch {
+  std::string name;           ///< panel, or stroke of the first drawn ruling
+  bool ruled = false;         ///< swept by rulings; otherwise fair
+  bool flat = false;          ///< its border was asked to be plane
+  RuledStrip strip;           ///< of a ruled patch, before the surface is made symmetric
+  Eigen::MatrixX2d unrolled;  ///< of the strip's vertices (m)
+};
+
+/// Reconstruction: x right, y up, z towards the eye, with z = 0 at the tail of sym-a (m).
+struct OneViewResult {
+  CurveNet net;
+  MirrorPlanes planes;  ///< the one used, and the other reading of the same picture
+  std::vector<RuledPatch> rulings;
+  DepthSolution depth;  ///< nodes of the net in space; residuals; condition
+  std::vector<OneViewPatch> patches;
+  TexturedSurface surface;    ///< welded; symmetric when asked for
+  bool kept_positive = true;  ///< the half towards the eye was kept
+  int matches = 0;            ///< dense symmetric correspondences
+};
+
+/// Developable surface from one annotated view (thesis 2.1.3; Fondevilla et al. 2017).
+///
+/// 1. Borders become curves (`build_curve_net`); the mirror plane comes from its two vectors
+///    (`mirror_plane.h`), dense symmetric correspondences from the pairs (`dense_matches`), rulings
+///    from drawn ones by time warping (`sweep_ruled_patches`).
+/// 2. Depth is the minimum of one quadratic energy (`solve_depth`).
+/// 3. Ruled patches become strips, other named panels fair patches; borders are shared, so that
+///    patches are welded. With `mirror`, the half whose borders are more visible is kept (the one
+///    towards the eye when both are within 2 %), and its mirror image joined along the plane.
+///
+/// Texture coordinates are places in the picture, 0 to 1 from its lower left corner (in the box
+/// about the borders, when there is no picture).
+///
+/// The shape mirrored in depth has the same picture: `planes.other` is the plane of that reading,
+/// chosen by marking sym-a "back".
+///
+/// It cannot know depth that no pair, ruling or plane leads to: that is refused, never guessed.
+///
+/// @param view    of kind photo
+/// @throws Error  on anything that the steps refuse, with the ids of strokes
+OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& options);
+
+}  // namespace geoprior::sketch

@@ -1,0 +1,129 @@
+#include "solvers/sketch/one_view_process.h"
+
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "core/frame_loop.h"
+#include "core/topology.h"
+
+namespace geoprior::sketch {
+namespace {
+
+NamedArray one_view_array(const char* name, NamedArray::On on, Eigen::Index rows,
+                          Eigen::Index columns = 1) {
+  return {name, "1", on, Eigen::MatrixXd::Zero(rows, columns)};
+}
+
+Part textured_part(const TexturedSurface& surface) {
+  using On = NamedArray::On;
+  const Eigen::Index n = surface.mesh.V.rows(), m = surface.mesh.F.rows();
+  Part part;
+  part.points = surface.mesh.V;
+  part.triangles = surface.mesh.F;
+  NamedArray texture = one_view_array("texture", On::points, n, 2);
+  texture.values = surface.texture;
+  NamedArray border = one_view_array("border", On::points, n);
+  for (const Edge& e : boundary_edges(surface.mesh.F))
+    border.values(e[0]) = border.values(e[1]) = 1;
+  NamedArray patch = one_view_array("patch", On::cells, m);
+  NamedArray image = one_view_array("mirror_image", On::cells, m);
+  for (Eigen::Index t = 0; t < m; ++t) {
+    patch.values(t) = surface.patch[static_cast<std::size_t>(t)];
+    image.values(t) = surface.mirror_image[static_cast<std::size_t>(t)] ? 1 : 0;
+  }
+  part.arrays = {std::move(texture),
+                 std::move(border),
+                 one_view_array("seam", On::points, n),
+                 one_view_array("fold", On::points, n),
+                 std::move(patch),
+                 std::move(image)};
+  return part;
+}
+
+/// Borders with points of their own: a node that curves share is one of each.
+Part curves_part(const OneViewResult& result) {
+  Part part;
+  part.kind = Part::Kind::lines;
+  std::vector<std::pair<int, int>> places;  // curve and number of its node
+  for (std::size_t c = 0; c < result.net.curves.size(); ++c) {
+    const SketchCurve& curve = result.net.curves[c];
+    std::vector<int> line;
+    for (int i = 0; i < curve.size(); ++i) {
+      line.push_back(static_cast<int>(places.size()));
+      places.emplace_back(static_cast<int>(c), i);
+    }
+    if (curve.closed) line.push_back(line.front());
+    part.lines.push_back(std::move(line));
+  }
+  const auto n = static_cast<Eigen::Index>(places.size());
+  part.points.resize(n, 3);
+  NamedArray stroke = one_view_array("stroke", NamedArray::On::points, n);
+  NamedArray drawn_at = one_view_array("drawn_at", NamedArray::On::points, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto& [c, k] = places[static_cast<std::size_t>(i)];
+    const SketchCurve& curve = result.net.curves[static_cast<std::size_t>(c)];
+    part.points.row(i) = result.depth.nodes.row(curve.nodes[static_cast<std::size_t>(k)]);
+    stroke.values(i) = curve.stroke;
+    drawn_at.values(i) = curve.drawn_at[static_cast<std::size_t>(k)];
+  }
+  part.arrays = {std::move(stroke), std::move(drawn_at)};
+  return part;
+}
+
+Part rulings_part(const OneViewResult& result) {
+  Part part;
+  part.kind = Part::Kind::lines;
+  part.points = result.depth.nodes;
+  for (const RuledPatch& patch : result.rulings) {
+    const SketchCurve& first = result.net.curves[static_cast<std::size_t>(patch.first)];
+    const SketchCurve& second = result.net.curves[static_cast<std::size_t>(patch.second)];
+    for (const std::array<int, 2>& cell : patch.cells)
+      part.lines.push_back({node_of(first, cell[0]), node_of(second, cell[1])});
+  }
+  return part;
+}
+
+class OneView final : public FrameModel {
+ public:
+  OneView(const View& view, const OneViewOptions& options) : view_(view), options_(options) {}
+  [[nodiscard]] int frame_count() const override { return 1; }
+  void record(int /*number*/, FrameSink& sink, RunContext& context) override {
+    OneViewResult result;
+    {
+      const Phase phase(context, "reconstruct");
+      result = reconstruct_one_view(view_, options_);
+    }
+    const Phase phase(context, "record");
+    sink.frame(one_view_frame(result));
+  }
+
+ private:
+  const View& view_;  ///< of the process, which outlives its model
+  OneViewOptions options_;
+};
+
+}  // namespace
+
+Frame one_view_frame(const OneViewResult& result) {
+  Frame frame;
+  frame.parts["surface"] = textured_part(result.surface);
+  frame.parts["strokes"] = curves_part(result);
+  Part rulings = rulings_part(result);
+  if (!rulings.lines.empty()) frame.parts["rulings"] = std::move(rulings);
+  for (int t = 0; t < kDepthTerms; ++t) {
+    if (result.depth.rows[t] == 0) continue;
+    frame.diagnostics[std::string("residual_") + depth_term_name(static_cast<DepthTerm>(t))] =
+        result.depth.rms[t];
+  }
+  frame.diagnostics["condition"] = result.depth.condition;
+  frame.diagnostics["matches"] = result.matches;
+  return frame;
+}
+
+std::unique_ptr<Process> make_one_view_process(const View& view, const OneViewOptions& options) {
+  return frame_process(
+      [view, options](RunContext&) { return std::make_unique<OneView>(view, options); });
+}
+
+}  // namespace geoprior::sketch

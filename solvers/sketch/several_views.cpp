@@ -1,0 +1,164 @@
+#include "solvers/sketch/several_views.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "core/connectivity.h"
+#include "models/sketch/polyline.h"
+#include "solvers/sketch/pinned_transfer.h"
+#include "solvers/sketch/zippering.h"
+
+namespace geoprior::sketch {
+namespace {
+
+constexpr std::array<std::string_view, 2> kOrders{"merged", "alternating"};
+
+/// Axis of space along which a view's coordinate runs, and its direction.
+struct CoordinateAxis {
+  int axis = 0;
+  double sign = 1;
+};
+
+CoordinateAxis coordinate_axis(const OutlinedView& view, int coordinate) {
+  CoordinateAxis found;
+  view.frame.row(coordinate).cwiseAbs().maxCoeff(&found.axis);
+  found.sign = view.frame(coordinate, found.axis);
+  return found;
+}
+
+/// Puts a vertex onto a stroke of its view along the coordinate that crosses the stroke more
+/// squarely; along the stroke it is free.
+void pin_across(const std::vector<Eigen::Vector2d>& stroke, const OutlinedView& view, int vertex,
+                const Eigen::MatrixX3d& X, CoordinatePins& pins) {
+  const Eigen::Vector2d q = view.project(X.row(vertex).transpose());
+  const BesideStroke at = beside(stroke, q);
+  const Eigen::Vector2d normal(-at.direction.y(), at.direction.x());
+  const int k = std::abs(normal.x()) >= std::abs(normal.y()) ? 0 : 1;
+  const Eigen::Vector2d nearest = point_along(stroke, at.along);
+  const double value = nearest[k] - normal[1 - k] / normal[k] * (q[1 - k] - nearest[1 - k]);
+  const CoordinateAxis along = coordinate_axis(view, k);
+  pins.set(vertex, along.axis, along.sign * value);
+}
+
+class SeveralViews final : public SketchMethod {
+ public:
+  SeveralViews(const PreparedSketch& prepared, const SeveralViewsOptions& options)
+      : surface_(prepared.surface),
+        options_(options),
+        X_(prepared.start),
+        rotation_(surface_.hull.mesh.F, surface_.hull.mesh.vertex_count(), options.developability),
+        fold_(surface_, options.fold),
+        transfer_(surface_.hull.mesh.F, surface_.hull.mesh.vertex_count()) {
+    const EdgeConnectivity edges(surface_.hull.mesh.F);
+    for (std::size_t v = 0; v < surface_.hull.views.size(); ++v)
+      zippering_.emplace_back(surface_.hull.views[v], surface_.hull.places[v], edges.edges());
+  }
+
+  void step(RunContext& context) override {
+    CoordinatePins pins(static_cast<int>(X_.rows()));
+    {
+      const Phase phase(context, "silhouettes");
+      pin_strokes(pins);
+    }
+    if (options_.order == StepOrder::alternating) {
+      const Phase phase(context, "transfer");
+      const std::vector<Eigen::Matrix3d> unturned(
+          static_cast<std::size_t>(surface_.hull.mesh.F.rows()), Eigen::Matrix3d::Identity());
+      X_ = transfer_.solve(X_, unturned, pins);
+    }
+    std::vector<Eigen::Matrix3d> rotations;
+    {
+      const Phase phase(context, "rotations");
+      const Eigen::MatrixX3d normals = triangle_normals({X_, surface_.hull.mesh.F});
+      rotations = rotation_.rotations(normals);
+      fold_.blend(X_, normals, rotations);
+    }
+    const Phase phase(context, "transfer");
+    X_ = transfer_.solve(X_, rotations, pins);
+  }
+
+  [[nodiscard]] const Eigen::MatrixX3d& positions() const override { return X_; }
+  void load(StateReader& in) override { in.matrix(X_); }
+
+  void diagnose(std::map<std::string, double>& into) const override {
+    into["silhouette_edges"] = edges_;
+    into["gaps"] = gaps_;
+    into["gap_length"] = gap_length_;
+  }
+
+ private:
+  void pin_strokes(CoordinatePins& pins) {
+    edges_ = gaps_ = 0;
+    gap_length_ = 0;
+    if (options_.pin_seams) {
+      for (const StrokePath& seam : surface_.seams) {
+        for (const Edge& edge : seam.edges) {
+          for (const int v : edge)
+            pin_across(seam.points, surface_.hull.views[seam.view], v, X_, pins);
+        }
+      }
+    }
+    for (std::size_t v = 0; v < surface_.border_of.size(); ++v) {
+      if (surface_.border_of[v] < 0) continue;
+      const BorderPlace& border = surface_.borders[surface_.border_of[v]];
+      pin_across(border.points, surface_.hull.views[border.view], static_cast<int>(v), X_, pins);
+    }
+    if (!options_.silhouettes) return;
+    for (std::size_t view = 0; view < zippering_.size(); ++view) {
+      const ZippedSilhouette zipped = zippering_[view].close(surface_.hull.mesh.V, X_);
+      edges_ += static_cast<int>(zipped.edges.size());
+      gaps_ += static_cast<int>(zipped.gaps.size());
+      for (const CoverageGap& gap : zipped.gaps) gap_length_ += gap.to - gap.from;
+      for (const Edge& edge : zipped.edges) {
+        for (const int v : edge) {
+          for (int k = 0; k < 2; ++k) {
+            const int axis = coordinate_axis(surface_.hull.views[view], k).axis;
+            pins.set(v, axis, surface_.hull.mesh.V(v, axis));
+          }
+        }
+      }
+    }
+  }
+
+  const SketchSurface& surface_;
+  SeveralViewsOptions options_;
+  Eigen::MatrixX3d X_;
+  std::vector<Zippering> zippering_;
+  DevelopableRotation rotation_;
+  FoldRotation fold_;
+  PinnedTransfer transfer_;
+  int edges_ = 0, gaps_ = 0;
+  double gap_length_ = 0;
+};
+
+}  // namespace
+
+void describe(OptionVisitor& v, SeveralViewsOptions& o) {
+  v.value("iterations", o.iterations, {.doc = "steps; a frame each", .min = 1, .max = 1000});
+  describe_choice(v, "order", o.order, kOrders,
+                  {.doc = "how silhouettes and developability follow each other"});
+  describe_group(v, "developability", o.developability, {.doc = "what triangles are turned to"});
+  describe_group(v, "fold", o.fold, {.doc = "what drawn folds ask"});
+  v.value("silhouettes", o.silhouettes, {.doc = "silhouettes are pulled onto the drawing"});
+  v.value("pin_seams", o.pin_seams, {.doc = "seams stay where they were drawn, in their view"});
+}
+
+std::unique_ptr<SketchMethod> make_several_views(const PreparedSketch& prepared,
+                                                 const SeveralViewsOptions& options) {
+  return std::make_unique<SeveralViews>(prepared, options);
+}
+
+std::unique_ptr<Process> make_several_views_process(const SketchInput& input,
+                                                    const SeveralViewsOptions& options) {
+  return make_sketch_process(input, options.iterations,
+                             [options](const PreparedSketch& prepared, RunContext&) {
+                               return make_several_views(prepared, options);
+                             });
+}
+
+}  // namespace geoprior::sketch
