@@ -31,13 +31,23 @@ void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& fold
     scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
 }
 
+Artifact text_artifact(const std::string& name, const std::string& bytes) {
+  Artifact artifact;
+  artifact.name = name;
+  artifact.bytes.resize(bytes.size());
+  std::memcpy(artifact.bytes.data(), bytes.data(), bytes.size());
+  return artifact;
+}
+
+/// The files of a pattern; of one that cannot be cut out (a baseline's may overlap itself) a text
+/// that says why.
 std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const FabricationOptions& options) {
   std::vector<Artifact> artifacts;
-  for (const FabricationFile& file : fabrication_files(pattern, options)) {
-    Artifact& artifact = artifacts.emplace_back();
-    artifact.name = file.name;
-    artifact.bytes.resize(file.bytes.size());
-    std::memcpy(artifact.bytes.data(), file.bytes.data(), file.bytes.size());
+  try {
+    for (const FabricationFile& file : fabrication_files(pattern, options))
+      artifacts.push_back(text_artifact(file.name, file.bytes));
+  } catch (const Error& error) {
+    artifacts = {text_artifact("pattern-refused.txt", std::string(error.what()) + "\n")};
   }
   return artifacts;
 }
