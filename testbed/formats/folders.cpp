@@ -21,8 +21,7 @@ fs::path path_below(const fs::path& folder, const fs::path& relative) {
     path /= name;
     std::error_code ignored;
     if (fs::is_symlink(fs::symlink_status(path, ignored))) {
-      throw Error("is a symbolic link: none is followed here", path.string(),
-                  "files and folders");
+      throw Error("is a symbolic link: none is followed here", path.string(), "files and folders");
     }
   }
   return path;
