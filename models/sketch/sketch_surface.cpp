@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "core/error.h"
@@ -94,68 +95,79 @@ void open_borders(SketchSurface& s, const Drawing& drawing) {
   remove_triangles(s, removed);
 }
 
-/// Drops what a path has beyond its stroke's ends, but for what leads up to a border or to another
-/// path; and, near an end, what lies beyond such a meeting.
-void trim_ends(std::vector<Edge>& edges, const std::vector<Eigen::Vector2d>& points,
-               const OutlinedView& view, const TriMesh& mesh, const std::vector<char>& meets,
-               double reach) {
-  const double whole = length(points);
-  const auto along = [&](int v) {
-    return beside(points, view.project(mesh.V.row(v).transpose())).along;
+/// Loose ends of a path: cut back to the border or the other path that they have just passed, or to
+/// the end of the stroke where they have met none. A path that closes on itself has no loose ends.
+void trim_ends(StrokePath& path, const OutlinedView& view, const TriMesh& mesh,
+               const std::vector<char>& meets, double reach) {
+  std::map<int, std::vector<int>> next;
+  for (const Edge& e : path.edges) {
+    next[e[0]].push_back(e[1]);
+    next[e[1]].push_back(e[0]);
+  }
+  const double whole = length(path.points);
+  const auto is_beyond = [&](int v) {
+    const double along = beside(path.points, view.project(mesh.V.row(v).transpose())).along;
+    return along < 0 || along > whole;
   };
-  double low = 0, high = whole;
-  double low_met = -std::numeric_limits<double>::infinity();
-  double high_met = std::numeric_limits<double>::infinity();
-  for (const Edge& e : edges) {
-    for (const int v : e) {
-      if (!meets[v]) continue;
-      const double a = along(v);
-      if (a < 2 * reach) low_met = std::max(low_met, a);
-      if (a > whole - 2 * reach) high_met = std::min(high_met, a);
+  std::set<Edge> dropped;
+  for (const auto& [end, neighbours] : next) {
+    if (neighbours.size() != 1 || meets[end]) continue;
+    std::vector<Edge> walked;
+    int before = end, at = neighbours[0];
+    double way = (mesh.V.row(end) - mesh.V.row(at)).norm();
+    walked.push_back({std::min(end, at), std::max(end, at)});
+    while (!meets[at] && next[at].size() == 2 && way < 2 * reach) {
+      const int after = next[at][0] == before ? next[at][1] : next[at][0];
+      way += (mesh.V.row(at) - mesh.V.row(after)).norm();
+      walked.push_back({std::min(at, after), std::max(at, after)});
+      before = std::exchange(at, after);
+    }
+    for (const Edge& e : walked) {
+      if (meets[at] || (is_beyond(e[0]) && is_beyond(e[1]))) dropped.insert(e);
     }
   }
-  if (std::isfinite(low_met)) low = low_met - 1e-9 * reach;
-  if (std::isfinite(high_met)) high = high_met + 1e-9 * reach;
-  std::erase_if(edges, [&](const Edge& e) {
-    const double a = along(e[0]), b = along(e[1]);
-    return std::min(a, b) < low - 0.5 * reach * !std::isfinite(low_met) ||
-           std::max(a, b) > high + 0.5 * reach * !std::isfinite(high_met);
-  });
+  std::erase_if(path.edges, [&](const Edge& e) { return dropped.contains(e); });
 }
 
-/// Seams first, then folds, so that folds do not end at what is not there yet.
-void trace_strokes(SketchSurface& s, const Drawing& drawing) {
-  TriMesh& mesh = s.hull.mesh;
-  const double reach = 1.5 * s.hull.spacing;
-  for (const StrokeKind kind : {StrokeKind::seam, StrokeKind::fold}) {
-    std::vector<StrokePath>& paths = kind == StrokeKind::seam ? s.seams : s.folds;
-    for (std::size_t view = 0; view < s.hull.views.size(); ++view) {
-      const OutlinedView& seen = s.hull.views[view];
-      for (const Stroke* stroke : strokes_of(*drawing.find(seen.kind), kind)) {
-        std::vector<std::vector<Edge>*> kept;
-        for (StrokePath& path : s.seams) kept.push_back(&path.edges);
-        for (StrokePath& path : s.folds) kept.push_back(&path.edges);
-        StrokePath path{stroke->id, static_cast<int>(view), polyline_of(*stroke), {},
-                        0,          stroke->fold_angle_deg, stroke->fold_width};
-        TracedStroke traced = trace_stroke(path.points, stroke->side, seen, reach, mesh, kept);
-        std::vector<char> meets(static_cast<std::size_t>(mesh.V.rows()), 0);
-        for (const Edge& e : boundary_edges(mesh.F)) meets[e[0]] = meets[e[1]] = 1;
-        for (const StrokePath& other : s.seams) {
-          for (const Edge& e : other.edges) meets[e[0]] = meets[e[1]] = 1;
-        }
-        if (!stroke->closed) trim_ends(traced.edges, path.points, seen, mesh, meets, reach);
-        path.edges = std::move(traced.edges);
-        path.missed = traced.missed;
-        if (path.edges.empty() || path.missed > 0.2) {
-          throw Error("leaves the surface: " +
-                          std::to_string(static_cast<int>(std::lround(100 * path.missed))) +
-                          " % of it lie beside no triangle that faces the view",
-                      stroke_place(drawing, seen.kind, *stroke), "inside the silhouette");
-        }
-        paths.push_back(std::move(path));
+/// Puts the strokes of one kind onto the surface; paths that are there are split along with it.
+void trace_strokes(SketchSurface& s, const Drawing& drawing, StrokeKind kind, double reach) {
+  std::vector<StrokePath>& paths = kind == StrokeKind::seam ? s.seams : s.folds;
+  for (std::size_t view = 0; view < s.hull.views.size(); ++view) {
+    const OutlinedView& seen = s.hull.views[view];
+    for (const Stroke* stroke : strokes_of(*drawing.find(seen.kind), kind)) {
+      std::vector<std::vector<Edge>*> kept;
+      for (StrokePath& path : s.seams) kept.push_back(&path.edges);
+      for (StrokePath& path : s.folds) kept.push_back(&path.edges);
+      StrokePath path{stroke->id, static_cast<int>(view), polyline_of(*stroke), stroke->closed, {},
+                      0,          stroke->fold_angle_deg, stroke->fold_width};
+      TracedStroke traced = trace_stroke(path.points, stroke->side, seen, reach, s.hull.mesh, kept);
+      path.edges = std::move(traced.edges);
+      path.missed = traced.missed;
+      if (path.edges.empty() || path.missed > 0.2) {
+        throw Error("leaves the surface: " +
+                        std::to_string(static_cast<int>(std::lround(100 * path.missed))) +
+                        " % of it lie beside no triangle that faces the view",
+                    stroke_place(drawing, seen.kind, *stroke), "inside the silhouette");
       }
+      paths.push_back(std::move(path));
     }
   }
+}
+
+/// Cuts the ends of paths where they meet borders and other seams, once all are there.
+void trim_strokes(SketchSurface& s, double reach) {
+  const auto trim = [&](StrokePath& path) {
+    if (path.closed) return;
+    std::vector<char> meets(static_cast<std::size_t>(s.hull.mesh.V.rows()), 0);
+    for (const Edge& e : boundary_edges(s.hull.mesh.F)) meets[e[0]] = meets[e[1]] = 1;
+    for (const StrokePath& other : s.seams) {
+      if (&other == &path) continue;
+      for (const Edge& e : other.edges) meets[e[0]] = meets[e[1]] = 1;
+    }
+    trim_ends(path, s.hull.views[path.view], s.hull.mesh, meets, reach);
+  };
+  for (StrokePath& path : s.seams) trim(path);
+  for (StrokePath& path : s.folds) trim(path);
 }
 
 /// New vertices lie on edges of the hull: on a silhouette where both ends do.
@@ -187,7 +199,10 @@ SketchSurface sketch_surface(const Drawing& aligned, const HullOptions& options)
   SketchSurface surface;
   surface.hull = visual_hull(aligned, options);
   open_borders(surface, aligned);
-  trace_strokes(surface, aligned);
+  const double reach = 1.5 * surface.hull.spacing;
+  trace_strokes(surface, aligned, StrokeKind::seam, reach);
+  trace_strokes(surface, aligned, StrokeKind::fold, reach);
+  trim_strokes(surface, reach);
   place_anew(surface);
   return surface;
 }

@@ -16,6 +16,7 @@ struct StrokePath {
   std::string id;                       ///< of the stroke
   int view = 0;                         ///< it was drawn in, of SketchSurface::views
   std::vector<Eigen::Vector2d> points;  ///< as drawn, aligned (m)
+  bool closed = false;                  ///< it ends where it begins
   std::vector<Edge> edges;              ///< lower vertex first, ascending
   double missed = 0;  ///< share of the stroke's length beside which there is no edge
   std::optional<double> fold_angle_deg = {}, fold_width = {};  ///< of the stroke
