@@ -37,6 +37,18 @@ bool lies_on_border(const SketchSurface& s, int vertex, const BorderPlace& borde
          at.along < length(border.points) + near;
 }
 
+/// Whether most of a stroke runs along the view's silhouette.
+bool runs_along(const std::vector<Eigen::Vector2d>& stroke, const Outline& outline, double near) {
+  constexpr int kSamples = 64;
+  const double whole = length(stroke);
+  int off = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const Eigen::Vector2d at = point_along(stroke, whole * (i + 0.5) / kSamples);
+    if (std::abs(outline.nearest(at).distance) > near) ++off;
+  }
+  return off < kSamples / 5;
+}
+
 /// Takes out triangles, and vertices that none is left of.
 void remove_triangles(SketchSurface& s, const std::vector<char>& removed) {
   TriMesh& mesh = s.hull.mesh;
@@ -77,7 +89,7 @@ void open_borders(SketchSurface& s, const Drawing& drawing) {
       on[v] = 1;
       met = true;
     }
-    if (!met) {
+    if (!met || !runs_along(border.points, s.hull.views[border.view].outline, s.hull.spacing)) {
       const ViewKind kind = s.hull.views[border.view].kind;
       const auto strokes = strokes_of(*drawing.find(kind), StrokeKind::border);
       std::size_t i = 0;

@@ -223,6 +223,9 @@ TEST(SketchSurface, NamesStrokesThatLeaveTheSurface) {
               HasSubstr("view front, stroke 'f1': leaves the surface"));
   EXPECT_THAT(refusal(test::stroke_of("b1", StrokeKind::border, {{0.1, 0.1}, {0.15, 0.1}}, false)),
               HasSubstr("view front, stroke 'b1': is not drawn along the silhouette"));
+  EXPECT_THAT(refusal(test::stroke_of("b2", StrokeKind::border, {{0, 0.1}, {0.2, 0.1}}, false)),
+              HasSubstr("view front, stroke 'b2': is not drawn along the silhouette"))
+      << "from rim to rim across the front";
 }
 
 // A fold across the front of a box asks for 60 degrees between normal and view direction.
