@@ -37,19 +37,6 @@ ViewBox silhouette_box(const View& view, const std::string& drawing) {
   return box;
 }
 
-/// Axis in space (0, 1, 2) along which a view's coordinate runs, and its direction.
-struct ViewAxis {
-  int axis;
-  double sign;
-};
-
-ViewAxis axis_of(ViewKind kind, int coordinate) {
-  const Eigen::RowVector3d row = view_frame(kind).row(coordinate);
-  int axis = 0;
-  row.cwiseAbs().maxCoeff(&axis);
-  return {axis, row[axis]};
-}
-
 std::string percent(double ratio) {
   std::array<char, 32> text;
   std::snprintf(text.data(), text.size(), "%.1f %%", 100 * ratio);
@@ -71,7 +58,7 @@ Drawing align_views(const Drawing& drawing, const AlignOptions& options) {
     const ViewBox box = silhouette_box(view, drawing.name);
     Eigen::Vector2d scale{1, 1}, shift{0, 0};
     for (int c = 0; c < 2; ++c) {
-      const ViewAxis along = axis_of(view.kind, c);
+      const ViewAxis along = view_axis(view_frame(view.kind), c);
       const double size = box.high[c] - box.low[c];
       std::optional<AxisExtent>& known = extents[along.axis];
       if (!known) known = AxisExtent{along.axis == 1 ? 0 : -size / 2, size, view.kind};

@@ -35,6 +35,13 @@ Eigen::Matrix3d view_frame(ViewKind kind) {
   return frame;
 }
 
+ViewAxis view_axis(const Eigen::Matrix3d& frame, int coordinate) {
+  ViewAxis found;
+  frame.row(coordinate).cwiseAbs().maxCoeff(&found.axis);
+  found.sign = frame(coordinate, found.axis);
+  return found;
+}
+
 const char* view_name(ViewKind kind) {
   switch (kind) {
     case ViewKind::front:

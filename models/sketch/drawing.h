@@ -43,6 +43,15 @@ struct Drawing {
 /// Orthonormal frame of a view: rows are the directions in space of right, up and towards the eye.
 Eigen::Matrix3d view_frame(ViewKind kind);
 
+/// Axis of space along which a coordinate of a view runs.
+struct ViewAxis {
+  int axis = 0;     ///< 0, 1, 2: x, y, z
+  double sign = 1;  ///< 1 or -1: its direction
+};
+/// @param frame       of `view_frame`
+/// @param coordinate  0: right, 1: up
+ViewAxis view_axis(const Eigen::Matrix3d& frame, int coordinate);
+
 /// Name as it is written in drawings: "front", …
 const char* view_name(ViewKind kind);
 

@@ -66,16 +66,12 @@ using SketchMethodFactory =
 
 /// One recorded state. Metrics of the topic read these parts and nothing else:
 ///
-/// - "surface" (triangles): point arrays "border", "seam", "fold" (0 or 1); cell arrays
-/// "fold_angle"
-///   [rad] (asked of the triangle, absent where no fold was drawn: -1), "fold_view" (of the views);
+/// - "surface" (triangles): point arrays "border", "seam", "fold" (0 or 1);
 /// - "strokes" (lines): borders, seams and folds on the surface, cell array "kind" (StrokeKind);
-/// - "pattern" (triangles, z = 0, m), in the last frame: point arrays "surface_vertex" and "piece",
-/// cell
-///   arrays "surface_triangle" and "piece";
-/// - table "sewn", in the last frame: a row for each vertex of a stretch of the pattern's borders
-/// that
-///   is sewn: stretch, partner stretch, seam, point of "pattern"; in the order along the stretch.
+/// - "pattern" (triangles, z = 0, m), in the last frame: point array "surface_vertex", cell arrays
+///   "surface_triangle", "piece" and "stretch";
+/// - table "sewn", in the last frame: a row for each vertex of a sewn stretch of the pattern's
+///   borders, in their order: stretch, partner stretch, seam, point of "pattern".
 Frame sketch_frame(const PreparedSketch& prepared, const Eigen::MatrixX3d& X, double parameter);
 
 /// Adds the parts of the flat pieces to a frame, and to its surface the cell arrays "piece" and

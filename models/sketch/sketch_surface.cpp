@@ -22,8 +22,8 @@ std::vector<Eigen::Vector2d> polyline_of(const Stroke& stroke) {
   return points;
 }
 
-std::string stroke_place(const Drawing& drawing, ViewKind view, const Stroke& stroke) {
-  return drawing.name + ", view " + view_name(view) + ", stroke '" + stroke.id + "'";
+std::string stroke_place(const Drawing& drawing, ViewKind view, const std::string& stroke) {
+  return drawing.name + ", view " + view_name(view) + ", stroke '" + stroke + "'";
 }
 
 /// Whether the vertex lies on the silhouette where the border stroke was drawn along it.
@@ -78,7 +78,7 @@ void open_borders(SketchSurface& s, const Drawing& drawing) {
   for (std::size_t view = 0; view < s.hull.views.size(); ++view) {
     const View& drawn = *drawing.find(s.hull.views[view].kind);
     for (const Stroke* stroke : strokes_of(drawn, StrokeKind::border))
-      s.borders.push_back({static_cast<int>(view), polyline_of(*stroke)});
+      s.borders.push_back({stroke->id, static_cast<int>(view), polyline_of(*stroke)});
   }
   TriMesh& mesh = s.hull.mesh;
   std::vector<char> on(static_cast<std::size_t>(mesh.V.rows()), 0);
@@ -91,13 +91,7 @@ void open_borders(SketchSurface& s, const Drawing& drawing) {
     }
     if (!met || !runs_along(border.points, s.hull.views[border.view].outline, s.hull.spacing)) {
       const ViewKind kind = s.hull.views[border.view].kind;
-      const auto strokes = strokes_of(*drawing.find(kind), StrokeKind::border);
-      std::size_t i = 0;
-      for (const BorderPlace& b : s.borders) {
-        if (&b == &border) break;
-        if (b.view == border.view) ++i;
-      }
-      throw Error("is not drawn along the silhouette", stroke_place(drawing, kind, *strokes[i]),
+      throw Error("is not drawn along the silhouette", stroke_place(drawing, kind, border.id),
                   "a border on the silhouette, where the surface is open");
     }
   }
@@ -159,7 +153,7 @@ void trace_strokes(SketchSurface& s, const Drawing& drawing, StrokeKind kind, do
         throw Error("leaves the surface: " +
                         std::to_string(static_cast<int>(std::lround(100 * path.missed))) +
                         " % of it lie beside no triangle that faces the view",
-                    stroke_place(drawing, seen.kind, *stroke), "inside the silhouette");
+                    stroke_place(drawing, seen.kind, stroke->id), "inside the silhouette");
       }
       paths.push_back(std::move(path));
     }

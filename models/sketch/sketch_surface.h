@@ -24,6 +24,7 @@ struct StrokePath {
 
 /// A stretch of the surface's border that a stroke asks for.
 struct BorderPlace {
+  std::string id;  ///< of the stroke
   int view = 0;
   std::vector<Eigen::Vector2d> points;  ///< the stroke, aligned (m)
 };

@@ -34,7 +34,6 @@ class StrokeTrace {
     for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
       const BesideStroke at = beside(points_, view_.project(mesh.V.row(v).transpose()));
       side_of_.push_back(at.distance == 0 ? 1e-12 * reach : at.distance);
-      along_.push_back(at.along);
     }
     const Eigen::MatrixX3d normals = triangle_normals(mesh);
     const Eigen::Vector3d eye = view_.frame.row(2).transpose();
@@ -248,7 +247,7 @@ class StrokeTrace {
   double reach_, length_;
   TriMesh& mesh_;
   EdgeConnectivity edges_;
-  std::vector<double> side_of_, along_;
+  std::vector<double> side_of_;
   std::vector<char> faces_;
   std::vector<int> node_;                      ///< of each edge, -1: not crossed
   std::vector<std::pair<int, double>> added_;  ///< edge and share of each new vertex

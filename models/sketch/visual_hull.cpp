@@ -35,20 +35,12 @@ struct HullGrid {
   double spacing = 0;
 };
 
-/// Axis of space along which the coordinate of a view runs.
-int hull_axis(const OutlinedView& view, int coordinate) {
-  int axis = 0;
-  view.frame.row(coordinate).cwiseAbs().maxCoeff(&axis);
-  return axis;
-}
-
 HullBox box_of(const std::vector<OutlinedView>& views) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   HullBox box{Eigen::Vector3d::Constant(-kInfinity), Eigen::Vector3d::Constant(kInfinity)};
   for (const OutlinedView& view : views) {
     for (int c = 0; c < 2; ++c) {
-      const int axis = hull_axis(view, c);
-      const double sign = view.frame(c, axis);
+      const auto [axis, sign] = view_axis(view.frame, c);
       const double a = sign * view.outline.lowest()[c], b = sign * view.outline.highest()[c];
       box.low[axis] = std::max(box.low[axis], std::min(a, b));
       box.high[axis] = std::min(box.high[axis], std::max(a, b));
@@ -73,7 +65,7 @@ HullGrid grid_over(const HullBox& box, double spacing, int attempt) {
 }
 
 PlaneDistances plane_distances(const OutlinedView& view, const HullGrid& grid) {
-  const std::array<int, 2> axes{hull_axis(view, 0), hull_axis(view, 1)};
+  const std::array<int, 2> axes{view_axis(view.frame, 0).axis, view_axis(view.frame, 1).axis};
   PlaneDistances plane;
   plane.size = {grid.size[axes[0]], grid.size[axes[1]]};
   plane.values.resize(static_cast<std::size_t>(plane.size[0]) *
@@ -109,7 +101,7 @@ GridFunction hull_function(const std::vector<OutlinedView>& views, const HullGri
                   -std::numeric_limits<double>::infinity());
   for (const OutlinedView& view : views) {
     const PlaneDistances plane = plane_distances(view, grid);
-    const int u = hull_axis(view, 0), w = hull_axis(view, 1);
+    const int u = view_axis(view.frame, 0).axis, w = view_axis(view.frame, 1).axis;
     std::array<int, 3> at{};
     for (at[2] = 0; at[2] < grid.size[2]; ++at[2]) {
       for (at[1] = 0; at[1] < grid.size[1]; ++at[1]) {

@@ -18,19 +18,6 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kOrders{"merged", "alternating"};
 
-/// Axis of space along which a view's coordinate runs, and its direction.
-struct CoordinateAxis {
-  int axis = 0;
-  double sign = 1;
-};
-
-CoordinateAxis coordinate_axis(const OutlinedView& view, int coordinate) {
-  CoordinateAxis found;
-  view.frame.row(coordinate).cwiseAbs().maxCoeff(&found.axis);
-  found.sign = view.frame(coordinate, found.axis);
-  return found;
-}
-
 /// Puts a vertex onto a stroke of its view along the coordinate that crosses the stroke more
 /// squarely; along the stroke it is free.
 void pin_across(const std::vector<Eigen::Vector2d>& stroke, const OutlinedView& view, int vertex,
@@ -41,7 +28,7 @@ void pin_across(const std::vector<Eigen::Vector2d>& stroke, const OutlinedView& 
   const int k = std::abs(normal.x()) >= std::abs(normal.y()) ? 0 : 1;
   const Eigen::Vector2d nearest = point_along(stroke, at.along);
   const double value = nearest[k] - normal[1 - k] / normal[k] * (q[1 - k] - nearest[1 - k]);
-  const CoordinateAxis along = coordinate_axis(view, k);
+  const ViewAxis along = view_axis(view.frame, k);
   pins.set(vertex, along.axis, along.sign * value);
 }
 
@@ -117,7 +104,7 @@ class SeveralViews final : public SketchMethod {
       for (const Edge& edge : zipped.edges) {
         for (const int v : edge) {
           for (int k = 0; k < 2; ++k) {
-            const int axis = coordinate_axis(surface_.hull.views[view], k).axis;
+            const int axis = view_axis(surface_.hull.views[view].frame, k).axis;
             pins.set(v, axis, surface_.hull.mesh.V(v, axis));
           }
         }
