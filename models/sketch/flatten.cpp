@@ -71,7 +71,8 @@ void describe(OptionVisitor& v, FlattenOptions& options) {
            .max = 1});
 }
 
-Flattening flatten(const TriMesh& piece, const FlattenOptions& options) {
+Flattening flatten(const TriMesh& piece, const FlattenOptions& options,
+                   std::span<const KeptLength> kept) {
   const std::vector<int> border = piece_borders(piece, "flattening").front();
   const std::vector<FlatTriangle> triangles = flat_triangles(piece, options.largest_cotangent);
   Flattening flat;
@@ -83,11 +84,12 @@ Flattening flatten(const TriMesh& piece, const FlattenOptions& options) {
 
   const RigidLayout rigid(triangles, piece.F, piece.vertex_count());
   Eigen::VectorXcd z = start;
-  report.iterations = rigid
-                          .improve(z, {.iterations = options.iterations,
-                                       .tolerance = options.tolerance,
-                                       .mixing = options.mixing})
-                          .iterations;
+  const RigidLayoutReport laid = rigid.improve(
+      z,
+      {.iterations = options.iterations, .tolerance = options.tolerance, .mixing = options.mixing},
+      kept);
+  report.iterations = laid.iterations;
+  report.length_error = laid.length_error;
   report.flipped = flipped_triangles(triangles, piece.F, z);
   report.flipped_when_rigid = static_cast<int>(report.flipped.size());
   if (options.unflip && !report.flipped.empty() &&

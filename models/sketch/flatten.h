@@ -7,6 +7,7 @@
 
 #include "core/mesh.h"
 #include "core/options.h"
+#include "models/sketch/rigid_layout.h"
 
 namespace geoprior::sketch {
 
@@ -27,6 +28,7 @@ struct FlattenReport {
   int flipped_at_first = 0;    ///< triangles turned over in the conformal start
   int flipped_when_rigid = 0;  ///< … after as-rigid-as-possible
   int unflip_iterations = 0;   ///< Newton steps that replaced it; 0: they were not needed
+  double length_error = 0;     ///< largest of kept lengths, relative
   double strain = 0;           ///< root mean square of |J - R| over the area: 0 for an isometry
   std::vector<int> flipped;    ///< triangles turned over in the result
   std::vector<std::array<int, 2>> overlaps;  ///< pairs of triangles that cover a common area
@@ -52,10 +54,14 @@ struct Flattening {
 /// may come to lie over each other, which is reported and not mended. Serial; the same bytes
 /// whatever runs beside it.
 ///
+/// Lengths in `kept` are held by step 2: the two sides of a seam are sewn together and have to be
+/// equally long, on a surface that is not quite developable too. Step 3 does not know them.
+///
 /// @param piece   connected, of genus 0, with a border, every vertex in a triangle; of length m
 /// @throws Error  on a piece without triangles, without border or with a handle, and on a triangle
 ///                whose corners coincide (names it)
 /// Source: Liu et al. 2008; Mullen et al. 2008; Smith and Schaefer 2015.
-Flattening flatten(const TriMesh& piece, const FlattenOptions& options = {});
+Flattening flatten(const TriMesh& piece, const FlattenOptions& options = {},
+                   std::span<const KeptLength> kept = {});
 
 }  // namespace geoprior::sketch

@@ -111,8 +111,23 @@ double border_area(const Eigen::MatrixX2d& points, const std::vector<int>& loop)
   return twice / 2;
 }
 
+/// Sewn stretches at the length that they have on the surface, which is that of their other side.
+std::vector<KeptLength> sewn_lengths(const CutPiece& cut) {
+  std::vector<KeptLength> kept;
+  for (const PieceEdge& edge : cut.edges) {
+    if (edge.partner_piece < 0) continue;
+    double length = 0;
+    for (std::size_t i = 1; i < edge.vertices.size(); ++i)
+      length += (cut.mesh.V.row(edge.vertices[i]) - cut.mesh.V.row(edge.vertices[i - 1])).norm();
+    kept.push_back({edge.vertices, length});
+  }
+  return kept;
+}
+
 PatternPiece lay_piece(const CutPiece& cut, const PatternOptions& options, FlattenReport& report) {
-  Flattening flat = flatten(cut.mesh, options.flatten);
+  const std::vector<KeptLength> kept =
+      options.equal_seams ? sewn_lengths(cut) : std::vector<KeptLength>();
+  Flattening flat = flatten(cut.mesh, options.flatten, kept);
   report = std::move(flat.report);
   PatternPiece piece;
   piece.points = std::move(flat.points);
@@ -159,6 +174,8 @@ void describe(OptionVisitor& v, PatternOptions& options) {
   v.value("gap", options.gap, {.doc = "least distance of pieces", .unit = "m", .min = 0});
   v.value("width", options.width,
           {.doc = "of the sheet; about a square when absent", .unit = "m", .min = 0});
+  v.value("equal_seams", options.equal_seams,
+          {.doc = "both sides of a seam are as long as it is on the surface"});
   v.value("cut_open", options.cut_open,
           {.doc = "cut pieces that cannot be laid flat along their shortest cut"});
   v.value("hole_tolerance_deg", options.hole_tolerance_deg,

@@ -24,6 +24,7 @@ struct PatternOptions {
   GrainRule grain = GrainRule::up;
   double gap = 0.02;                 ///< least distance between the boxes of pieces (m)
   std::optional<double> width = {};  ///< of the shelves (m); about a square when absent
+  bool equal_seams = true;           ///< both sides of a seam as long as it is on the surface
   bool cut_open = true;              ///< whether pieces that cannot be laid flat are cut further
   /// A border that turns by -2 pi within this is a hole in something flat and stays (deg).
   double hole_tolerance_deg = 10;

@@ -12,12 +12,13 @@ namespace geoprior::sketch {
 BesideStroke beside(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& x) {
   BesideStroke found;
   double least = std::numeric_limits<double>::infinity(), before = 0, side = 0;
+  const bool closed = points.size() > 2 && points.front() == points.back();
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Eigen::Vector2d along = points[i + 1] - points[i];
     const double length = along.norm();
     double t = (x - points[i]).dot(along) / length;
-    if (i > 0) t = std::max(t, 0.0);
-    if (i + 2 < points.size()) t = std::min(t, length);
+    if (closed || i > 0) t = std::max(t, 0.0);
+    if (closed || i + 2 < points.size()) t = std::min(t, length);
     const Eigen::Vector2d off = x - points[i] - t / length * along;
     const double s = cross(along, off) / length;
     // At a corner both segments are as near: the one that sees the point more from the side tells

@@ -8,8 +8,9 @@ namespace geoprior::sketch {
 /// Where a point lies beside an open or closed stroke.
 struct BesideStroke {
   double distance = 0;  ///< signed: positive to the left of the stroke (m)
-  double along = 0;  ///< arc length of the nearest point; beyond an end, on the straight line that
-                     ///< goes on there: negative, or more than the length (m)
+  /// Arc length of the nearest point; beyond an end of an open stroke on the straight line that
+  /// goes on there: negative, or more than the length (m).
+  double along = 0;
   Eigen::Vector2d direction{1, 0};  ///< of the stroke there, unit
 };
 

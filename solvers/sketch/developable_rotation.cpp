@@ -47,13 +47,14 @@ void triangle_rings(const Eigen::MatrixX3i& F, int vertex_count, int rings, std:
   }
 }
 
-/// Turns `n` about A x n until its angle with A is `angle`.
-Eigen::Matrix3d turned_to(const Eigen::Vector3d& n, const Eigen::Vector3d& A, double angle) {
+/// Turns `n` about A x n by a share of what its angle with A is off from `angle`.
+Eigen::Matrix3d turned_to(const Eigen::Vector3d& n, const Eigen::Vector3d& A, double angle,
+                          double share) {
   const Eigen::Vector3d about = A.cross(n);
   const double sine = about.norm();
   if (sine < 1e-8) return Eigen::Matrix3d::Identity();
   const double now = std::atan2(sine, A.dot(n));
-  return Eigen::AngleAxisd(angle - now, about / sine).toRotationMatrix();
+  return Eigen::AngleAxisd(share * (angle - now), about / sine).toRotationMatrix();
 }
 
 }  // namespace
@@ -67,6 +68,8 @@ void describe(OptionVisitor& v, DevelopableRotationOptions& o) {
            .max = 90});
   v.value("rings", o.rings,
           {.doc = "rings of triangles that a cone is fitted to", .min = 1, .max = 8});
+  v.value("relaxation", o.relaxation,
+          {.doc = "share of the turn to the cone that is made", .min = 0.01, .max = 3});
 }
 
 DevelopableRotation::DevelopableRotation(const Eigen::MatrixX3i& F, int vertex_count,
@@ -97,12 +100,12 @@ Eigen::Matrix3d DevelopableRotation::rotation(int triangle, const Eigen::MatrixX
     while (chosen < 2 && std::abs(eigen.eigenvectors().col(chosen).dot(mean)) > most) ++chosen;
   }
   Eigen::Vector3d A = eigen.eigenvectors().col(chosen);
-  if (great_circle) return turned_to(n, A, std::acos(0.0));
+  if (great_circle) return turned_to(n, A, std::acos(0.0), options_.relaxation);
   if (A.dot(mean) < 0) A = -A;
   double angle = 0;
   for (int k = begin; k < end; ++k)
     angle += std::acos(std::clamp(normals.row(neighbour_[k]).dot(A), -1.0, 1.0));
-  return turned_to(n, A, angle / (end - begin));
+  return turned_to(n, A, angle / (end - begin), options_.relaxation);
 }
 
 std::vector<Eigen::Matrix3d> DevelopableRotation::rotations(const Eigen::MatrixX3d& normals) const {

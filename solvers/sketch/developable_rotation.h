@@ -17,8 +17,9 @@ enum class ConeFit {
 
 struct DevelopableRotationOptions {
   ConeFit fit = ConeFit::guarded;
-  double guard_deg = 30;  ///< smallest angle between axis and mean normal
-  int rings = 1;          ///< of triangles about each that a cone is fitted to
+  double guard_deg = 30;    ///< smallest angle between axis and mean normal
+  int rings = 1;            ///< of triangles about each that a cone is fitted to
+  double relaxation = 1.5;  ///< share of the turn to the cone that is made; 1: the equation
 };
 void describe(OptionVisitor& v, DevelopableRotationOptions& options);
 
@@ -30,7 +31,9 @@ void describe(OptionVisitor& v, DevelopableRotationOptions& options);
 /// literally this diverges: n_j - n lies, to first order, in the plane orthogonal to n, so wherever
 /// the normals are spread evenly A is n itself, the "cone" is a needle about n, and turning the
 /// normals to its angle drives them apart. `guarded` takes the best axis that is at least
-/// `guard_deg` away from n. Patches that are flat (second eigenvalue below 1e-10) are left alone.
+/// `guard_deg` away from n. Every triangle is turned while its neighbours are: going half as far
+/// again (`relaxation`) takes half the iterations, twice as far no longer settles. Patches that are
+/// flat (second eigenvalue below 1e-10) are left alone.
 class DevelopableRotation {
  public:
   DevelopableRotation(const Eigen::MatrixX3i& F, int vertex_count,

@@ -17,7 +17,7 @@ enum class StepOrder {
 };
 
 struct SeveralViewsOptions {
-  int iterations = 10;
+  int iterations = 20;
   StepOrder order = StepOrder::merged;
   DevelopableRotationOptions developability;
   FoldOptions fold;

@@ -109,7 +109,7 @@ TEST(DevelopableRotation, LiteralFitDivergesWhereTheGuardedOneConverges) {
   const double start = total_defect(prepared.start, prepared);
   const auto after = [&](ConeFit fit) {
     SeveralViewsOptions options;
-    options.developability.fit = fit;
+    options.developability = {.fit = fit, .relaxation = 1};
     const auto method = make_several_views(prepared, options);
     for (int i = 0; i < 10; ++i) method->step(context);
     return total_defect(method->positions(), prepared);
