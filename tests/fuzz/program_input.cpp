@@ -87,6 +87,14 @@ ProgramInput rig_input(const std::string& file, const std::vector<std::string>& 
   return {seeds, {}, {{{"rig", file}, file, kProgram}}};
 }
 
+/// A drawing that becomes a surface and a pattern, and the corpus of the reader.
+ProgramInput views_input() {
+  const std::string boot = read_whole_file(kSource / "experiments/sketch/boot.svg");
+  std::vector<std::string> seeds{boot, boot, boot};
+  for (const std::string& drawing : corpus(".svg")) seeds.push_back(drawing);
+  return input_of("sketch", "views", "views.svg", seeds);
+}
+
 /// A mesh is the surface of details, or a body in a tank.
 ProgramInput mesh_input(const std::string& extension, const std::vector<std::string>& seeds) {
   ProgramInput input;
@@ -251,6 +259,7 @@ std::vector<InputKind> input_kinds() {
       {"Sidecar", 1, [] { return input_of("details", "sidecar", "numbered_%d.off.json"); }},
       {"Points", 1, [] { return input_of("details", "points", "points.csv"); }},
       {"Drawing", 1, [] { return input_of("paper", "drawing", "drawing.svg"); }},
+      {"Views", 1, views_input},
       {"EditList", 1, [] { return sculpt_input("edits.data.toml"); }},
       {"FeatureLibrary", 1, [] { return sculpt_input("features.h5"); }},
       {"Reference", 1, reference_input},
