@@ -14,8 +14,8 @@ struct SectionView {
   std::array<double, 3> normal{0, 0, 1};
 };
 
-/// A row of another part, or of an input, over the others: figure_view.above = { part = … }.
-struct RowAbove {
+/// A row of another part, or of an input, over or under the others: figure_view.above = { part = … }.
+struct FurtherRow {
   std::string part = "surface";
   std::optional<std::string> input;  ///< "run:…" of the scene: its frames; absent: this run's
   std::string label;                 ///< absent: the part's name
@@ -25,6 +25,7 @@ struct RowAbove {
   std::array<double, 3> up{0, 1, 0};
   std::optional<double> height_m;
   std::vector<std::string> overlays;
+  std::vector<std::string> variants;  ///< empty: those of the figure; else without their names
 };
 
 /// Where a picture is looked at from, as a scene suggests it: the keys of figure_view of these
@@ -47,7 +48,7 @@ struct FigureView {
   std::vector<double> parameters;      ///< further columns/rows, when more than one frame is drawn
   Across across = Across::variants;    ///< what stands side by side; the others are rows
   std::string part = "surface";
-  std::string label;                    ///< of the rows, when others are above; absent: the part's
+  std::string label;                    ///< of the rows, when others are above or below; absent: the part's
   std::optional<std::string> color_by;  ///< array of the part; absent: plain material
   std::vector<std::string> classes;     ///< of `color_by`: the names of its integers 0, 1, …
   bool identities = false;              ///< the integers of `color_by` tell things apart, 0 is none
@@ -62,7 +63,8 @@ struct FigureView {
   /// The experiment file gives none of the last four: a scene may suggest them.
   bool camera_is_free = true;
   std::optional<SectionView> section;  ///< adds a row with the cut, overlaps of the solid in red
-  std::optional<RowAbove> above;       ///< with a camera and colours of its own
+  std::optional<FurtherRow> above;     ///< with a camera and colours of its own
+  std::optional<FurtherRow> below;     ///< likewise
   std::vector<std::string> overlays;   ///< further parts drawn over `part` ("rulings", "strokes")
   std::vector<std::string> variants;   ///< empty: all
   std::vector<std::string> cases;      ///< empty: all

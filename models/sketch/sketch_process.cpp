@@ -9,6 +9,7 @@
 
 #include "core/frame_loop.h"
 #include "core/topology.h"
+#include "models/sketch/drawing_part.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -169,6 +170,8 @@ class SketchFrames final : public FrameModel {
       }
     }
     const Phase phase(context, "record");
+    if (number == steps_ && !input_.drawing.views.empty())
+      frame.parts["drawing"] = drawing_part(input_.drawing);
     method_->diagnose(frame.diagnostics);
     sink.frame(std::move(frame));
   }

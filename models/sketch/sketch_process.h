@@ -70,6 +70,7 @@ using SketchMethodFactory =
 /// - "strokes" (lines): borders, seams and folds on the surface, cell array "kind" (StrokeKind);
 /// - "pattern" (triangles, z = 0, m), in the last frame: point array "surface_vertex", cell arrays
 ///   "surface_triangle", "piece" and "stretch";
+/// - "drawing" (lines, z = 0), in the last frame: the strokes as they were drawn, cell array "kind";
 /// - table "sewn", in the last frame: a row for each vertex of a sewn stretch of the pattern's
 ///   borders, in their order: stretch, partner stretch, seam, point of "pattern".
 Frame sketch_frame(const PreparedSketch& prepared, const Eigen::MatrixX3d& X, double parameter);

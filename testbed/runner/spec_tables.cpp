@@ -113,7 +113,7 @@ void describe(OptionVisitor& v, SectionView& t) {
   v.value("normal", t.normal, {.doc = "across the plane"});
 }
 
-void describe(OptionVisitor& v, RowAbove& t) {
+void describe(OptionVisitor& v, FurtherRow& t) {
   v.value("part", t.part, {.doc = "part of the frames"});
   v.value("input", t.input,
           {.doc = "a \"run:…\" of the scene whose frames these are; absent: this run's"});
@@ -125,6 +125,8 @@ void describe(OptionVisitor& v, RowAbove& t) {
   v.value("height_m", t.height_m,
           {.doc = "height of the view; absent: fitted", .unit = "m", .min = 1e-12});
   v.value("overlays", t.overlays, {.doc = "further parts drawn over `part`"});
+  v.value("variants", t.variants,
+          {.doc = "whose part it is, when all have the same; absent: those of the figure"});
 }
 
 void describe(OptionVisitor& v, FigureViewTable& table) {
@@ -134,7 +136,8 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
   describe_choice(v, "across", t.across, kAcross,
                   {.doc = "what stands side by side; states: the frames, a row a variant"});
   v.value("part", t.part, {.doc = "part of the frames"});
-  v.value("label", t.label, {.doc = "of the rows below `above`; absent: the part's name"});
+  v.value("label", t.label,
+          {.doc = "of the rows between `above` and `below`; absent: the part's name"});
   v.value("color_by", t.color_by, {.doc = "array of the part; \"\": plain material"});
   v.value("classes", t.classes,
           {.doc = "names of the integers 0, 1, … in `color_by`: a legend instead of a scale"});
@@ -152,6 +155,7 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
   describe_group(v, "section", t.section,
                  {.doc = "adds a row with the part cut by a plane, overlaps of the solid in red"});
   describe_group(v, "above", t.above, {.doc = "a further row, of another part, on top"});
+  describe_group(v, "below", t.below, {.doc = "a further row, of another part, at the bottom"});
   v.value("overlays", t.overlays,
           {.doc = "further parts drawn over `part`: lines thin, points as balls"});
   v.value("variants", t.variants, {.doc = "absent: all"});

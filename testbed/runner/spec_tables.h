@@ -107,7 +107,7 @@ void describe(OptionVisitor& v, TimingTable& t);
 void describe(OptionVisitor& v, CheckTable& t);
 void describe(OptionVisitor& v, ToleranceTable& t);
 void describe(OptionVisitor& v, SectionView& t);
-void describe(OptionVisitor& v, RowAbove& t);
+void describe(OptionVisitor& v, FurtherRow& t);
 void describe(OptionVisitor& v, FigureViewTable& t);
 
 }  // namespace geoprior

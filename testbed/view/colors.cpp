@@ -36,6 +36,9 @@ constexpr std::array<Color, 9> kDiverging{{{0.230, 0.299, 0.754},
                                            {0.869, 0.378, 0.301},
                                            {0.706, 0.016, 0.150}}};
 
+/// Of lines of the first class, which would not be seen on the page in the tone of the material.
+constexpr Color kInk{0.2, 0.2, 0.2};
+
 // Pale grounds that keep their shading, after the hues of Okabe and Ito (2008).
 constexpr std::array<Color, 8> kClasses{{{0.900, 0.880, 0.830},
                                          {0.420, 0.650, 0.850},
@@ -100,11 +103,12 @@ Color color_at(double t, bool diverging) {
   return diverging ? interpolate(kDiverging, t) : interpolate(kSequential, t);
 }
 
-Palette class_palette(std::size_t count, bool on_water) {
+Palette class_palette(std::size_t count, bool on_water, bool of_lines) {
   Palette palette;
   for (std::size_t i = 0; i < count; ++i) {
     palette.push_back(on_water ? kOnWater[i % kOnWater.size()] : kClasses[i % kClasses.size()]);
   }
+  if (of_lines && count > 0) palette.front() = kInk;
   return palette;
 }
 
@@ -149,7 +153,9 @@ ColorScale make_class_scale(const std::vector<const Part*>& parts, const std::st
   ColorScale scale;
   scale.array = name;
   scale.classes = classes;
-  scale.palette = class_palette(classes.size(), on_water);
+  const bool of_lines = std::all_of(
+      parts.begin(), parts.end(), [](const Part* part) { return part->kind == Part::Kind::lines; });
+  scale.palette = class_palette(classes.size(), on_water, of_lines);
   scale.low = -0.5;
   scale.high = static_cast<double>(classes.size()) - 0.5;
   std::string unit;

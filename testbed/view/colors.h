@@ -20,7 +20,8 @@ using Palette = std::vector<std::array<double, 3>>;
 /// Colours of classes: told apart by people who see no red or no green, in print, and under
 /// shading.
 /// @param on_water  the first class is plain water, and the others stand out from it
-Palette class_palette(std::size_t count, bool on_water);
+/// @param of_lines  they are drawn on the page: the first class is ink
+Palette class_palette(std::size_t count, bool on_water, bool of_lines = false);
 
 /// One mapping from values to colours, shared by every panel of a picture.
 struct ColorScale {

@@ -179,35 +179,42 @@ FigureBlock make_block(const OpenedRun& run, const FigureView& view) {
   return block;
 }
 
-FigureView view_above(const FigureView& view) {
-  FigureView above = view;
-  above.part = view.above->part;
-  above.label = view.above->label;
-  above.color_by = view.above->color_by;
-  above.classes = view.above->classes;
-  above.identities = false;
-  above.direction = view.above->direction;
-  above.up = view.above->up;
-  above.height_m = view.above->height_m;
-  above.overlays = view.above->overlays;
-  above.target.reset();
-  above.section.reset();
-  above.above.reset();
-  return above;
+FigureView further_view(const FigureView& view, const FurtherRow& row) {
+  FigureView further = view;
+  further.part = row.part;
+  further.label = row.label;
+  further.color_by = row.color_by;
+  further.classes = row.classes;
+  further.identities = false;
+  further.direction = row.direction;
+  further.up = row.up;
+  further.height_m = row.height_m;
+  further.overlays = row.overlays;
+  if (!row.variants.empty()) further.variants = row.variants;
+  further.target.reset();
+  further.section.reset();
+  further.above.reset();
+  further.below.reset();
+  return further;
 }
 
-std::optional<FigureBlock> make_block_above(const OpenedRun& run, const FigureView& view) {
-  FigureView above = view_above(view);
-  if (!view.above->input) return make_block(run, above);
+std::optional<FigureBlock> make_further_block(const OpenedRun& run, const FigureView& view,
+                                              const FurtherRow& row) {
+  FigureView further = further_view(view, row);
+  if (!row.input) {
+    FigureBlock block = make_block(run, further);
+    for (FigureRow& cells : block.rows) cells.has_headings &= row.variants.empty();
+    return block;
+  }
   const std::vector<StoredFile>& inputs = run.record().inputs;
   const auto input = std::find_if(inputs.begin(), inputs.end(),
-                                  [&](const auto& i) { return i.name == *view.above->input; });
+                                  [&](const auto& i) { return i.name == *row.input; });
   if (input == inputs.end()) return std::nullopt;
   const RunReference reference = parse_run_reference(input->name);
   const fs::path source = find_run_of_content(reference.experiment_id, input->sha256);
-  above.variants = {reference.variant};
-  above.cases = {reference.case_name};
-  return make_block(OpenedRun(source, run.unverified()), above);
+  further.variants = {reference.variant};
+  further.cases = {reference.case_name};
+  return make_block(OpenedRun(source, run.unverified()), further);
 }
 
 int block_height(const FigureBlock& block, const Layout& layout) {
@@ -243,13 +250,20 @@ void draw_block(Picture& picture, const FigureBlock& block, const Layout& layout
 
 std::vector<FigureBlock> make_blocks(const OpenedRun& run, const FigureView& view) {
   std::vector<FigureBlock> blocks;
-  if (view.above) {
-    if (auto above = make_block_above(run, view)) blocks.push_back(*std::move(above));
-  }
+  const auto add_further = [&](const std::optional<FurtherRow>& row) {
+    if (!row) return;
+    if (auto block = make_further_block(run, view, *row)) blocks.push_back(*std::move(block));
+  };
+  add_further(view.above);
   blocks.push_back(make_block(run, view));
+  add_further(view.below);
   if (blocks.size() == 1) return blocks;
-  if (same_labels(blocks.front().rows.back(), blocks.back().rows.front())) {
-    blocks.back().rows.front().has_headings = false;
+  const FigureRow* named = nullptr;  // the last row whose cells have their names over them
+  for (FigureBlock& block : blocks) {
+    FigureRow& first = block.rows.front();
+    if (!first.has_headings) continue;
+    if (named != nullptr && same_labels(*named, first)) first.has_headings = false;
+    named = &block.rows.back();
   }
   for (FigureBlock& block : blocks) {
     const std::string name =

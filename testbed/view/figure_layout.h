@@ -26,8 +26,8 @@ struct FigureBlock {
   BlockLook look;
 };
 
-/// What a figure shows, from top to bottom: the row above that the view may ask for, and the view's
-/// own rows. A row above of an input is left out when the run has no such input.
+/// What a figure shows, from top to bottom: the row above that the view may ask for, the view's own
+/// rows, and the row below. A further row of an input is left out when the run has no such input.
 /// @throws Error  when there is nothing to draw, or naming what the run does not have
 std::vector<FigureBlock> make_blocks(const OpenedRun& run, const FigureView& view);
 

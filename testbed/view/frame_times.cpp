@@ -58,6 +58,7 @@ FigureView contact_sheet_view(const RunRecord& record, const FigureView& view) {
   sheet.across = FigureView::Across::states;
   sheet.section.reset();
   sheet.above.reset();
+  sheet.below.reset();
   if (const CaseRecord* c = first_case(record, view)) sheet.cases = {c->name};
   return sheet;
 }

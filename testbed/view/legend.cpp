@@ -213,17 +213,19 @@ std::vector<LegendEntry> legend_entries(const std::vector<FigureRow>& rows,
                                         const FigureView& view) {
   std::vector<LegendEntry> entries;
   if (view.classes.empty() && !view.identities) return entries;
-  bool colored = false;
+  bool colored = false, of_lines = true;
   for (const FigureRow& row : rows) {
     for (const FigureCell& cell : row.cells) {
-      colored = colored || (cell.part && cell.part->find_array(*view.color_by) != nullptr);
+      if (!cell.part || cell.part->find_array(*view.color_by) == nullptr) continue;
+      colored = true;
+      of_lines = of_lines && cell.part->kind == Part::Kind::lines;
     }
   }
   const bool on_water = view.material == FigureView::Material::water;
   if (colored && view.identities) {
     entries = identity_entries(*view.color_by, on_water);
   } else if (colored) {
-    const Palette palette = class_palette(view.classes.size(), on_water);
+    const Palette palette = class_palette(view.classes.size(), on_water, of_lines);
     for (std::size_t i = 0; i < view.classes.size(); ++i) {
       entries.push_back({display_name(view.classes[i]), palette[i], LegendEntry::Mark::area});
     }

@@ -34,6 +34,7 @@ FigureView frame_view(const FigureView& view, const std::vector<double>& paramet
                       const RunRecord& record) {
   FigureView frame = contact_sheet_view(record, view);
   frame.above = view.above;
+  frame.below = view.below;
   frame.parameters = parameters;
   frame.across = FigureView::Across::variants;
   return frame;

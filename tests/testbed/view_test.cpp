@@ -517,7 +517,7 @@ TEST(Blocks, ARowAboveHasItsOwnPartCameraAndLabel) {
   view.label = "Heights";
   view.color_by = "height";
   view.variants = {"first-box"};
-  view.above = RowAbove{};
+  view.above = FurtherRow{};
   view.above->label = "Input";
   view.above->direction = {0, -1, 0};
   view.above->up = {0, 0, 1};
@@ -533,6 +533,30 @@ TEST(Blocks, ARowAboveHasItsOwnPartCameraAndLabel) {
   EXPECT_FALSE(blocks[1].rows[0].has_headings) << "the same states stand over it already";
 }
 
+// The drawing that all variants share stands over them once, without a name; what is below has no
+// names of its own when they stand over it already.
+TEST(Blocks, RowsAboveAndBelowTakeTheirOrderAndNames) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  FigureView view;
+  view.above = FurtherRow{};
+  view.above->label = "Shared";
+  view.above->variants = {"first-box"};
+  view.below = FurtherRow{};
+  view.below->label = "Again";
+  view.below->direction = {0, -1, 0};
+  view.below->up = {0, 0, 1};
+  const auto blocks = make_blocks(OpenedRun(folder.path, record), view);
+  ASSERT_EQ(blocks.size(), 3u);
+  EXPECT_EQ(blocks[0].rows[0].cells.size(), 1u);
+  EXPECT_FALSE(blocks[0].rows[0].has_headings);
+  EXPECT_EQ(blocks[1].rows[0].cells.size(), 2u);
+  EXPECT_TRUE(blocks[1].rows[0].has_headings);
+  EXPECT_EQ(blocks[2].rows[0].label.substr(0, 5), "Again");
+  EXPECT_FALSE(blocks[2].rows[0].has_headings);
+  EXPECT_NEAR(blocks[2].look.window.direction.y(), -1, 1e-12);
+}
+
 TEST(Blocks, ARowAboveOfAnInputIsTakenFromTheRunOfThatContent) {
   const TestFolder folder;
   const fs::path input = folder.path / "runs/test/boxes/20250101T000000Z-00000000";
@@ -543,7 +567,7 @@ TEST(Blocks, ARowAboveOfAnInputIsTakenFromTheRunOfThatContent) {
   ::setenv("GEOPRIOR_RUNS", (folder.path / "runs").c_str(), 1);
   FigureView view;
   view.at_parameter = 45;
-  view.above = RowAbove{};
+  view.above = FurtherRow{};
   view.above->input = "run:test/boxes/second-box";
   const auto blocks = make_blocks(OpenedRun(own, record), view);
   ASSERT_EQ(blocks.size(), 2u);
