@@ -163,13 +163,26 @@ struct DrawnState {
   std::string label;
 };
 
+/// Whether variants that went through end at different parameters: an iteration is not a time.
+bool ends_apart(const CaseRecord& c) {
+  std::optional<double> end;
+  for (const VariantRecord& variant : c.variants) {
+    if (variant.status == "failed" || variant.frames.empty()) continue;
+    const double last = variant.frames.back().parameter;
+    if (end && !same_parameter(*end, last)) return true;
+    end = last;
+  }
+  return false;
+}
+
 /// A quick run is shorter: what lies beyond it is its last frame, once.
 std::vector<DrawnState> drawn_states(const CaseRecord& c, const FigureView& view) {
   std::vector<DrawnState> states;
   std::set<std::string> known;
   for (const std::optional<double>& wanted : wanted_parameters(view)) {
     const std::optional<double> parameter = state_of(c, wanted);
-    const std::string label = state_label(c, parameter);
+    const std::string label =
+        !wanted && ends_apart(c) ? "Last " + c.parameter_name : state_label(c, parameter);
     if (known.insert(label).second) states.push_back({wanted, parameter, label});
   }
   return states;

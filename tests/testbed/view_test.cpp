@@ -480,6 +480,15 @@ TEST(Cells, AVariantThatFailedBeforeTheStateIsNotDrawnInAnother) {
   EXPECT_TRUE(rows[1].cells[1].part.has_value());
 }
 
+// Ten iterations of one method and a hundred of another are not one state.
+TEST(Cells, LastFramesAtSeveralParametersAreLabelledAsTheLast) {
+  const TestFolder folder;
+  RunRecord record = make_fake_run(folder.path);
+  EXPECT_EQ(collect_cells(OpenedRun(folder.path, record), {}).at(0).label, "Angle 90\u00b0");
+  record.cases[0].variants[0].frames.resize(2);
+  EXPECT_EQ(collect_cells(OpenedRun(folder.path, record), {}).at(0).label, "Last angle");
+}
+
 TEST(Cells, NearestFrameIsTakenAndLabelledWithItsOwnParameter) {
   const TestFolder folder;
   const RunRecord record = make_fake_run(folder.path);
