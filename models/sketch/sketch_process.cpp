@@ -1,6 +1,5 @@
 #include "models/sketch/sketch_process.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 
 #include "core/frame_loop.h"
 #include "core/topology.h"
+#include "models/sketch/flat_stretch.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -118,19 +118,6 @@ FrameTable sewn_table(const Pattern& pattern) {
   for (std::size_t i = 0; i < rows.size(); ++i)
     table.rows.row(static_cast<Eigen::Index>(i)) = Eigen::Map<Eigen::RowVector4d>(rows[i].data());
   return table;
-}
-
-/// Logarithm of a triangle's strain from the pattern to the surface, the one farther from 0.
-double log_stretch(const Eigen::Matrix<double, 3, 2>& flat_edges,
-                   const Eigen::Matrix<double, 3, 2>& edges) {
-  const Eigen::Matrix2d flat = flat_edges.topRows<2>();
-  const Eigen::Matrix<double, 3, 2> J = edges * flat.inverse();
-  const Eigen::Matrix2d metric = J.transpose() * J;
-  const double half = metric.trace() / 2;
-  const double root = std::sqrt(std::max(0.0, half * half - metric.determinant()));
-  const double larger = 0.5 * std::log(half + root);
-  const double smaller = 0.5 * std::log(std::max(half - root, 1e-12));
-  return std::abs(larger) >= std::abs(smaller) ? larger : smaller;
 }
 
 class SketchFrames final : public FrameModel {

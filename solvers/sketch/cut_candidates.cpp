@@ -1,0 +1,324 @@
+#include "solvers/sketch/cut_candidates.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "core/topology.h"
+#include "core/triangle_tree.h"
+#include "models/sketch/shortest_cut.h"
+#include "solvers/sketch/conformal_scale.h"
+
+namespace geoprior::sketch {
+namespace {
+
+constexpr std::array<int, 6> kStars{1, 2, 3, 4, 6, 8};
+constexpr double kMostDensity = 20;    ///< of |defect|, over its mean
+constexpr double kPlateau = 0.98;      ///< of an extreme: what is as high counts as the same place
+constexpr double kLeastExtreme = 0.2;  ///< of the largest scale, below which a place is none
+
+/// Bands between two values of the scale, over its extreme.
+constexpr std::array<std::array<double, 2>, 6> kBands{
+    {{0.02, 0.3}, {0.15, 0.5}, {0.35, 0.7}, {0.55, 0.9}, {0.75, 0.99}, {0.6, 1.01}}};
+
+double mean_edge(const TriMesh& mesh) {
+  double sum = 0;
+  const EdgeConnectivity edges(mesh.F);
+  for (const Edge& e : edges.edges()) sum += (mesh.V.row(e[0]) - mesh.V.row(e[1])).norm();
+  return sum / std::max(1, edges.edge_count());
+}
+
+/// Price of a metre in each triangle, from the defects within two rings of its corners.
+Eigen::VectorXd crease_price(const TriMesh& mesh, double crease) {
+  Eigen::VectorXd defect = angle_defects(mesh).cwiseAbs();
+  Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh.vertex_count());
+  const Eigen::VectorXd areas = triangle_areas(mesh.V, mesh.F);
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    for (int k = 0; k < 3; ++k) area(mesh.F(t, k)) += areas(t) / 3;
+  }
+  const double mean = defect.sum() / area.sum();
+  if (!(mean > 0)) return Eigen::VectorXd::Ones(mesh.triangle_count());
+  const VertexGraph rings = one_rings(mesh.F, mesh.vertex_count());
+  for (int pass = 0; pass < 2; ++pass) {
+    const Eigen::VectorXd d = defect, a = area;
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      for (const int w : rings.of(v)) {
+        defect(v) += d(w);
+        area(v) += a(w);
+      }
+    }
+  }
+  Eigen::VectorXd price(mesh.triangle_count());
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    double density = 0;
+    for (int k = 0; k < 3; ++k)
+      density += defect(mesh.F(t, k)) / (3 * mean * std::max(area(mesh.F(t, k)), 1e-300));
+    price(t) = 1 / (1 + crease * std::min(density, kMostDensity));
+  }
+  return price;
+}
+
+class CandidateFinder {
+ public:
+  CandidateFinder(const CutPiece& piece, const CutCandidateOptions& options)
+      : piece_(piece),
+        mesh_(piece.mesh),
+        options_(options),
+        edge_(mean_edge(piece.mesh)),
+        scale_(conformal_scale(piece.mesh)),
+        price_(crease_price(piece.mesh, options.crease)),
+        paths_(piece.mesh, price_) {}
+
+  std::vector<std::vector<SurfacePath>> find() {
+    const double largest = scale_.cwiseAbs().maxCoeff();
+    for (const double sign : {1.0, -1.0}) {
+      const Eigen::VectorXd height = sign * scale_;
+      if (!(height.maxCoeff() > kLeastExtreme * largest)) continue;
+      add_stars(height);
+      for (const auto& band : kBands) add_loops(height, band[0], band[1]);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  [[nodiscard]] int nearest_vertex(const Eigen::RowVector3d& x,
+                                   const std::vector<int>& among) const;
+  [[nodiscard]] int place_of(const Eigen::VectorXd& height) const;
+  void add_stars(const Eigen::VectorXd& height);
+  void add_loops(const Eigen::VectorXd& height, double low, double high);
+  [[nodiscard]] SurfacePath shortest_loop(const CutPiece& ring, const Eigen::VectorXd& price) const;
+  [[nodiscard]] int border_start(int from, bool on_plane) const;
+  [[nodiscard]] std::vector<int> dividing(int start, int count) const;
+  [[nodiscard]] SurfacePath to_vertex(int from, int to) const;
+  [[nodiscard]] std::vector<SurfacePath> star(int from, int start, int count) const;
+  void add(std::vector<SurfacePath> paths);
+
+  const CutPiece& piece_;
+  const TriMesh& mesh_;
+  CutCandidateOptions options_;
+  double edge_;  ///< mean length (m)
+  Eigen::VectorXd scale_, price_;
+  SurfacePaths paths_;
+  std::vector<std::vector<SurfacePath>> found_;
+};
+
+int CandidateFinder::nearest_vertex(const Eigen::RowVector3d& x,
+                                    const std::vector<int>& among) const {
+  return *std::min_element(among.begin(), among.end(), [&](int a, int b) {
+    return (mesh_.V.row(a) - x).squaredNorm() < (mesh_.V.row(b) - x).squaredNorm();
+  });
+}
+
+/// The vertex in the middle of where the scale is highest; on the mirror plane when it is near.
+int CandidateFinder::place_of(const Eigen::VectorXd& height) const {
+  std::vector<int> plateau;
+  Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
+  for (int v = 0; v < mesh_.vertex_count(); ++v) {
+    if (height(v) < kPlateau * height.maxCoeff()) continue;
+    plateau.push_back(v);
+    centre += mesh_.V.row(v);
+  }
+  centre /= static_cast<double>(plateau.size());
+  if (options_.mirror && std::abs(centre[options_.mirror->axis] - options_.mirror->at) < 2 * edge_)
+    centre[options_.mirror->axis] = options_.mirror->at;
+  return nearest_vertex(centre, plateau);
+}
+
+SurfacePath CandidateFinder::to_vertex(int from, int to) const {
+  std::vector<char> targets(static_cast<std::size_t>(mesh_.vertex_count()), 0);
+  targets[to] = 1;
+  return paths_.shortest(from, targets);
+}
+
+/// Where on the longest border a star begins: nearest to its place, or nearest to that of the
+/// points on the mirror plane that lies at the back.
+int CandidateFinder::border_start(int from, bool on_plane) const {
+  std::vector<char> targets(static_cast<std::size_t>(mesh_.vertex_count()), 0);
+  if (!on_plane) {
+    for (const std::vector<int>& border : piece_.borders) {
+      for (const int v : border) targets[v] = 1;
+    }
+    const SurfacePath path = paths_.shortest(from, targets);
+    return path.empty() ? -1 : path.back().edge[0];
+  }
+  const auto& [axis, at] = *options_.mirror;
+  int best = -1;
+  for (const int v : piece_.borders.front()) {
+    if (std::abs(mesh_.V(v, axis) - at) > 0.75 * edge_) continue;
+    if (best < 0 || mesh_.V(v, 2) < mesh_.V(best, 2)) best = v;
+  }
+  return best;
+}
+
+/// Vertices that divide the border of `start` into `count` equal parts.
+std::vector<int> CandidateFinder::dividing(int start, int count) const {
+  for (const std::vector<int>& border : piece_.borders) {
+    const auto first = std::find(border.begin(), border.end(), start);
+    if (first == border.end()) continue;
+    std::vector<double> along{0};
+    std::vector<int> vertices;
+    for (std::size_t i = 0; i < border.size(); ++i) {
+      const auto at = static_cast<std::size_t>(first - border.begin()) + i;
+      vertices.push_back(border[at % border.size()]);
+      along.push_back(
+          along.back() +
+          (mesh_.V.row(vertices.back()) - mesh_.V.row(border[(at + 1) % border.size()])).norm());
+    }
+    std::vector<int> result;
+    for (int i = 0; i < count; ++i) {
+      const double want = along.back() * i / count;
+      std::size_t k = 0;
+      while (k + 1 < vertices.size() && std::abs(along[k + 1] - want) <= std::abs(along[k] - want))
+        ++k;
+      result.push_back(vertices[k]);
+    }
+    return result;
+  }
+  return {};
+}
+
+std::vector<SurfacePath> CandidateFinder::star(int from, int start, int count) const {
+  std::vector<SurfacePath> paths;
+  for (const int to : dividing(start, count)) {
+    SurfacePath path = to_vertex(from, to);
+    if (path.empty()) return {};
+    paths.push_back(std::move(path));
+  }
+  return paths;
+}
+
+void CandidateFinder::add(std::vector<SurfacePath> paths) {
+  if (!paths.empty()) found_.push_back(std::move(paths));
+}
+
+void CandidateFinder::add_stars(const Eigen::VectorXd& height) {
+  const int from = place_of(height);
+  const bool on_plane = options_.mirror && std::abs(mesh_.V(from, options_.mirror->axis) -
+                                                    options_.mirror->at) < 1.5 * edge_;
+  int twin = -1;
+  if (options_.mirror && !on_plane) {
+    std::vector<int> as_high;
+    for (int v = 0; v < mesh_.vertex_count(); ++v) {
+      if (height(v) > 0.8 * height(from)) as_high.push_back(v);
+    }
+    twin = nearest_vertex(options_.mirror->mirrored(mesh_.V.row(from)), as_high);
+    if ((mesh_.V.row(twin) - options_.mirror->mirrored(mesh_.V.row(from))).norm() > 4 * edge_)
+      twin = -1;
+  }
+  const int nearest = border_start(from, false);
+  int start = on_plane ? border_start(from, true) : nearest;
+  if (start < 0) start = nearest;
+  if (start < 0) return;
+  for (const int count : kStars) {
+    std::vector<SurfacePath> paths = star(from, start, count);
+    if (twin >= 0 && !paths.empty()) {
+      const std::vector<SurfacePath> other = star(twin, border_start(twin, false), count);
+      paths.insert(paths.end(), other.begin(), other.end());
+    }
+    add(std::move(paths));
+  }
+  if (start != nearest) add(star(from, nearest, 1));
+}
+
+/// The shortest closed path around a ring. A path across the ring opens it; from one copy of a
+/// vertex of that path to the other one leads what goes around once.
+SurfacePath CandidateFinder::shortest_loop(const CutPiece& ring,
+                                           const Eigen::VectorXd& price) const {
+  std::vector<SeamEdge> across;
+  for (const Edge& e : shortest_cut(ring.mesh)) across.push_back({e, 0});
+  const std::vector<CutPiece> opened = cut_surface(ring.mesh, across);
+  if (opened.size() != 1) return {};
+  const CutPiece& disc = opened.front();
+  Eigen::VectorXd disc_price(disc.mesh.triangle_count());
+  for (int t = 0; t < disc.mesh.triangle_count(); ++t)
+    disc_price(t) = price(disc.surface_triangle[t]);
+  const SurfacePaths paths(disc.mesh, disc_price);
+  std::vector<std::vector<int>> copies(static_cast<std::size_t>(ring.mesh.vertex_count()));
+  for (std::size_t v = 0; v < disc.surface_vertex.size(); ++v)
+    copies[disc.surface_vertex[v]].push_back(static_cast<int>(v));
+  SurfacePath best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<int>& both : copies) {
+    if (both.size() != 2) continue;
+    std::vector<char> targets(static_cast<std::size_t>(disc.mesh.vertex_count()), 0);
+    targets[both[1]] = 1;
+    SurfacePath path = paths.shortest(both[0], targets);
+    if (path.empty()) continue;
+    const double cost = paths.cost(path);
+    if (cost >= least) continue;
+    least = cost;
+    best = renumbered(path, disc.surface_vertex);
+  }
+  return best;
+}
+
+void CandidateFinder::add_loops(const Eigen::VectorXd& height, double low, double high) {
+  const double top = height.maxCoeff();
+  std::vector<int> rows;
+  for (int t = 0; t < mesh_.triangle_count(); ++t) {
+    const double mean = (height(mesh_.F(t, 0)) + height(mesh_.F(t, 1)) + height(mesh_.F(t, 2))) / 3;
+    if (mean > low * top && mean < high * top) rows.push_back(t);
+  }
+  if (rows.empty()) return;
+  const TriMesh band{mesh_.V, mesh_.F(rows, Eigen::all)};
+  for (const CutPiece& ring : cut_surface(band, {})) {
+    if (ring.border_count() < 2 || ring.genus() != 0 || ring.mesh.triangle_count() < 24) continue;
+    Eigen::VectorXd price(ring.mesh.triangle_count());
+    for (int t = 0; t < ring.mesh.triangle_count(); ++t)
+      price(t) = price_(rows[ring.surface_triangle[t]]);
+    SurfacePath loop = shortest_loop(ring, price);
+    if (!loop.empty()) add({renumbered(loop, ring.surface_vertex)});
+  }
+}
+
+}  // namespace
+
+std::optional<MirrorAxis> mirror_axis(const TriMesh& surface) {
+  constexpr int kSamples = 400;
+  const TriangleTree tree(surface);
+  const double near = 0.015 * bounding_box_diagonal(surface.V);
+  const Eigen::RowVector3d middle =
+      (surface.V.colwise().minCoeff() + surface.V.colwise().maxCoeff()) / 2;
+  for (const int axis : {0, 2}) {
+    const MirrorAxis mirror{axis, middle[axis]};
+    const int stride = std::max(1, surface.vertex_count() / kSamples);
+    bool same = true;
+    for (int v = 0; same && v < surface.vertex_count(); v += stride)
+      same = tree.nearest(mirror.mirrored(surface.V.row(v)).transpose()).distance <= near;
+    if (same) return mirror;
+  }
+  return {};
+}
+
+std::vector<std::vector<SurfacePath>> cut_candidates(const CutPiece& piece,
+                                                     const CutCandidateOptions& options) {
+  return CandidateFinder(piece, options).find();
+}
+
+SurfacePath bridge(const CutPiece& piece, const std::optional<MirrorAxis>& mirror) {
+  if (piece.borders.size() < 2) return {};
+  const SurfacePaths paths(piece.mesh, Eigen::VectorXd::Ones(piece.mesh.triangle_count()));
+  const double near = 0.75 * mean_edge(piece.mesh);
+  const auto at_back = [&](const std::vector<int>& border) {
+    int best = -1;
+    for (const int v : border) {
+      if (mirror && std::abs(piece.mesh.V(v, mirror->axis) - mirror->at) > near) continue;
+      if (best < 0 || piece.mesh.V(v, 2) < piece.mesh.V(best, 2)) best = v;
+    }
+    return best;
+  };
+  const int from = at_back(piece.borders[1]);
+  std::vector<char> targets(static_cast<std::size_t>(piece.mesh.vertex_count()), 0);
+  for (const int v : piece.borders[0]) targets[v] = 1;
+  const int to = mirror ? at_back(piece.borders[0]) : -1;
+  if (from >= 0 && to >= 0) {
+    std::fill(targets.begin(), targets.end(), static_cast<char>(0));
+    targets[to] = 1;
+  }
+  return paths.shortest(from >= 0 ? from : piece.borders[1].front(), targets);
+}
+
+}  // namespace geoprior::sketch
