@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <string>
 #include <utility>
 
 #include "core/frame_loop.h"
@@ -123,26 +125,39 @@ FrameTable sewn_table(const Pattern& pattern) {
 class SketchFrames final : public FrameModel {
  public:
   SketchFrames(const SketchInput& input, int steps, const SketchMethodFactory& factory,
-               RunContext& context)
-      : input_(input), steps_(steps) {
+               const SeamSuggester& suggester, RunContext& context)
+      : input_(input), steps_(steps), factory_(factory), suggester_(suggester) {
     const Phase phase(context, "prepare");
     prepared_ = prepare_sketch(input);
     method_ = factory(prepared_, context);
   }
 
-  [[nodiscard]] int frame_count() const override { return steps_ + 1; }
+  [[nodiscard]] int frame_count() const override {
+    return steps_ + 1 + (suggester_.apply > 0 ? suggester_.iterations : 0);
+  }
   void load(StateReader& in, int /*next_frame*/) override { method_->load(in); }
   void save(StateWriter& out) const override { method_->save(out); }
-  [[nodiscard]] bool can_resume() const override { return method_->can_resume(); }
+  [[nodiscard]] bool can_resume() const override {
+    return suggester_.apply == 0 && method_->can_resume();
+  }
 
-  void advance(int /*frame*/, FrameSink& /*sink*/, RunContext& context) override {
+  void advance(int frame, FrameSink& /*sink*/, RunContext& context) override {
+    if (frame == steps_ + 1) apply_suggestions(context);
     const Phase phase(context, "step");
     method_->step(context);
   }
 
   void record(int number, FrameSink& sink, RunContext& context) override {
     Frame frame = sketch_frame(prepared_, method_->positions(), number);
-    if (number == steps_ && input_.patterns) {
+    const bool last = number + 1 == frame_count();
+    if (last && suggester_.suggest) {
+      if (suggester_.apply == 0) suggest(context);
+      if (!suggestions_.empty()) frame.parts["suggestions"] = suggestions_part(suggestions_);
+      if (suggester_.files) {
+        for (Artifact& file : suggester_.files(suggestions_)) sink.artifact(std::move(file));
+      }
+    }
+    if (last && input_.patterns) {
       MadePattern made;
       {
         const Phase phase(context, "flatten");
@@ -161,9 +176,32 @@ class SketchFrames final : public FrameModel {
   }
 
  private:
-  const SketchInput& input_;  ///< of the process, which outlives its model
+  void suggest(RunContext& context) {
+    const Phase phase(context, "suggest");
+    suggestions_ = suggester_.suggest({method_->positions(), prepared_.surface.hull.mesh.F},
+                                      seam_edges(prepared_.surface), input_.pattern);
+  }
+
+  /// Cuts the first suggestions; the method begins anew on what they leave.
+  void apply_suggestions(RunContext& context) {
+    suggest(context);
+    prepared_.start = method_->positions();
+    method_.reset();
+    const auto count = static_cast<std::size_t>(suggester_.apply);
+    for (std::size_t i = 0; i < std::min(count, suggestions_.size()); ++i) {
+      add_seam(prepared_.surface, prepared_.start, suggestions_[i].cuts,
+               "suggestion-" + std::to_string(i + 1));
+    }
+    method_ = factory_(prepared_, context);
+  }
+
+  // Of the process, which outlives its model.
+  const SketchInput& input_;
   int steps_;
+  const SketchMethodFactory& factory_;
+  const SeamSuggester& suggester_;
   PreparedSketch prepared_;
+  std::vector<SuggestedSeam> suggestions_;
   std::unique_ptr<SketchMethod> method_;
 };
 
@@ -180,6 +218,39 @@ PreparedSketch prepare_sketch(const SketchInput& input) {
   prepared.surface = sketch_surface(align_views(input.drawing, input.align), input.hull);
   prepared.start = taubin_smoothed(prepared.surface.hull.mesh, input.smoothing);
   return prepared;
+}
+
+Part suggestions_part(const std::vector<SuggestedSeam>& suggestions) {
+  Part part;
+  part.kind = Part::Kind::lines;
+  Eigen::Index points = 0, lines = 0;
+  for (const SuggestedSeam& seam : suggestions) {
+    for (const Eigen::MatrixX3d& line : seam.lines) {
+      points += line.rows();
+      ++lines;
+    }
+  }
+  part.points.resize(points, 3);
+  const auto cells = [&](const char* name, const char* unit) {
+    return NamedArray{name, unit, NamedArray::On::cells, Eigen::MatrixXd(lines, 1)};
+  };
+  NamedArray rank = cells("rank", "1"), kind = cells("kind", "1"), length = cells("length", "m"),
+             share = cells("share_after", "1");
+  Eigen::Index next = 0, row = 0;
+  for (std::size_t i = 0; i < suggestions.size(); ++i) {
+    for (const Eigen::MatrixX3d& line : suggestions[i].lines) {
+      part.points.middleRows(next, line.rows()) = line;
+      std::vector<int>& numbers = part.lines.emplace_back(static_cast<std::size_t>(line.rows()));
+      std::iota(numbers.begin(), numbers.end(), static_cast<int>(next));
+      next += line.rows();
+      rank.values(row) = static_cast<double>(i + 1);
+      kind.values(row) = suggestions[i].is_dart ? 0 : 1;
+      length.values(row) = suggestions[i].length;
+      share.values(row++) = suggestions[i].share_after;
+    }
+  }
+  part.arrays = {std::move(rank), std::move(kind), std::move(length), std::move(share)};
+  return part;
 }
 
 std::vector<SeamEdge> seam_edges(const SketchSurface& surface) {
@@ -230,9 +301,10 @@ void add_pattern(Frame& frame, const MadePattern& made) {
 }
 
 std::unique_ptr<Process> make_sketch_process(const SketchInput& input, int steps,
-                                             SketchMethodFactory factory) {
-  return frame_process([input, steps, factory = std::move(factory)](RunContext& context) {
-    return std::make_unique<SketchFrames>(input, steps, factory, context);
+                                             SketchMethodFactory factory, SeamSuggester suggester) {
+  return frame_process([input, steps, factory = std::move(factory),
+                        suggester = std::move(suggester)](RunContext& context) {
+    return std::make_unique<SketchFrames>(input, steps, factory, suggester, context);
   });
 }
 

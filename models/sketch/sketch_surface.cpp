@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/topology.h"
 #include "models/sketch/polyline.h"
+#include "models/sketch/surface_split.h"
 #include "models/sketch/traced_stroke.h"
 
 namespace geoprior::sketch {
@@ -199,7 +200,46 @@ void place_anew(SketchSurface& s) {
   }
 }
 
+/// Edges as they are after triangles were split.
+void split_edges(std::vector<Edge>& edges, const SurfaceSplit& split, int first_new) {
+  std::map<Edge, int> at;
+  for (std::size_t i = 0; i < split.added.size(); ++i)
+    at[split.added[i].edge] = first_new + static_cast<int>(i);
+  std::vector<Edge> finer;
+  for (const Edge& e : edges) {
+    const auto found = at.find(e);
+    if (found == at.end()) {
+      finer.push_back(e);
+    } else {
+      finer.push_back({e[0], found->second});
+      finer.push_back({e[1], found->second});
+    }
+  }
+  edges = std::move(finer);
+}
+
 }  // namespace
+
+void add_seam(SketchSurface& surface, Eigen::MatrixX3d& X,
+              const std::vector<std::vector<SurfacePath>>& cuts, const std::string& id) {
+  StrokePath seam;
+  seam.id = id;
+  for (const std::vector<SurfacePath>& paths : cuts) {
+    const std::optional<SurfaceSplit> split = split_along(surface.hull.mesh, paths);
+    if (!split) throw Error("cannot be cut into the triangles of the surface", "seam '" + id + "'");
+    const int first_new = surface.hull.mesh.vertex_count();
+    for (StrokePath& path : surface.seams) split_edges(path.edges, *split, first_new);
+    for (StrokePath& path : surface.folds) split_edges(path.edges, *split, first_new);
+    split_edges(seam.edges, *split, first_new);
+    surface.hull.mesh.V = split->interpolated(surface.hull.mesh.V);
+    X = split->interpolated(X);
+    surface.hull.mesh.F = split->triangles;
+    seam.edges.insert(seam.edges.end(), split->path.begin(), split->path.end());
+  }
+  std::sort(seam.edges.begin(), seam.edges.end());
+  surface.seams.push_back(std::move(seam));
+  place_anew(surface);
+}
 
 SketchSurface sketch_surface(const Drawing& aligned, const HullOptions& options) {
   SketchSurface surface;

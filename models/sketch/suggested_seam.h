@@ -16,8 +16,9 @@ struct SuggestedSeam {
   /// Paths that are split and cut together, one set after the other: each set refers to the
   /// vertices of the surface that all sets before it, of earlier suggestions too, have split.
   std::vector<std::vector<SurfacePath>> cuts;
-  std::vector<Eigen::MatrixX3d> lines;  ///< the same paths in space (rows: points, m)
-  double length = 0;                    ///< of all of them (m)
+  std::vector<Eigen::MatrixX3d> lines;    ///< the same paths in space (rows: points, m)
+  std::vector<Eigen::MatrixX3d> normals;  ///< of the surface at their points
+  double length = 0;                      ///< of all of them (m)
   /// Share of the surface's area that is stretched by less than the tolerance in the pattern, and
   /// the mean over the area of |log stretch|: measured, before and after.
   double share_before = 0, share_after = 0;

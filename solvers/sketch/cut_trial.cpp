@@ -41,14 +41,17 @@ class TrialPiece {
       : options_(options), surface_{piece.mesh, {}} {}
 
   bool cut(const std::vector<SurfacePath>& paths) {
-    const Eigen::MatrixX3d V = surface_.mesh.V;
+    const Eigen::MatrixX3d V = surface_.mesh.V, N = vertex_normals(surface_.mesh);
     if (!surface_.cut(paths, 0)) return false;
     for (const SurfacePath& path : paths) {
-      Eigen::MatrixX3d line(static_cast<Eigen::Index>(path.size()), 3);
-      for (std::size_t i = 0; i < path.size(); ++i)
+      Eigen::MatrixX3d line(static_cast<Eigen::Index>(path.size()), 3), normal = line;
+      for (std::size_t i = 0; i < path.size(); ++i) {
         line.row(static_cast<Eigen::Index>(i)) = path[i].position(V);
+        normal.row(static_cast<Eigen::Index>(i)) = path[i].position(N).normalized();
+      }
       trial_.length += length(path, V);
       trial_.lines.push_back(std::move(line));
+      trial_.normals.push_back(std::move(normal));
     }
     trial_.cuts.push_back(paths);
     return true;

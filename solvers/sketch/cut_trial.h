@@ -34,6 +34,7 @@ struct TrialOptions {
 struct CutTrial {
   std::vector<std::vector<SurfacePath>> cuts;  ///< those that were asked for, then what opens rings
   std::vector<Eigen::MatrixX3d> lines;         ///< the same in space
+  std::vector<Eigen::MatrixX3d> normals;       ///< of the piece at their points
   double length = 0;                           ///< m
   int parts = 0;
   FlatMeasure flat;

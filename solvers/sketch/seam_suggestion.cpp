@@ -23,9 +23,9 @@ namespace {
 constexpr int kTrialIterations = 60;
 constexpr double kTrialTolerance = 1e-6;
 
-class SeamSuggester {
+class GreedySuggester {
  public:
-  SeamSuggester(const TriMesh& surface, std::span<const SeamEdge> seams,
+  GreedySuggester(const TriMesh& surface, std::span<const SeamEdge> seams,
                 const SeamSuggestionOptions& options, const PatternOptions& pattern)
       : options_(options), work_{surface, {seams.begin(), seams.end()}} {
     for (const SeamEdge& e : seams) next_seam_ = std::max(next_seam_, e.seam + 1);
@@ -68,7 +68,7 @@ class SeamSuggester {
   int next_seam_ = 0;
 };
 
-std::vector<FlatMeasure> SeamSuggester::measure(const std::vector<CutPiece>& pieces) const {
+std::vector<FlatMeasure> GreedySuggester::measure(const std::vector<CutPiece>& pieces) const {
   std::vector<FlatMeasure> measures(pieces.size());
   std::vector<std::exception_ptr> errors(pieces.size());
   parallel_blocks(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -89,7 +89,7 @@ std::vector<FlatMeasure> SeamSuggester::measure(const std::vector<CutPiece>& pie
 }
 
 /// A closed piece is slit first: its scale is known at a border only.
-std::vector<std::vector<SurfacePath>> SeamSuggester::candidates(const CutPiece& piece) const {
+std::vector<std::vector<SurfacePath>> GreedySuggester::candidates(const CutPiece& piece) const {
   const CutCandidateOptions options{options_.crease, trial_.mirror};
   if (!piece.borders.empty()) return cut_candidates(piece, options);
   std::vector<SeamEdge> slit;
@@ -104,7 +104,7 @@ std::vector<std::vector<SurfacePath>> SeamSuggester::candidates(const CutPiece& 
   return found;
 }
 
-std::optional<SeamSuggester::Scored> SeamSuggester::score(const CutPiece& piece,
+std::optional<GreedySuggester::Scored> GreedySuggester::score(const CutPiece& piece,
                                                           const std::vector<SurfacePath>& paths,
                                                           const FlatMeasure& before) const {
   std::optional<CutTrial> trial;
@@ -120,7 +120,7 @@ std::optional<SeamSuggester::Scored> SeamSuggester::score(const CutPiece& piece,
   return Scored{std::move(*trial), removed - cost};
 }
 
-std::optional<SeamSuggester::Scored> SeamSuggester::best_cut(const CutPiece& piece,
+std::optional<GreedySuggester::Scored> GreedySuggester::best_cut(const CutPiece& piece,
                                                              const FlatMeasure& before) const {
   const std::vector<std::vector<SurfacePath>> all = candidates(piece);
   std::vector<std::optional<Scored>> scored(all.size());
@@ -143,7 +143,7 @@ std::optional<SeamSuggester::Scored> SeamSuggester::best_cut(const CutPiece& pie
 
 /// Repeats the cuts of a trial on the whole surface.
 /// @return  the cuts in its numbers
-std::vector<std::vector<SurfacePath>> SeamSuggester::apply(const CutPiece& piece,
+std::vector<std::vector<SurfacePath>> GreedySuggester::apply(const CutPiece& piece,
                                                            const CutTrial& trial) {
   std::vector<int> number = piece.surface_vertex;
   std::vector<std::vector<SurfacePath>> cuts;
@@ -158,7 +158,7 @@ std::vector<std::vector<SurfacePath>> SeamSuggester::apply(const CutPiece& piece
   return cuts;
 }
 
-std::optional<SuggestedSeam> SeamSuggester::suggest_one() {
+std::optional<SuggestedSeam> GreedySuggester::suggest_one() {
   const std::vector<CutPiece> pieces = cut_surface(work_.mesh, work_.seams);
   const std::vector<FlatMeasure> measures = measure(pieces);
   FlatMeasure whole;
@@ -182,6 +182,7 @@ std::optional<SuggestedSeam> SeamSuggester::suggest_one() {
     suggestion.strain_after = (whole.strain - measures[p].strain + now.strain) / whole.area;
     suggestion.length = best->trial.length;
     suggestion.lines = best->trial.lines;
+    suggestion.normals = best->trial.normals;
     suggestion.cuts = apply(pieces[p], best->trial);
     return suggestion;
   }
@@ -219,7 +220,7 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& o) {
 std::vector<SuggestedSeam> suggest_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
                                          const SeamSuggestionOptions& options,
                                          const PatternOptions& pattern) {
-  return SeamSuggester(surface, seams, options, pattern).suggest();
+  return GreedySuggester(surface, seams, options, pattern).suggest();
 }
 
 }  // namespace geoprior::sketch
