@@ -125,6 +125,11 @@ void add_line(const Eigen::MatrixX3d& line, const Eigen::MatrixX3d& normals, con
   }
 }
 
+void add_lines(const CutLines& lines, const std::string& id, std::vector<View>& views) {
+  for (std::size_t k = 0; k < lines.points.size(); ++k)
+    add_line(lines.points[k], lines.normals[k], id + "-" + std::to_string(k + 1), views);
+}
+
 }  // namespace
 
 std::string suggested_drawing_svg(const Drawing& aligned,
@@ -134,11 +139,9 @@ std::string suggested_drawing_svg(const Drawing& aligned,
     if (view.kind != ViewKind::photo) views.push_back(view);
   }
   for (std::size_t i = 0; i < suggestions.size(); ++i) {
-    for (std::size_t k = 0; k < suggestions[i].lines.size(); ++k) {
-      add_line(suggestions[i].lines[k], suggestions[i].normals[k],
-               "suggestion-" + std::to_string(i + 1) + "-" + std::to_string(k + 1), views);
-    }
+    add_lines(suggestions[i].lines, "suggestion-" + std::to_string(i + 1), views);
   }
+  if (!suggestions.empty()) add_lines(suggestions.back().opening_lines, "opening", views);
   std::string body;
   double right = kMarginMm, height = 0;
   for (const View& view : views) {

@@ -188,9 +188,13 @@ class SketchFrames final : public FrameModel {
     prepared_.start = method_->positions();
     method_.reset();
     const auto count = static_cast<std::size_t>(suggester_.apply);
-    for (std::size_t i = 0; i < std::min(count, suggestions_.size()); ++i) {
-      add_seam(prepared_.surface, prepared_.start, suggestions_[i].cuts,
+    const std::size_t applied = std::min(count, suggestions_.size());
+    for (std::size_t i = 0; i < applied; ++i) {
+      add_seam(prepared_.surface, prepared_.start, {suggestions_[i].cut},
                "suggestion-" + std::to_string(i + 1));
+    }
+    if (applied > 0 && !suggestions_[applied - 1].openings.empty()) {
+      add_seam(prepared_.surface, prepared_.start, suggestions_[applied - 1].openings, "opening");
     }
     method_ = factory_(prepared_, context);
   }
@@ -225,10 +229,8 @@ Part suggestions_part(const std::vector<SuggestedSeam>& suggestions) {
   part.kind = Part::Kind::lines;
   Eigen::Index points = 0, lines = 0;
   for (const SuggestedSeam& seam : suggestions) {
-    for (const Eigen::MatrixX3d& line : seam.lines) {
-      points += line.rows();
-      ++lines;
-    }
+    lines += static_cast<Eigen::Index>(seam.lines.points.size());
+    for (const Eigen::MatrixX3d& line : seam.lines.points) points += line.rows();
   }
   part.points.resize(points, 3);
   const auto cells = [&](const char* name, const char* unit) {
@@ -238,14 +240,14 @@ Part suggestions_part(const std::vector<SuggestedSeam>& suggestions) {
              share = cells("share_after", "1");
   Eigen::Index next = 0, row = 0;
   for (std::size_t i = 0; i < suggestions.size(); ++i) {
-    for (const Eigen::MatrixX3d& line : suggestions[i].lines) {
+    for (const Eigen::MatrixX3d& line : suggestions[i].lines.points) {
       part.points.middleRows(next, line.rows()) = line;
       std::vector<int>& numbers = part.lines.emplace_back(static_cast<std::size_t>(line.rows()));
       std::iota(numbers.begin(), numbers.end(), static_cast<int>(next));
       next += line.rows();
       rank.values(row) = static_cast<double>(i + 1);
       kind.values(row) = suggestions[i].is_dart ? 0 : 1;
-      length.values(row) = suggestions[i].length;
+      length.values(row) = suggestions[i].lines.length;
       share.values(row++) = suggestions[i].share_after;
     }
   }

@@ -45,7 +45,7 @@ struct SketchSurface {
 SketchSurface sketch_surface(const Drawing& aligned, const HullOptions& options);
 
 /// Cuts a surface along further paths, which are one more seam, drawn in no view: its `points` stay
-/// empty. Sets of paths are made one after the other (`SuggestedSeam::cuts`).
+/// empty. Sets of paths are made one after the other (`SuggestedSeam::openings`).
 /// @param X       n x 3, other positions of the vertices: new vertices are put between them too
 /// @throws Error  when the triangles cannot be split so
 void add_seam(SketchSurface& surface, Eigen::MatrixX3d& X,

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
+#include <queue>
 #include <utility>
 
 #include "core/topology.h"
@@ -21,14 +23,65 @@ constexpr double kPlateau = 0.98;      ///< of an extreme: what is as high count
 constexpr double kLeastExtreme = 0.2;  ///< of the largest scale, below which a place is none
 
 /// Bands between two values of the scale, over its extreme.
-constexpr std::array<std::array<double, 2>, 6> kBands{
-    {{0.02, 0.3}, {0.15, 0.5}, {0.35, 0.7}, {0.55, 0.9}, {0.75, 0.99}, {0.6, 1.01}}};
+constexpr std::array<std::array<double, 2>, 3> kBands{{{0.05, 0.4}, {0.4, 0.75}, {0.75, 0.99}}};
+
+/// Bands of distance from the border: so many where most curvature lies, so wide (edges).
+constexpr int kDistanceBands = 5;
+constexpr double kBandHalfWidth = 2.5;
 
 double mean_edge(const TriMesh& mesh) {
   double sum = 0;
   const EdgeConnectivity edges(mesh.F);
   for (const Edge& e : edges.edges()) sum += (mesh.V.row(e[0]) - mesh.V.row(e[1])).norm();
   return sum / std::max(1, edges.edge_count());
+}
+
+/// Length of the shortest path of edges from each vertex to a border (m).
+Eigen::VectorXd border_distance(const TriMesh& mesh, const std::vector<int>& border) {
+  using Reached = std::pair<double, int>;
+  Eigen::VectorXd distance =
+      Eigen::VectorXd::Constant(mesh.vertex_count(), std::numeric_limits<double>::infinity());
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> queue;
+  for (const int v : border) {
+    distance(v) = 0;
+    queue.emplace(0.0, v);
+  }
+  const VertexGraph rings = one_rings(mesh.F, mesh.vertex_count());
+  while (!queue.empty()) {
+    const auto [d, v] = queue.top();
+    queue.pop();
+    if (d > distance(v)) continue;
+    for (const int w : rings.of(v)) {
+      const double sum = d + (mesh.V.row(v) - mesh.V.row(w)).norm();
+      if (sum >= distance(w)) continue;
+      distance(w) = sum;
+      queue.emplace(sum, w);
+    }
+  }
+  return distance;
+}
+
+/// Distances about which most |defect| lies: local maxima of its histogram over bins of a width,
+/// the highest first.
+std::vector<double> curved_distances(const Eigen::VectorXd& distance, const Eigen::VectorXd& defect,
+                                     double width) {
+  const auto bin_of = [&](double d) { return static_cast<std::size_t>(d / width); };
+  std::vector<double> sum(bin_of(distance.maxCoeff()) + 1, 0.0);
+  for (Eigen::Index v = 0; v < distance.size(); ++v) sum[bin_of(distance(v))] += defect(v);
+  const auto at = [&](std::size_t i) { return i < sum.size() ? sum[i] : 0.0; };
+  std::vector<double> mass(sum.size());
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    mass[i] = (i > 0 ? sum[i - 1] : 0) + 2 * sum[i] + at(i + 1);
+  std::vector<std::size_t> peaks;
+  for (std::size_t i = 2; i + 1 < mass.size(); ++i) {
+    if (mass[i] > mass[i - 1] && mass[i] >= mass[i + 1]) peaks.push_back(i);
+  }
+  std::stable_sort(peaks.begin(), peaks.end(),
+                   [&](std::size_t a, std::size_t b) { return mass[a] > mass[b]; });
+  if (peaks.size() > kDistanceBands) peaks.resize(kDistanceBands);
+  std::vector<double> distances;
+  for (const std::size_t i : peaks) distances.push_back((static_cast<double>(i) + 0.5) * width);
+  return distances;
 }
 
 /// Price of a metre in each triangle, from the defects within two rings of its corners.
@@ -78,8 +131,10 @@ class CandidateFinder {
       const Eigen::VectorXd height = sign * scale_;
       if (!(height.maxCoeff() > kLeastExtreme * largest)) continue;
       add_stars(height);
-      for (const auto& band : kBands) add_loops(height, band[0], band[1]);
+      const double top = height.maxCoeff();
+      for (const auto& band : kBands) add_loops(height, band[0] * top, band[1] * top);
     }
+    add_parallel_loops();
     return std::move(found_);
   }
 
@@ -88,7 +143,8 @@ class CandidateFinder {
                                    const std::vector<int>& among) const;
   [[nodiscard]] int place_of(const Eigen::VectorXd& height) const;
   void add_stars(const Eigen::VectorXd& height);
-  void add_loops(const Eigen::VectorXd& height, double low, double high);
+  void add_loops(const Eigen::VectorXd& value, double low, double high);
+  void add_parallel_loops();
   [[nodiscard]] SurfacePath shortest_loop(const CutPiece& ring, const Eigen::VectorXd& price) const;
   [[nodiscard]] int border_start(int from, bool on_plane) const;
   [[nodiscard]] std::vector<int> dividing(int start, int count) const;
@@ -255,12 +311,19 @@ SurfacePath CandidateFinder::shortest_loop(const CutPiece& ring,
   return best;
 }
 
-void CandidateFinder::add_loops(const Eigen::VectorXd& height, double low, double high) {
-  const double top = height.maxCoeff();
+void CandidateFinder::add_parallel_loops() {
+  const Eigen::VectorXd distance = border_distance(mesh_, piece_.borders.front());
+  for (const double d : curved_distances(distance, angle_defects(mesh_).cwiseAbs(), 1.5 * edge_)) {
+    add_loops(distance, std::max(d - kBandHalfWidth * edge_, 1e-3 * edge_),
+              d + kBandHalfWidth * edge_);
+  }
+}
+
+void CandidateFinder::add_loops(const Eigen::VectorXd& value, double low, double high) {
   std::vector<int> rows;
   for (int t = 0; t < mesh_.triangle_count(); ++t) {
-    const double mean = (height(mesh_.F(t, 0)) + height(mesh_.F(t, 1)) + height(mesh_.F(t, 2))) / 3;
-    if (mean > low * top && mean < high * top) rows.push_back(t);
+    const double mean = (value(mesh_.F(t, 0)) + value(mesh_.F(t, 1)) + value(mesh_.F(t, 2))) / 3;
+    if (mean > low && mean < high) rows.push_back(t);
   }
   if (rows.empty()) return;
   const TriMesh band{mesh_.V, mesh_.F(rows, Eigen::all)};

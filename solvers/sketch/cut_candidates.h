@@ -32,10 +32,11 @@ struct CutCandidateOptions {
 ///
 /// Places are the extremes of the conformal scale (`conformal_scale`). From each place there are
 /// stars of 1, 2, 3, 4, 6 and 8 paths to points that divide the border evenly; a single one goes to
-/// the nearest border as well. Around each place there are closed cuts, each the shortest one that
-/// parts the two sides of a band between two values of the scale. Paths are weighted: cheaper along
-/// lines of concentrated angle defect, by 1 / (1 + crease d), d the density of |defect| over its
-/// mean.
+/// the nearest border as well. Closed cuts are each the shortest one that parts the two sides of a
+/// ring: between two values of the scale, around a place, and between two distances from the
+/// longest border, where most curvature lies (a crease parallel to a hem). Paths are weighted:
+/// cheaper along lines of concentrated angle defect, by 1 / (1 + crease d), d the density of
+/// |defect| over its mean.
 ///
 /// With a mirror plane a place near the plane is moved to it and its star begins there; the star of
 /// any other place comes together with its mirror image.

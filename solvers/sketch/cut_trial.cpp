@@ -35,71 +35,67 @@ FlatMeasure measured(const TriMesh& part, const TrialOptions& options) {
   return measure;
 }
 
-class TrialPiece {
- public:
-  TrialPiece(const CutPiece& piece, const TrialOptions& options)
-      : options_(options), surface_{piece.mesh, {}} {}
-
-  bool cut(const std::vector<SurfacePath>& paths) {
-    const Eigen::MatrixX3d V = surface_.mesh.V, N = vertex_normals(surface_.mesh);
-    if (!surface_.cut(paths, 0)) return false;
-    for (const SurfacePath& path : paths) {
-      Eigen::MatrixX3d line(static_cast<Eigen::Index>(path.size()), 3), normal = line;
-      for (std::size_t i = 0; i < path.size(); ++i) {
-        line.row(static_cast<Eigen::Index>(i)) = path[i].position(V);
-        normal.row(static_cast<Eigen::Index>(i)) = path[i].position(N).normalized();
-      }
-      trial_.length += length(path, V);
-      trial_.lines.push_back(std::move(line));
-      trial_.normals.push_back(std::move(normal));
-    }
-    trial_.cuts.push_back(paths);
-    return true;
+std::vector<SurfacePath> opening_of(const CutPiece& part, const TrialOptions& options) {
+  std::vector<SurfacePath> paths;
+  if (part.genus() == 0 && part.border_count() > 1) {
+    const SurfacePath across = bridge(part, options.mirror);
+    if (!across.empty()) paths.push_back(renumbered(across, part.surface_vertex));
   }
-
-  std::optional<CutTrial> finish() {
-    constexpr int kMostOpenings = 8;
-    for (int i = 0; i <= kMostOpenings; ++i) {
-      const std::vector<CutPiece> parts = cut_surface(surface_.mesh, surface_.seams);
-      const auto closed = std::find_if(parts.begin(), parts.end(), [&](const CutPiece& part) {
-        return !can_be_laid_flat(part, options_.pattern.hole_tolerance_deg * kDegree);
-      });
-      if (closed == parts.end()) {
-        trial_.parts = static_cast<int>(parts.size());
-        for (const CutPiece& part : parts) trial_.flat.add(measured(part.mesh, options_));
-        return std::move(trial_);
-      }
-      if (!cut(opening_of(*closed))) return {};
-    }
-    return {};
-  }
-
- private:
-  [[nodiscard]] std::vector<SurfacePath> opening_of(const CutPiece& part) const {
-    std::vector<SurfacePath> paths;
-    if (part.genus() == 0 && part.border_count() > 1) {
-      const SurfacePath across = bridge(part, options_.mirror);
-      if (!across.empty()) paths.push_back(renumbered(across, part.surface_vertex));
-    }
-    if (!paths.empty()) return paths;
-    for (const Edge& e : shortest_cut(part.mesh)) {
-      paths.push_back({at_vertex(part.surface_vertex[e[0]]), at_vertex(part.surface_vertex[e[1]])});
-    }
-    return paths;
-  }
-
-  const TrialOptions& options_;
-  SeamedSurface surface_;
-  CutTrial trial_;
-};
+  if (!paths.empty()) return paths;
+  for (const Edge& e : shortest_cut(part.mesh))
+    paths.push_back({at_vertex(part.surface_vertex[e[0]]), at_vertex(part.surface_vertex[e[1]])});
+  return paths;
+}
 
 }  // namespace
 
+CutLines lines_of(const std::vector<SurfacePath>& paths, const TriMesh& mesh) {
+  const Eigen::MatrixX3d N = vertex_normals(mesh);
+  CutLines lines;
+  for (const SurfacePath& path : paths) {
+    Eigen::MatrixX3d line(static_cast<Eigen::Index>(path.size()), 3), normal = line;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      line.row(static_cast<Eigen::Index>(i)) = path[i].position(mesh.V);
+      normal.row(static_cast<Eigen::Index>(i)) = path[i].position(N).normalized();
+    }
+    lines.length += length(path, mesh.V);
+    lines.points.push_back(std::move(line));
+    lines.normals.push_back(std::move(normal));
+  }
+  return lines;
+}
+
+std::optional<Openings> open_rings(SeamedSurface& surface, int seam, const TrialOptions& options) {
+  constexpr int kMostOpenings = 64;
+  Openings openings;
+  for (int i = 0; i < kMostOpenings; ++i) {
+    const std::vector<CutPiece> parts = cut_surface(surface.mesh, surface.seams);
+    const auto closed = std::find_if(parts.begin(), parts.end(), [&](const CutPiece& part) {
+      return !can_be_laid_flat(part, options.pattern.hole_tolerance_deg * kDegree);
+    });
+    if (closed == parts.end()) return openings;
+    const std::vector<SurfacePath> paths = opening_of(*closed, options);
+    openings.lines.append(lines_of(paths, surface.mesh));
+    openings.cuts.push_back(paths);
+    if (!surface.cut(paths, seam)) return {};
+  }
+  return {};
+}
+
 std::optional<CutTrial> try_cut(const CutPiece& piece, const std::vector<SurfacePath>& paths,
                                 const TrialOptions& options) {
-  TrialPiece trial(piece, options);
-  if (!paths.empty() && !trial.cut(paths)) return {};
-  return trial.finish();
+  CutTrial trial;
+  trial.cut = paths;
+  trial.lines = lines_of(paths, piece.mesh);
+  SeamedSurface surface{piece.mesh, {}};
+  if (!paths.empty() && !surface.cut(paths, 0)) return {};
+  trial.parts = static_cast<int>(cut_surface(surface.mesh, surface.seams).size());
+  const std::optional<Openings> openings = open_rings(surface, 1, options);
+  if (!openings) return {};
+  trial.opening_length = openings->lines.length;
+  for (const CutPiece& part : cut_surface(surface.mesh, surface.seams))
+    trial.flat.add(measured(part.mesh, options));
+  return trial;
 }
 
 }  // namespace geoprior::sketch

@@ -30,17 +30,30 @@ struct TrialOptions {
   std::optional<MirrorAxis> mirror;
 };
 
+/// Cuts as they lie on the surface (`CutLines`).
+CutLines lines_of(const std::vector<SurfacePath>& paths, const TriMesh& mesh);
+
+/// What opens the parts of a surface that cannot be laid flat as they are.
+struct Openings {
+  std::vector<std::vector<SurfacePath>> cuts;  ///< to be made one after the other
+  CutLines lines;
+};
+
+/// Opens them: rings by a path across (`bridge`), others along their shortest cut.
+/// @param seam  number of the new seam
+/// @return      nothing when the mesh cannot be split so
+std::optional<Openings> open_rings(SeamedSurface& surface, int seam, const TrialOptions& options);
+
 /// A piece as it is after cuts.
 struct CutTrial {
-  std::vector<std::vector<SurfacePath>> cuts;  ///< those that were asked for, then what opens rings
-  std::vector<Eigen::MatrixX3d> lines;         ///< the same in space
-  std::vector<Eigen::MatrixX3d> normals;       ///< of the piece at their points
-  double length = 0;                           ///< m
+  std::vector<SurfacePath> cut;
+  CutLines lines;             ///< the same in space
+  double opening_length = 0;  ///< of what opens rings that are left (m)
   int parts = 0;
   FlatMeasure flat;
 };
 
-/// Cuts a piece, opens what cannot be laid flat then (`bridge`), and lays its parts flat.
+/// Cuts a piece, opens what cannot be laid flat then, and lays its parts flat.
 /// @param paths  none: the piece as it is
 /// @return       nothing when the mesh cannot be split along the paths
 std::optional<CutTrial> try_cut(const CutPiece& piece, const std::vector<SurfacePath>& paths,

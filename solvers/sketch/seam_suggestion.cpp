@@ -26,7 +26,7 @@ constexpr double kTrialTolerance = 1e-6;
 class GreedySuggester {
  public:
   GreedySuggester(const TriMesh& surface, std::span<const SeamEdge> seams,
-                const SeamSuggestionOptions& options, const PatternOptions& pattern)
+                  const SeamSuggestionOptions& options, const PatternOptions& pattern)
       : options_(options), work_{surface, {seams.begin(), seams.end()}} {
     for (const SeamEdge& e : seams) next_seam_ = std::max(next_seam_, e.seam + 1);
     trial_.pattern = pattern;
@@ -52,15 +52,14 @@ class GreedySuggester {
     double score = 0;
   };
 
-  [[nodiscard]] std::vector<FlatMeasure> measure(const std::vector<CutPiece>& pieces) const;
+  [[nodiscard]] std::vector<CutTrial> measure(const std::vector<CutPiece>& pieces) const;
   std::optional<SuggestedSeam> suggest_one();
-  [[nodiscard]] std::optional<Scored> best_cut(const CutPiece& piece,
-                                               const FlatMeasure& before) const;
+  [[nodiscard]] std::optional<Scored> best_cut(const CutPiece& piece, const CutTrial& before) const;
   [[nodiscard]] std::optional<Scored> score(const CutPiece& piece,
                                             const std::vector<SurfacePath>& paths,
-                                            const FlatMeasure& before) const;
+                                            const CutTrial& before) const;
   [[nodiscard]] std::vector<std::vector<SurfacePath>> candidates(const CutPiece& piece) const;
-  std::vector<std::vector<SurfacePath>> apply(const CutPiece& piece, const CutTrial& trial);
+  void apply(const CutPiece& piece, SuggestedSeam& suggestion);
 
   SeamSuggestionOptions options_;
   TrialOptions trial_;
@@ -68,15 +67,16 @@ class GreedySuggester {
   int next_seam_ = 0;
 };
 
-std::vector<FlatMeasure> GreedySuggester::measure(const std::vector<CutPiece>& pieces) const {
-  std::vector<FlatMeasure> measures(pieces.size());
+/// Every piece as it is.
+std::vector<CutTrial> GreedySuggester::measure(const std::vector<CutPiece>& pieces) const {
+  std::vector<CutTrial> measures(pieces.size());
   std::vector<std::exception_ptr> errors(pieces.size());
   parallel_blocks(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       try {
-        const std::optional<CutTrial> trial = try_cut(pieces[p], {}, trial_);
+        std::optional<CutTrial> trial = try_cut(pieces[p], {}, trial_);
         if (!trial) throw Error("cannot be cut open", "piece " + std::to_string(p + 1));
-        measures[p] = trial->flat;
+        measures[p] = std::move(*trial);
       } catch (...) {
         errors[p] = std::current_exception();
       }
@@ -105,23 +105,25 @@ std::vector<std::vector<SurfacePath>> GreedySuggester::candidates(const CutPiece
 }
 
 std::optional<GreedySuggester::Scored> GreedySuggester::score(const CutPiece& piece,
-                                                          const std::vector<SurfacePath>& paths,
-                                                          const FlatMeasure& before) const {
+                                                              const std::vector<SurfacePath>& paths,
+                                                              const CutTrial& before) const {
   std::optional<CutTrial> trial;
   try {
     trial = try_cut(piece, paths, trial_);
   } catch (const Error&) {
     return {};  // a part that cannot be laid flat: no suggestion
   }
-  if (!trial || (before.sound && !trial->flat.sound)) return {};
-  if (trial->length < options_.min_length || trial->length > options_.max_length) return {};
-  const double removed = (before.strain - trial->flat.strain) / before.strain;
-  const double cost = options_.length_weight * trial->length / std::sqrt(before.area);
+  if (!trial || (before.flat.sound && !trial->flat.sound)) return {};
+  const double added = trial->lines.length;
+  if (added < options_.min_length || added > options_.max_length) return {};
+  const double removed = (before.flat.strain - trial->flat.strain) / before.flat.strain;
+  const double opened = std::max(0.0, trial->opening_length - before.opening_length);
+  const double cost = options_.length_weight * (added + opened) / std::sqrt(before.flat.area);
   return Scored{std::move(*trial), removed - cost};
 }
 
 std::optional<GreedySuggester::Scored> GreedySuggester::best_cut(const CutPiece& piece,
-                                                             const FlatMeasure& before) const {
+                                                                 const CutTrial& before) const {
   const std::vector<std::vector<SurfacePath>> all = candidates(piece);
   std::vector<std::optional<Scored>> scored(all.size());
   parallel_blocks(all.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -135,55 +137,50 @@ std::optional<GreedySuggester::Scored> GreedySuggester::best_cut(const CutPiece&
   if (!best) return {};
   if (options_.rule == SuggestionRule::measured) return std::move(*best);
   const std::vector<SurfacePath> by_lot =
-      random_cuts(piece.mesh, (*best)->trial.length, options_.seed);
+      random_cuts(piece.mesh, (*best)->trial.lines.length, options_.seed);
   std::optional<CutTrial> trial = try_cut(piece, by_lot, trial_);
   if (!trial) return {};
   return Scored{std::move(*trial), 0};
 }
 
-/// Repeats the cuts of a trial on the whole surface.
-/// @return  the cuts in its numbers
-std::vector<std::vector<SurfacePath>> GreedySuggester::apply(const CutPiece& piece,
-                                                           const CutTrial& trial) {
-  std::vector<int> number = piece.surface_vertex;
-  std::vector<std::vector<SurfacePath>> cuts;
-  for (const std::vector<SurfacePath>& set : trial.cuts) {
-    std::vector<SurfacePath>& cut = cuts.emplace_back();
-    for (const SurfacePath& path : set) cut.push_back(renumbered(path, number));
-    const int before = work_.mesh.vertex_count();
-    if (!work_.cut(cut, next_seam_)) throw Error("a cut of a piece cannot be made on the surface");
-    for (int v = before; v < work_.mesh.vertex_count(); ++v) number.push_back(v);
+/// Repeats the cut of a piece on the whole surface, in whose numbers it is from then on.
+void GreedySuggester::apply(const CutPiece& piece, SuggestedSeam& suggestion) {
+  for (SurfacePath& path : suggestion.cut) path = renumbered(path, piece.surface_vertex);
+  if (!work_.cut(suggestion.cut, next_seam_++))
+    throw Error("a cut of a piece cannot be made on the surface", "suggested seam");
+  SeamedSurface opened = work_;
+  if (std::optional<Openings> openings = open_rings(opened, next_seam_, trial_)) {
+    suggestion.openings = std::move(openings->cuts);
+    suggestion.opening_lines = std::move(openings->lines);
   }
-  ++next_seam_;
-  return cuts;
 }
 
 std::optional<SuggestedSeam> GreedySuggester::suggest_one() {
   const std::vector<CutPiece> pieces = cut_surface(work_.mesh, work_.seams);
-  const std::vector<FlatMeasure> measures = measure(pieces);
+  const std::vector<CutTrial> measures = measure(pieces);
   FlatMeasure whole;
-  for (const FlatMeasure& m : measures) whole.add(m);
+  for (const CutTrial& m : measures) whole.add(m.flat);
   if (!(whole.within < options_.share * whole.area)) return {};
   std::vector<std::size_t> order(pieces.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return measures[a].strain > measures[b].strain;
+    return measures[a].flat.strain > measures[b].flat.strain;
   });
   for (const std::size_t p : order) {
-    if (!(measures[p].within < measures[p].area)) continue;
+    const FlatMeasure& then = measures[p].flat;
+    if (!(then.within < then.area)) continue;
     std::optional<Scored> best = best_cut(pieces[p], measures[p]);
     if (!best) continue;
     SuggestedSeam suggestion;
     const FlatMeasure& now = best->trial.flat;
-    suggestion.is_dart = best->trial.parts == 1 && best->trial.cuts.size() == 1;
+    suggestion.is_dart = best->trial.parts == 1;
     suggestion.share_before = whole.within / whole.area;
     suggestion.strain_before = whole.strain / whole.area;
-    suggestion.share_after = (whole.within - measures[p].within + now.within) / whole.area;
-    suggestion.strain_after = (whole.strain - measures[p].strain + now.strain) / whole.area;
-    suggestion.length = best->trial.length;
-    suggestion.lines = best->trial.lines;
-    suggestion.normals = best->trial.normals;
-    suggestion.cuts = apply(pieces[p], best->trial);
+    suggestion.share_after = (whole.within - then.within + now.within) / whole.area;
+    suggestion.strain_after = (whole.strain - then.strain + now.strain) / whole.area;
+    suggestion.lines = std::move(best->trial.lines);
+    suggestion.cut = std::move(best->trial.cut);
+    apply(pieces[p], suggestion);
     return suggestion;
   }
   return {};

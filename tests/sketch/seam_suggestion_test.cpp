@@ -128,12 +128,12 @@ TEST(SuggestSeams, ConeWantsOneDartFromItsApexToItsBorder) {
   const auto suggested = suggest_seams(mesh, {}, {});
   ASSERT_EQ(suggested.size(), 1u);
   EXPECT_TRUE(suggested[0].is_dart);
-  EXPECT_NEAR(suggested[0].length, 1, 1e-3);  // the slant
+  EXPECT_NEAR(suggested[0].lines.length, 1, 1e-3);  // the slant
   EXPECT_LT(suggested[0].share_before, 0.2);
   EXPECT_NEAR(suggested[0].share_after, 1, 1e-12);
-  ASSERT_EQ(suggested[0].lines.size(), 1u);
+  ASSERT_EQ(suggested[0].lines.points.size(), 1u);
   // Left and right are alike: it lies in the plane between them.
-  EXPECT_LT(suggested[0].lines[0].col(0).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT(suggested[0].lines.points[0].col(0).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 TEST(SuggestSeams, WhatIsDevelopableWantsNone) {
@@ -171,7 +171,8 @@ TEST(SuggestSeams, MirroredSurfacesGetMirroredSuggestions) {
   ASSERT_EQ(suggested.size(), mirrored.size());
   ASSERT_FALSE(suggested.empty());
   for (std::size_t i = 0; i < suggested.size(); ++i) {
-    EXPECT_NEAR(suggested[i].length, mirrored[i].length, 0.03 * suggested[i].length);
+    EXPECT_NEAR(suggested[i].lines.length, mirrored[i].lines.length,
+                0.03 * suggested[i].lines.length);
     EXPECT_NEAR(suggested[i].share_after, mirrored[i].share_after, 0.03);
   }
 }
@@ -186,7 +187,7 @@ TEST(SuggestSeams, IsTheSameAtAnyNumberOfThreads) {
   ASSERT_EQ(one.size(), all.size());
   ASSERT_EQ(one.size(), 1u);
   EXPECT_EQ(one[0].strain_after, all[0].strain_after);
-  EXPECT_EQ(one[0].length, all[0].length);
+  EXPECT_EQ(one[0].lines.length, all[0].lines.length);
 }
 
 TEST(SuggestSeams, CutsByLotAreAsLongAndTakeOutLess) {
@@ -196,7 +197,7 @@ TEST(SuggestSeams, CutsByLotAreAsLongAndTakeOutLess) {
   options.count = 1;
   const auto by_lot = suggest_seams(mesh, {}, options);
   ASSERT_EQ(by_lot.size(), 1u);
-  EXPECT_NEAR(by_lot[0].length, 1, 1.0 / 16);  // an edge
+  EXPECT_NEAR(by_lot[0].lines.length, 1, 1.0 / 16);  // an edge
   EXPECT_LT(by_lot[0].share_after, 0.5);
 }
 
