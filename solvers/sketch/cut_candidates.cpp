@@ -361,6 +361,54 @@ std::vector<std::vector<SurfacePath>> cut_candidates(const CutPiece& piece,
   return CandidateFinder(piece, options).find();
 }
 
+std::vector<SurfacePath> mirrored_cut(const CutPiece& piece,
+                                      const std::vector<Eigen::MatrixX3d>& lines,
+                                      const CutCandidateOptions& options) {
+  const MirrorAxis& mirror = *options.mirror;
+  const TriMesh& mesh = piece.mesh;
+  const double edge = mean_edge(mesh);
+  const std::vector<bool> border = boundary_vertices(mesh.F, mesh.vertex_count());
+  std::vector<SurfacePath> cut;
+  for (const Eigen::MatrixX3d& line : lines) {
+    Eigen::MatrixX3d image = line;
+    for (Eigen::Index i = 0; i < line.rows(); ++i) image.row(i) = mirror.mirrored(line.row(i));
+    const bool closed = line.row(0) == line.row(line.rows() - 1);
+    const int stretches = closed ? 4 : 1;
+    Eigen::VectorXd price = crease_price(mesh, options.crease);
+    for (int t = 0; closed && t < mesh.triangle_count(); ++t) {
+      const Eigen::RowVector3d centre =
+          (mesh.V.row(mesh.F(t, 0)) + mesh.V.row(mesh.F(t, 1)) + mesh.V.row(mesh.F(t, 2))) / 3;
+      price(t) *= 1 + (image.rowwise() - centre).rowwise().squaredNorm().minCoeff() / (edge * edge);
+    }
+    const SurfacePaths paths(mesh, price);
+    // Only the ends of a line may lie on the border.
+    const auto nearest = [&](Eigen::Index i, bool is_end) {
+      int best = -1;
+      for (int v = 0; v < mesh.vertex_count(); ++v) {
+        if (border[v] && !is_end) continue;
+        if (best < 0 || (mesh.V.row(v) - image.row(i)).squaredNorm() <
+                            (mesh.V.row(best) - image.row(i)).squaredNorm())
+          best = v;
+      }
+      return best;
+    };
+    SurfacePath whole;
+    int from = nearest(0, true);
+    for (int s = 1; s <= stretches; ++s) {
+      const int to = nearest((image.rows() - 1) * s / stretches, s == stretches);
+      if (to == from || to < 0) continue;
+      std::vector<char> targets(static_cast<std::size_t>(mesh.vertex_count()), 0);
+      targets[to] = 1;
+      const SurfacePath stretch = paths.shortest(from, targets);
+      if (stretch.empty()) return {};
+      whole.insert(whole.end(), stretch.begin() + (whole.empty() ? 0 : 1), stretch.end());
+      from = to;
+    }
+    cut.push_back(std::move(whole));
+  }
+  return cut;
+}
+
 SurfacePath bridge(const CutPiece& piece, const std::optional<MirrorAxis>& mirror) {
   if (piece.borders.size() < 2) return {};
   const SurfacePaths paths(piece.mesh, Eigen::VectorXd::Ones(piece.mesh.triangle_count()));

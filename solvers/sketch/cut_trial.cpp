@@ -89,7 +89,11 @@ std::optional<CutTrial> try_cut(const CutPiece& piece, const std::vector<Surface
   trial.lines = lines_of(paths, piece.mesh);
   SeamedSurface surface{piece.mesh, {}};
   if (!paths.empty() && !surface.cut(paths, 0)) return {};
-  trial.parts = static_cast<int>(cut_surface(surface.mesh, surface.seams).size());
+  for (const CutPiece& part : cut_surface(surface.mesh, surface.seams)) {
+    const double area = triangle_areas(part.mesh.V, part.mesh.F).sum();
+    trial.least_part = trial.parts == 0 ? area : std::min(trial.least_part, area);
+    ++trial.parts;
+  }
   const std::optional<Openings> openings = open_rings(surface, 1, options);
   if (!openings) return {};
   trial.opening_length = openings->lines.length;

@@ -59,7 +59,9 @@ class GreedySuggester {
                                             const std::vector<SurfacePath>& paths,
                                             const CutTrial& before) const;
   [[nodiscard]] std::vector<std::vector<SurfacePath>> candidates(const CutPiece& piece) const;
-  void apply(const CutPiece& piece, SuggestedSeam& suggestion);
+  [[nodiscard]] std::optional<std::size_t> mirror_image(const std::vector<CutPiece>& pieces,
+                                                        std::size_t piece) const;
+  void apply(SuggestedSeam& suggestion);
 
   SeamSuggestionOptions options_;
   TrialOptions trial_;
@@ -114,6 +116,7 @@ std::optional<GreedySuggester::Scored> GreedySuggester::score(const CutPiece& pi
     return {};  // a part that cannot be laid flat: no suggestion
   }
   if (!trial || (before.flat.sound && !trial->flat.sound)) return {};
+  if (trial->parts > 1 && trial->least_part < options_.min_part * trial->flat.area) return {};
   const double added = trial->lines.length;
   if (added < options_.min_length || added > options_.max_length) return {};
   const double removed = (before.flat.strain - trial->flat.strain) / before.flat.strain;
@@ -143,9 +146,36 @@ std::optional<GreedySuggester::Scored> GreedySuggester::best_cut(const CutPiece&
   return Scored{std::move(*trial), 0};
 }
 
-/// Repeats the cut of a piece on the whole surface, in whose numbers it is from then on.
-void GreedySuggester::apply(const CutPiece& piece, SuggestedSeam& suggestion) {
-  for (SurfacePath& path : suggestion.cut) path = renumbered(path, piece.surface_vertex);
+/// The other piece that lies where the image of this one is, with about its area.
+std::optional<std::size_t> GreedySuggester::mirror_image(const std::vector<CutPiece>& pieces,
+                                                         std::size_t piece) const {
+  constexpr double kNear = 0.03;  // of the diagonal, and of the area
+  if (!trial_.mirror || options_.rule != SuggestionRule::measured) return {};
+  const auto area_and_centre = [](const TriMesh& mesh) {
+    const Eigen::VectorXd areas = triangle_areas(mesh.V, mesh.F);
+    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+      for (int k = 0; k < 3; ++k) sum += areas(t) / 3 * mesh.V.row(mesh.F(t, k));
+    }
+    return std::pair(areas.sum(), Eigen::RowVector3d(sum / areas.sum()));
+  };
+  const double diagonal = bounding_box_diagonal(work_.mesh.V);
+  const auto [area, centre] = area_and_centre(pieces[piece].mesh);
+  const Eigen::RowVector3d image = trial_.mirror->mirrored(centre);
+  if ((image - centre).norm() < kNear * diagonal) return {};  // its own image
+  for (std::size_t other = 0; other < pieces.size(); ++other) {
+    if (other == piece) continue;
+    const auto [other_area, other_centre] = area_and_centre(pieces[other].mesh);
+    if ((other_centre - image).norm() < kNear * diagonal &&
+        std::abs(other_area - area) < kNear * area) {
+      return other;
+    }
+  }
+  return {};
+}
+
+/// Makes a cut, which is in the numbers of the whole surface.
+void GreedySuggester::apply(SuggestedSeam& suggestion) {
   if (!work_.cut(suggestion.cut, next_seam_++))
     throw Error("a cut of a piece cannot be made on the surface", "suggested seam");
   SeamedSurface opened = work_;
@@ -172,15 +202,28 @@ std::optional<SuggestedSeam> GreedySuggester::suggest_one() {
     std::optional<Scored> best = best_cut(pieces[p], measures[p]);
     if (!best) continue;
     SuggestedSeam suggestion;
-    const FlatMeasure& now = best->trial.flat;
+    FlatMeasure now = whole;
+    const auto take = [&](std::size_t piece, CutTrial trial) {
+      now.within += trial.flat.within - measures[piece].flat.within;
+      now.strain += trial.flat.strain - measures[piece].flat.strain;
+      suggestion.lines.append(trial.lines);
+      for (const SurfacePath& path : trial.cut)
+        suggestion.cut.push_back(renumbered(path, pieces[piece].surface_vertex));
+    };
     suggestion.is_dart = best->trial.parts == 1;
+    if (const std::optional<std::size_t> image = mirror_image(pieces, p)) {
+      const std::vector<SurfacePath> cut =
+          mirrored_cut(pieces[*image], best->trial.lines.points, {options_.crease, trial_.mirror});
+      std::optional<Scored> mirrored;
+      if (!cut.empty()) mirrored = score(pieces[*image], cut, measures[*image]);
+      if (mirrored) take(*image, std::move(mirrored->trial));
+    }
+    take(p, std::move(best->trial));
     suggestion.share_before = whole.within / whole.area;
     suggestion.strain_before = whole.strain / whole.area;
-    suggestion.share_after = (whole.within - then.within + now.within) / whole.area;
-    suggestion.strain_after = (whole.strain - then.strain + now.strain) / whole.area;
-    suggestion.lines = std::move(best->trial.lines);
-    suggestion.cut = std::move(best->trial.cut);
-    apply(pieces[p], suggestion);
+    suggestion.share_after = now.within / whole.area;
+    suggestion.strain_after = now.strain / whole.area;
+    apply(suggestion);
     return suggestion;
   }
   return {};
@@ -201,6 +244,9 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& o) {
           {.doc = "of all cuts of a suggestion", .unit = "m", .min = 0});
   v.value("max_length", o.max_length,
           {.doc = "of all cuts of a suggestion", .unit = "m", .min = 0});
+  v.value(
+      "min_part", o.min_part,
+      {.doc = "least area of what a cut parts off, over that of its piece", .min = 0, .max = 0.5});
   v.value("length_weight", o.length_weight,
           {.doc = "share of the error that a cut as long as the root of the piece's area has to "
                   "remove to be worth it",

@@ -22,6 +22,7 @@ struct SeamSuggestionOptions {
   int count = 3;                ///< most suggestions
   double min_length = 0.02;     ///< of a suggestion, all its cuts together (m)
   double max_length = 10;       ///< m
+  double min_part = 0.05;       ///< least area of what a cut parts off, over that of its piece
   double length_weight = 0.05;  ///< what a length of the root of the area costs, in removed error
   double crease = 0.3;          ///< how much cheaper cuts are along concentrated curvature
   bool symmetric = true;        ///< mirrored surfaces get mirrored suggestions
@@ -38,9 +39,11 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& options);
 ///
 ///   (E - E') / E - length_weight * length / sqrt(area),
 ///
-/// E the integral of |log stretch| over the piece before, E' after the cut, both measured. Then all
-/// begins anew on the cut surface, until the share of the area within the tolerance is reached.
-/// Candidates whose parts overlap themselves in the plane are left out when the piece did not.
+/// E the integral of |log stretch| over the piece before, E' after the cut, both measured. When the
+/// surface is its own mirror image and the piece's image is another piece, that one is cut alike,
+/// in the same suggestion. Then all begins anew on the cut surface, until the share of the area
+/// within the tolerance is reached. Candidates whose parts overlap themselves in the plane are left
+/// out when the piece did not.
 ///
 /// It cannot: move a seam that is there, take cuts back, look two cuts ahead, or know what a tailor
 /// likes. Work is that of flattening a piece some thirty times a suggestion.

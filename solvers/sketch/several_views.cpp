@@ -47,6 +47,13 @@ DevelopableRotation rotation_of(const SketchSurface& surface, const SeveralViews
   return {F, first, options.developability};
 }
 
+SketchInput without_seams(SketchInput input) {
+  for (View& view : input.drawing.views) {
+    std::erase_if(view.strokes, [](const Stroke& s) { return s.kind == StrokeKind::seam; });
+  }
+  return input;
+}
+
 class SeveralViews final : public SketchMethod {
  public:
   SeveralViews(const PreparedSketch& prepared, const SeveralViewsOptions& options)
@@ -160,6 +167,7 @@ void describe(OptionVisitor& v, SeveralViewsOptions& o) {
   v.value("pin_seams", o.pin_seams, {.doc = "seams stay where they were drawn, in their view"});
   v.value("across_seams", o.across_seams,
           {.doc = "cones are fitted to triangles on both sides of a seam"});
+  v.value("drawn_seams", o.drawn_seams, {.doc = "seams of the drawing are there"});
   describe_group(v, "suggest", o.suggest, {.doc = "seams and darts for the surface of the end"});
 }
 
@@ -183,7 +191,7 @@ std::unique_ptr<Process> make_several_views_process(
     suggester.files = std::move(suggestion_files);
   }
   return make_sketch_process(
-      input, options.iterations,
+      options.drawn_seams ? input : without_seams(input), options.iterations,
       [options](const PreparedSketch& prepared, RunContext&) {
         return make_several_views(prepared, options);
       },

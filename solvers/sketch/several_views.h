@@ -35,6 +35,7 @@ struct SeveralViewsOptions {
   bool silhouettes = true;   ///< false: developability alone
   bool pin_seams = true;     ///< seams stay where they were drawn, in their view
   bool across_seams = true;  ///< cones are fitted to triangles on both sides of a seam
+  bool drawn_seams = true;   ///< false: seams of the drawing are left out
   std::optional<SuggestedSeamsOptions> suggest = {};
 };
 void describe(OptionVisitor& v, SeveralViewsOptions& options);
