@@ -177,6 +177,25 @@ TEST(SuggestSeams, MirroredSurfacesGetMirroredSuggestions) {
   }
 }
 
+TEST(SuggestSeams, PiecesThatAreMirrorImagesAreCutAlike) {
+  const TriMesh mesh = dome(1);
+  const auto suggested = suggest_seams(mesh, shapes::great_circle(mesh, 0, 0), {.count = 1});
+  ASSERT_EQ(suggested.size(), 1u);
+  const std::vector<Eigen::MatrixX3d>& lines = suggested[0].lines.points;
+  ASSERT_GE(lines.size(), 2u);
+  ASSERT_EQ(lines.size() % 2, 0u);
+  for (std::size_t i = 0; i < lines.size() / 2; ++i) {
+    const Eigen::MatrixX3d &left = lines[i], &right = lines[lines.size() / 2 + i];
+    for (const Eigen::Index end : {Eigen::Index{0}, Eigen::Index{1}}) {
+      const Eigen::RowVector3d a = end == 0 ? left.row(0) : left.row(left.rows() - 1);
+      const Eigen::RowVector3d b = end == 0 ? right.row(0) : right.row(right.rows() - 1);
+      EXPECT_NEAR(a.x(), -b.x(), 1e-9);
+      EXPECT_NEAR(a.y(), b.y(), 1e-9);
+      EXPECT_NEAR(a.z(), b.z(), 1e-9);
+    }
+  }
+}
+
 TEST(SuggestSeams, IsTheSameAtAnyNumberOfThreads) {
   const TriMesh mesh = dome(0.7);
   std::vector<SuggestedSeam> one, all;
