@@ -200,24 +200,6 @@ void place_anew(SketchSurface& s) {
   }
 }
 
-/// Edges as they are after triangles were split.
-void split_edges(std::vector<Edge>& edges, const SurfaceSplit& split, int first_new) {
-  std::map<Edge, int> at;
-  for (std::size_t i = 0; i < split.added.size(); ++i)
-    at[split.added[i].edge] = first_new + static_cast<int>(i);
-  std::vector<Edge> finer;
-  for (const Edge& e : edges) {
-    const auto found = at.find(e);
-    if (found == at.end()) {
-      finer.push_back(e);
-    } else {
-      finer.push_back({e[0], found->second});
-      finer.push_back({e[1], found->second});
-    }
-  }
-  edges = std::move(finer);
-}
-
 }  // namespace
 
 void add_seam(SketchSurface& surface, Eigen::MatrixX3d& X,
@@ -228,9 +210,9 @@ void add_seam(SketchSurface& surface, Eigen::MatrixX3d& X,
     const std::optional<SurfaceSplit> split = split_along(surface.hull.mesh, paths);
     if (!split) throw Error("cannot be cut into the triangles of the surface", "seam '" + id + "'");
     const int first_new = surface.hull.mesh.vertex_count();
-    for (StrokePath& path : surface.seams) split_edges(path.edges, *split, first_new);
-    for (StrokePath& path : surface.folds) split_edges(path.edges, *split, first_new);
-    split_edges(seam.edges, *split, first_new);
+    for (StrokePath& path : surface.seams) path.edges = split->split_edges(path.edges, first_new);
+    for (StrokePath& path : surface.folds) path.edges = split->split_edges(path.edges, first_new);
+    seam.edges = split->split_edges(seam.edges, first_new);
     surface.hull.mesh.V = split->interpolated(surface.hull.mesh.V);
     X = split->interpolated(X);
     surface.hull.mesh.F = split->triangles;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -106,6 +108,23 @@ Eigen::MatrixX3d SurfaceSplit::interpolated(const Eigen::MatrixX3d& values) cons
   for (std::size_t i = 0; i < added.size(); ++i)
     result.row(values.rows() + static_cast<Eigen::Index>(i)) = added[i].position(values);
   return result;
+}
+
+std::vector<Edge> SurfaceSplit::split_edges(std::span<const Edge> edges, int first_new) const {
+  std::map<Edge, int> at;
+  for (std::size_t i = 0; i < added.size(); ++i)
+    at[added[i].edge] = first_new + static_cast<int>(i);
+  std::vector<Edge> finer;
+  for (const Edge& e : edges) {
+    const auto found = at.find(e);
+    if (found == at.end()) {
+      finer.push_back(e);
+    } else {
+      finer.push_back({e[0], found->second});
+      finer.push_back({e[1], found->second});
+    }
+  }
+  return finer;
 }
 
 std::optional<SurfaceSplit> split_along(const TriMesh& mesh, std::span<const SurfacePath> paths) {

@@ -19,6 +19,9 @@ struct SurfaceSplit {
 
   /// Values at the vertices, with those of the new ones between the ends of their edges.
   [[nodiscard]] Eigen::MatrixX3d interpolated(const Eigen::MatrixX3d& values) const;
+  /// Edges of the old triangles, lower vertex first, as they are now.
+  /// @param first_new  number of the first new vertex
+  [[nodiscard]] std::vector<Edge> split_edges(std::span<const Edge> edges, int first_new) const;
 };
 
 /// Splits triangles where paths cross them. Where a path passes nearer to a vertex than a sixth of

@@ -45,9 +45,9 @@ struct CutCandidateOptions {
 std::vector<std::vector<SurfacePath>> cut_candidates(const CutPiece& piece,
                                                      const CutCandidateOptions& options);
 
-/// The mirror image of a cut, on the piece that is the mirror image of the cut's own: weighted paths
-/// between the vertices nearest to the images of the ends of its lines. A closed line has four such
-/// places, and a price that grows with the distance from its image.
+/// The mirror image of a cut, on the piece that is the mirror image of the cut's own: weighted
+/// paths between the vertices nearest to the images of the ends of its lines. A closed line has
+/// four such places, and a price that grows with the distance from its image.
 /// @param lines  of the cut, rows along each (m)
 /// @return       empty when a path cannot be found
 std::vector<SurfacePath> mirrored_cut(const CutPiece& piece,

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <span>
 #include <utility>
 
 #include "core/angles.h"
@@ -82,19 +84,55 @@ std::optional<Openings> open_rings(SeamedSurface& surface, int seam, const Trial
   return {};
 }
 
-std::optional<CutTrial> try_cut(const CutPiece& piece, const std::vector<SurfacePath>& paths,
+std::vector<Panel> panels_of(const SeamedSurface& surface) {
+  const EdgeConnectivity edges(surface.mesh.F);
+  std::vector<int> piece_of(static_cast<std::size_t>(surface.mesh.triangle_count()));
+  const std::vector<CutPiece> pieces = cut_surface(surface.mesh, surface.seams);
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    for (const int t : pieces[p].surface_triangle) piece_of[t] = static_cast<int>(p);
+  }
+  std::vector<SeamEdge> outer, inner;
+  for (const SeamEdge& seam : surface.seams) {
+    const std::span<const int> both = edges.half_edges(*edges.find(seam.edge[0], seam.edge[1]));
+    const bool own = both.size() == 2 && piece_of[both[0] / 3] == piece_of[both[1] / 3];
+    (own ? inner : outer).push_back(seam);
+  }
+  std::vector<Panel> panels;
+  for (CutPiece& piece : cut_surface(surface.mesh, outer)) {
+    std::map<Edge, Edge> local;  // of an edge of the surface
+    for (int t = 0; t < piece.mesh.triangle_count(); ++t) {
+      for (int k = 0; k < 3; ++k) {
+        const int a = piece.mesh.F(t, k), b = piece.mesh.F(t, (k + 1) % 3);
+        const int u = piece.surface_vertex[a], v = piece.surface_vertex[b];
+        local[{std::min(u, v), std::max(u, v)}] = {a, b};
+      }
+    }
+    Panel& panel = panels.emplace_back();
+    for (const SeamEdge& seam : inner) {
+      const auto found =
+          local.find({std::min(seam.edge[0], seam.edge[1]), std::max(seam.edge[0], seam.edge[1])});
+      if (found != local.end()) panel.inner.push_back({found->second, seam.seam});
+    }
+    panel.piece = std::move(piece);
+  }
+  return panels;
+}
+
+std::optional<CutTrial> try_cut(const Panel& panel, const std::vector<SurfacePath>& paths,
                                 const TrialOptions& options) {
   CutTrial trial;
   trial.cut = paths;
-  trial.lines = lines_of(paths, piece.mesh);
-  SeamedSurface surface{piece.mesh, {}};
-  if (!paths.empty() && !surface.cut(paths, 0)) return {};
+  trial.lines = lines_of(paths, panel.piece.mesh);
+  SeamedSurface surface{panel.piece.mesh, panel.inner};
+  int next_seam = 0;
+  for (const SeamEdge& e : panel.inner) next_seam = std::max(next_seam, e.seam + 1);
+  if (!paths.empty() && !surface.cut(paths, next_seam)) return {};
   for (const CutPiece& part : cut_surface(surface.mesh, surface.seams)) {
     const double area = triangle_areas(part.mesh.V, part.mesh.F).sum();
     trial.least_part = trial.parts == 0 ? area : std::min(trial.least_part, area);
     ++trial.parts;
   }
-  const std::optional<Openings> openings = open_rings(surface, 1, options);
+  const std::optional<Openings> openings = open_rings(surface, next_seam + 1, options);
   if (!openings) return {};
   trial.opening_length = openings->lines.length;
   for (const CutPiece& part : cut_surface(surface.mesh, surface.seams))

@@ -54,10 +54,19 @@ struct CutTrial {
   FlatMeasure flat;
 };
 
-/// Cuts a piece, opens what cannot be laid flat then, and lays its parts flat.
-/// @param paths  none: the piece as it is
+/// A piece to be cut further: seams that sew it to itself are closed, so that a cut may cross them.
+struct Panel {
+  CutPiece piece;               ///< its vertices and triangles are those of paths
+  std::vector<SeamEdge> inner;  ///< those seams
+};
+
+/// The panels of a surface, one for each of the pieces that it is cut into.
+std::vector<Panel> panels_of(const SeamedSurface& surface);
+
+/// Cuts a panel, opens what cannot be laid flat then, and lays its parts flat.
+/// @param paths  none: the panel as it is
 /// @return       nothing when the mesh cannot be split along the paths
-std::optional<CutTrial> try_cut(const CutPiece& piece, const std::vector<SurfacePath>& paths,
+std::optional<CutTrial> try_cut(const Panel& panel, const std::vector<SurfacePath>& paths,
                                 const TrialOptions& options);
 
 }  // namespace geoprior::sketch

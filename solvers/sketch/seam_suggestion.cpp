@@ -52,14 +52,14 @@ class GreedySuggester {
     double score = 0;
   };
 
-  [[nodiscard]] std::vector<CutTrial> measure(const std::vector<CutPiece>& pieces) const;
+  [[nodiscard]] std::vector<CutTrial> measure(const std::vector<Panel>& pieces) const;
   std::optional<SuggestedSeam> suggest_one();
-  [[nodiscard]] std::optional<Scored> best_cut(const CutPiece& piece, const CutTrial& before) const;
-  [[nodiscard]] std::optional<Scored> score(const CutPiece& piece,
+  [[nodiscard]] std::optional<Scored> best_cut(const Panel& piece, const CutTrial& before) const;
+  [[nodiscard]] std::optional<Scored> score(const Panel& piece,
                                             const std::vector<SurfacePath>& paths,
                                             const CutTrial& before) const;
-  [[nodiscard]] std::vector<std::vector<SurfacePath>> candidates(const CutPiece& piece) const;
-  [[nodiscard]] std::optional<std::size_t> mirror_image(const std::vector<CutPiece>& pieces,
+  [[nodiscard]] std::vector<std::vector<SurfacePath>> candidates(const Panel& panel) const;
+  [[nodiscard]] std::optional<std::size_t> mirror_image(const std::vector<Panel>& pieces,
                                                         std::size_t piece) const;
   void apply(SuggestedSeam& suggestion);
 
@@ -70,7 +70,7 @@ class GreedySuggester {
 };
 
 /// Every piece as it is.
-std::vector<CutTrial> GreedySuggester::measure(const std::vector<CutPiece>& pieces) const {
+std::vector<CutTrial> GreedySuggester::measure(const std::vector<Panel>& pieces) const {
   std::vector<CutTrial> measures(pieces.size());
   std::vector<std::exception_ptr> errors(pieces.size());
   parallel_blocks(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -90,23 +90,30 @@ std::vector<CutTrial> GreedySuggester::measure(const std::vector<CutPiece>& piec
   return measures;
 }
 
-/// A closed piece is slit first: its scale is known at a border only.
-std::vector<std::vector<SurfacePath>> GreedySuggester::candidates(const CutPiece& piece) const {
+/// Of the panel with its own seams closed, and of what it is when they are open: a loop may cross
+/// them, a dart may end on them.
+std::vector<std::vector<SurfacePath>> GreedySuggester::candidates(const Panel& panel) const {
   const CutCandidateOptions options{options_.crease, trial_.mirror};
-  if (!piece.borders.empty()) return cut_candidates(piece, options);
-  std::vector<SeamEdge> slit;
-  for (const Edge& e : shortest_cut(piece.mesh)) slit.push_back({e, 0});
-  const CutPiece open = cut_surface(piece.mesh, slit).front();
-  std::vector<std::vector<SurfacePath>> found = cut_candidates(open, options);
-  for (std::vector<SurfacePath>& paths : found) {
-    for (SurfacePath& path : paths) path = renumbered(path, open.surface_vertex);
+  std::vector<std::vector<SurfacePath>> found;
+  if (!panel.piece.borders.empty()) found = cut_candidates(panel.piece, options);
+  // A closed piece is slit first: its scale is known at a border only.
+  std::vector<SeamEdge> open = panel.inner, slit;
+  if (panel.piece.borders.empty() && open.empty()) {
+    for (const Edge& e : shortest_cut(panel.piece.mesh)) slit.push_back({e, 0});
+    open = slit;
+  }
+  if (open.empty()) return found;
+  const CutPiece opened = cut_surface(panel.piece.mesh, open).front();
+  for (std::vector<SurfacePath>& paths : cut_candidates(opened, options)) {
+    for (SurfacePath& path : paths) path = renumbered(path, opened.surface_vertex);
     // What ends on the slit needs the slit.
     for (const SeamEdge& e : slit) paths.push_back({at_vertex(e.edge[0]), at_vertex(e.edge[1])});
+    found.push_back(std::move(paths));
   }
   return found;
 }
 
-std::optional<GreedySuggester::Scored> GreedySuggester::score(const CutPiece& piece,
+std::optional<GreedySuggester::Scored> GreedySuggester::score(const Panel& piece,
                                                               const std::vector<SurfacePath>& paths,
                                                               const CutTrial& before) const {
   std::optional<CutTrial> trial;
@@ -125,7 +132,7 @@ std::optional<GreedySuggester::Scored> GreedySuggester::score(const CutPiece& pi
   return Scored{std::move(*trial), removed - cost};
 }
 
-std::optional<GreedySuggester::Scored> GreedySuggester::best_cut(const CutPiece& piece,
+std::optional<GreedySuggester::Scored> GreedySuggester::best_cut(const Panel& piece,
                                                                  const CutTrial& before) const {
   const std::vector<std::vector<SurfacePath>> all = candidates(piece);
   std::vector<std::optional<Scored>> scored(all.size());
@@ -140,14 +147,14 @@ std::optional<GreedySuggester::Scored> GreedySuggester::best_cut(const CutPiece&
   if (!best) return {};
   if (options_.rule == SuggestionRule::measured) return std::move(*best);
   const std::vector<SurfacePath> by_lot =
-      random_cuts(piece.mesh, (*best)->trial.lines.length, options_.seed);
+      random_cuts(piece.piece.mesh, (*best)->trial.lines.length, options_.seed);
   std::optional<CutTrial> trial = try_cut(piece, by_lot, trial_);
   if (!trial) return {};
   return Scored{std::move(*trial), 0};
 }
 
 /// The other piece that lies where the image of this one is, with about its area.
-std::optional<std::size_t> GreedySuggester::mirror_image(const std::vector<CutPiece>& pieces,
+std::optional<std::size_t> GreedySuggester::mirror_image(const std::vector<Panel>& pieces,
                                                          std::size_t piece) const {
   constexpr double kNear = 0.03;  // of the diagonal, and of the area
   if (!trial_.mirror || options_.rule != SuggestionRule::measured) return {};
@@ -160,12 +167,12 @@ std::optional<std::size_t> GreedySuggester::mirror_image(const std::vector<CutPi
     return std::pair(areas.sum(), Eigen::RowVector3d(sum / areas.sum()));
   };
   const double diagonal = bounding_box_diagonal(work_.mesh.V);
-  const auto [area, centre] = area_and_centre(pieces[piece].mesh);
+  const auto [area, centre] = area_and_centre(pieces[piece].piece.mesh);
   const Eigen::RowVector3d image = trial_.mirror->mirrored(centre);
   if ((image - centre).norm() < kNear * diagonal) return {};  // its own image
   for (std::size_t other = 0; other < pieces.size(); ++other) {
     if (other == piece) continue;
-    const auto [other_area, other_centre] = area_and_centre(pieces[other].mesh);
+    const auto [other_area, other_centre] = area_and_centre(pieces[other].piece.mesh);
     if ((other_centre - image).norm() < kNear * diagonal &&
         std::abs(other_area - area) < kNear * area) {
       return other;
@@ -186,7 +193,7 @@ void GreedySuggester::apply(SuggestedSeam& suggestion) {
 }
 
 std::optional<SuggestedSeam> GreedySuggester::suggest_one() {
-  const std::vector<CutPiece> pieces = cut_surface(work_.mesh, work_.seams);
+  const std::vector<Panel> pieces = panels_of(work_);
   const std::vector<CutTrial> measures = measure(pieces);
   FlatMeasure whole;
   for (const CutTrial& m : measures) whole.add(m.flat);
@@ -208,12 +215,12 @@ std::optional<SuggestedSeam> GreedySuggester::suggest_one() {
       now.strain += trial.flat.strain - measures[piece].flat.strain;
       suggestion.lines.append(trial.lines);
       for (const SurfacePath& path : trial.cut)
-        suggestion.cut.push_back(renumbered(path, pieces[piece].surface_vertex));
+        suggestion.cut.push_back(renumbered(path, pieces[piece].piece.surface_vertex));
     };
     suggestion.is_dart = best->trial.parts == 1;
     if (const std::optional<std::size_t> image = mirror_image(pieces, p)) {
-      const std::vector<SurfacePath> cut =
-          mirrored_cut(pieces[*image], best->trial.lines.points, {options_.crease, trial_.mirror});
+      const std::vector<SurfacePath> cut = mirrored_cut(
+          pieces[*image].piece, best->trial.lines.points, {options_.crease, trial_.mirror});
       std::optional<Scored> mirrored;
       if (!cut.empty()) mirrored = score(pieces[*image], cut, measures[*image]);
       if (mirrored) take(*image, std::move(mirrored->trial));

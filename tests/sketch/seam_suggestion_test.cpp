@@ -11,6 +11,7 @@
 #include "models/sketch/surface_split.h"
 #include "solvers/sketch/conformal_scale.h"
 #include "solvers/sketch/cut_candidates.h"
+#include "solvers/sketch/cut_trial.h"
 #include "tests/sketch/flat_surfaces.h"
 
 namespace geoprior::sketch {
@@ -121,6 +122,41 @@ TEST(ConformalScale, OfAConeIsTheLogarithmOfTheRadius) {
 TEST(ConformalScale, KnowsTheDefectsOfTheMetric) {
   const TriMesh mesh = cone(0.6, 48, 10);
   EXPECT_LT((angle_defects(mesh) - angle_defect(mesh)).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(PanelsOf, CloseTheSeamsThatSewAPieceToItself) {
+  // A tube slit along its side is one piece with one border; its panel is the ring again.
+  const SeamedSurface slit{shapes::tube(0.5, 0.4, 1, 24, 8), shapes::tube_seam(24, 8)};
+  ASSERT_EQ(cut_surface(slit.mesh, slit.seams).front().border_count(), 1);
+  const std::vector<Panel> panels = panels_of(slit);
+  ASSERT_EQ(panels.size(), 1u);
+  EXPECT_EQ(panels[0].piece.border_count(), 2);
+  EXPECT_EQ(panels[0].inner.size(), 8u);
+  // Two halves of a sphere are sewn to each other: nothing is closed.
+  const TriMesh sphere = geoprior::shapes::sphere(2);
+  const std::vector<Panel> halves = panels_of({sphere, shapes::great_circle(sphere, 0, 0)});
+  ASSERT_EQ(halves.size(), 2u);
+  EXPECT_TRUE(halves[0].inner.empty());
+  EXPECT_EQ(halves[1].piece.border_count(), 1);
+}
+
+TEST(SeamedSurface, ACutAcrossASeamSplitsItsEdges) {
+  SeamedSurface slit{shapes::tube(0.5, 0.5, 1, 24, 8), shapes::tube_seam(24, 8)};
+  // Half way up the edges of one ring of triangles, all around: it crosses the seam once.
+  SurfacePath around;
+  for (int i = 0; i <= 24; ++i) {
+    const int a = 4 * 24 + i % 24;
+    around.push_back({{a, a + 24}, 0.5});
+    if (i < 24) {
+      const int beyond = 5 * 24 + (i + 1) % 24;  // across the diagonal of the cell
+      around.push_back({{a, beyond}, 0.5});
+    }
+  }
+  ASSERT_TRUE(slit.cut(std::vector<SurfacePath>{around}, 1));
+  EXPECT_EQ(std::count_if(slit.seams.begin(), slit.seams.end(),
+                          [](const SeamEdge& e) { return e.seam == 0; }),
+            9);
+  EXPECT_EQ(cut_surface(slit.mesh, slit.seams).size(), 2u);
 }
 
 TEST(SuggestSeams, ConeWantsOneDartFromItsApexToItsBorder) {
