@@ -1,7 +1,6 @@
 #include "models/sketch/surface_path.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <limits>
