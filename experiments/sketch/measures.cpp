@@ -116,6 +116,40 @@ PatternMeasures pattern_measures(const SketchScene& /*scene*/, const Frame& fram
   return measures;
 }
 
+CutMeasures cut_measures(const SketchScene& /*scene*/, const Frame& frame) {
+  CutMeasures measures;
+  if (const Part* pattern = frame.find_part("pattern")) {
+    const Part& surface = frame.require_part("surface");
+    const auto& vertex = pattern->require_array("surface_vertex", NamedArray::On::points, 1).values;
+    const Eigen::MatrixXd& sewn = frame.require_table("sewn").rows;
+    const auto at = [&](Eigen::Index row) -> Eigen::RowVector3d {
+      const auto point = static_cast<Eigen::Index>(sewn(row, 3));
+      return surface.points.row(static_cast<Eigen::Index>(vertex(point)));
+    };
+    double both_sides = 0;
+    for (Eigen::Index i = 1; i < sewn.rows(); ++i) {
+      if (sewn(i, 0) == sewn(i - 1, 0)) both_sides += (at(i) - at(i - 1)).norm();
+    }
+    measures.seam_length = both_sides / 2;
+  }
+  const Part* part = frame.find_part("suggestions");
+  if (part == nullptr) return measures;
+  const auto& rank = part->require_array("rank", NamedArray::On::cells, 1).values;
+  double sum = 0, first = 0;
+  for (std::size_t l = 0; l < part->lines.size(); ++l) {
+    double line = 0;
+    for (std::size_t k = 1; k < part->lines[l].size(); ++k)
+      line +=
+          (part->points.row(part->lines[l][k]) - part->points.row(part->lines[l][k - 1])).norm();
+    sum += line;
+    if (rank(static_cast<Eigen::Index>(l)) == 1) first += line;
+  }
+  measures.suggestions = rank.maxCoeff();
+  measures.suggested_length = sum;
+  measures.first_suggestion_length = first;
+  return measures;
+}
+
 TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame) {
   TruthMeasures measures;
   if (!scene.truth || frame.find_part("strokes") == nullptr) return measures;

@@ -29,6 +29,13 @@ struct PatternMeasures {
 };
 PatternMeasures pattern_measures(const SketchScene& scene, const Frame& frame);
 
+/// Of the cuts that a pattern has and of those that are suggested.
+struct CutMeasures {
+  std::optional<double> seam_length;  ///< of all cuts, drawn, added and suggested (m)
+  std::optional<double> suggestions, suggested_length, first_suggestion_length;
+};
+CutMeasures cut_measures(const SketchScene& scene, const Frame& frame);
+
 /// Of a reconstruction from one view of a known shape; nothing elsewhere.
 struct TruthMeasures {
   std::optional<double> depth_rms, depth_max;  ///< over the height of the shape

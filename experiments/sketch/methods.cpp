@@ -8,6 +8,7 @@
 #include "baselines/sketch/gauss_thinning.h"
 #include "baselines/sketch/hull_surface.h"
 #include "experiments/sketch/scene.h"
+#include "experiments/sketch/suggested_drawing.h"
 #include "experiments/sketch/topic.h"
 #include "solvers/sketch/one_view_process.h"
 #include "solvers/sketch/several_views.h"
@@ -60,6 +61,14 @@ MethodEntry flow_entry(std::string name, std::string summary, std::string source
       });
 }
 
+std::vector<Artifact> suggestion_files(const SketchInput& input,
+                                       const std::vector<SuggestedSeam>& suggestions) {
+  if (input.surface) return {};
+  return {
+      text_artifact("suggestions.svg",
+                    suggested_drawing_svg(align_views(input.drawing, input.align), suggestions))};
+}
+
 }  // namespace
 
 std::vector<MethodEntry> methods() {
@@ -70,7 +79,11 @@ std::vector<MethodEntry> methods() {
           "the hull is pulled onto the silhouettes and made developable, in turns",
           "thesis 2.1.2; Jung et al. 2015",
           [](const S& scene, const SeveralViewsOptions& options, RunContext&) {
-            return make_several_views_process(scene.input, options);
+            return make_several_views_process(
+                scene.input, options,
+                [&input = scene.input](const std::vector<SuggestedSeam>& suggestions) {
+                  return suggestion_files(input, suggestions);
+                });
           }),
       method_entry<S, OneViewOptions>(
           "one-view", false, "depth of one annotated view by symmetry and rulings, mirrored",

@@ -102,6 +102,20 @@ MetricGroup pattern_group() {
            kLow, {1e-3, 0.05}, &M::seam_mismatch);
 }
 
+MetricGroup cut_group() {
+  using M = CutMeasures;
+  return frame_metrics<SketchScene>(cut_measures)
+      .row(
+          "seam_length", "m",
+          "length on the surface of all cuts of the pattern: drawn seams, suggested ones that were "
+          "applied, and what opens pieces that could not be laid flat",
+          kLow, {1e-4, 0.02}, &M::seam_length)
+      .row("suggestions", "1", "seams and darts that are suggested", kNone, kCount, &M::suggestions)
+      .row("suggested_length", "m", "their length in all", kLow, {1e-4, 0.02}, &M::suggested_length)
+      .row("first_suggestion_length", "m", "length of the first of them", kLow, {1e-4, 0.02},
+           &M::first_suggestion_length);
+}
+
 MetricGroup truth_group() {
   using M = TruthMeasures;
   return frame_metrics<SketchScene>(truth_measures)
@@ -119,7 +133,7 @@ MetricGroup truth_group() {
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
-  return {surface_group(), silhouette_group(), pattern_group(), truth_group()};
+  return {surface_group(), silhouette_group(), pattern_group(), truth_group(), cut_group()};
 }
 
 }  // namespace geoprior::sketch

@@ -31,14 +31,6 @@ void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& fold
     scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
 }
 
-Artifact text_artifact(const std::string& name, const std::string& bytes) {
-  Artifact artifact;
-  artifact.name = name;
-  artifact.bytes.resize(bytes.size());
-  std::memcpy(artifact.bytes.data(), bytes.data(), bytes.size());
-  return artifact;
-}
-
 /// The files of a pattern; of one that cannot be cut out (a baseline's may overlap itself) a text
 /// that says why.
 std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const FabricationOptions& options) {
@@ -53,6 +45,14 @@ std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const Fabricatio
 }
 
 }  // namespace
+
+Artifact text_artifact(const std::string& name, const std::string& bytes) {
+  Artifact artifact;
+  artifact.name = name;
+  artifact.bytes.resize(bytes.size());
+  std::memcpy(artifact.bytes.data(), bytes.data(), bytes.size());
+  return artifact;
+}
 
 void describe(OptionVisitor& v, SketchSceneOptions& o) {
   v.value("drawing", o.drawing, {.doc = "SVG file with the annotated views"});

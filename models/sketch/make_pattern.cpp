@@ -24,15 +24,6 @@ namespace {
 /// Of the surface's upward direction in the pattern, below which a piece has none.
 constexpr double kLeastUp = 0.1;
 
-bool can_be_laid_flat(const CutPiece& piece, double hole_tolerance) {
-  if (piece.borders.empty() || piece.genus() != 0) return false;
-  if (piece.is_disc()) return true;
-  int holes = 0;
-  for (const double turning : border_turnings(piece))
-    holes += std::abs(turning + 2 * std::numbers::pi) <= hole_tolerance ? 1 : 0;
-  return holes == piece.border_count() - 1;
-}
-
 std::vector<SeamEdge> opening_seams(const std::vector<CutPiece>& pieces, int seam,
                                     const PatternOptions& options) {
   std::vector<SeamEdge> added;
@@ -183,6 +174,15 @@ void describe(OptionVisitor& v, PatternOptions& options) {
            .unit = "deg",
            .min = 0,
            .max = 180});
+}
+
+bool can_be_laid_flat(const CutPiece& piece, double hole_tolerance) {
+  if (piece.borders.empty() || piece.genus() != 0) return false;
+  if (piece.is_disc()) return true;
+  int holes = 0;
+  for (const double turning : border_turnings(piece))
+    holes += std::abs(turning + 2 * std::numbers::pi) <= hole_tolerance ? 1 : 0;
+  return holes == piece.border_count() - 1;
 }
 
 MadePattern make_pattern(const TriMesh& surface, std::span<const SeamEdge> seams,

@@ -31,6 +31,10 @@ struct PatternOptions {
 };
 void describe(OptionVisitor& v, PatternOptions& options);
 
+/// Whether a piece is a disc, or one with holes in something flat.
+/// @param hole_tolerance  rad; see PatternOptions
+bool can_be_laid_flat(const CutPiece& piece, double hole_tolerance);
+
 /// A pattern and how it came about.
 struct MadePattern {
   Pattern pattern;

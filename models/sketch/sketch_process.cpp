@@ -1,15 +1,17 @@
 #include "models/sketch/sketch_process.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <string>
 #include <utility>
 
 #include "core/frame_loop.h"
 #include "core/topology.h"
 #include "models/sketch/drawing_part.h"
+#include "models/sketch/flat_stretch.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -121,42 +123,42 @@ FrameTable sewn_table(const Pattern& pattern) {
   return table;
 }
 
-/// Logarithm of a triangle's strain from the pattern to the surface, the one farther from 0.
-double log_stretch(const Eigen::Matrix<double, 3, 2>& flat_edges,
-                   const Eigen::Matrix<double, 3, 2>& edges) {
-  const Eigen::Matrix2d flat = flat_edges.topRows<2>();
-  const Eigen::Matrix<double, 3, 2> J = edges * flat.inverse();
-  const Eigen::Matrix2d metric = J.transpose() * J;
-  const double half = metric.trace() / 2;
-  const double root = std::sqrt(std::max(0.0, half * half - metric.determinant()));
-  const double larger = 0.5 * std::log(half + root);
-  const double smaller = 0.5 * std::log(std::max(half - root, 1e-12));
-  return std::abs(larger) >= std::abs(smaller) ? larger : smaller;
-}
-
 class SketchFrames final : public FrameModel {
  public:
   SketchFrames(const SketchInput& input, int steps, const SketchMethodFactory& factory,
-               RunContext& context)
-      : input_(input), steps_(steps) {
+               const SeamSuggester& suggester, RunContext& context)
+      : input_(input), steps_(steps), factory_(factory), suggester_(suggester) {
     const Phase phase(context, "prepare");
     prepared_ = prepare_sketch(input);
     method_ = factory(prepared_, context);
   }
 
-  [[nodiscard]] int frame_count() const override { return steps_ + 1; }
+  [[nodiscard]] int frame_count() const override {
+    return steps_ + 1 + (suggester_.apply > 0 ? suggester_.iterations : 0);
+  }
   void load(StateReader& in, int /*next_frame*/) override { method_->load(in); }
   void save(StateWriter& out) const override { method_->save(out); }
-  [[nodiscard]] bool can_resume() const override { return method_->can_resume(); }
+  [[nodiscard]] bool can_resume() const override {
+    return suggester_.apply == 0 && method_->can_resume();
+  }
 
-  void advance(int /*frame*/, FrameSink& /*sink*/, RunContext& context) override {
+  void advance(int frame, FrameSink& /*sink*/, RunContext& context) override {
+    if (frame == steps_ + 1) apply_suggestions(context);
     const Phase phase(context, "step");
     method_->step(context);
   }
 
   void record(int number, FrameSink& sink, RunContext& context) override {
     Frame frame = sketch_frame(prepared_, method_->positions(), number);
-    if (number == steps_ && input_.patterns) {
+    const bool last = number + 1 == frame_count();
+    if (last && suggester_.suggest) {
+      if (suggester_.apply == 0) suggest(context);
+      if (!suggestions_.empty()) frame.parts["suggestions"] = suggestions_part(suggestions_);
+      if (suggester_.files) {
+        for (Artifact& file : suggester_.files(suggestions_)) sink.artifact(std::move(file));
+      }
+    }
+    if (last && input_.patterns) {
       MadePattern made;
       {
         const Phase phase(context, "flatten");
@@ -177,9 +179,36 @@ class SketchFrames final : public FrameModel {
   }
 
  private:
-  const SketchInput& input_;  ///< of the process, which outlives its model
+  void suggest(RunContext& context) {
+    const Phase phase(context, "suggest");
+    suggestions_ = suggester_.suggest({method_->positions(), prepared_.surface.hull.mesh.F},
+                                      seam_edges(prepared_.surface), input_.pattern);
+  }
+
+  /// Cuts the first suggestions; the method begins anew on what they leave.
+  void apply_suggestions(RunContext& context) {
+    suggest(context);
+    prepared_.start = method_->positions();
+    method_.reset();
+    const auto count = static_cast<std::size_t>(suggester_.apply);
+    const std::size_t applied = std::min(count, suggestions_.size());
+    for (std::size_t i = 0; i < applied; ++i) {
+      add_seam(prepared_.surface, prepared_.start, {suggestions_[i].cut},
+               "suggestion-" + std::to_string(i + 1));
+    }
+    if (applied > 0 && !suggestions_[applied - 1].openings.empty()) {
+      add_seam(prepared_.surface, prepared_.start, suggestions_[applied - 1].openings, "opening");
+    }
+    method_ = factory_(prepared_, context);
+  }
+
+  // Of the process, which outlives its model.
+  const SketchInput& input_;
   int steps_;
+  const SketchMethodFactory& factory_;
+  const SeamSuggester& suggester_;
   PreparedSketch prepared_;
+  std::vector<SuggestedSeam> suggestions_;
   std::unique_ptr<SketchMethod> method_;
 };
 
@@ -196,6 +225,37 @@ PreparedSketch prepare_sketch(const SketchInput& input) {
   prepared.surface = sketch_surface(align_views(input.drawing, input.align), input.hull);
   prepared.start = taubin_smoothed(prepared.surface.hull.mesh, input.smoothing);
   return prepared;
+}
+
+Part suggestions_part(const std::vector<SuggestedSeam>& suggestions) {
+  Part part;
+  part.kind = Part::Kind::lines;
+  Eigen::Index points = 0, lines = 0;
+  for (const SuggestedSeam& seam : suggestions) {
+    lines += static_cast<Eigen::Index>(seam.lines.points.size());
+    for (const Eigen::MatrixX3d& line : seam.lines.points) points += line.rows();
+  }
+  part.points.resize(points, 3);
+  const auto cells = [&](const char* name, const char* unit) {
+    return NamedArray{name, unit, NamedArray::On::cells, Eigen::MatrixXd(lines, 1)};
+  };
+  NamedArray rank = cells("rank", "1"), kind = cells("kind", "1"), length = cells("length", "m"),
+             share = cells("share_after", "1");
+  Eigen::Index next = 0, row = 0;
+  for (std::size_t i = 0; i < suggestions.size(); ++i) {
+    for (const Eigen::MatrixX3d& line : suggestions[i].lines.points) {
+      part.points.middleRows(next, line.rows()) = line;
+      std::vector<int>& numbers = part.lines.emplace_back(static_cast<std::size_t>(line.rows()));
+      std::iota(numbers.begin(), numbers.end(), static_cast<int>(next));
+      next += line.rows();
+      rank.values(row) = static_cast<double>(i + 1);
+      kind.values(row) = suggestions[i].is_dart ? 0 : 1;
+      length.values(row) = suggestions[i].lines.length;
+      share.values(row++) = suggestions[i].share_after;
+    }
+  }
+  part.arrays = {std::move(rank), std::move(kind), std::move(length), std::move(share)};
+  return part;
 }
 
 std::vector<SeamEdge> seam_edges(const SketchSurface& surface) {
@@ -246,9 +306,10 @@ void add_pattern(Frame& frame, const MadePattern& made) {
 }
 
 std::unique_ptr<Process> make_sketch_process(const SketchInput& input, int steps,
-                                             SketchMethodFactory factory) {
-  return frame_process([input, steps, factory = std::move(factory)](RunContext& context) {
-    return std::make_unique<SketchFrames>(input, steps, factory, context);
+                                             SketchMethodFactory factory, SeamSuggester suggester) {
+  return frame_process([input, steps, factory = std::move(factory),
+                        suggester = std::move(suggester)](RunContext& context) {
+    return std::make_unique<SketchFrames>(input, steps, factory, suggester, context);
   });
 }
 

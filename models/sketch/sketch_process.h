@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "models/sketch/make_pattern.h"
 #include "models/sketch/pattern.h"
 #include "models/sketch/sketch_surface.h"
+#include "models/sketch/suggested_seam.h"
 #include "models/sketch/taubin.h"
 
 namespace geoprior::sketch {
@@ -64,6 +66,18 @@ class SketchMethod {
 using SketchMethodFactory =
     std::function<std::unique_ptr<SketchMethod>(const PreparedSketch&, RunContext&)>;
 
+/// Suggestions of seams and darts for what a method ends with.
+struct SeamSuggester {
+  /// None: nothing is suggested.
+  std::function<std::vector<SuggestedSeam>(const TriMesh&, std::span<const SeamEdge>,
+                                           const PatternOptions&)>
+      suggest = {};
+  int apply = 0;       ///< the first so many are cut, and the method is begun anew from there
+  int iterations = 0;  ///< of the method after that
+  /// Files that are made of the suggestions; none when empty.
+  std::function<std::vector<Artifact>(const std::vector<SuggestedSeam>&)> files = {};
+};
+
 /// One recorded state. Metrics of the topic read these parts and nothing else:
 ///
 /// - "surface" (triangles): point arrays "border", "seam", "fold" (0 or 1);
@@ -72,7 +86,11 @@ using SketchMethodFactory =
 ///   "surface_triangle", "piece" and "stretch";
 /// - "drawing" (lines, z = 0), in the last frame: the strokes as they were drawn, cell array "kind";
 /// - table "sewn", in the last frame: a row for each vertex of a sewn stretch of the pattern's
-///   borders, in their order: stretch, partner stretch, seam, point of "pattern".
+///   borders, in their order: stretch, partner stretch, seam, point of "pattern";
+/// - "suggestions" (lines), in the last frame where any were asked for and found: cell arrays
+/// "rank"
+///   (1: the first), "kind" (0: dart, 1: seam), "length" (m, of all lines of that rank) and
+///   "share_after" (of the area within the tolerance).
 Frame sketch_frame(const PreparedSketch& prepared, const Eigen::MatrixX3d& X, double parameter);
 
 /// Adds the parts of the flat pieces to a frame, and to its surface the cell arrays "piece" and
@@ -80,12 +98,17 @@ Frame sketch_frame(const PreparedSketch& prepared, const Eigen::MatrixX3d& X, do
 /// from 0: positive where the surface is longer than the pattern).
 void add_pattern(Frame& frame, const MadePattern& made);
 
+/// The lines of suggestions, as a part of a frame.
+Part suggestions_part(const std::vector<SuggestedSeam>& suggestions);
+
 /// The drawn seams as edges to be cut, numbered in their order.
 std::vector<SeamEdge> seam_edges(const SketchSurface& surface);
 
 /// The loop around a method: frame 0 is the start, every other one a step; the last one has the
-/// pattern. Phases: "prepare", "step", "flatten", "record".
+/// pattern. With suggestions that are applied, further steps follow on the surface that they have
+/// cut; such a run cannot be resumed. Phases: "prepare", "step", "suggest", "flatten", "record".
 std::unique_ptr<Process> make_sketch_process(const SketchInput& input, int steps,
-                                             SketchMethodFactory factory);
+                                             SketchMethodFactory factory,
+                                             SeamSuggester suggester = {});
 
 }  // namespace geoprior::sketch

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/topology.h"
 #include "models/sketch/polyline.h"
+#include "models/sketch/surface_split.h"
 #include "models/sketch/traced_stroke.h"
 
 namespace geoprior::sketch {
@@ -200,6 +201,27 @@ void place_anew(SketchSurface& s) {
 }
 
 }  // namespace
+
+void add_seam(SketchSurface& surface, Eigen::MatrixX3d& X,
+              const std::vector<std::vector<SurfacePath>>& cuts, const std::string& id) {
+  StrokePath seam;
+  seam.id = id;
+  for (const std::vector<SurfacePath>& paths : cuts) {
+    const std::optional<SurfaceSplit> split = split_along(surface.hull.mesh, paths);
+    if (!split) throw Error("cannot be cut into the triangles of the surface", "seam '" + id + "'");
+    const int first_new = surface.hull.mesh.vertex_count();
+    for (StrokePath& path : surface.seams) path.edges = split->split_edges(path.edges, first_new);
+    for (StrokePath& path : surface.folds) path.edges = split->split_edges(path.edges, first_new);
+    seam.edges = split->split_edges(seam.edges, first_new);
+    surface.hull.mesh.V = split->interpolated(surface.hull.mesh.V);
+    X = split->interpolated(X);
+    surface.hull.mesh.F = split->triangles;
+    seam.edges.insert(seam.edges.end(), split->path.begin(), split->path.end());
+  }
+  std::sort(seam.edges.begin(), seam.edges.end());
+  surface.seams.push_back(std::move(seam));
+  place_anew(surface);
+}
 
 SketchSurface sketch_surface(const Drawing& aligned, const HullOptions& options) {
   SketchSurface surface;

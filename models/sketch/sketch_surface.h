@@ -7,6 +7,7 @@
 
 #include "core/connectivity.h"
 #include "core/mesh.h"
+#include "models/sketch/surface_path.h"
 #include "models/sketch/visual_hull.h"
 
 namespace geoprior::sketch {
@@ -15,7 +16,7 @@ namespace geoprior::sketch {
 struct StrokePath {
   std::string id;                       ///< of the stroke
   int view = 0;                         ///< it was drawn in, of SketchSurface::views
-  std::vector<Eigen::Vector2d> points;  ///< as drawn, aligned (m)
+  std::vector<Eigen::Vector2d> points;  ///< as drawn, aligned (m); none of what was not drawn
   bool closed = false;                  ///< it ends where it begins
   std::vector<Edge> edges;              ///< lower vertex first, ascending
   double missed = 0;  ///< share of the stroke's length beside which there is no edge
@@ -42,5 +43,12 @@ struct SketchSurface {
 /// @throws Error   naming stroke and view: a border that is not on the silhouette, a seam or fold
 ///                 that leaves the surface
 SketchSurface sketch_surface(const Drawing& aligned, const HullOptions& options);
+
+/// Cuts a surface along further paths, which are one more seam, drawn in no view: its `points` stay
+/// empty. Sets of paths are made one after the other (`SuggestedSeam::openings`).
+/// @param X       n x 3, other positions of the vertices: new vertices are put between them too
+/// @throws Error  when the triangles cannot be split so
+void add_seam(SketchSurface& surface, Eigen::MatrixX3d& X,
+              const std::vector<std::vector<SurfacePath>>& cuts, const std::string& id);
 
 }  // namespace geoprior::sketch

@@ -11,8 +11,15 @@
 
 namespace geoprior::sketch {
 
+/// What a horizontal section of the hull is.
+enum class HullSections {
+  views,  ///< all that the views see: a rectangle, where the top view does not cut it
+  top,    ///< the outline of the top view, scaled to the widths of front and side at that height
+};
+
 struct HullOptions {
   int triangles = 8000;  ///< aimed at
+  HullSections sections = HullSections::views;
 };
 void describe(OptionVisitor& v, HullOptions& options);
 
@@ -52,9 +59,13 @@ std::vector<OutlinedView> outlined_views(const Drawing& aligned);
 /// sharp.
 ///
 /// Its error against the drawing is that of chords of the length of an edge.
+///
+/// Nothing of a drawing says how wide a hat's crown is seen from above, where the brim hides it:
+/// the hull of the views is a box there. `HullSections::top` takes the outline of the top view for
+/// every height, so that a round hat is round; parts of one height that are apart are not.
 /// @param aligned  of `align_views`: at least two views that are not `photo`
 /// @throws Error   with fewer views; when the views have no point in common; when parts are thinner
-///                 than the grid
+///                 than the grid; on sections `top` without all three views
 /// Source of the construction: Rivers, Durand and Igarashi 2010, 3D Modeling with Silhouettes.
 VisualHull visual_hull(const Drawing& aligned, const HullOptions& options = {});
 

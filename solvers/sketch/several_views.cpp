@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/connectivity.h"
 #include "models/sketch/polyline.h"
@@ -32,13 +33,34 @@ void pin_across(const std::vector<Eigen::Vector2d>& stroke, const OutlinedView& 
   pins.set(vertex, along.axis, along.sign * value);
 }
 
+/// Triangles with vertices of their own on the two sides of every seam.
+DevelopableRotation rotation_of(const SketchSurface& surface, const SeveralViewsOptions& options) {
+  const TriMesh& mesh = surface.hull.mesh;
+  if (options.across_seams) return {mesh.F, mesh.vertex_count(), options.developability};
+  Eigen::MatrixX3i F(mesh.F.rows(), 3);
+  int first = 0;
+  for (const CutPiece& piece : cut_surface(mesh, seam_edges(surface))) {
+    for (int t = 0; t < piece.mesh.triangle_count(); ++t)
+      F.row(piece.surface_triangle[t]) = piece.mesh.F.row(t).array() + first;
+    first += piece.mesh.vertex_count();
+  }
+  return {F, first, options.developability};
+}
+
+SketchInput without_seams(SketchInput input) {
+  for (View& view : input.drawing.views) {
+    std::erase_if(view.strokes, [](const Stroke& s) { return s.kind == StrokeKind::seam; });
+  }
+  return input;
+}
+
 class SeveralViews final : public SketchMethod {
  public:
   SeveralViews(const PreparedSketch& prepared, const SeveralViewsOptions& options)
       : surface_(prepared.surface),
         options_(options),
         X_(prepared.start),
-        rotation_(surface_.hull.mesh.F, surface_.hull.mesh.vertex_count(), options.developability),
+        rotation_(rotation_of(surface_, options)),
         fold_(surface_, options.fold),
         transfer_(surface_.hull.mesh.F, surface_.hull.mesh.vertex_count()) {
     const EdgeConnectivity edges(surface_.hull.mesh.F);
@@ -84,6 +106,7 @@ class SeveralViews final : public SketchMethod {
     gap_length_ = 0;
     if (options_.pin_seams) {
       for (const StrokePath& seam : surface_.seams) {
+        if (seam.points.empty()) continue;  // suggested, not drawn
         for (const Edge& edge : seam.edges) {
           for (const int v : edge)
             pin_across(seam.points, surface_.hull.views[seam.view], v, X_, pins);
@@ -125,6 +148,15 @@ class SeveralViews final : public SketchMethod {
 
 }  // namespace
 
+void describe(OptionVisitor& v, SuggestedSeamsOptions& o) {
+  describe(v, o.find);
+  v.value("apply", o.apply,
+          {.doc = "the first so many suggestions are cut, and the iterations go on",
+           .min = 0,
+           .max = 100});
+  v.value("iterations", o.iterations, {.doc = "after that", .min = 1, .max = 1000});
+}
+
 void describe(OptionVisitor& v, SeveralViewsOptions& o) {
   v.value("iterations", o.iterations, {.doc = "steps; a frame each", .min = 1, .max = 1000});
   describe_choice(v, "order", o.order, kOrders,
@@ -133,6 +165,10 @@ void describe(OptionVisitor& v, SeveralViewsOptions& o) {
   describe_group(v, "fold", o.fold, {.doc = "what drawn folds ask"});
   v.value("silhouettes", o.silhouettes, {.doc = "silhouettes are pulled onto the drawing"});
   v.value("pin_seams", o.pin_seams, {.doc = "seams stay where they were drawn, in their view"});
+  v.value("across_seams", o.across_seams,
+          {.doc = "cones are fitted to triangles on both sides of a seam"});
+  v.value("drawn_seams", o.drawn_seams, {.doc = "seams of the drawing are there"});
+  describe_group(v, "suggest", o.suggest, {.doc = "seams and darts for the surface of the end"});
 }
 
 std::unique_ptr<SketchMethod> make_several_views(const PreparedSketch& prepared,
@@ -140,12 +176,26 @@ std::unique_ptr<SketchMethod> make_several_views(const PreparedSketch& prepared,
   return std::make_unique<SeveralViews>(prepared, options);
 }
 
-std::unique_ptr<Process> make_several_views_process(const SketchInput& input,
-                                                    const SeveralViewsOptions& options) {
-  return make_sketch_process(input, options.iterations,
-                             [options](const PreparedSketch& prepared, RunContext&) {
-                               return make_several_views(prepared, options);
-                             });
+std::unique_ptr<Process> make_several_views_process(
+    const SketchInput& input, const SeveralViewsOptions& options,
+    std::function<std::vector<Artifact>(const std::vector<SuggestedSeam>&)> suggestion_files) {
+  SeamSuggester suggester;
+  if (options.suggest) {
+    suggester.suggest = [find = options.suggest->find](const TriMesh& surface,
+                                                       std::span<const SeamEdge> seams,
+                                                       const PatternOptions& pattern) {
+      return suggest_seams(surface, seams, find, pattern);
+    };
+    suggester.apply = options.suggest->apply;
+    suggester.iterations = options.suggest->iterations;
+    suggester.files = std::move(suggestion_files);
+  }
+  return make_sketch_process(
+      options.drawn_seams ? input : without_seams(input), options.iterations,
+      [options](const PreparedSketch& prepared, RunContext&) {
+        return make_several_views(prepared, options);
+      },
+      std::move(suggester));
 }
 
 }  // namespace geoprior::sketch

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/options.h"
 #include "models/sketch/sketch_process.h"
 #include "solvers/sketch/developable_rotation.h"
 #include "solvers/sketch/fold_rotation.h"
+#include "solvers/sketch/seam_suggestion.h"
 
 namespace geoprior::sketch {
 
@@ -16,13 +19,24 @@ enum class StepOrder {
   alternating,  ///< silhouettes first, with triangles as they are; then triangles turned
 };
 
+/// Seams and darts that are suggested for the surface of the last step.
+struct SuggestedSeamsOptions {
+  SeamSuggestionOptions find;
+  int apply = 0;       ///< the first so many are cut, and the iterations go on
+  int iterations = 5;  ///< after that
+};
+void describe(OptionVisitor& v, SuggestedSeamsOptions& options);
+
 struct SeveralViewsOptions {
   int iterations = 20;
   StepOrder order = StepOrder::merged;
   DevelopableRotationOptions developability;
   FoldOptions fold;
-  bool silhouettes = true;  ///< false: developability alone
-  bool pin_seams = true;    ///< seams stay where they were drawn, in their view
+  bool silhouettes = true;   ///< false: developability alone
+  bool pin_seams = true;     ///< seams stay where they were drawn, in their view
+  bool across_seams = true;  ///< cones are fitted to triangles on both sides of a seam
+  bool drawn_seams = true;   ///< false: seams of the drawing are left out
+  std::optional<SuggestedSeamsOptions> suggest = {};
 };
 void describe(OptionVisitor& v, SeveralViewsOptions& options);
 
@@ -36,10 +50,12 @@ void describe(OptionVisitor& v, SeveralViewsOptions& options);
 /// met exactly, but for gaps that are reported. Borders and seams stay on their strokes likewise,
 /// free to slide along them.
 ///
-/// It cannot: find seams by itself, treat parts that hide each other, make folds that no view
-/// shows.
-std::unique_ptr<Process> make_several_views_process(const SketchInput& input,
-                                                    const SeveralViewsOptions& options);
+/// It cannot: move the seams that it is given, treat parts that hide each other, make folds that no
+/// view shows.
+/// @param suggestion_files  what is made of the suggestions; see SeamSuggester
+std::unique_ptr<Process> make_several_views_process(
+    const SketchInput& input, const SeveralViewsOptions& options,
+    std::function<std::vector<Artifact>(const std::vector<SuggestedSeam>&)> suggestion_files = {});
 
 /// The method of that process.
 std::unique_ptr<SketchMethod> make_several_views(const PreparedSketch& prepared,
