@@ -172,7 +172,7 @@ class SketchFrames final : public FrameModel {
       }
     }
     const Phase phase(context, "record");
-    if (number == steps_ && !input_.drawing.views.empty())
+    if (last && !input_.drawing.views.empty())
       frame.parts["drawing"] = drawing_part(input_.drawing);
     method_->diagnose(frame.diagnostics);
     sink.frame(std::move(frame));
