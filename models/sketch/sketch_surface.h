@@ -17,9 +17,11 @@ struct StrokePath {
   int view = 0;                         ///< it was drawn in, of SketchSurface::views
   std::vector<Eigen::Vector2d> points;  ///< as drawn, aligned (m)
   bool closed = false;                  ///< it ends where it begins
+  DepthSide side = DepthSide::front;    ///< of the surface that it lies on
   std::vector<Edge> edges;              ///< lower vertex first, ascending
   double missed = 0;  ///< share of the stroke's length beside which there is no edge
   std::optional<double> fold_angle_deg = {}, fold_width = {};  ///< of the stroke
+  std::optional<FoldSide> fold_side = {};                      ///< of the stroke
 };
 
 /// A stretch of the surface's border that a stroke asks for.
@@ -27,6 +29,7 @@ struct BorderPlace {
   std::string id;  ///< of the stroke
   int view = 0;
   std::vector<Eigen::Vector2d> points;  ///< the stroke, aligned (m)
+  bool inside = false;                  ///< a slit or the border of a hole, not on the silhouette
 };
 
 /// The hull as a surface to work on: open where borders were drawn, with seams along its edges.
@@ -38,6 +41,11 @@ struct SketchSurface {
   std::vector<int> border_of;        ///< of each vertex: of `borders`, or -1
 };
 
+/// A border along the silhouette takes the end away that the hull closes there. One inside of it is
+/// traced like a seam: an open line is a slit, whose two sides have vertices of their own; within a
+/// closed line the triangles that face the line's side are taken out, and it may pass the
+/// silhouette's borders, as the front of an open coat does.
+///
 /// @param aligned  of `align_views`
 /// @throws Error   naming stroke and view: a border that is not on the silhouette, a seam or fold
 ///                 that leaves the surface

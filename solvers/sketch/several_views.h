@@ -7,6 +7,7 @@
 #include "models/sketch/sketch_process.h"
 #include "solvers/sketch/developable_rotation.h"
 #include "solvers/sketch/fold_rotation.h"
+#include "solvers/sketch/zippering.h"
 
 namespace geoprior::sketch {
 
@@ -22,7 +23,8 @@ struct SeveralViewsOptions {
   DevelopableRotationOptions developability;
   FoldOptions fold;
   bool silhouettes = true;  ///< false: developability alone
-  bool pin_seams = true;    ///< seams stay where they were drawn, in their view
+  SilhouetteChoice silhouette = SilhouetteChoice::protruding;
+  bool pin_seams = true;  ///< seams stay where they were drawn, in their view
 };
 void describe(OptionVisitor& v, SeveralViewsOptions& options);
 
