@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/topology.h"
+#include "experiments/sketch/cloth_files.h"
 #include "testbed/formats/mesh_file.h"
 #include "testbed/home.h"
 
@@ -27,7 +28,8 @@ void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& fold
   scene.load_warnings = std::move(read.warnings);
   scene.input_files = std::move(read.inputs);
   if (scene.input.drawing.find(ViewKind::photo) != nullptr) return;
-  for (const OutlinedView& view : outlined_views(align_views(scene.input.drawing, o.align)))
+  scene.aligned = align_views(scene.input.drawing, o.align);
+  for (const OutlinedView& view : outlined_views(scene.aligned))
     scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
 }
 
@@ -41,11 +43,16 @@ Artifact text_artifact(const std::string& name, const std::string& bytes) {
 
 /// The files of a pattern; of one that cannot be cut out (a baseline's may overlap itself) a text
 /// that says why.
-std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const FabricationOptions& options) {
+std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const Eigen::MatrixX3d& surface,
+                                        const FabricationOptions& options) {
   std::vector<Artifact> artifacts;
   try {
     for (const FabricationFile& file : fabrication_files(pattern, options))
       artifacts.push_back(text_artifact(file.name, file.bytes));
+    if (options.cloth) {
+      for (const FabricationFile& file : cloth_files(pattern, surface))
+        artifacts.push_back(text_artifact(file.name, file.bytes));
+    }
   } catch (const Error& error) {
     artifacts = {text_artifact("pattern-refused.txt", std::string(error.what()) + "\n")};
   }
@@ -99,8 +106,9 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
   scene->input.smoothing = options.smoothing;
   scene->input.pattern = options.pattern;
   if (options.fabrication) {
-    scene->input.files = [fabrication = *options.fabrication](const Pattern& pattern) {
-      return pattern_artifacts(pattern, fabrication);
+    scene->input.files = [fabrication = *options.fabrication](const Pattern& pattern,
+                                                              const Eigen::MatrixX3d& surface) {
+      return pattern_artifacts(pattern, surface, fabrication);
     };
   }
   if (options.synthetic) {

@@ -45,6 +45,7 @@ class SketchScene final : public ProcessScene {
  public:
   SketchInput input;  ///< what a method is given
   std::vector<DrawnSilhouette> silhouettes;
+  Drawing aligned;                     ///< of several views, as methods see them
   std::optional<SyntheticView> truth;  ///< of a synthetic view
 
   /// The one view of a drawing that has no others.

@@ -112,7 +112,8 @@ double border_area(const Eigen::MatrixX2d& points, const std::vector<int>& loop)
 }
 
 PatternPiece lay_piece(const CutPiece& cut, const PatternOptions& options, FlattenReport& report) {
-  Flattening flat = flatten(cut.mesh, options.flatten);
+  Flattening flat = options.lay_disc ? Flattening{options.lay_disc(cut.mesh), {}}
+                                     : flatten(cut.mesh, options.flatten);
   report = std::move(flat.report);
   PatternPiece piece;
   piece.points = std::move(flat.points);

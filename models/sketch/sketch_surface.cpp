@@ -79,9 +79,11 @@ void remove_triangles(SketchSurface& s, const std::vector<char>& removed) {
 void open_borders(SketchSurface& s, const Drawing& drawing) {
   for (std::size_t view = 0; view < s.hull.views.size(); ++view) {
     const View& drawn = *drawing.find(s.hull.views[view].kind);
+    int number = 0;
     for (const Stroke* stroke : strokes_of(drawn, StrokeKind::border)) {
       if (!stroke->inside)
-        s.borders.push_back({stroke->id, static_cast<int>(view), polyline_of(*stroke)});
+        s.borders.push_back({stroke->id, static_cast<int>(view), polyline_of(*stroke), number});
+      ++number;
     }
   }
   TriMesh& mesh = s.hull.mesh;
@@ -147,12 +149,14 @@ void trim_ends(StrokePath& path, const OutlinedView& view, const TriMesh& mesh,
 }
 
 /// A stroke on the surface, which is split along it.
-StrokePath traced_path(SketchSurface& s, const Drawing& drawing, const Stroke& stroke, int view,
-                       double reach, const std::vector<std::vector<Edge>*>& kept) {
+StrokePath traced_path(SketchSurface& s, const Drawing& drawing, int view, StrokeKind kind,
+                       int number, double reach, const std::vector<std::vector<Edge>*>& kept) {
   const OutlinedView& seen = s.hull.views[view];
+  const Stroke& stroke = *strokes_of(*drawing.find(seen.kind), kind)[number];
   StrokePath path;
   path.id = stroke.id;
   path.view = view;
+  path.number = number;
   path.points = polyline_of(stroke);
   path.closed = stroke.closed;
   path.side = stroke.side;
@@ -225,21 +229,25 @@ void remove_within(SketchSurface& s, const StrokePath& path) {
   remove_triangles(s, removed);
 }
 
+int stroke_count(const SketchSurface& s, const Drawing& drawing, int view, StrokeKind kind) {
+  return static_cast<int>(strokes_of(*drawing.find(s.hull.views[view].kind), kind).size());
+}
+
 /// Slits and holes: borders drawn inside of the silhouette.
 void open_inside(SketchSurface& s, const Drawing& drawing, double reach) {
-  for (std::size_t view = 0; view < s.hull.views.size(); ++view) {
-    for (const Stroke* stroke :
-         strokes_of(*drawing.find(s.hull.views[view].kind), StrokeKind::border)) {
-      if (!stroke->inside) continue;
-      StrokePath path = traced_path(s, drawing, *stroke, static_cast<int>(view), reach, {});
+  for (int view = 0; view < static_cast<int>(s.hull.views.size()); ++view) {
+    const OutlinedView& seen = s.hull.views[view];
+    for (int i = 0; i < stroke_count(s, drawing, view, StrokeKind::border); ++i) {
+      if (!strokes_of(*drawing.find(seen.kind), StrokeKind::border)[i]->inside) continue;
+      StrokePath path = traced_path(s, drawing, view, StrokeKind::border, i, reach, {});
       place_new_vertices(s);
       if (path.closed) {
         remove_within(s, path);
       } else {
-        trim_ends(path, s.hull.views[view], s.hull.mesh, border_vertices(s.hull.mesh), reach);
+        trim_ends(path, seen, s.hull.mesh, border_vertices(s.hull.mesh), reach);
         slit_along(s, path);
       }
-      s.borders.push_back({stroke->id, static_cast<int>(view), path.points, true});
+      s.borders.push_back({path.id, view, path.points, i, true});
     }
   }
 }
@@ -247,13 +255,12 @@ void open_inside(SketchSurface& s, const Drawing& drawing, double reach) {
 /// Puts the strokes of one kind onto the surface; paths that are there are split along with it.
 void trace_strokes(SketchSurface& s, const Drawing& drawing, StrokeKind kind, double reach) {
   std::vector<StrokePath>& paths = kind == StrokeKind::seam ? s.seams : s.folds;
-  for (std::size_t view = 0; view < s.hull.views.size(); ++view) {
-    const OutlinedView& seen = s.hull.views[view];
-    for (const Stroke* stroke : strokes_of(*drawing.find(seen.kind), kind)) {
+  for (int view = 0; view < static_cast<int>(s.hull.views.size()); ++view) {
+    for (int i = 0; i < stroke_count(s, drawing, view, kind); ++i) {
       std::vector<std::vector<Edge>*> kept;
       for (StrokePath& path : s.seams) kept.push_back(&path.edges);
       for (StrokePath& path : s.folds) kept.push_back(&path.edges);
-      paths.push_back(traced_path(s, drawing, *stroke, static_cast<int>(view), reach, kept));
+      paths.push_back(traced_path(s, drawing, view, kind, i, reach, kept));
     }
   }
 }
@@ -288,9 +295,9 @@ void assign_borders(SketchSurface& s) {
 
 }  // namespace
 
-SketchSurface sketch_surface(const Drawing& aligned, const HullOptions& options) {
+SketchSurface sketch_surface(const Drawing& aligned, VisualHull hull) {
   SketchSurface surface;
-  surface.hull = visual_hull(aligned, options);
+  surface.hull = std::move(hull);
   open_borders(surface, aligned);
   const double reach = 1.5 * surface.hull.spacing;
   open_inside(surface, aligned, reach);

@@ -15,6 +15,7 @@ namespace geoprior::sketch {
 struct StrokePath {
   std::string id;                       ///< of the stroke
   int view = 0;                         ///< it was drawn in, of SketchSurface::views
+  int number = 0;                       ///< among the strokes of its kind in that view
   std::vector<Eigen::Vector2d> points;  ///< as drawn, aligned (m)
   bool closed = false;                  ///< it ends where it begins
   DepthSide side = DepthSide::front;    ///< of the surface that it lies on
@@ -29,6 +30,7 @@ struct BorderPlace {
   std::string id;  ///< of the stroke
   int view = 0;
   std::vector<Eigen::Vector2d> points;  ///< the stroke, aligned (m)
+  int number = 0;                       ///< among the borders of that view
   bool inside = false;                  ///< a slit or the border of a hole, not on the silhouette
 };
 
@@ -47,8 +49,9 @@ struct SketchSurface {
 /// silhouette's borders, as the front of an open coat does.
 ///
 /// @param aligned  of `align_views`
+/// @param hull     of that drawing
 /// @throws Error   naming stroke and view: a border that is not on the silhouette, a seam or fold
 ///                 that leaves the surface
-SketchSurface sketch_surface(const Drawing& aligned, const HullOptions& options);
+SketchSurface sketch_surface(const Drawing& aligned, VisualHull hull);
 
 }  // namespace geoprior::sketch

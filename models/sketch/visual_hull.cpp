@@ -290,9 +290,14 @@ VisualHull visual_hull(const Drawing& aligned, const HullOptions& options) {
   QuadMesh quads = manifold_nets(hull.views, box, hull.spacing);
   fit_to_silhouettes(quads, hull.views, hull.spacing);
   hull.mesh = split_quads(quads);
+  place_on_silhouettes(hull);
+  return hull;
+}
+
+void place_on_silhouettes(VisualHull& hull) {
+  hull.places.clear();
   for (const OutlinedView& view : hull.views)
     hull.places.push_back(places_on(view, hull.mesh.V, 0.02 * hull.spacing));
-  return hull;
 }
 
 }  // namespace geoprior::sketch

@@ -64,7 +64,7 @@ class SeveralViews final : public SketchMethod {
       const Phase phase(context, "rotations");
       const Eigen::MatrixX3d normals = triangle_normals({X_, surface_.hull.mesh.F});
       rotations = rotation_.rotations(normals);
-      fold_.blend(X_, normals, rotations);
+      if (options_.folds) fold_.blend(X_, normals, rotations);
     }
     const Phase phase(context, "transfer");
     X_ = transfer_.solve(X_, rotations, pins);
@@ -136,6 +136,7 @@ void describe(OptionVisitor& v, SeveralViewsOptions& o) {
   describe_choice(v, "silhouette", o.silhouette, kSilhouetteChoices,
                   {.doc = "which edges carry a silhouette: those that protrude most, or those "
                           "nearest to one plane"});
+  v.value("folds", o.folds, {.doc = "drawn folds are asked for"});
   v.value("pin_seams", o.pin_seams, {.doc = "seams stay where they were drawn, in their view"});
 }
 

@@ -24,6 +24,7 @@ struct SeveralViewsOptions {
   FoldOptions fold;
   bool silhouettes = true;  ///< false: developability alone
   SilhouetteChoice silhouette = SilhouetteChoice::protruding;
+  bool folds = true;      ///< false: drawn folds ask for nothing
   bool pin_seams = true;  ///< seams stay where they were drawn, in their view
 };
 void describe(OptionVisitor& v, SeveralViewsOptions& options);
