@@ -7,6 +7,7 @@
 #include "baselines/sketch/developability_flow.h"
 #include "baselines/sketch/gauss_thinning.h"
 #include "baselines/sketch/hull_surface.h"
+#include "experiments/sketch/compared_methods.h"
 #include "experiments/sketch/scene.h"
 #include "experiments/sketch/topic.h"
 #include "solvers/sketch/one_view_process.h"
@@ -64,7 +65,7 @@ MethodEntry flow_entry(std::string name, std::string summary, std::string source
 
 std::vector<MethodEntry> methods() {
   using S = SketchScene;
-  return {
+  std::vector<MethodEntry> all{
       method_entry<S, SeveralViewsOptions>(
           "several-views", false,
           "the hull is pulled onto the silhouettes and made developable, in turns",
@@ -94,6 +95,8 @@ std::vector<MethodEntry> methods() {
           "angle-defect-flow", "the squared angle defects are descended, silhouettes are not known",
           "Wang and Tang 2004"),
   };
+  for (MethodEntry& entry : compared_methods()) all.push_back(std::move(entry));
+  return all;
 }
 
 std::vector<DiagnosticEntry> diagnostics() {

@@ -67,6 +67,7 @@ void describe(OptionVisitor& v, SketchSceneOptions& o) {
           {.doc = "mesh file in place of a drawing, for methods that need none"});
   describe_group(v, "synthetic", o.synthetic,
                  {.doc = "one view of a shape that is known, in place of both"});
+  describe_group(v, "known", o.known, {.doc = "a surface of closed form, in place of all"});
   v.value("surface_scale", o.surface_scale,
           {.doc = "metres for one unit of that mesh", .unit = "m", .min = 1e-9, .max = 1e9});
   describe_group(v, "read", o.read, {.doc = "how the drawing becomes strokes"});
@@ -94,11 +95,11 @@ const View& SketchScene::photo() const {
 std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options,
                                                const std::filesystem::path& folder,
                                                std::uint64_t seed) {
-  const int given =
-      !options.drawing.empty() + !options.surface.empty() + options.synthetic.has_value();
+  const int given = !options.drawing.empty() + !options.surface.empty() +
+                    options.synthetic.has_value() + options.known.has_value();
   if (given != 1) {
     throw Error(std::to_string(given) + " of them are given",
-                "scene.drawing, scene.surface and scene.synthetic", "one");
+                "scene.drawing, scene.surface, scene.synthetic and scene.known", "one");
   }
   auto scene = std::make_shared<SketchScene>();
   scene->input.align = options.align;
@@ -116,6 +117,9 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
     drawn.seed = static_cast<int>(scene_seed(seed, drawn.seed));
     scene->truth = synthetic_view(drawn);
     scene->input.drawing = {"scene.synthetic", {scene->truth->view}};
+  } else if (options.known) {
+    scene->input.surface = known_surface(*options.known);
+    scene->input.patterns = false;
   } else if (options.drawing.empty()) {
     load_surface(options, folder, *scene);
     scene->input.patterns = false;
