@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/limits.h"
 #include "core/topology.h"
+#include "models/sketch/collapse_edges.h"
 #include "models/sketch/surface_nets.h"
 
 namespace geoprior::sketch {
@@ -290,6 +291,8 @@ VisualHull visual_hull(const Drawing& aligned, const HullOptions& options) {
   QuadMesh quads = manifold_nets(hull.views, box, hull.spacing);
   fit_to_silhouettes(quads, hull.views, hull.spacing);
   hull.mesh = split_quads(quads);
+  // Several vertices of the nets may have gone to one corner.
+  collapse_short_edges(hull.mesh, 0.01 * hull.spacing);
   place_on_silhouettes(hull);
   return hull;
 }
