@@ -10,6 +10,7 @@
 #include "baselines/sketch/exact_hull.h"
 #include "baselines/sketch/hull_surface.h"
 #include "baselines/sketch/lscm.h"
+#include "core/error.h"
 #include "experiments/sketch/scene.h"
 #include "solvers/sketch/several_views.h"
 
@@ -25,7 +26,19 @@ constexpr std::array<std::string_view, 5> kFlattenings{"rigid", "lscm", "abf", "
 void describe_flattening(OptionVisitor& v, FlattenBy& by) {
   describe_choice(v, "by", by, kFlattenings,
                   {.doc = "how a piece is laid flat: rigid is the topic's own, lscm and abf least "
-                          "squares conformal and angle-based (ABF++), the others are CGAL's"});
+                          "squares conformal and angle-based (ABF++), the others are CGAL's; "
+                          "where its as-rigid-as-possible gives up, its conformal map"});
+}
+
+/// CGAL mends what its as-rigid-as-possible turns over by a pass that refuses some borders (those
+/// of remeshed pieces that are folded over a part of the border); a road that ends there is no
+/// comparison.
+Eigen::MatrixX2d cgal_arap_or_lscm(const TriMesh& disc) {
+  try {
+    return flatten_cgal_arap(disc);
+  } catch (const Error&) {
+    return flatten_cgal_lscm(disc);
+  }
 }
 
 /// The input with that flattening. All but ours need discs, so that pieces with holes are cut open
@@ -43,7 +56,7 @@ SketchInput with_flattening(SketchInput input, FlattenBy by) {
       input.pattern.lay_disc = [](const TriMesh& disc) { return flatten_abf(disc); };
       break;
     case FlattenBy::cgal_arap:
-      input.pattern.lay_disc = [](const TriMesh& disc) { return flatten_cgal_arap(disc); };
+      input.pattern.lay_disc = cgal_arap_or_lscm;
       break;
     case FlattenBy::cgal_lscm:
       input.pattern.lay_disc = [](const TriMesh& disc) { return flatten_cgal_lscm(disc); };
