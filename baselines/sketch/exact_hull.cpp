@@ -81,6 +81,8 @@ HullSolid intersection_of(const std::vector<OutlinedView>& views, const std::str
   return solid;
 }
 
+/// Creases are kept as curves, but their edges too are split and collapsed: where outlines of two
+/// views cross the intersection has edges far shorter than wanted, and slivers would stay at them.
 void remesh(HullSolid& solid, double edge_length, const ExactHullOptions& options) {
   auto crease = solid.add_property_map<HullSolid::Edge_index, bool>("e:crease", false).first;
   hull_pmp::detect_sharp_edges(solid, options.crease_deg, crease);
@@ -94,7 +96,7 @@ void remesh(HullSolid& solid, double edge_length, const ExactHullOptions& option
       solid.faces(), edge_length, solid,
       hull_pmp::parameters::number_of_iterations(static_cast<unsigned>(options.remeshing))
           .edge_is_constrained_map(crease)
-          .protect_constraints(true));
+          .protect_constraints(false));
   solid.collect_garbage();
 }
 

@@ -16,8 +16,8 @@ void describe(OptionVisitor& v, ExactHullOptions& options);
 /// whose triangles it aims at the number of.
 ///
 /// Predicates are exact, constructed points are rounded. The creases between the views' faces are
-/// found by their angle, split to the wanted length and kept by the remeshing, so the silhouettes
-/// are those of the drawing up to chords.
+/// found by their angle, split to the wanted length and kept as curves by the remeshing, so the
+/// silhouettes are those of the drawing up to chords.
 ///
 /// @param aligned  of `align_views`: at least two views that are not `photo`
 /// @throws Error   with fewer views; when the intersection is no solid
