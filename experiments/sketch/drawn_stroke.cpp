@@ -126,6 +126,19 @@ std::optional<double> written_fold_width(const std::string& text, const std::str
   return width;
 }
 
+std::optional<FoldSide> written_fold_side(const std::string& text, const std::string& place) {
+  if (text.empty()) return std::nullopt;
+  if (text == "left") return FoldSide::left;
+  if (text == "right") return FoldSide::right;
+  throw Error("unknown side " + quoted_value(text), place + ": data-fold-side", "left, right");
+}
+
+bool written_border_inside(const std::string& text, const std::string& place) {
+  if (text.empty() || text == "silhouette") return false;
+  if (text == "inside") return true;
+  throw Error("unknown place " + quoted_value(text), place + ": data-border", "silhouette, inside");
+}
+
 /// What all lines of a shape have in common.
 Stroke common_stroke(const TaggedShape& tagged, const SvgShape& shape, StrokeKind kind) {
   const std::string place = tagged.place();
@@ -135,9 +148,12 @@ Stroke common_stroke(const TaggedShape& tagged, const SvgShape& shape, StrokeKin
   stroke.kind = kind;
   stroke.name = stroke_name(tagged, shape.tags, kind);
   stroke.side = depth_side(tagged.data("depth"), place);
+  if (kind == StrokeKind::border)
+    stroke.inside = written_border_inside(tagged.data("border"), place);
   if (kind == StrokeKind::fold) {
     stroke.fold_angle_deg = written_fold_angle(tagged.data("fold-angle"), place);
     stroke.fold_width = written_fold_width(tagged.data("fold-width"), place);
+    stroke.fold_side = written_fold_side(tagged.data("fold-side"), place);
   }
   return stroke;
 }

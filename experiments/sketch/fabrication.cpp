@@ -20,6 +20,9 @@ void describe(OptionVisitor& v, FabricationOptions& options) {
           {.doc = "blank border of a page", .unit = "mm", .min = 0, .max = 50});
   v.value("overlap_mm", options.pages.overlap_mm,
           {.doc = "of neighbouring pages", .unit = "mm", .min = 0, .max = 50});
+  v.value("cloth", options.cloth,
+          {.doc = "garment.obj and garment.json too: the surface with material coordinates, and "
+                  "what is sewn to what, for cloth simulators"});
 }
 
 std::vector<FabricationFile> fabrication_files(const Pattern& pattern,

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "metrics/depth_error.h"
+#include "metrics/projected_holes.h"
 #include "metrics/seam_lengths.h"
 #include "metrics/silhouette.h"
 
@@ -96,7 +97,8 @@ SilhouetteMeasures silhouette_measures(const SketchScene& scene, const Frame& fr
   SilhouetteMeasures worst;
   for (const DrawnSilhouette& drawn : scene.silhouettes) {
     const SilhouetteMatch match =
-        silhouette_match(mesh, drawn.frame, std::span<const PlanarLoop>(&drawn.outline, 1));
+        silhouette_match(with_filled_holes(mesh, drawn.frame), drawn.frame,
+                         std::span<const PlanarLoop>(&drawn.outline, 1));
     worst.iou = std::min(worst.iou.value_or(1), match.iou);
     worst.hausdorff_percent =
         std::max(worst.hausdorff_percent.value_or(0), match.hausdorff_percent);

@@ -7,6 +7,7 @@
 #include "baselines/sketch/developability_flow.h"
 #include "baselines/sketch/gauss_thinning.h"
 #include "baselines/sketch/hull_surface.h"
+#include "experiments/sketch/compared_methods.h"
 #include "experiments/sketch/scene.h"
 #include "experiments/sketch/suggested_drawing.h"
 #include "experiments/sketch/topic.h"
@@ -73,7 +74,7 @@ std::vector<Artifact> suggestion_files(const SketchInput& input,
 
 std::vector<MethodEntry> methods() {
   using S = SketchScene;
-  return {
+  std::vector<MethodEntry> all{
       method_entry<S, SeveralViewsOptions>(
           "several-views", false,
           "the hull is pulled onto the silhouettes and made developable, in turns",
@@ -107,6 +108,8 @@ std::vector<MethodEntry> methods() {
           "angle-defect-flow", "the squared angle defects are descended, silhouettes are not known",
           "Wang and Tang 2004"),
   };
+  for (MethodEntry& entry : compared_methods()) all.push_back(std::move(entry));
+  return all;
 }
 
 std::vector<DiagnosticEntry> diagnostics() {

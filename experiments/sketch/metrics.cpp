@@ -1,7 +1,9 @@
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "experiments/sketch/garment_measures.h"
 #include "experiments/sketch/measures.h"
 #include "experiments/sketch/topic.h"
 #include "testbed/metric_rows.h"
@@ -133,7 +135,10 @@ MetricGroup truth_group() {
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
-  return {surface_group(), silhouette_group(), pattern_group(), truth_group(), cut_group()};
+  std::vector<MetricGroup> groups{surface_group(), silhouette_group(), pattern_group(),
+                                  truth_group(), cut_group()};
+  for (MetricGroup& group : garment_metrics()) groups.push_back(std::move(group));
+  return groups;
 }
 
 }  // namespace geoprior::sketch

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/topology.h"
+#include "experiments/sketch/cloth_files.h"
 #include "testbed/formats/mesh_file.h"
 #include "testbed/home.h"
 
@@ -27,17 +28,23 @@ void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& fold
   scene.load_warnings = std::move(read.warnings);
   scene.input_files = std::move(read.inputs);
   if (scene.input.drawing.find(ViewKind::photo) != nullptr) return;
-  for (const OutlinedView& view : outlined_views(align_views(scene.input.drawing, o.align)))
+  scene.aligned = align_views(scene.input.drawing, o.align);
+  for (const OutlinedView& view : outlined_views(scene.aligned))
     scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
 }
 
 /// The files of a pattern; of one that cannot be cut out (a baseline's may overlap itself) a text
 /// that says why.
-std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const FabricationOptions& options) {
+std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const Eigen::MatrixX3d& surface,
+                                        const FabricationOptions& options) {
   std::vector<Artifact> artifacts;
   try {
     for (const FabricationFile& file : fabrication_files(pattern, options))
       artifacts.push_back(text_artifact(file.name, file.bytes));
+    if (options.cloth) {
+      for (const FabricationFile& file : cloth_files(pattern, surface))
+        artifacts.push_back(text_artifact(file.name, file.bytes));
+    }
   } catch (const Error& error) {
     artifacts = {text_artifact("pattern-refused.txt", std::string(error.what()) + "\n")};
   }
@@ -60,6 +67,7 @@ void describe(OptionVisitor& v, SketchSceneOptions& o) {
           {.doc = "mesh file in place of a drawing, for methods that need none"});
   describe_group(v, "synthetic", o.synthetic,
                  {.doc = "one view of a shape that is known, in place of both"});
+  describe_group(v, "known", o.known, {.doc = "a surface of closed form, in place of all"});
   v.value("surface_scale", o.surface_scale,
           {.doc = "metres for one unit of that mesh", .unit = "m", .min = 1e-9, .max = 1e9});
   describe_group(v, "read", o.read, {.doc = "how the drawing becomes strokes"});
@@ -87,11 +95,11 @@ const View& SketchScene::photo() const {
 std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options,
                                                const std::filesystem::path& folder,
                                                std::uint64_t seed) {
-  const int given =
-      !options.drawing.empty() + !options.surface.empty() + options.synthetic.has_value();
+  const int given = !options.drawing.empty() + !options.surface.empty() +
+                    options.synthetic.has_value() + options.known.has_value();
   if (given != 1) {
     throw Error(std::to_string(given) + " of them are given",
-                "scene.drawing, scene.surface and scene.synthetic", "one");
+                "scene.drawing, scene.surface, scene.synthetic and scene.known", "one");
   }
   auto scene = std::make_shared<SketchScene>();
   scene->input.align = options.align;
@@ -99,8 +107,9 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
   scene->input.smoothing = options.smoothing;
   scene->input.pattern = options.pattern;
   if (options.fabrication) {
-    scene->input.files = [fabrication = *options.fabrication](const Pattern& pattern) {
-      return pattern_artifacts(pattern, fabrication);
+    scene->input.files = [fabrication = *options.fabrication](const Pattern& pattern,
+                                                              const Eigen::MatrixX3d& surface) {
+      return pattern_artifacts(pattern, surface, fabrication);
     };
   }
   if (options.synthetic) {
@@ -108,6 +117,9 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
     drawn.seed = static_cast<int>(scene_seed(seed, drawn.seed));
     scene->truth = synthetic_view(drawn);
     scene->input.drawing = {"scene.synthetic", {scene->truth->view}};
+  } else if (options.known) {
+    scene->input.surface = known_surface(*options.known);
+    scene->input.patterns = false;
   } else if (options.drawing.empty()) {
     load_surface(options, folder, *scene);
     scene->input.patterns = false;

@@ -12,6 +12,7 @@
 #include "experiments/sketch/drawing_file.h"
 #include "experiments/sketch/fabrication.h"
 #include "metrics/planar_overlap.h"
+#include "models/sketch/known_surface.h"
 #include "models/sketch/sketch_process.h"
 #include "models/sketch/synthetic_views.h"
 #include "testbed/topic.h"
@@ -25,6 +26,7 @@ struct SketchSceneOptions {
   std::string surface;  ///< mesh file instead, for methods that need no drawing
   double surface_scale = 1;
   std::optional<SyntheticViewOptions> synthetic;  ///< instead of both
+  std::optional<KnownSurfaceOptions> known;       ///< a surface of closed form, instead of all
   DrawingFileOptions read;
   AlignOptions align;
   HullOptions hull;
@@ -45,6 +47,7 @@ class SketchScene final : public ProcessScene {
  public:
   SketchInput input;  ///< what a method is given
   std::vector<DrawnSilhouette> silhouettes;
+  Drawing aligned;                     ///< of several views, as methods see them
   std::optional<SyntheticView> truth;  ///< of a synthetic view
 
   /// The one view of a drawing that has no others.

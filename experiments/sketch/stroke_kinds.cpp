@@ -114,10 +114,18 @@ TopicFile drawing_keys() {
       {"data-panel", "text", "", "", "", "panel that a seam, fold or border belongs to"},
       {"data-depth", "text", "front", "front, back, both", "",
        "side of the object on which a line inside of the silhouette lies"},
+      {"data-border", "text", "silhouette", "silhouette, inside", "",
+       "of a border: along the silhouette, which opens the end there; or inside of it, where an "
+       "open "
+       "line is a slit and a closed one a hole"},
       {"data-fold-angle", "number", "", "0 to 90", "deg",
        "between normal and view direction; absent: the method's"},
       {"data-fold-width", "length", "", "more than 0", "mm",
        "of the bent strip in true size, with or without a unit; absent: the method's"},
+      {"data-fold-side", "text", "", "left, right", "",
+       "side of the stroke, along it, to which the surface falls away from the eye; absent: the "
+       "one "
+       "that turns it less"},
       {"data-scale", "number", "1", "", "",
        "of the outermost svg: 10 or 1:10 for a drawing at a tenth of true size"}};
   file.keys.insert(file.keys.end(), attributes.begin(), attributes.end());

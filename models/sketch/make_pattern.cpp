@@ -118,7 +118,8 @@ std::vector<KeptLength> sewn_lengths(const CutPiece& cut) {
 PatternPiece lay_piece(const CutPiece& cut, const PatternOptions& options, FlattenReport& report) {
   const std::vector<KeptLength> kept =
       options.equal_seams ? sewn_lengths(cut) : std::vector<KeptLength>();
-  Flattening flat = flatten(cut.mesh, options.flatten, kept);
+  Flattening flat = options.lay_disc ? Flattening{options.lay_disc(cut.mesh), {}}
+                                     : flatten(cut.mesh, options.flatten, kept);
   report = std::move(flat.report);
   PatternPiece piece;
   piece.points = std::move(flat.points);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,6 +22,9 @@ enum class GrainRule {
 
 struct PatternOptions {
   FlattenOptions flatten = {};
+  /// Another way to lay a disc flat at true scale than `flatten`, to compare with; its report is
+  /// empty.
+  std::function<Eigen::MatrixX2d(const TriMesh&)> lay_disc = {};
   GrainRule grain = GrainRule::up;
   double gap = 0.02;                 ///< least distance between the boxes of pieces (m)
   std::optional<double> width = {};  ///< of the shelves (m); about a square when absent

@@ -39,28 +39,54 @@ Part surface_of(const PreparedSketch& prepared, const Eigen::MatrixX3d& X) {
   return part;
 }
 
+/// Edges of strokes, and what each was drawn as.
+class StrokePartBuilder {
+ public:
+  explicit StrokePartBuilder(const std::vector<OutlinedView>& views) : views_(views) {}
+
+  /// @param view,number  -1, -1: no stroke asked for it
+  void add(const Edge& e, StrokeKind kind, int view, int number) {
+    part_.lines.push_back({e[0], e[1]});
+    kind_.push_back(static_cast<double>(kind));
+    view_.push_back(view < 0 ? -1 : static_cast<double>(views_[view].kind));
+    number_.push_back(number);
+  }
+
+  [[nodiscard]] Part finished(const Eigen::MatrixX3d& X) {
+    part_.kind = Part::Kind::lines;
+    part_.points = X;
+    const auto array = [&](const char* name, const std::vector<double>& values) {
+      part_.arrays.push_back({name, "1", NamedArray::On::cells,
+                              Eigen::Map<const Eigen::VectorXd>(
+                                  values.data(), static_cast<Eigen::Index>(values.size()))});
+    };
+    array("kind", kind_);
+    array("view", view_);
+    array("number", number_);
+    return std::move(part_);
+  }
+
+ private:
+  const std::vector<OutlinedView>& views_;
+  Part part_;
+  std::vector<double> kind_, view_, number_;
+};
+
 Part strokes_of_surface(const PreparedSketch& prepared, const Eigen::MatrixX3d& X) {
   const SketchSurface& s = prepared.surface;
-  Part part;
-  part.kind = Part::Kind::lines;
-  part.points = X;
-  std::vector<double> kinds;
-  const auto add = [&](const Edge& e, StrokeKind kind) {
-    part.lines.push_back({e[0], e[1]});
-    kinds.push_back(static_cast<double>(kind));
-  };
-  for (const Edge& e : boundary_edges(s.hull.mesh.F)) add(e, StrokeKind::border);
+  StrokePartBuilder strokes(s.hull.views);
+  for (const Edge& e : boundary_edges(s.hull.mesh.F)) {
+    const int border = s.border_of[e[0]] == s.border_of[e[1]] ? s.border_of[e[0]] : -1;
+    const BorderPlace* place = border < 0 ? nullptr : &s.borders[border];
+    strokes.add(e, StrokeKind::border, place ? place->view : -1, place ? place->number : -1);
+  }
   for (const StrokePath& path : s.seams) {
-    for (const Edge& e : path.edges) add(e, StrokeKind::seam);
+    for (const Edge& e : path.edges) strokes.add(e, StrokeKind::seam, path.view, path.number);
   }
   for (const StrokePath& path : s.folds) {
-    for (const Edge& e : path.edges) add(e, StrokeKind::fold);
+    for (const Edge& e : path.edges) strokes.add(e, StrokeKind::fold, path.view, path.number);
   }
-  NamedArray kind{
-      "kind", "1", NamedArray::On::cells,
-      Eigen::Map<Eigen::VectorXd>(kinds.data(), static_cast<Eigen::Index>(kinds.size()))};
-  part.arrays.push_back(std::move(kind));
-  return part;
+  return strokes.finished(X);
 }
 
 /// First point of each piece in the part that holds all of them.
@@ -168,7 +194,8 @@ class SketchFrames final : public FrameModel {
       add_pattern(frame, made);
       if (input_.files) {
         const Phase phase(context, "record");
-        for (Artifact& file : input_.files(made.pattern)) sink.artifact(std::move(file));
+        for (Artifact& file : input_.files(made.pattern, method_->positions()))
+          sink.artifact(std::move(file));
       }
     }
     const Phase phase(context, "record");
@@ -222,7 +249,9 @@ PreparedSketch prepare_sketch(const SketchInput& input) {
     prepared.start = input.surface->V;
     return prepared;
   }
-  prepared.surface = sketch_surface(align_views(input.drawing, input.align), input.hull);
+  const Drawing aligned = align_views(input.drawing, input.align);
+  prepared.surface = sketch_surface(
+      aligned, input.make_hull ? input.make_hull(aligned) : visual_hull(aligned, input.hull));
   prepared.start = taubin_smoothed(prepared.surface.hull.mesh, input.smoothing);
   return prepared;
 }

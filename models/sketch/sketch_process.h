@@ -33,8 +33,10 @@ struct SketchInput {
   TaubinOptions smoothing;
   PatternOptions pattern;
   bool patterns = true;  ///< the last frame has the flat pieces
-  /// Files that are made of the pattern; none when empty.
-  std::function<std::vector<Artifact>(const Pattern&)> files = {};
+  /// Another hull of the aligned drawing than `visual_hull` with `hull`, to compare with.
+  std::function<VisualHull(const Drawing&)> make_hull = {};
+  /// Files that are made of the pattern and the surface's points; none when empty.
+  std::function<std::vector<Artifact>(const Pattern&, const Eigen::MatrixX3d&)> files = {};
 };
 
 /// The surface that methods begin with.
@@ -81,10 +83,13 @@ struct SeamSuggester {
 /// One recorded state. Metrics of the topic read these parts and nothing else:
 ///
 /// - "surface" (triangles): point arrays "border", "seam", "fold" (0 or 1);
-/// - "strokes" (lines): borders, seams and folds on the surface, cell array "kind" (StrokeKind);
+/// - "strokes" (lines): borders, seams and folds on the surface, cell arrays "kind" (StrokeKind),
+///   "view" (ViewKind) and "number" (among the strokes of that kind in that view; both -1 for a
+///   border that no stroke asks for);
 /// - "pattern" (triangles, z = 0, m), in the last frame: point array "surface_vertex", cell arrays
 ///   "surface_triangle", "piece" and "stretch";
-/// - "drawing" (lines, z = 0), in the last frame: the strokes as they were drawn, cell array "kind";
+/// - "drawing" (lines, z = 0), in the last frame: the strokes as they were drawn, cell array
+/// "kind";
 /// - table "sewn", in the last frame: a row for each vertex of a sewn stretch of the pattern's
 ///   borders, in their order: stretch, partner stretch, seam, point of "pattern";
 /// - "suggestions" (lines), in the last frame where any were asked for and found: cell arrays

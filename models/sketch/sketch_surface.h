@@ -16,11 +16,14 @@ namespace geoprior::sketch {
 struct StrokePath {
   std::string id;                       ///< of the stroke
   int view = 0;                         ///< it was drawn in, of SketchSurface::views
+  int number = 0;                       ///< among the strokes of its kind in that view
   std::vector<Eigen::Vector2d> points;  ///< as drawn, aligned (m); none of what was not drawn
   bool closed = false;                  ///< it ends where it begins
+  DepthSide side = DepthSide::front;    ///< of the surface that it lies on
   std::vector<Edge> edges;              ///< lower vertex first, ascending
   double missed = 0;  ///< share of the stroke's length beside which there is no edge
   std::optional<double> fold_angle_deg = {}, fold_width = {};  ///< of the stroke
+  std::optional<FoldSide> fold_side = {};                      ///< of the stroke
 };
 
 /// A stretch of the surface's border that a stroke asks for.
@@ -28,6 +31,8 @@ struct BorderPlace {
   std::string id;  ///< of the stroke
   int view = 0;
   std::vector<Eigen::Vector2d> points;  ///< the stroke, aligned (m)
+  int number = 0;                       ///< among the borders of that view
+  bool inside = false;                  ///< a slit or the border of a hole, not on the silhouette
 };
 
 /// The hull as a surface to work on: open where borders were drawn, with seams along its edges.
@@ -39,10 +44,16 @@ struct SketchSurface {
   std::vector<int> border_of;        ///< of each vertex: of `borders`, or -1
 };
 
+/// A border along the silhouette takes the end away that the hull closes there. One inside of it is
+/// traced like a seam: an open line is a slit, whose two sides have vertices of their own; within a
+/// closed line the triangles that face the line's side are taken out, and it may pass the
+/// silhouette's borders, as the front of an open coat does.
+///
 /// @param aligned  of `align_views`
+/// @param hull     of that drawing
 /// @throws Error   naming stroke and view: a border that is not on the silhouette, a seam or fold
 ///                 that leaves the surface
-SketchSurface sketch_surface(const Drawing& aligned, const HullOptions& options);
+SketchSurface sketch_surface(const Drawing& aligned, VisualHull hull);
 
 /// Cuts a surface along further paths, which are one more seam, drawn in no view: its `points` stay
 /// empty. Sets of paths are made one after the other (`SuggestedSeam::openings`).

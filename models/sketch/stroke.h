@@ -24,6 +24,9 @@ enum class StrokeKind {
 /// On which sides of the hull a stroke that is drawn inside the silhouette lies.
 enum class DepthSide { front, back, both };
 
+/// To which side of its contour, along the stroke, the surface of a fold falls away from the eye.
+enum class FoldSide { left, right };
+
 /// One stroke, flattened to chords.
 struct Stroke {
   std::string id;  ///< of the drawing's element, for errors; made up where it has none
@@ -31,9 +34,11 @@ struct Stroke {
   bool closed = false;                        ///< the last point is joined to the first
   std::vector<Eigen::Vector2d> points;        ///< in the view: right, up (m)
   DepthSide side = DepthSide::front;          ///< of seams, folds and borders inside the silhouette
+  bool inside = false;                        ///< of a border: a slit or hole, see `open_inside`
   std::string name;                           ///< of a pair, a panel or a layer ("pair-3")
   std::optional<double> fold_angle_deg = {};  ///< between normal and view direction; the method's
   std::optional<double> fold_width = {};      ///< m; the method's when absent
+  std::optional<FoldSide> fold_side = {};     ///< the one of the shorter turn when absent
 };
 
 /// Length of the stroke (m).

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/limits.h"
 #include "core/topology.h"
+#include "models/sketch/collapse_edges.h"
 #include "models/sketch/surface_nets.h"
 
 namespace geoprior::sketch {
@@ -391,9 +392,16 @@ VisualHull visual_hull(const Drawing& aligned, const HullOptions& options) {
   QuadMesh quads = manifold_nets(hull.views, box, hull.spacing, options.sections);
   fit_to_silhouettes(quads, hull.views, hull.spacing, options.sections);
   hull.mesh = split_quads(quads);
+  // Several vertices of the nets may have gone to one corner.
+  collapse_short_edges(hull.mesh, 0.01 * hull.spacing);
+  place_on_silhouettes(hull);
+  return hull;
+}
+
+void place_on_silhouettes(VisualHull& hull) {
+  hull.places.clear();
   for (const OutlinedView& view : hull.views)
     hull.places.push_back(places_on(view, hull.mesh.V, 0.02 * hull.spacing));
-  return hull;
 }
 
 }  // namespace geoprior::sketch

@@ -69,4 +69,7 @@ std::vector<OutlinedView> outlined_views(const Drawing& aligned);
 /// Source of the construction: Rivers, Durand and Igarashi 2010, 3D Modeling with Silhouettes.
 VisualHull visual_hull(const Drawing& aligned, const HullOptions& options = {});
 
+/// Finds the vertices that lie on each view's silhouette, to a fiftieth of the spacing.
+void place_on_silhouettes(VisualHull& hull);
+
 }  // namespace geoprior::sketch

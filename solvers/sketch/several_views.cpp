@@ -12,12 +12,12 @@
 #include "core/connectivity.h"
 #include "models/sketch/polyline.h"
 #include "solvers/sketch/pinned_transfer.h"
-#include "solvers/sketch/zippering.h"
 
 namespace geoprior::sketch {
 namespace {
 
 constexpr std::array<std::string_view, 2> kOrders{"merged", "alternating"};
+constexpr std::array<std::string_view, 2> kSilhouetteChoices{"protruding", "planar"};
 
 /// Puts a vertex onto a stroke of its view along the coordinate that crosses the stroke more
 /// squarely; along the stroke it is free.
@@ -65,7 +65,8 @@ class SeveralViews final : public SketchMethod {
         transfer_(surface_.hull.mesh.F, surface_.hull.mesh.vertex_count()) {
     const EdgeConnectivity edges(surface_.hull.mesh.F);
     for (std::size_t v = 0; v < surface_.hull.views.size(); ++v)
-      zippering_.emplace_back(surface_.hull.views[v], surface_.hull.places[v], edges.edges());
+      zippering_.emplace_back(surface_.hull.views[v], surface_.hull.places[v], edges.edges(),
+                              options.silhouette);
   }
 
   void step(RunContext& context) override {
@@ -85,7 +86,7 @@ class SeveralViews final : public SketchMethod {
       const Phase phase(context, "rotations");
       const Eigen::MatrixX3d normals = triangle_normals({X_, surface_.hull.mesh.F});
       rotations = rotation_.rotations(normals);
-      fold_.blend(X_, normals, rotations);
+      if (options_.folds) fold_.blend(X_, normals, rotations);
     }
     const Phase phase(context, "transfer");
     X_ = transfer_.solve(X_, rotations, pins);
@@ -164,6 +165,10 @@ void describe(OptionVisitor& v, SeveralViewsOptions& o) {
   describe_group(v, "developability", o.developability, {.doc = "what triangles are turned to"});
   describe_group(v, "fold", o.fold, {.doc = "what drawn folds ask"});
   v.value("silhouettes", o.silhouettes, {.doc = "silhouettes are pulled onto the drawing"});
+  describe_choice(v, "silhouette", o.silhouette, kSilhouetteChoices,
+                  {.doc = "which edges carry a silhouette: those that protrude most, or those "
+                          "nearest to one plane"});
+  v.value("folds", o.folds, {.doc = "drawn folds are asked for"});
   v.value("pin_seams", o.pin_seams, {.doc = "seams stay where they were drawn, in their view"});
   v.value("across_seams", o.across_seams,
           {.doc = "cones are fitted to triangles on both sides of a seam"});

@@ -10,6 +10,7 @@
 #include "solvers/sketch/developable_rotation.h"
 #include "solvers/sketch/fold_rotation.h"
 #include "solvers/sketch/seam_suggestion.h"
+#include "solvers/sketch/zippering.h"
 
 namespace geoprior::sketch {
 
@@ -32,7 +33,9 @@ struct SeveralViewsOptions {
   StepOrder order = StepOrder::merged;
   DevelopableRotationOptions developability;
   FoldOptions fold;
-  bool silhouettes = true;   ///< false: developability alone
+  bool silhouettes = true;  ///< false: developability alone
+  SilhouetteChoice silhouette = SilhouetteChoice::protruding;
+  bool folds = true;         ///< false: drawn folds ask for nothing
   bool pin_seams = true;     ///< seams stay where they were drawn, in their view
   bool across_seams = true;  ///< cones are fitted to triangles on both sides of a seam
   bool drawn_seams = true;   ///< false: seams of the drawing are left out

@@ -9,8 +9,8 @@
 namespace geoprior::sketch {
 
 Zippering::Zippering(const OutlinedView& view, std::vector<std::optional<SilhouettePlace>> places,
-                     const std::vector<Edge>& edges)
-    : view_(view), places_(std::move(places)) {
+                     const std::vector<Edge>& edges, SilhouetteChoice choice)
+    : view_(view), places_(std::move(places)), choice_(choice) {
   const double length = view_.outline.length();
   for (const Edge& edge : edges) {
     const auto& a = places_[edge[0]];
@@ -29,21 +29,35 @@ Zippering::Zippering(const OutlinedView& view, std::vector<std::optional<Silhoue
   });
 }
 
+double Zippering::merit(const Edge& edge, const Eigen::MatrixX3d& hull,
+                        const Eigen::MatrixX3d& surface, double middle) const {
+  double sum = 0;
+  for (const int v : edge) {
+    if (choice_ == SilhouetteChoice::planar) {
+      sum -= std::abs(view_.frame.row(2).dot(hull.row(v)) - middle);
+      continue;
+    }
+    const Eigen::Vector3d way = (surface.row(v) - hull.row(v)).transpose();
+    sum += places_[v]->normal.dot(view_.project(way));
+  }
+  return sum / 2;
+}
+
 ZippedSilhouette Zippering::close(const Eigen::MatrixX3d& hull,
                                   const Eigen::MatrixX3d& surface) const {
-  const auto protuberance = [&](const Interval& interval) {
-    double sum = 0;
-    for (const int v : interval.edge) {
-      const Eigen::Vector3d way = (surface.row(v) - hull.row(v)).transpose();
-      sum += places_[v]->normal.dot(view_.project(way));
-    }
-    return sum / 2;
-  };
   ZippedSilhouette zipped;
   if (intervals_.empty()) {
     zipped.gaps.push_back({0, view_.outline.length()});
     return zipped;
   }
+  double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
+  for (const Interval& interval : intervals_) {
+    for (const int v : interval.edge) {
+      nearest = std::min(nearest, view_.frame.row(2).dot(hull.row(v)));
+      farthest = std::max(farthest, view_.frame.row(2).dot(hull.row(v)));
+    }
+  }
+  const double middle = (nearest + farthest) / 2;
   const double start = intervals_.front().from, end = start + view_.outline.length();
   double reached = start;
   while (reached < end) {
@@ -55,7 +69,7 @@ ZippedSilhouette Zippering::close(const Eigen::MatrixX3d& hull,
     for (auto i = after; i != intervals_.begin() && reached - (i - 1)->from < longest_; --i) {
       const Interval& candidate = *(i - 1);
       if (candidate.to <= reached) continue;
-      const double p = protuberance(candidate);
+      const double p = merit(candidate.edge, hull, surface, middle);
       if (p > most) {
         most = p;
         best = &candidate;

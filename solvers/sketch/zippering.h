@@ -21,6 +21,13 @@ struct ZippedSilhouette {
   std::vector<CoverageGap> gaps;  ///< what they leave open
 };
 
+/// Which of the edges that cover a point of a silhouette carries it.
+enum class SilhouetteChoice {
+  protruding,  ///< the one that protrudes most
+  planar,      ///< the one that is nearest to the middle of the silhouette's depth in the hull: to
+               ///< compare with, as one that takes silhouettes for plane curves
+};
+
 /// Zippering (thesis 2.1.2, Figure 2.4): marches along the silhouette of a view and chooses, of all
 /// edges whose images in the hull cover the point that was reached, the one that protrudes most.
 ///
@@ -36,7 +43,7 @@ class Zippering {
   /// @param edges   of the surface, which hull and surface share
   /// @param places  of each vertex on this view's silhouette
   Zippering(const OutlinedView& view, std::vector<std::optional<SilhouettePlace>> places,
-            const std::vector<Edge>& edges);
+            const std::vector<Edge>& edges, SilhouetteChoice choice = SilhouetteChoice::protruding);
 
   /// @param hull,surface  n x 3, equal rows
   [[nodiscard]] ZippedSilhouette close(const Eigen::MatrixX3d& hull,
@@ -47,8 +54,13 @@ class Zippering {
     double from = 0, to = 0;  ///< from < to, `to` may pass the end of the outline
     Edge edge{};
   };
+  /// How much an edge recommends itself.
+  [[nodiscard]] double merit(const Edge& edge, const Eigen::MatrixX3d& hull,
+                             const Eigen::MatrixX3d& surface, double middle) const;
+
   OutlinedView view_;
   std::vector<std::optional<SilhouettePlace>> places_;
+  SilhouetteChoice choice_;
   std::vector<Interval> intervals_;  ///< by `from`
   double longest_ = 0;
 };

@@ -421,7 +421,7 @@ TEST_F(DrawingFileTest, NamesThePictureThatCannotBeRead) {
 TEST(DrawingKeys, ListEveryKindAndAttribute) {
   const TopicFile file = drawing_keys();
   EXPECT_EQ(file.name, "drawing");
-  EXPECT_EQ(file.keys.size(), stroke_kinds().size() + 7);
+  EXPECT_EQ(file.keys.size(), stroke_kinds().size() + 9);
   EXPECT_EQ(file.keys.at(3).key, "fold");
   EXPECT_EQ(file.keys.at(3).range, "green");
 }

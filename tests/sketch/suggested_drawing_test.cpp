@@ -78,8 +78,8 @@ TEST(CutMeasures, OfAPipeIsTheLengthOfItsSeam) {
 }
 
 TEST(AddSeam, CutsTheSurfaceAndKeepsItsSilhouettes) {
-  SketchSurface surface =
-      sketch_surface(align_views(test::drawn_cylinder(0.1, 0.3, 180), {}), {.triangles = 2000});
+  const Drawing drawing = align_views(test::drawn_cylinder(0.1, 0.3, 180), {});
+  SketchSurface surface = sketch_surface(drawing, visual_hull(drawing, {.triangles = 2000}));
   const TriMesh before = surface.hull.mesh;
   // From the middle of the lid to the middle of the base, on edges and across triangles.
   const SurfacePaths paths(before, Eigen::VectorXd::Ones(before.triangle_count()));

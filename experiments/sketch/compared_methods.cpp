@@ -1,0 +1,126 @@
+#include "experiments/sketch/compared_methods.h"
+
+#include <array>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "baselines/sketch/abf.h"
+#include "baselines/sketch/cgal_flatten.h"
+#include "baselines/sketch/exact_hull.h"
+#include "baselines/sketch/hull_surface.h"
+#include "baselines/sketch/lscm.h"
+#include "core/error.h"
+#include "experiments/sketch/scene.h"
+#include "solvers/sketch/several_views.h"
+
+namespace geoprior::sketch {
+namespace {
+
+/// How a piece is laid flat.
+enum class FlattenBy { rigid, lscm, abf, cgal_arap, cgal_lscm };
+
+constexpr std::array<std::string_view, 5> kFlattenings{"rigid", "lscm", "abf", "cgal-arap",
+                                                       "cgal-lscm"};
+
+void describe_flattening(OptionVisitor& v, FlattenBy& by) {
+  describe_choice(v, "by", by, kFlattenings,
+                  {.doc = "how a piece is laid flat: rigid is the topic's own, lscm and abf least "
+                          "squares conformal and angle-based (ABF++), the others are CGAL's; "
+                          "where its as-rigid-as-possible gives up, its conformal map"});
+}
+
+/// CGAL mends what its as-rigid-as-possible turns over by a pass that refuses some borders (those
+/// of remeshed pieces that are folded over a part of the border); a road that ends there is no
+/// comparison.
+Eigen::MatrixX2d cgal_arap_or_lscm(const TriMesh& disc) {
+  try {
+    return flatten_cgal_arap(disc);
+  } catch (const Error&) {
+    return flatten_cgal_lscm(disc);
+  }
+}
+
+/// The input with that flattening. All but ours need discs, so that pieces with holes are cut open
+/// for all of them.
+SketchInput with_flattening(SketchInput input, FlattenBy by) {
+  input.patterns = true;
+  input.pattern.hole_tolerance_deg = 0;
+  switch (by) {
+    case FlattenBy::rigid:
+      break;
+    case FlattenBy::lscm:
+      input.pattern.lay_disc = [](const TriMesh& disc) { return flatten_lscm(disc); };
+      break;
+    case FlattenBy::abf:
+      input.pattern.lay_disc = [](const TriMesh& disc) { return flatten_abf(disc); };
+      break;
+    case FlattenBy::cgal_arap:
+      input.pattern.lay_disc = cgal_arap_or_lscm;
+      break;
+    case FlattenBy::cgal_lscm:
+      input.pattern.lay_disc = [](const TriMesh& disc) { return flatten_cgal_lscm(disc); };
+      break;
+  }
+  return input;
+}
+
+struct FlattenedOptions {
+  FlattenBy by = FlattenBy::rigid;
+  SeveralViewsOptions surface;
+};
+void describe(OptionVisitor& v, FlattenedOptions& o) {
+  describe_flattening(v, o.by);
+  describe_group(v, "surface", o.surface, {.doc = "how the surface of a drawing is made"});
+}
+
+struct SlowRoadOptions {
+  FlattenBy by = FlattenBy::cgal_arap;
+  ExactHullOptions hull;
+  SeveralViewsOptions surface;
+};
+void describe(OptionVisitor& v, SlowRoadOptions& o) {
+  describe_flattening(v, o.by);
+  describe_group(v, "hull", o.hull, {.doc = "exact hull and its remeshing"});
+  describe_group(v, "surface", o.surface, {.doc = "how the surface is made from it"});
+}
+
+std::unique_ptr<Process> flattened_process(const SketchScene& scene,
+                                           const FlattenedOptions& options) {
+  const SketchInput input = with_flattening(scene.input, options.by);
+  // A surface that is given is laid flat as it is.
+  return input.surface ? make_hull_process(input, {})
+                       : make_several_views_process(input, options.surface);
+}
+
+std::unique_ptr<Process> slow_road_process(const SketchScene& scene,
+                                           const SlowRoadOptions& options) {
+  SketchInput input = with_flattening(scene.input, options.by);
+  input.make_hull = [asked = input.hull, options](const Drawing& aligned) {
+    return exact_hull(aligned, asked, options.hull);
+  };
+  return make_several_views_process(input, options.surface);
+}
+
+}  // namespace
+
+std::vector<MethodEntry> compared_methods() {
+  return {
+      method_entry<SketchScene, FlattenedOptions>(
+          "flattened", true, "the same surface as several-views, laid flat in a way of choice",
+          "Levy et al. 2002; Sheffer et al. 2005; Liu et al. 2008",
+          [](const SketchScene& scene, const FlattenedOptions& options, RunContext&) {
+            return flattened_process(scene, options);
+          }),
+      method_entry<SketchScene, SlowRoadOptions>(
+          "slow-road", true,
+          "as several-views on a hull by exact Booleans and isotropic remeshing, laid flat by "
+          "CGAL's as-rigid-as-possible",
+          "CGAL 5.5, Polygon Mesh Processing and Surface Mesh Parameterization",
+          [](const SketchScene& scene, const SlowRoadOptions& options, RunContext&) {
+            return slow_road_process(scene, options);
+          }),
+  };
+}
+
+}  // namespace geoprior::sketch
