@@ -6,44 +6,44 @@
 #include <string_view>
 #include <utility>
 
+#include "core/angles.h"
 #include "core/error.h"
 
 namespace geoprior::sketch {
 namespace {
 
 constexpr int kBisections = 60;
+constexpr int kRadiusBisections = 40;
 constexpr int kStripSamples = 24;  // of an angle, over half of the band
-constexpr int kStripRows = 8;
+constexpr int kStripRows = 16;
 
-/// Whether all of the strip below the band before it keeps its distance from that band.
-bool strip_is_below(const FrustumBand& band, const FrustumBand& before, double depth) {
-  const double slope = (before.rear_radius - before.front_radius) / before.length;
-  const double drop = depth * std::hypot(1.0, slope);
-  for (int i = 0; i <= kStripRows * 4; ++i) {
-    const double x = -band.length * (1 - i / (4.0 * kStripRows));
-    for (int k = 0; k <= kStripSamples; ++k) {
-      const Eigen::Vector3d p = before.own(band.point(x, band.half_angle * k / kStripSamples));
-      if (p.x() > 0) continue;  // not below it
-      if (std::hypot(p.y(), p.z()) > before.radius_at(p.x()) - drop) return false;
-    }
-  }
-  return true;
+/// What is kept free between a band and those it lies below.
+struct StripRoom {
+  double depth = 0;         ///< between outer sides at rest (m)
+  double turned_depth = 0;  ///< and where the band is turned (m)
+  double free = 0;          ///< angle either way (rad)
+  double margin = 0;        ///< of the rivets (m)
+};
+
+/// Whether a point keeps its distance from the bands that it lies below.
+bool is_below(const Eigen::Vector3d& P, const std::vector<FrustumBand>& bands, double depth) {
+  return std::all_of(bands.begin(), bands.end(), [&](const FrustumBand& above) {
+    const Eigen::Vector3d p = above.own(P);
+    if (p.x() > 0 || p.x() < -above.length) return true;
+    const double slope = (above.rear_radius - above.front_radius) / above.length;
+    return std::hypot(p.y(), p.z()) <= above.radius_at(p.x()) - depth * std::hypot(1.0, slope);
+  });
 }
 
-void fit_front_radius(FrustumBand& band, const FrustumBand& before, double depth,
-                      const std::string& where, const std::string& other) {
-  constexpr double kLeast = 0.5, kMost = 1.5;  // of the radius of the band before
-  double low = kLeast * before.rear_radius, high = kMost * before.rear_radius;
-  band.front_radius = low;
-  if (!strip_is_below(band, before, depth)) {
-    throw Error("its layer does not fit below that of '" + other + "'", where,
-                "an edge behind the one before it, or less overlap");
+/// How far the rear rim of the band before reaches forward of the rear rim of this one, along its
+/// axis: farthest at the back where the body bends down.
+double visible_length(const FrustumBand& band, const FrustumBand& before) {
+  double length = 0;
+  for (int k = 0; k <= kStripSamples; ++k) {
+    const Eigen::Vector3d rim = before.point(0, before.half_angle * k / kStripSamples);
+    length = std::max(length, -band.own(rim).x());
   }
-  for (int i = 0; i < kBisections; ++i) {
-    band.front_radius = (low + high) / 2;
-    (strip_is_below(band, before, depth) ? low : high) = band.front_radius;
-  }
-  band.front_radius = low;
+  return length;
 }
 
 /// Height above the lower border, less the margin, of the line through a point of the plane.
@@ -82,6 +82,44 @@ LayerHinge hinge_between(const FrustumBand& front, const FrustumBand& behind, do
   return hinge;
 }
 
+/// Whether a band lies below those before it, at rest as a whole, and with its strip when it is
+/// turned about its hinge by `free` either way.
+bool strip_is_below(const FrustumBand& band, double overlap, const std::vector<FrustumBand>& bands,
+                    const StripRoom& room) {
+  const LayerHinge hinge = hinge_between(bands.back(), band, overlap, room.margin);
+  for (const double turned : {0.0, -1.0, -0.5, 0.5, 1.0}) {
+    const Eigen::Isometry3d turn = hinge_turn(hinge, turned * room.free);
+    const double reach = turned == 0 ? band.length : overlap;
+    const double depth = turned == 0 ? room.depth : room.turned_depth;
+    for (int i = 0; i <= kStripRows; ++i) {
+      const double x = -band.length + reach * i / kStripRows;
+      for (int k = 0; k <= kStripSamples; ++k) {
+        const Eigen::Vector3d P = band.point(x, band.half_angle * k / kStripSamples);
+        if (!is_below(turn * P, bands, depth)) return false;
+      }
+    }
+    if (room.free == 0) break;
+  }
+  return true;
+}
+
+/// The largest front radius with which the band lies below those before it.
+void fit_front_radius(FrustumBand& band, double overlap, const std::vector<FrustumBand>& bands,
+                      const StripRoom& room, const std::string& where, const std::string& other) {
+  constexpr double kLeast = 0.5, kMost = 1.5;  // of the radius of the band before
+  double low = kLeast * bands.back().rear_radius, high = kMost * bands.back().rear_radius;
+  band.front_radius = low;
+  if (!strip_is_below(band, overlap, bands, room)) {
+    throw Error("its layer does not fit below that of '" + other + "'", where,
+                "an edge behind the one before it; less overlap or free_deg");
+  }
+  for (int i = 0; i < kRadiusBisections; ++i) {
+    band.front_radius = (low + high) / 2;
+    (strip_is_below(band, overlap, bands, room) ? low : high) = band.front_radius;
+  }
+  band.front_radius = low;
+}
+
 FrustumBand band_to(const ArcCircle& circle) {
   FrustumBand band;
   band.rear = circle.centre;
@@ -109,11 +147,12 @@ void add_band(ArticulatedLayers& layers, std::size_t k, const LayerOptions& opti
     band.half_angle = std::max(band.half_angle, before.half_angle);
   } else {
     const FrustumBand& previous = layers.bands.back();
-    const double shown = previous.length - layers.overlaps.back();
-    overlap = options.overlap * shown;
-    band.length = visible + overlap;
-    const double depth = (options.thickness + options.clearance) * layers.unit;
-    fit_front_radius(band, previous, depth, where, before.id);
+    overlap = options.overlap * (previous.length - layers.overlaps.back());
+    band.length = visible_length(band, previous) + overlap;
+    const StripRoom room{(options.thickness + options.clearance) * layers.unit,
+                         (options.thickness + options.clearance / 2) * layers.unit,
+                         options.free_deg * kDegree, options.rivet_margin * layers.unit};
+    fit_front_radius(band, overlap, layers.bands, room, where, before.id);
   }
   layers.bands.push_back(band);
   layers.overlaps.push_back(overlap);
@@ -134,6 +173,11 @@ void describe(OptionVisitor& v, LayerOptions& o) {
   share("clearance", o.clearance, "between overlapping layers, over the mean radius", 0.2);
   share("rivet_margin", o.rivet_margin, "from rivet to lower border, over the mean radius", 0.5);
   share("rivet_radius", o.rivet_radius, "of its hole, over the mean radius", 0.2);
+  v.value("free_deg", o.free_deg,
+          {.doc = "of a joint either way, for which the strip below the layer before has room",
+           .unit = "deg",
+           .min = 0,
+           .max = 45});
   v.value("max_angle_deg", o.max_angle_deg,
           {.doc = "of a joint either way, where nothing stops it earlier",
            .unit = "deg",

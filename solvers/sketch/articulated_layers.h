@@ -24,12 +24,16 @@ struct LayerOptions {
   double vector_ratio = 1;  ///< length in space of sym-a over that of sym-b
   /// How far a layer reaches below the one before it, over the visible length of that one.
   double overlap = 0.5;
-  double thickness = 0.008;    ///< of the sheet
-  double clearance = 0.012;    ///< between a layer and the part of the next that lies below it
+  double thickness = 0.008;  ///< of the sheet
+  double clearance = 0.012;  ///< between a layer and the part of the next that lies below it
+  /// Angle of a joint either way for which the strip below has room: on a body that grows thinner
+  /// it must be narrower than the clearance alone asks for, or it is stuck.
+  double free_deg = 8;
   double rivet_margin = 0.08;  ///< from a rivet to the lower border of both of its layers
   double rivet_radius = 0.02;  ///< of its hole
   double max_angle_deg = 30;   ///< of a joint either way, where nothing stops it earlier
-  bool keep_covered = true;    ///< a joint stops before a gap opens between its layers
+  /// A joint stops before a gap opens between its layers, or one vanishes below the other.
+  bool keep_covered = true;
   HingeAxis axis = HingeAxis::rivets;  ///< of the motion; limits are those of the rivets
   BandGrid grid = {};
   int poses = 16;  ///< of the motion, beside the rest
@@ -59,8 +63,9 @@ struct ArticulatedLayers {
 /// Circles, bands and hinges; without joint limits (joint_range.h).
 ///
 /// Band j is the frustum whose rear rim is circle j + 1, as it was drawn, about that circle's axis.
-/// It reaches forward to the circle before it and `overlap` farther; there its radius is the
-/// largest with which it stays below the band before, by `clearance`. Its rivets lie halfway along
+/// It reaches forward to the farthest point of the circle before it and `overlap` farther; there
+/// its radius is the largest with which it stays below the bands before it: by `clearance` at rest,
+/// and by half of that where its strip is turned by up to `free_deg`. Its rivets lie halfway along
 /// the overlap, where a line along the mirror plane's normal meets both bands `rivet_margin` inside
 /// of their lower borders.
 ///

@@ -46,13 +46,15 @@ bool layers_touch(const LayerSolid& a, const LayerSolid& b, const Eigen::Isometr
   return edges_meet(a, b, move) || edges_meet(b, a, move.inverse());
 }
 
-/// Whether the rear rim of the front layer lies above the layer behind, which is moved.
+/// Whether the rear rim of the front layer lies above the layer behind, which is moved: behind its
+/// front rim, and ahead of its rear rim, which would otherwise vanish below.
 bool rim_is_covered(const FrustumBand& front, const FrustumBand& behind, const LayerHinge& hinge,
                     double overlap, const Eigen::Isometry3d& move) {
   const Eigen::Isometry3d back = move.inverse();
   for (int k = 0; k <= kRimSamples; ++k) {
     const Eigen::Vector3d rim = front.point(0, hinge.front_hole * k / kRimSamples);
-    if (behind.own(back * rim).x() < -behind.length + kLeastCover * overlap) return false;
+    const double x = behind.own(back * rim).x(), least = kLeastCover * overlap;
+    if (x < -behind.length + least || x > -least) return false;
   }
   return true;
 }
