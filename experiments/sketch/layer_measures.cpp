@@ -248,7 +248,7 @@ LayerMeasures layer_measures(const SketchScene& scene, const Frame& frame) {
   measure_contact(frame, width, measures);
   measure_cover(frame, measures);
   if (frame.find_part("rivets") != nullptr) measure_rivets(frame, width, measures);
-  measure_symmetry(scene, frame, width, measures);
+  if (frame.find_part("strokes") != nullptr) measure_symmetry(scene, frame, width, measures);
   return measures;
 }
 

@@ -22,7 +22,7 @@ struct LayerMeasures {
   std::optional<double> uncovered;      ///< share of rear rims below which no layer is, the worst
   std::optional<double> rivets_off_percent;    ///< of rivets from their own layer
   std::optional<double> rivets_apart_percent;  ///< of the rivets of one layer from the other's line
-  std::optional<double> asymmetry_percent;     ///< Hausdorff distance to the mirror image
+  std::optional<double> asymmetry_percent;     ///< at rest: Hausdorff distance to its image
 };
 LayerMeasures layer_measures(const SketchScene& scene, const Frame& frame);
 

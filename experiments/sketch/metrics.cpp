@@ -153,8 +153,8 @@ MetricGroup layer_group() {
       .row("rivets_apart", "%",
            "largest distance of a layer's rivets from the line through those of its neighbour",
            kLow, {1e-6, 0.05}, &M::rivets_apart_percent)
-      .row("asymmetry", "%", "Hausdorff distance of the surface from its mirror image", kLow,
-           {1e-3, 0.05}, &M::asymmetry_percent);
+      .row("asymmetry", "%", "at rest, Hausdorff distance of the surface from its mirror image",
+           kLow, {1e-3, 0.05}, &M::asymmetry_percent);
 }
 
 MetricGroup sector_group() {
@@ -163,7 +163,8 @@ MetricGroup sector_group() {
            "largest relative difference between an edge of a layer's flat piece and the same edge "
            "in "
            "space, both as circular arcs",
-           kLow, {1e-9, 0}, [](const std::optional<double>& error) { return error; });
+           kLow, {1e-9, 0}, [](const std::optional<double>& error) { return error; })
+      .oracle();
 }
 
 }  // namespace

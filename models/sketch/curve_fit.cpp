@@ -51,6 +51,7 @@ double distance_condition(const ConjugateCurve& curve, const CurveFit& fit,
                           const std::vector<int>& fixed) {
   const auto n = static_cast<Eigen::Index>(fit.at.size());
   const Eigen::Index m = fit.parameters.size();
+  if (m == static_cast<Eigen::Index>(fixed.size())) return 1;
   Eigen::Matrix<double, 2, 3> columns;
   Eigen::Matrix<double, 6, Eigen::Dynamic> d(6, m);
   curve(fit.parameters, columns, d);
@@ -100,8 +101,11 @@ CurveFit fit_curve(const ConjugateCurve& curve, const std::vector<Eigen::Vector2
     problem.AddResidualBlock(new PointOnCurve(curve, m, points[i]), nullptr, fit.parameters.data(),
                              &fit.at[i]);
   }
-  if (!fixed.empty())
+  if (static_cast<int>(fixed.size()) == m) {
+    problem.SetParameterBlockConstant(fit.parameters.data());
+  } else if (!fixed.empty()) {
     problem.SetManifold(fit.parameters.data(), new ceres::SubsetManifold(m, fixed));
+  }
   ceres::Solver::Options options = curve_solver(fit.at);
   options.linear_solver_ordering->AddElementToGroup(fit.parameters.data(), 1);
   ceres::Solver::Summary summary;

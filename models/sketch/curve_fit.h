@@ -23,7 +23,8 @@ struct CurveFit {
   double rms = 0;          ///< distance of the points from the curve
   double max = 0;
   /// Greatest over least singular value of the derivative of the points' distances by the free
-  /// parameters: by how much noise of the points is enlarged. Parameters are best of like size.
+  /// parameters: by how much noise of the points is enlarged. Parameters are best of like size; 1
+  /// without a free one.
   double condition = 0;
 };
 

@@ -182,7 +182,7 @@ std::array<Eigen::Vector3d, 2> axes_of_ellipse(const Ellipse& ellipse) {
           Eigen::Vector3d(-minor.x(), -minor.y(), cosine)};
 }
 
-ArcCircle fit_arc_circle(const Stroke& arc, const MirrorPlane& plane) {
+ArcCircle fit_arc_circle(const Stroke& arc, const MirrorPlane& plane, bool constrained) {
   const std::string where = "stroke '" + arc.id + "'";
   const EllipseFit free = fit_ellipse(arc.points, where);
   if (free.ellipse.minor < kLeastOpening * free.ellipse.major) {
@@ -197,20 +197,23 @@ ArcCircle fit_arc_circle(const Stroke& arc, const MirrorPlane& plane) {
   const Eigen::Vector2d centre = basis.seen_at(free.ellipse.centre) / unit;
   const Eigen::Vector3d up = basis.normal.cross(axes[0]).normalized();
   const double angle = std::atan2(up.dot(basis.f), up.dot(basis.e));
-  ArcCircle circle = fitted_circle(arc, basis, unit, {{centre.x(), centre.y(), 1, angle}, {}});
+  const std::vector<int> none, all{0, 1, 2, 3};
+  ArcCircle circle = fitted_circle(arc, basis, unit,
+                                   {{centre.x(), centre.y(), 1, angle}, constrained ? none : all});
   circle.kept_sine = std::abs(axes[0].dot(plane.normal));
   circle.other_sine = std::abs(axes[1].dot(plane.normal));
   turn_circle(circle, circle.axis, circle.up);
   return circle;
 }
 
-std::vector<ArcCircle> fit_arc_circles(const View& view, const MirrorPlane& plane) {
+std::vector<ArcCircle> fit_arc_circles(const View& view, const MirrorPlane& plane,
+                                       bool constrained) {
   std::vector<ArcCircle> circles;
   std::vector<const Stroke*> arcs;
   for (std::size_t i = 0; i < view.strokes.size(); ++i) {
     if (view.strokes[i].kind != StrokeKind::arc) continue;
     arcs.push_back(&view.strokes[i]);
-    circles.push_back(fit_arc_circle(view.strokes[i], plane));
+    circles.push_back(fit_arc_circle(view.strokes[i], plane, constrained));
     circles.back().stroke = static_cast<int>(i);
   }
   if (circles.size() < 2) {

@@ -47,11 +47,13 @@ struct ArcCircle {
 ///
 /// @throws Error  naming the stroke: fewer than two arcs; what `fit_ellipse` refuses; a circle seen
 ///                edge on; an arc whose centre does not go on along the body (layers out of order)
-std::vector<ArcCircle> fit_arc_circles(const View& view, const MirrorPlane& plane);
+/// @param constrained  off: the start itself, its axis turned into the mirror plane (an ablation)
+std::vector<ArcCircle> fit_arc_circles(const View& view, const MirrorPlane& plane,
+                                       bool constrained = true);
 
 /// A single arc, without the order of others: `axis` and `up` up to sign.
 /// @throws Error  as `fit_arc_circles`
-ArcCircle fit_arc_circle(const Stroke& arc, const MirrorPlane& plane);
+ArcCircle fit_arc_circle(const Stroke& arc, const MirrorPlane& plane, bool constrained = true);
 
 /// The two axes (unit, z >= 0) of circles that a view shows as this ellipse; equal where it is a
 /// circle. radius = major, sin phi = sqrt(1 - (minor / major)^2).

@@ -167,6 +167,8 @@ void describe(OptionVisitor& v, LayerOptions& o) {
   };
   v.value("vector_ratio", o.vector_ratio,
           {.doc = "length in space of sym-a over that of sym-b", .min = 1e-3, .max = 1e3});
+  v.value("constrained", o.constrained,
+          {.doc = "circles are fitted within the mirror plane, not read off their ellipses"});
   share("overlap", o.overlap, "of a layer below the one before, over that one's visible length",
         0.95);
   share("thickness", o.thickness, "of the sheet, over the mean radius", 0.2);
@@ -195,7 +197,7 @@ void describe(OptionVisitor& v, LayerOptions& o) {
 ArticulatedLayers build_layers(const View& view, const LayerOptions& options) {
   ArticulatedLayers layers;
   layers.planes = drawn_mirror_planes(view, options.vector_ratio);
-  layers.circles = fit_arc_circles(view, layers.planes.chosen);
+  layers.circles = fit_arc_circles(view, layers.planes.chosen, options.constrained);
   for (const ArcCircle& circle : layers.circles) layers.unit += circle.radius;
   layers.unit /= static_cast<double>(layers.circles.size());
   for (std::size_t k = 1; k < layers.circles.size(); ++k) add_band(layers, k, options);

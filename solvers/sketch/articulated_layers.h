@@ -22,6 +22,7 @@ enum class HingeAxis {
 /// a drawing at another scale gives the same shape.
 struct LayerOptions {
   double vector_ratio = 1;  ///< length in space of sym-a over that of sym-b
+  bool constrained = true;  ///< circles are fitted within the mirror plane, not read off ellipses
   /// How far a layer reaches below the one before it, over the visible length of that one.
   double overlap = 0.5;
   double thickness = 0.008;  ///< of the sheet
