@@ -69,7 +69,7 @@ TriMesh layer_mesh(const Part& part, int layer) {
 }
 
 int layer_count(const Part& part) {
-  return static_cast<int>(part.require_array("layer", LayerOn::cells, 1).values.maxCoeff()) + 1;
+  return static_cast<int>(part.require_array("layer", LayerOn::cells, 1).values.maxCoeff());
 }
 
 /// Where the stroke that a line belongs to really is, and how the line compares with it.
@@ -130,8 +130,8 @@ void measure_cover(const Frame& frame, LayerMeasures& measures) {
   const Part& surface = frame.require_part("surface", Part::Kind::triangles);
   constexpr double kEnds = 0.1;  // beside the rivets
   double worst = 0;
-  for (int j = 0; j + 1 < layer_count(surface); ++j) {
-    const Eigen::MatrixX3d rear = line_points(rims, static_cast<std::size_t>(2 * j + 1));
+  for (int j = 1; j < layer_count(surface); ++j) {
+    const Eigen::MatrixX3d rear = line_points(rims, static_cast<std::size_t>(2 * j - 1));
     worst = std::max(worst, uncovered_share(rear, kEnds, layer_mesh(surface, j + 1)));
   }
   measures.uncovered = worst;

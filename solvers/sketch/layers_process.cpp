@@ -40,7 +40,7 @@ Part joined_layers(const std::vector<TriMesh>& meshes,
     part.points.middleRows(n, mesh.V.rows()) =
         (mesh.V * poses[j].linear().transpose()).rowwise() + poses[j].translation().transpose();
     part.triangles.middleRows(m, mesh.F.rows()) = mesh.F.array() + static_cast<int>(n);
-    layer.insert(layer.end(), static_cast<std::size_t>(mesh.F.rows()), static_cast<double>(j));
+    layer.insert(layer.end(), static_cast<std::size_t>(mesh.F.rows()), static_cast<double>(j + 1));
     n += mesh.V.rows();
     m += mesh.F.rows();
   }
@@ -77,7 +77,7 @@ Part rims_part(const ArticulatedLayers& layers, const std::vector<Eigen::Isometr
     const FrustumBand& band = layers.bands[j];
     for (const double x : {-band.length, 0.0}) {
       lines.begin();
-      layer.push_back(static_cast<double>(j));
+      layer.push_back(static_cast<double>(j + 1));
       for (int k = -around; k <= around; k += 2)
         lines.add(poses[j] * band.point(x, band.half_angle * k / around));
     }
@@ -119,7 +119,7 @@ Part rivets_part(const ArticulatedLayers& layers, const std::vector<Eigen::Isome
       const double s = l == j ? hinge.front_hole : hinge.rear_hole;
       for (const double side : {-s, s}) {
         part.points.row(row++) = (poses[l] * layers.bands[l].point(x, side)).transpose();
-        layer.push_back(static_cast<double>(l));
+        layer.push_back(static_cast<double>(l + 1));
         number.push_back(static_cast<double>(j));
       }
     }

@@ -37,7 +37,7 @@ struct LayerFiles {
 /// of each way. The last frame is at rest again and has the pattern. Parts:
 ///
 /// - "surface" (triangles): outer sides of the layers; point arrays "border", "seam", "fold" (no
-///   seams and folds: 0), cell array "layer" (from 0);
+///   seams and folds: 0), cell array "layer" (from 1);
 /// - "solid" (triangles): the layers with their thickness, each closed; cell array "layer";
 /// - "rims" (lines): front and rear rim of each layer, cell array "layer";
 /// - "rivets" (points): both ends of each hinge's axis on each of its layers; point arrays "layer",
