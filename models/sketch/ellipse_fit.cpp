@@ -225,7 +225,7 @@ EllipseFit fit_ellipse(const std::vector<Eigen::Vector2d>& points, const std::st
     std::snprintf(text.data(), text.size(), "%.0f degrees (condition %.0f)", result.span / kDegree,
                   result.condition);
     throw Error("its ellipse is not determined: the arc covers " + std::string(text.data()), where,
-                "at least 30 degrees of the ellipse");
+                "at least 45 degrees of the ellipse");
   }
   return result;
 }

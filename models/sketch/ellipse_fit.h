@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,11 @@ struct EllipseFit {
   double condition = 0;     ///< as `CurveFit`, lengths in half axes
 };
 
-/// Least span of an arc that is taken for an ellipse (rad): 30 degrees. Below, noise of a
-/// thousandth of the radius changes the half axes by half.
-inline constexpr double kLeastEllipseSpan = 0.5235987755982988;
+/// Least span of an arc that is taken for an ellipse (rad): 45 degrees. There, noise of a
+/// thousandth of the major half axis on forty points changes the half axes by half of it (by the
+/// linearised covariance, minor / major 0.6); at 30 degrees by three times it, at 90 degrees by 4
+/// %.
+inline constexpr double kLeastEllipseSpan = std::numbers::pi / 4;
 
 /// Algebraic least squares with 4 a c - b^2 = 1, which only ellipses can meet: the start of
 /// `fit_ellipse`. Biased towards small ellipses where points are noisy.
