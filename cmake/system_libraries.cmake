@@ -1,6 +1,8 @@
 # Libraries for which Debian ships no CMake package, or one that does too much: CGAL, CHOLMOD (supernodal sparse
-# Cholesky) and the BLAS below it, FFTW (Fourier transforms), LEMON (network flows).
+# Cholesky) and the BLAS below it, FFTW (Fourier transforms), LEMON (network flows). And Ceres (least squares), which
+# brings its own.
 # Also installed, for the projects that link geoprior.
+find_package(Ceres 2.1 REQUIRED)
 if(NOT TARGET geoprior_cholmod)
   # CGAL is headers over two number libraries. Its own target compiles all that links it with -frounding-math; here the
   # sources that include CGAL get its flags one by one (geoprior_mark_sources).

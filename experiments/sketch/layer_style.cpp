@@ -18,6 +18,10 @@ const std::string& LayerStyle::colour(SheetLayer layer) const {
       return notch;
     case SheetLayer::grain:
       return grain;
+    case SheetLayer::drill:
+      return drill;
+    case SheetLayer::place:
+      return place;
     case SheetLayer::text:
       break;
   }
@@ -31,6 +35,8 @@ void describe(OptionVisitor& v, LayerStyle& style) {
   v.value("notch", style.notch, {.doc = "colour of notches"});
   v.value("grain", style.grain, {.doc = "colour of grain arrows"});
   v.value("text", style.text, {.doc = "colour of text, scale bar and marks"});
+  v.value("drill", style.drill, {.doc = "colour of holes"});
+  v.value("place", style.place, {.doc = "colour of lines where the edge of another piece lies"});
   v.value("line_mm", style.line_mm, {.doc = "width of lines", .unit = "mm", .min = 0.01, .max = 5});
 }
 

@@ -16,6 +16,8 @@ struct LayerStyle {
   std::string notch = "#ff00ff";
   std::string grain = "#808080";
   std::string text = "#000000";
+  std::string drill = "#ff8000";
+  std::string place = "#00a0a0";
   double line_mm = 0.25;  ///< width of lines
 
   [[nodiscard]] const std::string& colour(SheetLayer layer) const;

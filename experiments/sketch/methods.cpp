@@ -5,12 +5,14 @@
 
 #include "baselines/sketch/angle_defect_flow.h"
 #include "baselines/sketch/developability_flow.h"
+#include "baselines/sketch/frustum_formula.h"
 #include "baselines/sketch/gauss_thinning.h"
 #include "baselines/sketch/hull_surface.h"
 #include "experiments/sketch/compared_methods.h"
 #include "experiments/sketch/scene.h"
 #include "experiments/sketch/suggested_drawing.h"
 #include "experiments/sketch/topic.h"
+#include "solvers/sketch/layers_process.h"
 #include "solvers/sketch/one_view_process.h"
 #include "solvers/sketch/several_views.h"
 
@@ -92,6 +94,19 @@ std::vector<MethodEntry> methods() {
           [](const S& scene, const OneViewOptions& options, RunContext&) {
             return make_one_view_process(scene.photo(), options);
           }),
+      method_entry<S, LayerOptions>(
+          "layers", false, "rigid layers through drawn arcs, riveted, within their joints' range",
+          "thesis 2.1.4, figure 2.14",
+          [](const S& scene, const LayerOptions& options, RunContext&) {
+            return make_layers_process(scene.photo(), options, scene.input.pattern,
+                                       scene.layer_files());
+          }),
+      method_entry<S, FrustumFormulaOptions>(
+          "frustum-formula", true, "circles from their own ellipses, depth from their tilt",
+          "closed form; no mirror plane",
+          [](const S& scene, const FrustumFormulaOptions& options, RunContext&) {
+            return make_frustum_formula_process(scene.photo(), options);
+          }),
       method_entry<S, HullSurfaceOptions>(
           "visual-hull", true, "all points that every view sees, as it is or smoothed",
           "Rivers, Durand and Igarashi 2010; Taubin 1995",
@@ -127,6 +142,15 @@ std::vector<DiagnosticEntry> diagnostics() {
       {"residual_parallel", "m", "of parallel ends of patches"},
       {"condition", "1", "greatest over least eigenvalue of the normal matrix"},
       {"matches", "1", "dense symmetric correspondences"},
+      {"joint_share", "1", "share of the joints' limits: 1 curled up, -1 bent back"},
+      {"curl", "deg", "sum of the largest angles of all joints that curl the body up"},
+      {"bend_back", "deg", "and that bend it back"},
+      {"least_range", "deg", "of a joint, both ways together, the least"},
+      {"arc_condition", "1", "greatest over least singular value of an arc's fit, the worst"},
+      {"axis_residual", "deg",
+       "between the mirror plane and the axis that a free ellipse has, the reading that was kept; "
+       "the largest"},
+      {"axis_residual_other", "deg", "of the other reading, the least"},
       {"flow_energy", "1", "what a flow descends, as it defines it"},
   };
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "experiments/sketch/garment_measures.h"
+#include "experiments/sketch/layer_measures.h"
 #include "experiments/sketch/measures.h"
 #include "experiments/sketch/topic.h"
 #include "testbed/metric_rows.h"
@@ -132,11 +133,62 @@ MetricGroup truth_group() {
            kLow, {1e-5, 0.02}, &M::reprojection);
 }
 
+MetricGroup arc_group() {
+  using M = ArcMeasures;
+  return frame_metrics<SketchScene>(arc_measures)
+      .row("arc_rms", "%",
+           "root mean square distance, in the view, of the points of drawn arcs from the arcs of "
+           "the reconstruction, over the picture's width",
+           kLow, {1e-4, 0.02}, &M::rms_percent)
+      .row("arc_max", "%", "the largest such distance", kLow, {1e-4, 0.02}, &M::max_percent)
+      .row("arc_off_surface", "%",
+           "largest distance of the arcs of the reconstruction from its surface", kLow,
+           {1e-3, 0.05}, &M::off_surface_percent)
+      .row("radius_error", "1", "relative error of a circle's radius, of a known shape; the worst",
+           kLow, {1e-4, 0.02}, &M::radius_error)
+      .row("axis_error", "deg", "angle between a circle's axis and the true one; the worst", kLow,
+           {1e-3, 0.02}, &M::axis_error_deg);
+}
+
+MetricGroup layer_group() {
+  using M = LayerMeasures;
+  return frame_metrics<SketchScene>(layer_measures)
+      .row("layer_pairs", "1",
+           "pairs of triangles of different layers that intersect, layers taken "
+           "with their thickness",
+           kLow, kCount, &M::pairs)
+      .row("layer_depth", "%", "how deep they do, over the picture's width", kLow, {1e-3, 0.05},
+           &M::depth_percent)
+      .row(
+          "uncovered", "1",
+          "share of a layer's rear rim below which there is no layer, without a tenth at each end; "
+          "the worst",
+          kLow, kShare, &M::uncovered)
+      .row("rivets_off", "%", "largest distance of a rivet from its own layer", kLow, {1e-3, 0.05},
+           &M::rivets_off_percent)
+      .row("rivets_apart", "%",
+           "largest distance of a layer's rivets from the line through those of its neighbour",
+           kLow, {1e-6, 0.05}, &M::rivets_apart_percent)
+      .row("asymmetry", "%", "at rest, Hausdorff distance of the surface from its mirror image",
+           kLow, {1e-3, 0.05}, &M::asymmetry_percent);
+}
+
+MetricGroup sector_group() {
+  return frame_metrics<SketchScene>(sector_length_error)
+      .row("sector_error", "1",
+           "largest relative difference between an edge of a layer's flat piece and the same edge "
+           "in "
+           "space, both as circular arcs",
+           kLow, {1e-9, 0}, [](const std::optional<double>& error) { return error; })
+      .oracle();
+}
+
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
   std::vector<MetricGroup> groups{surface_group(), silhouette_group(), pattern_group(),
-                                  truth_group(), cut_group()};
+                                  truth_group(),   cut_group(),        arc_group(),
+                                  layer_group(),   sector_group()};
   for (MetricGroup& group : garment_metrics()) groups.push_back(std::move(group));
   return groups;
 }

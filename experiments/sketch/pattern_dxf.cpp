@@ -1,5 +1,6 @@
 #include "experiments/sketch/pattern_dxf.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -107,7 +108,7 @@ void write_dxf_header(const PatternSheet& sheet, DxfWriter& out) {
   out.tag(0, "ENDSEC");
 }
 
-void write_dxf_tables(DxfWriter& out) {
+void write_dxf_tables(const PatternSheet& sheet, DxfWriter& out) {
   out.begin_section("TABLES");
   out.begin_table("LTYPE", 1);
   out.tag(0, "LTYPE");
@@ -118,7 +119,9 @@ void write_dxf_tables(DxfWriter& out) {
   out.tag(73, 0);
   out.number(40, 0);
   out.tag(0, "ENDTAB");
-  out.begin_table("LAYER", static_cast<int>(kDxfLayers.size()) + 1);
+  const std::vector<SheetLayer> used = used_layers(sheet);
+  const bool drilled = std::find(used.begin(), used.end(), SheetLayer::drill) != used.end();
+  out.begin_table("LAYER", static_cast<int>(kDxfLayers.size()) + (drilled ? 2 : 1));
   const auto layer = [&](const std::string& name, int colour) {
     out.tag(0, "LAYER");
     out.tag(2, name);
@@ -128,6 +131,7 @@ void write_dxf_tables(DxfWriter& out) {
   };
   layer("0", 7);
   for (const auto& [name, colour] : kDxfLayers) layer(name, colour);
+  if (drilled) layer("13", 30);
   out.tag(0, "ENDTAB");
   out.begin_table("STYLE", 1);
   out.tag(0, "STYLE");
@@ -156,6 +160,13 @@ void write_dxf_cut(const SheetLine& line, DxfWriter& out) {
   }
 }
 
+/// A hole is drilled where the point says; how wide is the tool's.
+Eigen::Vector2d middle_of(const SheetLine& line) {
+  Eigen::Vector2d sum(0, 0);
+  for (const Eigen::Vector2d& p : line.points) sum += p;
+  return sum / static_cast<double>(line.points.size());
+}
+
 void write_dxf_line(const SheetLine& line, DxfWriter& out) {
   switch (line.layer) {
     case SheetLayer::cut:
@@ -164,7 +175,10 @@ void write_dxf_line(const SheetLine& line, DxfWriter& out) {
       return out.line("14", line);
     case SheetLayer::fold:
     case SheetLayer::notch:
+    case SheetLayer::place:
       return out.line("8", line);
+    case SheetLayer::drill:
+      return out.mark("13", middle_of(line));
     case SheetLayer::grain:
       // The arrow's head is for people: the format wants one line.
       if (line.points.size() == 2) out.line("7", line);
@@ -205,7 +219,7 @@ void write_dxf_block(const SheetPiece& piece, const std::string& name, DxfWriter
 std::string dxf_drawing(const PatternSheet& sheet) {
   DxfWriter out;
   write_dxf_header(sheet, out);
-  write_dxf_tables(out);
+  write_dxf_tables(sheet, out);
   out.begin_section("BLOCKS");
   for (std::size_t k = 0; k < sheet.pieces.size(); ++k) {
     write_dxf_block(sheet.pieces[k], dxf_block_name(k + 1, sheet.pieces[k].label), out);

@@ -42,19 +42,26 @@ PatternJson json_piece(const PatternPiece& piece, const SheetPiece& drawn) {
   for (Eigen::Index i = 0; i < piece.points.rows(); ++i) {
     points.push_back(json_point(1000 * piece.points.row(i).transpose()));
   }
+  PatternJson holes = PatternJson::array();
+  for (const PieceHole& hole : piece.holes) {
+    holes.push_back(
+        {{"centre_mm", json_point(1000 * hole.centre)}, {"radius_mm", 1000 * hole.radius}});
+  }
   const Eigen::Vector2d right = drawn.turn.row(0).transpose(), up = drawn.turn.row(1).transpose();
-  return {{"name", piece.name},
-          {"points_mm", std::move(points)},
-          {"surface_vertex", piece.surface_vertex},
-          {"borders", piece.borders},
-          {"edges", json_edges(piece)},
-          {"folds", piece.folds},
-          {"notches", json_notches(drawn)},
-          {"grain", json_point(piece.grain)},
-          {"sheet",
-           {{"right", json_point(right)},
-            {"up", json_point(up)},
-            {"origin_mm", json_point(drawn.shift + drawn.place)}}}};
+  PatternJson result{{"name", piece.name},
+                     {"points_mm", std::move(points)},
+                     {"surface_vertex", piece.surface_vertex},
+                     {"borders", piece.borders},
+                     {"edges", json_edges(piece)},
+                     {"folds", piece.folds},
+                     {"notches", json_notches(drawn)},
+                     {"grain", json_point(piece.grain)},
+                     {"sheet",
+                      {{"right", json_point(right)},
+                       {"up", json_point(up)},
+                       {"origin_mm", json_point(drawn.shift + drawn.place)}}}};
+  if (!piece.holes.empty()) result["holes"] = std::move(holes);
+  return result;
 }
 
 void require_map(const Pattern& pattern, const PatternSheet& sheet) {

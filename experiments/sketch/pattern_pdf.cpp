@@ -26,7 +26,7 @@ class PdfPageWriter {
     const std::string scale = written_number(kPointsOfMillimetre, 12);
     out_ = scale + " 0 0 " + scale + " 0 0 cm\n1 j 1 J " + written_number(style_.line_mm) + " w\n";
     out_ += "q\n" + pdf_point(page_.place) + pdf_point(page_.window.sizes()) + "re W n\n";
-    for (const SheetLayer layer : kSheetLayers) write_layer(layer);
+    for (const SheetLayer layer : used_layers(sheet_)) write_layer(layer);
     out_ += "Q\n";
     set_colour(SheetLayer::text);
     for (const SheetLine& mark : page_.marks) write_path(mark, {0, 0});
@@ -40,7 +40,7 @@ class PdfPageWriter {
       for (const double x : layer_rgb(style_, layer)) out_ += written_number(x, 4) + " ";
       out_ += op;
     }
-    out_ += layer == SheetLayer::fold ? "[4 2] 0 d\n" : "[] 0 d\n";
+    out_ += layer == SheetLayer::fold || layer == SheetLayer::place ? "[4 2] 0 d\n" : "[] 0 d\n";
   }
 
   void write_layer(SheetLayer layer) {

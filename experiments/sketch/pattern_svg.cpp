@@ -15,13 +15,15 @@ class SvgPageWriter {
   std::string write() {
     open();
     const bool clipped = !page_.label.empty();
-    for (const SheetLayer layer : kSheetLayers) {
+    for (const SheetLayer layer : used_layers(sheet_)) {
       layer_rgb(style_, layer);
       const std::string name(layer_name(layer));
       out_ += "<g id=\"" + name + "\" inkscape:groupmode=\"layer\" inkscape:label=\"" + name +
               "\" fill=\"none\" stroke=\"" + style_.colour(layer) + "\" stroke-width=\"" +
               written_number(style_.line_mm) + "\"" +
-              (layer == SheetLayer::fold ? " stroke-dasharray=\"4 2\"" : "") + ">\n";
+              (layer == SheetLayer::fold || layer == SheetLayer::place ? " stroke-dasharray=\"4 2\""
+                                                                       : "") +
+              ">\n";
       if (clipped) out_ += "<g clip-path=\"url(#page)\">\n";
       write_layer(layer);
       if (clipped) out_ += "</g>\n";
@@ -81,6 +83,10 @@ class SvgPageWriter {
         return " data-fold" + number;
       case SheetLayer::notch:
         return " data-notch" + number;
+      case SheetLayer::drill:
+        return " data-hole" + number;
+      case SheetLayer::place:
+        return " data-place" + number;
       default:
         return "";
     }

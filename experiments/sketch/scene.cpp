@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/topology.h"
 #include "experiments/sketch/cloth_files.h"
+#include "testbed/formats/gltf_writer.h"
 #include "testbed/formats/mesh_file.h"
 #include "testbed/home.h"
 
@@ -67,7 +68,10 @@ void describe(OptionVisitor& v, SketchSceneOptions& o) {
           {.doc = "mesh file in place of a drawing, for methods that need none"});
   describe_group(v, "synthetic", o.synthetic,
                  {.doc = "one view of a shape that is known, in place of both"});
-  describe_group(v, "known", o.known, {.doc = "a surface of closed form, in place of all"});
+  describe_group(v, "closed_form", o.closed_form,
+                 {.doc = "a surface of closed form, in place of all"});
+  describe_group(v, "layers", o.layers,
+                 {.doc = "one view of a body of rigid layers that is known, in place of them"});
   v.value("surface_scale", o.surface_scale,
           {.doc = "metres for one unit of that mesh", .unit = "m", .min = 1e-9, .max = 1e9});
   describe_group(v, "read", o.read, {.doc = "how the drawing becomes strokes"});
@@ -92,14 +96,33 @@ const View& SketchScene::photo() const {
   return *view;
 }
 
+LayerFiles SketchScene::layer_files() const {
+  LayerFiles files;
+  if (!input.files) return files;
+  files.pattern = input.files;
+  files.motion = [](const LayerMotion& motion) -> std::vector<Artifact> {
+    std::vector<GltfLink> links;
+    for (const LayerMotion::Link& link : motion.links)
+      links.push_back({link.name, link.solid, link.pivot, link.axis, link.angles});
+    constexpr double kFrame = 0.125;  // s
+    std::vector<double> times;
+    for (std::size_t i = 0; i < motion.links.front().angles.size(); ++i)
+      times.push_back(kFrame * static_cast<double>(i));
+    return {text_artifact("layers.glb", rigid_chain_glb(links, times, "layers"))};
+  };
+  return files;
+}
+
 std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options,
                                                const std::filesystem::path& folder,
                                                std::uint64_t seed) {
   const int given = !options.drawing.empty() + !options.surface.empty() +
-                    options.synthetic.has_value() + options.known.has_value();
+                    options.synthetic.has_value() + options.closed_form.has_value() +
+                    options.layers.has_value();
   if (given != 1) {
     throw Error(std::to_string(given) + " of them are given",
-                "scene.drawing, scene.surface, scene.synthetic and scene.known", "one");
+                "scene.drawing, scene.surface, scene.synthetic, scene.closed_form and scene.layers",
+                "one");
   }
   auto scene = std::make_shared<SketchScene>();
   scene->input.align = options.align;
@@ -117,9 +140,14 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
     drawn.seed = static_cast<int>(scene_seed(seed, drawn.seed));
     scene->truth = synthetic_view(drawn);
     scene->input.drawing = {"scene.synthetic", {scene->truth->view}};
-  } else if (options.known) {
-    scene->input.surface = known_surface(*options.known);
+  } else if (options.closed_form) {
+    scene->input.surface = known_surface(*options.closed_form);
     scene->input.patterns = false;
+  } else if (options.layers) {
+    SyntheticLayerOptions drawn = *options.layers;
+    drawn.seed = static_cast<int>(scene_seed(seed, drawn.seed));
+    scene->truth = synthetic_layers(drawn);
+    scene->input.drawing = {"scene.layers", {scene->truth->view}};
   } else if (options.drawing.empty()) {
     load_surface(options, folder, *scene);
     scene->input.patterns = false;

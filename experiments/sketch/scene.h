@@ -14,7 +14,9 @@
 #include "metrics/planar_overlap.h"
 #include "models/sketch/known_surface.h"
 #include "models/sketch/sketch_process.h"
+#include "models/sketch/synthetic_layers.h"
 #include "models/sketch/synthetic_views.h"
+#include "solvers/sketch/layers_process.h"
 #include "testbed/topic.h"
 
 namespace geoprior::sketch {
@@ -25,8 +27,9 @@ struct SketchSceneOptions {
   std::string drawing;  ///< SVG file
   std::string surface;  ///< mesh file instead, for methods that need no drawing
   double surface_scale = 1;
-  std::optional<SyntheticViewOptions> synthetic;  ///< instead of both
-  std::optional<KnownSurfaceOptions> known;       ///< a surface of closed form, instead of all
+  std::optional<SyntheticViewOptions> synthetic;   ///< instead of both
+  std::optional<KnownSurfaceOptions> closed_form;  ///< a surface of closed form, instead of all
+  std::optional<SyntheticLayerOptions> layers;     ///< instead of them
   DrawingFileOptions read;
   AlignOptions align;
   HullOptions hull;
@@ -53,6 +56,8 @@ class SketchScene final : public ProcessScene {
   /// The one view of a drawing that has no others.
   /// @throws Error  when the scene has none
   [[nodiscard]] const View& photo() const;
+  /// What articulated layers leave beside their frames: a pattern's files and layers.glb.
+  [[nodiscard]] LayerFiles layer_files() const;
 
   [[nodiscard]] std::string parameter_name() const override { return "iteration"; }
   [[nodiscard]] std::string parameter_unit() const override { return "1"; }

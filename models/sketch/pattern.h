@@ -14,6 +14,12 @@ struct PieceEdge {
   int partner_edge = -1;      ///< of that piece, run through the opposite way
 };
 
+/// A round hole in a piece, for a rivet.
+struct PieceHole {
+  Eigen::Vector2d centre{0, 0};  ///< m
+  double radius = 0;             ///< m
+};
+
 /// One flat piece of material. Metres, true scale, counter-clockwise.
 struct PatternPiece {
   std::string name;
@@ -25,6 +31,9 @@ struct PatternPiece {
   std::vector<PieceEdge> edges;           ///< the outer and inner borders, cut at seams' ends
   Eigen::Vector2d grain{0, 1};            ///< direction of the material's grain, unit
   std::vector<std::vector<int>> folds;    ///< chains of points along which it is folded
+  std::vector<PieceHole> holes = {};      ///< not cut out of the triangles
+  /// Lines along which the edge of another piece lies when both are put together (m).
+  std::vector<std::vector<Eigen::Vector2d>> placements = {};
 };
 
 /// What is cut out and sewn together.

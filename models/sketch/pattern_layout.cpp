@@ -16,6 +16,14 @@ double square_width(const Eigen::MatrixX2d& size, double gap) {
   return std::max(std::sqrt(kShelfSlack * area), size.rows() > 0 ? size.col(0).maxCoeff() : 0.0);
 }
 
+void move_piece(PatternPiece& piece, const Eigen::RowVector2d& by) {
+  piece.points.rowwise() += by;
+  for (PieceHole& hole : piece.holes) hole.centre += by.transpose();
+  for (std::vector<Eigen::Vector2d>& line : piece.placements) {
+    for (Eigen::Vector2d& p : line) p += by.transpose();
+  }
+}
+
 }  // namespace
 
 void lay_on_shelves(Pattern& pattern, const ShelfOptions& options) {
@@ -36,7 +44,7 @@ void lay_on_shelves(Pattern& pattern, const ShelfOptions& options) {
       y += height + options.gap;
       x = height = 0;
     }
-    pattern.pieces[p].points.rowwise() += Eigen::RowVector2d(x, y) - low.row(p);
+    move_piece(pattern.pieces[p], Eigen::RowVector2d(x, y) - low.row(p));
     x += size(p, 0) + options.gap;
     height = std::max(height, size(p, 1));
   }

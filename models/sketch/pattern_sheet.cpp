@@ -80,9 +80,23 @@ void write_sheet_line(PatternSheet& sheet, const Eigen::Vector2d& left, double h
 }  // namespace
 
 std::string_view layer_name(SheetLayer layer) {
-  static constexpr std::array<std::string_view, 6> kNames{"cut",   "sew",   "fold",
-                                                          "notch", "grain", "text"};
+  static constexpr std::array<std::string_view, 8> kNames{"cut",   "sew",  "fold",  "notch",
+                                                          "grain", "text", "drill", "place"};
   return kNames[static_cast<std::size_t>(layer)];
+}
+
+std::vector<SheetLayer> used_layers(const PatternSheet& sheet) {
+  std::vector<SheetLayer> used;
+  for (const SheetLayer layer : kSheetLayers) {
+    const bool optional = layer == SheetLayer::drill || layer == SheetLayer::place;
+    const auto has_line = [&](const SheetPiece& piece) {
+      return std::any_of(piece.lines.begin(), piece.lines.end(),
+                         [&](const SheetLine& line) { return line.layer == layer; });
+    };
+    if (!optional || std::any_of(sheet.pieces.begin(), sheet.pieces.end(), has_line))
+      used.push_back(layer);
+  }
+  return used;
 }
 
 void describe(OptionVisitor& v, SheetOptions& o) {

@@ -14,11 +14,20 @@
 namespace geoprior::sketch {
 
 /// What is done along a line of a pattern sheet.
-enum class SheetLayer { cut, sew, fold, notch, grain, text };
+enum class SheetLayer {
+  cut,
+  sew,
+  fold,
+  notch,
+  grain,
+  text,
+  drill,  ///< round holes
+  place,  ///< where the edge of another piece lies
+};
 
-inline constexpr std::array<SheetLayer, 6> kSheetLayers{SheetLayer::cut,   SheetLayer::sew,
-                                                        SheetLayer::fold,  SheetLayer::notch,
-                                                        SheetLayer::grain, SheetLayer::text};
+inline constexpr std::array<SheetLayer, 8> kSheetLayers{
+    SheetLayer::cut,   SheetLayer::sew,  SheetLayer::fold,  SheetLayer::notch,
+    SheetLayer::grain, SheetLayer::text, SheetLayer::drill, SheetLayer::place};
 
 /// Name as it is written in files: "cut", …
 std::string_view layer_name(SheetLayer layer);
@@ -44,7 +53,8 @@ struct SheetLine {
   SheetLayer layer = SheetLayer::cut;
   bool closed = false;
   PlaneLoop points;
-  int number = 0;  ///< of its border (outer 0, holes from 1), its fold from 0, its notch from 1
+  int number = 0;  ///< of its border (outer 0, holes from 1), its fold, drilled hole or placement
+                   ///< from 0, its notch from 1
 };
 
 enum class TextAnchor { middle, left };
@@ -95,6 +105,9 @@ struct PatternSheet {
   std::vector<SheetLine> lines;  ///< beside the pieces: the scale bar (layer text)
   std::vector<SheetText> texts;
 };
+
+/// The layers that a file of the sheet has: holes and placements only where there are some.
+std::vector<SheetLayer> used_layers(const PatternSheet& sheet);
 
 /// Length of the scale bar (mm).
 inline constexpr double kScaleBar = 100;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "core/angles.h"
 #include "core/planar.h"
 #include "models/sketch/clear_box.h"
 #include "models/sketch/piece_border.h"
@@ -34,6 +35,8 @@ class PieceDrawing {
   SheetPiece draw(const std::vector<Notch>& notches) {
     draw_borders();
     for (std::size_t i = 0; i < piece_.folds.size(); ++i) draw_fold(static_cast<int>(i));
+    draw_placements();
+    draw_holes();
     for (const Notch& notch : notches) {
       if (notch.piece == index_) draw_notch(notch);
     }
@@ -95,6 +98,27 @@ class PieceDrawing {
     for (const int v : piece_.folds[static_cast<std::size_t>(fold)])
       points.push_back(drawing_.own(piece_.points.row(v).transpose()));
     add_line(SheetLayer::fold, points, fold);
+  }
+
+  void draw_placements() {
+    for (std::size_t i = 0; i < piece_.placements.size(); ++i)
+      add_line(SheetLayer::place, own(piece_.placements[i]), static_cast<int>(i));
+  }
+
+  /// As polygons, of which no side is farther from the circle than a hundredth of its radius.
+  void draw_holes() {
+    constexpr int kSides = 24;
+    for (std::size_t i = 0; i < piece_.holes.size(); ++i) {
+      const PieceHole& hole = piece_.holes[i];
+      PlaneLoop circle;
+      for (int k = 0; k < kSides; ++k) {
+        const double angle = kFullTurn * k / kSides;
+        circle.push_back(drawing_.own(
+            hole.centre + hole.radius * Eigen::Vector2d(std::cos(angle), std::sin(angle))));
+      }
+      add_line(SheetLayer::drill, circle, static_cast<int>(i));
+      drawing_.lines.back().closed = true;
+    }
   }
 
   void add_line(SheetLayer layer, const PlaneLoop& points, int number = 0) {

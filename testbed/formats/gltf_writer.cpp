@@ -84,6 +84,18 @@ class GltfBuilder {
   std::string bytes_;
 };
 
+/// Times are compared in single precision, in which they are stored.
+void require_times(const std::vector<double>& times_s, const std::string& where) {
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    const auto time = static_cast<float>(times_s[i]);
+    if (!(time >= 0) || !std::isfinite(time) ||
+        (i > 0 && !(time > static_cast<float>(times_s[i - 1])))) {
+      throw Error("the time of frame " + std::to_string(i) + " is " + std::to_string(times_s[i]),
+                  where, "finite, >= 0, increasing (in single precision)");
+    }
+  }
+}
+
 void require_sequence(const std::string& file, const TriMesh& base,
                       const std::vector<Eigen::MatrixX3d>& frames,
                       const std::vector<double>& times_s) {
@@ -102,13 +114,68 @@ void require_sequence(const std::string& file, const TriMesh& base,
                   std::to_string(base.V.rows()));
     }
     if (!frames[i].allFinite()) throw Error("a position of " + frame + " is not finite", file);
-    // Times are compared in single precision, in which they are stored.
-    const auto time = static_cast<float>(times_s[i]);
-    if (!(time >= 0) || !std::isfinite(time) ||
-        (i > 0 && !(time > static_cast<float>(times_s[i - 1]))))
-      throw Error("the time of " + frame + " is " + std::to_string(times_s[i]), file,
-                  "finite, >= 0, increasing (in single precision)");
   }
+  require_times(times_s, file);
+}
+
+void require_chain(const std::vector<GltfLink>& links, const std::vector<double>& times_s,
+                   const std::string& name) {
+  if (links.empty() || times_s.empty())
+    throw Error("has no links or no times", name, "one or more");
+  require_times(times_s, name);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const GltfLink& link = links[i];
+    const std::string where = name + ": link " + std::to_string(i) + " '" + link.name + "'";
+    require_sequence(where, link.mesh, {}, {});
+    if (link.angles.size() != times_s.size()) {
+      throw Error("has " + std::to_string(link.angles.size()) + " angles", where,
+                  std::to_string(times_s.size()) + ", one a time");
+    }
+    bool finite = link.pivot.allFinite() && link.axis.allFinite();
+    for (const double angle : link.angles) finite = finite && std::isfinite(angle);
+    if (!finite) throw Error("its hinge or an angle is not finite", where);
+  }
+}
+
+json mesh_of(GltfBuilder& builder, const TriMesh& mesh, const Eigen::Vector3d& origin,
+             const std::string& name) {
+  std::vector<std::uint32_t> indices;
+  for (Eigen::Index f = 0; f < mesh.F.rows(); ++f)
+    for (int k = 0; k < 3; ++k) indices.push_back(static_cast<std::uint32_t>(mesh.F(f, k)));
+  json primitive;
+  primitive["attributes"]["POSITION"] = builder.add_vectors(mesh.V.rowwise() - origin.transpose());
+  primitive["indices"] = builder.add(indices, "SCALAR", 1, kUnsignedInt, kIndexTarget);
+  return {{"name", name}, {"primitives", json::array({primitive})}};
+}
+
+/// Quaternions x y z w, one a key.
+std::vector<float> turn_keys(const GltfLink& link) {
+  std::vector<float> keys;
+  for (const double angle : link.angles) {
+    const Eigen::Vector3d v = std::sin(angle / 2) * link.axis.normalized();
+    for (const double x : {v.x(), v.y(), v.z(), std::cos(angle / 2)})
+      keys.push_back(static_cast<float>(x));
+  }
+  return keys;
+}
+
+void add_turns(GltfBuilder& builder, const std::vector<GltfLink>& links,
+               const std::vector<double>& times_s, const std::string& name) {
+  const std::vector<float> times(times_s.begin(), times_s.end());
+  const int input = builder.add(times, "SCALAR", 1, kFloat);
+  json& accessor = builder.document()["accessors"][input];
+  accessor["min"] = {times.front()};
+  accessor["max"] = {times.back()};
+  json samplers = json::array(), channels = json::array();
+  for (std::size_t i = 1; i < links.size(); ++i) {
+    const int output = builder.add(turn_keys(links[i]), "VEC4", 4, kFloat);
+    channels.push_back({{"sampler", samplers.size()},
+                        {"target", {{"node", static_cast<int>(i)}, {"path", "rotation"}}}});
+    samplers.push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
+  }
+  if (channels.empty()) return;
+  builder.document()["animations"] =
+      json::array({{{"name", name}, {"samplers", samplers}, {"channels", channels}}});
 }
 
 void add_animation(GltfBuilder& builder, const std::vector<double>& times_s,
@@ -157,6 +224,30 @@ void write_glb_animation(const std::filesystem::path& file, const TriMesh& base,
   document["meshes"] = json::array({mesh});
   if (!frames.empty()) add_animation(builder, times_s, name);
   write_file_atomically(file, std::string_view(builder.glb(file.string())));
+}
+
+std::string rigid_chain_glb(const std::vector<GltfLink>& links, const std::vector<double>& times_s,
+                            const std::string& name) {
+  require_chain(links, times_s, name);
+  GltfBuilder builder;
+  json& document = builder.document();
+  document["asset"] = {{"version", "2.0"}, {"generator", "geoprior"}};
+  document["scene"] = 0;
+  document["scenes"] = json::array({{{"name", name}, {"nodes", {0}}}});
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const GltfLink& link = links[i];
+    const Eigen::Vector3d step = link.pivot - before;
+    json node{{"name", link.name},
+              {"mesh", static_cast<int>(i)},
+              {"translation", {step.x(), step.y(), step.z()}}};
+    if (i + 1 < links.size()) node["children"] = {static_cast<int>(i) + 1};
+    document["nodes"].push_back(node);
+    document["meshes"].push_back(mesh_of(builder, link.mesh, link.pivot, link.name));
+    before = link.pivot;
+  }
+  add_turns(builder, links, times_s, name);
+  return builder.glb(name);
 }
 
 }  // namespace geoprior

@@ -25,4 +25,25 @@ void write_glb_animation(const std::filesystem::path& file, const TriMesh& base,
                          const std::vector<Eigen::MatrixX3d>& frames,
                          const std::vector<double>& times_s, const std::string& name);
 
+/// One of the rigid bodies of a chain.
+struct GltfLink {
+  std::string name;
+  TriMesh mesh;                    ///< at rest, in the scene's coordinates (m)
+  Eigen::Vector3d pivot{0, 0, 0};  ///< it turns about this point, at rest (m)
+  Eigen::Vector3d axis{1, 0, 0};   ///< unit
+  std::vector<double> angles;      ///< rad, one a time, against the link before
+};
+
+/// The bytes of a binary glTF 2.0 of a chain of rigid bodies: a node a link, child of the one
+/// before it, at its pivot; an animation turns every node but the first, key by key, with
+/// quaternions. Positions and keys are stored in single precision.
+///
+/// @param times_s  >= 0, strictly increasing
+/// @param name     of the scene's root and the animation
+/// @throws Error   naming `name`: no link or no time, an empty mesh or index out of range, angles
+/// of
+///                 another number than times, what is not finite, times that do not increase
+std::string rigid_chain_glb(const std::vector<GltfLink>& links, const std::vector<double>& times_s,
+                            const std::string& name);
+
 }  // namespace geoprior

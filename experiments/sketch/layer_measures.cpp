@@ -1,0 +1,276 @@
+#include "experiments/sketch/layer_measures.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/angles.h"
+#include "core/planar.h"
+#include "core/topology.h"
+#include "core/triangle_tree.h"
+#include "metrics/circular_arc.h"
+#include "metrics/intersection_depth.h"
+#include "metrics/mirror_symmetry.h"
+#include "metrics/rim_cover.h"
+#include "metrics/self_contact.h"
+#include "models/sketch/polyline.h"
+#include "solvers/sketch/mirror_plane.h"
+
+namespace geoprior::sketch {
+namespace {
+
+using LayerOn = NamedArray::On;
+
+constexpr double kPercentOf = 100;
+
+/// Of the photograph, or of what is drawn where there is none (m).
+double picture_width(const View& view) {
+  if (view.picture.size.x() > 0) return view.picture.size.x();
+  double left = std::numeric_limits<double>::infinity(), right = -left;
+  for (const Stroke& stroke : view.strokes) {
+    for (const Eigen::Vector2d& p : stroke.points) {
+      left = std::min(left, p.x());
+      right = std::max(right, p.x());
+    }
+  }
+  return right - left;
+}
+
+bool has_arcs(const SketchScene& scene) {
+  const View* view = scene.input.drawing.find(ViewKind::photo);
+  return view != nullptr && !strokes_of(*view, StrokeKind::arc).empty();
+}
+
+/// Points of a line of a part.
+Eigen::MatrixX3d line_points(const Part& part, std::size_t line) {
+  const std::vector<int>& indices = part.lines[line];
+  Eigen::MatrixX3d points(static_cast<Eigen::Index>(indices.size()), 3);
+  for (std::size_t i = 0; i < indices.size(); ++i)
+    points.row(static_cast<Eigen::Index>(i)) = part.points.row(indices[i]);
+  return points;
+}
+
+/// Triangles of one layer.
+TriMesh layer_mesh(const Part& part, int layer) {
+  const auto& of = part.require_array("layer", LayerOn::cells, 1).values;
+  TriMesh mesh{part.points, {}};
+  mesh.F.resize(part.triangles.rows(), 3);
+  Eigen::Index kept = 0;
+  for (Eigen::Index t = 0; t < part.triangles.rows(); ++t) {
+    if (static_cast<int>(of(t)) == layer) mesh.F.row(kept++) = part.triangles.row(t);
+  }
+  mesh.F.conservativeResize(kept, 3);
+  return mesh;
+}
+
+int layer_count(const Part& part) {
+  return static_cast<int>(part.require_array("layer", LayerOn::cells, 1).values.maxCoeff());
+}
+
+/// Where the stroke that a line belongs to really is, and how the line compares with it.
+void add_circle_errors(const SyntheticView& truth, std::size_t stroke,
+                       const Eigen::MatrixX3d& points, ArcMeasures& measures) {
+  const std::vector<Eigen::Vector3d>& known = truth.truth[stroke];
+  Eigen::MatrixX3d real(static_cast<Eigen::Index>(known.size()), 3);
+  for (std::size_t i = 0; i < known.size(); ++i)
+    real.row(static_cast<Eigen::Index>(i)) = known[i].transpose();
+  const CircularArc a = circular_arc(points), b = circular_arc(real);
+  const double radius = std::abs(a.radius / b.radius - 1);
+  const double axis = std::atan2(a.axis.cross(b.axis).norm(), std::abs(a.axis.dot(b.axis)));
+  measures.radius_error = std::max(measures.radius_error.value_or(0), radius);
+  measures.axis_error_deg = std::max(measures.axis_error_deg.value_or(0), axis / kDegree);
+}
+
+/// Squared distances of a stroke's points from the image of a line: their sum and the largest.
+std::pair<double, double> image_distances(const Stroke& stroke, const Eigen::MatrixX3d& line) {
+  std::vector<Eigen::Vector2d> image;
+  for (Eigen::Index i = 0; i < line.rows(); ++i) {
+    const Eigen::Vector2d p = line.row(i).head<2>().transpose();
+    if (image.empty() || p != image.back()) image.push_back(p);
+  }
+  double sum = 0, most = 0;
+  for (const Eigen::Vector2d& p : stroke.points) {
+    const BesideStroke near = beside(image, p);
+    const double past = std::max({0.0, -near.along, near.along - length(image)});
+    const double squared = near.distance * near.distance + past * past;
+    sum += squared;
+    most = std::max(most, squared);
+  }
+  return {sum, most};
+}
+
+/// Largest distance of points from triangles.
+double largest_distance(const Eigen::MatrixX3d& points, const TriangleTree& tree) {
+  double squared = 0;
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    squared = std::max(squared, tree.squared_distance(points.row(i).transpose()));
+  return std::sqrt(squared);
+}
+
+void measure_contact(const Frame& frame, double width, LayerMeasures& measures) {
+  const Part& solid = frame.require_part("solid", Part::Kind::triangles);
+  const auto& layer = solid.require_array("layer", LayerOn::cells, 1).values;
+  std::vector<std::array<int, 2>> between;
+  for (const std::array<int, 2>& pair : intersecting_triangles(solid.points, solid.triangles)) {
+    if (layer(pair[0]) != layer(pair[1])) between.push_back(pair);
+  }
+  measures.pairs = static_cast<double>(between.size());
+  measures.depth_percent =
+      kPercentOf * intersection_depth(solid.points, solid.triangles, between) / width;
+}
+
+/// "rims" has the front and the rear rim of each layer in turn.
+void measure_cover(const Frame& frame, LayerMeasures& measures) {
+  const Part& rims = frame.require_part("rims", Part::Kind::lines);
+  const Part& surface = frame.require_part("surface", Part::Kind::triangles);
+  constexpr double kEnds = 0.1;  // beside the rivets
+  double worst = 0;
+  for (int j = 1; j < layer_count(surface); ++j) {
+    const Eigen::MatrixX3d rear = line_points(rims, static_cast<std::size_t>(2 * j - 1));
+    worst = std::max(worst, uncovered_share(rear, kEnds, layer_mesh(surface, j + 1)));
+  }
+  measures.uncovered = worst;
+}
+
+/// "rivets" has, of each hinge, two on the layer before and two on the one behind.
+void measure_rivets(const Frame& frame, double width, LayerMeasures& measures) {
+  const Part& rivets = frame.require_part("rivets", Part::Kind::points);
+  const Part& surface = frame.require_part("surface", Part::Kind::triangles);
+  const auto& layer = rivets.require_array("layer", LayerOn::points, 1).values;
+  double off = 0, apart = 0;
+  for (Eigen::Index first = 0; first + 3 < rivets.points.rows(); first += 4) {
+    for (const Eigen::Index pair : {first, first + 2}) {
+      const TriangleTree tree(layer_mesh(surface, static_cast<int>(layer(pair))));
+      off = std::max(off, largest_distance(rivets.points.middleRows(pair, 2), tree));
+    }
+    const Eigen::RowVector3d a = rivets.points.row(first);
+    const Eigen::RowVector3d line = (rivets.points.row(first + 1) - a).normalized();
+    for (const Eigen::Index other : {first + 2, first + 3})
+      apart = std::max(apart, (rivets.points.row(other) - a).cross(line).norm());
+  }
+  measures.rivets_off_percent = kPercentOf * off / width;
+  measures.rivets_apart_percent = kPercentOf * apart / width;
+}
+
+void measure_symmetry(const SketchScene& scene, const Frame& frame, double width,
+                      LayerMeasures& measures) {
+  const Part& surface = frame.require_part("surface", Part::Kind::triangles);
+  MirrorPlane plane = drawn_mirror_planes(scene.photo()).chosen;
+  if (scene.truth) plane = {scene.truth->mirror_normal, 0};
+  constexpr double kSpacing = 0.01;  // of the width
+  const MirrorSymmetry symmetry =
+      mirror_symmetry({surface.points, surface.triangles}, plane.offset * plane.normal,
+                      plane.normal, kSpacing * width);
+  measures.asymmetry_percent = kPercentOf * symmetry.hausdorff / width;
+}
+
+/// Border of a set of triangles as closed chains of vertices.
+std::vector<std::vector<int>> border_chains(const Eigen::MatrixX3i& F) {
+  std::map<int, int> next;
+  for (const Edge& e : boundary_edges(F)) next[e[0]] = e[1];
+  std::vector<std::vector<int>> chains;
+  while (!next.empty()) {
+    std::vector<int> chain;
+    int v = next.begin()->first;
+    for (auto found = next.find(v); found != next.end(); found = next.find(v)) {
+      chain.push_back(v);
+      v = found->second;
+      next.erase(found);
+    }
+    chains.push_back(std::move(chain));
+  }
+  return chains;
+}
+
+/// A closed chain cut where the flat border turns by more than 45 degrees.
+std::vector<std::vector<int>> between_corners(const std::vector<int>& chain, const Part& flat) {
+  const std::size_t n = chain.size();
+  const auto at = [&](std::size_t i) -> Eigen::Vector2d {
+    return flat.points.row(chain[i % n]).head<2>().transpose();
+  };
+  std::vector<std::size_t> corners;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double turn = signed_angle(at(i) - at(i + n - 1), at(i + 1) - at(i));
+    if (std::abs(turn) > kFullTurn / 8) corners.push_back(i);
+  }
+  std::vector<std::vector<int>> stretches;
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const std::size_t end = c + 1 < corners.size() ? corners[c + 1] : corners[0] + n;
+    std::vector<int> stretch;
+    for (std::size_t i = corners[c]; i <= end; ++i) stretch.push_back(chain[i % n]);
+    stretches.push_back(std::move(stretch));
+  }
+  return stretches;
+}
+
+double chain_length(const Eigen::MatrixX3d& points) {
+  return points.rows() < 3 ? (points.row(0) - points.row(points.rows() - 1)).norm()
+                           : circular_arc(points).length;
+}
+
+}  // namespace
+
+ArcMeasures arc_measures(const SketchScene& scene, const Frame& frame) {
+  ArcMeasures measures;
+  if (!has_arcs(scene) || frame.find_part("strokes") == nullptr) return measures;
+  const View& view = scene.photo();
+  const double width = picture_width(view);
+  const Part& lines = frame.require_part("strokes", Part::Kind::lines);
+  const auto& stroke = lines.require_array("stroke", LayerOn::points, 1).values;
+  double sum = 0, most = 0, count = 0;
+  for (std::size_t l = 0; l < lines.lines.size(); ++l) {
+    const auto number = static_cast<std::size_t>(stroke(lines.lines[l].front()));
+    const Eigen::MatrixX3d points = line_points(lines, l);
+    const auto [squares, largest] = image_distances(view.strokes[number], points);
+    sum += squares;
+    most = std::max(most, largest);
+    count += static_cast<double>(view.strokes[number].points.size());
+    if (scene.truth) add_circle_errors(*scene.truth, number, points, measures);
+  }
+  measures.rms_percent = kPercentOf * std::sqrt(sum / count) / width;
+  measures.max_percent = kPercentOf * std::sqrt(most) / width;
+  const Part& surface = frame.require_part("surface", Part::Kind::triangles);
+  measures.off_surface_percent =
+      kPercentOf *
+      largest_distance(lines.points, TriangleTree({surface.points, surface.triangles})) / width;
+  return measures;
+}
+
+LayerMeasures layer_measures(const SketchScene& scene, const Frame& frame) {
+  LayerMeasures measures;
+  if (frame.find_part("solid") == nullptr) return measures;
+  const double width = picture_width(scene.photo());
+  measure_contact(frame, width, measures);
+  measure_cover(frame, measures);
+  if (frame.find_part("rivets") != nullptr) measure_rivets(frame, width, measures);
+  if (frame.find_part("strokes") != nullptr) measure_symmetry(scene, frame, width, measures);
+  return measures;
+}
+
+std::optional<double> sector_length_error(const SketchScene& /*scene*/, const Frame& frame) {
+  if (frame.find_part("solid") == nullptr || frame.find_part("pattern") == nullptr) return {};
+  const Part& flat = frame.require_part("pattern", Part::Kind::triangles);
+  const Part& surface = frame.require_part("surface", Part::Kind::triangles);
+  const auto& vertex = flat.require_array("surface_vertex", LayerOn::points, 1).values;
+  double worst = 0;
+  for (const std::vector<int>& chain : border_chains(flat.triangles)) {
+    for (const std::vector<int>& stretch : between_corners(chain, flat)) {
+      const auto n = static_cast<Eigen::Index>(stretch.size());
+      Eigen::MatrixX3d laid(n, 3), real(n, 3);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const int v = stretch[static_cast<std::size_t>(i)];
+        laid.row(i) = flat.points.row(v);
+        real.row(i) = surface.points.row(static_cast<Eigen::Index>(vertex(v)));
+      }
+      worst = std::max(worst, std::abs(chain_length(laid) / chain_length(real) - 1));
+    }
+  }
+  return worst;
+}
+
+}  // namespace geoprior::sketch
