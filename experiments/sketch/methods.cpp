@@ -76,7 +76,7 @@ std::vector<MethodEntry> methods() {
           "one-view", false, "depth of one annotated view by symmetry and rulings, mirrored",
           "thesis 2.1.3; Fondevilla et al. 2017",
           [](const S& scene, const OneViewOptions& options, RunContext&) {
-            return make_one_view_process(scene.photo(), options);
+            return make_one_view_process(scene.photo_input(), options);
           }),
       method_entry<S, HullSurfaceOptions>(
           "visual-hull", true, "all points that every view sees, as it is or smoothed",
@@ -111,6 +111,9 @@ std::vector<DiagnosticEntry> diagnostics() {
       {"residual_parallel", "m", "of parallel ends of patches"},
       {"condition", "1", "greatest over least eigenvalue of the normal matrix"},
       {"matches", "1", "dense symmetric correspondences"},
+      {"texture_seen", "1", "share of the pattern that the photograph shows"},
+      {"texture_mirrored", "1", "share that has the colour of its visible mirror image"},
+      {"texture_flat", "1", "share that nothing shows: the mean colour of its panel"},
       {"flow_energy", "1", "what a flow descends, as it defines it"},
   };
 }

@@ -31,6 +31,13 @@ void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& fold
     scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
 }
 
+/// What a known drawing shows is its truth; without a file it is drawn here.
+void load_known(const SketchSceneOptions& o, std::uint64_t seed, SketchScene& scene) {
+  if (o.drawing.empty()) scene.input.drawing = known_drawing(o.known->shape);
+  scene.truth = known_truth(scene.photo(), *o.known, scene_seed(seed, o.known->seed));
+  scene.input.drawing.views = {scene.truth->view};
+}
+
 Artifact text_artifact(const std::string& name, const std::string& bytes) {
   Artifact artifact;
   artifact.name = name;
@@ -52,6 +59,26 @@ std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const Fabricatio
   return artifacts;
 }
 
+/// Files of one view: the pattern's, the textured ones, and the drawing that was made here.
+OneViewFiles one_view_files(const SketchSceneOptions& o, const View& view,
+                            const OneViewResult& result, const Pattern& pattern) {
+  OneViewFiles files;
+  if (o.fabrication) files.artifacts = pattern_artifacts(pattern, *o.fabrication);
+  std::vector<FabricationFile> made;
+  if (o.textures) {
+    TexturedFiles textured = textured_files(view, result, pattern, *o.textures);
+    made = std::move(textured.files);
+    files.diagnostics = std::move(textured.diagnostics);
+  }
+  if (o.known && o.drawing.empty()) {
+    for (FabricationFile& file : known_drawing_files(o.known->shape))
+      made.push_back(std::move(file));
+  }
+  for (const FabricationFile& file : made)
+    files.artifacts.push_back(text_artifact(file.name, file.bytes));
+  return files;
+}
+
 }  // namespace
 
 void describe(OptionVisitor& v, SketchSceneOptions& o) {
@@ -60,6 +87,8 @@ void describe(OptionVisitor& v, SketchSceneOptions& o) {
           {.doc = "mesh file in place of a drawing, for methods that need none"});
   describe_group(v, "synthetic", o.synthetic,
                  {.doc = "one view of a shape that is known, in place of both"});
+  describe_group(v, "known", o.known,
+                 {.doc = "the known object that the drawing shows; drawn here without a file"});
   v.value("surface_scale", o.surface_scale,
           {.doc = "metres for one unit of that mesh", .unit = "m", .min = 1e-9, .max = 1e9});
   describe_group(v, "read", o.read, {.doc = "how the drawing becomes strokes"});
@@ -68,6 +97,8 @@ void describe(OptionVisitor& v, SketchSceneOptions& o) {
   describe_group(v, "smoothing", o.smoothing, {.doc = "of the hull, before the first step"});
   describe_group(v, "pattern", o.pattern, {.doc = "how pieces are laid flat"});
   describe_group(v, "fabrication", o.fabrication, {.doc = "files to cut and sew by"});
+  describe_group(v, "textures", o.textures,
+                 {.doc = "files of one view that carry its photograph's colours"});
 }
 
 std::map<std::string, double> SketchScene::facts() const {
@@ -84,14 +115,18 @@ const View& SketchScene::photo() const {
   return *view;
 }
 
+OneViewInput SketchScene::photo_input() const {
+  return {photo(), input.pattern, input.patterns, photo_files};
+}
+
 std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options,
                                                const std::filesystem::path& folder,
                                                std::uint64_t seed) {
-  const int given =
-      !options.drawing.empty() + !options.surface.empty() + options.synthetic.has_value();
+  const bool drawn = !options.drawing.empty() || options.known;
+  const int given = drawn + !options.surface.empty() + options.synthetic.has_value();
   if (given != 1) {
     throw Error(std::to_string(given) + " of them are given",
-                "scene.drawing, scene.surface and scene.synthetic", "one");
+                "scene.drawing (or scene.known), scene.surface and scene.synthetic", "one");
   }
   auto scene = std::make_shared<SketchScene>();
   scene->input.align = options.align;
@@ -103,17 +138,24 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
       return pattern_artifacts(pattern, fabrication);
     };
   }
+  if (options.fabrication || options.textures || options.known) {
+    scene->photo_files = [options](const View& view, const OneViewResult& result,
+                                   const Pattern& pattern) {
+      return one_view_files(options, view, result, pattern);
+    };
+  }
   if (options.synthetic) {
-    SyntheticViewOptions drawn = *options.synthetic;
-    drawn.seed = static_cast<int>(scene_seed(seed, drawn.seed));
-    scene->truth = synthetic_view(drawn);
+    SyntheticViewOptions shape = *options.synthetic;
+    shape.seed = static_cast<int>(scene_seed(seed, shape.seed));
+    scene->truth = synthetic_view(shape);
     scene->input.drawing = {"scene.synthetic", {scene->truth->view}};
-  } else if (options.drawing.empty()) {
+  } else if (!options.surface.empty()) {
     load_surface(options, folder, *scene);
     scene->input.patterns = false;
-  } else {
+  } else if (!options.drawing.empty()) {
     load_drawing(options, folder, *scene);
   }
+  if (options.known) load_known(options, seed, *scene);
   return scene;
 }
 

@@ -168,20 +168,6 @@ void close_loops(std::vector<DrawnPiece>& pieces, double snap, double turn) {
   }
 }
 
-std::vector<std::string> panel_names(const std::string& text) {
-  std::vector<std::string> names;
-  std::size_t begin = 0;
-  while (begin <= text.size()) {
-    const std::size_t end = std::min(text.find('+', begin), text.size());
-    std::string name = text.substr(begin, end - begin);
-    name.erase(0, std::min(name.find_first_not_of(' '), name.size()));
-    name.erase(name.find_last_not_of(' ') + 1);
-    if (!name.empty()) names.push_back(name);
-    begin = end + 1;
-  }
-  return names;
-}
-
 double distance_to_stroke(const Eigen::Vector2d& p, const Stroke& stroke) {
   const std::size_t n = stroke.points.size();
   double nearest = std::numeric_limits<double>::infinity();
@@ -246,8 +232,7 @@ void add_curves(const View& view, const std::vector<DrawnPiece>& pieces, CurveNe
     const int least = pieces[p].closed ? 8 : 2;
     const DrawnPiece even =
         resampled(pieces[p], std::max(least, static_cast<int>(std::lround(length / net.spacing))));
-    SketchCurve curve{stroke.id, pieces[p].stroke, panel_names(stroke.name), even.closed,
-                      {},        even.at};
+    SketchCurve curve{stroke.id, pieces[p].stroke, panels_of(stroke), even.closed, {}, even.at};
     for (std::size_t i = 0; i < even.points.size(); ++i) {
       const bool end = !even.closed && (i == 0 || i + 1 == even.points.size());
       const int key = end ? sets.find(static_cast<int>(2 * p + (i == 0 ? 0 : 1))) : -1;

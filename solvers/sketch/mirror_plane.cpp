@@ -104,4 +104,16 @@ MirrorPlanes drawn_mirror_planes(const View& view, double ratio) {
   return mirror_planes(a, b, ratio);
 }
 
+Eigen::Matrix3d drawn_object_frame(const View& view, const MirrorPlane& plane) {
+  const Stroke& a = named_vector(view, "sym-a");
+  const Eigen::Vector2d image = a.points.back() - a.points.front();
+  const Eigen::Vector3d& n = plane.normal;
+  // The vector lies in the plane, which is not seen along its normal's depth.
+  const Eigen::Vector3d up =
+      Eigen::Vector3d(image.x(), image.y(), -n.head<2>().dot(image) / n.z()).normalized();
+  Eigen::Matrix3d frame;
+  frame << n.transpose(), up.transpose(), n.cross(up).transpose();
+  return frame;
+}
+
 }  // namespace geoprior::sketch

@@ -49,4 +49,9 @@ MirrorPlanes mirror_planes(const Stroke& a, const Stroke& b, double ratio = 1);
 /// @throws Error  when one of them is missing or drawn twice; as `mirror_planes`
 MirrorPlanes drawn_mirror_planes(const View& view, double ratio = 1);
 
+/// Frame of the object in the view, from the chosen plane: rows are its normal, the direction of
+/// sym-a in space, and the direction orthogonal to both.
+/// @throws Error  when sym-a is missing
+Eigen::Matrix3d drawn_object_frame(const View& view, const MirrorPlane& plane);
+
 }  // namespace geoprior::sketch

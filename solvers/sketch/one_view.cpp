@@ -168,13 +168,23 @@ Eigen::AlignedBox2d picture_box(const View& view, const CurveNet& net) {
   return box;
 }
 
+/// The panel that both borders of a ruled patch name, else its first drawn ruling.
+std::string name_of_patch(const CurveNet& net, const RuledPatch& patch) {
+  const std::vector<std::string>& second = net.curves[patch.second].panels;
+  for (const std::string& name : net.curves[patch.first].panels) {
+    if (std::find(second.begin(), second.end(), name) != second.end()) return name;
+  }
+  return patch.id;
+}
+
 /// Fills the patches and welds them.
 void fill_patches(const View& view, const std::vector<DrawnPanel>& panels,
                   const OneViewOptions& options, OneViewResult& result) {
   SurfaceBuilder builder(result);
   const Eigen::MatrixX3d& nodes = result.depth.nodes;
   for (const RuledPatch& ruled : result.rulings) {
-    OneViewPatch patch{ruled.id, true, false, ruled_strip(result.net, ruled, nodes), {}};
+    OneViewPatch patch{
+        name_of_patch(result.net, ruled), true, false, ruled_strip(result.net, ruled, nodes), {}};
     patch.unrolled = unroll_strip(patch.strip, nodes);
     builder.add_strip(patch.strip, static_cast<int>(result.patches.size()));
     result.patches.push_back(std::move(patch));

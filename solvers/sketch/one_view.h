@@ -13,6 +13,7 @@
 #include "solvers/sketch/mirror_plane.h"
 #include "solvers/sketch/mirror_surface.h"
 #include "solvers/sketch/ruled_fill.h"
+#include "solvers/sketch/ruled_patches.h"
 #include "solvers/sketch/ruling_warp.h"
 
 namespace geoprior::sketch {
@@ -31,7 +32,7 @@ void describe(OptionVisitor& v, OneViewOptions& options);
 
 /// A patch of the surface.
 struct OneViewPatch {
-  std::string name;           ///< panel, or stroke of the first drawn ruling
+  std::string name;           ///< panel; of a ruled patch without one, its first drawn ruling
   bool ruled = false;         ///< swept by rulings; otherwise fair
   bool flat = false;          ///< its border was asked to be plane
   RuledStrip strip;           ///< of a ruled patch, before the surface is made symmetric
