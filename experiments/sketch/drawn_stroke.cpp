@@ -135,6 +135,7 @@ Stroke common_stroke(const TaggedShape& tagged, const SvgShape& shape, StrokeKin
   stroke.kind = kind;
   stroke.name = stroke_name(tagged, shape.tags, kind);
   stroke.side = depth_side(tagged.data("depth"), place);
+  if (kind == StrokeKind::symmetric_pair) stroke.panels = tagged.data("panel");
   if (kind == StrokeKind::fold) {
     stroke.fold_angle_deg = written_fold_angle(tagged.data("fold-angle"), place);
     stroke.fold_width = written_fold_width(tagged.data("fold-width"), place);

@@ -41,7 +41,8 @@ std::string KnownSvg::path(const Stroke& stroke) const {
   std::string text = "    <path id=\"" + stroke.id + "\"";
   const bool panels = stroke.kind == StrokeKind::border || stroke.kind == StrokeKind::silhouette ||
                       stroke.kind == StrokeKind::ruling;
-  if (panels && !stroke.name.empty()) text += " data-panel=\"" + stroke.name + "\"";
+  const std::string& named = panels ? stroke.name : stroke.panels;
+  if (!named.empty()) text += " data-panel=\"" + named + "\"";
   if (stroke.kind == StrokeKind::plane_vector && stroke.side == DepthSide::back)
     text += " data-depth=\"back\"";
   text += "\n          d=\"";

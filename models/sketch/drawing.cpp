@@ -64,8 +64,7 @@ std::vector<const Stroke*> strokes_of(const View& view, StrokeKind kind) {
   return found;
 }
 
-std::vector<std::string> panels_of(const Stroke& stroke) {
-  const std::string& text = stroke.name;
+std::vector<std::string> panels_in(const std::string& text) {
   std::vector<std::string> names;
   std::size_t begin = 0;
   while (begin <= text.size()) {
@@ -82,7 +81,7 @@ std::vector<std::string> panels_of(const Stroke& stroke) {
 std::vector<std::string> panels_of(const View& view) {
   std::vector<std::string> names;
   for (const Stroke* border : strokes_of(view, StrokeKind::border)) {
-    for (const std::string& name : panels_of(*border)) {
+    for (const std::string& name : panels_in(border->name)) {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   }

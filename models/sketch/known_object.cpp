@@ -68,8 +68,8 @@ class ObjectBuilder {
   void flat(const std::string& name, const SpaceCurve& outline) {
     object.panels.push_back({name, true, even_points(outline, kRulings), {}});
   }
-  void pair(const std::string& id, const Eigen::Vector3d& point) {
-    object.pairs.push_back({id, point});
+  void pair(const std::string& panels, const Eigen::Vector3d& point) {
+    object.pairs.push_back({"", panels, point});
   }
 
   KnownObject object;
@@ -127,12 +127,12 @@ KnownObject known_bag() {
   b.flat("flat-front", front);
   b.ruled("flap", left, right);
   b.ruled("strap", strap_front, strap_back);
-  for (const double t : {0.0, 0.12, 0.28, 0.4}) b.pair("", front(t));
-  b.pair("", back(0.5));
-  b.pair("", (back(0) + back(1)) / 2);
-  for (const double t : {0.0, 0.55, 0.75, 1.0}) b.pair("", left(t));
-  for (const double t : {0.0, 0.25}) b.pair("", strap_front(t));
-  b.pair("", strap_back(0.4));
+  for (const double t : {0.0, 0.12, 0.28, 0.4}) b.pair("flat-front + gusset", front(t));
+  b.pair("gusset + flat-back", back(0.5));
+  b.pair("flat-back", (back(0) + back(1)) / 2);
+  for (const double t : {0.0, 0.55, 0.75, 1.0}) b.pair("flap", left(t));
+  for (const double t : {0.0, 0.25}) b.pair("strap", strap_front(t));
+  b.pair("strap", strap_back(0.4));
   b.object.vectors = {0, 0, kHalfDepth};
   b.object.vector_sizes = {0.1, 0.1};
   b.object.height = 0.326;
@@ -162,8 +162,10 @@ KnownObject known_tent() {
   b.ruled("room", front, middle);
   b.ruled("tail", middle, rear);
   b.flat("flat-rear", rear);
-  for (const double t : {0.0, 0.15, 0.3, 0.5}) b.pair("", door(t));
-  for (const SpaceCurve& arch : {front, middle, rear}) b.pair("", arch(0.4));
+  for (const double t : {0.0, 0.15, 0.3, 0.5}) b.pair("flat-door + porch", door(t));
+  b.pair("porch + room", front(0.4));
+  b.pair("room + tail", middle(0.4));
+  b.pair("tail + flat-rear", rear(0.4));
   b.object.vectors = {0, 0, 1.05};
   b.object.vector_sizes = {0.4, 0.4};
   b.object.height = 0.625;
@@ -206,9 +208,13 @@ KnownObject known_helmet() {
   b.ruled("crown", crown, tip);
   b.flat("flat-tip", tip);
   b.ruled("comb", left, right);
-  for (const double t : {0.02, 0.09, 0.16}) b.pair("", hem(t));
-  for (const SpaceCurve& ring : {brow, band, bowl, crown, tip}) b.pair("", ring(0.25));
-  for (const double t : {0.0, 0.25, 0.5, 1.0}) b.pair("", left(t));
+  for (const double t : {0.02, 0.09, 0.16}) b.pair("brim", hem(t));
+  b.pair("brim + brow-band", brow(0.25));
+  b.pair("brow-band + bowl", band(0.25));
+  b.pair("bowl + shoulder", bowl(0.25));
+  b.pair("shoulder + crown", crown(0.25));
+  b.pair("crown + flat-tip", tip(0.25));
+  for (const double t : {0.0, 0.25, 0.5, 1.0}) b.pair("comb", left(t));
   b.object.vectors = {0, 0, 0.12};
   b.object.vector_sizes = {0.1, 0.1};
   b.object.height = 0.232;

@@ -34,6 +34,7 @@ struct KnownPanel {
 /// A point that a user can tell from its mirror image.
 struct KnownPair {
   std::string id;
+  std::string panels;  ///< of the border that it lies on
   Eigen::Vector3d point{0, 0, 0};
 };
 

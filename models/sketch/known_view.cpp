@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -150,7 +151,9 @@ void KnownDrawing::draw_pairs() {
     // A point of the plane is a tick: a stroke has two different ends.
     if (std::abs(p.x()) < kTick * object_.height) p.x() = -kTick * object_.height;
     const Eigen::Vector3d image(-p.x(), p.y(), p.z());
-    add(pair.id, StrokeKind::symmetric_pair, {place_(p), place_(image)}).name = pair.id;
+    Stroke& stroke = add(pair.id, StrokeKind::symmetric_pair, {place_(p), place_(image)});
+    stroke.name = pair.id;
+    stroke.panels = pair.panels;
   }
 }
 
@@ -217,7 +220,12 @@ PlacedPanels placed_panels(const KnownObject& object, const KnownPlacement& plac
 SyntheticView known_view(const KnownObject& object) { return KnownDrawing(object).draw(); }
 
 void add_drawing_noise(View& view, double spread, std::uint64_t seed) {
-  constexpr double kShort = 8;  // spreads, below which both ends of a pair are one mark
+  constexpr double kShort = 8;     // spreads, below which both ends of a pair are one mark
+  constexpr double kMeet = 0.001;  // of the diagonal, within which ends of borders are one corner
+  Eigen::AlignedBox2d box;
+  for (const Stroke& stroke : view.strokes)
+    for (const Eigen::Vector2d& p : stroke.points) box.extend(p);
+  std::vector<std::array<Eigen::Vector2d, 2>> corners;  // place and where it went
   for (Stroke& stroke : view.strokes) {
     if (stroke.kind == StrokeKind::plane_vector) continue;
     RandomStream random(seed, "drawing of " + stroke.id);
@@ -228,7 +236,19 @@ void add_drawing_noise(View& view, double spread, std::uint64_t seed) {
     };
     const bool mark = stroke.kind == StrokeKind::symmetric_pair && length(stroke) < kShort * spread;
     const Eigen::Vector2d whole = mark ? move() : Eigen::Vector2d(0, 0);
-    for (Eigen::Vector2d& p : stroke.points) p += mark ? whole : move();
+    std::vector<Eigen::Vector2d*> ends;
+    if (stroke.kind == StrokeKind::border && !stroke.closed)
+      ends = {&stroke.points.front(), &stroke.points.back()};
+    for (Eigen::Vector2d& p : stroke.points) {
+      const Eigen::Vector2d before = p;
+      p += mark ? whole : move();
+      if (std::find(ends.begin(), ends.end(), &p) == ends.end()) continue;
+      const auto met = std::find_if(corners.begin(), corners.end(), [&](const auto& corner) {
+        return (corner[0] - before).norm() <= kMeet * box.diagonal().norm();
+      });
+      if (met != corners.end()) p = (*met)[1];
+      if (met == corners.end()) corners.push_back({before, p});
+    }
   }
 }
 

@@ -41,7 +41,8 @@ PlacedPanels placed_panels(const KnownObject& object, const KnownPlacement& plac
 SyntheticView known_view(const KnownObject& object);
 
 /// Moves every drawn point by normal noise. Each stroke has random numbers of its own; a tick moves
-/// as a whole; plane vectors stay.
+/// as a whole, ends of borders that meet move together (drawing programs snap them), and plane
+/// vectors stay.
 /// @param spread  standard deviation of either coordinate (m)
 void add_drawing_noise(View& view, double spread, std::uint64_t seed);
 

@@ -34,6 +34,7 @@ struct Stroke {
   std::string name;                           ///< of a pair, a panel or a layer ("pair-3")
   std::optional<double> fold_angle_deg = {};  ///< between normal and view direction; the method's
   std::optional<double> fold_width = {};      ///< m; the method's when absent
+  std::string panels = {};  ///< of a pair: panels of the border it lies on ("roof + gable"), or any
 };
 
 /// Length of the stroke (m).

@@ -232,7 +232,8 @@ void add_curves(const View& view, const std::vector<DrawnPiece>& pieces, CurveNe
     const int least = pieces[p].closed ? 8 : 2;
     const DrawnPiece even =
         resampled(pieces[p], std::max(least, static_cast<int>(std::lround(length / net.spacing))));
-    SketchCurve curve{stroke.id, pieces[p].stroke, panels_of(stroke), even.closed, {}, even.at};
+    SketchCurve curve{stroke.id, pieces[p].stroke, panels_in(stroke.name), even.closed,
+                      {},        even.at};
     for (std::size_t i = 0; i < even.points.size(); ++i) {
       const bool end = !even.closed && (i == 0 || i + 1 == even.points.size());
       const int key = end ? sets.find(static_cast<int>(2 * p + (i == 0 ? 0 : 1))) : -1;

@@ -39,8 +39,8 @@ struct SymmetricPair {
 /// by.
 Eigen::Vector2d across_pairs(const MirrorPlane& plane);
 
-/// The symmetric pairs of a view. A pair whose ends lie within a quarter of `net.snap` marks a
-/// point of the mirror plane.
+/// The symmetric pairs of a view, on the borders of the panels that they name. A pair whose ends
+/// lie within a quarter of `net.snap` marks a point of the mirror plane.
 ///
 /// @param tolerance  of the direction of a pair, and of two partners of one point (share of the
 ///                   drawing's diagonal)
