@@ -17,6 +17,8 @@ namespace {
 /// A drawn vertex is a corner only between chords of this many spacings, so that the short and
 /// trembling chords of a traced curve are none.
 constexpr double kLongChord = 3;
+/// Nodes of a small closed border, so that tangents are not fitted to half of it.
+constexpr int kLeastAround = 32;
 
 /// Parameter in [0, 1] of the point of a chord nearest to p.
 double nearest_on_chord(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
@@ -229,7 +231,7 @@ void add_curves(const View& view, const std::vector<DrawnPiece>& pieces, CurveNe
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     const Stroke& stroke = view.strokes[pieces[p].stroke];
     const double length = chain_length(pieces[p]);
-    const int least = pieces[p].closed ? 8 : 2;
+    const int least = pieces[p].closed ? kLeastAround : 2;
     const DrawnPiece even =
         resampled(pieces[p], std::max(least, static_cast<int>(std::lround(length / net.spacing))));
     SketchCurve curve{stroke.id, pieces[p].stroke, panels_in(stroke.name), even.closed,

@@ -221,6 +221,8 @@ void describe(OptionVisitor& v, OneViewOptions& o) {
            .min = 0,
            .max = 1000});
   v.value("mirror", o.mirror, {.doc = "keep the more visible half and mirror it"});
+  describe_group(v, "refine", o.refine,
+                 {.doc = "non-linear least squares with the mirror plane free, after the linear"});
 }
 
 OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& options) {
@@ -229,7 +231,9 @@ OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& optio
   OneViewResult result;
   const int half_width = options.depth.tangent_half_width;
   result.planes = drawn_mirror_planes(view, options.vector_ratio);
-  const MirrorPlane& plane = result.planes.chosen;
+  if (options.refine && options.refine->vector_ratio == 0)
+    result.planes.chosen = plane_from_pairs(view, result.planes.chosen);
+  const MirrorPlane plane = result.planes.chosen;
   result.net = build_curve_net(view, options.curves);
   DepthProblem problem{result.net, plane, {}, {}, {}, {}};
   problem.pairs = read_symmetric_pairs(view, result.net, plane, options.pair_tolerance);
@@ -241,12 +245,18 @@ OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& optio
   for (const DrawnPanel& panel : panels)
     if (panel.flat) problem.planar.push_back(panel.loop);
   result.depth = solve_depth(problem, options.depth);
+  if (options.refine) {
+    result.refined = refine_depth(view, problem, result.depth, options.depth, options.vector_ratio,
+                                  *options.refine);
+    result.depth = result.refined->solution;
+    result.planes.chosen = result.refined->plane;
+  }
   fill_patches(view, panels, options, result);
   if (!options.mirror || result.surface.mesh.F.rows() == 0) return result;
   const auto [positive, negative] = visible_lengths(result);
   result.kept_positive = positive >= (1 - kEvenHalves) * negative;
-  result.surface =
-      mirror_half(result.surface, plane, result.kept_positive, kPlaneReach * result.net.spacing);
+  result.surface = mirror_half(result.surface, result.planes.chosen, result.kept_positive,
+                               kPlaneReach * result.net.spacing);
   return result;
 }
 

@@ -150,6 +150,11 @@ Frame one_view_frame(const View& view, const OneViewResult& result) {
   }
   frame.diagnostics["condition"] = result.depth.condition;
   frame.diagnostics["matches"] = result.matches;
+  if (result.refined) {
+    frame.diagnostics["refine_iterations"] = result.refined->iterations;
+    frame.diagnostics["vector_ratio"] = result.refined->vector_ratio;
+    frame.diagnostics["perspective"] = result.refined->perspective;
+  }
   return frame;
 }
 

@@ -39,7 +39,8 @@ struct OneViewInput {
 /// - "pattern", "sewn" and the arrays that belong to them, as of several views
 ///   (models/sketch/sketch_process.h).
 ///
-/// Diagnostics: residual of every term of the energy [m], condition, matches.
+/// Diagnostics: residual of every term of the energy [m], condition, matches; of a refinement its
+/// steps, the ratio of the plane vectors' lengths and the perspective that it found.
 Frame one_view_frame(const View& view, const OneViewResult& result);
 
 /// The edges between patches, along which the surface is cut into pieces; those between the same
