@@ -16,7 +16,7 @@ struct RefineOptions {
   double right_angle = 10;   ///< weight of the right angle between the plane's two vectors
   double vector_ratio = 0;   ///< weight of the ratio of their lengths; 0: it is found
   bool perspective = false;  ///< weak perspective: one more unknown
-  double flatness = 1e-2;    ///< weight of no perspective, when it is unknown
+  double flatness = 1e-4;    ///< weight of no perspective, when it is unknown
 };
 void describe(OptionVisitor& v, RefineOptions& options);
 
@@ -41,7 +41,8 @@ struct RefinedDepth {
 ///   weight;
 /// - planarity, parallel: with the x, y that are found;
 /// - accuracy: the image of a node is where it was drawn. With `perspective` p the image of (x, y)
-///   is c + (1 + p z / D) ((x, y) - c) about the middle c of the drawing: weak perspective;
+///   is c + (1 + p z / D) ((x, y) - c) about the middle c of the drawing: weak perspective. Matches
+///   and rulings stay those of an orthographic picture, so that less of it is found than is there;
 /// - vectors: sym-a and sym-b lie in the plane and are orthogonal in space; their lengths' ratio is
 ///   held to the given one with weight `vector_ratio`.
 ///
