@@ -35,19 +35,22 @@ std::vector<CurvePoint> all_places(const CurveNet& net, const CurvePoint& place)
   return places;
 }
 
-/// Borders that belong to all panels that a pair names; all borders when there is none of these.
+/// Borders that belong to all panels that a pair names.
 std::vector<int> borders_for_pair(const CurveNet& net, const Stroke& stroke) {
   const std::vector<std::string> panels = panels_in(stroke.panels);
-  std::vector<int> all, named;
+  std::vector<int> borders;
   for (int c = 0; c < static_cast<int>(net.curves.size()); ++c) {
-    all.push_back(c);
     const std::vector<std::string>& own = net.curves[c].panels;
     const bool belongs = std::all_of(panels.begin(), panels.end(), [&](const std::string& name) {
       return std::find(own.begin(), own.end(), name) != own.end();
     });
-    if (belongs) named.push_back(c);
+    if (belongs) borders.push_back(c);
   }
-  return named.empty() ? all : named;
+  if (borders.empty()) {
+    throw Error("no border belongs to the panels '" + stroke.panels + "' that the pair names",
+                "stroke '" + stroke.id + "'", "panels of one border, or none");
+  }
+  return borders;
 }
 
 NearestOnNet border_of_end(const CurveNet& net, const std::vector<int>& borders,
