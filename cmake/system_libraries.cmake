@@ -1,8 +1,6 @@
 # Libraries for which Debian ships no CMake package, or one that does too much: CGAL, CHOLMOD (supernodal sparse
-# Cholesky) and the BLAS below it, FFTW (Fourier transforms), LEMON (network flows). And Ceres (least squares), which
-# brings its own.
+# Cholesky) and the BLAS below it, FFTW (Fourier transforms), LEMON (network flows), Ceres (non-linear least squares).
 # Also installed, for the projects that link geoprior.
-find_package(Ceres 2.1 REQUIRED)
 if(NOT TARGET geoprior_cholmod)
   # CGAL is headers over two number libraries. Its own target compiles all that links it with -frounding-math; here the
   # sources that include CGAL get its flags one by one (geoprior_mark_sources).
@@ -30,4 +28,13 @@ if(NOT TARGET geoprior_cholmod)
   add_library(geoprior_lemon INTERFACE IMPORTED)
   target_include_directories(geoprior_lemon SYSTEM INTERFACE ${LEMON_INCLUDE_DIR})
   target_link_libraries(geoprior_lemon INTERFACE ${LEMON_LIBRARY})
+
+  # Ceres' own package names the static library: its copies of Eigen's functions would be merged with ours, which align
+  # memory otherwise (EIGEN_MAX_ALIGN_BYTES), and free what the others allocated. The shared one keeps them to itself.
+  find_path(CERES_INCLUDE_DIR NAMES ceres/ceres.h REQUIRED)
+  find_library(CERES_LIBRARY NAMES libceres.so ceres REQUIRED)
+  find_library(GLOG_LIBRARY glog REQUIRED)
+  add_library(geoprior_ceres INTERFACE IMPORTED)
+  target_include_directories(geoprior_ceres SYSTEM INTERFACE ${CERES_INCLUDE_DIR})
+  target_link_libraries(geoprior_ceres INTERFACE ${CERES_LIBRARY} ${GLOG_LIBRARY})
 endif()

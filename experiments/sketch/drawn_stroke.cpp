@@ -150,6 +150,7 @@ Stroke common_stroke(const TaggedShape& tagged, const SvgShape& shape, StrokeKin
   stroke.side = depth_side(tagged.data("depth"), place);
   if (kind == StrokeKind::border)
     stroke.inside = written_border_inside(tagged.data("border"), place);
+  if (kind == StrokeKind::symmetric_pair) stroke.panels = tagged.data("panel");
   if (kind == StrokeKind::fold) {
     stroke.fold_angle_deg = written_fold_angle(tagged.data("fold-angle"), place);
     stroke.fold_width = written_fold_width(tagged.data("fold-width"), place);

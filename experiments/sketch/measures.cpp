@@ -152,6 +152,33 @@ CutMeasures cut_measures(const SketchScene& /*scene*/, const Frame& frame) {
   return measures;
 }
 
+namespace {
+
+/// Areas of the flat pieces against those of the known panels.
+void add_panel_areas(const SyntheticView& truth, const Frame& frame, TruthMeasures& measures) {
+  const Part* pattern = frame.find_part("pattern");
+  if (truth.panel_areas.empty() || pattern == nullptr) return;
+  const std::vector<std::string> names = panels_of(truth.view);
+  const auto& triangle =
+      pattern->require_array("surface_triangle", NamedArray::On::cells, 1).values;
+  const auto& panel = frame.require_array("surface", "panel", NamedArray::On::cells, 1).values;
+  const Eigen::VectorXd areas = triangle_areas(pattern->points, pattern->triangles);
+  std::map<std::string, double> flat;
+  for (Eigen::Index t = 0; t < areas.size(); ++t) {
+    const auto number = static_cast<int>(panel(static_cast<Eigen::Index>(triangle(t))));
+    if (number >= 0) flat[names[static_cast<std::size_t>(number)]] += areas(t);
+  }
+  double whole = 0, worst = 0;
+  for (const auto& [name, area] : truth.panel_areas) {
+    whole += area;
+    worst = std::max(worst, std::abs(flat[name] / area - 1));
+  }
+  measures.pattern_area = std::abs(areas.sum() / whole - 1);
+  measures.panel_area = worst;
+}
+
+}  // namespace
+
 TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame) {
   TruthMeasures measures;
   if (!scene.truth || frame.find_part("strokes") == nullptr) return measures;
@@ -174,6 +201,7 @@ TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame) {
   measures.depth_rms = error.share;
   measures.depth_max = error.max / truth.height;
   measures.reprojection = error.in_plane_rms / (right - left);
+  add_panel_areas(truth, frame, measures);
   return measures;
 }
 

@@ -40,6 +40,9 @@ CutMeasures cut_measures(const SketchScene& scene, const Frame& frame);
 struct TruthMeasures {
   std::optional<double> depth_rms, depth_max;  ///< over the height of the shape
   std::optional<double> reprojection;          ///< over the width of the drawing
+  /// Differences of the flat panels' areas from the true ones over these: of all together, and of
+  /// the panel that is farthest off. In frames with a pattern of an object with known panels.
+  std::optional<double> pattern_area, panel_area;
 };
 TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame);
 

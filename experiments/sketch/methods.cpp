@@ -92,7 +92,7 @@ std::vector<MethodEntry> methods() {
           "one-view", false, "depth of one annotated view by symmetry and rulings, mirrored",
           "thesis 2.1.3; Fondevilla et al. 2017",
           [](const S& scene, const OneViewOptions& options, RunContext&) {
-            return make_one_view_process(scene.photo(), options);
+            return make_one_view_process(scene.photo_input(), options);
           }),
       method_entry<S, LayerOptions>(
           "layers", false, "rigid layers through drawn arcs, riveted, within their joints' range",
@@ -151,6 +151,12 @@ std::vector<DiagnosticEntry> diagnostics() {
        "between the mirror plane and the axis that a free ellipse has, the reading that was kept; "
        "the largest"},
       {"axis_residual_other", "deg", "of the other reading, the least"},
+      {"refine_iterations", "1", "steps of the non-linear refinement"},
+      {"vector_ratio", "1", "length of sym-a over that of sym-b in space, as found"},
+      {"perspective", "1", "growth of the image over one diagonal of depth, as found"},
+      {"texture_seen", "1", "share of the pattern that the photograph shows"},
+      {"texture_mirrored", "1", "share that has the colour of its visible mirror image"},
+      {"texture_flat", "1", "share that nothing shows: the mean colour of its panel"},
       {"flow_energy", "1", "what a flow descends, as it defines it"},
   };
 }

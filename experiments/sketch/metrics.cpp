@@ -130,7 +130,12 @@ MetricGroup truth_group() {
       .row("reprojection", "1",
            "root mean square distance in the view from where the borders really are, over the "
            "width of the drawing",
-           kLow, {1e-5, 0.02}, &M::reprojection);
+           kLow, {1e-5, 0.02}, &M::reprojection)
+      .row("pattern_area_error", "1",
+           "difference of the pattern's area from that of the known panels, over the latter", kLow,
+           {1e-3, 0.05}, &M::pattern_area)
+      .row("panel_area_error", "1", "the same of the panel that is farthest off", kLow,
+           {1e-3, 0.05}, &M::panel_area);
 }
 
 MetricGroup arc_group() {

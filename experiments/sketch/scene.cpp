@@ -11,6 +11,14 @@
 #include "testbed/home.h"
 
 namespace geoprior::sketch {
+Artifact text_artifact(const std::string& name, const std::string& bytes) {
+  Artifact artifact;
+  artifact.name = name;
+  artifact.bytes.resize(bytes.size());
+  std::memcpy(artifact.bytes.data(), bytes.data(), bytes.size());
+  return artifact;
+}
+
 namespace {
 
 void load_surface(const SketchSceneOptions& o, const std::filesystem::path& folder,
@@ -34,6 +42,13 @@ void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& fold
     scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
 }
 
+/// What a known drawing shows is its truth; without a file it is drawn here.
+void load_known(const SketchSceneOptions& o, std::uint64_t seed, SketchScene& scene) {
+  if (o.drawing.empty()) scene.input.drawing = known_drawing(o.known->shape);
+  scene.truth = known_truth(scene.photo(), *o.known, scene_seed(seed, o.known->seed));
+  scene.input.drawing.views = {scene.truth->view};
+}
+
 /// The files of a pattern; of one that cannot be cut out (a baseline's may overlap itself) a text
 /// that says why.
 std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const Eigen::MatrixX3d& surface,
@@ -52,15 +67,28 @@ std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const Eigen::Mat
   return artifacts;
 }
 
-}  // namespace
-
-Artifact text_artifact(const std::string& name, const std::string& bytes) {
-  Artifact artifact;
-  artifact.name = name;
-  artifact.bytes.resize(bytes.size());
-  std::memcpy(artifact.bytes.data(), bytes.data(), bytes.size());
-  return artifact;
+/// Files of one view: the pattern's, the textured ones, and the drawing that was made here.
+OneViewFiles one_view_files(const SketchSceneOptions& o, const View& view,
+                            const OneViewResult& result, const Pattern& pattern) {
+  OneViewFiles files;
+  if (o.fabrication)
+    files.artifacts = pattern_artifacts(pattern, result.surface.mesh.V, *o.fabrication);
+  std::vector<FabricationFile> made;
+  if (o.textures) {
+    TexturedFiles textured = textured_files(view, result, pattern, *o.textures);
+    made = std::move(textured.files);
+    files.diagnostics = std::move(textured.diagnostics);
+  }
+  if (o.known && o.drawing.empty()) {
+    for (FabricationFile& file : known_drawing_files(o.known->shape))
+      made.push_back(std::move(file));
+  }
+  for (const FabricationFile& file : made)
+    files.artifacts.push_back(text_artifact(file.name, file.bytes));
+  return files;
 }
+
+}  // namespace
 
 void describe(OptionVisitor& v, SketchSceneOptions& o) {
   v.value("drawing", o.drawing, {.doc = "SVG file with the annotated views"});
@@ -72,6 +100,8 @@ void describe(OptionVisitor& v, SketchSceneOptions& o) {
                  {.doc = "a surface of closed form, in place of all"});
   describe_group(v, "layers", o.layers,
                  {.doc = "one view of a body of rigid layers that is known, in place of them"});
+  describe_group(v, "known", o.known,
+                 {.doc = "the known object that the drawing shows; drawn here without a file"});
   v.value("surface_scale", o.surface_scale,
           {.doc = "metres for one unit of that mesh", .unit = "m", .min = 1e-9, .max = 1e9});
   describe_group(v, "read", o.read, {.doc = "how the drawing becomes strokes"});
@@ -80,6 +110,8 @@ void describe(OptionVisitor& v, SketchSceneOptions& o) {
   describe_group(v, "smoothing", o.smoothing, {.doc = "of the hull, before the first step"});
   describe_group(v, "pattern", o.pattern, {.doc = "how pieces are laid flat"});
   describe_group(v, "fabrication", o.fabrication, {.doc = "files to cut and sew by"});
+  describe_group(v, "textures", o.textures,
+                 {.doc = "files of one view that carry its photograph's colours"});
 }
 
 std::map<std::string, double> SketchScene::facts() const {
@@ -113,15 +145,20 @@ LayerFiles SketchScene::layer_files() const {
   return files;
 }
 
+OneViewInput SketchScene::photo_input() const {
+  return {photo(), input.pattern, input.patterns, photo_files};
+}
+
 std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options,
                                                const std::filesystem::path& folder,
                                                std::uint64_t seed) {
-  const int given = !options.drawing.empty() + !options.surface.empty() +
-                    options.synthetic.has_value() + options.closed_form.has_value() +
-                    options.layers.has_value();
+  const bool drawn = !options.drawing.empty() || options.known;
+  const int given = drawn + !options.surface.empty() + options.synthetic.has_value() +
+                    options.closed_form.has_value() + options.layers.has_value();
   if (given != 1) {
     throw Error(std::to_string(given) + " of them are given",
-                "scene.drawing, scene.surface, scene.synthetic, scene.closed_form and scene.layers",
+                "scene.drawing (or scene.known), scene.surface, scene.synthetic, "
+                "scene.closed_form and scene.layers",
                 "one");
   }
   auto scene = std::make_shared<SketchScene>();
@@ -135,25 +172,32 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
       return pattern_artifacts(pattern, surface, fabrication);
     };
   }
+  if (options.fabrication || options.textures || options.known) {
+    scene->photo_files = [options](const View& view, const OneViewResult& result,
+                                   const Pattern& pattern) {
+      return one_view_files(options, view, result, pattern);
+    };
+  }
   if (options.synthetic) {
-    SyntheticViewOptions drawn = *options.synthetic;
-    drawn.seed = static_cast<int>(scene_seed(seed, drawn.seed));
-    scene->truth = synthetic_view(drawn);
+    SyntheticViewOptions shape = *options.synthetic;
+    shape.seed = static_cast<int>(scene_seed(seed, shape.seed));
+    scene->truth = synthetic_view(shape);
     scene->input.drawing = {"scene.synthetic", {scene->truth->view}};
   } else if (options.closed_form) {
-    scene->input.surface = known_surface(*options.closed_form);
+    scene->input.surface = closed_form_surface(*options.closed_form);
     scene->input.patterns = false;
   } else if (options.layers) {
-    SyntheticLayerOptions drawn = *options.layers;
-    drawn.seed = static_cast<int>(scene_seed(seed, drawn.seed));
-    scene->truth = synthetic_layers(drawn);
+    SyntheticLayerOptions body = *options.layers;
+    body.seed = static_cast<int>(scene_seed(seed, body.seed));
+    scene->truth = synthetic_layers(body);
     scene->input.drawing = {"scene.layers", {scene->truth->view}};
-  } else if (options.drawing.empty()) {
+  } else if (!options.surface.empty()) {
     load_surface(options, folder, *scene);
     scene->input.patterns = false;
-  } else {
+  } else if (!options.drawing.empty()) {
     load_drawing(options, folder, *scene);
   }
+  if (options.known) load_known(options, seed, *scene);
   return scene;
 }
 

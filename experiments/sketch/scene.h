@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,12 +12,15 @@
 #include "core/options.h"
 #include "experiments/sketch/drawing_file.h"
 #include "experiments/sketch/fabrication.h"
+#include "experiments/sketch/known_drawing.h"
+#include "experiments/sketch/textured_files.h"
 #include "metrics/planar_overlap.h"
-#include "models/sketch/known_surface.h"
+#include "models/sketch/closed_form_surface.h"
 #include "models/sketch/sketch_process.h"
 #include "models/sketch/synthetic_layers.h"
 #include "models/sketch/synthetic_views.h"
 #include "solvers/sketch/layers_process.h"
+#include "solvers/sketch/one_view_process.h"
 #include "testbed/topic.h"
 
 namespace geoprior::sketch {
@@ -28,14 +32,16 @@ struct SketchSceneOptions {
   std::string surface;  ///< mesh file instead, for methods that need no drawing
   double surface_scale = 1;
   std::optional<SyntheticViewOptions> synthetic;   ///< instead of both
-  std::optional<KnownSurfaceOptions> closed_form;  ///< a surface of closed form, instead of all
+  std::optional<ClosedFormOptions> closed_form;  ///< a surface of closed form, instead of all
   std::optional<SyntheticLayerOptions> layers;     ///< instead of them
+  std::optional<KnownDrawingOptions> known;        ///< what the drawing shows, or instead of it
   DrawingFileOptions read;
   AlignOptions align;
   HullOptions hull;
   TaubinOptions smoothing;
   PatternOptions pattern;
   std::optional<FabricationOptions> fabrication;
+  std::optional<TexturedFileOptions> textures;
 };
 void describe(OptionVisitor& v, SketchSceneOptions& options);
 
@@ -51,13 +57,17 @@ class SketchScene final : public ProcessScene {
   SketchInput input;  ///< what a method is given
   std::vector<DrawnSilhouette> silhouettes;
   Drawing aligned;                     ///< of several views, as methods see them
-  std::optional<SyntheticView> truth;  ///< of a synthetic view
+  std::optional<SyntheticView> truth;  ///< of a synthetic or known view
+  /// Files that are made of one view; none when empty.
+  std::function<OneViewFiles(const View&, const OneViewResult&, const Pattern&)> photo_files;
 
   /// The one view of a drawing that has no others.
   /// @throws Error  when the scene has none
   [[nodiscard]] const View& photo() const;
   /// What articulated layers leave beside their frames: a pattern's files and layers.glb.
   [[nodiscard]] LayerFiles layer_files() const;
+  /// The same with how it is laid flat and what files are made of it.
+  [[nodiscard]] OneViewInput photo_input() const;
 
   [[nodiscard]] std::string parameter_name() const override { return "iteration"; }
   [[nodiscard]] std::string parameter_unit() const override { return "1"; }

@@ -111,7 +111,10 @@ TopicFile drawing_keys() {
       {"data-kind", "text", "", stroke_kind_names() + ", none", "",
        "of a stroke, or a group of them; none: a guide line that is left out"},
       {"data-name", "text", "", "", "", "of a pair, a plane vector or a layer; else label, or id"},
-      {"data-panel", "text", "", "", "", "panel that a seam, fold or border belongs to"},
+      {"data-panel", "text", "", "", "",
+       "panel that a seam, fold, border or ruling belongs to; of a pair that of its border; "
+       "several "
+       "joined by +"},
       {"data-depth", "text", "front", "front, back, both", "",
        "side of the object on which a line inside of the silhouette lies"},
       {"data-border", "text", "silhouette", "silhouette, inside", "",

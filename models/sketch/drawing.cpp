@@ -1,5 +1,6 @@
 #include "models/sketch/drawing.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace geoprior::sketch {
@@ -61,6 +62,30 @@ std::vector<const Stroke*> strokes_of(const View& view, StrokeKind kind) {
     if (stroke.kind == kind) found.push_back(&stroke);
   }
   return found;
+}
+
+std::vector<std::string> panels_in(const std::string& text) {
+  std::vector<std::string> names;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find('+', begin), text.size());
+    std::string name = text.substr(begin, end - begin);
+    name.erase(0, std::min(name.find_first_not_of(' '), name.size()));
+    name.erase(name.find_last_not_of(' ') + 1);
+    if (!name.empty()) names.push_back(name);
+    begin = end + 1;
+  }
+  return names;
+}
+
+std::vector<std::string> panels_of(const View& view) {
+  std::vector<std::string> names;
+  for (const Stroke* border : strokes_of(view, StrokeKind::border)) {
+    for (const std::string& name : panels_in(border->name)) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  return names;
 }
 
 }  // namespace geoprior::sketch

@@ -58,4 +58,9 @@ const char* view_name(ViewKind kind);
 /// The strokes of a view that are of one kind, in their order.
 std::vector<const Stroke*> strokes_of(const View& view, StrokeKind kind);
 
+/// Panels of a one-view drawing in a text: "roof + gable" are two.
+std::vector<std::string> panels_in(const std::string& text);
+/// Those of all borders, in the order in which they are first named.
+std::vector<std::string> panels_of(const View& view);
+
 }  // namespace geoprior::sketch

@@ -39,6 +39,7 @@ struct Stroke {
   std::optional<double> fold_angle_deg = {};  ///< between normal and view direction; the method's
   std::optional<double> fold_width = {};      ///< m; the method's when absent
   std::optional<FoldSide> fold_side = {};     ///< the one of the shorter turn when absent
+  std::string panels = {};  ///< of a pair: panels of the border it lies on ("roof + gable"), or any
 };
 
 /// Length of the stroke (m).

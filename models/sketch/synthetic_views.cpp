@@ -40,12 +40,8 @@ class SyntheticDrawing {
   SyntheticView out_;
 };
 
-SyntheticDrawing::SyntheticDrawing(const SyntheticViewOptions& options) : o_(options) {
-  const double yaw = o_.yaw_deg * kDegree, pitch = o_.pitch_deg * kDegree;
-  Eigen::Matrix3d turn, tilt;
-  turn << std::cos(yaw), 0, -std::sin(yaw), 0, 1, 0, std::sin(yaw), 0, std::cos(yaw);
-  tilt << 1, 0, 0, 0, std::cos(pitch), -std::sin(pitch), 0, std::sin(pitch), std::cos(pitch);
-  to_view_ = tilt * turn;
+SyntheticDrawing::SyntheticDrawing(const SyntheticViewOptions& options)
+    : o_(options), to_view_(turned_view(options.yaw_deg, options.pitch_deg)) {
   out_.view.kind = ViewKind::photo;
   out_.height = o_.height;
   // The mirror plane is x = 0 of the object.
@@ -189,6 +185,14 @@ void describe(OptionVisitor& v, SyntheticViewOptions& o) {
           {.doc = "standard deviation of drawn points (of the height)", .min = 0, .max = 1});
   v.value("noisy_vectors", o.noisy_vectors, {.doc = "noise on the mirror plane's vectors too"});
   v.value("seed", o.seed, {.doc = "of the noise", .min = 0, .max = 1000000000});
+}
+
+Eigen::Matrix3d turned_view(double yaw_deg, double pitch_deg) {
+  const double yaw = yaw_deg * kDegree, pitch = pitch_deg * kDegree;
+  Eigen::Matrix3d turn, tilt;
+  turn << std::cos(yaw), 0, -std::sin(yaw), 0, 1, 0, std::sin(yaw), 0, std::cos(yaw);
+  tilt << 1, 0, 0, 0, std::cos(pitch), -std::sin(pitch), 0, std::sin(pitch), std::cos(pitch);
+  return tilt * turn;
 }
 
 SyntheticView synthetic_view(const SyntheticViewOptions& options) {

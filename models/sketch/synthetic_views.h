@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,10 @@ struct SyntheticViewOptions {
 };
 void describe(OptionVisitor& v, SyntheticViewOptions& options);
 
+/// Turn of an object about its upright axis y, then tilt towards the eye: rows are right, up and
+/// towards the eye.
+Eigen::Matrix3d turned_view(double yaw_deg, double pitch_deg);
+
 /// A drawing and what it shows.
 struct SyntheticView {
   View view;
@@ -44,6 +49,7 @@ struct SyntheticView {
   Eigen::Vector3d axis{0, 1, 0};           ///< of the cone, up
   Eigen::Vector3d apex{0, 0, 0};           ///< of the cone; far away for a cylinder
   double height = 0;                       ///< m
+  std::map<std::string, double> panel_areas = {};  ///< of named panels, where they are known (m^2)
 };
 
 /// Orthographic drawing of a shape, as a careful user makes it: borders whole (hidden parts too,

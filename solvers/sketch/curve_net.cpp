@@ -17,6 +17,8 @@ namespace {
 /// A drawn vertex is a corner only between chords of this many spacings, so that the short and
 /// trembling chords of a traced curve are none.
 constexpr double kLongChord = 3;
+/// Nodes of a small closed border, so that tangents are not fitted to half of it.
+constexpr int kLeastAround = 32;
 
 /// Parameter in [0, 1] of the point of a chord nearest to p.
 double nearest_on_chord(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
@@ -168,20 +170,6 @@ void close_loops(std::vector<DrawnPiece>& pieces, double snap, double turn) {
   }
 }
 
-std::vector<std::string> panel_names(const std::string& text) {
-  std::vector<std::string> names;
-  std::size_t begin = 0;
-  while (begin <= text.size()) {
-    const std::size_t end = std::min(text.find('+', begin), text.size());
-    std::string name = text.substr(begin, end - begin);
-    name.erase(0, std::min(name.find_first_not_of(' '), name.size()));
-    name.erase(name.find_last_not_of(' ') + 1);
-    if (!name.empty()) names.push_back(name);
-    begin = end + 1;
-  }
-  return names;
-}
-
 double distance_to_stroke(const Eigen::Vector2d& p, const Stroke& stroke) {
   const std::size_t n = stroke.points.size();
   double nearest = std::numeric_limits<double>::infinity();
@@ -243,10 +231,10 @@ void add_curves(const View& view, const std::vector<DrawnPiece>& pieces, CurveNe
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     const Stroke& stroke = view.strokes[pieces[p].stroke];
     const double length = chain_length(pieces[p]);
-    const int least = pieces[p].closed ? 8 : 2;
+    const int least = pieces[p].closed ? kLeastAround : 2;
     const DrawnPiece even =
         resampled(pieces[p], std::max(least, static_cast<int>(std::lround(length / net.spacing))));
-    SketchCurve curve{stroke.id, pieces[p].stroke, panel_names(stroke.name), even.closed,
+    SketchCurve curve{stroke.id, pieces[p].stroke, panels_in(stroke.name), even.closed,
                       {},        even.at};
     for (std::size_t i = 0; i < even.points.size(); ++i) {
       const bool end = !even.closed && (i == 0 || i + 1 == even.points.size());

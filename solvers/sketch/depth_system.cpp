@@ -20,6 +20,23 @@ using DepthFactor = Eigen::SimplicialLDLT<DepthMatrix>;
 /// are less than 8 degrees apart, as near a silhouette.
 constexpr double kClearRuling = 0.2;
 
+/// Images of tangents and ruling, of unit length.
+struct UnitImages {
+  Eigen::Vector2d t1, t2, r;
+  Eigen::Vector3d lengths;  ///< before they were made units
+
+  /// Coefficients with which the three are dependent.
+  [[nodiscard]] Eigen::Vector3d dependence() const {
+    return {cross(t2, r), cross(r, t1), cross(t1, t2)};
+  }
+};
+
+UnitImages unit_images(const CurveNet& net, const RulingForms& forms) {
+  const Eigen::Vector2d t1 = evaluate(net, forms.t1), t2 = evaluate(net, forms.t2),
+                        r = evaluate(net, forms.r);
+  return {t1.normalized(), t2.normalized(), r.normalized(), {t1.norm(), t2.norm(), r.norm()}};
+}
+
 /// Rows of the least-squares problem, in the order of the terms.
 class DepthRows {
  public:
@@ -139,26 +156,13 @@ void DepthRows::add_pairs() {
 
 void DepthRows::add_developability(const RuledPatch& patch) {
   const CurveNet& net = problem_.net;
-  const SketchCurve& first = net.curves[patch.first];
-  const SketchCurve& second = net.curves[patch.second];
-  for (const SketchRuling& ruling : patch.rulings) {
-    if (ruling.held) continue;
-    NodeForm t1 = tangent_form(first, ruling.node, options_.tangent_half_width);
-    NodeForm t2 = tangent_form(second, ruling.at, options_.tangent_half_width);
-    NodeForm r = position_form(net, {patch.second, ruling.at});
-    r.emplace_back(node_of(first, ruling.node), -1.0);
-    const double l1 = evaluate(net, t1).norm(), l2 = evaluate(net, t2).norm(),
-                 lr = evaluate(net, r).norm();
-    if (!(l1 > 0 && l2 > 0 && lr > 0)) continue;
-    const Eigen::Vector2d u1 = evaluate(net, t1) / l1, u2 = evaluate(net, t2) / l2,
-                          ur = evaluate(net, r) / lr;
-    const Eigen::Vector3d a(cross(u2, ur), cross(ur, u1), cross(u1, u2));
-    if (a.norm() < kClearRuling) continue;
-    if (std::abs(signed_angle(u1, u2)) > options_.end_angle_deg * kDegree) continue;
+  for (const RulingForms& ruling : trusted_rulings(net, patch, options_)) {
+    const UnitImages u = unit_images(net, ruling);
+    const Eigen::Vector3d a = u.dependence();
     Row row{DepthTerm::developability, options_.developability, {}, 0};
-    add(row, t1, 2, net.diagonal * a(0) / l1);
-    add(row, t2, 2, net.diagonal * a(1) / l2);
-    add(row, r, 2, net.diagonal * a(2) / lr);
+    add(row, ruling.t1, 2, net.diagonal * a(0) / u.lengths(0));
+    add(row, ruling.t2, 2, net.diagonal * a(1) / u.lengths(1));
+    add(row, ruling.r, 2, net.diagonal * a(2) / u.lengths(2));
     rows_.push_back(row);
   }
 }
@@ -310,6 +314,26 @@ const char* depth_term_name(DepthTerm term) {
   constexpr std::array<const char*, kDepthTerms> kNames{
       "accuracy", "variation", "pairs", "dense", "developability", "planarity", "parallel"};
   return kNames[static_cast<int>(term)];
+}
+
+std::vector<RulingForms> trusted_rulings(const CurveNet& net, const RuledPatch& patch,
+                                         const DepthOptions& options, bool near_silhouettes) {
+  const SketchCurve& first = net.curves[patch.first];
+  const SketchCurve& second = net.curves[patch.second];
+  std::vector<RulingForms> trusted;
+  for (const SketchRuling& ruling : patch.rulings) {
+    if (ruling.held) continue;
+    RulingForms forms{tangent_form(first, ruling.node, options.tangent_half_width),
+                      tangent_form(second, ruling.at, options.tangent_half_width),
+                      position_form(net, {patch.second, ruling.at})};
+    forms.r.emplace_back(node_of(first, ruling.node), -1.0);
+    const UnitImages u = unit_images(net, forms);
+    if (!(u.lengths.minCoeff() > 0)) continue;
+    if (!near_silhouettes && u.dependence().norm() < kClearRuling) continue;
+    if (std::abs(signed_angle(u.t1, u.t2)) > options.end_angle_deg * kDegree) continue;
+    trusted.push_back(std::move(forms));
+  }
+  return trusted;
 }
 
 DepthSolution solve_depth(const DepthProblem& problem, const DepthOptions& options) {

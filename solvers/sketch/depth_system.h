@@ -54,6 +54,17 @@ struct DepthSolution {
   double condition = 0;                   ///< greatest over least eigenvalue of the normal matrix
 };
 
+/// Tangents at the two ends of a ruling, and the ruling, as forms over the nodes.
+struct RulingForms {
+  NodeForm t1, t2, r;
+};
+
+/// The rulings of a patch that tell something of depth (see `solve_depth`, developability).
+/// @param near_silhouettes  those too whose images of tangents and ruling are nearly parallel
+std::vector<RulingForms> trusted_rulings(const CurveNet& net, const RuledPatch& patch,
+                                         const DepthOptions& options,
+                                         bool near_silhouettes = false);
+
 /// Positions of all nodes in space: the minimum of one quadratic energy (thesis 2.1.3, second
 /// step), by sparse Cholesky on its normal equations with one step of refinement. Terms:
 ///

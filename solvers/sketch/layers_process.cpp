@@ -162,7 +162,7 @@ class LayersModel final : public FrameModel {
       }
       const Phase phase(context, "record");
       add_pattern(frame, made);
-      add_files(made.pattern, sink);
+      add_files(made.pattern, frame.parts.at("surface").points, sink);
     }
     const Phase phase(context, "record");
     sink.frame(std::move(frame));
@@ -224,9 +224,9 @@ class LayersModel final : public FrameModel {
     into["axis_residual_other"] = std::asin(other) / kDegree;
   }
 
-  void add_files(const Pattern& pattern, FrameSink& sink) const {
+  void add_files(const Pattern& pattern, const Eigen::MatrixX3d& surface, FrameSink& sink) const {
     if (files_.pattern) {
-      for (Artifact& file : files_.pattern(pattern)) sink.artifact(std::move(file));
+      for (Artifact& file : files_.pattern(pattern, surface)) sink.artifact(std::move(file));
     }
     if (!files_.motion) return;
     LayerMotion motion;

@@ -27,7 +27,8 @@ struct LayerMotion {
 
 /// Files that are made of a result; none when empty.
 struct LayerFiles {
-  std::function<std::vector<Artifact>(const Pattern&)> pattern;
+  /// Of the flat pieces and the points of the surface that they count.
+  std::function<std::vector<Artifact>(const Pattern&, const Eigen::MatrixX3d&)> pattern;
   std::function<std::vector<Artifact>(const LayerMotion&)> motion;
 };
 

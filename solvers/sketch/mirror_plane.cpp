@@ -1,5 +1,6 @@
 #include "solvers/sketch/mirror_plane.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <string>
@@ -102,6 +103,38 @@ MirrorPlanes drawn_mirror_planes(const View& view, double ratio) {
   const Stroke& a = named_vector(view, "sym-a");
   const Stroke& b = named_vector(view, "sym-b");
   return mirror_planes(a, b, ratio);
+}
+
+MirrorPlane plane_from_pairs(const View& view, const MirrorPlane& drawn) {
+  const Stroke& first = named_vector(view, "sym-a");
+  const Stroke& second = named_vector(view, "sym-b");
+  const Eigen::Vector2d a = first.points.back() - first.points.front();
+  const Eigen::Vector2d b = second.points.back() - second.points.front();
+  Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();
+  for (const Stroke* pair : strokes_of(view, StrokeKind::symmetric_pair)) {
+    const Eigen::Vector2d d = pair->points.back() - pair->points.front();
+    moment += d * d.transpose();
+  }
+  if (!(moment.trace() > 0)) return drawn;
+  Eigen::Vector2d u = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(moment).eigenvectors().col(1);
+  if (u.dot(drawn.normal.head<2>()) < 0) u = -u;
+  const double square = -a.dot(b) / (u.dot(a) * u.dot(b));
+  if (!(square > 0) || !std::isfinite(square)) return drawn;
+  const Eigen::Vector3d normal =
+      Eigen::Vector3d(u.x() * std::sqrt(square), u.y() * std::sqrt(square), 1).normalized();
+  return {normal, normal.head<2>().dot(first.points.front())};
+}
+
+Eigen::Matrix3d drawn_object_frame(const View& view, const MirrorPlane& plane) {
+  const Stroke& a = named_vector(view, "sym-a");
+  const Eigen::Vector2d image = a.points.back() - a.points.front();
+  const Eigen::Vector3d& n = plane.normal;
+  // The vector lies in the plane, which is not seen along its normal's depth.
+  const Eigen::Vector3d up =
+      Eigen::Vector3d(image.x(), image.y(), -n.head<2>().dot(image) / n.z()).normalized();
+  Eigen::Matrix3d frame;
+  frame << n.transpose(), up.transpose(), n.cross(up).transpose();
+  return frame;
 }
 
 }  // namespace geoprior::sketch

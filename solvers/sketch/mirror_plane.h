@@ -49,4 +49,18 @@ MirrorPlanes mirror_planes(const Stroke& a, const Stroke& b, double ratio = 1);
 /// @throws Error  when one of them is missing or drawn twice; as `mirror_planes`
 MirrorPlanes drawn_mirror_planes(const View& view, double ratio = 1);
 
+/// The plane from the direction in which pairs are drawn and the right angle between the two
+/// vectors, whatever the ratio of their lengths in space.
+///
+/// With u the direction of n_xy and n = (u cos f, sin f), a vector v of the plane has the depth
+/// -(u.v) cot f, and a3.b3 = 0 gives cot^2 f = -a.b / ((u.a) (u.b)). The side to which the plane
+/// leans is that of `drawn`. Where the vectors do not tell (the quotient is not positive), or no
+/// pair has a length, the plane is `drawn`.
+MirrorPlane plane_from_pairs(const View& view, const MirrorPlane& drawn);
+
+/// Frame of the object in the view, from the chosen plane: rows are its normal, the direction of
+/// sym-a in space, and the direction orthogonal to both.
+/// @throws Error  when sym-a is missing
+Eigen::Matrix3d drawn_object_frame(const View& view, const MirrorPlane& plane);
+
 }  // namespace geoprior::sketch

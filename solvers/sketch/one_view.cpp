@@ -168,13 +168,23 @@ Eigen::AlignedBox2d picture_box(const View& view, const CurveNet& net) {
   return box;
 }
 
+/// The panel that both borders of a ruled patch name, else its first drawn ruling.
+std::string name_of_patch(const CurveNet& net, const RuledPatch& patch) {
+  const std::vector<std::string>& second = net.curves[patch.second].panels;
+  for (const std::string& name : net.curves[patch.first].panels) {
+    if (std::find(second.begin(), second.end(), name) != second.end()) return name;
+  }
+  return patch.id;
+}
+
 /// Fills the patches and welds them.
 void fill_patches(const View& view, const std::vector<DrawnPanel>& panels,
                   const OneViewOptions& options, OneViewResult& result) {
   SurfaceBuilder builder(result);
   const Eigen::MatrixX3d& nodes = result.depth.nodes;
   for (const RuledPatch& ruled : result.rulings) {
-    OneViewPatch patch{ruled.id, true, false, ruled_strip(result.net, ruled, nodes), {}};
+    OneViewPatch patch{
+        name_of_patch(result.net, ruled), true, false, ruled_strip(result.net, ruled, nodes), {}};
     patch.unrolled = unroll_strip(patch.strip, nodes);
     builder.add_strip(patch.strip, static_cast<int>(result.patches.size()));
     result.patches.push_back(std::move(patch));
@@ -211,6 +221,8 @@ void describe(OptionVisitor& v, OneViewOptions& o) {
            .min = 0,
            .max = 1000});
   v.value("mirror", o.mirror, {.doc = "keep the more visible half and mirror it"});
+  describe_group(v, "refine", o.refine,
+                 {.doc = "non-linear least squares with the mirror plane free, after the linear"});
 }
 
 OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& options) {
@@ -219,7 +231,9 @@ OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& optio
   OneViewResult result;
   const int half_width = options.depth.tangent_half_width;
   result.planes = drawn_mirror_planes(view, options.vector_ratio);
-  const MirrorPlane& plane = result.planes.chosen;
+  if (options.refine && options.refine->vector_ratio == 0)
+    result.planes.chosen = plane_from_pairs(view, result.planes.chosen);
+  const MirrorPlane plane = result.planes.chosen;
   result.net = build_curve_net(view, options.curves);
   DepthProblem problem{result.net, plane, {}, {}, {}, {}};
   problem.pairs = read_symmetric_pairs(view, result.net, plane, options.pair_tolerance);
@@ -231,12 +245,18 @@ OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& optio
   for (const DrawnPanel& panel : panels)
     if (panel.flat) problem.planar.push_back(panel.loop);
   result.depth = solve_depth(problem, options.depth);
+  if (options.refine) {
+    result.refined = refine_depth(view, problem, result.depth, options.depth, options.vector_ratio,
+                                  *options.refine);
+    result.depth = result.refined->solution;
+    result.planes.chosen = result.refined->plane;
+  }
   fill_patches(view, panels, options, result);
   if (!options.mirror || result.surface.mesh.F.rows() == 0) return result;
   const auto [positive, negative] = visible_lengths(result);
   result.kept_positive = positive >= (1 - kEvenHalves) * negative;
-  result.surface =
-      mirror_half(result.surface, plane, result.kept_positive, kPlaneReach * result.net.spacing);
+  result.surface = mirror_half(result.surface, result.planes.chosen, result.kept_positive,
+                               kPlaneReach * result.net.spacing);
   return result;
 }
 

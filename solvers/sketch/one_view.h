@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,9 @@
 #include "solvers/sketch/drawn_panels.h"
 #include "solvers/sketch/mirror_plane.h"
 #include "solvers/sketch/mirror_surface.h"
+#include "solvers/sketch/refine_depth.h"
 #include "solvers/sketch/ruled_fill.h"
+#include "solvers/sketch/ruled_patches.h"
 #include "solvers/sketch/ruling_warp.h"
 
 namespace geoprior::sketch {
@@ -26,12 +29,13 @@ struct OneViewOptions {
   double pair_tolerance = 0.03;  ///< of a pair's direction, of the drawing's diagonal
   int fair_solves = 6;           ///< with the surface's own Laplacian, in panels without rulings
   bool mirror = true;            ///< keep one half and mirror it
+  std::optional<RefineOptions> refine = {};  ///< non-linear, from the quadratic energy's minimum
 };
 void describe(OptionVisitor& v, OneViewOptions& options);
 
 /// A patch of the surface.
 struct OneViewPatch {
-  std::string name;           ///< panel, or stroke of the first drawn ruling
+  std::string name;           ///< panel; of a ruled patch without one, its first drawn ruling
   bool ruled = false;         ///< swept by rulings; otherwise fair
   bool flat = false;          ///< its border was asked to be plane
   RuledStrip strip;           ///< of a ruled patch, before the surface is made symmetric
@@ -45,9 +49,10 @@ struct OneViewResult {
   std::vector<RuledPatch> rulings;
   DepthSolution depth;  ///< nodes of the net in space; residuals; condition
   std::vector<OneViewPatch> patches;
-  TexturedSurface surface;    ///< welded; symmetric when asked for
-  bool kept_positive = true;  ///< the half towards the eye was kept
-  int matches = 0;            ///< dense symmetric correspondences
+  TexturedSurface surface;              ///< welded; symmetric when asked for
+  bool kept_positive = true;            ///< the half towards the eye was kept
+  int matches = 0;                      ///< dense symmetric correspondences
+  std::optional<RefinedDepth> refined;  ///< when asked for; `depth` and `planes.chosen` are its
 };
 
 /// Developable surface from one annotated view (thesis 2.1.3; Fondevilla et al. 2017).
@@ -55,7 +60,8 @@ struct OneViewResult {
 /// 1. Borders become curves (`build_curve_net`); the mirror plane comes from its two vectors
 ///    (`mirror_plane.h`), dense symmetric correspondences from the pairs (`dense_matches`), rulings
 ///    from drawn ones by time warping (`sweep_ruled_patches`).
-/// 2. Depth is the minimum of one quadratic energy (`solve_depth`).
+/// 2. Depth is the minimum of one quadratic energy (`solve_depth`); with `refine`, depth and mirror
+///    plane are then improved together (`refine_depth`).
 /// 3. Ruled patches become strips, other named panels fair patches; borders are shared, so that
 ///    patches are welded. With `mirror`, the half whose borders are more visible is kept (the one
 ///    towards the eye when both are within 2 %), and its mirror image joined along the plane.

@@ -1,11 +1,15 @@
 #include "solvers/sketch/one_view_process.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <utility>
 
+#include "core/connectivity.h"
 #include "core/frame_loop.h"
 #include "core/topology.h"
+#include "models/sketch/drawing_part.h"
+#include "models/sketch/sketch_process.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -15,7 +19,8 @@ NamedArray one_view_array(const char* name, NamedArray::On on, Eigen::Index rows
   return {name, "1", on, Eigen::MatrixXd::Zero(rows, columns)};
 }
 
-Part textured_part(const TexturedSurface& surface) {
+Part textured_part(const View& view, const OneViewResult& result) {
+  const TexturedSurface& surface = result.surface;
   using On = NamedArray::On;
   const Eigen::Index n = surface.mesh.V.rows(), m = surface.mesh.F.rows();
   Part part;
@@ -26,18 +31,24 @@ Part textured_part(const TexturedSurface& surface) {
   NamedArray border = one_view_array("border", On::points, n);
   for (const Edge& e : boundary_edges(surface.mesh.F))
     border.values(e[0]) = border.values(e[1]) = 1;
+  NamedArray seam = one_view_array("seam", On::points, n);
+  for (const SeamEdge& s : patch_seams(surface))
+    seam.values(s.edge[0]) = seam.values(s.edge[1]) = 1;
   NamedArray patch = one_view_array("patch", On::cells, m);
+  NamedArray panel = one_view_array("panel", On::cells, m);
   NamedArray image = one_view_array("mirror_image", On::cells, m);
+  const std::vector<std::string> names = panels_of(view);
   for (Eigen::Index t = 0; t < m; ++t) {
-    patch.values(t) = surface.patch[static_cast<std::size_t>(t)];
+    const int p = surface.patch[static_cast<std::size_t>(t)];
+    const auto name =
+        std::find(names.begin(), names.end(), result.patches[static_cast<std::size_t>(p)].name);
+    patch.values(t) = p;
+    panel.values(t) = name == names.end() ? -1 : static_cast<double>(name - names.begin());
     image.values(t) = surface.mirror_image[static_cast<std::size_t>(t)] ? 1 : 0;
   }
-  part.arrays = {std::move(texture),
-                 std::move(border),
-                 one_view_array("seam", On::points, n),
-                 one_view_array("fold", On::points, n),
-                 std::move(patch),
-                 std::move(image)};
+  part.arrays = {
+      std::move(texture), std::move(border), std::move(seam), one_view_array("fold", On::points, n),
+      std::move(patch),   std::move(panel),  std::move(image)};
   return part;
 }
 
@@ -86,28 +97,51 @@ Part rulings_part(const OneViewResult& result) {
 
 class OneView final : public FrameModel {
  public:
-  OneView(const View& view, const OneViewOptions& options) : view_(view), options_(options) {}
+  OneView(const OneViewInput& input, const OneViewOptions& options)
+      : input_(input), options_(options) {}
   [[nodiscard]] int frame_count() const override { return 1; }
   void record(int /*number*/, FrameSink& sink, RunContext& context) override {
     OneViewResult result;
     {
       const Phase phase(context, "reconstruct");
-      result = reconstruct_one_view(view_, options_);
+      result = reconstruct_one_view(input_.view, options_);
     }
+    Frame frame = one_view_frame(input_.view, result);
+    if (input_.patterns && result.surface.mesh.F.rows() > 0) flatten(result, frame, sink, context);
     const Phase phase(context, "record");
-    sink.frame(one_view_frame(result));
+    frame.parts["drawing"] = drawing_part({{}, {input_.view}});
+    sink.frame(std::move(frame));
   }
 
  private:
-  const View& view_;  ///< of the process, which outlives its model
+  void flatten(const OneViewResult& result, Frame& frame, FrameSink& sink,
+               RunContext& context) const {
+    MadePattern made;
+    {
+      const Phase phase(context, "flatten");
+      // The grain points up on the object, not in the picture.
+      const Eigen::Matrix3d frame_of_object = drawn_object_frame(input_.view, result.planes.chosen);
+      const TriMesh& mesh = result.surface.mesh;
+      made = make_pattern({mesh.V * frame_of_object.transpose(), mesh.F},
+                          patch_seams(result.surface), input_.pattern);
+    }
+    add_pattern(frame, made);
+    if (!input_.files) return;
+    const Phase phase(context, "record");
+    OneViewFiles files = input_.files(input_.view, result, made.pattern);
+    for (Artifact& file : files.artifacts) sink.artifact(std::move(file));
+    frame.diagnostics.merge(files.diagnostics);
+  }
+
+  const OneViewInput& input_;  ///< of the process, which outlives its model
   OneViewOptions options_;
 };
 
 }  // namespace
 
-Frame one_view_frame(const OneViewResult& result) {
+Frame one_view_frame(const View& view, const OneViewResult& result) {
   Frame frame;
-  frame.parts["surface"] = textured_part(result.surface);
+  frame.parts["surface"] = textured_part(view, result);
   frame.parts["strokes"] = curves_part(result);
   Part rulings = rulings_part(result);
   if (!rulings.lines.empty()) frame.parts["rulings"] = std::move(rulings);
@@ -118,12 +152,36 @@ Frame one_view_frame(const OneViewResult& result) {
   }
   frame.diagnostics["condition"] = result.depth.condition;
   frame.diagnostics["matches"] = result.matches;
+  if (result.refined) {
+    frame.diagnostics["refine_iterations"] = result.refined->iterations;
+    frame.diagnostics["vector_ratio"] = result.refined->vector_ratio;
+    frame.diagnostics["perspective"] = result.refined->perspective;
+  }
   return frame;
 }
 
-std::unique_ptr<Process> make_one_view_process(const View& view, const OneViewOptions& options) {
+std::vector<SeamEdge> patch_seams(const TexturedSurface& surface) {
+  const EdgeConnectivity edges(surface.mesh.F);
+  std::map<std::pair<int, int>, std::vector<Edge>> between;
+  for (int h = 0; h < 3 * static_cast<int>(surface.mesh.F.rows()); ++h) {
+    const int twin = edges.twin(h);
+    if (twin < h) continue;  // a border, or seen from the other side
+    const int a = surface.patch[h / 3], b = surface.patch[twin / 3];
+    if (a != b) between[std::minmax(a, b)].push_back({edges.origin(h), edges.origin(twin)});
+  }
+  std::vector<SeamEdge> seams;
+  int number = 0;
+  for (const auto& [patches, chain] : between) {
+    for (const Edge& edge : chain) seams.push_back({edge, number});
+    ++number;
+  }
+  return seams;
+}
+
+std::unique_ptr<Process> make_one_view_process(const OneViewInput& input,
+                                               const OneViewOptions& options) {
   return frame_process(
-      [view, options](RunContext&) { return std::make_unique<OneView>(view, options); });
+      [input, options](RunContext&) { return std::make_unique<OneView>(input, options); });
 }
 
 }  // namespace geoprior::sketch

@@ -59,11 +59,30 @@ int node_near(const CurveNet& net, const CurvePoint& place) {
   return node;
 }
 
+/// Borders that an end of a ruling may lie on: those of the panel that it names, else all.
+std::vector<int> borders_for_ruling(const CurveNet& net, const Stroke& stroke) {
+  std::vector<int> all, named;
+  for (int c = 0; c < static_cast<int>(net.curves.size()); ++c) {
+    all.push_back(c);
+    const std::vector<std::string>& panels = net.curves[c].panels;
+    if (std::find(panels.begin(), panels.end(), stroke.name) != panels.end()) named.push_back(c);
+  }
+  return named.size() < 2 ? all : named;
+}
+
 /// Places of the two ends on two different borders, with the least sum of distances.
 std::array<CurvePoint, 2> borders_of_ruling(const CurveNet& net, const Stroke& stroke) {
   const double reach = kRulingReach * net.snap;
+  const std::vector<int> borders = borders_for_ruling(net, stroke);
   const auto near = [&](bool front, int skip) {
-    return nearest_on_net(net, front ? stroke.points.front() : stroke.points.back(), reach, skip);
+    NearestOnNet best{{}, reach};
+    for (const int c : borders) {
+      if (c == skip) continue;
+      const NearestOnNet place =
+          nearest_on_curve(net, c, front ? stroke.points.front() : stroke.points.back());
+      if (place.distance < best.distance) best = place;
+    }
+    return best;
   };
   const NearestOnNet a = near(true, -1), b = near(false, -1);
   const std::string where = "stroke '" + stroke.id + "'";

@@ -34,7 +34,8 @@ struct RuledPatch {
 /// Patches from drawn rulings. The rule:
 ///
 /// 1. A stroke of kind `ruling` or `silhouette` is straight and its ends lie on two different
-///    borders. It is a ruling of the patch between these two.
+///    borders: of the panel that it names when two or more borders name it too, else any. It is a
+///    ruling of the patch between these two.
 /// 2. Drawn rulings between the same two borders belong to one patch; between neighbours the other
 ///    rulings are found by time warping, with both ends known.
 /// 3. Beyond the first and the last, the warping goes on to the ends of the borders: to both when

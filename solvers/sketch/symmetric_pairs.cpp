@@ -35,24 +35,46 @@ std::vector<CurvePoint> all_places(const CurveNet& net, const CurvePoint& place)
   return places;
 }
 
-NearestOnNet border_of_end(const CurveNet& net, const Eigen::Vector2d& end,
-                           const std::string& where) {
-  const NearestOnNet near = nearest_on_net(net, end, kPairReach * net.snap);
-  if (near.place.curve >= 0) return near;
+/// Borders that belong to all panels that a pair names.
+std::vector<int> borders_for_pair(const CurveNet& net, const Stroke& stroke) {
+  const std::vector<std::string> panels = panels_in(stroke.panels);
+  std::vector<int> borders;
+  for (int c = 0; c < static_cast<int>(net.curves.size()); ++c) {
+    const std::vector<std::string>& own = net.curves[c].panels;
+    const bool belongs = std::all_of(panels.begin(), panels.end(), [&](const std::string& name) {
+      return std::find(own.begin(), own.end(), name) != own.end();
+    });
+    if (belongs) borders.push_back(c);
+  }
+  if (borders.empty()) {
+    throw Error("no border belongs to the panels '" + stroke.panels + "' that the pair names",
+                "stroke '" + stroke.id + "'", "panels of one border, or none");
+  }
+  return borders;
+}
+
+NearestOnNet border_of_end(const CurveNet& net, const std::vector<int>& borders,
+                           const Eigen::Vector2d& end, const std::string& where) {
+  NearestOnNet best{{}, kPairReach * net.snap};
+  for (const int c : borders) {
+    const NearestOnNet near = nearest_on_curve(net, c, end);
+    if (near.distance < best.distance) best = near;
+  }
+  if (best.place.curve >= 0) return best;
   throw Error("an end of the symmetric pair lies on no border", where,
               "within " + std::to_string(kPairReach * net.snap) + " m of one");
 }
 
 /// Puts the ends onto the nearest borders, or both onto one that is about as near: where the images
 /// of two borders cross, a pair most likely belongs to one border that is its own mirror image.
-std::array<CurvePoint, 2> borders_of_ends(const CurveNet& net, const SymmetricPair& pair,
-                                          const std::string& where) {
-  const NearestOnNet point = border_of_end(net, pair.point, where);
-  const NearestOnNet image = border_of_end(net, pair.image, where);
+std::array<CurvePoint, 2> borders_of_ends(const CurveNet& net, const std::vector<int>& borders,
+                                          const SymmetricPair& pair, const std::string& where) {
+  const NearestOnNet point = border_of_end(net, borders, pair.point, where);
+  const NearestOnNet image = border_of_end(net, borders, pair.image, where);
   std::array<CurvePoint, 2> best{point.place, image.place};
   double least = point.distance + image.distance + net.snap;
   if (point.place.curve == image.place.curve) return best;
-  for (int c = 0; c < static_cast<int>(net.curves.size()); ++c) {
+  for (const int c : borders) {
     const NearestOnNet a = nearest_on_curve(net, c, pair.point);
     const NearestOnNet b = nearest_on_curve(net, c, pair.image);
     if (a.distance + b.distance >= least) continue;
@@ -67,7 +89,8 @@ SymmetricPair read_pair(const Stroke& stroke, const CurveNet& net) {
   if (stroke.points.empty()) throw Error("symmetric pair without points", where, "two points");
   SymmetricPair pair{stroke.id, stroke.points.front(), stroke.points.back(), false, {}, {}};
   pair.in_plane = (pair.image - pair.point).norm() <= net.snap / 4;
-  const std::array<CurvePoint, 2> ends = borders_of_ends(net, pair, where);
+  const std::array<CurvePoint, 2> ends =
+      borders_of_ends(net, borders_for_pair(net, stroke), pair, where);
   pair.point_at = all_places(net, ends[0]);
   pair.image_at = pair.in_plane ? pair.point_at : all_places(net, ends[1]);
   pair.point = evaluate(net, position_form(net, pair.point_at.front()));

@@ -39,12 +39,13 @@ struct SymmetricPair {
 /// by.
 Eigen::Vector2d across_pairs(const MirrorPlane& plane);
 
-/// The symmetric pairs of a view. A pair whose ends lie within a quarter of `net.snap` marks a
-/// point of the mirror plane.
+/// The symmetric pairs of a view, on the borders of the panels that they name. A pair whose ends
+/// lie within a quarter of `net.snap` marks a point of the mirror plane.
 ///
 /// @param tolerance  of the direction of a pair, and of two partners of one point (share of the
 ///                   drawing's diagonal)
-/// @throws Error     when there is none; when an end lies on no border; when a pair runs across the
+/// @throws Error     when there is none; when no border has the panels that a pair names; when an
+///                   end lies on no border; when a pair runs across the
 ///                   plane's normal, or one point has two partners (names them and the residual)
 std::vector<SymmetricPair> read_symmetric_pairs(const View& view, const CurveNet& net,
                                                 const MirrorPlane& plane, double tolerance);

@@ -17,8 +17,8 @@
 #include "experiments/sketch/garment_measures.h"
 #include "metrics/developability.h"
 #include "metrics/flattening.h"
+#include "models/sketch/closed_form_surface.h"
 #include "models/sketch/collapse_edges.h"
-#include "models/sketch/known_surface.h"
 #include "models/sketch/sketch_process.h"
 #include "solvers/sketch/fold_rotation.h"
 #include "solvers/sketch/several_views.h"
@@ -186,15 +186,16 @@ TEST(ExactHull, AgreesWithTheHullOfSignedDistances) {
 }
 
 TEST(KnownSurface, VerticesLieOnTheirShapes) {
-  KnownSurfaceOptions cap{.radius = 0.2, .angle_deg = 50, .rings = 30};
-  const TriMesh sphere = known_surface(cap);
+  ClosedFormOptions cap{.radius = 0.2, .angle_deg = 50, .rings = 30};
+  const TriMesh sphere = closed_form_surface(cap);
   for (Eigen::Index v = 0; v < sphere.V.rows(); ++v)
     EXPECT_NEAR(sphere.V.row(v).norm(), 0.2, 1e-15);
   const double area = 2 * std::numbers::pi * 0.04 * (1 - std::cos(50 * kDegree));
   EXPECT_NEAR(surface_area(sphere) / area, 1, 1e-3);
   for (Eigen::Index t = 0; t < sphere.F.rows(); ++t)
     EXPECT_GT(triangle_normals(sphere).row(t).dot(sphere.V.row(sphere.F(t, 0))), 0);
-  EXPECT_THROW(known_surface({.shape = KnownShape::cone_sector, .angle_deg = 160, .wrap_deg = 90}),
+  EXPECT_THROW(closed_form_surface(
+                   {.shape = ClosedFormShape::cone_sector, .angle_deg = 160, .wrap_deg = 90}),
                Error);
 }
 
@@ -214,10 +215,10 @@ TEST(KnownSurface, TheConeIsLaidFlatAndTheCapIsNot) {
   PatternOptions lscm;
   lscm.lay_disc = [](const TriMesh& disc) { return flatten_lscm(disc); };
   const TriMesh cone =
-      known_surface({.shape = KnownShape::cone_sector, .angle_deg = 90, .rings = 30});
+      closed_form_surface({.shape = ClosedFormShape::cone_sector, .angle_deg = 90, .rings = 30});
   EXPECT_LT(flattened(cone, {}).stretch_mean - 1, 1e-3);
   EXPECT_LT(flattened(cone, lscm).stretch_mean - 1, 5e-3);
-  const TriMesh cap = known_surface({.angle_deg = 60, .rings = 20});
+  const TriMesh cap = closed_form_surface({.angle_deg = 60, .rings = 20});
   const double rigid = flattened(cap, {}).stretch_mean - 1;
   EXPECT_GT(rigid, 0.02);
   EXPECT_GT(flattened(cap, lscm).stretch_mean - 1, rigid) << "conformal maps keep no lengths";

@@ -398,6 +398,20 @@ TEST(OneViewBadInput, OnePointWithTwoPartners) {
               AllOf(HasSubstr("two partners"), HasSubstr("pair-back"), HasSubstr("pair-wrong")));
 }
 
+TEST(OneViewBadInput, PairOfAPanelThatNoBorderHas) {
+  EXPECT_THAT(refusal(tent(), [](View& view) { stroke_of(view, "pair-back").panels = "roof"; }),
+              AllOf(HasSubstr("'roof'"), HasSubstr("pair-back")));
+}
+
+TEST(OneViewBadInput, NoVectorOfTheMirrorPlane) {
+  EXPECT_THAT(refusal(tent(),
+                      [](View& view) {
+                        std::erase_if(view.strokes,
+                                      [](const Stroke& s) { return s.name == "sym-b"; });
+                      }),
+              HasSubstr("sym-b"));
+}
+
 TEST(OneViewBadInput, RulingThatJoinsNoBorder) {
   EXPECT_THAT(
       refusal({}, [](View& view) { stroke_of(view, "left").points[1] += Eigen::Vector2d(-1, 1); }),

@@ -9,7 +9,7 @@ namespace geoprior::sketch {
 namespace {
 
 TEST(Taubin, KeepsTheVolumeOfASphereAsItsTransferFunctionSays) {
-  const TriMesh sphere = shapes::sphere(1, {0, 0, 0}, 4);
+  const TriMesh sphere = geoprior::shapes::sphere(1, {0, 0, 0}, 4);
   const double volume = signed_volume(sphere.V, sphere.F);
   // The coordinates of a sphere are nearly eigenvectors: L x = -k x, k the mean of 1 - x_i . x_j.
   const VertexGraph rings = one_rings(sphere.F, sphere.vertex_count());
@@ -36,7 +36,7 @@ TEST(Taubin, KeepsTheVolumeOfASphereAsItsTransferFunctionSays) {
 TEST(Taubin, MultipliesAFrequencyByItsTransferFunction) {
   // On a closed ring of prisms (a torus grid) umbrella weights have plane waves for eigenvectors.
   const int n = 24, m = 18, waves = 5;
-  TriMesh torus = shapes::torus(2, 0.5, n, m);
+  TriMesh torus = geoprior::shapes::torus(2, 0.5, n, m);
   // Neighbours of (i, j) are (+-1, 0), (0, +-1), +-(1, 1); a wave along i has
   // -L = 1 - (4 cos(a) + 2) / 6, a = 2 pi waves / n.
   const double a = 2 * std::numbers::pi * waves / n;
@@ -51,7 +51,7 @@ TEST(Taubin, MultipliesAFrequencyByItsTransferFunction) {
 }
 
 TEST(Taubin, TakesNoiseOffASphere) {
-  const TriMesh noisy = flow_shapes::noisy(shapes::sphere(1, {0, 0, 0}, 4), 0.02);
+  const TriMesh noisy = flow_shapes::noisy(geoprior::shapes::sphere(1, {0, 0, 0}, 4), 0.02);
   const auto deviation = [](const Eigen::MatrixX3d& x) {
     const Eigen::ArrayXd r = x.rowwise().norm();
     return std::sqrt((r - r.mean()).square().mean());
@@ -78,7 +78,7 @@ TEST(Taubin, LeavesTheBorderOrSmoothsItAlongItself) {
 }
 
 TEST(Taubin, RefusesFactorsThatDoNotMakeAFilter) {
-  const TriMesh sphere = shapes::sphere(1, {0, 0, 0}, 1);
+  const TriMesh sphere = geoprior::shapes::sphere(1, {0, 0, 0}, 1);
   TaubinOptions options;
   options.mu = -0.5;
   EXPECT_THROW(taubin_smoothed(sphere, options), Error);

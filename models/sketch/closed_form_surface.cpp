@@ -1,4 +1,4 @@
-#include "models/sketch/known_surface.h"
+#include "models/sketch/closed_form_surface.h"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@ namespace {
 /// First vertex of a ring of 6 k vertices about a pole, which is ring 0.
 int first_of_ring(int ring) { return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1); }
 
-TriMesh sphere_cap(const KnownSurfaceOptions& o) {
+TriMesh sphere_cap(const ClosedFormOptions& o) {
   TriMesh mesh;
   mesh.V.resize(first_of_ring(o.rings + 1), 3);
   for (int ring = 0; ring <= o.rings; ++ring) {
@@ -48,7 +48,7 @@ TriMesh sphere_cap(const KnownSurfaceOptions& o) {
   return mesh;
 }
 
-TriMesh cone_sector(const KnownSurfaceOptions& o) {
+TriMesh cone_sector(const ClosedFormOptions& o) {
   // A ring of the flat sector of angle s becomes a circle about the axis: s rho = wrap r.
   const double sine = o.angle_deg / o.wrap_deg;
   if (!(sine < 1)) {
@@ -81,7 +81,7 @@ TriMesh cone_sector(const KnownSurfaceOptions& o) {
 
 }  // namespace
 
-void describe(OptionVisitor& v, KnownSurfaceOptions& o) {
+void describe(OptionVisitor& v, ClosedFormOptions& o) {
   static constexpr std::array<std::string_view, 2> kShapes{"sphere-cap", "cone-sector"};
   describe_choice(v, "shape", o.shape, kShapes, {.doc = "the surface"});
   v.value("radius", o.radius,
@@ -101,8 +101,8 @@ void describe(OptionVisitor& v, KnownSurfaceOptions& o) {
   v.value("rings", o.rings, {.doc = "of triangles", .min = 2, .max = 2000});
 }
 
-TriMesh known_surface(const KnownSurfaceOptions& options) {
-  return options.shape == KnownShape::sphere_cap ? sphere_cap(options) : cone_sector(options);
+TriMesh closed_form_surface(const ClosedFormOptions& options) {
+  return options.shape == ClosedFormShape::sphere_cap ? sphere_cap(options) : cone_sector(options);
 }
 
 }  // namespace geoprior::sketch

@@ -5,27 +5,27 @@
 
 namespace geoprior::sketch {
 
-enum class KnownShape {
+enum class ClosedFormShape {
   sphere_cap,   ///< curved the same everywhere: no pattern of it is isometric
   cone_sector,  ///< a sector of a ring, rolled up: its pattern is that sector
 };
 
 /// A disc whose best pattern is known.
-struct KnownSurfaceOptions {
-  KnownShape shape = KnownShape::sphere_cap;
+struct ClosedFormOptions {
+  ClosedFormShape shape = ClosedFormShape::sphere_cap;
   double radius = 0.1;    ///< of the sphere; slant distance of the cone's far end from its apex (m)
   double angle_deg = 40;  ///< from the cap's pole to its rim; of the sector when it is flat
   double inner_share = 0.4;  ///< near end of the cone over the far one
   double wrap_deg = 250;     ///< that the sector takes about the cone's axis
   int rings = 40;            ///< of triangles
 };
-void describe(OptionVisitor& v, KnownSurfaceOptions& options);
+void describe(OptionVisitor& v, ClosedFormOptions& options);
 
 /// The surface about the y axis, upwards, all of whose vertices lie on the shape.
 ///
 /// Cap: rings of 6 k vertices about the pole. Cone: a grid of rings by columns, about square.
 ///
 /// @throws Error  on a sector that is wider when flat than rolled up
-TriMesh known_surface(const KnownSurfaceOptions& options);
+TriMesh closed_form_surface(const ClosedFormOptions& options);
 
 }  // namespace geoprior::sketch
