@@ -300,6 +300,7 @@ void add_seam(SketchSurface& surface, Eigen::MatrixX3d& X,
               const std::vector<std::vector<SurfacePath>>& cuts, const std::string& id) {
   StrokePath seam;
   seam.id = id;
+  seam.view = seam.number = -1;
   for (const std::vector<SurfacePath>& paths : cuts) {
     const std::optional<SurfaceSplit> split = split_along(surface.hull.mesh, paths);
     if (!split) throw Error("cannot be cut into the triangles of the surface", "seam '" + id + "'");

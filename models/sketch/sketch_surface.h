@@ -15,7 +15,7 @@ namespace geoprior::sketch {
 /// A drawn stroke as a path of edges of the surface.
 struct StrokePath {
   std::string id;                       ///< of the stroke
-  int view = 0;                         ///< it was drawn in, of SketchSurface::views
+  int view = 0;                         ///< it was drawn in, of SketchSurface::views; -1: in none
   int number = 0;                       ///< among the strokes of its kind in that view
   std::vector<Eigen::Vector2d> points;  ///< as drawn, aligned (m); none of what was not drawn
   bool closed = false;                  ///< it ends where it begins

@@ -65,6 +65,7 @@ TEST(CutMeasures, OfAPipeIsTheLengthOfItsSeam) {
   PreparedSketch prepared;
   prepared.surface.hull.mesh = shapes::tube(0.1, 0.1, 0.7, 24, 14);
   const TriMesh& mesh = prepared.surface.hull.mesh;
+  prepared.surface.border_of.assign(static_cast<std::size_t>(mesh.vertex_count()), -1);
   Frame frame = sketch_frame(prepared, mesh.V, 0);
   EXPECT_FALSE(cut_measures({}, frame).seam_length);
   add_pattern(frame, make_pattern(mesh, shapes::tube_seam(24, 14)));
