@@ -35,6 +35,11 @@ bool lay_without_flips(const TriMesh& piece, const std::vector<FlatTriangle>& tr
   return true;
 }
 
+RigidLayoutOptions layout_options(const FlattenOptions& options) {
+  return {
+      .iterations = options.iterations, .tolerance = options.tolerance, .mixing = options.mixing};
+}
+
 void centre_on_area(const std::vector<FlatTriangle>& triangles, const Eigen::MatrixX3i& F,
                     Eigen::VectorXcd& z) {
   Complex moment = 0;
@@ -71,8 +76,7 @@ void describe(OptionVisitor& v, FlattenOptions& options) {
            .max = 1});
 }
 
-Flattening flatten(const TriMesh& piece, const FlattenOptions& options,
-                   std::span<const KeptLength> kept) {
+Flattening flatten(const TriMesh& piece, const FlattenOptions& options) {
   const std::vector<int> border = piece_borders(piece, "flattening").front();
   const std::vector<FlatTriangle> triangles = flat_triangles(piece, options.largest_cotangent);
   Flattening flat;
@@ -84,12 +88,7 @@ Flattening flatten(const TriMesh& piece, const FlattenOptions& options,
 
   const RigidLayout rigid(triangles, piece.F, piece.vertex_count());
   Eigen::VectorXcd z = start;
-  const RigidLayoutReport laid = rigid.improve(
-      z,
-      {.iterations = options.iterations, .tolerance = options.tolerance, .mixing = options.mixing},
-      kept);
-  report.iterations = laid.iterations;
-  report.length_error = laid.length_error;
+  report.iterations = rigid.improve(z, layout_options(options)).iterations;
   report.flipped = flipped_triangles(triangles, piece.F, z);
   report.flipped_when_rigid = static_cast<int>(report.flipped.size());
   if (options.unflip && !report.flipped.empty() &&
@@ -104,6 +103,32 @@ Flattening flatten(const TriMesh& piece, const FlattenOptions& options,
   report.overlaps = overlapping_triangles(flat.points, piece.F,
                                           options.overlap_depth * flat_diagonal(flat.points));
   return flat;
+}
+
+void hold_lengths(const TriMesh& piece, std::span<const KeptLength> kept,
+                  const FlattenOptions& options, Flattening& flat) {
+  const std::vector<FlatTriangle> triangles = flat_triangles(piece, options.largest_cotangent);
+  const RigidLayout rigid(triangles, piece.F, piece.vertex_count());
+  Flattening held = flat;
+  Eigen::VectorXcd z = to_complex(flat.points);
+  const RigidLayoutReport laid = rigid.hold(z, kept, layout_options(options));
+  centre_on_area(triangles, piece.F, z);
+  held.points = to_points(z);
+  held.report.flipped = flipped_triangles(triangles, piece.F, z);
+  held.report.overlaps = overlapping_triangles(held.points, piece.F,
+                                               options.overlap_depth * flat_diagonal(held.points));
+  if (held.report.flipped.size() > flat.report.flipped.size() ||
+      held.report.overlaps.size() > flat.report.overlaps.size()) {
+    z = to_complex(flat.points);
+    flat.report.length_error = rigid.hold(z, kept, {.length_rounds = 0}).length_error;
+    return;
+  }
+  double area = 0;
+  for (const FlatTriangle& t : triangles) area += t.area;
+  held.report.strain = area > 0 ? std::sqrt(2 * rigid.energy(z) / area) : 0;
+  held.report.iterations += laid.iterations;
+  held.report.length_error = laid.length_error;
+  flat = std::move(held);
 }
 
 }  // namespace geoprior::sketch

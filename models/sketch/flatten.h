@@ -54,14 +54,17 @@ struct Flattening {
 /// may come to lie over each other, which is reported and not mended. Serial; the same bytes
 /// whatever runs beside it.
 ///
-/// Lengths in `kept` are held by step 2: the two sides of a seam are sewn together and have to be
-/// equally long, on a surface that is not quite developable too. Step 3 does not know them.
-///
 /// @param piece   connected, of genus 0, with a border, every vertex in a triangle; of length m
 /// @throws Error  on a piece without triangles, without border or with a handle, and on a triangle
 ///                whose corners coincide (names it)
 /// Source: Liu et al. 2008; Mullen et al. 2008; Smith and Schaefer 2015.
-Flattening flatten(const TriMesh& piece, const FlattenOptions& options = {},
-                   std::span<const KeptLength> kept = {});
+Flattening flatten(const TriMesh& piece, const FlattenOptions& options = {});
+
+/// Brings parts of the border to given lengths at the cost of what is beside them: the two sides of
+/// a seam have to be equally long, on a surface that is not quite developable too. Where that would
+/// turn triangles over or make them overlap the layout stays as it is, and its report says by how
+/// much lengths are off (`length_error`).
+void hold_lengths(const TriMesh& piece, std::span<const KeptLength> kept,
+                  const FlattenOptions& options, Flattening& flat);
 
 }  // namespace geoprior::sketch

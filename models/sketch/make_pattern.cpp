@@ -102,25 +102,35 @@ double border_area(const Eigen::MatrixX2d& points, const std::vector<int>& loop)
   return twice / 2;
 }
 
-/// Sewn stretches at the length that they have on the surface, which is that of their other side.
-std::vector<KeptLength> sewn_lengths(const CutPiece& cut) {
-  std::vector<KeptLength> kept;
-  for (const PieceEdge& edge : cut.edges) {
-    if (edge.partner_piece < 0) continue;
-    double length = 0;
-    for (std::size_t i = 1; i < edge.vertices.size(); ++i)
-      length += (cut.mesh.V.row(edge.vertices[i]) - cut.mesh.V.row(edge.vertices[i - 1])).norm();
-    kept.push_back({edge.vertices, length});
-  }
-  return kept;
+double flat_length(const Flattening& flat, const PieceEdge& edge) {
+  double length = 0;
+  for (std::size_t i = 1; i < edge.vertices.size(); ++i)
+    length += (flat.points.row(edge.vertices[i]) - flat.points.row(edge.vertices[i - 1])).norm();
+  return length;
 }
 
-PatternPiece lay_piece(const CutPiece& cut, const PatternOptions& options, FlattenReport& report) {
-  const std::vector<KeptLength> kept =
-      options.equal_seams ? sewn_lengths(cut) : std::vector<KeptLength>();
-  Flattening flat = options.lay_disc ? Flattening{options.lay_disc(cut.mesh), {}}
-                                     : flatten(cut.mesh, options.flatten, kept);
-  report = std::move(flat.report);
+/// What the sewn stretches of a piece are to be held at so that both sides of each seam differ by
+/// at most `mismatch` of their length: what the two have freely, moved towards each other. Empty
+/// when they agree already.
+std::vector<KeptLength> agreed_lengths(const std::vector<CutPiece>& cut,
+                                       const std::vector<Flattening>& flat, std::size_t piece,
+                                       double mismatch) {
+  std::vector<KeptLength> kept;
+  bool agree = true;
+  for (const PieceEdge& edge : cut[piece].edges) {
+    if (edge.partner_piece < 0) continue;
+    const auto other = static_cast<std::size_t>(edge.partner_piece);
+    const double here = flat_length(flat[piece], edge);
+    const double there = flat_length(flat[other], cut[other].edges[edge.partner_edge]);
+    const double mean = (here + there) / 2, most = mismatch * mean / 2;
+    const double apart = std::clamp((here - there) / 2, -most, most);
+    agree = agree && std::abs(here - there) / 2 <= most;
+    kept.push_back({edge.vertices, mean + apart});
+  }
+  return agree ? std::vector<KeptLength>() : kept;
+}
+
+PatternPiece finished_piece(const CutPiece& cut, Flattening flat, GrainRule grain) {
   PatternPiece piece;
   piece.points = std::move(flat.points);
   piece.triangles = cut.mesh.F;
@@ -128,24 +138,21 @@ PatternPiece lay_piece(const CutPiece& cut, const PatternOptions& options, Flatt
   piece.surface_triangle = cut.surface_triangle;
   piece.borders = cut.borders;
   piece.edges = cut.edges;
-  turn_to_grain(piece, cut.mesh.V.col(1), options.grain);
+  turn_to_grain(piece, cut.mesh.V.col(1), grain);
   std::stable_sort(piece.borders.begin(), piece.borders.end(), [&](const auto& a, const auto& b) {
     return border_area(piece.points, a) > border_area(piece.points, b);
   });
   return piece;
 }
 
-/// In parallel; of several errors the one of the first piece is thrown.
-void lay_pieces(const std::vector<CutPiece>& cut, const PatternOptions& options,
-                MadePattern& made) {
-  made.pattern.pieces.resize(cut.size());
-  made.reports.resize(cut.size());
-  std::vector<std::exception_ptr> errors(cut.size());
-  parallel_blocks(cut.size(), 1, [&](std::size_t begin, std::size_t end) {
+/// Calls for every piece in parallel; of several errors the one of the first piece is thrown.
+template <class Work>
+void for_each_piece(std::size_t count, Work work) {
+  std::vector<std::exception_ptr> errors(count);
+  parallel_blocks(count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       try {
-        made.pattern.pieces[p] = lay_piece(cut[p], options, made.reports[p]);
-        made.pattern.pieces[p].name = "piece " + std::to_string(p + 1);
+        work(p);
       } catch (...) {
         errors[p] = std::current_exception();
       }
@@ -154,6 +161,29 @@ void lay_pieces(const std::vector<CutPiece>& cut, const PatternOptions& options,
   for (const std::exception_ptr& error : errors) {
     if (error) std::rethrow_exception(error);
   }
+}
+
+void lay_pieces(const std::vector<CutPiece>& cut, const PatternOptions& options,
+                MadePattern& made) {
+  std::vector<Flattening> flat(cut.size());
+  for_each_piece(cut.size(), [&](std::size_t p) {
+    flat[p] = options.lay_disc ? Flattening{options.lay_disc(cut[p].mesh), {}}
+                               : flatten(cut[p].mesh, options.flatten);
+  });
+  if (options.equal_seams && !options.lay_disc) {
+    const std::vector<Flattening> freely = flat;
+    for_each_piece(cut.size(), [&](std::size_t p) {
+      const std::vector<KeptLength> kept = agreed_lengths(cut, freely, p, options.seam_mismatch);
+      if (!kept.empty()) hold_lengths(cut[p].mesh, kept, options.flatten, flat[p]);
+    });
+  }
+  made.pattern.pieces.resize(cut.size());
+  made.reports.resize(cut.size());
+  for_each_piece(cut.size(), [&](std::size_t p) {
+    made.reports[p] = flat[p].report;
+    made.pattern.pieces[p] = finished_piece(cut[p], std::move(flat[p]), options.grain);
+    made.pattern.pieces[p].name = "piece " + std::to_string(p + 1);
+  });
 }
 
 }  // namespace
@@ -167,7 +197,9 @@ void describe(OptionVisitor& v, PatternOptions& options) {
   v.value("width", options.width,
           {.doc = "of the sheet; about a square when absent", .unit = "m", .min = 0});
   v.value("equal_seams", options.equal_seams,
-          {.doc = "both sides of a seam are as long as it is on the surface"});
+          {.doc = "bring both sides of every seam to one length"});
+  v.value("seam_mismatch", options.seam_mismatch,
+          {.doc = "difference that they may keep, of their length", .min = 0, .max = 1});
   v.value("cut_open", options.cut_open,
           {.doc = "cut pieces that cannot be laid flat along their shortest cut"});
   v.value("hole_tolerance_deg", options.hole_tolerance_deg,

@@ -28,7 +28,8 @@ struct PatternOptions {
   GrainRule grain = GrainRule::up;
   double gap = 0.02;                 ///< least distance between the boxes of pieces (m)
   std::optional<double> width = {};  ///< of the shelves (m); about a square when absent
-  bool equal_seams = true;           ///< both sides of a seam as long as it is on the surface
+  bool equal_seams = true;           ///< bring both sides of every seam to one length
+  double seam_mismatch = 0.004;      ///< difference that they may keep, of their length
   bool cut_open = true;              ///< whether pieces that cannot be laid flat are cut further
   /// A border that turns by -2 pi within this is a hole in something flat and stays (deg).
   double hole_tolerance_deg = 10;
@@ -53,7 +54,8 @@ struct MadePattern {
 /// has a handle or a border that is no hole in something flat is cut open along its shortest cut
 /// (`shortest_cut`), whose two sides are then sewn together like those of any seam. Every piece is
 /// turned so that its grain is +y, then placed on shelves from y = 0 up, the highest pieces first,
-/// all at x >= 0 with `gap` between their boxes. Borders: the outer one first. Pieces are laid flat
+/// all at x >= 0 with `gap` between their boxes. Borders: the outer one first. Both sides of a seam
+/// are then held at one length, between those that they have freely. Pieces are laid flat
 /// in parallel; the result is the same at any number of threads.
 ///
 /// @param surface  of length m

@@ -230,11 +230,16 @@ void RigidLayout::Impl::descend(Eigen::VectorXcd& z, const RigidLayoutOptions& o
   }
 }
 
-RigidLayoutReport RigidLayout::improve(Eigen::VectorXcd& z, const RigidLayoutOptions& options,
-                                       std::span<const KeptLength> kept) const {
+RigidLayoutReport RigidLayout::improve(Eigen::VectorXcd& z,
+                                       const RigidLayoutOptions& options) const {
   RigidLayoutReport report;
   impl_->descend(z, options, nullptr, report);
-  report.length_error = worst_length(kept, z);
+  return report;
+}
+
+RigidLayoutReport RigidLayout::hold(Eigen::VectorXcd& z, std::span<const KeptLength> kept,
+                                    const RigidLayoutOptions& options) const {
+  RigidLayoutReport report{0, energy(z), worst_length(kept, z)};
   RigidLayoutOptions coarse = options;
   coarse.iterations = std::min(coarse.iterations, kStepsARound);
   coarse.tolerance = std::max(coarse.tolerance, kCoarse);

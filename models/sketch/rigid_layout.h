@@ -56,10 +56,12 @@ class RigidLayout {
   RigidLayout(RigidLayout&&) noexcept;
   RigidLayout& operator=(RigidLayout&&) noexcept;
 
-  /// @param z     where to begin; replaced
-  /// @param kept  chains of edges whose lengths are held, after a first descent without them
-  RigidLayoutReport improve(Eigen::VectorXcd& z, const RigidLayoutOptions& options,
-                            std::span<const KeptLength> kept = {}) const;
+  /// @param z  where to begin; replaced
+  RigidLayoutReport improve(Eigen::VectorXcd& z, const RigidLayoutOptions& options) const;
+  /// Brings chains of edges to their lengths, and lowers E under them.
+  /// @param z  where to begin: what `improve` ended with; replaced
+  RigidLayoutReport hold(Eigen::VectorXcd& z, std::span<const KeptLength> kept,
+                         const RigidLayoutOptions& options) const;
   /// The energy with the best turns (m^2).
   [[nodiscard]] double energy(const Eigen::VectorXcd& z) const;
 
