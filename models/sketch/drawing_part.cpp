@@ -43,6 +43,7 @@ Part drawing_part(const Drawing& drawing) {
     const Eigen::Vector2d offset =
         &view == first ? Eigen::Vector2d(0, 0) : sheet_offset(view.kind, box_of(view), front, gap);
     for (const Stroke& stroke : view.strokes) {
+      if (stroke.points.size() < 2) continue;  // a mark at a point
       std::vector<int>& line = part.lines.emplace_back();
       const auto begin = static_cast<int>(points.size());
       for (const Eigen::Vector2d& p : stroke.points) {
