@@ -7,6 +7,7 @@
 #include <map>
 #include <span>
 
+#include "core/angles.h"
 #include "metrics/depth_error.h"
 #include "metrics/projected_holes.h"
 #include "metrics/seam_lengths.h"
@@ -177,6 +178,26 @@ void add_panel_areas(const SyntheticView& truth, const Frame& frame, TruthMeasur
   measures.panel_area = worst;
 }
 
+/// @param offset  depth to be added to the reconstruction, which one view cannot tell (m)
+std::optional<double> ruling_angle(const SyntheticView& truth, const Frame& frame, double offset) {
+  const Part* rulings = frame.find_part("rulings");
+  if (!truth.conical || rulings == nullptr) return {};
+  double sum = 0;
+  int count = 0;
+  for (const std::vector<int>& line : rulings->lines) {
+    const Eigen::Vector3d a = rulings->points.row(line.front()).transpose();
+    const Eigen::Vector3d b = rulings->points.row(line.back()).transpose();
+    if (a == b) continue;
+    const Eigen::Vector3d middle = (a + b) / 2 + Eigen::Vector3d(0, 0, offset);
+    const Eigen::Vector3d generator = truth.apex - middle;
+    const double angle = std::atan2(generator.cross(b - a).norm(), std::abs(generator.dot(b - a)));
+    sum += angle * angle;
+    ++count;
+  }
+  if (count == 0) return {};
+  return std::sqrt(sum / count) / kDegree;
+}
+
 }  // namespace
 
 TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame) {
@@ -201,6 +222,7 @@ TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame) {
   measures.depth_rms = error.share;
   measures.depth_max = error.max / truth.height;
   measures.reprojection = error.in_plane_rms / (right - left);
+  measures.ruling_angle = ruling_angle(truth, frame, (real.col(2) - curves.points.col(2)).mean());
   add_panel_areas(truth, frame, measures);
   return measures;
 }

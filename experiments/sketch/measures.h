@@ -43,6 +43,8 @@ struct TruthMeasures {
   /// Differences of the flat panels' areas from the true ones over these: of all together, and of
   /// the panel that is farthest off. In frames with a pattern of an object with known panels.
   std::optional<double> pattern_area, panel_area;
+  /// Root mean square angle between a ruling and the generator through its middle, of a cone (deg).
+  std::optional<double> ruling_angle;
 };
 TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame);
 

@@ -131,6 +131,10 @@ MetricGroup truth_group() {
            "root mean square distance in the view from where the borders really are, over the "
            "width of the drawing",
            kLow, {1e-5, 0.02}, &M::reprojection)
+      .row("ruling_angle", "deg",
+           "root mean square angle between a ruling and the generator of the cone through its "
+           "middle",
+           kLow, {1e-3, 0.05}, &M::ruling_angle)
       .row("pattern_area_error", "1",
            "difference of the pattern's area from that of the known panels, over the latter", kLow,
            {1e-3, 0.05}, &M::pattern_area)

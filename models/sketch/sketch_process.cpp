@@ -202,6 +202,7 @@ class SketchFrames final : public FrameModel {
     if (last && !input_.drawing.views.empty())
       frame.parts["drawing"] = drawing_part(input_.drawing);
     method_->diagnose(frame.diagnostics);
+    method_->draw(frame);
     sink.frame(std::move(frame));
   }
 

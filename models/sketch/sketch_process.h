@@ -63,6 +63,8 @@ class SketchMethod {
   [[nodiscard]] virtual bool can_resume() const { return true; }
   /// What only the method knows of its last step (gaps, residual of pins …).
   virtual void diagnose(std::map<std::string, double>& /*into*/) const {}
+  /// Parts of a frame beside those that all methods have.
+  virtual void draw(Frame& /*frame*/) const {}
 };
 
 using SketchMethodFactory =
@@ -88,6 +90,7 @@ struct SeamSuggester {
 ///   border that no stroke asks for);
 /// - "pattern" (triangles, z = 0, m), in the last frame: point array "surface_vertex", cell arrays
 ///   "surface_triangle", "piece" and "stretch";
+/// - "gaps" (lines), of several views: stretches of drawn silhouettes that no edge covers;
 /// - "drawing" (lines, z = 0), in the last frame: the strokes as they were drawn, cell array
 /// "kind";
 /// - table "sewn", in the last frame: a row for each vertex of a sewn stretch of the pattern's

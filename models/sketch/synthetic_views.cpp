@@ -112,6 +112,7 @@ void SyntheticDrawing::draw_frustum() {
     add("top-plane-point", StrokeKind::symmetric_pair, {p});
   }
   const double narrowing = std::max(o_.radius - o_.top_radius, 1e-9);
+  out_.conical = true;
   out_.apex = in_view({0, o_.height * o_.radius / narrowing, 0});
 }
 

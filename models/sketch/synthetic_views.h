@@ -46,6 +46,7 @@ struct SyntheticView {
   /// Of each point of each stroke: x right, y up, z towards the eye; without noise (m).
   std::vector<std::vector<Eigen::Vector3d>> truth;
   Eigen::Vector3d mirror_normal{1, 0, 0};  ///< unit, z >= 0; the plane passes through the origin
+  bool conical = false;                    ///< axis and apex are those of the shape
   Eigen::Vector3d axis{0, 1, 0};           ///< of the cone, up
   Eigen::Vector3d apex{0, 0, 0};           ///< of the cone; far away for a cylinder
   double height = 0;                       ///< m

@@ -97,14 +97,39 @@ class SeveralViews final : public SketchMethod {
 
   void diagnose(std::map<std::string, double>& into) const override {
     into["silhouette_edges"] = edges_;
-    into["gaps"] = gaps_;
-    into["gap_length"] = gap_length_;
+    into["gaps"] = static_cast<double>(gaps_.size());
+    double length = 0;
+    for (const auto& [view, gap] : gaps_) length += gap.to - gap.from;
+    into["gap_length"] = length;
+  }
+
+  /// Part "gaps" (lines): stretches of silhouettes that no edge covers, as drawn, at the side of
+  /// the surface that is nearest to the eye of their view.
+  void draw(Frame& frame) const override {
+    if (gaps_.empty()) return;
+    constexpr int kChords = 8;
+    Part part;
+    part.kind = Part::Kind::lines;
+    part.points.resize(static_cast<Eigen::Index>(gaps_.size()) * (kChords + 1), 3);
+    int next = 0;
+    for (const auto& [number, gap] : gaps_) {
+      const OutlinedView& view = surface_.hull.views[number];
+      const double nearest = (X_ * view.frame.row(2).transpose()).maxCoeff();
+      std::vector<int>& line = part.lines.emplace_back();
+      for (int i = 0; i <= kChords; ++i) {
+        const double along = gap.from + (gap.to - gap.from) * i / kChords;
+        const Eigen::Vector2d at = view.outline.at(std::fmod(along, view.outline.length()));
+        part.points.row(next) = Eigen::RowVector3d(at.x(), at.y(), nearest) * view.frame;
+        line.push_back(next++);
+      }
+    }
+    frame.parts["gaps"] = std::move(part);
   }
 
  private:
   void pin_strokes(CoordinatePins& pins) {
-    edges_ = gaps_ = 0;
-    gap_length_ = 0;
+    edges_ = 0;
+    gaps_.clear();
     if (options_.pin_seams) {
       for (const StrokePath& seam : surface_.seams) {
         if (seam.points.empty()) continue;  // suggested, not drawn
@@ -123,8 +148,7 @@ class SeveralViews final : public SketchMethod {
     for (std::size_t view = 0; view < zippering_.size(); ++view) {
       const ZippedSilhouette zipped = zippering_[view].close(surface_.hull.mesh.V, X_);
       edges_ += static_cast<int>(zipped.edges.size());
-      gaps_ += static_cast<int>(zipped.gaps.size());
-      for (const CoverageGap& gap : zipped.gaps) gap_length_ += gap.to - gap.from;
+      for (const CoverageGap& gap : zipped.gaps) gaps_.emplace_back(view, gap);
       for (const Edge& edge : zipped.edges) {
         for (const int v : edge) {
           for (int k = 0; k < 2; ++k) {
@@ -143,8 +167,8 @@ class SeveralViews final : public SketchMethod {
   DevelopableRotation rotation_;
   FoldRotation fold_;
   PinnedTransfer transfer_;
-  int edges_ = 0, gaps_ = 0;
-  double gap_length_ = 0;
+  int edges_ = 0;
+  std::vector<std::pair<std::size_t, CoverageGap>> gaps_;  ///< and the view of each
 };
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "solvers/sketch/pinned_transfer.h"
 #include "solvers/sketch/zippering.h"
 #include "tests/sketch/drawn_solids.h"
+#include "tests/sketch/flow_shapes.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -101,6 +102,26 @@ TEST(DevelopableRotation, LeavesACylinderAlone) {
   const DevelopableRotation guarded(tube.F, tube.vertex_count(), {});
   for (const Eigen::Matrix3d& R : guarded.rotations(triangle_normals(tube)))
     EXPECT_LT((R - Eigen::Matrix3d::Identity()).norm(), 1e-6);
+}
+
+/// Sum of |angle defect| that the iterations add to a surface given in a drawing's place.
+double added_defect(const TriMesh& mesh) {
+  SketchInput input;
+  input.surface = mesh;
+  const PreparedSketch prepared = prepare_sketch(input);
+  SeveralViewsOptions options;
+  const auto method = make_several_views(prepared, options);
+  RunContext context;
+  for (int i = 0; i < options.iterations; ++i) method->step(context);
+  return total_defect(method->positions(), prepared) - total_defect(mesh.V, prepared);
+}
+
+// What is developable already has nothing to be turned for; what is not, is changed.
+TEST(SeveralViews, DevelopableInputStays) {
+  EXPECT_LT(added_defect(flow_shapes::cone()), 1e-3);
+  EXPECT_LT(added_defect(flow_shapes::cylinder()), 1e-3);
+  EXPECT_LT(added_defect(flow_shapes::tent()), 1e-3);
+  EXPECT_GT(std::abs(added_defect(flow_shapes::noisy(flow_shapes::cylinder(), 0.002))), 0.1);
 }
 
 TEST(DevelopableRotation, LiteralFitDivergesWhereTheGuardedOneConverges) {
