@@ -14,7 +14,8 @@ struct SectionView {
   std::array<double, 3> normal{0, 0, 1};
 };
 
-/// A row of another part, or of an input, over or under the others: figure_view.above = { part = … }.
+/// A row of another part, or of an input, over or under the others: figure_view.above = { part = …
+/// }.
 struct FurtherRow {
   std::string part = "surface";
   std::optional<std::string> input;  ///< "run:…" of the scene: its frames; absent: this run's
@@ -48,7 +49,7 @@ struct FigureView {
   std::vector<double> parameters;      ///< further columns/rows, when more than one frame is drawn
   Across across = Across::variants;    ///< what stands side by side; the others are rows
   std::string part = "surface";
-  std::string label;                    ///< of the rows, when others are above or below; absent: the part's
+  std::string label;  ///< of the rows, when others are above or below; absent: the part's
   std::optional<std::string> color_by;  ///< array of the part; absent: plain material
   std::vector<std::string> classes;     ///< of `color_by`: the names of its integers 0, 1, …
   bool identities = false;              ///< the integers of `color_by` tell things apart, 0 is none

@@ -31,10 +31,10 @@ struct SketchSceneOptions {
   std::string drawing;  ///< SVG file
   std::string surface;  ///< mesh file instead, for methods that need no drawing
   double surface_scale = 1;
-  std::optional<SyntheticViewOptions> synthetic;   ///< instead of both
-  std::optional<ClosedFormOptions> closed_form;  ///< a surface of closed form, instead of all
-  std::optional<SyntheticLayerOptions> layers;     ///< instead of them
-  std::optional<KnownDrawingOptions> known;        ///< what the drawing shows, or instead of it
+  std::optional<SyntheticViewOptions> synthetic;  ///< instead of both
+  std::optional<ClosedFormOptions> closed_form;   ///< a surface of closed form, instead of all
+  std::optional<SyntheticLayerOptions> layers;    ///< instead of them
+  std::optional<KnownDrawingOptions> known;       ///< what the drawing shows, or instead of it
   DrawingFileOptions read;
   AlignOptions align;
   HullOptions hull;
