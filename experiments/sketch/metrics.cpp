@@ -114,7 +114,8 @@ MetricGroup cut_group() {
           "applied, and what opens pieces that could not be laid flat",
           kLow, {1e-4, 0.02}, &M::seam_length)
       .row("suggestions", "1", "seams and darts that are suggested", kNone, kCount, &M::suggestions)
-      .row("suggested_length", "m", "their length in all", kLow, {1e-4, 0.02}, &M::suggested_length)
+      .row("suggested_length", "m", "length of all suggested cuts together", kLow, {1e-4, 0.02},
+           &M::suggested_length)
       .row("first_suggestion_length", "m", "length of the first of them", kLow, {1e-4, 0.02},
            &M::first_suggestion_length);
 }
