@@ -12,6 +12,9 @@ namespace geoprior {
 /// Two vertices: of an undirected edge the lower one first, of a directed edge its start.
 using Edge = std::array<int, 2>;
 
+/// The undirected edge between two vertices in any order.
+constexpr Edge undirected(int a, int b) { return a < b ? Edge{a, b} : Edge{b, a}; }
+
 /// The edges of a list of triangles, and the half-edges at each of them.
 ///
 /// Half-edge h = 3 t + k runs from corner k of triangle t to its next corner. Edges ascend by their

@@ -76,6 +76,9 @@ struct MethodEntry {
   std::function<std::unique_ptr<OptionSet>()> default_options;
   /// `prepare`: builds the method for a scene. Timed by the runner as phase "prepare".
   std::function<Instance(const Scene&, const OptionSet&, RunContext&)> make;
+  std::string ungated = {};  ///< why its results do not repeat: `check` does not compare them
+
+  [[nodiscard]] bool gated() const { return ungated.empty(); }
 };
 
 /// Builds a MethodEntry from typed pieces: `make(const S&, const Options&, RunContext&)` returns a

@@ -1,6 +1,7 @@
 #include "experiments/paper/measures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -12,9 +13,11 @@
 #include "metrics/buckled_sector.h"
 #include "metrics/creases.h"
 #include "metrics/elastica.h"
+#include "metrics/folds.h"
 #include "metrics/intersection_depth.h"
 #include "metrics/self_contact.h"
 #include "metrics/shell_energy.h"
+#include "metrics/smoothness.h"
 #include "metrics/surface_distance.h"
 #include "metrics/weighted_quantile.h"
 #include "models/paper/pattern.h"
@@ -27,6 +30,8 @@ namespace {
 constexpr double kSamplesAcross = 32;      // of the Hausdorff distance, along the pattern's width
 constexpr double kLeastShortening = 1e-3;  // under it the imperfection decides the height
 constexpr int kStripSamples = 9;           // across the strip, where its height is taken
+constexpr double kMotionSamples = 48;      // of second differences, along the pattern's width
+constexpr double kWorthAnEnergy = 0.1;     // of the run's largest: under it a spike is none
 
 std::string place(const Frame& frame) {
   return "frame at " + std::to_string(frame.parameter) + " s";
@@ -54,6 +59,49 @@ Eigen::MatrixX3d rest_curvature(const SheetFrame& f) {
   const NamedArray* plastic = f.surface.find_array("plastic_curvature", NamedArray::On::cells);
   if (plastic == nullptr) return Eigen::MatrixX3d::Zero(f.triangles().rows(), 3);
   return plastic->values;
+}
+
+std::shared_ptr<const CurvatureFit> fit_of(FitMemo& fits, const SheetFrame& f) {
+  return of_pattern_mesh(fits, f, [](const auto& pattern, const auto& triangles) {
+    return std::make_shared<const CurvatureFit>(fit_curvature(pattern, triangles));
+  });
+}
+
+/// A square grid inside the pattern, off its corners and lines of symmetry.
+std::vector<Eigen::Vector2d> motion_samples(const Pattern& pattern) {
+  Eigen::Vector2d low = pattern.border.front(), high = low;
+  for (const Eigen::Vector2d& p : pattern.border) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double spacing = width(pattern) / kMotionSamples;
+  std::vector<Eigen::Vector2d> samples;
+  for (double v = low.y() + 0.37 * spacing; v < high.y(); v += spacing) {
+    for (double u = low.x() + 0.41 * spacing; u < high.x(); u += spacing) {
+      if (contains(pattern, {u, v})) samples.emplace_back(u, v);
+    }
+  }
+  return samples;
+}
+
+/// Where a point of the pattern is in space.
+Eigen::Vector3d place_of(const Eigen::Vector2d& p, const PatternLocator& locator,
+                         const SheetFrame& f) {
+  const PatternLocator::Place at = locator.locate(p);
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 3; ++k) {
+    x += at.weights(k) * f.x().row(f.triangles()(at.triangle, k)).transpose();
+  }
+  return x;
+}
+
+Eigen::MatrixX3d places_of(const std::vector<Eigen::Vector2d>& points, const SheetFrame& f) {
+  const PatternLocator locator({f.pattern, f.triangles()});
+  Eigen::MatrixX3d x(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    x.row(static_cast<Eigen::Index>(i)) = place_of(points[i], locator, f).transpose();
+  }
+  return x;
 }
 
 /// Two opposite sides of a rectangle, corner to corner: p(s, t) is at `s` along the sides, `t` from
@@ -114,7 +162,7 @@ SheetFrame sheet_frame(const PaperScene& scene, const Frame& frame) {
   if (!surface.points.allFinite() || !pattern.allFinite()) {
     throw Error("a coordinate of part 'surface' is not finite", place(frame), "finite numbers");
   }
-  return {scene.sheet, frame, surface, pattern.leftCols<2>()};
+  return {scene, scene.sheet, frame, surface, pattern.leftCols<2>()};
 }
 
 IsometrySummary sheet_isometry(const SheetFrame& f) {
@@ -142,15 +190,52 @@ CreaseMeasures crease_measures(const SheetFrame& f) {
 std::optional<EnergyMeasures> energy_measures(FitMemo& fits, const SheetFrame& f) {
   if (has_turned_over(f)) return std::nullopt;
   const PlateStiffness plate = plate_of(f.sheet.material);
-  const auto fit = of_pattern_mesh(fits, f, [](const auto& pattern, const auto& triangles) {
-    return std::make_shared<const CurvatureFit>(fit_curvature(pattern, triangles));
-  });
+  const auto fit = fit_of(fits, f);
   EnergyMeasures out;
   out.membrane = membrane_energy(f.pattern, f.x(), f.triangles(), plate);
   out.bending = bending_energy(*fit, f.x(), rest_curvature(f), plate);
   if (const NamedArray* v = f.surface.find_array("velocity", NamedArray::On::points)) {
     const double density = f.sheet.material.area_density;
     out.kinetic = kinetic_energy(f.pattern, v->values, f.triangles(), density);
+  }
+  return out;
+}
+
+std::optional<FoldMeasures> fold_measures(FitMemo& fits, const SheetFrame& f) {
+  if (has_turned_over(f)) return std::nullopt;
+  const auto fit = fit_of(fits, f);
+  return FoldMeasures{
+      cancelling_share(sheet_folds(*fit, f.pattern, f.x()), f.scene.fold_radius),
+      fold_energy(*fit, f.pattern, f.x(), rest_curvature(f), plate_of(f.sheet.material))};
+}
+
+std::optional<MotionMeasures> motion_measures(FitMemo& fits, const PaperScene& scene,
+                                              const FrameSequence& frames) {
+  const std::vector<double> times = frames.parameters();
+  if (times.size() < 3 || !equally_spaced(times)) return std::nullopt;
+  const std::vector<Eigen::Vector2d> samples = motion_samples(scene.sheet.pattern);
+  std::array<Eigen::MatrixX3d, 3> x;
+  std::vector<double> differences, energies;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const std::shared_ptr<const Frame> frame = frames.frame(i);
+    const SheetFrame f = sheet_frame(scene, *frame);
+    const auto energy = energy_measures(fits, f);
+    energies.push_back(energy ? energy->membrane + energy->bending : 0);
+    x[i % 3] = places_of(samples, f);
+    if (i < 2) continue;
+    const Eigen::VectorXd difference =
+        (x[i % 3] - 2 * x[(i + 2) % 3] + x[(i + 1) % 3]).rowwise().norm();
+    differences.insert(differences.end(), difference.begin(), difference.end());
+  }
+  MotionMeasures out;
+  const auto at = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() * 19 / 20);
+  std::nth_element(differences.begin(), at, differences.end());
+  out.second_difference_p95 = *at;
+  const double least = kWorthAnEnergy * *std::max_element(energies.begin(), energies.end());
+  for (std::size_t i = 1; i + 1 < energies.size(); ++i) {
+    const double beside = std::max(energies[i - 1], energies[i + 1]);
+    if (energies[i] > least && beside > 0)
+      out.energy_spike = std::max(out.energy_spike, energies[i] / beside);
   }
   return out;
 }
@@ -206,14 +291,7 @@ Value elastica_error(const SheetFrame& f) {
   const std::optional<Strip> strip = strip_of(f.sheet, f.frame.parameter);
   if (!strip) return std::nullopt;
   const PatternLocator locator({f.pattern, f.triangles()});
-  const auto in_space = [&](const Eigen::Vector2d& p) -> Eigen::Vector3d {
-    const PatternLocator::Place at = locator.locate(p);
-    Eigen::Vector3d x = Eigen::Vector3d::Zero();
-    for (int k = 0; k < 3; ++k) {
-      x += at.weights(k) * f.x().row(f.triangles()(at.triangle, k)).transpose();
-    }
-    return x;
-  };
+  const auto in_space = [&](const Eigen::Vector2d& p) { return place_of(p, locator, f); };
   double distance = 0;
   double height = 0;
   for (int i = 0; i < kStripSamples; ++i) {

@@ -11,6 +11,7 @@
 #include "metrics/isometry.h"
 #include "metrics/pattern_mesh.h"
 #include "models/paper/sheet.h"
+#include "testbed/frame_sequence.h"
 #include "testbed/memo.h"
 
 namespace geoprior::paper {
@@ -21,6 +22,7 @@ using Value = std::optional<double>;
 
 /// One frame of one scene, as every metric sees it.
 struct SheetFrame {
+  const PaperScene& scene;
   const Sheet& sheet;
   const Frame& frame;
   const Part& surface;
@@ -56,6 +58,26 @@ struct EnergyMeasures {
 using FitMemo = Memo<std::shared_ptr<const CurvatureFit>, 4>;
 /// Absent when a triangle has no area in the pattern or is turned over there.
 std::optional<EnergyMeasures> energy_measures(FitMemo& fits, const SheetFrame& f);
+
+/// How the sheet is folded along the edges of its mesh (metrics/folds.h).
+struct FoldMeasures {
+  double cancelling_share = 0;
+  double energy = 0;  ///< J
+};
+/// Absent when a triangle has no area in the pattern or is turned over there.
+std::optional<FoldMeasures> fold_measures(FitMemo& fits, const SheetFrame& f);
+
+/// How quietly the sheet moves, at the points of a grid of the pattern: the same on every mesh.
+struct MotionMeasures {
+  /// That 95 % of the points stay under, of |x_{i+1} - 2 x_i + x_{i-1}| over all frames (m).
+  double second_difference_p95 = 0;
+  /// Most that a frame's elastic energy is over that of the greater of its two neighbours, where it
+  /// is a tenth of the run's largest or more.
+  double energy_spike = 0;
+};
+/// Absent for fewer than three frames, or when frames are not equally spaced.
+std::optional<MotionMeasures> motion_measures(FitMemo& fits, const PaperScene& scene,
+                                              const FrameSequence& frames);
 
 /// The same of the patches of quadrics (metrics/bending_energy.h).
 using QuadricMemo = Memo<std::shared_ptr<const QuadricCurvature>, 4>;

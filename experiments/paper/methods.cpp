@@ -56,6 +56,9 @@ std::vector<DiagnosticEntry> diagnostics() {
       {"new_rulings", "1", "rulings inserted in the frame"},
       {"new_singular_points", "1", "singular points inserted in the frame"},
       {"rejected_changes", "1", "changes of the structure given up since the start"},
+      {"unborn_points", "1",
+       "singular points that took no energy out of the settled sheet, and were not made, since the "
+       "start"},
       {"remeshed", "1", "1 when the frame changed the structure, else 0"},
       {"meshes_made", "1", "meshes made in the frame, those of changes taken back too", true,
        kWork},

@@ -104,6 +104,37 @@ MetricGroup energy_group() {
            kNone, kSmooth, &M::kinetic);
 }
 
+MetricGroup fold_group() {
+  using M = FoldMeasures;
+  const auto fits = std::make_shared<FitMemo>();
+  return of_frame([fits](const SheetFrame& f) { return fold_measures(*fits, f); })
+      .row("cancelling_share", "1",
+           "share of the folds that opposite ones within discs of the pattern cancel, by length "
+           "times angle; a fold is positive when it has the sign that it has on a cylinder bent in "
+           "the sheet's main direction there",
+           kLow, kShare, &M::cancelling_share)
+      .row("fold_energy", "J",
+           "elastic energy of bending with every fold counted for itself, minus the plastic "
+           "curvature, scaled to the plate's on cylinders",
+           kNone, kSmooth, &M::energy);
+}
+
+MetricGroup motion_group() {
+  using M = MotionMeasures;
+  const auto fits = std::make_shared<FitMemo>();
+  return sequence_metrics<PaperScene>([fits](const PaperScene& scene, const FrameSequence& frames) {
+           return motion_measures(*fits, scene, frames);
+         })
+      .row("second_difference_p95", "m",
+           "second difference in time of a point of the sheet, a frame apart, that 95 % of the "
+           "points of a grid of the pattern over all frames stay under",
+           kLow, kSmooth, &M::second_difference_p95)
+      .row("energy_spike", "1",
+           "largest elastic energy of a frame over the greater one of its two neighbours, among "
+           "the frames with a tenth of the run's largest or more",
+           kLow, kShare, &M::energy_spike);
+}
+
 MetricGroup quadric_bending_group() {
   const auto quadrics = std::make_shared<QuadricMemo>();
   return of_frame([quadrics](const SheetFrame& f) { return quadric_bending_energy(*quadrics, f); })
@@ -204,9 +235,11 @@ MetricGroup distance_group() {
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
-  return {isometry_group(),        developability_group(), crease_group(),       energy_group(),
-          quadric_bending_group(), handle_work_group(),    handle_force_group(), mesh_group(),
-          contact_group(),         elastica_group(),       sector_group(),       distance_group()};
+  return {
+      isometry_group(),     developability_group(), crease_group(),          energy_group(),
+      fold_group(),         motion_group(),         quadric_bending_group(), handle_work_group(),
+      handle_force_group(), mesh_group(),           contact_group(),         elastica_group(),
+      sector_group(),       distance_group()};
 }
 
 }  // namespace geoprior::paper

@@ -158,6 +158,7 @@ std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
   auto scene = std::make_shared<PaperScene>();
   const Pattern pattern = make_pattern(options.pattern, folder, scene->input_files);
   scene->sheet = make_sheet(options, pattern);
+  scene->fold_radius = options.fold_radius;
   require_valid(scene->sheet, "scene");
   // Ten times what the imperfection may add.
   constexpr double kStretch = 1e-3;

@@ -17,6 +17,7 @@ namespace geoprior::paper {
 class PaperScene final : public ProcessScene {
  public:
   Sheet sheet;
+  double fold_radius = 0.03;  ///< of the discs within which folds cancel (m)
 
   [[nodiscard]] std::map<std::string, double> facts() const override;
 };

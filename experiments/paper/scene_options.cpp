@@ -136,6 +136,12 @@ void describe(OptionVisitor& v, PaperSceneOptions& options) {
   v.value("frame_interval", options.frame_interval,
           {.doc = "time between recorded frames", .unit = "s", .min = 1e-9});
   v.value("substeps", options.substeps, {.doc = "time steps of a frame", .min = 1, .max = 100000});
+  v.value("fold_radius", options.fold_radius,
+          {.doc = "of the discs of the pattern within which folds of opposite sign cancel "
+                  "(cancelling_share)",
+           .unit = "m",
+           .min = 1e-4,
+           .max = 100});
 }
 
 }  // namespace geoprior::paper

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/connectivity.h"
 #include "core/curvature_fit.h"
 #include "models/paper/hinge.h"
 
@@ -64,6 +65,37 @@ std::array<Eigen::Vector2d, 3> shape_gradients(const ShellMesh& mesh, int t, dou
 
 using Root = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRows, kMostTerms>;
 using PlasticRows = Eigen::Matrix<double, kMostRows, 3>;
+
+/// Rows for the folds of strips and fans that are no rulings: a sheet bends about its rulings, and
+/// the edges between them, which only divide the strip, fold against the stiffness of a plate bent
+/// over the two triangles beside them, D/2 l^2 theta^2 / (A1 + A2), half of it here. The sum of
+/// folds alone would let them fold back what the rulings fold. Nothing for a cylinder over its
+/// rulings.
+Root divider_rows(const ShellMesh& mesh, const CurvatureFit& fit, int t, PlasticRows& plastic,
+                  int first_plastic) {
+  const auto& terms = fit.terms[t];
+  if (mesh.rulings.empty()) return {};
+  const auto is_ruling = [&](const CurvatureFit::Hinge& h) {
+    return std::binary_search(mesh.rulings.begin(), mesh.rulings.end(), undirected(h.a, h.b));
+  };
+  std::vector<int> dividers;
+  for (int k = 0; k < fit.own[t]; ++k) {
+    if (!is_ruling(fit.hinges[terms[k].hinge])) dividers.push_back(k);
+  }
+  if (fit.rank[t] == 3 && static_cast<int>(dividers.size()) == fit.own[t]) return {};
+  Root rows = Root::Zero(static_cast<Eigen::Index>(dividers.size()),
+                         static_cast<Eigen::Index>(terms.size()));
+  for (std::size_t r = 0; r < dividers.size(); ++r) {
+    const auto row = static_cast<Eigen::Index>(r);
+    const auto& h = fit.hinges[terms[dividers[r]].hinge];
+    const double length = (mesh.pattern.row(h.b) - mesh.pattern.row(h.a)).norm();
+    const double areas = fit.area[h.left] + fit.area[h.right];
+    const double stiffness = length / std::sqrt(2 * areas * fit.area[t]);
+    rows(row, dividers[r]) = stiffness;
+    plastic.row(first_plastic + row) = stiffness * h.jump;
+  }
+  return rows;
+}
 
 /// R of the plate: the shape operator's energy, then the residual where S may miss an edge.
 Root plate_rows(const CurvatureFit& fit, int t, const Eigen::Matrix3d& root) {
@@ -187,8 +219,12 @@ void ShellElements::Impl::add_element(const ShellMesh& mesh, int t, double bendi
   Root rows;
   PlasticRows plastic_rows = PlasticRows::Zero();
   if (model == BendingModel::shape_operator) {
-    rows = plate_rows(fit, t, root);
+    const Root plate = plate_rows(fit, t, root);
     plastic_rows.topRows(3) = root;
+    const Root dividers = divider_rows(mesh, fit, t, plastic_rows, static_cast<int>(plate.rows()));
+    rows.resize(plate.rows() + dividers.rows(), plate.cols());
+    rows.topRows(plate.rows()) = plate;
+    if (dividers.rows() > 0) rows.bottomRows(dividers.rows()) = dividers;
     element.hinges = element.fit_hinges;
     element.stiffness = bending_stiffness * element.area;
   } else {

@@ -22,6 +22,11 @@ namespace geoprior::paper {
 ///                 / (1 + weakening damage), k = hinge_calibration, theta_p the angle that S_p
 ///                 would give; half of it in each triangle
 ///
+/// Where the mesh names rulings, triangles at one also resist the folds of their edges that are
+/// none, as the plate does that is bent by the angle over the two triangles beside the edge: D/2
+/// l^2 (theta - theta_p)^2 / (A1 + A2), half of it each. A cylinder over its rulings has no such
+/// folds.
+///
 /// Triangles at the border and folds also resist the residual theta - jump . S of their own edges,
 /// a tenth as much as S; it is zero for constant curvature. So every interior edge is resisted.
 ///

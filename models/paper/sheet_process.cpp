@@ -68,6 +68,7 @@ Part handles_part(const ShellState& state, const std::vector<ShellStepper::Held>
 void save(const ShellState& s, StateWriter& out) {
   out.matrix(s.mesh.pattern);
   out.matrix(s.mesh.triangles);
+  out.items(s.mesh.rulings);
   out.matrix(s.x);
   out.matrix(s.v);
   out.matrix(s.plastic_curvature);
@@ -78,6 +79,7 @@ void save(const ShellState& s, StateWriter& out) {
 void load(ShellState& s, StateReader& in) {
   in.matrix(s.mesh.pattern);
   in.matrix(s.mesh.triangles);
+  in.items(s.mesh.rulings);
   in.matrix(s.x);
   in.matrix(s.v);
   in.matrix(s.plastic_curvature);

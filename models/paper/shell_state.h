@@ -1,6 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
+
+#include "core/connectivity.h"
 
 namespace geoprior::paper {
 
@@ -9,6 +12,9 @@ namespace geoprior::paper {
 struct ShellMesh {
   Eigen::MatrixX2d pattern;    ///< n x 2 (m)
   Eigen::MatrixX3i triangles;  ///< m x 3
+  /// Edges that are rulings, ascending; the edges in the strips between them fold against a
+  /// stiffness of their own. None: all edges are alike.
+  std::vector<Edge> rulings = {};
 
   [[nodiscard]] int vertex_count() const { return static_cast<int>(pattern.rows()); }
   [[nodiscard]] int triangle_count() const { return static_cast<int>(triangles.rows()); }

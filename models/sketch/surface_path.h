@@ -19,6 +19,10 @@ struct EdgePoint {
   }
 };
 
+/// A path that passes this near to a vertex, as a share of the edge, runs through the vertex: cut
+/// there, the edge would leave a sliver.
+inline constexpr double kSnapShare = 1.0 / 6;
+
 inline EdgePoint at_vertex(int v) { return {{v, v}, 0}; }
 
 /// A path over a surface: consecutive points lie on one triangle.

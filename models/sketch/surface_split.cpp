@@ -10,10 +10,6 @@
 namespace geoprior::sketch {
 namespace {
 
-constexpr double kSnapShare = 1.0 / 6;
-
-Edge ascending(int a, int b) { return a < b ? Edge{a, b} : Edge{b, a}; }
-
 class PathSplitter {
  public:
   explicit PathSplitter(const TriMesh& mesh)
@@ -47,7 +43,7 @@ class PathSplitter {
     for (const EdgePoint& point : path) {
       const int node = node_of(point);
       if (before >= 0 && node != before) {
-        const Edge e = ascending(before, node);
+        const Edge e = undirected(before, node);
         if (std::find(split_.path.begin(), split_.path.end(), e) == split_.path.end())
           split_.path.push_back(e);
       }
@@ -79,7 +75,7 @@ class PathSplitter {
       const int k = at[0] < 0 ? 0 : at[1] < 0 ? 1 : 2;
       const int b = at[(k + 1) % 3], c = at[(k + 2) % 3];
       made.push_back({b, corner(k + 2), c});
-      if (wanted_.contains(ascending(corner(k + 1), c))) {
+      if (wanted_.contains(undirected(corner(k + 1), c))) {
         made.push_back({corner(k), corner(k + 1), c});
         made.push_back({corner(k + 1), b, c});
       } else {

@@ -12,13 +12,10 @@
 
 #include "core/disjoint_sets.h"
 #include "models/sketch/polyline.h"
+#include "models/sketch/surface_path.h"
 
 namespace geoprior::sketch {
 namespace {
-
-constexpr double kSnap = 1.0 / 6;
-
-Edge sorted_edge(int a, int b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
 class StrokeTrace {
  public:
@@ -67,9 +64,9 @@ class StrokeTrace {
       // Far from the stroke the sides meet too, where another of its segments becomes the nearest.
       if (std::abs(at.distance) > 0.25 * edge_length) continue;
       if (at.along < -reach_ || at.along > length_ + reach_) continue;
-      if (share < kSnap) {
+      if (share < kSnapShare) {
         node_[e] = a;
-      } else if (share > 1 - kSnap) {
+      } else if (share > 1 - kSnapShare) {
         node_[e] = b;
       } else {
         node_[e] = static_cast<int>(mesh_.V.rows()) + static_cast<int>(added_.size());
@@ -91,7 +88,7 @@ class StrokeTrace {
             std::find(nodes.begin(), nodes.begin() + count, node) == nodes.begin() + count)
           nodes[count++] = node;
       }
-      if (count == 2) found.insert(sorted_edge(nodes[0], nodes[1]));
+      if (count == 2) found.insert(undirected(nodes[0], nodes[1]));
     }
     return {found.begin(), found.end()};
   }
@@ -168,7 +165,7 @@ class StrokeTrace {
     }
     for (Edge& e : path) {
       for (int& v : e) v = v >= n ? renamed[v - n] : v;
-      e = sorted_edge(e[0], e[1]);
+      e = undirected(e[0], e[1]);
     }
     split_kept(split_at, kept);
     split_triangles(split_at);
@@ -185,8 +182,8 @@ class StrokeTrace {
         if (at < 0) {
           finer.push_back(e);
         } else {
-          finer.push_back(sorted_edge(e[0], at));
-          finer.push_back(sorted_edge(e[1], at));
+          finer.push_back(undirected(e[0], at));
+          finer.push_back(undirected(e[1], at));
         }
       }
       *edges = std::move(finer);

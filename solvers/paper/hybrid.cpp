@@ -22,6 +22,8 @@
 #include "solvers/paper/invariants.h"
 #include "solvers/paper/pieces.h"
 #include "solvers/paper/plastic_apex.h"
+#include "solvers/paper/ruling_field.h"
+#include "solvers/paper/settled_energy.h"
 #include "solvers/paper/structure_bytes.h"
 #include "solvers/paper/tracking.h"
 
@@ -38,20 +40,20 @@ constexpr double kLeastAngleDegrees = 6;
 /// Iterations of the projection over those of other frames: after remeshing; and, in a frame that
 /// has come to its last resort, for the structure as it is and for further changes.
 constexpr int kRemeshedIterations = 2;
-constexpr int kLastIterations = 40;
-constexpr int kRetryIterations = 10;
+constexpr int kLastIterations = 8;
+constexpr int kRetryIterations = 4;
 /// Principal strain after the projection beyond which a change of the structure is taken back; the
 /// next frame tries again, with another draw. Only when the unchanged structure is strained as well
-/// are there more attempts in the same frame, and the best of all stays. Waiting for more strain
-/// than that makes the handles feel less of the projections, but the sheet does not always come
-/// back: see docs/methods/paper.md, What was found.
-constexpr double kAcceptedStrain = 2e-3;
-constexpr int kAttempts = 4;
+/// are there more attempts in the same frame, and the best of all stays.
+constexpr double kAcceptedStrain = 4e-3;
+constexpr int kAttempts = 3;
 /// Strain that is left even so is given as much time as it takes, within reason.
-constexpr double kUnacceptableStrain = 5e-3;
-constexpr int kPatientIterations = 200;
+constexpr double kUnacceptableStrain = 1e-2;
+constexpr int kPatientIterations = 30;
 /// Most rulings side by side over the pattern.
 constexpr double kMostRulings = 1e6;
+/// Frames between two looks at whether a singular point is still needed.
+constexpr int kReview = 5;
 /// How far a new singular point is moved out of the sheet, in seeding distances.
 constexpr double kDent = 0.05;
 
@@ -80,6 +82,29 @@ double hollow_side(const ShellState& state, const EdgeConnectivity& edges, int v
     sum += d.dot(normal) / d.squaredNorm();
   }
   return sum < 0 ? -1 : 1;
+}
+
+/// Moves new vertices from the triangles of the sheet before to the smooth surface through its
+/// vertices: over a triangle that surface rises by as much as its curvature makes of the triangle's
+/// size. Without it every new mesh would cut the folds of the old one off.
+void round_off(const ShellState& before, const BendingField& field, const std::vector<bool>& held,
+               ShellState& state) {
+  const PatternLocator locator(before.mesh);
+  for (int i = 0; i < state.mesh.vertex_count(); ++i) {
+    if (held[i]) continue;
+    const Eigen::Vector2d p = state.mesh.pattern.row(i);
+    const PatternLocator::Place at = locator.locate(p);
+    const Eigen::RowVector3i t = before.mesh.triangles.row(at.triangle);
+    const Eigen::Matrix2d S = field.at(p);
+    double rise = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector2d to = before.mesh.pattern.row(t[k]).transpose() - p;
+      rise += at.weights[k] * to.dot(S * to) / 2;
+    }
+    const Eigen::RowVector3d a = before.x.row(t[1]) - before.x.row(t[0]);
+    const Eigen::RowVector3d b = before.x.row(t[2]) - before.x.row(t[0]);
+    state.x.row(i) -= rise * a.cross(b).normalized();
+  }
 }
 
 std::vector<bool> held_vertices(const Sheet& sheet, const ShellMesh& mesh, double time,
@@ -123,6 +148,8 @@ ShellState HybridMesher::start(const Sheet& sheet, RunContext& context) {
   structure_ = {};
   draws_ = 0;
   rejected_ = 0;
+  unborn_ = 0;
+  frames_ = 0;
   take_scene(sheet);
   remesh();
   return resting_state(sheet, mesh_.mesh, context.seed());
@@ -130,7 +157,7 @@ ShellState HybridMesher::start(const Sheet& sheet, RunContext& context) {
 
 /// Where the simulated sheet asks for rulings; singular points yield on the way.
 std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, const ShellStepper& stepper,
-                                               ShellState& state) {
+                                               ShellState& state, RunContext& context) {
   curvature_ = stepper.shape_operators(state);
   if (options_.stepper.plasticity) {
     yield_at_apexes(sheet.material, options_.weakening_radius, mesh_.singular_vertices, curvature_,
@@ -140,14 +167,18 @@ std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, const ShellSt
   folds_ = fold_angles(state, mesh_);
   for (Ruling& ruling : structure_.rulings) ++ruling.age_frames;
   count_flat_frames(folds_, options_, looker);
+  if (options_.tracking) {
+    if (!guide_) guide_.emplace(sheet, options_.guide_edge, options_.stepper, context.seed());
+    field_.emplace(guide_->relaxed(state, context));
+  }
   return group_demands(find_demands(sheet, state, curvature_, mesh_, looker, options_), state.mesh,
                        options_.group_angle_deg);
 }
 
-bool HybridMesher::track(const ShellState& state, bool at_rest, RulingEditor& editor) {
+bool HybridMesher::track(RulingEditor& editor, PropagationReport& events) {
   const bool refined = refine_rulings(folds_, options_, editor);
-  if (refined || !at_rest) return refined;
-  return turn_cylinders(state, curvature_, mesh_, options_, editor);
+  const bool followed = follow_bending(*field_, options_, editor, events.new_rulings);
+  return refined || followed;
 }
 
 /// Changes the rulings as the groups ask; the mesh still is that of the old ones.
@@ -156,8 +187,10 @@ PropagationReport HybridMesher::edit(const ShellState& state,
                                      std::uint64_t seed) {
   PropagationReport total;
   RulingEditor pen = editor();
-  if (tracking) total.changed = track(state, groups.empty(), pen);
-  if (!groups.empty()) resolve(state, groups, seed, pen, total);
+  if (tracking) total.changed = track(pen, total);
+  // What rulings can serve that turn needs no singular point.
+  if (!groups.empty() && !(total.changed && options_.energy_test))
+    resolve(state, groups, seed, pen, total);
   if (tracking && retire_rulings(total.changed, options_, pen)) total.changed = true;
   return total;
 }
@@ -167,6 +200,7 @@ void HybridMesher::resolve(const ShellState& state, const std::vector<DemandGrou
   const PatternLocator locator(state.mesh);
   std::vector<double> folds = folds_;
   for (const DemandGroup& group : groups) {
+    if (options_.tracking && !group.bent_ground) continue;
     // Once rulings have gone, the folds belong to others.
     if (total.changed) folds.clear();
     const auto in_group = [&](const Eigen::Vector2d& p) {
@@ -178,6 +212,8 @@ void HybridMesher::resolve(const ShellState& state, const std::vector<DemandGrou
     total.new_rulings += report.new_rulings;
     total.new_singular_points += report.new_singular_points;
     total.changed |= report.changed;
+    // The strongest group first: what one point releases, others no longer ask for.
+    if (total.new_singular_points > 0) break;
   }
 }
 
@@ -201,13 +237,20 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
     remesh();
   }
   meshes_made_ = 0;
+  ++frames_;
   std::vector<DemandGroup> groups;
   {
     const Phase phase(context, "analyse");
-    groups = analyse(sheet, stepper, state);
+    groups = analyse(sheet, stepper, state, context);
   }
   const Snapshot before = snapshot(state);
   if (try_change(sheet, groups, options_.tracking, kRemeshedIterations, before, state, context)) {
+    if (!options_.energy_test) return true;
+    if (events_.new_singular_points > 0) {
+      weigh_births(sheet, before, state, context);
+    } else if (frames_ % kReview == 0) {
+      review_points(sheet, state, context);
+    }
     return true;
   }
   // Wait for the next frame, unless this one is strained without a change.
@@ -215,8 +258,61 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
   const bool changed = events_.changed;
   if (changed) restore(before, state);
   keep(sheet, 1, state, context);
-  if (!options_.projection || projection_.strain_after <= kAcceptedStrain) return false;
+  if (!options_.projection || projection_.strain_after <= kAcceptedStrain)
+    return options_.energy_test && frames_ % kReview == 0 && review_points(sheet, state, context);
   return last_resort(sheet, groups, before, changed ? &tried : nullptr, state, context);
+}
+
+/// Takes new singular points back unless the sheet, once settled, has less energy with them than
+/// with rulings alone.
+void HybridMesher::weigh_births(const Sheet& sheet, const Snapshot& before, ShellState& state,
+                                RunContext& context) {
+  const Phase phase(context, "weigh");
+  const auto energy = [&] {
+    return settled_energy(sheet, options_.stepper, context.seed(), state, context);
+  };
+  const double with_points = energy();
+  const Snapshot born = snapshot(state);
+  restore(before, state);
+  const bool follows =
+      try_change(sheet, {}, options_.tracking, kRemeshedIterations, before, state, context);
+  if (!follows && events_.changed) {
+    restore(born, state);
+    return;
+  }
+  if (!follows) keep(sheet, 1, state, context);
+  if (projection_.strain_after <= kAcceptedStrain && energy() <= with_points) {
+    ++unborn_;
+    events_.changed = true;
+    return;
+  }
+  restore(born, state);
+}
+
+/// Takes away the oldest singular point about which the paper has not yielded, if the sheet, once
+/// settled, has no more energy without it.
+bool HybridMesher::review_points(const Sheet& sheet, ShellState& state, RunContext& context) {
+  const auto& points = structure_.singular_points;
+  const auto unyielded = std::find_if(points.begin(), points.end(),
+                                      [](const SingularPoint& p) { return p.weakening == 0; });
+  if (unyielded == points.end()) return false;
+  const Phase phase(context, "weigh");
+  const Snapshot before = snapshot(state);
+  const double with_point = settled_energy(sheet, options_.stepper, context.seed(), state, context);
+  RulingEditor pen = editor();
+  pen.remove_point(static_cast<int>(unyielded - points.begin()));
+  int new_rulings = 0;
+  if (field_) follow_bending(*field_, options_, pen, new_rulings);
+  remesh();
+  carry(sheet, state, structure_.singular_points.size(), context);
+  if (options_.projection) project(sheet, kRemeshedIterations, state, context);
+  if (projection_.strain_after <= kAcceptedStrain &&
+      settled_energy(sheet, options_.stepper, context.seed(), state, context) <= with_point) {
+    events_.changed = true;
+    return true;
+  }
+  restore(before, state);
+  return false;
 }
 
 /// Changes the structure as the groups ask. False when there is nothing to change, or when the
@@ -232,7 +328,7 @@ bool HybridMesher::try_change(const Sheet& sheet, const std::vector<DemandGroup>
   {
     const Phase phase(context, "remesh");
     remesh();
-    carry(state, before.structure.singular_points.size());
+    carry(sheet, state, before.structure.singular_points.size(), context);
   }
   if (!options_.projection) return true;
   project(sheet, effort, state, context);
@@ -275,8 +371,13 @@ bool HybridMesher::last_resort(const Sheet& sheet, const std::vector<DemandGroup
 /// Takes the state to the new mesh. A new singular point is moved a little towards its neighbours,
 /// the hollow side: a sheet compressed along its rulings dents inwards, and edges in one plane
 /// could not decide.
-void HybridMesher::carry(ShellState& state, std::size_t old_points) const {
+void HybridMesher::carry(const Sheet& sheet, ShellState& state, std::size_t old_points,
+                         RunContext& context) const {
+  const ShellState before = state;
   state = transfer_state(state, mesh_.mesh);
+  if (field_) {
+    round_off(before, *field_, held_vertices(sheet, state.mesh, state.time, context.seed()), state);
+  }
   if (old_points >= mesh_.singular_vertices.size()) return;
   const EdgeConnectivity edges(state.mesh.triangles);
   for (std::size_t s = old_points; s < mesh_.singular_vertices.size(); ++s) {
@@ -301,6 +402,7 @@ void HybridMesher::annotate(const ShellState& state, Frame& frame) const {
   frame.diagnostics["new_rulings"] = events_.new_rulings;
   frame.diagnostics["new_singular_points"] = events_.new_singular_points;
   frame.diagnostics["rejected_changes"] = rejected_;
+  frame.diagnostics["unborn_points"] = unborn_;
   frame.diagnostics["remeshed"] = events_.changed ? 1 : 0;
   frame.diagnostics["meshes_made"] = meshes_made_;
   frame.diagnostics["projection_iterations"] = projection_.iterations;
@@ -312,12 +414,16 @@ void HybridMesher::save(StateWriter& out) const {
   write_structure(structure_, out);
   out.number(draws_);
   out.number(rejected_);
+  out.number(unborn_);
+  out.number(frames_);
 }
 
 void HybridMesher::load(StateReader& in) {
   structure_ = read_structure(in);
   draws_ = in.number<std::uint64_t>();
   rejected_ = in.number<int>();
+  unborn_ = in.number<int>();
+  frames_ = in.number<int>();
   meshed_ = false;
 }
 
@@ -395,7 +501,20 @@ void describe_rulings(OptionVisitor& v, HybridOptions& o) {
 }
 
 void describe_tracking(OptionVisitor& v, HybridOptions& o) {
+  v.value("energy_test", o.energy_test,
+          {.doc = "singular points are made, and stay, only where the sheet has less energy with "
+                  "them; without it compression alone makes them, for ever"});
   v.value("tracking", o.tracking, {.doc = "rulings follow the simulated bending"});
+  v.value("guide_edge", o.guide_edge,
+          {.doc = "edges of the even mesh that shows how the sheet would bend",
+           .unit = "m",
+           .min = 1e-3,
+           .max = 10});
+  v.value("follow_angle_deg", o.follow_angle_deg,
+          {.doc = "how far a ruling may be from the direction of least bending",
+           .unit = "deg",
+           .min = 1,
+           .max = 45});
   v.value("tracking_rate_deg", o.tracking_rate_deg,
           {.doc = "most that a ruling turns in a frame", .unit = "deg", .min = 0, .max = 45});
   v.value(

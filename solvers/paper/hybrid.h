@@ -17,9 +17,9 @@ struct HybridOptions {
   double least_slope_deg = 2;  ///< slope of a buckle that is worth rulings (Euler's test)
   double compression_threshold = 1e-3;  ///< eps_c of the plain test
   double group_angle_deg = 20;          ///< directions of neighbours that belong together
-  double seeding_distance = 0.02;       ///< s: distance of parallel rulings (m)
-  double flat_size = 0.1;               ///< largest edge of the mesh where nothing is bent yet (m)
-  int ruling_parts = 4;                 ///< most edges along a ruling: 1 keeps it from ever bending
+  double seeding_distance = 0.016;      ///< s: distance of parallel rulings (m)
+  double flat_size = 0.025;             ///< largest edge of the mesh where nothing is bent yet (m)
+  int ruling_parts = 6;                 ///< most edges along a ruling: 1 keeps it from ever bending
   double merge_angle_deg = 5;           ///< cylinders closer than this in direction become one
   double singular_spacing = 2;  ///< smallest distance of singular points, in seeding distances
   int settle_frames = 3;        ///< age from which a ruling can be in conflict
@@ -27,7 +27,12 @@ struct HybridOptions {
   double flatten_angle_deg = 45;  ///< most that the rulings it cuts on a side turn the sheet
   double fan_angle_deg = 25;      ///< widest sector of a new cone without a ruling
   double refine_angle_deg = 15;   ///< fold of a ruling beside which another is put
+  /// A singular point is made only when rulings that turn do not serve, and the sheet has less
+  /// energy with it; it goes again when it has no more without, unless the paper has yielded there.
+  bool energy_test = true;
   bool tracking = true;
+  double guide_edge = 0.018;     ///< edges of the even mesh that shows how the sheet bends (m)
+  double follow_angle_deg = 15;  ///< how far a ruling may be from the direction of least bending
   double tracking_rate_deg = 5;  ///< most that a ruling turns in a frame
   double flat_curvature = 0.5;   ///< kappa_0 under which a piece counts as flat (1/m)
   int flat_frames = 10;          ///< frames under it until a piece without singular point goes
@@ -41,7 +46,7 @@ void describe(OptionVisitor& v, HybridOptions& options);
 
 /// The hybrid model as a process (thesis 3.2.1, Figures 3.6 to 3.9): elastic steps on a coarse mesh
 /// whose edges are the rulings of planes, cylinders and cones; after each frame the rulings follow
-/// the compression and bending that the steps have left.
+/// the bending that the steps have left, as an even mesh relaxes it, and its compression.
 ///
 /// What it cannot do: no contact of the sheet with itself on the geometric layer; a d-cone is a
 /// point, not a crescent; a ruling has few vertices (`ruling_parts`), so it hardly bends until a
@@ -51,7 +56,7 @@ void describe(OptionVisitor& v, HybridOptions& options);
 /// and "singular_points" (points; "id", "birth" [s], "weakening"), the cell arrays "piece" and
 /// "kind" on "surface", the tables "pieces" and "singular_points", and as diagnostics the numbers
 /// of pieces of each kind, the events of the frame and the edge strain around the projection.
-/// Phases: "analyse", "propagate", "remesh", "project".
+/// Phases: "analyse", "propagate", "remesh", "project", "weigh".
 std::unique_ptr<Process> make_hybrid_sheet(const Sheet& sheet, const HybridOptions& options);
 
 }  // namespace geoprior::paper

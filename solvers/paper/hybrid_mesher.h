@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "models/paper/sheet_process.h"
+#include "solvers/paper/bending_guide.h"
 #include "solvers/paper/hybrid.h"
 #include "solvers/paper/isometry_projection.h"
 #include "solvers/paper/propagation.h"
@@ -44,8 +45,8 @@ class HybridMesher final : public SheetMesher {
   [[nodiscard]] RulingEditor editor();
   void remesh();
   [[nodiscard]] std::vector<DemandGroup> analyse(const Sheet& sheet, const ShellStepper& stepper,
-                                                 ShellState& state);
-  bool track(const ShellState& state, bool at_rest, RulingEditor& editor);
+                                                 ShellState& state, RunContext& context);
+  bool track(RulingEditor& editor, PropagationReport& events);
   [[nodiscard]] PropagationReport edit(const ShellState& state,
                                        const std::vector<DemandGroup>& groups, bool tracking,
                                        std::uint64_t seed);
@@ -57,7 +58,11 @@ class HybridMesher final : public SheetMesher {
   bool last_resort(const Sheet& sheet, const std::vector<DemandGroup>& groups,
                    const Snapshot& before, const Snapshot* tried, ShellState& state,
                    RunContext& context);
-  void carry(ShellState& state, std::size_t old_points) const;
+  void weigh_births(const Sheet& sheet, const Snapshot& before, ShellState& state,
+                    RunContext& context);
+  bool review_points(const Sheet& sheet, ShellState& state, RunContext& context);
+  void carry(const Sheet& sheet, ShellState& state, std::size_t old_points,
+             RunContext& context) const;
   void project(const Sheet& sheet, int effort, ShellState& state, RunContext& context);
 
   HybridOptions options_;
@@ -68,11 +73,15 @@ class HybridMesher final : public SheetMesher {
   Pattern pattern_;
   std::vector<Eigen::Vector2d> anchors_;
   std::optional<IsometryProjector> projector_;
+  std::optional<BendingGuide> guide_;
+  std::optional<BendingField> field_;
   std::uint64_t draws_ = 0;  ///< of singular points, so far
   bool meshed_ = false;      ///< false after `load`, until the mesh is made again
   PropagationReport events_;
   ProjectionReport projection_;
   int meshes_made_ = 0;  ///< in this frame, of changes taken back too
+  int frames_ = 0;       ///< so far
+  int unborn_ = 0;       ///< singular points that were not worth their energy, so far
   int rejected_ = 0;     ///< changes of the structure that the sheet could not follow, so far
 };
 

@@ -1,5 +1,6 @@
 #include "solvers/paper/ruling_editor.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -222,6 +223,20 @@ std::optional<Ruling> RulingEditor::chord(const Vector2d& centre, const Vector2d
   return row ? line(*row, true) : std::nullopt;
 }
 
+std::optional<Ruling> RulingEditor::turned(int ruling, double angle) const {
+  Ruling result = structure_.rulings[ruling];
+  std::vector<bool> itself(structure_.rulings.size(), false);
+  itself[ruling] = true;
+  const Vector2d middle = (result.a + result.b) / 2;
+  const Vector2d d = Eigen::Rotation2Dd(angle) * (result.b - result.a);
+  const auto a = border_end(middle, -d, false, itself), b = border_end(middle, d, false, itself);
+  if (!a || !b) return std::nullopt;
+  result.a = *a;
+  result.b = *b;
+  if (!fits(result, itself)) return std::nullopt;
+  return result;
+}
+
 std::optional<Ruling> RulingEditor::ray(int singular_point, const Vector2d& direction) const {
   const Vector2d origin = structure_.singular_points[singular_point].position;
   const RulingHit hit = propagate(origin, direction, singular_point);
@@ -245,6 +260,19 @@ std::optional<Ruling> RulingEditor::ray_to(int singular_point, const Vector2d& e
 
 std::optional<Ruling> RulingEditor::ray_between(int singular_point, int other) const {
   return ray_to(singular_point, structure_.singular_points[other].position);
+}
+
+void RulingEditor::remove_point(int singular_point) {
+  std::vector<bool> marked;
+  for (const Ruling& r : structure_.rulings)
+    marked.push_back(r.singular_a == singular_point || r.singular_b == singular_point);
+  remove(marked);
+  structure_.singular_points.erase(structure_.singular_points.begin() + singular_point);
+  for (Ruling& r : structure_.rulings) {
+    for (std::optional<int>* end : {&r.singular_a, &r.singular_b}) {
+      if (*end && **end > singular_point) --**end;
+    }
+  }
 }
 
 void RulingEditor::remove(const std::vector<bool>& marked) {

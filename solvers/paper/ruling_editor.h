@@ -47,6 +47,9 @@ class RulingEditor {
   [[nodiscard]] std::optional<Ruling> chord(const Eigen::Vector2d& centre,
                                             const Eigen::Vector2d& direction,
                                             const std::vector<bool>& ignored = {}) const;
+  /// A ruling from border to border turned about its middle, ends where they fall; absent when it
+  /// does not fit among the others.
+  [[nodiscard]] std::optional<Ruling> turned(int ruling, double angle) const;
   /// The line from a singular point to the border, under the same conditions as `chord`.
   [[nodiscard]] std::optional<Ruling> ray(int singular_point,
                                           const Eigen::Vector2d& direction) const;
@@ -57,6 +60,8 @@ class RulingEditor {
   void add(const Ruling& ruling) { structure_.rulings.push_back(ruling); }
   /// Removes the marked rulings, the others keep their order.
   void remove(const std::vector<bool>& marked);
+  /// Removes a singular point and the rulings that end in it.
+  void remove_point(int singular_point);
 
   /// Corners and anchors on the border, and where rulings and singular points touch it.
   [[nodiscard]] std::vector<Eigen::Vector2d> border_nodes() const;

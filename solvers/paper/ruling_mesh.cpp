@@ -134,13 +134,7 @@ std::vector<int> points_along(const std::vector<Vector2d>& points, const Ruling&
 
 void number_cells(RulingMesh& result) {
   const EdgeConnectivity edges(result.mesh.triangles);
-  std::vector<Edge> walls;
-  for (const auto& path : result.ruling_paths) {
-    for (std::size_t k = 0; k + 1 < path.size(); ++k) {
-      walls.push_back({std::min(path[k], path[k + 1]), std::max(path[k], path[k + 1])});
-    }
-  }
-  std::sort(walls.begin(), walls.end());
+  const std::vector<Edge>& walls = result.mesh.rulings;
   const int m = result.mesh.triangle_count();
   result.cell.assign(m, -1);
   result.cell_count = 0;
@@ -215,6 +209,11 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
   }
   result.mesh.triangles = constrained_delaunay(result.mesh.pattern, segments);
   sort_triangles(result.mesh.triangles);
+  for (const auto& path : result.ruling_paths) {
+    for (std::size_t k = 0; k + 1 < path.size(); ++k)
+      result.mesh.rulings.push_back(undirected(path[k], path[k + 1]));
+  }
+  std::sort(result.mesh.rulings.begin(), result.mesh.rulings.end());
   number_cells(result);
   return result;
 }

@@ -101,13 +101,15 @@ void add_singular_point(const Vector2d& p, double time, const Conflict& conflict
   editor.remove(rulings_in_conflict(p, std::nullopt, conflict, options, editor));
   PaperStructure& structure = editor.structure();
   SingularPoint point;
-  point.id = static_cast<int>(structure.singular_points.size());
+  const int index = static_cast<int>(structure.singular_points.size());
+  for (const SingularPoint& other : structure.singular_points)
+    point.id = std::max(point.id, other.id + 1);
   point.position = p;
   point.birth = time;
   point.on_border = nearest_on_border(editor.pattern(), p).distance <= editor.same();
   structure.singular_points.push_back(point);
-  connect(point.id, editor);
-  fill_fan(point.id, options, editor);
+  connect(index, editor);
+  fill_fan(index, options, editor);
 }
 
 bool widen_singular_point(int singular_point, const Conflict& conflict,

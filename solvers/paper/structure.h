@@ -18,6 +18,7 @@ struct Ruling {
   std::optional<int> singular_a, singular_b;
   int age_frames = 0;     ///< frames since it was made
   int unbent_frames = 0;  ///< for how many frames the sheet has been flat across it
+  int astray_frames = 0;  ///< for how many frames the sheet has bent along it
 };
 
 /// A part of the sheet that is developable and smooth: thesis 3.2.1, Figure 3.7.
@@ -33,7 +34,8 @@ struct PaperPiece {
   std::vector<int> neighbours;          ///< pieces that share a part of their outline
 };
 
-/// A point where the sheet is not smooth (a d-cone). It never vanishes.
+/// A point where the sheet is not smooth (a d-cone). Where the paper has yielded about it, it never
+/// vanishes.
 struct SingularPoint {
   int id = 0;
   Eigen::Vector2d position;  ///< in the pattern (m)

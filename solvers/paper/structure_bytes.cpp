@@ -33,6 +33,7 @@ void write_structure(const PaperStructure& structure, StateWriter& out) {
     out.number(r.singular_b.value_or(kNone));
     out.number(r.age_frames);
     out.number(r.unbent_frames);
+    out.number(r.astray_frames);
   }
   out.number(structure.singular_points.size());
   for (const SingularPoint& s : structure.singular_points) {
@@ -61,6 +62,7 @@ PaperStructure read_structure(StateReader& in) {
     r.singular_b = read_optional(in);
     r.age_frames = in.number<int>();
     r.unbent_frames = in.number<int>();
+    r.astray_frames = in.number<int>();
   }
   structure.singular_points.resize(in.count());
   for (SingularPoint& s : structure.singular_points) {

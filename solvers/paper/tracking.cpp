@@ -16,8 +16,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Turns smaller than this are not worth a new mesh.
-constexpr double kLeastTurnDegrees = 1;
 /// Part of all rulings that must be superfluous to be worth a new mesh of their own.
 constexpr double kWorthAMesh = 0.25;
 
@@ -28,64 +26,9 @@ int third_vertex(const Eigen::MatrixX3i& triangles, int f, int a, int b) {
   return -1;
 }
 
-/// Direction of the rulings that the triangles of a piece show; zero when they are flat.
-Vector2d observed_direction(const ShellState& state, const Eigen::MatrixX3d& curvature,
-                            const RulingMesh& mesh, int piece) {
-  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
-  for (int f = 0; f < state.mesh.triangle_count(); ++f) {
-    if (mesh.piece[f] != piece) continue;
-    const Vector2d a = state.mesh.pattern.row(state.mesh.triangles(f, 0));
-    const Vector2d b = state.mesh.pattern.row(state.mesh.triangles(f, 1));
-    const Vector2d c = state.mesh.pattern.row(state.mesh.triangles(f, 2));
-    Eigen::Matrix2d S;
-    S << curvature(f, 0), curvature(f, 1), curvature(f, 1), curvature(f, 2);
-    sum += cross(b - a, c - a) * S * S;
-  }
-  if (!(sum.trace() > 0)) return Vector2d::Zero();
-  const double angle = std::atan2(sum(0, 1), (sum(0, 0) - sum(1, 1)) / 2) / 2;
-  return {-std::sin(angle), std::cos(angle)};
-}
-
-/// Signed angle that takes one line to another, -pi/2 ... pi/2.
-double turn_between(const Vector2d& from, const Vector2d& to) {
-  const double angle = signed_angle(from, to);
-  if (angle > std::numbers::pi / 2) return angle - std::numbers::pi;
-  if (angle < -std::numbers::pi / 2) return angle + std::numbers::pi;
-  return angle;
-}
-
-/// Replaces the rulings of a piece by ones turned about their middles; false (and nothing done)
-/// when one of them would not fit.
-bool turn_piece(const PaperPiece& piece, double angle, RulingEditor& editor) {
-  const std::vector<Ruling> before = editor.structure().rulings;
-  std::vector<bool> marked(before.size(), false);
-  for (const int r : piece.rulings) marked[r] = true;
-  editor.remove(marked);
-  const Vector2d d = Eigen::Rotation2Dd(angle) * piece.direction;
-  for (const int r : piece.rulings) {
-    const Ruling& old = before[r];
-    auto turned = editor.chord((old.a + old.b) / 2, d);
-    if (!turned) {
-      editor.structure().rulings = before;
-      return false;
-    }
-    turned->piece = old.piece;
-    turned->age_frames = old.age_frames;
-    turned->unbent_frames = old.unbent_frames;
-    editor.add(*turned);
-  }
-  return true;
-}
-
-/// A ruling beside an end ruling of a piece, as far out as the last one is in.
+/// A ruling beside an end ruling of a cone, as far out as the last one is in.
 std::optional<Ruling> beside(const PaperPiece& piece, const Ruling& last, const Ruling* inner,
                              double spacing, const RulingEditor& editor) {
-  if (piece.kind == PaperPiece::Kind::cylinder) {
-    Vector2d out = perpendicular(piece.direction);
-    const Vector2d middle = (last.a + last.b) / 2;
-    if (inner && out.dot(middle - (inner->a + inner->b) / 2) < 0) out = -out;
-    return editor.chord(middle + spacing * out, piece.direction);
-  }
   const bool from_a = last.singular_a == piece.singular_point;
   const Vector2d d = from_a ? Vector2d(last.b - last.a) : Vector2d(last.a - last.b);
   double angle = std::max(spacing / d.norm(), 2 * editor.bounds().least_angle);
@@ -98,15 +41,9 @@ std::optional<Ruling> beside(const PaperPiece& piece, const Ruling& last, const 
   return editor.ray(*piece.singular_point, Eigen::Rotation2Dd(angle) * d);
 }
 
-/// A ruling halfway between two of one piece.
+/// A ruling halfway between two of one cone.
 std::optional<Ruling> between(const PaperPiece& piece, const Ruling& r, const Ruling& s,
                               const RulingEditor& editor) {
-  if (piece.kind == PaperPiece::Kind::cylinder) {
-    Vector2d d = (r.b - r.a).normalized();
-    const Vector2d e = (s.b - s.a).normalized();
-    d += d.dot(e) < 0 ? Vector2d(-e) : e;
-    return editor.chord((r.a + r.b + s.a + s.b) / 4, d);
-  }
   const auto out = [&](const Ruling& x) {
     return Vector2d((x.singular_a == piece.singular_point ? x.b - x.a : x.a - x.b).normalized());
   };
@@ -200,26 +137,6 @@ std::vector<double> fold_angles(const ShellState& state, const RulingMesh& mesh)
   return folds;
 }
 
-bool turn_cylinders(const ShellState& state, const Eigen::MatrixX3d& curvature,
-                    const RulingMesh& mesh, const HybridOptions& options, RulingEditor& editor) {
-  bool turned = false;
-  const std::vector<PaperPiece> pieces = editor.structure().pieces;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (pieces[i].kind != PaperPiece::Kind::cylinder) continue;
-    const Vector2d target = observed_direction(state, curvature, mesh, static_cast<int>(i));
-    if (target.isZero()) continue;
-    const double limit = options.tracking_rate_deg * kDegree;
-    const double angle = std::clamp(turn_between(pieces[i].direction, target), -limit, limit);
-    if (std::abs(angle) < kLeastTurnDegrees * kDegree) continue;
-    // Indices of rulings change when a piece turns: one piece a frame keeps them simple.
-    if (turn_piece(pieces[i], angle, editor)) {
-      turned = true;
-      break;
-    }
-  }
-  return turned;
-}
-
 bool refine_rulings(const std::vector<double>& folds, const HybridOptions& options,
                     RulingEditor& editor) {
   const double limit = options.refine_angle_deg * kDegree;
@@ -227,6 +144,7 @@ bool refine_rulings(const std::vector<double>& folds, const HybridOptions& optio
   const std::vector<Ruling> rulings = editor.structure().rulings;
   bool refined = false;
   for (const PaperPiece& piece : std::vector<PaperPiece>(editor.structure().pieces)) {
+    if (piece.kind != PaperPiece::Kind::cone) continue;
     const std::size_t n = piece.rulings.size();
     for (std::size_t k = 0; k < n; ++k) {
       const auto index = [&](std::size_t at) {

@@ -14,15 +14,9 @@ namespace geoprior::paper {
 /// weighted by length.
 std::vector<double> fold_angles(const ShellState& state, const RulingMesh& mesh);
 
-/// Turns the rulings of each cylinder towards the direction of least bending of its triangles, the
-/// eigenvector of sum A S S, by at most `tracking_rate_deg`; less than a degree is left alone. A
-/// piece whose turned rulings would not fit stays. Returns true when anything turned.
-bool turn_cylinders(const ShellState& state, const Eigen::MatrixX3d& curvature,
-                    const RulingMesh& mesh, const HybridOptions& options, RulingEditor& editor);
-
-/// Puts rulings beside those that fold by more than the refinement angle: halfway to the next one
-/// of the piece, or as far as the one on the other side when there is none. Returns true when any
-/// fitted.
+/// Puts rulings beside those of cones that fold by more than the refinement angle: halfway to the
+/// next one of the cone, or as far as the one on the other side when there is none. Returns true
+/// when any fitted.
 bool refine_rulings(const std::vector<double>& folds, const HybridOptions& options,
                     RulingEditor& editor);
 

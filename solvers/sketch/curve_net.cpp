@@ -332,6 +332,21 @@ int node_of(const SketchCurve& curve, int i) {
   return curve.nodes[curve.closed ? ((i % n) + n) % n : std::clamp(i, 0, n - 1)];
 }
 
+std::vector<CurveTurn> turns(const CurveNet& net) {
+  std::vector<CurveTurn> all;
+  for (const SketchCurve& curve : net.curves) {
+    const int n = curve.size();
+    for (int i = curve.closed ? 0 : 1; i < (curve.closed ? n : n - 1); ++i) {
+      CurveTurn turn{node_of(curve, i - 1), node_of(curve, i), node_of(curve, i + 1)};
+      turn.from_before = (net.points[turn.at] - net.points[turn.before]).norm();
+      turn.to_after = (net.points[turn.after] - net.points[turn.at]).norm();
+      if (turn.before != turn.after && turn.from_before > 0 && turn.to_after > 0)
+        all.push_back(turn);
+    }
+  }
+  return all;
+}
+
 NodeForm position_form(const CurveNet& net, const CurvePoint& where) {
   const SketchCurve& curve = net.curves[where.curve];
   const double low = std::floor(where.at);

@@ -62,6 +62,20 @@ CurveNet build_curve_net(const View& view, const CurveNetOptions& options);
 /// Node number `i` of a curve, counted on around a closed one; inside the range for an open one.
 int node_of(const SketchCurve& curve, int i);
 
+/// Three nodes in a row on a curve.
+struct CurveTurn {
+  int before = -1, at = -1, after = -1;
+  double from_before = 0, to_after = 0;  ///< distances in the view, positive (m)
+
+  /// Brings a difference of slopes at the middle node to a curvature by the drawing's diagonal.
+  [[nodiscard]] double scale(double diagonal) const {
+    return diagonal * diagonal / ((from_before + to_after) / 2);
+  }
+};
+
+/// Every triple of distinct consecutive nodes, curve by curve; around the closed ones.
+std::vector<CurveTurn> turns(const CurveNet& net);
+
 /// Position on a curve by linear interpolation, as a form over at most two nodes.
 NodeForm position_form(const CurveNet& net, const CurvePoint& where);
 

@@ -100,22 +100,14 @@ void DepthRows::add_accuracy() {
 }
 
 void DepthRows::add_variation() {
-  const CurveNet& net = problem_.net;
-  for (const SketchCurve& curve : net.curves) {
-    const int n = curve.size();
-    for (int i = curve.closed ? 0 : 1; i < (curve.closed ? n : n - 1); ++i) {
-      const int a = node_of(curve, i - 1), b = node_of(curve, i), c = node_of(curve, i + 1);
-      const double before = (net.points[b] - net.points[a]).norm();
-      const double after = (net.points[c] - net.points[b]).norm();
-      if (!(before > 0 && after > 0)) continue;
-      const double scale = net.diagonal * net.diagonal / ((before + after) / 2);
-      rows_.push_back({DepthTerm::variation,
-                       options_.variation,
-                       {{unknown(a, 2), scale / before},
-                        {unknown(b, 2), -scale / before - scale / after},
-                        {unknown(c, 2), scale / after}},
-                       0});
-    }
+  for (const CurveTurn& turn : turns(problem_.net)) {
+    const double scale = turn.scale(problem_.net.diagonal);
+    rows_.push_back({DepthTerm::variation,
+                     options_.variation,
+                     {{unknown(turn.before, 2), scale / turn.from_before},
+                      {unknown(turn.at, 2), -scale / turn.from_before - scale / turn.to_after},
+                      {unknown(turn.after, 2), scale / turn.to_after}},
+                     0});
   }
 }
 

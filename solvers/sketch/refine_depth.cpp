@@ -266,20 +266,13 @@ void Refinement::add_accuracy() {
 }
 
 void Refinement::add_variation() {
-  const CurveNet& net = problem_.net;
   const double weight = row_weight(DepthTerm::variation, options_.variation);
-  for (const SketchCurve& curve : net.curves) {
-    const int n = curve.size();
-    for (int i = curve.closed ? 0 : 1; i < (curve.closed ? n : n - 1); ++i) {
-      const int a = node_of(curve, i - 1), b = node_of(curve, i), c = node_of(curve, i + 1);
-      const double before = (net.points[b] - net.points[a]).norm();
-      const double after = (net.points[c] - net.points[b]).norm();
-      if (!(before > 0 && after > 0) || a == b || b == c || c == a) continue;
-      const double scale = net.diagonal * net.diagonal / ((before + after) / 2);
-      system_.AddResidualBlock(new ceres::AutoDiffCostFunction<VariationResidual, 1, 3, 3, 3>(
-                                   new VariationResidual{before, after, weight * scale}),
-                               nullptr, node(a), node(b), node(c));
-    }
+  for (const CurveTurn& turn : turns(problem_.net)) {
+    const double scale = turn.scale(problem_.net.diagonal);
+    system_.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<VariationResidual, 1, 3, 3, 3>(
+            new VariationResidual{turn.from_before, turn.to_after, weight * scale}),
+        nullptr, node(turn.before), node(turn.at), node(turn.after));
   }
 }
 

@@ -38,13 +38,15 @@ Described file_table(const std::string& name, const std::vector<OptionRow>& free
 }
 
 Described describe_method(const Topic& topic, const MethodEntry& method) {
-  return {"method",
-          topic.name + "/" + method.name,
-          {{"summary", method.summary},
-           {"source", method.source},
-           {"role", method.is_baseline ? "baseline" : "method"}},
-          "options of a [[variant]]",
-          rows_of(*method.default_options())};
+  Described result{"method",
+                   topic.name + "/" + method.name,
+                   {{"summary", method.summary},
+                    {"source", method.source},
+                    {"role", method.is_baseline ? "baseline" : "method"}},
+                   "options of a [[variant]]",
+                   rows_of(*method.default_options())};
+  if (!method.gated()) result.facts.emplace_back("not compared by check", method.ungated);
+  return result;
 }
 
 Described describe_topic(const Topic& topic) {

@@ -71,12 +71,20 @@ void add_counted_work(const Topic& topic, const VariantRecord& variant,
   }
 }
 
+/// Whether results of a variant repeat; methods that the topic does not know do.
+bool has_gated_method(const Topic& topic, const VariantRecord& variant) {
+  const auto method =
+      std::find_if(topic.methods.begin(), topic.methods.end(),
+                   [&](const MethodEntry& entry) { return entry.name == variant.method; });
+  return method == topic.methods.end() || method->gated();
+}
+
 GatedValues values_of_cases(const Topic& topic, const RunRecord& record) {
   GatedValues all;
   for (const CaseRecord& in : record.cases) {
     if (in.claims_only) continue;
     for (const VariantRecord& variant : in.variants) {
-      if (is_null_control(variant.role)) continue;
+      if (is_null_control(variant.role) || !has_gated_method(topic, variant)) continue;
       std::map<std::string, GatedValue>& values = all[in.name][variant.name];
       for (const auto& [name, value] : variant.summary) values[name] = {value.value, value.unit};
       add_counted_work(topic, variant, values);

@@ -434,6 +434,45 @@ TEST(ShellElements, StripsAlongRulingsBendAsThePlate) {
     }
 }
 
+// Rulings fold one way and the edges that divide their strips the other: the sum of folds all but
+// vanishes, and with it the energy of strips whose rulings nobody named.
+TEST(ShellElements, DividersOfStripsDoNotFoldBackForNothing) {
+  const PaperMaterial material;
+  ShellMesh mesh = meshes::ruling_strips(16, 0.1, 0.1);
+  ShellState state = flat_state(mesh);
+  // A helicoid: every second edge folds back.
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    state.x(v, 2) = 2 * mesh.pattern(v, 0) * mesh.pattern(v, 1);
+  const auto energy = [&] {
+    return assemble(ShellElements(mesh, material, BendingModel::shape_operator, 4), state, state.x,
+                    Order::energy)
+        .bending;
+  };
+  const double unnamed = energy();
+  for (int i = 1; i < 16; ++i) mesh.rulings.push_back({i, i + 17});
+  state.mesh = mesh;
+  EXPECT_GT(energy(), 10 * unnamed);
+}
+
+TEST(ShellElements, NamedRulingsChangeNothingForACylinderOverThem) {
+  const PaperMaterial material;
+  ShellMesh mesh = meshes::ruling_strips(16, 0.1, 0.1);
+  ShellState state = flat_state(mesh);
+  const double radius = 0.05;
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const double angle = mesh.pattern(v, 0) / radius;
+    state.x.row(v) << radius * std::sin(angle), mesh.pattern(v, 1), radius * (1 - std::cos(angle));
+  }
+  const auto energy = [&] {
+    return assemble(ShellElements(mesh, material, BendingModel::shape_operator, 4), state, state.x,
+                    Order::energy)
+        .bending;
+  };
+  const double unnamed = energy();
+  for (int i = 1; i < 16; ++i) mesh.rulings.push_back({i, i + 17});
+  EXPECT_NEAR(energy() / unnamed, 1, 1e-9);
+}
+
 /// Bending energy of a sector bent to a cone, over D/2 curvature^2 angle.
 double cone_energy(const ShellMesh& mesh, double angle) {
   const PaperMaterial material;

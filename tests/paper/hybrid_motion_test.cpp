@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <numbers>
 
@@ -64,7 +65,9 @@ TEST(HybridPinch, PutsASingularPointWithConesWhereTheEdgeIsPinched) {
   const Sheet sheet = pinched_sheet();
   std::size_t before_pinch = 99, cones = 0;
   PaperStructure structure;
-  run_hybrid(sheet, {}, 1, [&](const HybridMesher& mesher, const ShellState& state) {
+  HybridOptions by_compression;
+  by_compression.energy_test = false;
+  run_hybrid(sheet, by_compression, 1, [&](const HybridMesher& mesher, const ShellState& state) {
     EXPECT_THAT(broken_invariants(mesher.structure(), sheet.pattern, state.mesh), IsEmpty());
     const Isometry strain = isometry(state);
     EXPECT_LE(strain.rms, kRms) << state.time;
@@ -91,6 +94,7 @@ Pinched pinched(double threshold) {
   HybridOptions options;
   options.test = CompressionTest::threshold;
   options.compression_threshold = threshold;
+  options.energy_test = false;
   Pinched result;
   run_hybrid(
       pinched_sheet(), options, 1,
@@ -118,7 +122,7 @@ TEST(HybridPinch, CrumplesWhenTheCompressionPassesTheThresholdAndNotBefore) {
 /// Thesis, Figure 3.11 left: towards zero the sheet crumples more than it bends. Factors of a
 /// hundred, because where singular points are drawn moves their number by a few.
 TEST(HybridPinch, CrumplesMoreTheLessCompressionIsAdmissible) {
-  const std::size_t few = pinched(1e-2).singular_points, many = pinched(1e-4).singular_points;
+  const std::size_t few = pinched(1e-3).singular_points, many = pinched(1e-5).singular_points;
   EXPECT_GE(few, 1U);
   EXPECT_GT(many, few);
 }
@@ -128,20 +132,24 @@ int wander(std::uint64_t seed, int frames) {
   const Sheet sheet = wandering_sheet(seed, frames);
   const HybridOptions options;
   std::vector<SingularPoint> known;
-  int strained = 0, last_growth = 0, frame = 0;
+  int strained = 0, frame = 0;
   run_hybrid(sheet, options, seed, [&](const HybridMesher& mesher, const ShellState& state) {
     ++frame;
     ASSERT_TRUE(state.x.allFinite() && state.v.allFinite()) << "frame " << frame;
     ASSERT_THAT(broken_invariants(mesher.structure(), sheet.pattern, state.mesh), IsEmpty())
         << "frame " << frame;
     const auto& points = mesher.structure().singular_points;
-    ASSERT_GE(points.size(), known.size()) << "a singular point vanished, frame " << frame;
-    for (std::size_t i = 0; i < known.size(); ++i) {
-      ASSERT_EQ(points[i].position, known[i].position);
-      ASSERT_GE(points[i].weakening, known[i].weakening);
+    for (const SingularPoint& old : known) {
+      const auto now = std::find_if(points.begin(), points.end(),
+                                    [&](const SingularPoint& p) { return p.id == old.id; });
+      if (now == points.end()) {
+        EXPECT_EQ(old.weakening, 0) << "the paper has yielded there, frame " << frame;
+        continue;
+      }
+      ASSERT_EQ(now->position, old.position);
+      ASSERT_GE(now->weakening, old.weakening);
     }
-    for (std::size_t i = known.size(); i < points.size(); ++i) {
-      last_growth = frame;
+    for (std::size_t i = 0; i < points.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
         EXPECT_GE((points[i].position - points[j].position).norm(),
                   options.singular_spacing * options.seeding_distance);
@@ -156,7 +164,6 @@ int wander(std::uint64_t seed, int frames) {
   // Discs of half the spacing about the points do not overlap: their number is bounded.
   EXPECT_LT(known.size(), 70U);
   testing::Test::RecordProperty("frames_beyond_isometry_line", strained);
-  testing::Test::RecordProperty("last_new_singular_point_frame", last_growth);
   return strained;
 }
 
@@ -165,9 +172,8 @@ class HybridWandering : public testing::TestWithParam<int> {};
 TEST_P(HybridWandering, KeepsItsInvariantsUnderRandomHandles) {
   constexpr int kFrames = 500;
   const int strained = wander(static_cast<std::uint64_t>(GetParam()), kFrames);
-  // Handles that wander may leave no isometric shape near: over twenty seeds two of 10,000 frames
-  // were strained by 1.1e-2 and 1.8e-2, no matter how long they were projected, and the next was
-  // not.
+  // Handles that wander may leave no isometric shape near: over twenty seeds one of 10,000 frames
+  // was strained beyond the line, and the next was not.
   EXPECT_LE(strained, 1);
 }
 

@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "experiments/paper/scene.h"
@@ -114,6 +116,47 @@ TEST_F(StripMetrics, QuadricsMeasureOnlySheetsThatTwoSidesBend) {
   scene.sheet.obstacles.emplace_back();
   EXPECT_FALSE(value("bending_energy_quadric", frame).has_value());
   EXPECT_TRUE(value("bending_energy", frame).has_value());
+}
+
+/// The strip at five times, lifted as `height` says, on two meshes in turn.
+std::vector<Frame> lifted(const std::function<double(int)>& height) {
+  std::vector<Frame> frames;
+  for (int i = 0; i < 5; ++i) {
+    sheets::Sheet s =
+        i % 2 == 0 ? sheets::rectangle(0.2, 0.1, 20, 10) : sheets::rectangle(0.2, 0.1, 7, 5, 0.2);
+    s.x.col(2).array() += height(i);
+    frames.push_back(frame_of(s, 0.04 * i));
+  }
+  return frames;
+}
+
+TEST_F(StripMetrics, SecondDifferencesAreOfPointsOfThePatternWhateverTheMesh) {
+  const auto p95 = [&](const std::vector<Frame>& frames) {
+    return table.of_sequence("second_difference_p95", scene, frames).value();
+  };
+  EXPECT_NEAR(p95(lifted([](int i) { return 0.01 * i; })), 0, 1e-12);
+  EXPECT_NEAR(p95(lifted([](int i) { return 1e-3 * i * i; })), 2e-3, 1e-12);
+  // One frame is off by d: the differences about it are d, -2 d and d.
+  EXPECT_NEAR(p95(lifted([](int i) { return i == 2 ? 1e-3 : 0; })), 2e-3, 1e-12);
+}
+
+TEST_F(StripMetrics, EnergySpikesAreOverTheGreaterNeighbour) {
+  std::vector<Frame> frames;
+  const std::vector<double> angles = {0.1, 0.1, 0.12, 0.11, 0.1};
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    frames.push_back(
+        frame_of(sheets::mapped(strip, sheets::fold(angles[i])), 0.04 * static_cast<double>(i)));
+  }
+  // A fold stretches nothing, and its energy goes with the square of its angle.
+  EXPECT_NEAR(table.of_sequence("energy_spike", scene, frames).value(), 144.0 / 121, 1e-6);
+}
+
+TEST_F(StripMetrics, ACylinderFoldsOneWayAndCostsWhatThePlateDoes) {
+  const double radius = 0.1;
+  const Frame bent = frame_of(sheets::mapped(strip, sheets::cylinder(radius)));
+  EXPECT_LT(value("cancelling_share", bent).value(), 0.01);
+  const double expected = 0.02 * scene.sheet.material.bending_stiffness() / (2 * radius * radius);
+  EXPECT_NEAR(value("fold_energy", bent).value() / expected, 1, 0.1);
 }
 
 TEST_F(StripMetrics, KineticEnergyNeedsVelocities) {

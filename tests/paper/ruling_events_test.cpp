@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,12 +8,15 @@
 #include "core/angles.h"
 #include "core/curvature_fit.h"
 #include "core/planar.h"
+#include "models/paper/uniform_mesh.h"
 #include "solvers/paper/compression.h"
 #include "solvers/paper/invariants.h"
 #include "solvers/paper/pieces.h"
 #include "solvers/paper/plastic_apex.h"
 #include "solvers/paper/propagation.h"
+#include "solvers/paper/ruling_field.h"
 #include "solvers/paper/segments.h"
+#include "solvers/paper/settled_energy.h"
 #include "solvers/paper/singular_point.h"
 #include "solvers/paper/tracking.h"
 
@@ -135,10 +139,10 @@ TEST(Propagation, CandidatesAcrossACylinderMakeASingularPointInTheHullOfTheCross
         crossing_group(), [](const Vector2d&) { return true; }, {}, 0.5, seed, draw, s.options,
         pen);
     ASSERT_EQ(report.new_singular_points, 1);
-    // Seeds at y = -0.02, 0, 0.02; rulings at x = -0.04 ... 0.04.
+    // Seeds at every seeding distance of y = -0.03 ... 0.03; rulings at x = -0.04 ... 0.04.
     const SingularPoint& point = s.structure.singular_points.at(0);
     EXPECT_LE(std::abs(point.position.x()), 0.04 + 1e-12);
-    EXPECT_LE(std::abs(point.position.y()), 0.02 + 1e-12);
+    EXPECT_LE(std::abs(point.position.y()), 2 * s.options.seeding_distance + 1e-12);
     EXPECT_EQ(point.birth, 0.5);
     s.lay_flat();
     EXPECT_TRUE(broken_invariants(s.structure, s.sheet.pattern, s.mesh.mesh).empty());
@@ -153,7 +157,7 @@ TEST(Propagation, OnFlatGroundTheSameCandidatesAreACylinder) {
   const PropagationReport report = resolve_group(
       crossing_group(), [](const Vector2d&) { return true; }, {}, 0, 1, draw, s.options, pen);
   EXPECT_EQ(report.new_singular_points, 0);
-  EXPECT_EQ(report.new_rulings, 3);
+  EXPECT_EQ(report.new_rulings, 1 + 2 * static_cast<int>(0.03 / s.options.seeding_distance));
   for (const Ruling& r : s.structure.rulings) {
     EXPECT_NEAR(line_angle(r.b - r.a, Vector2d(1, 0)), 0, 1e-9);
   }
@@ -168,19 +172,133 @@ TEST(RulingEditor, TurnsARulingIntoARowOfAnchors) {
   EXPECT_NEAR(ruling->b.x(), 0, 1e-12);
 }
 
-TEST(Tracking, TurnsRulingsTowardsThoseOfTheBentSheetNotFasterThanItsRate) {
+/// The bending of a cylinder of radius R whose rulings have the given direction, and of no more.
+BendingField cylinder_field(const EventSheet& s, double radius, const Vector2d& rulings) {
+  const ShellState even =
+      EventSheet::resting(uniform_mesh(s.sheet.pattern, 400, UniformLayout::equilateral, {}, 1));
+  const Vector2d d = perpendicular(rulings.normalized()) / std::sqrt(radius);
+  Eigen::MatrixX3d curvature(even.mesh.vertex_count(), 3);
+  curvature.rowwise() = Eigen::RowVector3d(d.x() * d.x(), d.x() * d.y(), d.y() * d.y());
+  return {even, curvature};
+}
+
+double angle_from_upright(const Ruling& r) {
+  const Vector2d d = r.b.y() > r.a.y() ? Vector2d(r.b - r.a) : Vector2d(r.a - r.b);
+  return std::atan2(d.x(), d.y()) / kDegree;
+}
+
+TEST(FollowBending, TurnsRulingsTowardsThoseOfTheBentSheetNotFasterThanItsRate) {
+  EventSheet s;
+  s.add_uprights();
+  const BendingField field =
+      cylinder_field(s, 0.1, {std::sin(12 * kDegree), std::cos(12 * kDegree)});
+  RulingEditor pen = s.editor();
+  int added = 0;
+  ASSERT_TRUE(follow_bending(field, s.options, pen, added));
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_GT(angle_from_upright(s.structure.rulings[k]), 1);
+    EXPECT_LE(angle_from_upright(s.structure.rulings[k]), s.options.tracking_rate_deg + 1e-6);
+  }
+  for (int frame = 0; frame < 5; ++frame) follow_bending(field, s.options, pen, added);
+  for (const Ruling& r : s.structure.rulings) EXPECT_NEAR(angle_from_upright(r), 12, 4.1);
+}
+
+TEST(FollowBending, LaysRulingsAlongACylinderAsCloseAsItsCurvatureAsksFor) {
+  for (const double radius : {0.2, 0.03}) {
+    EventSheet s;
+    s.options.seeding_distance = 0.02;
+    const BendingField field = cylinder_field(s, radius, {1, 2});
+    RulingEditor pen = s.editor();
+    int added = 0;
+    ASSERT_TRUE(follow_bending(field, s.options, pen, added));
+    EXPECT_EQ(added, static_cast<int>(s.structure.rulings.size()));
+    std::vector<double> offsets;
+    const Vector2d across = perpendicular(Vector2d(1, 2).normalized());
+    for (const Ruling& r : s.structure.rulings) {
+      EXPECT_LT(line_angle(r.b - r.a, Vector2d(1, 2)), 8 * kDegree);
+      offsets.push_back(across.dot(r.a + r.b) / 2);
+    }
+    std::sort(offsets.begin(), offsets.end());
+    const double asked = std::min(0.02, radius * s.options.refine_angle_deg * kDegree);
+    for (std::size_t k = 1; k < offsets.size(); ++k) {
+      EXPECT_GT(offsets[k] - offsets[k - 1], 0.5 * asked) << radius;
+      EXPECT_LT(offsets[k] - offsets[k - 1], 2 * asked) << radius;
+    }
+    EXPECT_GT(offsets.back() - offsets.front(), 0.7 * 0.2);
+  }
+}
+
+TEST(FollowBending, LeavesAFlatSheetAloneAndTakesAwayWhatLiesAcrossTheBend) {
+  EventSheet s;
+  s.add_uprights();
+  RulingEditor pen = s.editor();
+  int added = 0;
+  EXPECT_FALSE(follow_bending(cylinder_field(s, 100, {1, 0}), s.options, pen, added));
+  ASSERT_TRUE(follow_bending(cylinder_field(s, 0.1, {1, 0}), s.options, pen, added));
+  for (const Ruling& r : s.structure.rulings)
+    EXPECT_LT(line_angle(r.b - r.a, Vector2d(1, 0)), s.options.follow_angle_deg * kDegree);
+}
+
+TEST(BendingGuide, SeesTheCylinderThatAnAccordionOfRulingsHides) {
   EventSheet s;
   s.add_uprights();
   s.lay_flat();
-  s.bend(0.1, {std::sin(12 * kDegree), std::cos(12 * kDegree)});
-  RulingEditor pen = s.editor();
-  ASSERT_TRUE(turn_cylinders(s.state, s.curvature(), s.mesh, s.options, pen));
-  for (const Ruling& r : s.structure.rulings) {
-    const Vector2d d = r.b.y() > r.a.y() ? Vector2d(r.b - r.a) : Vector2d(r.a - r.b);
-    const double turned = std::atan2(d.x(), d.y()) / kDegree;
-    EXPECT_GT(turned, 1);
-    EXPECT_LE(turned, s.options.tracking_rate_deg + 1e-6);
+  // Rulings along v; the sheet is bent about lines at 30 degrees, which this mesh carries in folds
+  // to both sides.
+  const Vector2d rulings(std::sin(30 * kDegree), std::cos(30 * kDegree));
+  s.bend(0.1, rulings);
+  s.sheet.gravity.setZero();
+  RunContext context(1);
+  BendingGuide guide(s.sheet, 0.015, {}, 1);
+  const BendingField field = guide.relaxed(s.state, context);
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (const double u : {-0.05, 0.0, 0.05})
+    for (const double v : {-0.05, 0.0, 0.05}) sum += field.at({u, v});
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(sum / 9);
+  // Hollow below: the larger eigenvalue in modulus is negative.
+  const Vector2d across = eigen.eigenvectors().col(0);
+  EXPECT_LT(line_angle(perpendicular(across), rulings), 15 * kDegree);
+  EXPECT_NEAR(eigen.eigenvalues()[0], -10, 2.5);
+}
+
+TEST(RulingEditor, RemovesASingularPointWithItsRulingsAndRenumbersTheOthers) {
+  EventSheet s;
+  for (const double u : {-0.05, 0.05}) {
+    SingularPoint point;
+    point.id = static_cast<int>(s.structure.singular_points.size());
+    point.position = {u, 0};
+    s.structure.singular_points.push_back(point);
+    RulingEditor pen = s.editor();
+    fill_fan(point.id, s.options, pen);
   }
+  const auto of_second = s.structure.rulings_at(1).size();
+  ASSERT_GT(of_second, 3U);
+  RulingEditor pen = s.editor();
+  pen.remove_point(0);
+  ASSERT_EQ(s.structure.singular_points.size(), 1U);
+  EXPECT_EQ(s.structure.singular_points[0].id, 1);
+  EXPECT_EQ(s.structure.rulings_at(0).size(), of_second);
+  EXPECT_EQ(s.structure.rulings.size(), of_second);
+  s.lay_flat();
+  EXPECT_TRUE(broken_invariants(s.structure, s.sheet.pattern, s.mesh.mesh).empty());
+}
+
+TEST(SettledEnergy, OfABentSheetIsThatOfTheShapeItSettlesTo) {
+  EventSheet s;
+  s.add_uprights();
+  s.lay_flat();
+  s.sheet.gravity.setZero();
+  RunContext context(1);
+  EXPECT_NEAR(settled_energy(s.sheet, {}, 1, s.state, context), 0, 1e-15);
+  // Free to move, a bent sheet springs back: less is left than it was bent with.
+  s.bend(0.1, {0, 1});
+  ShellStepper stepper(s.sheet, {}, 1);
+  stepper.set_mesh(s.state);
+  const ShellEnergies energies = stepper.energies(s.state);
+  const double before = energies.bending + energies.membrane;
+  const double settled = settled_energy(s.sheet, {}, 1, s.state, context);
+  EXPECT_GT(settled, 0);
+  EXPECT_LT(settled, before);
 }
 
 /// A fan of rays about the middle of the sheet, flat but for those that a test folds.

@@ -188,6 +188,18 @@ TEST(Gates, WhatTheTableLeavesUngatedIsNotCompared) {
   EXPECT_TRUE(blessed(now, gates).empty()) << "nor blessed";
 }
 
+TEST(Gates, AMethodWhoseResultsDoNotRepeatIsNotCompared) {
+  Topic topic = wide_topic();
+  topic.methods.emplace_back().name = "drifting";
+  RunRecord record;
+  record.cases = {case_of("default", 1, {2})};
+  record.cases[0].variants[0].method = "drifting";
+  const Experiment experiment;
+  EXPECT_FALSE(gated_values(experiment, topic, record, {}).at("default").at("v").empty());
+  topic.methods[0].ungated = "a library's generator";
+  EXPECT_FALSE(gated_values(experiment, topic, record, {}).contains("default"));
+}
+
 TEST(Gates, WhatBifurcatesIsComparedByItsMedianOverTheSeeds) {
   const Topic topic = wide_topic();
   Experiment experiment;
