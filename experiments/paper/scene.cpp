@@ -150,6 +150,7 @@ Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern) {
   sheet.duration = options.duration;
   sheet.frame_interval = options.frame_interval;
   sheet.substeps = options.substeps;
+  sheet.handle_step = options.handle_step;
   return sheet;
 }
 
