@@ -79,8 +79,8 @@ void set_material(const PanelStyle& style, bool colored, bool thin, vtkActor* ac
   vtkProperty* material = actor->GetProperty();
   const bool paper = style.material == PanelStyle::Material::paper;
   set_color(material, thin ? kLineColor : paper ? kPaperColor : kClayColor);
-  material->SetAmbient(paper ? 0.30 : colored ? 0.26 : 0.22);
-  material->SetDiffuse(colored ? 0.70 : paper ? 0.68 : 0.82);
+  material->SetAmbient(style.raking ? 0.16 : paper ? 0.30 : colored ? 0.26 : 0.22);
+  material->SetDiffuse(style.raking ? 0.86 : colored ? 0.70 : paper ? 0.68 : 0.82);
   material->SetSpecular(paper ? 0.03 : colored ? 0.05 : 0.14);
   material->SetSpecularPower(22);
   if (style.flat && !thin) {
