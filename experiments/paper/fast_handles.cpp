@@ -45,8 +45,8 @@ std::optional<std::string> fast_handle_warning(const Sheet& sheet, const std::st
        << " m/s, the sheet's width in a second, inertia decides what is seen, and the hybrid's "
        << "structure is that of a sheet near rest";
   for (std::size_t i = 1; i < fast.size(); ++i) {
-    text << (i == 1 ? "; as fast: " : ", ") << handle_name(sheet, fast[i].handle, where) << " ("
-         << fast[i].speed << " m/s at " << fast[i].time << " s)";
+    text << (i == 1 ? "; too fast as well: " : ", ") << handle_name(sheet, fast[i].handle, where)
+         << " (" << fast[i].speed << " m/s at " << fast[i].time << " s)";
   }
   return text.str();
 }

@@ -39,13 +39,13 @@ void add_light(vtkRenderer* renderer, const std::array<double, 3>& from, double 
 }
 
 /// Lights that graze what faces the eye: a fold of angle a changes a facet's tone by a times the
-/// sine of its angle to the light. One light shows no fold about the axis that points at it, so
-/// there are two at right angles, the second cooler: what keeps the tone changes the tint. The
-/// third, from below, keeps folds apart that neither reaches.
+/// sine of its angle to the light. What one light leaves even (a fold about the axis that points at
+/// it) the other changes, and where both together keep the tone their tints differ: a warm key, a
+/// cooler fill. The third, from below, keeps folds apart that neither reaches.
 void add_raking_lights(vtkRenderer* renderer) {
-  add_light(renderer, {-1.0, 0.8, 0.55}, 0.86, {1.0, 0.975, 0.92});
-  add_light(renderer, {1.0, 0.75, 0.6}, 0.42, {0.80, 0.90, 1.0});
-  add_light(renderer, {0.15, -1.0, 0.5}, 0.22, {1.0, 0.96, 0.92});
+  add_light(renderer, {-1.0, 0.8, 0.55}, 0.95, {1.0, 0.965, 0.915});
+  add_light(renderer, {0.9, 0.55, 0.55}, 0.60, {0.83, 0.88, 1.0});
+  add_light(renderer, {0.1, -1.0, 0.4}, 0.28, {1.0, 0.95, 0.90});
 }
 
 /// Paper gets a raking key and less fill: a fold is a change of tone, and there is little else to
