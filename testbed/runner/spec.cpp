@@ -265,7 +265,6 @@ Experiment load_experiment(const std::filesystem::path& file, const std::vector<
   experiment.topic = header.topic;
   experiment.quick = request.quick || header.size == RunSize::quick;
   const Topic& topic = topic_named(topics, header.topic, root);
-  settle_view_times(written, root, topic, experiment.quick);
 
   KnownNames names = known_names(root, selected, experiment.quick);
   drop_sweeps(root, names.dropped);
@@ -283,6 +282,8 @@ Experiment load_experiment(const std::filesystem::path& file, const std::vector<
   experiment.claims = read_claims(root, topic, names, experiment.tolerances, experiment.studies);
   drop_cases(experiment.claims, experiment.cases);
   read_check(root, experiment);
+  (void)read_figure_view(root, topic);  // its own mistakes come before frames that are not there
+  settle_view_times(written, root, topic, experiment.quick);
   experiment.view = read_figure_view(root, topic);
   keep_only(experiment.view.variants, names.dropped);
 
