@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "experiments/paper/fast_handles.h"
 #include "experiments/paper/pulled_apart.h"
 #include "models/paper/sheet_valid.h"
 #include "testbed/home.h"
@@ -165,6 +166,9 @@ std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
   constexpr double kStretch = 1e-3;
   if (const auto worst = worst_pulled_apart(scene->sheet, kStretch)) {
     scene->load_warnings.push_back(warning_text(scene->sheet, *worst, "scene"));
+  }
+  if (auto text = fast_handle_warning(scene->sheet, "scene")) {
+    scene->load_warnings.push_back(*std::move(text));
   }
   warn_of_waves(*scene);
   return scene;

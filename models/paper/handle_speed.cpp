@@ -9,40 +9,39 @@ namespace {
 /// A handle that leaps across the room in a frame is a mistake, not a reason to run for a year.
 constexpr int kMostSubsteps = 1000;
 
-/// Longest way of an anchor from one time to the other (m).
-double longest_move(const Handle& handle, const std::vector<Eigen::Vector3d>& rest,
-                    const Eigen::Vector3d& centre, double from, double to) {
-  double longest = 0;
-  for (const Eigen::Vector3d& place : rest) {
-    const Eigen::Vector3d move =
-        handle.target(place, centre, to) - handle.target(place, centre, from);
-    longest = std::max(longest, move.norm());
-  }
-  return longest;
-}
-
 }  // namespace
 
-double handle_speed(const Sheet& sheet, double start, double end, int parts) {
-  double fastest = 0;
-  const double dt = (end - start) / parts;
-  for (const Handle& handle : sheet.handles) {
-    if (!handle.motion) continue;
-    std::vector<Eigen::Vector3d> rest;
+std::vector<MovingAnchor> moving_anchors(const Sheet& sheet) {
+  std::vector<MovingAnchor> anchors;
+  for (std::size_t i = 0; i < sheet.handles.size(); ++i) {
+    if (!sheet.handles[i].motion) continue;
+    const std::size_t first = anchors.size();
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    for (const Eigen::Vector2d& anchor : handle.anchors()) {
-      // Without the seeded waves of the start: they are no part of the motion.
-      rest.push_back(sheet.placement * Eigen::Vector3d(anchor.x(), anchor.y(), 0));
-      centre += rest.back();
+    for (const Eigen::Vector2d& p : sheet.handles[i].anchors()) {
+      const Eigen::Vector3d rest = sheet.placement * Eigen::Vector3d(p.x(), p.y(), 0);
+      anchors.push_back({i, p, rest, {}});
+      centre += rest;
     }
-    centre /= static_cast<double>(std::max<std::size_t>(1, rest.size()));
+    centre /= static_cast<double>(anchors.size() - first);
+    for (std::size_t k = first; k < anchors.size(); ++k) anchors[k].centre = centre;
+  }
+  return anchors;
+}
+
+double handle_speed(const Sheet& sheet, double start, double end, int parts) {
+  const double dt = (end - start) / parts;
+  double longest = 0;
+  for (const MovingAnchor& anchor : moving_anchors(sheet)) {
+    const Handle& handle = sheet.handles[anchor.handle];
     for (int i = 0; i < parts; ++i) {
       const double from = start + i * dt, to = start + (i + 1) * dt;
       if (!handle.is_active(from) || !handle.is_active(to)) continue;
-      fastest = std::max(fastest, longest_move(handle, rest, centre, from, to) / dt);
+      const Eigen::Vector3d way = handle.target(anchor.rest, anchor.centre, to) -
+                                  handle.target(anchor.rest, anchor.centre, from);
+      longest = std::max(longest, way.norm());
     }
   }
-  return fastest;
+  return longest / dt;
 }
 
 int substeps_of_frame(const Sheet& sheet, double start, double end) {

@@ -1,8 +1,23 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
 #include "models/paper/sheet.h"
 
 namespace geoprior::paper {
+
+/// A point of the pattern that a handle moves.
+struct MovingAnchor {
+  std::size_t handle;       ///< index
+  Eigen::Vector2d pattern;  ///< m
+  Eigen::Vector3d rest;     ///< its place at the start, without the seeded waves (m)
+  Eigen::Vector3d centre;   ///< mean of the handle's anchors there (m)
+};
+
+/// Anchors of all handles with keys.
+std::vector<MovingAnchor> moving_anchors(const Sheet& sheet);
 
 /// Greatest speed (m/s) of an anchor of a handle that holds the sheet between two times, from the
 /// chords of `parts` equal parts of that time. Without such a handle 0.
