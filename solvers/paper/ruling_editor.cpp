@@ -72,6 +72,22 @@ RulingHit RulingEditor::propagate(const Vector2d& origin, const Vector2d& direct
   return hit;
 }
 
+std::vector<Vector2d> RulingEditor::middles_of_parts(const Vector2d& p, const Vector2d& d) const {
+  std::vector<double> stops;
+  each_edge(pattern_, [&](const Vector2d& a, const Vector2d& b) {
+    const auto t = ray_hit(p, d, a, b, -std::numeric_limits<double>::infinity());
+    if (t) stops.push_back(*t);
+  });
+  std::sort(stops.begin(), stops.end());
+  std::vector<Vector2d> middles;
+  for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+    const Vector2d middle = p + (stops[i] + stops[i + 1]) / 2 * d;
+    if ((stops[i + 1] - stops[i]) * d.norm() > 2 * bounds_.gap && contains(pattern_, middle))
+      middles.push_back(middle);
+  }
+  return middles;
+}
+
 bool RulingEditor::clear_of(const Ruling& ruling, const Ruling& other) const {
   for (const Vector2d* p : {&ruling.a, &ruling.b}) {
     for (const Vector2d* q : {&other.a, &other.b}) {

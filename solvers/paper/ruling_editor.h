@@ -39,6 +39,13 @@ class RulingEditor {
   /// or the border. Rulings that end in `from_singular` are passed over.
   [[nodiscard]] RulingHit propagate(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction,
                                     std::optional<int> from_singular = {}) const;
+  /// Middles of the parts of the line through p that lie in the pattern.
+  [[nodiscard]] std::vector<Eigen::Vector2d> middles_of_parts(const Eigen::Vector2d& p,
+                                                              const Eigen::Vector2d& d) const;
+  [[nodiscard]] bool is_hole(const RulingHit& hit) const {
+    return hit.kind == RulingHit::Kind::border &&
+           hit.index >= static_cast<int>(pattern_.border.size());
+  }
   /// True when the ruling keeps all bounds, rulings marked in `ignored` aside.
   [[nodiscard]] bool fits(const Ruling& ruling, const std::vector<bool>& ignored = {}) const;
 

@@ -180,7 +180,7 @@ TEST(PatternWithHoles, NamesTheHoleThatIsNone) {
   };
   has(with({{3, 0}, {3, 1}, {4, 1}}), "sheet.toml hole 1: hole lies outside of the border");
   has(with({{0.8, 0.8}, {0.8, 1.2}, {1.2, 1.2}}), "hole 1: hole lies in hole 0");
-  has(with({{1, 1}, {1, -1}, {0, -1}, {0, 1}}), "sheet.toml hole 1 edge 0");
+  has(with({{1, 1}, {1, -1}, {0, -1}, {0, 1}}), "sheet.toml hole 1 edge 3");
   has(with({{1, 1}, {1, -1}, {0, -1}, {0, 1}}), "of hole 0");
   has(with({{1, 0}, {3, 0.2}, {3, 0}}), "edge 1 of the border");
   has(with({{2, 0}, {1.5, -1}, {1.5, 0}}), "edge 1 of the border");  // touches it with a corner

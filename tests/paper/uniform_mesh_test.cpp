@@ -36,8 +36,7 @@ std::vector<Case> cases() {
           {"EquilateralEll", plane_shapes::ell_pattern(), UniformLayout::equilateral},
           {"DelaunayEll", plane_shapes::ell_pattern(), UniformLayout::delaunay},
           {"AutomaticRing", plane_shapes::ring_pattern(), UniformLayout::automatic},
-          {"DelaunayRing", plane_shapes::ring_pattern(), UniformLayout::delaunay},
-          {"EquilateralTwoHoles", plane_shapes::pierced_square(), UniformLayout::equilateral}};
+          {"DelaunayRing", plane_shapes::ring_pattern(), UniformLayout::delaunay}};
 }
 
 /// Points inside, on an edge and at a corner of a pattern.
@@ -150,6 +149,12 @@ TEST(AutomaticMesh, IsStructuredOnAnUprightRectangleOnly) {
   EXPECT_TRUE(same(rectangle_pattern(0.3, 0.2), UniformLayout::structured));
   EXPECT_TRUE(same(disc_pattern(0.1, 40), UniformLayout::equilateral));
   EXPECT_TRUE(same(plane_shapes::ell_pattern(), UniformLayout::equilateral));
+}
+
+TEST(EquilateralMesh, GoesAroundTwoHoles) {
+  const Pattern pattern = plane_shapes::pierced_square();
+  for (const int triangles : {20, 200, 2000})
+    expect_covers(uniform_mesh(pattern, triangles, UniformLayout::equilateral, {}, 1), pattern);
 }
 
 TEST(StructuredMesh, RefusesARectangleWithAHole) {
