@@ -205,9 +205,9 @@ TEST(PiecesAtAHole, GroundBesideALineWithAHoleInItIsFlat) {
 
 TEST(PiecesAtAHole, ASectorWithAHoleIsACone) {
   PiercedSheet sheet;
-  const int p = sheet.add_singular({0, -0.07});
+  const int p = sheet.add_singular({0, -0.1});
   for (const double x : {-0.095, 0.0, 0.095}) {
-    const auto ray = sheet.pen().ray(p, {x, 0.17});
+    const auto ray = sheet.pen().ray(p, {x, 0.2});
     ASSERT_TRUE(ray) << x;
     sheet.pen().add(*ray);
   }
@@ -215,7 +215,7 @@ TEST(PiecesAtAHole, ASectorWithAHoleIsACone) {
   sheet.expect_covered(sheet.meshed());
   ASSERT_EQ(sheet.count(kCone), 1);
   EXPECT_EQ(sheet.structure.pieces[0].rulings.size(), 3U);
-  EXPECT_NEAR(signed_area(sheet.structure.pieces[0].region), 0.19 * 0.17 / 2 - 0.0016, 1e-12);
+  EXPECT_NEAR(signed_area(sheet.structure.pieces[0].region), 0.19 * 0.2 / 2 - 0.0016, 1e-12);
 }
 
 TEST(Pieces, CylinderKeepsItsIdWhenAHalfIsCutOff) {
