@@ -61,7 +61,7 @@ struct Bent {
 /// The parts of a step on their own.
 struct Parts {
   explicit Parts(const Bent& bent, bool eigen)
-      : elements(bent.state.mesh, bent.sheet.material, BendingModel::shape_operator, 4) {
+      : elements(bent.state.mesh, bent.sheet.material, BendingLaw()) {
     std::vector<int> offset(1, 0), members;
     for (int e = 0; e < elements.size(); ++e) {
       const auto nodes = elements.nodes(e);
@@ -90,8 +90,7 @@ struct Parts {
 
 void paper_elements(benchmark::State& state) {
   const Bent bent(static_cast<int>(state.range(0)));
-  const ShellElements elements(bent.state.mesh, bent.sheet.material, BendingModel::shape_operator,
-                               4);
+  const ShellElements elements(bent.state.mesh, bent.sheet.material, BendingLaw());
   ShellElements::Local local;
   for (auto _ : state) {
     for (int e = 0; e < elements.size(); ++e) {

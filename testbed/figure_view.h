@@ -57,6 +57,9 @@ struct FigureView {
   Material material =
       Material::clay;  ///< paper: an open sheet with two sides; water: reflects a sky
   bool edges = false;  ///< the triangles' edges as thin lines
+  /// Adds the same panels in plain material: flat, without colours, edges and overlays, under a
+  /// light that grazes.
+  bool plain = false;
   std::optional<std::array<double, 3>> target;
   std::array<double, 3> direction{0, 0, 1};  ///< from the target to the eye
   std::array<double, 3> up{0, 1, 0};

@@ -194,6 +194,12 @@ struct TopicFile {
   std::vector<OptionRow> keys;
 };
 
+/// Where the frames of a scene end.
+struct LastParameter {
+  double value = 0;
+  std::string unit;  ///< "s", "deg", …
+};
+
 /// Everything the runner knows of a topic: one instance each, listed in ONE table
 /// (experiments/topics.cpp).
 struct Topic {
@@ -207,6 +213,9 @@ struct Topic {
   std::function<std::shared_ptr<Scene>(const OptionSet&, const std::filesystem::path& folder,
                                        std::uint64_t seed)>
       load;
+  /// The last parameter that a scene of these options has, where they tell before it is loaded: a
+  /// figure's frames lie before it. Absent: unknown for all.
+  std::function<std::optional<LastParameter>(const OptionSet&)> last_parameter = {};
   std::vector<MethodEntry> methods;
   std::vector<MetricGroup> metrics;
   std::vector<DiagnosticEntry> diagnostics;

@@ -60,9 +60,7 @@ class Relaxation {
 Relaxation::Relaxation(const Sheet& sheet, const StepperOptions& options, const ShellState& before,
                        const Eigen::MatrixX3d& forces, const std::vector<bool>& changed,
                        const std::vector<int>& held, const ShellState& state)
-    : state_(state),
-      start_(state.x),
-      elements_(state.mesh, sheet.material, options.bending, options.hinge_calibration) {
+    : state_(state), start_(state.x), elements_(state.mesh, sheet.material, options.bending) {
   const Eigen::VectorXd area = vertex_areas(state.mesh);
   const Eigen::MatrixX3d density = forces.array().colwise() / vertex_areas(before.mesh).array();
   const PatternLocator locator(before.mesh);

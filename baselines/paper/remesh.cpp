@@ -17,9 +17,11 @@ using Side = EditableSheet::Side;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Edges longer than kSplit are split; a collapse must leave none longer than kCollapse. Between
-/// the two nothing happens, so that a mesh does not flicker.
-constexpr double kSplit = 1, kCollapse = 0.9;
+/// Edges longer than kSplit are split; a collapse must leave none longer than kCollapse, and a flip
+/// must gain more than kFlip (of what it could, from a straight angle on). Between them nothing
+/// happens: every change of the mesh changes the curvature that it measures, and with less room a
+/// sheet at rest on a ball was split and collapsed in turn for ever, a millimetre a frame.
+constexpr double kSplit = 1, kCollapse = 0.6, kFlip = 0.15;
 /// A fold that no flip may cross (rad).
 constexpr double kFold = 40 * std::numbers::pi / 180;
 /// Flattest triangle that an operation may make: smallest altitude over longest edge.
@@ -138,8 +140,7 @@ bool Remesher::should_flip(Side s) const {
   const Vector2d db = b.pattern - d.pattern, da = a.pattern - d.pattern;
   const double sine_c = cross(ca, cb), cosine_c = ca.dot(M * cb);
   const double sine_d = cross(db, da), cosine_d = db.dot(M * da);
-  // A margin, so that four points on a circle do not flip for ever.
-  const double margin = 1e-6 * (std::abs(sine_c * cosine_d) + std::abs(cosine_c * sine_d));
+  const double margin = kFlip * (std::abs(sine_c * cosine_d) + std::abs(cosine_c * sine_d));
   return sine_c * cosine_d + cosine_c * sine_d < -margin && mesh_.can_flip(s, kLeastAltitude) &&
          fold(s) < kFold;
 }

@@ -13,6 +13,11 @@ Topic make_topic() {
     return load_details_scene(dynamic_cast<const TypedOptions<DetailSceneOptions>&>(set).options,
                               folder, seed);
   };
+  topic.last_parameter = [](const OptionSet& set) -> std::optional<LastParameter> {
+    const auto& motion = dynamic_cast<const TypedOptions<DetailSceneOptions>&>(set).options.motion;
+    if (motion.sequence) return std::nullopt;
+    return LastParameter{motion.duration, "s"};
+  };
   topic.methods = methods();
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();

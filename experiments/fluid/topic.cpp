@@ -13,6 +13,11 @@ Topic make_topic() {
     return load_fluid_scene(dynamic_cast<const TypedOptions<FluidSceneOptions>&>(set).options,
                             folder, seed);
   };
+  topic.last_parameter = [](const OptionSet& set) -> std::optional<LastParameter> {
+    const auto& scene = dynamic_cast<const TypedOptions<FluidSceneOptions>&>(set).options;
+    if (!scene.tank || !scene.sequences.empty()) return std::nullopt;  // sequences have their own
+    return LastParameter{scene.duration, "s"};
+  };
   topic.methods = methods();
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();

@@ -36,7 +36,7 @@ std::vector<DiagnosticEntry> diagnostics() {
       // Recorded by every method.
       {"triangles", "1", "triangles of the mesh"},
       {"vertices", "1", "vertices of the mesh"},
-      {"substeps", "1", "time steps of the frame"},
+      {"substeps", "1", "time steps of the frame: more where handles are fast"},
       {"newton_iterations", "1", "linear solves of its steps", true, kWork},
       {"halvings", "1", "times a step was halved because Newton's iteration did not converge", true,
        kWork},
@@ -46,6 +46,7 @@ std::vector<DiagnosticEntry> diagnostics() {
       {"splits", "1", "edges split by the frame's remeshing"},
       {"collapses", "1", "edges collapsed by it"},
       {"flips", "1", "edges flipped by it"},
+      {"settle_steps", "1", "steps from rest that it then settled for", true, kWork},
       {"pop_filter_steps", "1", "steps that take back the pop of the remeshing"},
       // Recorded by the hybrid.
       {"flats", "1", "planar pieces"},

@@ -16,12 +16,10 @@ struct PulledApart {
 };
 
 /// The worst stretch that the handles ask for: paper has none. Anchors of handles that move and are
-/// active together are compared at the times of keys, at the ends of activity and at
-/// `kTimesBetween` times between each two of them. Empty when no ratio exceeds 1 + `tolerance`, and
-/// on a pattern that is not convex, where a straight line in space may be shorter than any path in
-/// the sheet, so that distances in the plane bound nothing.
+/// active together are compared at `motion_times` (handle_motion.h). Empty when no ratio exceeds 1
+/// + `tolerance`, and on a pattern that is not convex, where a straight line in space may be
+/// shorter than any path in the sheet, so that distances in the plane bound nothing.
 std::optional<PulledApart> worst_pulled_apart(const Sheet& sheet, double tolerance);
-inline constexpr int kTimesBetween = 31;
 
 /// What a reader of the scene's file should know.
 std::string warning_text(const Sheet& sheet, const PulledApart& worst, const std::string& where);

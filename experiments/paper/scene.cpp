@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "experiments/paper/fast_handles.h"
 #include "experiments/paper/pulled_apart.h"
 #include "models/paper/sheet_valid.h"
 #include "testbed/home.h"
@@ -148,6 +149,7 @@ Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern) {
   sheet.duration = options.duration;
   sheet.frame_interval = options.frame_interval;
   sheet.substeps = options.substeps;
+  sheet.handle_step = options.handle_step;
   return sheet;
 }
 
@@ -162,6 +164,9 @@ std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
   constexpr double kStretch = 1e-3;
   if (const auto worst = worst_pulled_apart(scene->sheet, kStretch)) {
     scene->load_warnings.push_back(warning_text(scene->sheet, *worst, "scene"));
+  }
+  if (auto text = fast_handle_warning(scene->sheet, "scene")) {
+    scene->load_warnings.push_back(*std::move(text));
   }
   warn_of_waves(*scene);
   return scene;

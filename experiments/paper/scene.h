@@ -25,8 +25,8 @@ class PaperScene final : public ProcessScene {
 /// The sheet that the options describe. @throws Error  naming the key
 Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern);
 
-/// Reads the pattern and makes the sheet; handles that pull it apart by more than 0.1 % are a
-/// warning of the scene.
+/// Reads the pattern and makes the sheet; handles that pull it apart by more than 0.1 %, or
+/// that are faster than it can follow (fast_handles.h), are warnings of the scene.
 /// @param folder  of the experiment file, against which relative files are tried first
 /// @throws Error  naming key or file, and place (see require_valid)
 std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,

@@ -148,7 +148,14 @@ void describe(OptionVisitor& v, PaperSceneOptions& options) {
   v.value("duration", options.duration, {.doc = "simulated time", .unit = "s", .min = 1e-9});
   v.value("frame_interval", options.frame_interval,
           {.doc = "time between recorded frames", .unit = "s", .min = 1e-9});
-  v.value("substeps", options.substeps, {.doc = "time steps of a frame", .min = 1, .max = 100000});
+  v.value("substeps", options.substeps,
+          {.doc = "time steps of a frame, at least", .min = 1, .max = 100000});
+  v.value("handle_step", options.handle_step,
+          {.doc = "farthest that a handle goes in a step: frames in which one is faster have more "
+                  "steps (up to 1000), on every mesh",
+           .unit = "m",
+           .min = 1e-7,
+           .max = 1e6});
   v.value("fold_radius", options.fold_radius,
           {.doc = "of the discs of the pattern within which folds of opposite sign cancel "
                   "(cancelling_share)",

@@ -102,6 +102,7 @@ struct PaperSceneOptions {
   double duration = 1;
   double frame_interval = 0.04;
   int substeps = 8;
+  double handle_step = 1e-4;
   double fold_radius = 0.03;
 };
 void describe(OptionVisitor& v, PaperMaterial& options);

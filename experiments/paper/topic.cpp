@@ -31,6 +31,10 @@ Topic make_topic() {
     return load_paper_scene(dynamic_cast<const TypedOptions<PaperSceneOptions>&>(set).options,
                             folder);
   };
+  topic.last_parameter = [](const OptionSet& set) -> std::optional<LastParameter> {
+    const auto& scene = dynamic_cast<const TypedOptions<PaperSceneOptions>&>(set).options;
+    return LastParameter{scene.duration, "s"};
+  };
   topic.methods = methods();
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();

@@ -1,10 +1,25 @@
 #include "experiments/skinning/topic.h"
 
+#include <algorithm>
+
 #include "experiments/skinning/rig_command.h"
 #include "experiments/skinning/scene.h"
 #include "experiments/skinning/skeleton_file.h"
 
 namespace geoprior::skinning {
+namespace {
+
+/// A ramp's parameter is the angle of its first joint. Other motions are in files, or end with a
+/// step.
+std::optional<LastParameter> last_angle(const MotionOptions& motion) {
+  if (motion.kind != MotionKind::ramp) return std::nullopt;
+  if (motion.joint) return LastParameter{std::max(motion.from_deg, motion.to_deg), "deg"};
+  if (motion.joints.empty()) return std::nullopt;
+  const JointRamp& first = motion.joints.front();
+  return LastParameter{std::max(first.from_deg, first.to_deg), "deg"};
+}
+
+}  // namespace
 
 Topic make_topic() {
   Topic topic;
@@ -15,6 +30,9 @@ Topic make_topic() {
                   std::uint64_t /*seed*/) {
     return load_skinning_scene(dynamic_cast<const TypedOptions<SkinningSceneOptions>&>(set).options,
                                folder);
+  };
+  topic.last_parameter = [](const OptionSet& set) {
+    return last_angle(dynamic_cast<const TypedOptions<SkinningSceneOptions>&>(set).options.motion);
   };
   topic.methods = methods();
   topic.metrics = metrics();

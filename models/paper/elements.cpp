@@ -21,12 +21,6 @@ constexpr int kMostRows = kMostTerms;
 constexpr int kMostColumns = 3 * ShellElements::kMostNodes;
 static_assert(CurvatureFit::kMostVertices == ShellElements::kMostNodes);
 
-/// Stiffness against the residual at border triangles and folds, relative to what the plate opposes
-/// to the curvature that would give an edge that angle. It must be positive, or border edges hinge
-/// freely, and small, since it resists the variation of curvature, which the plate does not: a
-/// curvature that varies by a tenth over a patch gets 1e-3 of its energy added.
-constexpr double kFitResidual = 0.1;
-
 /// L with (1-nu) |S|^2 + nu tr(S)^2 = |L S|^2 for S = (uu, uv, vv).
 Eigen::Matrix3d plate_root(double nu) {
   Eigen::Matrix3d M;
@@ -98,7 +92,8 @@ Root divider_rows(const ShellMesh& mesh, const CurvatureFit& fit, int t, Plastic
 }
 
 /// R of the plate: the shape operator's energy, then the residual where S may miss an edge.
-Root plate_rows(const CurvatureFit& fit, int t, const Eigen::Matrix3d& root) {
+Root plate_rows(const CurvatureFit& fit, int t, const Eigen::Matrix3d& root,
+                double residual_share) {
   const auto& terms = fit.terms[t];
   const auto n = static_cast<Eigen::Index>(terms.size());
   if (n == 0) return {};
@@ -114,7 +109,7 @@ Root plate_rows(const CurvatureFit& fit, int t, const Eigen::Matrix3d& root) {
   const Eigen::MatrixXd plate = root * fitted;
   const int own = fit.own[t];
   if (own == 3 && fit.rank[t] == 3) return plate;
-  Eigen::MatrixXd residual = std::sqrt(kFitResidual / own) * curvature.asDiagonal() *
+  Eigen::MatrixXd residual = std::sqrt(residual_share / own) * curvature.asDiagonal() *
                              (Eigen::MatrixXd::Identity(n, n) - jumps * fitted);
   residual.bottomRows(n - own).setZero();
   // The residual is written with as few rows as it has dimensions.
@@ -172,8 +167,7 @@ struct ShellElements::Impl {
   std::vector<PlasticRows> plastic;  ///< T of each element
   CurvatureFit fit;
 
-  void add_element(const ShellMesh& mesh, int t, double bending_stiffness, BendingModel model,
-                   double hinge_calibration);
+  void add_element(const ShellMesh& mesh, int t, double bending_stiffness, const BendingLaw& law);
   int add_hinges(const ShellMesh& mesh, int t, Element& element);
   void membrane(const Element& element, const Eigen::Vector3d* p, Order order, Local& out,
                 Rows& rows) const;
@@ -209,7 +203,7 @@ int ShellElements::Impl::add_hinges(const ShellMesh& mesh, int t, Element& eleme
 }
 
 void ShellElements::Impl::add_element(const ShellMesh& mesh, int t, double bending_stiffness,
-                                      BendingModel model, double hinge_calibration) {
+                                      const BendingLaw& law) {
   Element element;
   element.area = fit.area[t];
   element.gradient = shape_gradients(mesh, t, element.area);
@@ -218,8 +212,8 @@ void ShellElements::Impl::add_element(const ShellMesh& mesh, int t, double bendi
   element.nodes = static_cast<int>(nodes.size()) - element.first_node;
   Root rows;
   PlasticRows plastic_rows = PlasticRows::Zero();
-  if (model == BendingModel::shape_operator) {
-    const Root plate = plate_rows(fit, t, root);
+  if (law.model == BendingModel::shape_operator) {
+    const Root plate = plate_rows(fit, t, root, law.fit_residual);
     plastic_rows.topRows(3) = root;
     const Root dividers = divider_rows(mesh, fit, t, plastic_rows, static_cast<int>(plate.rows()));
     rows.resize(plate.rows() + dividers.rows(), plate.cols());
@@ -235,7 +229,7 @@ void ShellElements::Impl::add_element(const ShellMesh& mesh, int t, double bendi
       const double length = (mesh.pattern.row(h.b) - mesh.pattern.row(h.a)).norm();
       const double areas = fit.area[h.left] + fit.area[h.right];
       // Half of k D/4 l^2/(2 a) theta^2: the other half is the neighbour's.
-      rows(k, k) = length * std::sqrt(hinge_calibration / (8 * areas));
+      rows(k, k) = length * std::sqrt(law.hinge_calibration / (8 * areas));
       plastic_rows.row(k) = rows(k, k) * h.jump;
     }
     element.stiffness = bending_stiffness;
@@ -249,7 +243,7 @@ void ShellElements::Impl::add_element(const ShellMesh& mesh, int t, double bendi
 }
 
 ShellElements::ShellElements(const ShellMesh& mesh, const PaperMaterial& material,
-                             BendingModel bending, double hinge_calibration) {
+                             const BendingLaw& law) {
   auto impl = std::make_shared<Impl>();
   impl->membrane_stiffness = material.membrane_stiffness();
   impl->poisson_ratio = material.poisson_ratio;
@@ -257,7 +251,7 @@ ShellElements::ShellElements(const ShellMesh& mesh, const PaperMaterial& materia
   impl->root = plate_root(material.poisson_ratio);
   impl->fit = fit_curvature(mesh.pattern, mesh.triangles);
   for (int t = 0; t < mesh.triangle_count(); ++t)
-    impl->add_element(mesh, t, material.bending_stiffness(), bending, hinge_calibration);
+    impl->add_element(mesh, t, material.bending_stiffness(), law);
   impl_ = std::move(impl);
 }
 

@@ -28,7 +28,8 @@ namespace geoprior::paper {
 /// folds.
 ///
 /// Triangles at the border and folds also resist the residual theta - jump . S of their own edges,
-/// a tenth as much as S; it is zero for constant curvature. So every interior edge is resisted.
+/// `fit_residual` times as much as S; it is zero for constant curvature. So every interior edge is
+/// resisted.
 ///
 /// An element has 6 nodes where every hinge about it is point symmetric (grids with parallel
 /// diagonals, equilateral meshes), up to 12 elsewhere inside, at borders a few more.
@@ -41,8 +42,7 @@ class ShellElements {
   static constexpr int kMostNodes = 16;
 
   /// @throws Error  from `fit_curvature`
-  ShellElements(const ShellMesh& mesh, const PaperMaterial& material, BendingModel bending,
-                double hinge_calibration);
+  ShellElements(const ShellMesh& mesh, const PaperMaterial& material, const BendingLaw& law);
 
   [[nodiscard]] int size() const;
   /// The fit of shape operators from which bending is computed.

@@ -47,7 +47,8 @@ struct Sheet {
   double imperfection = 1e-4;
   double duration = 1;           ///< s
   double frame_interval = 0.04;  ///< s
-  int substeps = 8;              ///< of a frame
+  int substeps = 8;              ///< of a frame, at least
+  double handle_step = 1e-4;     ///< farthest that a handle goes in a step (m)
 
   /// Place of a pattern point at t = 0, imperfection included.
   [[nodiscard]] Eigen::Vector3d rest_place(const Eigen::Vector2d& p, std::uint64_t seed) const;

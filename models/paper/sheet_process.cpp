@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/frame_loop.h"
+#include "models/paper/handle_speed.h"
 #include "models/paper/obstacle_shape.h"
 #include "models/paper/sheet_valid.h"
 
@@ -102,23 +103,26 @@ class SheetFrames final : public FrameModel {
   /// Substeps, then the mesher's turn.
   void advance(int frame, FrameSink& /*sink*/, RunContext& context) override {
     const double start = sheet_.frame_time(frame - 1);
-    const double dt = (sheet_.frame_time(frame) - start) / sheet_.substeps;
+    const int substeps = substeps_of_frame(sheet_, start, sheet_.frame_time(frame));
+    const double dt = (sheet_.frame_time(frame) - start) / substeps;
     report_ = {};
     {
       const Phase phase(context, "elastic");
-      for (int i = 0; i < sheet_.substeps; ++i) {
+      for (int i = 0; i < substeps; ++i) {
         // Times are not summed up, so that a resumed run has the same ones.
         state_.time = start + i * dt;
         const StepReport step = stepper_.step(state_, dt, context);
         handle_work_ += step.handle_work;
-        add(report_, step, sheet_.substeps);
+        add(report_, step, substeps);
       }
       state_.time = sheet_.frame_time(frame);
     }
-    if (mesher_.adapt(sheet_, stepper_, state_, context)) {
+    if (!mesher_.adapt(sheet_, stepper_, state_, context)) return;
+    {
       const Phase phase(context, "connectivity");
       stepper_.set_mesh(state_);
     }
+    mesher_.settle(sheet_, stepper_, state_, context);
   }
 
   void record(int number, FrameSink& sink, RunContext& /*context*/) override {

@@ -18,6 +18,10 @@ class SheetMesher {
   /// analyses it anew). Marks its own phases.
   virtual bool adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
                      RunContext& context) = 0;
+  /// Called after a change of the connectivity, once the stepper has taken it up: takes back what
+  /// the change has strained. Marks its own phases.
+  virtual void settle(const Sheet& /*sheet*/, ShellStepper& /*stepper*/, ShellState& /*state*/,
+                      RunContext& /*context*/) {}
   /// Adds parts, arrays, tables and diagnostics of its own ("rulings", "singular_points" …).
   virtual void annotate(const ShellState& state, Frame& frame) const = 0;
   /// Everything that `adapt` and `annotate` remember from one frame to the next, for checkpoints.
@@ -25,8 +29,8 @@ class SheetMesher {
   virtual void load(StateReader& /*in*/) {}
 };
 
-/// The loop that all methods of the topic share: frames of `substeps` steps, remeshing, recording,
-/// a checkpoint a frame.
+/// The loop that all methods of the topic share: frames of `substeps` steps (more where handles are
+/// fast: `substeps_of_frame`), remeshing, recording, a checkpoint a frame.
 ///
 /// Each frame has the part "surface" (triangles; point arrays "pattern" [m] (2), "velocity" [m/s]
 /// (3); cell arrays "plastic_curvature" [1/m] (3), "damage" [1]), the part "handles" (points held;

@@ -337,6 +337,7 @@ void require_valid(const Sheet& sheet, const std::string& where) {
   require_range(sheet.frame_interval, 0, sheet.duration, true, inside(where, "frame_interval"));
   require_frames(sheet.duration, sheet.frame_interval, inside(where, "duration"));
   require_range(sheet.substeps, 1, 1e6, false, inside(where, "substeps"));
+  require_range(sheet.handle_step, 0, 1e6, true, inside(where, "handle_step"));
   require_handles(sheet, inside(where, "handles"));
   require_obstacles(sheet, inside(where, "obstacles"));
 }

@@ -71,7 +71,7 @@ ShellDynamics::ShellDynamics(const Sheet& sheet, const StepperOptions& options, 
                              const ShellState& state)
     : sheet_(&sheet),
       options_(&options),
-      elements_(state.mesh, sheet.material, options.bending, options.hinge_calibration),
+      elements_(state.mesh, sheet.material, options.bending),
       handles_(sheet, state.mesh, seed),
       mass_(lumped_masses(state.mesh, sheet.material.area_density)) {
   if (!sheet.obstacles.empty()) {

@@ -18,8 +18,13 @@ struct ShellStepper::Impl {
   ShellDynamics::Step trial;
 
   [[nodiscard]] ShellDynamics& of(const ShellState& state) const;
-  /// Steps by `dt`, in two halves (and so on) if need be; `whole` is the time asked for.
-  void advance(ShellState& state, double dt, int halvings_left, double whole, StepReport& report);
+  struct Flow {
+    bool plastic;
+    double whole;  ///< time asked for (s)
+  };
+  /// Steps by `dt`, in two halves (and so on) if need be.
+  void advance(ShellState& state, double dt, int halvings_left, const Flow& flow,
+               StepReport& report);
 };
 
 ShellDynamics& ShellStepper::Impl::of(const ShellState& state) const {
@@ -33,7 +38,7 @@ ShellDynamics& ShellStepper::Impl::of(const ShellState& state) const {
   return *dynamics;
 }
 
-void ShellStepper::Impl::advance(ShellState& state, double dt, int halvings_left, double whole,
+void ShellStepper::Impl::advance(ShellState& state, double dt, int halvings_left, const Flow& flow,
                                  StepReport& report) {
   dynamics->step(state, dt, trial);
   report.newton_iterations += trial.solves;
@@ -44,20 +49,20 @@ void ShellStepper::Impl::advance(ShellState& state, double dt, int halvings_left
           "time " + std::to_string(state.time) + " s");
     }
     ++report.halvings;
-    advance(state, dt / 2, halvings_left - 1, whole, report);
-    advance(state, dt / 2, halvings_left - 1, whole, report);
+    advance(state, dt / 2, halvings_left - 1, flow, report);
+    advance(state, dt / 2, halvings_left - 1, flow, report);
     return;
   }
   state.x.swap(trial.x);
   state.v.swap(trial.v);
   state.time += dt;
-  if (options.plasticity) {
+  if (flow.plastic) {
     flow_plastically(dynamics->elements(), sheet.material.yield_curvature, state);
   }
   report.residual = std::max(report.residual, trial.residual);
   report.handle_work += trial.handle_work;
   for (std::size_t h = 0; h < trial.handle_force.size(); ++h) {
-    report.handle_force[h] += dt / whole * trial.handle_force[h];
+    report.handle_force[h] += dt / flow.whole * trial.handle_force[h];
   }
 }
 
@@ -84,7 +89,8 @@ StepReport ShellStepper::step(ShellState& state, double dt, RunContext& /*contex
   report.handle_force.assign(impl_->sheet.handles.size(), Eigen::Vector3d::Zero());
   const ShellState before = state;
   try {
-    impl_->advance(state, dt, impl_->options.most_halvings, dt, report);
+    impl_->advance(state, dt, impl_->options.most_halvings, {impl_->options.plasticity, dt},
+                   report);
   } catch (...) {
     state = before;
     throw;
@@ -92,6 +98,17 @@ StepReport ShellStepper::step(ShellState& state, double dt, RunContext& /*contex
   // Times are not summed over halved steps, so that they do not depend on how many it took.
   state.time = before.time + dt;
   return report;
+}
+
+void ShellStepper::relax(ShellState& state, double dt) {
+  static_cast<void>(impl_->of(state));
+  ShellState rested = state;
+  rested.v.setZero();
+  rested.time = state.time - dt;
+  StepReport report;
+  report.handle_force.assign(impl_->sheet.handles.size(), Eigen::Vector3d::Zero());
+  impl_->advance(rested, dt, impl_->options.most_halvings, {false, dt}, report);
+  state.x.swap(rested.x);
 }
 
 ShellEnergies ShellStepper::energies(const ShellState& state) const {
@@ -148,10 +165,15 @@ void describe_contact(OptionVisitor& v, StepperOptions& o) {
 void describe(OptionVisitor& v, StepperOptions& o) {
   describe_choice(v, "integration", o.integration, kIntegrationNames,
                   {.doc = "one linear solve a step, or implicit Euler solved by Newton"});
-  describe_choice(v, "bending", o.bending, kBendingNames,
+  describe_choice(v, "bending", o.bending.model, kBendingNames,
                   {.doc = "plate energy of the shape operator, or hinges"});
-  v.value("hinge_calibration", o.hinge_calibration,
+  v.value("hinge_calibration", o.bending.hinge_calibration,
           {.doc = "factor of the hinge energy", .min = 1e-3, .max = 1e3});
+  v.value("fit_residual", o.bending.fit_residual,
+          {.doc = "stiffness against angles at borders and folds that the fitted curvature leaves, "
+                  "relative to the plate's",
+           .min = 1e-6,
+           .max = 10});
   v.value("plasticity", o.plasticity,
           {.doc = "the sheet creases where its elastic curvature exceeds the material's yield"});
   v.value("newton_iterations", o.newton_iterations,

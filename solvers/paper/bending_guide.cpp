@@ -7,7 +7,6 @@
 #include "core/error.h"
 #include "models/paper/transfer.h"
 #include "models/paper/uniform_mesh.h"
-#include "solvers/paper/relaxation.h"
 
 namespace geoprior::paper {
 namespace {
@@ -45,19 +44,19 @@ Eigen::Matrix2d BendingField::at(const Eigen::Vector2d& p) const {
 
 BendingGuide::BendingGuide(const Sheet& sheet, double edge, const StepperOptions& options,
                            std::uint64_t seed)
-    : stepper_(sheet, without_plasticity(options), seed) {
+    : stepper_(sheet, options, seed) {
   require_lattice(sheet.pattern, edge);
   const double triangles = signed_area(sheet.pattern) / (std::sqrt(3.0) / 4 * edge * edge);
   mesh_ = uniform_mesh(sheet.pattern, std::max(2, static_cast<int>(std::lround(triangles))),
                        UniformLayout::equilateral, handle_points(sheet, edge), seed);
 }
 
-BendingField BendingGuide::relaxed(const ShellState& sheet, RunContext& context) {
+BendingField BendingGuide::relaxed(const ShellState& sheet) {
   ShellState even = transfer_state(sheet, mesh_);
   if (!analysed_) stepper_.set_mesh(even);
   analysed_ = true;
   try {
-    relax(stepper_, kStep, even, context);
+    stepper_.relax(even, kStep);
   } catch (const Error&) {
     // What the step does not follow is taken as it is.
     even = transfer_state(sheet, mesh_);

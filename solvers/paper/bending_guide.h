@@ -40,7 +40,7 @@ class BendingGuide {
   /// @param edge  length of the even mesh's edges (m)
   BendingGuide(const Sheet& sheet, double edge, const StepperOptions& options, std::uint64_t seed);
 
-  [[nodiscard]] BendingField relaxed(const ShellState& sheet, RunContext& context);
+  [[nodiscard]] BendingField relaxed(const ShellState& sheet);
 
  private:
   ShellMesh mesh_;

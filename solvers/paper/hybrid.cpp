@@ -37,17 +37,9 @@ constexpr double kLeastPart = 2;
 /// Smallest angle between two rulings with a common end.
 constexpr double kLeastAngleDegrees = 6;
 
-/// Iterations of the projection over those of other frames: after remeshing; and, in a frame that
-/// has come to its last resort, for the structure as it is and for further changes.
+/// Iterations of the projection after remeshing, over those of other frames.
 constexpr int kRemeshedIterations = 2;
-constexpr int kLastIterations = 8;
-constexpr int kRetryIterations = 4;
-/// Principal strain after the projection beyond which a change of the structure is taken back; the
-/// next frame tries again, with another draw. Only when the unchanged structure is strained as well
-/// are there more attempts in the same frame, and the best of all stays.
-constexpr double kAcceptedStrain = 4e-3;
-constexpr int kAttempts = 3;
-/// Strain that is left even so is given as much time as it takes, within reason.
+/// Strain that a last resort leaves is given as much time as it takes, within reason.
 constexpr double kUnacceptableStrain = 1e-2;
 constexpr int kPatientIterations = 30;
 /// Most rulings side by side over the pattern.
@@ -169,7 +161,7 @@ std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, const ShellSt
   count_flat_frames(folds_, options_, looker);
   if (options_.tracking) {
     if (!guide_) guide_.emplace(sheet, options_.guide_edge, options_.stepper, context.seed());
-    field_.emplace(guide_->relaxed(state, context));
+    field_.emplace(guide_->relaxed(state));
   }
   return group_demands(find_demands(sheet, state, curvature_, mesh_, looker, options_), state.mesh,
                        options_.group_angle_deg);
@@ -258,7 +250,7 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
   const bool changed = events_.changed;
   if (changed) restore(before, state);
   keep(sheet, 1, state, context);
-  if (!options_.projection || projection_.strain_after <= kAcceptedStrain)
+  if (!options_.projection || projection_.strain_after <= options_.accepted_strain)
     return options_.energy_test && frames_ % kReview == 0 && review_points(sheet, state, context);
   return last_resort(sheet, groups, before, changed ? &tried : nullptr, state, context);
 }
@@ -269,7 +261,7 @@ void HybridMesher::weigh_births(const Sheet& sheet, const Snapshot& before, Shel
                                 RunContext& context) {
   const Phase phase(context, "weigh");
   const auto energy = [&] {
-    return settled_energy(sheet, options_.stepper, context.seed(), state, context);
+    return settled_energy(sheet, options_.stepper, context.seed(), state);
   };
   const double with_points = energy();
   const Snapshot born = snapshot(state);
@@ -281,7 +273,7 @@ void HybridMesher::weigh_births(const Sheet& sheet, const Snapshot& before, Shel
     return;
   }
   if (!follows) keep(sheet, 1, state, context);
-  if (projection_.strain_after <= kAcceptedStrain && energy() <= with_points) {
+  if (projection_.strain_after <= options_.accepted_strain && energy() <= with_points) {
     ++unborn_;
     events_.changed = true;
     return;
@@ -298,7 +290,7 @@ bool HybridMesher::review_points(const Sheet& sheet, ShellState& state, RunConte
   if (unyielded == points.end()) return false;
   const Phase phase(context, "weigh");
   const Snapshot before = snapshot(state);
-  const double with_point = settled_energy(sheet, options_.stepper, context.seed(), state, context);
+  const double with_point = settled_energy(sheet, options_.stepper, context.seed(), state);
   RulingEditor pen = editor();
   pen.remove_point(static_cast<int>(unyielded - points.begin()));
   int new_rulings = 0;
@@ -306,8 +298,8 @@ bool HybridMesher::review_points(const Sheet& sheet, ShellState& state, RunConte
   remesh();
   carry(sheet, state, structure_.singular_points.size(), context);
   if (options_.projection) project(sheet, kRemeshedIterations, state, context);
-  if (projection_.strain_after <= kAcceptedStrain &&
-      settled_energy(sheet, options_.stepper, context.seed(), state, context) <= with_point) {
+  if (projection_.strain_after <= options_.accepted_strain &&
+      settled_energy(sheet, options_.stepper, context.seed(), state) <= with_point) {
     events_.changed = true;
     return true;
   }
@@ -332,7 +324,7 @@ bool HybridMesher::try_change(const Sheet& sheet, const std::vector<DemandGroup>
   }
   if (!options_.projection) return true;
   project(sheet, effort, state, context);
-  if (projection_.strain_after <= kAcceptedStrain) return true;
+  if (projection_.strain_after <= options_.accepted_strain) return true;
   ++rejected_;
   return false;
 }
@@ -348,16 +340,17 @@ void HybridMesher::keep(const Sheet& sheet, int effort, ShellState& state, RunCo
 bool HybridMesher::last_resort(const Sheet& sheet, const std::vector<DemandGroup>& groups,
                                const Snapshot& before, const Snapshot* tried, ShellState& state,
                                RunContext& context) {
-  keep(sheet, kLastIterations, state, context);
-  if (projection_.strain_after <= kAcceptedStrain || tried == nullptr) return false;
+  keep(sheet, options_.last_iterations, state, context);
+  if (projection_.strain_after <= options_.accepted_strain || tried == nullptr) return false;
   Snapshot best = snapshot(state);
   const auto improve = [&](const Snapshot& other) {
     if (other.projection.strain_after < best.projection.strain_after) best = other;
   };
   improve(*tried);
-  for (int attempt = 1; attempt < kAttempts; ++attempt) {
+  const int retry_iterations = std::max(1, options_.last_iterations / 2);
+  for (int attempt = 1; attempt < options_.attempts; ++attempt) {
     restore(before, state);
-    if (try_change(sheet, groups, false, kRetryIterations, before, state, context)) return true;
+    if (try_change(sheet, groups, false, retry_iterations, before, state, context)) return true;
     if (!events_.changed) break;
     improve(snapshot(state));
   }
@@ -528,6 +521,18 @@ void describe_tracking(OptionVisitor& v, HybridOptions& o) {
           {.doc = "most linear solves of a projection", .min = 1, .max = 100});
   v.value("projection_strain", o.projection_strain,
           {.doc = "edge strain at which it stops", .min = 1e-12, .max = 0.1});
+  v.value("accepted_strain", o.accepted_strain,
+          {.doc = "principal strain after the projection beyond which a change is taken back",
+           .min = 1e-9,
+           .max = 1});
+  v.value("attempts", o.attempts,
+          {.doc = "other draws, in a frame that is strained with and without its change",
+           .min = 1,
+           .max = 1000});
+  v.value("last_iterations", o.last_iterations,
+          {.doc = "iterations of the projection then, in those of a usual frame",
+           .min = 1,
+           .max = 1000});
   v.value("weakening_radius", o.weakening_radius,
           {.doc = "r_p about a singular point, where the sheet yields",
            .unit = "m",

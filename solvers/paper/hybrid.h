@@ -39,7 +39,13 @@ struct HybridOptions {
   bool projection = true;        ///< isometry projection at the end of every frame
   int projection_iterations = 6;
   double projection_strain = 1e-4;  ///< edge strain at which it stops
-  double weakening_radius = 4e-3;   ///< r_p about a singular point (m)
+  /// Strain after the projection beyond which a change of the structure is taken back; the next
+  /// frame tries again, with another draw. Only when the unchanged structure is strained as well
+  /// are there more attempts in the same frame, and the best of all stays.
+  double accepted_strain = 4e-3;
+  int attempts = 3;                ///< in such a frame
+  int last_iterations = 8;         ///< of the projection then, in those of a usual frame
+  double weakening_radius = 4e-3;  ///< r_p about a singular point (m)
   StepperOptions stepper;
 };
 void describe(OptionVisitor& v, HybridOptions& options);

@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "core/error.h"
-#include "solvers/paper/relaxation.h"
 
 namespace geoprior::paper {
 namespace {
@@ -14,11 +13,11 @@ constexpr double kStep = 0.005;  // s, of the length of a usual step
 }  // namespace
 
 double settled_energy(const Sheet& sheet, const StepperOptions& options, std::uint64_t seed,
-                      ShellState state, RunContext& context) {
-  ShellStepper stepper(sheet, without_plasticity(options), seed);
+                      ShellState state) {
+  ShellStepper stepper(sheet, options, seed);
   try {
     stepper.set_mesh(state);
-    for (int k = 0; k < kSteps; ++k) relax(stepper, kStep, state, context);
+    for (int k = 0; k < kSteps; ++k) stepper.relax(state, kStep);
   } catch (const Error&) {
     return std::numeric_limits<double>::infinity();
   }

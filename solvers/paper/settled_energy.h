@@ -2,7 +2,6 @@
 
 #include <cstdint>
 
-#include "core/context.h"
 #include "models/paper/sheet.h"
 #include "models/paper/shell_state.h"
 #include "models/paper/stepper.h"
@@ -15,6 +14,6 @@ namespace geoprior::paper {
 /// What tells apart two structures for one sheet: right after a mesh is made, both hold strain that
 /// the first steps release.
 double settled_energy(const Sheet& sheet, const StepperOptions& options, std::uint64_t seed,
-                      ShellState state, RunContext& context);
+                      ShellState state);
 
 }  // namespace geoprior::paper

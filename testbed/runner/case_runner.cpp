@@ -158,7 +158,10 @@ void CaseRunner::load(const OptionSet& options, std::vector<StoredFile> inputs) 
   line.inputs = std::move(inputs);
   const CaseState& known = state_.case_of(spec_.name);
   if (!known.inputs) {
-    for (const std::string& warning : line.warnings) progress_.say("warning: " + warning);
+    for (const std::string& warning : line.warnings) {
+      const std::string place = place_of_scene_key(spec_.scene_places, warning);
+      progress_.say("warning: " + (place.empty() ? "" : place + ": ") + warning);
+    }
     recorder_.add(line);
     return;
   }

@@ -16,6 +16,7 @@
 #include "testbed/runner/spec_resolve.h"
 #include "testbed/runner/spec_sweeps.h"
 #include "testbed/runner/spec_tables.h"
+#include "testbed/runner/view_times.h"
 #include "testbed/streams.h"
 
 namespace geoprior {
@@ -244,8 +245,9 @@ FigureView figure_view_of(const std::string& resolved_toml, const std::string& s
 
 Experiment load_experiment(const std::filesystem::path& file, const std::vector<Topic>& topics,
                            const LoadRequest& request) {
-  TomlNode root = parse_toml_file(file);
-  require_known_tables(root);
+  const TomlNode written = parse_toml_file(file);
+  require_known_tables(written);
+  TomlNode root = written;
   Experiment experiment;
   experiment.file = file;
   const std::vector<std::string> selected = select_variants(root, request.variants);
@@ -280,6 +282,8 @@ Experiment load_experiment(const std::filesystem::path& file, const std::vector<
   experiment.claims = read_claims(root, topic, names, experiment.tolerances, experiment.studies);
   drop_cases(experiment.claims, experiment.cases);
   read_check(root, experiment);
+  (void)read_figure_view(root, topic);  // its own mistakes come before frames that are not there
+  settle_view_times(written, root, topic, experiment.quick);
   experiment.view = read_figure_view(root, topic);
   keep_only(experiment.view.variants, names.dropped);
 

@@ -137,6 +137,11 @@ std::vector<std::string> select_variants(const TomlNode& root,
   return selected;
 }
 
+std::shared_ptr<const OptionSet> resolve_scene(const TomlNode& root, const Topic& topic,
+                                               std::string& json) {
+  return read_set(topic.default_scene(), root.find("scene"), root.place, "scene", json);
+}
+
 CaseSpec resolve_case(const SweptCase& swept, const TomlNode& plain, const Topic& topic,
                       const std::vector<std::string>& selected) {
   const TomlNode root = root_of(swept, plain);
@@ -147,8 +152,7 @@ CaseSpec resolve_case(const SweptCase& swept, const TomlNode& plain, const Topic
   const HeaderTable values = read_header(root);
   result.seed = static_cast<std::uint64_t>(values.seed);
   result.threads = values.threads;
-  result.scene =
-      read_set(topic.default_scene(), root.find("scene"), root.place, "scene", result.scene_json);
+  result.scene = resolve_scene(root, topic, result.scene_json);
   if (const TomlNode* scene = root.find("scene")) {
     add_places(*scene, "scene", result.scene_places);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,12 @@ namespace geoprior {
 
 /// What stands above the tables.
 HeaderTable read_header(const TomlNode& root);
+
+/// Reads [scene] of one case.
+/// @param root  the experiment file of the case
+/// @param json  gets the text of the options, defaults included
+std::shared_ptr<const OptionSet> resolve_scene(const TomlNode& root, const Topic& topic,
+                                               std::string& json);
 
 /// Reads scene and variants of one case.
 /// @param plain  the experiment file, without [[sweep]]

@@ -147,6 +147,9 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
   describe_choice(v, "material", t.material, kMaterials,
                   {.doc = "of what has no colour; paper: white, the back side darker"});
   v.value("edges", t.edges, {.doc = "edges of the triangles as thin lines"});
+  v.value("plain", t.plain,
+          {.doc = "adds the same panels plain and flat under lights that graze: under each row, "
+                  "beside it where it has one column"});
   v.value("target", table.target, {.doc = "point looked at; absent: fitted", .unit = "m"});
   v.value("direction", t.direction, {.doc = "from the target to the eye"});
   v.value("up", t.up, {.doc = "upward in the picture"});

@@ -79,8 +79,8 @@ void set_material(const PanelStyle& style, bool colored, bool thin, vtkActor* ac
   vtkProperty* material = actor->GetProperty();
   const bool paper = style.material == PanelStyle::Material::paper;
   set_color(material, thin ? kLineColor : paper ? kPaperColor : kClayColor);
-  material->SetAmbient(paper ? 0.30 : colored ? 0.26 : 0.22);
-  material->SetDiffuse(colored ? 0.70 : paper ? 0.68 : 0.82);
+  material->SetAmbient(style.raking ? 0.02 : paper ? 0.30 : colored ? 0.26 : 0.22);
+  material->SetDiffuse(style.raking ? 0.98 : colored ? 0.70 : paper ? 0.68 : 0.82);
   material->SetSpecular(paper ? 0.03 : colored ? 0.05 : 0.14);
   material->SetSpecularPower(22);
   if (style.flat && !thin) {
@@ -134,11 +134,16 @@ void set_solid_material(vtkProperty* material) {
   material->SetSpecularPower(22);
 }
 
+/// The window's size that lines and balls over a part are drawn by.
+double overlay_size(const ViewWindow& window) {
+  return std::max(window.height_m, 0.7 * window.width_m);
+}
+
 vtkSmartPointer<vtkActor> overlay_actor(const PanelOverlay& overlay, const ViewWindow& window) {
   const bool points = overlay.part->kind == Part::Kind::points;
-  const double size = std::max(window.height_m, 0.7 * window.width_m);
-  auto actor =
-      plain_actor(*overlay.part, "", (points ? kOverlayRadius : kOverlayThickness) * size, false);
+  const double size = overlay_size(window);
+  auto actor = plain_actor(*overlay.part, "",
+                           points ? overlay_ball_radius(window) : kOverlayThickness * size, false);
   const Eigen::Vector3d lift = kLift * size * window.direction;
   actor->SetPosition(lift.x(), lift.y(), lift.z());
   vtkProperty* material = actor->GetProperty();
@@ -163,6 +168,10 @@ vtkSmartPointer<vtkActor> obstacle_actor(const Part& part, const ViewWindow& win
 }
 
 }  // namespace
+
+double overlay_ball_radius(const ViewWindow& window) {
+  return kOverlayRadius * overlay_size(window);
+}
 
 PanelActors make_actors(const PanelParts& parts, const ViewWindow& window, const PanelStyle& style,
                         int pixels_per_pixel) {

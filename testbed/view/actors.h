@@ -13,6 +13,9 @@ class vtkSmartPointer;
 
 namespace geoprior {
 
+/// Radius of the balls that points over a part are drawn as (m).
+double overlay_ball_radius(const ViewWindow& window);
+
 /// What a panel is made of, ready to be drawn.
 struct PanelActors {
   std::vector<vtkSmartPointer<vtkActor>> opaque;

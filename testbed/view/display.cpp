@@ -23,7 +23,12 @@
 namespace geoprior {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr auto kStartTimeout = std::chrono::seconds(20);
+// A server that ends gives up its socket before its lock: one that starts in between takes the
+// number and dies of the lock. Another program's pictures are reason enough to try again.
+constexpr int kStarts = 5;
 const std::string kInstall = "apt-get install xvfb libgl1-mesa-dri";
 
 /// Whether the X server named by DISPLAY answers. libX11 is loaded at run time: VTK brings it along
@@ -43,13 +48,12 @@ bool user_display_answers() {
 }
 
 /// The number that Xvfb writes to its -displayfd once it accepts connections; empty when it died or
-/// took too long.
-std::string read_display_number(int descriptor) {
+/// the deadline passed.
+std::string read_display_number(int descriptor, Clock::time_point deadline) {
   std::string text;
-  const auto deadline = std::chrono::steady_clock::now() + kStartTimeout;
   while (text.find('\n') == std::string::npos) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-        deadline - std::chrono::steady_clock::now());
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
     pollfd wait{descriptor, POLLIN, 0};
     if (left.count() <= 0 || stop_requested()) return {};
     if (::poll(&wait, 1, static_cast<int>(left.count())) < 0 && errno == EINTR) continue;
@@ -84,19 +88,13 @@ std::string read_display_number(int descriptor) {
 class Display::Server {
  public:
   explicit Server(const std::string& program) {
-    std::array<int, 2> number{};
-    if (::pipe2(number.data(), O_CLOEXEC) != 0) throw Error(std::strerror(errno), "Xvfb");
-    const pid_t parent = ::getpid();
-    pid_ = ::fork();
-    if (pid_ == 0) become_xvfb(program.c_str(), number[1], parent);
-    ::close(number[1]);
-    const std::string text = pid_ > 0 ? read_display_number(number[0]) : std::string();
-    ::close(number[0]);
-    if (text.empty()) {
-      stop();
-      throw_if_stopped();
-      throw Error("the virtual display did not start", program, kInstall);
+    const Clock::time_point deadline = Clock::now() + kStartTimeout;
+    std::string text;
+    for (int i = 0; i < kStarts && text.empty() && Clock::now() < deadline; ++i) {
+      text = start(program, deadline);
+      if (text.empty()) throw_if_stopped();
     }
+    if (text.empty()) throw Error("the virtual display did not start", program, kInstall);
     if (const char* old = std::getenv("DISPLAY")) old_display_ = old;
     ::setenv("DISPLAY", (":" + text).c_str(), 1);
   }
@@ -113,6 +111,20 @@ class Display::Server {
   Server& operator=(const Server&) = delete;
 
  private:
+  /// The number of the display that runs now; empty, with nothing left running, when none does.
+  std::string start(const std::string& program, Clock::time_point deadline) {
+    std::array<int, 2> number{};
+    if (::pipe2(number.data(), O_CLOEXEC) != 0) throw Error(std::strerror(errno), "Xvfb");
+    const pid_t parent = ::getpid();
+    pid_ = ::fork();
+    if (pid_ == 0) become_xvfb(program.c_str(), number[1], parent);
+    ::close(number[1]);
+    const std::string text = pid_ > 0 ? read_display_number(number[0], deadline) : std::string();
+    ::close(number[0]);
+    if (text.empty()) stop();
+    return text;
+  }
+
   void stop() {
     if (pid_ <= 0) return;
     ::kill(pid_, SIGTERM);

@@ -31,10 +31,18 @@ const TextStyle kHeadingStyle{36, {20, 20, 20}, true, false};
 const TextStyle kRowStyle{30, {60, 60, 60}, false, true};
 const TextStyle kNoteStyle{28, {130, 130, 130}, false, false};
 
-/// One line of panels as it is drawn: shaded, or cut.
+/// How a panel shows its cell: as the view says, in plain material, or cut.
+enum class Showing { as_viewed, plain, section };
+
+struct DrawnPanel {
+  const FigureCell* cell = nullptr;
+  Showing showing = Showing::as_viewed;
+  std::string heading;
+};
+
+/// One line of panels as it is drawn.
 struct DrawnRow {
-  const FigureRow* row = nullptr;
-  bool is_section = false;
+  std::vector<DrawnPanel> panels;
   std::string label;
   bool has_headings = false;
 };
@@ -60,11 +68,29 @@ std::vector<const Part*> all_parts(const std::vector<FigureRow>& rows, bool with
   return parts;
 }
 
-std::vector<DrawnRow> drawn_rows(const std::vector<FigureRow>& rows, bool with_sections) {
+DrawnRow drawn_row(const FigureRow& row, Showing showing, const std::string& label) {
+  DrawnRow out{{}, label, showing == Showing::as_viewed && row.has_headings};
+  for (const FigureCell& cell : row.cells) out.panels.push_back({&cell, showing, cell.label});
+  return out;
+}
+
+/// Plain panels are under the others; beside them where these are a single column.
+std::vector<DrawnRow> drawn_rows(const FigureBlock& block) {
+  const std::vector<FigureRow>& rows = block.rows;
+  const bool one_column = std::all_of(rows.begin(), rows.end(),
+                                      [](const FigureRow& row) { return row.cells.size() == 1; });
   std::vector<DrawnRow> out;
   for (const FigureRow& row : rows) {
-    out.push_back({&row, false, row.label, row.has_headings});
-    if (with_sections) out.push_back({&row, true, "Section, overlap in red", false});
+    out.push_back(drawn_row(row, Showing::as_viewed, row.label));
+    if (block.view.plain && one_column) {
+      out.back().panels.push_back({&row.cells.front(), Showing::plain, "Plain"});
+    } else if (block.view.plain) {
+      out.push_back(
+          drawn_row(row, Showing::plain, row.label.empty() ? "Plain" : row.label + ", plain"));
+    }
+    if (block.view.section) {
+      out.push_back(drawn_row(row, Showing::section, "Section, overlap in red"));
+    }
   }
   return out;
 }
@@ -80,7 +106,7 @@ void require_picture(double width, double height) {
 Layout make_layout(const std::vector<DrawnRow>& rows, const ViewWindow& window) {
   Layout layout;
   for (const DrawnRow& row : rows) {
-    layout.columns = std::max(layout.columns, static_cast<int>(row.row->cells.size()));
+    layout.columns = std::max(layout.columns, static_cast<int>(row.panels.size()));
   }
   layout.left = kFigureMargin + kRowLabel;
   const int room = kPictureWidth - layout.left - kFigureMargin - (layout.columns - 1) * kPanelGap;
@@ -106,24 +132,38 @@ TextStyle fitted(const std::string& text, TextStyle style, int room) {
   return style;
 }
 
-Picture draw_cell(const FigureCell& cell, bool is_section, const FigureView& view,
-                  const BlockLook& look, const Layout& layout) {
+/// The look of the panels beside those that are coloured.
+PanelStyle plain_style(const PanelStyle& style) {
+  PanelStyle plain;
+  plain.material = style.material;
+  plain.flat = true;
+  plain.raking = true;
+  return plain;
+}
+
+Picture draw_cell(const DrawnPanel& panel, const FigureView& view, const BlockLook& look,
+                  const Layout& layout) {
+  const FigureCell& cell = *panel.cell;
   if (!cell.part) {
     Picture empty(layout.panel_width, layout.panel_height);
     draw_text(empty, cell.note, layout.panel_width / 2, layout.panel_height / 2, Align::center,
               kNoteStyle);
     return empty;
   }
-  if (is_section) {
+  if (panel.showing == Showing::section) {
     const ViewWindow plane = section_window(look.window, *view.section);
     return draw_section(cut(*cell.part, plane), plane, layout.panel_width, layout.panel_height);
   }
   PanelParts parts;
   parts.parts = {&*cell.part};
+  if (cell.obstacles) parts.obstacles = {&*cell.obstacles};
+  if (panel.showing == Showing::plain) {
+    return draw_panel(parts, look.window, plain_style(look.style), layout.panel_width,
+                      layout.panel_height);
+  }
   for (const NamedPart& overlay : cell.overlays) {
     parts.overlays.push_back({&overlay.part, look.colors.at(overlay.name)});
   }
-  if (cell.obstacles) parts.obstacles = {&*cell.obstacles};
   return draw_panel(parts, look.window, look.style, layout.panel_width, layout.panel_height);
 }
 
@@ -193,6 +233,7 @@ FigureView further_view(const FigureView& view, const FurtherRow& row) {
   if (!row.variants.empty()) further.variants = row.variants;
   further.target.reset();
   further.section.reset();
+  further.plain = false;
   further.above.reset();
   further.below.reset();
   return further;
@@ -223,16 +264,16 @@ int block_height(const FigureBlock& block, const Layout& layout) {
 }
 
 void draw_block(Picture& picture, const FigureBlock& block, const Layout& layout, int y) {
-  for (const DrawnRow& line : drawn_rows(block.rows, block.view.section.has_value())) {
+  for (const DrawnRow& line : drawn_rows(block)) {
     if (line.has_headings) y += kHeading;
     int x = layout.left;
-    for (const FigureCell& cell : line.row->cells) {
+    for (const DrawnPanel& panel : line.panels) {
       throw_if_stopped();
       if (line.has_headings) {
-        draw_text(picture, cell.label, x + layout.panel_width / 2, y - 20, Align::center,
-                  fitted(cell.label, kHeadingStyle, layout.panel_width));
+        draw_text(picture, panel.heading, x + layout.panel_width / 2, y - 20, Align::center,
+                  fitted(panel.heading, kHeadingStyle, layout.panel_width));
       }
-      picture.paste(draw_cell(cell, line.is_section, block.view, block.look, layout), x, y);
+      picture.paste(draw_cell(panel, block.view, block.look, layout), x, y);
       x += layout.panel_width + kPanelGap;
     }
     draw_text(picture, line.label, kFigureMargin + kRowLabel / 2, y + layout.panel_height / 2,
@@ -279,8 +320,7 @@ Picture draw_figure(const std::vector<FigureBlock>& blocks) {
   int width = 0;
   int height = 0;
   for (const FigureBlock& block : blocks) {
-    layouts.push_back(
-        make_layout(drawn_rows(block.rows, block.view.section.has_value()), block.look.window));
+    layouts.push_back(make_layout(drawn_rows(block), block.look.window));
     width = std::max(width, layouts.back().width);
     height += block_height(block, layouts.back());
   }

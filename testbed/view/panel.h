@@ -42,6 +42,7 @@ struct PanelStyle {
   std::optional<ColorScale> scale;  ///< parts that have its array are coloured; absent: plain
   bool flat = false;                ///< one tone a triangle
   bool edges = false;               ///< edges of the triangles as thin lines
+  bool raking = false;              ///< lights that graze: a fold of a few degrees is seen
   Material material = Material::clay;
 };
 

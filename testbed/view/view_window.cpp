@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "testbed/view/actors.h"
 
 namespace geoprior {
 namespace {
@@ -55,6 +56,12 @@ void set_axes(ViewWindow& window, const Eigen::Vector3d& direction, const Eigen:
   window.up = window.direction.cross(window.right);
 }
 
+/// Points are drawn as balls, which reach out of their bounds.
+bool has_points(const std::vector<const Part*>& parts) {
+  return std::any_of(parts.begin(), parts.end(),
+                     [](const Part* part) { return part->kind == Part::Kind::points; });
+}
+
 }  // namespace
 
 Eigen::MatrixX3d extent_points(const Part& part) {
@@ -96,6 +103,9 @@ ViewWindow fit_window(const std::vector<const Part*>& parts, const FigureView& v
   }
   move((seen.low.x() + seen.high.x()) / 2, 0, (seen.low.z() + seen.high.z()) / 2);
   window.width_m = std::max(kMargin * (seen.high.x() - seen.low.x()), kNarrowest * window.height_m);
+  const double ball = has_points(parts) && !view.height_m ? overlay_ball_radius(window) : 0;
+  window.height_m += 2 * ball;
+  window.width_m += 2 * ball;
   window.depth_m = std::max((seen.high.z() - seen.low.z()) / 2, 0.05 * window.height_m) * 1.2;
   return window;
 }

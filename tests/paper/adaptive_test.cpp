@@ -15,6 +15,7 @@
 #include "models/paper/uniform_mesh.h"
 #include "tests/paper/meshes.h"
 #include "tests/paper/plane_shapes.h"
+#include "tests/paper/recording.h"
 
 namespace geoprior::paper {
 namespace {
@@ -389,6 +390,84 @@ TEST(Remesh, IsReproducible) {
   EXPECT_EQ(a.mesh.triangles, b.mesh.triangles);
   EXPECT_EQ(a.mesh.pattern, b.mesh.pattern);
   EXPECT_EQ(a.x, b.x);
+}
+
+/// Root mean square of the change of length of all edges, relative.
+double rms_edge_strain(const Frame& frame) {
+  const Part& surface = frame.require_part("surface");
+  const Eigen::MatrixXd& pattern = surface.arrays[0].values;
+  double sum = 0;
+  for (Eigen::Index f = 0; f < surface.triangles.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = surface.triangles(f, k), b = surface.triangles(f, (k + 1) % 3);
+      const double flat = (pattern.row(b) - pattern.row(a)).norm();
+      sum += std::pow((surface.points.row(b) - surface.points.row(a)).norm() / flat - 1, 2);
+    }
+  }
+  return std::sqrt(sum / (3.0 * static_cast<double>(surface.triangles.rows())));
+}
+
+Recording run_adaptive(const Sheet& sheet, const AdaptiveOptions& options = {}) {
+  Recording recording;
+  RunContext context(1);
+  make_adaptive_sheet(sheet, options)->run(recording, context, {});
+  return recording;
+}
+
+double worst_strain(const Recording& recording) {
+  double worst = 0;
+  for (const Frame& frame : recording.frames) worst = std::max(worst, rms_edge_strain(frame));
+  return worst;
+}
+
+/// A square of 12 cm, one edge of which is held and one corner lifted and pushed inwards.
+Sheet lifted_corner() {
+  Sheet sheet = sheet_of(rectangle_pattern(0.12, 0.12));
+  Handle edge;
+  edge.segment = {Eigen::Vector2d(-0.06, -0.06), Eigen::Vector2d(-0.06, 0.06)};
+  edge.motion = Trajectory{{Keyframe{}}};
+  Handle corner;
+  corner.points = {Eigen::Vector2d(0.06, 0.06)};
+  Keyframe end;
+  end.time = 0.6;
+  end.shift = {-0.03, -0.01, 0.05};
+  corner.motion = Trajectory{{Keyframe{}, end}};
+  sheet.handles = {edge, corner};
+  sheet.duration = 0.8;
+  return sheet;
+}
+
+TEST(AdaptiveSheet, SettlesAfterItsMeshHasChanged) {
+  const Sheet sheet = lifted_corner();
+  const Recording settled = run_adaptive(sheet);
+  EXPECT_LT(worst_strain(settled), 3e-4);
+  double steps = 0;
+  for (const Frame& frame : settled.frames) steps += frame.diagnostics.at("settle_steps");
+  EXPECT_GT(steps, 0);
+  AdaptiveOptions as_it_is;
+  as_it_is.settle_steps = 0;
+  EXPECT_GT(worst_strain(run_adaptive(sheet, as_it_is)), 6e-4) << "what settling takes away";
+}
+
+TEST(AdaptiveSheet, ComesToRestOnABall) {
+  Sheet sheet = sheet_of(rectangle_pattern(0.21, 0.21));
+  Obstacle ball;
+  ball.kind = Obstacle::Kind::sphere;
+  ball.centre = {0, 0, -0.053};
+  ball.radius = 0.05;
+  sheet.obstacles = {ball};
+  sheet.duration = 3;
+  const Recording recording = run_adaptive(sheet);
+  for (std::size_t i = recording.frames.size() - 10; i < recording.frames.size(); ++i) {
+    const Frame& frame = recording.frames[i];
+    for (const char* change : {"splits", "collapses", "flips"}) {
+      EXPECT_EQ(frame.diagnostics.at(change), 0) << i << change;
+    }
+    const Eigen::MatrixX3d& now = frame.require_part("surface").points;
+    const Eigen::MatrixX3d& before = recording.frames[i - 1].require_part("surface").points;
+    ASSERT_EQ(now.rows(), before.rows());
+    EXPECT_LT((now - before).rowwise().norm().maxCoeff(), 2e-4) << i;
+  }
 }
 
 }  // namespace

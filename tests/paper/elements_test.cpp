@@ -107,7 +107,7 @@ TEST(ShellElements, GradientsAreDerivativesOfTheEnergies) {
   for (const auto& [name, mesh, model] : small_sheets()) {
     PaperMaterial material = thick();
     material.weakening = 2;
-    const ShellElements elements(mesh, material, model, 4);
+    const ShellElements elements(mesh, material, BendingLaw{model});
     ShellState state = flat_state(mesh);
     randomise_memory(state, 3);
     for (const std::uint64_t seed : {1, 2, 3}) {
@@ -171,7 +171,7 @@ TEST(ShellElements, EnergiesAreTheFormulasOfTheHeader) {
   material.weakening = 2;
   int plates = 0;
   for (const auto& [name, mesh, model] : small_sheets()) {
-    const ShellElements elements(mesh, material, model, 4);
+    const ShellElements elements(mesh, material, BendingLaw{model});
     const CurvatureFit& fit = elements.curvature_fit();
     ShellState state = flat_state(mesh);
     randomise_memory(state, 3);
@@ -211,7 +211,8 @@ double hessian_error(const ShellElements& elements, const ShellState& state,
 TEST(ShellElements, HessianIsExactAtRest) {
   for (const auto& [name, mesh, model] : small_sheets()) {
     const ShellState state = flat_state(mesh);
-    EXPECT_LT(hessian_error(ShellElements(mesh, thick(), model, 4), state, state.x), 1e-7) << name;
+    EXPECT_LT(hessian_error(ShellElements(mesh, thick(), BendingLaw{model}), state, state.x), 1e-7)
+        << name;
   }
 }
 
@@ -219,7 +220,7 @@ TEST(ShellElements, MembraneHessianIsExactInTension) {
   Eigen::MatrixX2d pattern(3, 2);
   pattern << 0, 0, 1, 0.1, 0.3, 0.8;
   const ShellMesh mesh{pattern, Eigen::RowVector3i(0, 1, 2)};
-  const ShellElements elements(mesh, thick(), BendingModel::shape_operator, 4);
+  const ShellElements elements(mesh, thick(), BendingLaw());
   Eigen::MatrixX3d x(3, 3);
   x << 0.1, 0, 0, 1.2, 0.3, 0.4, 0.2, 1.1, -0.3;
   EXPECT_LT(hessian_error(elements, flat_state(mesh), x), 1e-8);
@@ -232,7 +233,7 @@ TEST(ShellElements, BendingHessianIsExactWhereTheSheetIsBentWithoutMoment) {
   const ShellMesh mesh = meshes::equilateral(4, 5, 0.1);
   PaperMaterial material = thick();
   material.thickness = 1e3;  // bending outweighs the membrane by 1e8
-  const ShellElements elements(mesh, material, BendingModel::shape_operator, 4);
+  const ShellElements elements(mesh, material, BendingLaw());
   ShellState state = flat_state(mesh);
   // Constant curvature on a mesh of congruent triangles: no residual of the fit either.
   const Eigen::MatrixX3d x = meshes::rolled(mesh.pattern, 2, 0);
@@ -246,7 +247,7 @@ TEST(ShellElements, BendingHessianIsExactWhereTheSheetIsBentWithoutMoment) {
 
 TEST(ShellElements, HessianIsPositiveSemidefinite) {
   for (const auto& [name, mesh, model] : small_sheets()) {
-    const ShellElements elements(mesh, thick(), model, 4);
+    const ShellElements elements(mesh, thick(), BendingLaw{model});
     ShellState state = flat_state(mesh);
     randomise_memory(state, 4);
     const Eigen::MatrixX3d x = crumpled(mesh, 0.05, 7);
@@ -267,7 +268,7 @@ TEST(ShellElements, RigidMotionsChangeNothing) {
   const Eigen::Matrix3d R =
       Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
   for (const auto& [name, mesh, model] : small_sheets()) {
-    const ShellElements elements(mesh, thick(), model, 4);
+    const ShellElements elements(mesh, thick(), BendingLaw{model});
     const ShellState state = flat_state(mesh);
     const Eigen::MatrixX3d x = crumpled(mesh, 0.03, 5);
     const Eigen::MatrixX3d moved = (x * R.transpose()).rowwise() + Eigen::RowVector3d(3, -1, 2);
@@ -290,7 +291,7 @@ TEST(ShellElements, RestHasNeitherEnergyNorForce) {
   for (const auto& [name, mesh, model] : small_sheets()) {
     const ShellState state = flat_state(mesh);
     const Assembled a =
-        assemble(ShellElements(mesh, thick(), model, 4), state, state.x, Order::gradient);
+        assemble(ShellElements(mesh, thick(), BendingLaw{model}), state, state.x, Order::gradient);
     EXPECT_LT(a.membrane + a.bending, 1e-28) << name;
     EXPECT_LT(a.gradient.norm(), 1e-13) << name;
   }
@@ -302,7 +303,7 @@ int free_modes(const ShellMesh& mesh, BendingModel model) {
   material.thickness = 1e6;  // the membrane is lost in round-off
   const ShellState state = flat_state(mesh);
   const Assembled a =
-      assemble(ShellElements(mesh, material, model, 4), state, state.x, Order::hessian);
+      assemble(ShellElements(mesh, material, BendingLaw{model}), state, state.x, Order::hessian);
   const Eigen::VectorXd values =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a.hessian).eigenvalues();
   return static_cast<int>((values.array() < 1e-9 * values.maxCoeff()).count());
@@ -330,8 +331,8 @@ TEST(ShellElements, MembraneOfAUniformStretch) {
   const double g = (1.1 * 1.1 - 1) / 2, k = (0.95 * 0.95 - 1) / 2, nu = material.poisson_ratio;
   const double expected =
       2 * material.membrane_stiffness() / 2 * ((1 - nu) * (g * g + k * k) + nu * (g + k) * (g + k));
-  const Assembled a = assemble(ShellElements(mesh, material, BendingModel::shape_operator, 4),
-                               state, state.x, Order::energy);
+  const Assembled a =
+      assemble(ShellElements(mesh, material, BendingLaw()), state, state.x, Order::energy);
   EXPECT_NEAR(a.membrane, expected, 1e-12 * expected);
   EXPECT_EQ(a.bending, 0);
 }
@@ -349,7 +350,7 @@ double total_area(const ShellMesh& mesh) {
 double cylinder_ratio(const ShellMesh& mesh, BendingModel model, double kappa, double degrees) {
   const PaperMaterial material;
   const Assembled a = assemble(
-      ShellElements(mesh, material, model, 4), flat_state(mesh),
+      ShellElements(mesh, material, BendingLaw{model}), flat_state(mesh),
       meshes::rolled(mesh.pattern, kappa, degrees * std::numbers::pi / 180), Order::energy);
   return a.bending / (material.bending_stiffness() / 2 * kappa * kappa * total_area(mesh));
 }
@@ -408,8 +409,8 @@ TEST(ShellElements, ConstantMomentsAreInEquilibrium) {
     state.x.col(2) =
         1e-6 * (0.7 * u.col(0).array().square() - 0.9 * u.col(0).array() * u.col(1).array() +
                 0.4 * u.col(1).array().square());
-    const Assembled a = assemble(ShellElements(mesh, material, BendingModel::shape_operator, 4),
-                                 state, state.x, Order::gradient);
+    const Assembled a =
+        assemble(ShellElements(mesh, material, BendingLaw()), state, state.x, Order::gradient);
     const Eigen::RowVector2d low = u.colwise().minCoeff(), high = u.colwise().maxCoeff();
     int inside = 0;
     double largest = 0;
@@ -444,8 +445,7 @@ TEST(ShellElements, DividersOfStripsDoNotFoldBackForNothing) {
   for (int v = 0; v < mesh.vertex_count(); ++v)
     state.x(v, 2) = 2 * mesh.pattern(v, 0) * mesh.pattern(v, 1);
   const auto energy = [&] {
-    return assemble(ShellElements(mesh, material, BendingModel::shape_operator, 4), state, state.x,
-                    Order::energy)
+    return assemble(ShellElements(mesh, material, BendingLaw()), state, state.x, Order::energy)
         .bending;
   };
   const double unnamed = energy();
@@ -464,8 +464,7 @@ TEST(ShellElements, NamedRulingsChangeNothingForACylinderOverThem) {
     state.x.row(v) << radius * std::sin(angle), mesh.pattern(v, 1), radius * (1 - std::cos(angle));
   }
   const auto energy = [&] {
-    return assemble(ShellElements(mesh, material, BendingModel::shape_operator, 4), state, state.x,
-                    Order::energy)
+    return assemble(ShellElements(mesh, material, BendingLaw()), state, state.x, Order::energy)
         .bending;
   };
   const double unnamed = energy();
@@ -477,9 +476,8 @@ TEST(ShellElements, NamedRulingsChangeNothingForACylinderOverThem) {
 double cone_energy(const ShellMesh& mesh, double angle) {
   const PaperMaterial material;
   const double curvature = 0.01;
-  const Assembled a =
-      assemble(ShellElements(mesh, material, BendingModel::shape_operator, 4), flat_state(mesh),
-               meshes::coned(mesh.pattern, curvature), Order::energy);
+  const Assembled a = assemble(ShellElements(mesh, material, BendingLaw()), flat_state(mesh),
+                               meshes::coned(mesh.pattern, curvature), Order::energy);
   return a.bending / (material.bending_stiffness() / 2 * curvature * curvature * angle);
 }
 
@@ -515,7 +513,7 @@ TEST(ShellElements, HingesDependOnMeshAndDirection) {
 TEST(ShellElements, PlasticCurvatureIsTheNewRest) {
   const ShellMesh mesh = meshes::delaunay(8, 8, 1, 1);
   for (const BendingModel model : {BendingModel::shape_operator, BendingModel::hinge}) {
-    const ShellElements elements(mesh, PaperMaterial(), model, 4);
+    const ShellElements elements(mesh, PaperMaterial(), BendingLaw{model});
     ShellState state = flat_state(mesh);
     const Eigen::MatrixX3d x = meshes::rolled(mesh.pattern, 0.2, 0.3);
     const double before = assemble(elements, state, x, Order::energy).bending;
@@ -532,7 +530,7 @@ TEST(ShellElements, DamageWeakensBending) {
   const ShellMesh mesh = meshes::grid(4, 4, 1, 1, true);
   PaperMaterial material;
   material.weakening = 3;
-  const ShellElements elements(mesh, material, BendingModel::shape_operator, 4);
+  const ShellElements elements(mesh, material, BendingLaw());
   ShellState state = flat_state(mesh);
   const Eigen::MatrixX3d x = meshes::rolled(mesh.pattern, 0.2, 0.3);
   const Assembled sound = assemble(elements, state, x, Order::energy);
@@ -544,7 +542,7 @@ TEST(ShellElements, DamageWeakensBending) {
 
 TEST(ShellElements, NodesBeginWithTheTriangle) {
   const ShellMesh mesh = meshes::delaunay(6, 6, 1, 1);
-  const ShellElements elements(mesh, PaperMaterial(), BendingModel::shape_operator, 4);
+  const ShellElements elements(mesh, PaperMaterial(), BendingLaw());
   ASSERT_EQ(elements.size(), mesh.triangle_count());
   for (int e = 0; e < elements.size(); ++e) {
     ASSERT_LE(elements.nodes(e).size(), static_cast<std::size_t>(ShellElements::kMostNodes));

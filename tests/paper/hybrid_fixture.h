@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "models/paper/handle_speed.h"
 #include "models/paper/sheet.h"
 #include "solvers/paper/hybrid_mesher.h"
 
@@ -139,8 +140,9 @@ inline void run_hybrid(const Sheet& sheet, const HybridOptions& options, std::ui
   stepper.set_mesh(state);
   for (int frame = 1; frame < sheet.frame_count(); ++frame) {
     const double start = sheet.frame_time(frame - 1);
-    const double dt = (sheet.frame_time(frame) - start) / sheet.substeps;
-    for (int i = 0; i < sheet.substeps; ++i) {
+    const int substeps = substeps_of_frame(sheet, start, sheet.frame_time(frame));
+    const double dt = (sheet.frame_time(frame) - start) / substeps;
+    for (int i = 0; i < substeps; ++i) {
       state.time = start + i * dt;
       stepper.step(state, dt, context);
     }

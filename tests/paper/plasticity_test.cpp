@@ -24,7 +24,7 @@ TEST(Plasticity, LeavesTheYieldCurvatureAsElasticPart) {
   ShellState state = sheets::at_rest(sheet, 200);
   const double yield = 40, curvature = 100;
   roll(state, curvature);
-  const ShellElements elements(state.mesh, sheet.material, BendingModel::shape_operator, 4);
+  const ShellElements elements(state.mesh, sheet.material, BendingLaw());
   const CurvatureFit fit = fit_curvature(state.mesh.pattern, state.mesh.triangles);
   const Eigen::MatrixX3d S = shape_operators(fit, state.x);
   EXPECT_EQ(flow_plastically(elements, yield, state), state.mesh.triangle_count());
@@ -43,7 +43,7 @@ TEST(Plasticity, DoesNothingBelowTheYieldCurvature) {
   Sheet sheet = sheets::free_sheet(0.06, 0.04);
   ShellState state = sheets::at_rest(sheet, 200);
   roll(state, 30);
-  const ShellElements elements(state.mesh, sheet.material, BendingModel::shape_operator, 4);
+  const ShellElements elements(state.mesh, sheet.material, BendingLaw());
   EXPECT_EQ(flow_plastically(elements, 40, state), 0);
   EXPECT_EQ(state.plastic_curvature.norm(), 0);
   EXPECT_EQ(state.damage.norm(), 0);
@@ -61,7 +61,7 @@ TEST(Plasticity, BentStripKeepsWhatExceedsTheYield) {
   options.plasticity = false;  // the sheet is let go at the yield, and its swing would exceed it
   ShellStepper stepper(sheet, options, 1);
   stepper.set_mesh(state);
-  const ShellElements elements(state.mesh, sheet.material, BendingModel::shape_operator, 4);
+  const ShellElements elements(state.mesh, sheet.material, BendingLaw());
   flow_plastically(elements, 40, state);
   const double before = stepper.energies(state).bending;
   sheets::advance(stepper, state, 0.01, 20);

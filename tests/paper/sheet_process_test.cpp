@@ -9,6 +9,7 @@
 #include "baselines/paper/adaptive.h"
 #include "baselines/paper/dense.h"
 #include "core/error.h"
+#include "models/paper/handle_speed.h"
 #include "models/paper/transfer.h"
 #include "models/paper/uniform_mesh.h"
 #include "tests/paper/recording.h"
@@ -48,6 +49,7 @@ Sheet bent_square() {
   sheet.duration = 0.2;
   sheet.frame_interval = 0.04;
   sheet.substeps = 4;
+  sheet.handle_step = 1;
   return sheet;
 }
 
@@ -96,6 +98,48 @@ TEST(SheetProcess, RecordsTheStartAndThenAFrameAnInterval) {
   }
   // Bringing the edges together bends the sheet: that takes work.
   EXPECT_GT(r.frames[5].diagnostics.at("handle_work"), 0);
+}
+
+TEST(HandleSpeed, IsThatOfTheFastestPointThatHolds) {
+  Sheet sheet = bent_square();
+  // A patch that turns by a right angle within 0.1 s: its rim at 2 cm goes pi/2 * 0.02 m.
+  Handle patch;
+  patch.points = {Eigen::Vector2d::Zero()};
+  patch.disc_radius = 0.02;
+  Keyframe turned = key(0.1, {0, 0, 0});
+  turned.turn = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
+  patch.motion = Trajectory{{key(0, {0, 0, 0}), turned}};
+  sheet.handles = {patch};
+  const double way = std::numbers::pi / 2 * 0.02;
+  // From rest to rest by a cubic: at most 3/2 of the mean speed, half-way.
+  EXPECT_NEAR(handle_speed(sheet, 0, 0.1, 200), 1.5 * way / 0.1, 1e-4);
+  EXPECT_EQ(handle_speed(sheet, 0.2, 0.3, 4), 0);
+  // While it does not hold the sheet it goes where it likes.
+  sheet.handles[0].active = {{0.5, 1}};
+  EXPECT_EQ(handle_speed(sheet, 0, 0.1, 4), 0);
+}
+
+TEST(HandleSpeed, DecidesHowManyStepsAFrameHas) {
+  Sheet sheet = bent_square();
+  sheet.handle_step = 1e-3;
+  // 0.02 m in 0.2 s, from rest to rest: in the middle frame 0.04 s at close to 0.15 m/s.
+  const int middle = substeps_of_frame(sheet, 0.08, 0.12);
+  EXPECT_GE(middle, 6);
+  EXPECT_LE(middle, 7);
+  EXPECT_EQ(substeps_of_frame(sheet, 0.2, 0.24), sheet.substeps) << "at rest";
+  sheet.handle_step = 1e-12;
+  EXPECT_EQ(substeps_of_frame(sheet, 0.08, 0.12), 1000) << "within reason";
+}
+
+TEST(SheetProcess, TakesMoreStepsWhereHandlesAreFast) {
+  Sheet sheet = bent_square();
+  sheet.handle_step = 1e-3;
+  const Recording r = run(*dense(sheet));
+  for (std::size_t f = 1; f < r.frames.size(); ++f) {
+    EXPECT_EQ(r.frames[f].diagnostics.at("substeps"),
+              substeps_of_frame(sheet, r.frames[f - 1].parameter, r.frames[f].parameter));
+  }
+  EXPECT_GT(r.frames[3].diagnostics.at("substeps"), sheet.substeps);
 }
 
 TEST(SheetProcess, PutsHandlesWhereTheirTrajectoriesAre) {

@@ -2,11 +2,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>  // NOLINT: POSIX, not <csignal>
 
 #include <Eigen/Geometry>
+#include <cerrno>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <string>
 
@@ -176,15 +179,20 @@ TEST(Names, AreWrittenForReaders) {
 TEST(Display, IsOursAndEndsWithItsObject) {
   const char* before = std::getenv("DISPLAY");
   const std::string old = before != nullptr ? before : "";
-  std::string ours;
+  pid_t server = 0;
   {
     const Display display;
-    ours = std::getenv("DISPLAY");
+    const std::string ours = std::getenv("DISPLAY");
     EXPECT_NE(ours, old);
+    std::ifstream lock("/tmp/.X" + ours.substr(1) + "-lock");
+    ASSERT_TRUE(lock >> server);
+    EXPECT_EQ(::kill(server, 0), 0);
   }
   const char* after = std::getenv("DISPLAY");
   EXPECT_EQ(after != nullptr ? after : "", old);
-  EXPECT_FALSE(fs::exists("/tmp/.X11-unix/X" + ours.substr(1)));
+  // Not its socket: a test beside this one may have taken the number by now.
+  EXPECT_NE(::kill(server, 0), 0);
+  EXPECT_EQ(errno, ESRCH);
 }
 
 Part make_sphere(double radius, int rings) {
@@ -321,6 +329,73 @@ TEST(Panel, EdgesOverlaysAndBothSidesOfPaperAreSeen) {
   window.right = {-1, 0, 0};
   const Picture back = draw_panel({{&part}, {}, {}}, window, style, 200, 200);
   EXPECT_GT(blueness(back.at(60, 80)), blueness(plain.at(60, 80)) + 0.05) << "the back is cooler";
+}
+
+/// Two squares that meet at `degrees` along the picture's direction `axis_degrees`, the sheet
+/// turned by `tilt_degrees` about the picture's horizontal.
+Part folded_sheet(double degrees, double axis_degrees, double tilt_degrees) {
+  const auto turn = [](double angle, const Eigen::Vector3d& axis) {
+    return Eigen::AngleAxisd(angle * std::numbers::pi / 180, axis).toRotationMatrix();
+  };
+  Part part;
+  part.points.resize(6, 3);
+  part.points << -1, -1, 0, -1, 1, 0, 0, -1, 0, 0, 1, 0, 1, -1, 0, 1, 1, 0;
+  part.triangles.resize(4, 3);
+  part.triangles << 0, 2, 1, 1, 2, 3, 2, 4, 3, 3, 4, 5;
+  const Eigen::Matrix3d whole =
+      turn(tilt_degrees, Eigen::Vector3d::UnitX()) * turn(axis_degrees, Eigen::Vector3d::UnitZ());
+  for (int i = 0; i < 6; ++i) {
+    const double side = i < 2 ? 0.5 : i < 4 ? 0.0 : -0.5;
+    const Eigen::Matrix3d own = turn(side * degrees, Eigen::Vector3d::UnitY());
+    part.points.row(i) = (whole * own * part.points.row(i).transpose()).transpose();
+  }
+  return part;
+}
+
+/// The largest difference of a channel between two pixels.
+int contrast(const Rgb& a, const Rgb& b) {
+  int largest = 0;
+  for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(a[c] - b[c]));
+  return largest;
+}
+
+/// Tones between the two sides of folds of ten degrees: about axes all round, on sheets that face
+/// the eye and that are turned away from it, in ascending order.
+std::vector<int> fold_contrasts(const PanelStyle& style) {
+  std::vector<int> contrasts;
+  for (const double tilt : {-40.0, 0.0, 40.0}) {
+    for (const double axis : {0.0, 30.0, 60.0, 90.0, 120.0, 150.0}) {
+      const Part sheet = folded_sheet(10, axis, tilt);
+      const Picture picture = draw_panel({{&sheet}, {}, {}}, above(), style, 200, 200);
+      const auto at = [&](double x) {  // half a metre to the side of the fold, in pixels
+        const double angle = axis * std::numbers::pi / 180;
+        const double height = std::sin(angle) * std::cos(tilt * std::numbers::pi / 180);
+        return picture.at(100 + static_cast<int>(50 * x * std::cos(angle)),
+                          100 - static_cast<int>(50 * x * height));
+      };
+      contrasts.push_back(contrast(at(-0.5), at(0.5)));
+    }
+  }
+  std::sort(contrasts.begin(), contrasts.end());
+  return contrasts;
+}
+
+// Two even areas beside each other are told apart from about two of 255 tones on. One light leaves
+// a fold about the axis that points at it even; Lambert's law bounds the median by 2/pi times the
+// range of tones over the range of angles, about 15.
+TEST(Panel, PlainPaperShowsAFoldOfTenDegrees) {
+  const Display display;
+  PanelStyle style;
+  style.material = PanelStyle::Material::paper;
+  style.flat = true;
+  const std::vector<int> usual = fold_contrasts(style);
+  style.raking = true;
+  const std::vector<int> raking = fold_contrasts(style);
+  const std::size_t half = raking.size() / 2;
+  EXPECT_GE(raking.front(), 2) << "every fold is seen";
+  EXPECT_GE(raking[raking.size() / 6], 4);
+  EXPECT_GE(raking[half], 10);
+  EXPECT_GT(raking[half], usual[half]) << "better than under the light of coloured panels";
 }
 
 TEST(Panel, AnObstacleIsTranslucentAndMayReachOutOfTheWindow) {
@@ -564,6 +639,31 @@ TEST(Blocks, RowsAboveAndBelowTakeTheirOrderAndNames) {
   EXPECT_EQ(blocks[2].rows[0].label.substr(0, 5), "Again");
   EXPECT_FALSE(blocks[2].rows[0].has_headings);
   EXPECT_NEAR(blocks[2].look.window.direction.y(), -1, 1e-12);
+}
+
+// Plain panels have neither the colours nor the legend; they are under the others, and beside them
+// where these are one column.
+TEST(Blocks, PlainPanelsAreUnderTheOthersOrBesideASingleColumn) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  const Display display;
+  const auto size_of = [&](bool plain, const std::vector<std::string>& variants) {
+    FigureView view;
+    view.plain = plain;
+    view.color_by = "height";
+    view.variants = variants;
+    view.parameters = {0, 90};
+    const Picture picture = draw_figure(make_blocks(OpenedRun(folder.path, record), view));
+    return std::pair{picture.width, picture.height};
+  };
+  const auto [width, height] = size_of(false, {});
+  const auto [wide, high] = size_of(true, {});
+  EXPECT_EQ(wide, width);
+  EXPECT_GT(high, 1.5 * height) << "two rows more";
+  const auto [narrow, low] = size_of(false, {"first-box"});
+  const auto [beside, still_low] = size_of(true, {"first-box"});
+  EXPECT_GT(beside, 1.8 * narrow);
+  EXPECT_EQ(still_low, low);
 }
 
 TEST(Blocks, ARowAboveOfAnInputIsTakenFromTheRunOfThatContent) {

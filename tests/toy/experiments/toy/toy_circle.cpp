@@ -209,6 +209,10 @@ Topic circle_topic() {
     return std::make_shared<CircleScene>(
         dynamic_cast<const TypedOptions<CircleSceneOptions>&>(set).options);
   };
+  topic.last_parameter = [](const OptionSet& set) {
+    const auto& motion = dynamic_cast<const TypedOptions<CircleSceneOptions>&>(set).options.motion;
+    return LastParameter{motion.to_deg, "deg"};
+  };
   topic.methods = circle_methods();
   topic.metrics = circle_metrics();
   topic.diagnostics = {{"evaluations", "1", "points of the rim", true, {0.5, 0}}};

@@ -1,0 +1,108 @@
+// How many d-cones dense runs of one scene have, from seed to seed, and whether the hybrid's lie
+// among them.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "baselines/paper/dense.h"
+#include "experiments/paper/measures.h"
+#include "experiments/paper/topic.h"
+#include "solvers/paper/hybrid.h"
+#include "testbed/home.h"
+#include "testbed/runner/spec.h"
+#include "tests/paper/recording.h"
+
+namespace geoprior::paper {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// GEOPRIOR_LONG asks for all scenes, ten seeds and 4,096 triangles.
+bool is_long() { return std::getenv("GEOPRIOR_LONG") != nullptr; }
+
+struct Plan {
+  std::vector<std::string> scenes;
+  int seeds = 2;
+  int triangles = 300;
+};
+
+Plan plan() {
+  if (!is_long()) return {{"bend"}, 2, 300};
+  return {{"bend", "bend-pinch", "rigidity", "four-handles-finger", "cylinder-crush",
+           "dense-adaptive-hybrid", "twist", "a4-pinch", "star", "on-ball", "fast-hands"},
+          10,
+          4096};
+}
+
+std::shared_ptr<const PaperScene> load(const std::string& id) {
+  const fs::path file = geoprior_home() / "experiments" / "paper" / (id + ".toml");
+  const Experiment experiment = load_experiment(file, {make_topic()}, {});
+  const CaseSpec& first = experiment.cases[0];
+  return std::dynamic_pointer_cast<const PaperScene>(
+      make_topic().load(*first.scene, file.parent_path(), first.seed));
+}
+
+/// D-cones that the metric finds in the last frame of a run.
+int cones_at_the_end(const PaperScene& scene, Process& process, std::uint64_t seed) {
+  Recording recording;
+  RunContext context(seed);
+  process.run(recording, context, {});
+  return crease_measures(sheet_frame(scene, recording.frames.back())).cones;
+}
+
+int dense_cones(const PaperScene& scene, int triangles, std::uint64_t seed) {
+  DenseOptions options;
+  options.triangles = triangles;
+  return cones_at_the_end(scene, *make_dense_sheet(scene.sheet, options), seed);
+}
+
+int hybrid_cones(const PaperScene& scene, std::uint64_t seed) {
+  return cones_at_the_end(scene, *make_hybrid_sheet(scene.sheet, {}), seed);
+}
+
+std::string text(const std::vector<int>& counts) {
+  std::string all;
+  for (const int count : counts) all += (all.empty() ? "" : " ") + std::to_string(count);
+  return all;
+}
+
+TEST(LongDenseSpread, HybridHasAsManyDConesAsSomeDenseRun) {
+  const Plan wanted = plan();
+  for (const std::string& id : wanted.scenes) {
+    const auto scene = load(id);
+    std::vector<int> dense, hybrid;
+    for (int seed = 1; seed <= wanted.seeds; ++seed) {
+      dense.push_back(dense_cones(*scene, wanted.triangles, static_cast<std::uint64_t>(seed)));
+      hybrid.push_back(hybrid_cones(*scene, static_cast<std::uint64_t>(seed)));
+    }
+    std::printf("%-24s dense %s | hybrid %s\n", id.c_str(), text(dense).c_str(),
+                text(hybrid).c_str());
+    std::fflush(stdout);
+    std::sort(hybrid.begin(), hybrid.end());
+    const int median = hybrid[hybrid.size() / 2];
+    const auto [least, most] = std::minmax_element(dense.begin(), dense.end());
+    EXPECT_GE(median, *least) << id;
+    EXPECT_LE(median, *most) << id;
+  }
+}
+
+// Whether 4,096 triangles are enough to say so.
+TEST(LongDenseSpread, TwiceTheTrianglesHaveAsManyDCones) {
+  if (!is_long()) GTEST_SKIP() << "8,192 triangles: with GEOPRIOR_LONG";
+  for (const char* id : {"bend-pinch", "cylinder-crush", "a4-pinch"}) {
+    const auto scene = load(id);
+    const int coarse = dense_cones(*scene, 4096, 1), fine = dense_cones(*scene, 8192, 1);
+    std::printf("%-24s 4,096 triangles %d, 8,192 %d\n", id, coarse, fine);
+    EXPECT_LE(std::abs(fine - coarse), 1) << id;
+  }
+}
+
+}  // namespace
+}  // namespace geoprior::paper
