@@ -3,6 +3,7 @@
 #include <algorithm>
 
 namespace geoprior::paper {
+
 std::vector<double> motion_times(const Sheet& sheet) {
   std::vector<double> ends{0, sheet.duration};
   for (const Handle& handle : sheet.handles) {

@@ -19,7 +19,7 @@ std::vector<MovingAnchor> moving_anchors(const Sheet& sheet) {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     for (const Eigen::Vector2d& p : sheet.handles[i].anchors()) {
       const Eigen::Vector3d rest = sheet.placement * Eigen::Vector3d(p.x(), p.y(), 0);
-      anchors.push_back({i, p, rest, {}});
+      anchors.push_back({i, p, rest, rest});
       centre += rest;
     }
     centre /= static_cast<double>(anchors.size() - first);

@@ -390,6 +390,14 @@ void HybridMesher::project(const Sheet& sheet, int effort, ShellState& state, Ru
       state, {effort * options_.projection_iterations, options_.projection_strain});
 }
 
+/// The projection puts the new mesh where it is isometric, not where it is at rest: without these
+/// steps the frame would record, and the next one would set free, the energy of that difference.
+void HybridMesher::settle(const Sheet& /*sheet*/, ShellStepper& stepper, ShellState& state,
+                          RunContext& context) {
+  const Phase phase(context, "settle");
+  for (int i = 0; i < options_.settle_steps; ++i) stepper.relax(state, options_.settle_time);
+}
+
 void HybridMesher::annotate(const ShellState& state, Frame& frame) const {
   add_structure(structure_, mesh_, state, frame);
   frame.diagnostics["new_rulings"] = events_.new_rulings;
@@ -533,6 +541,10 @@ void describe_tracking(OptionVisitor& v, HybridOptions& o) {
           {.doc = "iterations of the projection then, in those of a usual frame",
            .min = 1,
            .max = 1000});
+  v.value("settle_steps", o.settle_steps,
+          {.doc = "implicit steps from rest that a new mesh settles for", .min = 0, .max = 1000});
+  v.value("settle_time", o.settle_time,
+          {.doc = "length of such a step", .unit = "s", .min = 1e-9, .max = 10});
   v.value("weakening_radius", o.weakening_radius,
           {.doc = "r_p about a singular point, where the sheet yields",
            .unit = "m",

@@ -45,6 +45,8 @@ struct HybridOptions {
   double accepted_strain = 4e-3;
   int attempts = 3;                ///< in such a frame
   int last_iterations = 8;         ///< of the projection then, in those of a usual frame
+  int settle_steps = 3;            ///< implicit steps from rest after every new mesh
+  double settle_time = 1e-3;       ///< length of each (s)
   double weakening_radius = 4e-3;  ///< r_p about a singular point (m)
   StepperOptions stepper;
 };

@@ -22,6 +22,8 @@ class HybridMesher final : public SheetMesher {
   [[nodiscard]] ShellState start(const Sheet& sheet, RunContext& context) override;
   bool adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
              RunContext& context) override;
+  void settle(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
+              RunContext& context) override;
   void annotate(const ShellState& state, Frame& frame) const override;
   void save(StateWriter& out) const override;
   void load(StateReader& in) override;

@@ -45,7 +45,7 @@ void add_light(vtkRenderer* renderer, const std::array<double, 3>& from, double 
 void add_raking_lights(vtkRenderer* renderer) {
   add_light(renderer, {-1.0, 0.8, 0.55}, 0.95, {1.0, 0.965, 0.915});
   add_light(renderer, {0.9, 0.55, 0.55}, 0.60, {0.83, 0.88, 1.0});
-  add_light(renderer, {0.1, -1.0, 0.4}, 0.28, {1.0, 0.95, 0.90});
+  add_light(renderer, {0.1, -1.0, 0.4}, 0.36, {1.0, 0.95, 0.90});
 }
 
 /// Paper gets a raking key and less fill: a fold is a change of tone, and there is little else to
