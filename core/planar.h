@@ -25,6 +25,20 @@ inline double signed_angle(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return std::atan2(cross(a, b), a.dot(b));
 }
 
+/// Constrained Delaunay triangulation of the ground between closed loops.
+///
+/// @param points    n x 2, no two equal
+/// @param loops     closed chains of points: the outer one counter-clockwise, holes clockwise, so
+///                  that the ground is on the left of each
+/// @param segments  pairs of points in the ground: edges of the result, as those of the loops are.
+///                  Segments do not cross, and no point lies inside a segment.
+/// @return          counter-clockwise triangles, in an order that the input alone decides
+/// @throws Error    when two points coincide or two segments cross (names them)
+/// Source: CGAL, 2D triangulations.
+Eigen::MatrixX3i constrained_delaunay(const Eigen::MatrixX2d& points,
+                                      const std::vector<std::vector<int>>& loops,
+                                      const std::vector<Eigen::Vector2i>& segments);
+
 /// Constrained Delaunay triangulation of the inside of a closed chain of segments.
 ///
 /// @param points    n x 2, no two equal

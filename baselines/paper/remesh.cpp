@@ -87,7 +87,7 @@ void Remesher::classify(const Sheet& sheet) {
       vertices[t.vertex[(k + 1) % 3]].kind = Kind::side;
     }
   }
-  std::vector<Vector2d> fixed = sheet.pattern.border;
+  std::vector<Vector2d> fixed = corners(sheet.pattern);
   for (const Handle& handle : sheet.handles) {
     const std::vector<Vector2d> anchors = handle.anchors();
     fixed.insert(fixed.end(), anchors.begin(), anchors.end());

@@ -69,11 +69,8 @@ std::shared_ptr<const CurvatureFit> fit_of(FitMemo& fits, const SheetFrame& f) {
 
 /// A square grid inside the pattern, off its corners and lines of symmetry.
 std::vector<Eigen::Vector2d> motion_samples(const Pattern& pattern) {
-  Eigen::Vector2d low = pattern.border.front(), high = low;
-  for (const Eigen::Vector2d& p : pattern.border) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+  const Eigen::AlignedBox2d box = bounding_box(pattern);
+  const Eigen::Vector2d low = box.min(), high = box.max();
   const double spacing = width(pattern) / kMotionSamples;
   std::vector<Eigen::Vector2d> samples;
   for (double v = low.y() + 0.37 * spacing; v < high.y(); v += spacing) {

@@ -11,6 +11,7 @@ namespace geoprior::paper {
 namespace {
 
 bool is_convex(const Pattern& pattern) {
+  if (!pattern.holes.empty()) return false;
   const std::size_t n = pattern.border.size();
   const double tolerance = 1e-12 * width(pattern) * width(pattern);
   for (std::size_t i = 0; i < n; ++i) {

@@ -69,17 +69,17 @@ Obstacle make_obstacle(const ObstacleOptions& options, const std::string& where)
   return obstacle;
 }
 
-/// Corners in the order of the file, either way round: errors number them so.
-Pattern polygon_pattern(const std::vector<PatternPointOptions>& points) {
-  Pattern pattern, mirrored;
-  for (const PatternPointOptions& p : points) {
-    pattern.border.emplace_back(p.u, p.v);
-    mirrored.border.emplace_back(-p.u, p.v);
-  }
-  const bool clockwise = signed_area(pattern) < 0;
-  require_simple(clockwise ? mirrored : pattern, "scene.pattern");
-  if (clockwise) std::reverse(pattern.border.begin(), pattern.border.end());
-  return pattern;
+std::vector<Eigen::Vector2d> loop_of(const std::vector<PatternPointOptions>& points) {
+  std::vector<Eigen::Vector2d> loop;
+  for (const PatternPointOptions& p : points) loop.emplace_back(p.u, p.v);
+  return loop;
+}
+
+/// With the holes of the file. Corners are in its order, either way round: errors number them so.
+Pattern with_holes(Pattern pattern, const std::vector<HoleOptions>& holes) {
+  for (const HoleOptions& hole : holes) pattern.holes.push_back(loop_of(hole.points));
+  require_simple_loops(pattern, "scene.pattern");
+  return oriented(std::move(pattern));
 }
 
 /// The waves of the start may dip into an obstacle that the flat sheet only touches.
@@ -104,16 +104,14 @@ Pattern make_pattern(const PatternOptions& options, const fs::path& folder,
                      std::vector<fs::path>& files) {
   switch (options.kind) {
     case PatternKind::rectangle:
-      return rectangle_pattern(options.width, options.height);
+      return with_holes(rectangle_pattern(options.width, options.height), options.holes);
     case PatternKind::disc:
-      return disc_pattern(options.radius, options.corners);
+      return with_holes(disc_pattern(options.radius, options.corners), options.holes);
     case PatternKind::polygon:
-      return polygon_pattern(options.points);
+      return with_holes({loop_of(options.points)}, options.holes);
     case PatternKind::svg: {
       files.push_back(find_file(options.file, folder, "experiments/paper", "scene.pattern.file"));
-      Pattern pattern = read_svg_pattern(files.back(), options.svg);
-      require_simple(pattern, "scene.pattern.file: " + files.back().string());
-      return pattern;
+      return read_svg_pattern(files.back(), options.svg);
     }
   }
   throw Error("unknown kind of pattern", "scene.pattern", "rectangle, disc, polygon, svg");
@@ -124,7 +122,7 @@ Pattern make_pattern(const PatternOptions& options, const fs::path& folder,
 std::map<std::string, double> PaperScene::facts() const {
   return {{"pattern_area", signed_area(sheet.pattern)},
           {"pattern_width", width(sheet.pattern)},
-          {"pattern_corners", static_cast<double>(sheet.pattern.border.size())},
+          {"pattern_corners", static_cast<double>(corners(sheet.pattern).size())},
           {"handles", static_cast<double>(sheet.handles.size())},
           {"obstacles", static_cast<double>(sheet.obstacles.size())},
           {"frames", static_cast<double>(sheet.frame_count())},

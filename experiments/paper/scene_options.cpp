@@ -12,11 +12,16 @@ void describe(OptionVisitor& v, PatternPointOptions& options) {
   v.value("v", options.v, {.doc = "second coordinate", .unit = "m", .required = true});
 }
 
+void describe(OptionVisitor& v, HoleOptions& options) {
+  describe_list(v, "points", options.points,
+                {.doc = "corners in order, either way round", .required = true});
+}
+
 void describe(OptionVisitor& v, PatternOptions& options) {
   static constexpr std::array<std::string_view, 4> kKinds{"rectangle", "disc", "polygon", "svg"};
   describe_choice(v, "kind", options.kind, kKinds,
                   {.doc = "rectangle: width, height; disc: radius, corners; polygon: points; svg: "
-                          "file, path, unit_m, tolerance, centred"});
+                          "file, path, unit_m, tolerance, centred; holes of all but svg"});
   switch (options.kind) {
     case PatternKind::rectangle:
       v.value("width", options.width,
@@ -35,13 +40,21 @@ void describe(OptionVisitor& v, PatternOptions& options) {
       break;
     case PatternKind::svg:
       v.value("file", options.file, {.doc = "SVG file", .required = true});
-      v.value("path", options.svg.path, {.doc = "id of the path; absent: the only one"});
+      v.value("path", options.svg.path,
+              {.doc = "id of the path, polygon, polyline, rect, circle or ellipse, its subpaths "
+                      "border and holes; absent: the only one"});
       v.value("unit_m", options.svg.unit_m,
-              {.doc = "metres for one user unit", .unit = "m", .min = 1e-9, .max = kLargest});
+              {.doc = "metres for one unit of the outermost viewBox",
+               .unit = "m",
+               .min = 1e-9,
+               .max = kLargest});
       v.value("tolerance", options.svg.tolerance,
               {.doc = "largest distance of a curve from its chords", .unit = "m", .min = 1e-9});
-      v.value("centred", options.svg.centred, {.doc = "middle of the path's box at the origin"});
+      v.value("centred", options.svg.centred, {.doc = "middle of the shape's box at the origin"});
       break;
+  }
+  if (options.kind != PatternKind::svg) {
+    describe_list(v, "holes", options.holes, {.doc = "polygons that are cut out of it"});
   }
 }
 

@@ -18,6 +18,12 @@ struct PatternPointOptions {
 };
 void describe(OptionVisitor& v, PatternPointOptions& options);
 
+/// One of `holes` of a pattern.
+struct HoleOptions {
+  std::vector<PatternPointOptions> points;
+};
+void describe(OptionVisitor& v, HoleOptions& options);
+
 enum class PatternKind { rectangle, disc, polygon, svg };
 
 /// `pattern`: a tagged choice, `kind` selects which of the others are described.
@@ -28,6 +34,7 @@ struct PatternOptions {
   double radius = 0.1;    ///< disc (m)
   int corners = 96;
   std::vector<PatternPointOptions> points;  ///< polygon
+  std::vector<HoleOptions> holes;           ///< of rectangle, disc and polygon
   std::string file;                         ///< svg
   SvgPatternOptions svg;
 };

@@ -1,14 +1,12 @@
 #include "experiments/paper/svg_pattern.h"
 
 #include <algorithm>
-#include <pugixml.hpp>
-#include <string_view>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
-#include "experiments/paper/svg_outline.h"
-#include "testbed/formats/atomic_file.h"
-#include "testbed/formats/nesting.h"
+#include "testbed/formats/svg_document.h"
 
 namespace geoprior::paper {
 namespace {
@@ -17,91 +15,132 @@ namespace {
 const std::string kFileKey = "scene.pattern.file: ";
 const std::string kPathKey = "scene.pattern.path: ";
 
-/// Element name without namespace prefix.
-std::string_view local_name(const pugi::xml_node& node) {
-  const std::string_view name = node.name();
-  const std::size_t colon = name.find(':');
-  return colon == std::string_view::npos ? name : name.substr(colon + 1);
+constexpr const char* kShapes = "path, polygon, polyline, rect, circle, ellipse";
+
+/// Height of a box about a line's points, over its length, under which they lie on a line.
+constexpr double kFlattest = 1e-6;
+
+SvgDocument read_drawing(const std::filesystem::path& file, const SvgPatternOptions& options) {
+  SvgReadOptions read;
+  read.tolerance = options.tolerance;
+  read.unit_m = options.unit_m;
+  try {
+    return read_svg_document(file, read);
+  } catch (const Error& error) {
+    throw Error(kFileKey + error.what());
+  }
 }
 
-std::vector<pugi::xml_node> paths_of(pugi::xml_document& document) {
-  struct Walker : pugi::xml_tree_walker {
-    std::vector<pugi::xml_node> found;
-    bool for_each(pugi::xml_node& node) override {
-      if (local_name(node) == "path") found.push_back(node);
-      return true;
-    }
-  } walker;
-  document.traverse(walker);
-  return walker.found;
-}
+/// A line encloses nothing, whatever it is filled with.
+bool encloses(const SvgShape& shape) { return shape.element != "line"; }
 
-std::string ids_of(const std::vector<pugi::xml_node>& paths) {
+std::string ids_of(const std::vector<const SvgShape*>& shapes) {
+  constexpr std::size_t kMostIds = 20;
   std::string list;
-  for (const pugi::xml_node& path : paths) {
-    const std::string id = path.attribute("id").value();
-    list += (list.empty() ? "" : ", ") + (id.empty() ? "(a path without id)" : id);
+  for (std::size_t i = 0; i < std::min(shapes.size(), kMostIds); ++i) {
+    const std::string& id = shapes[i]->tags.id;
+    list += (list.empty() ? "" : ", ") +
+            (id.empty() ? "(a " + shapes[i]->element + " without id)" : id);
   }
-  return list;
+  return list + (shapes.size() > kMostIds ? ", …" : "");
 }
 
-pugi::xml_node choose_path(const std::vector<pugi::xml_node>& paths,
-                           const std::optional<std::string>& id, const std::string& file) {
-  if (paths.empty())
-    throw Error("has no path element", kFileKey + file, "an SVG file with a <path>");
+const SvgShape& choose_shape(const SvgDocument& drawing, const std::optional<std::string>& id) {
+  std::vector<const SvgShape*> shapes, named;
+  for (const SvgShape& shape : drawing.shapes) {
+    if (encloses(shape)) shapes.push_back(&shape);
+    if (id && shape.tags.id == *id) named.push_back(&shape);
+  }
+  if (!id && shapes.size() == 1) return *shapes[0];
+  if (shapes.empty() && named.empty()) {
+    throw Error("draws no shape that encloses anything", kFileKey + drawing.name, kShapes);
+  }
   if (!id) {
-    if (paths.size() == 1) return paths[0];
-    throw Error(std::to_string(paths.size()) + " paths, and 'path' names none", kPathKey + file,
-                ids_of(paths));
+    throw Error(std::to_string(shapes.size()) + " shapes, and 'path' names none",
+                kPathKey + drawing.name, ids_of(shapes));
   }
-  const auto found = std::find_if(paths.begin(), paths.end(), [&](const pugi::xml_node& path) {
-    return *id == path.attribute("id").value();
-  });
-  if (found == paths.end())
-    throw Error("no path with id '" + *id + "'", kPathKey + file, ids_of(paths));
-  return *found;
+  if (named.empty())
+    throw Error("no shape with id '" + *id + "'", kPathKey + drawing.name, ids_of(shapes));
+  if (named.size() > 1) {
+    throw Error("'" + *id + "' is drawn " + std::to_string(named.size()) + " times",
+                kPathKey + drawing.name, "a shape that is drawn once");
+  }
+  if (!encloses(*named[0])) {
+    throw Error("a line encloses nothing",
+                kPathKey + drawing.place(named[0]->element, named[0]->tags), kShapes);
+  }
+  return *named[0];
 }
 
-void require_no_transform(const pugi::xml_node& path, const std::string& where) {
-  for (pugi::xml_node node = path; node; node = node.parent()) {
-    if (!node.attribute("transform")) continue;
-    throw Error("has a transform on <" + std::string(node.name()) + ">, which is not applied",
-                where, "path data in the coordinates of the drawing");
+/// Whether the points lie on a line, by the axes of their moments of inertia.
+bool is_flat(const std::vector<Eigen::Vector2d>& points) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& p : points) mean += p / static_cast<double>(points.size());
+  double xx = 0, xy = 0, yy = 0;
+  for (const Eigen::Vector2d& p : points) {
+    const Eigen::Vector2d d = p - mean;
+    xx += d.x() * d.x();
+    xy += d.x() * d.y();
+    yy += d.y() * d.y();
+  }
+  const double large = (xx + yy) / 2 + std::hypot((xx - yy) / 2, xy);
+  return xx * yy - xy * xy <= kFlattest * kFlattest * large * large;
+}
+
+std::vector<Eigen::Vector2d> closed_loop(const SvgSubpath& line, const std::string& where) {
+  std::vector<Eigen::Vector2d> loop = line.points;
+  loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
+  while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
+  const std::string here =
+      where + (line.character > 0 ? ", character " + std::to_string(line.character) : "");
+  if (loop.size() < 3) throw Error("the outline has fewer than three points", here, "an area");
+  if (is_flat(loop)) {
+    throw Error("the outline is flattened to a line", here,
+                "an outline with area, and transforms that leave it one");
+  }
+  return loop;
+}
+
+/// The loop of the largest area is the border, the others are holes in their order.
+Pattern loops_of(const SvgShape& shape, const std::string& where) {
+  if (shape.lines.empty())
+    throw Error("has no extent or no data, and draws nothing", where, "an outline with area");
+  std::size_t points = 0;
+  for (const SvgSubpath& line : shape.lines) points += line.points.size();
+  // A closed line may name its first point again.
+  if (points > kMostCorners + shape.lines.size())
+    throw Error("the outline has too many corners", where, std::to_string(kMostCorners));
+  Pattern pattern;
+  for (const SvgSubpath& line : shape.lines) pattern.holes.push_back(closed_loop(line, where));
+  const auto area = [](const std::vector<Eigen::Vector2d>& loop) {
+    return std::abs(signed_area({loop}));
+  };
+  const auto largest =
+      std::max_element(pattern.holes.begin(), pattern.holes.end(),
+                       [&](const auto& a, const auto& b) { return area(a) < area(b); });
+  pattern.border = std::move(*largest);
+  pattern.holes.erase(largest);
+  return pattern;
+}
+
+void move(Pattern& pattern, const Eigen::Vector2d& shift) {
+  for (Eigen::Vector2d& p : pattern.border) p += shift;
+  for (std::vector<Eigen::Vector2d>& hole : pattern.holes) {
+    for (Eigen::Vector2d& p : hole) p += shift;
   }
 }
 
 }  // namespace
 
 Pattern read_svg_pattern(const std::filesystem::path& file, const SvgPatternOptions& options) {
-  const std::string text = read_whole_file(file);
-  require_shallow_xml(text, kFileKey + file.string());
-  pugi::xml_document document;
-  const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
-  if (!parsed) {
-    throw Error("no valid XML: " + std::string(parsed.description()),
-                kFileKey + file.string() + ", byte " + std::to_string(parsed.offset),
-                "an SVG file");
-  }
-  const pugi::xml_node path = choose_path(paths_of(document), options.path, file.string());
-  const std::string id = path.attribute("id").value();
-  const std::string where =
-      kFileKey + file.string() + ": path" + (id.empty() ? "" : " '" + id + "'");
-  require_no_transform(path, where);
-  Pattern pattern;
-  pattern.border =
-      flatten_svg_path(path.attribute("d").value(), options.tolerance / options.unit_m, where);
-  Eigen::Vector2d low = pattern.border[0], high = low;
-  for (const Eigen::Vector2d& p : pattern.border) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const Eigen::Vector2d origin =
-      options.centred ? Eigen::Vector2d((low + high) / 2) : Eigen::Vector2d::Zero();
-  for (Eigen::Vector2d& p : pattern.border) {
-    p = options.unit_m * Eigen::Vector2d(p.x() - origin.x(), origin.y() - p.y());
-  }
-  if (signed_area(pattern) < 0) std::reverse(pattern.border.begin(), pattern.border.end());
-  return pattern;
+  const SvgDocument drawing = read_drawing(file, options);
+  const SvgShape& shape = choose_shape(drawing, options.path);
+  const std::string where = kFileKey + drawing.place(shape.element, shape.tags);
+  Pattern pattern = loops_of(shape, where);
+  require_simple_loops(pattern, where);
+  move(pattern, options.centred ? Eigen::Vector2d(-bounding_box(pattern).center())
+                                : Eigen::Vector2d(-drawing.user_origin));
+  return oriented(std::move(pattern));
 }
 
 }  // namespace geoprior::paper

@@ -51,10 +51,11 @@ class AnchorPlacer {
 
 Place AnchorPlacer::place(const BorderPoint& b) const {
   if (b.distance > tolerance_) return Place::inside;
-  for (const Vector2d& c : pattern_.border) {
-    if ((c - b.point).norm() <= tolerance_) return Place::corner;
-  }
-  return Place::side;
+  const std::vector<Vector2d> all = corners(pattern_);
+  return std::any_of(all.begin(), all.end(),
+                     [&](const Vector2d& c) { return (c - b.point).norm() <= tolerance_; })
+             ? Place::corner
+             : Place::side;
 }
 
 bool AnchorPlacer::may_move(int vertex, const Vector2d& to, const BorderPoint& border) const {

@@ -16,6 +16,8 @@ using Eigen::Vector2d;
 
 std::size_t next(std::size_t i, std::size_t n) { return i + 1 == n ? 0 : i + 1; }
 
+using Loop = std::vector<Vector2d>;
+
 std::string corner(const std::string& where, std::size_t i) {
   return where + " corner " + std::to_string(i);
 }
@@ -24,22 +26,24 @@ std::string edge(const std::string& where, std::size_t i) {
   return where + " edge " + std::to_string(i);
 }
 
-void require_finite(const Pattern& pattern, const std::string& where) {
-  if (pattern.border.size() < 3) {
-    throw Error("pattern has " + std::to_string(pattern.border.size()) + " corners", where,
-                "at least 3");
+/// The source of a loop: that of the pattern, and which hole.
+std::string place_of(const std::string& where, std::size_t loop) {
+  return loop == 0 ? where : where + " hole " + std::to_string(loop - 1);
+}
+
+void require_finite(const Loop& loop, const std::string& where) {
+  if (loop.size() < 3) {
+    throw Error("pattern has " + std::to_string(loop.size()) + " corners", where, "at least 3");
   }
-  require_count(static_cast<double>(pattern.border.size()), "corners", kMostCorners, where);
-  for (std::size_t i = 0; i < pattern.border.size(); ++i) {
-    if (!pattern.border[i].allFinite()) {
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    if (!loop[i].allFinite()) {
       throw Error("corner of the pattern is not finite", corner(where, i), "finite numbers");
     }
   }
 }
 
 /// No corner twice, no edge that turns back onto the one before, not all on one line.
-void require_distinct(const Pattern& pattern, const std::string& where) {
-  const std::vector<Vector2d>& p = pattern.border;
+void require_distinct(const Loop& p, const std::string& where) {
   const std::size_t n = p.size();
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
@@ -61,8 +65,7 @@ void require_distinct(const Pattern& pattern, const std::string& where) {
   }
 }
 
-void require_uncrossed(const Pattern& pattern, const std::string& where) {
-  const std::vector<Vector2d>& p = pattern.border;
+void require_uncrossed(const Loop& p, const std::string& where) {
   const std::size_t n = p.size();
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 2; j < n; ++j) {
@@ -78,11 +81,93 @@ void require_uncrossed(const Pattern& pattern, const std::string& where) {
 /// Area over the square of the diameter, below which the mesher's coordinates run out of digits.
 constexpr double kThinnest = 1e-6;
 
+/// Nearest that two loops come to each other, over the pattern's width: well above what rounding
+/// makes of loops that touch, and what the meshers take for one point.
+constexpr double kNearest = 1e-6;
+
+double loop_area(const Loop& p) {
+  double twice = 0;
+  // About the first corner, so that a pattern far from the origin loses no digits.
+  for (std::size_t i = 1; i + 1 < p.size(); ++i) twice += cross(p[i] - p[0], p[i + 1] - p[0]);
+  return twice / 2;
+}
+
+double loop_diameter(const Loop& p) {
+  double longest = 0;
+  for (const Vector2d& a : p) {
+    for (const Vector2d& b : p) longest = std::max(longest, (a - b).norm());
+  }
+  return longest;
+}
+
+void require_area(const Loop& p, const std::string& where) {
+  const double length = loop_diameter(p);
+  if (std::abs(loop_area(p)) < kThinnest * length * length) {
+    throw Error("pattern is too thin for its length", where,
+                "an area of at least 1e-6 of the square of its diameter");
+  }
+}
+
+double distance_to_edge(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
+  const Vector2d along = b - a;
+  const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (p - a - t * along).norm();
+}
+
+bool edges_are_near(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d,
+                    double distance) {
+  for (int k = 0; k < 2; ++k) {
+    if (std::max(a[k], b[k]) + distance < std::min(c[k], d[k])) return false;
+    if (std::max(c[k], d[k]) + distance < std::min(a[k], b[k])) return false;
+  }
+  return segments_meet(a, b, c, d) || distance_to_edge(a, c, d) < distance ||
+         distance_to_edge(b, c, d) < distance || distance_to_edge(c, a, b) < distance ||
+         distance_to_edge(d, a, b) < distance;
+}
+
+void require_apart(const Pattern& pattern, std::size_t k, std::size_t l, const std::string& where) {
+  const Loop &p = pattern.loop(k), &q = pattern.loop(l);
+  const double distance = kNearest * width(pattern);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    for (std::size_t j = 0; j < q.size(); ++j) {
+      const Vector2d &a = p[i], &b = p[next(i, p.size())], &c = q[j], &d = q[next(j, q.size())];
+      if (!edges_are_near(a, b, c, d, distance)) continue;
+      throw Error("edge crosses or touches edge " + std::to_string(i) + " of " +
+                      (k == 0 ? "the border" : "hole " + std::to_string(k - 1)),
+                  edge(place_of(where, l), j), "holes apart from the border and from each other");
+    }
+  }
+}
+
 /// Whether the border passes `p` upwards (+1) or downwards (-1) on its right along edge a b.
 int winding(const Vector2d& a, const Vector2d& b, const Vector2d& p) {
   if (a.y() <= p.y() && b.y() > p.y()) return orientation(a, b, p) > 0 ? 1 : 0;
   if (a.y() > p.y() && b.y() <= p.y()) return orientation(a, b, p) < 0 ? -1 : 0;
   return 0;
+}
+
+int turns_about(const Loop& loop, const Vector2d& p) {
+  int turns = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    turns += winding(loop[i], loop[next(i, loop.size())], p);
+  }
+  return turns;
+}
+
+/// Every hole in the border and in no other hole, of loops that do not meet.
+void require_nested(const Pattern& pattern, const std::string& where) {
+  for (std::size_t k = 0; k < pattern.holes.size(); ++k) {
+    const Vector2d& p = pattern.holes[k].front();
+    const std::string here = place_of(where, k + 1);
+    if (turns_about(pattern.border, p) == 0) {
+      throw Error("hole lies outside of the border", here, "one border, and holes in it");
+    }
+    for (std::size_t l = 0; l < pattern.holes.size(); ++l) {
+      if (l == k || turns_about(pattern.holes[l], p) == 0) continue;
+      throw Error("hole lies in hole " + std::to_string(l), here,
+                  "a sheet in one piece, without islands in its holes");
+    }
+  }
 }
 
 }  // namespace
@@ -108,67 +193,119 @@ Pattern disc_pattern(double radius, int corners) {
   return disc;
 }
 
+std::vector<Vector2d> corners(const Pattern& pattern) {
+  std::vector<Vector2d> all = pattern.border;
+  for (const Loop& hole : pattern.holes) all.insert(all.end(), hole.begin(), hole.end());
+  return all;
+}
+
+int next_edge(const Pattern& pattern, int edge) {
+  int first = 0;
+  for (std::size_t k = 0; k < pattern.loop_count(); ++k) {
+    const int n = static_cast<int>(pattern.loop(k).size());
+    if (edge < first + n) return edge + 1 == first + n ? first : edge + 1;
+    first += n;
+  }
+  throw Error("edge " + std::to_string(edge) + " is not there", "pattern",
+              "fewer than " + std::to_string(first));
+}
+
+Eigen::AlignedBox2d bounding_box(const Pattern& pattern) {
+  Eigen::AlignedBox2d box;
+  for (const Vector2d& p : pattern.border) box.extend(p);
+  return box;
+}
+
+Pattern oriented(Pattern pattern) {
+  if (loop_area(pattern.border) < 0) std::reverse(pattern.border.begin(), pattern.border.end());
+  for (Loop& hole : pattern.holes) {
+    if (loop_area(hole) > 0) std::reverse(hole.begin(), hole.end());
+  }
+  return pattern;
+}
+
+void require_simple_loops(const Pattern& pattern, const std::string& where) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < pattern.loop_count(); ++k) {
+    require_finite(pattern.loop(k), place_of(where, k));
+    count += pattern.loop(k).size();
+  }
+  require_count(static_cast<double>(count), "corners", kMostCorners, where);
+  for (std::size_t k = 0; k < pattern.loop_count(); ++k) {
+    require_distinct(pattern.loop(k), place_of(where, k));
+    require_uncrossed(pattern.loop(k), place_of(where, k));
+    require_area(pattern.loop(k), place_of(where, k));
+  }
+  for (std::size_t l = 1; l < pattern.loop_count(); ++l) {
+    for (std::size_t k = 0; k < l; ++k) require_apart(pattern, k, l, where);
+  }
+  require_nested(pattern, where);
+}
+
 void require_simple(const Pattern& pattern, const std::string& where) {
-  require_finite(pattern, where);
-  require_distinct(pattern, where);
-  require_uncrossed(pattern, where);
-  if (!(signed_area(pattern) > 0)) {
+  require_simple_loops(pattern, where);
+  if (!(loop_area(pattern.border) > 0)) {
     throw Error("border of the pattern runs clockwise", where, "counter-clockwise");
   }
-  const double length = diameter(pattern);
-  if (signed_area(pattern) < kThinnest * length * length) {
-    throw Error("pattern is too thin for its length", where,
-                "an area of at least 1e-6 of the square of its diameter");
+  for (std::size_t k = 0; k < pattern.holes.size(); ++k) {
+    if (loop_area(pattern.holes[k]) < 0) continue;
+    throw Error("hole of the pattern runs counter-clockwise", place_of(where, k + 1), "clockwise");
   }
 }
 
 double signed_area(const Pattern& pattern) {
-  double twice = 0;
-  const std::vector<Vector2d>& p = pattern.border;
-  // About the first corner, so that a pattern far from the origin loses no digits.
-  for (std::size_t i = 1; i + 1 < p.size(); ++i) twice += cross(p[i] - p[0], p[i + 1] - p[0]);
-  return twice / 2;
+  double area = loop_area(pattern.border);
+  for (const Loop& hole : pattern.holes) area += loop_area(hole);
+  return area;
 }
 
-double diameter(const Pattern& pattern) {
-  double longest = 0;
-  for (const Vector2d& a : pattern.border) {
-    for (const Vector2d& b : pattern.border) longest = std::max(longest, (a - b).norm());
-  }
-  return longest;
-}
+double diameter(const Pattern& pattern) { return loop_diameter(pattern.border); }
 
 double width(const Pattern& pattern) {
-  if (pattern.border.empty()) return 0;
-  Vector2d low = pattern.border.front(), high = low;
-  for (const Vector2d& p : pattern.border) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  return (high - low).maxCoeff();
+  return pattern.border.empty() ? 0 : bounding_box(pattern).sizes().maxCoeff();
 }
 
 bool contains(const Pattern& pattern, const Vector2d& p, double tolerance) {
   int turns = 0;
-  const std::size_t n = pattern.border.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    turns += winding(pattern.border[i], pattern.border[next(i, n)], p);
-  }
+  for (std::size_t k = 0; k < pattern.loop_count(); ++k) turns += turns_about(pattern.loop(k), p);
   return turns != 0 || nearest_on_border(pattern, p).distance <= tolerance;
+}
+
+std::optional<Vector2d> leaves_pattern(const Pattern& pattern, const Vector2d& a, const Vector2d& b,
+                                       double tolerance) {
+  const Vector2d along = b - a;
+  std::vector<double> stops{0, 1};
+  each_edge(pattern, [&](const Vector2d& c, const Vector2d& d) {
+    if (!segments_meet(a, b, c, d)) return;
+    // Edges on the segment's line begin and end on others that cross it, or at its ends.
+    for (const Vector2d& corner : {c, d}) {
+      if (distance_to_edge(corner, a, b) <= tolerance)
+        stops.push_back((corner - a).dot(along) / along.squaredNorm());
+    }
+    const double det = cross(along, d - c);
+    if (det != 0) stops.push_back(cross(c - a, d - c) / det);
+  });
+  std::sort(stops.begin(), stops.end());
+  for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+    const double from = std::clamp(stops[i], 0.0, 1.0), to = std::clamp(stops[i + 1], 0.0, 1.0);
+    const Vector2d middle = a + (from + to) / 2 * along;
+    if (!contains(pattern, middle, tolerance)) return middle;
+  }
+  return std::nullopt;
 }
 
 BorderPoint nearest_on_border(const Pattern& pattern, const Vector2d& p) {
   BorderPoint best;
   best.distance = std::numeric_limits<double>::infinity();
-  const std::size_t n = pattern.border.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vector2d& a = pattern.border[i];
-    const Vector2d along = pattern.border[next(i, n)] - a;
+  int edge = 0;
+  each_edge(pattern, [&](const Vector2d& a, const Vector2d& b) {
+    const Vector2d along = b - a;
     const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    const Vector2d point = t == 1 ? pattern.border[next(i, n)] : Vector2d(a + t * along);
+    const Vector2d point = t == 1 ? b : Vector2d(a + t * along);
     const double distance = (p - point).norm();
-    if (distance < best.distance) best = {point, static_cast<int>(i), t, distance};
-  }
+    if (distance < best.distance) best = {point, edge, t, distance};
+    ++edge;
+  });
   return best;
 }
 

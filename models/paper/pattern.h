@@ -1,19 +1,55 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace geoprior::paper {
 
 /// The flat shape that a sheet is cut from: a simple polygon in the plane, counter-clockwise,
-/// metres. Every sheet is an isometric image of its pattern, or should be.
+/// metres, and the holes in it, simple polygons that run clockwise: the material is on the left of
+/// every edge. Every sheet is an isometric image of its pattern, or should be.
+///
+/// Its loops are the border and the holes, in this order. Corners and edges are numbered through
+/// all loops; edge i leads from corner i to the next corner of its loop.
 struct Pattern {
   std::vector<Eigen::Vector2d> border;
+  std::vector<std::vector<Eigen::Vector2d>> holes = {};
+
+  [[nodiscard]] std::size_t loop_count() const { return 1 + holes.size(); }
+  [[nodiscard]] const std::vector<Eigen::Vector2d>& loop(std::size_t i) const {
+    return i == 0 ? border : holes[i - 1];
+  }
 };
 
 /// Most corners of a pattern: every pair of edges is looked at.
 inline constexpr int kMostCorners = 10000;
+
+/// Calls `visit(a, b)` for the edges from a to b of all loops, in the order of their numbers.
+template <class Visit>
+void each_edge(const Pattern& pattern, Visit&& visit) {
+  for (std::size_t k = 0; k < pattern.loop_count(); ++k) {
+    const std::vector<Eigen::Vector2d>& loop = pattern.loop(k);
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      visit(loop[i], loop[i + 1 == loop.size() ? 0 : i + 1]);
+    }
+  }
+}
+
+/// Corners of all loops, in the order of their numbers.
+std::vector<Eigen::Vector2d> corners(const Pattern& pattern);
+
+/// Number of the edge that follows one on its loop, which is that of the corner at its end.
+int next_edge(const Pattern& pattern, int edge);
+
+/// The axis-aligned box of the border, and with it of the pattern.
+Eigen::AlignedBox2d bounding_box(const Pattern& pattern);
+
+/// The same pattern with every loop the right way round.
+Pattern oriented(Pattern pattern);
 
 /// Axis-aligned rectangle centred at the origin.
 Pattern rectangle_pattern(double width, double height);
@@ -21,12 +57,16 @@ Pattern rectangle_pattern(double width, double height);
 /// Regular polygon with `corners` corners on the circle of this radius about the origin.
 Pattern disc_pattern(double radius, int corners);
 
-/// Throws Error naming corner or edge unless the border is finite, has three corners that are not
-/// collinear, no corner twice, no spike, does not cross or touch itself and runs counter-clockwise.
-/// `where` names its source (a file and key).
+/// Throws Error naming hole, corner or edge unless every loop is finite, has three corners that are
+/// not collinear, no corner twice, no spike, does not cross or touch itself and has some area; the
+/// holes lie in the border and beside each other, and no two loops come nearer to each other than
+/// a millionth of the pattern's width. `where` names its source (a file and key).
+void require_simple_loops(const Pattern& pattern, const std::string& where);
+
+/// The same, and the border runs counter-clockwise, the holes clockwise.
 void require_simple(const Pattern& pattern, const std::string& where);
 
-/// Signed area (m^2), positive for counter-clockwise.
+/// Signed area (m^2), positive for a counter-clockwise border; holes are taken off.
 double signed_area(const Pattern& pattern);
 
 /// Longest distance of two corners (m).
@@ -35,13 +75,18 @@ double diameter(const Pattern& pattern);
 /// Larger side of the bounding box (m): the "width" that tolerances refer to.
 double width(const Pattern& pattern);
 
-/// True inside, and within `tolerance` (m) of the border.
+/// True inside, and within `tolerance` (m) of border or hole: not in a hole.
 bool contains(const Pattern& pattern, const Eigen::Vector2d& p, double tolerance = 0);
 
-/// Point of the border nearest to `p`, and where it lies.
+/// Point on the segment a b that lies outside the pattern by more than `tolerance` (m), the middle
+/// of a stretch between two edges; absent when all of the segment lies in the pattern.
+std::optional<Eigen::Vector2d> leaves_pattern(const Pattern& pattern, const Eigen::Vector2d& a,
+                                              const Eigen::Vector2d& b, double tolerance);
+
+/// Point of border and holes nearest to `p`, and where it lies.
 struct BorderPoint {
   Eigen::Vector2d point;
-  int edge = 0;  ///< from corner `edge` to the next
+  int edge = 0;  ///< from corner `edge` to the next of its loop
   double t = 0;  ///< 0 … 1 along that edge
   double distance = 0;
 };

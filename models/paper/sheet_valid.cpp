@@ -91,9 +91,12 @@ std::string place_of(const Sheet& sheet, std::size_t i, const std::string& where
 
 void require_inside(const Pattern& pattern, const Eigen::Vector2d& p, const std::string& where) {
   if (!p.allFinite()) throw Error("is not finite", where, "finite coordinates");
-  if (!contains(pattern, p, 1e-9 * width(pattern))) {
-    throw Error("point " + text(p) + " lies outside the pattern", where, "points of the pattern");
-  }
+  if (contains(pattern, p, 1e-9 * width(pattern))) return;
+  const Pattern border{pattern.border};
+  throw Error(
+      "point " + text(p) +
+          (contains(border, p) ? " lies in a hole of the pattern" : " lies outside the pattern"),
+      where, "points of the pattern");
 }
 
 void require_shape(const Handle& handle, const Pattern& pattern, const std::string& where) {
@@ -103,8 +106,11 @@ void require_shape(const Handle& handle, const Pattern& pattern, const std::stri
     }
     require_inside(pattern, handle.segment->first, inside(where, "segment"));
     require_inside(pattern, handle.segment->second, inside(where, "segment"));
-    if (handle.segment->first == handle.segment->second) {
-      throw Error("has no length", inside(where, "segment"), "two different ends");
+    const auto& [a, b] = *handle.segment;
+    if (a == b) throw Error("has no length", inside(where, "segment"), "two different ends");
+    if (const auto out = leaves_pattern(pattern, a, b, 1e-9 * width(pattern))) {
+      throw Error("leaves the pattern at " + text(*out), inside(where, "segment"),
+                  "a segment of the pattern, over no hole");
     }
     return;
   }
@@ -114,7 +120,7 @@ void require_shape(const Handle& handle, const Pattern& pattern, const std::stri
                   inside(where, "disc.radius"));
     require_inside(pattern, handle.points[0], inside(where, "disc"));
     if (nearest_on_border(pattern, handle.points[0]).distance < *handle.disc_radius - kSamePlace) {
-      throw Error("reaches over the border of the pattern", inside(where, "disc"),
+      throw Error("reaches over the border of the pattern, or over a hole", inside(where, "disc"),
                   "a disc of the pattern");
     }
     return;
@@ -258,13 +264,11 @@ class StartSearch {
       : sheet_(sheet), at_start_(obstacle, 0), limit_(limit) {}
 
   [[nodiscard]] std::optional<Eigen::Vector2d> near_point() const {
-    Eigen::Vector2d low = sheet_.pattern.border.front(), high = low;
-    for (const Eigen::Vector2d& p : sheet_.pattern.border) {
+    for (const Eigen::Vector2d& p : corners(sheet_.pattern)) {
       if (distance(p) < limit_) return p;
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
     }
-    return search((low + high) / 2, (high - low).maxCoeff() / 2, 0);
+    const Eigen::AlignedBox2d box = bounding_box(sheet_.pattern);
+    return search(box.center(), box.sizes().maxCoeff() / 2, 0);
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <sstream>
 
 #include "core/error.h"
@@ -31,39 +32,44 @@ double equilateral_edge(double area, double triangles) {
   return std::sqrt(4 * area / (std::sqrt(3.0) * triangles));
 }
 
-struct Extent {
-  Vector2d low, size;
-};
-
-Extent extent_of(const Pattern& pattern) {
-  Vector2d low = pattern.border.front(), high = low;
-  for (const Vector2d& p : pattern.border) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  return {low, high - low};
-}
-
 double perimeter(const Pattern& pattern) {
-  double sum = (pattern.border.front() - pattern.border.back()).norm();
-  for (std::size_t i = 1; i < pattern.border.size(); ++i) {
-    sum += (pattern.border[i] - pattern.border[i - 1]).norm();
-  }
+  double sum = 0;
+  each_edge(pattern, [&](const Vector2d& a, const Vector2d& b) { sum += (b - a).norm(); });
   return sum;
 }
 
-/// Points of a triangulation to be made: the closed border chain first.
+/// Points of a triangulation to be made: the closed chains of border and holes first.
 struct Sites {
-  std::vector<Vector2d> border;
+  std::vector<std::vector<Vector2d>> loops;
   std::vector<Vector2d> anchors;  ///< off the border
   std::vector<Vector2d> free;
 };
 
-/// Border in pieces of about `spacing` (of level and of upright edges), with a point at every
-/// corner and every anchor on it.
+/// Adds a point at each stop of the edge from a along `along`, and between them pieces of about
+/// `spacing` (of level and of upright edges); the end of the edge is left to the next one.
+void sample_edge(const Vector2d& a, const Vector2d& along, std::vector<double>& t,
+                 const Vector2d& spacing, double tolerance, std::vector<Vector2d>& chain) {
+  const double length = along.norm();
+  const double piece = along.cwiseAbs().dot(spacing) / length;
+  t.push_back(0);
+  t.push_back(1);
+  std::sort(t.begin(), t.end());
+  t.erase(std::unique(t.begin(), t.end(),
+                      [&](double s, double u) { return (u - s) * length <= tolerance; }),
+          t.end());
+  // The last stop may have been taken for the corner's double.
+  t.back() = 1;
+  for (std::size_t i = 0; i + 1 < t.size(); ++i) {
+    const double share = t[i + 1] - t[i];
+    const auto pieces = std::max(1, static_cast<int>(std::lround(share * length / piece)));
+    for (int k = 0; k < pieces; ++k) chain.push_back(a + (t[i] + share * k / pieces) * along);
+  }
+}
+
+/// Border and holes in pieces, with a point at every corner and every anchor on them.
 void sample_border(const Pattern& pattern, const std::vector<Vector2d>& anchors,
                    const Vector2d& spacing, Sites& sites) {
-  std::vector<std::vector<double>> stops(pattern.border.size());
+  std::vector<std::vector<double>> stops(corners(pattern).size());
   const double tolerance = kOnBorder * width(pattern);
   for (const Vector2d& p : anchors) {
     const BorderPoint b = nearest_on_border(pattern, p);
@@ -73,25 +79,13 @@ void sample_border(const Pattern& pattern, const std::vector<Vector2d>& anchors,
       stops[b.edge].push_back(b.t);
     }
   }
-  for (std::size_t e = 0; e < stops.size(); ++e) {
-    const Vector2d a = pattern.border[e];
-    const Vector2d along = pattern.border[(e + 1) % stops.size()] - a;
-    const double length = along.norm();
-    const double piece = along.cwiseAbs().dot(spacing) / length;
-    std::vector<double>& t = stops[e];
-    t.push_back(0);
-    t.push_back(1);
-    std::sort(t.begin(), t.end());
-    t.erase(std::unique(t.begin(), t.end(),
-                        [&](double s, double u) { return (u - s) * length <= tolerance; }),
-            t.end());
-    // The last stop may have been taken for the corner's double.
-    t.back() = 1;
-    for (std::size_t i = 0; i + 1 < t.size(); ++i) {
-      const double share = t[i + 1] - t[i];
-      const auto pieces = std::max(1, static_cast<int>(std::lround(share * length / piece)));
-      for (int k = 0; k < pieces; ++k)
-        sites.border.push_back(a + (t[i] + share * k / pieces) * along);
+  std::size_t e = 0;
+  for (std::size_t k = 0; k < pattern.loop_count(); ++k) {
+    const std::vector<Vector2d>& loop = pattern.loop(k);
+    std::vector<Vector2d>& chain = sites.loops.emplace_back();
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Vector2d along = loop[(i + 1) % loop.size()] - loop[i];
+      sample_edge(loop[i], along, stops[e++], spacing, tolerance, chain);
     }
   }
 }
@@ -106,7 +100,8 @@ bool is_clear(const Pattern& pattern, const Sites& sites, const Vector2d& p, dou
 
 /// Hexagonal lattice of this spacing over the bounding box; rows are `row` apart.
 std::vector<Vector2d> lattice(const Pattern& pattern, const Vector2d& spacing) {
-  const auto [low, size] = extent_of(pattern);
+  const Eigen::AlignedBox2d box = bounding_box(pattern);
+  const Vector2d low = box.min(), size = box.sizes();
   std::vector<Vector2d> points;
   const int rows = static_cast<int>(size.y() / spacing.y() + 1e-6);
   const int columns = static_cast<int>(size.x() / spacing.x() + 1e-6);
@@ -121,7 +116,7 @@ std::vector<Vector2d> lattice(const Pattern& pattern, const Vector2d& spacing) {
 /// Horizontal and vertical spacing of a lattice of about this edge length; on a rectangle both
 /// divide its sides, so that its rows meet the border.
 Vector2d lattice_spacing(const Pattern& pattern, double edge) {
-  const Vector2d size = extent_of(pattern).size;
+  const Vector2d size = bounding_box(pattern).sizes();
   const double row = edge * std::sqrt(3.0) / 2;
   // An even number of rows: the last one then starts at the corner, as the first does.
   return {size.x() / std::max(1.0, std::round(size.x() / edge)),
@@ -156,17 +151,20 @@ Sites delaunay_sites(const Pattern& pattern, const std::vector<Vector2d>& anchor
 
 ShellMesh triangulate(const Sites& sites) {
   ShellMesh mesh;
-  const std::size_t n = sites.border.size();
-  mesh.pattern.resize(static_cast<Eigen::Index>(n + sites.anchors.size() + sites.free.size()), 2);
-  Eigen::Index row = 0;
-  for (const auto* list : {&sites.border, &sites.anchors, &sites.free}) {
-    for (const Vector2d& p : *list) mesh.pattern.row(row++) = p;
+  std::vector<Vector2d> points;
+  std::vector<std::vector<int>> loops;
+  for (const std::vector<Vector2d>& chain : sites.loops) {
+    std::vector<int>& loop = loops.emplace_back(chain.size());
+    std::iota(loop.begin(), loop.end(), static_cast<int>(points.size()));
+    points.insert(points.end(), chain.begin(), chain.end());
   }
-  std::vector<Eigen::Vector2i> border;
-  for (std::size_t i = 0; i < n; ++i) {
-    border.emplace_back(static_cast<int>(i), static_cast<int>((i + 1) % n));
+  points.insert(points.end(), sites.anchors.begin(), sites.anchors.end());
+  points.insert(points.end(), sites.free.begin(), sites.free.end());
+  mesh.pattern.resize(static_cast<Eigen::Index>(points.size()), 2);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    mesh.pattern.row(static_cast<Eigen::Index>(i)) = points[i];
   }
-  mesh.triangles = constrained_delaunay(mesh.pattern, border);
+  mesh.triangles = constrained_delaunay(mesh.pattern, loops, {});
   return mesh;
 }
 
@@ -185,7 +183,7 @@ ShellMesh unstructured_mesh(const Pattern& pattern, int triangles, UniformLayout
 }
 
 bool is_rectangle(const Pattern& pattern) {
-  if (pattern.border.size() != 4) return false;
+  if (pattern.border.size() != 4 || !pattern.holes.empty()) return false;
   for (std::size_t i = 0; i < 4; ++i) {
     const Vector2d side = pattern.border[(i + 1) % 4] - pattern.border[i];
     if (side.x() != 0 && side.y() != 0) return false;
@@ -241,7 +239,7 @@ std::vector<Vector2d> distinct(const std::vector<Vector2d>& points, double toler
 }  // namespace
 
 void require_lattice(const Pattern& pattern, double edge) {
-  const Vector2d size = extent_of(pattern).size;
+  const Vector2d size = bounding_box(pattern).sizes();
   const double row = edge * std::sqrt(3.0) / 2;
   const double points = (size.x() / edge + 1) * (size.y() / row + 1) + perimeter(pattern) / edge;
   std::ostringstream what;

@@ -68,7 +68,7 @@ FrameTable pieces_table(const PaperStructure& structure) {
     const bool cylinder = p.kind == PaperPiece::Kind::cylinder;
     table.rows.row(static_cast<Eigen::Index>(i)) << p.id, static_cast<double>(p.kind),
         static_cast<double>(p.rulings.size()), apex.x(), apex.y(), cylinder ? p.direction.x() : 0,
-        cylinder ? p.direction.y() : 0, p.region.size() < 3 ? 0 : signed_area({p.region}),
+        cylinder ? p.direction.y() : 0, signed_area(p.region),
         static_cast<double>(p.neighbours.size()), p.singular_point.value_or(-1);
   }
   return table;

@@ -17,23 +17,50 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Rulings on the outline of each cell, each once, sorted.
-std::vector<std::vector<int>> rulings_of_cells(const RulingMesh& mesh,
-                                               const EdgeConnectivity& edges) {
-  std::vector<std::vector<int>> result(mesh.cell_count);
+/// What bounds a cell.
+struct CellOutline {
+  std::vector<int> rulings;       ///< each once, sorted
+  std::vector<bool> left, right;  ///< the cell lies on that side of the ruling from a to b
+  bool at_hole = false;           ///< some of its outline is that of a hole
+};
+
+/// Marks the cells that a hole of the pattern borders on.
+void mark_holes(const Pattern& pattern, const RulingMesh& mesh, const EdgeConnectivity& edges,
+                std::vector<CellOutline>& cells) {
+  if (pattern.holes.empty()) return;
+  for (int e = 0; e < edges.edge_count(); ++e) {
+    const int left = edges.left(e), right = edges.right(e);
+    if (left >= 0 && right >= 0) continue;
+    const auto [a, b] = edges.edge(e);
+    const Vector2d middle = (mesh.mesh.pattern.row(a) + mesh.mesh.pattern.row(b)) / 2;
+    if (nearest_on_border(pattern, middle).edge < static_cast<int>(pattern.border.size())) continue;
+    cells[mesh.cell[std::max(left, right)]].at_hole = true;
+  }
+}
+
+std::vector<CellOutline> outlines_of_cells(const Pattern& pattern, const RulingMesh& mesh,
+                                           const EdgeConnectivity& edges) {
+  std::vector<CellOutline> result(mesh.cell_count);
   for (std::size_t r = 0; r < mesh.ruling_paths.size(); ++r) {
     const std::vector<int>& path = mesh.ruling_paths[r];
     for (std::size_t k = 0; k + 1 < path.size(); ++k) {
       const auto e = edges.find(path[k], path[k + 1]);
       if (!e) continue;
-      for (const int f : {edges.left(*e), edges.right(*e)}) {
+      const bool along = edges.edge(*e)[0] == path[k];
+      for (const bool left : {true, false}) {
+        const int f = left ? edges.left(*e) : edges.right(*e);
         if (f < 0) continue;
-        auto& list = result[mesh.cell[f]];
-        if (list.empty() || list.back() != static_cast<int>(r)) list.push_back(static_cast<int>(r));
+        CellOutline& cell = result[mesh.cell[f]];
+        if (cell.rulings.empty() || cell.rulings.back() != static_cast<int>(r)) {
+          cell.rulings.push_back(static_cast<int>(r));
+          cell.left.push_back(false);
+          cell.right.push_back(false);
+        }
+        (left == along ? cell.left : cell.right).back() = true;
       }
     }
   }
-  for (auto& list : result) list.erase(std::unique(list.begin(), list.end()), list.end());
+  mark_holes(pattern, mesh, edges, result);
   return result;
 }
 
@@ -46,18 +73,54 @@ std::optional<int> common_apex(const Ruling& r, const Ruling& s) {
   return std::nullopt;
 }
 
-/// The kind that a cell between these rulings has, and the apex of a cone.
+bool are_parallel(const Ruling& r, const Ruling& s) {
+  const double angle = line_angle(r.b - r.a, s.b - s.a) * 180 / std::numbers::pi;
+  return is_chord(r) && is_chord(s) && angle <= kParallelDegrees;
+}
+
+/// Whether a cell at a hole lies between parallel rulings: those of which it lies on one side only
+/// are on both sides of it. Those with the cell on both sides end at the hole in its middle.
+bool is_strip_at_hole(const PaperStructure& structure, const CellOutline& cell) {
+  const Ruling& first = structure.rulings[cell.rulings.front()];
+  const Vector2d d = first.b - first.a;
+  std::optional<double> low, high;  // of the offsets of rulings before and behind the cell
+  for (std::size_t k = 0; k < cell.rulings.size(); ++k) {
+    const Ruling& r = structure.rulings[cell.rulings[k]];
+    if (!are_parallel(first, r)) return false;
+    if (cell.left[k] && cell.right[k]) continue;
+    const double offset = cross(d, (r.a + r.b) / 2 - first.a);
+    const bool before = cell.left[k] == (d.dot(r.b - r.a) > 0);
+    if (before) low = std::max(low.value_or(offset), offset);
+    if (!before) high = std::min(high.value_or(offset), offset);
+  }
+  return low && high && *low < *high;
+}
+
+/// The apex that all rulings of a cell have in common.
+std::optional<int> common_apex(const PaperStructure& structure, const std::vector<int>& rulings) {
+  std::optional<int> apex =
+      common_apex(structure.rulings[rulings[0]], structure.rulings[rulings[1]]);
+  for (const int i : rulings) {
+    const Ruling& r = structure.rulings[i];
+    if (apex != r.singular_a && apex != r.singular_b) return std::nullopt;
+  }
+  return apex;
+}
+
+/// The kind that a cell with this outline has, and the apex of a cone.
 std::pair<PaperPiece::Kind, std::optional<int>> kind_of_cell(const PaperStructure& structure,
-                                                             const std::vector<int>& rulings) {
+                                                             const CellOutline& cell) {
+  const std::vector<int>& rulings = cell.rulings;
+  if (cell.at_hole && rulings.size() >= 2) {
+    if (const auto apex = common_apex(structure, rulings)) return {PaperPiece::Kind::cone, apex};
+    return {is_strip_at_hole(structure, cell) ? PaperPiece::Kind::cylinder : PaperPiece::Kind::flat,
+            std::nullopt};
+  }
   if (rulings.size() != 2) return {PaperPiece::Kind::flat, std::nullopt};
   const Ruling& r = structure.rulings[rulings[0]];
   const Ruling& s = structure.rulings[rulings[1]];
   if (const auto apex = common_apex(r, s)) return {PaperPiece::Kind::cone, apex};
-  const double angle = line_angle(r.b - r.a, s.b - s.a) * 180 / std::numbers::pi;
-  if (is_chord(r) && is_chord(s) && angle <= kParallelDegrees) {
-    return {PaperPiece::Kind::cylinder, std::nullopt};
-  }
-  return {PaperPiece::Kind::flat, std::nullopt};
+  return {are_parallel(r, s) ? PaperPiece::Kind::cylinder : PaperPiece::Kind::flat, std::nullopt};
 }
 
 void sort_cylinder(const PaperStructure& structure, PaperPiece& piece) {
@@ -134,9 +197,9 @@ void inherit_ids(const PaperStructure& before, std::vector<PaperPiece>& pieces, 
   }
 }
 
-/// The largest loop of the directed edges, as a polygon.
-std::vector<Vector2d> outline(const std::vector<Edge>& boundary, const Eigen::MatrixX2d& pattern) {
-  std::vector<Vector2d> best;
+/// What the directed edges bound: the largest of their loops, without those that run clockwise.
+Pattern region_of(const std::vector<Edge>& boundary, const Eigen::MatrixX2d& pattern) {
+  Pattern region;
   double largest = 0;
   std::vector<bool> used(boundary.size(), false);
   for (std::size_t start = 0; start < boundary.size(); ++start) {
@@ -154,12 +217,13 @@ std::vector<Vector2d> outline(const std::vector<Edge>& boundary, const Eigen::Ma
       }
     }
     const double area = loop.size() < 3 ? 0 : signed_area({loop});
+    if (area < 0) region.holes.push_back(std::move(loop));
     if (area > largest) {
       largest = area;
-      best = std::move(loop);
+      region.border = std::move(loop);
     }
   }
-  return best;
+  return region;
 }
 
 void fill_regions(std::vector<PaperPiece>& pieces, const RulingMesh& mesh,
@@ -178,7 +242,7 @@ void fill_regions(std::vector<PaperPiece>& pieces, const RulingMesh& mesh,
     }
   }
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    pieces[i].region = outline(boundary[i], mesh.mesh.pattern);
+    pieces[i].region = region_of(boundary[i], mesh.mesh.pattern);
     std::vector<int>& near = pieces[i].neighbours;
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
@@ -186,7 +250,7 @@ void fill_regions(std::vector<PaperPiece>& pieces, const RulingMesh& mesh,
 }
 
 void fill_border_points(PaperStructure& structure, const Pattern& pattern) {
-  structure.border_points.assign(pattern.border.size(), {});
+  structure.border_points.assign(corners(pattern).size(), {});
   std::vector<std::pair<std::pair<int, double>, int>> on_border;
   for (std::size_t s = 0; s < structure.singular_points.size(); ++s) {
     if (!structure.singular_points[s].on_border) continue;
@@ -201,28 +265,32 @@ void fill_border_points(PaperStructure& structure, const Pattern& pattern) {
 
 /// The bent pieces, and the piece of each bent cell.
 std::vector<PaperPiece> bent_pieces(const PaperStructure& structure,
-                                    const std::vector<std::vector<int>>& rulings_of_cell,
+                                    const std::vector<CellOutline>& outlines,
                                     std::vector<int>& piece_of_cell) {
-  const std::size_t cells = rulings_of_cell.size();
+  const std::size_t cells = outlines.size();
   DisjointSets sets(static_cast<int>(structure.rulings.size()));  // rulings that are one piece
   std::vector<std::optional<int>> apex_of(structure.rulings.size());
   std::vector<PaperPiece::Kind> kinds(cells, PaperPiece::Kind::flat);
   for (std::size_t c = 0; c < cells; ++c) {
-    const auto [kind, apex] = kind_of_cell(structure, rulings_of_cell[c]);
+    const auto [kind, apex] = kind_of_cell(structure, outlines[c]);
     if (kind == PaperPiece::Kind::flat) continue;
-    const auto i = static_cast<std::size_t>(rulings_of_cell[c][0]);
-    const auto j = static_cast<std::size_t>(rulings_of_cell[c][1]);
+    const std::vector<int>& rulings = outlines[c].rulings;
     // A line between two singular points may bound sectors of both; it is of the first.
-    if ((apex_of[i] && apex_of[i] != apex) || (apex_of[j] && apex_of[j] != apex)) continue;
-    apex_of[i] = apex_of[j] = apex;
-    sets.join(rulings_of_cell[c][0], rulings_of_cell[c][1]);
+    if (std::any_of(rulings.begin(), rulings.end(),
+                    [&](int r) { return apex_of[r] && apex_of[r] != apex; })) {
+      continue;
+    }
+    for (const int r : rulings) {
+      apex_of[r] = apex;
+      sets.join(rulings[0], r);
+    }
     kinds[c] = kind;
   }
   std::vector<PaperPiece> pieces;
   std::map<int, int> piece_of_root;
   for (std::size_t c = 0; c < cells; ++c) {
     if (kinds[c] == PaperPiece::Kind::flat) continue;
-    const int root = sets.find(rulings_of_cell[c][0]);
+    const int root = sets.find(outlines[c].rulings[0]);
     const auto [at, fresh] = piece_of_root.try_emplace(root, static_cast<int>(pieces.size()));
     if (fresh) {
       pieces.emplace_back();
@@ -230,7 +298,7 @@ std::vector<PaperPiece> bent_pieces(const PaperStructure& structure,
     }
     piece_of_cell[c] = at->second;
     std::vector<int>& list = pieces[at->second].rulings;
-    list.insert(list.end(), rulings_of_cell[c].begin(), rulings_of_cell[c].end());
+    list.insert(list.end(), outlines[c].rulings.begin(), outlines[c].rulings.end());
   }
   for (PaperPiece& piece : pieces) {
     std::sort(piece.rulings.begin(), piece.rulings.end());
@@ -251,7 +319,7 @@ void derive_pieces(PaperStructure& structure, const Pattern& pattern, RulingMesh
   const EdgeConnectivity edges(mesh.mesh.triangles);
   std::vector<int> piece_of_cell(mesh.cell_count, -1);
   std::vector<PaperPiece> pieces =
-      bent_pieces(structure, rulings_of_cells(mesh, edges), piece_of_cell);
+      bent_pieces(structure, outlines_of_cells(pattern, mesh, edges), piece_of_cell);
   inherit_ids(structure, pieces, structure.next_piece_id);
   for (int& piece : piece_of_cell) {
     if (piece >= 0) continue;

@@ -117,13 +117,16 @@ std::optional<Vector2d> nearest_place(const std::vector<Vector2d>& places, const
 
 /// True near a corner of the border that sticks out: a cone has no room there.
 bool near_sharp_corner(const Pattern& pattern, const Vector2d& p, double distance) {
-  const std::size_t n = pattern.border.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    const Vector2d before = pattern.border[k] - pattern.border[(k + n - 1) % n];
-    const Vector2d after = pattern.border[(k + 1) % n] - pattern.border[k];
-    if (cross(before, after) > 0 && ray_angle(before, after) > kSharpCorner &&
-        (pattern.border[k] - p).norm() < distance) {
-      return true;
+  for (std::size_t l = 0; l < pattern.loop_count(); ++l) {
+    const std::vector<Vector2d>& loop = pattern.loop(l);
+    const std::size_t n = loop.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vector2d before = loop[k] - loop[(k + n - 1) % n];
+      const Vector2d after = loop[(k + 1) % n] - loop[k];
+      if (cross(before, after) > 0 && ray_angle(before, after) > kSharpCorner &&
+          (loop[k] - p).norm() < distance) {
+        return true;
+      }
     }
   }
   return false;
@@ -131,7 +134,7 @@ bool near_sharp_corner(const Pattern& pattern, const Vector2d& p, double distanc
 
 /// Moves a drawn point to what it nearly hits: an anchor inside the sheet (what a point handle
 /// pushes into the sheet is a cone with its apex there), or the border. Absent when it is too near
-/// to another singular point or to a corner.
+/// to another singular point or to a corner, or in a hole.
 std::optional<Vector2d> settled(Vector2d p, const RulingEditor& editor,
                                 const HybridOptions& options) {
   const double s = options.seeding_distance;
@@ -145,6 +148,7 @@ std::optional<Vector2d> settled(Vector2d p, const RulingEditor& editor,
   } else if (border.distance < s / 2) {
     p = nearest_place(editor.border_nodes(), border.point, s / 2).value_or(border.point);
   }
+  if (!contains(editor.pattern(), p, editor.same())) return std::nullopt;
   if (near_sharp_corner(editor.pattern(), p, s)) return std::nullopt;
   for (const SingularPoint& other : editor.structure().singular_points) {
     if ((other.position - p).norm() < options.singular_spacing * s) return std::nullopt;

@@ -33,6 +33,7 @@ bool is_ignored(const std::vector<bool>& ignored, std::size_t i) {
 RulingEditor::RulingEditor(const Pattern& pattern, const std::vector<Vector2d>& anchors,
                            const Bounds& bounds, PaperStructure& structure)
     : pattern_(pattern),
+      corners_(corners(pattern)),
       anchors_(anchors),
       bounds_(bounds),
       structure_(structure),
@@ -46,11 +47,10 @@ RulingHit RulingEditor::propagate(const Vector2d& origin, const Vector2d& direct
   const auto offer = [&](RulingHit::Kind kind, std::optional<double> t, std::size_t index) {
     if (t && *t < hit.distance) hit = {kind, origin + *t * d, *t, static_cast<int>(index)};
   };
-  const std::size_t n = pattern_.border.size();
-  for (std::size_t e = 0; e < n; ++e) {
-    offer(RulingHit::Kind::border,
-          ray_hit(origin, d, pattern_.border[e], pattern_.border[(e + 1) % n], same_), e);
-  }
+  std::size_t e = 0;
+  each_edge(pattern_, [&](const Vector2d& a, const Vector2d& b) {
+    offer(RulingHit::Kind::border, ray_hit(origin, d, a, b, same_), e++);
+  });
   for (std::size_t r = 0; r < structure_.rulings.size(); ++r) {
     const Ruling& ruling = structure_.rulings[r];
     if (from_singular &&
@@ -70,6 +70,22 @@ RulingHit RulingEditor::propagate(const Vector2d& origin, const Vector2d& direct
     }
   }
   return hit;
+}
+
+std::vector<Vector2d> RulingEditor::middles_of_parts(const Vector2d& p, const Vector2d& d) const {
+  std::vector<double> stops;
+  each_edge(pattern_, [&](const Vector2d& a, const Vector2d& b) {
+    const auto t = ray_hit(p, d, a, b, -std::numeric_limits<double>::infinity());
+    if (t) stops.push_back(*t);
+  });
+  std::sort(stops.begin(), stops.end());
+  std::vector<Vector2d> middles;
+  for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+    const Vector2d middle = p + (stops[i] + stops[i + 1]) / 2 * d;
+    if ((stops[i + 1] - stops[i]) * d.norm() > 2 * bounds_.gap && contains(pattern_, middle))
+      middles.push_back(middle);
+  }
+  return middles;
 }
 
 bool RulingEditor::clear_of(const Ruling& ruling, const Ruling& other) const {
@@ -104,7 +120,7 @@ bool RulingEditor::clear_of_points(const Ruling& ruling) const {
   for (const Vector2d& p : anchors_) {
     if (near(p, same_)) return false;
   }
-  return std::none_of(pattern_.border.begin(), pattern_.border.end(), [&](const Vector2d& corner) {
+  return std::none_of(corners_.begin(), corners_.end(), [&](const Vector2d& corner) {
     return near(corner, kNeighbourhood * bounds_.gap);
   });
 }
@@ -116,14 +132,13 @@ bool RulingEditor::fits(const Ruling& ruling, const std::vector<bool>& ignored) 
   if (!contains(pattern_, middle) || nearest_on_border(pattern_, middle).distance < bounds_.gap) {
     return false;
   }
-  const std::size_t n = pattern_.border.size();
-  for (std::size_t e = 0; e < n; ++e) {
-    const double t_near = 1e-6;
-    const auto t = ray_hit(ruling.a, ruling.b - ruling.a, pattern_.border[e],
-                           pattern_.border[(e + 1) % n], t_near);
-    if (t && *t < 1 - t_near) return false;
-  }
-  if (!clear_of_points(ruling)) return false;
+  bool crosses = false;
+  each_edge(pattern_, [&](const Vector2d& a, const Vector2d& b) {
+    constexpr double kNear = 1e-6;
+    const auto t = ray_hit(ruling.a, ruling.b - ruling.a, a, b, kNear);
+    crosses = crosses || (t && *t < 1 - kNear);
+  });
+  if (crosses || !clear_of_points(ruling)) return false;
   for (std::size_t i = 0; i < structure_.rulings.size(); ++i) {
     if (!is_ignored(ignored, i) && !clear_of(ruling, structure_.rulings[i])) return false;
   }
@@ -131,7 +146,7 @@ bool RulingEditor::fits(const Ruling& ruling, const std::vector<bool>& ignored) 
 }
 
 std::vector<Vector2d> RulingEditor::border_nodes() const {
-  std::vector<Vector2d> nodes = pattern_.border;
+  std::vector<Vector2d> nodes = corners_;
   const auto add = [&](const Vector2d& p) {
     if (std::none_of(nodes.begin(), nodes.end(),
                      [&](const Vector2d& q) { return (p - q).norm() <= same_; })) {
@@ -170,11 +185,10 @@ std::optional<Vector2d> RulingEditor::border_end(const Vector2d& centre, const V
   // What is ignored is about to go: look past it to the border.
   const Vector2d d = direction.normalized();
   std::optional<double> nearest;
-  const std::size_t n = pattern_.border.size();
-  for (std::size_t e = 0; e < n; ++e) {
-    const auto t = ray_hit(centre, d, pattern_.border[e], pattern_.border[(e + 1) % n], same_);
+  each_edge(pattern_, [&](const Vector2d& a, const Vector2d& b) {
+    const auto t = ray_hit(centre, d, a, b, same_);
     if (t && (!nearest || *t < *nearest)) nearest = t;
-  }
+  });
   if (!nearest) return std::nullopt;
   for (std::size_t i = 0; i < structure_.rulings.size(); ++i) {
     const Ruling& r = structure_.rulings[i];

@@ -18,9 +18,10 @@ struct RulingHit {
   int index = -1;       ///< edge of the border, ruling, or singular point
 };
 
-/// Adds rulings to a structure so that they stay apart: no two cross, none passes another's end, an
-/// anchor or a singular point at less than `gap`, ends nearer than `gap` to a corner, an anchor or
-/// another end on the border snap to it, and rulings that share an end differ by `least_angle`.
+/// Adds rulings to a structure so that they stay apart (border: that of the sheet, or a hole's): no
+/// two cross, none passes another's end, an anchor or a singular point at less than `gap`, ends
+/// nearer than `gap` to a corner, an anchor or another end on the border snap to it, and rulings
+/// that share an end differ by `least_angle`.
 ///
 /// These bounds are what keeps the triangles of the mesh from degenerating: their altitude is about
 /// `gap` or more.
@@ -38,6 +39,13 @@ class RulingEditor {
   /// or the border. Rulings that end in `from_singular` are passed over.
   [[nodiscard]] RulingHit propagate(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction,
                                     std::optional<int> from_singular = {}) const;
+  /// Middles of the parts of the line through p that lie in the pattern.
+  [[nodiscard]] std::vector<Eigen::Vector2d> middles_of_parts(const Eigen::Vector2d& p,
+                                                              const Eigen::Vector2d& d) const;
+  [[nodiscard]] bool is_hole(const RulingHit& hit) const {
+    return hit.kind == RulingHit::Kind::border &&
+           hit.index >= static_cast<int>(pattern_.border.size());
+  }
   /// True when the ruling keeps all bounds, rulings marked in `ignored` aside.
   [[nodiscard]] bool fits(const Ruling& ruling, const std::vector<bool>& ignored = {}) const;
 
@@ -82,6 +90,7 @@ class RulingEditor {
   [[nodiscard]] Eigen::Vector2d snapped(const Eigen::Vector2d& border_point) const;
 
   const Pattern& pattern_;
+  std::vector<Eigen::Vector2d> corners_;  ///< of the pattern
   const std::vector<Eigen::Vector2d>& anchors_;
   Bounds bounds_;
   PaperStructure& structure_;

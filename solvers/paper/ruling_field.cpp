@@ -107,8 +107,7 @@ class RulingLayer {
       if (bent[v] < options_.flat_curvature) break;
       const Vector2d p = field_.sheet().mesh.pattern.row(v);
       const double asked = spacing(bent[v]);
-      if (nearest_on_border(editor_.pattern(), p).distance < kNear * asked || !is_free(p, asked))
-        continue;
+      if (is_at_border(p, kNear * asked) || !is_free(p, asked)) continue;
       const Matrix2d S = field_.at(p);
       const std::size_t first = rulings().size();
       if (!add(p, least_direction(S * S))) continue;
@@ -129,7 +128,15 @@ class RulingLayer {
     });
   }
 
-  /// Puts lines beside a chord, as far as the bending asks for.
+  /// The ground beside a hole is narrow: there a line may be laid as near as it fits.
+  [[nodiscard]] bool is_at_border(const Vector2d& p, double distance) const {
+    const Pattern& pattern = editor_.pattern();
+    if (nearest_on_border(pattern, p).distance < editor_.bounds().gap) return true;
+    return nearest_on_border({pattern.border}, p).distance < distance;
+  }
+
+  /// Puts lines beside a chord, as far as the bending asks for. Where a hole cuts the line beside
+  /// it, each part is laid for itself.
   void grow(std::size_t index) {
     for (const int side : {-1, 1}) {
       const Ruling r = rulings()[index];
@@ -141,12 +148,24 @@ class RulingLayer {
       const Vector2d middle = (r.a + r.b) / 2;
       const RulingHit hit = editor_.propagate(middle, across);
       double step = asked;
-      if (hit.distance < kTight * asked) continue;
-      if (hit.kind == RulingHit::Kind::ruling && hit.distance < 2 * kTight * asked)
-        step = hit.distance / 2;
-      if (hit.kind != RulingHit::Kind::ruling && hit.distance < asked + editor_.bounds().gap)
-        continue;
-      add(middle + step * across, along);
+      if (!editor_.is_hole(hit)) {
+        if (hit.distance < kTight * asked) continue;
+        if (hit.kind == RulingHit::Kind::ruling && hit.distance < 2 * kTight * asked)
+          step = hit.distance / 2;
+        if (hit.kind != RulingHit::Kind::ruling && hit.distance < asked + editor_.bounds().gap)
+          continue;
+      }
+      add_parts(middle + step * across, along, asked);
+    }
+  }
+
+  void add_parts(const Vector2d& p, const Vector2d& along, double asked) {
+    if (editor_.pattern().holes.empty()) {
+      add(p, along);
+      return;
+    }
+    for (const Vector2d& middle : editor_.middles_of_parts(p, along)) {
+      if (is_free(middle, asked)) add(middle, along);
     }
   }
 

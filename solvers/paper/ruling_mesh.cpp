@@ -43,43 +43,46 @@ struct OnBorder {
   }
 };
 
-/// Vertices round the border in order, gaps longer than `flat_size` divided evenly.
-std::vector<int> border_chain(const Pattern& pattern, double flat_size, double tolerance,
-                              PointSet& set) {
+/// Vertices round border and holes in order, gaps longer than `flat_size` divided evenly.
+std::vector<std::vector<int>> border_chains(const Pattern& pattern, double flat_size,
+                                            double tolerance, PointSet& set) {
+  const std::vector<Vector2d> all = corners(pattern);
   std::vector<OnBorder> on_border;
   const std::vector<Vector2d> points = set.points();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const BorderPoint near = nearest_on_border(pattern, points[i]);
     if (near.distance > tolerance) continue;
     // A corner is both the end of one edge and the start of the next: count it once, as the start.
-    const int n = static_cast<int>(pattern.border.size());
-    const int next = (near.edge + 1) % n;
-    const bool at_end = (points[i] - pattern.border[next]).norm() <= tolerance;
+    const int next = next_edge(pattern, near.edge);
+    const bool at_end = (points[i] - all[static_cast<std::size_t>(next)]).norm() <= tolerance;
     on_border.push_back({at_end ? next : near.edge, at_end ? 0 : near.t, static_cast<int>(i)});
   }
   std::sort(on_border.begin(), on_border.end());
-  std::vector<int> chain;
-  for (std::size_t i = 0; i < on_border.size(); ++i) {
-    const int from = on_border[i].vertex;
-    const int to = on_border[(i + 1) % on_border.size()].vertex;
-    chain.push_back(from);
-    const Vector2d a = points[from];
-    const Vector2d b = points[to];
-    const int parts = static_cast<int>(std::ceil((b - a).norm() / flat_size - 1e-9));
-    for (int k = 1; k < parts; ++k) chain.push_back(set.add(a + (b - a) * k / parts));
+  std::vector<std::vector<int>> chains;
+  int end_edge = 0;
+  for (std::size_t k = 0, i = 0; k < pattern.loop_count(); ++k) {
+    end_edge += static_cast<int>(pattern.loop(k).size());
+    const std::size_t first = i;
+    std::vector<int>& chain = chains.emplace_back();
+    for (; i < on_border.size() && on_border[i].edge < end_edge; ++i) {
+      const bool last = i + 1 == on_border.size() || on_border[i + 1].edge >= end_edge;
+      const int from = on_border[i].vertex;
+      const int to = on_border[last ? first : i + 1].vertex;
+      chain.push_back(from);
+      const Vector2d a = points[from];
+      const Vector2d b = points[to];
+      const int parts = static_cast<int>(std::ceil((b - a).norm() / flat_size - 1e-9));
+      for (int part = 1; part < parts; ++part) chain.push_back(set.add(a + (b - a) * part / parts));
+    }
   }
-  return chain;
+  return chains;
 }
 
 /// Lattice points that are half a `flat_size` away from border, rulings and every vertex.
 void add_lattice(const PaperStructure& structure, const Pattern& pattern, double flat_size,
                  PointSet& set) {
-  Vector2d low = pattern.border.front(), high = low;
-  for (const Vector2d& p : pattern.border) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const Vector2d size = high - low;
+  const Eigen::AlignedBox2d box = bounding_box(pattern);
+  const Vector2d low = box.min(), high = box.max(), size = box.sizes();
   const double row_height = flat_size * std::numbers::sqrt3 / 2;
   const int rows = static_cast<int>(size.y() / row_height);
   const int columns = static_cast<int>(size.x() / flat_size) + 1;
@@ -181,7 +184,7 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
   const double tolerance = 1e-9 * width(pattern);
   PointSet set(tolerance);
   RulingMesh result;
-  for (const Vector2d& p : pattern.border) set.add(p);
+  for (const Vector2d& p : corners(pattern)) set.add(p);
   for (const Vector2d& p : anchors) set.add(p);
   for (const SingularPoint& s : structure.singular_points) {
     result.singular_vertices.push_back(set.add(s.position));
@@ -191,13 +194,10 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
     set.add(r.b);
   }
   for (const Ruling& r : structure.rulings) divide_ruling(r, anchors, sizes, set);
-  const std::vector<int> chain = border_chain(pattern, sizes.flat, tolerance, set);
+  const std::vector<std::vector<int>> loops = border_chains(pattern, sizes.flat, tolerance, set);
   add_lattice(structure, pattern, sizes.flat, set);
 
   std::vector<Eigen::Vector2i> segments;
-  for (std::size_t i = 0; i < chain.size(); ++i) {
-    segments.emplace_back(chain[i], chain[(i + 1) % chain.size()]);
-  }
   for (const Ruling& r : structure.rulings) {
     result.ruling_paths.push_back(points_along(set.points(), r, tolerance));
     const std::vector<int>& path = result.ruling_paths.back();
@@ -207,7 +207,7 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
   for (std::size_t i = 0; i < set.points().size(); ++i) {
     result.mesh.pattern.row(static_cast<Eigen::Index>(i)) = set.points()[i];
   }
-  result.mesh.triangles = constrained_delaunay(result.mesh.pattern, segments);
+  result.mesh.triangles = constrained_delaunay(result.mesh.pattern, loops, segments);
   sort_triangles(result.mesh.triangles);
   for (const auto& path : result.ruling_paths) {
     for (std::size_t k = 0; k + 1 < path.size(); ++k)

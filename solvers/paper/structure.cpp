@@ -16,7 +16,7 @@ std::vector<int> PaperStructure::pieces_at(int singular_point) const {
 
 int PaperStructure::piece_at(const Eigen::Vector2d& p) const {
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (pieces[i].region.size() >= 3 && contains({pieces[i].region}, p)) return static_cast<int>(i);
+    if (contains(pieces[i].region, p)) return static_cast<int>(i);
   }
   return -1;
 }

@@ -30,7 +30,7 @@ struct PaperPiece {
   Eigen::Vector2d direction{1, 0};      ///< of a cylinder's rulings, unit
   std::optional<Eigen::Vector2d> apex;  ///< of a cone
   std::optional<int> singular_point;    ///< that the apex is, if it lies in the sheet
-  std::vector<Eigen::Vector2d> region;  ///< polygon in the pattern, counter-clockwise
+  Pattern region;                       ///< the part of the pattern, with what is cut out of it
   std::vector<int> neighbours;          ///< pieces that share a part of their outline
 };
 
@@ -53,7 +53,7 @@ struct PaperStructure {
   std::vector<PaperPiece> pieces;
   std::vector<SingularPoint> singular_points;
   std::vector<std::vector<int>>
-      border_points;      ///< singular points on each edge of the border, in order
+      border_points;      ///< singular points on each edge of the pattern, in order
   int next_piece_id = 0;  ///< that the next new piece gets
 
   [[nodiscard]] std::vector<int> pieces_at(int singular_point) const;

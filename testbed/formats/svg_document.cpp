@@ -126,6 +126,7 @@ class SvgReader {
     }
     page.to_page = Eigen::Translation2d(0, document_.height_m) *
                    Eigen::AlignedScaling2d(Eigen::Vector2d(pixel, -pixel)) * page.to_page;
+    document_.user_origin = page.to_page.translation();
     enter(root, page);
     page.width = user.width;
     page.height = user.height;

@@ -72,9 +72,10 @@ struct SvgDocument {
   /// Size of the page (m); 0 where the file says nothing of it. Its lower left corner is the
   /// origin; of a page without a height, the upper left one.
   double width_m = 0, height_m = 0;
-  bool true_size = false;        ///< the file says how large it is in mm, cm, in, pt or pc
-  std::vector<SvgGroup> groups;  ///< parents first
-  std::vector<SvgShape> shapes;  ///< in the order in which they are drawn
+  Eigen::Vector2d user_origin{0, 0};  ///< place of (0, 0) of the outermost viewBox (m)
+  bool true_size = false;             ///< the file says how large it is in mm, cm, in, pt or pc
+  std::vector<SvgGroup> groups;       ///< parents first
+  std::vector<SvgShape> shapes;       ///< in the order in which they are drawn
   std::vector<SvgImage> images;
   std::vector<std::string> notes;  ///< what was left out, a line for each kind with its first place
 

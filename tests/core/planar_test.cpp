@@ -67,6 +67,24 @@ TEST(Planar, TriangulationFillsTheInsideOfAChain) {
   EXPECT_DOUBLE_EQ(twice, 6) << "the square's 4 less the notch's 1, doubled";
 }
 
+/// A square with a square hole, which a segment joins to a corner: 16 less 4 doubled is 24.
+TEST(Planar, TriangulationLeavesHolesOut) {
+  Eigen::MatrixX2d points(8, 2);
+  points << 0, 0, 4, 0, 4, 4, 0, 4, 1, 1, 1, 3, 3, 3, 3, 1;
+  const Eigen::MatrixX3i F = constrained_delaunay(points, {{0, 1, 2, 3}, {4, 5, 6, 7}}, {{0, 4}});
+  ASSERT_EQ(F.rows(), 8) << "n triangles between two loops of n corners in all";
+  double twice = 0;
+  for (Eigen::Index t = 0; t < F.rows(); ++t) {
+    const Vector2d a = points.row(F(t, 0)), b = points.row(F(t, 1)), c = points.row(F(t, 2));
+    EXPECT_GT(cross(b - a, c - a), 0);
+    twice += cross(b - a, c - a);
+  }
+  EXPECT_DOUBLE_EQ(twice, 24);
+  points.row(3) << 2, 0;
+  EXPECT_THROW(constrained_delaunay(points, {{4, 5, 6, 7}, {0, 1, 3}}, {}), Error)
+      << "a point in the middle of a segment of a hole";
+}
+
 TEST(Planar, TriangulationRefusesEqualPointsAndCrossingSegments) {
   Eigen::MatrixX2d points(4, 2);
   points << 0, 0, 1, 1, 0, 1, 1, 0;

@@ -62,12 +62,12 @@ void expect_sound(const ShellMesh& mesh, const Pattern& pattern) {
   const double area = signed_area(pattern);
   EXPECT_NEAR(plane_shapes::total_area(mesh), area, 1e-12 * area);
   EXPECT_GT(plane_shapes::least_area(mesh), 0);
-  EXPECT_EQ(plane_shapes::euler_characteristic(mesh), 1);
+  EXPECT_EQ(plane_shapes::euler_characteristic(mesh), 1 - static_cast<int>(pattern.holes.size()));
   for (const auto& [edge, count] : plane_shapes::directed_edges(mesh)) EXPECT_EQ(count, 1);
   for (const auto& [a, b] : plane_shapes::border_edges(mesh)) {
     EXPECT_LT(nearest_on_border(pattern, mesh.pattern.row(a)).distance, 1e-15);
   }
-  for (const Eigen::Vector2d& corner : pattern.border) {
+  for (const Eigen::Vector2d& corner : corners(pattern)) {
     EXPECT_EQ(plane_shapes::distance_to_vertices(mesh, corner), 0);
   }
 }
@@ -161,9 +161,34 @@ TEST(Sizing, FollowsCompressionVelocityAndObstacles) {
   EXPECT_NEAR(size_along_u(flat, {wall}), 1 + flat.x(20, 0), 0.03);
 }
 
+// A sheet with holes is rolled and unrolled: coarse, fine and coarse again, its borders stay.
+TEST(Remesh, KeepsTheBordersOfHoles) {
+  Pattern pierced = plane_shapes::pierced_square();
+  for (Eigen::Vector2d& p : pierced.border) p *= 0.05;
+  for (auto& hole : pierced.holes) {
+    for (Eigen::Vector2d& p : hole) p *= 0.05;
+  }
+  for (const Pattern& pattern : {pierced, plane_shapes::ring_pattern()}) {
+    const Sheet sheet = sheet_of(pattern);
+    SizingOptions options;
+    options.size_min = 1e-3;
+    options.size_max = 0.1;
+    ShellState state = flat_state(uniform_mesh(pattern, 400, UniformLayout::equilateral, {}, 1));
+    remesh_on_cylinder(sheet, options, 1e3, 0, 3, state);
+    expect_sound(state.mesh, pattern);
+    const int coarse = state.mesh.triangle_count();
+    remesh_on_cylinder(sheet, options, 0.03, 0.4, 3, state);
+    expect_sound(state.mesh, pattern);
+    EXPECT_GT(state.mesh.triangle_count(), 2 * coarse);
+    remesh_on_cylinder(sheet, options, 1e3, 0, 6, state);
+    expect_sound(state.mesh, pattern);
+    EXPECT_LT(state.mesh.triangle_count(), 2 * coarse);
+  }
+}
+
 TEST(EditableSheet, SurvivesRandomOperations) {
-  for (const Pattern& pattern :
-       {rectangle_pattern(0.2, 0.3), disc_pattern(0.1, 24), plane_shapes::ell_pattern()}) {
+  for (const Pattern& pattern : {rectangle_pattern(0.2, 0.3), disc_pattern(0.1, 24),
+                                 plane_shapes::ell_pattern(), plane_shapes::ring_pattern()}) {
     ShellState state = flat_state(uniform_mesh(pattern, 60, UniformLayout::delaunay, {}, 1));
     RandomStream random(3, "operations");
     for (int f = 0; f < state.mesh.triangle_count(); ++f) {
@@ -185,7 +210,7 @@ TEST(EditableSheet, SurvivesRandomOperations) {
       if (nearest_on_border(pattern, v.pattern).distance < 1e-12) {
         v.kind = EditableSheet::Kind::side;
       }
-      for (const Eigen::Vector2d& corner : pattern.border) {
+      for (const Eigen::Vector2d& corner : corners(pattern)) {
         if (v.pattern == corner) v.kind = EditableSheet::Kind::fixed;
       }
     }

@@ -79,6 +79,37 @@ TEST_F(BadSheet, NamesADegeneratePattern) {
               HasSubstr("scene.pattern.points.0.v: is missing"));
 }
 
+TEST_F(BadSheet, NamesAHoleThatIsNone) {
+  const auto with = [](const std::string& hole) {
+    return "pattern = { kind = \"rectangle\", width = 0.2, height = 0.1, holes = [{ points = [{ u "
+           "= "
+           "0.02, v = 0.02 }, { u = 0.02, v = 0.03 }, { u = 0.03, v = 0.02 }] }, { points = [" +
+           hole + "] }] }\n";
+  };
+  EXPECT_NO_THROW(run_paper(
+      experiment(with("{ u = 0, v = 0 }, { u = 0.01, v = 0 }, { u = 0, v = 0.01 }") + kEdges)));
+  fs::remove_all(folder() / "out");
+  EXPECT_THAT(refusal(with("{ u = 0.2, v = 0 }, { u = 0.21, v = 0 }, { u = 0.2, v = 0.01 }")),
+              AllOf(HasSubstr("bad.toml:5:"), HasSubstr("scene.pattern hole 1"),
+                    HasSubstr("outside of the border")));
+  EXPECT_THAT(refusal(with("{ u = 0, v = 0 }, { u = 0.2, v = 0 }, { u = 0, v = 0.01 }")),
+              AllOf(HasSubstr("scene.pattern hole 1 edge"), HasSubstr("of the border")));
+  EXPECT_THAT(refusal(with("{ u = 0, v = 0 }, { u = 0.2, v = 0 }")),
+              AllOf(HasSubstr("scene.pattern hole 1"), HasSubstr("2 corners")));
+  EXPECT_THAT(refusal(with("{ u = 0 }")),
+              HasSubstr("scene.pattern.holes.1.points.0.v: is missing"));
+}
+
+TEST_F(BadSheet, NamesTheHandleInAHole) {
+  const std::string pierced =
+      "pattern = { kind = \"rectangle\", width = 0.2, height = 0.1, holes = [{ points = [{ u = "
+      "-0.02, v = -0.02 }, { u = 0.02, v = -0.02 }, { u = 0, v = 0.02 }] }] }\n";
+  EXPECT_THAT(
+      refusal(pierced + "handles = [{ points = [{ u = 0, v = 0 }], keys = [{ t = 0 }] }]\n"),
+      AllOf(HasSubstr("bad.toml:6:"), HasSubstr("scene.handles.0.points.0"),
+            HasSubstr("in a hole of the pattern")));
+}
+
 TEST_F(BadSheet, NamesTheHandleOutsideThePattern) {
   EXPECT_THAT(refusal(kRectangle +
                       "handles = [{ points = [{ u = 0, v = 0 }, { u = 0, v = 0.06 }], keys = [{ t "
@@ -185,7 +216,7 @@ TEST_F(BadSheet, NamesTheDrawingAndItsPath) {
       AllOf(HasSubstr("scene.pattern.file"), HasSubstr(drawing.string()), HasSubstr("edge")));
   EXPECT_THAT(refusal("pattern = { kind = \"svg\", file = \"bow.svg\", path = \"arrow\" }\n"),
               AllOf(HasSubstr("scene.pattern.path"), HasSubstr(drawing.string()),
-                    HasSubstr("no path with id 'arrow'")));
+                    HasSubstr("no shape with id 'arrow'")));
   std::ofstream(drawing) << "<svg><path d='M0 0 L10 10 L10'/></svg>";
   EXPECT_THAT(refusal("pattern = { kind = \"svg\", file = \"bow.svg\" }\n"),
               AllOf(HasSubstr("scene.pattern.file"), HasSubstr(drawing.string())));

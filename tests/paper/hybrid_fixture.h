@@ -66,6 +66,15 @@ inline Sheet bent_sheet() {
   return sheet;
 }
 
+/// The same with a round hole of 4 cm beside its middle.
+inline Sheet bent_sheet_with_hole() {
+  Sheet sheet = bent_sheet();
+  std::vector<Eigen::Vector2d> hole = disc_pattern(0.02, 16).border;
+  for (Eigen::Vector2d& p : hole) p += Eigen::Vector2d(0.015, -0.02);
+  sheet.pattern.holes = {{hole.rbegin(), hole.rend()}};
+  return sheet;
+}
+
 /// Bent by its corners, then the corners of the left edge approach: thesis, Figure 3.10.
 inline Sheet pinched_sheet() {
   Sheet sheet = square_sheet(2.2);

@@ -18,6 +18,22 @@ inline Pattern ell_pattern() {
   return {{{0, 0}, {0.2, 0}, {0.2, 0.1}, {0.1, 0.1}, {0.1, 0.2}, {0, 0.2}}};
 }
 
+/// A square of 4 with holes: a square of 1 about (1, 1) and a triangle about (-1, -1).
+inline Pattern pierced_square() {
+  return {
+      {{-2, -2}, {2, -2}, {2, 2}, {-2, 2}},
+      {{{0.5, 0.5}, {0.5, 1.5}, {1.5, 1.5}, {1.5, 0.5}}, {{-1.5, -1.5}, {-1, -0.5}, {-0.5, -1.5}}}};
+}
+
+/// A disc of 0.1 m with a round hole of 0.03 m off its centre.
+inline Pattern ring_pattern() {
+  Pattern ring = disc_pattern(0.1, 40);
+  std::vector<Eigen::Vector2d> hole = disc_pattern(0.03, 20).border;
+  for (Eigen::Vector2d& p : hole) p += Eigen::Vector2d(0.02, 0.01);
+  ring.holes = {{hole.rbegin(), hole.rend()}};
+  return ring;
+}
+
 inline double twice_area(const ShellMesh& mesh, int f) {
   const Eigen::Vector2d a = mesh.pattern.row(mesh.triangles(f, 0)),
                         b = mesh.pattern.row(mesh.triangles(f, 1)),

@@ -262,5 +262,35 @@ TEST(RequireValid, NamesAPatternThatIsNotSimple) {
   EXPECT_THAT(refusal(sheet), HasSubstr("scene.pattern"));
 }
 
+TEST(RequireValid, NamesTheHandleInAHole) {
+  Sheet sheet = valid_sheet();
+  const Eigen::Vector2d centre = bounding_box(sheet.pattern).center();
+  const double r = 0.1 * width(sheet.pattern);
+  const auto at = [&](double x, double y) -> Eigen::Vector2d {
+    return centre + r * Eigen::Vector2d(x, y);
+  };
+  sheet.pattern.holes = {{at(-1, -1), at(-1, 1), at(1, 1), at(1, -1)}};
+  sheet.obstacles.clear();
+  Handle& handle = sheet.handles[0];
+  handle.disc_radius.reset();
+  handle.segment.reset();
+  handle.points = {centre};
+  EXPECT_THAT(refusal(sheet), AllOf(HasSubstr("handles.0"), HasSubstr("in a hole of the pattern")));
+  handle.points = {at(1, 0)};
+  EXPECT_EQ(refusal(sheet), "accepted") << "a vertex on the border of the hole";
+  handle.disc_radius = 0.5 * r;
+  handle.points = {at(1.2, 0)};
+  EXPECT_THAT(refusal(sheet), AllOf(HasSubstr("handles.0"), HasSubstr("over a hole")));
+  handle.points = {at(0.2, 0)};
+  EXPECT_THAT(refusal(sheet), HasSubstr("in a hole of the pattern"));
+  handle.disc_radius.reset();
+  handle.points.clear();
+  handle.segment = {at(-1, 0.5), at(1, 0.5)};
+  EXPECT_THAT(refusal(sheet),
+              AllOf(HasSubstr("handles.0"), HasSubstr("segment: leaves the pattern")));
+  handle.segment = {at(-1, -1), at(-1, 1)};
+  EXPECT_EQ(refusal(sheet), "accepted") << "along the hole";
+}
+
 }  // namespace
 }  // namespace geoprior::paper

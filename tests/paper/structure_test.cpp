@@ -11,6 +11,7 @@
 #include "solvers/paper/pieces.h"
 #include "solvers/paper/ruling_editor.h"
 #include "solvers/paper/ruling_mesh.h"
+#include "tests/paper/plane_shapes.h"
 
 namespace geoprior::paper {
 namespace {
@@ -79,7 +80,7 @@ TEST(Pieces, ParallelRulingsFromBorderToBorderAreOneCylinder) {
   ASSERT_EQ(piece.kind, PaperPiece::Kind::cylinder);
   EXPECT_EQ(piece.rulings.size(), 5U);
   EXPECT_NEAR(std::abs(piece.direction.y()), 1, 1e-12);
-  EXPECT_NEAR(signed_area({piece.region}), 0.08 * 0.2, 1e-12);
+  EXPECT_NEAR(signed_area(piece.region), 0.08 * 0.2, 1e-12);
   // The ground left and right of it is flat, and touches it.
   EXPECT_EQ(sheet.structure.pieces.size(), 3U);
   EXPECT_EQ(piece.neighbours, (std::vector<int>{1, 2}));
@@ -110,7 +111,7 @@ TEST(Pieces, SectorsAboutASingularPointAreConesAndTheRestIsFlat) {
       ++cones;
       EXPECT_EQ(piece.rulings.size(), 5U);
       EXPECT_EQ(piece.singular_point, p);
-      cone_area += signed_area({piece.region});
+      cone_area += signed_area(piece.region);
     }
     flats += piece.kind == PaperPiece::Kind::flat ? 1 : 0;
   }
@@ -120,6 +121,101 @@ TEST(Pieces, SectorsAboutASingularPointAreConesAndTheRestIsFlat) {
   EXPECT_NEAR(cone_area, 2 * 0.12 * 0.1 / 2, 1e-12);
   EXPECT_EQ(sheet.structure.pieces_at(p).size(), 2U);
   EXPECT_EQ(sheet.structure.rulings_at(p).size(), 10U);
+}
+
+/// The square sheet with a square hole of 0.04 m in its middle.
+struct PiercedSheet : SquareSheet {
+  PiercedSheet() { pattern.holes = {{{-0.02, -0.02}, {-0.02, 0.02}, {0.02, 0.02}, {0.02, -0.02}}}; }
+  [[nodiscard]] RulingEditor pen() { return {pattern, anchors, {4e-3, 0.1}, structure}; }
+
+  void add_line(const Vector2d& p, const Vector2d& d) {
+    const auto line = pen().chord(p, d);
+    ASSERT_TRUE(line) << p.transpose();
+    pen().add(*line);
+  }
+  [[nodiscard]] int count(PaperPiece::Kind kind) const {
+    int sum = 0;
+    for (const PaperPiece& piece : structure.pieces) sum += piece.kind == kind ? 1 : 0;
+    return sum;
+  }
+  void expect_covered(const RulingMesh& mesh) const {
+    EXPECT_THAT(broken_invariants(structure, pattern, mesh.mesh), IsEmpty());
+    EXPECT_EQ(plane_shapes::euler_characteristic(mesh.mesh), 0);
+    double sum = 0;
+    for (const PaperPiece& piece : structure.pieces) sum += signed_area(piece.region);
+    EXPECT_NEAR(sum, 0.04 - 0.0016, 1e-12);
+    EXPECT_EQ(structure.piece_at({0, 0}), -1);
+  }
+};
+
+constexpr auto kCylinder = PaperPiece::Kind::cylinder;
+constexpr auto kCone = PaperPiece::Kind::cone;
+constexpr auto kFlat = PaperPiece::Kind::flat;
+
+TEST(PiecesAtAHole, FlatGroundMayHaveAHole) {
+  PiercedSheet sheet;
+  const RulingMesh mesh = sheet.meshed();
+  sheet.expect_covered(mesh);
+  ASSERT_EQ(sheet.structure.pieces.size(), 1U);
+  EXPECT_EQ(sheet.structure.pieces[0].region.holes.size(), 1U);
+  EXPECT_EQ(sheet.structure.piece_at({0.05, 0}), 0);
+}
+
+TEST(PiecesAtAHole, RulingsEndAtTheNearestLoop) {
+  PiercedSheet sheet;
+  sheet.add_line({0.003, 0.06}, {0, 1});
+  EXPECT_NEAR((sheet.structure.rulings[0].a - Vector2d(0.003, 0.02)).norm(), 0, 1e-12);
+  EXPECT_NEAR((sheet.structure.rulings[0].b - Vector2d(0.003, 0.1)).norm(), 0, 1e-12);
+  const RulingHit hit = sheet.pen().propagate({0.06, 0}, {-1, 0});
+  EXPECT_EQ(hit.kind, RulingHit::Kind::border);
+  EXPECT_NEAR(hit.distance, 0.04, 1e-12);
+  EXPECT_GE(hit.index, 4) << "an edge of the hole";
+  EXPECT_FALSE(sheet.pen().chord({0, 0}, {0, 1})) << "in the hole";
+  EXPECT_FALSE(sheet.pen().chord({0.021, 0}, {0, 1})) << "too near along its side";
+  sheet.expect_covered(sheet.meshed());
+}
+
+// Between two uprights: a hole alone, a hole that a line reaches, and one that lines reach on both
+// sides; in each case all of it is one cylinder.
+TEST(PiecesAtAHole, AStripWithAHoleIsACylinder) {
+  for (int lines = 0; lines <= 2; ++lines) {
+    PiercedSheet sheet;
+    sheet.add_line({-0.06, 0}, {0, 1});
+    sheet.add_line({0.06, 0}, {0, 1});
+    if (lines > 0) sheet.add_line({0, 0.06}, {0, 1});
+    if (lines > 1) sheet.add_line({0, -0.06}, {0, 1});
+    sheet.expect_covered(sheet.meshed());
+    ASSERT_EQ(sheet.count(kCylinder), 1) << lines;
+    EXPECT_EQ(sheet.count(kFlat), 2) << lines;
+    const PaperPiece& piece = sheet.structure.pieces[0];
+    EXPECT_EQ(piece.rulings.size(), 2U + static_cast<std::size_t>(lines));
+    EXPECT_NEAR(signed_area(piece.region), 0.12 * 0.2 - 0.0016, 1e-12);
+    EXPECT_EQ(piece.region.holes.size(), 1U);
+  }
+}
+
+TEST(PiecesAtAHole, GroundBesideALineWithAHoleInItIsFlat) {
+  PiercedSheet sheet;
+  sheet.add_line({0, 0.06}, {0, 1});
+  sheet.add_line({0, -0.06}, {0, 1});
+  sheet.expect_covered(sheet.meshed());
+  EXPECT_EQ(sheet.count(kFlat), 2);
+  EXPECT_EQ(sheet.structure.pieces.size(), 2U);
+}
+
+TEST(PiecesAtAHole, ASectorWithAHoleIsACone) {
+  PiercedSheet sheet;
+  const int p = sheet.add_singular({0, -0.1});
+  for (const double x : {-0.095, 0.0, 0.095}) {
+    const auto ray = sheet.pen().ray(p, {x, 0.2});
+    ASSERT_TRUE(ray) << x;
+    sheet.pen().add(*ray);
+  }
+  EXPECT_NEAR(sheet.structure.rulings[1].b.y(), -0.02, 1e-12) << "the middle one ends at the hole";
+  sheet.expect_covered(sheet.meshed());
+  ASSERT_EQ(sheet.count(kCone), 1);
+  EXPECT_EQ(sheet.structure.pieces[0].rulings.size(), 3U);
+  EXPECT_NEAR(signed_area(sheet.structure.pieces[0].region), 0.19 * 0.2 / 2 - 0.0016, 1e-12);
 }
 
 TEST(Pieces, CylinderKeepsItsIdWhenAHalfIsCutOff) {
@@ -167,7 +263,12 @@ TEST(RulingEditor, LeadsARulingThroughAnAnchorNearby) {
 
 TEST(RulingEditor, RandomRulingsOnAnyPatternKeepAllInvariants) {
   const Pattern ell{{{0, 0}, {0.2, 0}, {0.2, 0.08}, {0.1, 0.08}, {0.1, 0.2}, {0, 0.2}}};
-  for (const Pattern& pattern : {rectangle_pattern(0.21, 0.297), disc_pattern(0.1, 48), ell}) {
+  Pattern pierced = plane_shapes::pierced_square();
+  for (std::size_t k = 0; k < pierced.loop_count(); ++k) {
+    for (Vector2d& p : k == 0 ? pierced.border : pierced.holes[k - 1]) p *= 0.06;
+  }
+  for (const Pattern& pattern : {rectangle_pattern(0.21, 0.297), disc_pattern(0.1, 48), ell,
+                                 plane_shapes::ring_pattern(), pierced}) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       RandomStream random(seed);
       const auto inside = [&] {
@@ -207,7 +308,7 @@ TEST(RulingEditor, RandomRulingsOnAnyPatternKeepAllInvariants) {
       EXPECT_THAT(broken_invariants(structure, pattern, mesh.mesh), IsEmpty()) << "seed " << seed;
       EXPECT_GT(structure.rulings.size(), 5U);
       double covered = 0;
-      for (const PaperPiece& piece : structure.pieces) covered += signed_area({piece.region});
+      for (const PaperPiece& piece : structure.pieces) covered += signed_area(piece.region);
       EXPECT_NEAR(covered, signed_area(pattern), 1e-9) << "seed " << seed;
     }
   }

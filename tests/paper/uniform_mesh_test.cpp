@@ -34,7 +34,9 @@ std::vector<Case> cases() {
           {"DelaunayDisc", disc_pattern(0.1, 40), UniformLayout::delaunay},
           {"AutomaticEll", plane_shapes::ell_pattern(), UniformLayout::automatic},
           {"EquilateralEll", plane_shapes::ell_pattern(), UniformLayout::equilateral},
-          {"DelaunayEll", plane_shapes::ell_pattern(), UniformLayout::delaunay}};
+          {"DelaunayEll", plane_shapes::ell_pattern(), UniformLayout::delaunay},
+          {"AutomaticRing", plane_shapes::ring_pattern(), UniformLayout::automatic},
+          {"DelaunayRing", plane_shapes::ring_pattern(), UniformLayout::delaunay}};
 }
 
 /// Points inside, on an edge and at a corner of a pattern.
@@ -43,6 +45,10 @@ std::vector<Eigen::Vector2d> some_anchors(const Pattern& pattern) {
   const Eigen::Vector2d side = 0.63 * pattern.border[0] + 0.37 * pattern.border[1];
   const Eigen::Vector2d inside = side + 0.031 * Eigen::Vector2d(-1, 1).normalized();
   std::vector<Eigen::Vector2d> anchors{corner, side};
+  for (const auto& hole : pattern.holes) {
+    anchors.push_back(hole[1]);
+    anchors.push_back(0.37 * hole[1] + 0.63 * hole[2]);
+  }
   for (const double t : {0.0, 0.001, 0.004}) {
     const Eigen::Vector2d p = inside + t * Eigen::Vector2d(1, 2);
     if (contains(pattern, p)) anchors.push_back(p);
@@ -54,12 +60,12 @@ void expect_covers(const ShellMesh& mesh, const Pattern& pattern) {
   const double area = signed_area(pattern);
   EXPECT_NEAR(plane_shapes::total_area(mesh), area, 1e-12 * area);
   EXPECT_GT(plane_shapes::least_area(mesh), 0);
-  EXPECT_EQ(plane_shapes::euler_characteristic(mesh), 1);
+  EXPECT_EQ(plane_shapes::euler_characteristic(mesh), 1 - static_cast<int>(pattern.holes.size()));
   for (const auto& [edge, count] : plane_shapes::directed_edges(mesh)) EXPECT_EQ(count, 1);
   for (const auto& [a, b] : plane_shapes::border_edges(mesh)) {
     EXPECT_LT(nearest_on_border(pattern, mesh.pattern.row(a)).distance, 1e-15);
   }
-  for (const Eigen::Vector2d& corner : pattern.border) {
+  for (const Eigen::Vector2d& corner : corners(pattern)) {
     EXPECT_EQ(plane_shapes::distance_to_vertices(mesh, corner), 0);
   }
 }
@@ -143,6 +149,25 @@ TEST(AutomaticMesh, IsStructuredOnAnUprightRectangleOnly) {
   EXPECT_TRUE(same(rectangle_pattern(0.3, 0.2), UniformLayout::structured));
   EXPECT_TRUE(same(disc_pattern(0.1, 40), UniformLayout::equilateral));
   EXPECT_TRUE(same(plane_shapes::ell_pattern(), UniformLayout::equilateral));
+}
+
+TEST(EquilateralMesh, GoesAroundTwoHoles) {
+  const Pattern pattern = plane_shapes::pierced_square();
+  for (const int triangles : {20, 200, 2000})
+    expect_covers(uniform_mesh(pattern, triangles, UniformLayout::equilateral, {}, 1), pattern);
+}
+
+TEST(StructuredMesh, RefusesARectangleWithAHole) {
+  Pattern pierced = rectangle_pattern(1, 1);
+  pierced.holes = {{{0, 0}, {0, 0.1}, {0.1, 0}}};
+  EXPECT_THROW(uniform_mesh(pierced, 100, UniformLayout::structured, {}, 1), Error);
+  EXPECT_NO_THROW(uniform_mesh(pierced, 100, UniformLayout::automatic, {}, 1));
+}
+
+TEST(UniformMeshErrors, NameAnAnchorInAHole) {
+  EXPECT_THROW(
+      uniform_mesh(plane_shapes::pierced_square(), 100, UniformLayout::delaunay, {{1, 1}}, 1),
+      Error);
 }
 
 TEST(UniformMeshErrors, NameAnAnchorOutside) {
