@@ -31,7 +31,7 @@ struct System {
     for (Eigen::Index i = 0; i < state.x.size(); ++i) {
       state.x.data()[i] += 1e-3 * (random.uniform() - 0.5);
     }
-    elements.emplace(state.mesh, sheet.material, BendingModel::shape_operator, 4);
+    elements.emplace(state.mesh, sheet.material, BendingLaw());
     std::vector<int> offset(1, 0), members;
     for (int e = 0; e < elements->size(); ++e) {
       const auto nodes = elements->nodes(e);
