@@ -23,12 +23,6 @@ struct Counts {
   int splits = 0, collapses = 0, flips = 0, pop_steps = 0, settle_steps = 0;
 };
 
-/// Root mean square of the sheet's strain, as its membrane energy counts it.
-double rms_strain(const Sheet& sheet, const ShellStepper& stepper, const ShellState& state) {
-  return std::sqrt(2 * stepper.energies(state).membrane /
-                   (sheet.material.membrane_stiffness() * signed_area(sheet.pattern)));
-}
-
 class AdaptiveMesher final : public SheetMesher {
  public:
   explicit AdaptiveMesher(const AdaptiveOptions& options) : options_(options) {
@@ -75,11 +69,7 @@ class AdaptiveMesher final : public SheetMesher {
   void settle(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
               RunContext& context) override {
     const Phase phase(context, "settle");
-    while (last_.settle_steps < options_.settle_steps &&
-           rms_strain(sheet, stepper, state) > options_.settle_strain) {
-      stepper.relax(state, options_.settle_time);
-      ++last_.settle_steps;
-    }
+    last_.settle_steps = paper::settle(sheet, options_.settle, stepper, state);
   }
 
   void annotate(const ShellState& /*state*/, Frame& frame) const override {
@@ -136,14 +126,7 @@ void describe(OptionVisitor& v, AdaptiveOptions& options) {
   describe(v, static_cast<SizingOptions&>(options));
   v.value("pop_filter", options.pop_filter,
           {.doc = "moves vertices with new triangles until forces are what they were"});
-  v.value("settle_steps", options.settle_steps,
-          {.doc = "most implicit steps from rest that a mesh settles for after it has changed",
-           .min = 0,
-           .max = 1000});
-  v.value("settle_time", options.settle_time,
-          {.doc = "length of such a step", .unit = "s", .min = 1e-9, .max = 10});
-  v.value("settle_strain", options.settle_strain,
-          {.doc = "strain, root mean square, at which it has settled", .min = 1e-12, .max = 1});
+  describe_group(v, "settle", options.settle, {.doc = "after every change of the mesh"});
   describe_group(v, "stepper", options.stepper, {.doc = "time stepping"});
 }
 

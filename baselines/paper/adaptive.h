@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "models/paper/settle.h"
 #include "models/paper/sheet_process.h"
 
 namespace geoprior::paper {
@@ -24,15 +25,12 @@ struct SizingOptions {
 void describe(OptionVisitor& v, SizingOptions& options);
 
 /// Baseline: anisotropic adaptive remeshing in the pattern (Narain, Samii, O'Brien 2012; Narain,
-/// Pfaff, O'Brien 2013): docs of the parts in sizing.h, remesh.h and pop_filter.h. After a change a
-/// mesh settles: it gives way by implicit steps from rest until it is hardly strained.
-/// A split puts a vertex on the chord of a bend, where the sheet is too short; without settling the
-/// strain is recorded, and the next steps turn it into motion.
+/// Pfaff, O'Brien 2013): docs of the parts in sizing.h, remesh.h and pop_filter.h. After a change
+/// the sheet settles (models/paper/settle.h): a split puts a vertex on the chord of a bend, where
+/// it is too short.
 struct AdaptiveOptions : SizingOptions {
-  bool pop_filter = false;      ///< relaxes what remeshing changed (pop_filter.h)
-  int settle_steps = 20;        ///< most implicit steps from rest after a change of the mesh
-  double settle_time = 1e-3;    ///< length of each (s)
-  double settle_strain = 2e-4;  ///< root mean square at which it has settled
+  bool pop_filter = false;  ///< relaxes what remeshing changed (pop_filter.h)
+  SettleOptions settle;
   StepperOptions stepper;
 };
 void describe(OptionVisitor& v, AdaptiveOptions& options);

@@ -42,11 +42,13 @@ std::vector<DiagnosticEntry> diagnostics() {
        kWork},
       {"factor_nonzeros", "1", "non-zeros of the factor of the last step's system"},
       {"handle_work", "J", "work done on the sheet by the prescribed handles since the start"},
+      // Recorded by those whose mesh changes.
+      {"settle_steps", "1", "steps from rest that the sheet settled for after the change", true,
+       kWork},
       // Recorded by the adaptive mesh.
       {"splits", "1", "edges split by the frame's remeshing"},
       {"collapses", "1", "edges collapsed by it"},
       {"flips", "1", "edges flipped by it"},
-      {"settle_steps", "1", "steps from rest that it then settled for", true, kWork},
       {"pop_filter_steps", "1", "steps that take back the pop of the remeshing"},
       // Recorded by the hybrid.
       {"flats", "1", "planar pieces"},

@@ -229,6 +229,7 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
     remesh();
   }
   meshes_made_ = 0;
+  settle_steps_ = 0;
   ++frames_;
   std::vector<DemandGroup> groups;
   {
@@ -390,12 +391,11 @@ void HybridMesher::project(const Sheet& sheet, int effort, ShellState& state, Ru
       state, {effort * options_.projection_iterations, options_.projection_strain});
 }
 
-/// The projection puts the new mesh where it is isometric, not where it is at rest: without these
-/// steps the frame would record, and the next one would set free, the energy of that difference.
-void HybridMesher::settle(const Sheet& /*sheet*/, ShellStepper& stepper, ShellState& state,
+/// The projection puts the new mesh where it is isometric, not where it is at rest.
+void HybridMesher::settle(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
                           RunContext& context) {
   const Phase phase(context, "settle");
-  for (int i = 0; i < options_.settle_steps; ++i) stepper.relax(state, options_.settle_time);
+  settle_steps_ = paper::settle(sheet, options_.settle, stepper, state);
 }
 
 void HybridMesher::annotate(const ShellState& state, Frame& frame) const {
@@ -409,6 +409,7 @@ void HybridMesher::annotate(const ShellState& state, Frame& frame) const {
   frame.diagnostics["projection_iterations"] = projection_.iterations;
   frame.diagnostics["strain_before"] = projection_.strain_before;
   frame.diagnostics["strain_after"] = projection_.strain_after;
+  frame.diagnostics["settle_steps"] = settle_steps_;
 }
 
 void HybridMesher::save(StateWriter& out) const {
@@ -541,10 +542,6 @@ void describe_tracking(OptionVisitor& v, HybridOptions& o) {
           {.doc = "iterations of the projection then, in those of a usual frame",
            .min = 1,
            .max = 1000});
-  v.value("settle_steps", o.settle_steps,
-          {.doc = "implicit steps from rest that a new mesh settles for", .min = 0, .max = 1000});
-  v.value("settle_time", o.settle_time,
-          {.doc = "length of such a step", .unit = "s", .min = 1e-9, .max = 10});
   v.value("weakening_radius", o.weakening_radius,
           {.doc = "r_p about a singular point, where the sheet yields",
            .unit = "m",
@@ -558,6 +555,7 @@ void describe(OptionVisitor& v, HybridOptions& o) {
   describe_compression(v, o);
   describe_rulings(v, o);
   describe_tracking(v, o);
+  describe_group(v, "settle", o.settle, {.doc = "after every new mesh"});
   describe_group(v, "stepper", o.stepper, {.doc = "time stepping"});
 }
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "models/paper/settle.h"
 #include "models/paper/sheet_process.h"
 #include "solvers/paper/structure.h"
 
@@ -45,9 +46,8 @@ struct HybridOptions {
   double accepted_strain = 4e-3;
   int attempts = 3;                ///< in such a frame
   int last_iterations = 8;         ///< of the projection then, in those of a usual frame
-  int settle_steps = 6;            ///< implicit steps from rest after every new mesh
-  double settle_time = 1e-3;       ///< length of each (s)
   double weakening_radius = 4e-3;  ///< r_p about a singular point (m)
+  SettleOptions settle;
   StepperOptions stepper;
 };
 void describe(OptionVisitor& v, HybridOptions& options);

@@ -81,10 +81,11 @@ class HybridMesher final : public SheetMesher {
   bool meshed_ = false;      ///< false after `load`, until the mesh is made again
   PropagationReport events_;
   ProjectionReport projection_;
-  int meshes_made_ = 0;  ///< in this frame, of changes taken back too
-  int frames_ = 0;       ///< so far
-  int unborn_ = 0;       ///< singular points that were not worth their energy, so far
-  int rejected_ = 0;     ///< changes of the structure that the sheet could not follow, so far
+  int settle_steps_ = 0;  ///< in this frame
+  int meshes_made_ = 0;   ///< in this frame, of changes taken back too
+  int frames_ = 0;        ///< so far
+  int unborn_ = 0;        ///< singular points that were not worth their energy, so far
+  int rejected_ = 0;      ///< changes of the structure that the sheet could not follow, so far
 };
 
 }  // namespace geoprior::paper

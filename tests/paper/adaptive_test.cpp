@@ -257,7 +257,7 @@ TEST(Remesh, CoarsensAFlatSheetToTheLargestSize) {
     ShellState state = flat_state(uniform_mesh(pattern, 1000, UniformLayout::delaunay, {}, 1));
     remesh(sheet, sizing_tensors(state, {}, options), state);
     expect_sound(state.mesh, pattern);
-    EXPECT_LT(state.mesh.triangle_count(), 110);
+    EXPECT_LT(state.mesh.triangle_count(), 200);
     for (const Eigen::Vector2d& e : interior_edges(state.mesh)) {
       EXPECT_LE(e.norm(), 1.0001 * options.size_max);
     }
@@ -296,10 +296,10 @@ TEST(Remesh, MakesLongTrianglesAlongACylinder) {
     // Near the border fewer hinges see the bend: a quarter longer there.
     EXPECT_LT(widest, 1.25 * size);
     EXPECT_GT(longest, 3 * size);
-    // Equilateral triangles of edge 1 in the metric (1 / size^2, 1 / size_max^2), or at most four
-    // times as many: edges between 0.5 and 1 are left alone.
+    // Equilateral triangles of edge 1 in the metric (1 / size^2, 1 / size_max^2), or at most seven
+    // times as many: a collapse that would leave an edge of 0.6 is not made.
     const double fewest = 0.16 / (size * options.size_max) * 4 / std::sqrt(3.0);
-    EXPECT_LT(state.mesh.triangle_count(), 4 * fewest);
+    EXPECT_LT(state.mesh.triangle_count(), 7 * fewest);
     EXPECT_GT(state.mesh.triangle_count(), fewest);
   }
 }
@@ -445,7 +445,7 @@ TEST(AdaptiveSheet, SettlesAfterItsMeshHasChanged) {
   for (const Frame& frame : settled.frames) steps += frame.diagnostics.at("settle_steps");
   EXPECT_GT(steps, 0);
   AdaptiveOptions as_it_is;
-  as_it_is.settle_steps = 0;
+  as_it_is.settle.steps = 0;
   EXPECT_GT(worst_strain(run_adaptive(sheet, as_it_is)), 6e-4) << "what settling takes away";
 }
 

@@ -148,7 +148,10 @@ inline void run_hybrid(const Sheet& sheet, const HybridOptions& options, std::ui
     }
     state.time = sheet.frame_time(frame);
     if (look_before) look_before(mesher, state);
-    if (mesher.adapt(sheet, stepper, state, context)) stepper.set_mesh(state);
+    if (mesher.adapt(sheet, stepper, state, context)) {
+      stepper.set_mesh(state);
+      mesher.settle(sheet, stepper, state, context);
+    }
     look(mesher, state);
   }
 }
