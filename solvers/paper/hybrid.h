@@ -64,7 +64,7 @@ void describe(OptionVisitor& v, HybridOptions& options);
 /// and "singular_points" (points; "id", "birth" [s], "weakening"), the cell arrays "piece" and
 /// "kind" on "surface", the tables "pieces" and "singular_points", and as diagnostics the numbers
 /// of pieces of each kind, the events of the frame and the edge strain around the projection.
-/// Phases: "analyse", "propagate", "remesh", "project", "weigh".
+/// Phases: "analyse", "propagate", "remesh", "project", "weigh", "settle".
 std::unique_ptr<Process> make_hybrid_sheet(const Sheet& sheet, const HybridOptions& options);
 
 }  // namespace geoprior::paper
