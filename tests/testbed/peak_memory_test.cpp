@@ -20,7 +20,6 @@ void take_and_free(std::uint64_t bytes) {
 
 std::uint64_t growth(const MemoryUse& use) { return use.peak - use.start; }
 
-// Pages of 4 kB, and what else the process may touch meanwhile: a quarter of a megabyte.
 /// Growth seen while this much is taken and freed, the nearest to it of five tries: meanwhile the
 /// kernel may take pages of the program away that were idle, and what grew seems less.
 std::size_t seen_growth(std::size_t bytes) {
@@ -35,6 +34,7 @@ std::size_t seen_growth(std::size_t bytes) {
   return nearest;
 }
 
+// Pages of 4 kB, and what else the process may touch meanwhile: a quarter of a megabyte.
 TEST(PeakMemory, SeesAnAllocationOfKnownSizeThatWasFreedAgain) {
   if (!PeakMemory().use()) GTEST_SKIP() << "the kernel does not let a process reset VmHWM";
   const std::size_t seen = seen_growth(64 * kMegabyte);
