@@ -4,18 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/paper/segments.h"
+
 namespace geoprior::paper {
-namespace {
-
-double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
-                           const Eigen::Vector2d& b) {
-  const Eigen::Vector2d along = b - a;
-  const double squared = along.squaredNorm();
-  const double t = squared > 0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0;
-  return (p - a - t * along).norm();
-}
-
-}  // namespace
 
 std::vector<Eigen::Vector2d> Handle::anchors() const {
   if (segment) return {segment->first, segment->second};

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/limits.h"
 #include "core/planar.h"
+#include "models/paper/segments.h"
 
 namespace geoprior::paper {
 namespace {
@@ -108,21 +109,15 @@ void require_area(const Loop& p, const std::string& where) {
   }
 }
 
-double distance_to_edge(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
-  const Vector2d along = b - a;
-  const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (p - a - t * along).norm();
-}
-
 bool edges_are_near(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d,
                     double distance) {
   for (int k = 0; k < 2; ++k) {
     if (std::max(a[k], b[k]) + distance < std::min(c[k], d[k])) return false;
     if (std::max(c[k], d[k]) + distance < std::min(a[k], b[k])) return false;
   }
-  return segments_meet(a, b, c, d) || distance_to_edge(a, c, d) < distance ||
-         distance_to_edge(b, c, d) < distance || distance_to_edge(c, a, b) < distance ||
-         distance_to_edge(d, a, b) < distance;
+  return segments_meet(a, b, c, d) || distance_to_segment(a, c, d) < distance ||
+         distance_to_segment(b, c, d) < distance || distance_to_segment(c, a, b) < distance ||
+         distance_to_segment(d, a, b) < distance;
 }
 
 void require_apart(const Pattern& pattern, std::size_t k, std::size_t l, const std::string& where) {
@@ -279,7 +274,7 @@ std::optional<Vector2d> leaves_pattern(const Pattern& pattern, const Vector2d& a
     if (!segments_meet(a, b, c, d)) return;
     // Edges on the segment's line begin and end on others that cross it, or at its ends.
     for (const Vector2d& corner : {c, d}) {
-      if (distance_to_edge(corner, a, b) <= tolerance)
+      if (distance_to_segment(corner, a, b) <= tolerance)
         stops.push_back((corner - a).dot(along) / along.squaredNorm());
     }
     const double det = cross(along, d - c);

@@ -18,6 +18,11 @@ struct ShellStepper::Impl {
   ShellDynamics::Step trial;
 
   [[nodiscard]] ShellDynamics& of(const ShellState& state) const;
+  [[nodiscard]] StepReport empty_report() const {
+    StepReport report;
+    report.handle_force.assign(sheet.handles.size(), Eigen::Vector3d::Zero());
+    return report;
+  }
   struct Flow {
     bool plastic;
     double whole;  ///< time asked for (s)
@@ -85,8 +90,7 @@ void ShellStepper::set_mesh(const ShellState& state) {
 StepReport ShellStepper::step(ShellState& state, double dt, RunContext& /*context*/) {
   static_cast<void>(impl_->of(state));
   if (!(dt > 0)) throw Error("step length " + std::to_string(dt), "ShellStepper", "above 0 s");
-  StepReport report;
-  report.handle_force.assign(impl_->sheet.handles.size(), Eigen::Vector3d::Zero());
+  StepReport report = impl_->empty_report();
   const ShellState before = state;
   try {
     impl_->advance(state, dt, impl_->options.most_halvings, {impl_->options.plasticity, dt},
@@ -105,8 +109,7 @@ void ShellStepper::relax(ShellState& state, double dt) {
   ShellState rested = state;
   rested.v.setZero();
   rested.time = state.time - dt;
-  StepReport report;
-  report.handle_force.assign(impl_->sheet.handles.size(), Eigen::Vector3d::Zero());
+  StepReport report = impl_->empty_report();
   impl_->advance(rested, dt, impl_->options.most_halvings, {false, dt}, report);
   state.x.swap(rested.x);
 }

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 
-#include "core/context.h"
 #include "models/paper/pattern_locator.h"
 #include "models/paper/sheet.h"
 #include "models/paper/shell_state.h"

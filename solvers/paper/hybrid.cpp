@@ -142,6 +142,7 @@ ShellState HybridMesher::start(const Sheet& sheet, RunContext& context) {
   rejected_ = 0;
   unborn_ = 0;
   frames_ = 0;
+  settle_steps_ = 0;
   take_scene(sheet);
   remesh();
   return resting_state(sheet, mesh_.mesh, context.seed());

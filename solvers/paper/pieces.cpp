@@ -10,7 +10,7 @@
 #include "core/connectivity.h"
 #include "core/disjoint_sets.h"
 #include "core/planar.h"
-#include "solvers/paper/segments.h"
+#include "models/paper/segments.h"
 
 namespace geoprior::paper {
 namespace {
@@ -63,8 +63,6 @@ std::vector<CellOutline> outlines_of_cells(const Pattern& pattern, const RulingM
   mark_holes(pattern, mesh, edges, result);
   return result;
 }
-
-bool is_chord(const Ruling& r) { return !r.singular_a && !r.singular_b; }
 
 std::optional<int> common_apex(const Ruling& r, const Ruling& s) {
   for (const auto& p : {r.singular_a, r.singular_b}) {

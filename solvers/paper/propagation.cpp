@@ -7,7 +7,7 @@
 #include "core/angles.h"
 #include "core/planar.h"
 #include "core/random.h"
-#include "solvers/paper/segments.h"
+#include "models/paper/segments.h"
 #include "solvers/paper/singular_point.h"
 
 namespace geoprior::paper {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/planar.h"
-#include "solvers/paper/segments.h"
+#include "models/paper/segments.h"
 
 namespace geoprior::paper {
 namespace {

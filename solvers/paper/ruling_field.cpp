@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/angles.h"
-#include "solvers/paper/segments.h"
+#include "models/paper/segments.h"
 
 namespace geoprior::paper {
 namespace {
@@ -52,8 +52,6 @@ double share_along(const Matrix2d& T, const Vector2d& d) {
   return d.dot(T * d) / (d.squaredNorm() * T.trace());
 }
 
-bool is_chord(const Ruling& r) { return !r.singular_a && !r.singular_b; }
-
 bool is_bent(const Matrix2d& T, const HybridOptions& options) {
   return T.trace() > options.flat_curvature * options.flat_curvature;
 }
@@ -91,7 +89,7 @@ bool turn(const BendingField& field, const HybridOptions& options, RulingEditor&
 class RulingLayer {
  public:
   RulingLayer(const BendingField& field, const HybridOptions& options, RulingEditor& editor)
-      : field_(field), options_(options), editor_(editor) {
+      : field_(field), options_(options), editor_(editor), border_{editor.pattern().border} {
     most_ = kLaid * std::pow(std::sin(options.follow_angle_deg * kDegree), 2);
   }
 
@@ -130,9 +128,8 @@ class RulingLayer {
 
   /// The ground beside a hole is narrow: there a line may be laid as near as it fits.
   [[nodiscard]] bool is_at_border(const Vector2d& p, double distance) const {
-    const Pattern& pattern = editor_.pattern();
-    if (nearest_on_border(pattern, p).distance < editor_.bounds().gap) return true;
-    return nearest_on_border({pattern.border}, p).distance < distance;
+    if (nearest_on_border(editor_.pattern(), p).distance < editor_.bounds().gap) return true;
+    return nearest_on_border(border_, p).distance < distance;
   }
 
   /// Puts lines beside a chord, as far as the bending asks for. Where a hole cuts the line beside
@@ -195,6 +192,7 @@ class RulingLayer {
   const BendingField& field_;
   const HybridOptions& options_;
   RulingEditor& editor_;
+  Pattern border_;  ///< the pattern without its holes
   double most_ = 0;
   int added_ = 0;
 };

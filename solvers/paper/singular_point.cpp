@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/angles.h"
-#include "solvers/paper/segments.h"
+#include "models/paper/segments.h"
 
 namespace geoprior::paper {
 namespace {

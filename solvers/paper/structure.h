@@ -21,6 +21,9 @@ struct Ruling {
   int astray_frames = 0;  ///< for how many frames the sheet has bent along it
 };
 
+/// From border to border.
+inline bool is_chord(const Ruling& r) { return !r.singular_a && !r.singular_b; }
+
 /// A part of the sheet that is developable and smooth: thesis 3.2.1, Figure 3.7.
 struct PaperPiece {
   enum class Kind { flat, cylinder, cone };

@@ -9,7 +9,7 @@
 #include "core/connectivity.h"
 #include "core/curvature_fit.h"
 #include "core/planar.h"
-#include "solvers/paper/segments.h"
+#include "models/paper/segments.h"
 
 namespace geoprior::paper {
 namespace {

@@ -2,13 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <string>
 
@@ -173,35 +171,6 @@ TEST(Names, AreWrittenForReaders) {
   EXPECT_EQ(with_unit(3, "1"), "3");
   EXPECT_EQ(display_name("flip-uncorrected"), "FLIP uncorrected");
   EXPECT_EQ(display_name("pictures"), "Pictures") << "no acronym, though it begins like one";
-}
-
-/// Whether this process has a child of that name.
-bool has_child(const std::string& name) {
-  for (const auto& entry : fs::directory_iterator("/proc")) {
-    // "pid (name) state parent …"; empty when no process, or when it has ended meanwhile.
-    std::ifstream file(entry.path() / "stat");
-    std::string pid, command, state;
-    pid_t parent = 0;
-    if (file >> pid >> command >> state >> parent && command == "(" + name + ")" &&
-        parent == ::getpid()) {
-      return true;
-    }
-  }
-  return false;
-}
-
-TEST(Display, IsOursAndEndsWithItsObject) {
-  const char* before = std::getenv("DISPLAY");
-  const std::string old = before != nullptr ? before : "";
-  {
-    const Display display;
-    EXPECT_NE(std::getenv("DISPLAY"), old);
-    EXPECT_TRUE(has_child("Xvfb"));
-  }
-  const char* after = std::getenv("DISPLAY");
-  EXPECT_EQ(after != nullptr ? after : "", old);
-  // Not its socket: a test beside this one may have taken the number by now.
-  EXPECT_FALSE(has_child("Xvfb"));
 }
 
 Part make_sphere(double radius, int rings) {

@@ -1,4 +1,4 @@
-#include "solvers/paper/segments.h"
+#include "models/paper/segments.h"
 
 #include <algorithm>
 #include <cmath>
