@@ -82,7 +82,7 @@ class AdaptiveMesher final : public SheetMesher {
 
   /// Counts of the last frame only: the next remeshing depends on the sheet alone.
   void save(StateWriter& out) const override { out.number(last_); }
-  void load(StateReader& in) override { last_ = in.number<Counts>(); }
+  void load(const Sheet& /*sheet*/, StateReader& in) override { last_ = in.number<Counts>(); }
 
  private:
   static std::vector<int> held_vertices(const Sheet& sheet, const ShellState& state) {
