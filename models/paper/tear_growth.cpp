@@ -115,7 +115,7 @@ TearGrowth::TearGrowth(const Sheet& sheet, const TearOptions& options)
 }
 
 Vector2d TearGrowth::direction_of(const TipPull& pull, const Vector2d& p) const {
-  if (options_.direction == TearDirection::pull) return pull.right;
+  if (options_.direction == TearDirection::pull) return pull.right.normalized();
   const Vector2d away = pull.away();
   if (!sheet_.toughness.grain_deg || sheet_.toughness.across == 1) return away;
   // Where the fibres count, what is released over what is opposed decides.

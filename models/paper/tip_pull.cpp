@@ -158,8 +158,8 @@ std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
   TipPull pull;
   pull.left_force = left.force;
   pull.right_force = right.force;
-  pull.left = left.image.normalized();
-  pull.right = right.image.normalized();
+  pull.left = left.image;
+  pull.right = right.image;
   pull.force = (l + r) / 2;
   pull.angle = std::abs(signed_angle(pull.left, pull.right));
   if (!(pull.angle <= options.widest_angle_deg * kDegree)) return {};

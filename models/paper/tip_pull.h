@@ -12,7 +12,7 @@ namespace geoprior::paper {
 
 /// How the forces about a point are gathered and grouped.
 struct PullOptions {
-  double reach = 0.02;  ///< radius of the part of the sheet on which the pull is measured (m)
+  double reach = 0.03;  ///< radius of the part of the sheet on which the pull is measured (m)
   int lines = 64;       ///< directions tried for the line that parts left from right
   /// Smallest angle between the two resultants in space: pulls that point the same way tear
   /// nothing.
@@ -27,17 +27,18 @@ void describe(OptionVisitor& v, PullOptions& options);
 /// the sheet about C as two resultants, and their images in the pattern.
 struct TipPull {
   Eigen::Vector3d left_force, right_force;  ///< N
-  Eigen::Vector2d left, right;              ///< directions of the images, unit
+  Eigen::Vector2d left, right;              ///< their images (N)
   double force = 0;                         ///< F: mean of both norms (N)
   double angle = 0;                         ///< theta: between the images (rad)
 
   /// Energy that a unit of area of a tear releases that goes on in direction d (unit):
-  /// F (-d . left - d . right) / e, largest along `away()`, where it is 2 F cos(theta / 2) / e
-  /// (thesis; O'Keefe 1994). (J/m^2)
+  /// -d . (left + right) / e, largest along `away()`. Of images as long as F that is
+  /// 2 F cos(theta / 2) / e (thesis; O'Keefe 1994). What only passes through the piece, from left to
+  /// right, adds to both images and to F, but not to their sum. (J/m^2)
   [[nodiscard]] double release(const Eigen::Vector2d& d, double thickness) const {
-    return -force * d.dot(left + right) / thickness;
+    return -d.dot(left + right) / thickness;
   }
-  /// Direction of the tear: the bisector of the images, away from both.
+  /// Direction of the tear: away from both images, their bisector when they are equally long.
   [[nodiscard]] Eigen::Vector2d away() const { return -(left + right).normalized(); }
 };
 

@@ -69,14 +69,15 @@ struct OnBorder {
 /// Vertices round border and holes in order, gaps longer than `flat_size` divided evenly.
 std::vector<std::vector<int>> border_chains(const Pattern& pattern, double flat_size,
                                             double tolerance, PointSet& set) {
-  const std::vector<Vector2d> all = corners(pattern);
+  const Pattern loops{pattern.border, pattern.holes};
+  const std::vector<Vector2d> all = corners(loops);
   std::vector<OnBorder> on_border;
   const std::vector<Vector2d> points = set.points();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const BorderPoint near = nearest_on_border(pattern, points[i]);
-    if (near.distance > tolerance || is_cut(pattern, near.edge)) continue;
+    const BorderPoint near = nearest_on_border(loops, points[i]);
+    if (near.distance > tolerance) continue;
     // A corner is both the end of one edge and the start of the next: count it once, as the start.
-    const int next = next_edge(pattern, near.edge);
+    const int next = next_edge(loops, near.edge);
     const bool at_end = (points[i] - all[static_cast<std::size_t>(next)]).norm() <= tolerance;
     on_border.push_back({at_end ? next : near.edge, at_end ? 0 : near.t, static_cast<int>(i)});
   }
