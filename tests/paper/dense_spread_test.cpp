@@ -112,15 +112,18 @@ TEST(LongDenseSpread, HybridHasAsManyDConesAsSomeDenseRun) {
   }
 }
 
-// Whether 4,096 triangles are enough to say so.
-TEST(LongDenseSpread, TwiceTheTrianglesHaveAsManyDCones) {
+// 4,096 triangles are not enough to say how many there are: at least one scene has others with
+// 8,192. What is beyond the dense runs' spread above may be beyond their resolution.
+TEST(LongDenseSpread, DenseCountsHaveNotConverged) {
   if (!is_long()) GTEST_SKIP() << "8,192 triangles: with GEOPRIOR_LONG";
+  int most = 0;
   for (const char* id : {"bend-pinch", "cylinder-crush", "a4-pinch"}) {
     const auto scene = load(id);
     const int coarse = dense_cones(*scene, 4096, 1), fine = dense_cones(*scene, 8192, 1);
     std::printf("%-24s 4,096 triangles %d, 8,192 %d\n", id, coarse, fine);
-    EXPECT_LE(std::abs(fine - coarse), 1) << id;
+    most = std::max(most, std::abs(fine - coarse));
   }
+  EXPECT_GT(most, 1);
 }
 
 }  // namespace
