@@ -67,8 +67,8 @@ double elastic_energy(const ShellStepper& stepper, const ShellState& state) {
   return energies.membrane + energies.bending;
 }
 
-/// A step towards rest. One that raises the elastic energy is too long for its linear forces, and is
-/// tried again shorter; `time` keeps the length.
+/// A step towards rest. One that raises the elastic energy is too long for its linear forces, and
+/// is tried again shorter; `time` keeps the length.
 void relax(ShellStepper& stepper, double& time, ShellState& state) {
   constexpr int kTries = 4;
   const Eigen::MatrixX3d start = state.x;

@@ -27,9 +27,9 @@ struct TearOptions {
   TearIntegrator integrator = TearIntegrator::midpoint;
   TearDirection direction = TearDirection::bisector;
   double most_turn_deg = 30;  ///< that a tear turns in a step
-  double relax_time = 1e-3;  ///< of the implicit steps from rest that a sheet relaxes in (s)
-  int rest_steps = 6;        ///< of them, that a pull must outlast before a tear grows
-  int relax_steps = 2;       ///< of them, after it has grown
+  double relax_time = 1e-3;   ///< of the implicit steps from rest that a sheet relaxes in (s)
+  int rest_steps = 6;         ///< of them, that a pull must outlast before a tear grows
+  int relax_steps = 2;        ///< of them, after it has grown
   double path_tolerance =
       1e-4;                  ///< farthest that a tear's path lies from the edges of its lips (m)
   double margin = 1e-3;      ///< a tear that comes so near to a border ends there (m)

@@ -33,8 +33,8 @@ struct TipPull {
 
   /// Energy that a unit of area of a tear releases that goes on in direction d (unit):
   /// -d . (left + right) / e, largest along `away()`. Of images as long as F that is
-  /// 2 F cos(theta / 2) / e (thesis; O'Keefe 1994). What only passes through the piece, from left to
-  /// right, adds to both images and to F, but not to their sum. (J/m^2)
+  /// 2 F cos(theta / 2) / e (thesis; O'Keefe 1994). What only passes through the piece, from left
+  /// to right, adds to both images and to F, but not to their sum. (J/m^2)
   [[nodiscard]] double release(const Eigen::Vector2d& d, double thickness) const {
     return -d.dot(left + right) / thickness;
   }

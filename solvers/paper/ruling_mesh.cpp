@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/planar.h"
 #include "models/paper/lips.h"
+#include "models/paper/outline_chains.h"
 #include "models/paper/segments.h"
 
 namespace geoprior::paper {
@@ -22,107 +23,6 @@ using Eigen::Vector2d;
 /// Radius of the ring of vertices about a tip, in flat sizes, and the length of a ruling that has
 /// room for one: beside it a step of a tear is not much shorter than the edges around.
 constexpr double kRing = 0.3, kRingRoom = 0.5;
-
-/// Collects the vertices: points closer than the tolerance are one.
-class PointSet {
- public:
-  explicit PointSet(double tolerance) : tolerance_(tolerance) {}
-  int add(const Vector2d& p) {
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      if ((points_[i] - p).norm() <= tolerance_) return static_cast<int>(i);
-    }
-    points_.push_back(p);
-    return static_cast<int>(points_.size()) - 1;
-  }
-  [[nodiscard]] const std::vector<Vector2d>& points() const { return points_; }
-
- private:
-  double tolerance_;
-  std::vector<Vector2d> points_;
-};
-
-/// Points on the segment a b, in order.
-std::vector<int> points_along(const std::vector<Vector2d>& points, const Vector2d& a,
-                              const Vector2d& b, double tolerance) {
-  std::vector<std::pair<double, int>> along;
-  const Vector2d d = (b - a).normalized();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (distance_to_segment(points[i], a, b) <= tolerance) {
-      along.emplace_back((points[i] - a).dot(d), static_cast<int>(i));
-    }
-  }
-  std::sort(along.begin(), along.end());
-  std::vector<int> path;
-  for (const auto& [t, i] : along) path.push_back(i);
-  return path;
-}
-
-struct OnBorder {
-  int edge;
-  double t;
-  int vertex;
-  bool operator<(const OnBorder& other) const {
-    return std::pair(edge, t) < std::pair(other.edge, other.t);
-  }
-};
-
-/// Vertices round border and holes in order, gaps longer than `flat_size` divided evenly.
-std::vector<std::vector<int>> border_chains(const Pattern& pattern, double flat_size,
-                                            double tolerance, PointSet& set) {
-  const Pattern loops{pattern.border, pattern.holes};
-  const std::vector<Vector2d> all = corners(loops);
-  std::vector<OnBorder> on_border;
-  const std::vector<Vector2d> points = set.points();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const BorderPoint near = nearest_on_border(loops, points[i]);
-    if (near.distance > tolerance) continue;
-    // A corner is both the end of one edge and the start of the next: count it once, as the start.
-    const int next = next_edge(loops, near.edge);
-    const bool at_end = (points[i] - all[static_cast<std::size_t>(next)]).norm() <= tolerance;
-    on_border.push_back({at_end ? next : near.edge, at_end ? 0 : near.t, static_cast<int>(i)});
-  }
-  std::sort(on_border.begin(), on_border.end());
-  std::vector<std::vector<int>> chains;
-  int end_edge = 0;
-  for (std::size_t k = 0, i = 0; k < pattern.loop_count(); ++k) {
-    end_edge += static_cast<int>(pattern.loop(k).size());
-    const std::size_t first = i;
-    std::vector<int>& chain = chains.emplace_back();
-    for (; i < on_border.size() && on_border[i].edge < end_edge; ++i) {
-      const bool last = i + 1 == on_border.size() || on_border[i + 1].edge >= end_edge;
-      const int from = on_border[i].vertex;
-      const int to = on_border[last ? first : i + 1].vertex;
-      chain.push_back(from);
-      const Vector2d a = points[from];
-      const Vector2d b = points[to];
-      const int parts = static_cast<int>(std::ceil((b - a).norm() / flat_size - 1e-9));
-      for (int part = 1; part < parts; ++part) chain.push_back(set.add(a + (b - a) * part / parts));
-    }
-  }
-  return chains;
-}
-
-/// Vertices along the edges of the cuts, pair by pair, gaps longer than `flat_size` divided evenly.
-std::vector<Eigen::Vector2i> cut_segments(const Pattern& pattern, double flat_size,
-                                          double tolerance, PointSet& set) {
-  std::vector<Eigen::Vector2i> segments;
-  for (const std::vector<Vector2d>& cut : pattern.cuts) {
-    for (std::size_t i = 0; i + 1 < cut.size(); ++i) {
-      const std::vector<int> path = points_along(set.points(), cut[i], cut[i + 1], tolerance);
-      for (std::size_t k = 0; k + 1 < path.size(); ++k) {
-        const Vector2d a = set.points()[path[k]], b = set.points()[path[k + 1]];
-        const int parts = static_cast<int>(std::ceil((b - a).norm() / flat_size - 1e-9));
-        int last = path[k];
-        for (int part = 1; part <= parts; ++part) {
-          const int here = part == parts ? path[k + 1] : set.add(a + (b - a) * part / parts);
-          segments.emplace_back(last, here);
-          last = here;
-        }
-      }
-    }
-  }
-  return segments;
-}
 
 /// Lattice points that are half a `flat_size` away from border, rulings and every vertex.
 void add_lattice(const PaperStructure& structure, const Pattern& pattern, double flat_size,
@@ -255,7 +155,8 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
          {std::tuple(r.a, r.b, r.singular_a), std::tuple(r.b, r.a, r.singular_b)}) {
       if (!end || !structure.singular_points[*end].tear) continue;
       const double length = (to - from).norm();
-      if (length > kRingRoom * sizes.flat) set.add(from + (to - from) * kRing * sizes.flat / length);
+      if (length > kRingRoom * sizes.flat)
+        set.add(from + (to - from) * kRing * sizes.flat / length);
     }
   }
   const std::vector<std::vector<int>> loops = border_chains(pattern, sizes.flat, tolerance, set);
