@@ -319,7 +319,9 @@ double width(const Pattern& pattern) {
 bool contains(const Pattern& pattern, const Vector2d& p, double tolerance) {
   int turns = 0;
   for (std::size_t k = 0; k < pattern.loop_count(); ++k) turns += turns_about(pattern.loop(k), p);
-  return turns != 0 || nearest_on_border(pattern, p).distance <= tolerance;
+  // Beside a cut there is ground on both sides.
+  return turns != 0 ||
+         nearest_on_border({pattern.border, pattern.holes}, p).distance <= tolerance;
 }
 
 std::optional<Vector2d> leaves_pattern(const Pattern& pattern, const Vector2d& a, const Vector2d& b,

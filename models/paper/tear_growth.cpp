@@ -101,7 +101,8 @@ std::vector<TearCandidate> plain_candidates(const Sheet& sheet, const Tears& tea
     }
   }
   for (const Handle& handle : sheet.handles) {
-    for (const Vector2d& p : handle.anchors()) candidates.push_back({p, std::nullopt});
+    if (handle.points.size() == 1 && !handle.disc_radius)
+      candidates.push_back({handle.points[0], std::nullopt});
   }
   return candidates;
 }
@@ -142,7 +143,8 @@ std::optional<TearGrowth::Growing> TearGrowth::look_at(const TearCandidate& cand
   }
   const auto vertex = vertex_at(state.mesh, candidate.place, same);
   if (!vertex) return {};
-  const auto pull = pull_at(sheet_, stepper, state, edges, *vertex, options_.pull);
+  const auto pull =
+      pull_at(sheet_, stepper, state, edges, *vertex, options_.pull, sheet_.toughness.least());
   if (!pull) return {};
   Growing growing{candidate, *pull, direction_of(*pull, candidate.place), 0};
   if (candidate.tear) {
@@ -197,15 +199,23 @@ void TearGrowth::go(int tear, const Vector2d& to, const Remesh& remesh, ShellSte
   const auto stop = tears_.obstruction(tear, to, options_.margin);
   tears_.advance(tear, stop.value_or(to), state.time);
   if (stop) tears_.end(tear);
-  remesh(state);
-  if (stop && smallest_part(state.mesh) < options_.least_part) {
+  bool fits = true;
+  try {
+    remesh(state);
+    fits = !stop || smallest_part(state.mesh) >= options_.least_part;
+    if (fits) stepper.set_mesh(state);
+  } catch (const Error&) {
+    fits = false;
+  }
+  if (!fits) {
+    // No mesh, or one that cuts off nothing: the tear stays where it is.
     tears_ = before;
     tears_.end(tear);
     given_up_.push_back(from);
     state = old;
     remesh(state);
+    stepper.set_mesh(state);
   }
-  stepper.set_mesh(state);
   double time = options_.relax_time;
   for (int i = 0; i < options_.relax_steps; ++i) {
     relax(stepper, time, state);

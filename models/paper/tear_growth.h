@@ -106,7 +106,7 @@ class TearGrowth {
   const Sheet& sheet_;
   TearOptions options_;
   Tears tears_;
-  std::vector<Eigen::Vector2d> given_up_;  ///< places where a tear would cut off nothing
+  std::vector<Eigen::Vector2d> given_up_;  ///< places where no tear can start or go on
   Totals totals_;
   LastPull last_pull_;
 };

@@ -27,6 +27,12 @@ Vector2d centroid(const ShellMesh& mesh, int f) {
          3;
 }
 
+bool is_held(const Sheet& sheet, const ShellMesh& mesh, int v, double time) {
+  return std::any_of(sheet.handles.begin(), sheet.handles.end(), [&](const Handle& handle) {
+    return handle.is_active(time) && handle.covers(mesh.pattern.row(v));
+  });
+}
+
 /// Triangles about the vertex, and from there over edges as far as the reach, ascending.
 std::vector<int> piece_about(const ShellMesh& mesh, const EdgeConnectivity& edges, int vertex,
                              double reach) {
@@ -64,14 +70,22 @@ Eigen::Matrix2d stress(const Sheet& sheet, const ShellState& state, int f,
          ((1 - nu) * G + nu * G.trace() * Eigen::Matrix2d::Identity());
 }
 
-/// What the outside does to the piece, vertex by vertex, C apart.
-std::vector<Acting> forces_on(const Sheet& sheet, const ShellStepper& stepper,
-                              const ShellState& state, const std::vector<int>& piece, int vertex) {
+/// What the outside does to the membrane of the piece, seen in the pattern. Vertices within the
+/// piece have only triangles of it about them: what acts on them acts from inside.
+struct Images {
+  Eigen::MatrixX2d force;   ///< of each vertex (N)
+  Eigen::MatrixX2d middle;  ///< of its triangles in the piece (m)
+  std::vector<bool> outer;  ///< whether the outside acts on it
+  Vector2d sum = Vector2d::Zero();
+};
+
+Images images_on(const Sheet& sheet, const ShellState& state, const std::vector<int>& piece,
+                 const VertexCorners& corners, int vertex) {
   const ShellMesh& mesh = state.mesh;
-  const Eigen::MatrixX3d inner = stepper.elastic_forces(state, piece);
-  Eigen::MatrixX2d image = Eigen::MatrixX2d::Zero(mesh.vertex_count(), 2);
-  Eigen::MatrixX2d middle = Eigen::MatrixX2d::Zero(mesh.vertex_count(), 2);
-  Eigen::VectorXi count = Eigen::VectorXi::Zero(mesh.vertex_count());
+  const int n = mesh.vertex_count();
+  Images images{Eigen::MatrixX2d::Zero(n, 2), Eigen::MatrixX2d::Zero(n, 2),
+                std::vector<bool>(n, false)};
+  std::vector<int> count(n, 0);
   for (const int f : piece) {
     const Eigen::RowVector3i t = mesh.triangles.row(f);
     const std::array<Vector2d, 3> p{mesh.pattern.row(t[0]), mesh.pattern.row(t[1]),
@@ -85,20 +99,34 @@ std::vector<Acting> forces_on(const Sheet& sheet, const ShellStepper& stepper,
     const Eigen::Matrix2d S = stress(sheet, state, f, gradient, twice / 2);
     for (std::size_t k = 0; k < 3; ++k) {
       const int v = t[static_cast<Eigen::Index>(k)];
-      image.row(v) += (S * gradient[k]).transpose();
-      middle.row(v) += centroid(mesh, f).transpose();
+      images.force.row(v) += (S * gradient[k]).transpose();
+      images.middle.row(v) += centroid(mesh, f).transpose();
       ++count[v];
     }
   }
-  const Eigen::RowVector2d c = mesh.pattern.row(vertex);
+  for (int v = 0; v < n; ++v) {
+    if (count[v] == 0 || v == vertex) continue;
+    images.middle.row(v) /= count[v];
+    images.outer[v] = count[v] < corners.count(v) || is_held(sheet, mesh, v, state.time);
+    if (images.outer[v]) images.sum += images.force.row(v).transpose();
+  }
+  return images;
+}
+
+/// The same in space, bending included.
+std::vector<Acting> forces_on(const ShellStepper& stepper, const ShellState& state,
+                              const std::vector<int>& piece, const Images& images, int vertex) {
+  const Eigen::MatrixX3d inner = stepper.elastic_forces(state, piece);
+  const Eigen::RowVector2d c = state.mesh.pattern.row(vertex);
   std::vector<Acting> acting;
-  for (int v = 0; v < mesh.vertex_count(); ++v) {
-    if (v == vertex || inner.row(v).isZero(0)) continue;
+  for (int v = 0; v < state.mesh.vertex_count(); ++v) {
+    const bool beyond = images.middle.row(v).isZero(0);  // an element reaches over its triangle
+    if (v == vertex || inner.row(v).isZero(0) || !(images.outer[v] || beyond)) continue;
     // Seen from C: lips in one place lie on different sides.
     const Eigen::RowVector2d at =
-        count[v] > 0 ? Eigen::RowVector2d(middle.row(v) / count[v]) : mesh.pattern.row(v);
+        beyond ? state.mesh.pattern.row(v) : Eigen::RowVector2d(images.middle.row(v));
     acting.push_back({(at - c).transpose(), state.x.row(v).transpose(), -inner.row(v).transpose(),
-                      image.row(v).transpose()});
+                      images.force.row(v).transpose()});
   }
   return acting;
 }
@@ -144,9 +172,12 @@ Parting strongest_parting(const std::vector<Acting>& acting, int lines) {
 
 std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
                                const ShellState& state, const EdgeConnectivity& edges, int vertex,
-                               const PullOptions& options) {
+                               const PullOptions& options, double least_release) {
   const std::vector<int> piece = piece_about(state.mesh, edges, vertex, options.reach);
-  const std::vector<Acting> acting = forces_on(sheet, stepper, state, piece, vertex);
+  const VertexCorners corners(state.mesh.triangles, state.mesh.vertex_count());
+  const Images images = images_on(sheet, state, piece, corners, vertex);
+  if (images.sum.norm() < least_release * sheet.material.thickness) return {};
+  const std::vector<Acting> acting = forces_on(stepper, state, piece, images, vertex);
   const auto [left, right] = strongest_parting(acting, options.lines);
   const double l = left.force.norm(), r = right.force.norm();
   if (!(std::min(l, r) > 0 && std::min(l, r) * options.most_imbalance >= std::max(l, r))) return {};

@@ -43,15 +43,18 @@ struct TipPull {
 };
 
 /// The pull at a vertex of the sheet. The piece has the triangles about it, and those reached over
-/// edges whose centres lie within `reach`. The outside pulls at a vertex v of the piece with the
-/// derivative of the piece's elastic energy by its place; what the membrane contributes to it has
-/// the image A S grad N_v, S the second Piola-Kirchhoff stress. A line through C parts the forces;
-/// of all directions that with the largest sum of both resultants' norms is taken.
+/// edges whose centres lie within `reach`. The outside pulls at the vertices that have triangles
+/// beyond it, and where the sheet is held, with the derivative of the piece's elastic energy by
+/// their places; what the membrane contributes has the image A S grad N_v, S the second
+/// Piola-Kirchhoff stress. A line through C parts the forces; of all directions that with the
+/// largest sum of both resultants' norms is taken. The sum of the images is the J integral about C
+/// but for its term of energy density, which a sheet that hardly stretches does not have.
 ///
+/// @param least_release  of no use under it (J/m^2): the pull is then not worked out
 /// Absent when the resultants do not oppose, are not balanced or push the sheet together, and when
-/// their images are nearly opposite.
+/// their images are nearly opposite, or release too little.
 std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
                                const ShellState& state, const EdgeConnectivity& edges, int vertex,
-                               const PullOptions& options);
+                               const PullOptions& options, double least_release = 0);
 
 }  // namespace geoprior::paper

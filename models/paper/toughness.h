@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -22,6 +23,8 @@ struct Toughness {
   [[nodiscard]] bool tears() const { return energy > 0; }
   /// T(p): smooth noise, a function of the point and the seed alone.
   [[nodiscard]] double texture(const Eigen::Vector2d& p) const;
+  /// Under every E_f (J/m^2).
+  [[nodiscard]] double least() const { return energy * (1 - noise) * std::min(1.0, across); }
   /// E_f of a tear at p in the direction d (unit) (J/m^2).
   [[nodiscard]] double at(const Eigen::Vector2d& p, const Eigen::Vector2d& d) const;
 };
