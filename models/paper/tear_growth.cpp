@@ -27,6 +27,8 @@ constexpr double kLeastNotch = 20 * kDegree;
 constexpr double kBack = 120 * kDegree, kSmooth = 20 * kDegree;
 /// By how much a step towards rest is made shorter.
 constexpr double kShorter = 4;
+/// Of the null, from the bisector (rad).
+constexpr double kAskew = 45 * kDegree;
 /// Directions tried where the toughness depends on them.
 constexpr int kDirections = 720;
 
@@ -116,8 +118,9 @@ TearGrowth::TearGrowth(const Sheet& sheet, const TearOptions& options)
 }
 
 Vector2d TearGrowth::direction_of(const TipPull& pull, const Vector2d& p) const {
-  if (options_.direction == TearDirection::pull) return pull.right.normalized();
   const Vector2d away = pull.away();
+  if (options_.direction == TearDirection::askew)
+    return Eigen::Rotation2Dd(std::copysign(kAskew, cross(away, pull.right))) * away;
   if (!sheet_.toughness.grain_deg || sheet_.toughness.across == 1) return away;
   // Where the fibres count, what is released over what is opposed decides.
   Vector2d best = away;
@@ -154,8 +157,9 @@ std::optional<TearGrowth::Growing> TearGrowth::look_at(const TearCandidate& cand
     const double most = options_.most_turn_deg * kDegree;
     growing.direction = Eigen::Rotation2Dd(std::clamp(turn, -most, most)) * heading;
   }
+  // The null goes astray, but not for want of energy.
   const Vector2d released_along =
-      options_.direction == TearDirection::pull ? pull->away() : growing.direction;
+      options_.direction == TearDirection::askew ? pull->away() : growing.direction;
   growing.excess = pull->release(released_along, sheet_.material.thickness) /
                    sheet_.toughness.at(candidate.place, growing.direction);
   // Into the sheet.
@@ -278,7 +282,7 @@ void TearGrowth::load(StateReader& in) {
 
 void describe(OptionVisitor& v, TearOptions& o) {
   static constexpr std::array<std::string_view, 2> kIntegrators{"euler", "midpoint"};
-  static constexpr std::array<std::string_view, 2> kDirections{"bisector", "pull"};
+  static constexpr std::array<std::string_view, 2> kDirections{"bisector", "askew"};
   describe_group(v, "pull", o.pull, {.doc = "how the forces about a tip are gathered"});
   v.value("step", o.step,
           {.doc = "length by which a tear grows", .unit = "m", .min = 1e-9, .max = 10});
@@ -287,7 +291,7 @@ void describe(OptionVisitor& v, TearOptions& o) {
   describe_choice(v, "integrator", o.integrator, kIntegrators,
                   {.doc = "midpoint: the direction in the middle of the step, extrapolated"});
   describe_choice(v, "direction", o.direction, kDirections,
-                  {.doc = "bisector of the pulls, or (a null) along one of them"});
+                  {.doc = "bisector of the pulls, or (a null) 45 degrees from it"});
   v.value("most_turn_deg", o.most_turn_deg,
           {.doc = "of a tear from one step to the next", .unit = "deg", .min = 0, .max = 180});
   v.value("relax_time", o.relax_time,

@@ -15,9 +15,9 @@ namespace geoprior::paper {
 /// midpoint: the direction in the middle of the step, extrapolated from those at its start and at
 /// the start of the step before (Adams and Bashforth).
 enum class TearIntegrator { euler, midpoint };
-/// bisector: away from both pulls, turned towards the grain where there is one; pull: along one of
-/// them (a null: the tear follows the hand).
-enum class TearDirection { bisector, pull };
+/// bisector: away from both pulls, turned towards the grain where there is one; askew: 45 degrees
+/// from it towards one of them (a null).
+enum class TearDirection { bisector, askew };
 
 /// How tears grow (thesis 3.2.2; what it leaves open is ours, see docs/methods/paper.md).
 struct TearOptions {
