@@ -243,12 +243,6 @@ int edge_count(const Pattern& pattern) {
   return count;
 }
 
-bool is_cut(const Pattern& pattern, int edge) {
-  std::size_t loops = 0;
-  for (std::size_t k = 0; k < pattern.loop_count(); ++k) loops += pattern.loop(k).size();
-  return edge >= static_cast<int>(loops);
-}
-
 int next_edge(const Pattern& pattern, int edge) {
   int first = 0;
   for (std::size_t k = 0; k < pattern.loop_count(); ++k) {

@@ -55,9 +55,6 @@ std::vector<Eigen::Vector2d> corners(const Pattern& pattern);
 /// Number of edges of loops and cuts.
 int edge_count(const Pattern& pattern);
 
-/// Whether an edge is one of a cut.
-bool is_cut(const Pattern& pattern, int edge);
-
 /// Number of the edge that follows one on its loop, which is that of the corner at its end.
 int next_edge(const Pattern& pattern, int edge);
 
