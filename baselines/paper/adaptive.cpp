@@ -11,6 +11,9 @@
 #include "baselines/paper/sizing.h"
 #include "core/error.h"
 #include "core/state_bytes.h"
+#include "models/paper/recut.h"
+#include "models/paper/tear_frame.h"
+#include "models/paper/transfer.h"
 #include "models/paper/uniform_mesh.h"
 
 namespace geoprior::paper {
@@ -18,6 +21,9 @@ namespace {
 
 /// Edge length of the first mesh, over the largest allowed: splits and collapses both stay away.
 constexpr double kStartSize = 0.8;
+
+/// Distance from a tear within which vertices make room for it, in steps of the tear.
+constexpr double kRoom = 0.7;
 
 struct Counts {
   int splits = 0, collapses = 0, flips = 0, pop_steps = 0, settle_steps = 0;
@@ -36,6 +42,7 @@ class AdaptiveMesher final : public SheetMesher {
     const double edge = kStartSize * options_.size_max;
     require_lattice(sheet.pattern, edge);
     const double triangles = signed_area(sheet.pattern) / (std::sqrt(3.0) / 4 * edge * edge);
+    take_scene(sheet);
     return resting_state(
         sheet,
         uniform_mesh(sheet.pattern, std::max(2, static_cast<int>(std::lround(triangles))),
@@ -43,8 +50,22 @@ class AdaptiveMesher final : public SheetMesher {
         context.seed());
   }
 
-  bool adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
+  void stepped(const Sheet& /*sheet*/, ShellStepper& stepper, ShellState& state,
+               RunContext& context) override {
+    if (!tearing_) return;
+    const Phase phase(context, "tear");
+    tearing_->grow([&] { return plain_candidates(*torn_, tearing_->tears()); },
+                   [&](ShellState& torn) {
+                     torn_->pattern = tearing_->tears().torn();
+                     torn = transfer_state(torn, recut(torn.mesh, torn_->pattern, anchors_,
+                                                       kRoom * options_.tearing.step));
+                   },
+                   stepper, state);
+  }
+
+  bool adapt(const Sheet& given, ShellStepper& stepper, ShellState& state,
              RunContext& context) override {
+    const Sheet& sheet = torn_ ? *torn_ : given;
     last_ = {};
     std::optional<ShellState> before;
     if (options_.pop_filter) before = state;
@@ -72,7 +93,8 @@ class AdaptiveMesher final : public SheetMesher {
     last_.settle_steps = paper::settle(sheet, options_.settle, stepper, state);
   }
 
-  void annotate(const ShellState& /*state*/, Frame& frame) const override {
+  void annotate(const ShellState& state, Frame& frame) const override {
+    if (tearing_) add_tears(*tearing_, state, frame);
     frame.diagnostics["splits"] = last_.splits;
     frame.diagnostics["collapses"] = last_.collapses;
     frame.diagnostics["flips"] = last_.flips;
@@ -80,11 +102,28 @@ class AdaptiveMesher final : public SheetMesher {
     if (options_.pop_filter) frame.diagnostics["pop_filter_steps"] = last_.pop_steps;
   }
 
-  /// Counts of the last frame only: the next remeshing depends on the sheet alone.
-  void save(StateWriter& out) const override { out.number(last_); }
-  void load(StateReader& in) override { last_ = in.number<Counts>(); }
+  /// Counts of the last frame only: the next remeshing depends on the sheet and its tears alone.
+  void save(StateWriter& out) const override {
+    out.number(last_);
+    if (tearing_) tearing_->save(out);
+  }
+  void load(const Sheet& sheet, StateReader& in) override {
+    last_ = in.number<Counts>();
+    take_scene(sheet);
+    if (!tearing_) return;
+    tearing_->load(in);
+    torn_->pattern = tearing_->tears().torn();
+  }
 
  private:
+  void take_scene(const Sheet& sheet) {
+    tearing_.reset();
+    if (!sheet.toughness.tears()) return;
+    torn_ = sheet;
+    tearing_.emplace(*torn_, options_.tearing);
+    anchors_ = handle_points(sheet, kStartSize * options_.size_max);
+  }
+
   static std::vector<int> held_vertices(const Sheet& sheet, const ShellState& state) {
     std::vector<int> held;
     for (int v = 0; v < state.mesh.vertex_count(); ++v) {
@@ -100,6 +139,9 @@ class AdaptiveMesher final : public SheetMesher {
 
   AdaptiveOptions options_;
   Counts last_;
+  std::optional<Sheet> torn_;  ///< the sheet with the pattern as it is torn now
+  std::optional<TearGrowth> tearing_;
+  std::vector<Eigen::Vector2d> anchors_;
 };
 
 }  // namespace
@@ -127,6 +169,7 @@ void describe(OptionVisitor& v, AdaptiveOptions& options) {
   v.value("pop_filter", options.pop_filter,
           {.doc = "moves vertices with new triangles until forces are what they were"});
   describe_group(v, "settle", options.settle, {.doc = "after every change of the mesh"});
+  describe_group(v, "tearing", options.tearing, {.doc = "of scenes whose paper tears"});
   describe_group(v, "stepper", options.stepper, {.doc = "time stepping"});
 }
 

@@ -4,6 +4,7 @@
 
 #include "models/paper/settle.h"
 #include "models/paper/sheet_process.h"
+#include "models/paper/tear_growth.h"
 
 namespace geoprior::paper {
 
@@ -31,6 +32,7 @@ void describe(OptionVisitor& v, SizingOptions& options);
 struct AdaptiveOptions : SizingOptions {
   bool pop_filter = false;  ///< relaxes what remeshing changed (pop_filter.h)
   SettleOptions settle;
+  TearOptions tearing;
   StepperOptions stepper;
 };
 void describe(OptionVisitor& v, AdaptiveOptions& options);

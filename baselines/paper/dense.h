@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "models/paper/sheet_process.h"
+#include "models/paper/tear_growth.h"
 #include "models/paper/uniform_mesh.h"
 
 namespace geoprior::paper {
@@ -11,6 +12,7 @@ namespace geoprior::paper {
 struct DenseOptions {
   int triangles = 4096;  ///< aimed at
   UniformLayout layout = UniformLayout::automatic;
+  TearOptions tearing;
   StepperOptions stepper;
 };
 void describe(OptionVisitor& v, DenseOptions& options);

@@ -88,6 +88,7 @@ void Remesher::classify(const Sheet& sheet) {
     }
   }
   std::vector<Vector2d> fixed = corners(sheet.pattern);
+  for (const auto& cut : sheet.pattern.cuts) fixed.insert(fixed.end(), cut.begin(), cut.end());
   for (const Handle& handle : sheet.handles) {
     const std::vector<Vector2d> anchors = handle.anchors();
     fixed.insert(fixed.end(), anchors.begin(), anchors.end());

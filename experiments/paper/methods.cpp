@@ -45,6 +45,18 @@ std::vector<DiagnosticEntry> diagnostics() {
       // Recorded by those whose mesh changes.
       {"settle_steps", "1", "steps from rest that the sheet settled for after the change", true,
        kWork},
+      // Recorded where the paper tears.
+      {"tears", "1", "tears, the cuts of the start included"},
+      {"tear_length", "m", "length of all tears"},
+      {"tear_energy", "J",
+       "energy that tearing took since the start: the integral of E_f over the "
+       "torn section"},
+      {"tear_released", "J",
+       "by which the elastic energy fell in the steps of tears since the start"},
+      {"tear_steps", "1", "steps of tears since the start", true, kWork},
+      {"tear_candidates", "1", "places tested since the start", true, kWork},
+      {"tear_force", "N", "pull under which a tear grew last"},
+      {"tear_angle", "deg", "angle of its two images in the pattern"},
       // Recorded by the adaptive mesh.
       {"splits", "1", "edges split by the frame's remeshing"},
       {"collapses", "1", "edges collapsed by it"},

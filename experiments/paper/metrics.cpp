@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "experiments/paper/measures.h"
+#include "experiments/paper/tear_measures.h"
 #include "experiments/paper/topic.h"
 #include "testbed/metric_rows.h"
 
@@ -232,14 +233,61 @@ MetricGroup distance_group() {
            kLow, {1e-7, 1e-6});
 }
 
+MetricGroup tear_group() {
+  using M = const TearMeasures&;
+  return of_frame(tear_measures)
+      .row("tear_length", "m", "length by which the tears have grown, in the pattern", kNone,
+           kSmooth, [](M m) { return m.length; })
+      .row("parts", "1", "parts that the sheet has fallen into", kNone, kCount,
+           [](M m) { return static_cast<double>(m.parts); })
+      .row("tear_drift", "1",
+           "how far the difference of the distances from the tip of the longest tear to two hands "
+           "A and B goes from what it was at the start, over |AB|, in the pattern: 0 on the "
+           "hyperbola that a taut inextensible sheet tears along; absent unless two hands move",
+           kLow, kSmooth, [](M m) { return m.drift; })
+      .row("tear_deviation", "deg",
+           "angle of the longest tear's chord to the bisector of two hands at its start", kLow,
+           kSmooth, [](M m) { return m.deviation; })
+      .row("tear_bow", "1",
+           "farthest that a point of the longest tear lies from its chord, over the chord's length",
+           kNone, kSmooth, [](M m) { return m.bow; })
+      .row("onset_force", "1",
+           "largest handle force over K e / (2 cos(theta / 2)), at which a taut inextensible sheet "
+           "tears between two hands; absent once it has torn",
+           kNone, kSmooth, [](M m) { return m.onset_force; });
+}
+
+MetricGroup tear_path_group() {
+  return reference_metrics<PaperScene>(
+             {"surface", "tears"},
+             [](const PaperScene& scene, const Frame& frame, const Frame& reference) {
+               return tear_path_distance(sheet_frame(scene, frame), sheet_frame(scene, reference));
+             })
+      .row("tear_path_distance", "m",
+           "Hausdorff distance of the longest tear from that of the reference variant, in the "
+           "pattern, as far as the shorter of both goes",
+           kLow, kSmooth);
+}
+
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
-  return {
-      isometry_group(),     developability_group(), crease_group(),          energy_group(),
-      fold_group(),         motion_group(),         quadric_bending_group(), handle_work_group(),
-      handle_force_group(), mesh_group(),           contact_group(),         elastica_group(),
-      sector_group(),       distance_group()};
+  return {isometry_group(),
+          developability_group(),
+          crease_group(),
+          energy_group(),
+          fold_group(),
+          motion_group(),
+          quadric_bending_group(),
+          handle_work_group(),
+          handle_force_group(),
+          mesh_group(),
+          contact_group(),
+          elastica_group(),
+          sector_group(),
+          distance_group(),
+          tear_group(),
+          tear_path_group()};
 }
 
 }  // namespace geoprior::paper

@@ -50,6 +50,11 @@ Handle make_handle(const HandleOptions& options, const std::string& where) {
   return handle;
 }
 
+Toughness to_toughness(const ToughnessOptions& options, std::uint64_t seed) {
+  return {options.energy.value_or(0),     options.noise,     options.noise_length,
+          scene_seed(seed, options.seed), options.grain_deg, options.across};
+}
+
 Obstacle make_obstacle(const ObstacleOptions& options, const std::string& where) {
   Obstacle obstacle;
   obstacle.kind = options.kind;
@@ -130,10 +135,11 @@ std::map<std::string, double> PaperScene::facts() const {
           {"bending_stiffness", sheet.material.bending_stiffness()}};
 }
 
-Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern) {
+Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern, std::uint64_t seed) {
   Sheet sheet;
   sheet.pattern = pattern;
   sheet.material = options.material;
+  sheet.toughness = to_toughness(options.toughness, seed);
   for (std::size_t i = 0; i < options.handles.size(); ++i) {
     sheet.handles.push_back(make_handle(options.handles[i], "scene.handles." + std::to_string(i)));
   }
@@ -154,15 +160,18 @@ Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern) {
 }
 
 std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
-                                             const fs::path& folder) {
+                                             const fs::path& folder, std::uint64_t seed) {
   auto scene = std::make_shared<PaperScene>();
-  const Pattern pattern = make_pattern(options.pattern, folder, scene->input_files);
-  scene->sheet = make_sheet(options, pattern);
+  Pattern pattern = make_pattern(options.pattern, folder, scene->input_files);
+  for (const CutOptions& cut : options.pattern.cuts) pattern.cuts.push_back(loop_of(cut.points));
+  scene->sheet = make_sheet(options, pattern, seed);
   scene->fold_radius = options.fold_radius;
   require_valid(scene->sheet, "scene");
   // Ten times what the imperfection may add.
   constexpr double kStretch = 1e-3;
-  if (const auto worst = worst_pulled_apart(scene->sheet, kStretch)) {
+  // What tears gives way.
+  const bool holds = !scene->sheet.toughness.tears();
+  if (const auto worst = holds ? worst_pulled_apart(scene->sheet, kStretch) : std::nullopt) {
     scene->load_warnings.push_back(warning_text(scene->sheet, *worst, "scene"));
   }
   if (auto text = fast_handle_warning(scene->sheet, "scene")) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -23,13 +24,15 @@ class PaperScene final : public ProcessScene {
 };
 
 /// The sheet that the options describe. @throws Error  naming the key
-Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern);
+Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern, std::uint64_t seed);
 
 /// Reads the pattern and makes the sheet; handles that pull it apart by more than 0.1 %, or
 /// that are faster than it can follow (fast_handles.h), are warnings of the scene.
 /// @param folder  of the experiment file, against which relative files are tried first
+/// @param seed    of the experiment, for what the scene draws
 /// @throws Error  naming key or file, and place (see require_valid)
 std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
-                                             const std::filesystem::path& folder);
+                                             const std::filesystem::path& folder,
+                                             std::uint64_t seed);
 
 }  // namespace geoprior::paper

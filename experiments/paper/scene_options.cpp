@@ -17,6 +17,34 @@ void describe(OptionVisitor& v, HoleOptions& options) {
                 {.doc = "corners in order, either way round", .required = true});
 }
 
+void describe(OptionVisitor& v, CutOptions& options) {
+  describe_list(
+      v, "points", options.points,
+      {.doc = "from one end to the other; an end on the border, on a hole or on an earlier "
+              "cut opens it, another is a tip",
+       .required = true});
+}
+
+void describe(OptionVisitor& v, ToughnessOptions& options) {
+  v.value("energy", options.energy,
+          {.doc = "K, that tearing a unit of area of the section takes; absent: it does not tear",
+           .unit = "J/m^2",
+           .min = 1e-9,
+           .max = 1e9});
+  v.value("noise", options.noise,
+          {.doc = "depth of the texture T, which lies between 1 - noise and 1",
+           .min = 0,
+           .max = 1 - 1e-9});
+  v.value("noise_length", options.noise_length,
+          {.doc = "of the waves of the texture", .unit = "m", .min = 1e-6, .max = kLargest});
+  v.value("seed", options.seed, {.doc = "of the texture", .min = 0});
+  v.value("grain_deg", options.grain_deg,
+          {.doc = "direction of the fibres in the pattern, from u towards v", .unit = "deg"});
+  v.value(
+      "across", options.across,
+      {.doc = "K across the fibres over K along them; needs grain_deg", .min = 1e-6, .max = 1e6});
+}
+
 void describe(OptionVisitor& v, PatternOptions& options) {
   static constexpr std::array<std::string_view, 4> kKinds{"rectangle", "disc", "polygon", "svg"};
   describe_choice(v, "kind", options.kind, kKinds,
@@ -56,6 +84,7 @@ void describe(OptionVisitor& v, PatternOptions& options) {
   if (options.kind != PatternKind::svg) {
     describe_list(v, "holes", options.holes, {.doc = "polygons that are cut out of it"});
   }
+  describe_list(v, "cuts", options.cuts, {.doc = "lines along which it is open from the start"});
 }
 
 void describe(OptionVisitor& v, PaperMaterial& options) {
@@ -138,6 +167,7 @@ void describe(OptionVisitor& v, PlacementOptions& options) {
 void describe(OptionVisitor& v, PaperSceneOptions& options) {
   describe_group(v, "pattern", options.pattern, {.doc = "the flat shape that is cut out"});
   describe_group(v, "material", options.material, {.doc = "default: office paper, 80 g/m^2"});
+  describe_group(v, "toughness", options.toughness, {.doc = "against tearing"});
   describe_list(v, "handles", options.handles, {.doc = "where the sheet is held or pulled"});
   describe_list(v, "obstacles", options.obstacles, {.doc = "bodies that it does not enter"});
   v.value("gravity", options.gravity, {.doc = "acceleration", .unit = "m/s^2"});

@@ -24,6 +24,12 @@ struct HoleOptions {
 };
 void describe(OptionVisitor& v, HoleOptions& options);
 
+/// One of `cuts` of a pattern.
+struct CutOptions {
+  std::vector<PatternPointOptions> points;
+};
+void describe(OptionVisitor& v, CutOptions& options);
+
 enum class PatternKind { rectangle, disc, polygon, svg };
 
 /// `pattern`: a tagged choice, `kind` selects which of the others are described.
@@ -35,7 +41,8 @@ struct PatternOptions {
   int corners = 96;
   std::vector<PatternPointOptions> points;  ///< polygon
   std::vector<HoleOptions> holes;           ///< of rectangle, disc and polygon
-  std::string file;                         ///< svg
+  std::vector<CutOptions> cuts;
+  std::string file;  ///< svg
   SvgPatternOptions svg;
 };
 void describe(OptionVisitor& v, PatternOptions& options);
@@ -90,10 +97,22 @@ struct PlacementOptions {
 };
 void describe(OptionVisitor& v, PlacementOptions& options);
 
+/// `toughness`: absent, the paper does not tear.
+struct ToughnessOptions {
+  std::optional<double> energy;
+  double noise = 0;
+  double noise_length = 3e-3;
+  int seed = 1;
+  std::optional<double> grain_deg;
+  double across = 1;
+};
+void describe(OptionVisitor& v, ToughnessOptions& options);
+
 /// `[scene]` of a paper experiment.
 struct PaperSceneOptions {
   PatternOptions pattern;
   PaperMaterial material;
+  ToughnessOptions toughness;
   std::vector<HandleOptions> handles;
   std::vector<ObstacleOptions> obstacles;
   std::array<double, 3> gravity{0, 0, -9.81};

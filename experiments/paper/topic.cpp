@@ -26,10 +26,9 @@ Topic make_topic() {
   topic.name = "paper";
   topic.summary = "a sheet of paper bends and crumples between handles (thesis 3.2)";
   topic.default_scene = [] { return std::make_unique<TypedOptions<PaperSceneOptions>>(); };
-  topic.load = [](const OptionSet& set, const std::filesystem::path& folder,
-                  std::uint64_t /*seed*/) {
+  topic.load = [](const OptionSet& set, const std::filesystem::path& folder, std::uint64_t seed) {
     return load_paper_scene(dynamic_cast<const TypedOptions<PaperSceneOptions>&>(set).options,
-                            folder);
+                            folder, seed);
   };
   topic.last_parameter = [](const OptionSet& set) -> std::optional<LastParameter> {
     const auto& scene = dynamic_cast<const TypedOptions<PaperSceneOptions>&>(set).options;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
+#include "core/planar.h"
 
 namespace geoprior::paper {
 namespace {
@@ -60,6 +62,37 @@ std::vector<double> load_shares(const Handle& handle, const ShellMesh& mesh,
   return weights;
 }
 
+/// Angle of the sheet about a vertex (rad).
+double angle_about(const ShellMesh& mesh, int vertex) {
+  double sum = 0;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      if (mesh.triangles(t, k) != vertex) continue;
+      const Eigen::Vector2d p = mesh.pattern.row(vertex);
+      const Eigen::Vector2d b = mesh.pattern.row(mesh.triangles(t, (k + 1) % 3));
+      const Eigen::Vector2d c = mesh.pattern.row(mesh.triangles(t, (k + 2) % 3));
+      sum += signed_angle(b - p, c - p);
+    }
+  }
+  return sum;
+}
+
+/// A finger holds one lip of a tear that begins under it: that with more of the sheet about it.
+void keep_one_lip(const ShellMesh& mesh, std::vector<int>& vertices) {
+  std::vector<int> kept;
+  for (const int v : vertices) {
+    const auto twin = std::find_if(kept.begin(), kept.end(), [&](int u) {
+      return mesh.pattern.row(u) == mesh.pattern.row(v);
+    });
+    if (twin == kept.end()) {
+      kept.push_back(v);
+    } else if (angle_about(mesh, v) > angle_about(mesh, *twin)) {
+      *twin = v;
+    }
+  }
+  vertices = std::move(kept);
+}
+
 }  // namespace
 
 HandleMap::HandleMap(const Sheet& sheet, const ShellMesh& mesh, std::uint64_t seed) {
@@ -73,6 +106,7 @@ HandleMap::HandleMap(const Sheet& sheet, const ShellMesh& mesh, std::uint64_t se
     for (int v = 0; v < mesh.vertex_count(); ++v) {
       if (handle.covers(mesh.pattern.row(v).transpose())) vertices.push_back(v);
     }
+    if (!handle.segment && !handle.disc_radius) keep_one_lip(mesh, vertices);
     if (vertices.empty()) {
       throw Error("no vertex of the mesh lies on it", "handle '" + handle.name + "'");
     }

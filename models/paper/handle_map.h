@@ -8,7 +8,8 @@
 
 namespace geoprior::paper {
 
-/// Which vertices of a mesh each handle of a sheet covers, and what it does to them.
+/// Which vertices of a mesh each handle of a sheet covers, and what it does to them. Where the
+/// sheet is torn a point holds one lip, segments and discs hold both.
 class HandleMap {
  public:
   HandleMap() = default;

@@ -165,6 +165,49 @@ void require_nested(const Pattern& pattern, const std::string& where) {
   }
 }
 
+std::string cut_name(const std::string& where, std::size_t k) {
+  return where + " cut " + std::to_string(k);
+}
+
+/// Begins on the border, on an earlier cut or in the ground, ends there too, and meets nothing on
+/// the way.
+void require_cut(const Pattern& pattern, std::size_t k, const std::string& where) {
+  const Loop& cut = pattern.cuts[k];
+  const double nearest = kNearest * width(pattern);
+  if (cut.size() < 2) throw Error("cut has fewer than two points", where, "at least 2");
+  Pattern others = pattern;
+  others.cuts.resize(k);
+  for (std::size_t i = 0; i < cut.size(); ++i) {
+    const std::string here = where + " point " + std::to_string(i);
+    if (!cut[i].allFinite()) throw Error("point of a cut is not finite", here, "finite numbers");
+    const bool at_end = i == 0 || i + 1 == cut.size();
+    if (!contains(pattern, cut[i], at_end ? nearest : 0)) {
+      throw Error("cut leaves the pattern", here, "points of the pattern");
+    }
+    const double distance = nearest_on_border(others, cut[i]).distance;
+    // An end lies on the border, or the mesher's rounding decides.
+    if (at_end ? distance > 1e-9 * width(pattern) && distance < nearest : distance < nearest) {
+      throw Error("cut comes too near to the border, a hole or another cut", here,
+                  "ends on them, or points apart from them");
+    }
+    if (i == 0) continue;
+    if ((cut[i] - cut[i - 1]).norm() < nearest)
+      throw Error("cut stands still", here, "points apart from each other");
+    for (std::size_t j = 1; j + 1 < i; ++j) {
+      if (segments_meet(cut[i - 1], cut[i], cut[j - 1], cut[j]))
+        throw Error("cut crosses itself", here, "an open line that does not meet itself");
+    }
+    const Vector2d along = cut[i] - cut[i - 1];
+    each_edge(others, [&](const Vector2d& a, const Vector2d& b) {
+      const auto t = ray_hit(cut[i - 1], along, a, b, 1e-6);
+      if (t && *t < 1 - 1e-6) {
+        throw Error("cut crosses the border, a hole or another cut", here,
+                    "a line that ends where it meets them");
+      }
+    });
+  }
+}
+
 }  // namespace
 
 Pattern rectangle_pattern(double width, double height) {
@@ -192,6 +235,12 @@ std::vector<Vector2d> corners(const Pattern& pattern) {
   std::vector<Vector2d> all = pattern.border;
   for (const Loop& hole : pattern.holes) all.insert(all.end(), hole.begin(), hole.end());
   return all;
+}
+
+int edge_count(const Pattern& pattern) {
+  int count = 0;
+  each_edge(pattern, [&](const Vector2d&, const Vector2d&) { ++count; });
+  return count;
 }
 
 int next_edge(const Pattern& pattern, int edge) {
@@ -246,6 +295,7 @@ void require_simple(const Pattern& pattern, const std::string& where) {
     if (loop_area(pattern.holes[k]) < 0) continue;
     throw Error("hole of the pattern runs counter-clockwise", place_of(where, k + 1), "clockwise");
   }
+  for (std::size_t k = 0; k < pattern.cuts.size(); ++k) require_cut(pattern, k, cut_name(where, k));
 }
 
 double signed_area(const Pattern& pattern) {
@@ -263,7 +313,9 @@ double width(const Pattern& pattern) {
 bool contains(const Pattern& pattern, const Vector2d& p, double tolerance) {
   int turns = 0;
   for (std::size_t k = 0; k < pattern.loop_count(); ++k) turns += turns_about(pattern.loop(k), p);
-  return turns != 0 || nearest_on_border(pattern, p).distance <= tolerance;
+  // Beside a cut there is ground on both sides.
+  return turns != 0 ||
+         nearest_on_border({pattern.border, pattern.holes}, p).distance <= tolerance;
 }
 
 std::optional<Vector2d> leaves_pattern(const Pattern& pattern, const Vector2d& a, const Vector2d& b,

@@ -15,9 +15,15 @@ namespace geoprior::paper {
 ///
 /// Its loops are the border and the holes, in this order. Corners and edges are numbered through
 /// all loops; edge i leads from corner i to the next corner of its loop.
+///
+/// Along its cuts, open polylines in the ground, the sheet is separated: both lips are the same
+/// points of the plane, so that area and ground stay, but nothing that crosses a cut holds
+/// together. An end of a cut lies on the border or another cut, or it is a tip. The edges of cuts
+/// are numbered after those of the loops, in order.
 struct Pattern {
   std::vector<Eigen::Vector2d> border;
   std::vector<std::vector<Eigen::Vector2d>> holes = {};
+  std::vector<std::vector<Eigen::Vector2d>> cuts = {};
 
   [[nodiscard]] std::size_t loop_count() const { return 1 + holes.size(); }
   [[nodiscard]] const std::vector<Eigen::Vector2d>& loop(std::size_t i) const {
@@ -28,7 +34,8 @@ struct Pattern {
 /// Most corners of a pattern: every pair of edges is looked at.
 inline constexpr int kMostCorners = 10000;
 
-/// Calls `visit(a, b)` for the edges from a to b of all loops, in the order of their numbers.
+/// Calls `visit(a, b)` for the edges from a to b of all loops and cuts, in the order of their
+/// numbers.
 template <class Visit>
 void each_edge(const Pattern& pattern, Visit&& visit) {
   for (std::size_t k = 0; k < pattern.loop_count(); ++k) {
@@ -37,10 +44,16 @@ void each_edge(const Pattern& pattern, Visit&& visit) {
       visit(loop[i], loop[i + 1 == loop.size() ? 0 : i + 1]);
     }
   }
+  for (const std::vector<Eigen::Vector2d>& cut : pattern.cuts) {
+    for (std::size_t i = 0; i + 1 < cut.size(); ++i) visit(cut[i], cut[i + 1]);
+  }
 }
 
 /// Corners of all loops, in the order of their numbers.
 std::vector<Eigen::Vector2d> corners(const Pattern& pattern);
+
+/// Number of edges of loops and cuts.
+int edge_count(const Pattern& pattern);
 
 /// Number of the edge that follows one on its loop, which is that of the corner at its end.
 int next_edge(const Pattern& pattern, int edge);
@@ -63,7 +76,8 @@ Pattern disc_pattern(double radius, int corners);
 /// a millionth of the pattern's width. `where` names its source (a file and key).
 void require_simple_loops(const Pattern& pattern, const std::string& where);
 
-/// The same, and the border runs counter-clockwise, the holes clockwise.
+/// The same, the border runs counter-clockwise, the holes clockwise, and the cuts lie in the ground
+/// and meet nothing but with their ends, which may lie on the border, a hole or an earlier cut.
 void require_simple(const Pattern& pattern, const std::string& where);
 
 /// Signed area (m^2), positive for a counter-clockwise border; holes are taken off.
@@ -83,10 +97,11 @@ bool contains(const Pattern& pattern, const Eigen::Vector2d& p, double tolerance
 std::optional<Eigen::Vector2d> leaves_pattern(const Pattern& pattern, const Eigen::Vector2d& a,
                                               const Eigen::Vector2d& b, double tolerance);
 
-/// Point of border and holes nearest to `p`, and where it lies.
+/// Point of border, holes and cuts nearest to `p`, and where it lies; of equals that with the
+/// lowest number.
 struct BorderPoint {
   Eigen::Vector2d point;
-  int edge = 0;  ///< from corner `edge` to the next of its loop
+  int edge = 0;  ///< its number
   double t = 0;  ///< 0 … 1 along that edge
   double distance = 0;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/connectivity.h"
 #include "core/error.h"
 #include "core/planar.h"
 
@@ -114,6 +115,28 @@ PatternLocator::Place PatternLocator::locate(const Vector2d& p) const {
   best.weights = best.weights.cwiseMax(0.0);
   best.weights /= best.weights.sum();
   return best;
+}
+
+PatternLocator::Place PatternLocator::locate(const Vector2d& p, const Vector2d& from) const {
+  if (across_.empty()) across_ = EdgeConnectivity(triangles_).across();
+  int f = locate(from).triangle;
+  // A straight way enters a triangle once; more steps only rounding could take.
+  for (std::size_t steps = 0; steps < across_.size(); ++steps) {
+    const Eigen::Vector3d weights = barycentric(f, p);
+    int exit = -1;
+    for (int k = 0; k < 3; ++k) {
+      const Vector2d a = pattern_.row(triangles_(f, k));
+      const Vector2d b = pattern_.row(triangles_(f, (k + 1) % 3));
+      // Beyond this edge, and the way leaves between its ends.
+      if (weights[(k + 2) % 3] >= kInside) continue;
+      if (orientation(from, p, a) <= 0 && orientation(from, p, b) >= 0) exit = k;
+    }
+    if (exit < 0) return {f, weights};
+    const int next = across_[f][exit];
+    if (next < 0) return {f, weights};
+    f = next;
+  }
+  return locate(p);
 }
 
 /// All triangles: only points outside the mesh come here, which are few.

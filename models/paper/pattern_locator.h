@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "models/paper/shell_state.h"
@@ -16,6 +17,9 @@ class PatternLocator {
   };
   /// The triangle that contains `p`, or the nearest one (weights then clamped to it).
   [[nodiscard]] Place locate(const Eigen::Vector2d& p) const;
+  /// The triangle at the end of the straight way from a point of the mesh to `p`, or where a border
+  /// stops it: on a cut, the lip on that side. Weights of a point beyond are negative.
+  [[nodiscard]] Place locate(const Eigen::Vector2d& p, const Eigen::Vector2d& from) const;
 
  private:
   [[nodiscard]] Eigen::Vector3d barycentric(int triangle, const Eigen::Vector2d& p) const;
@@ -29,6 +33,7 @@ class PatternLocator {
   double cell_ = 1;
   int columns_ = 1, rows_ = 1;
   std::vector<int> offset_, items_;  ///< triangles whose boxes meet each cell of a grid
+  mutable std::vector<std::array<int, 3>> across_;  ///< of each triangle, once asked for
 };
 
 }  // namespace geoprior::paper

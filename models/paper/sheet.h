@@ -7,6 +7,7 @@
 #include "models/paper/handle.h"
 #include "models/paper/obstacle.h"
 #include "models/paper/pattern.h"
+#include "models/paper/toughness.h"
 
 namespace geoprior::paper {
 
@@ -36,6 +37,7 @@ struct PaperMaterial {
 struct Sheet {
   Pattern pattern;
   PaperMaterial material;
+  Toughness toughness;
   std::vector<Handle> handles;
   std::vector<Obstacle> obstacles;
   Eigen::Vector3d gravity{0, 0, -9.81};  ///< m/s^2

@@ -114,6 +114,7 @@ class SheetFrames final : public FrameModel {
         const StepReport step = stepper_.step(state_, dt, context);
         handle_work_ += step.handle_work;
         add(report_, step, substeps);
+        mesher_.stepped(sheet_, stepper_, state_, context);
       }
       state_.time = sheet_.frame_time(frame);
     }
@@ -153,7 +154,7 @@ class SheetFrames final : public FrameModel {
   void load(StateReader& in, int /*next_frame*/) override {
     handle_work_ = in.number<double>();
     paper::load(state_, in);
-    mesher_.load(in);
+    mesher_.load(sheet_, in);
   }
 
  private:

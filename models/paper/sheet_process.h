@@ -14,6 +14,9 @@ class SheetMesher {
   virtual ~SheetMesher() = default;
   /// Mesh and state at t = 0: every anchor of every handle is a vertex.
   [[nodiscard]] virtual ShellState start(const Sheet& sheet, RunContext& context) = 0;
+  /// Called after every step: tears grow here. The stepper is given every new mesh.
+  virtual void stepped(const Sheet& /*sheet*/, ShellStepper& /*stepper*/, ShellState& /*state*/,
+                       RunContext& /*context*/) {}
   /// Called after the substeps of a frame; true when the connectivity changed (the stepper then
   /// analyses it anew). Marks its own phases.
   virtual bool adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
@@ -26,7 +29,7 @@ class SheetMesher {
   virtual void annotate(const ShellState& state, Frame& frame) const = 0;
   /// Everything that `adapt` and `annotate` remember from one frame to the next, for checkpoints.
   virtual void save(StateWriter& /*out*/) const {}
-  virtual void load(StateReader& /*in*/) {}
+  virtual void load(const Sheet& /*sheet*/, StateReader& /*in*/) {}
 };
 
 /// The loop that all methods of the topic share: frames of `substeps` steps (more where handles are

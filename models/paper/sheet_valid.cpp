@@ -316,6 +316,18 @@ void require_obstacles(const Sheet& sheet, const std::string& where) {
   }
 }
 
+void require_toughness(const Toughness& toughness, const std::string& where) {
+  require_range(toughness.energy, 0, 1e9, false, inside(where, "energy"));
+  require_range(toughness.noise, 0, 1 - 1e-9, false, inside(where, "noise"));
+  require_range(toughness.noise_length, 0, kInfinity, true, inside(where, "noise_length"));
+  require_range(toughness.across, 0, 1e6, true, inside(where, "across"));
+  if (toughness.grain_deg) require_finite(*toughness.grain_deg, inside(where, "grain_deg"));
+  if (toughness.across != 1 && !toughness.grain_deg) {
+    throw Error("differs from 1, but the grain has no direction", inside(where, "across"),
+                "grain_deg beside it");
+  }
+}
+
 }  // namespace
 
 std::optional<Eigen::Vector2d> start_nearer_than(const Sheet& sheet, const Obstacle& obstacle,
@@ -326,6 +338,7 @@ std::optional<Eigen::Vector2d> start_nearer_than(const Sheet& sheet, const Obsta
 void require_valid(const Sheet& sheet, const std::string& where) {
   require_simple(sheet.pattern, inside(where, "pattern"));
   require_material(sheet.material, inside(where, "material"));
+  require_toughness(sheet.toughness, inside(where, "toughness"));
   for (int c = 0; c < 3; ++c) require_finite(sheet.gravity[c], inside(where, "gravity"));
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 4; ++j) {

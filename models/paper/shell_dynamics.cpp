@@ -270,6 +270,19 @@ Eigen::MatrixX3d ShellDynamics::elastic_forces(const ShellState& state) const {
   return forces;
 }
 
+Eigen::MatrixX3d ShellDynamics::elastic_forces(const ShellState& state,
+                                               const std::vector<int>& triangles) const {
+  Eigen::MatrixX3d forces = Eigen::MatrixX3d::Zero(vertices(), 3);
+  ShellElements::Local local;
+  for (const int f : triangles) {
+    elements_.evaluate(f, state, state.x, ShellElements::Order::gradient, local);
+    const auto nodes = elements_.nodes(f);
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      forces.row(nodes[k]) -= local.gradient.segment<3>(static_cast<Eigen::Index>(3 * k));
+  }
+  return forces;
+}
+
 bool ShellDynamics::solve_linear(Eigen::VectorXd& change, Eigen::VectorXd& reaction) {
   const ShellState& state = *problem_.state;
   const double dt = problem_.dt;

@@ -45,6 +45,8 @@ class ShellDynamics {
 
   [[nodiscard]] ShellEnergies energies(const ShellState& state) const;
   [[nodiscard]] Eigen::MatrixX3d elastic_forces(const ShellState& state) const;
+  [[nodiscard]] Eigen::MatrixX3d elastic_forces(const ShellState& state,
+                                                const std::vector<int>& triangles) const;
   [[nodiscard]] long factor_nonzeros() const { return cholesky_->nonzeros(); }
   [[nodiscard]] const HandleMap& handles() const { return handles_; }
   [[nodiscard]] const ShellElements& elements() const { return elements_; }

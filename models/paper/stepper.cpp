@@ -122,6 +122,11 @@ Eigen::MatrixX3d ShellStepper::elastic_forces(const ShellState& state) const {
   return impl_->of(state).elastic_forces(state);
 }
 
+Eigen::MatrixX3d ShellStepper::elastic_forces(const ShellState& state,
+                                              const std::vector<int>& triangles) const {
+  return impl_->of(state).elastic_forces(state, triangles);
+}
+
 Eigen::MatrixX3d ShellStepper::shape_operators(const ShellState& state) const {
   return geoprior::shape_operators(impl_->of(state).elements().curvature_fit(), state.x);
 }

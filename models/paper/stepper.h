@@ -94,6 +94,9 @@ class ShellStepper {
   [[nodiscard]] ShellEnergies energies(const ShellState& state) const;
   /// Elastic force on every vertex (n x 3, N): -dE/dx of membrane and bending.
   [[nodiscard]] Eigen::MatrixX3d elastic_forces(const ShellState& state) const;
+  /// What these triangles contribute to it.
+  [[nodiscard]] Eigen::MatrixX3d elastic_forces(const ShellState& state,
+                                                const std::vector<int>& triangles) const;
   /// Shape operators S_uu, S_uv, S_vv of all triangles (m x 3, 1/m), those of the bending energy.
   [[nodiscard]] Eigen::MatrixX3d shape_operators(const ShellState& state) const;
   [[nodiscard]] long factor_nonzeros() const;

@@ -1,12 +1,15 @@
 #include "models/paper/transfer.h"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <vector>
 
+#include "core/connectivity.h"
 #include "core/error.h"
 #include "core/planar.h"
+#include "models/paper/lips.h"
 #include "models/paper/overlap.h"
 #include "models/paper/pattern_locator.h"
 
@@ -32,14 +35,30 @@ double width(const ShellMesh& mesh) {
   return (mesh.pattern.colwise().maxCoeff() - mesh.pattern.colwise().minCoeff()).maxCoeff();
 }
 
+/// A point on the side of every border vertex where the sheet is; of others none (NaN).
+std::vector<Vector2d> border_sides(const ShellMesh& mesh) {
+  const Vector2d none = Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  std::vector<Vector2d> sides(mesh.vertex_count(), none);
+  const EdgeConnectivity edges(mesh.triangles);
+  for (int h = 0; h < edges.half_edge_count(); ++h) {
+    if (edges.twin(h) >= 0) continue;
+    const auto [a, b, c] = corners(mesh, h / 3);
+    for (const int v : {edges.origin(h), edges.tip(h)}) sides[v] = (a + b + c) / 3;
+  }
+  return sides;
+}
+
 void carry_vertices(const ShellState& from, const PatternLocator& locator, ShellState& to) {
   const int n = to.mesh.vertex_count();
   const double allowed = kOutside * width(from.mesh);
   to.x.resize(n, 3);
   to.v.resize(n, 3);
+  const std::vector<Vector2d> sides =
+      has_lips(from.mesh) ? border_sides(to.mesh) : std::vector<Vector2d>();
   for (int i = 0; i < n; ++i) {
     const Vector2d p = to.mesh.pattern.row(i);
-    const PatternLocator::Place place = locator.locate(p);
+    const PatternLocator::Place place =
+        sides.empty() || !sides[i].allFinite() ? locator.locate(p) : locator.locate(p, sides[i]);
     const Eigen::RowVector3i t = from.mesh.triangles.row(place.triangle);
     Eigen::Index nearest = 0;
     if (place.weights.maxCoeff(&nearest) > 1 - kSame) {

@@ -12,6 +12,7 @@
 #include "core/planar.h"
 #include "core/random.h"
 #include "models/paper/grid_anchors.h"
+#include "models/paper/lips.h"
 
 namespace geoprior::paper {
 namespace {
@@ -27,6 +28,8 @@ constexpr double kClearance = 0.55;
 constexpr double kMostPoints = 5e6;
 /// Radius of the jitter of the Delaunay layout, in edge lengths.
 constexpr double kJitter = 0.3;
+/// Radius within which points are nearer to each other about a tip, in edge lengths.
+constexpr double kRefined = 2.5;
 
 double equilateral_edge(double area, double triangles) {
   return std::sqrt(4 * area / (std::sqrt(3.0) * triangles));
@@ -41,7 +44,8 @@ double perimeter(const Pattern& pattern) {
 /// Points of a triangulation to be made: the closed chains of border and holes first.
 struct Sites {
   std::vector<std::vector<Vector2d>> loops;
-  std::vector<Vector2d> anchors;  ///< off the border
+  std::vector<std::vector<Vector2d>> cuts;  ///< ends may be points of other chains
+  std::vector<Vector2d> anchors;            ///< off the border
   std::vector<Vector2d> free;
 };
 
@@ -66,10 +70,11 @@ void sample_edge(const Vector2d& a, const Vector2d& along, std::vector<double>& 
   }
 }
 
-/// Border and holes in pieces, with a point at every corner and every anchor on them.
+/// Border, holes and cuts in pieces, with a point at every corner, every anchor on them and every
+/// end of a cut.
 void sample_border(const Pattern& pattern, const std::vector<Vector2d>& anchors,
                    const Vector2d& spacing, Sites& sites) {
-  std::vector<std::vector<double>> stops(corners(pattern).size());
+  std::vector<std::vector<double>> stops(edge_count(pattern));
   const double tolerance = kOnBorder * width(pattern);
   for (const Vector2d& p : anchors) {
     const BorderPoint b = nearest_on_border(pattern, p);
@@ -77,6 +82,14 @@ void sample_border(const Pattern& pattern, const std::vector<Vector2d>& anchors,
       sites.anchors.push_back(p);
     } else {
       stops[b.edge].push_back(b.t);
+    }
+  }
+  for (std::size_t k = 0; k < pattern.cuts.size(); ++k) {
+    Pattern others = pattern;
+    others.cuts.resize(k);
+    for (const Vector2d& end : {pattern.cuts[k].front(), pattern.cuts[k].back()}) {
+      const BorderPoint b = nearest_on_border(others, end);
+      if (b.distance <= tolerance) stops[b.edge].push_back(b.t);
     }
   }
   std::size_t e = 0;
@@ -87,6 +100,12 @@ void sample_border(const Pattern& pattern, const std::vector<Vector2d>& anchors,
       const Vector2d along = loop[(i + 1) % loop.size()] - loop[i];
       sample_edge(loop[i], along, stops[e++], spacing, tolerance, chain);
     }
+  }
+  for (const std::vector<Vector2d>& cut : pattern.cuts) {
+    std::vector<Vector2d>& chain = sites.cuts.emplace_back();
+    for (std::size_t i = 0; i + 1 < cut.size(); ++i)
+      sample_edge(cut[i], cut[i + 1] - cut[i], stops[e++], spacing, tolerance, chain);
+    chain.push_back(cut.back());
   }
 }
 
@@ -149,7 +168,7 @@ Sites delaunay_sites(const Pattern& pattern, const std::vector<Vector2d>& anchor
   return sites;
 }
 
-ShellMesh triangulate(const Sites& sites) {
+ShellMesh triangulate(const Sites& sites, double tolerance) {
   ShellMesh mesh;
   std::vector<Vector2d> points;
   std::vector<std::vector<int>> loops;
@@ -158,32 +177,58 @@ ShellMesh triangulate(const Sites& sites) {
     std::iota(loop.begin(), loop.end(), static_cast<int>(points.size()));
     points.insert(points.end(), chain.begin(), chain.end());
   }
+  std::vector<Eigen::Vector2i> segments;
+  std::vector<Edge> lips;
+  // A cut begins and ends at a point that is there, or at a tip.
+  const auto point_at = [&](const Vector2d& p) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if ((points[i] - p).norm() <= tolerance) return static_cast<int>(i);
+    }
+    points.push_back(p);
+    return static_cast<int>(points.size()) - 1;
+  };
+  for (const std::vector<Vector2d>& cut : sites.cuts) {
+    int last = point_at(cut.front());
+    for (std::size_t i = 1; i < cut.size(); ++i) {
+      const int here = point_at(cut[i]);
+      segments.emplace_back(last, here);
+      lips.push_back(undirected(last, here));
+      last = here;
+    }
+  }
+  std::sort(lips.begin(), lips.end());
   points.insert(points.end(), sites.anchors.begin(), sites.anchors.end());
   points.insert(points.end(), sites.free.begin(), sites.free.end());
   mesh.pattern.resize(static_cast<Eigen::Index>(points.size()), 2);
   for (std::size_t i = 0; i < points.size(); ++i) {
     mesh.pattern.row(static_cast<Eigen::Index>(i)) = points[i];
   }
-  mesh.triangles = constrained_delaunay(mesh.pattern, loops, {});
+  mesh.triangles = constrained_delaunay(mesh.pattern, loops, segments);
+  open_along(mesh, lips);
   return mesh;
 }
 
-ShellMesh unstructured_mesh(const Pattern& pattern, int triangles, UniformLayout layout,
-                            const std::vector<Vector2d>& anchors, std::uint64_t seed) {
-  const auto build = [&](double edge) {
-    return triangulate(layout == UniformLayout::equilateral
-                           ? equilateral_sites(pattern, anchors, edge)
-                           : delaunay_sites(pattern, anchors, edge, seed));
+/// Points twice as near to each other, about a place.
+void refine_about(const Pattern& pattern, const Vector2d& place, double edge, Sites& sites) {
+  const Vector2d spacing = lattice_spacing(pattern, edge) / 2;
+  const double radius = kRefined * edge, clearance = 0.45 * spacing.minCoeff();
+  std::vector<Vector2d> near;
+  const auto note = [&](const Vector2d& p) {
+    if ((p - place).norm() < radius + edge) near.push_back(p);
   };
-  double edge = equilateral_edge(signed_area(pattern), triangles);
-  ShellMesh mesh = build(edge);
-  // The border costs more or fewer triangles than its area says: corrected once.
-  edge *= std::sqrt(static_cast<double>(mesh.triangle_count()) / triangles);
-  return build(edge);
+  for (const Vector2d& p : sites.free) note(p);
+  for (const Vector2d& p : sites.anchors) note(p);
+  for (const Vector2d& p : lattice(pattern, spacing)) {
+    if ((p - place).norm() > radius || !is_clear(pattern, sites, p, clearance)) continue;
+    if (std::none_of(near.begin(), near.end(),
+                     [&](const Vector2d& q) { return (p - q).norm() < clearance; })) {
+      sites.free.push_back(p);
+    }
+  }
 }
 
 bool is_rectangle(const Pattern& pattern) {
-  if (pattern.border.size() != 4 || !pattern.holes.empty()) return false;
+  if (pattern.border.size() != 4 || !pattern.holes.empty() || !pattern.cuts.empty()) return false;
   for (std::size_t i = 0; i < 4; ++i) {
     const Vector2d side = pattern.border[(i + 1) % 4] - pattern.border[i];
     if (side.x() != 0 && side.y() != 0) return false;
@@ -247,6 +292,24 @@ void require_lattice(const Pattern& pattern, double edge) {
   require_count(points, what.str(), kMostPoints, "scene.pattern");
 }
 
+ShellMesh lattice_mesh(const Pattern& pattern, double edge, UniformLayout layout,
+                       const std::vector<Vector2d>& anchors, std::uint64_t seed,
+                       const std::vector<Vector2d>& finer_at) {
+  Sites sites = layout == UniformLayout::delaunay ? delaunay_sites(pattern, anchors, edge, seed)
+                                                  : equilateral_sites(pattern, anchors, edge);
+  for (const Vector2d& p : finer_at) refine_about(pattern, p, edge, sites);
+  return triangulate(sites, kOnBorder * width(pattern));
+}
+
+double uniform_edge(const Pattern& pattern, int triangles, UniformLayout layout,
+                    const std::vector<Vector2d>& anchors, std::uint64_t seed) {
+  const Pattern whole{pattern.border, pattern.holes};
+  const double edge = equilateral_edge(signed_area(whole), triangles);
+  // The border costs more or fewer triangles than its area says: corrected once.
+  const ShellMesh mesh = lattice_mesh(whole, edge, layout, anchors, seed);
+  return edge * std::sqrt(static_cast<double>(mesh.triangle_count()) / triangles);
+}
+
 ShellMesh uniform_mesh(const Pattern& pattern, int triangles, UniformLayout layout,
                        const std::vector<Vector2d>& anchors, std::uint64_t seed) {
   require_simple(pattern, "pattern");
@@ -263,7 +326,8 @@ ShellMesh uniform_mesh(const Pattern& pattern, int triangles, UniformLayout layo
     layout = is_rectangle(pattern) ? UniformLayout::structured : UniformLayout::equilateral;
   }
   if (layout != UniformLayout::structured) {
-    return unstructured_mesh(pattern, triangles, layout, held, seed);
+    const double edge = uniform_edge(pattern, triangles, layout, held, seed);
+    return lattice_mesh(pattern, edge, layout, held, seed);
   }
   if (!is_rectangle(pattern)) {
     throw Error("structured layout of a pattern that is no upright rectangle", "layout",

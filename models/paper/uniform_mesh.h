@@ -16,10 +16,22 @@ enum class UniformLayout { automatic, structured, equilateral, delaunay };
 /// automatic: structured for an upright rectangle, equilateral for all else;
 /// structured: a grid of squares, each with a diagonal, alternating; equilateral: a hexagonal
 /// lattice cut by the border; delaunay: jittered points, seeded. Border vertices lie on the border.
+/// The mesh is open along the pattern's cuts.
 /// @throws Error  on a pattern that is not simple, an anchor outside it, fewer than two triangles,
 ///                structured layout of anything but an upright rectangle
 ShellMesh uniform_mesh(const Pattern& pattern, int triangles, UniformLayout layout,
                        const std::vector<Eigen::Vector2d>& anchors, std::uint64_t seed);
+
+/// The same for edges of a given length, of a pattern that is simple: equilateral, or delaunay.
+/// @param finer_at  places about which edges are half as long
+ShellMesh lattice_mesh(const Pattern& pattern, double edge, UniformLayout layout,
+                       const std::vector<Eigen::Vector2d>& anchors, std::uint64_t seed,
+                       const std::vector<Eigen::Vector2d>& finer_at = {});
+
+/// Edge length (m) with which `lattice_mesh` makes about so many triangles of the pattern without
+/// its cuts.
+double uniform_edge(const Pattern& pattern, int triangles, UniformLayout layout,
+                    const std::vector<Eigen::Vector2d>& anchors, std::uint64_t seed);
 
 /// Refuses edges so short that the lattice over the pattern's box, or its border, has more points
 /// than a sheet can: before any is made.

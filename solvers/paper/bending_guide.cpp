@@ -42,12 +42,12 @@ Eigen::Matrix2d BendingField::at(const Eigen::Vector2d& p) const {
   return S;
 }
 
-BendingGuide::BendingGuide(const Sheet& sheet, double edge, const StepperOptions& options,
-                           std::uint64_t seed)
+BendingGuide::BendingGuide(const Sheet& sheet, const Pattern& pattern, double edge,
+                           const StepperOptions& options, std::uint64_t seed)
     : stepper_(sheet, options, seed) {
-  require_lattice(sheet.pattern, edge);
-  const double triangles = signed_area(sheet.pattern) / (std::sqrt(3.0) / 4 * edge * edge);
-  mesh_ = uniform_mesh(sheet.pattern, std::max(2, static_cast<int>(std::lround(triangles))),
+  require_lattice(pattern, edge);
+  const double triangles = signed_area(pattern) / (std::sqrt(3.0) / 4 * edge * edge);
+  mesh_ = uniform_mesh(pattern, std::max(2, static_cast<int>(std::lround(triangles))),
                        UniformLayout::equilateral, handle_points(sheet, edge), seed);
 }
 

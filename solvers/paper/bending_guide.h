@@ -37,7 +37,8 @@ class BendingField {
 class BendingGuide {
  public:
   /// @param edge  length of the even mesh's edges (m)
-  BendingGuide(const Sheet& sheet, double edge, const StepperOptions& options, std::uint64_t seed);
+  BendingGuide(const Sheet& sheet, const Pattern& pattern, double edge,
+               const StepperOptions& options, std::uint64_t seed);
 
   [[nodiscard]] BendingField relaxed(const ShellState& sheet);
 

@@ -14,6 +14,7 @@
 #include "core/limits.h"
 #include "models/paper/handle_map.h"
 #include "models/paper/pattern_locator.h"
+#include "models/paper/tear_frame.h"
 #include "models/paper/transfer.h"
 #include "models/paper/uniform_mesh.h"
 #include "solvers/paper/compression.h"
@@ -25,6 +26,7 @@
 #include "solvers/paper/ruling_field.h"
 #include "solvers/paper/settled_energy.h"
 #include "solvers/paper/structure_bytes.h"
+#include "solvers/paper/torn_structure.h"
 #include "solvers/paper/tracking.h"
 
 namespace geoprior::paper {
@@ -118,7 +120,12 @@ RulingEditor HybridMesher::editor() {
 }
 
 void HybridMesher::take_scene(const Sheet& sheet) {
-  pattern_ = sheet.pattern;
+  if (!sheet.toughness.tears()) {
+    tearing_.reset();
+  } else if (!tearing_) {
+    tearing_.emplace(sheet, options_.tearing);
+  }
+  pattern_ = tearing_ ? tearing_->tears().torn() : sheet.pattern;
   require_lattice(pattern_, options_.flat_size);
   require_count(width(pattern_) / options_.seeding_distance, "parallel rulings", kMostRulings,
                 "scene.pattern");
@@ -143,9 +150,37 @@ ShellState HybridMesher::start(const Sheet& sheet, RunContext& context) {
   unborn_ = 0;
   frames_ = 0;
   settle_steps_ = 0;
+  tearing_.reset();
   take_scene(sheet);
+  if (tearing_) {
+    RulingEditor pen = editor();
+    follow_tears(tearing_->tears(), 0, options_, pen);
+  }
   remesh();
   return resting_state(sheet, mesh_.mesh, context.seed());
+}
+
+void HybridMesher::stepped(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
+                           RunContext& context) {
+  if (!meshed_) {
+    take_scene(sheet);
+    remesh();
+  }
+  if (!tearing_) return;
+  const Phase phase(context, "tear");
+  tearing_->grow([&] { return tear_candidates(sheet, tearing_->tears(), structure_); },
+                 [&](ShellState& torn) { tear_mesh(sheet, torn, context); }, stepper, state);
+}
+
+/// Makes the mesh of the tears as they are now. Nothing else of it changes but what they touch.
+void HybridMesher::tear_mesh(const Sheet& sheet, ShellState& state, RunContext& context) {
+  pattern_ = tearing_->tears().torn();
+  guide_.reset();
+  RulingEditor pen = editor();
+  follow_tears(tearing_->tears(), state.time, options_, pen);
+  remesh();
+  state = transfer_state(state, mesh_.mesh);
+  if (options_.projection) project(sheet, kRemeshedIterations, state, context);
 }
 
 /// Where the simulated sheet asks for rulings; singular points yield on the way.
@@ -161,7 +196,8 @@ std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, const ShellSt
   for (Ruling& ruling : structure_.rulings) ++ruling.age_frames;
   count_flat_frames(folds_, options_, looker);
   if (options_.tracking) {
-    if (!guide_) guide_.emplace(sheet, options_.guide_edge, options_.stepper, context.seed());
+    if (!guide_)
+      guide_.emplace(sheet, pattern_, options_.guide_edge, options_.stepper, context.seed());
     field_.emplace(guide_->relaxed(state));
   }
   return group_demands(find_demands(sheet, state, curvature_, mesh_, looker, options_), state.mesh,
@@ -287,8 +323,9 @@ void HybridMesher::weigh_births(const Sheet& sheet, const Snapshot& before, Shel
 /// settled, has no more energy without it.
 bool HybridMesher::review_points(const Sheet& sheet, ShellState& state, RunContext& context) {
   const auto& points = structure_.singular_points;
-  const auto unyielded = std::find_if(points.begin(), points.end(),
-                                      [](const SingularPoint& p) { return p.weakening == 0; });
+  const auto unyielded = std::find_if(points.begin(), points.end(), [](const SingularPoint& p) {
+    return !p.tear && p.weakening == 0;
+  });
   if (unyielded == points.end()) return false;
   const Phase phase(context, "weigh");
   const Snapshot before = snapshot(state);
@@ -401,6 +438,7 @@ void HybridMesher::settle(const Sheet& sheet, ShellStepper& stepper, ShellState&
 
 void HybridMesher::annotate(const ShellState& state, Frame& frame) const {
   add_structure(structure_, mesh_, state, frame);
+  if (tearing_) add_tears(*tearing_, state, frame);
   frame.diagnostics["new_rulings"] = events_.new_rulings;
   frame.diagnostics["new_singular_points"] = events_.new_singular_points;
   frame.diagnostics["rejected_changes"] = rejected_;
@@ -415,14 +453,17 @@ void HybridMesher::annotate(const ShellState& state, Frame& frame) const {
 
 void HybridMesher::save(StateWriter& out) const {
   write_structure(structure_, out);
+  if (tearing_) tearing_->save(out);
   out.number(draws_);
   out.number(rejected_);
   out.number(unborn_);
   out.number(frames_);
 }
 
-void HybridMesher::load(StateReader& in) {
+void HybridMesher::load(const Sheet& sheet, StateReader& in) {
   structure_ = read_structure(in);
+  take_scene(sheet);
+  if (tearing_) tearing_->load(in);
   draws_ = in.number<std::uint64_t>();
   rejected_ = in.number<int>();
   unborn_ = in.number<int>();
@@ -557,6 +598,7 @@ void describe(OptionVisitor& v, HybridOptions& o) {
   describe_rulings(v, o);
   describe_tracking(v, o);
   describe_group(v, "settle", o.settle, {.doc = "after every new mesh"});
+  describe_group(v, "tearing", o.tearing, {.doc = "of scenes whose paper tears"});
   describe_group(v, "stepper", o.stepper, {.doc = "time stepping"});
 }
 

@@ -4,6 +4,7 @@
 
 #include "models/paper/settle.h"
 #include "models/paper/sheet_process.h"
+#include "models/paper/tear_growth.h"
 #include "solvers/paper/structure.h"
 
 namespace geoprior::paper {
@@ -48,6 +49,7 @@ struct HybridOptions {
   int last_iterations = 8;         ///< of the projection then, in those of a usual frame
   double weakening_radius = 4e-3;  ///< r_p about a singular point (m)
   SettleOptions settle;
+  TearOptions tearing;
   StepperOptions stepper;
 };
 void describe(OptionVisitor& v, HybridOptions& options);
@@ -55,6 +57,9 @@ void describe(OptionVisitor& v, HybridOptions& options);
 /// The hybrid model as a process (thesis 3.2.1, Figures 3.6 to 3.9): elastic steps on a coarse mesh
 /// whose edges are the rulings of planes, cylinders and cones; after each frame the rulings follow
 /// the bending that the steps have left, as an even mesh relaxes it, and its compression.
+///
+/// Paper that tears (`Sheet::toughness`) does so at the candidates of torn_structure.h after every
+/// step (thesis 3.2.2); the lips are borders of the structure, the tips singular points.
 ///
 /// What it cannot do: no contact of the sheet with itself on the geometric layer; a d-cone is a
 /// point, not a crescent; a ruling has few vertices (`ruling_parts`), so it hardly bends until a

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "models/paper/sheet_process.h"
+#include "models/paper/tear_growth.h"
 #include "solvers/paper/bending_guide.h"
 #include "solvers/paper/hybrid.h"
 #include "solvers/paper/isometry_projection.h"
@@ -20,16 +21,20 @@ class HybridMesher final : public SheetMesher {
   explicit HybridMesher(const HybridOptions& options) : options_(options) {}
 
   [[nodiscard]] ShellState start(const Sheet& sheet, RunContext& context) override;
+  void stepped(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
+               RunContext& context) override;
   bool adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
              RunContext& context) override;
   void settle(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
               RunContext& context) override;
   void annotate(const ShellState& state, Frame& frame) const override;
   void save(StateWriter& out) const override;
-  void load(StateReader& in) override;
+  void load(const Sheet& sheet, StateReader& in) override;
 
   [[nodiscard]] const PaperStructure& structure() const { return structure_; }
   [[nodiscard]] const RulingMesh& mesh() const { return mesh_; }
+  /// The pattern, cut along the tears.
+  [[nodiscard]] const Pattern& torn() const { return pattern_; }
 
  private:
   /// What an attempt to change the structure may have to give back.
@@ -44,6 +49,7 @@ class HybridMesher final : public SheetMesher {
   void restore(const Snapshot& before, ShellState& state);
 
   void take_scene(const Sheet& sheet);
+  void tear_mesh(const Sheet& sheet, ShellState& state, RunContext& context);
   [[nodiscard]] RulingEditor editor();
   void remesh();
   [[nodiscard]] std::vector<DemandGroup> analyse(const Sheet& sheet, const ShellStepper& stepper,
@@ -77,6 +83,7 @@ class HybridMesher final : public SheetMesher {
   std::optional<IsometryProjector> projector_;
   std::optional<BendingGuide> guide_;
   std::optional<BendingField> field_;
+  std::optional<TearGrowth> tearing_;
   std::uint64_t draws_ = 0;  ///< of singular points, so far
   bool meshed_ = false;      ///< false after `load`, until the mesh is made again
   PropagationReport events_;

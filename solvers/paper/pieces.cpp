@@ -21,13 +21,13 @@ using Eigen::Vector2d;
 struct CellOutline {
   std::vector<int> rulings;       ///< each once, sorted
   std::vector<bool> left, right;  ///< the cell lies on that side of the ruling from a to b
-  bool at_hole = false;           ///< some of its outline is that of a hole
+  bool at_hole = false;           ///< some of its outline is that of a hole or cut
 };
 
-/// Marks the cells that a hole of the pattern borders on.
+/// Marks the cells that a hole or cut of the pattern borders on.
 void mark_holes(const Pattern& pattern, const RulingMesh& mesh, const EdgeConnectivity& edges,
                 std::vector<CellOutline>& cells) {
-  if (pattern.holes.empty()) return;
+  if (pattern.holes.empty() && pattern.cuts.empty()) return;
   for (int e = 0; e < edges.edge_count(); ++e) {
     const int left = edges.left(e), right = edges.right(e);
     if (left >= 0 && right >= 0) continue;
@@ -248,7 +248,7 @@ void fill_regions(std::vector<PaperPiece>& pieces, const RulingMesh& mesh,
 }
 
 void fill_border_points(PaperStructure& structure, const Pattern& pattern) {
-  structure.border_points.assign(corners(pattern).size(), {});
+  structure.border_points.assign(edge_count(pattern), {});
   std::vector<std::pair<std::pair<int, double>, int>> on_border;
   for (std::size_t s = 0; s < structure.singular_points.size(); ++s) {
     if (!structure.singular_points[s].on_border) continue;

@@ -37,7 +37,10 @@ RulingEditor::RulingEditor(const Pattern& pattern, const std::vector<Vector2d>& 
       anchors_(anchors),
       bounds_(bounds),
       structure_(structure),
-      same_(1e-9 * width(pattern)) {}
+      same_(1e-9 * width(pattern)) {
+  for (const std::vector<Vector2d>& cut : pattern.cuts)
+    corners_.insert(corners_.end(), cut.begin(), cut.end());
+}
 
 RulingHit RulingEditor::propagate(const Vector2d& origin, const Vector2d& direction,
                                   std::optional<int> from_singular) const {

@@ -18,10 +18,10 @@ struct RulingHit {
   int index = -1;       ///< edge of the border, ruling, or singular point
 };
 
-/// Adds rulings to a structure so that they stay apart (border: that of the sheet, or a hole's): no
-/// two cross, none passes another's end, an anchor or a singular point at less than `gap`, ends
-/// nearer than `gap` to a corner, an anchor or another end on the border snap to it, and rulings
-/// that share an end differ by `least_angle`.
+/// Adds rulings to a structure so that they stay apart (border: that of the sheet, a hole's or a
+/// cut's): no two cross, none passes another's end, an anchor or a singular point at less than
+/// `gap`, ends nearer than `gap` to a corner, an anchor or another end on the border snap to it,
+/// and rulings that share an end differ by `least_angle`.
 ///
 /// These bounds are what keeps the triangles of the mesh from degenerating: their altitude is about
 /// `gap` or more.

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "core/connectivity.h"
 #include "core/error.h"
 #include "core/planar.h"
+#include "models/paper/lips.h"
+#include "models/paper/outline_chains.h"
 #include "models/paper/segments.h"
 
 namespace geoprior::paper {
@@ -16,67 +20,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Collects the vertices: points closer than the tolerance are one.
-class PointSet {
- public:
-  explicit PointSet(double tolerance) : tolerance_(tolerance) {}
-  int add(const Vector2d& p) {
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      if ((points_[i] - p).norm() <= tolerance_) return static_cast<int>(i);
-    }
-    points_.push_back(p);
-    return static_cast<int>(points_.size()) - 1;
-  }
-  [[nodiscard]] const std::vector<Vector2d>& points() const { return points_; }
-
- private:
-  double tolerance_;
-  std::vector<Vector2d> points_;
-};
-
-struct OnBorder {
-  int edge;
-  double t;
-  int vertex;
-  bool operator<(const OnBorder& other) const {
-    return std::pair(edge, t) < std::pair(other.edge, other.t);
-  }
-};
-
-/// Vertices round border and holes in order, gaps longer than `flat_size` divided evenly.
-std::vector<std::vector<int>> border_chains(const Pattern& pattern, double flat_size,
-                                            double tolerance, PointSet& set) {
-  const std::vector<Vector2d> all = corners(pattern);
-  std::vector<OnBorder> on_border;
-  const std::vector<Vector2d> points = set.points();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const BorderPoint near = nearest_on_border(pattern, points[i]);
-    if (near.distance > tolerance) continue;
-    // A corner is both the end of one edge and the start of the next: count it once, as the start.
-    const int next = next_edge(pattern, near.edge);
-    const bool at_end = (points[i] - all[static_cast<std::size_t>(next)]).norm() <= tolerance;
-    on_border.push_back({at_end ? next : near.edge, at_end ? 0 : near.t, static_cast<int>(i)});
-  }
-  std::sort(on_border.begin(), on_border.end());
-  std::vector<std::vector<int>> chains;
-  int end_edge = 0;
-  for (std::size_t k = 0, i = 0; k < pattern.loop_count(); ++k) {
-    end_edge += static_cast<int>(pattern.loop(k).size());
-    const std::size_t first = i;
-    std::vector<int>& chain = chains.emplace_back();
-    for (; i < on_border.size() && on_border[i].edge < end_edge; ++i) {
-      const bool last = i + 1 == on_border.size() || on_border[i + 1].edge >= end_edge;
-      const int from = on_border[i].vertex;
-      const int to = on_border[last ? first : i + 1].vertex;
-      chain.push_back(from);
-      const Vector2d a = points[from];
-      const Vector2d b = points[to];
-      const int parts = static_cast<int>(std::ceil((b - a).norm() / flat_size - 1e-9));
-      for (int part = 1; part < parts; ++part) chain.push_back(set.add(a + (b - a) * part / parts));
-    }
-  }
-  return chains;
-}
+/// Radius of the ring of vertices about a tip, in flat sizes, and the length of a ruling that has
+/// room for one: beside it a step of a tear is not much shorter than the edges around.
+constexpr double kRing = 0.3, kRingRoom = 0.5;
 
 /// Lattice points that are half a `flat_size` away from border, rulings and every vertex.
 void add_lattice(const PaperStructure& structure, const Pattern& pattern, double flat_size,
@@ -119,22 +65,6 @@ void divide_ruling(const Ruling& ruling, const std::vector<Vector2d>& anchors,
   }
 }
 
-/// Vertices on the ruling from a to b, in order.
-std::vector<int> points_along(const std::vector<Vector2d>& points, const Ruling& ruling,
-                              double tolerance) {
-  std::vector<std::pair<double, int>> along;
-  const Vector2d d = (ruling.b - ruling.a).normalized();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (distance_to_segment(points[i], ruling.a, ruling.b) <= tolerance) {
-      along.emplace_back((points[i] - ruling.a).dot(d), static_cast<int>(i));
-    }
-  }
-  std::sort(along.begin(), along.end());
-  std::vector<int> path;
-  for (const auto& [t, i] : along) path.push_back(i);
-  return path;
-}
-
 void number_cells(RulingMesh& result) {
   const EdgeConnectivity edges(result.mesh.triangles);
   const std::vector<Edge>& walls = result.mesh.rulings;
@@ -157,6 +87,29 @@ void number_cells(RulingMesh& result) {
         if (std::binary_search(walls.begin(), walls.end(), edge)) continue;
         result.cell[next] = cell;
         stack.push_back(next);
+      }
+    }
+  }
+}
+
+/// Opens the mesh along its cuts; rulings that end there keep to their side.
+void open(const std::vector<Edge>& lips, RulingMesh& result) {
+  const Eigen::MatrixX3i before = result.mesh.triangles;
+  open_along(result.mesh, lips);
+  std::map<Edge, Edge> opened;  // of the directed edges of triangles
+  for (int f = 0; f < static_cast<int>(before.rows()); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3;
+      opened[{before(f, k), before(f, next)}] = {result.mesh.triangles(f, k),
+                                                 result.mesh.triangles(f, next)};
+    }
+  }
+  for (std::vector<int>& path : result.ruling_paths) {
+    const std::vector<int> old = path;
+    for (std::size_t k = 0; k + 1 < old.size(); ++k) {
+      if (const auto at = opened.find({old[k], old[k + 1]}); at != opened.end()) {
+        path[k] = at->second[0];
+        path[k + 1] = at->second[1];
       }
     }
   }
@@ -185,6 +138,9 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
   PointSet set(tolerance);
   RulingMesh result;
   for (const Vector2d& p : corners(pattern)) set.add(p);
+  for (const auto& cut : pattern.cuts) {
+    for (const Vector2d& p : cut) set.add(p);
+  }
   for (const Vector2d& p : anchors) set.add(p);
   for (const SingularPoint& s : structure.singular_points) {
     result.singular_vertices.push_back(set.add(s.position));
@@ -194,12 +150,24 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
     set.add(r.b);
   }
   for (const Ruling& r : structure.rulings) divide_ruling(r, anchors, sizes, set);
+  for (const Ruling& r : structure.rulings) {
+    for (const auto& [from, to, end] :
+         {std::tuple(r.a, r.b, r.singular_a), std::tuple(r.b, r.a, r.singular_b)}) {
+      if (!end || !structure.singular_points[*end].tear) continue;
+      const double length = (to - from).norm();
+      if (length > kRingRoom * sizes.flat)
+        set.add(from + (to - from) * kRing * sizes.flat / length);
+    }
+  }
   const std::vector<std::vector<int>> loops = border_chains(pattern, sizes.flat, tolerance, set);
+  std::vector<Eigen::Vector2i> segments = cut_segments(pattern, sizes.flat, tolerance, set);
+  std::vector<Edge> lips;
+  for (const Eigen::Vector2i& s : segments) lips.push_back(undirected(s[0], s[1]));
+  std::sort(lips.begin(), lips.end());
   add_lattice(structure, pattern, sizes.flat, set);
 
-  std::vector<Eigen::Vector2i> segments;
   for (const Ruling& r : structure.rulings) {
-    result.ruling_paths.push_back(points_along(set.points(), r, tolerance));
+    result.ruling_paths.push_back(points_along(set.points(), r.a, r.b, tolerance));
     const std::vector<int>& path = result.ruling_paths.back();
     for (std::size_t k = 0; k + 1 < path.size(); ++k) segments.emplace_back(path[k], path[k + 1]);
   }
@@ -214,6 +182,7 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
       result.mesh.rulings.push_back(undirected(path[k], path[k + 1]));
   }
   std::sort(result.mesh.rulings.begin(), result.mesh.rulings.end());
+  if (!lips.empty()) open(lips, result);
   number_cells(result);
   return result;
 }
@@ -224,19 +193,22 @@ std::vector<int> edge_path(const ShellMesh& mesh, const Vector2d& a, const Vecto
   for (int i = 0; i < mesh.vertex_count(); ++i) {
     points[i] = mesh.pattern.row(i);
   }
-  Ruling segment;
-  segment.a = a;
-  segment.b = b;
-  std::vector<int> path = points_along(points, segment, tolerance);
-  if (path.size() < 2 || (points[path.front()] - a).norm() > tolerance ||
-      (points[path.back()] - b).norm() > tolerance) {
+  const std::vector<int> all = points_along(points, a, b, tolerance);
+  if (all.size() < 2 || (points[all.front()] - a).norm() > tolerance ||
+      (points[all.back()] - b).norm() > tolerance) {
     return {};
   }
   const EdgeConnectivity edges(mesh.triangles);
-  for (std::size_t k = 0; k + 1 < path.size(); ++k) {
-    if (!edges.find(path[k], path[k + 1])) return {};
+  const auto same = [&](int i, int j) { return (points[i] - points[j]).norm() <= tolerance; };
+  // At its ends the path may find two lips of a cut: that one counts to which an edge leads.
+  for (std::size_t first = 0; first < all.size() && same(all[0], all[first]); ++first) {
+    std::vector<int> path{all[first]};
+    for (std::size_t k = first + 1; k < all.size(); ++k) {
+      if (!same(path.back(), all[k]) && edges.find(path.back(), all[k])) path.push_back(all[k]);
+    }
+    if (same(path.back(), all.back())) return path;
   }
-  return path;
+  return {};
 }
 
 }  // namespace geoprior::paper

@@ -45,6 +45,7 @@ struct SingularPoint {
   double birth = 0;          ///< s
   double weakening = 0;      ///< w: bending stiffness about it falls by 1 / (1 + w)
   bool on_border = false;
+  std::optional<int> tear = {};  ///< whose tip it is
 };
 
 /// The geometric layer of the hybrid method: what the sheet is made of at one time.

@@ -42,6 +42,7 @@ void write_structure(const PaperStructure& structure, StateWriter& out) {
     out.number(s.birth);
     out.number(s.weakening);
     out.number(s.on_border);
+    out.number(s.tear.value_or(kNone));
   }
   out.number(structure.pieces.size());
   for (const PaperPiece& piece : structure.pieces) {
@@ -71,6 +72,7 @@ PaperStructure read_structure(StateReader& in) {
     s.birth = in.number<double>();
     s.weakening = in.number<double>();
     s.on_border = in.number<bool>();
+    s.tear = read_optional(in);
   }
   structure.pieces.resize(in.count());
   for (PaperPiece& piece : structure.pieces) {

@@ -24,8 +24,8 @@ std::vector<fs::path> experiment_files() {
   return {files.begin(), files.end()};
 }
 
-TEST(PaperExperiments, AreTheEighteenThatTheTopicHas) {
-  EXPECT_EQ(experiment_files().size(), 18U);
+TEST(PaperExperiments, AreThoseThatTheTopicHas) {
+  EXPECT_EQ(experiment_files().size(), 22U);
   for (const fs::path& file : experiment_files()) {
     for (const bool quick : {false, true}) {
       LoadRequest request;
@@ -46,8 +46,10 @@ TEST(PaperExperiments, NeverPullTwoHandlesFartherApartThanTheirPatternAllows) {
     const Experiment experiment = load_experiment(file, {make_topic()}, {});
     const auto scene = make_topic().load(*experiment.cases[0].scene, file.parent_path(), 1);
     const Sheet& sheet = dynamic_cast<const PaperScene&>(*scene).sheet;
-    const auto worst = worst_pulled_apart(sheet, 1e-4);
-    EXPECT_FALSE(worst) << file << ": " << warning_text(sheet, *worst, "scene");
+    if (!sheet.toughness.tears()) {
+      const auto worst = worst_pulled_apart(sheet, 1e-4);
+      EXPECT_FALSE(worst) << file << ": " << warning_text(sheet, *worst, "scene");
+    }
     if (file.stem() == "fast-hands") continue;  // warns of its speed, below
     EXPECT_TRUE(scene->warnings().empty()) << file;
   }

@@ -249,7 +249,7 @@ TEST(BendingGuide, SeesTheCylinderThatAnAccordionOfRulingsHides) {
   s.bend(0.1, rulings);
   s.sheet.gravity.setZero();
   RunContext context(1);
-  BendingGuide guide(s.sheet, 0.015, {}, 1);
+  BendingGuide guide(s.sheet, s.sheet.pattern, 0.015, {}, 1);
   const BendingField field = guide.relaxed(s.state);
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (const double u : {-0.05, 0.0, 0.05})

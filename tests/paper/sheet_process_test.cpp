@@ -242,7 +242,7 @@ class SwitchingMesher final : public SheetMesher {
     frame.diagnostics["switched"] = switched_ ? 1 : 0;
   }
   void save(StateWriter& out) const override { out.number(switched_); }
-  void load(StateReader& in) override { switched_ = in.number<bool>(); }
+  void load(const Sheet& /*sheet*/, StateReader& in) override { switched_ = in.number<bool>(); }
 
  private:
   static ShellMesh mesh(const Sheet& sheet, int triangles) {

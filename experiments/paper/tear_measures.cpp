@@ -1,0 +1,112 @@
+#include "experiments/paper/tear_measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "models/paper/lips.h"
+
+namespace geoprior::paper {
+namespace {
+
+using Eigen::Vector2d;
+
+/// Pattern points of the two hands that move a sheet; absent when there are not just two.
+std::optional<std::pair<Vector2d, Vector2d>> two_hands(const Sheet& sheet) {
+  std::vector<Vector2d> hands;
+  for (const Handle& handle : sheet.handles) {
+    if (!handle.motion) continue;
+    const std::vector<Vector2d> anchors = handle.anchors();
+    Vector2d sum = Vector2d::Zero();
+    for (const Vector2d& p : anchors) sum += p;
+    hands.push_back(sum / static_cast<double>(anchors.size()));
+  }
+  if (hands.size() != 2) return std::nullopt;
+  return std::pair(hands[0], hands[1]);
+}
+
+const TearPath* longest(const std::vector<TearPath>& paths) {
+  const TearPath* best = nullptr;
+  double most = 0;
+  for (const TearPath& path : paths) {
+    const double length = path_length(path);
+    if (length <= most) continue;
+    most = length;
+    best = &path;
+  }
+  return best;
+}
+
+/// The first `length` of a path.
+TearPath shortened(const TearPath& path, double length) {
+  TearPath result{path.front()};
+  for (std::size_t i = 1; i < path.size() && length > 0; ++i) {
+    const double step = (path[i] - path[i - 1]).norm();
+    if (!(step > 0)) continue;
+    result.push_back(path[i - 1] + std::min(1.0, length / step) * (path[i] - path[i - 1]));
+    length -= step;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<TornSheet> torn_sheet(const Frame& frame) {
+  const Part* part = frame.find_part("tears");
+  if (part == nullptr) return std::nullopt;
+  using On = NamedArray::On;
+  const Eigen::MatrixXd& pattern = part->require_array("pattern", On::points, 2, "tears").values;
+  const Eigen::MatrixXd& time = part->require_array("time", On::points, 1, "tears").values;
+  const Eigen::MatrixXd& lip = part->require_array("lip", On::points, 1, "tears").values;
+  TornSheet sheet;
+  for (const std::vector<int>& line : part->lines) {
+    if (line.empty() || lip(line.front(), 0) != 0) continue;
+    TearPath whole, grown;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      whole.emplace_back(pattern.row(line[i]));
+      const bool next_grows = i + 1 < line.size() && time(line[i + 1], 0) > 0;
+      if (time(line[i], 0) > 0 || next_grows) grown.push_back(whole.back());
+    }
+    sheet.outlines.push_back(std::move(whole));
+    if (grown.size() > 1) sheet.paths.push_back(std::move(grown));
+  }
+  return sheet;
+}
+
+std::optional<TearMeasures> tear_measures(const SheetFrame& f) {
+  const auto torn = torn_sheet(f.frame);
+  if (!torn) return std::nullopt;
+  TearMeasures m;
+  for (const TearPath& path : torn->paths) m.length += path_length(path);
+  m.parts = part_count(f.triangles());
+  const auto hands = two_hands(f.sheet);
+  const TearPath* path = longest(torn->paths);
+  if (path == nullptr) {
+    const auto force = handle_force(f);
+    if (hands && force && torn->outlines.size() == 1) {
+      const double closed =
+          geoprior::onset_force(torn->outlines[0].back(), hands->first, hands->second,
+                                f.sheet.toughness.energy, f.sheet.material.thickness);
+      m.onset_force = force->max / closed;
+    }
+    return m;
+  }
+  m.bow = path_bow(*path);
+  if (!hands) return m;
+  m.drift = focal_drift(*path, hands->first, hands->second);
+  m.deviation =
+      chord_angle_deg(*path, bisector_direction(path->front(), hands->first, hands->second));
+  return m;
+}
+
+Value tear_path_distance(const SheetFrame& f, const SheetFrame& reference) {
+  const auto here = torn_sheet(f.frame), there = torn_sheet(reference.frame);
+  if (!here || !there) return std::nullopt;
+  const TearPath *p = longest(here->paths), *q = longest(there->paths);
+  if (p == nullptr || q == nullptr) return std::nullopt;
+  const double length = std::min(path_length(*p), path_length(*q));
+  return path_distance(shortened(*p, length), shortened(*q, length));
+}
+
+}  // namespace geoprior::paper

@@ -1,0 +1,320 @@
+#include "models/paper/tear_growth.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "core/angles.h"
+#include "core/disjoint_sets.h"
+#include "core/error.h"
+#include "core/planar.h"
+
+namespace geoprior::paper {
+namespace {
+
+using Eigen::Vector2d;
+
+/// Points of the pattern nearer than this share of its width are one.
+constexpr double kSame = 1e-9;
+/// Corners that turn less are no notches: outlines of curves are full of them.
+constexpr double kLeastNotch = 20 * kDegree;
+/// A pull that asks a tear to turn by more goes back on it, and tears nothing; directions of two
+/// steps that differ by less lie on a curve (rad).
+constexpr double kBack = 120 * kDegree, kSmooth = 20 * kDegree;
+/// By how much a step towards rest is made shorter.
+constexpr double kShorter = 4;
+/// Of the null, from the bisector (rad).
+constexpr double kAskew = 45 * kDegree;
+/// Directions tried where the toughness depends on them.
+constexpr int kDirections = 720;
+
+/// The vertex at a place, unless there is none or the sheet is open there.
+std::optional<int> vertex_at(const ShellMesh& mesh, const Vector2d& p, double tolerance) {
+  std::optional<int> found;
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    if ((mesh.pattern.row(v).transpose() - p).norm() > tolerance) continue;
+    if (found) return std::nullopt;
+    found = v;
+  }
+  return found;
+}
+
+/// Area of the smallest part that hangs together (m^2).
+double smallest_part(const ShellMesh& mesh) {
+  const EdgeConnectivity edges(mesh.triangles);
+  DisjointSets sets(mesh.triangle_count());
+  for (int h = 0; h < edges.half_edge_count(); ++h) {
+    if (edges.twin(h) > h) sets.join(h / 3, edges.twin(h) / 3);
+  }
+  Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh.triangle_count());
+  for (int f = 0; f < mesh.triangle_count(); ++f) {
+    const Vector2d a = mesh.pattern.row(mesh.triangles(f, 0));
+    const Vector2d b = mesh.pattern.row(mesh.triangles(f, 1));
+    const Vector2d c = mesh.pattern.row(mesh.triangles(f, 2));
+    area[sets.find(f)] += cross(b - a, c - a) / 2;
+  }
+  double least = area.sum();
+  for (int f = 0; f < mesh.triangle_count(); ++f) {
+    if (sets.find(f) == f) least = std::min(least, area[f]);
+  }
+  return least;
+}
+
+double elastic_energy(const ShellStepper& stepper, const ShellState& state) {
+  const ShellEnergies energies = stepper.energies(state);
+  return energies.membrane + energies.bending;
+}
+
+/// A step towards rest. One that raises the elastic energy is too long for its linear forces, and
+/// is tried again shorter; `time` keeps the length.
+void relax(ShellStepper& stepper, double& time, ShellState& state) {
+  constexpr int kTries = 4;
+  const Eigen::MatrixX3d start = state.x;
+  const double before = elastic_energy(stepper, state);
+  for (int i = 0; i < kTries; ++i) {
+    try {
+      stepper.relax(state, time);
+      if (elastic_energy(stepper, state) <= before) return;
+    } catch (const Error&) {
+      // Too long as well.
+    }
+    state.x = start;
+    time /= kShorter;
+  }
+}
+
+}  // namespace
+
+std::vector<TearCandidate> plain_candidates(const Sheet& sheet, const Tears& tears) {
+  std::vector<TearCandidate> candidates;
+  for (std::size_t t = 0; t < tears.all().size(); ++t) {
+    if (!tears.all()[t].ended) candidates.push_back({tears.all()[t].tip(), static_cast<int>(t)});
+  }
+  for (std::size_t k = 0; k < sheet.pattern.loop_count(); ++k) {
+    const std::vector<Vector2d>& loop = sheet.pattern.loop(k);
+    const std::size_t n = loop.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vector2d in = loop[i] - loop[(i + n - 1) % n], out = loop[(i + 1) % n] - loop[i];
+      if (signed_angle(in, out) < -kLeastNotch) candidates.push_back({loop[i], std::nullopt});
+    }
+  }
+  for (const Handle& handle : sheet.handles) {
+    if (handle.points.size() == 1 && !handle.disc_radius)
+      candidates.push_back({handle.points[0], std::nullopt});
+  }
+  return candidates;
+}
+
+TearGrowth::TearGrowth(const Sheet& sheet, const TearOptions& options)
+    : sheet_(sheet), options_(options), tears_(sheet.pattern, options.path_tolerance) {
+  if (!(options.step > 1e3 * kSame * width(sheet.pattern))) {
+    throw Error("step of a tear is lost in the rounding of the pattern", "tearing.step",
+                "more than a millionth of the pattern's width");
+  }
+}
+
+Vector2d TearGrowth::direction_of(const TipPull& pull, const Vector2d& p) const {
+  const Vector2d away = pull.away();
+  if (options_.direction == TearDirection::askew)
+    return Eigen::Rotation2Dd(std::copysign(kAskew, cross(away, pull.right))) * away;
+  if (!sheet_.toughness.grain_deg || sheet_.toughness.across == 1) return away;
+  // Where the fibres count, what is released over what is opposed decides.
+  Vector2d best = away;
+  double most = 0;
+  for (int k = 0; k < kDirections; ++k) {
+    const double turn = std::numbers::pi * ((k + 0.5) / kDirections - 0.5);
+    const Vector2d d = Eigen::Rotation2Dd(turn) * away;
+    const double ratio = pull.release(d, sheet_.material.thickness) / sheet_.toughness.at(p, d);
+    if (ratio <= most) continue;
+    most = ratio;
+    best = d;
+  }
+  return best;
+}
+
+std::optional<TearGrowth::Growing> TearGrowth::look_at(const TearCandidate& candidate,
+                                                       const ShellStepper& stepper,
+                                                       const ShellState& state,
+                                                       const EdgeConnectivity& edges) const {
+  const double same = kSame * width(sheet_.pattern);
+  for (const Vector2d& p : given_up_) {
+    if ((p - candidate.place).norm() <= same) return {};
+  }
+  const auto vertex = vertex_at(state.mesh, candidate.place, same);
+  if (!vertex) return {};
+  const auto pull =
+      pull_at(sheet_, stepper, state, edges, *vertex, options_.pull, sheet_.toughness.least());
+  if (!pull) return {};
+  Growing growing{candidate, *pull, direction_of(*pull, candidate.place), 0};
+  if (candidate.tear) {
+    const Vector2d heading = tears_.all()[*candidate.tear].heading();
+    const double turn = signed_angle(heading, growing.direction);
+    if (std::abs(turn) > kBack) return {};
+    const double most = options_.most_turn_deg * kDegree;
+    growing.direction = Eigen::Rotation2Dd(std::clamp(turn, -most, most)) * heading;
+  }
+  // The null goes astray, but not for want of energy.
+  const Vector2d released_along =
+      options_.direction == TearDirection::askew ? pull->away() : growing.direction;
+  growing.excess = pull->release(released_along, sheet_.material.thickness) /
+                   sheet_.toughness.at(candidate.place, growing.direction);
+  // Into the sheet.
+  const Vector2d ahead = candidate.place + options_.step * growing.direction;
+  if (!contains(sheet_.pattern, ahead) && !candidate.tear) return {};
+  return growing;
+}
+
+/// The same pull once the sheet has come to rest; absent when it is too weak then, or gone.
+std::optional<TearGrowth::Growing> TearGrowth::at_rest(const Growing& growing,
+                                                       ShellStepper& stepper, ShellState state,
+                                                       const EdgeConnectivity& edges) const {
+  std::optional<Growing> now = growing;
+  double time = options_.relax_time;
+  for (int i = 0; i < options_.rest_steps; ++i) {
+    relax(stepper, time, state);
+    now = look_at(growing.candidate, stepper, state, edges);
+    if (!now || now->excess < 1) return std::nullopt;
+  }
+  return now;
+}
+
+/// Where a step goes.
+Vector2d TearGrowth::course(const Growing& growing) const {
+  if (options_.integrator == TearIntegrator::euler || !growing.candidate.tear)
+    return growing.direction;
+  const Tear& tear = tears_.all()[*growing.candidate.tear];
+  if (tear.last_pull.isZero(0)) return growing.direction;
+  const double turn = signed_angle(tear.last_pull, growing.direction);
+  // A jump of the pull is no curve to go on with.
+  if (std::abs(turn) > kSmooth) return growing.direction;
+  return Eigen::Rotation2Dd(turn / 2 * options_.step / tear.last_step) * growing.direction;
+}
+
+/// Takes a tip to a place, or to what stands in the way.
+void TearGrowth::go(int tear, const Vector2d& to, const Remesh& remesh, ShellStepper& stepper,
+                    ShellState& state) {
+  const Tears before = tears_;
+  const ShellState old = state;
+  const Vector2d from = tears_.all()[tear].tip();
+  const auto stop = tears_.obstruction(tear, to, options_.margin);
+  tears_.advance(tear, stop.value_or(to), state.time);
+  if (stop) tears_.end(tear);
+  bool fits = true;
+  try {
+    remesh(state);
+    fits = !stop || smallest_part(state.mesh) >= options_.least_part;
+    if (fits) stepper.set_mesh(state);
+  } catch (const Error&) {
+    fits = false;
+  }
+  if (!fits) {
+    // No mesh, or one that cuts off nothing: the tear stays where it is.
+    tears_ = before;
+    tears_.end(tear);
+    given_up_.push_back(from);
+    state = old;
+    remesh(state);
+    stepper.set_mesh(state);
+  }
+  double time = options_.relax_time;
+  for (int i = 0; i < options_.relax_steps; ++i) {
+    relax(stepper, time, state);
+  }
+}
+
+void TearGrowth::take_step(const Growing& growing, const Remesh& remesh, ShellStepper& stepper,
+                           ShellState& state) {
+  const Vector2d from = growing.candidate.place;
+  const Vector2d to = from + options_.step * course(growing);
+  const int tear =
+      growing.candidate.tear ? *growing.candidate.tear : tears_.start(from, state.time);
+  const double before = elastic_energy(stepper, state);
+  go(tear, to, remesh, stepper, state);
+  const Vector2d way = tears_.all()[tear].tip() - from;
+  if (way.isZero(0)) return;
+  tears_.note_pull(tear, growing.direction, way.norm());
+  const double opposed = sheet_.toughness.at(from + way / 2, way.normalized());
+  totals_.energy += opposed * way.norm() * sheet_.material.thickness;
+  totals_.released += before - elastic_energy(stepper, state);
+  ++totals_.steps;
+  last_pull_ = {growing.pull.force, growing.pull.angle};
+}
+
+int TearGrowth::grow(const Candidates& candidates, const Remesh& remesh, ShellStepper& stepper,
+                     ShellState& state) {
+  if (!sheet_.toughness.tears()) return 0;
+  for (int steps = 0; steps < options_.most_steps; ++steps) {
+    const EdgeConnectivity edges(state.mesh.triangles);
+    std::vector<Growing> pulled;
+    for (const TearCandidate& candidate : candidates()) {
+      ++totals_.tested;
+      auto growing = look_at(candidate, stepper, state, edges);
+      if (growing && growing->excess >= 1) pulled.push_back(*std::move(growing));
+    }
+    std::stable_sort(pulled.begin(), pulled.end(),
+                     [](const Growing& a, const Growing& b) { return a.excess > b.excess; });
+    std::optional<Growing> strongest;
+    for (std::size_t i = 0; !strongest && i < pulled.size(); ++i)
+      strongest = at_rest(pulled[i], stepper, state, edges);
+    if (!strongest) return steps;
+    take_step(*strongest, remesh, stepper, state);
+  }
+  return options_.most_steps;
+}
+
+void TearGrowth::save(StateWriter& out) const {
+  tears_.save(out);
+  out.items(given_up_);
+  out.number(totals_);
+  out.number(last_pull_);
+}
+
+void TearGrowth::load(StateReader& in) {
+  tears_.load(in);
+  in.items(given_up_);
+  totals_ = in.number<Totals>();
+  last_pull_ = in.number<LastPull>();
+}
+
+void describe(OptionVisitor& v, TearOptions& o) {
+  static constexpr std::array<std::string_view, 2> kIntegrators{"euler", "midpoint"};
+  static constexpr std::array<std::string_view, 2> kDirections{"bisector", "askew"};
+  describe_group(v, "pull", o.pull, {.doc = "how the forces about a tip are gathered"});
+  v.value("step", o.step,
+          {.doc = "length by which a tear grows", .unit = "m", .min = 1e-9, .max = 10});
+  v.value("most_steps", o.most_steps,
+          {.doc = "of all tears after one time step", .min = 1, .max = 100000});
+  describe_choice(v, "integrator", o.integrator, kIntegrators,
+                  {.doc = "midpoint: the direction in the middle of the step, extrapolated"});
+  describe_choice(v, "direction", o.direction, kDirections,
+                  {.doc = "bisector of the pulls, or (a null) 45 degrees from it"});
+  v.value("most_turn_deg", o.most_turn_deg,
+          {.doc = "of a tear from one step to the next", .unit = "deg", .min = 0, .max = 180});
+  v.value("relax_time", o.relax_time,
+          {.doc = "of the implicit steps from rest that the sheet relaxes in",
+           .unit = "s",
+           .min = 1e-9,
+           .max = 10});
+  v.value("rest_steps", o.rest_steps,
+          {.doc = "of them, that a pull must outlast before a tear grows", .min = 0, .max = 1000});
+  v.value("relax_steps", o.relax_steps,
+          {.doc = "of them, after it has grown", .min = 0, .max = 1000});
+  v.value("path_tolerance", o.path_tolerance,
+          {.doc = "farthest that a tear's path lies from the edges of its lips",
+           .unit = "m",
+           .min = 1e-9,
+           .max = 1});
+  v.value("margin", o.margin,
+          {.doc = "a tear that comes so near to a border or a tear ends there",
+           .unit = "m",
+           .min = 1e-9,
+           .max = 1});
+  v.value("least_part", o.least_part,
+          {.doc = "smallest area that a tear may cut off", .unit = "m^2", .min = 0, .max = 1});
+}
+
+}  // namespace geoprior::paper

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "models/paper/sheet.h"
+#include "models/paper/shell_state.h"
+#include "models/paper/stepper.h"
+#include "models/paper/tears.h"
+#include "models/paper/tip_pull.h"
+
+namespace geoprior::paper {
+
+/// midpoint: the direction in the middle of the step, extrapolated from those at its start and at
+/// the start of the step before (Adams and Bashforth).
+enum class TearIntegrator { euler, midpoint };
+/// bisector: away from both pulls, turned towards the grain where there is one; askew: 45 degrees
+/// from it towards one of them (a null).
+enum class TearDirection { bisector, askew };
+
+/// How tears grow (thesis 3.2.2; what it leaves open is ours, see docs/methods/paper.md).
+struct TearOptions {
+  PullOptions pull;
+  double step = 2e-3;   ///< length by which a tear grows (m)
+  int most_steps = 10;  ///< of all tears after one time step
+  TearIntegrator integrator = TearIntegrator::midpoint;
+  TearDirection direction = TearDirection::bisector;
+  double most_turn_deg = 30;  ///< that a tear turns in a step
+  double relax_time = 1e-3;   ///< of the implicit steps from rest that a sheet relaxes in (s)
+  int rest_steps = 6;         ///< of them, that a pull must outlast before a tear grows
+  int relax_steps = 2;        ///< of them, after it has grown
+  double path_tolerance =
+      1e-4;                  ///< farthest that a tear's path lies from the edges of its lips (m)
+  double margin = 1e-3;      ///< a tear that comes so near to a border ends there (m)
+  double least_part = 1e-6;  ///< smallest area that a tear may cut off (m^2)
+};
+void describe(OptionVisitor& v, TearOptions& options);
+
+/// A place where the sheet may tear, and the tear whose tip it is.
+struct TearCandidate {
+  Eigen::Vector2d place;
+  std::optional<int> tear;
+};
+
+/// Tips of tears, corners of the border at which the sheet lies on the larger side, and places
+/// where it is held: those of the thesis' candidates that need no structure.
+std::vector<TearCandidate> plain_candidates(const Sheet& sheet, const Tears& tears);
+
+/// Tears that grow while the energy they release exceeds what the paper opposes (Griffith; thesis
+/// 3.2.2): E_r = 2 F cos(theta / 2) / e against E_f = K T, of the sheet at rest: a pull that goes
+/// when the sheet relaxes tears nothing. After each step of a tear the sheet is meshed anew and
+/// relaxes.
+class TearGrowth {
+ public:
+  TearGrowth(const Sheet& sheet, const TearOptions& options);
+
+  /// Since the start.
+  struct Totals {
+    double energy = 0;    ///< that tearing took: the integral of E_f over the torn section (J)
+    double released = 0;  ///< by which the sheet's elastic energy fell in the steps of tears (J)
+    int tested = 0;       ///< candidates looked at
+    int steps = 0;
+  };
+  /// The last pull under which a tear grew.
+  struct LastPull {
+    double force = 0, angle = 0;  ///< N, rad
+  };
+
+  /// Takes a state to a mesh that is open along `tears().torn()`.
+  using Remesh = std::function<void(ShellState&)>;
+  using Candidates = std::function<std::vector<TearCandidate>()>;
+  /// Grows tears as far as the pulls go, the strongest first; the stepper has the state's mesh
+  /// before and after.
+  /// @return  steps taken
+  int grow(const Candidates& candidates, const Remesh& remesh, ShellStepper& stepper,
+           ShellState& state);
+
+  [[nodiscard]] const Tears& tears() const { return tears_; }
+  [[nodiscard]] const Totals& totals() const { return totals_; }
+  [[nodiscard]] const LastPull& last_pull() const { return last_pull_; }
+
+  void save(StateWriter& out) const;
+  void load(StateReader& in);
+
+ private:
+  struct Growing {
+    TearCandidate candidate;
+    TipPull pull;
+    Eigen::Vector2d direction;
+    double excess = 0;  ///< E_r / E_f
+  };
+  [[nodiscard]] std::optional<Growing> look_at(const TearCandidate& candidate,
+                                               const ShellStepper& stepper, const ShellState& state,
+                                               const EdgeConnectivity& edges) const;
+  [[nodiscard]] std::optional<Growing> at_rest(const Growing& growing, ShellStepper& stepper,
+                                               ShellState state,
+                                               const EdgeConnectivity& edges) const;
+  [[nodiscard]] Eigen::Vector2d course(const Growing& growing) const;
+  [[nodiscard]] Eigen::Vector2d direction_of(const TipPull& pull, const Eigen::Vector2d& p) const;
+  void take_step(const Growing& growing, const Remesh& remesh, ShellStepper& stepper,
+                 ShellState& state);
+  void go(int tear, const Eigen::Vector2d& to, const Remesh& remesh, ShellStepper& stepper,
+          ShellState& state);
+
+  const Sheet& sheet_;
+  TearOptions options_;
+  Tears tears_;
+  std::vector<Eigen::Vector2d> given_up_;  ///< places where no tear can start or go on
+  Totals totals_;
+  LastPull last_pull_;
+};
+
+}  // namespace geoprior::paper

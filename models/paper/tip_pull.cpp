@@ -1,0 +1,226 @@
+#include "models/paper/tip_pull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/angles.h"
+#include "core/planar.h"
+
+namespace geoprior::paper {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// A force on the piece, where it acts.
+struct Acting {
+  Vector2d side;   ///< from C towards the piece's part at which it acts (m)
+  Vector3d place;  ///< in space (m)
+  Vector3d force;  ///< N
+  Vector2d image;  ///< N
+};
+
+Vector2d centroid(const ShellMesh& mesh, int f) {
+  return (mesh.pattern.row(mesh.triangles(f, 0)) + mesh.pattern.row(mesh.triangles(f, 1)) +
+          mesh.pattern.row(mesh.triangles(f, 2))) /
+         3;
+}
+
+bool is_held(const Sheet& sheet, const ShellMesh& mesh, int v, double time) {
+  return std::any_of(sheet.handles.begin(), sheet.handles.end(), [&](const Handle& handle) {
+    return handle.is_active(time) && handle.covers(mesh.pattern.row(v));
+  });
+}
+
+/// Triangles about the vertex, and from there over edges as far as the reach, ascending.
+std::vector<int> piece_about(const ShellMesh& mesh, const EdgeConnectivity& edges, int vertex,
+                             double reach) {
+  std::vector<int> piece;
+  std::vector<bool> in(mesh.triangle_count(), false);
+  const auto take = [&](int f) {
+    if (f < 0 || in[f]) return;
+    in[f] = true;
+    piece.push_back(f);
+  };
+  for (int f = 0; f < mesh.triangle_count(); ++f) {
+    if ((mesh.triangles.row(f).array() == vertex).any()) take(f);
+  }
+  const Vector2d c = mesh.pattern.row(vertex);
+  for (std::size_t i = 0; i < piece.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const int next = edges.across(piece[i], k);
+      if (next >= 0 && (centroid(mesh, next) - c).norm() <= reach) take(next);
+    }
+  }
+  std::sort(piece.begin(), piece.end());
+  return piece;
+}
+
+/// Second Piola-Kirchhoff stress of the membrane times area (N m).
+Eigen::Matrix2d stress(const Sheet& sheet, const ShellState& state, int f,
+                       const std::array<Vector2d, 3>& gradient, double area) {
+  Eigen::Matrix<double, 3, 2> F = Eigen::Matrix<double, 3, 2>::Zero();
+  for (int k = 0; k < 3; ++k) {
+    F += state.x.row(state.mesh.triangles(f, k)).transpose() * gradient[k].transpose();
+  }
+  const Eigen::Matrix2d G = (F.transpose() * F - Eigen::Matrix2d::Identity()) / 2;
+  const double nu = sheet.material.poisson_ratio;
+  return area * sheet.material.membrane_stiffness() *
+         ((1 - nu) * G + nu * G.trace() * Eigen::Matrix2d::Identity());
+}
+
+/// What the outside does to the membrane of the piece, seen in the pattern. Vertices within the
+/// piece have only triangles of it about them: what acts on them acts from inside.
+struct Images {
+  Eigen::MatrixX2d force;   ///< of each vertex (N)
+  Eigen::MatrixX2d middle;  ///< of its triangles in the piece (m)
+  std::vector<bool> outer;  ///< whether the outside acts on it
+  Vector2d sum = Vector2d::Zero();
+};
+
+Images images_on(const Sheet& sheet, const ShellState& state, const std::vector<int>& piece,
+                 const VertexCorners& corners, int vertex) {
+  const ShellMesh& mesh = state.mesh;
+  const int n = mesh.vertex_count();
+  Images images{Eigen::MatrixX2d::Zero(n, 2), Eigen::MatrixX2d::Zero(n, 2),
+                std::vector<bool>(n, false)};
+  std::vector<int> count(n, 0);
+  for (const int f : piece) {
+    const Eigen::RowVector3i t = mesh.triangles.row(f);
+    const std::array<Vector2d, 3> p{mesh.pattern.row(t[0]), mesh.pattern.row(t[1]),
+                                    mesh.pattern.row(t[2])};
+    const double twice = cross(p[1] - p[0], p[2] - p[0]);
+    std::array<Vector2d, 3> gradient;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector2d opposite = p[(k + 2) % 3] - p[(k + 1) % 3];
+      gradient[k] = Vector2d(-opposite.y(), opposite.x()) / twice;
+    }
+    const Eigen::Matrix2d S = stress(sheet, state, f, gradient, twice / 2);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int v = t[static_cast<Eigen::Index>(k)];
+      images.force.row(v) += (S * gradient[k]).transpose();
+      images.middle.row(v) += centroid(mesh, f).transpose();
+      ++count[v];
+    }
+  }
+  for (int v = 0; v < n; ++v) {
+    if (count[v] == 0 || v == vertex) continue;
+    images.middle.row(v) /= count[v];
+    images.outer[v] = count[v] < corners.count(v) || is_held(sheet, mesh, v, state.time);
+    if (images.outer[v]) images.sum += images.force.row(v).transpose();
+  }
+  return images;
+}
+
+/// The same in space, bending included.
+std::vector<Acting> forces_on(const ShellStepper& stepper, const ShellState& state,
+                              const std::vector<int>& piece, const Images& images, int vertex) {
+  const Eigen::MatrixX3d inner = stepper.elastic_forces(state, piece);
+  const Eigen::RowVector2d c = state.mesh.pattern.row(vertex);
+  std::vector<Acting> acting;
+  for (int v = 0; v < state.mesh.vertex_count(); ++v) {
+    const bool beyond = images.middle.row(v).isZero(0);  // an element reaches over its triangle
+    if (v == vertex || inner.row(v).isZero(0) || !(images.outer[v] || beyond)) continue;
+    // Seen from C: lips in one place lie on different sides.
+    const Eigen::RowVector2d at =
+        beyond ? state.mesh.pattern.row(v) : Eigen::RowVector2d(images.middle.row(v));
+    acting.push_back({(at - c).transpose(), state.x.row(v).transpose(), -inner.row(v).transpose(),
+                      images.force.row(v).transpose()});
+  }
+  return acting;
+}
+
+/// Forces that act on one side.
+struct Resultant {
+  Vector3d force = Vector3d::Zero();
+  Vector2d image = Vector2d::Zero();
+  Vector3d moment = Vector3d::Zero();  ///< of the places, weighted with the forces' norms
+  double weight = 0;
+  [[nodiscard]] Vector3d place() const { return moment / weight; }
+};
+
+struct Parting {
+  Resultant left, right;
+  [[nodiscard]] double sum() const { return left.force.norm() + right.force.norm(); }
+};
+
+Parting part_along(const std::vector<Acting>& acting, const Vector2d& line) {
+  Parting parting;
+  for (const Acting& a : acting) {
+    Resultant& r = cross(line, a.side) > 0 ? parting.left : parting.right;
+    r.force += a.force;
+    r.image += a.image;
+    r.moment += a.force.norm() * a.place;
+    r.weight += a.force.norm();
+  }
+  return parting;
+}
+
+/// Of all lines through C that which parts the largest resultants.
+Parting strongest_parting(const std::vector<Acting>& acting, int lines) {
+  Parting best;
+  for (int k = 0; k < lines; ++k) {
+    const double angle = std::numbers::pi * k / lines;
+    Parting parting = part_along(acting, {std::cos(angle), std::sin(angle)});
+    if (parting.sum() > best.sum()) best = parting;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
+                               const ShellState& state, const EdgeConnectivity& edges, int vertex,
+                               const PullOptions& options, double least_release) {
+  const std::vector<int> piece = piece_about(state.mesh, edges, vertex, options.reach);
+  const VertexCorners corners(state.mesh.triangles, state.mesh.vertex_count());
+  const Images images = images_on(sheet, state, piece, corners, vertex);
+  if (images.sum.norm() < least_release * sheet.material.thickness) return {};
+  const std::vector<Acting> acting = forces_on(stepper, state, piece, images, vertex);
+  const auto [left, right] = strongest_parting(acting, options.lines);
+  const double l = left.force.norm(), r = right.force.norm();
+  if (!(std::min(l, r) > 0 && std::min(l, r) * options.most_imbalance >= std::max(l, r))) return {};
+  const double cosine = std::clamp(left.force.dot(right.force) / (l * r), -1.0, 1.0);
+  if (!(std::acos(cosine) >= options.least_opposition_deg * kDegree)) return {};
+  // Pushed together, or folded over itself.
+  if (!((left.force - right.force).dot(left.place() - right.place()) > 0)) return {};
+  if (left.image.isZero(0) || right.image.isZero(0)) return {};
+  TipPull pull;
+  pull.left_force = left.force;
+  pull.right_force = right.force;
+  pull.left = left.image;
+  pull.right = right.image;
+  pull.force = (l + r) / 2;
+  pull.angle = std::abs(signed_angle(pull.left, pull.right));
+  if (!(pull.angle <= options.widest_angle_deg * kDegree)) return {};
+  return pull;
+}
+
+void describe(OptionVisitor& v, PullOptions& o) {
+  v.value("reach", o.reach,
+          {.doc = "radius of the part of the sheet about a tip on which the pull is measured",
+           .unit = "m",
+           .min = 1e-6,
+           .max = 100});
+  v.value(
+      "lines", o.lines,
+      {.doc = "directions tried for the line that parts left from right", .min = 1, .max = 10000});
+  v.value("least_opposition_deg", o.least_opposition_deg,
+          {.doc = "smallest angle in space between the two resultants of a pull",
+           .unit = "deg",
+           .min = 0,
+           .max = 180});
+  v.value("widest_angle_deg", o.widest_angle_deg,
+          {.doc = "largest angle of the images of a pull in the pattern: of two that are nearly "
+                  "opposite the bisector says nothing",
+           .unit = "deg",
+           .min = 0,
+           .max = 179.9});
+  v.value("most_imbalance", o.most_imbalance,
+          {.doc = "larger resultant over the smaller, beyond which there is no pull",
+           .min = 1,
+           .max = 1e9});
+}
+
+}  // namespace geoprior::paper

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "models/paper/sheet.h"
+#include "models/paper/shell_state.h"
+#include "models/paper/stepper.h"
+
+namespace geoprior::paper {
+
+/// How the forces about a point are gathered and grouped.
+struct PullOptions {
+  double reach = 0.03;  ///< radius of the part of the sheet on which the pull is measured (m)
+  int lines = 64;       ///< directions tried for the line that parts left from right
+  /// Smallest angle between the two resultants in space: pulls that point the same way tear
+  /// nothing.
+  double least_opposition_deg = 90;
+  /// Largest angle of the images: of two that are nearly opposite the bisector says nothing.
+  double widest_angle_deg = 170;
+  double most_imbalance = 3;  ///< larger of the two over the smaller, beyond which there is no pull
+};
+void describe(OptionVisitor& v, PullOptions& options);
+
+/// What pulls the sheet apart at a point C (thesis 3.2.2, Figure 3.13): all forces on a piece of
+/// the sheet about C as two resultants, and their images in the pattern.
+struct TipPull {
+  Eigen::Vector3d left_force, right_force;  ///< N
+  Eigen::Vector2d left, right;              ///< their images (N)
+  double force = 0;                         ///< F: mean of both norms (N)
+  double angle = 0;                         ///< theta: between the images (rad)
+
+  /// Energy that a unit of area of a tear releases that goes on in direction d (unit):
+  /// -d . (left + right) / e, largest along `away()`. Of images as long as F that is
+  /// 2 F cos(theta / 2) / e (thesis; O'Keefe 1994). What only passes through the piece, from left
+  /// to right, adds to both images and to F, but not to their sum. (J/m^2)
+  [[nodiscard]] double release(const Eigen::Vector2d& d, double thickness) const {
+    return -d.dot(left + right) / thickness;
+  }
+  /// Direction of the tear: away from both images, their bisector when they are equally long.
+  [[nodiscard]] Eigen::Vector2d away() const { return -(left + right).normalized(); }
+};
+
+/// The pull at a vertex of the sheet. The piece has the triangles about it, and those reached over
+/// edges whose centres lie within `reach`. The outside pulls at the vertices that have triangles
+/// beyond it, and where the sheet is held, with the derivative of the piece's elastic energy by
+/// their places; what the membrane contributes has the image A S grad N_v, S the second
+/// Piola-Kirchhoff stress. A line through C parts the forces; of all directions that with the
+/// largest sum of both resultants' norms is taken. The sum of the images is the J integral about C
+/// but for its term of energy density, which a sheet that hardly stretches does not have.
+///
+/// @param least_release  of no use under it (J/m^2): the pull is then not worked out
+/// Absent when the resultants do not oppose, are not balanced or push the sheet together, and when
+/// their images are nearly opposite, or release too little.
+std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
+                               const ShellState& state, const EdgeConnectivity& edges, int vertex,
+                               const PullOptions& options, double least_release = 0);
+
+}  // namespace geoprior::paper
