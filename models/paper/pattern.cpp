@@ -314,8 +314,7 @@ bool contains(const Pattern& pattern, const Vector2d& p, double tolerance) {
   int turns = 0;
   for (std::size_t k = 0; k < pattern.loop_count(); ++k) turns += turns_about(pattern.loop(k), p);
   // Beside a cut there is ground on both sides.
-  return turns != 0 ||
-         nearest_on_border({pattern.border, pattern.holes}, p).distance <= tolerance;
+  return turns != 0 || nearest_on_border({pattern.border, pattern.holes}, p).distance <= tolerance;
 }
 
 std::optional<Vector2d> leaves_pattern(const Pattern& pattern, const Vector2d& a, const Vector2d& b,
