@@ -128,7 +128,7 @@ Vector2d TearGrowth::direction_of(const TipPull& pull, const Vector2d& p) const 
   for (int k = 0; k < kDirections; ++k) {
     const double turn = std::numbers::pi * ((k + 0.5) / kDirections - 0.5);
     const Vector2d d = Eigen::Rotation2Dd(turn) * away;
-    const double ratio = pull.release(d, sheet_.material.thickness) / sheet_.toughness.at(p, d);
+    const double ratio = pull.released(d, sheet_.material.thickness) / sheet_.toughness.at(p, d);
     if (ratio <= most) continue;
     most = ratio;
     best = d;
@@ -160,7 +160,7 @@ std::optional<TearGrowth::Growing> TearGrowth::look_at(const TearCandidate& cand
   // The null goes astray, but not for want of energy.
   const Vector2d released_along =
       options_.direction == TearDirection::askew ? pull->away() : growing.direction;
-  growing.excess = pull->release(released_along, sheet_.material.thickness) /
+  growing.excess = pull->released(released_along, sheet_.material.thickness) /
                    sheet_.toughness.at(candidate.place, growing.direction);
   // Into the sheet.
   const Vector2d ahead = candidate.place + options_.step * growing.direction;

@@ -57,26 +57,33 @@ std::vector<int> piece_about(const ShellMesh& mesh, const EdgeConnectivity& edge
   return piece;
 }
 
-/// Second Piola-Kirchhoff stress of the membrane times area (N m).
-Eigen::Matrix2d stress(const Sheet& sheet, const ShellState& state, int f,
-                       const std::array<Vector2d, 3>& gradient, double area) {
+/// Of the membrane, times area (N m).
+struct Stress {
+  Eigen::Matrix2d second_piola_kirchhoff;
+  double energy = 0;  ///< density
+};
+
+Stress stress(const Sheet& sheet, const ShellState& state, int f,
+              const std::array<Vector2d, 3>& gradient, double area) {
   Eigen::Matrix<double, 3, 2> F = Eigen::Matrix<double, 3, 2>::Zero();
   for (int k = 0; k < 3; ++k) {
     F += state.x.row(state.mesh.triangles(f, k)).transpose() * gradient[k].transpose();
   }
   const Eigen::Matrix2d G = (F.transpose() * F - Eigen::Matrix2d::Identity()) / 2;
   const double nu = sheet.material.poisson_ratio;
-  return area * sheet.material.membrane_stiffness() *
-         ((1 - nu) * G + nu * G.trace() * Eigen::Matrix2d::Identity());
+  const Eigen::Matrix2d S = area * sheet.material.membrane_stiffness() *
+                            ((1 - nu) * G + nu * G.trace() * Eigen::Matrix2d::Identity());
+  return {S, S.cwiseProduct(G).sum() / 2};
 }
 
 /// What the outside does to the membrane of the piece, seen in the pattern. Vertices within the
 /// piece have only triangles of it about them: what acts on them acts from inside.
 struct Images {
-  Eigen::MatrixX2d force;   ///< of each vertex (N)
-  Eigen::MatrixX2d middle;  ///< of its triangles in the piece (m)
-  std::vector<bool> outer;  ///< whether the outside acts on it
-  Vector2d sum = Vector2d::Zero();
+  Eigen::MatrixX2d force;               ///< of each vertex (N)
+  Eigen::MatrixX2d energy;              ///< density of elastic energy times outline, likewise (N)
+  Eigen::MatrixX2d middle;              ///< of its triangles in the piece (m)
+  std::vector<bool> outer;              ///< whether the outside acts on it
+  Vector2d release = Vector2d::Zero();  ///< J integral (N): energy set free a unit of way of C
 };
 
 Images images_on(const Sheet& sheet, const ShellState& state, const std::vector<int>& piece,
@@ -84,7 +91,7 @@ Images images_on(const Sheet& sheet, const ShellState& state, const std::vector<
   const ShellMesh& mesh = state.mesh;
   const int n = mesh.vertex_count();
   Images images{Eigen::MatrixX2d::Zero(n, 2), Eigen::MatrixX2d::Zero(n, 2),
-                std::vector<bool>(n, false)};
+                Eigen::MatrixX2d::Zero(n, 2), std::vector<bool>(n, false)};
   std::vector<int> count(n, 0);
   for (const int f : piece) {
     const Eigen::RowVector3i t = mesh.triangles.row(f);
@@ -96,10 +103,12 @@ Images images_on(const Sheet& sheet, const ShellState& state, const std::vector<
       const Vector2d opposite = p[(k + 2) % 3] - p[(k + 1) % 3];
       gradient[k] = Vector2d(-opposite.y(), opposite.x()) / twice;
     }
-    const Eigen::Matrix2d S = stress(sheet, state, f, gradient, twice / 2);
+    const Stress of_triangle = stress(sheet, state, f, gradient, twice / 2);
+    const Eigen::Matrix2d& S = of_triangle.second_piola_kirchhoff;
     for (std::size_t k = 0; k < 3; ++k) {
       const int v = t[static_cast<Eigen::Index>(k)];
       images.force.row(v) += (S * gradient[k]).transpose();
+      images.energy.row(v) += (of_triangle.energy * gradient[k]).transpose();
       images.middle.row(v) += centroid(mesh, f).transpose();
       ++count[v];
     }
@@ -108,7 +117,7 @@ Images images_on(const Sheet& sheet, const ShellState& state, const std::vector<
     if (count[v] == 0 || v == vertex) continue;
     images.middle.row(v) /= count[v];
     images.outer[v] = count[v] < corners.count(v) || is_held(sheet, mesh, v, state.time);
-    if (images.outer[v]) images.sum += images.force.row(v).transpose();
+    if (images.outer[v]) images.release += (images.energy.row(v) - images.force.row(v)).transpose();
   }
   return images;
 }
@@ -176,7 +185,7 @@ std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
   const std::vector<int> piece = piece_about(state.mesh, edges, vertex, options.reach);
   const VertexCorners corners(state.mesh.triangles, state.mesh.vertex_count());
   const Images images = images_on(sheet, state, piece, corners, vertex);
-  if (images.sum.norm() < least_release * sheet.material.thickness) return {};
+  if (images.release.norm() < least_release * sheet.material.thickness) return {};
   const std::vector<Acting> acting = forces_on(stepper, state, piece, images, vertex);
   const auto [left, right] = strongest_parting(acting, options.lines);
   const double l = left.force.norm(), r = right.force.norm();
@@ -191,6 +200,7 @@ std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
   pull.right_force = right.force;
   pull.left = left.image;
   pull.right = right.image;
+  pull.release = images.release;
   pull.force = (l + r) / 2;
   pull.angle = std::abs(signed_angle(pull.left, pull.right));
   if (!(pull.angle <= options.widest_angle_deg * kDegree)) return {};

@@ -31,15 +31,18 @@ struct TipPull {
   double force = 0;                         ///< F: mean of both norms (N)
   double angle = 0;                         ///< theta: between the images (rad)
 
-  /// Energy that a unit of area of a tear releases that goes on in direction d (unit):
-  /// -d . (left + right) / e, largest along `away()`. Of images as long as F that is
-  /// 2 F cos(theta / 2) / e (thesis; O'Keefe 1994). What only passes through the piece, from left
-  /// to right, adds to both images and to F, but not to their sum. (J/m^2)
-  [[nodiscard]] double release(const Eigen::Vector2d& d, double thickness) const {
-    return -d.dot(left + right) / thickness;
+  Eigen::Vector2d release{0, 0};  ///< J integral about C (N)
+
+  /// Energy that a unit of area of a tear releases that goes on in direction d (unit), J . d / e.
+  /// Of a sheet that hardly stretches that is -d . (left + right) / e, and 2 F cos(theta / 2) / e
+  /// along the bisector of images as long as F (thesis; O'Keefe 1994). What only passes through the
+  /// piece, from left to right, adds to both images and to F, but not to their sum. (J/m^2)
+  [[nodiscard]] double released(const Eigen::Vector2d& d, double thickness) const {
+    return release.dot(d) / thickness;
   }
-  /// Direction of the tear: away from both images, their bisector when they are equally long.
-  [[nodiscard]] Eigen::Vector2d away() const { return -(left + right).normalized(); }
+  /// Direction in which a tear releases most: away from both images, along their bisector when they
+  /// are equally long.
+  [[nodiscard]] Eigen::Vector2d away() const { return release.normalized(); }
 };
 
 /// The pull at a vertex of the sheet. The piece has the triangles about it, and those reached over
@@ -47,8 +50,8 @@ struct TipPull {
 /// beyond it, and where the sheet is held, with the derivative of the piece's elastic energy by
 /// their places; what the membrane contributes has the image A S grad N_v, S the second
 /// Piola-Kirchhoff stress. A line through C parts the forces; of all directions that with the
-/// largest sum of both resultants' norms is taken. The sum of the images is the J integral about C
-/// but for its term of energy density, which a sheet that hardly stretches does not have.
+/// largest sum of both resultants' norms is taken. The J integral about C is what the outline of
+/// the piece encloses of energy, less the images (Rice 1968; Eshelby).
 ///
 /// @param least_release  of no use under it (J/m^2): the pull is then not worked out
 /// Absent when the resultants do not oppose, are not balanced or push the sheet together, and when
