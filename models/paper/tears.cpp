@@ -64,24 +64,31 @@ void Tears::note_pull(int tear, const Vector2d& direction, double step) {
 
 void Tears::end(int tear) { tears_[tear].ended = true; }
 
-/// Puts a knot where the path since the last one is farthest from its chord, when it is too far:
-/// about its middle, so that no edge of the cut is as short as a step.
+/// Sets knots on the path since the last one wherever it is farther than the tolerance from the
+/// chords between them (Ramer 1972; Douglas and Peucker 1973).
 void Tears::update(int tear) {
   Tear& t = tears_[tear];
+  if (t.knots.size() > 1) t.knots.pop_back();  // the tip before
   const int last = static_cast<int>(t.path.size()) - 1;
-  if (!t.knots.empty() && t.knots.size() > 1) t.knots.pop_back();  // the tip before
   const int from = t.knots.back();
+  set_knots(t, from, last);
+  t.knots.push_back(last);
+  rebuild();
+}
+
+void Tears::set_knots(Tear& tear, int from, int to) const {
   double farthest = tolerance_;
   int knot = -1;
-  for (int i = from + 1; i < last; ++i) {
-    const double distance = distance_to_segment(t.path[i], t.path[from], t.path[last]);
+  for (int i = from + 1; i < to; ++i) {
+    const double distance = distance_to_segment(tear.path[i], tear.path[from], tear.path[to]);
     if (distance <= farthest) continue;
     farthest = distance;
     knot = i;
   }
-  if (knot >= 0) t.knots.push_back(knot);
-  t.knots.push_back(last);
-  rebuild();
+  if (knot < 0) return;
+  set_knots(tear, from, knot);
+  tear.knots.push_back(knot);
+  set_knots(tear, knot, to);
 }
 
 Pattern Tears::torn_without(int tear) const {

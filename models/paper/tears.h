@@ -52,6 +52,7 @@ class Tears {
 
  private:
   void update(int tear);
+  void set_knots(Tear& tear, int from, int to) const;
   [[nodiscard]] Pattern torn_without(int tear) const;
   void rebuild();
 

@@ -208,7 +208,22 @@ TEST(Tears, CutKeepsToThePathWithFewKnots) {
   for (const Vector2d& p : tears.all()[0].path) {
     Pattern line;
     line.cuts = {cut};
-    EXPECT_LE(nearest_on_border(line, p).distance, 2e-4);
+    EXPECT_LE(nearest_on_border(line, p).distance, 1e-4 + 1e-12);
+  }
+}
+
+TEST(Tears, CutKeepsToAPathThatZigzags) {
+  Tears tears(rectangle_pattern(0.4, 0.4), 1e-4);
+  const int tear = tears.start({0, -0.2}, 0);
+  Vector2d p(0, -0.2);
+  for (int i = 0; i < 60; ++i) {
+    p += 2e-3 * Vector2d(std::sin(1.7 * i), 1).normalized();
+    tears.advance(tear, p, i);
+  }
+  for (const Vector2d& q : tears.all()[0].path) {
+    Pattern line;
+    line.cuts = {tears.torn().cuts[0]};
+    EXPECT_LE(nearest_on_border(line, q).distance, 1e-4 + 1e-12);
   }
 }
 
