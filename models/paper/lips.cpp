@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <tuple>
 
 #include "core/disjoint_sets.h"
 
@@ -28,8 +27,11 @@ std::vector<Edge> carried(const std::vector<Edge>& rulings, const Eigen::MatrixX
 
 }  // namespace
 
-void open_along(ShellMesh& mesh, const std::vector<Edge>& along) {
+void open_along(ShellMesh& mesh, const std::vector<Eigen::Vector2i>& along) {
   if (along.empty()) return;
+  std::vector<Edge> lips;
+  for (const Eigen::Vector2i& edge : along) lips.push_back(undirected(edge[0], edge[1]));
+  std::sort(lips.begin(), lips.end());
   const Eigen::MatrixX3i before = mesh.triangles;
   const EdgeConnectivity edges(before);
   const VertexCorners corners(before, mesh.vertex_count());
@@ -39,12 +41,12 @@ void open_along(ShellMesh& mesh, const std::vector<Edge>& along) {
     const int other = edges.twin(h);
     if (other < h) continue;
     const Edge& edge = edges.edge(edges.edge_of(h));
-    if (std::binary_search(along.begin(), along.end(), edge)) continue;
+    if (std::binary_search(lips.begin(), lips.end(), edge)) continue;
     groups.join(h, EdgeConnectivity::next(other));
     groups.join(EdgeConnectivity::next(h), other);
   }
   std::vector<int> ends;
-  for (const Edge& edge : along) ends.insert(ends.end(), edge.begin(), edge.end());
+  for (const Edge& edge : lips) ends.insert(ends.end(), edge.begin(), edge.end());
   std::sort(ends.begin(), ends.end());
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   std::vector<int> source;
@@ -81,14 +83,21 @@ bool has_lips(const ShellMesh& mesh) {
   return std::adjacent_find(places.begin(), places.end()) != places.end();
 }
 
-int part_count(const Eigen::MatrixX3i& triangles) {
+std::vector<int> parts(const Eigen::MatrixX3i& triangles) {
   const EdgeConnectivity edges(triangles);
   DisjointSets sets(static_cast<int>(triangles.rows()));
   for (int h = 0; h < edges.half_edge_count(); ++h) {
     if (edges.twin(h) > h) sets.join(h / 3, edges.twin(h) / 3);
   }
+  std::vector<int> first(triangles.rows());
+  for (int f = 0; f < sets.size(); ++f) first[f] = sets.find(f);
+  return first;
+}
+
+int part_count(const Eigen::MatrixX3i& triangles) {
+  const std::vector<int> first = parts(triangles);
   int count = 0;
-  for (int f = 0; f < static_cast<int>(triangles.rows()); ++f) count += sets.find(f) == f ? 1 : 0;
+  for (std::size_t f = 0; f < first.size(); ++f) count += first[f] == static_cast<int>(f) ? 1 : 0;
   return count;
 }
 

@@ -12,13 +12,15 @@ namespace geoprior::paper {
 /// side, stay. Triangles keep their numbers and corners; the first group keeps the vertex, the
 /// others get new ones at the end, in the order of the vertices they double.
 ///
-/// @param along  undirected edges of the mesh, ascending; those that are none of it are passed over
-void open_along(ShellMesh& mesh, const std::vector<Edge>& along);
+/// @param along  edges of the mesh, in any order; those that are none of it are passed over
+void open_along(ShellMesh& mesh, const std::vector<Eigen::Vector2i>& along);
 
 /// Whether the mesh is cut open: two of its vertices have the same place in the pattern.
 bool has_lips(const ShellMesh& mesh);
 
-/// Number of parts that hold together over edges.
+/// Of each triangle the first one of the part that it holds together with over edges.
+std::vector<int> parts(const Eigen::MatrixX3i& triangles);
+/// Number of such parts.
 int part_count(const Eigen::MatrixX3i& triangles);
 
 }  // namespace geoprior::paper

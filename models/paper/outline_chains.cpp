@@ -40,15 +40,14 @@ std::vector<int> points_along(const std::vector<Vector2d>& points, const Vector2
 
 std::vector<std::vector<int>> border_chains(const Pattern& pattern, double longest,
                                             double tolerance, PointSet& set) {
-  const Pattern loops{pattern.border, pattern.holes};
-  const std::vector<Vector2d> all = corners(loops);
+  const std::vector<Vector2d> all = corners(pattern);
   std::vector<OnBorder> on_border;
   const std::vector<Vector2d> points = set.points();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const BorderPoint near = nearest_on_border(loops, points[i]);
+    const BorderPoint near = nearest_on_loops(pattern, points[i]);
     if (near.distance > tolerance) continue;
     // A corner is both the end of one edge and the start of the next: count it once, as the start.
-    const int next = next_edge(loops, near.edge);
+    const int next = next_edge(pattern, near.edge);
     const bool at_end = (points[i] - all[static_cast<std::size_t>(next)]).norm() <= tolerance;
     on_border.push_back({at_end ? next : near.edge, at_end ? 0 : near.t, static_cast<int>(i)});
   }

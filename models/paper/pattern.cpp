@@ -208,6 +208,24 @@ void require_cut(const Pattern& pattern, std::size_t k, const std::string& where
   }
 }
 
+/// Looks at edges in order, and keeps the point nearest to p.
+struct NearestEdge {
+  explicit NearestEdge(const Vector2d& to) : p(to) {
+    best.distance = std::numeric_limits<double>::infinity();
+  }
+  void operator()(const Vector2d& a, const Vector2d& b) {
+    const Vector2d along = b - a;
+    const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    const Vector2d point = t == 1 ? b : Vector2d(a + t * along);
+    const double distance = (p - point).norm();
+    if (distance < best.distance) best = {point, edge, t, distance};
+    ++edge;
+  }
+  const Vector2d& p;
+  BorderPoint best;
+  int edge = 0;
+};
+
 }  // namespace
 
 Pattern rectangle_pattern(double width, double height) {
@@ -314,7 +332,7 @@ bool contains(const Pattern& pattern, const Vector2d& p, double tolerance) {
   int turns = 0;
   for (std::size_t k = 0; k < pattern.loop_count(); ++k) turns += turns_about(pattern.loop(k), p);
   // Beside a cut there is ground on both sides.
-  return turns != 0 || nearest_on_border({pattern.border, pattern.holes}, p).distance <= tolerance;
+  return turns != 0 || nearest_on_loops(pattern, p).distance <= tolerance;
 }
 
 std::optional<Vector2d> leaves_pattern(const Pattern& pattern, const Vector2d& a, const Vector2d& b,
@@ -341,18 +359,23 @@ std::optional<Vector2d> leaves_pattern(const Pattern& pattern, const Vector2d& a
 }
 
 BorderPoint nearest_on_border(const Pattern& pattern, const Vector2d& p) {
-  BorderPoint best;
-  best.distance = std::numeric_limits<double>::infinity();
-  int edge = 0;
-  each_edge(pattern, [&](const Vector2d& a, const Vector2d& b) {
-    const Vector2d along = b - a;
-    const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    const Vector2d point = t == 1 ? b : Vector2d(a + t * along);
-    const double distance = (p - point).norm();
-    if (distance < best.distance) best = {point, edge, t, distance};
-    ++edge;
+  NearestEdge nearest(p);
+  each_edge(pattern, nearest);
+  return nearest.best;
+}
+
+BorderPoint nearest_on_loops(const Pattern& pattern, const Vector2d& p) {
+  NearestEdge nearest(p);
+  each_loop_edge(pattern, nearest);
+  return nearest.best;
+}
+
+double distance_to_cuts(const Pattern& pattern, const Vector2d& p) {
+  double nearest = std::numeric_limits<double>::infinity();
+  each_cut_edge(pattern, [&](const Vector2d& a, const Vector2d& b) {
+    nearest = std::min(nearest, distance_to_segment(p, a, b));
   });
-  return best;
+  return nearest;
 }
 
 }  // namespace geoprior::paper

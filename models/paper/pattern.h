@@ -34,19 +34,30 @@ struct Pattern {
 /// Most corners of a pattern: every pair of edges is looked at.
 inline constexpr int kMostCorners = 10000;
 
-/// Calls `visit(a, b)` for the edges from a to b of all loops and cuts, in the order of their
-/// numbers.
+/// Calls `visit(a, b)` for the edges from a to b of all loops, in the order of their numbers.
 template <class Visit>
-void each_edge(const Pattern& pattern, Visit&& visit) {
+void each_loop_edge(const Pattern& pattern, Visit&& visit) {
   for (std::size_t k = 0; k < pattern.loop_count(); ++k) {
     const std::vector<Eigen::Vector2d>& loop = pattern.loop(k);
     for (std::size_t i = 0; i < loop.size(); ++i) {
       visit(loop[i], loop[i + 1 == loop.size() ? 0 : i + 1]);
     }
   }
+}
+
+/// The same of all cuts.
+template <class Visit>
+void each_cut_edge(const Pattern& pattern, Visit&& visit) {
   for (const std::vector<Eigen::Vector2d>& cut : pattern.cuts) {
     for (std::size_t i = 0; i + 1 < cut.size(); ++i) visit(cut[i], cut[i + 1]);
   }
+}
+
+/// The same of all loops, then of all cuts.
+template <class Visit>
+void each_edge(const Pattern& pattern, Visit&& visit) {
+  each_loop_edge(pattern, visit);
+  each_cut_edge(pattern, visit);
 }
 
 /// Corners of all loops, in the order of their numbers.
@@ -106,5 +117,10 @@ struct BorderPoint {
   double distance = 0;
 };
 BorderPoint nearest_on_border(const Pattern& pattern, const Eigen::Vector2d& p);
+/// The same of border and holes alone.
+BorderPoint nearest_on_loops(const Pattern& pattern, const Eigen::Vector2d& p);
+
+/// Distance of a point from the nearest cut (m); infinite without one.
+double distance_to_cuts(const Pattern& pattern, const Eigen::Vector2d& p);
 
 }  // namespace geoprior::paper

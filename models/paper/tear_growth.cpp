@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "core/angles.h"
-#include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "core/planar.h"
+#include "models/paper/lips.h"
 
 namespace geoprior::paper {
 namespace {
@@ -45,21 +45,17 @@ std::optional<int> vertex_at(const ShellMesh& mesh, const Vector2d& p, double to
 
 /// Area of the smallest part that hangs together (m^2).
 double smallest_part(const ShellMesh& mesh) {
-  const EdgeConnectivity edges(mesh.triangles);
-  DisjointSets sets(mesh.triangle_count());
-  for (int h = 0; h < edges.half_edge_count(); ++h) {
-    if (edges.twin(h) > h) sets.join(h / 3, edges.twin(h) / 3);
-  }
+  const std::vector<int> first = parts(mesh.triangles);
   Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh.triangle_count());
   for (int f = 0; f < mesh.triangle_count(); ++f) {
     const Vector2d a = mesh.pattern.row(mesh.triangles(f, 0));
     const Vector2d b = mesh.pattern.row(mesh.triangles(f, 1));
     const Vector2d c = mesh.pattern.row(mesh.triangles(f, 2));
-    area[sets.find(f)] += cross(b - a, c - a) / 2;
+    area[first[f]] += cross(b - a, c - a) / 2;
   }
   double least = area.sum();
   for (int f = 0; f < mesh.triangle_count(); ++f) {
-    if (sets.find(f) == f) least = std::min(least, area[f]);
+    if (first[f] == f) least = std::min(least, area[f]);
   }
   return least;
 }

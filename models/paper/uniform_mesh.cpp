@@ -178,7 +178,6 @@ ShellMesh triangulate(const Sites& sites, double tolerance) {
     points.insert(points.end(), chain.begin(), chain.end());
   }
   std::vector<Eigen::Vector2i> segments;
-  std::vector<Edge> lips;
   // A cut begins and ends at a point that is there, or at a tip.
   const auto point_at = [&](const Vector2d& p) {
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -192,11 +191,9 @@ ShellMesh triangulate(const Sites& sites, double tolerance) {
     for (std::size_t i = 1; i < cut.size(); ++i) {
       const int here = point_at(cut[i]);
       segments.emplace_back(last, here);
-      lips.push_back(undirected(last, here));
       last = here;
     }
   }
-  std::sort(lips.begin(), lips.end());
   points.insert(points.end(), sites.anchors.begin(), sites.anchors.end());
   points.insert(points.end(), sites.free.begin(), sites.free.end());
   mesh.pattern.resize(static_cast<Eigen::Index>(points.size()), 2);
@@ -204,7 +201,7 @@ ShellMesh triangulate(const Sites& sites, double tolerance) {
     mesh.pattern.row(static_cast<Eigen::Index>(i)) = points[i];
   }
   mesh.triangles = constrained_delaunay(mesh.pattern, loops, segments);
-  open_along(mesh, lips);
+  open_along(mesh, segments);
   return mesh;
 }
 

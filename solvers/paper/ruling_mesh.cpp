@@ -93,7 +93,7 @@ void number_cells(RulingMesh& result) {
 }
 
 /// Opens the mesh along its cuts; rulings that end there keep to their side.
-void open(const std::vector<Edge>& lips, RulingMesh& result) {
+void open(const std::vector<Eigen::Vector2i>& lips, RulingMesh& result) {
   const Eigen::MatrixX3i before = result.mesh.triangles;
   open_along(result.mesh, lips);
   std::map<Edge, Edge> opened;  // of the directed edges of triangles
@@ -161,9 +161,7 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
   }
   const std::vector<std::vector<int>> loops = border_chains(pattern, sizes.flat, tolerance, set);
   std::vector<Eigen::Vector2i> segments = cut_segments(pattern, sizes.flat, tolerance, set);
-  std::vector<Edge> lips;
-  for (const Eigen::Vector2i& s : segments) lips.push_back(undirected(s[0], s[1]));
-  std::sort(lips.begin(), lips.end());
+  const std::vector<Eigen::Vector2i> lips = segments;
   add_lattice(structure, pattern, sizes.flat, set);
 
   for (const Ruling& r : structure.rulings) {

@@ -1,7 +1,6 @@
 #include "solvers/paper/torn_structure.h"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -26,17 +25,6 @@ std::optional<Vector2d> crossing(const Pattern& pattern, const Ruling& r) {
   }
   if (!nearest) return std::nullopt;
   return r.a + *nearest * (r.b - r.a);
-}
-
-double distance_to_cuts(const Pattern& pattern, const Vector2d& p) {
-  const Pattern whole{pattern.border, pattern.holes};
-  const int loops = edge_count(whole);
-  double nearest = std::numeric_limits<double>::infinity();
-  int edge = 0;
-  each_edge(pattern, [&](const Vector2d& a, const Vector2d& b) {
-    if (edge++ >= loops) nearest = std::min(nearest, distance_to_segment(p, a, b));
-  });
-  return nearest;
 }
 
 std::optional<int> tip_point(const PaperStructure& structure, int tear) {
