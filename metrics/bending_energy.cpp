@@ -152,8 +152,7 @@ double bending_energy(const QuadricCurvature& curvature, const Eigen::MatrixX3d&
       curvature.shape_operators(x) - curvature.patch_means(rest_curvature);
   double energy = 0;
   for (Eigen::Index t = 0; t < elastic.rows(); ++t) {
-    energy += curvature.areas()[t] *
-              plate_form(elastic(t, 0), elastic(t, 1), elastic(t, 2), plate.poisson_ratio);
+    energy += curvature.areas()[t] * plate_form(elastic(t, 0), elastic(t, 1), elastic(t, 2), plate);
   }
   return energy * plate.bending / 2;
 }

@@ -1,6 +1,7 @@
 #include "metrics/shell_energy.h"
 
 #include <Eigen/LU>
+#include <cmath>
 #include <string>
 
 #include "core/error.h"
@@ -23,6 +24,12 @@ Eigen::Matrix2d pattern_edges(const Eigen::MatrixX2d& pattern, const Eigen::Matr
 double plate_form(double uu, double uv, double vv, double poisson_ratio) {
   const double trace = uu + vv;
   return (1 - poisson_ratio) * (uu * uu + 2 * uv * uv + vv * vv) + poisson_ratio * trace * trace;
+}
+
+double plate_form(double uu, double uv, double vv, const PlateStiffness& plate) {
+  const double c = std::cos(plate.grain), s = std::sin(plate.grain);
+  const double bend = c * c * uu + 2 * c * s * uv + s * s * vv;
+  return plate_form(uu, uv, vv, plate.poisson_ratio) + (plate.along - 1) * bend * bend;
 }
 
 double membrane_energy(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX3d& x,
@@ -55,8 +62,7 @@ double bending_energy(const CurvatureFit& fit, const Eigen::MatrixX3d& x,
   const Eigen::MatrixX3d elastic = S - rest_curvature;
   double energy = 0;
   for (Eigen::Index t = 0; t < elastic.rows(); ++t) {
-    energy +=
-        fit.area[t] * plate_form(elastic(t, 0), elastic(t, 1), elastic(t, 2), plate.poisson_ratio);
+    energy += fit.area[t] * plate_form(elastic(t, 0), elastic(t, 1), elastic(t, 2), plate);
   }
   return energy * plate.bending / 2;
 }

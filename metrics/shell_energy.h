@@ -11,11 +11,17 @@ struct PlateStiffness {
   double membrane = 0;       ///< E h / (1 - nu^2) (N/m)
   double bending = 0;        ///< D = E h^3 / (12 (1 - nu^2)) (N m)
   double poisson_ratio = 0;  ///< nu
+  double grain = 0;          ///< direction of the fibres in the pattern (rad)
+  double along = 1;          ///< bending stiffness along the fibres over that across them
 };
 
 /// (1 - nu) |S|^2 + nu (tr S)^2 of a symmetric tensor with components S_uu, S_uv, S_vv: a plate's
 /// energy per area is half its stiffness times this form of its strain or curvature.
 double plate_form(double uu, double uv, double vv, double poisson_ratio);
+
+/// The same of a plate that bends `along` times as stiffly along its fibres: (along - 1) (g'S g)^2
+/// more, g their direction.
+double plate_form(double uu, double uv, double vv, const PlateStiffness& plate);
 
 /// Elastic energy of stretching (J), St. Venant-Kirchhoff: with G = (F'F - I)/2 of each triangle's
 /// map F from the pattern to space, sum of A C/2 ((1 - nu) |G|^2 + nu (tr G)^2), C = E h / (1 -

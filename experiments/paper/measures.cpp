@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "experiments/paper/scene.h"
 #include "metrics/buckled_sector.h"
@@ -51,7 +52,8 @@ bool has_turned_over(const SheetFrame& f) {
 }
 
 PlateStiffness plate_of(const PaperMaterial& material) {
-  return {material.membrane_stiffness(), material.bending_stiffness(), material.poisson_ratio};
+  return {material.membrane_stiffness(), material.bending_stiffness(), material.poisson_ratio,
+          material.grain_deg.value_or(0) * kDegree, material.along};
 }
 
 /// The plastic curvature of every triangle (m x 3, 1/m); 0 where the frame has none.
@@ -265,21 +267,27 @@ Value handle_work(const SheetFrame& f) {
   return work->second;
 }
 
-std::optional<HandleForce> handle_force(const SheetFrame& f) {
+std::map<int, Eigen::Vector3d> handle_forces(const SheetFrame& f) {
+  std::map<int, Eigen::Vector3d> total;
   const Part* handles = f.frame.find_part("handles");
-  if (handles == nullptr) return std::nullopt;
+  if (handles == nullptr) return total;
   const NamedArray* handle = handles->find_array("handle", NamedArray::On::points);
   const NamedArray* force = handles->find_array("force", NamedArray::On::points);
-  if (handle == nullptr || force == nullptr || handle->values.rows() == 0) return std::nullopt;
-  std::map<int, Eigen::Vector3d> total;
+  if (handle == nullptr || force == nullptr) return total;
   for (Eigen::Index i = 0; i < handle->values.rows(); ++i) {
     const int h = static_cast<int>(std::lround(handle->values(i, 0)));
     total.try_emplace(h, Eigen::Vector3d::Zero()).first->second += force->values.row(i).transpose();
   }
+  return total;
+}
+
+std::optional<HandleForce> handle_force(const SheetFrame& f) {
+  const std::map<int, Eigen::Vector3d> forces = handle_forces(f);
+  if (forces.empty()) return std::nullopt;
   HandleForce out;
-  for (const auto& [h, sum] : total) {
+  for (const auto& [h, sum] : forces) {
     out.max = std::max(out.max, sum.norm());
-    out.mean += sum.norm() / static_cast<double>(total.size());
+    out.mean += sum.norm() / static_cast<double>(forces.size());
   }
   return out;
 }

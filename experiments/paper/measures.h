@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -103,6 +104,9 @@ ContactMeasures contact_measures(const SheetFrame& f);
 
 /// Work of the handles since the start (J), as the method summed it; absent when it does not.
 Value handle_work(const SheetFrame& f);
+
+/// Total force of each handle that holds the sheet, by its number (N).
+std::map<int, Eigen::Vector3d> handle_forces(const SheetFrame& f);
 
 /// Norms of the total forces of the handles that hold the sheet (N); absent when none does.
 struct HandleForce {

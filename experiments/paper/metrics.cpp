@@ -251,10 +251,32 @@ MetricGroup tear_group() {
       .row("tear_bow", "1",
            "farthest that a point of the longest tear lies from its chord, over the chord's length",
            kNone, kSmooth, [](M m) { return m.bow; })
+      .row("fracture_energy", "J", "that the tears took: E_f over the torn section", kNone, kSmooth,
+           [](M m) { return m.energy; });
+}
+
+MetricGroup energy_gap_group() {
+  const auto fits = std::make_shared<FitMemo>();
+  return of_frame([fits](const SheetFrame& f) { return energy_gap(*fits, f); })
+      .row("energy_gap", "1",
+           "what is left of the hands' work, relative to it, once elastic and kinetic energy, that "
+           "of hands that give and fracture_energy are taken away: what time stepping damps; below "
+           "0 the tears took more than there was; absent before a tear has grown",
+           kTarget, kShare);
+}
+
+MetricGroup tearing_force_group() {
+  using M = TearingForces;
+  return sequence_metrics<PaperScene>(tearing_forces)
       .row("onset_force", "1",
            "largest handle force over K e / (2 cos(theta / 2)), at which a taut inextensible sheet "
-           "tears between two hands; absent once it has torn",
-           kNone, kSmooth, [](M m) { return m.onset_force; });
+           "tears between two hands, in the last frame before a tear has grown",
+           kTarget, kShare, &M::onset)
+      .target(1)
+      .row("tearing_force", "N",
+           "mean over the handles of the norm of the total force, median of the frames in which a "
+           "tear has grown",
+           kNone, kSmooth, &M::growing);
 }
 
 MetricGroup tear_path_group() {
@@ -287,6 +309,8 @@ std::vector<MetricGroup> metrics() {
           sector_group(),
           distance_group(),
           tear_group(),
+          energy_gap_group(),
+          tearing_force_group(),
           tear_path_group()};
 }
 

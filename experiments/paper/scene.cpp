@@ -40,6 +40,7 @@ Handle make_handle(const HandleOptions& options, const std::string& where) {
     handle.disc_radius = options.disc->radius;
   }
   if (!options.keys.empty()) handle.motion = to_trajectory(options.keys, where + ".keys");
+  handle.stiffness = options.stiffness;
   if (!options.force.empty()) {
     require_count(options.force, 3, where + ".force");
     handle.force = Eigen::Vector3d(options.force[0], options.force[1], options.force[2]);

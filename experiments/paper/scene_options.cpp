@@ -98,6 +98,12 @@ void describe(OptionVisitor& v, PaperMaterial& options) {
   v.value("weakening", options.weakening,
           {.doc = "bending stiffness falls by 1 / (1 + weakening * damage)", .min = 0});
   v.value("friction", options.friction, {.doc = "Coulomb, against obstacles", .min = 0});
+  v.value("grain_deg", options.grain_deg,
+          {.doc = "direction of the fibres in the pattern, from u towards v", .unit = "deg"});
+  v.value("along", options.along,
+          {.doc = "bending stiffness along the fibres over that across them; needs grain_deg",
+           .min = 1e-3,
+           .max = 1e3});
   v.value("damping", options.damping,
           {.doc = "proportional to stiffness (Rayleigh)", .unit = "s", .min = 0});
 }
@@ -120,6 +126,12 @@ void describe(OptionVisitor& v, HandleOptions& options) {
           {.doc = "… a straight line of it: u v of one end, u v of the other, or …", .unit = "m"});
   describe_group(v, "disc", options.disc, {.doc = "… a disc of it"});
   describe_keys(v, options.keys);
+  v.value("stiffness", options.stiffness,
+          {.doc = "of a hand that gives: what it holds departs from its place by the force over "
+                  "this; absent: not at all",
+           .unit = "N/m",
+           .min = 1e-6,
+           .max = 1e9});
   v.value("force", options.force,
           {.doc = "instead of keys: x y z of a dead load, spread over the shape", .unit = "N"});
   describe_list(v, "active", options.active,

@@ -65,6 +65,7 @@ struct HandleOptions {
   std::vector<double> segment;  ///< u v of both ends; empty: none
   std::optional<DiscOptions> disc;
   std::vector<KeyOptions> keys;
+  std::optional<double> stiffness;
   std::vector<double> force;  ///< x y z (N); empty: none
   std::vector<IntervalOptions> active;
 };

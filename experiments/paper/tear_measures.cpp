@@ -50,6 +50,20 @@ TearPath shortened(const TearPath& path, double length) {
   return result;
 }
 
+/// Of a tear along paths: E_f times the section, by the middle of every step (J).
+double fracture_energy(const Sheet& sheet, const std::vector<TearPath>& paths) {
+  double sum = 0;
+  for (const TearPath& path : paths) {
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      const Vector2d way = path[i] - path[i - 1];
+      if (way.isZero(0)) continue;
+      sum += sheet.toughness.at(path[i - 1] + way / 2, way.normalized()) * way.norm() *
+             sheet.material.thickness;
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 std::optional<TornSheet> torn_sheet(const Frame& frame) {
@@ -79,25 +93,61 @@ std::optional<TearMeasures> tear_measures(const SheetFrame& f) {
   if (!torn) return std::nullopt;
   TearMeasures m;
   for (const TearPath& path : torn->paths) m.length += path_length(path);
+  m.energy = fracture_energy(f.sheet, torn->paths);
   m.parts = part_count(f.triangles());
   const auto hands = two_hands(f.sheet);
   const TearPath* path = longest(torn->paths);
-  if (path == nullptr) {
-    const auto force = handle_force(f);
-    if (hands && force && torn->outlines.size() == 1) {
-      const double closed =
-          geoprior::onset_force(torn->outlines[0].back(), hands->first, hands->second,
-                                f.sheet.toughness.energy, f.sheet.material.thickness);
-      m.onset_force = force->max / closed;
-    }
-    return m;
-  }
+  if (path == nullptr) return m;
   m.bow = path_bow(*path);
   if (!hands) return m;
   m.drift = focal_drift(*path, hands->first, hands->second);
   m.deviation =
       chord_angle_deg(*path, bisector_direction(path->front(), hands->first, hands->second));
   return m;
+}
+
+Value energy_gap(FitMemo& fits, const SheetFrame& f) {
+  const auto tears = tear_measures(f);
+  const Value work = handle_work(f);
+  const auto energy = energy_measures(fits, f);
+  if (!tears || !(tears->length > 0) || !work || !(*work > 0) || !energy) return std::nullopt;
+  double left = *work - energy->membrane - energy->bending - energy->kinetic.value_or(0);
+  for (const auto& [handle, force] : handle_forces(f)) {
+    const auto& stiffness = f.sheet.handles[handle].stiffness;
+    if (stiffness) left -= force.squaredNorm() / (2 * *stiffness);
+  }
+  return (left - tears->energy) / *work;
+}
+
+std::optional<TearingForces> tearing_forces(const PaperScene& scene, const FrameSequence& frames) {
+  TearingForces out;
+  std::vector<double> growing;
+  double length = 0;
+  Value last;  // of the frame before, as long as nothing has grown
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::shared_ptr<const Frame> frame = frames.frame(i);
+    const SheetFrame f = sheet_frame(scene, *frame);
+    const auto torn = torn_sheet(*frame);
+    if (!torn) return std::nullopt;
+    double now = 0;
+    for (const TearPath& path : torn->paths) now += path_length(path);
+    const auto force = handle_force(f);
+    if (now > length) {
+      if (length == 0) out.onset = last;
+      if (force) growing.push_back(force->mean);
+    }
+    length = now;
+    const auto hands = two_hands(f.sheet);
+    if (now > 0 || !force || !hands || torn->outlines.size() != 1) continue;
+    last = force->max / onset_force(torn->outlines[0].back(), hands->first, hands->second,
+                                    f.sheet.toughness.energy, f.sheet.material.thickness);
+  }
+  if (!growing.empty()) {
+    const auto middle = growing.begin() + static_cast<std::ptrdiff_t>(growing.size() / 2);
+    std::nth_element(growing.begin(), middle, growing.end());
+    out.growing = *middle;
+  }
+  return out;
 }
 
 Value tear_path_distance(const SheetFrame& f, const SheetFrame& reference) {

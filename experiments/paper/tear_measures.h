@@ -23,11 +23,24 @@ struct TearMeasures {
   Value drift;        ///< focal_drift of the longest tear, of two hands
   Value deviation;    ///< of its chord from the bisector at its start (deg), of two hands
   Value bow;          ///< path_bow of the longest tear
-  Value onset_force;  ///< largest handle force over the closed form, of the last frame without
-                      ///< growth, of two hands
+  double energy = 0;  ///< that the tears took: E_f over the torn section (J)
 };
 /// Absent when the method records no tears.
 std::optional<TearMeasures> tear_measures(const SheetFrame& f);
+
+/// What becomes of the work of the hands of a sheet that tears, relative to it: what is left of it
+/// once elastic and kinetic energy, that of hands that give (F^2 / 2k each) and that of the tears
+/// are taken away. What time stepping damps is left; below 0 the tears took more than there was.
+/// Absent before a tear has grown.
+Value energy_gap(FitMemo& fits, const SheetFrame& f);
+
+/// Forces of the hands that tear a sheet.
+struct TearingForces {
+  Value onset;    ///< largest, over the closed form of two hands, in the last frame before growth
+  Value growing;  ///< median over the frames with growth, of the mean over the hands (N)
+};
+/// Absent when the method records no tears.
+std::optional<TearingForces> tearing_forces(const PaperScene& scene, const FrameSequence& frames);
 
 /// Hausdorff distance of the longest tears in the pattern, the shorter one's length of both (m).
 Value tear_path_distance(const SheetFrame& f, const SheetFrame& reference);

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
 
+#include "core/angles.h"
 #include "core/connectivity.h"
 #include "core/curvature_fit.h"
 #include "models/paper/hinge.h"
@@ -21,10 +23,18 @@ constexpr int kMostRows = kMostTerms;
 constexpr int kMostColumns = 3 * ShellElements::kMostNodes;
 static_assert(CurvatureFit::kMostVertices == ShellElements::kMostNodes);
 
-/// L with (1-nu) |S|^2 + nu tr(S)^2 = |L S|^2 for S = (uu, uv, vv).
-Eigen::Matrix3d plate_root(double nu) {
+/// L with (1-nu) |S|^2 + nu tr(S)^2 = |L S|^2 for S = (uu, uv, vv). Fibres along g that bend
+/// `along` times as stiffly add (along - 1) (g'S g)^2.
+Eigen::Matrix3d root_of(const PaperMaterial& material) {
+  const double nu = material.poisson_ratio;
   Eigen::Matrix3d M;
   M << 1, 0, nu, 0, 2 * (1 - nu), 0, nu, 0, 1;
+  if (material.grain_deg) {
+    const double c = std::cos(*material.grain_deg * kDegree);
+    const double s = std::sin(*material.grain_deg * kDegree);
+    const Eigen::Vector3d bend(c * c, 2 * c * s, s * s);
+    M += (material.along - 1) * bend * bend.transpose();
+  }
   return M.llt().matrixU();
 }
 
@@ -159,7 +169,8 @@ void add_outer_products(const Rows& rows, int count, Size n,
 
 struct ShellElements::Impl {
   double membrane_stiffness = 0, poisson_ratio = 0, weakening = 0;
-  Eigen::Matrix3d root;  ///< plate_root, also of the membrane with (uu, uv, vv)
+  Eigen::Matrix3d root;        ///< of the membrane
+  Eigen::Matrix3d plate_root;  ///< of the plate
   std::vector<Element> elements;
   std::vector<int> nodes;
   std::vector<LocalHinge> hinges;
@@ -213,8 +224,8 @@ void ShellElements::Impl::add_element(const ShellMesh& mesh, int t, double bendi
   Root rows;
   PlasticRows plastic_rows = PlasticRows::Zero();
   if (law.model == BendingModel::shape_operator) {
-    const Root plate = plate_rows(fit, t, root, law.fit_residual);
-    plastic_rows.topRows(3) = root;
+    const Root plate = plate_rows(fit, t, plate_root, law.fit_residual);
+    plastic_rows.topRows(3) = plate_root;
     const Root dividers = divider_rows(mesh, fit, t, plastic_rows, static_cast<int>(plate.rows()));
     rows.resize(plate.rows() + dividers.rows(), plate.cols());
     rows.topRows(plate.rows()) = plate;
@@ -248,7 +259,10 @@ ShellElements::ShellElements(const ShellMesh& mesh, const PaperMaterial& materia
   impl->membrane_stiffness = material.membrane_stiffness();
   impl->poisson_ratio = material.poisson_ratio;
   impl->weakening = material.weakening;
-  impl->root = plate_root(material.poisson_ratio);
+  PaperMaterial even = material;
+  even.along = 1;
+  impl->root = root_of(even);
+  impl->plate_root = root_of(material);
   impl->fit = fit_curvature(mesh.pattern, mesh.triangles);
   for (int t = 0; t < mesh.triangle_count(); ++t)
     impl->add_element(mesh, t, material.bending_stiffness(), law);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "models/paper/segments.h"
@@ -22,12 +23,14 @@ std::vector<Eigen::Vector2d> Handle::anchors() const {
 }
 
 bool Handle::covers(const Eigen::Vector2d& p, double tolerance) const {
-  if (segment) return distance_to_segment(p, segment->first, segment->second) <= tolerance;
-  if (disc_radius && !points.empty()) {
-    return (p - points.front()).norm() <= *disc_radius + tolerance;
-  }
-  return std::any_of(points.begin(), points.end(),
-                     [&](const Eigen::Vector2d& point) { return (p - point).norm() <= tolerance; });
+  return distance(p) <= tolerance;
+}
+
+double Handle::distance(const Eigen::Vector2d& p) const {
+  if (segment) return distance_to_segment(p, segment->first, segment->second);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& point : points) nearest = std::min(nearest, (p - point).norm());
+  return disc_radius ? std::max(0.0, nearest - *disc_radius) : nearest;
 }
 
 bool Handle::is_active(double time) const {

@@ -22,6 +22,9 @@ struct Handle {
   std::optional<double> disc_radius;     ///< about points.front() (m)
   std::optional<Trajectory> motion;      ///< prescribed, or …
   std::optional<Eigen::Vector3d> force;  ///< … a dead load (N), spread over the shape
+  /// Of the hand that follows `motion`: what it holds departs from its place by the force over this
+  /// (N/m, spread over the shape); absent: not at all.
+  std::optional<double> stiffness;
   /// Times at which it holds or pulls; empty: always.
   std::vector<std::pair<double, double>> active;
 
@@ -29,6 +32,8 @@ struct Handle {
   [[nodiscard]] std::vector<Eigen::Vector2d> anchors() const;
   static constexpr int kDiscAnchors = 4;
   [[nodiscard]] bool covers(const Eigen::Vector2d& pattern_point, double tolerance = 1e-9) const;
+  /// From a pattern point to the shape, 0 on it (m).
+  [[nodiscard]] double distance(const Eigen::Vector2d& pattern_point) const;
   [[nodiscard]] bool is_active(double time) const;
   /// Where a covered pattern point is at `time` under `motion`. @param rest its place at the start
   [[nodiscard]] Eigen::Vector3d target(const Eigen::Vector3d& rest, const Eigen::Vector3d& centre,

@@ -77,8 +77,11 @@ double angle_about(const ShellMesh& mesh, int vertex) {
   return sum;
 }
 
-/// A finger holds one lip of a tear that begins under it: that with more of the sheet about it.
-void keep_one_lip(const ShellMesh& mesh, std::vector<int>& vertices) {
+/// A finger holds one lip of a tear that begins under it: the nearer one, and as long as both are
+/// one, that with more of the sheet about it. What has fallen off does not come back.
+template <class Distance>
+void keep_one_lip(const ShellMesh& mesh, std::vector<int>& vertices, const Distance& distance) {
+  constexpr double kOne = 1e-6;  // m
   std::vector<int> kept;
   for (const int v : vertices) {
     const auto twin = std::find_if(kept.begin(), kept.end(), [&](int u) {
@@ -86,8 +89,10 @@ void keep_one_lip(const ShellMesh& mesh, std::vector<int>& vertices) {
     });
     if (twin == kept.end()) {
       kept.push_back(v);
-    } else if (angle_about(mesh, v) > angle_about(mesh, *twin)) {
-      *twin = v;
+    } else {
+      const double nearer = distance(v) - distance(*twin);
+      const bool one = std::abs(nearer) <= kOne;
+      if (one ? angle_about(mesh, v) > angle_about(mesh, *twin) : nearer < 0) *twin = v;
     }
   }
   vertices = std::move(kept);
@@ -95,7 +100,8 @@ void keep_one_lip(const ShellMesh& mesh, std::vector<int>& vertices) {
 
 }  // namespace
 
-HandleMap::HandleMap(const Sheet& sheet, const ShellMesh& mesh, std::uint64_t seed) {
+HandleMap::HandleMap(const Sheet& sheet, const ShellState& state, std::uint64_t seed) {
+  const ShellMesh& mesh = state.mesh;
   for (std::size_t h = 0; h < sheet.handles.size(); ++h) {
     const Handle& handle = sheet.handles[h];
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -106,7 +112,13 @@ HandleMap::HandleMap(const Sheet& sheet, const ShellMesh& mesh, std::uint64_t se
     for (int v = 0; v < mesh.vertex_count(); ++v) {
       if (handle.covers(mesh.pattern.row(v).transpose())) vertices.push_back(v);
     }
-    if (!handle.segment && !handle.disc_radius) keep_one_lip(mesh, vertices);
+    if (!handle.segment && !handle.disc_radius) {
+      keep_one_lip(mesh, vertices, [&](int v) {
+        const Eigen::Vector3d rest = sheet.rest_place(mesh.pattern.row(v).transpose(), seed);
+        const Eigen::Vector3d target = handle.target(rest, centre_.back(), state.time);
+        return handle.motion ? (state.x.row(v).transpose() - target).norm() : 0;
+      });
+    }
     if (vertices.empty()) {
       throw Error("no vertex of the mesh lies on it", "handle '" + handle.name + "'");
     }
@@ -128,7 +140,9 @@ void HandleMap::targets(const Sheet& sheet, double time, std::vector<Target>& ou
     const Handle& handle = sheet.handles[c.handle];
     if (handle.force || !handle.is_active(time)) continue;
     if (!out.empty() && out.back().vertex == c.vertex) continue;
-    out.push_back({c.vertex, c.handle, handle.target(c.rest, centre_[c.handle], time)});
+    std::optional<double> stiffness;
+    if (handle.stiffness) stiffness = c.share * *handle.stiffness;
+    out.push_back({c.vertex, c.handle, handle.target(c.rest, centre_[c.handle], time), stiffness});
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "models/paper/sheet.h"
@@ -9,20 +10,24 @@
 namespace geoprior::paper {
 
 /// Which vertices of a mesh each handle of a sheet covers, and what it does to them. Where the
-/// sheet is torn a point holds one lip, segments and discs hold both.
+/// sheet is torn a point holds one lip, that which is nearest to the hand now; segments and discs
+/// hold both.
 class HandleMap {
  public:
   HandleMap() = default;
   /// @throws Error  when a handle covers no vertex (names it)
-  HandleMap(const Sheet& sheet, const ShellMesh& mesh, std::uint64_t seed);
+  HandleMap(const Sheet& sheet, const ShellState& state, std::uint64_t seed);
 
   /// A vertex and where a handle wants it.
   struct Target {
     int vertex;
     int handle;
     Eigen::Vector3d place;  ///< m
+    std::optional<double>
+        stiffness;  ///< of the hand at this vertex (N/m); absent: it does not give
   };
-  /// Vertices prescribed at `time`, ascending. One that several handles cover belongs to the first.
+  /// Vertices that are held at `time`, ascending. One that several handles cover belongs to the
+  /// first.
   void targets(const Sheet& sheet, double time, std::vector<Target>& out) const;
 
   /// Adds the dead loads active at `time` to n x 3 forces (N).

@@ -16,7 +16,7 @@ struct Tension {
 Tension tension(const Sheet& sheet, const ShellStepper& stepper, const ShellState& state) {
   const ShellEnergies energies = stepper.energies(state);
   const double stiffness = sheet.material.membrane_stiffness() * signed_area(sheet.pattern);
-  return {energies.membrane + energies.bending, std::sqrt(2 * energies.membrane / stiffness)};
+  return {energies.strain(), std::sqrt(2 * energies.membrane / stiffness)};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "models/paper/handle.h"
@@ -21,7 +22,9 @@ struct PaperMaterial {
       200;                ///< elastic curvature (Frobenius norm) beyond which it creases (1/m)
   double weakening = 0;   ///< bending stiffness falls by 1 / (1 + weakening * damage)
   double friction = 0.4;  ///< Coulomb, against obstacles
-  double damping = 0;     ///< stiffness-proportional (Rayleigh), as a time (s)
+  std::optional<double> grain_deg;  ///< direction of the fibres in the pattern, from u towards v
+  double along = 1;                 ///< bending stiffness along the fibres over that across them
+  double damping = 0;               ///< stiffness-proportional (Rayleigh), as a time (s)
 
   /// E h / (1 - nu^2) (N/m)
   [[nodiscard]] double membrane_stiffness() const {

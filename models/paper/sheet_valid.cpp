@@ -38,6 +38,17 @@ void require_range(double x, double low, double high, bool open, const std::stri
   throw Error(text(x) + " is out of range", where, allowed);
 }
 
+/// What depends on the grain needs its direction.
+void require_grain(const std::optional<double>& grain_deg, double ratio, const std::string& key,
+                   const std::string& where) {
+  require_range(ratio, 0, kInfinity, true, inside(where, key));
+  if (grain_deg) require_finite(*grain_deg, inside(where, "grain_deg"));
+  if (ratio != 1 && !grain_deg) {
+    throw Error("differs from 1, but the grain has no direction", inside(where, key),
+                "grain_deg beside it");
+  }
+}
+
 void require_material(const PaperMaterial& material, const std::string& where) {
   const auto positive = [&](double x, const char* key) {
     require_range(x, 0, kInfinity, true, inside(where, key));
@@ -53,6 +64,7 @@ void require_material(const PaperMaterial& material, const std::string& where) {
   not_negative(material.weakening, "weakening");
   not_negative(material.friction, "friction");
   not_negative(material.damping, "damping");
+  require_grain(material.grain_deg, material.along, "along", where);
 }
 
 /// Finite keys with times that increase.
@@ -137,6 +149,13 @@ void require_drive(const Handle& handle, const std::string& where) {
                 "one of keys, force");
   }
   if (handle.motion) require_trajectory(*handle.motion, inside(where, "keys"));
+  if (handle.stiffness) {
+    if (!handle.motion) {
+      throw Error("is of a hand that follows keys, and there are none", inside(where, "stiffness"),
+                  "keys beside it, or only a force");
+    }
+    require_range(*handle.stiffness, 0, kInfinity, true, inside(where, "stiffness"));
+  }
   if (handle.force) {
     for (int c = 0; c < 3; ++c) require_finite((*handle.force)[c], inside(where, "force"));
   }
@@ -321,11 +340,7 @@ void require_toughness(const Toughness& toughness, const std::string& where) {
   require_range(toughness.noise, 0, 1 - 1e-9, false, inside(where, "noise"));
   require_range(toughness.noise_length, 0, kInfinity, true, inside(where, "noise_length"));
   require_range(toughness.across, 0, 1e6, true, inside(where, "across"));
-  if (toughness.grain_deg) require_finite(*toughness.grain_deg, inside(where, "grain_deg"));
-  if (toughness.across != 1 && !toughness.grain_deg) {
-    throw Error("differs from 1, but the grain has no direction", inside(where, "across"),
-                "grain_deg beside it");
-  }
+  require_grain(toughness.grain_deg, toughness.across, "across", where);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
 
@@ -31,6 +32,8 @@ Eigen::Vector3d normal(const Eigen::MatrixX3d& x, const Eigen::Vector3i& t) {
   const Eigen::Vector3d c = x.row(t[2]);
   return (b - a).cross(c - a);
 }
+
+bool gives(const HandleMap::Target& target) { return target.stiffness.has_value(); }
 
 NodeGraph element_graph(const ShellElements& elements, int vertices) {
   std::vector<int> offset(1, 0);
@@ -72,7 +75,7 @@ ShellDynamics::ShellDynamics(const Sheet& sheet, const StepperOptions& options, 
     : sheet_(&sheet),
       options_(&options),
       elements_(state.mesh, sheet.material, options.bending),
-      handles_(sheet, state.mesh, seed),
+      handles_(sheet, state, seed),
       mass_(lumped_masses(state.mesh, sheet.material.area_density)) {
   if (!sheet.obstacles.empty()) {
     contact_terms_.push_back(make_obstacle_contact(sheet.obstacles, state.mesh,
@@ -116,6 +119,11 @@ void ShellDynamics::pose(const ShellState& state, double dt) {
   handles_.add_loads(*sheet_, p.time, loads);
   gather(loads, p.loads);
   handles_.targets(*sheet_, p.time, p.targets);
+  p.springs.clear();
+  std::copy_if(p.targets.begin(), p.targets.end(), std::back_inserter(p.springs), gives);
+  std::erase_if(p.targets, gives);
+  p.springs_before.clear();
+  if (!p.springs.empty()) handles_.targets(*sheet_, state.time, p.springs_before);
   p.held.assign(vertices(), 0);
   p.prescribed.setZero(p.velocity.size());
   for (const HandleMap::Target& target : p.targets) {
@@ -203,6 +211,17 @@ void ShellDynamics::report_handles(const Eigen::VectorXd& reaction, Step& result
     result.handle_force[t.handle] += force;
     result.handle_work += force.dot(t.place - from);
   }
+  for (const HandleMap::Target& t : problem_.springs) {
+    const Eigen::Vector3d to = result.x.row(t.vertex);
+    const Eigen::Vector3d force = *t.stiffness * (t.place - to);
+    result.handle_force[t.handle] += force;
+    // By its own way: the spring between is part of what it moves.
+    const auto before = std::find_if(
+        problem_.springs_before.begin(), problem_.springs_before.end(),
+        [&](const HandleMap::Target& b) { return b.vertex == t.vertex && b.handle == t.handle; });
+    if (before != problem_.springs_before.end())
+      result.handle_work += force.dot(t.place - before->place);
+  }
   for (std::size_t h = 0; h < sheet_->handles.size(); ++h) {
     const Handle& handle = sheet_->handles[h];
     if (handle.force && handle.is_active(problem_.time)) result.handle_force[h] = *handle.force;
@@ -259,6 +278,13 @@ ShellEnergies ShellDynamics::energies(const ShellState& state) const {
   std::vector<ContactPoint> contacts;
   for (const auto& term : contact_terms_) term->find({state.x, nullptr, state.time}, contacts);
   energies.contact = contact_energy(contacts, options_->contact_distance);
+  std::vector<HandleMap::Target> targets;
+  handles_.targets(*sheet_, state.time, targets);
+  for (const HandleMap::Target& t : targets) {
+    if (t.stiffness)
+      energies.hands +=
+          *t.stiffness / 2 * (state.x.row(t.vertex).transpose() - t.place).squaredNorm();
+  }
   return energies;
 }
 
@@ -294,6 +320,7 @@ bool ShellDynamics::solve_linear(Eigen::VectorXd& change, Eigen::VectorXd& react
     matrix_.add_to_diagonal(position_[i], mass_[i]);
   }
   add_linear_contacts();
+  add_linear_springs();
   change = right_;
   if (!solve_held(problem_.prescribed, change)) return false;
   reaction = -right_;
@@ -330,6 +357,16 @@ void ShellDynamics::add_linear_contacts() {
     const Eigen::Vector3d slip = across * (speed(point) - point.surface_velocity);
     const double viscosity = friction.limit / std::hypot(friction.slip, options_->creep_speed);
     add(point, dt * viscosity * across, -dt * viscosity * slip);
+  }
+}
+
+void ShellDynamics::add_linear_springs() {
+  const double dt = problem_.dt;
+  for (const HandleMap::Target& t : problem_.springs) {
+    const Eigen::Vector3d x = problem_.state->x.row(t.vertex);
+    const Eigen::Vector3d stretch = t.place - x - dt * problem_.velocity.segment<3>(row(t.vertex));
+    right_.segment<3>(row(t.vertex)) += dt * *t.stiffness * stretch;
+    matrix_.add_to_diagonal(position_[t.vertex], dt * dt * *t.stiffness);
   }
 }
 
@@ -460,6 +497,8 @@ double ShellDynamics::potential(const Eigen::MatrixX3d& x) {
   for (const FrictionPoint& friction : problem_.frictions) {
     energy += friction.limit * std::hypot(slip_of(friction, x).norm(), options_->creep_speed * dt);
   }
+  for (const HandleMap::Target& t : problem_.springs)
+    energy += *t.stiffness / 2 * (x.row(t.vertex).transpose() - t.place).squaredNorm();
   double value = dt * dt * energy;
   for (int i = 0; i < vertices(); ++i) {
     value +=
@@ -498,6 +537,7 @@ double ShellDynamics::potential_gradient(const Eigen::MatrixX3d& x, Eigen::Vecto
   const double inertia = right_.norm();
   add_contact_gradient(x, gradient);
   add_friction_gradient(x, gradient);
+  add_spring_gradient(x, gradient);
   return std::max({elastic, inertia, dt * dt * problem_.loads.norm()});
 }
 
@@ -522,6 +562,14 @@ void ShellDynamics::add_friction_gradient(const Eigen::MatrixX3d& x, Eigen::Vect
     add_contact_vector(friction.contact, factor * slip, gradient);
     add_contact_block(friction.contact, factor * (Eigen::Matrix3d::Identity() - n * n.transpose() -
                                                   slip * slip.transpose() / (length * length)));
+  }
+}
+
+void ShellDynamics::add_spring_gradient(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient) {
+  for (const HandleMap::Target& t : problem_.springs) {
+    const double stiffness = problem_.dt * problem_.dt * *t.stiffness;
+    gradient.segment<3>(row(t.vertex)) += stiffness * (x.row(t.vertex).transpose() - t.place);
+    matrix_.add_to_diagonal(position_[t.vertex], stiffness);
   }
 }
 

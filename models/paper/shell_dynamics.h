@@ -21,7 +21,8 @@ namespace geoprior::paper {
 /// M lumped, E elastic, c the damping time, K the Hessian of E at x0 projected to positive
 /// semidefinite. `linear` replaces dE/dx (x1) by dE/dx (x0) + dt K v1, so that a step is one linear
 /// solve; `newton` solves the equation. Vertices held by a handle have v1 given; their rows are
-/// taken out of the system and yield the handle's reaction.
+/// taken out of the system and yield the handle's reaction. A hand that gives is a spring k (y -
+/// x1) to the place y that it wants, implicit in both.
 ///
 /// Vectors in solver order have three rows a vertex, at its position in the elimination order.
 class ShellDynamics {
@@ -38,7 +39,7 @@ class ShellDynamics {
     int solves = 0;
     double residual = 0;
     Eigen::MatrixX3d x, v;
-    double handle_work = 0;                     ///< J
+    double handle_work = 0;                     ///< by prescribed handles (J)
     std::vector<Eigen::Vector3d> handle_force;  ///< N, on the sheet
   };
   void step(const ShellState& state, double dt, Step& result);
@@ -57,12 +58,14 @@ class ShellDynamics {
   /// What is fixed during a step; vectors in solver order.
   struct Problem {
     const ShellState* state = nullptr;
-    double dt = 0, time = 0;   ///< its length and end (s)
-    Eigen::VectorXd velocity;  ///< v0
-    Eigen::VectorXd loads;     ///< weight and dead loads (N)
-    std::vector<HandleMap::Target> targets;
-    std::vector<char> held;      ///< of each position
-    Eigen::VectorXd prescribed;  ///< v1 - v0 of held vertices, 0 of others
+    double dt = 0, time = 0;                        ///< its length and end (s)
+    Eigen::VectorXd velocity;                       ///< v0
+    Eigen::VectorXd loads;                          ///< weight and dead loads (N)
+    std::vector<HandleMap::Target> targets;         ///< prescribed
+    std::vector<HandleMap::Target> springs;         ///< of hands that give
+    std::vector<HandleMap::Target> springs_before;  ///< all targets at the start of the step
+    std::vector<char> held;                         ///< of each position
+    Eigen::VectorXd prescribed;                     ///< v1 - v0 of held vertices, 0 of others
     Eigen::MatrixX3d ballistic;  ///< displacement without contact and elasticity (n x 3, m)
     std::vector<ContactPoint> contacts;
     std::vector<FrictionPoint> frictions;
@@ -77,6 +80,7 @@ class ShellDynamics {
   // One linear solve: the change of velocity, and the reactions (N).
   bool solve_linear(Eigen::VectorXd& change, Eigen::VectorXd& reaction);
   void add_linear_contacts();
+  void add_linear_springs();
   bool solve_held(const Eigen::VectorXd& prescribed, Eigen::VectorXd& solution);
 
   // Implicit Euler solved by Newton's method.
@@ -90,6 +94,7 @@ class ShellDynamics {
   double potential_gradient(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient);
   void add_contact_gradient(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient);
   void add_friction_gradient(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient);
+  void add_spring_gradient(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient);
   [[nodiscard]] Eigen::Vector3d slip_of(const FrictionPoint& friction,
                                         const Eigen::MatrixX3d& x) const;
 

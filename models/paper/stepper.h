@@ -50,6 +50,9 @@ void describe(OptionVisitor& v, StepperOptions& options);
 /// Mechanical energies (J).
 struct ShellEnergies {
   double membrane = 0, bending = 0, kinetic = 0, gravity = 0, contact = 0;
+  double hands = 0;  ///< of hands that give
+  /// What a sheet at rest makes small, weight and contact apart.
+  [[nodiscard]] double strain() const { return membrane + bending + hands; }
 };
 
 /// What one step took.
@@ -57,7 +60,7 @@ struct StepReport {
   int newton_iterations = 0;  ///< linear solves
   int halvings = 0;
   double residual = 0;     ///< reached, relative (newton)
-  double handle_work = 0;  ///< done by prescribed handles on the sheet (J)
+  double handle_work = 0;  ///< done by prescribed handles, with their own motion (J)
   std::vector<Eigen::Vector3d>
       handle_force;  ///< on the sheet by each handle, mean over the step (N)
 };

@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "core/angles.h"
-#include "models/paper/pattern_locator.h"
+#include "models/paper/lip_detail.h"
+#include "models/paper/lip_places.h"
 #include "models/paper/segments.h"
 
 namespace geoprior::paper {
@@ -13,23 +14,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// How far beside a lip the sheet is surely on its side, over the size of the pattern.
-constexpr double kBeside = 1e-3;
-
-/// Place in space of a point of a lip.
-Eigen::RowVector3d on_lip(const ShellState& state, const PatternLocator& locator, const Vector2d& p,
-                          const Vector2d& beside) {
-  const PatternLocator::Place at = locator.locate(p, beside);
-  Eigen::RowVector3d x = Eigen::RowVector3d::Zero();
-  for (int k = 0; k < 3; ++k) {
-    x += at.weights[k] * state.x.row(state.mesh.triangles(at.triangle, k));
-  }
-  return x;
-}
-
 Part tears_part(const Tears& tears, const ShellState& state) {
-  const PatternLocator locator(state.mesh);
-  const double offset = kBeside * width(tears.torn());
+  const LipPlaces places(state, width(tears.torn()));
   std::vector<Eigen::RowVector3d> points;
   std::vector<std::array<double, 5>> values;  // pattern, time, tear, lip
   Part part;
@@ -44,8 +30,7 @@ Part tears_part(const Tears& tears, const ShellState& state) {
       for (std::size_t i = 0; i < n; ++i) {
         const Vector2d along =
             (tear.path[std::min(i + 1, n - 1)] - tear.path[i == 0 ? 0 : i - 1]).normalized();
-        const Vector2d beside = (lip == 0 ? offset : -offset) * perpendicular(along);
-        points.push_back(on_lip(state, locator, tear.path[i], tear.path[i] + beside));
+        points.push_back(places.in_space(places.on_lip(tear.path[i], perpendicular(along), lip)));
         values.push_back({tear.path[i].x(), tear.path[i].y(), tear.times[i], static_cast<double>(t),
                           static_cast<double>(lip)});
       }
@@ -74,6 +59,8 @@ Part tears_part(const Tears& tears, const ShellState& state) {
 
 void add_tears(const TearGrowth& growth, const ShellState& state, Frame& frame) {
   frame.parts["tears"] = tears_part(growth.tears(), state);
+  if (growth.detail().on)
+    add_lip_detail(growth.tears(), growth.detail(), growth.seed(), state, frame);
   const TearGrowth::Totals& totals = growth.totals();
   frame.diagnostics["tears"] = static_cast<double>(growth.tears().torn().cuts.size());
   frame.diagnostics["tear_length"] = growth.tears().length();

@@ -25,8 +25,8 @@ constexpr double kLeastNotch = 20 * kDegree;
 /// A pull that asks a tear to turn by more goes back on it, and tears nothing; directions of two
 /// steps that differ by less lie on a curve (rad).
 constexpr double kBack = 120 * kDegree, kSmooth = 20 * kDegree;
-/// By how much a step towards rest is made shorter.
-constexpr double kShorter = 4;
+/// Of the way to the next tip or hand, that a piece about a candidate covers.
+constexpr double kClear = 0.8;
 /// Of the null, from the bisector (rad).
 constexpr double kAskew = 45 * kDegree;
 /// Directions tried where the toughness depends on them.
@@ -41,6 +41,18 @@ std::optional<int> vertex_at(const ShellMesh& mesh, const Vector2d& p, double to
     found = v;
   }
   return found;
+}
+
+/// Every vertex that lies on no tear.
+void add_vertices(const ShellMesh& mesh, const Tears& tears, std::vector<TearCandidate>& places) {
+  const double same = kSame * width(tears.torn());
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const Vector2d p = mesh.pattern.row(v);
+    const bool known = std::any_of(places.begin(), places.end(), [&](const TearCandidate& c) {
+      return (c.place - p).norm() <= same;
+    });
+    if (!known && distance_to_cuts(tears.torn(), p) > same) places.push_back({p, std::nullopt});
+  }
 }
 
 /// Area of the smallest part that hangs together (m^2).
@@ -61,27 +73,45 @@ double smallest_part(const ShellMesh& mesh) {
 }
 
 double elastic_energy(const ShellStepper& stepper, const ShellState& state) {
-  const ShellEnergies energies = stepper.energies(state);
-  return energies.membrane + energies.bending;
+  return stepper.energies(state).strain();
 }
 
-/// A step towards rest. One that raises the elastic energy is too long for its linear forces, and
-/// is tried again shorter; `time` keeps the length.
-void relax(ShellStepper& stepper, double& time, ShellState& state) {
-  constexpr int kTries = 4;
-  const Eigen::MatrixX3d start = state.x;
-  const double before = elastic_energy(stepper, state);
-  for (int i = 0; i < kTries; ++i) {
-    try {
-      stepper.relax(state, time);
-      if (elastic_energy(stepper, state) <= before) return;
-    } catch (const Error&) {
-      // Too long as well.
+/// Steps of a sheet towards rest. One that raises the elastic energy is too long for its linear
+/// forces, and is tried again shorter; those after it grow again.
+class Relaxation {
+ public:
+  Relaxation(double time, const ShellStepper& stepper, const ShellState& state)
+      : full_(time), time_(time), energy_(elastic_energy(stepper, state)) {}
+  [[nodiscard]] double energy() const { return energy_; }
+  /// @return  whether the sheet could take a step of full length
+  bool step(ShellStepper& stepper, ShellState& state) {
+    constexpr int kTries = 4;
+    const Eigen::MatrixX3d start = state.x;
+    for (int i = 0; i < kTries; ++i) {
+      try {
+        stepper.relax(state, time_);
+        const double energy = elastic_energy(stepper, state);
+        if (energy <= (1 + kRounding) * energy_) {
+          energy_ = energy;
+          const bool whole = time_ == full_;
+          time_ = std::min(kShorter * time_, full_);
+          return whole;
+        }
+      } catch (const Error&) {
+        // Too long as well.
+      }
+      state.x = start;
+      time_ /= kShorter;
     }
-    state.x = start;
-    time /= kShorter;
+    return false;
   }
-}
+
+ private:
+  static constexpr double kShorter = 4;
+  static constexpr double kRounding = 1e-9;
+  double full_, time_;  // s
+  double energy_;       // J
+};
 
 }  // namespace
 
@@ -117,7 +147,8 @@ Vector2d TearGrowth::direction_of(const TipPull& pull, const Vector2d& p) const 
   const Vector2d away = pull.away();
   if (options_.direction == TearDirection::askew)
     return Eigen::Rotation2Dd(std::copysign(kAskew, cross(away, pull.right))) * away;
-  if (!sheet_.toughness.grain_deg || sheet_.toughness.across == 1) return away;
+  const bool even = !sheet_.toughness.grain_deg || sheet_.toughness.across == 1;
+  if (even || options_.direction == TearDirection::bisector) return away;
   // Where the fibres count, what is released over what is opposed decides.
   Vector2d best = away;
   double most = 0;
@@ -132,18 +163,36 @@ Vector2d TearGrowth::direction_of(const TipPull& pull, const Vector2d& p) const 
   return best;
 }
 
+/// How far a piece about the candidate may reach: neither to another tip nor to a hand, whose own
+/// J integrals it would enclose (m).
+double TearGrowth::clear_reach(const TearCandidate& candidate, double time) const {
+  double nearest = options_.pull.reach / kClear;
+  for (std::size_t t = 0; t < tears_.all().size(); ++t) {
+    const Tear& tear = tears_.all()[t];
+    if (!tear.ended && static_cast<int>(t) != candidate.tear)
+      nearest = std::min(nearest, (tear.tip() - candidate.place).norm());
+  }
+  for (const Handle& handle : sheet_.handles) {
+    if (handle.is_active(time) && !handle.covers(candidate.place))
+      nearest = std::min(nearest, handle.distance(candidate.place));
+  }
+  return kClear * nearest;
+}
+
 std::optional<TearGrowth::Growing> TearGrowth::look_at(const TearCandidate& candidate,
                                                        const ShellStepper& stepper,
                                                        const ShellState& state,
-                                                       const EdgeConnectivity& edges) const {
+                                                       const MeshNeighbours& neighbours) const {
   const double same = kSame * width(sheet_.pattern);
   for (const Vector2d& p : given_up_) {
     if ((p - candidate.place).norm() <= same) return {};
   }
   const auto vertex = vertex_at(state.mesh, candidate.place, same);
   if (!vertex) return {};
+  PullOptions options = options_.pull;
+  options.reach = clear_reach(candidate, state.time);
   const auto pull =
-      pull_at(sheet_, stepper, state, edges, *vertex, options_.pull, sheet_.toughness.least());
+      pull_at(sheet_, stepper, state, neighbours, *vertex, options, sheet_.toughness.least());
   if (!pull) return {};
   Growing growing{candidate, *pull, direction_of(*pull, candidate.place), 0};
   if (candidate.tear) {
@@ -164,18 +213,23 @@ std::optional<TearGrowth::Growing> TearGrowth::look_at(const TearCandidate& cand
   return growing;
 }
 
-/// The same pull once the sheet has come to rest; absent when it is too weak then, or gone.
-std::optional<TearGrowth::Growing> TearGrowth::at_rest(const Growing& growing,
-                                                       ShellStepper& stepper, ShellState state,
-                                                       const EdgeConnectivity& edges) const {
-  std::optional<Growing> now = growing;
-  double time = options_.relax_time;
+/// The same pull once the sheet has come to rest; absent when it is too weak on the way, gone, or
+/// does not come to rest.
+std::optional<TearGrowth::Growing> TearGrowth::at_rest(Growing growing, ShellStepper& stepper,
+                                                       ShellState state,
+                                                       const MeshNeighbours& neighbours) const {
+  Relaxation relaxation(options_.relax_time, stepper, state);
   for (int i = 0; i < options_.rest_steps; ++i) {
-    relax(stepper, time, state);
-    now = look_at(growing.candidate, stepper, state, edges);
-    if (!now || now->excess < 1) return std::nullopt;
+    const bool whole = relaxation.step(stepper, state);
+    auto next = look_at(growing.candidate, stepper, state, neighbours);
+    if (!next || next->excess < 1) return std::nullopt;
+    const double turn = std::abs(signed_angle(growing.pull.away(), next->pull.away()));
+    const double change = std::abs(next->excess / growing.excess - 1);
+    growing = *std::move(next);
+    if (whole && turn <= options_.rest_turn_deg * kDegree && change <= options_.rest_change)
+      return growing;
   }
-  return now;
+  return std::nullopt;
 }
 
 /// Where a step goes.
@@ -195,6 +249,7 @@ void TearGrowth::go(int tear, const Vector2d& to, const Remesh& remesh, ShellSte
                     ShellState& state) {
   const Tears before = tears_;
   const ShellState old = state;
+  const double energy = elastic_energy(stepper, state);
   const Vector2d from = tears_.all()[tear].tip();
   const auto stop = tears_.obstruction(tear, to, options_.margin);
   tears_.advance(tear, stop.value_or(to), state.time);
@@ -216,9 +271,11 @@ void TearGrowth::go(int tear, const Vector2d& to, const Remesh& remesh, ShellSte
     remesh(state);
     stepper.set_mesh(state);
   }
-  double time = options_.relax_time;
-  for (int i = 0; i < options_.relax_steps; ++i) {
-    relax(stepper, time, state);
+  // What the new mesh has strained is not for the sheet to move by.
+  Relaxation relaxation(options_.relax_time, stepper, state);
+  for (int i = 0; i < options_.most_relax_steps; ++i) {
+    if (i >= options_.relax_steps && relaxation.energy() <= energy) break;
+    relaxation.step(stepper, state);
   }
 }
 
@@ -232,7 +289,7 @@ void TearGrowth::take_step(const Growing& growing, const Remesh& remesh, ShellSt
   go(tear, to, remesh, stepper, state);
   const Vector2d way = tears_.all()[tear].tip() - from;
   if (way.isZero(0)) return;
-  tears_.note_pull(tear, growing.direction, way.norm());
+  tears_.note_pull(tear, growing.direction, way.norm(), growing.pull.shear(way.normalized()));
   const double opposed = sheet_.toughness.at(from + way / 2, way.normalized());
   totals_.energy += opposed * way.norm() * sheet_.material.thickness;
   totals_.released += before - elastic_energy(stepper, state);
@@ -244,18 +301,22 @@ int TearGrowth::grow(const Candidates& candidates, const Remesh& remesh, ShellSt
                      ShellState& state) {
   if (!sheet_.toughness.tears()) return 0;
   for (int steps = 0; steps < options_.most_steps; ++steps) {
-    const EdgeConnectivity edges(state.mesh.triangles);
+    if (!neighbours_ || neighbours_->triangles != state.mesh.triangles)
+      neighbours_.emplace(state.mesh);
+    const MeshNeighbours& neighbours = *neighbours_;
+    std::vector<TearCandidate> places = candidates();
+    if (options_.search == TearSearch::everywhere) add_vertices(state.mesh, tears_, places);
     std::vector<Growing> pulled;
-    for (const TearCandidate& candidate : candidates()) {
+    for (const TearCandidate& candidate : places) {
       ++totals_.tested;
-      auto growing = look_at(candidate, stepper, state, edges);
+      auto growing = look_at(candidate, stepper, state, neighbours);
       if (growing && growing->excess >= 1) pulled.push_back(*std::move(growing));
     }
     std::stable_sort(pulled.begin(), pulled.end(),
                      [](const Growing& a, const Growing& b) { return a.excess > b.excess; });
     std::optional<Growing> strongest;
     for (std::size_t i = 0; !strongest && i < pulled.size(); ++i)
-      strongest = at_rest(pulled[i], stepper, state, edges);
+      strongest = at_rest(pulled[i], stepper, state, neighbours);
     if (!strongest) return steps;
     take_step(*strongest, remesh, stepper, state);
   }
@@ -277,17 +338,21 @@ void TearGrowth::load(StateReader& in) {
 }
 
 void describe(OptionVisitor& v, TearOptions& o) {
+  static constexpr std::array<std::string_view, 2> kSearches{"candidates", "everywhere"};
   static constexpr std::array<std::string_view, 2> kIntegrators{"euler", "midpoint"};
-  static constexpr std::array<std::string_view, 2> kDirections{"bisector", "askew"};
+  static constexpr std::array<std::string_view, 3> kDirections{"steepest", "bisector", "askew"};
   describe_group(v, "pull", o.pull, {.doc = "how the forces about a tip are gathered"});
   v.value("step", o.step,
           {.doc = "length by which a tear grows", .unit = "m", .min = 1e-9, .max = 10});
   v.value("most_steps", o.most_steps,
           {.doc = "of all tears after one time step", .min = 1, .max = 100000});
+  describe_choice(v, "search", o.search, kSearches,
+                  {.doc = "at candidates, or at every vertex of the mesh"});
   describe_choice(v, "integrator", o.integrator, kIntegrators,
                   {.doc = "midpoint: the direction in the middle of the step, extrapolated"});
   describe_choice(v, "direction", o.direction, kDirections,
-                  {.doc = "bisector of the pulls, or (a null) 45 degrees from it"});
+                  {.doc = "where most is released of what is opposed, the bisector of the pulls, "
+                          "or (a null) 45 degrees from it"});
   v.value("most_turn_deg", o.most_turn_deg,
           {.doc = "of a tear from one step to the next", .unit = "deg", .min = 0, .max = 180});
   v.value("relax_time", o.relax_time,
@@ -296,9 +361,22 @@ void describe(OptionVisitor& v, TearOptions& o) {
            .min = 1e-9,
            .max = 10});
   v.value("rest_steps", o.rest_steps,
-          {.doc = "of them, that a pull must outlast before a tear grows", .min = 0, .max = 1000});
+          {.doc = "most of them, for a pull to come to rest in before a tear grows",
+           .min = 1,
+           .max = 1000});
+  v.value("rest_turn_deg", o.rest_turn_deg,
+          {.doc = "of a pull at rest, from one such step to the next",
+           .unit = "deg",
+           .min = 0,
+           .max = 180});
+  v.value("rest_change", o.rest_change,
+          {.doc = "of what it releases, likewise, relative", .min = 0, .max = 1e9});
   v.value("relax_steps", o.relax_steps,
           {.doc = "of them, after it has grown", .min = 0, .max = 1000});
+  v.value("most_relax_steps", o.most_relax_steps,
+          {.doc = "of them, while the sheet has more elastic energy than before it grew",
+           .min = 0,
+           .max = 1000});
   v.value("path_tolerance", o.path_tolerance,
           {.doc = "farthest that a tear's path lies from the edges of its lips",
            .unit = "m",
@@ -311,6 +389,8 @@ void describe(OptionVisitor& v, TearOptions& o) {
            .max = 1});
   v.value("least_part", o.least_part,
           {.doc = "smallest area that a tear may cut off", .unit = "m^2", .min = 0, .max = 1});
+  describe_group(v, "detail", o.detail,
+                 {.doc = "noise, fibres and a bevel along the lips: parts of the frame, no mesh"});
 }
 
 }  // namespace geoprior::paper

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
 
+#include "models/paper/lip_detail.h"
 #include "models/paper/sheet.h"
 #include "models/paper/shell_state.h"
 #include "models/paper/stepper.h"
@@ -15,25 +17,34 @@ namespace geoprior::paper {
 /// midpoint: the direction in the middle of the step, extrapolated from those at its start and at
 /// the start of the step before (Adams and Bashforth).
 enum class TearIntegrator { euler, midpoint };
-/// bisector: away from both pulls, turned towards the grain where there is one; askew: 45 degrees
-/// from it towards one of them (a null).
-enum class TearDirection { bisector, askew };
+/// everywhere: every vertex of the mesh is a candidate, as where nothing is known of the sheet
+/// (Pfaff et al. 2014).
+enum class TearSearch { candidates, everywhere };
+/// bisector: away from both pulls; steepest: where most is released of what is opposed, which is
+/// the bisector unless the paper has a grain; askew: 45 degrees from the bisector towards one pull
+/// (a null).
+enum class TearDirection { steepest, bisector, askew };
 
 /// How tears grow (thesis 3.2.2; what it leaves open is ours, see docs/methods/paper.md).
 struct TearOptions {
   PullOptions pull;
+  TearSearch search = TearSearch::candidates;
   double step = 2e-3;   ///< length by which a tear grows (m)
   int most_steps = 10;  ///< of all tears after one time step
   TearIntegrator integrator = TearIntegrator::midpoint;
-  TearDirection direction = TearDirection::bisector;
+  TearDirection direction = TearDirection::steepest;
   double most_turn_deg = 30;  ///< that a tear turns in a step
   double relax_time = 1e-3;   ///< of the implicit steps from rest that a sheet relaxes in (s)
-  int rest_steps = 6;         ///< of them, that a pull must outlast before a tear grows
+  int rest_steps = 20;        ///< most of them, for a pull to come to rest in before a tear grows
+  double rest_turn_deg = 1;   ///< of a pull at rest, from one such step to the next
+  double rest_change = 0.02;  ///< of what it releases, likewise, relative
   int relax_steps = 2;        ///< of them, after it has grown
+  int most_relax_steps = 20;  ///< of them, while the sheet has more energy than before it grew
   double path_tolerance =
       1e-4;                  ///< farthest that a tear's path lies from the edges of its lips (m)
   double margin = 1e-3;      ///< a tear that comes so near to a border ends there (m)
   double least_part = 1e-6;  ///< smallest area that a tear may cut off (m^2)
+  LipDetailOptions detail;   ///< what is drawn along the lips
 };
 void describe(OptionVisitor& v, TearOptions& options);
 
@@ -48,9 +59,9 @@ struct TearCandidate {
 std::vector<TearCandidate> plain_candidates(const Sheet& sheet, const Tears& tears);
 
 /// Tears that grow while the energy they release exceeds what the paper opposes (Griffith; thesis
-/// 3.2.2): E_r = 2 F cos(theta / 2) / e against E_f = K T, of the sheet at rest: a pull that goes
-/// when the sheet relaxes tears nothing. After each step of a tear the sheet is meshed anew and
-/// relaxes.
+/// 3.2.2): E_r = 2 F cos(theta / 2) / e against E_f = K T, of the sheet at rest: a pull that goes,
+/// or does not settle, when the sheet relaxes tears nothing. After each step of a tear the sheet is
+/// meshed anew and relaxes.
 class TearGrowth {
  public:
   TearGrowth(const Sheet& sheet, const TearOptions& options);
@@ -77,6 +88,8 @@ class TearGrowth {
            ShellState& state);
 
   [[nodiscard]] const Tears& tears() const { return tears_; }
+  [[nodiscard]] const LipDetailOptions& detail() const { return options_.detail; }
+  [[nodiscard]] std::uint64_t seed() const { return sheet_.toughness.seed; }  ///< of the texture
   [[nodiscard]] const Totals& totals() const { return totals_; }
   [[nodiscard]] const LastPull& last_pull() const { return last_pull_; }
 
@@ -90,12 +103,13 @@ class TearGrowth {
     Eigen::Vector2d direction;
     double excess = 0;  ///< E_r / E_f
   };
+  [[nodiscard]] double clear_reach(const TearCandidate& candidate, double time) const;
   [[nodiscard]] std::optional<Growing> look_at(const TearCandidate& candidate,
                                                const ShellStepper& stepper, const ShellState& state,
-                                               const EdgeConnectivity& edges) const;
-  [[nodiscard]] std::optional<Growing> at_rest(const Growing& growing, ShellStepper& stepper,
+                                               const MeshNeighbours& neighbours) const;
+  [[nodiscard]] std::optional<Growing> at_rest(Growing growing, ShellStepper& stepper,
                                                ShellState state,
-                                               const EdgeConnectivity& edges) const;
+                                               const MeshNeighbours& neighbours) const;
   [[nodiscard]] Eigen::Vector2d course(const Growing& growing) const;
   [[nodiscard]] Eigen::Vector2d direction_of(const TipPull& pull, const Eigen::Vector2d& p) const;
   void take_step(const Growing& growing, const Remesh& remesh, ShellStepper& stepper,
@@ -106,7 +120,8 @@ class TearGrowth {
   const Sheet& sheet_;
   TearOptions options_;
   Tears tears_;
-  std::vector<Eigen::Vector2d> given_up_;  ///< places where no tear can start or go on
+  std::optional<MeshNeighbours> neighbours_;  ///< of the last mesh looked at
+  std::vector<Eigen::Vector2d> given_up_;     ///< places where no tear can start or go on
   Totals totals_;
   LastPull last_pull_;
 };

@@ -23,6 +23,12 @@ Vector2d Tear::heading() const {
   return (path.back() - path[knots[knots.size() - 2]]).normalized();
 }
 
+int Tear::torn_from() const {
+  int from = 0;
+  while (from + 1 < static_cast<int>(times.size()) && times[from + 1] == 0) ++from;
+  return from;
+}
+
 Tears::Tears(const Pattern& whole, double tolerance) : whole_(whole), tolerance_(tolerance) {
   whole_.cuts.clear();
   for (const std::vector<Vector2d>& cut : whole.cuts) {
@@ -30,6 +36,7 @@ Tears::Tears(const Pattern& whole, double tolerance) : whole_(whole), tolerance_
     for (std::size_t i = 1; i < cut.size(); ++i) {
       tears_[tear].path.push_back(cut[i]);
       tears_[tear].times.push_back(0);
+      tears_[tear].shear.push_back(0);
       tears_[tear].knots.push_back(static_cast<int>(i));
     }
   }
@@ -46,6 +53,7 @@ int Tears::start(const Vector2d& p, double time) {
   Tear tear;
   tear.path = {p};
   tear.times = {time};
+  tear.shear = {0};
   tear.knots = {0};
   tears_.push_back(std::move(tear));
   return static_cast<int>(tears_.size()) - 1;
@@ -54,12 +62,14 @@ int Tears::start(const Vector2d& p, double time) {
 void Tears::advance(int tear, const Vector2d& p, double time) {
   tears_[tear].path.push_back(p);
   tears_[tear].times.push_back(time);
+  tears_[tear].shear.push_back(0);
   update(tear);
 }
 
-void Tears::note_pull(int tear, const Vector2d& direction, double step) {
+void Tears::note_pull(int tear, const Vector2d& direction, double step, double shear) {
   tears_[tear].last_pull = direction;
   tears_[tear].last_step = step;
+  tears_[tear].shear.back() = shear;
 }
 
 void Tears::end(int tear) { tears_[tear].ended = true; }
@@ -126,6 +136,7 @@ void Tears::save(StateWriter& out) const {
   for (const Tear& tear : tears_) {
     out.items(tear.path);
     out.items(tear.times);
+    out.items(tear.shear);
     out.items(tear.knots);
     out.number(tear.last_pull.x());
     out.number(tear.last_pull.y());
@@ -139,6 +150,7 @@ void Tears::load(StateReader& in) {
   for (Tear& tear : tears_) {
     in.items(tear.path);
     in.items(tear.times);
+    in.items(tear.shear);
     in.items(tear.knots);
     tear.last_pull.x() = in.number<double>();
     tear.last_pull.y() = in.number<double>();

@@ -13,15 +13,19 @@ namespace geoprior::paper {
 struct Tear {
   std::vector<Eigen::Vector2d> path;  ///< every place of the tip, the start first (m)
   std::vector<double> times;          ///< of each (s)
-  std::vector<int> knots;             ///< of the path: what the cut keeps of it
-  Eigen::Vector2d last_pull{0, 0};    ///< direction that the last step was asked to take
-  double last_step = 0;               ///< its length (m)
-  bool ended = false;                 ///< at a border or another tear, or given up
+  /// Of the step to each place: how far the left lip was pulled up and the right one down, -1 … 1.
+  std::vector<double> shear;
+  std::vector<int> knots;           ///< of the path: what the cut keeps of it
+  Eigen::Vector2d last_pull{0, 0};  ///< direction that the last step was asked to take
+  double last_step = 0;             ///< its length (m)
+  bool ended = false;               ///< at a border or another tear, or given up
 
   [[nodiscard]] const Eigen::Vector2d& tip() const { return path.back(); }
   [[nodiscard]] double length() const;  ///< m
   /// Direction of the edge of the cut that leads to the tip; zero for a tear without length.
   [[nodiscard]] Eigen::Vector2d heading() const;
+  /// First place of the path from which on the sheet has torn: the end of the cut, if it had one.
+  [[nodiscard]] int torn_from() const;
 };
 
 /// All tears of a sheet.
@@ -40,7 +44,8 @@ class Tears {
   int start(const Eigen::Vector2d& p, double time);
   /// Takes the tip one step further.
   void advance(int tear, const Eigen::Vector2d& p, double time);
-  void note_pull(int tear, const Eigen::Vector2d& direction, double step);
+  /// What the last step was taken by; `shear` as `TipPull::shear`.
+  void note_pull(int tear, const Eigen::Vector2d& direction, double step, double shear);
   void end(int tear);
   /// Where a tip that is to go to `to` would leave the ground or meet a lip first, or come nearer
   /// than `margin` (m) to a border or another tear.

@@ -1,5 +1,6 @@
 #include "models/paper/tip_pull.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -34,7 +35,7 @@ bool is_held(const Sheet& sheet, const ShellMesh& mesh, int v, double time) {
 }
 
 /// Triangles about the vertex, and from there over edges as far as the reach, ascending.
-std::vector<int> piece_about(const ShellMesh& mesh, const EdgeConnectivity& edges, int vertex,
+std::vector<int> piece_about(const ShellMesh& mesh, const MeshNeighbours& neighbours, int vertex,
                              double reach) {
   std::vector<int> piece;
   std::vector<bool> in(mesh.triangle_count(), false);
@@ -43,13 +44,11 @@ std::vector<int> piece_about(const ShellMesh& mesh, const EdgeConnectivity& edge
     in[f] = true;
     piece.push_back(f);
   };
-  for (int f = 0; f < mesh.triangle_count(); ++f) {
-    if ((mesh.triangles.row(f).array() == vertex).any()) take(f);
-  }
+  for (const int corner : neighbours.corners.of(vertex)) take(corner / 3);
   const Vector2d c = mesh.pattern.row(vertex);
   for (std::size_t i = 0; i < piece.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
-      const int next = edges.across(piece[i], k);
+      const int next = neighbours.edges.across(piece[i], k);
       if (next >= 0 && (centroid(mesh, next) - c).norm() <= reach) take(next);
     }
   }
@@ -140,6 +139,41 @@ std::vector<Acting> forces_on(const ShellStepper& stepper, const ShellState& sta
   return acting;
 }
 
+/// Image of the force that the sheet itself takes up at a vertex where it is held.
+Vector2d held_image(const ShellStepper& stepper, const ShellState& state,
+                    const VertexCorners& corners, int vertex) {
+  std::vector<int> about;
+  Eigen::Matrix<double, 3, 2> F = Eigen::Matrix<double, 3, 2>::Zero();
+  double area = 0;
+  for (const int corner : corners.of(vertex)) {
+    const int f = corner / 3;
+    const Eigen::RowVector3i t = state.mesh.triangles.row(f);
+    about.push_back(f);
+    const std::array<Vector2d, 3> p{state.mesh.pattern.row(t[0]), state.mesh.pattern.row(t[1]),
+                                    state.mesh.pattern.row(t[2])};
+    area += cross(p[1] - p[0], p[2] - p[0]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector2d opposite = p[(k + 2) % 3] - p[(k + 1) % 3];
+      F += state.x.row(t[static_cast<Eigen::Index>(k)]).transpose() *
+           Vector2d(-opposite.y(), opposite.x()).transpose();
+    }
+  }
+  const Vector3d taken = stepper.elastic_forces(state, about).row(vertex);
+  return F.transpose() / area * taken;
+}
+
+/// Mean normal of the triangles about a vertex, those with more area counting more.
+Vector3d normal_about(const ShellState& state, int vertex) {
+  Vector3d sum = Vector3d::Zero();
+  for (int f = 0; f < state.mesh.triangle_count(); ++f) {
+    const Eigen::RowVector3i t = state.mesh.triangles.row(f);
+    if (!(t.array() == vertex).any()) continue;
+    const Vector3d a = state.x.row(t[0]), b = state.x.row(t[1]), c = state.x.row(t[2]);
+    sum += (b - a).cross(c - a);
+  }
+  return sum.normalized();
+}
+
 /// Forces that act on one side.
 struct Resultant {
   Vector3d force = Vector3d::Zero();
@@ -150,12 +184,13 @@ struct Resultant {
 };
 
 struct Parting {
+  Vector2d line = Vector2d::Zero();
   Resultant left, right;
   [[nodiscard]] double sum() const { return left.force.norm() + right.force.norm(); }
 };
 
 Parting part_along(const std::vector<Acting>& acting, const Vector2d& line) {
-  Parting parting;
+  Parting parting{line, {}, {}};
   for (const Acting& a : acting) {
     Resultant& r = cross(line, a.side) > 0 ? parting.left : parting.right;
     r.force += a.force;
@@ -180,14 +215,15 @@ Parting strongest_parting(const std::vector<Acting>& acting, int lines) {
 }  // namespace
 
 std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
-                               const ShellState& state, const EdgeConnectivity& edges, int vertex,
-                               const PullOptions& options, double least_release) {
-  const std::vector<int> piece = piece_about(state.mesh, edges, vertex, options.reach);
-  const VertexCorners corners(state.mesh.triangles, state.mesh.vertex_count());
-  const Images images = images_on(sheet, state, piece, corners, vertex);
+                               const ShellState& state, const MeshNeighbours& neighbours,
+                               int vertex, const PullOptions& options, double least_release) {
+  const std::vector<int> piece = piece_about(state.mesh, neighbours, vertex, options.reach);
+  Images images = images_on(sheet, state, piece, neighbours.corners, vertex);
+  if (is_held(sheet, state.mesh, vertex, state.time))
+    images.release += held_image(stepper, state, neighbours.corners, vertex);
   if (images.release.norm() < least_release * sheet.material.thickness) return {};
   const std::vector<Acting> acting = forces_on(stepper, state, piece, images, vertex);
-  const auto [left, right] = strongest_parting(acting, options.lines);
+  const auto [line, left, right] = strongest_parting(acting, options.lines);
   const double l = left.force.norm(), r = right.force.norm();
   if (!(std::min(l, r) > 0 && std::min(l, r) * options.most_imbalance >= std::max(l, r))) return {};
   const double cosine = std::clamp(left.force.dot(right.force) / (l * r), -1.0, 1.0);
@@ -201,6 +237,8 @@ std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
   pull.left = left.image;
   pull.right = right.image;
   pull.release = images.release;
+  pull.line = line;
+  pull.normal = normal_about(state, vertex);
   pull.force = (l + r) / 2;
   pull.angle = std::abs(signed_angle(pull.left, pull.right));
   if (!(pull.angle <= options.widest_angle_deg * kDegree)) return {};

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/connectivity.h"
 #include "models/paper/sheet.h"
 #include "models/paper/shell_state.h"
 #include "models/paper/stepper.h"
@@ -12,7 +13,7 @@ namespace geoprior::paper {
 
 /// How the forces about a point are gathered and grouped.
 struct PullOptions {
-  double reach = 0.03;  ///< radius of the part of the sheet on which the pull is measured (m)
+  double reach = 0.08;  ///< radius of the part of the sheet on which the pull is measured (m)
   int lines = 64;       ///< directions tried for the line that parts left from right
   /// Smallest angle between the two resultants in space: pulls that point the same way tear
   /// nothing.
@@ -31,7 +32,9 @@ struct TipPull {
   double force = 0;                         ///< F: mean of both norms (N)
   double angle = 0;                         ///< theta: between the images (rad)
 
-  Eigen::Vector2d release{0, 0};  ///< J integral about C (N)
+  Eigen::Vector2d release{0, 0};    ///< J integral about C (N)
+  Eigen::Vector2d line{0, 0};       ///< in the pattern: `left_force` acts on its left (unit)
+  Eigen::Vector3d normal{0, 0, 0};  ///< mean one of the sheet about C
 
   /// Energy that a unit of area of a tear releases that goes on in direction d (unit), J . d / e.
   /// Of a sheet that hardly stretches that is -d . (left + right) / e, and 2 F cos(theta / 2) / e
@@ -43,6 +46,20 @@ struct TipPull {
   /// Direction in which a tear releases most: away from both images, along their bisector when they
   /// are equally long.
   [[nodiscard]] Eigen::Vector2d away() const { return release.normalized(); }
+  /// Out of the plane, of a tear in direction d (unit): 1 when the left of it is only pulled up the
+  /// normal and the right of it down, -1 the other way round, 0 when both stay in the plane.
+  [[nodiscard]] double shear(const Eigen::Vector2d& d) const {
+    return d.dot(line) * normal.dot(left_force - right_force) / (2 * force);
+  }
+};
+
+/// Who lies beside whom on a mesh.
+struct MeshNeighbours {
+  explicit MeshNeighbours(const ShellMesh& mesh)
+      : triangles(mesh.triangles), edges(triangles), corners(triangles, mesh.vertex_count()) {}
+  Eigen::MatrixX3i triangles;
+  EdgeConnectivity edges;
+  VertexCorners corners;
 };
 
 /// The pull at a vertex of the sheet. The piece has the triangles about it, and those reached over
@@ -57,7 +74,7 @@ struct TipPull {
 /// Absent when the resultants do not oppose, are not balanced or push the sheet together, and when
 /// their images are nearly opposite, or release too little.
 std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
-                               const ShellState& state, const EdgeConnectivity& edges, int vertex,
-                               const PullOptions& options, double least_release = 0);
+                               const ShellState& state, const MeshNeighbours& neighbours,
+                               int vertex, const PullOptions& options, double least_release = 0);
 
 }  // namespace geoprior::paper

@@ -21,7 +21,7 @@ using Eigen::Vector2d;
 /// Farthest that a vertex may lie outside the old mesh, over the pattern's width.
 constexpr double kOutside = 1e-6;
 /// A weight this near to 1 means the old vertex itself.
-constexpr double kSame = 1e-12;
+constexpr double kOnVertex = 1e-12;
 
 PlaneTriangle corners(const ShellMesh& mesh, int f) {
   return {Vector2d(mesh.pattern.row(mesh.triangles(f, 0))),
@@ -61,7 +61,7 @@ void carry_vertices(const ShellState& from, const PatternLocator& locator, Shell
         sides.empty() || !sides[i].allFinite() ? locator.locate(p) : locator.locate(p, sides[i]);
     const Eigen::RowVector3i t = from.mesh.triangles.row(place.triangle);
     Eigen::Index nearest = 0;
-    if (place.weights.maxCoeff(&nearest) > 1 - kSame) {
+    if (place.weights.maxCoeff(&nearest) > 1 - kOnVertex) {
       to.x.row(i) = from.x.row(t[nearest]);
       to.v.row(i) = from.v.row(t[nearest]);
     } else {

@@ -101,11 +101,10 @@ void round_off(const ShellState& before, const BendingField& field, const std::v
   }
 }
 
-std::vector<bool> held_vertices(const Sheet& sheet, const ShellMesh& mesh, double time,
-                                std::uint64_t seed) {
+std::vector<bool> held_vertices(const Sheet& sheet, const ShellState& state, std::uint64_t seed) {
   std::vector<HandleMap::Target> targets;
-  HandleMap(sheet, mesh, seed).targets(sheet, time, targets);
-  std::vector<bool> held(mesh.vertex_count(), false);
+  HandleMap(sheet, state, seed).targets(sheet, state.time, targets);
+  std::vector<bool> held(state.mesh.vertex_count(), false);
   for (const auto& target : targets) held[target.vertex] = true;
   return held;
 }
@@ -408,7 +407,7 @@ void HybridMesher::carry(const Sheet& sheet, ShellState& state, std::size_t old_
   const ShellState before = state;
   state = transfer_state(state, mesh_.mesh);
   if (field_) {
-    round_off(before, *field_, held_vertices(sheet, state.mesh, state.time, context.seed()), state);
+    round_off(before, *field_, held_vertices(sheet, state, context.seed()), state);
   }
   if (old_points >= mesh_.singular_vertices.size()) return;
   const EdgeConnectivity edges(state.mesh.triangles);
@@ -423,7 +422,7 @@ void HybridMesher::carry(const Sheet& sheet, ShellState& state, std::size_t old_
 /// @param effort  iterations, in those of a usual frame
 void HybridMesher::project(const Sheet& sheet, int effort, ShellState& state, RunContext& context) {
   const Phase phase(context, "project");
-  std::vector<bool> held = held_vertices(sheet, state.mesh, state.time, context.seed());
+  std::vector<bool> held = held_vertices(sheet, state, context.seed());
   if (!projector_ || projector_->held() != held) projector_.emplace(state.mesh, held);
   projection_ = projector_->project(
       state, {effort * options_.projection_iterations, options_.projection_strain});

@@ -32,6 +32,8 @@ class HybridMesher final : public SheetMesher {
   void load(const Sheet& sheet, StateReader& in) override;
 
   [[nodiscard]] const PaperStructure& structure() const { return structure_; }
+  /// Absent on a sheet that does not tear.
+  [[nodiscard]] const Tears* tears() const { return tearing_ ? &tearing_->tears() : nullptr; }
   [[nodiscard]] const RulingMesh& mesh() const { return mesh_; }
   /// The pattern, cut along the tears.
   [[nodiscard]] const Pattern& torn() const { return pattern_; }

@@ -123,6 +123,16 @@ bool RulingEditor::clear_of_points(const Ruling& ruling) const {
   for (const Vector2d& p : anchors_) {
     if (near(p, same_)) return false;
   }
+  // Beside the knots of a cut a ruling may end, but not graze them on its way.
+  for (const std::vector<Vector2d>& cut : pattern_.cuts) {
+    for (const Vector2d& p : cut) {
+      const double from_end = std::min((p - ruling.a).norm(), (p - ruling.b).norm());
+      if (from_end > same_ && distance_to_segment(p, ruling.a, ruling.b) <
+                                  std::sin(bounds_.least_angle) * std::min(from_end, bounds_.gap)) {
+        return false;
+      }
+    }
+  }
   return std::none_of(corners_.begin(), corners_.end(), [&](const Vector2d& corner) {
     return near(corner, kNeighbourhood * bounds_.gap);
   });

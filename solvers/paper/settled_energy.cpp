@@ -21,8 +21,7 @@ double settled_energy(const Sheet& sheet, const StepperOptions& options, std::ui
   } catch (const Error&) {
     return std::numeric_limits<double>::infinity();
   }
-  const ShellEnergies energies = stepper.energies(state);
-  return energies.membrane + energies.bending;
+  return stepper.energies(state).strain();
 }
 
 }  // namespace geoprior::paper

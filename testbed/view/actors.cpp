@@ -31,9 +31,12 @@ constexpr Color kLineColor{0.16, 0.27, 0.45};
 constexpr Color kEdgeColor{0.47, 0.48, 0.51};
 constexpr Color kObstacleColor{0.55, 0.60, 0.66};
 
+constexpr const char* kBevel = "bevel";
+
 // Parts of the window's size.
 constexpr double kThickness = 0.008;          ///< of lines and points that are the part itself
 constexpr double kOverlayThickness = 0.0027;  ///< of lines over it
+constexpr double kFineThickness = 0.0008;     ///< of those that are fine
 constexpr double kOverlayRadius = 0.012;      ///< of points over it
 constexpr double kLift = 0.002;               ///< of overlays, towards the eye
 
@@ -139,11 +142,23 @@ double overlay_size(const ViewWindow& window) {
   return std::max(window.height_m, 0.7 * window.width_m);
 }
 
+/// The colour of the overlay, and most of the way to white where it is cut away.
+ColorScale bevel_scale(const Color& color) {
+  Color light = color;
+  for (double& channel : light) channel = (channel + 3) / 4;
+  ColorScale scale;
+  scale.array = kBevel;
+  scale.palette = {color, light};
+  return scale;
+}
+
 vtkSmartPointer<vtkActor> overlay_actor(const PanelOverlay& overlay, const ViewWindow& window) {
   const bool points = overlay.part->kind == Part::Kind::points;
   const double size = overlay_size(window);
-  auto actor = plain_actor(*overlay.part, "",
-                           points ? overlay_ball_radius(window) : kOverlayThickness * size, false);
+  const double thickness = size * (overlay.fine ? kFineThickness : kOverlayThickness);
+  const bool bevelled = overlay.part->find_array(kBevel) != nullptr;
+  auto actor = plain_actor(*overlay.part, bevelled ? kBevel : "",
+                           points ? overlay_ball_radius(window) : thickness, bevelled);
   const Eigen::Vector3d lift = kLift * size * window.direction;
   actor->SetPosition(lift.x(), lift.y(), lift.z());
   vtkProperty* material = actor->GetProperty();
@@ -152,7 +167,11 @@ vtkSmartPointer<vtkActor> overlay_actor(const PanelOverlay& overlay, const ViewW
   material->SetDiffuse(points ? 0.75 : 0.4);
   material->SetSpecular(points ? 0.25 : 0.0);
   material->SetSpecularPower(30);
-  if (overlay.part->kind == Part::Kind::triangles) set_solid_material(material);
+  if (bevelled) {
+    apply(bevel_scale(overlay.color), actor);  // narrow: lit by its surroundings
+  } else if (overlay.part->kind == Part::Kind::triangles) {
+    set_solid_material(material);
+  }
   return actor;
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/frame.h"
@@ -9,6 +10,9 @@
 #include "testbed/runner/spec.h"
 
 namespace geoprior {
+
+/// Overlays that are of the sheet's own stuff, whose colours do not tell overlays apart.
+inline constexpr std::string_view kLipDetail = "lip_detail", kFibres = "fibres";
 
 struct NamedPart {
   std::string name;

@@ -162,7 +162,8 @@ Picture draw_cell(const DrawnPanel& panel, const FigureView& view, const BlockLo
                       layout.panel_height);
   }
   for (const NamedPart& overlay : cell.overlays) {
-    parts.overlays.push_back({&overlay.part, look.colors.at(overlay.name)});
+    parts.overlays.push_back(
+        {&overlay.part, look.colors.at(overlay.name), overlay.name == kFibres});
   }
   return draw_panel(parts, look.window, look.style, layout.panel_width, layout.panel_height);
 }

@@ -17,6 +17,7 @@ constexpr std::array<Color, 3> kLines{{{0.13, 0.16, 0.26}, {0.55, 0.26, 0.10}, {
 constexpr std::array<Color, 2> kSolids{{{0.80, 0.30, 0.20}, {0.93, 0.90, 0.84}}};
 constexpr std::array<Color, 3> kPoints{
     {{0.82, 0.08, 0.08}, {0.10, 0.22, 0.62}, {0.42, 0.12, 0.52}}};
+constexpr Color kPaper{0.80, 0.77, 0.71}, kFibre{0.50, 0.48, 0.45};
 
 Rgb to_rgb(const Color& color) {
   Rgb out{};
@@ -195,6 +196,10 @@ OverlayColors overlay_colors(const std::vector<FigureRow>& rows,
   for (const std::string& name : overlays) {
     const NamedPart* overlay = find_overlay(rows, name);
     if (overlay == nullptr) continue;
+    if (name == kLipDetail || name == kFibres) {
+      colors[name] = name == kFibres ? kFibre : kPaper;
+      continue;
+    }
     switch (overlay->part.kind) {
       case Part::Kind::points:
         colors[name] = kPoints[points++ % kPoints.size()];

@@ -26,7 +26,7 @@ struct LegendEntry {
 using OverlayColors = std::map<std::string, std::array<double, 3>>;
 
 /// Colours of the overlays that some panel has: ink for lines, red for points, others for further
-/// ones of a kind.
+/// ones of a kind; those of paper for what is of paper.
 OverlayColors overlay_colors(const std::vector<FigureRow>& rows,
                              const std::vector<std::string>& overlays);
 

@@ -24,9 +24,11 @@ struct ViewWindow {
 };
 
 /// A part that explains another: thin lines and small balls, slightly lifted towards the eye.
+/// Triangles that have 1 in an array "bevel" are lighter.
 struct PanelOverlay {
   const Part* part = nullptr;
   std::array<double, 3> color{0, 0, 0};
+  bool fine = false;  ///< lines as thin as hair
 };
 
 /// What is drawn together: triangles as a surface, lines as tubes, points as spheres, a grid as a

@@ -145,6 +145,7 @@ inline void run_hybrid(const Sheet& sheet, const HybridOptions& options, std::ui
     for (int i = 0; i < substeps; ++i) {
       state.time = start + i * dt;
       stepper.step(state, dt, context);
+      mesher.stepped(sheet, stepper, state, context);
     }
     state.time = sheet.frame_time(frame);
     if (look_before) look_before(mesher, state);

@@ -21,7 +21,7 @@ NamedArray array(const char* name, NamedArray::On on, Eigen::MatrixXd values) {
   return {name, "1", on, std::move(values)};
 }
 
-Frame frame_of(const sheets::Sheet& s, double time = 0) {
+Frame frame_of(const geoprior::sheets::Sheet& s, double time = 0) {
   Frame frame;
   frame.parameter = time;
   Part& part = frame.parts["surface"];
@@ -53,7 +53,7 @@ class StripMetrics : public ::testing::Test {
 
   PaperScene scene;
   test::MetricTable table{paper::metrics()};
-  sheets::Sheet strip = sheets::rectangle(0.2, 0.1, 20, 10);
+  geoprior::sheets::Sheet strip = geoprior::sheets::rectangle(0.2, 0.1, 20, 10);
 };
 
 TEST_F(StripMetrics, AFlatSheetHasNothingToReport) {
@@ -81,7 +81,7 @@ TEST_F(StripMetrics, AFlatSheetHasNothingToReport) {
 
 TEST_F(StripMetrics, ACylinderHasTheEnergyOfThePlate) {
   const double radius = 0.05;
-  const Frame frame = frame_of(sheets::mapped(strip, sheets::cylinder(radius)));
+  const Frame frame = frame_of(geoprior::sheets::mapped(strip, geoprior::sheets::cylinder(radius)));
   const double plate = 0.02 * scene.sheet.material.bending_stiffness() / (2 * radius * radius);
   // Edges of 10 mm on 50 mm: dihedral angles per height of the chord, 1 % off.
   EXPECT_NEAR(value("bending_energy", frame).value() / plate, 1, 0.02);
@@ -98,7 +98,7 @@ TEST_F(StripMetrics, ACylinderHasTheEnergyOfThePlate) {
 // AD/(2R^2), of which edges of a fifth of the radius miss 2 % (docs/metrics.md).
 TEST_F(StripMetrics, ACylinderHasTheEnergyOfThePlateByQuadricsToo) {
   const double radius = 0.05;
-  const Frame frame = frame_of(sheets::mapped(strip, sheets::cylinder(radius)));
+  const Frame frame = frame_of(geoprior::sheets::mapped(strip, geoprior::sheets::cylinder(radius)));
   const double plate = 0.02 * scene.sheet.material.bending_stiffness() / (2 * radius * radius);
   EXPECT_NEAR(value("bending_energy_quadric", frame).value() / plate, 0.98, 0.005);
   // Half of the curvature is plastic: a quarter of the energy is left.
@@ -111,7 +111,7 @@ TEST_F(StripMetrics, ACylinderHasTheEnergyOfThePlateByQuadricsToo) {
 }
 
 TEST_F(StripMetrics, QuadricsMeasureOnlySheetsThatTwoSidesBend) {
-  const Frame frame = frame_of(sheets::mapped(strip, sheets::cylinder(0.05)));
+  const Frame frame = frame_of(geoprior::sheets::mapped(strip, geoprior::sheets::cylinder(0.05)));
   ASSERT_TRUE(value("bending_energy_quadric", frame).has_value());
   scene.sheet.obstacles.emplace_back();
   EXPECT_FALSE(value("bending_energy_quadric", frame).has_value());
@@ -122,8 +122,8 @@ TEST_F(StripMetrics, QuadricsMeasureOnlySheetsThatTwoSidesBend) {
 std::vector<Frame> lifted(const std::function<double(int)>& height) {
   std::vector<Frame> frames;
   for (int i = 0; i < 5; ++i) {
-    sheets::Sheet s =
-        i % 2 == 0 ? sheets::rectangle(0.2, 0.1, 20, 10) : sheets::rectangle(0.2, 0.1, 7, 5, 0.2);
+    geoprior::sheets::Sheet s = i % 2 == 0 ? geoprior::sheets::rectangle(0.2, 0.1, 20, 10)
+                                           : geoprior::sheets::rectangle(0.2, 0.1, 7, 5, 0.2);
     s.x.col(2).array() += height(i);
     frames.push_back(frame_of(s, 0.04 * i));
   }
@@ -144,8 +144,8 @@ TEST_F(StripMetrics, EnergySpikesAreOverTheGreaterNeighbour) {
   std::vector<Frame> frames;
   const std::vector<double> angles = {0.1, 0.1, 0.12, 0.11, 0.1};
   for (std::size_t i = 0; i < angles.size(); ++i) {
-    frames.push_back(
-        frame_of(sheets::mapped(strip, sheets::fold(angles[i])), 0.04 * static_cast<double>(i)));
+    frames.push_back(frame_of(geoprior::sheets::mapped(strip, geoprior::sheets::fold(angles[i])),
+                              0.04 * static_cast<double>(i)));
   }
   // A fold stretches nothing, and its energy goes with the square of its angle.
   EXPECT_NEAR(table.of_sequence("energy_spike", scene, frames).value(), 144.0 / 121, 1e-6);
@@ -153,7 +153,7 @@ TEST_F(StripMetrics, EnergySpikesAreOverTheGreaterNeighbour) {
 
 TEST_F(StripMetrics, ACylinderFoldsOneWayAndCostsWhatThePlateDoes) {
   const double radius = 0.1;
-  const Frame bent = frame_of(sheets::mapped(strip, sheets::cylinder(radius)));
+  const Frame bent = frame_of(geoprior::sheets::mapped(strip, geoprior::sheets::cylinder(radius)));
   EXPECT_LT(value("cancelling_share", bent).value(), 0.01);
   const double expected = 0.02 * scene.sheet.material.bending_stiffness() / (2 * radius * radius);
   EXPECT_NEAR(value("fold_energy", bent).value() / expected, 1, 0.1);
@@ -183,7 +183,7 @@ TEST_F(StripMetrics, ForcesAddUpOverEachHandle) {
 }
 
 TEST_F(StripMetrics, DistanceIsOverTheWidthOfThePattern) {
-  sheets::Sheet coarse = sheets::rectangle(0.2, 0.1, 3, 2);
+  geoprior::sheets::Sheet coarse = geoprior::sheets::rectangle(0.2, 0.1, 3, 2);
   coarse.x.col(2).setConstant(0.01);
   const Frame frame = frame_of(strip);
   const Frame other = frame_of(coarse);
@@ -192,7 +192,7 @@ TEST_F(StripMetrics, DistanceIsOverTheWidthOfThePattern) {
 
 /// Rolled to a polygon that is the elastica of this end slope: the strip's own differential
 /// equation, theta'' = -load sin(theta), by small steps.
-sheets::Map elastica(double end_slope) {
+geoprior::sheets::Map elastica(double end_slope) {
   return [=](const Eigen::Vector2d& p) -> Eigen::Vector3d {
     const double k = std::sin(end_slope / 2);
     const double root_load = 2 * elliptic_integrals(k).first / 0.2;
@@ -213,11 +213,11 @@ sheets::Map elastica(double end_slope) {
 
 TEST_F(StripMetrics, TheElasticaIsItself) {
   for (const double slope : {0.5, 1.2}) {
-    const Frame frame = frame_of(sheets::mapped(strip, elastica(slope)));
+    const Frame frame = frame_of(geoprior::sheets::mapped(strip, elastica(slope)));
     EXPECT_LT(value("elastica_error", frame).value(), 1e-5) << slope;
   }
   // An arc of a circle of the same ends is not.
-  const Frame arc = frame_of(sheets::mapped(strip, sheets::cylinder(0.08)));
+  const Frame arc = frame_of(geoprior::sheets::mapped(strip, geoprior::sheets::cylinder(0.08)));
   const double chord = 2 * 0.08 * std::sin(0.1 / 0.08);
   const double height = 0.08 * (1 - std::cos(0.1 / 0.08));
   const double exact = elastica_height(0.2, chord);
@@ -226,7 +226,7 @@ TEST_F(StripMetrics, TheElasticaIsItself) {
 }
 
 TEST_F(StripMetrics, OnlyAStripIsComparedToTheElastica) {
-  const Frame arc = frame_of(sheets::mapped(strip, sheets::cylinder(0.08)));
+  const Frame arc = frame_of(geoprior::sheets::mapped(strip, geoprior::sheets::cylinder(0.08)));
   ASSERT_TRUE(value("elastica_error", arc).has_value());
   scene.sheet.gravity.z() = -9.81;
   EXPECT_FALSE(value("elastica_error", arc).has_value());
@@ -253,8 +253,8 @@ TEST_F(StripMetrics, OnlyAStripIsComparedToTheElastica) {
 
 TEST_F(StripMetrics, SectorOfAConeNeedsARing) {
   // Half of the disc lies level on the ring, a bump over the rest: its width at a fifth is known.
-  const sheets::Sheet disc = sheets::disc(0.1, 5, 240);
-  const Frame cone = frame_of(sheets::mapped(disc, [](const Eigen::Vector2d& p) {
+  const geoprior::sheets::Sheet disc = geoprior::sheets::disc(0.1, 5, 240);
+  const Frame cone = frame_of(geoprior::sheets::mapped(disc, [](const Eigen::Vector2d& p) {
     const double angle = std::atan2(p(1), p(0));
     const double bump = std::max(0.0, 2 * std::cos(2 * angle)) * (p(0) > 0 ? 1 : 0);
     return Eigen::Vector3d(p(0), p(1), 0.1 * p.norm() * (1 + bump));
@@ -291,7 +291,7 @@ TEST_F(StripMetrics, FramesThatCannotBeMeasuredAreRefused) {
 }
 
 TEST_F(StripMetrics, RememberedValuesFollowTheContent) {
-  const Frame frame = frame_of(sheets::mapped(strip, sheets::cylinder(0.05)));
+  const Frame frame = frame_of(geoprior::sheets::mapped(strip, geoprior::sheets::cylinder(0.05)));
   const double before = value("bending_energy", frame).value();
   scene.sheet.material.thickness *= 2;
   EXPECT_NEAR(value("bending_energy", frame).value() / before, 8, 1e-9);

@@ -190,7 +190,7 @@ TEST(HandleMap, SpreadsALoadEvenlyOverUnevenVertices) {
   mesh.triangles.resize(4, 3);
   mesh.triangles << 0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5;
   Eigen::MatrixX3d forces = Eigen::MatrixX3d::Zero(6, 3);
-  HandleMap(sheet, mesh, 1).add_loads(sheet, 0, forces);
+  HandleMap(sheet, resting_state(sheet, mesh, 1), 1).add_loads(sheet, 0, forces);
   EXPECT_NEAR(forces.col(2).sum(), 1, 1e-14);
   EXPECT_NEAR(forces.col(2).dot(mesh.pattern.col(0)), 0, 1e-14);
   EXPECT_NEAR(forces(2, 2), 0.05, 1e-14);

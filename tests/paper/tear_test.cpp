@@ -262,6 +262,7 @@ Sheet pulled_sheet() {
     end.shift = Vector3d(side * 0.04, 0, 0);
     sheet.handles.push_back(
         sheets::point_handle(side < 0 ? "left" : "right", {{side * 0.05, -0.08}}, {start, end}));
+    sheet.handles.back().stiffness = 500;
   }
   return sheet;
 }
