@@ -66,6 +66,12 @@ double fracture_energy(const Sheet& sheet, const std::vector<TearPath>& paths) {
 
 }  // namespace
 
+double TornSheet::length() const {
+  double sum = 0;
+  for (const TearPath& path : paths) sum += path_length(path);
+  return sum;
+}
+
 std::optional<TornSheet> torn_sheet(const Frame& frame) {
   const Part* part = frame.find_part("tears");
   if (part == nullptr) return std::nullopt;
@@ -92,7 +98,7 @@ std::optional<TearMeasures> tear_measures(const SheetFrame& f) {
   const auto torn = torn_sheet(f.frame);
   if (!torn) return std::nullopt;
   TearMeasures m;
-  for (const TearPath& path : torn->paths) m.length += path_length(path);
+  m.length = torn->length();
   m.energy = fracture_energy(f.sheet, torn->paths);
   m.parts = part_count(f.triangles());
   const auto hands = two_hands(f.sheet);
@@ -107,16 +113,18 @@ std::optional<TearMeasures> tear_measures(const SheetFrame& f) {
 }
 
 Value energy_gap(FitMemo& fits, const SheetFrame& f) {
-  const auto tears = tear_measures(f);
+  const auto torn = torn_sheet(f.frame);
+  if (!torn || torn->paths.empty()) return std::nullopt;
   const Value work = handle_work(f);
+  if (!work || !(*work > 0)) return std::nullopt;
   const auto energy = energy_measures(fits, f);
-  if (!tears || !(tears->length > 0) || !work || !(*work > 0) || !energy) return std::nullopt;
+  if (!energy) return std::nullopt;
   double left = *work - energy->membrane - energy->bending - energy->kinetic.value_or(0);
   for (const auto& [handle, force] : handle_forces(f)) {
     const auto& stiffness = f.sheet.handles[handle].stiffness;
     if (stiffness) left -= force.squaredNorm() / (2 * *stiffness);
   }
-  return (left - tears->energy) / *work;
+  return (left - fracture_energy(f.sheet, torn->paths)) / *work;
 }
 
 std::optional<TearingForces> tearing_forces(const PaperScene& scene, const FrameSequence& frames) {
@@ -129,8 +137,7 @@ std::optional<TearingForces> tearing_forces(const PaperScene& scene, const Frame
     const SheetFrame f = sheet_frame(scene, *frame);
     const auto torn = torn_sheet(*frame);
     if (!torn) return std::nullopt;
-    double now = 0;
-    for (const TearPath& path : torn->paths) now += path_length(path);
+    const double now = torn->length();
     const auto force = handle_force(f);
     if (now > length) {
       if (length == 0) out.onset = last;

@@ -12,6 +12,7 @@ namespace geoprior::paper {
 struct TornSheet {
   std::vector<TearPath> paths;     ///< of each tear what has grown, from where it began to grow
   std::vector<TearPath> outlines;  ///< of each, with the cut it began with
+  [[nodiscard]] double length() const;  ///< grown, of all (m)
 };
 /// Absent when the method records no tears. @throws Error  when the part is not as documented
 std::optional<TornSheet> torn_sheet(const Frame& frame);

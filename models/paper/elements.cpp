@@ -57,16 +57,6 @@ struct LocalHinge {
   Eigen::Vector3d fit;                 ///< what it contributes to S per rad
 };
 
-std::array<Eigen::Vector2d, 3> shape_gradients(const ShellMesh& mesh, int t, double area) {
-  std::array<Eigen::Vector2d, 3> gradient;
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector2d opposite = mesh.pattern.row(mesh.triangles(t, (k + 2) % 3)) -
-                                     mesh.pattern.row(mesh.triangles(t, (k + 1) % 3));
-    gradient[k] = Eigen::Vector2d(-opposite.y(), opposite.x()) / (2 * area);
-  }
-  return gradient;
-}
-
 using Root = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRows, kMostTerms>;
 using PlasticRows = Eigen::Matrix<double, kMostRows, 3>;
 

@@ -94,6 +94,17 @@ std::vector<int> parts(const Eigen::MatrixX3i& triangles) {
   return first;
 }
 
+std::vector<double> part_areas(const ShellMesh& mesh) {
+  const std::vector<int> first = parts(mesh.triangles);
+  std::vector<double> sum(first.size(), 0);
+  for (int f = 0; f < mesh.triangle_count(); ++f) sum[first[f]] += pattern_area(mesh, f);
+  std::vector<double> areas;
+  for (int f = 0; f < mesh.triangle_count(); ++f) {
+    if (first[f] == f) areas.push_back(sum[f]);
+  }
+  return areas;
+}
+
 int part_count(const Eigen::MatrixX3i& triangles) {
   const std::vector<int> first = parts(triangles);
   int count = 0;

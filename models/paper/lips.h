@@ -20,6 +20,8 @@ bool has_lips(const ShellMesh& mesh);
 
 /// Of each triangle the first one of the part that it holds together with over edges.
 std::vector<int> parts(const Eigen::MatrixX3i& triangles);
+/// Areas of such parts in the pattern, by their first triangles (m^2).
+std::vector<double> part_areas(const ShellMesh& mesh);
 /// Number of such parts.
 int part_count(const Eigen::MatrixX3i& triangles);
 

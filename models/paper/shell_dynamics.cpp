@@ -35,6 +35,16 @@ Eigen::Vector3d normal(const Eigen::MatrixX3d& x, const Eigen::Vector3i& t) {
 
 bool gives(const HandleMap::Target& target) { return target.stiffness.has_value(); }
 
+/// Of the hands that give among the targets (J).
+double spring_energy(const std::vector<HandleMap::Target>& targets, const Eigen::MatrixX3d& x) {
+  double energy = 0;
+  for (const HandleMap::Target& t : targets) {
+    if (gives(t))
+      energy += *t.stiffness / 2 * (x.row(t.vertex).transpose() - t.place).squaredNorm();
+  }
+  return energy;
+}
+
 NodeGraph element_graph(const ShellElements& elements, int vertices) {
   std::vector<int> offset(1, 0);
   std::vector<int> members;
@@ -280,11 +290,7 @@ ShellEnergies ShellDynamics::energies(const ShellState& state) const {
   energies.contact = contact_energy(contacts, options_->contact_distance);
   std::vector<HandleMap::Target> targets;
   handles_.targets(*sheet_, state.time, targets);
-  for (const HandleMap::Target& t : targets) {
-    if (t.stiffness)
-      energies.hands +=
-          *t.stiffness / 2 * (state.x.row(t.vertex).transpose() - t.place).squaredNorm();
-  }
+  energies.hands = spring_energy(targets, state.x);
   return energies;
 }
 
@@ -497,8 +503,7 @@ double ShellDynamics::potential(const Eigen::MatrixX3d& x) {
   for (const FrictionPoint& friction : problem_.frictions) {
     energy += friction.limit * std::hypot(slip_of(friction, x).norm(), options_->creep_speed * dt);
   }
-  for (const HandleMap::Target& t : problem_.springs)
-    energy += *t.stiffness / 2 * (x.row(t.vertex).transpose() - t.place).squaredNorm();
+  energy += spring_energy(problem_.springs, x);
   double value = dt * dt * energy;
   for (int i = 0; i < vertices(); ++i) {
     value +=

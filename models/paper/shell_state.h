@@ -31,4 +31,11 @@ struct ShellState {
   double time = 0;         ///< s
 };
 
+/// Area of a triangle in the pattern, negative when it is turned over there (m^2).
+double pattern_area(const ShellMesh& mesh, int t);
+
+/// Mean normal of the triangles about a vertex, those with more area counting more.
+/// @param corners  of the state's mesh
+Eigen::Vector3d vertex_normal(const ShellState& state, const VertexCorners& corners, int vertex);
+
 }  // namespace geoprior::paper

@@ -55,23 +55,6 @@ void add_vertices(const ShellMesh& mesh, const Tears& tears, std::vector<TearCan
   }
 }
 
-/// Area of the smallest part that hangs together (m^2).
-double smallest_part(const ShellMesh& mesh) {
-  const std::vector<int> first = parts(mesh.triangles);
-  Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh.triangle_count());
-  for (int f = 0; f < mesh.triangle_count(); ++f) {
-    const Vector2d a = mesh.pattern.row(mesh.triangles(f, 0));
-    const Vector2d b = mesh.pattern.row(mesh.triangles(f, 1));
-    const Vector2d c = mesh.pattern.row(mesh.triangles(f, 2));
-    area[first[f]] += cross(b - a, c - a) / 2;
-  }
-  double least = area.sum();
-  for (int f = 0; f < mesh.triangle_count(); ++f) {
-    if (first[f] == f) least = std::min(least, area[f]);
-  }
-  return least;
-}
-
 double elastic_energy(const ShellStepper& stepper, const ShellState& state) {
   return stepper.energies(state).strain();
 }
@@ -245,7 +228,8 @@ Vector2d TearGrowth::course(const Growing& growing) const {
 }
 
 /// Takes a tip to a place, or to what stands in the way.
-void TearGrowth::go(int tear, const Vector2d& to, const Remesh& remesh, ShellStepper& stepper,
+/// @return  elastic energy that the step set free (J)
+double TearGrowth::go(int tear, const Vector2d& to, const Remesh& remesh, ShellStepper& stepper,
                     ShellState& state) {
   const Tears before = tears_;
   const ShellState old = state;
@@ -257,7 +241,7 @@ void TearGrowth::go(int tear, const Vector2d& to, const Remesh& remesh, ShellSte
   bool fits = true;
   try {
     remesh(state);
-    fits = !stop || smallest_part(state.mesh) >= options_.least_part;
+    fits = !stop || std::ranges::min(part_areas(state.mesh)) >= options_.least_part;
     if (fits) stepper.set_mesh(state);
   } catch (const Error&) {
     fits = false;
@@ -277,6 +261,7 @@ void TearGrowth::go(int tear, const Vector2d& to, const Remesh& remesh, ShellSte
     if (i >= options_.relax_steps && relaxation.energy() <= energy) break;
     relaxation.step(stepper, state);
   }
+  return energy - relaxation.energy();
 }
 
 void TearGrowth::take_step(const Growing& growing, const Remesh& remesh, ShellStepper& stepper,
@@ -285,14 +270,13 @@ void TearGrowth::take_step(const Growing& growing, const Remesh& remesh, ShellSt
   const Vector2d to = from + options_.step * course(growing);
   const int tear =
       growing.candidate.tear ? *growing.candidate.tear : tears_.start(from, state.time);
-  const double before = elastic_energy(stepper, state);
-  go(tear, to, remesh, stepper, state);
+  const double released = go(tear, to, remesh, stepper, state);
   const Vector2d way = tears_.all()[tear].tip() - from;
   if (way.isZero(0)) return;
   tears_.note_pull(tear, growing.direction, way.norm(), growing.pull.shear(way.normalized()));
   const double opposed = sheet_.toughness.at(from + way / 2, way.normalized());
   totals_.energy += opposed * way.norm() * sheet_.material.thickness;
-  totals_.released += before - elastic_energy(stepper, state);
+  totals_.released += released;
   ++totals_.steps;
   last_pull_ = {growing.pull.force, growing.pull.angle};
 }

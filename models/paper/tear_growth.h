@@ -114,8 +114,8 @@ class TearGrowth {
   [[nodiscard]] Eigen::Vector2d direction_of(const TipPull& pull, const Eigen::Vector2d& p) const;
   void take_step(const Growing& growing, const Remesh& remesh, ShellStepper& stepper,
                  ShellState& state);
-  void go(int tear, const Eigen::Vector2d& to, const Remesh& remesh, ShellStepper& stepper,
-          ShellState& state);
+  double go(int tear, const Eigen::Vector2d& to, const Remesh& remesh, ShellStepper& stepper,
+            ShellState& state);
 
   const Sheet& sheet_;
   TearOptions options_;

@@ -7,6 +7,7 @@
 
 #include "core/angles.h"
 #include "core/planar.h"
+#include "models/paper/shape_gradients.h"
 
 namespace geoprior::paper {
 namespace {
@@ -62,12 +63,19 @@ struct Stress {
   double energy = 0;  ///< density
 };
 
-Stress stress(const Sheet& sheet, const ShellState& state, int f,
-              const std::array<Vector2d, 3>& gradient, double area) {
+/// Map from the pattern to space in a triangle.
+Eigen::Matrix<double, 3, 2> deformation(const ShellState& state, int f,
+                                        const std::array<Vector2d, 3>& gradient) {
   Eigen::Matrix<double, 3, 2> F = Eigen::Matrix<double, 3, 2>::Zero();
   for (int k = 0; k < 3; ++k) {
     F += state.x.row(state.mesh.triangles(f, k)).transpose() * gradient[k].transpose();
   }
+  return F;
+}
+
+Stress stress(const Sheet& sheet, const ShellState& state, int f,
+              const std::array<Vector2d, 3>& gradient, double area) {
+  const Eigen::Matrix<double, 3, 2> F = deformation(state, f, gradient);
   const Eigen::Matrix2d G = (F.transpose() * F - Eigen::Matrix2d::Identity()) / 2;
   const double nu = sheet.material.poisson_ratio;
   const Eigen::Matrix2d S = area * sheet.material.membrane_stiffness() *
@@ -94,15 +102,9 @@ Images images_on(const Sheet& sheet, const ShellState& state, const std::vector<
   std::vector<int> count(n, 0);
   for (const int f : piece) {
     const Eigen::RowVector3i t = mesh.triangles.row(f);
-    const std::array<Vector2d, 3> p{mesh.pattern.row(t[0]), mesh.pattern.row(t[1]),
-                                    mesh.pattern.row(t[2])};
-    const double twice = cross(p[1] - p[0], p[2] - p[0]);
-    std::array<Vector2d, 3> gradient;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vector2d opposite = p[(k + 2) % 3] - p[(k + 1) % 3];
-      gradient[k] = Vector2d(-opposite.y(), opposite.x()) / twice;
-    }
-    const Stress of_triangle = stress(sheet, state, f, gradient, twice / 2);
+    const double area = pattern_area(mesh, f);
+    const std::array<Vector2d, 3> gradient = shape_gradients(mesh, f, area);
+    const Stress of_triangle = stress(sheet, state, f, gradient, area);
     const Eigen::Matrix2d& S = of_triangle.second_piola_kirchhoff;
     for (std::size_t k = 0; k < 3; ++k) {
       const int v = t[static_cast<Eigen::Index>(k)];
@@ -143,35 +145,17 @@ std::vector<Acting> forces_on(const ShellStepper& stepper, const ShellState& sta
 Vector2d held_image(const ShellStepper& stepper, const ShellState& state,
                     const VertexCorners& corners, int vertex) {
   std::vector<int> about;
-  Eigen::Matrix<double, 3, 2> F = Eigen::Matrix<double, 3, 2>::Zero();
+  Eigen::Matrix<double, 3, 2> F = Eigen::Matrix<double, 3, 2>::Zero();  // times area
   double area = 0;
   for (const int corner : corners.of(vertex)) {
     const int f = corner / 3;
-    const Eigen::RowVector3i t = state.mesh.triangles.row(f);
     about.push_back(f);
-    const std::array<Vector2d, 3> p{state.mesh.pattern.row(t[0]), state.mesh.pattern.row(t[1]),
-                                    state.mesh.pattern.row(t[2])};
-    area += cross(p[1] - p[0], p[2] - p[0]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vector2d opposite = p[(k + 2) % 3] - p[(k + 1) % 3];
-      F += state.x.row(t[static_cast<Eigen::Index>(k)]).transpose() *
-           Vector2d(-opposite.y(), opposite.x()).transpose();
-    }
+    const double a = pattern_area(state.mesh, f);
+    area += a;
+    F += a * deformation(state, f, shape_gradients(state.mesh, f, a));
   }
   const Vector3d taken = stepper.elastic_forces(state, about).row(vertex);
   return F.transpose() / area * taken;
-}
-
-/// Mean normal of the triangles about a vertex, those with more area counting more.
-Vector3d normal_about(const ShellState& state, int vertex) {
-  Vector3d sum = Vector3d::Zero();
-  for (int f = 0; f < state.mesh.triangle_count(); ++f) {
-    const Eigen::RowVector3i t = state.mesh.triangles.row(f);
-    if (!(t.array() == vertex).any()) continue;
-    const Vector3d a = state.x.row(t[0]), b = state.x.row(t[1]), c = state.x.row(t[2]);
-    sum += (b - a).cross(c - a);
-  }
-  return sum.normalized();
 }
 
 /// Forces that act on one side.
@@ -238,7 +222,7 @@ std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
   pull.right = right.image;
   pull.release = images.release;
   pull.line = line;
-  pull.normal = normal_about(state, vertex);
+  pull.normal = vertex_normal(state, neighbours.corners, vertex);
   pull.force = (l + r) / 2;
   pull.angle = std::abs(signed_angle(pull.left, pull.right));
   if (!(pull.angle <= options.widest_angle_deg * kDegree)) return {};

@@ -51,19 +51,6 @@ constexpr int kReview = 5;
 /// How far a new singular point is moved out of the sheet, in seeding distances.
 constexpr double kDent = 0.05;
 
-/// Mean normal of the triangles about a vertex.
-Eigen::RowVector3d vertex_normal(const ShellState& state, int vertex) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int f = 0; f < state.mesh.triangle_count(); ++f) {
-    const Eigen::RowVector3i t = state.mesh.triangles.row(f);
-    if (t[0] != vertex && t[1] != vertex && t[2] != vertex) continue;
-    const Eigen::Vector3d a = state.x.row(t[1]) - state.x.row(t[0]);
-    const Eigen::Vector3d b = state.x.row(t[2]) - state.x.row(t[0]);
-    sum += a.cross(b);
-  }
-  return sum.normalized().transpose();
-}
-
 /// Side of the sheet (+1: that of the normal) to which the neighbours of a vertex lie.
 double hollow_side(const ShellState& state, const EdgeConnectivity& edges, int vertex,
                    const Eigen::RowVector3d& normal) {
@@ -411,9 +398,10 @@ void HybridMesher::carry(const Sheet& sheet, ShellState& state, std::size_t old_
   }
   if (old_points >= mesh_.singular_vertices.size()) return;
   const EdgeConnectivity edges(state.mesh.triangles);
+  const VertexCorners corners(state.mesh.triangles, state.mesh.vertex_count());
   for (std::size_t s = old_points; s < mesh_.singular_vertices.size(); ++s) {
     const int apex = mesh_.singular_vertices[s];
-    const Eigen::RowVector3d normal = vertex_normal(state, apex);
+    const Eigen::RowVector3d normal = vertex_normal(state, corners, apex);
     state.x.row(apex) +=
         hollow_side(state, edges, apex, normal) * kDent * options_.seeding_distance * normal;
   }

@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <vector>
 
-#include "core/planar.h"
 #include "core/random.h"
 #include "models/paper/lips.h"
 #include "models/paper/segments.h"
@@ -92,16 +91,9 @@ int parts_of(const Pattern& pattern) {
 
 /// Parts of a mesh that are as large.
 int parts_of(const ShellMesh& mesh) {
-  const std::vector<int> first = parts(mesh.triangles);
-  std::vector<double> area(first.size(), 0);
-  for (int f = 0; f < mesh.triangle_count(); ++f) {
-    const Vector2d a = mesh.pattern.row(mesh.triangles(f, 0));
-    const Vector2d b = mesh.pattern.row(mesh.triangles(f, 1));
-    const Vector2d c = mesh.pattern.row(mesh.triangles(f, 2));
-    area[first[f]] += cross(b - a, c - a) / 2;
-  }
+  const std::vector<double> areas = part_areas(mesh);
   return static_cast<int>(
-      std::count_if(area.begin(), area.end(), [](double a) { return a > kLeastPart; }));
+      std::count_if(areas.begin(), areas.end(), [](double a) { return a > kLeastPart; }));
 }
 
 class RandomPulls : public testing::TestWithParam<int> {};
