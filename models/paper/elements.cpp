@@ -14,6 +14,7 @@
 #include "core/connectivity.h"
 #include "core/curvature_fit.h"
 #include "models/paper/hinge.h"
+#include "models/paper/shape_gradients.h"
 
 namespace geoprior::paper {
 namespace {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string_view>
 #include <utility>
@@ -43,7 +44,7 @@ std::optional<int> vertex_at(const ShellMesh& mesh, const Vector2d& p, double to
   return found;
 }
 
-/// Every vertex that lies on no tear.
+/// Every vertex that lies on no tear; all are looked at alike.
 void add_vertices(const ShellMesh& mesh, const Tears& tears, std::vector<TearCandidate>& places) {
   const double same = kSame * width(tears.torn());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
@@ -53,6 +54,7 @@ void add_vertices(const ShellMesh& mesh, const Tears& tears, std::vector<TearCan
     });
     if (!known && distance_to_cuts(tears.torn(), p) > same) places.push_back({p, std::nullopt});
   }
+  for (TearCandidate& place : places) place.smooth = true;
 }
 
 double elastic_energy(const ShellStepper& stepper, const ShellState& state) {
@@ -146,20 +148,41 @@ Vector2d TearGrowth::direction_of(const TipPull& pull, const Vector2d& p) const 
   return best;
 }
 
-/// How far a piece about the candidate may reach: neither to another tip nor to a hand, whose own
-/// J integrals it would enclose (m).
-double TearGrowth::clear_reach(const TearCandidate& candidate, double time) const {
-  double nearest = options_.pull.reach / kClear;
+/// Distance to the next tip of another tear (m).
+double TearGrowth::nearest_tip(const TearCandidate& candidate) const {
+  double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < tears_.all().size(); ++t) {
     const Tear& tear = tears_.all()[t];
     if (!tear.ended && static_cast<int>(t) != candidate.tear)
       nearest = std::min(nearest, (tear.tip() - candidate.place).norm());
   }
+  return nearest;
+}
+
+/// How far a piece about the candidate may reach: neither to another tip nor to a hand, whose own
+/// J integrals it would enclose (m).
+double TearGrowth::clear_reach(const TearCandidate& candidate, double time) const {
+  double nearest = std::min(options_.pull.reach / kClear, nearest_tip(candidate));
   for (const Handle& handle : sheet_.handles) {
     if (handle.is_active(time) && !handle.covers(candidate.place))
       nearest = std::min(nearest, handle.distance(candidate.place));
   }
   return kClear * nearest;
+}
+
+std::optional<TipPull> TearGrowth::pull_on(const TearCandidate& candidate, int vertex,
+                                           const ShellStepper& stepper, const ShellState& state,
+                                           const MeshNeighbours& neighbours) const {
+  PullOptions options = options_.pull;
+  options.reach = clear_reach(candidate, state.time);
+  if (candidate.smooth) {
+    // Near a tip it is the tip that tears.
+    const bool near_tip =
+        options_.search == TearSearch::candidates && nearest_tip(candidate) < options_.pull.reach;
+    if (near_tip) return {};
+    return pull_on_flaw(sheet_, state, neighbours, vertex, options_.flaw);
+  }
+  return pull_at(sheet_, stepper, state, neighbours, vertex, options, sheet_.toughness.least());
 }
 
 std::optional<TearGrowth::Growing> TearGrowth::look_at(const TearCandidate& candidate,
@@ -172,10 +195,7 @@ std::optional<TearGrowth::Growing> TearGrowth::look_at(const TearCandidate& cand
   }
   const auto vertex = vertex_at(state.mesh, candidate.place, same);
   if (!vertex) return {};
-  PullOptions options = options_.pull;
-  options.reach = clear_reach(candidate, state.time);
-  const auto pull =
-      pull_at(sheet_, stepper, state, neighbours, *vertex, options, sheet_.toughness.least());
+  const auto pull = pull_on(candidate, *vertex, stepper, state, neighbours);
   if (!pull) return {};
   Growing growing{candidate, *pull, direction_of(*pull, candidate.place), 0};
   if (candidate.tear) {
@@ -267,7 +287,10 @@ double TearGrowth::go(int tear, const Vector2d& to, const Remesh& remesh, ShellS
 void TearGrowth::take_step(const Growing& growing, const Remesh& remesh, ShellStepper& stepper,
                            ShellState& state) {
   const Vector2d from = growing.candidate.place;
-  const Vector2d to = from + options_.step * course(growing);
+  // A flaw opens at once: any shorter slit would release less than what opened it.
+  const bool opens = growing.candidate.smooth && !growing.candidate.tear;
+  const double step = opens ? std::max(options_.flaw, options_.step) : options_.step;
+  const Vector2d to = from + step * course(growing);
   const int tear =
       growing.candidate.tear ? *growing.candidate.tear : tears_.start(from, state.time);
   const double released = go(tear, to, remesh, stepper, state);
@@ -326,6 +349,12 @@ void describe(OptionVisitor& v, TearOptions& o) {
   static constexpr std::array<std::string_view, 2> kIntegrators{"euler", "midpoint"};
   static constexpr std::array<std::string_view, 3> kDirections{"steepest", "bisector", "askew"};
   describe_group(v, "pull", o.pull, {.doc = "how the forces about a tip are gathered"});
+  v.value("flaw", o.flaw,
+          {.doc = "length of the sheet's flaws, from which smooth places tear: junctions of cones at "
+                  "the border, and all with search = everywhere",
+           .unit = "m",
+           .min = 1e-9,
+           .max = 10});
   v.value("step", o.step,
           {.doc = "length by which a tear grows", .unit = "m", .min = 1e-9, .max = 10});
   v.value("most_steps", o.most_steps,

@@ -17,8 +17,9 @@ namespace geoprior::paper {
 /// midpoint: the direction in the middle of the step, extrapolated from those at its start and at
 /// the start of the step before (Adams and Bashforth).
 enum class TearIntegrator { euler, midpoint };
-/// everywhere: every vertex of the mesh is a candidate, as where nothing is known of the sheet
-/// (Pfaff et al. 2014).
+/// everywhere: every vertex of the mesh is a candidate, those of the thesis and tips too, and what
+/// parts it is the largest tension over all directions of the triangles about it, on a flaw: the
+/// general way, where nothing is known of the sheet (separation strength, Pfaff et al. 2014).
 enum class TearSearch { candidates, everywhere };
 /// bisector: away from both pulls; steepest: where most is released of what is opposed, which is
 /// the bisector unless the paper has a grain; askew: 45 degrees from the bisector towards one pull
@@ -29,6 +30,7 @@ enum class TearDirection { steepest, bisector, askew };
 struct TearOptions {
   PullOptions pull;
   TearSearch search = TearSearch::candidates;
+  double flaw = 4e-3;   ///< length of the sheet's flaws, from which smooth places tear (m)
   double step = 2e-3;   ///< length by which a tear grows (m)
   int most_steps = 10;  ///< of all tears after one time step
   TearIntegrator integrator = TearIntegrator::midpoint;
@@ -52,6 +54,7 @@ void describe(OptionVisitor& v, TearOptions& options);
 struct TearCandidate {
   Eigen::Vector2d place;
   std::optional<int> tear;
+  bool smooth = false;  ///< nothing concentrates the stress there: it tears from a flaw
 };
 
 /// Tips of tears, corners of the border at which the sheet lies on the larger side, and places
@@ -103,7 +106,11 @@ class TearGrowth {
     Eigen::Vector2d direction;
     double excess = 0;  ///< E_r / E_f
   };
+  [[nodiscard]] double nearest_tip(const TearCandidate& candidate) const;
   [[nodiscard]] double clear_reach(const TearCandidate& candidate, double time) const;
+  [[nodiscard]] std::optional<TipPull> pull_on(const TearCandidate& candidate, int vertex,
+                                               const ShellStepper& stepper, const ShellState& state,
+                                               const MeshNeighbours& neighbours) const;
   [[nodiscard]] std::optional<Growing> look_at(const TearCandidate& candidate,
                                                const ShellStepper& stepper, const ShellState& state,
                                                const MeshNeighbours& neighbours) const;

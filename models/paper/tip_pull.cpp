@@ -1,5 +1,6 @@
 #include "models/paper/tip_pull.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -7,6 +8,7 @@
 
 #include "core/angles.h"
 #include "core/planar.h"
+#include "models/paper/segments.h"
 #include "models/paper/shape_gradients.h"
 
 namespace geoprior::paper {
@@ -226,6 +228,48 @@ std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
   pull.force = (l + r) / 2;
   pull.angle = std::abs(signed_angle(pull.left, pull.right));
   if (!(pull.angle <= options.widest_angle_deg * kDegree)) return {};
+  return pull;
+}
+
+std::optional<TipPull> pull_on_flaw(const Sheet& sheet, const ShellState& state,
+                                    const MeshNeighbours& neighbours, int vertex, double flaw) {
+  constexpr double kEdgeCrack = 1.12;
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  Eigen::Matrix<double, 3, 2> F = Eigen::Matrix<double, 3, 2>::Zero();
+  Vector2d middle = Vector2d::Zero();
+  double area = 0;
+  bool border = false;
+  for (const int corner : neighbours.corners.of(vertex)) {
+    const int f = corner / 3;
+    const double a = pattern_area(state.mesh, f);
+    const std::array<Vector2d, 3> gradient = shape_gradients(state.mesh, f, a);
+    sum += stress(sheet, state, f, gradient, a).second_piola_kirchhoff;
+    F += a * deformation(state, f, gradient);
+    middle += a * centroid(state.mesh, f);
+    area += a;
+    const int k = corner % 3;
+    border = border || neighbours.edges.across(f, k) < 0 ||
+             neighbours.edges.across(f, (k + 2) % 3) < 0;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(sum / area);
+  const double tension = axes.eigenvalues()[1];  // N/m
+  if (!(tension > 0)) return {};
+  const Vector2d across = axes.eigenvectors().col(1);
+  Vector2d along = perpendicular(across);
+  if (along.dot(middle / area - state.mesh.pattern.row(vertex).transpose()) < 0) along = -along;
+  const double q = border ? kEdgeCrack : 1;
+  const double e = sheet.material.thickness;
+  TipPull pull;
+  pull.left = flaw * tension * perpendicular(along);
+  pull.right = -pull.left;
+  pull.left_force = F / area * pull.left;
+  pull.right_force = -pull.left_force;
+  pull.force = pull.left_force.norm();
+  pull.angle = std::numbers::pi;
+  pull.release = q * q * std::numbers::pi * flaw * tension * tension /
+                 (sheet.material.young_modulus * e) * along;
+  pull.line = along;
+  pull.normal = vertex_normal(state, neighbours.corners, vertex);
   return pull;
 }
 

@@ -77,4 +77,13 @@ std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
                                const ShellState& state, const MeshNeighbours& neighbours,
                                int vertex, const PullOptions& options, double least_release = 0);
 
+/// The pull at a vertex where nothing concentrates the stress, on a flaw of the sheet there: a slit
+/// across the largest tension s that the mean membrane stress of the triangles about the vertex has
+/// in any direction. It releases G = q^2 pi a s^2 / E a unit of area, with a the slit's length from
+/// a border (q = 1.12) or half its length inside (q = 1), E Young's modulus (Irwin 1957); both
+/// images are opposite, each the tension over a length a. Going on into the sheet.
+/// Absent when the sheet is under no tension there.
+std::optional<TipPull> pull_on_flaw(const Sheet& sheet, const ShellState& state,
+                                    const MeshNeighbours& neighbours, int vertex, double flaw);
+
 }  // namespace geoprior::paper

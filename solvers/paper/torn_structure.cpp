@@ -13,6 +13,9 @@ namespace {
 
 using Eigen::Vector2d;
 
+/// Of the width of the pattern, that a point on a lip lies from it.
+constexpr double kOnLip = 1e-9;
+
 /// Where a cut of the pattern crosses a ruling, the ends of the ruling apart.
 std::optional<Vector2d> crossing(const Pattern& pattern, const Ruling& r) {
   constexpr double kEnds = 1e-6;
@@ -135,13 +138,35 @@ void trim_rulings(RulingEditor& editor) {
   }
 }
 
+/// Where a bent piece meets another one on the border: there its first and its last ruling end.
+std::vector<Vector2d> junctions(const PaperStructure& structure) {
+  std::vector<Vector2d> places;
+  const auto add = [&](const Vector2d& p) {
+    if (std::find(places.begin(), places.end(), p) == places.end()) places.push_back(p);
+  };
+  for (const SingularPoint& s : structure.singular_points) {
+    if (s.on_border && !s.tear) add(s.position);
+  }
+  for (const PaperPiece& piece : structure.pieces) {
+    if (piece.kind == PaperPiece::Kind::flat || piece.rulings.empty()) continue;
+    for (const int i : {piece.rulings.front(), piece.rulings.back()}) {
+      const Ruling& r = structure.rulings[i];
+      if (!r.singular_a) add(r.a);
+      if (!r.singular_b) add(r.b);
+    }
+  }
+  return places;
+}
+
 }  // namespace
 
 std::vector<TearCandidate> tear_candidates(const Sheet& sheet, const Tears& tears,
                                            const PaperStructure& structure) {
   std::vector<TearCandidate> candidates = plain_candidates(sheet, tears);
-  for (const SingularPoint& s : structure.singular_points) {
-    if (s.on_border && !s.tear) candidates.push_back({s.position, std::nullopt});
+  for (const Vector2d& p : junctions(structure)) {
+    // A lip is no border that has flaws of its own.
+    if (distance_to_cuts(tears.torn(), p) > kOnLip * width(tears.torn()))
+      candidates.push_back({p, std::nullopt, true});
   }
   return candidates;
 }

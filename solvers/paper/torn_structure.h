@@ -9,8 +9,8 @@
 namespace geoprior::paper {
 
 /// Places of a structure where a tear may start or go on (thesis 3.2.2): tips, corners at which the
-/// sheet lies on the larger side, places where it is held, and singular points on the border, the
-/// junctions of conical regions.
+/// sheet lies on the larger side, places where it is held, and junctions: where two pieces meet on
+/// the border.
 std::vector<TearCandidate> tear_candidates(const Sheet& sheet, const Tears& tears,
                                            const PaperStructure& structure);
 

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "core/planar.h"
 #include "core/random.h"
 #include "models/paper/lips.h"
 #include "models/paper/segments.h"
