@@ -45,9 +45,9 @@ Part box_about(double x, double half) {
   return make_box({x - half, -half, 0}, {x + half, half, 1});
 }
 
-double enclosed_area(const std::vector<SectionSegment>& segments) {
+double enclosed_area(const std::vector<CurveSegment>& segments) {
   double area = 0;
-  for (const SectionSegment& s : segments) {
+  for (const CurveSegment& s : segments) {
     area += 0.5 * (s.from.x() * s.to.y() - s.from.y() * s.to.x());
   }
   return area;
