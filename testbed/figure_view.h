@@ -70,10 +70,13 @@ struct FigureView {
   std::optional<FurtherRow> above;     ///< with a camera and colours of its own
   std::optional<FurtherRow> below;     ///< likewise
   std::vector<std::string> overlays;   ///< further parts drawn over `part` ("rulings", "strokes")
-  std::vector<std::string> variants;   ///< empty: all
-  std::vector<std::string> cases;      ///< empty: all
-  std::vector<std::string> metrics;    ///< curves of metrics.svg; empty: all that vary
-  int contact_sheet = 0;               ///< frames of contact-sheet.png; 0: none is drawn
+  /// Overlays drawn over the flat pattern of the sheet, which then stands beside it; empty: it does
+  /// not.
+  std::vector<std::string> pattern;
+  std::vector<std::string> variants;  ///< empty: all
+  std::vector<std::string> cases;     ///< empty: all
+  std::vector<std::string> metrics;   ///< curves of metrics.svg; empty: all that vary
+  int contact_sheet = 0;              ///< frames of contact-sheet.png; 0: none is drawn
 };
 
 }  // namespace geoprior

@@ -161,6 +161,9 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
   describe_group(v, "below", t.below, {.doc = "a further row, of another part, at the bottom"});
   v.value("overlays", t.overlays,
           {.doc = "further parts drawn over `part`: lines thin, points as balls"});
+  v.value("pattern", t.pattern,
+          {.doc = "those of `overlays` that are drawn over the flat pattern beside the sheet; "
+                  "absent: no pattern"});
   v.value("variants", t.variants, {.doc = "absent: all"});
   v.value("cases", t.cases, {.doc = "absent: all"});
   v.value("metrics", t.metrics, {.doc = "curves of metrics.svg; absent: all that vary"});
