@@ -318,6 +318,10 @@ FigureView read_figure_view(const TomlNode& root, const Topic& topic) {
       throw Error("'" + name + "' is not drawn over the sheet", place_of(*node, "pattern"),
                   allowed_names(name, view.overlays));
     }
+    if (view.expected && (view.pattern.empty() || view.expected->points.size() < 2)) {
+      throw Error("is no curve in a pattern", place_of(*node, "expected"),
+                  "at least two points, with `pattern`");
+    }
   }
   view.target.reset();
   if (table.target.size() == 3) view.target = {table.target[0], table.target[1], table.target[2]};

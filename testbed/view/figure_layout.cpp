@@ -226,8 +226,13 @@ Picture draw_pattern_of(const FigureCell& cell, const FigureBlock& block,
       overlays.push_back({name, &overlay.part, block.look.colors.at(name)});
     }
   }
-  return draw_pattern(*cell.part, overlays, {block.look.pattern->center, place.pixels_per_metre},
-                      place.width, place.height);
+  std::vector<Eigen::Vector2d> expected;
+  if (block.view.expected) {
+    for (const PlanePoint& p : block.view.expected->points) expected.emplace_back(p.u, p.v);
+  }
+  return draw_pattern(*cell.part, overlays, expected,
+                      {block.look.pattern->center, place.pixels_per_metre}, place.width,
+                      place.height);
 }
 
 PanelStyle::Material panel_material(FigureView::Material material) {
@@ -295,6 +300,7 @@ FigureView further_view(const FigureView& view, const FurtherRow& row) {
   further.height_m = row.height_m;
   further.overlays = row.overlays;
   further.pattern.clear();
+  further.expected.reset();
   if (!row.variants.empty()) further.variants = row.variants;
   further.target.reset();
   further.section.reset();

@@ -83,6 +83,9 @@ void draw_mark(Picture& picture, const LegendEntry& entry, int x, int top) {
     picture.fill_rectangle(x + 1, top + 1, kMarkWidth - 2, kMarkHeight - 2, color);
   } else if (entry.mark == LegendEntry::Mark::line) {
     picture.fill_rectangle(x, middle - 2, kMarkWidth, 4, color);
+  } else if (entry.mark == LegendEntry::Mark::dashes) {
+    const std::vector<Eigen::Vector2d> line{{x, middle}, {x + kMarkWidth, middle}};
+    stroke(picture, dashes(line, 10, 7), 3, color);
   } else {
     fill_disc(picture, {x + kMarkWidth / 2 + 0.5, middle + 0.5}, 9, color);
   }
@@ -224,6 +227,9 @@ std::vector<LegendEntry> legend_entries(const std::vector<FigureRow>& rows,
     const NamedPart* overlay = find_overlay(rows, name);
     if (overlay == nullptr) continue;
     entries.push_back({display_name(name), colors.at(name), mark_of(overlay->part)});
+  }
+  if (view.expected) {
+    entries.push_back({view.expected->label, kExpectedColor, LegendEntry::Mark::dashes});
   }
   return entries;
 }

@@ -2,12 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <map>
 #include <utility>
 
 #include "core/error.h"
 #include "testbed/view/colors.h"
+#include "testbed/view/legend.h"
 
 namespace geoprior {
 namespace {
@@ -23,6 +25,9 @@ constexpr Rgb kBorderColor{52, 52, 56};
 constexpr double kBorderThickness = 2.6;
 constexpr double kLineThickness = 1.6;
 constexpr double kPathThickness = 6;
+constexpr double kExpectedThickness = 2.4;
+constexpr double kDash = 12;
+constexpr double kDashGap = 8;
 constexpr double kPointRadius = 6;
 constexpr double kLineOpacity = 0.5;
 
@@ -90,6 +95,13 @@ void draw_path(Picture& picture, const PlacedOverlay& path) {
   stroke(picture, path.pieces(has_grown), kPathThickness, path.color());
 }
 
+void draw_expected(Picture& picture, const std::vector<Eigen::Vector2d>& curve,
+                   const PlaneView& view) {
+  std::vector<Eigen::Vector2d> pixels;
+  for (const Eigen::Vector2d& point : curve) pixels.push_back(to_pixels(point, view, picture));
+  stroke(picture, dashes(pixels, kDash, kDashGap), kExpectedThickness, to_rgb(kExpectedColor));
+}
+
 }  // namespace
 
 bool has_pattern(const Part& sheet) {
@@ -128,7 +140,8 @@ std::vector<CurveSegment> pattern_border(const Part& sheet) {
       int from = t[i], to = t[(i + 1) % 3];
       if (triangles_of.at(edge(from, to)) != 1) continue;
       if (clockwise) std::swap(from, to);
-      border.push_back({places.row(from), places.row(to)});
+      const CurveSegment side{places.row(from), places.row(to)};
+      if (side.from.allFinite() && side.to.allFinite()) border.push_back(side);
     }
   }
   return border;
@@ -140,6 +153,7 @@ Eigen::MatrixX2d places_in_pattern(const Part& overlay, const std::string& name,
   using Place = std::array<double, 3>;
   std::map<Place, Eigen::Index> vertices;
   for (Eigen::Index v = 0; v < sheet.points.rows(); ++v) {
+    if (!sheet.points.row(v).allFinite()) continue;
     vertices[{sheet.points(v, 0), sheet.points(v, 1), sheet.points(v, 2)}] = v;
   }
   const Eigen::MatrixX2d pattern = pattern_of(sheet, "sheet");
@@ -157,7 +171,8 @@ Eigen::MatrixX2d places_in_pattern(const Part& overlay, const std::string& name,
 }
 
 Picture draw_pattern(const Part& sheet, const std::vector<PatternOverlay>& overlays,
-                     const PlaneView& view, int width_px, int height_px) {
+                     const std::vector<Eigen::Vector2d>& expected, const PlaneView& view,
+                     int width_px, int height_px) {
   Picture picture(width_px, height_px);
   std::vector<PlacedOverlay> lines, paths, points;
   for (const PatternOverlay& overlay : overlays) {
@@ -174,6 +189,7 @@ Picture draw_pattern(const Part& sheet, const std::vector<PatternOverlay>& overl
   }
   stroke(picture, border, kBorderThickness, kBorderColor);
   for (const PlacedOverlay& path : paths) draw_path(picture, path);
+  draw_expected(picture, expected, view);
   for (const PlacedOverlay& dots : points) {
     for (const Eigen::Vector2d& at : dots.points) {
       fill_disc(picture, at, kPointRadius, dots.color());

@@ -43,8 +43,10 @@ struct PatternOverlay {
 };
 
 /// The flat pattern of a sheet: paper with its border, and overlays where they lie in it.
+/// @param expected  a curve over them, dashed; empty: none
 /// @throws Error  when an overlay is neither of lines nor of points, or as places_in_pattern does
 Picture draw_pattern(const Part& sheet, const std::vector<PatternOverlay>& overlays,
-                     const PlaneView& view, int width_px, int height_px);
+                     const std::vector<Eigen::Vector2d>& expected, const PlaneView& view,
+                     int width_px, int height_px);
 
 }  // namespace geoprior

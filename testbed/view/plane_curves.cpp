@@ -88,15 +88,16 @@ double distance_to(const CurveSegment& s, const Eigen::Vector2d& p) {
   return (p - s.from - t * along).norm();
 }
 
-/// The pixels of one axis that a segment may touch.
+/// The pixels of one axis that something may touch.
 struct PixelRange {
   int first;
   int last;
 };
 
 PixelRange touched(double a, double b, double reach, int size) {
-  return {std::max(0, static_cast<int>(std::min(a, b) - reach)),
-          std::min(size - 1, static_cast<int>(std::max(a, b) + reach))};
+  const double last = size - 1;
+  return {static_cast<int>(std::clamp(std::min(a, b) - reach, 0.0, last + 1)),
+          static_cast<int>(std::clamp(std::max(a, b) + reach, -1.0, last))};
 }
 
 /// How much of each pixel the lines cover; the greatest over the segments, so that joints do not
@@ -106,6 +107,7 @@ std::vector<double> stroke_coverage(const Picture& picture, const std::vector<Cu
   std::vector<double> coverage(picture.pixels.size(), 0.0);
   const double reach = thickness / 2 + 1;
   for (const CurveSegment& s : pixels) {
+    if (!s.from.allFinite() || !s.to.allFinite()) continue;
     const PixelRange rows = touched(s.from.y(), s.to.y(), reach, picture.height);
     const PixelRange columns = touched(s.from.x(), s.to.x(), reach, picture.width);
     for (int y = rows.first; y <= rows.last; ++y) {
@@ -162,12 +164,34 @@ void stroke(Picture& picture, const std::vector<CurveSegment>& pixels, double th
   }
 }
 
+std::vector<CurveSegment> dashes(const std::vector<Eigen::Vector2d>& line, double dash,
+                                 double gap) {
+  std::vector<CurveSegment> out;
+  double left = dash;  // of the dash or gap that is being drawn
+  bool on = true;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    Eigen::Vector2d at = line[i - 1];
+    for (double way = (line[i] - at).norm(); way > 0;) {
+      const double step = std::min(left, way);
+      const Eigen::Vector2d next = at + step / way * (line[i] - at);
+      if (on) out.push_back({at, next});
+      at = next;
+      way -= step;
+      left -= step;
+      if (left > 0) continue;
+      on = !on;
+      left = on ? dash : gap;
+    }
+  }
+  return out;
+}
+
 void fill_disc(Picture& picture, const Eigen::Vector2d& center, double radius, Rgb color) {
-  const int reach = static_cast<int>(radius) + 2;
-  const int left = static_cast<int>(std::floor(center.x())) - reach;
-  const int top = static_cast<int>(std::floor(center.y())) - reach;
-  for (int y = top; y <= top + 2 * reach; ++y) {
-    for (int x = left; x <= left + 2 * reach; ++x) {
+  if (!center.allFinite()) return;
+  const PixelRange rows = touched(center.y(), center.y(), radius + 1, picture.height);
+  const PixelRange columns = touched(center.x(), center.x(), radius + 1, picture.width);
+  for (int y = rows.first; y <= rows.last; ++y) {
+    for (int x = columns.first; x <= columns.last; ++x) {
       const double d = (Eigen::Vector2d(x + 0.5, y + 0.5) - center).norm();
       picture.blend(x, y, color, std::clamp(radius + 0.5 - d, 0.0, 1.0));
     }

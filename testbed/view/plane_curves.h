@@ -42,6 +42,9 @@ void fill(Picture& picture, const std::vector<CurveSegment>& pixels,
 void stroke(Picture& picture, const std::vector<CurveSegment>& pixels, double thickness, Rgb color,
             double opacity = 1);
 
+/// Pieces of a poly-line, `dash` long and `gap` apart; the line begins with one.
+std::vector<CurveSegment> dashes(const std::vector<Eigen::Vector2d>& line, double dash, double gap);
+
 /// @param center, radius  pixels
 void fill_disc(Picture& picture, const Eigen::Vector2d& center, double radius, Rgb color);
 

@@ -101,8 +101,9 @@ int count(const Picture& picture, const Rgb& color) {
 }
 
 /// 100 pixels a metre, the sheet in the middle of 240 x 140 pixels.
-Picture drawn(const std::vector<PatternOverlay>& overlays) {
-  return draw_pattern(cut_sheet(), overlays, {{1, 0.5}, 100}, 240, 140);
+Picture drawn(const std::vector<PatternOverlay>& overlays,
+              const std::vector<Eigen::Vector2d>& expected = {}) {
+  return draw_pattern(cut_sheet(), overlays, expected, {{1, 0.5}, 100}, 240, 140);
 }
 
 TEST(Pattern, IsPaperWithADarkBorderAtItsScale) {
@@ -147,6 +148,36 @@ TEST(Pattern, OtherLinesArePaleUnderTheBorderAndPointsAreOnTop) {
   EXPECT_GT(picture.at(220, 120)[0], 4 * picture.at(220, 120)[1]) << "the hand at the corner";
   Part hull = make_box({0, 0, 0}, {1, 1, 1});
   EXPECT_THAT(test::error_of([&] { drawn({{"hull", &hull, kRed}}); }), HasSubstr("'hull'"));
+}
+
+TEST(Pattern, DashesGoOnAroundCornersOfTheirLine) {
+  const auto pieces = dashes({{0, 0}, {5, 0}, {5, 9}}, 4, 2);
+  ASSERT_EQ(pieces.size(), 3u);
+  EXPECT_LT((pieces[0].to - Eigen::Vector2d(4, 0)).norm(), 1e-12);
+  EXPECT_LT((pieces[1].from - Eigen::Vector2d(5, 1)).norm(), 1e-12);
+  EXPECT_LT((pieces[1].to - Eigen::Vector2d(5, 5)).norm(), 1e-12);
+  EXPECT_LT((pieces[2].to - Eigen::Vector2d(5, 9)).norm(), 1e-12) << "the line ends in a dash";
+}
+
+TEST(Pattern, ExpectedCurveIsDashedOverIt) {
+  const Picture plain = drawn({});
+  const Picture picture = drawn({}, {{0.2, 0.75}, {0.8, 0.75}});
+  int dark = 0;
+  for (int x = 40; x < 100; ++x) dark += picture.at(x, 45)[1] < 100 ? 1 : 0;
+  EXPECT_GT(dark, 30);
+  EXPECT_LT(dark, 50);
+  EXPECT_EQ(picture.at(70, 55), plain.at(70, 55));
+}
+
+TEST(Pattern, PointsThatAreNotThereOrFarAwayAreLeftOut) {
+  Part hands = of_points(Part::Kind::points, Eigen::MatrixX3d::Zero(2, 3));
+  Eigen::MatrixX2d places(2, 2);
+  places << std::nan(""), 0.5, 1e200, -1e200;
+  set_pattern(hands, places);
+  Part path = hands;
+  path.kind = Part::Kind::lines;
+  path.lines = {{0, 1}};
+  EXPECT_EQ(drawn({{"hands", &hands, kRed}, {"tears", &path, kRed}}).pixels, drawn({}).pixels);
 }
 
 /// A run of one frame a variant: flat sheets that stand as they lie in their patterns.

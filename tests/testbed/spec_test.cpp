@@ -382,6 +382,9 @@ TEST_F(Spec, FigureViewDrawsOverThePatternWhatItDrawsOverTheSheet) {
   EXPECT_THAT(load(view("pattern = [\"tears\"]\n")).view.pattern, ElementsAre("tears"));
   EXPECT_THAT(error_of(view("pattern = [\"tear\"]\n")),
               AllOf(HasSubstr("pattern"), HasSubstr("'tear'"), HasSubstr("tears")));
+  const std::string curve = "expected = { points = [{ u = 0, v = 0 }, { u = 0, v = 1 }] }\n";
+  EXPECT_EQ(load(view("pattern = [\"tears\"]\n" + curve)).view.expected->points.at(1).v, 1);
+  EXPECT_THAT(error_of(view(curve)), HasSubstr("expected"));
 }
 
 TEST_F(Spec, FigureViewBeginsWithThatOfTheTopic) {
