@@ -29,6 +29,18 @@ struct FurtherRow {
   std::vector<std::string> variants;  ///< empty: those of the figure; else without their names
 };
 
+struct PlanePoint {
+  double u = 0;
+  double v = 0;
+};
+
+/// What theory says of a path, dashed in every flat pattern: figure_view.expected = { label = …,
+/// points = [{ u = …, v = … }, …] }. Straight from point to point (m).
+struct ExpectedCurve {
+  std::string label = "Expected";
+  std::vector<PlanePoint> points;
+};
+
 /// Where a picture is looked at from, as a scene suggests it: the keys of figure_view of these
 /// names.
 struct Camera {
@@ -70,10 +82,14 @@ struct FigureView {
   std::optional<FurtherRow> above;     ///< with a camera and colours of its own
   std::optional<FurtherRow> below;     ///< likewise
   std::vector<std::string> overlays;   ///< further parts drawn over `part` ("rulings", "strokes")
-  std::vector<std::string> variants;   ///< empty: all
-  std::vector<std::string> cases;      ///< empty: all
-  std::vector<std::string> metrics;    ///< curves of metrics.svg; empty: all that vary
-  int contact_sheet = 0;               ///< frames of contact-sheet.png; 0: none is drawn
+  /// Overlays drawn over the flat pattern of the sheet, which then stands beside it; empty: it does
+  /// not.
+  std::vector<std::string> pattern;
+  std::optional<ExpectedCurve> expected;
+  std::vector<std::string> variants;  ///< empty: all
+  std::vector<std::string> cases;     ///< empty: all
+  std::vector<std::string> metrics;   ///< curves of metrics.svg; empty: all that vary
+  int contact_sheet = 0;              ///< frames of contact-sheet.png; 0: none is drawn
 };
 
 }  // namespace geoprior

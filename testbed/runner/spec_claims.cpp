@@ -313,6 +313,15 @@ FigureView read_figure_view(const TomlNode& root, const Topic& topic) {
     if (!view.classes.empty() && !view.color_by) {
       throw Error("names the values of no array", place_of(*node, "classes"), "with `color_by`");
     }
+    for (const std::string& name : view.pattern) {
+      if (contains(view.overlays, name)) continue;
+      throw Error("'" + name + "' is not drawn over the sheet", place_of(*node, "pattern"),
+                  allowed_names(name, view.overlays));
+    }
+    if (view.expected && (view.pattern.empty() || view.expected->points.size() < 2)) {
+      throw Error("is no curve in a pattern", place_of(*node, "expected"),
+                  "at least two points, with `pattern`");
+    }
   }
   view.target.reset();
   if (table.target.size() == 3) view.target = {table.target[0], table.target[1], table.target[2]};

@@ -129,6 +129,16 @@ void describe(OptionVisitor& v, FurtherRow& t) {
           {.doc = "whose part it is, when all have the same; absent: those of the figure"});
 }
 
+void describe(OptionVisitor& v, PlanePoint& t) {
+  v.value("u", t.u, {.doc = "first coordinate", .unit = "m", .required = true});
+  v.value("v", t.v, {.doc = "second coordinate", .unit = "m", .required = true});
+}
+
+void describe(OptionVisitor& v, ExpectedCurve& t) {
+  v.value("label", t.label, {.doc = "in the legend"});
+  describe_list(v, "points", t.points, {.doc = "of the pattern, joined by straight lines"});
+}
+
 void describe(OptionVisitor& v, FigureViewTable& table) {
   FigureView& t = table.view;
   v.value("at_parameter", t.at_parameter, {.doc = "frame that is drawn; absent: the last"});
@@ -161,6 +171,11 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
   describe_group(v, "below", t.below, {.doc = "a further row, of another part, at the bottom"});
   v.value("overlays", t.overlays,
           {.doc = "further parts drawn over `part`: lines thin, points as balls"});
+  v.value("pattern", t.pattern,
+          {.doc = "those of `overlays` that are drawn over the flat pattern beside the sheet; "
+                  "absent: no pattern"});
+  describe_group(v, "expected", t.expected,
+                 {.doc = "a curve that theory says, dashed in the patterns"});
   v.value("variants", t.variants, {.doc = "absent: all"});
   v.value("cases", t.cases, {.doc = "absent: all"});
   v.value("metrics", t.metrics, {.doc = "curves of metrics.svg; absent: all that vary"});

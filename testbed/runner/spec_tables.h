@@ -108,6 +108,8 @@ void describe(OptionVisitor& v, CheckTable& t);
 void describe(OptionVisitor& v, ToleranceTable& t);
 void describe(OptionVisitor& v, SectionView& t);
 void describe(OptionVisitor& v, FurtherRow& t);
+void describe(OptionVisitor& v, PlanePoint& t);
+void describe(OptionVisitor& v, ExpectedCurve& t);
 void describe(OptionVisitor& v, FigureViewTable& t);
 
 }  // namespace geoprior

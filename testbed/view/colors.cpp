@@ -103,6 +103,14 @@ Color color_at(double t, bool diverging) {
   return diverging ? interpolate(kDiverging, t) : interpolate(kSequential, t);
 }
 
+Rgb to_rgb(const std::array<double, 3>& color) {
+  Rgb out{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    out[c] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[c], 0.0, 1.0)));
+  }
+  return out;
+}
+
 Palette class_palette(std::size_t count, bool on_water, bool of_lines) {
   Palette palette;
   for (std::size_t i = 0; i < count; ++i) {

@@ -15,6 +15,9 @@ namespace geoprior {
 /// a cool-warm diverging map (Moreland 2009) for signed quantities.
 std::array<double, 3> color_at(double t, bool diverging);
 
+/// 8 bits a channel.
+Rgb to_rgb(const std::array<double, 3>& color);
+
 using Palette = std::vector<std::array<double, 3>>;
 
 /// Colours of classes: told apart by people who see no red or no green, in print, and under

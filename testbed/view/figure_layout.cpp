@@ -23,10 +23,13 @@ constexpr int kPictureWidth = 2400;
 constexpr int kMostPanelWidth = 900;
 constexpr int kMostPanelHeight = 1100;
 constexpr int kFigureMargin = 20;
-constexpr int kPanelGap = 14;    ///< between panels
-constexpr int kHeading = 64;     ///< height of a line of variant names
-constexpr int kRowLabel = 58;    ///< width of the row labels at the left
-constexpr int kBarHeight = 120;  ///< the scalar bar with its labels
+constexpr int kPanelGap = 14;                  ///< between panels
+constexpr int kPatternGap = 24;                ///< between a sheet and its pattern
+constexpr int kPatternMargin = kPanelGap / 2;  ///< about a pattern, for points on its border
+constexpr int kColumnGap = 60;                 ///< between a pattern and the next sheet
+constexpr int kHeading = 64;                   ///< height of a line of variant names
+constexpr int kRowLabel = 58;                  ///< width of the row labels at the left
+constexpr int kBarHeight = 120;                ///< the scalar bar with its labels
 const TextStyle kHeadingStyle{36, {20, 20, 20}, true, false};
 const TextStyle kRowStyle{30, {60, 60, 60}, false, true};
 const TextStyle kNoteStyle{28, {130, 130, 130}, false, false};
@@ -47,10 +50,21 @@ struct DrawnRow {
   bool has_headings = false;
 };
 
+/// Where a flat pattern stands: at the right of a panel and of those of the same cell under it, a
+/// margin higher than they are on either side.
+struct PatternPlace {
+  int width = 0;
+  int height = 0;
+  double pixels_per_metre = 1;
+};
+
 struct Layout {
   int panel_width = 0;
   int panel_height = 0;
+  std::optional<PatternPlace> pattern;
   int columns = 0;
+  int column_width = 0;
+  int column_gap = kPanelGap;
   int left = 0;
   int width = 0;
   int height = 0;
@@ -74,10 +88,11 @@ DrawnRow drawn_row(const FigureRow& row, Showing showing, const std::string& lab
   return out;
 }
 
-/// Plain panels are under the others; beside them where these are a single column.
+/// Plain panels are under the others; beside them where these are a single column without patterns.
 std::vector<DrawnRow> drawn_rows(const FigureBlock& block) {
   const std::vector<FigureRow>& rows = block.rows;
-  const bool one_column = std::all_of(rows.begin(), rows.end(),
+  const bool one_column = !block.look.pattern &&
+                          std::all_of(rows.begin(), rows.end(),
                                       [](const FigureRow& row) { return row.cells.size() == 1; });
   std::vector<DrawnRow> out;
   for (const FigureRow& row : rows) {
@@ -102,21 +117,53 @@ void require_picture(double width, double height) {
                  "figure_view");
 }
 
+/// Lines of panels that one cell has, under each other.
+int lines_of_cell(const FigureView& view) {
+  return 1 + (view.plain ? 1 : 0) + (view.section ? 1 : 0);
+}
+
+/// Width of the panels in columns of `room` pixels: a pattern at the scale of its sheet, or as high
+/// as the panels of its cell, takes its part.
+double panel_room(const FigureBlock& block, double room) {
+  if (!block.look.pattern) return room;
+  const ViewWindow& window = block.look.window;
+  const PatternWindow& pattern = *block.look.pattern;
+  const double scale =
+      std::min(1.0, lines_of_cell(block.view) * window.height_m / pattern.height_m);
+  return (room - kPatternGap - 2 * kPatternMargin) / (1 + scale * pattern.width_m / window.width_m);
+}
+
+PatternPlace pattern_place(const FigureBlock& block, const Layout& layout) {
+  const PatternWindow& pattern = *block.look.pattern;
+  const int lines = lines_of_cell(block.view);
+  const int beside = lines * layout.panel_height + (lines - 1) * kPanelGap;
+  const double scale =
+      std::min(layout.panel_width / block.look.window.width_m, beside / pattern.height_m);
+  const int width = static_cast<int>(pattern.width_m * scale);
+  return {width + 2 * kPatternMargin, beside + 2 * kPatternMargin, scale};
+}
+
 /// All but the height of the scalar bar or the legend.
-Layout make_layout(const std::vector<DrawnRow>& rows, const ViewWindow& window) {
+Layout make_layout(const std::vector<DrawnRow>& rows, const FigureBlock& block) {
   Layout layout;
   for (const DrawnRow& row : rows) {
     layout.columns = std::max(layout.columns, static_cast<int>(row.panels.size()));
   }
   layout.left = kFigureMargin + kRowLabel;
-  const int room = kPictureWidth - layout.left - kFigureMargin - (layout.columns - 1) * kPanelGap;
-  const double aspect = window.width_m / window.height_m;
-  const double width =
-      std::min({1.0 * room / layout.columns, 1.0 * kMostPanelWidth, kMostPanelHeight * aspect});
+  if (block.look.pattern) layout.column_gap = kColumnGap;
+  const int gaps = (layout.columns - 1) * layout.column_gap;
+  const int room = kPictureWidth - layout.left - kFigureMargin - gaps;
+  const double aspect = block.look.window.width_m / block.look.window.height_m;
+  const double width = std::min({panel_room(block, 1.0 * room / layout.columns),
+                                 1.0 * kMostPanelWidth, kMostPanelHeight * aspect});
   layout.panel_width = std::max(2, static_cast<int>(width));
   layout.panel_height = std::max(2, static_cast<int>(std::lround(width / aspect)));
-  layout.width = layout.left + layout.columns * layout.panel_width +
-                 (layout.columns - 1) * kPanelGap + kFigureMargin;
+  layout.column_width = layout.panel_width;
+  if (block.look.pattern) {
+    layout.pattern = pattern_place(block, layout);
+    layout.column_width += kPatternGap + layout.pattern->width;
+  }
+  layout.width = layout.left + layout.columns * layout.column_width + gaps + kFigureMargin;
   require_picture(layout.width,
                   static_cast<double>(rows.size()) * (layout.panel_height + kPanelGap + kHeading));
   layout.height = 2 * kFigureMargin;
@@ -168,6 +215,26 @@ Picture draw_cell(const DrawnPanel& panel, const FigureView& view, const BlockLo
   return draw_panel(parts, look.window, look.style, layout.panel_width, layout.panel_height);
 }
 
+/// White where the sheet has no pattern, or is not there.
+Picture draw_pattern_of(const FigureCell& cell, const FigureBlock& block,
+                        const PatternPlace& place) {
+  if (!cell.part || !has_pattern(*cell.part)) return {place.width, place.height};
+  std::vector<PatternOverlay> overlays;
+  for (const std::string& name : block.view.pattern) {
+    for (const NamedPart& overlay : cell.overlays) {
+      if (overlay.name != name) continue;
+      overlays.push_back({name, &overlay.part, block.look.colors.at(name)});
+    }
+  }
+  std::vector<Eigen::Vector2d> expected;
+  if (block.view.expected) {
+    for (const PlanePoint& p : block.view.expected->points) expected.emplace_back(p.u, p.v);
+  }
+  return draw_pattern(*cell.part, overlays, expected,
+                      {block.look.pattern->center, place.pixels_per_metre}, place.width,
+                      place.height);
+}
+
 PanelStyle::Material panel_material(FigureView::Material material) {
   switch (material) {
     case FigureView::Material::paper:
@@ -208,6 +275,7 @@ BlockLook make_look(const std::vector<FigureRow>& rows, const FigureView& view) 
   look.style = panel_style(rows, view);
   look.colors = overlay_colors(rows, view.overlays);
   look.legend = legend_entries(rows, view);
+  if (!view.pattern.empty()) look.pattern = fit_pattern(all_parts(rows, false));
   return look;
 }
 
@@ -231,6 +299,8 @@ FigureView further_view(const FigureView& view, const FurtherRow& row) {
   further.up = row.up;
   further.height_m = row.height_m;
   further.overlays = row.overlays;
+  further.pattern.clear();
+  further.expected.reset();
   if (!row.variants.empty()) further.variants = row.variants;
   further.target.reset();
   further.section.reset();
@@ -271,11 +341,15 @@ void draw_block(Picture& picture, const FigureBlock& block, const Layout& layout
     for (const DrawnPanel& panel : line.panels) {
       throw_if_stopped();
       if (line.has_headings) {
-        draw_text(picture, panel.heading, x + layout.panel_width / 2, y - 20, Align::center,
-                  fitted(panel.heading, kHeadingStyle, layout.panel_width));
+        draw_text(picture, panel.heading, x + layout.column_width / 2, y - 20, Align::center,
+                  fitted(panel.heading, kHeadingStyle, layout.column_width));
       }
       picture.paste(draw_cell(panel, block.view, block.look, layout), x, y);
-      x += layout.panel_width + kPanelGap;
+      if (layout.pattern && panel.showing == Showing::as_viewed) {
+        picture.paste(draw_pattern_of(*panel.cell, block, *layout.pattern),
+                      x + layout.panel_width + kPatternGap, y - kPatternMargin);
+      }
+      x += layout.column_width + layout.column_gap;
     }
     draw_text(picture, line.label, kFigureMargin + kRowLabel / 2, y + layout.panel_height / 2,
               Align::center, fitted(line.label, kRowStyle, layout.panel_height));
@@ -321,7 +395,7 @@ Picture draw_figure(const std::vector<FigureBlock>& blocks) {
   int width = 0;
   int height = 0;
   for (const FigureBlock& block : blocks) {
-    layouts.push_back(make_layout(drawn_rows(block), block.look.window));
+    layouts.push_back(make_layout(drawn_rows(block), block));
     width = std::max(width, layouts.back().width);
     height += block_height(block, layouts.back());
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "testbed/runner/opened_run.h"
@@ -7,6 +8,7 @@
 #include "testbed/view/figure_cells.h"
 #include "testbed/view/legend.h"
 #include "testbed/view/panel.h"
+#include "testbed/view/pattern_panel.h"
 #include "testbed/view/picture.h"
 
 namespace geoprior {
@@ -17,6 +19,7 @@ struct BlockLook {
   PanelStyle style;
   OverlayColors colors;
   std::vector<LegendEntry> legend;
+  std::optional<PatternWindow> pattern;  ///< absent: no pattern stands beside the sheet
 };
 
 /// Rows of one part under one look, with their bar or legend below.

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "testbed/view/plane_curves.h"
+
 namespace geoprior {
 namespace {
 
@@ -18,14 +20,6 @@ constexpr std::array<Color, 2> kSolids{{{0.80, 0.30, 0.20}, {0.93, 0.90, 0.84}}}
 constexpr std::array<Color, 3> kPoints{
     {{0.82, 0.08, 0.08}, {0.10, 0.22, 0.62}, {0.42, 0.12, 0.52}}};
 constexpr Color kPaper{0.80, 0.77, 0.71}, kFibre{0.50, 0.48, 0.45};
-
-Rgb to_rgb(const Color& color) {
-  Rgb out{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    out[c] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[c], 0.0, 1.0)));
-  }
-  return out;
-}
 
 /// Steps of 1, 2 or 5 times a power of ten: about five of them.
 double tick_step(double range) {
@@ -66,16 +60,6 @@ void draw_pointed_end(Picture& picture, int x, int y, int height, int sign, Rgb 
   }
 }
 
-void draw_ball(Picture& picture, int x, int y, double radius, Rgb color) {
-  const int reach = static_cast<int>(radius) + 1;
-  for (int dy = -reach; dy <= reach; ++dy) {
-    for (int dx = -reach; dx <= reach; ++dx) {
-      const double inside = radius + 0.5 - std::hypot(dx, dy);
-      picture.blend(x + dx, y + dy, color, std::clamp(inside, 0.0, 1.0));
-    }
-  }
-}
-
 constexpr int kMarkWidth = 44;
 constexpr int kMarkHeight = 28;
 constexpr int kMarkGap = 12;   ///< to its label
@@ -99,8 +83,11 @@ void draw_mark(Picture& picture, const LegendEntry& entry, int x, int top) {
     picture.fill_rectangle(x + 1, top + 1, kMarkWidth - 2, kMarkHeight - 2, color);
   } else if (entry.mark == LegendEntry::Mark::line) {
     picture.fill_rectangle(x, middle - 2, kMarkWidth, 4, color);
+  } else if (entry.mark == LegendEntry::Mark::dashes) {
+    const std::vector<Eigen::Vector2d> line{{x, middle}, {x + kMarkWidth, middle}};
+    stroke(picture, dashes(line, 10, 7), 3, color);
   } else {
-    draw_ball(picture, x + kMarkWidth / 2, middle, 9, color);
+    fill_disc(picture, {x + kMarkWidth / 2 + 0.5, middle + 0.5}, 9, color);
   }
 }
 
@@ -240,6 +227,9 @@ std::vector<LegendEntry> legend_entries(const std::vector<FigureRow>& rows,
     const NamedPart* overlay = find_overlay(rows, name);
     if (overlay == nullptr) continue;
     entries.push_back({display_name(name), colors.at(name), mark_of(overlay->part)});
+  }
+  if (view.expected) {
+    entries.push_back({view.expected->label, kExpectedColor, LegendEntry::Mark::dashes});
   }
   return entries;
 }

@@ -17,7 +17,7 @@ void draw_scalar_bar(Picture& picture, const ColorScale& scale, int top);
 
 /// A line of the legend: a class of the surface, or an overlay.
 struct LegendEntry {
-  enum class Mark { area, line, ball };
+  enum class Mark { area, line, dashes, ball };
   std::string label;
   std::array<double, 3> color{0, 0, 0};
   Mark mark = Mark::area;
@@ -25,13 +25,16 @@ struct LegendEntry {
 
 using OverlayColors = std::map<std::string, std::array<double, 3>>;
 
+/// Of the curve that theory says.
+inline constexpr std::array<double, 3> kExpectedColor{0.08, 0.08, 0.08};
+
 /// Colours of the overlays that some panel has: ink for lines, red for points, others for further
 /// ones of a kind; those of paper for what is of paper.
 OverlayColors overlay_colors(const std::vector<FigureRow>& rows,
                              const std::vector<std::string>& overlays);
 
-/// The classes of the view, then the overlays that some panel has. Empty for a view without
-/// classes.
+/// The classes of the view, the overlays that some panel has, the expected curve. Empty for a view
+/// without classes.
 std::vector<LegendEntry> legend_entries(const std::vector<FigureRow>& rows, const FigureView& view);
 
 /// The entries in lines that fit a picture of that width (pixels), in order.

@@ -52,6 +52,17 @@ inline Part make_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   return part;
 }
 
+/// A square of two triangles in the plane z = 0, classes 0 and 1, seen from above.
+inline Part two_classes() {
+  Part part;
+  part.points.resize(4, 3);
+  part.points << -1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0;
+  part.triangles.resize(2, 3);
+  part.triangles << 0, 1, 2, 0, 2, 3;
+  part.arrays.push_back({"kind", "1", NamedArray::On::cells, Eigen::Vector2d(0, 1)});
+  return part;
+}
+
 /// Both parts as one mesh.
 inline Part join(const Part& a, const Part& b) {
   Part part;

@@ -374,6 +374,19 @@ TEST_F(Spec, FigureViewHasClassesOfItsColours) {
   EXPECT_THAT(error_of(disc_with("[figure_view]\nmaterial = \"wood\"\n")), HasSubstr("clay"));
 }
 
+TEST_F(Spec, FigureViewDrawsOverThePatternWhatItDrawsOverTheSheet) {
+  const auto view = [&](const std::string& pattern) {
+    return disc_with("[figure_view]\noverlays = [\"rulings\", \"tears\"]\n" + pattern);
+  };
+  EXPECT_TRUE(load(view("")).view.pattern.empty());
+  EXPECT_THAT(load(view("pattern = [\"tears\"]\n")).view.pattern, ElementsAre("tears"));
+  EXPECT_THAT(error_of(view("pattern = [\"tear\"]\n")),
+              AllOf(HasSubstr("pattern"), HasSubstr("'tear'"), HasSubstr("tears")));
+  const std::string curve = "expected = { points = [{ u = 0, v = 0 }, { u = 0, v = 1 }] }\n";
+  EXPECT_EQ(load(view("pattern = [\"tears\"]\n" + curve)).view.expected->points.at(1).v, 1);
+  EXPECT_THAT(error_of(view(curve)), HasSubstr("expected"));
+}
+
 TEST_F(Spec, FigureViewBeginsWithThatOfTheTopic) {
   for (Topic& topic : topics_) {
     topic.view.color_by = "kind";
