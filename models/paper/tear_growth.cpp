@@ -250,7 +250,7 @@ Vector2d TearGrowth::course(const Growing& growing) const {
 /// Takes a tip to a place, or to what stands in the way.
 /// @return  elastic energy that the step set free (J)
 double TearGrowth::go(int tear, const Vector2d& to, const Remesh& remesh, ShellStepper& stepper,
-                    ShellState& state) {
+                      ShellState& state) {
   const Tears before = tears_;
   const ShellState old = state;
   const double energy = elastic_energy(stepper, state);
@@ -349,12 +349,13 @@ void describe(OptionVisitor& v, TearOptions& o) {
   static constexpr std::array<std::string_view, 2> kIntegrators{"euler", "midpoint"};
   static constexpr std::array<std::string_view, 3> kDirections{"steepest", "bisector", "askew"};
   describe_group(v, "pull", o.pull, {.doc = "how the forces about a tip are gathered"});
-  v.value("flaw", o.flaw,
-          {.doc = "length of the sheet's flaws, from which smooth places tear: junctions of cones at "
-                  "the border, and all with search = everywhere",
-           .unit = "m",
-           .min = 1e-9,
-           .max = 10});
+  v.value(
+      "flaw", o.flaw,
+      {.doc = "length of the sheet's flaws, from which smooth places tear: junctions of cones at "
+              "the border, and all with search = everywhere",
+       .unit = "m",
+       .min = 1e-9,
+       .max = 10});
   v.value("step", o.step,
           {.doc = "length by which a tear grows", .unit = "m", .min = 1e-9, .max = 10});
   v.value("most_steps", o.most_steps,

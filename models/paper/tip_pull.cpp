@@ -62,7 +62,8 @@ std::vector<int> piece_about(const ShellMesh& mesh, const MeshNeighbours& neighb
 /// Of the membrane, times area (N m).
 struct Stress {
   Eigen::Matrix2d second_piola_kirchhoff;
-  double energy = 0;  ///< density
+  Eigen::Matrix2d seen_in_pattern;  ///< F'F S: forces F S grad N go with F' to the pattern
+  double energy = 0;                ///< density
 };
 
 /// Map from the pattern to space in a triangle.
@@ -82,7 +83,7 @@ Stress stress(const Sheet& sheet, const ShellState& state, int f,
   const double nu = sheet.material.poisson_ratio;
   const Eigen::Matrix2d S = area * sheet.material.membrane_stiffness() *
                             ((1 - nu) * G + nu * G.trace() * Eigen::Matrix2d::Identity());
-  return {S, S.cwiseProduct(G).sum() / 2};
+  return {S, F.transpose() * F * S, S.cwiseProduct(G).sum() / 2};
 }
 
 /// What the outside does to the membrane of the piece, seen in the pattern. Vertices within the
@@ -107,7 +108,7 @@ Images images_on(const Sheet& sheet, const ShellState& state, const std::vector<
     const double area = pattern_area(mesh, f);
     const std::array<Vector2d, 3> gradient = shape_gradients(mesh, f, area);
     const Stress of_triangle = stress(sheet, state, f, gradient, area);
-    const Eigen::Matrix2d& S = of_triangle.second_piola_kirchhoff;
+    const Eigen::Matrix2d& S = of_triangle.seen_in_pattern;
     for (std::size_t k = 0; k < 3; ++k) {
       const int v = t[static_cast<Eigen::Index>(k)];
       images.force.row(v) += (S * gradient[k]).transpose();
@@ -211,7 +212,7 @@ std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
   const std::vector<Acting> acting = forces_on(stepper, state, piece, images, vertex);
   const auto [line, left, right] = strongest_parting(acting, options.lines);
   const double l = left.force.norm(), r = right.force.norm();
-  if (!(std::min(l, r) > 0 && std::min(l, r) * options.most_imbalance >= std::max(l, r))) return {};
+  if (!(std::min(l, r) > 0)) return {};
   const double cosine = std::clamp(left.force.dot(right.force) / (l * r), -1.0, 1.0);
   if (!(std::acos(cosine) >= options.least_opposition_deg * kDegree)) return {};
   // Pushed together, or folded over itself.
@@ -227,7 +228,6 @@ std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
   pull.normal = vertex_normal(state, neighbours.corners, vertex);
   pull.force = (l + r) / 2;
   pull.angle = std::abs(signed_angle(pull.left, pull.right));
-  if (!(pull.angle <= options.widest_angle_deg * kDegree)) return {};
   return pull;
 }
 
@@ -248,8 +248,8 @@ std::optional<TipPull> pull_on_flaw(const Sheet& sheet, const ShellState& state,
     middle += a * centroid(state.mesh, f);
     area += a;
     const int k = corner % 3;
-    border = border || neighbours.edges.across(f, k) < 0 ||
-             neighbours.edges.across(f, (k + 2) % 3) < 0;
+    border =
+        border || neighbours.edges.across(f, k) < 0 || neighbours.edges.across(f, (k + 2) % 3) < 0;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(sum / area);
   const double tension = axes.eigenvalues()[1];  // N/m
@@ -287,16 +287,6 @@ void describe(OptionVisitor& v, PullOptions& o) {
            .unit = "deg",
            .min = 0,
            .max = 180});
-  v.value("widest_angle_deg", o.widest_angle_deg,
-          {.doc = "largest angle of the images of a pull in the pattern: of two that are nearly "
-                  "opposite the bisector says nothing",
-           .unit = "deg",
-           .min = 0,
-           .max = 179.9});
-  v.value("most_imbalance", o.most_imbalance,
-          {.doc = "larger resultant over the smaller, beyond which there is no pull",
-           .min = 1,
-           .max = 1e9});
 }
 
 }  // namespace geoprior::paper

@@ -18,9 +18,6 @@ struct PullOptions {
   /// Smallest angle between the two resultants in space: pulls that point the same way tear
   /// nothing.
   double least_opposition_deg = 90;
-  /// Largest angle of the images: of two that are nearly opposite the bisector says nothing.
-  double widest_angle_deg = 170;
-  double most_imbalance = 3;  ///< larger of the two over the smaller, beyond which there is no pull
 };
 void describe(OptionVisitor& v, PullOptions& options);
 
@@ -65,14 +62,13 @@ struct MeshNeighbours {
 /// The pull at a vertex of the sheet. The piece has the triangles about it, and those reached over
 /// edges whose centres lie within `reach`. The outside pulls at the vertices that have triangles
 /// beyond it, and where the sheet is held, with the derivative of the piece's elastic energy by
-/// their places; what the membrane contributes has the image A S grad N_v, S the second
+/// their places; what the membrane contributes has the image A F'F S grad N_v, S the second
 /// Piola-Kirchhoff stress. A line through C parts the forces; of all directions that with the
 /// largest sum of both resultants' norms is taken. The J integral about C is what the outline of
 /// the piece encloses of energy, less the images (Rice 1968; Eshelby).
 ///
 /// @param least_release  of no use under it (J/m^2): the pull is then not worked out
-/// Absent when the resultants do not oppose, are not balanced or push the sheet together, and when
-/// their images are nearly opposite, or release too little.
+/// Absent when the resultants do not oppose, or push the sheet together, or release too little.
 std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
                                const ShellState& state, const MeshNeighbours& neighbours,
                                int vertex, const PullOptions& options, double least_release = 0);

@@ -345,8 +345,39 @@ TEST(TearGrowth, ASheetTornThroughFallsIntoTwoParts) {
   RunContext context(1);
   make_dense_sheet(sheet, options)->run(recording, context, {});
   const Frame& last = recording.frames.back();
-  EXPECT_EQ(part_count(last.parts.at("surface").triangles), 2);
-  EXPECT_TRUE(last.parts.at("surface").points.allFinite());
+  const Part& surface = last.parts.at("surface");
+  EXPECT_EQ(part_count(surface.triangles), 2);
+  EXPECT_TRUE(surface.points.allFinite());
+  // Each hand has its part with it.
+  for (const double side : {-1.0, 1.0}) {
+    const Vector3d hand(side * (0.05 + 7 * 0.04), -0.08, 0);
+    EXPECT_LT((surface.points.rowwise() - hand.transpose()).rowwise().norm().minCoeff(), 0.01);
+  }
+  // A part that is too small to be cut off stays on.
+  options.tearing.least_part = 0.9 * 0.12 * 0.16;
+  Recording kept;
+  RunContext again(1);
+  make_dense_sheet(sheet, options)->run(kept, again, {});
+  EXPECT_EQ(part_count(kept.frames.back().parts.at("surface").triangles), 1);
+  EXPECT_LT(grown(kept.frames.back()), grown(last));
+}
+
+/// The same sheet whole, its border between the hands smooth.
+TEST(TearGrowth, TheGeneralSearchTearsASmoothBorder) {
+  Sheet sheet = pulled_sheet();
+  sheet.pattern.cuts.clear();
+  sheet.toughness.energy = 500;
+  DenseOptions options = few_triangles();
+  const auto torn = [&](TearSearch search, double flaw) {
+    options.tearing.search = search;
+    options.tearing.flaw = flaw;
+    Recording recording;
+    RunContext context(1);
+    make_dense_sheet(sheet, options)->run(recording, context, {});
+    return recording.frames.back().diagnostics.at("tear_length");
+  };
+  EXPECT_GT(torn(TearSearch::everywhere, 4e-3), 0.01);
+  EXPECT_EQ(torn(TearSearch::everywhere, 1e-9), 0) << "no flaws";
 }
 
 }  // namespace
