@@ -236,7 +236,8 @@ MetricGroup distance_group() {
 MetricGroup tear_group() {
   using M = const TearMeasures&;
   return of_frame(tear_measures)
-      .row("tear_length", "m", "length by which the tears have grown, in the pattern", kNone,
+      .row("tear_length", "m",
+           "length by which the tears have grown, in the pattern: that of either lip", kNone,
            kSmooth, [](M m) { return m.length; })
       .row("parts", "1", "parts that the sheet has fallen into", kNone, kCount,
            [](M m) { return static_cast<double>(m.parts); })
