@@ -169,8 +169,15 @@ std::string cut_name(const std::string& where, std::size_t k) {
   return where + " cut " + std::to_string(k);
 }
 
-/// Begins on the border, on an earlier cut or in the ground, ends there too, and meets nothing on
-/// the way.
+/// Whether a cut begins or ends at a point.
+bool ends_at(const std::vector<Loop>& cuts, const Vector2d& p, double tolerance) {
+  return std::any_of(cuts.begin(), cuts.end(), [&](const Loop& cut) {
+    return (cut.front() - p).norm() <= tolerance || (cut.back() - p).norm() <= tolerance;
+  });
+}
+
+/// Begins on the border, on another cut or in the ground, ends there too, and meets nothing on the
+/// way but ends of earlier cuts on it (a tear may end on a younger one).
 void require_cut(const Pattern& pattern, std::size_t k, const std::string& where) {
   const Loop& cut = pattern.cuts[k];
   const double nearest = kNearest * width(pattern);
@@ -200,7 +207,8 @@ void require_cut(const Pattern& pattern, std::size_t k, const std::string& where
     const Vector2d along = cut[i] - cut[i - 1];
     each_edge(others, [&](const Vector2d& a, const Vector2d& b) {
       const auto t = ray_hit(cut[i - 1], along, a, b, 1e-6);
-      if (t && *t < 1 - 1e-6) {
+      if (t && *t < 1 - 1e-6 &&
+          !ends_at(others.cuts, cut[i - 1] + *t * along, 1e-9 * width(pattern))) {
         throw Error("cut crosses the border, a hole or another cut", here,
                     "a line that ends where it meets them");
       }

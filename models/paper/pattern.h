@@ -88,7 +88,7 @@ Pattern disc_pattern(double radius, int corners);
 void require_simple_loops(const Pattern& pattern, const std::string& where);
 
 /// The same, the border runs counter-clockwise, the holes clockwise, and the cuts lie in the ground
-/// and meet nothing but with their ends, which may lie on the border, a hole or an earlier cut.
+/// and meet nothing but with their ends, which may lie on the border, a hole or another cut.
 void require_simple(const Pattern& pattern, const std::string& where);
 
 /// Signed area (m^2), positive for a counter-clockwise border; holes are taken off.

@@ -25,6 +25,9 @@ namespace {
 
 /// A triangle that lost this much of its area in one step has collapsed.
 constexpr double kLeastAreaRatio = 1e-3;
+/// An edge that grows by more than this factor in a step gives cause to look whether the step went
+/// too far: paper tears long before.
+constexpr double kMostGrowth = 1.5;
 
 Eigen::Vector3d normal(const Eigen::MatrixX3d& x, const Eigen::Vector3i& t) {
   const Eigen::Vector3d a = x.row(t[0]);
@@ -241,6 +244,7 @@ void ShellDynamics::report_handles(const Eigen::VectorXd& reaction, Step& result
 void ShellDynamics::step(const ShellState& state, double dt, Step& result) {
   pose(state, dt);
   result.good = false;
+  result.overshot = false;
   result.solves = 1;
   result.residual = 0;
   result.v.resize(vertices(), 3);
@@ -257,6 +261,8 @@ void ShellDynamics::step(const ShellState& state, double dt, Step& result) {
     return;
   }
   if (!sound(state.x, result.x)) return;
+  result.overshot = options_->integration == Integration::linear && stretches(state.x, result.x) &&
+                    overshoots(result.x);
   report_handles(reaction, result);
   result.good = true;
 }
@@ -275,6 +281,29 @@ bool ShellDynamics::sound(const Eigen::MatrixX3d& before, const Eigen::MatrixX3d
     }
   }
   return true;
+}
+
+bool ShellDynamics::stretches(const Eigen::MatrixX3d& before, const Eigen::MatrixX3d& after) const {
+  for (int e = 0; e < triangles(); ++e) {
+    const auto nodes = elements_.nodes(e);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = nodes[k], b = nodes[(k + 1) % 3];
+      const double old_length = (before.row(a) - before.row(b)).norm();
+      if ((after.row(a) - after.row(b)).norm() > kMostGrowth * old_length) return true;
+    }
+  }
+  return false;
+}
+
+/// Whether stretching alone takes more than all that the step began with, its handles moved. Where
+/// nothing is strained the linear forces know no tension, and vertices that are pulled or pushed
+/// sideways go much farther than the sheet reaches. (Bending does not count: the angle of a sharp
+/// fold jumps from pi to -pi where the sheet passes through itself.)
+bool ShellDynamics::overshoots(const Eigen::MatrixX3d& x) {
+  prepare_potential();
+  const double had = potential(held_still());
+  system_->energy(elements_, *problem_.state, x, sums_);
+  return !(problem_.dt * problem_.dt * sums_.membrane <= had);
 }
 
 ShellEnergies ShellDynamics::energies(const ShellState& state) const {
@@ -453,9 +482,8 @@ bool ShellDynamics::find_direction(const Eigen::VectorXd& gradient, SecantPairs&
   return solve(direction);
 }
 
-/// Starts where the potential is lower: the linear step's result, or the sheet at rest with its
-/// handles moved.
-void ShellDynamics::prepare_newton(Step& result) {
+/// What the potential of the step is made of.
+void ShellDynamics::prepare_potential() {
   const ShellState& state = *problem_.state;
   const double dt = problem_.dt;
   gather(state.x, problem_.start);
@@ -468,8 +496,20 @@ void ShellDynamics::prepare_newton(Step& result) {
     damping_.set_zero();
     system_->hessian(elements_, state, state.x, dt * sheet_->material.damping, sums_, damping_);
   }
-  Eigen::MatrixX3d still = state.x;
+}
+
+/// The sheet where it was, its handles moved.
+Eigen::MatrixX3d ShellDynamics::held_still() const {
+  Eigen::MatrixX3d still = problem_.state->x;
   for (const HandleMap::Target& t : problem_.targets) still.row(t.vertex) = t.place.transpose();
+  return still;
+}
+
+/// Starts where the potential is lower: the linear step's result, or the sheet at rest with its
+/// handles moved.
+void ShellDynamics::prepare_newton(Step& result) {
+  prepare_potential();
+  const Eigen::MatrixX3d still = held_still();
   const bool usable = result.x.rows() == still.rows() && result.x.allFinite();
   if (!usable || !(potential(result.x) <= potential(still))) result.x = still;
 }

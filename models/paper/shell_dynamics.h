@@ -36,6 +36,7 @@ class ShellDynamics {
   /// finite, no triangle collapsed or turned over.
   struct Step {
     bool good = false;
+    bool overshot = false;  ///< linear: stretching alone takes more energy than there was
     int solves = 0;
     double residual = 0;
     Eigen::MatrixX3d x, v;
@@ -85,6 +86,8 @@ class ShellDynamics {
 
   // Implicit Euler solved by Newton's method.
   bool solve_newton(Step& result, Eigen::VectorXd& reaction);
+  void prepare_potential();
+  [[nodiscard]] Eigen::MatrixX3d held_still() const;
   void prepare_newton(Step& result);
   bool find_direction(const Eigen::VectorXd& gradient, SecantPairs& secants,
                       Eigen::VectorXd& direction);
@@ -106,6 +109,8 @@ class ShellDynamics {
   void add_contact_vector(const ContactPoint& point, const Eigen::Vector3d& vector,
                           Eigen::VectorXd& sum) const;
   [[nodiscard]] bool sound(const Eigen::MatrixX3d& before, const Eigen::MatrixX3d& after) const;
+  [[nodiscard]] bool stretches(const Eigen::MatrixX3d& before, const Eigen::MatrixX3d& after) const;
+  [[nodiscard]] bool overshoots(const Eigen::MatrixX3d& x);
   void gather(const Eigen::MatrixX3d& by_vertex, Eigen::VectorXd& by_position) const;
   [[nodiscard]] Eigen::Index row(int vertex) const { return 3 * position_[vertex]; }
 

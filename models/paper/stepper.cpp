@@ -25,7 +25,8 @@ struct ShellStepper::Impl {
   }
   struct Flow {
     bool plastic;
-    double whole;  ///< time asked for (s)
+    bool may_overshoot;  ///< of relaxations: who asks for one compares the energies
+    double whole;        ///< time asked for (s)
   };
   /// Steps by `dt`, in two halves (and so on) if need be.
   void advance(ShellState& state, double dt, int halvings_left, const Flow& flow,
@@ -47,7 +48,7 @@ void ShellStepper::Impl::advance(ShellState& state, double dt, int halvings_left
                                  StepReport& report) {
   dynamics->step(state, dt, trial);
   report.newton_iterations += trial.solves;
-  if (!trial.good) {
+  if (!trial.good || (trial.overshot && !flow.may_overshoot)) {
     if (halvings_left == 0) {
       throw Error(
           "the step does not converge after " + std::to_string(options.most_halvings) + " halvings",
@@ -93,7 +94,7 @@ StepReport ShellStepper::step(ShellState& state, double dt, RunContext& /*contex
   StepReport report = impl_->empty_report();
   const ShellState before = state;
   try {
-    impl_->advance(state, dt, impl_->options.most_halvings, {impl_->options.plasticity, dt},
+    impl_->advance(state, dt, impl_->options.most_halvings, {impl_->options.plasticity, false, dt},
                    report);
   } catch (...) {
     state = before;
@@ -110,7 +111,7 @@ void ShellStepper::relax(ShellState& state, double dt) {
   rested.v.setZero();
   rested.time = state.time - dt;
   StepReport report = impl_->empty_report();
-  impl_->advance(rested, dt, impl_->options.most_halvings, {false, dt}, report);
+  impl_->advance(rested, dt, impl_->options.most_halvings, {false, true, dt}, report);
   state.x.swap(rested.x);
 }
 

@@ -86,11 +86,13 @@ class ShellStepper {
   void set_mesh(const ShellState& state);
 
   /// Advances by `dt` (s); halves the step when it does not converge (NaN, residual, inverted
-  /// pattern map), up to `most_halvings`, then throws Error naming the time.
+  /// pattern map) or, linear, stretches the sheet with energy from nowhere, up to `most_halvings`,
+  /// then throws Error naming the time.
   StepReport step(ShellState& state, double dt, RunContext& context);
 
   /// The sheet gives way: an implicit step of `dt` from rest, with the handles where they are now
-  /// and without plastic flow, moves it; its time and velocities stay.
+  /// and without plastic flow, moves it; its time and velocities stay. A linear step may overshoot:
+  /// compare the energies.
   /// @throws Error  when the step does not converge; the state is what it was
   void relax(ShellState& state, double dt);
 

@@ -10,6 +10,9 @@ namespace {
 
 using Eigen::Vector2d;
 
+/// A point so near to an edge, over the pattern's width, lies on it.
+constexpr double kOnEdge = 1e-9;
+
 }  // namespace
 
 double Tear::length() const {
@@ -72,13 +75,24 @@ void Tears::note_pull(int tear, const Vector2d& direction, double step, double s
   tears_[tear].shear.back() = shear;
 }
 
-void Tears::end(int tear) { tears_[tear].ended = true; }
+void Tears::end(int tear) {
+  tears_[tear].ended = true;
+  const Vector2d tip = tears_[tear].tip();
+  for (std::size_t t = 0; t < tears_.size(); ++t) {
+    Tear& other = tears_[t];
+    if (static_cast<int>(t) == tear || other.knots.size() < 2) continue;
+    const Vector2d& last_knot = other.path[other.knots[other.knots.size() - 2]];
+    if (distance_to_segment(tip, last_knot, other.tip()) <= kOnEdge * width(whole_))
+      other.joined = true;
+  }
+}
 
 /// Sets knots on the path since the last one wherever it is farther than the tolerance from the
 /// chords between them (Ramer 1972; Douglas and Peucker 1973).
 void Tears::update(int tear) {
   Tear& t = tears_[tear];
-  if (t.knots.size() > 1) t.knots.pop_back();  // the tip before
+  if (t.knots.size() > 1 && !t.joined) t.knots.pop_back();  // the tip before
+  t.joined = false;
   const int last = static_cast<int>(t.path.size()) - 1;
   const int from = t.knots.back();
   set_knots(t, from, last);
@@ -142,6 +156,7 @@ void Tears::save(StateWriter& out) const {
     out.number(tear.last_pull.y());
     out.number(tear.last_step);
     out.number(tear.ended);
+    out.number(tear.joined);
   }
 }
 
@@ -156,6 +171,7 @@ void Tears::load(StateReader& in) {
     tear.last_pull.y() = in.number<double>();
     tear.last_step = in.number<double>();
     tear.ended = in.number<bool>();
+    tear.joined = in.number<bool>();
   }
   rebuild();
 }

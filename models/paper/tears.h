@@ -19,6 +19,7 @@ struct Tear {
   Eigen::Vector2d last_pull{0, 0};  ///< direction that the last step was asked to take
   double last_step = 0;             ///< its length (m)
   bool ended = false;               ///< at a border or another tear, or given up
+  bool joined = false;              ///< another tear ends on the edge that leads to the tip
 
   [[nodiscard]] const Eigen::Vector2d& tip() const { return path.back(); }
   [[nodiscard]] double length() const;  ///< m
@@ -46,6 +47,7 @@ class Tears {
   void advance(int tear, const Eigen::Vector2d& p, double time);
   /// What the last step was taken by; `shear` as `TipPull::shear`.
   void note_pull(int tear, const Eigen::Vector2d& direction, double step, double shear);
+  /// Where it ends on another, that keeps the edge it ends on.
   void end(int tear);
   /// Where a tip that is to go to `to` would leave the ground or meet a lip first, or come nearer
   /// than `margin` (m) to a border or another tear.

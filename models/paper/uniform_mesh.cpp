@@ -84,13 +84,17 @@ void sample_border(const Pattern& pattern, const std::vector<Vector2d>& anchors,
       stops[b.edge].push_back(b.t);
     }
   }
+  int first = edge_count({pattern.border, pattern.holes});  // edge of cut k
   for (std::size_t k = 0; k < pattern.cuts.size(); ++k) {
     Pattern others = pattern;
-    others.cuts.resize(k);
+    others.cuts[k].clear();
+    const auto own = static_cast<int>(pattern.cuts[k].size()) - 1;
     for (const Vector2d& end : {pattern.cuts[k].front(), pattern.cuts[k].back()}) {
       const BorderPoint b = nearest_on_border(others, end);
-      if (b.distance <= tolerance) stops[b.edge].push_back(b.t);
+      if (b.distance > tolerance) continue;
+      stops[b.edge < first ? b.edge : b.edge + own].push_back(b.t);
     }
+    first += own;
   }
   std::size_t e = 0;
   for (std::size_t k = 0; k < pattern.loop_count(); ++k) {

@@ -13,6 +13,7 @@
 #include "models/paper/lips.h"
 #include "models/paper/pattern_locator.h"
 #include "models/paper/recut.h"
+#include "models/paper/segments.h"
 #include "models/paper/sheet_valid.h"
 #include "models/paper/tear_growth.h"
 #include "models/paper/tears.h"
@@ -143,6 +144,28 @@ TEST(Pattern, RefusesCutsThatAreNone) {
   Pattern good = rectangle_pattern(0.2, 0.2);
   good.cuts = {{{0, -0.1}, {0, 0}}, {{0, -0.05}, {0.05, -0.05}}};
   EXPECT_NO_THROW(require_simple(good, "pattern"));
+  // An older tear ends on a younger one.
+  std::swap(good.cuts[0], good.cuts[1]);
+  EXPECT_NO_THROW(require_simple(good, "pattern"));
+}
+
+/// The younger tear goes on within its tolerance of 0.1 mm; the edge on which the older one ends
+/// stays where it is, or they would cross by 0.03 mm.
+TEST(Tears, KeepTheEdgeOnWhichAnotherEnds) {
+  Tears tears(rectangle_pattern(0.2, 0.2), 1e-4);
+  const int older = tears.start({0, -0.1}, 0);
+  tears.advance(older, {0, -2e-3}, 0);
+  const int younger = tears.start({-0.1, 0}, 0);
+  tears.advance(younger, {2e-3, 0}, 0);
+  tears.advance(older, {0, 0}, 0);
+  tears.end(older);
+  tears.advance(younger, {4e-3, -3e-5}, 0);
+  EXPECT_NO_THROW(require_simple(tears.torn(), "pattern"));
+  EXPECT_LE(distance_to_segment({0, 0}, tears.torn().cuts[1][0], tears.torn().cuts[1][1]), 1e-12);
+  tears.advance(younger, {6e-3, -6e-5}, 0);
+  EXPECT_EQ(tears.torn().cuts[1].size(), 3U);
+  const ShellMesh mesh = lattice_mesh(tears.torn(), 0.02, UniformLayout::equilateral, {}, 1);
+  EXPECT_EQ(part_count(mesh.triangles), 2) << "a quarter falls off";
 }
 
 TEST(Toughness, IsSeededAndKnowsTheGrain) {
