@@ -55,11 +55,12 @@ class AdaptiveMesher final : public SheetMesher {
     if (!tearing_) return;
     const Phase phase(context, "tear");
     tearing_->grow([&] { return plain_candidates(*torn_, tearing_->tears()); },
-                   [&](ShellState& torn) {
-                     torn_->pattern = tearing_->tears().torn();
-                     torn = transfer_state(torn, recut(torn.mesh, torn_->pattern, anchors_,
-                                                       kRoom * options_.tearing.step));
-                   },
+                   {[&](ShellState& torn) {
+                      torn_->pattern = tearing_->tears().torn();
+                      torn = transfer_state(torn, recut(torn.mesh, torn_->pattern, anchors_,
+                                                        kRoom * options_.tearing.step));
+                    },
+                    [&] { torn_->pattern = tearing_->tears().torn(); }},
                    stepper, state);
   }
 

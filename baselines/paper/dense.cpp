@@ -30,7 +30,7 @@ class UniformMesher final : public SheetMesher {
     if (!tearing_) return;
     const Phase phase(context, "tear");
     tearing_->grow([&] { return plain_candidates(sheet, tearing_->tears()); },
-                   [&](ShellState& torn) { torn = transfer_state(torn, mesh(context)); }, stepper,
+                   {[&](ShellState& torn) { torn = transfer_state(torn, mesh(context)); }}, stepper,
                    state);
   }
   bool adapt(const Sheet& /*sheet*/, ShellStepper& /*stepper*/, ShellState& /*state*/,

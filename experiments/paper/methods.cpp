@@ -54,6 +54,8 @@ std::vector<DiagnosticEntry> diagnostics() {
       {"tear_released", "J",
        "by which the elastic energy fell in the steps of tears since the start"},
       {"tear_steps", "1", "steps of tears since the start", true, kWork},
+      {"tears_given_up", "1",
+       "tears ended since the start for want of a mesh, or of least_part to cut off", true, kWork},
       {"tear_candidates", "1", "places tested since the start", true, kWork},
       {"tear_force", "N", "pull under which a tear grew last"},
       {"tear_angle", "deg", "angle of its two images in the pattern"},

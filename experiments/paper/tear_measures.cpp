@@ -16,7 +16,7 @@ using Eigen::Vector2d;
 std::optional<std::pair<Vector2d, Vector2d>> two_hands(const Sheet& sheet) {
   std::vector<Vector2d> hands;
   for (const Handle& handle : sheet.handles) {
-    if (!handle.motion) continue;
+    if (!handle.motion || handle.motion->keys.size() < 2) continue;
     const std::vector<Vector2d> anchors = handle.anchors();
     Vector2d sum = Vector2d::Zero();
     for (const Vector2d& p : anchors) sum += p;

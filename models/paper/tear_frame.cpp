@@ -67,6 +67,7 @@ void add_tears(const TearGrowth& growth, const ShellState& state, Frame& frame) 
   frame.diagnostics["tear_energy"] = totals.energy;
   frame.diagnostics["tear_released"] = totals.released;
   frame.diagnostics["tear_steps"] = totals.steps;
+  frame.diagnostics["tears_given_up"] = totals.given_up;
   frame.diagnostics["tear_candidates"] = totals.tested;
   frame.diagnostics["tear_force"] = growth.last_pull().force;
   frame.diagnostics["tear_angle"] = growth.last_pull().angle / kDegree;

@@ -249,7 +249,7 @@ Vector2d TearGrowth::course(const Growing& growing) const {
 
 /// Takes a tip to a place, or to what stands in the way.
 /// @return  elastic energy that the step set free (J)
-double TearGrowth::go(int tear, const Vector2d& to, const Remesh& remesh, ShellStepper& stepper,
+double TearGrowth::go(int tear, const Vector2d& to, const Follower& follower, ShellStepper& stepper,
                       ShellState& state) {
   const Tears before = tears_;
   const ShellState old = state;
@@ -258,21 +258,27 @@ double TearGrowth::go(int tear, const Vector2d& to, const Remesh& remesh, ShellS
   const auto stop = tears_.obstruction(tear, to, options_.margin);
   tears_.advance(tear, stop.value_or(to), state.time);
   if (stop) tears_.end(tear);
+  const auto too_small = [&] {
+    const std::vector<double> areas = part_areas(state.mesh);
+    return std::ranges::count_if(areas, [&](double a) { return a < options_.least_part; });
+  };
+  const auto small_before = too_small();
   bool fits = true;
   try {
-    remesh(state);
-    fits = !stop || std::ranges::min(part_areas(state.mesh)) >= options_.least_part;
+    follower.remesh(state);
+    fits = !stop || too_small() <= small_before;
     if (fits) stepper.set_mesh(state);
   } catch (const Error&) {
     fits = false;
   }
   if (!fits) {
-    // No mesh, or one that cuts off nothing: the tear stays where it is.
+    // No mesh, or one that cuts off nothing: the tear stays where it is, and ends.
     tears_ = before;
     tears_.end(tear);
     given_up_.push_back(from);
+    ++totals_.given_up;
+    follower.take_back();
     state = old;
-    remesh(state);
     stepper.set_mesh(state);
   }
   // What the new mesh has strained is not for the sheet to move by.
@@ -284,7 +290,7 @@ double TearGrowth::go(int tear, const Vector2d& to, const Remesh& remesh, ShellS
   return energy - relaxation.energy();
 }
 
-void TearGrowth::take_step(const Growing& growing, const Remesh& remesh, ShellStepper& stepper,
+void TearGrowth::take_step(const Growing& growing, const Follower& follower, ShellStepper& stepper,
                            ShellState& state) {
   const Vector2d from = growing.candidate.place;
   // A flaw opens at once: any shorter slit would release less than what opened it.
@@ -293,7 +299,7 @@ void TearGrowth::take_step(const Growing& growing, const Remesh& remesh, ShellSt
   const Vector2d to = from + step * course(growing);
   const int tear =
       growing.candidate.tear ? *growing.candidate.tear : tears_.start(from, state.time);
-  const double released = go(tear, to, remesh, stepper, state);
+  const double released = go(tear, to, follower, stepper, state);
   const Vector2d way = tears_.all()[tear].tip() - from;
   if (way.isZero(0)) return;
   tears_.note_pull(tear, growing.direction, way.norm(), growing.pull.shear(way.normalized()));
@@ -304,7 +310,7 @@ void TearGrowth::take_step(const Growing& growing, const Remesh& remesh, ShellSt
   last_pull_ = {growing.pull.force, growing.pull.angle};
 }
 
-int TearGrowth::grow(const Candidates& candidates, const Remesh& remesh, ShellStepper& stepper,
+int TearGrowth::grow(const Candidates& candidates, const Follower& follower, ShellStepper& stepper,
                      ShellState& state) {
   if (!sheet_.toughness.tears()) return 0;
   for (int steps = 0; steps < options_.most_steps; ++steps) {
@@ -325,7 +331,7 @@ int TearGrowth::grow(const Candidates& candidates, const Remesh& remesh, ShellSt
     for (std::size_t i = 0; !strongest && i < pulled.size(); ++i)
       strongest = at_rest(pulled[i], stepper, state, neighbours);
     if (!strongest) return steps;
-    take_step(*strongest, remesh, stepper, state);
+    take_step(*strongest, follower, stepper, state);
   }
   return options_.most_steps;
 }
@@ -333,14 +339,23 @@ int TearGrowth::grow(const Candidates& candidates, const Remesh& remesh, ShellSt
 void TearGrowth::save(StateWriter& out) const {
   tears_.save(out);
   out.items(given_up_);
-  out.number(totals_);
+  // One by one: what lies between the members of a struct has no value.
+  out.number(totals_.energy);
+  out.number(totals_.released);
+  out.number(totals_.tested);
+  out.number(totals_.steps);
+  out.number(totals_.given_up);
   out.number(last_pull_);
 }
 
 void TearGrowth::load(StateReader& in) {
   tears_.load(in);
   in.items(given_up_);
-  totals_ = in.number<Totals>();
+  totals_.energy = in.number<double>();
+  totals_.released = in.number<double>();
+  totals_.tested = in.number<int>();
+  totals_.steps = in.number<int>();
+  totals_.given_up = in.number<int>();
   last_pull_ = in.number<LastPull>();
 }
 

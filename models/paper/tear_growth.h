@@ -62,7 +62,7 @@ struct TearCandidate {
 std::vector<TearCandidate> plain_candidates(const Sheet& sheet, const Tears& tears);
 
 /// Tears that grow while the energy they release exceeds what the paper opposes (Griffith; thesis
-/// 3.2.2): E_r = 2 F cos(theta / 2) / e against E_f = K T, of the sheet at rest: a pull that goes,
+/// 3.2.2): E_r of `TipPull::released` against E_f = K T, of the sheet at rest: a pull that goes,
 /// or does not settle, when the sheet relaxes tears nothing. After each step of a tear the sheet is
 /// meshed anew and relaxes.
 class TearGrowth {
@@ -75,19 +75,23 @@ class TearGrowth {
     double released = 0;  ///< by which the sheet's elastic energy fell in the steps of tears (J)
     int tested = 0;       ///< candidates looked at
     int steps = 0;
+    int given_up = 0;  ///< tears that end where there is no mesh, or less than `least_part`, ahead
   };
   /// The last pull under which a tear grew.
   struct LastPull {
     double force = 0, angle = 0;  ///< N, rad
   };
 
-  /// Takes a state to a mesh that is open along `tears().torn()`.
-  using Remesh = std::function<void(ShellState&)>;
+  /// What follows the tears: the mesh, and what it is made from.
+  struct Follower {
+    std::function<void(ShellState&)> remesh;  ///< takes a state to a mesh open along tears().torn()
+    std::function<void()> take_back = [] {};  ///< the last `remesh`, the tears being what they were
+  };
   using Candidates = std::function<std::vector<TearCandidate>()>;
   /// Grows tears as far as the pulls go, the strongest first; the stepper has the state's mesh
   /// before and after.
   /// @return  steps taken
-  int grow(const Candidates& candidates, const Remesh& remesh, ShellStepper& stepper,
+  int grow(const Candidates& candidates, const Follower& follower, ShellStepper& stepper,
            ShellState& state);
 
   [[nodiscard]] const Tears& tears() const { return tears_; }
@@ -119,9 +123,9 @@ class TearGrowth {
                                                const MeshNeighbours& neighbours) const;
   [[nodiscard]] Eigen::Vector2d course(const Growing& growing) const;
   [[nodiscard]] Eigen::Vector2d direction_of(const TipPull& pull, const Eigen::Vector2d& p) const;
-  void take_step(const Growing& growing, const Remesh& remesh, ShellStepper& stepper,
+  void take_step(const Growing& growing, const Follower& follower, ShellStepper& stepper,
                  ShellState& state);
-  double go(int tear, const Eigen::Vector2d& to, const Remesh& remesh, ShellStepper& stepper,
+  double go(int tear, const Eigen::Vector2d& to, const Follower& follower, ShellStepper& stepper,
             ShellState& state);
 
   const Sheet& sheet_;

@@ -43,6 +43,10 @@ Tears::Tears(const Pattern& whole, double tolerance) : whole_(whole), tolerance_
       tears_[tear].knots.push_back(static_cast<int>(i));
     }
   }
+  for (std::size_t t = 0; t < tears_.size(); ++t) {
+    for (const Vector2d& end : {tears_[t].path.front(), tears_[t].path.back()})
+      join(static_cast<int>(t), end);
+  }
   rebuild();
 }
 
@@ -77,12 +81,16 @@ void Tears::note_pull(int tear, const Vector2d& direction, double step, double s
 
 void Tears::end(int tear) {
   tears_[tear].ended = true;
-  const Vector2d tip = tears_[tear].tip();
+  join(tear, tears_[tear].tip());
+}
+
+/// A knot stays where a tear ends on the last edge of another one, which else would turn away.
+void Tears::join(int tear, const Vector2d& end) {
   for (std::size_t t = 0; t < tears_.size(); ++t) {
     Tear& other = tears_[t];
     if (static_cast<int>(t) == tear || other.knots.size() < 2) continue;
     const Vector2d& last_knot = other.path[other.knots[other.knots.size() - 2]];
-    if (distance_to_segment(tip, last_knot, other.tip()) <= kOnEdge * width(whole_))
+    if (distance_to_segment(end, last_knot, other.tip()) <= kOnEdge * width(whole_))
       other.joined = true;
   }
 }

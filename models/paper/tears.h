@@ -58,6 +58,7 @@ class Tears {
   void load(StateReader& in);
 
  private:
+  void join(int tear, const Eigen::Vector2d& end);
   void update(int tear);
   void set_knots(Tear& tear, int from, int to) const;
   [[nodiscard]] Pattern torn_without(int tear) const;

@@ -154,8 +154,18 @@ void HybridMesher::stepped(const Sheet& sheet, ShellStepper& stepper, ShellState
   }
   if (!tearing_) return;
   const Phase phase(context, "tear");
+  std::optional<Snapshot> before;
+  const auto follow = [&](ShellState& torn) {
+    before = snapshot(torn);
+    tear_mesh(sheet, torn, context);
+  };
+  const auto take_back = [&] {
+    ShellState whole;
+    restore(*before, whole);
+    pattern_ = tearing_->tears().torn();
+  };
   tearing_->grow([&] { return tear_candidates(sheet, tearing_->tears(), structure_); },
-                 [&](ShellState& torn) { tear_mesh(sheet, torn, context); }, stepper, state);
+                 {follow, take_back}, stepper, state);
 }
 
 /// Makes the mesh of the tears as they are now. Nothing else of it changes but what they touch.
