@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <type_traits>
 #include <utility>
 
@@ -46,6 +47,7 @@ struct Element {
   int hinges = 0;      ///< of the energy
   int fit_hinges = 0;  ///< of the shape operator
   int rows = 0;        ///< of R
+  int dividers = 0;    ///< of them: the last, each of one hinge
   int first_row = 0;   ///< in `coefficients`: R by columns
   double area = 0;
   double stiffness = 0;                     ///< k
@@ -221,6 +223,7 @@ void ShellElements::Impl::add_element(const ShellMesh& mesh, int t, double bendi
     rows.resize(plate.rows() + dividers.rows(), plate.cols());
     rows.topRows(plate.rows()) = plate;
     if (dividers.rows() > 0) rows.bottomRows(dividers.rows()) = dividers;
+    element.dividers = static_cast<int>(dividers.rows());
     element.hinges = element.fit_hinges;
     element.stiffness = bending_stiffness * element.area;
   } else {
@@ -313,7 +316,15 @@ double ShellElements::Impl::bending(std::size_t index, double stiffness,
   double energy = 0;
   std::fill_n(moments, e.hinges, 0.0);
   for (int r = 0; r < e.rows; ++r) {
-    double excess = -plastic[index].row(r).dot(rest);
+    double kept = plastic[index].row(r).dot(rest);
+    if (r >= e.rows - e.dividers) {
+      // Beyond a full turn it is no fold: S of a stencil of slivers knows no bounds.
+      double per_angle = 0;
+      for (int i = 0; i < e.hinges; ++i) per_angle += R[i * e.rows + r];
+      const double most = 2 * std::numbers::pi * per_angle;
+      kept = std::clamp(kept, -most, most);
+    }
+    double excess = -kept;
     for (int i = 0; i < e.hinges; ++i) excess += R[i * e.rows + r] * angle[i].angle;
     energy += 0.5 * stiffness * excess * excess;
     for (int i = 0; i < e.hinges; ++i) moments[i] += stiffness * R[i * e.rows + r] * excess;

@@ -241,7 +241,8 @@ void ShellDynamics::report_handles(const Eigen::VectorXd& reaction, Step& result
   }
 }
 
-void ShellDynamics::step(const ShellState& state, double dt, Step& result) {
+void ShellDynamics::step(const ShellState& state, double dt, Integration integration,
+                         Step& result) {
   pose(state, dt);
   result.good = false;
   result.overshot = false;
@@ -255,14 +256,14 @@ void ShellDynamics::step(const ShellState& state, double dt, Step& result) {
   } else {
     result.x.resize(0, 3);
   }
-  if (options_->integration == Integration::newton) {
+  if (integration == Integration::newton) {
     if (!solve_newton(result, reaction)) return;
   } else if (!solved) {
     return;
   }
   if (!sound(state.x, result.x)) return;
-  result.overshot = options_->integration == Integration::linear && stretches(state.x, result.x) &&
-                    overshoots(result.x);
+  result.overshot =
+      integration == Integration::linear && stretches(state.x, result.x) && overshoots(result.x);
   report_handles(reaction, result);
   result.good = true;
 }

@@ -43,7 +43,7 @@ class ShellDynamics {
     double handle_work = 0;                     ///< by prescribed handles (J)
     std::vector<Eigen::Vector3d> handle_force;  ///< N, on the sheet
   };
-  void step(const ShellState& state, double dt, Step& result);
+  void step(const ShellState& state, double dt, Integration integration, Step& result);
 
   [[nodiscard]] ShellEnergies energies(const ShellState& state) const;
   [[nodiscard]] Eigen::MatrixX3d elastic_forces(const ShellState& state) const;

@@ -46,9 +46,15 @@ ShellDynamics& ShellStepper::Impl::of(const ShellState& state) const {
 
 void ShellStepper::Impl::advance(ShellState& state, double dt, int halvings_left, const Flow& flow,
                                  StepReport& report) {
-  dynamics->step(state, dt, trial);
-  report.newton_iterations += trial.solves;
-  if (!trial.good || (trial.overshot && !flow.may_overshoot)) {
+  const auto refused = [&](Integration integration) {
+    dynamics->step(state, dt, integration, trial);
+    report.newton_iterations += trial.solves;
+    return !trial.good || (trial.overshot && !flow.may_overshoot);
+  };
+  // The last that is tried makes no energy: Newton's method goes downhill.
+  const bool may_solve = halvings_left == 0 && options.integration != Integration::newton;
+  if (refused(options.integration) &&
+      (!may_solve || flow.may_overshoot || refused(Integration::newton))) {
     if (halvings_left == 0) {
       throw Error(
           "the step does not converge after " + std::to_string(options.most_halvings) + " halvings",

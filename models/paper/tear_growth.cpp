@@ -2,17 +2,16 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string_view>
 #include <utility>
 
 #include "core/angles.h"
 #include "core/error.h"
 #include "core/planar.h"
 #include "models/paper/lips.h"
+#include "models/paper/relaxation.h"
 
 namespace geoprior::paper {
 namespace {
@@ -54,49 +53,8 @@ void add_vertices(const ShellMesh& mesh, const Tears& tears, std::vector<TearCan
     });
     if (!known && distance_to_cuts(tears.torn(), p) > same) places.push_back({p, std::nullopt});
   }
-  for (TearCandidate& place : places) place.smooth = true;
+  for (TearCandidate& place : places) place.on_flaw = true;
 }
-
-double elastic_energy(const ShellStepper& stepper, const ShellState& state) {
-  return stepper.energies(state).strain();
-}
-
-/// Steps of a sheet towards rest. One that raises the elastic energy is too long for its linear
-/// forces, and is tried again shorter; those after it grow again.
-class Relaxation {
- public:
-  Relaxation(double time, const ShellStepper& stepper, const ShellState& state)
-      : full_(time), time_(time), energy_(elastic_energy(stepper, state)) {}
-  [[nodiscard]] double energy() const { return energy_; }
-  /// @return  whether the sheet could take a step of full length
-  bool step(ShellStepper& stepper, ShellState& state) {
-    constexpr int kTries = 4;
-    const Eigen::MatrixX3d start = state.x;
-    for (int i = 0; i < kTries; ++i) {
-      try {
-        stepper.relax(state, time_);
-        const double energy = elastic_energy(stepper, state);
-        if (energy <= (1 + kRounding) * energy_) {
-          energy_ = energy;
-          const bool whole = time_ == full_;
-          time_ = std::min(kShorter * time_, full_);
-          return whole;
-        }
-      } catch (const Error&) {
-        // Too long as well.
-      }
-      state.x = start;
-      time_ /= kShorter;
-    }
-    return false;
-  }
-
- private:
-  static constexpr double kShorter = 4;
-  static constexpr double kRounding = 1e-9;
-  double full_, time_;  // s
-  double energy_;       // J
-};
 
 }  // namespace
 
@@ -175,7 +133,7 @@ std::optional<TipPull> TearGrowth::pull_on(const TearCandidate& candidate, int v
                                            const MeshNeighbours& neighbours) const {
   PullOptions options = options_.pull;
   options.reach = clear_reach(candidate, state.time);
-  if (candidate.smooth) {
+  if (candidate.on_flaw) {
     // Near a tip it is the tip that tears.
     const bool near_tip =
         options_.search == TearSearch::candidates && nearest_tip(candidate) < options_.pull.reach;
@@ -253,7 +211,7 @@ double TearGrowth::go(int tear, const Vector2d& to, const Follower& follower, Sh
                       ShellState& state) {
   const Tears before = tears_;
   const ShellState old = state;
-  const double energy = elastic_energy(stepper, state);
+  const double energy = stepper.energies(state).strain();
   const Vector2d from = tears_.all()[tear].tip();
   const auto stop = tears_.obstruction(tear, to, options_.margin);
   tears_.advance(tear, stop.value_or(to), state.time);
@@ -294,7 +252,7 @@ void TearGrowth::take_step(const Growing& growing, const Follower& follower, She
                            ShellState& state) {
   const Vector2d from = growing.candidate.place;
   // A flaw opens at once: any shorter slit would release less than what opened it.
-  const bool opens = growing.candidate.smooth && !growing.candidate.tear;
+  const bool opens = growing.candidate.on_flaw && !growing.candidate.tear;
   const double step = opens ? std::max(options_.flaw, options_.step) : options_.step;
   const Vector2d to = from + step * course(growing);
   const int tear =
@@ -357,69 +315,6 @@ void TearGrowth::load(StateReader& in) {
   totals_.steps = in.number<int>();
   totals_.given_up = in.number<int>();
   last_pull_ = in.number<LastPull>();
-}
-
-void describe(OptionVisitor& v, TearOptions& o) {
-  static constexpr std::array<std::string_view, 2> kSearches{"candidates", "everywhere"};
-  static constexpr std::array<std::string_view, 2> kIntegrators{"euler", "midpoint"};
-  static constexpr std::array<std::string_view, 3> kDirections{"steepest", "bisector", "askew"};
-  describe_group(v, "pull", o.pull, {.doc = "how the forces about a tip are gathered"});
-  v.value(
-      "flaw", o.flaw,
-      {.doc = "length of the sheet's flaws, from which smooth places tear: junctions of cones at "
-              "the border, and all with search = everywhere",
-       .unit = "m",
-       .min = 1e-9,
-       .max = 10});
-  v.value("step", o.step,
-          {.doc = "length by which a tear grows", .unit = "m", .min = 1e-9, .max = 10});
-  v.value("most_steps", o.most_steps,
-          {.doc = "of all tears after one time step", .min = 1, .max = 100000});
-  describe_choice(v, "search", o.search, kSearches,
-                  {.doc = "at candidates, or at every vertex of the mesh"});
-  describe_choice(v, "integrator", o.integrator, kIntegrators,
-                  {.doc = "midpoint: the direction in the middle of the step, extrapolated"});
-  describe_choice(v, "direction", o.direction, kDirections,
-                  {.doc = "where most is released of what is opposed, the bisector of the pulls, "
-                          "or (a null) 45 degrees from it"});
-  v.value("most_turn_deg", o.most_turn_deg,
-          {.doc = "of a tear from one step to the next", .unit = "deg", .min = 0, .max = 180});
-  v.value("relax_time", o.relax_time,
-          {.doc = "of the implicit steps from rest that the sheet relaxes in",
-           .unit = "s",
-           .min = 1e-9,
-           .max = 10});
-  v.value("rest_steps", o.rest_steps,
-          {.doc = "most of them, for a pull to come to rest in before a tear grows",
-           .min = 1,
-           .max = 1000});
-  v.value("rest_turn_deg", o.rest_turn_deg,
-          {.doc = "of a pull at rest, from one such step to the next",
-           .unit = "deg",
-           .min = 0,
-           .max = 180});
-  v.value("rest_change", o.rest_change,
-          {.doc = "of what it releases, likewise, relative", .min = 0, .max = 1e9});
-  v.value("relax_steps", o.relax_steps,
-          {.doc = "of them, after it has grown", .min = 0, .max = 1000});
-  v.value("most_relax_steps", o.most_relax_steps,
-          {.doc = "of them, while the sheet has more elastic energy than before it grew",
-           .min = 0,
-           .max = 1000});
-  v.value("path_tolerance", o.path_tolerance,
-          {.doc = "farthest that a tear's path lies from the edges of its lips",
-           .unit = "m",
-           .min = 1e-9,
-           .max = 1});
-  v.value("margin", o.margin,
-          {.doc = "a tear that comes so near to a border or a tear ends there",
-           .unit = "m",
-           .min = 1e-9,
-           .max = 1});
-  v.value("least_part", o.least_part,
-          {.doc = "smallest area that a tear may cut off", .unit = "m^2", .min = 0, .max = 1});
-  describe_group(v, "detail", o.detail,
-                 {.doc = "noise, fibres and a bevel along the lips: parts of the frame, no mesh"});
 }
 
 }  // namespace geoprior::paper

@@ -168,6 +168,20 @@ TEST(Tears, KeepTheEdgeOnWhichAnotherEnds) {
   EXPECT_EQ(part_count(mesh.triangles), 2) << "a quarter falls off";
 }
 
+/// The same where the sheet begins with both as cuts: the one goes on along a curve.
+TEST(Tears, KeepTheEdgeOnWhichACutEnds) {
+  Pattern pattern = rectangle_pattern(0.4, 0.4);
+  pattern.cuts = {{{0, -0.2}, {0, -0.12}}, {{0, -0.15}, {0.2, -0.15}}};
+  for (const double side : {-1.0, 1.0}) {
+    Tears tears(pattern, 1e-3);
+    for (double s = 2e-3; s <= 24e-3; s += 2e-3)
+      tears.advance(0, {side * 0.15 * s * s, -0.12 + s}, 0);
+    EXPECT_NO_THROW(require_simple(tears.torn(), "pattern"));
+    const ShellMesh mesh = lattice_mesh(tears.torn(), 0.02, UniformLayout::equilateral, {}, 1);
+    EXPECT_EQ(part_count(mesh.triangles), 2) << "a corner falls off";
+  }
+}
+
 TEST(Toughness, IsSeededAndKnowsTheGrain) {
   Toughness t;
   t.energy = 1e4;
@@ -337,10 +351,12 @@ TEST_P(TearsOf, AreTheSameWhenResumedInTheirMiddle) {
   RunContext again(1);
   make(GetParam())->run(rest, again, whole.checkpoints[middle]);
   ASSERT_EQ(rest.frames.size() + middle + 1, whole.frames.size());
-  EXPECT_EQ(rest.frames.back().parts.at("surface").points,
-            whole.frames.back().parts.at("surface").points);
-  EXPECT_EQ(rest.frames.back().diagnostics.at("tear_length"),
-            whole.frames.back().diagnostics.at("tear_length"));
+  for (std::size_t i = 0; i < rest.frames.size(); ++i) {
+    const Frame &here = rest.frames[i], &there = whole.frames[i + middle + 1];
+    EXPECT_EQ(here.parts.at("surface").points, there.parts.at("surface").points);
+    EXPECT_EQ(here.diagnostics.at("tear_length"), there.diagnostics.at("tear_length"));
+    EXPECT_EQ(here.diagnostics.at("tear_candidates"), there.diagnostics.at("tear_candidates"));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, TearsOf, testing::Values("dense", "adaptive", "hybrid"),
@@ -383,6 +399,28 @@ TEST(TearGrowth, ASheetTornThroughFallsIntoTwoParts) {
   make_dense_sheet(sheet, options)->run(kept, again, {});
   EXPECT_EQ(part_count(kept.frames.back().parts.at("surface").triangles), 1);
   EXPECT_LT(grown(kept.frames.back()), grown(last));
+}
+
+/// Thesis 3.2.2: the fingers' places are candidates.
+TEST(TearGrowth, AFingerTearsTheSheetThatItPulls) {
+  Sheet sheet = pulled_sheet();
+  sheet.pattern.cuts.clear();
+  sheet.toughness.energy = 100;
+  Keyframe start, end;
+  end.time = 0.8;
+  end.shift = Vector3d(0, -0.03, 0);
+  sheet.handles = {
+      sheets::point_handle("finger", {{0.02, -0.04}}, {start, end}),
+      sheets::point_handle("far edge", {{-0.06, 0.08}, {0, 0.08}, {0.06, 0.08}}, {start})};
+  sheet.handles[0].stiffness = 2000;
+  Recording recording;
+  RunContext context(1);
+  make_dense_sheet(sheet, few_triangles())->run(recording, context, {});
+  const Frame& last = recording.frames.back();
+  ASSERT_GT(last.diagnostics.at("tear_length"), 0);
+  const auto& pattern =
+      last.parts.at("tears").require_array("pattern", NamedArray::On::points, 2).values;
+  EXPECT_LT((pattern.row(0) - Eigen::RowVector2d(0.02, -0.04)).norm(), 1e-12);
 }
 
 /// The same sheet whole, its border between the hands smooth.

@@ -104,8 +104,8 @@ TEST(TearCandidates, AreTipsAndJunctions) {
   ASSERT_THAT(s.broken(), IsEmpty());
   std::vector<double> junctions;
   for (const TearCandidate& c : tear_candidates(s.sheet, s.tears, s.structure)) {
-    EXPECT_EQ(c.smooth, !c.tear.has_value());
-    if (c.smooth && c.place.x() > 0.04 && c.place.y() < 0) junctions.push_back(c.place.x());
+    EXPECT_EQ(c.on_flaw, !c.tear.has_value());
+    if (c.on_flaw && c.place.x() > 0.04 && c.place.y() < 0) junctions.push_back(c.place.x());
   }
   std::sort(junctions.begin(), junctions.end());
   EXPECT_THAT(junctions,
