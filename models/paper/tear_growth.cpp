@@ -27,6 +27,9 @@ constexpr double kLeastNotch = 20 * kDegree;
 constexpr double kBack = 120 * kDegree, kSmooth = 20 * kDegree;
 /// Of the way to the next tip or hand, that a piece about a candidate covers.
 constexpr double kClear = 0.8;
+/// By so much the general search takes the tension at tips for larger than it is: tears go on
+/// rather than begin (Pfaff et al. 2014).
+constexpr double kTip = 2;
 /// Of the null, from the bisector (rad).
 constexpr double kAskew = 45 * kDegree;
 /// Directions tried where the toughness depends on them.
@@ -138,7 +141,9 @@ std::optional<TipPull> TearGrowth::pull_on(const TearCandidate& candidate, int v
     const bool near_tip =
         options_.search == TearSearch::candidates && nearest_tip(candidate) < options_.pull.reach;
     if (near_tip) return {};
-    return pull_on_flaw(sheet_, state, neighbours, vertex, options_.flaw);
+    auto pull = pull_on_flaw(sheet_, state, neighbours, vertex, options_.flaw);
+    if (pull && candidate.tear) pull->release *= kTip * kTip;
+    return pull;
   }
   return pull_at(sheet_, stepper, state, neighbours, vertex, options, sheet_.toughness.least());
 }
