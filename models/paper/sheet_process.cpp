@@ -118,12 +118,11 @@ class SheetFrames final : public FrameModel {
       }
       state_.time = sheet_.frame_time(frame);
     }
+    const double energy = stepper_.energies(state_).strain();
     if (!mesher_.adapt(sheet_, stepper_, state_, context)) return;
-    {
-      const Phase phase(context, "connectivity");
-      stepper_.set_mesh(state_);
-    }
+    analyse(context);
     mesher_.settle(sheet_, stepper_, state_, context);
+    if (!goes_on(energy, dt, context) && mesher_.take_back(state_)) analyse(context);
   }
 
   void record(int number, FrameSink& sink, RunContext& /*context*/) override {
@@ -158,6 +157,25 @@ class SheetFrames final : public FrameModel {
   }
 
  private:
+  void analyse(RunContext& context) {
+    const Phase phase(context, "connectivity");
+    stepper_.set_mesh(state_);
+  }
+
+  /// Whether the sheet can take a step from its new mesh. Where that folds slivers over, no step
+  /// converges; such a mesh has far more energy than the one before, and only then is it tried.
+  bool goes_on(double energy_before, double dt, RunContext& context) {
+    constexpr double kSpike = 2;
+    if (stepper_.energies(state_).strain() <= kSpike * energy_before) return true;
+    ShellState next = state_;
+    try {
+      stepper_.step(next, dt, context);
+    } catch (const Error&) {
+      return false;
+    }
+    return true;
+  }
+
   const Sheet& sheet_;
   SheetMesher& mesher_;
   ShellStepper stepper_;

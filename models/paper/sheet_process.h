@@ -25,6 +25,9 @@ class SheetMesher {
   /// the change has strained. Marks its own phases.
   virtual void settle(const Sheet& /*sheet*/, ShellStepper& /*stepper*/, ShellState& /*state*/,
                       RunContext& /*context*/) {}
+  /// Undoes the last `adapt`, from whose mesh the sheet cannot go on.
+  /// @return  false: the state stays as it is
+  virtual bool take_back(ShellState& /*state*/) { return false; }
   /// Adds parts, arrays, tables and diagnostics of its own ("rulings", "singular_points" …).
   virtual void annotate(const ShellState& state, Frame& frame) const = 0;
   /// Everything that `adapt` and `annotate` remember from one frame to the next, for checkpoints.

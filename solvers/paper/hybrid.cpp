@@ -269,7 +269,8 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
     const Phase phase(context, "analyse");
     groups = analyse(sheet, stepper, state, context);
   }
-  const Snapshot before = snapshot(state);
+  before_ = snapshot(state);
+  const Snapshot& before = *before_;
   if (try_change(sheet, groups, options_.tracking, kRemeshedIterations, before, state, context)) {
     if (!options_.energy_test) return true;
     if (events_.new_singular_points > 0) {
@@ -287,6 +288,14 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
   if (!options_.projection || projection_.strain_after <= options_.accepted_strain)
     return options_.energy_test && frames_ % kReview == 0 && review_points(sheet, state, context);
   return last_resort(sheet, groups, before, changed ? &tried : nullptr, state, context);
+}
+
+bool HybridMesher::take_back(ShellState& state) {
+  if (!before_) return false;
+  restore(*before_, state);
+  events_ = {};
+  ++rejected_;
+  return true;
 }
 
 /// Takes new singular points back unless the sheet, once settled, has less energy with them than

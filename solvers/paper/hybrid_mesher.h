@@ -25,6 +25,7 @@ class HybridMesher final : public SheetMesher {
                RunContext& context) override;
   bool adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
              RunContext& context) override;
+  bool take_back(ShellState& state) override;
   void settle(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
               RunContext& context) override;
   void annotate(const ShellState& state, Frame& frame) const override;
@@ -86,8 +87,9 @@ class HybridMesher final : public SheetMesher {
   std::optional<BendingGuide> guide_;
   std::optional<BendingField> field_;
   std::optional<TearGrowth> tearing_;
-  std::uint64_t draws_ = 0;  ///< of singular points, so far
-  bool meshed_ = false;      ///< false after `load`, until the mesh is made again
+  std::uint64_t draws_ = 0;         ///< of singular points, so far
+  bool meshed_ = false;             ///< false after `load`, until the mesh is made again
+  std::optional<Snapshot> before_;  ///< the last `adapt`
   PropagationReport events_;
   ProjectionReport projection_;
   int settle_steps_ = 0;  ///< in this frame
