@@ -19,7 +19,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Keeps all that a process pushes.
 /// Wishes to stop once so many frames are done.
 class StoppingContext final : public RunContext {
  public:
@@ -98,6 +97,55 @@ TEST(SheetProcess, RecordsTheStartAndThenAFrameAnInterval) {
   }
   // Bringing the edges together bends the sheet: that takes work.
   EXPECT_GT(r.frames[5].diagnostics.at("handle_work"), 0);
+}
+
+/// After every second frame its mesh would be one on which no step converges: a triangle lies on
+/// its neighbour.
+class FoldingMesher final : public SheetMesher {
+ public:
+  explicit FoldingMesher(bool gives_back) : gives_back_(gives_back) {}
+  ShellState start(const Sheet& sheet, RunContext& context) override {
+    return resting_state(sheet, uniform_mesh(sheet.pattern, 60, UniformLayout::equilateral, {}, 1),
+                         context.seed());
+  }
+  bool adapt(const Sheet& /*sheet*/, ShellStepper& /*stepper*/, ShellState& state,
+             RunContext& /*context*/) override {
+    if (++frames_ % 2 != 0) return false;
+    before_ = state;
+    const Eigen::RowVector3i t = state.mesh.triangles.row(state.mesh.triangle_count() / 2);
+    state.x.row(t[0]) = state.x.row(t[1]) + state.x.row(t[2]) - state.x.row(t[0]);
+    state.x.row(t[1]) = state.x.row(t[2]);
+    return true;
+  }
+  bool take_back(ShellState& state) override {
+    ++taken_back_;
+    if (gives_back_) state = before_;
+    return gives_back_;
+  }
+  void annotate(const ShellState& /*state*/, Frame& frame) const override {
+    frame.diagnostics["taken_back"] = taken_back_;
+  }
+
+ private:
+  bool gives_back_;
+  int frames_ = 0, taken_back_ = 0;
+  ShellState before_;
+};
+
+TEST(SheetProcess, GoesOnWithTheMeshBeforeOneThatTakesNoStep) {
+  Sheet sheet = bent_square();
+  sheet.handles.clear();
+  sheet.gravity = {0, 0, 0};
+  SheetProcess process(sheet, {}, std::make_unique<FoldingMesher>(true));
+  const Recording r = run(process);
+  ASSERT_EQ(r.frames.size(), 6U);
+  EXPECT_EQ(r.frames.back().diagnostics.at("taken_back"), 2);
+  EXPECT_LT((r.frames.back().parts.at("surface").points - r.frames[0].parts.at("surface").points)
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-3);
+  SheetProcess stuck(sheet, {}, std::make_unique<FoldingMesher>(false));
+  EXPECT_THROW(run(stuck), Error);
 }
 
 TEST(HandleSpeed, IsThatOfTheFastestPointThatHolds) {
