@@ -145,7 +145,13 @@ std::optional<TipPull> TearGrowth::pull_on(const TearCandidate& candidate, int v
     if (pull && candidate.tear) pull->release *= kTip * kTip;
     return pull;
   }
-  return pull_at(sheet_, stepper, state, neighbours, vertex, options, sheet_.toughness.least());
+  const bool integrates = options_.release == TearRelease::j_integral;
+  auto pull = pull_at(sheet_, stepper, state, neighbours, vertex, options,
+                      integrates ? sheet_.toughness.least() : 0);
+  if (pull && !integrates) pull->release = pull->of_resultants();
+  if (pull && options_.release == TearRelease::force)
+    pull->release = 2 * pull->force * pull->away();
+  return pull;
 }
 
 std::optional<TearGrowth::Growing> TearGrowth::look_at(const TearCandidate& candidate,

@@ -7,6 +7,7 @@ namespace geoprior::paper {
 
 void describe(OptionVisitor& v, TearOptions& o) {
   static constexpr std::array<std::string_view, 2> kSearches{"candidates", "everywhere"};
+  static constexpr std::array<std::string_view, 3> kReleases{"j-integral", "resultants", "force"};
   static constexpr std::array<std::string_view, 2> kIntegrators{"euler", "midpoint"};
   static constexpr std::array<std::string_view, 3> kDirections{"steepest", "bisector", "askew"};
   describe_group(v, "pull", o.pull, {.doc = "how the forces about a tip are gathered"});
@@ -23,6 +24,10 @@ void describe(OptionVisitor& v, TearOptions& o) {
           {.doc = "of all tears after one time step", .min = 1, .max = 100000});
   describe_choice(v, "search", o.search, kSearches,
                   {.doc = "at candidates, or at every vertex of the mesh"});
+  describe_choice(
+      v, "release", o.release, kReleases,
+      {.doc = "what a tear sets free: the J integral, 2 F cos(theta / 2) / e of the two "
+              "resultants, or (a null) 2 F / e"});
   describe_choice(v, "integrator", o.integrator, kIntegrators,
                   {.doc = "midpoint: the direction in the middle of the step, extrapolated"});
   describe_choice(v, "direction", o.direction, kDirections,

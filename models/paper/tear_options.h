@@ -18,10 +18,16 @@ enum class TearSearch { candidates, everywhere };
 /// (a null).
 enum class TearDirection { steepest, bisector, askew };
 
+/// j_integral: what the outline of the piece about a tip says; resultants: 2 F cos(theta / 2) / e
+/// of both resultants along the bisector of their images, whatever their lengths, as the thesis has
+/// it; force: 2 F / e, whatever the angle between them (a null).
+enum class TearRelease { j_integral, resultants, force };
+
 /// How tears grow (thesis 3.2.2; what it leaves open is ours, see docs/methods/paper.md).
 struct TearOptions {
   PullOptions pull;
   TearSearch search = TearSearch::candidates;
+  TearRelease release = TearRelease::j_integral;
   double flaw = 4e-3;   ///< length of the sheet's flaws, from which smooth places tear (m)
   double step = 2e-3;   ///< length by which a tear grows (m)
   int most_steps = 10;  ///< of all tears after one time step

@@ -43,6 +43,11 @@ struct TipPull {
   /// Direction in which a tear releases most: away from both images, along their bisector when they
   /// are equally long.
   [[nodiscard]] Eigen::Vector2d away() const { return release.normalized(); }
+  /// What the two resultants alone would release: 2 F cos(theta / 2) along the bisector of their
+  /// images (thesis). (N)
+  [[nodiscard]] Eigen::Vector2d of_resultants() const {
+    return -force * (left.normalized() + right.normalized());
+  }
   /// Out of the plane, of a tear in direction d (unit): 1 when the left of it is only pulled up the
   /// normal and the right of it down, -1 the other way round, 0 when both stay in the plane.
   [[nodiscard]] double shear(const Eigen::Vector2d& d) const {
