@@ -31,6 +31,17 @@ std::vector<std::string> variant_names(const TomlNode& root) {
   return names;
 }
 
+/// Takes claims with `quick = false` out. Values of another type are refused where claims are read.
+void leave_out_claims(TomlNode& root) {
+  TomlNode* claims = root.find("claim");
+  if (claims == nullptr) return;
+  std::erase_if(claims->items, [](const TomlNode& claim) {
+    const TomlNode* key = claim.find("quick");
+    return key != nullptr && key->kind == TomlNode::Kind::boolean && !key->boolean;
+  });
+  if (claims->items.empty()) root.erase("claim");
+}
+
 }  // namespace
 
 std::vector<TomlNode> tables_of(const TomlNode& root, const std::string& key) {
@@ -93,6 +104,7 @@ void apply_quick(TomlNode& root, bool quick) {
     }
   }
   root.erase("quick");
+  if (quick) leave_out_claims(root);
 }
 
 void apply_sets(TomlNode& root, const std::vector<std::string>& sets) {

@@ -71,6 +71,7 @@ void describe(OptionVisitor& v, ClaimTable& t) {
                   {.doc = "seed: 9 of 10 seeds of a case decide together, at least ten of them"});
   v.value("null", t.null,
           {.doc = "variant that must fail the same inequality in place of `variant`"});
+  v.value("quick", t.quick, {.doc = "false: quick runs are too short for it, and leave it out"});
 }
 
 void describe(OptionVisitor& v, StudyTable& t) {

@@ -61,6 +61,7 @@ struct ClaimTable {
   std::vector<std::string> cases;
   ClaimOver over = ClaimOver::case_;
   std::optional<std::string> null;
+  bool quick = true;
 };
 
 struct StudyTable {

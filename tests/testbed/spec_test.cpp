@@ -152,6 +152,21 @@ TEST_F(Spec, QuickVersionLeavesOutWhatOnlyTheFullOneHas) {
               HasSubstr("segments=9"));
 }
 
+TEST_F(Spec, QuickVersionLeavesOutClaimsThatItIsTooShortFor) {
+  const auto claim = [](const std::string& text, const std::string& more) {
+    return "[[claim]]\ntext = \"" + text +
+           "\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = 1\n" + more;
+  };
+  const std::string text =
+      toy::disc_experiment() + claim("both", "") + claim("long", "quick = false\n");
+  EXPECT_EQ(load(text).claims.size(), 2U);
+  const Experiment quick = load(text, sized(true));
+  ASSERT_EQ(quick.claims.size(), 1U);
+  EXPECT_EQ(quick.claims[0].text, "both");
+  EXPECT_THAT(error_of(toy::disc_experiment() + claim("no", "quick = 0\n"), sized(true)),
+              HasSubstr("quick"));
+}
+
 TEST_F(Spec, SetOverridesWithTomlValuesAndBareWords) {
   const Experiment e =
       load(toy::disc_experiment(),
