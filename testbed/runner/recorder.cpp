@@ -9,6 +9,7 @@
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/folders.h"
 #include "testbed/formats/vtk_files.h"
+#include "testbed/runner/event_table.h"
 #include "testbed/runner/frame_table.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/number_text.h"
@@ -105,6 +106,12 @@ std::vector<StoredFile> Recorder::write_frame(const journal::Place& place, std::
     files.push_back(write(relative / (numbered(name, index) + ".csv"), table_to_csv(table)));
   }
   return files;
+}
+
+void Recorder::write_event(const journal::Place& place, const Event& event) {
+  require_event_numbers(event, "variant '" + place.variant + "', event " +
+                                   std::to_string(state_.variant_of(place).record.events.size()));
+  add(journal::EventLine{place, event}, false);
 }
 
 void Recorder::write_artifact(const journal::Place& place, const Artifact& artifact) {

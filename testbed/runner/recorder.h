@@ -28,6 +28,9 @@ class Recorder {
   /// @throws Error  for a name that is no file name, or a file that cannot be written
   std::vector<StoredFile> write_frame(const journal::Place& place, std::size_t index,
                                       const Frame& frame);
+  /// Logs an event; the next line that is flushed takes it to the disk.
+  /// @throws Error  as require_event_numbers
+  void write_event(const journal::Place& place, const Event& event);
   /// @throws Error  when the variant has an artifact of that name
   void write_artifact(const journal::Place& place, const Artifact& artifact);
   /// The state replaces the one before it; `seconds` are those of the run so far.

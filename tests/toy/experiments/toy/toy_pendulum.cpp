@@ -198,7 +198,7 @@ class PendulumFrames final : public FrameModel {
 
   [[nodiscard]] Event crossing(const PendulumState& s) const {
     const double speed = scene_.options.length_m * s.velocity;
-    return {s.time, "crossing", bob(s), 0.5 * speed * speed, 0};
+    return {s.time, "crossing", bob(s), 0.5 * speed * speed, 0, {{"speed_m_s", speed}}};
   }
 
   [[nodiscard]] Frame frame(const PendulumState& s) const {
