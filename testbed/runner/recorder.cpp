@@ -141,14 +141,26 @@ void Recorder::write_checkpoint(const journal::Place& place, const State& state,
   if (before) remove(before->file.name);
 }
 
-State Recorder::read_checkpoint(const journal::CheckpointLine& checkpoint) const {
-  const fs::path file = path_below(folder_, checkpoint.file.name);
+std::vector<std::byte> Recorder::read(const StoredFile& stored) const {
+  const fs::path file = path_below(folder_, stored.name);
   const std::string bytes = read_whole_file(file);
-  if (sha256(bytes) != checkpoint.file.sha256) {
+  if (sha256(bytes) != stored.sha256) {
     throw Error("is damaged: its checksum is not the one in the journal", file.string());
   }
   const auto* begin = reinterpret_cast<const std::byte*>(bytes.data());
   return {begin, begin + bytes.size()};
+}
+
+State Recorder::read_checkpoint(const journal::CheckpointLine& checkpoint) const {
+  return read(checkpoint.file);
+}
+
+std::optional<std::vector<std::byte>> Recorder::read_artifact(const VariantRecord& variant,
+                                                              const std::string& name) const {
+  for (const StoredFile& file : variant.artifacts) {
+    if (fs::path(file.name).filename() == name) return read(file);
+  }
+  return std::nullopt;
 }
 
 void Recorder::write_collection(const journal::Place& place) {

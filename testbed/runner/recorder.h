@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "core/frame.h"
 #include "core/method.h"
@@ -52,8 +53,13 @@ class Recorder {
   [[nodiscard]] Frame read_frame(
       const VariantRecord& variant, std::size_t index,
       const std::optional<std::set<std::string>>& parts = std::nullopt) const;
+  /// Bytes of the variant's artifact of that name; absent when it has none.
+  /// @throws Error  when its file is missing, or not what was recorded
+  [[nodiscard]] std::optional<std::vector<std::byte>> read_artifact(const VariantRecord& variant,
+                                                                    const std::string& name) const;
 
  private:
+  [[nodiscard]] std::vector<std::byte> read(const StoredFile& stored) const;
   StoredFile write(const std::filesystem::path& relative, std::string_view bytes);
   void drop(const journal::ResumeLine& keep);
   void remove(const std::filesystem::path& relative);
