@@ -68,13 +68,16 @@ int video_command(const CommandContext& context, const VideoRequest& request) {
     say("stopped before the last frame: no video");
   } else if (video.file) {
     say("video    " + video.file->string());
+    if (video.sound_of) say("sound    of " + *video.sound_of + ", in real time");
   } else {
     say("no video: ffmpeg is not on the PATH (apt-get install ffmpeg); the frames are there");
   }
+  if (!video.no_sound.empty()) say("no sound: " + video.no_sound);
   if (context.json) {
     nlohmann::ordered_json result{{"run", folder.string()}, {"frames", video.frames}};
     result["out"] = options.out.string();
     result["video"] = video.file ? nlohmann::ordered_json(video.file->string()) : nullptr;
+    result["sound_of"] = video.sound_of ? nlohmann::ordered_json(*video.sound_of) : nullptr;
     print_json(result);
   }
   return video.stopped ? wrong_use : done;
