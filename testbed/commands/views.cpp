@@ -11,6 +11,7 @@
 #include "testbed/runner/stop.h"
 #include "testbed/view/export.h"
 #include "testbed/view/render.h"
+#include "testbed/view/spectrogram.h"
 #include "testbed/view/video.h"
 
 namespace geoprior {
@@ -48,10 +49,17 @@ int render_command(const CommandContext& context, const RenderRequest& request) 
   install_stop_handler();
   const fs::path folder = run_folder_of(request.run);
   const OpenedRun run(folder, request.unverified);
-  render_run(run, view_of(run, request.view, context.topics));
+  const FigureView view = view_of(run, request.view, context.topics);
+  render_run(run, view);
   const fs::path figure = folder / "figure.png";
   say("picture  " + figure.string());
-  if (context.json) print_json({{"run", folder.string()}, {"figure", figure.string()}});
+  nlohmann::ordered_json result{{"run", folder.string()}, {"figure", figure.string()}};
+  if (draw_spectrogram(run, view)) {
+    const fs::path spectrogram = folder / "spectrogram.png";
+    say("sound    " + spectrogram.string());
+    result["spectrogram"] = spectrogram.string();
+  }
+  if (context.json) print_json(result);
   return done;
 }
 

@@ -24,6 +24,7 @@
 #include "testbed/view/render.h"
 #include "testbed/view/section.h"
 #include "testbed/view/sound_track.h"
+#include "testbed/view/spectrogram.h"
 #include "testbed/view/video.h"
 #include "testbed/view/view_window.h"
 #include "tests/testbed/fake_run.h"
@@ -624,6 +625,43 @@ TEST(Video, OfAnFfmpegWithoutTheCodecIsOneErrorThatSaysSo) {
   EXPECT_FALSE(fs::exists(folder.path / "video/video.mp4"));
   std::ofstream(folder.path / "run/artifacts/default/second-box/mix.wav", std::ios::app) << "more";
   EXPECT_THAT(test::error_of([&] { video_of(folder.path, {}); }), HasSubstr("mix.wav"));
+}
+
+TEST(Spectrogram, IsDrawnWithFramesWhereTheRunHasASound) {
+  const TestFolder folder;
+  make_fake_run(folder.path / "mute");
+  EXPECT_FALSE(draw_spectrogram(OpenedRun(folder.path / "mute"), {}));
+  EXPECT_FALSE(fs::exists(folder.path / "mute/spectrogram.png"));
+  const fs::path run = folder.path / "run";
+  make_sounding_run(run, {0, 0.5, 1});
+  ::unsetenv("DISPLAY");
+  EXPECT_TRUE(draw_spectrogram(OpenedRun(run), {}));
+  EXPECT_EQ(read_whole_file(run / "spectrogram.png").substr(1, 3), "PNG");
+  EXPECT_FALSE(fs::exists(run / "spectrogram-frames.png"));
+}
+
+// Beside the panels there is nothing: the second row begins where the first one ends.
+TEST(Panels, AreDrawnEdgeToEdge) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  FigureView view;
+  view.parameters = {0, 45, 90};
+  view.across = FigureView::Across::states;
+  const auto blocks = make_blocks(OpenedRun(folder.path, record), view);
+  ASSERT_EQ(blocks.size(), 1u);
+  EXPECT_EQ(blocks[0].rows[1].cells[2].parameter, 90);
+  const Display display;
+  const Picture picture = draw_panels(blocks[0], 100);
+  EXPECT_EQ(picture.width, 300);
+  const ViewWindow& window = blocks[0].look.window;
+  const int height = static_cast<int>(std::lround(100 * window.height_m / window.width_m));
+  EXPECT_EQ(picture.height, 2 * height);
+  for (int row = 0; row < 2; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      EXPECT_NE(picture.at(100 * column + 50, row * height + height / 2), (Rgb{255, 255, 255}))
+          << row << ' ' << column;
+    }
+  }
 }
 
 TEST(Video, IsLeftOutAfterCtrlC) {
