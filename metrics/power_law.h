@@ -102,7 +102,7 @@ struct PowerLawFit {
 /// values (0.4 to 0.7) refuses some of these samples; none of 300 was stated.
 ///
 /// **Not told apart** are log-normals of which only what lies 2 sigma above the median is seen,
-/// from sigma 5 on: stated for half of the samples of 700 values, 45 % of 1,000, 5 % of 2,000. So
+/// from sigma 5 on: stated for half of the samples of 700 values, 45 % of 1,000, 15 % of 2,000. So
 /// are laws with an exponential cut-off over four decades: 88, 60 and 23 %.
 ///
 /// @param energies  of any unit, in the order of time; those that are 0 are left out and counted
