@@ -92,11 +92,11 @@ Event record_of(const SoundEvent& e, int sample) {
   event.position = e.position;
   event.energy_J = e.energy;
   event.duration_s = e.duration;
-  event.numbers = {{"ruling_length", e.ruling_length},
-                   {"free_border", e.free_border},
-                   {"area", e.area},
-                   {"flipped_area", e.flipped_area},
-                   {"curvature", e.curvature},
+  event.numbers = {{"ruling_length_m", e.ruling_length},
+                   {"free_border_m", e.free_border},
+                   {"area_m2", e.area},
+                   {"flipped_area_m2", e.flipped_area},
+                   {"curvature_per_m", e.curvature},
                    {"blocked_share", e.blocked_share},
                    {"sample", sample}};
   return event;

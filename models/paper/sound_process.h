@@ -45,10 +45,10 @@ void describe(OptionVisitor& v, SoundStage& options);
 /// kSoundKinds), "time" [s], "energy" [J], "l_r", "l_c" [m], "area" [m^2], "sample" [1]) and
 /// "resonators" (triangles: their cells in space; cell arrays "kind", "event" [1]) of the events
 /// that have become known, and "surface" (as of the animation, point array "pattern"). Each event
-/// is pushed with the numbers ruling_length, free_border (m), area, flipped_area (m^2), curvature
-/// (1/m), blocked_share, sample. Diagnostics: events (since the start), and after the last frame
-/// true_peak (dBFS) and gain_lowered (dB). Phases: "read", "detect", "resonators", "choose", "mix",
-/// "encode".
+/// is pushed with the numbers ruling_length_m, free_border_m, area_m2, flipped_area_m2,
+/// curvature_per_m, blocked_share, sample. Diagnostics: events (since the start), and after the
+/// last frame true_peak (dBFS) and gain_lowered (dB). Phases: "read", "detect", "resonators",
+/// "choose", "mix", "encode".
 std::unique_ptr<Process> make_sound_process(const Sheet& sheet,
                                             std::shared_ptr<const SheetAnimation> animation,
                                             const SoundStage& stage,

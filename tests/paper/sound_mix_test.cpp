@@ -199,7 +199,7 @@ TEST(SoundProcess, RecordsEventsPicturesAndOneSound) {
     EXPECT_EQ(e.kind, "flap");
     EXPECT_GT(e.energy_J, 0);
     EXPECT_GE(e.numbers.at("sample"), 0);
-    EXPECT_NEAR(e.numbers.at("ruling_length"), 0.3, 0.02);
+    EXPECT_NEAR(e.numbers.at("ruling_length_m"), 0.3, 0.02);
   }
 }
 
