@@ -31,7 +31,7 @@ bool listens(const CaseSpec& c) {
 }
 
 TEST(PaperExperiments, AreThoseThatTheTopicHas) {
-  EXPECT_EQ(experiment_files().size(), 37U);
+  EXPECT_EQ(experiment_files().size(), 28U);
   for (const fs::path& file : experiment_files()) {
     for (const bool quick : {false, true}) {
       LoadRequest request;
