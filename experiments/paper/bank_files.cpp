@@ -47,11 +47,12 @@ BankSound descriptors_of(const CsvTable& table, const CsvTable::Row& row) {
   BankSound sound;
   sound.kind = kind_of(*table.text(row, "kind"), row.place);
   const auto number = [&](const char* column, double& to, bool needed) {
-    const std::optional<double> x = table.number(row, column);
-    if (!x && needed) {
-      throw Error("has no " + std::string(column), row.place, "a column of that name");
+    const std::optional<std::string> cell = table.text(row, column);
+    if (!cell || cell->empty()) {
+      if (needed) throw Error("has no " + std::string(column), row.place, "a number");
+      return;
     }
-    if (!x) return;
+    const std::optional<double> x = table.number(row, column);
     if (*x < 0) throw Error(std::string(column) + " is negative", row.place, "0 or more");
     to = *x;
   };

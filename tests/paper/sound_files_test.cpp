@@ -80,7 +80,7 @@ TEST_F(BankFiles, BadOnesAreNamed) {
   write_wav("a.wav", {48000, Eigen::MatrixXd::Constant(480, 1, 0.25)});
   write("broken.wav", "RIFFxxxxWAVE");
   write("empty.wav", "");
-  with("b.wav,flap,1,1,\n", "which is not there");
+  with("b.wav,flap,0.1,0.1,\n", "which is not there");
   with(",flap,0.1,0.1,0\n", "bank.csv:2");
   with("../a.wav,flap,0.1,0.1,0\n", "in the bank's folder");
   with("/a.wav,flap,0.1,0.1,0\n", "in the bank's folder");
@@ -92,6 +92,7 @@ TEST_F(BankFiles, BadOnesAreNamed) {
   with("empty.wav,flap,0.1,0.1,0\n", "empty.wav");
   with("a.wav,friction,0,0,0.1\n", "no sound of a flap or crac");
   with("", "no sound of a flap or crac");
+  with("a.wav,flap,,0.1,0\n", "has no l_r");
   write("bank.csv", "file,kind\na.wav,flap\n");
   expect_read_error("has no l_r");
 }
