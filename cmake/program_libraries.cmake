@@ -5,6 +5,8 @@ find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(pugixml REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(SNDFILE REQUIRED IMPORTED_TARGET sndfile)  # no CMake package in Debian
 find_package(GTest REQUIRED)
 include(GoogleTest)
 find_package(VTK 9.1 REQUIRED COMPONENTS

@@ -76,12 +76,17 @@ struct Frame {
 };
 
 /// A discrete event for sound and for logs.
+///
+/// `numbers` holds what only events of this kind have: lengths of a resonator, its area, the sample
+/// that was played. Their names are letters, digits, _ and -, none of them that of a field below,
+/// and end in the unit where there is one ("area_m2", "l_r_m"); their values are finite.
 struct Event {
   double time_s = 0;
   std::string kind;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   double energy_J = 0;
   double duration_s = 0;
+  std::map<std::string, double> numbers = {};
 };
 
 /// A file that belongs to a run but is no frame (WAV, SVG, EXR, glTF): stored beside the frames

@@ -18,7 +18,7 @@ def run_section(run, anchor, level_one):
     heading = "h1" if level_one else "h2"
     body = [f'<section class="run" id="{anchor}">',
             f"<{heading}>{escape(run.title)}</{heading}>", parts.meta_line(run)]
-    body += [parts.claims(run), parts.picture(run), parts.curves(run), parts.metrics(run),
+    body += [parts.claims(run), parts.picture(run), parts.sounds(run), parts.curves(run), parts.metrics(run),
              parts.timing(run), parts.studies(run), parts.diagnostics(run), parts.events(run),
              parts.warnings(run), parts.rerun(run), parts.provenance(run), "</section>"]
     return "\n".join(b for b in body if b)

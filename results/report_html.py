@@ -15,6 +15,8 @@ MOST_COLUMNS = 64
 MOST_CASES = 100
 MOST_RUNS = 100
 MOST_PICTURE_BYTES = 50_000_000
+MOST_SOUNDS = 24              # of a run
+MOST_SOUND_BYTES = 20_000_000  # of each
 
 
 def escape(text, most=MOST_CHARACTERS):
@@ -79,7 +81,18 @@ def png_figure(path, alt, caption):
         return ""
     except OSError as error:
         raise runfile.RunFileError(f"{path}: cannot be read ({error.strerror})") from error
-    return figure(data_uri(content, "image/png"), alt, caption)
+    return image_figure(content, alt, caption)
+
+
+def image_figure(png, alt, caption):
+    """A PNG that was drawn for the page."""
+    return figure(data_uri(png, "image/png"), alt, caption)
+
+
+def player(wav, caption):
+    """A WAV file to be played on the page."""
+    return (f'<figure><audio controls src="{data_uri(wav, "audio/wav")}"></audio>'
+            f"<figcaption>{caption}</figcaption></figure>")
 
 
 def svg_figure(svg, alt, caption):

@@ -5,8 +5,11 @@ import json
 import numpy as np
 
 import plots
-from report_html import (MOST_CASES, MOST_LONG_CHARACTERS, MOST_ROWS, details, escape, left_out,
-                         png_figure, svg_figure, table)
+import runfile
+import sound
+import spectrogram
+from report_html import (MOST_CASES, MOST_LONG_CHARACTERS, MOST_ROWS, MOST_SOUND_BYTES, MOST_SOUNDS, details,
+                         escape, image_figure, left_out, player, png_figure, svg_figure, table)
 from tables import event_counts, failures, metric_rows, phase_rows, timing_rows
 from wording import beside, display_name, interval, labelled, number, unit_symbol, with_unit
 
@@ -59,6 +62,50 @@ def picture(run):
                        f"{escape(names)}: one camera, one light"
                        + (", one colour range." if run.view.get("color_by") else "."))
     return f"<h2>Picture</h2>\n{image}" if image else ""
+
+
+def spectrogram_figure(run):
+    """The picture that the run has, with its frames; else one without them."""
+    caption = ("Events and levels of the sound over time, one range of colours; spectra of "
+               f"{1000 * sound.WINDOW_S:.0f} ms.")
+    there = png_figure(run.folder / "spectrogram.png", "Spectrograms below frames", caption)
+    if there:
+        return there
+    try:
+        drawn = spectrogram.picture(run)
+    except sound.NoSound as error:
+        return f'<p class="note">No spectrogram: {escape(error)}.</p>'
+    return image_figure(drawn, "Spectrograms", caption) if drawn else ""
+
+
+def sound_details(content, name):
+    """Length, rate and channels; nothing of a kind that is not read here."""
+    try:
+        wav = sound.read_wav(content, name)
+    except sound.NoSound:
+        return ""
+    channels = {1: "mono", 2: "stereo"}.get(wav.samples.shape[1], f"{wav.samples.shape[1]} channels")
+    return f", {number(wav.seconds(), counts=False)} s, {wav.rate / 1000:g} kHz, {channels}"
+
+
+def sound_player(run, case, variant, name, sha256):
+    content = runfile.read_artifact(run, name, sha256)
+    label = escape(display_name(variant.name)) + (f", {escape(case.name)}" if len(run.cases) > 1 else "")
+    if len(content) > MOST_SOUND_BYTES:
+        return (f'<p class="note">{label}: {escape(name)} has more than '
+                f"{MOST_SOUND_BYTES // 1_000_000} MB: it is in the run's folder.</p>")
+    return player(content, f"{label}: <code>{escape(name)}</code>{sound_details(content, name)}.")
+
+
+def sounds(run):
+    found = [(case, v, *stored) for case in page_cases(run) for v in case.variants
+             for stored in sound.sounds_of(v)]
+    if not found:
+        return ""
+    players = [sound_player(run, *one) for one in found[:MOST_SOUNDS]]
+    more = len(found) - MOST_SOUNDS
+    note = f'<p class="note">{more} more sounds are in the run\'s folder.</p>' if more > 0 else ""
+    return "\n".join(["<h2>Sound</h2>", spectrogram_figure(run), *players, note])
 
 
 def not_drawn(run):

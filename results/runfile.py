@@ -135,6 +135,7 @@ class Run:
     studies: list[Study]
     claims: list[Claim]
     view: dict = field(default_factory=dict)  # [figure_view] of the experiment
+    force: bool = False  # read whether or not its files are what was recorded
 
     def variant_names(self):
         """Names of all variants, in the order of the experiment: what fixes their colours."""
@@ -276,6 +277,33 @@ def require_recorded(path):
                                "recorded one (allowed: the file as the run wrote it, or --force)")
 
 
+def path_below(folder, name):
+    """The path of a recorded file, which leads through no link and does not leave the folder."""
+    path = folder
+    for part in Path(name).parts:
+        path = path / part
+        if Path(name).is_absolute() or part == "..":
+            raise RunFileError(f"{folder}: a file of it leaves it: '{printable(name)}'")
+        if path.is_symlink():
+            raise RunFileError(f"{path}: is a symbolic link: below a run none is followed")
+    return path
+
+
+def read_artifact(run, name, sha256):
+    """The bytes of a recorded file, which are what was recorded unless the run is read with force.
+    Raises RunFileError naming the file."""
+    path = path_below(run.folder, name)
+    require_regular_file(path)
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise RunFileError(f"{path}: cannot be read ({error.strerror})") from error
+    if not run.force and hashlib.sha256(content).hexdigest() != sha256:
+        raise RunFileError(f"{path}: is damaged or another file: its SHA-256 is not the recorded one "
+                           "(allowed: the file as the run wrote it, or --force)")
+    return content
+
+
 def require_own(group):
     """No link to another place, no values in other files."""
     for name in group:
@@ -305,7 +333,9 @@ def read_run(place, force=False):
             if not 1 <= version <= SCHEMA_VERSION:
                 raise RunFileError(f"{path}: schema version {version} "
                                    f"(this program reads up to {SCHEMA_VERSION})")
-            return read_root(path.parent, file)
+            run = read_root(path.parent, file)
+            run.force = force
+            return run
     except RunFileError:
         raise
     except (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError) as error:

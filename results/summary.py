@@ -84,7 +84,8 @@ def summary_text(run):
         rows = [[s.name, s.kind, s.quantity, interval(s.value, s.low, s.high)] for s in run.studies]
         lines += ["", "## Studies", "",
                   *table(["study", "kind", "quantity", "value [95 % interval]"], rows)]
-    lines += ["", "## Files", "", "- `figure.png`, `metrics.svg`, `times.svg` (of processes): what to look at first",
+    lines += ["", "## Files", "", "- `figure.png`, `metrics.svg`, `times.svg` (of processes), `spectrogram.png` (of sounds): what to look at "
+              "first",
               "- `run.h5`: every number (docs/file-formats.md)",
               "- `frames/`: geometry of every frame; open the `.pvd` files with ParaView",
               "- `spec.toml`: the experiment as it ran", ""]

@@ -14,8 +14,8 @@ packages=(
   ca-certificates git cmake ninja-build ccache g++ clang-format pkg-config
   # libraries
   libeigen3-dev libtbb-dev libcgal-dev libvtk9-dev libhdf5-dev libssl-dev
-  libsuitesparse-dev libopenblas-dev libpugixml-dev libfftw3-dev liblemon-dev libceres-dev
-  libopenimageio-dev openimageio-tools python3-imath
+  libsuitesparse-dev libopenblas-dev libpugixml-dev libfftw3-dev liblemon-dev libceres-dev libspectra-dev
+  libopenimageio-dev openimageio-tools python3-imath libsndfile1-dev
   libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   # plots, report and the checks that a run needs nothing of ours

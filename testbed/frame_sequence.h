@@ -1,14 +1,19 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/frame.h"
 
 namespace geoprior {
 
-/// The frames of one variant, in order of parameter, as the metrics of a sequence see them.
+/// What was recorded of one variant, as the metrics of a sequence see it: its frames in order of
+/// parameter, its events and artifacts.
 ///
 /// A long simulation does not fit in memory: what is not there is read from the run's files when it
 /// is asked for, so a metric goes once through the sequence and holds what it needs of a few frames
@@ -24,6 +29,13 @@ class FrameSequence {
   /// this file is read, and it is not remembered.
   [[nodiscard]] virtual std::shared_ptr<const Part> part(std::size_t i,
                                                          const std::string& name) const = 0;
+  /// The variant's events, in the order in which they were recorded.
+  [[nodiscard]] virtual const std::vector<Event>& events() const = 0;
+  /// The bytes of the variant's artifact of that name, as it was recorded; absent when it has none.
+  /// Of a run on the disk the file is read anew at each call.
+  /// @throws Error  when its file is missing, or not what was recorded
+  [[nodiscard]] virtual std::optional<std::vector<std::byte>> artifact(
+      const std::string& name) const = 0;
 
   /// The same. @throws Error  when the frame has none of that name
   [[nodiscard]] std::shared_ptr<const Part> require_part(std::size_t i,
@@ -48,10 +60,12 @@ inline std::shared_ptr<const Part> part_of(const std::shared_ptr<const Frame>& f
   return {frame, part};
 }
 
-/// Frames that are all in memory, sorted by parameter already.
+/// A sequence that is all in memory, its frames sorted by parameter already.
 class FramesInMemory final : public FrameSequence {
  public:
-  explicit FramesInMemory(const std::vector<Frame>& frames) {
+  explicit FramesInMemory(const std::vector<Frame>& frames, std::vector<Event> events = {},
+                          std::vector<Artifact> artifacts = {})
+      : events_(std::move(events)), artifacts_(std::move(artifacts)) {
     for (const Frame& frame : frames) frames_.push_back(std::make_shared<const Frame>(frame));
   }
   [[nodiscard]] std::size_t size() const override { return frames_.size(); }
@@ -63,9 +77,19 @@ class FramesInMemory final : public FrameSequence {
                                                  const std::string& name) const override {
     return part_of(frames_.at(i), name);
   }
+  [[nodiscard]] const std::vector<Event>& events() const override { return events_; }
+  [[nodiscard]] std::optional<std::vector<std::byte>> artifact(
+      const std::string& name) const override {
+    const auto found = std::find_if(artifacts_.begin(), artifacts_.end(),
+                                    [&](const Artifact& one) { return one.name == name; });
+    if (found == artifacts_.end()) return std::nullopt;
+    return found->bytes;
+  }
 
  private:
   std::vector<std::shared_ptr<const Frame>> frames_;
+  std::vector<Event> events_;
+  std::vector<Artifact> artifacts_;
 };
 
 }  // namespace geoprior

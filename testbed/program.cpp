@@ -108,9 +108,10 @@ void add_views(CommandLine& line) {
   CLI::App* video = add_command(line, "video", "draw every frame of a run; a video with ffmpeg");
   video->add_option("run", line.video.run, what)->required();
   video->add_option("--view", line.video.view, "experiment whose [figure_view] is drawn instead");
-  video->add_option("--fps", line.video.frames_per_second, "frames a second")
-      ->check(CLI::Range(1.0, 120.0))
-      ->capture_default_str();
+  video
+      ->add_option("--fps", line.video.frames_per_second,
+                   "frames a second; absent: real time with a sound, else 25")
+      ->check(CLI::Range(1.0, 120.0));
   video->add_option("--out", line.video.out, "folder; absent: video in the run's")
       ->type_name("DIR");
   CLI::App* report = add_command(line, "report", "one HTML page about one or several runs");

@@ -1,10 +1,25 @@
 #include "baselines/paper/adaptive.h"
 #include "baselines/paper/dense.h"
+#include "baselines/paper/plain_sounds.h"
 #include "experiments/paper/scene.h"
 #include "experiments/paper/topic.h"
 #include "solvers/paper/hybrid.h"
+#include "solvers/paper/sound.h"
+#include "testbed/formats/wav_file.h"
 
 namespace geoprior::paper {
+namespace {
+
+std::vector<std::byte> encode(const Eigen::MatrixXd& samples, int sample_rate) {
+  return wav_bytes({sample_rate, samples});
+}
+
+/// The user's, or one that the options generate.
+SoundBank bank_of(const PaperScene& scene, const BankOptions& options, std::uint64_t seed) {
+  return scene.bank ? *scene.bank : generate_bank(scene.sheet.material, options, seed);
+}
+
+}  // namespace
 
 std::vector<MethodEntry> methods() {
   using S = PaperScene;
@@ -25,6 +40,33 @@ std::vector<MethodEntry> methods() {
           "thesis 3.2.1; Schreck et al. 2015",
           [](const S& scene, const HybridOptions& options, RunContext&) {
             return make_hybrid_sheet(scene.sheet, options);
+          }),
+      method_entry<S, SoundOptions>(
+          "sound", false, "events of an animated sheet, sounded by a bank indexed by resonators",
+          "thesis 3.2.3; Schreck et al. 2016",
+          [](const S& scene, const SoundOptions& options, RunContext& context) {
+            const auto& animation = scene.require_animation("the method 'sound'");
+            return make_sound_process(scene.sheet, animation, options.stage,
+                                      bank_voices(bank_of(scene, options.bank, context.seed()),
+                                                  options, scene.sheet.material),
+                                      encode);
+          }),
+      method_entry<S, ClickOptions>(
+          "clicks", true, "the same events, one click each", "docs/methods/paper-sound.md",
+          [](const S& scene, const ClickOptions& options, RunContext&) {
+            const auto& animation = scene.require_animation("the method 'clicks'");
+            return make_sound_process(scene.sheet, animation, options.stage, click_voices(options),
+                                      encode);
+          }),
+      method_entry<S, RandomSoundOptions>(
+          "random-sounds", true, "the same events, a sound of the bank at random each",
+          "docs/methods/paper-sound.md",
+          [](const S& scene, const RandomSoundOptions& options, RunContext& context) {
+            const auto& animation = scene.require_animation("the method 'random-sounds'");
+            return make_sound_process(
+                scene.sheet, animation, options.stage,
+                random_voices(bank_of(scene, options.bank, context.seed()), scene.sheet.material),
+                encode);
           }),
   };
 }
@@ -82,6 +124,10 @@ std::vector<DiagnosticEntry> diagnostics() {
       {"projection_iterations", "1", "iterations of the projection to isometry", true, kWork},
       {"strain_before", "1", "largest principal Green strain of a triangle before it, in modulus"},
       {"strain_after", "1", "the same after it"},
+      // Recorded by methods of sound.
+      {"events", "1", "events since the start"},
+      {"true_peak", "dBFS", "of the whole sound; absent when it is silent"},
+      {"gain_lowered", "dB", "by which the whole was made quieter to stay under highest_peak"},
   };
 }
 

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "experiments/paper/measures.h"
+#include "experiments/paper/sound_measures.h"
 #include "experiments/paper/tear_measures.h"
 #include "experiments/paper/topic.h"
 #include "testbed/metric_rows.h"
@@ -22,12 +23,16 @@ constexpr Direction kHigh = Direction::higher_is_better;
 constexpr Direction kTarget = Direction::closer_to_target;
 constexpr Direction kNone = Direction::none;
 
-/// A group of metrics of a frame.
+/// A group of metrics of a frame of a sheet; absent where an animation is listened to, whose frames
+/// are another run's.
 template <class Measure>
 auto of_frame(Measure measure) {
-  return frame_metrics<PaperScene>([measure](const PaperScene& scene, const Frame& frame) {
-    return measure(sheet_frame(scene, frame));
-  });
+  using Measures = metric_rows_detail::MeasuresOf<Measure, const SheetFrame&>;
+  return frame_metrics<PaperScene>(
+      [measure](const PaperScene& scene, const Frame& frame) -> std::optional<Measures> {
+        if (scene.animation) return std::nullopt;
+        return measure(sheet_frame(scene, frame));
+      });
 }
 
 MetricGroup isometry_group() {
@@ -123,9 +128,11 @@ MetricGroup fold_group() {
 MetricGroup motion_group() {
   using M = MotionMeasures;
   const auto fits = std::make_shared<FitMemo>();
-  return sequence_metrics<PaperScene>([fits](const PaperScene& scene, const FrameSequence& frames) {
-           return motion_measures(*fits, scene, frames);
-         })
+  return sequence_metrics<PaperScene>(
+             [fits](const PaperScene& scene, const FrameSequence& frames) -> std::optional<M> {
+               if (scene.animation) return std::nullopt;
+               return motion_measures(*fits, scene, frames);
+             })
       .row("second_difference_p95", "m",
            "second difference in time of a point of the sheet, a frame apart, that 95 % of the "
            "points of a grid of the pattern over all frames stay under",
@@ -292,6 +299,62 @@ MetricGroup tear_path_group() {
            kLow, kSmooth);
 }
 
+MetricGroup sound_group() {
+  using M = const SoundMeasures&;
+  auto rows = sequence_metrics<PaperScene>(sound_measures);
+  rows.row("sound_events", "1", "events that were heard of the sheet", kNone, kCount,
+           [](M m) { return static_cast<double>(m.all().count); })
+      .row("sound_energy", "J", "energy that they set free", kNone, kSmooth,
+           [](M m) { return m.all().energy; })
+      .row("sound_rate", "1/s", "events over the length of the sound", kNone, kSmooth,
+           [](M m) { return m.rate; })
+      .row("sound_fano", "1",
+           "variance over mean of their counts in windows of 0.1 s: 1 for events that know "
+           "nothing of each other, more for bursts",
+           kNone, kSmooth, [](M m) { return m.fano; })
+      .row("crac_share", "1", "cracs among the flaps and cracs; absent without either", kNone,
+           kShare,
+           [](M m) -> Value {
+             const double cracs = m.of("crac").count, snaps = cracs + m.of("flap").count;
+             if (snaps == 0) return std::nullopt;
+             return cracs / snaps;
+           })
+      .row("sound_peak", "dBFS",
+           "true peak of the mixed sound, 8 times oversampled; absent for silence", kLow, {0.01, 0},
+           [](M m) { return m.peak; })
+      .row("sound_centroid", "Hz", "mean frequency by power of the mixed sound", kNone, {1, 1e-3},
+           [](M m) { return m.centroid; });
+  for (const char* kind : {"flap", "crac", "friction", "tear"}) {
+    const std::string name = kind;
+    rows.row(name + "_events", "1", "events of the kind " + name, kNone, kCount,
+             [name](M m) { return static_cast<double>(m.of(name).count); });
+  }
+  for (const char* kind : {"flap", "crac"}) {
+    const std::string name = kind;
+    rows.row(name + "_duration", "s",
+             "time in which the energy of a " + name +
+                 ", as it is heard in the mix, falls by 20 dB (Schroeder); median of those that "
+                 "stand alone",
+             kNone, {1e-4, 0.02}, [name](M m) { return m.of(name).duration; })
+        .row(name + "_centroid", "Hz", "mean frequency by power of the same, median", kNone,
+             {1, 0.02}, [name](M m) { return m.of(name).centroid; });
+  }
+  return rows;
+}
+
+MetricGroup energy_exponent_group() {
+  using M = const EnergyExponent&;
+  return sequence_metrics<PaperScene>(energy_exponent)
+      .row("energy_exponent", "1",
+           "exponent of the energies of flaps and cracs, by maximum likelihood; withheld unless a "
+           "power law is told apart from log-normal and exponential energies",
+           kNone, {0.02, 0}, [](M m) { return m.stated; })
+      .row("energy_exponent_fitted", "1", "the same, whether it may be stated or not", kNone,
+           {0.02, 0}, [](M m) { return m.fitted; })
+      .row("energy_exponent_count", "1", "energies in its tail", kNone, kCount,
+           [](M m) { return m.count; });
+}
+
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
@@ -312,7 +375,9 @@ std::vector<MetricGroup> metrics() {
           tear_group(),
           energy_gap_group(),
           tearing_force_group(),
-          tear_path_group()};
+          tear_path_group(),
+          sound_group(),
+          energy_exponent_group()};
 }
 
 }  // namespace geoprior::paper

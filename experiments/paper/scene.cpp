@@ -6,8 +6,10 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "experiments/paper/bank_files.h"
 #include "experiments/paper/fast_handles.h"
 #include "experiments/paper/pulled_apart.h"
+#include "experiments/paper/sheet_files.h"
 #include "models/paper/sheet_valid.h"
 #include "testbed/home.h"
 #include "testbed/keyframes.h"
@@ -136,6 +138,15 @@ std::map<std::string, double> PaperScene::facts() const {
           {"bending_stiffness", sheet.material.bending_stiffness()}};
 }
 
+const std::shared_ptr<const SheetAnimation>& PaperScene::require_animation(
+    const std::string& who) const {
+  if (!animation) {
+    throw Error(who + " has nothing to listen to", "scene.animation",
+                "a table with the path of an animated sheet");
+  }
+  return animation;
+}
+
 Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern, std::uint64_t seed) {
   Sheet sheet;
   sheet.pattern = pattern;
@@ -168,6 +179,17 @@ std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
   scene->sheet = make_sheet(options, pattern, seed);
   scene->fold_radius = options.fold_radius;
   require_valid(scene->sheet, "scene");
+  if (options.animation) {
+    scene->animation = open_sheet_files(*options.animation, folder, scene->sheet.pattern,
+                                        scene->load_warnings, scene->input_files);
+    if (options.bank) {
+      const fs::path bank = find_file(*options.bank, folder, "data", "scene.bank");
+      scene->bank =
+          std::make_shared<SoundBank>(read_bank(bank, scene->load_warnings, scene->input_files));
+    }
+    return scene;
+  }
+  if (options.bank) throw Error("is given without an animation", "scene.bank", "scene.animation");
   // Ten times what the imperfection may add.
   constexpr double kStretch = 1e-3;
   // What tears gives way.

@@ -204,6 +204,12 @@ void describe(OptionVisitor& v, PaperSceneOptions& options) {
            .unit = "m",
            .min = 1e-4,
            .max = 100});
+  describe_group(v, "animation", options.animation,
+                 {.doc = "frames of a sheet with coordinates of the pattern, for methods of sound; "
+                         "duration and handles are then those of the animation, not simulated"});
+  v.value("bank", options.bank,
+          {.doc = "folder with a bank of sounds, bank.csv and WAV files (docs/file-formats.md); "
+                  "absent: methods of sound generate theirs"});
 }
 
 }  // namespace geoprior::paper

@@ -8,6 +8,7 @@
 #include "core/options.h"
 #include "experiments/paper/svg_pattern.h"
 #include "models/paper/sheet.h"
+#include "testbed/formats/sequence_files.h"
 #include "testbed/keyframes.h"
 
 namespace geoprior::paper {
@@ -124,6 +125,8 @@ struct PaperSceneOptions {
   int substeps = 8;
   double handle_step = 1e-4;
   double fold_radius = 0.03;
+  std::optional<SequenceOptions> animation;  ///< what methods of sound listen to
+  std::optional<std::string> bank;           ///< folder of sounds for them
 };
 void describe(OptionVisitor& v, PaperMaterial& options);
 void describe(OptionVisitor& v, PaperSceneOptions& options);

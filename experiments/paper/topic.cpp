@@ -24,7 +24,7 @@ FigureView paper_view() {
 Topic make_topic() {
   Topic topic;
   topic.name = "paper";
-  topic.summary = "a sheet of paper bends, crumples and tears between handles (thesis 3.2)";
+  topic.summary = "a sheet of paper bends, crumples, tears and sounds between handles (thesis 3.2)";
   topic.default_scene = [] { return std::make_unique<TypedOptions<PaperSceneOptions>>(); };
   topic.load = [](const OptionSet& set, const std::filesystem::path& folder, std::uint64_t seed) {
     return load_paper_scene(dynamic_cast<const TypedOptions<PaperSceneOptions>&>(set).options,
@@ -32,6 +32,7 @@ Topic make_topic() {
   };
   topic.last_parameter = [](const OptionSet& set) -> std::optional<LastParameter> {
     const auto& scene = dynamic_cast<const TypedOptions<PaperSceneOptions>&>(set).options;
+    if (scene.animation) return std::nullopt;  // has its own
     return LastParameter{scene.duration, "s"};
   };
   topic.methods = methods();

@@ -289,7 +289,8 @@ void ShellElements::Impl::membrane(const Element& element, const Eigen::Vector3d
   const Eigen::Matrix<double, 3, 2> P = element.area * F * stress;
   for (int k = 0; k < 3; ++k) out.gradient.segment<3>(3 * k) += P * b[k];
   if (order == Order::gradient) return;
-  const Eigen::Matrix2d tensile = element.area * tensile_part(stress);
+  Eigen::Matrix2d tensile = Eigen::Matrix2d::Zero();
+  if (order == Order::hessian) tensile = element.area * tensile_part(stress);
   const Eigen::Matrix3d L = std::sqrt(element.area * membrane_stiffness) * root;
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector2d& bk = b[k];
@@ -356,10 +357,11 @@ void ShellElements::evaluate(int element, const ShellState& state, const Eigen::
   const int* node = impl_->nodes.data() + e.first_node;
   for (int k = 0; k < e.nodes; ++k) p[k] = x.row(node[k]);
   if (order != Order::energy) out.gradient.head(columns).setZero();
-  if (order == Order::hessian) out.hessian.topLeftCorner(columns, columns).setZero();
+  const bool with_hessian = order == Order::hessian || order == Order::material_hessian;
+  if (with_hessian) out.hessian.topLeftCorner(columns, columns).setZero();
   Rows rows;
   impl_->membrane(e, p.data(), order, out, rows);
-  if (order == Order::hessian) add_outer_products(rows, 3, Constant<9>(), out.hessian);
+  if (with_hessian) add_outer_products(rows, 3, Constant<9>(), out.hessian);
 
   std::array<HingeAngle, kMostTerms> angle;
   const LocalHinge* hinge = impl_->hinges.data() + e.first_hinge;

@@ -58,7 +58,9 @@ class ShellElements {
     Eigen::Matrix<double, 3 * kMostNodes, 1> gradient;
     Eigen::Matrix<double, 3 * kMostNodes, 3 * kMostNodes> hessian;  ///< positive semidefinite
   };
-  enum class Order { energy, gradient, hessian };
+  /// `material_hessian` leaves out what the membrane's stress adds to the Hessian: the stiffness
+  /// about places that are taken to be free of stress.
+  enum class Order { energy, gradient, hessian, material_hessian };
   void evaluate(int element, const ShellState& state, const Eigen::MatrixX3d& x, Order order,
                 Local& out) const;
   /// Elastic part of the shape operator, S - S_p, of an element (S_uu, S_uv, S_vv; 1/m).

@@ -49,24 +49,6 @@ void require_grain(const std::optional<double>& grain_deg, double ratio, const s
   }
 }
 
-void require_material(const PaperMaterial& material, const std::string& where) {
-  const auto positive = [&](double x, const char* key) {
-    require_range(x, 0, kInfinity, true, inside(where, key));
-  };
-  const auto not_negative = [&](double x, const char* key) {
-    require_range(x, 0, kInfinity, false, inside(where, key));
-  };
-  positive(material.thickness, "thickness");
-  positive(material.young_modulus, "young_modulus");
-  require_range(material.poisson_ratio, 0, 0.499, false, inside(where, "poisson_ratio"));
-  positive(material.area_density, "area_density");
-  positive(material.yield_curvature, "yield_curvature");
-  not_negative(material.weakening, "weakening");
-  not_negative(material.friction, "friction");
-  not_negative(material.damping, "damping");
-  require_grain(material.grain_deg, material.along, "along", where);
-}
-
 /// Finite keys with times that increase.
 void require_trajectory(const Trajectory& trajectory, const std::string& where) {
   if (trajectory.keys.empty()) throw Error("has no key", where, "at least one");
@@ -350,9 +332,27 @@ std::optional<Eigen::Vector2d> start_nearer_than(const Sheet& sheet, const Obsta
   return StartSearch(sheet, obstacle, distance).near_point();
 }
 
+void require_valid(const PaperMaterial& material, const std::string& where) {
+  const auto positive = [&](double x, const char* key) {
+    require_range(x, 0, kInfinity, true, inside(where, key));
+  };
+  const auto not_negative = [&](double x, const char* key) {
+    require_range(x, 0, kInfinity, false, inside(where, key));
+  };
+  positive(material.thickness, "thickness");
+  positive(material.young_modulus, "young_modulus");
+  require_range(material.poisson_ratio, 0, 0.499, false, inside(where, "poisson_ratio"));
+  positive(material.area_density, "area_density");
+  positive(material.yield_curvature, "yield_curvature");
+  not_negative(material.weakening, "weakening");
+  not_negative(material.friction, "friction");
+  not_negative(material.damping, "damping");
+  require_grain(material.grain_deg, material.along, "along", where);
+}
+
 void require_valid(const Sheet& sheet, const std::string& where) {
   require_simple(sheet.pattern, inside(where, "pattern"));
-  require_material(sheet.material, inside(where, "material"));
+  require_valid(sheet.material, inside(where, "material"));
   require_toughness(sheet.toughness, inside(where, "toughness"));
   for (int c = 0; c < 3; ++c) require_finite(sheet.gravity[c], inside(where, "gravity"));
   for (int i = 0; i < 3; ++i) {

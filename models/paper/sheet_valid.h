@@ -14,6 +14,9 @@ namespace geoprior::paper {
 /// contains the sheet's start, a value that is not finite.
 void require_valid(const Sheet& sheet, const std::string& where);
 
+/// The same of a material alone.
+void require_valid(const PaperMaterial& material, const std::string& where);
+
 /// A pattern point whose place on the flat start, without imperfection, has a signed distance below
 /// `distance` (m; negative is inside) to the obstacle at t = 0; absent when there is none, but for
 /// spots narrower than a 512th of the pattern.

@@ -64,7 +64,7 @@ struct VideoRequest {
   std::string run;
   std::optional<std::string> view;
   std::optional<std::string> out;
-  double frames_per_second = 25;
+  std::optional<double> frames_per_second;  ///< absent: as VideoOptions
   Unverified unverified = Unverified::refused;
 };
 

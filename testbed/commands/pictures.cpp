@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "testbed/view/python.h"
 #include "testbed/view/render.h"
+#include "testbed/view/spectrogram.h"
 
 namespace geoprior {
 
@@ -36,6 +37,10 @@ Pictures make_pictures(const fs::path& run_folder, const FigureView& view) {
   attempt(pictures.error, [&] {
     render_run(OpenedRun(run_folder), view);
     pictures.figure = run_folder / "figure.png";
+  });
+  attempt(pictures.error, [&] {
+    if (!draw_spectrogram(OpenedRun(run_folder), view)) return;
+    pictures.spectrogram = run_folder / "spectrogram.png";
   });
   attempt(pictures.error, [&] { run_python("plots", {run_folder.string()}); });
   attempt(pictures.error, [&] {

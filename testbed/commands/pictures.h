@@ -12,12 +12,14 @@ namespace geoprior {
 
 struct Pictures {
   std::optional<std::filesystem::path> figure;
+  std::optional<std::filesystem::path> spectrogram;  ///< of a run with sound
   std::optional<std::filesystem::path> summary;
   std::optional<std::filesystem::path> report;
   std::string error;  ///< what kept the rest from being made; the run itself is complete
 };
 
-/// figure.png, metrics.svg, summary.md and report.html in the folder of a run.
+/// figure.png, spectrogram.png of a run with sound, metrics.svg, summary.md and report.html in the
+/// folder of a run.
 Pictures make_pictures(const std::filesystem::path& run_folder, const FigureView& view);
 
 /// One page about several runs. @throws Error  as run_python does

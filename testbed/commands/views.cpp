@@ -11,6 +11,7 @@
 #include "testbed/runner/stop.h"
 #include "testbed/view/export.h"
 #include "testbed/view/render.h"
+#include "testbed/view/spectrogram.h"
 #include "testbed/view/video.h"
 
 namespace geoprior {
@@ -48,10 +49,17 @@ int render_command(const CommandContext& context, const RenderRequest& request) 
   install_stop_handler();
   const fs::path folder = run_folder_of(request.run);
   const OpenedRun run(folder, request.unverified);
-  render_run(run, view_of(run, request.view, context.topics));
+  const FigureView view = view_of(run, request.view, context.topics);
+  render_run(run, view);
   const fs::path figure = folder / "figure.png";
   say("picture  " + figure.string());
-  if (context.json) print_json({{"run", folder.string()}, {"figure", figure.string()}});
+  nlohmann::ordered_json result{{"run", folder.string()}, {"figure", figure.string()}};
+  if (draw_spectrogram(run, view)) {
+    const fs::path spectrogram = folder / "spectrogram.png";
+    say("sound    " + spectrogram.string());
+    result["spectrogram"] = spectrogram.string();
+  }
+  if (context.json) print_json(result);
   return done;
 }
 
@@ -68,13 +76,16 @@ int video_command(const CommandContext& context, const VideoRequest& request) {
     say("stopped before the last frame: no video");
   } else if (video.file) {
     say("video    " + video.file->string());
+    if (video.sound_of) say("sound    of " + *video.sound_of + ", in real time");
   } else {
     say("no video: ffmpeg is not on the PATH (apt-get install ffmpeg); the frames are there");
   }
+  if (!video.no_sound.empty()) say("no sound: " + video.no_sound);
   if (context.json) {
     nlohmann::ordered_json result{{"run", folder.string()}, {"frames", video.frames}};
     result["out"] = options.out.string();
     result["video"] = video.file ? nlohmann::ordered_json(video.file->string()) : nullptr;
+    result["sound_of"] = video.sound_of ? nlohmann::ordered_json(*video.sound_of) : nullptr;
     print_json(result);
   }
   return video.stopped ? wrong_use : done;

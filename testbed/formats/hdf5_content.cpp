@@ -230,14 +230,19 @@ template H5Block<double> H5Node::read_block(std::string_view, std::size_t) const
 template H5Block<std::int32_t> H5Node::read_block(std::string_view, std::size_t) const;
 template H5Block<std::int64_t> H5Node::read_block(std::string_view, std::size_t) const;
 
-void H5Node::read_table(std::string_view name, std::vector<H5Column>& columns) const {
+const std::vector<H5Column>& H5Node::read_table(std::string_view name) const {
   const auto* table = std::get_if<std::vector<H5Column>>(&data(name).values);
   if (table == nullptr) throw Error("is no table", at(name));
+  return *table;
+}
+
+void H5Node::read_table(std::string_view name, std::vector<H5Column>& columns) const {
+  const std::vector<H5Column>& table = read_table(name);
   for (H5Column& wanted : columns) {
-    const auto found = std::find_if(table->begin(), table->end(), [&](const H5Column& column) {
+    const auto found = std::find_if(table.begin(), table.end(), [&](const H5Column& column) {
       return column.name == wanted.name;
     });
-    if (found == table->end()) throw Error("table has no column '" + wanted.name + "'", at(name));
+    if (found == table.end()) throw Error("table has no column '" + wanted.name + "'", at(name));
     if (found->values.index() != wanted.values.index()) {
       throw Error("column '" + wanted.name + "' has another type", at(name));
     }

@@ -65,6 +65,8 @@ class H5Node {
   /// A data set of T with `rank` extents.
   template <class T>
   [[nodiscard]] H5Block<T> read_block(std::string_view name, std::size_t rank) const;
+  /// All columns of a table.
+  [[nodiscard]] const std::vector<H5Column>& read_table(std::string_view name) const;
   /// Reads the columns of these names; the alternatives that `columns` hold say the types.
   void read_table(std::string_view name, std::vector<H5Column>& columns) const;
 

@@ -26,10 +26,9 @@ MeshFile read_vtp(const std::filesystem::path& file) {
     throw Error("holds no surface", file.string(), "polygons or strips");
   }
   for (const NamedArray& array : part.arrays) {
-    if (array.on == NamedArray::On::points && array.name == "velocity" &&
-        array.values.cols() == 3 && array.values.rows() == part.points.rows()) {
-      out.velocity = array.values;
-    }
+    if (array.on != NamedArray::On::points || array.values.rows() != part.points.rows()) continue;
+    if (array.name == "velocity" && array.values.cols() == 3) out.velocity = array.values;
+    if (array.name == "pattern" && array.values.cols() == 2) out.pattern = array.values;
   }
   out.mesh = {std::move(part.points), std::move(part.triangles)};
   return out;

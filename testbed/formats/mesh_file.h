@@ -12,8 +12,11 @@ namespace geoprior {
 /// A surface as a file has it, polygons cut into triangles; nothing is welded, turned or dropped.
 struct MeshFile {
   TriMesh mesh;
-  Eigen::MatrixX3d velocity;   ///< one row per vertex (units of the file per s), or no rows
-  std::optional<double> time;  ///< TimeValue of a .vtp (s)
+  Eigen::MatrixX3d velocity;  ///< one row per vertex (units of the file per s), or no rows
+  /// Flat coordinates of the vertices: the point array `pattern` of a .vtp, or `vt` of an .obj
+  /// whose corners have one each, the same at every corner of a vertex; or no rows.
+  Eigen::MatrixX2d pattern = {};
+  std::optional<double> time = {};  ///< TimeValue of a .vtp (s)
 };
 
 /// Reads .obj, .ply, .off or .vtp by extension (any case).

@@ -7,8 +7,6 @@
 #include "testbed/formats/mesh_sequence_repair.h"
 
 namespace geoprior {
-namespace {
-
 Eigen::MatrixX3d in_metres_z_up(const Eigen::MatrixX3d& rows, bool y_up, double scale) {
   Eigen::MatrixX3d out = scale * rows;
   if (y_up) {
@@ -17,8 +15,6 @@ Eigen::MatrixX3d in_metres_z_up(const Eigen::MatrixX3d& rows, bool y_up, double 
   }
   return out;
 }
-
-}  // namespace
 
 MeshSequence::MeshSequence(std::vector<FrameFile> files, bool y_up, double scale, std::string name)
     : files_(std::move(files)), y_up_(y_up), scale_(scale), name_(std::move(name)) {

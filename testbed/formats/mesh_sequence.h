@@ -15,6 +15,11 @@ struct FrameFile {
   double time = 0;  ///< s
 };
 
+/// Rows of coordinates or velocities of a file, in metres with z up.
+/// @param y_up   the file has y up: (x, y, z) becomes (x, -z, y)
+/// @param scale  metres a unit of the file
+Eigen::MatrixX3d in_metres_z_up(const Eigen::MatrixX3d& rows, bool y_up, double scale);
+
 /// Mesh files as an animated surface: every frame is read and repaired when it is asked for.
 class MeshSequence final : public SurfaceSequence {
  public:

@@ -95,10 +95,8 @@ void describe(OptionVisitor& v, SequenceOptions& o) {
   v.value("last", o.last, {.doc = "number of the last frame to take", .min = 0});
 }
 
-std::shared_ptr<SurfaceSequence> open_sequence(const SequenceOptions& options,
-                                               const fs::path& folder,
-                                               std::vector<std::string>& warnings,
-                                               std::vector<fs::path>& inputs) {
+SequenceFiles find_sequence(const SequenceOptions& options, const fs::path& folder,
+                            std::vector<std::string>& warnings, std::vector<fs::path>& inputs) {
   const fs::path path = located(options.path, folder);
   const std::string name = options.path;
   FoundFiles found = find_files(path, options.part);
@@ -117,11 +115,21 @@ std::shared_ptr<SurfaceSequence> open_sequence(const SequenceOptions& options,
   clock.frames_per_second =
       options.frames_per_second ? options.frames_per_second : sidecar.frames_per_second;
   clock.start = options.start ? options.start : sidecar.start;
-  std::vector<FrameFile> files = timed(found.files, clock, name, warnings);
-  const bool y_up = options.up == UpAxis::y ||
-                    (options.up == UpAxis::from_sidecar && sidecar.y_up.value_or(false));
-  const double scale = options.scale.value_or(sidecar.scale.value_or(1));
-  auto sequence = std::make_shared<MeshSequence>(std::move(files), y_up, scale, name);
+  SequenceFiles sequence;
+  sequence.files = timed(found.files, clock, name, warnings);
+  sequence.y_up = options.up == UpAxis::y ||
+                  (options.up == UpAxis::from_sidecar && sidecar.y_up.value_or(false));
+  sequence.scale = options.scale.value_or(sidecar.scale.value_or(1));
+  return sequence;
+}
+
+std::shared_ptr<SurfaceSequence> open_sequence(const SequenceOptions& options,
+                                               const fs::path& folder,
+                                               std::vector<std::string>& warnings,
+                                               std::vector<fs::path>& inputs) {
+  SequenceFiles found = find_sequence(options, folder, warnings, inputs);
+  auto sequence =
+      std::make_shared<MeshSequence>(std::move(found.files), found.y_up, found.scale, options.path);
   probe(*sequence, warnings);
   return sequence;
 }

@@ -8,6 +8,7 @@
 
 #include "core/options.h"
 #include "core/surface_sequence.h"
+#include "testbed/formats/mesh_sequence.h"
 
 namespace geoprior {
 
@@ -29,6 +30,18 @@ struct SequenceOptions {
   std::optional<int> first, last;  ///< numbers of the frames to take; of a .pvd counted from 0
 };
 void describe(OptionVisitor& v, SequenceOptions& options);
+
+/// The files of a sequence with their times, and how what is in them becomes metres with z up.
+struct SequenceFiles {
+  std::vector<FrameFile> files;  ///< one or more
+  bool y_up = false;             ///< (x, y, z) becomes (x, -z, y)
+  double scale = 1;              ///< metres a unit of the files
+};
+
+/// Finds them, unread; arguments and errors as those of `open_sequence`.
+SequenceFiles find_sequence(const SequenceOptions& options, const std::filesystem::path& folder,
+                            std::vector<std::string>& warnings,
+                            std::vector<std::filesystem::path>& inputs);
 
 /// Opens a sequence. Frames are read when asked for (safely from several threads), in metres with z
 /// up; polygons are cut into triangles, doubled vertices along seams welded. Topology may change

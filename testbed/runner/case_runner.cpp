@@ -80,9 +80,7 @@ class CaseRunner::Sink final : public FrameSink {
   void event(const Event& event) override {
     const TimedContext::Pause pause(context_);
     // Not flushed: an event is safe with the next frame or checkpoint, and void without it.
-    guarded([&] {
-      runner_.recorder_.add(journal::EventLine{runner_.place(variant_), event}, false);
-    });
+    guarded([&] { runner_.recorder_.write_event(runner_.place(variant_), event); });
   }
   void artifact(Artifact artifact) override {
     const TimedContext::Pause pause(context_);

@@ -38,6 +38,9 @@ void add_event(const Event& event, std::string& text) {
                          event.duration_s}) {
     text.append(" ").append(hex(x));
   }
+  for (const auto& [name, x] : event.numbers) {
+    text.append(" ").append(name).append("=").append(hex(x));
+  }
   text += "\n";
 }
 

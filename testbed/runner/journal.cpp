@@ -145,6 +145,7 @@ SortedJson write(const EventLine& line) {
                       number(event.position.z())};
   json["energy_J"] = number(event.energy_J);
   json["duration_s"] = number(event.duration_s);
+  if (!event.numbers.empty()) json["numbers"] = numbers(event.numbers);
   return json;
 }
 
@@ -220,6 +221,7 @@ Line read_event(const SortedJson& json) {
   }
   line.event.energy_J = number(json.at("energy_J"));
   line.event.duration_s = number(json.at("duration_s"));
+  if (json.contains("numbers")) line.event.numbers = numbers(json.at("numbers"));
   return line;
 }
 

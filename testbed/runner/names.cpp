@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/runner/event_table.h"
 #include "testbed/streams.h"
 
 namespace geoprior {
@@ -72,6 +73,7 @@ void require_names(const CaseRecord& one, const std::string& cases) {
       require_file_of_variant(frame.files, "frames", place, group + "/frames");
     }
     require_file_of_variant(variant.artifacts, "artifacts", place, group + "/artifacts");
+    for (const Event& event : variant.events) require_event_numbers(event, group + "/events");
   }
 }
 

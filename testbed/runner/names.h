@@ -52,7 +52,7 @@ void require_stored_file(const StoredFile& file, std::string_view room, const jo
                          const std::string& where);
 
 /// The names of a run that was read: its cases, variants and studies, the files of frames and
-/// artifacts.
+/// artifacts, the numbers of its events.
 /// @throws Error  naming file and place
 void require_names(const RunRecord& record, const std::string& file);
 

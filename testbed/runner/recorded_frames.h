@@ -30,8 +30,8 @@ class KeptFrames {
   std::map<std::size_t, std::shared_ptr<const Frame>> frames_;
 };
 
-/// The recorded frames of a variant: kept ones, the last few that were read, or read anew. Its
-/// memory is that of the kept frames and of `kRemembered` others.
+/// What was recorded of a variant. Its frames are kept ones, the last few that were read, or read
+/// anew. Its memory is that of the kept frames and of `kRemembered` others.
 class RecordedFrames final : public FrameSequence {
  public:
   static constexpr std::size_t kRemembered = 3;
@@ -45,6 +45,11 @@ class RecordedFrames final : public FrameSequence {
   [[nodiscard]] std::shared_ptr<const Frame> frame(std::size_t i) const override;
   [[nodiscard]] std::shared_ptr<const Part> part(std::size_t i,
                                                  const std::string& name) const override;
+  [[nodiscard]] const std::vector<Event>& events() const override { return variant_.events; }
+  [[nodiscard]] std::optional<std::vector<std::byte>> artifact(
+      const std::string& name) const override {
+    return recorder_.read_artifact(variant_, name);
+  }
   /// Frames that were read from the disk so far.
   [[nodiscard]] std::size_t frames_read() const { return frames_read_; }
 

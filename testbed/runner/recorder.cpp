@@ -9,6 +9,7 @@
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/folders.h"
 #include "testbed/formats/vtk_files.h"
+#include "testbed/runner/event_table.h"
 #include "testbed/runner/frame_table.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/number_text.h"
@@ -107,6 +108,12 @@ std::vector<StoredFile> Recorder::write_frame(const journal::Place& place, std::
   return files;
 }
 
+void Recorder::write_event(const journal::Place& place, const Event& event) {
+  require_event_numbers(event, "variant '" + place.variant + "', event " +
+                                   std::to_string(state_.variant_of(place).record.events.size()));
+  add(journal::EventLine{place, event}, false);
+}
+
 void Recorder::write_artifact(const journal::Place& place, const Artifact& artifact) {
   require_name(artifact.name, "an artifact", "");
   const fs::path relative = folder_of("artifacts", place) / artifact.name;
@@ -134,14 +141,26 @@ void Recorder::write_checkpoint(const journal::Place& place, const State& state,
   if (before) remove(before->file.name);
 }
 
-State Recorder::read_checkpoint(const journal::CheckpointLine& checkpoint) const {
-  const fs::path file = path_below(folder_, checkpoint.file.name);
+std::vector<std::byte> Recorder::read(const StoredFile& stored) const {
+  const fs::path file = path_below(folder_, stored.name);
   const std::string bytes = read_whole_file(file);
-  if (sha256(bytes) != checkpoint.file.sha256) {
+  if (sha256(bytes) != stored.sha256) {
     throw Error("is damaged: its checksum is not the one in the journal", file.string());
   }
   const auto* begin = reinterpret_cast<const std::byte*>(bytes.data());
   return {begin, begin + bytes.size()};
+}
+
+State Recorder::read_checkpoint(const journal::CheckpointLine& checkpoint) const {
+  return read(checkpoint.file);
+}
+
+std::optional<std::vector<std::byte>> Recorder::read_artifact(const VariantRecord& variant,
+                                                              const std::string& name) const {
+  for (const StoredFile& file : variant.artifacts) {
+    if (fs::path(file.name).filename() == name) return read(file);
+  }
+  return std::nullopt;
 }
 
 void Recorder::write_collection(const journal::Place& place) {

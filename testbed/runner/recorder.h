@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "core/frame.h"
 #include "core/method.h"
@@ -28,6 +29,9 @@ class Recorder {
   /// @throws Error  for a name that is no file name, or a file that cannot be written
   std::vector<StoredFile> write_frame(const journal::Place& place, std::size_t index,
                                       const Frame& frame);
+  /// Logs an event; the next line that is flushed takes it to the disk.
+  /// @throws Error  as require_event_numbers
+  void write_event(const journal::Place& place, const Event& event);
   /// @throws Error  when the variant has an artifact of that name
   void write_artifact(const journal::Place& place, const Artifact& artifact);
   /// The state replaces the one before it; `seconds` are those of the run so far.
@@ -49,8 +53,13 @@ class Recorder {
   [[nodiscard]] Frame read_frame(
       const VariantRecord& variant, std::size_t index,
       const std::optional<std::set<std::string>>& parts = std::nullopt) const;
+  /// Bytes of the variant's artifact of that name; absent when it has none.
+  /// @throws Error  when its file is missing, or not what was recorded
+  [[nodiscard]] std::optional<std::vector<std::byte>> read_artifact(const VariantRecord& variant,
+                                                                    const std::string& name) const;
 
  private:
+  [[nodiscard]] std::vector<std::byte> read(const StoredFile& stored) const;
   StoredFile write(const std::filesystem::path& relative, std::string_view bytes);
   void drop(const journal::ResumeLine& keep);
   void remove(const std::filesystem::path& relative);

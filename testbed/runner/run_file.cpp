@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "testbed/formats/hdf5_content.h"
 #include "testbed/formats/hdf5_file.h"
+#include "testbed/runner/event_table.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/run_tables.h"
 
@@ -41,24 +42,6 @@ void write_frames(H5Group& group, const std::vector<FrameRecord>& frames) {
     }
   }
   group.write_table("frames", {{"frame", index}, {"name", names}, {"sha256", sums}});
-}
-
-void write_events(H5Group& group, const std::vector<Event>& events) {
-  std::vector<double> time, energy, duration;
-  std::vector<std::string> kind;
-  std::vector<std::array<double, 3>> position;
-  for (const Event& event : events) {
-    time.push_back(event.time_s);
-    kind.push_back(event.kind);
-    position.push_back({event.position.x(), event.position.y(), event.position.z()});
-    energy.push_back(event.energy_J);
-    duration.push_back(event.duration_s);
-  }
-  group.write_table("events", {{"time_s", time},
-                               {"kind", kind},
-                               {"position", position},
-                               {"energy_J", energy},
-                               {"duration_s", duration}});
 }
 
 /// Rows are frames, columns repetitions; a phase that some frame did not enter has NaN there.
@@ -271,7 +254,6 @@ std::vector<T>& column(std::vector<H5Column>& columns, std::size_t i) {
 using Texts = std::vector<std::string>;
 using Numbers = std::vector<double>;
 using Integers = std::vector<std::int64_t>;
-using Positions = std::vector<std::array<double, 3>>;
 
 /// Names of the groups inside, ordered by their attribute `index`.
 std::vector<std::string> in_order(const H5Node& group) {
@@ -311,25 +293,6 @@ std::vector<FrameRecord> read_frames(const H5Node& group) {
         {column<std::string>(table, 1)[row], column<std::string>(table, 2)[row]});
   }
   return frames;
-}
-
-std::vector<Event> read_events(const H5Node& group) {
-  std::vector<H5Column> table{{"time_s", Numbers{}},
-                              {"kind", Texts{}},
-                              {"position", Positions{}},
-                              {"energy_J", Numbers{}},
-                              {"duration_s", Numbers{}}};
-  group.read_table("events", table);
-  std::vector<Event> events(column<double>(table, 0).size());
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    events[i].time_s = column<double>(table, 0)[i];
-    events[i].kind = column<std::string>(table, 1)[i];
-    const std::array<double, 3>& x = column<std::array<double, 3>>(table, 2)[i];
-    events[i].position = {x[0], x[1], x[2]};
-    events[i].energy_J = column<double>(table, 3)[i];
-    events[i].duration_s = column<double>(table, 4)[i];
-  }
-  return events;
 }
 
 std::vector<std::vector<double>> timing_rows(const H5Array& array) {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "testbed/runner/event_table.h"
 #include "testbed/runner/names.h"
 
 namespace geoprior {
@@ -126,6 +127,7 @@ void RunState::apply(const journal::FrameLine& line) {
 }
 
 void RunState::apply(const journal::EventLine& line) {
+  require_event_numbers(line.event, "variant '" + line.place.variant + "': numbers");
   variant_of(line.place).record.events.push_back(line.event);
 }
 

@@ -124,6 +124,7 @@ FigureCell make_cell(const CaseRecord& c, const std::string& variant_name,
     cell.note = "failed after " + with_unit(variant->frames.back().parameter, c.parameter_unit);
     return cell;
   }
+  cell.parameter = frame->parameter;
   cell.part = require_part(*frame, view.part, run);
   for (const std::string& overlay : view.overlays) {
     if (auto part = load_part(*frame, overlay, run)) {

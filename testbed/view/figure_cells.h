@@ -21,7 +21,8 @@ struct NamedPart {
 
 /// One panel of a figure before it is drawn: a variant in one state.
 struct FigureCell {
-  std::string label;         ///< of the variant, or of the state when states stand side by side
+  std::string label;  ///< of the variant, or of the state when states stand side by side
+  std::optional<double> parameter;  ///< of the frame that is drawn
   std::optional<Part> part;  ///< absent: the variant has no such frame (it failed, or was left out)
   std::string note = "no frame";  ///< stands in place of the part
   std::vector<NamedPart> overlays;

@@ -143,6 +143,12 @@ PatternPlace pattern_place(const FigureBlock& block, const Layout& layout) {
   return {width + 2 * kPatternMargin, beside + 2 * kPatternMargin, scale};
 }
 
+/// Of a panel that shows the block's window.
+int panel_height(const FigureBlock& block, double width) {
+  const double aspect = block.look.window.width_m / block.look.window.height_m;
+  return std::max(2, static_cast<int>(std::lround(width / aspect)));
+}
+
 /// All but the height of the scalar bar or the legend.
 Layout make_layout(const std::vector<DrawnRow>& rows, const FigureBlock& block) {
   Layout layout;
@@ -157,7 +163,7 @@ Layout make_layout(const std::vector<DrawnRow>& rows, const FigureBlock& block) 
   const double width = std::min({panel_room(block, 1.0 * room / layout.columns),
                                  1.0 * kMostPanelWidth, kMostPanelHeight * aspect});
   layout.panel_width = std::max(2, static_cast<int>(width));
-  layout.panel_height = std::max(2, static_cast<int>(std::lround(width / aspect)));
+  layout.panel_height = panel_height(block, width);
   layout.column_width = layout.panel_width;
   if (block.look.pattern) {
     layout.pattern = pattern_place(block, layout);
@@ -404,6 +410,28 @@ Picture draw_figure(const std::vector<FigureBlock>& blocks) {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     draw_block(picture, blocks[i], layouts[i], y);
     y += block_height(blocks[i], layouts[i]);
+  }
+  return picture;
+}
+
+Picture draw_panels(const FigureBlock& block, int panel_width) {
+  Layout layout;
+  for (const FigureRow& row : block.rows) {
+    layout.columns = std::max(layout.columns, static_cast<int>(row.cells.size()));
+  }
+  layout.panel_width = panel_width;
+  layout.panel_height = panel_height(block, panel_width);
+  const double height = 1.0 * layout.panel_height * static_cast<double>(block.rows.size());
+  require_picture(1.0 * panel_width * layout.columns, height);
+  Picture picture(panel_width * layout.columns, static_cast<int>(height));
+  for (std::size_t r = 0; r < block.rows.size(); ++r) {
+    const std::vector<FigureCell>& cells = block.rows[r].cells;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      throw_if_stopped();
+      const DrawnPanel panel{&cells[c], Showing::as_viewed, {}};
+      picture.paste(draw_cell(panel, block.view, block.look, layout),
+                    static_cast<int>(c) * panel_width, static_cast<int>(r) * layout.panel_height);
+    }
   }
   return picture;
 }

@@ -37,4 +37,8 @@ std::vector<FigureBlock> make_blocks(const OpenedRun& run, const FigureView& vie
 /// Draws the blocks under each other, at the picture's usual width. Needs a Display.
 Picture draw_figure(const std::vector<FigureBlock>& blocks);
 
+/// Draws the panels of a block alone, edge to edge, each so many pixels wide: a line a row. Needs a
+/// Display.
+Picture draw_panels(const FigureBlock& block, int panel_width);
+
 }  // namespace geoprior

@@ -5,10 +5,8 @@
 #include "testbed/runner/quantity.h"
 
 namespace geoprior {
-namespace {
 
-/// The first case that is drawn; null when the run has none of them.
-const CaseRecord* first_case(const RunRecord& record, const FigureView& view) {
+const CaseRecord* first_drawn_case(const RunRecord& record, const FigureView& view) {
   for (const CaseRecord& c : record.cases) {
     const auto& wanted = view.cases;
     if (wanted.empty() || std::find(wanted.begin(), wanted.end(), c.name) != wanted.end()) {
@@ -18,21 +16,23 @@ const CaseRecord* first_case(const RunRecord& record, const FigureView& view) {
   return nullptr;
 }
 
-bool is_drawn(const VariantRecord& variant, const FigureView& view) {
-  if (is_null_control(variant.role)) return false;
-  return view.variants.empty() ||
-         std::find(view.variants.begin(), view.variants.end(), variant.name) != view.variants.end();
+std::vector<const VariantRecord*> drawn_variants(const CaseRecord& of, const FigureView& view) {
+  std::vector<const VariantRecord*> drawn;
+  for (const VariantRecord& variant : of.variants) {
+    const auto& wanted = view.variants;
+    const bool is_wanted =
+        wanted.empty() || std::find(wanted.begin(), wanted.end(), variant.name) != wanted.end();
+    if (is_wanted && !is_null_control(variant.role)) drawn.push_back(&variant);
+  }
+  return drawn;
 }
-
-}  // namespace
 
 std::vector<double> frame_parameters(const RunRecord& record, const FigureView& view) {
   std::vector<double> parameters;
-  const CaseRecord* c = first_case(record, view);
+  const CaseRecord* c = first_drawn_case(record, view);
   if (c == nullptr) return parameters;
-  for (const VariantRecord& variant : c->variants) {
-    if (!is_drawn(variant, view)) continue;
-    for (const FrameRecord& frame : variant.frames) parameters.push_back(frame.parameter);
+  for (const VariantRecord* variant : drawn_variants(*c, view)) {
+    for (const FrameRecord& frame : variant->frames) parameters.push_back(frame.parameter);
   }
   std::sort(parameters.begin(), parameters.end());
   parameters.erase(std::unique(parameters.begin(), parameters.end(), same_parameter),
@@ -60,7 +60,7 @@ FigureView contact_sheet_view(const RunRecord& record, const FigureView& view) {
   sheet.plain = false;
   sheet.above.reset();
   sheet.below.reset();
-  if (const CaseRecord* c = first_case(record, view)) sheet.cases = {c->name};
+  if (const CaseRecord* c = first_drawn_case(record, view)) sheet.cases = {c->name};
   return sheet;
 }
 

@@ -7,6 +7,13 @@
 
 namespace geoprior {
 
+/// The case whose frames are drawn one by one: the view's first; null when the run has none of
+/// them.
+const CaseRecord* first_drawn_case(const RunRecord& record, const FigureView& view);
+
+/// Its variants that the view draws, in the order of the experiment.
+std::vector<const VariantRecord*> drawn_variants(const CaseRecord& of, const FigureView& view);
+
 /// Parameters at which some drawn variant of the view's first case has a frame, rising.
 std::vector<double> frame_parameters(const RunRecord& record, const FigureView& view);
 

@@ -8,6 +8,7 @@
 #include "experiments/paper/svg_pattern.h"
 #include "experiments/sketch/drawing_file.h"
 #include "testbed/formats/svg_document.h"
+#include "testbed/formats/wav_file.h"
 #include "testbed/runner/run_file.h"
 #include "tests/fuzz/allow_error.h"
 #include "tests/fuzz/scratch_file.h"
@@ -55,6 +56,10 @@ void fuzz_sketch(const std::uint8_t* data, std::size_t size) {
 void fuzz_exr(const std::uint8_t* data, std::size_t size) {
   read_as_file(data, size, ".exr",
                [](const std::filesystem::path& file) { fluid::read_exr_maps({file}); });
+}
+
+void fuzz_wav(const std::uint8_t* data, std::size_t size) {
+  read_as_file(data, size, ".wav", read_wav);
 }
 
 void fuzz_run_file(const std::uint8_t* data, std::size_t size) {

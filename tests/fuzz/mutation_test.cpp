@@ -10,6 +10,7 @@
 
 #include "experiments/fluid/exr_maps.h"
 #include "experiments/fluid/feature_files.h"
+#include "testbed/formats/wav_file.h"
 #include "tests/fuzz/sample_features.h"
 #include "tests/fuzz/targets.h"
 #include "tests/testbed/fake_run.h"
@@ -81,6 +82,12 @@ TEST(Fuzz, TableReaderAcceptsOrThrowsError) { run(".csv", fuzz_table); }
 TEST(Fuzz, MapReaderAcceptsOrThrowsError) {
   const auto pictures = fluid::exr_maps(sample_features().front(), "map");
   run_on(".exr", {as_text(pictures[0].bytes), as_text(pictures[1].bytes)}, fuzz_exr, 300);
+}
+
+TEST(Fuzz, SoundReaderAcceptsOrThrowsError) {
+  const Sound mono{48000, Eigen::VectorXd::LinSpaced(200, -1, 1)};
+  const Sound stereo{44100, Eigen::MatrixXd::Constant(100, 2, 0.25)};
+  run_on(".wav", {as_text(wav_bytes(mono)), as_text(wav_bytes(stereo))}, fuzz_wav);
 }
 
 // A process for every file: HDF5 crashes on some of them, the reader must not.

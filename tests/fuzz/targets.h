@@ -26,6 +26,7 @@ void fuzz_points(const std::uint8_t* data, std::size_t size);
 void fuzz_svg(const std::uint8_t* data, std::size_t size);
 void fuzz_sketch(const std::uint8_t* data, std::size_t size);
 void fuzz_exr(const std::uint8_t* data, std::size_t size);
+void fuzz_wav(const std::uint8_t* data, std::size_t size);
 void fuzz_run_file(const std::uint8_t* data, std::size_t size);
 void fuzz_feature_library(const std::uint8_t* data, std::size_t size);
 

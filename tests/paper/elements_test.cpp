@@ -228,6 +228,28 @@ TEST(ShellElements, MembraneHessianIsExactInTension) {
   EXPECT_GT(hessian_error(elements, flat_state(mesh), 0.5 * x), 0.1);
 }
 
+// An infinitesimal rotation strains nothing, but turns the tension.
+TEST(ShellElements, MaterialHessianKnowsNoTension) {
+  Eigen::MatrixX2d pattern(3, 2);
+  pattern << 0, 0, 1, 0.1, 0.3, 0.8;
+  const ShellMesh mesh{pattern, Eigen::RowVector3i(0, 1, 2)};
+  const ShellElements elements(mesh, thick(), BendingLaw());
+  const ShellState state = flat_state(mesh);
+  const Eigen::MatrixX3d x = 1.1 * state.x;
+  Eigen::Matrix<double, 9, 1> turned;
+  for (int k = 0; k < 3; ++k)
+    turned.segment<3>(3 * k) =
+        Eigen::Vector3d(1, 2, 3).cross(Eigen::Vector3d(x.row(k).transpose()));
+  const auto turning = [&](ShellElements::Order order) {
+    ShellElements::Local local;
+    elements.evaluate(0, state, x, order, local);
+    return turned.dot(local.hessian.topLeftCorner<9, 9>() * turned) /
+           (turned.squaredNorm() * local.hessian.topLeftCorner<9, 9>().norm());
+  };
+  EXPECT_NEAR(turning(Order::material_hessian), 0, 1e-14);
+  EXPECT_GT(turning(Order::hessian), 1e-2);
+}
+
 // Gauss-Newton drops moment times second derivative: nothing where the moments vanish.
 TEST(ShellElements, BendingHessianIsExactWhereTheSheetIsBentWithoutMoment) {
   const ShellMesh mesh = meshes::equilateral(4, 5, 0.1);

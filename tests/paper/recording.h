@@ -11,11 +11,13 @@ namespace geoprior::paper {
 class Recording final : public FrameSink {
  public:
   void frame(Frame frame) override { frames.push_back(std::move(frame)); }
-  void event(const Event& /*event*/) override {}
-  void artifact(Artifact /*artifact*/) override {}
+  void event(const Event& event) override { events.push_back(event); }
+  void artifact(Artifact artifact) override { artifacts.push_back(std::move(artifact)); }
   void checkpoint(const State& state) override { checkpoints.push_back(state); }
 
   std::vector<Frame> frames;
+  std::vector<Event> events;
+  std::vector<Artifact> artifacts;
   std::vector<State> checkpoints;
 };
 

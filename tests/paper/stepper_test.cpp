@@ -32,7 +32,7 @@ ShellStepper stepper_for(const Sheet& sheet, const ShellState& state,
 }
 
 /// A sheet bent between two opposite edges that approach each other.
-Sheet bent_sheet() {
+Sheet sheet_to_bend() {
   Sheet sheet = sheets::free_sheet(0.2, 0.2);
   sheet.gravity = {0, 0, -9.81};
   sheet.imperfection = 1e-4;
@@ -137,7 +137,7 @@ TEST(Stepper, LiftingTakesTheWorkOfTheWeight) {
 
 /// Implicit Euler loses energy: what the sheet has afterwards is at most what it had and was given.
 TEST(Stepper, EnergyDoesNotGrowBeyondTheHandlesWork) {
-  Sheet sheet = bent_sheet();
+  Sheet sheet = sheet_to_bend();
   ShellState state = sheets::at_rest(sheet, 100);
   StepperOptions options = with(Integration::newton);
   options.plasticity = false;
@@ -232,7 +232,7 @@ TEST(Stepper, HandlesSwitchWithoutANewAnalysis) {
 }
 
 TEST(Stepper, SameBitsOnOneAndTwoThreads) {
-  const Sheet sheet = bent_sheet();
+  const Sheet sheet = sheet_to_bend();
   for (const Integration integration : sheets::kIntegrations) {
     for (const LinearSolver solver :
          {LinearSolver::eigen, LinearSolver::cholmod, LinearSolver::supernodal}) {
@@ -255,7 +255,7 @@ TEST(Stepper, SameBitsOnOneAndTwoThreads) {
 
 /// One step of the same state: the solvers differ by round-off only, 1e-10 of what moves.
 TEST(Stepper, LinearSolversAgree) {
-  const Sheet sheet = bent_sheet();
+  const Sheet sheet = sheet_to_bend();
   ShellState start = sheets::at_rest(sheet, 300);
   ShellStepper first = stepper_for(sheet, start, {});
   sheets::advance(first, start, 0.005, 20);
@@ -275,7 +275,7 @@ TEST(Stepper, LinearSolversAgree) {
 }
 
 TEST(Stepper, NewtonReachesTheToleranceAskedFor) {
-  const Sheet sheet = bent_sheet();
+  const Sheet sheet = sheet_to_bend();
   ShellState state = sheets::at_rest(sheet, 200);
   const StepperOptions options = with(Integration::newton);
   ShellStepper stepper = stepper_for(sheet, state, options);
@@ -290,7 +290,7 @@ TEST(Stepper, NewtonReachesTheToleranceAskedFor) {
 /// The linear step is the first iteration of Newton's method: the difference falls with dt^2 or
 /// faster.
 TEST(Stepper, LinearStepApproachesImplicitEuler) {
-  const Sheet sheet = bent_sheet();
+  const Sheet sheet = sheet_to_bend();
   ShellState start = sheets::at_rest(sheet, 100);
   ShellStepper first = stepper_for(sheet, start, with(Integration::newton));
   sheets::advance(first, start, 0.005, 60);
@@ -380,7 +380,7 @@ TEST(Stepper, HalvesAStepThatPullsASlackSheetTooFar) {
 
 TEST(Stepper, GivesUpWithTheTimeAndLeavesTheStateAsItWas) {
   for (const Integration integration : sheets::kIntegrations) {
-    Sheet sheet = bent_sheet();
+    Sheet sheet = sheet_to_bend();
     sheet.handles[0].motion->keys[1].shift.x() = 1e200;
     ShellState state = sheets::at_rest(sheet, 60);
     StepperOptions options = with(integration);
@@ -402,7 +402,7 @@ TEST(Stepper, GivesUpWithTheTimeAndLeavesTheStateAsItWas) {
 }
 
 TEST(Stepper, DoesNotStepFromNaN) {
-  const Sheet sheet = bent_sheet();
+  const Sheet sheet = sheet_to_bend();
   for (const Integration integration : sheets::kIntegrations) {
     ShellState state = sheets::at_rest(sheet, 60);
     ShellStepper stepper = stepper_for(sheet, state, with(integration));

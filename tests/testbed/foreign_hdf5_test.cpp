@@ -10,6 +10,7 @@
 #include <random>
 #include <string>
 
+#include "core/error.h"
 #include "testbed/formats/hdf5_content.h"
 #include "tests/testbed/fake_run.h"
 #include "tests/testbed/run_fixture.h"

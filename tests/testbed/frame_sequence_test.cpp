@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "core/error.h"
 #include "experiments/toy/toy_topic.h"
@@ -12,6 +13,7 @@
 #include "testbed/runner/measure.h"
 #include "testbed/runner/recorded_frames.h"
 #include "testbed/runner/run_state.h"
+#include "testbed/runner/sha256.h"
 #include "tests/testbed/run_fixture.h"
 
 namespace geoprior::test {
@@ -104,6 +106,45 @@ TEST_F(FramesOfARun, ReadOnlyThePartThatIsAskedFor) {
   EXPECT_EQ(frames.frames_read(), 0U);
   EXPECT_THAT(error_of([&] { (void)frames.frame(4); }), HasSubstr("warmth_0004.vti"));
   EXPECT_EQ(recorder().read_frame(record(), 4, {{"bob", "state"}}).parts.size(), 1U);
+}
+
+TEST_F(FramesOfARun, HaveTheEventsInTheOrderInWhichTheyWereRecorded) {
+  const KeptFrames none(0);
+  const RecordedFrames frames(recorder(), record(), none);
+  const RunRecord stored = read_run_file(out() / "run.h5");
+  const std::vector<Event>& expected = find_variant(stored.cases.at(0), "midpoint")->events;
+  ASSERT_GE(expected.size(), 2U);
+  ASSERT_EQ(frames.events().size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(frames.events()[i].time_s, expected[i].time_s);
+    EXPECT_EQ(frames.events()[i].kind, "crossing");
+    EXPECT_EQ(frames.events()[i].numbers, expected[i].numbers);
+  }
+}
+
+TEST_F(FramesOfARun, HaveTheArtifactsAsTheyWereRecorded) {
+  const KeptFrames none(0);
+  const RecordedFrames frames(recorder(), record(), none);
+  const fs::path file = out() / "artifacts/default/midpoint/swing.wav";
+  const auto swing = frames.artifact("swing.wav");
+  ASSERT_TRUE(swing.has_value());
+  EXPECT_EQ(sha256({reinterpret_cast<const char*>(swing->data()), swing->size()}),
+            sha256_of_file(file));
+  EXPECT_EQ(swing->at(0), std::byte{'R'});
+  EXPECT_FALSE(frames.artifact("other.wav"));
+  std::ofstream(file, std::ios::binary | std::ios::app) << "more";
+  EXPECT_THAT(error_of([&] { (void)frames.artifact("swing.wav"); }), HasSubstr(file.string()));
+}
+
+TEST(FramesInMemory, HaveTheEventsAndArtifactsTheyWereGiven) {
+  const FramesInMemory bare({Frame{}});
+  EXPECT_TRUE(bare.events().empty());
+  EXPECT_FALSE(bare.artifact("mix.wav"));
+  const std::vector<std::byte> bytes{std::byte{1}, std::byte{2}};
+  const FramesInMemory given({}, {{0.5, "tear", {0, 0, 0}, 1, 0}}, {{"mix.wav", bytes}});
+  EXPECT_EQ(given.events().at(0).kind, "tear");
+  EXPECT_EQ(given.artifact("mix.wav"), bytes);
+  EXPECT_FALSE(given.artifact("mix"));
 }
 
 TEST(ReferenceParts, AreThoseOfAllMetricsThatCompare) {

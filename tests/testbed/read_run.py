@@ -40,6 +40,8 @@ role = "baseline"
 reference = "exact"
 """
 
+FIELDS = ("time_s", "kind", "position", "energy_J", "duration_s")  # of every event
+
 TYPES = {"Float64": "<d", "Float32": "<f", "Int64": "<q", "Int32": "<i", "UInt8": "<B", "Int8": "<b"}
 
 
@@ -125,6 +127,8 @@ def check_numbers(folder, run):
     assert euler.attrs["status"] == "done" and euler.attrs["error"] == ""
     events = euler["events"]
     assert events.dtype["position"].shape == (3,) and events[0]["kind"] == b"crossing"
+    assert events.dtype.names == (*FIELDS, "speed_m_s")
+    assert np.allclose(events["energy_J"], 0.5 * events["speed_m_s"] ** 2, rtol=1e-15)
     states = euler["tables/state"]
     assert list(states.attrs["columns"]) == ["frame", "angle [rad]", "velocity [rad/s]"]
     assert states.compression == "gzip" and list(states[:, 0]) == list(range(9))
@@ -165,7 +169,9 @@ def content_text(run):
                 lines += [f"file {f['name'].decode()} {f['sha256'].decode()}" for f in files if f["frame"] == i]
             for e in v["events"]:
                 numbers = [*e["position"], e["energy_J"], e["duration_s"]]
-                lines.append(" ".join(["event", c_hex(e["time_s"]), e["kind"].decode(), *map(c_hex, numbers)]))
+                further = [f"{n}={c_hex(e[n])}" for n in sorted(e.dtype.names) if n not in FIELDS and e[n] == e[n]]
+                lines.append(" ".join(["event", c_hex(e["time_s"]), e["kind"].decode(), *map(c_hex, numbers),
+                                       *further]))
             lines += [f"artifact {a['name'].decode()} {a['sha256'].decode()}" for a in v["artifacts"]]
             lines += [" ".join(["metric", m, *map(c_hex, v["metrics"][m][:])]) for m in sorted(v["metrics"])]
             lines += [f"summary {s} {c_hex(v['summary'][s][()])}" for s in sorted(v["summary"])]

@@ -4,9 +4,11 @@ clear line when the file is damaged. Run with Debian's python3."""
 import base64
 import contextlib
 import hashlib
+import io
 import json
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -24,6 +26,8 @@ sys.path.insert(0, str(RESULTS))
 import plots  # noqa: E402
 import report  # noqa: E402
 import runfile  # noqa: E402
+import sound  # noqa: E402
+import spectrogram  # noqa: E402
 import summary  # noqa: E402
 import tables  # noqa: E402
 import wording  # noqa: E402
@@ -139,6 +143,44 @@ def make_processes(folder):
         study["y_of"] = np.array([1.0, 3.0, 5.0])
 
 
+RATE = 48000
+
+
+def wav(samples, rate=RATE, tag=1, bits=24):
+    """A WAV file by the definition of RIFF, of numbers at full scale 1 (samples x channels)."""
+    samples = np.asarray(samples, float)
+    frame = samples.shape[1] * bits // 8
+    if tag == 3:
+        data = samples.astype(f"<f{bits // 8}").tobytes()
+    else:
+        stored = np.round(samples * 2.0**31).astype("<i4").view(np.uint8).reshape(-1, 4)
+        data = stored[:, 4 - bits // 8:].tobytes()
+    return (b"RIFF" + struct.pack("<I", 36 + len(data)) + b"WAVEfmt "
+            + struct.pack("<IHHIIHH", 16, tag, samples.shape[1], rate, rate * frame, frame, bits)
+            + b"data" + struct.pack("<I", len(data)) + data)
+
+
+def sine(frequency, amplitude, seconds=0.5):
+    return amplitude * np.sin(2 * np.pi * frequency * np.arange(int(seconds * RATE)) / RATE)[:, None]
+
+
+def add_sound(folder, variant, content):
+    """The artifact mix.wav of a variant, and frames at times."""
+    name = f"artifacts/default/{variant}/mix.wav"
+    (folder / name).parent.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_bytes(content)
+    with signed(folder, "a") as file:
+        case = file["cases/default"]
+        case.attrs.update(parameter_name="time", parameter_unit="s")
+        group = case["variants"][variant]
+        del group["parameter"]
+        group["parameter"] = np.array([0.0, 0.25, 0.5])
+        del group["artifacts"]
+        group["artifacts"] = table([(name, hashlib.sha256(content).hexdigest())],
+                                   [("name", "text"), ("sha256", "text")])
+    return folder / name
+
+
 class Page(HTMLParser):
     """Counts tags and collects what a page would load."""
 
@@ -163,6 +205,140 @@ class Page(HTMLParser):
 def run_script(name, *arguments):
     return subprocess.run([sys.executable, "-B", str(RESULTS / f"{name}.py"), *map(str, arguments)],
                           capture_output=True, text=True, timeout=120, check=False)
+
+
+class SoundTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="geoprior-sound-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        make_run(self.folder)
+
+    def report(self, *options):
+        return run_script("report", self.folder, "--out", self.folder / "report.html", *options)
+
+    def test_every_accepted_kind_gives_its_samples(self):
+        samples = np.array([[0.5, -1.0], [-0.25, 0.0], [2.0**-15, 0.75]])
+        for tag, bits in [(1, 16), (1, 24), (1, 32), (3, 32), (3, 64)]:
+            read = sound.read_wav(wav(samples, 44100, tag, bits), "x.wav")
+            self.assertEqual(read.rate, 44100)
+            np.testing.assert_array_equal(read.samples, samples)
+        for broken in [b"", b"RIFF", wav(samples)[:30], wav(samples[:0]), wav(samples, bits=16, tag=6),
+                       wav([[np.nan, 0.0]], tag=3, bits=32)]:
+            with self.assertRaisesRegex(sound.NoSound, "x.wav"):
+                sound.read_wav(broken, "x.wav")
+
+    def test_a_sine_has_its_level_at_its_frequency_and_time(self):
+        # A frequency of the transform: 10 of its 512 samples, so that the window loses nothing. The
+        # tone begins in the middle.
+        frequency = 10 * RATE / 512
+        tone = np.concatenate([np.zeros((RATE // 4, 1)), sine(frequency, 0.5)])
+        times, frequencies, levels = sound.spectrogram(sound.Sound(RATE, tone))
+        steady = (times > 0.27) & (times < 0.72)
+        loudest = frequencies[levels[:, steady].argmax(axis=0)]
+        np.testing.assert_array_equal(loudest, frequency)
+        np.testing.assert_allclose(levels.max(axis=0)[steady], 20 * np.log10(0.5), atol=0.01)
+        self.assertLess(levels[:, times < 0.24].max(), -200)
+        constant = sound.spectrogram(sound.Sound(RATE, np.full((RATE, 2), 0.1)))[2]
+        self.assertAlmostEqual(constant[0, 200], -20, places=6)
+
+    def test_a_click_stays_when_columns_are_joined(self):
+        samples = np.zeros((60 * RATE, 1))  # more windows than are transformed at once
+        samples[43 * RATE] = 1
+        click = sound.Sound(RATE, samples)
+        times, _, levels = sound.spectrogram(click)
+        self.assertEqual(times[levels.max(axis=0).argmax()], 43)
+        few_times, _, few = sound.spectrogram(click, 60)
+        self.assertEqual(few.shape[1], 60)
+        loudest = few.max(axis=0).argmax()
+        self.assertEqual(few[:, loudest].max(), levels.max())
+        self.assertTrue(few_times[loudest] <= 43 < few_times[loudest + 1])
+
+    def test_report_plays_the_sound_as_it_was_recorded(self):
+        content = wav(sine(1000, 0.5))
+        add_sound(self.folder, "implicit", content)
+        self.assertEqual(self.report().returncode, 0)
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        page = Page(text)
+        self.assertEqual(page.tags.count("audio"), 1)
+        self.assertIn("data:audio/wav;base64," + base64.b64encode(content).decode(), page.loads)
+        self.assertIn("0.500 s, 48 kHz, mono", text)
+        self.assertEqual(sum(v.startswith("data:image/png") for v in page.loads), 2)
+
+    def test_a_sound_that_is_not_what_was_recorded_is_refused(self):
+        file = add_sound(self.folder, "implicit", wav(sine(1000, 0.5)))
+        other = wav(sine(2000, 0.5))
+        file.write_bytes(other)
+        for name in ("report", "spectrogram"):
+            refused = run_script(name, self.folder)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(f"{file}: is damaged or another file", refused.stderr)
+        self.assertEqual(self.report("--force").returncode, 0)
+        file.unlink()
+        file.symlink_to(self.folder / "figure.png")
+        self.assertIn("symbolic link", self.report().stderr)
+
+    def test_a_sound_of_another_kind_is_played_but_not_drawn(self):
+        add_sound(self.folder, "implicit", wav(sine(1000, 0.5), bits=8, tag=6))
+        self.assertEqual(self.report().returncode, 0)
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        self.assertIn("No spectrogram", text)
+        self.assertEqual(Page(text).tags.count("audio"), 1)
+
+    def test_spectrogram_is_the_same_twice_and_frames_make_it_higher(self):
+        for i, variant in enumerate(["dual-quaternion", "implicit"]):
+            add_sound(self.folder, variant, wav(sine(1000, 0.5 / (1 + i))))
+        self.assertEqual(run_script("spectrogram", self.folder).returncode, 0)
+        picture = self.folder / "spectrogram.png"
+        once = picture.read_bytes()
+        run_script("spectrogram", self.folder)
+        self.assertEqual(picture.read_bytes(), once)
+        strip = np.ones((2 * 30, 3 * 40, 3))
+        plots.plt.imsave(self.folder / "strip.png", strip)
+        drawn = run_script("spectrogram", self.folder, "--frames", self.folder / "strip.png",
+                           "--times", "0.1,0.25,0.4")
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        self.assertGreater(plots.plt.imread(picture).shape[0], plots.plt.imread(io.BytesIO(once)).shape[0] + 100)
+
+    def test_all_variants_have_one_range_of_colours(self):
+        for amplitude, variant in [(1.0, "dual-quaternion"), (0.01, "implicit")]:
+            add_sound(self.folder, variant, wav(sine(10 * RATE / 512, amplitude), tag=3, bits=32))
+        run = runfile.read_run(self.folder)
+        with plots.plt.rc_context(plots.STYLE):
+            figure = spectrogram.draw(run, run.cases[0], run.cases[0].variants)
+        limits = {image.get_clim() for axes in figure.axes for image in axes.images}
+        self.assertEqual(limits, {(-spectrogram.RANGE_DB, 0)})
+        spectra = [axes for axes in figure.axes if axes.images]
+        self.assertEqual(len(spectra), 2)
+        self.assertEqual(spectra[0].get_xlim(), spectra[1].get_xlim())
+        self.assertEqual(spectra[1].get_xlabel(), "time [s]")
+        self.assertEqual(spectra[1].get_ylabel(), "frequency [kHz]")
+        plots.plt.close(figure)
+
+    def test_events_are_ticks_at_their_times_by_kind(self):
+        add_sound(self.folder, "implicit", wav(sine(1000, 0.5, 2)))
+        with signed(self.folder, "a") as file:
+            group = file["cases/default/variants/implicit"]
+            kind = group["events"].dtype
+            del group["events"]
+            group["events"] = np.array([(0.5, b"tear", (0, 0, 0), 1, 0), (1.5, b"flap", (0, 0, 0), 1, 0),
+                                        (0.75, b"flap", (0, 0, 0), 1, 0)], dtype=kind)
+        run = runfile.read_run(self.folder)
+        with plots.plt.rc_context(plots.STYLE):
+            figure = spectrogram.draw(run, run.cases[0], [run.cases[0].variant("implicit")])
+        ticks = [sorted(segment[0][0] for segment in lane.get_segments())
+                 for lane in figure.axes[0].collections]
+        self.assertEqual(ticks, [[0.75, 1.5], [0.5]])
+        self.assertEqual([t.get_text() for t in figure.legends[0].get_texts()], ["Flap", "Tear"])
+        plots.plt.close(figure)
+
+    def test_silence_is_drawn_and_a_run_without_sound_says_so(self):
+        none = run_script("spectrogram", self.folder)
+        self.assertEqual((none.returncode, none.stderr.count("\n")), (2, 1))
+        self.assertIn("no sound", none.stderr)
+        self.assertEqual(self.report().returncode, 0)
+        self.assertNotIn("<h2>Sound", (self.folder / "report.html").read_text(encoding="utf-8"))
+        add_sound(self.folder, "implicit", wav(np.zeros((RATE, 2))))
+        self.assertEqual(run_script("spectrogram", self.folder).returncode, 0)
 
 
 class RunTest(unittest.TestCase):

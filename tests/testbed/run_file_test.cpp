@@ -43,7 +43,9 @@ VariantRecord sample_variant(const std::string& name) {
   variant.diagnostics["iterations"] = {"1", "until ∆ < 1e−6", {3, kNan, kInfinity}};
   variant.timing["solve"] = {{0.25, 0.5}, {1, 2}, {3, kNan}};
   variant.timing["a/b 100%"] = {{1.5}};
-  variant.events = {{0.5, "crossing", {1, 2, 3}, 0.25, 0.125}, {0.75, "", {0, 0, 0}, 0, 0}};
+  variant.events = {{0.5, "crossing", {1, 2, 3}, 0.25, 0.125, {{"l_r_m", 0.1}, {"sample", 7}}},
+                    {0.75, "", {0, 0, 0}, 0, 0},
+                    {1, "tear", {0, 0, 0}, 0, 0, {{"area_m2", 1e-300}, {"l_r_m", -0.0}}}};
   variant.artifacts = {{"artifacts" + place + "swing.wav", std::string(64, 'd')}};
   return variant;
 }
@@ -125,6 +127,7 @@ std::string dump(const VariantRecord& v) {
   for (const auto& e : v.events) {
     text += e.kind + numbers({e.time_s, e.position.x(), e.position.y(), e.position.z(), e.energy_J,
                               e.duration_s});
+    for (const auto& [name, x] : e.numbers) text += name + numbers({x});
   }
   for (const auto& file : v.artifacts) text += file.name + file.sha256 + "\n";
   return text;

@@ -7,8 +7,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <span>
 #include <string>
 
+#include "testbed/formats/wav_file.h"
 #include "testbed/runner/stop.h"
 #include "testbed/view/child_process.h"
 #include "testbed/view/colors.h"
@@ -20,6 +23,8 @@
 #include "testbed/view/panel.h"
 #include "testbed/view/render.h"
 #include "testbed/view/section.h"
+#include "testbed/view/sound_track.h"
+#include "testbed/view/spectrogram.h"
 #include "testbed/view/video.h"
 #include "testbed/view/view_window.h"
 #include "tests/testbed/fake_run.h"
@@ -530,6 +535,133 @@ TEST(Video, HasAPictureAFrameAndIsWholeOrAbsent) {
   EXPECT_EQ(video.frames, 3);
   ASSERT_EQ(video.file, out / "video.mp4");
   EXPECT_THAT(read_whole_file(out / "video.mp4"), HasSubstr("50%% video/frame_%04d.png"));
+}
+
+/// The fake run with its frames at these times (s) and a sound of the second box.
+RunRecord make_sounding_run(const fs::path& folder, const std::vector<double>& times) {
+  RunRecord record = make_fake_run(folder);
+  CaseRecord& of = record.cases[0];
+  of.parameter_name = "time";
+  of.parameter_unit = "s";
+  for (VariantRecord& variant : of.variants) {
+    for (std::size_t i = 0; i < times.size(); ++i) variant.frames[i].parameter = times[i];
+  }
+  const auto wav = wav_bytes({8000, Eigen::MatrixXd::Constant(8000, 1, 0.25)});
+  const std::string name = "artifacts/default/second-box/mix.wav";
+  make_folders((folder / name).parent_path());
+  write_file_atomically(folder / name, std::span<const std::byte>(wav));
+  of.variants[1].artifacts = {{"artifacts/default/second-box/notes.txt", ""}, {name, sha256(wav)}};
+  write_fake_run(record, folder);
+  return record;
+}
+
+TEST(SoundTrack, IsTheFirstWavFileOfADrawnVariantAndRealTimeIsItsRate) {
+  const TestFolder folder;
+  const RunRecord record = make_sounding_run(folder.path, {0.5, 0.54, 0.58});
+  std::string problem;
+  const auto track = sound_track(record, {}, {0.5, 0.54, 0.58}, problem);
+  ASSERT_TRUE(track);
+  EXPECT_EQ(track->variant, "second-box");
+  EXPECT_EQ(track->file.name, "artifacts/default/second-box/mix.wav");
+  EXPECT_NEAR(track->frames_per_second, 25, 1e-9);
+  EXPECT_EQ(track->start_s, 0.5);
+  EXPECT_EQ(problem, "");
+  FigureView first_only;
+  first_only.variants = {"first-box"};
+  EXPECT_FALSE(sound_track(record, first_only, {0.5, 0.54, 0.58}, problem));
+  EXPECT_EQ(problem, "") << "what is not drawn is not missed";
+}
+
+TEST(SoundTrack, IsAbsentWhereFramesCannotKeepStepWithIt) {
+  const TestFolder folder;
+  RunRecord record = make_sounding_run(folder.path, {0, 0.04, 0.08});
+  std::string problem;
+  EXPECT_FALSE(sound_track(record, {}, {0, 0.01, 0.08}, problem));
+  EXPECT_THAT(problem, HasSubstr("evenly"));
+  EXPECT_FALSE(sound_track(record, {}, {0.04}, problem));
+  EXPECT_THAT(problem, HasSubstr("one frame"));
+  EXPECT_FALSE(sound_track(record, {}, {-1, 0, 1}, problem));
+  EXPECT_THAT(problem, HasSubstr("before the sound"));
+  record.cases[0].parameter_unit = "deg";
+  record.cases[0].parameter_name = "angle";
+  EXPECT_FALSE(sound_track(record, {}, {0, 45, 90}, problem));
+  EXPECT_THAT(problem, HasSubstr("angle"));
+}
+
+/// What the ffmpeg of this script is called with; the video holds it.
+Video video_of(const fs::path& folder, std::optional<double> frames_per_second) {
+  FigureView view;
+  view.variants = {"second-box"};
+  return make_video(OpenedRun(folder / "run"), view, {frames_per_second, folder / "video"});
+}
+
+TEST(Video, HasTheSoundOfAVariantWithItsFramesInRealTime) {
+  const TestFolder folder;
+  make_sounding_run(folder.path / "run", {0.5, 0.75, 1});
+  const PathOf path(folder.path);
+  make_ffmpeg(folder.path, "echo \"$@\" > \"$file\"");
+  const Video video = video_of(folder.path, {});
+  EXPECT_EQ(video.sound_of, "second-box");
+  EXPECT_EQ(video.frames_per_second, 4);
+  const std::string command = read_whole_file(folder.path / "video/video.mp4");
+  const std::string wav = (folder.path / "run/artifacts/default/second-box/mix.wav").string();
+  EXPECT_THAT(command, HasSubstr("-framerate 4 -t 0.625 -i ")) << "2.5 frames: the third begins";
+  EXPECT_THAT(command, HasSubstr("-ss 0.5 -i file:" + wav + " -map 0:v -map 1:a -c:a aac"));
+  const Video slow = video_of(folder.path, 2);
+  EXPECT_FALSE(slow.sound_of);
+  EXPECT_THAT(slow.no_sound, HasSubstr("real time is 4 frames a second"));
+  const std::string silent = read_whole_file(folder.path / "video/video.mp4");
+  EXPECT_THAT(silent, testing::Not(HasSubstr("aac")));
+  EXPECT_THAT(silent, HasSubstr("-framerate 2 "));
+}
+
+TEST(Video, OfAnFfmpegWithoutTheCodecIsOneErrorThatSaysSo) {
+  const TestFolder folder;
+  make_sounding_run(folder.path / "run", {0, 0.25, 0.5});
+  const PathOf path(folder.path);
+  make_ffmpeg(folder.path, "echo \"Unknown encoder 'aac'\" >&2; exit 1");
+  EXPECT_THAT(test::error_of([&] { video_of(folder.path, {}); }),
+              testing::AllOf(HasSubstr("Unknown encoder 'aac'"), HasSubstr("mp4 with AAC")));
+  EXPECT_FALSE(fs::exists(folder.path / "video/video.mp4"));
+  std::ofstream(folder.path / "run/artifacts/default/second-box/mix.wav", std::ios::app) << "more";
+  EXPECT_THAT(test::error_of([&] { video_of(folder.path, {}); }), HasSubstr("mix.wav"));
+}
+
+TEST(Spectrogram, IsDrawnWithFramesWhereTheRunHasASound) {
+  const TestFolder folder;
+  make_fake_run(folder.path / "mute");
+  EXPECT_FALSE(draw_spectrogram(OpenedRun(folder.path / "mute"), {}));
+  EXPECT_FALSE(fs::exists(folder.path / "mute/spectrogram.png"));
+  const fs::path run = folder.path / "run";
+  make_sounding_run(run, {0, 0.5, 1});
+  ::unsetenv("DISPLAY");
+  EXPECT_TRUE(draw_spectrogram(OpenedRun(run), {}));
+  EXPECT_EQ(read_whole_file(run / "spectrogram.png").substr(1, 3), "PNG");
+  EXPECT_FALSE(fs::exists(run / "spectrogram-frames.png"));
+}
+
+// Beside the panels there is nothing: the second row begins where the first one ends.
+TEST(Panels, AreDrawnEdgeToEdge) {
+  const TestFolder folder;
+  const RunRecord record = make_fake_run(folder.path);
+  FigureView view;
+  view.parameters = {0, 45, 90};
+  view.across = FigureView::Across::states;
+  const auto blocks = make_blocks(OpenedRun(folder.path, record), view);
+  ASSERT_EQ(blocks.size(), 1u);
+  EXPECT_EQ(blocks[0].rows[1].cells[2].parameter, 90);
+  const Display display;
+  const Picture picture = draw_panels(blocks[0], 100);
+  EXPECT_EQ(picture.width, 300);
+  const ViewWindow& window = blocks[0].look.window;
+  const int height = static_cast<int>(std::lround(100 * window.height_m / window.width_m));
+  EXPECT_EQ(picture.height, 2 * height);
+  for (int row = 0; row < 2; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      EXPECT_NE(picture.at(100 * column + 50, row * height + height / 2), (Rgb{255, 255, 255}))
+          << row << ' ' << column;
+    }
+  }
 }
 
 TEST(Video, IsLeftOutAfterCtrlC) {

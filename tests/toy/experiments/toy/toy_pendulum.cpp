@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include "core/error.h"
 #include "core/frame_loop.h"
 #include "experiments/toy/toy_topic.h"
+#include "testbed/formats/wav_file.h"
 #include "testbed/metric_rows.h"
 
 namespace geoprior::toy {
@@ -49,7 +51,7 @@ void describe(OptionVisitor& v, PendulumOptions& o) {
   v.value("step_s", o.step_s, {.doc = "time step h", .unit = "s", .min = 1e-6, .max = 1});
   v.value("checkpoints", o.checkpoints, {.doc = "save the state after every frame"});
   v.value("sound_rate_hz", o.sound_rate_hz,
-          {.doc = "sample rate of swing.wav", .unit = "Hz", .min = 1000, .max = 96000});
+          {.doc = "sample rate of swing.wav", .unit = "Hz", .min = kLeastSampleRate, .max = 96000});
   v.value("fail_at_s", o.fail_at_s,
           {.doc = "ends with an error at this time, as a solver that does not converge",
            .unit = "s",
@@ -89,36 +91,13 @@ struct PendulumState {
   double time = 0;
 };
 
-void append(std::vector<std::byte>& bytes, std::uint32_t value, int count) {
-  for (int i = 0; i < count; ++i) bytes.push_back(static_cast<std::byte>(value >> (8 * i)));
-}
-
-/// 16-bit mono PCM.
+/// Mono, louder samples cut off.
 Artifact wav(const std::vector<double>& samples, double full_scale, int rate_hz) {
-  Artifact file{"swing.wav", {}};
-  auto& b = file.bytes;
-  const auto text = [&](const char* s) {
-    for (; *s != 0; ++s) b.push_back(static_cast<std::byte>(*s));
-  };
-  const auto data_size = static_cast<std::uint32_t>(2 * samples.size());
-  const auto rate = static_cast<std::uint32_t>(rate_hz);
-  text("RIFF");
-  append(b, 36 + data_size, 4);
-  text("WAVEfmt ");
-  append(b, 16, 4);
-  append(b, 1, 2);
-  append(b, 1, 2);
-  append(b, rate, 4);
-  append(b, 2 * rate, 4);
-  append(b, 2, 2);
-  append(b, 16, 2);
-  text("data");
-  append(b, data_size, 4);
-  for (const double x : samples) {
-    const double clipped = std::fmin(1, std::fmax(-1, x / full_scale));
-    append(b, static_cast<std::uint32_t>(std::lround(32767 * clipped)), 2);
+  Sound sound{rate_hz, Eigen::MatrixXd(samples.size(), 1)};
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    sound.samples(static_cast<Eigen::Index>(i), 0) = std::clamp(samples[i] / full_scale, -1.0, 1.0);
   }
-  return file;
+  return {"swing.wav", wav_bytes(sound)};
 }
 
 class PendulumFrames final : public FrameModel {
@@ -198,7 +177,7 @@ class PendulumFrames final : public FrameModel {
 
   [[nodiscard]] Event crossing(const PendulumState& s) const {
     const double speed = scene_.options.length_m * s.velocity;
-    return {s.time, "crossing", bob(s), 0.5 * speed * speed, 0};
+    return {s.time, "crossing", bob(s), 0.5 * speed * speed, 0, {{"speed_m_s", speed}}};
   }
 
   [[nodiscard]] Frame frame(const PendulumState& s) const {

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "experiments/paper/scene.h"
+#include "testbed/frame_sequence.h"
+
+namespace geoprior::paper {
+
+/// What was recorded of a sound: its events, and the file "sound.wav" that was mixed of them.
+/// Absent where no animation was listened to.
+struct SoundMeasures {
+  struct Kind {
+    int count = 0;
+    double energy = 0;               ///< J
+    std::optional<double> duration;  ///< median of the bursts heard in the mix (s)
+    std::optional<double> centroid;  ///< likewise (Hz)
+    double measured = 0;             ///< bursts that could be measured
+  };
+  std::map<std::string, Kind> kinds;  ///< "flap", "crac", "friction", "tear"
+  double rate = 0;                    ///< of all events (1/s)
+  std::optional<double> fano;         ///< factor of their counts in windows of 0.1 s
+  std::optional<double> peak;         ///< true peak of the mix (dBFS); absent for silence
+  std::optional<double> centroid;     ///< of the whole mix (Hz)
+
+  [[nodiscard]] Kind of(const std::string& kind) const {
+    const auto found = kinds.find(kind);
+    return found == kinds.end() ? Kind{} : found->second;
+  }
+  [[nodiscard]] Kind all() const;
+};
+std::optional<SoundMeasures> sound_measures(const PaperScene& scene, const FrameSequence& frames);
+
+/// Power law of the energies of flaps and cracs (metrics/power_law.h). Absent where no animation
+/// was listened to.
+struct EnergyExponent {
+  std::optional<double> stated;  ///< absent: withheld
+  std::optional<double> fitted;  ///< whether it may be stated or not
+  double standard_error = 0;
+  double count = 0;  ///< energies in the tail
+  double decades = 0;
+};
+std::optional<EnergyExponent> energy_exponent(const PaperScene& scene, const FrameSequence& frames);
+
+}  // namespace geoprior::paper

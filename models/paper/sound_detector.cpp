@@ -1,0 +1,162 @@
+#include "models/paper/sound_detector.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace geoprior::paper {
+
+using Eigen::Vector3d;
+
+void describe(OptionVisitor& v, DetectionOptions& o) {
+  v.value("spacing", o.spacing,
+          {.doc = "of the grid of the pattern on which curvature is looked at",
+           .unit = "m",
+           .min = 1e-6});
+  v.value("radius", o.radius,
+          {.doc = "over which curvature is smoothed: a Gaussian's standard deviation",
+           .unit = "m",
+           .min = 0});
+  v.value("least_energy", o.least_energy,
+          {.doc = "of a flap or crac; less is what remeshing moves", .unit = "J", .min = 0});
+  describe_group(v, "flips", o.flips, {.doc = "sudden changes of the sign of curvature"});
+  describe_group(v, "resonator", o.resonator, {.doc = "the part of the sheet that swings"});
+  describe_group(v, "friction", o.friction, {.doc = "sliding along obstacles"});
+}
+
+SoundDetector::SoundDetector(const Sheet& sheet, const DetectionOptions& options)
+    : sheet_(sheet),
+      options_(options),
+      sampler_(sound_grid(sheet.pattern, options.spacing), options.radius),
+      flips_(sampler_.grid(), options.flips),
+      slides_(sheet, sampler_.grid(), options.friction) {}
+
+Resonator SoundDetector::resonator(const std::vector<int>& seeds) const {
+  const auto is_held = [&](const Eigen::Vector2d& place) {
+    return std::any_of(sheet_.handles.begin(), sheet_.handles.end(), [&](const Handle& handle) {
+      return handle.motion && handle.is_active(field_.time) &&
+             handle.distance(place) <= options_.spacing;
+    });
+  };
+  return find_resonator(grid(), field_, seeds, is_held, options_.resonator);
+}
+
+SoundEvent SoundDetector::snap(const FlipCluster& cluster) const {
+  std::vector<int> seeds;
+  for (const CellFlip& flip : cluster.flips) {
+    if (field_.inside[static_cast<std::size_t>(flip.cell)]) seeds.push_back(flip.cell);
+  }
+  SoundEvent event;
+  event.time = cluster.time();
+  event.duration = cluster.flips.back().time - event.time;
+  event.flipped_area = cluster.area(grid());
+  const double D = sheet_.material.bending_stiffness(), rho = sheet_.material.area_density;
+  const double cell = grid().cell_area();
+  double mean = 0;
+  for (const CellFlip& flip : cluster.flips) {
+    event.duration = std::max(event.duration, flip.duration);
+    event.position += field_.place.row(flip.cell).transpose();
+    mean += flip.speed;
+    const double drop = flip.before * flip.before - flip.after * flip.after;
+    event.energy += D / 2 * std::max(drop, 0.0) * cell;
+  }
+  const auto n = static_cast<double>(cluster.flips.size());
+  event.position /= n;
+  mean /= n;
+  for (const CellFlip& flip : cluster.flips) {
+    const double along = flip.speed - mean;
+    event.energy += rho / 2 * along * along * cell;
+  }
+  if (seeds.empty()) return event;
+  Resonator found = resonator(seeds);
+  event.kind =
+      found.blocked_share > options_.resonator.crumpled_share ? SoundKind::crac : SoundKind::flap;
+  event.ruling_length = found.ruling_length;
+  event.free_border = found.free_border;
+  event.area = found.area;
+  event.curvature = found.curvature;
+  event.blocked_share = found.blocked_share;
+  event.cells = std::move(found.cells);
+  return event;
+}
+
+void SoundDetector::add_snaps(const std::vector<FlipCluster>& clusters,
+                              std::vector<SoundEvent>& events) const {
+  for (const FlipCluster& cluster : clusters) {
+    SoundEvent event = snap(cluster);
+    if (event.energy >= options_.least_energy) events.push_back(std::move(event));
+  }
+}
+
+/// Every place that a tip has come to since the last frame is an event.
+void SoundDetector::add_tears(const SheetSnapshot& frame, std::vector<SoundEvent>& events) {
+  const double until = torn_until_.value_or(frame.time);
+  for (std::size_t i = 1; i < frame.torn.size(); ++i) {
+    const TornPlace &from = frame.torn[i - 1], &to = frame.torn[i];
+    if (from.tear != to.tear || to.time <= until || to.time > frame.time) continue;
+    const Eigen::Vector2d step = to.pattern - from.pattern;
+    if (!(step.norm() > 0)) continue;
+    SoundEvent event;
+    event.kind = SoundKind::tear;
+    event.time = to.time;
+    event.position = to.position;
+    event.energy = sheet_.toughness.at(to.pattern, step.normalized()) * sheet_.material.thickness *
+                   step.norm();
+    event.flipped_area = sheet_.material.thickness * step.norm();
+    const int cell = grid().at(to.pattern);
+    if (field_.inside[static_cast<std::size_t>(cell)]) {
+      Resonator found = resonator({cell});
+      event.ruling_length = found.ruling_length;
+      event.free_border = found.free_border;
+      event.area = found.area;
+      event.curvature = found.curvature;
+      event.blocked_share = found.blocked_share;
+      event.cells = std::move(found.cells);
+    }
+    events.push_back(std::move(event));
+  }
+  torn_until_ = frame.time;
+}
+
+std::vector<SoundEvent> SoundDetector::push(const SheetSnapshot& frame, RunContext& context) {
+  std::vector<FlipCluster> clusters;
+  std::vector<SoundEvent> events;
+  {
+    const Phase phase(context, "detect");
+    field_ = sampler_.sample(frame);
+    clusters = flips_.push(field_);
+    events = slides_.push(field_);
+  }
+  const Phase phase(context, "resonators");
+  add_snaps(clusters, events);
+  add_tears(frame, events);
+  std::stable_sort(events.begin(), events.end(),
+                   [](const SoundEvent& a, const SoundEvent& b) { return a.time < b.time; });
+  return events;
+}
+
+std::vector<SoundEvent> SoundDetector::finish(RunContext& context) {
+  const Phase phase(context, "resonators");
+  std::vector<SoundEvent> events = slides_.finish();
+  add_snaps(flips_.finish(), events);
+  std::stable_sort(events.begin(), events.end(),
+                   [](const SoundEvent& a, const SoundEvent& b) { return a.time < b.time; });
+  return events;
+}
+
+void SoundDetector::save(StateWriter& out) const {
+  flips_.save(out);
+  slides_.save(out);
+  out.number(torn_until_.value_or(0));
+  out.matrix(field_.velocity);
+}
+
+void SoundDetector::load(StateReader& in, const SheetSnapshot& last) {
+  flips_.load(in);
+  slides_.load(in);
+  torn_until_ = in.number<double>();
+  field_ = sampler_.sample(last);
+  in.matrix(field_.velocity);
+  sampler_.set_last(field_);
+}
+
+}  // namespace geoprior::paper

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/context.h"
+#include "models/paper/sheet.h"
+#include "models/paper/sound_event.h"
+#include "models/paper/sound_flips.h"
+#include "models/paper/sound_friction.h"
+#include "models/paper/sound_resonator.h"
+
+namespace geoprior::paper {
+
+/// How what a sheet sounds like is found.
+struct DetectionOptions {
+  double spacing = 3.3e-3;     ///< of the grid: 64 x 90 cells on a sheet of A4 (m)
+  double radius = 4e-3;        ///< over which curvature is smoothed (m)
+  double least_energy = 1e-9;  ///< of a flap or crac (J)
+  FlipOptions flips;
+  ResonatorOptions resonator;
+  FrictionOptions friction;
+};
+void describe(OptionVisitor& v, DetectionOptions& options);
+
+/// Finds the events of an animated sheet: sudden changes of the sign of curvature with their
+/// resonators, sliding, steps of tears. What is found depends on the sheet's motion, not on its
+/// meshes (a grid of the pattern).
+///
+/// Energy of a flap or crac: what bending sets free in the cells that flip, D/2 (k_before^2 -
+/// k^2) A where that is positive, and the kinetic energy of their motion along their normals in the
+/// frame in which they have flipped, apart from that of the cells together. Of a step of a tear:
+/// E_f times the section it tears.
+class SoundDetector {
+ public:
+  SoundDetector(const Sheet& sheet, const DetectionOptions& options);
+  SoundDetector(const SoundDetector&) = delete;
+  SoundDetector& operator=(const SoundDetector&) = delete;
+  /// Takes the next frame. @return the events that are known now, in order of time; none starts
+  ///                         earlier than `latency` before the frame, friction apart
+  std::vector<SoundEvent> push(const SheetSnapshot& frame, RunContext& context);
+  /// What is left at the end.
+  std::vector<SoundEvent> finish(RunContext& context);
+
+  [[nodiscard]] const SoundGrid& grid() const { return sampler_.grid(); }
+  /// The last frame on the grid.
+  [[nodiscard]] const SheetField& field() const { return field_; }
+  /// From an event to when it is known, friction apart, beside a frame's interval (s).
+  [[nodiscard]] double latency() const {
+    return options_.flips.together + options_.flips.sudden / 2;
+  }
+
+  void save(StateWriter& out) const;
+  /// @param last  the frame that was pushed last before `save`
+  void load(StateReader& in, const SheetSnapshot& last);
+
+ private:
+  [[nodiscard]] Resonator resonator(const std::vector<int>& seeds) const;
+  [[nodiscard]] SoundEvent snap(const FlipCluster& cluster) const;
+  void add_snaps(const std::vector<FlipCluster>& clusters, std::vector<SoundEvent>& events) const;
+  void add_tears(const SheetSnapshot& frame, std::vector<SoundEvent>& events);
+
+  const Sheet& sheet_;
+  DetectionOptions options_;
+  SheetSampler sampler_;
+  FlipDetector flips_;
+  SlideDetector slides_;
+  SheetField field_;
+  std::optional<double> torn_until_;  ///< steps of tears until then are events, or a cut (s)
+};
+
+}  // namespace geoprior::paper

@@ -1,0 +1,238 @@
+#include "models/paper/sound_process.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/frame_loop.h"
+
+namespace geoprior::paper {
+namespace {
+
+using On = NamedArray::On;
+
+/// Events as points with what they depend on.
+Part events_part(const std::vector<SoundEvent>& events, const std::vector<int>& samples) {
+  Part part;
+  part.kind = Part::Kind::points;
+  const auto n = static_cast<Eigen::Index>(events.size());
+  part.points.resize(n, 3);
+  Eigen::MatrixXd value(n, 7);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const SoundEvent& e = events[static_cast<std::size_t>(i)];
+    part.points.row(i) = e.position;
+    value.row(i) << static_cast<double>(e.kind), e.time, e.energy, e.ruling_length, e.free_border,
+        e.area, samples[static_cast<std::size_t>(i)];
+  }
+  const std::array<std::pair<const char*, const char*>, 7> names{{{"kind", "1"},
+                                                                  {"time", "s"},
+                                                                  {"energy", "J"},
+                                                                  {"l_r", "m"},
+                                                                  {"l_c", "m"},
+                                                                  {"area", "m^2"},
+                                                                  {"sample", "1"}}};
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    part.arrays.push_back(
+        {names[k].first, names[k].second, On::points, value.col(static_cast<Eigen::Index>(k))});
+  }
+  return part;
+}
+
+/// The cells of resonators as two triangles each, in space.
+Part resonators_part(const SoundGrid& grid, const SheetField& field,
+                     const std::vector<SoundEvent>& events) {
+  Part part;
+  std::vector<Eigen::RowVector3d> points;
+  std::vector<double> kind, number;
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    for (const int c : events[e].cells) {
+      // From the centre to the neighbours' centres, half of the way: the sheet between them.
+      const std::array<int, 4> beside = grid.neighbours(c);
+      const auto way = [&](std::size_t there, std::size_t back) -> Eigen::RowVector3d {
+        const Eigen::RowVector3d here = field.place.row(c);
+        if (field.holds(grid, c, static_cast<int>(there)))
+          return (field.place.row(beside[there]) - here) / 2;
+        if (field.holds(grid, c, static_cast<int>(back)))
+          return (here - field.place.row(beside[back])) / 2;
+        return Eigen::RowVector3d::Zero();
+      };
+      const Eigen::RowVector3d here = field.place.row(c), u = way(0, 2), v = way(1, 3);
+      for (const Eigen::RowVector3d& corner :
+           {Eigen::RowVector3d(here - u - v), Eigen::RowVector3d(here + u - v),
+            Eigen::RowVector3d(here + u + v), Eigen::RowVector3d(here - u + v)}) {
+        points.push_back(corner);
+      }
+      for (int k = 0; k < 2; ++k) {
+        kind.push_back(static_cast<double>(events[e].kind));
+        number.push_back(static_cast<double>(e));
+      }
+    }
+  }
+  part.points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    part.points.row(static_cast<Eigen::Index>(i)) = points[i];
+  }
+  part.triangles.resize(static_cast<Eigen::Index>(points.size() / 2), 3);
+  for (Eigen::Index q = 0; q < part.triangles.rows() / 2; ++q) {
+    const int a = static_cast<int>(4 * q);
+    part.triangles.row(2 * q) << a, a + 1, a + 2;
+    part.triangles.row(2 * q + 1) << a, a + 2, a + 3;
+  }
+  const auto column = [](const std::vector<double>& x) -> Eigen::MatrixXd {
+    return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+  };
+  part.arrays.push_back({"kind", "1", On::cells, column(kind)});
+  part.arrays.push_back({"event", "1", On::cells, column(number)});
+  return part;
+}
+
+Event record_of(const SoundEvent& e, int sample) {
+  Event event;
+  event.time_s = e.time;
+  event.kind = kSoundKinds[static_cast<std::size_t>(e.kind)];
+  event.position = e.position;
+  event.energy_J = e.energy;
+  event.duration_s = e.duration;
+  event.numbers = {{"ruling_length_m", e.ruling_length},
+                   {"free_border_m", e.free_border},
+                   {"area_m2", e.area},
+                   {"flipped_area_m2", e.flipped_area},
+                   {"curvature_per_m", e.curvature},
+                   {"blocked_share", e.blocked_share},
+                   {"sample", sample}};
+  return event;
+}
+
+class SoundFrames final : public FrameModel {
+ public:
+  SoundFrames(const Sheet& sheet, const SheetAnimation& animation, const SoundStage& stage,
+              const SoundVoices& voices, const EncodeSound& encode, std::uint64_t seed)
+      : animation_(animation),
+        stage_(stage),
+        voices_(voices),
+        encode_(encode),
+        seed_(seed),
+        detector_(sheet, stage.detection) {}
+
+  [[nodiscard]] int frame_count() const override { return animation_.frame_count(); }
+
+  void record(int number, FrameSink& sink, RunContext& context) override {
+    SheetSnapshot snapshot = read(number, context);
+    const bool last = number + 1 == frame_count();
+    std::vector<SoundEvent> events = detector_.push(snapshot, context);
+    if (last) {
+      for (SoundEvent& e : detector_.finish(context)) events.push_back(std::move(e));
+    }
+    std::vector<int> samples;
+    {
+      const Phase phase(context, "choose");
+      for (const SoundEvent& e : events) {
+        chosen_.push_back(choose(e, static_cast<int>(events_.size())));
+        samples.push_back(chosen_.back().sample);
+        events_.push_back(e);
+        events_.back().cells.clear();  // drawn in this frame, and not needed any more
+      }
+    }
+    Frame frame;
+    frame.parameter = snapshot.time;
+    frame.parts["events"] = events_part(events, samples);
+    frame.parts["resonators"] = resonators_part(detector_.grid(), detector_.field(), events);
+    if (stage_.surface) {
+      Part& surface = frame.parts["surface"];
+      surface.points = std::move(snapshot.x);
+      surface.triangles = snapshot.mesh.triangles;
+      surface.arrays.push_back({"pattern", "m", On::points, snapshot.mesh.pattern});
+    }
+    frame.diagnostics["events"] = static_cast<double>(events_.size());
+    std::vector<std::byte> file;
+    if (last) file = mixed(frame, context);
+    sink.frame(std::move(frame));
+    for (std::size_t i = 0; i < events.size(); ++i) sink.event(record_of(events[i], samples[i]));
+    if (last) sink.artifact({"sound.wav", std::move(file)});
+  }
+
+  void save(StateWriter& out) const override {
+    detector_.save(out);
+    out.number(events_.size());
+    for (const SoundEvent& e : events_) paper::save(e, out);
+  }
+
+  void load(StateReader& in, int next_frame) override {
+    detector_.load(in, animation_.snapshot(next_frame - 1));
+    events_.resize(in.count());
+    for (SoundEvent& e : events_) e = load_sound_event(in);
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      chosen_.push_back(choose(events_[i], static_cast<int>(i)));
+    }
+  }
+
+ private:
+  SheetSnapshot read(int number, RunContext& context) const {
+    const Phase phase(context, "read");
+    return animation_.snapshot(number);
+  }
+
+  [[nodiscard]] EventVoice choose(const SoundEvent& event, int number) const {
+    return voices_.voice(event, {seed_, "paper sound of event " + std::to_string(number)});
+  }
+
+  [[nodiscard]] std::vector<std::byte> mixed(Frame& frame, RunContext& context) const {
+    const double start = std::min(0.0, animation_.time(0));
+    std::vector<Voice> voices;
+    for (const EventVoice& one : chosen_) {
+      voices.push_back(one.voice);
+      voices.back().time -= start;
+      for (Eigen::Vector2d& key : voices.back().envelope) key.x() -= start;
+    }
+    Mix result;
+    {
+      const Phase phase(context, "mix");
+      result = mix(voices, frame.parameter - start + stage_.tail, stage_.mix);
+    }
+    frame.diagnostics["gain_lowered"] = result.lowered;
+    if (!events_.empty()) frame.diagnostics["true_peak"] = result.true_peak;
+    const Phase phase(context, "encode");
+    return encode_(result.samples, stage_.mix.sample_rate);
+  }
+
+  const SheetAnimation& animation_;
+  const SoundStage& stage_;
+  const SoundVoices& voices_;
+  const EncodeSound& encode_;
+  std::uint64_t seed_;
+  SoundDetector detector_;
+  std::vector<SoundEvent> events_;
+  std::vector<EventVoice> chosen_;  ///< of each event
+};
+
+}  // namespace
+
+void describe(OptionVisitor& v, SoundStage& o) {
+  describe_group(v, "detection", o.detection, {.doc = "how events are found"});
+  describe_group(v, "mix", o.mix, {.doc = "where it is heard, and how it is written down"});
+  v.value("tail", o.tail,
+          {.doc = "length of the sound after the last frame", .unit = "s", .min = 0, .max = 60});
+  v.value("surface", o.surface,
+          {.doc = "whether frames have the sheet, or the events and resonators alone"});
+}
+
+std::unique_ptr<Process> make_sound_process(const Sheet& sheet,
+                                            std::shared_ptr<const SheetAnimation> animation,
+                                            const SoundStage& stage,
+                                            std::shared_ptr<const SoundVoices> voices,
+                                            EncodeSound encode) {
+  struct Held {
+    Sheet sheet;
+    std::shared_ptr<const SheetAnimation> animation;
+    SoundStage stage;
+    std::shared_ptr<const SoundVoices> voices;
+    EncodeSound encode;
+  };
+  auto held = std::make_shared<const Held>(
+      Held{sheet, std::move(animation), stage, std::move(voices), std::move(encode)});
+  return frame_process([held](RunContext& context) {
+    return std::make_unique<SoundFrames>(held->sheet, *held->animation, held->stage, *held->voices,
+                                         held->encode, context.seed());
+  });
+}
+
+}  // namespace geoprior::paper

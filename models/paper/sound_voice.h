@@ -1,0 +1,15 @@
+#pragma once
+
+#include "core/random.h"
+#include "models/paper/sheet.h"
+#include "models/paper/sound_bank.h"
+#include "models/paper/sound_mixer.h"
+
+namespace geoprior::paper {
+
+/// A sound of the bank as loud as the event is. Of friction a loop whose gain follows its power:
+/// that of the recorded pressure, and at least that of the sheet's own weight.
+Voice voice_of(const SoundEvent& event, const SoundBank& bank, int sound,
+               const PaperMaterial& material);
+
+}  // namespace geoprior::paper

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+
+#include "models/paper/sound_bank.h"
+#include "models/paper/sound_process.h"
+
+namespace geoprior::paper {
+
+/// The sound of an animated sheet, put together from a bank (thesis 3.2.3; Schreck et al. 2016).
+///
+/// Sudden changes of the sign of curvature, sliding and steps of tears are events
+/// (models/paper/sound_detector.h). The part of the sheet about a flip that swings freely, its
+/// resonator, is described by the mean length of its rulings l_r and the length of its free border
+/// l_c. What it sounds like is drawn from the sounds of its kind in the bank whose descriptors are
+/// nearest,
+///
+///   d^2 = ln^2(l_r / l_r') + ln^2((l_c + l_0) / (l_c' + l_0)),     l_0 = 5 mm,
+///
+/// with a little change of pitch, as loud as its energy. Sliding is a loop of noise of its speed.
+/// It does not know how the sheet is bent beyond these two numbers, nor what it lies on.
+struct SoundOptions {
+  enum class Descriptors { both, ruling, border, none };
+  SoundStage stage;
+  BankOptions bank;                             ///< unless the scene has one
+  Descriptors descriptors = Descriptors::both;  ///< that choose a sound
+  int nearest = 5;                              ///< sounds that are drawn from
+  double detune = 0.05;                         ///< largest change of pitch, relative
+};
+void describe(OptionVisitor& v, SoundOptions& options);
+
+/// Numbers of the sounds of the event's kind in the order of their distance; of equals the lower
+/// number first.
+std::vector<int> nearest_sounds(const SoundBank& bank, const SoundEvent& event,
+                                SoundOptions::Descriptors descriptors);
+
+/// @param bank  valid (`require_valid`)
+std::shared_ptr<const SoundVoices> bank_voices(SoundBank bank, const SoundOptions& options,
+                                               const PaperMaterial& material);
+
+}  // namespace geoprior::paper

@@ -1,0 +1,231 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include "baselines/paper/plain_sounds.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "models/paper/sound_bank.h"
+#include "models/paper/sound_mixer.h"
+#include "models/paper/sound_process.h"
+#include "models/paper/uniform_mesh.h"
+#include "solvers/paper/sound.h"
+#include "tests/paper/meshes.h"
+#include "tests/paper/recording.h"
+
+namespace geoprior::paper {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kSoundSpeed = 343;
+
+/// Mono, without wall, full scale 1 Pa, one metre beside the origin.
+MixOptions plain_mix() {
+  MixOptions options;
+  options.stereo = false;
+  options.wall = false;
+  options.listener = {1, 0, 0};
+  options.full_scale = 1;
+  return options;
+}
+
+std::vector<float> sine(double frequency, int count) {
+  std::vector<float> samples;
+  for (int i = 0; i < count; ++i) {
+    samples.push_back(static_cast<float>(0.1 * std::sin(2 * kPi * frequency * i / 48000)));
+  }
+  return samples;
+}
+
+TEST(SoundMixer, SoundArrivesAfterItsWayAsOneOverTheDistance) {
+  const std::vector<float> samples = sine(1000, 4800);
+  for (const double distance : {1.0, 2.5}) {
+    Voice voice{0.02, {1 - distance, 0, 0}, samples};
+    const Mix result = mix({voice}, 0.2, plain_mix());
+    for (Eigen::Index i = 2000; i < 4000; ++i) {
+      const double since = static_cast<double>(i) / 48000 - 0.02 - distance / kSoundSpeed;
+      EXPECT_NEAR(result.samples(i, 0), 0.1 / distance * std::sin(2 * kPi * 1000 * since), 2e-5);
+    }
+    EXPECT_EQ(result.samples.topRows(960).cwiseAbs().maxCoeff(), 0);
+  }
+}
+
+TEST(SoundMixer, AWallIsAnImage) {
+  const std::vector<float> samples = sine(1000, 4800);
+  MixOptions options = plain_mix();
+  options.wall = true;
+  options.wall_point = {0, 0, -0.5};
+  options.reflection = 0.6;
+  const Mix with = mix({{0.02, {0, 0, 0}, samples}}, 0.2, options);
+  options.wall = false;
+  const Mix direct =
+      mix({{0.02, {0, 0, 0}, samples}, {0.02, {0, 0, -1}, samples, 48000, 0.6}}, 0.2, options);
+  EXPECT_LT((with.samples - direct.samples).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(SoundMixer, NearerEarHearsEarlierAndLouder) {
+  const std::vector<float> samples = sine(2000, 480);
+  MixOptions options = plain_mix();
+  options.stereo = true;
+  options.listener = {0, -1, 0};
+  const Mix result = mix({{0, {2, -1, 0}, samples}}, 0.1, options);
+  ASSERT_EQ(result.samples.cols(), 2);
+  EXPECT_NEAR(result.samples.col(1).norm() / result.samples.col(0).norm(), 2.09 / 1.91, 1e-3);
+}
+
+TEST(SoundMixer, LowersTheWholeToTheTruePeak) {
+  // A sine at a quarter of the rate whose samples lie 45 degrees off its peaks.
+  std::vector<float> samples;
+  for (int i = 0; i < 4800; ++i) {
+    samples.push_back(static_cast<float>(std::sin(kPi / 2 * i + kPi / 4)));
+  }
+  MixOptions options = plain_mix();
+  const double delay = std::ceil(1 / kSoundSpeed * 48000) / 48000 - 1 / kSoundSpeed;
+  const Mix result = mix({{delay, {0, 0, 0}, samples}}, 0.2, options);
+  EXPECT_NEAR(result.true_peak, -1, 1e-9);
+  EXPECT_NEAR(result.lowered, 1, 0.15);
+  EXPECT_NEAR(20 * std::log10(result.samples.cwiseAbs().maxCoeff()), -1 - 3.01, 0.15);
+}
+
+TEST(SoundMixer, EnvelopeRepeatsALoop) {
+  const std::vector<float> samples(48000, 0.1F);
+  Voice voice{0, {0, 0, 0}, samples};
+  voice.envelope = {{0.1, 0}, {0.2, 1}, {2.4, 1}, {2.5, 0}};
+  const Mix result = mix({voice}, 3, plain_mix());
+  const auto at = [&](double t) {
+    return result.samples(std::lround((t + 1 / kSoundSpeed) * 48000), 0);
+  };
+  EXPECT_NEAR(at(0.15), 0.05, 1e-5);
+  EXPECT_NEAR(at(1.7), 0.1, 1e-6);
+  EXPECT_NEAR(at(2.45), 0.05, 1e-5);
+  EXPECT_EQ(at(2.6), 0);
+}
+
+TEST(SoundMixer, RefusesWhatItCannotMix) {
+  MixOptions options = plain_mix();
+  options.sample_rate = 44101;
+  EXPECT_THROW(mix({}, 1, options), Error);
+  options = plain_mix();
+  options.wall = true;
+  options.wall_normal = {0, 0, 0};
+  EXPECT_THROW(mix({}, 1, options), Error);
+  const Mix silent = mix({}, 1, plain_mix());
+  EXPECT_EQ(silent.samples.rows(), 48000);
+  EXPECT_EQ(silent.samples.cwiseAbs().maxCoeff(), 0);
+}
+
+TEST(SoundBank, HasTheSoundsOfItsGridAndIsTheSameAtAnyNumberOfThreads) {
+  SoundBank one, two;
+  with_threads(1, [&] { one = generate_bank({}, {}, 7); });
+  with_threads(2, [&] { two = generate_bank({}, {}, 7); });
+  EXPECT_EQ(one.of(SoundKind::flap).size() + one.of(SoundKind::crac).size(), 256u);
+  EXPECT_EQ(one.of(SoundKind::friction).size(), 64u);
+  EXPECT_FALSE(one.of(SoundKind::tear).empty());
+  EXPECT_EQ(checksum(one), checksum(two));
+  EXPECT_NE(checksum(one), checksum(generate_bank({}, {}, 8)));
+  EXPECT_NO_THROW(require_valid(one, "bank"));
+}
+
+TEST(SoundBank, LowestSinglePlateModeIsWhereItsFormulaSays) {
+  // 50 x 50 mm of office paper: pi/2 0.0678 (2/0.05^2) = 85 Hz, alone with most_modes = 1 and
+  // highest below the second (213 Hz).
+  BankOptions options;
+  options.sizes = 1;
+  options.least_ruling = options.most_ruling = 0.05;
+  options.most_border = 0.05;
+  options.variants = 1;
+  options.highest = 100;
+  PaperMaterial paper;
+  const double c = kPi / 2 * std::sqrt(paper.bending_stiffness() / paper.area_density);
+  const double f = 2 * c / (0.05 * 0.05);
+  ASSERT_LT(f, 100);
+  const SoundBank bank = generate_bank(paper, options, 1);
+  const Eigen::VectorXf& flap = bank.sounds.front().samples;
+  // Zero crossings of the ringing sine.
+  int crossings = 0;
+  const int from = 4800, to = 14400;
+  for (int i = from; i < to; ++i) crossings += (flap[i] > 0) != (flap[i + 1] > 0) ? 1 : 0;
+  EXPECT_NEAR(crossings / 2.0 / ((to - from) / 48000.0), f, 3);
+}
+
+/// A sheet that snaps, with one handle at its edge.
+std::shared_ptr<const SheetAnimation> snapping(const Sheet& sheet) {
+  const ShellMesh mesh = uniform_mesh(sheet.pattern, 400, UniformLayout::delaunay, {}, 1);
+  std::vector<SheetSnapshot> frames;
+  for (int i = 0; i <= 40; ++i) {
+    SheetSnapshot frame;
+    frame.time = 0.01 * i;
+    frame.mesh = mesh;
+    frame.x = meshes::rolled(mesh.pattern, 25 * std::cos(2 * kPi * 8 * frame.time + 0.1), 0);
+    frames.push_back(std::move(frame));
+  }
+  return std::make_shared<StoredSheetAnimation>(std::move(frames), "snapping");
+}
+
+std::vector<std::byte> raw(const Eigen::MatrixXd& samples, int /*rate*/) {
+  std::vector<std::byte> bytes(static_cast<std::size_t>(samples.size()) * sizeof(double));
+  if (!bytes.empty()) std::memcpy(bytes.data(), samples.data(), bytes.size());
+  return bytes;
+}
+
+std::unique_ptr<Process> a_process(const Sheet& sheet) {
+  SoundOptions options;
+  options.bank.sizes = 3;
+  return make_sound_process(
+      sheet, snapping(sheet), options.stage,
+      bank_voices(generate_bank(sheet.material, options.bank, 1), options, sheet.material), raw);
+}
+
+TEST(SoundProcess, RecordsEventsPicturesAndOneSound) {
+  Sheet sheet;
+  sheet.pattern = rectangle_pattern(0.2, 0.3);
+  Recording record;
+  RunContext context;
+  a_process(sheet)->run(record, context, {});
+  ASSERT_EQ(record.frames.size(), 41u);
+  EXPECT_EQ(record.events.size(), 6u);  // crosses zero 6 times in 0.4 s
+  ASSERT_EQ(record.artifacts.size(), 1u);
+  EXPECT_EQ(record.artifacts[0].name, "sound.wav");
+  Eigen::Index points = 0, cells = 0;
+  for (const Frame& frame : record.frames) {
+    points += frame.require_part("events").points.rows();
+    cells += frame.require_part("resonators").triangles.rows();
+  }
+  EXPECT_EQ(points, 6);
+  EXPECT_GT(cells, 6 * 1000);
+  for (const Event& e : record.events) {
+    EXPECT_EQ(e.kind, "flap");
+    EXPECT_GT(e.energy_J, 0);
+    EXPECT_GE(e.numbers.at("sample"), 0);
+    EXPECT_NEAR(e.numbers.at("ruling_length_m"), 0.3, 0.02);
+  }
+}
+
+TEST(SoundProcess, ResumesToTheSameSound) {
+  Sheet sheet;
+  sheet.pattern = rectangle_pattern(0.2, 0.3);
+  RunContext context;
+  Recording whole, rest;
+  a_process(sheet)->run(whole, context, {});
+  a_process(sheet)->run(rest, context, whole.checkpoints.at(17));
+  ASSERT_EQ(rest.artifacts.size(), 1u);
+  EXPECT_EQ(rest.artifacts[0].bytes, whole.artifacts[0].bytes);
+  EXPECT_EQ(rest.frames.size(), whole.frames.size() - 18);
+}
+
+TEST(SoundProcess, NearestSoundsAreNearInBothDescriptors) {
+  const SoundBank bank = generate_bank({}, {}, 1);
+  SoundEvent event;
+  event.ruling_length = 0.05;
+  event.free_border = 0.1;
+  const std::vector<int> order = nearest_sounds(bank, event, SoundOptions::Descriptors::both);
+  ASSERT_EQ(order.size(), 128u);
+  const BankSound& first = bank.sounds[static_cast<std::size_t>(order[0])];
+  EXPECT_LT(std::abs(std::log(first.ruling_length / 0.05)), 0.3);
+  EXPECT_LT(std::abs(std::log(first.free_border / 0.1)), 0.45);
+}
+
+}  // namespace
+}  // namespace geoprior::paper
