@@ -42,7 +42,8 @@ std::optional<SoundMeasures> sound_measures(const PaperScene& scene, const Frame
   const Sound sound = wav_from_bytes(*file, "sound.wav");
   const Eigen::VectorXd mono = sound.samples.rowwise().mean();
   const double length = static_cast<double>(mono.size()) / sound.sample_rate;
-  const std::vector<Event> events = within(frames.events(), std::min(0.0, frames.parameter(0)), length);
+  const std::vector<Event> events =
+      within(frames.events(), std::min(0.0, frames.parameter(0)), length);
   SoundMeasures out;
   for (const auto& [kind, rate] : event_rates(events, length)) {
     if (kind.empty()) {
