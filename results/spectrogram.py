@@ -15,7 +15,6 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
-import matplotlib.ticker  # noqa: E402
 import numpy as np  # noqa: E402
 
 import plots  # noqa: E402
@@ -24,15 +23,16 @@ import sound  # noqa: E402
 
 MOST_BLOCKS = 6
 MOST_KINDS = 8
-MOST_COLUMNS = 2000  # of a spectrogram
-HIGHEST_HZ = 16000
+TICKS_HZ = [50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000]
 RANGE_DB = 80
 DPI = 200
 
 # Inches.
 WIDTH, LEFT, RIGHT, TOP, BOTTOM = 9.5, 0.75, 1.0, 0.12, 0.5
-TITLE, LANE, SPECTRUM, TIMES, GAP, LEGEND = 0.26, 0.11, 1.8, 0.2, 0.22, 0.4
+TITLE, LANE, SPECTRUM, TIMES, GAP, LEGEND = 0.26, 0.14, 2.1, 0.2, 0.22, 0.4
 HIGHEST_FRAME = 1.6
+
+MOST_COLUMNS, ROWS = round((WIDTH - LEFT - RIGHT) * DPI), round(SPECTRUM * DPI)  # a pixel each
 
 
 def sounding(case):
@@ -67,7 +67,7 @@ class Block:
     def __init__(self, run, variant, frames):
         self.variant = variant
         self.sound = read_sound(run, variant)
-        self.times, self.frequencies, self.levels = sound.spectrogram(self.sound, MOST_COLUMNS)
+        self.times, self.edges, self.levels = sound.spectrogram(self.sound, ROWS, MOST_COLUMNS)
         self.frames = frames  # pictures side by side, or None
 
     def shape(self):
@@ -96,12 +96,17 @@ def draw_frames(axes, block, times, width):
         side.set_visible(False)
 
 
+def tick_width(count):
+    """Points; thinner in a lane of many events, which come in bursts, down to one pixel."""
+    return min(max(0.15 * 72 * (WIDTH - LEFT - RIGHT) / max(count, 1), 72 / DPI), 0.9)
+
+
 def draw_events(axes, variant, kinds):
     """A lane a kind, a tick an event."""
     for lane, kind in enumerate(kinds):
         times = [e["time_s"] for e in variant.events if runfile.text(e["kind"]) == kind]
         axes.vlines(times, len(kinds) - lane - 0.92, len(kinds) - lane - 0.08,
-                    color=plots.COLORS[lane], linewidth=0.9)
+                    color=plots.COLORS[lane], linewidth=tick_width(len(times)))
     axes.set_ylim(0, len(kinds))
     axes.set_yticks([])
     axes.grid(False)
@@ -110,19 +115,22 @@ def draw_events(axes, variant, kinds):
     axes.spines["left"].set_visible(False)
 
 
+def frequency_label(hertz):
+    return f"{hertz / 1000:g} k" if hertz >= 1000 else f"{hertz:g}"
+
+
 def draw_levels(axes, block, low, high):
-    times = block.times
-    top = min(block.sound.rate / 2, HIGHEST_HZ)
+    """An axis of log2 of the frequency: matplotlib draws no images on its own logarithmic axes."""
+    times, (bottom, top) = block.times, np.log2(block.edges[[0, -1]])
     step = times[1] - times[0] if len(times) > 1 else block.sound.seconds()
-    half = 0.5 * block.frequencies[1]
-    image = axes.imshow(block.levels, origin="lower", aspect="auto", cmap="magma", vmin=low, vmax=high,
-                        interpolation="nearest",
-                        extent=(times[0], times[-1] + step, -half / 1000,
-                                (block.frequencies[-1] + half) / 1000))
+    image = axes.imshow(np.maximum(block.levels, low), origin="lower", aspect="auto", cmap="magma",
+                        vmin=low, vmax=high, interpolation="antialiased",
+                        extent=(times[0], times[-1] + step, bottom, top))
     axes.set_facecolor(plt.get_cmap("magma")(0.0))
-    axes.set_ylim(0, top / 1000)
-    axes.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(5, steps=[1, 2, 4, 5, 10]))
-    axes.set_ylabel("frequency [kHz]")
+    axes.set_ylim(bottom, top)
+    shown = [f for f in TICKS_HZ if bottom - 1e-9 <= np.log2(f) <= top + 1e-9]
+    axes.set_yticks(np.log2(shown), [frequency_label(f) for f in shown])
+    axes.set_ylabel("frequency [Hz]")
     axes.grid(False)
     return image
 

@@ -37,6 +37,10 @@ class FrameSequence {
   [[nodiscard]] virtual std::optional<std::vector<std::byte>> artifact(
       const std::string& name) const = 0;
 
+  /// What was recorded of the variant that the experiment names as reference; null when there is
+  /// none, or it was left out.
+  [[nodiscard]] virtual const FrameSequence* reference() const { return nullptr; }
+
   /// The same. @throws Error  when the frame has none of that name
   [[nodiscard]] std::shared_ptr<const Part> require_part(std::size_t i,
                                                          const std::string& name) const {
@@ -64,8 +68,9 @@ inline std::shared_ptr<const Part> part_of(const std::shared_ptr<const Frame>& f
 class FramesInMemory final : public FrameSequence {
  public:
   explicit FramesInMemory(const std::vector<Frame>& frames, std::vector<Event> events = {},
-                          std::vector<Artifact> artifacts = {})
-      : events_(std::move(events)), artifacts_(std::move(artifacts)) {
+                          std::vector<Artifact> artifacts = {},
+                          const FrameSequence* reference = nullptr)
+      : events_(std::move(events)), artifacts_(std::move(artifacts)), reference_(reference) {
     for (const Frame& frame : frames) frames_.push_back(std::make_shared<const Frame>(frame));
   }
   [[nodiscard]] std::size_t size() const override { return frames_.size(); }
@@ -85,11 +90,13 @@ class FramesInMemory final : public FrameSequence {
     if (found == artifacts_.end()) return std::nullopt;
     return found->bytes;
   }
+  [[nodiscard]] const FrameSequence* reference() const override { return reference_; }
 
  private:
   std::vector<std::shared_ptr<const Frame>> frames_;
   std::vector<Event> events_;
   std::vector<Artifact> artifacts_;
+  const FrameSequence* reference_;
 };
 
 }  // namespace geoprior

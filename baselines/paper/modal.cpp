@@ -6,6 +6,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -86,8 +87,12 @@ Pairs lanczos(ShiftedFactor& factor, const Eigen::MatrixXd& known, int count, in
   Eigen::VectorXd start(n);
   for (double& x : start) x = random.normal();
   inverse.take_out(start);
-  solver.init(start.data());
-  solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-10, Spectra::SortRule::SmallestAlge);
+  try {
+    solver.init(start.data());
+    solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-10, Spectra::SortRule::SmallestAlge);
+  } catch (const std::exception& error) {
+    throw Error("Lanczos' method fails: " + std::string(error.what()), "modes of a sheet");
+  }
   if (solver.info() != Spectra::CompInfo::Successful)
     throw Error("Lanczos' method does not converge", "modes of a sheet");
   return {solver.eigenvalues(), solver.eigenvectors()};

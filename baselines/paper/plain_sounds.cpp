@@ -28,7 +28,8 @@ class ClickVoices final : public SoundVoices {
  public:
   explicit ClickVoices(const ClickOptions& options) : bank_(click_bank(options.length)) {}
 
-  [[nodiscard]] EventVoice voice(const SoundEvent& event, RandomStream /*random*/) const override {
+  [[nodiscard]] EventVoice voice(const SoundEvent& event, const ResonatorShape& /*shape*/,
+                                 RandomStream /*random*/) const override {
     SoundEvent click = event;
     click.kind = SoundKind::crac;
     return {voice_of(click, bank_, 0, {}), 0};
@@ -46,7 +47,12 @@ class RandomVoices final : public SoundVoices {
     snaps_.insert(snaps_.end(), cracs.begin(), cracs.end());
   }
 
-  [[nodiscard]] EventVoice voice(const SoundEvent& event, RandomStream random) const override {
+  [[nodiscard]] std::map<std::string, double> diagnostics() const override {
+    return {{"bank_checksum", recorded_checksum(bank_)}};
+  }
+
+  [[nodiscard]] EventVoice voice(const SoundEvent& event, const ResonatorShape& /*shape*/,
+                                 RandomStream random) const override {
     const bool snap = event.kind == SoundKind::flap || event.kind == SoundKind::crac;
     const std::vector<int> sounds = snap ? snaps_ : bank_.of(event.kind);
     if (sounds.empty()) return {};

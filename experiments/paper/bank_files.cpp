@@ -59,6 +59,7 @@ BankSound descriptors_of(const CsvTable& table, const CsvTable::Row& row) {
   const bool snap = sound.kind == SoundKind::flap || sound.kind == SoundKind::crac;
   number("l_r", sound.ruling_length, snap);
   number("l_c", sound.free_border, snap);
+  number("width", sound.width, false);
   number("speed", sound.speed, sound.kind == SoundKind::friction);
   number("energy", sound.energy, false);
   if (!(sound.energy > 0)) throw Error("energy is 0", row.place, "more than 0");
@@ -87,7 +88,7 @@ SoundBank read_bank(const fs::path& folder, std::vector<std::string>& notes,
                     std::vector<fs::path>& inputs) {
   if (!fs::is_directory(folder)) throw Error("is no folder", folder.string());
   const fs::path list = folder / kList;
-  const CsvTable table(list, {"file", "kind"}, {"l_r", "l_c", "speed", "energy", "peak"});
+  const CsvTable table(list, {"file", "kind"}, {"l_r", "l_c", "width", "speed", "energy", "peak"});
   inputs.push_back(list);
   SoundBank bank;
   for (const CsvTable::Row& row : table.rows()) {
@@ -106,15 +107,15 @@ SoundBank read_bank(const fs::path& folder, std::vector<std::string>& notes,
 
 void write_bank(const SoundBank& bank, const fs::path& folder) {
   make_folders(folder);
-  std::string list = "file,kind,l_r,l_c,speed,energy,peak\n";
+  std::string list = "file,kind,l_r,l_c,width,speed,energy,peak\n";
   for (std::size_t i = 0; i < bank.sounds.size(); ++i) {
     const BankSound& sound = bank.sounds[i];
     const double peak = std::max(1e-30f, sound.samples.cwiseAbs().maxCoeff());
     const std::string kind(kSoundKinds[static_cast<std::size_t>(sound.kind)]);
     char name[40], numbers[200];
     std::snprintf(name, sizeof name, "%04zu-%s.wav", i, kind.c_str());
-    std::snprintf(numbers, sizeof numbers, ",%.9g,%.9g,%.9g,%.9g,%.9g\n", sound.ruling_length,
-                  sound.free_border, sound.speed, sound.energy, peak);
+    std::snprintf(numbers, sizeof numbers, ",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n",
+                  sound.ruling_length, sound.free_border, sound.width, sound.speed, sound.energy, peak);
     Sound file{bank.sample_rate, sound.samples.cast<double>() / peak};
     write_file_atomically(folder / name, wav_bytes(file));
     list += std::string(name) + "," + kind + numbers;

@@ -9,7 +9,7 @@
 namespace geoprior::paper {
 
 /// Reads a bank: "bank.csv" has a row a sound, with the columns file, kind (flap, crac, friction,
-/// tear) and, if need be, l_r, l_c (m), speed (m/s; of friction), energy (J; of the event that is
+/// tear) and, if need be, l_r, l_c, width (m; of a panel, across its rulings), speed (m/s; of friction), energy (J; of the event that is
 /// as loud as the sound at 1 m; default 1e-6) and peak (Pa; pressure of the full scale; default 1).
 /// Files of several channels are averaged, those of another sample rate than the first's resampled.
 ///

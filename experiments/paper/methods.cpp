@@ -1,6 +1,8 @@
 #include "baselines/paper/adaptive.h"
 #include "baselines/paper/dense.h"
+#include "baselines/paper/modal_sound.h"
 #include "baselines/paper/plain_sounds.h"
+#include "experiments/paper/bank_cache.h"
 #include "experiments/paper/scene.h"
 #include "experiments/paper/topic.h"
 #include "solvers/paper/hybrid.h"
@@ -16,7 +18,8 @@ std::vector<std::byte> encode(const Eigen::MatrixXd& samples, int sample_rate) {
 
 /// The user's, or one that the options generate.
 SoundBank bank_of(const PaperScene& scene, const BankOptions& options, std::uint64_t seed) {
-  return scene.bank ? *scene.bank : generate_bank(scene.sheet.material, options, seed);
+  if (scene.bank) return *scene.bank;
+  return cached_bank(scene.sheet.material, options, seed, bank_folder());
 }
 
 }  // namespace
@@ -67,6 +70,14 @@ std::vector<MethodEntry> methods() {
                 scene.sheet, animation, options.stage,
                 random_voices(bank_of(scene, options.bank, context.seed()), scene.sheet.material),
                 encode);
+          }),
+      method_entry<S, ModalSoundOptions>(
+          "modal", true, "picked events, sounded by the eigenmodes of their resonators",
+          "docs/methods/paper-sound.md; Fahy and Gardonio 2007",
+          [](const S& scene, const ModalSoundOptions& options, RunContext&) {
+            const auto& animation = scene.require_animation("the method 'modal'");
+            return make_sound_process(scene.sheet, animation, options.stage,
+                                      modal_voices(options, scene.sheet.material), encode);
           }),
   };
 }
@@ -126,6 +137,7 @@ std::vector<DiagnosticEntry> diagnostics() {
       {"strain_after", "1", "the same after it"},
       // Recorded by methods of sound.
       {"events", "1", "events since the start"},
+      {"bank_checksum", "1", "lowest 48 bits of the FNV-1a hash of the bank that was played"},
       {"true_peak", "dBFS", "of the whole sound; absent when it is silent"},
       {"gain_lowered", "dB", "by which the whole was made quieter to stay under highest_peak"},
   };

@@ -231,7 +231,9 @@ MetricGroup sector_group() {
 MetricGroup distance_group() {
   return reference_metrics<PaperScene>(
              {"surface"},
-             [](const PaperScene& scene, const Frame& frame, const Frame& reference) {
+             [](const PaperScene& scene, const Frame& frame,
+                const Frame& reference) -> std::optional<double> {
+               if (scene.animation) return std::nullopt;
                return hausdorff_ratio(sheet_frame(scene, frame), sheet_frame(scene, reference));
              })
       .row("hausdorff_ratio", "1",
@@ -290,7 +292,9 @@ MetricGroup tearing_force_group() {
 MetricGroup tear_path_group() {
   return reference_metrics<PaperScene>(
              {"surface", "tears"},
-             [](const PaperScene& scene, const Frame& frame, const Frame& reference) {
+             [](const PaperScene& scene, const Frame& frame,
+                const Frame& reference) -> std::optional<double> {
+               if (scene.animation) return std::nullopt;
                return tear_path_distance(sheet_frame(scene, frame), sheet_frame(scene, reference));
              })
       .row("tear_path_distance", "m",
@@ -319,6 +323,9 @@ MetricGroup sound_group() {
              if (snaps == 0) return std::nullopt;
              return cracs / snaps;
            })
+      .row("sound_latency", "s",
+           "from a flap or crac to the frame in which it is known, median: what a listener waits",
+           kLow, kSmooth, [](M m) { return m.latency; })
       .row("sound_peak", "dBFS",
            "true peak of the mixed sound, 8 times oversampled; absent for silence", kLow, {0.01, 0},
            [](M m) { return m.peak; })
@@ -340,6 +347,22 @@ MetricGroup sound_group() {
              {1, 0.02}, [name](M m) { return m.of(name).centroid; });
   }
   return rows;
+}
+
+MetricGroup voice_distance_group() {
+  using M = const VoiceDistance&;
+  return sequence_metrics<PaperScene>(voice_distance)
+      .row("voice_distance", "dB",
+           "log-spectral distance per third octave of a picked event's sound from the reference "
+           "variant's, from 100 Hz to where that one is resolved, 40 dB of range, gain left free: "
+           "median over the events",
+           kLow, {0.02, 1e-3}, [](M m) { return m.median; })
+      .row("voice_distance_low", "dB", "lower end of its 95 % bootstrap interval", kNone,
+           {0.1, 1e-2}, [](M m) { return m.low; })
+      .row("voice_distance_high", "dB", "upper end of it", kNone, {0.1, 1e-2},
+           [](M m) { return m.high; })
+      .row("voices_compared", "1", "events whose sounds were compared", kNone, kCount,
+           [](M m) { return static_cast<double>(m.count); });
 }
 
 MetricGroup energy_exponent_group() {
@@ -377,6 +400,7 @@ std::vector<MetricGroup> metrics() {
           tearing_force_group(),
           tear_path_group(),
           sound_group(),
+          voice_distance_group(),
           energy_exponent_group()};
 }
 

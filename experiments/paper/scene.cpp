@@ -10,6 +10,7 @@
 #include "experiments/paper/fast_handles.h"
 #include "experiments/paper/pulled_apart.h"
 #include "experiments/paper/sheet_files.h"
+#include "experiments/paper/swatches.h"
 #include "models/paper/sheet_valid.h"
 #include "testbed/home.h"
 #include "testbed/keyframes.h"
@@ -179,9 +180,15 @@ std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
   scene->sheet = make_sheet(options, pattern, seed);
   scene->fold_radius = options.fold_radius;
   require_valid(scene->sheet, "scene");
+  if (options.animation && options.swatches) {
+    throw Error("is given beside an animation", "scene.swatches", "one of both");
+  }
+  if (options.swatches) scene->animation = make_swatches(*options.swatches, scene->sheet);
   if (options.animation) {
     scene->animation = open_sheet_files(*options.animation, folder, scene->sheet.pattern,
                                         scene->load_warnings, scene->input_files);
+  }
+  if (scene->animation) {
     if (options.bank) {
       const fs::path bank = find_file(*options.bank, folder, "data", "scene.bank");
       scene->bank =

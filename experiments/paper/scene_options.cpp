@@ -207,6 +207,9 @@ void describe(OptionVisitor& v, PaperSceneOptions& options) {
   describe_group(v, "animation", options.animation,
                  {.doc = "frames of a sheet with coordinates of the pattern, for methods of sound; "
                          "duration and handles are then those of the animation, not simulated"});
+  describe_group(v, "swatches", options.swatches,
+                 {.doc = "instead of an animation: rectangles of paper of given lengths that snap "
+                         "one after the other; pattern and handles are then theirs"});
   v.value("bank", options.bank,
           {.doc = "folder with a bank of sounds, bank.csv and WAV files (docs/file-formats.md); "
                   "absent: methods of sound generate theirs"});

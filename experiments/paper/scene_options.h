@@ -7,6 +7,7 @@
 
 #include "core/options.h"
 #include "experiments/paper/svg_pattern.h"
+#include "experiments/paper/swatches.h"
 #include "models/paper/sheet.h"
 #include "testbed/formats/sequence_files.h"
 #include "testbed/keyframes.h"
@@ -126,6 +127,7 @@ struct PaperSceneOptions {
   double handle_step = 1e-4;
   double fold_radius = 0.03;
   std::optional<SequenceOptions> animation;  ///< what methods of sound listen to
+  std::optional<SwatchOptions> swatches;     ///< or these
   std::optional<std::string> bank;           ///< folder of sounds for them
 };
 void describe(OptionVisitor& v, PaperMaterial& options);

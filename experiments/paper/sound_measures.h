@@ -22,6 +22,7 @@ struct SoundMeasures {
   std::map<std::string, Kind> kinds;  ///< "flap", "crac", "friction", "tear"
   double rate = 0;                    ///< of all events (1/s)
   std::optional<double> fano;         ///< factor of their counts in windows of 0.1 s
+  std::optional<double> latency;      ///< median of flaps and cracs (s)
   std::optional<double> peak;         ///< true peak of the mix (dBFS); absent for silence
   std::optional<double> centroid;     ///< of the whole mix (Hz)
 
@@ -32,6 +33,17 @@ struct SoundMeasures {
   [[nodiscard]] Kind all() const;
 };
 std::optional<SoundMeasures> sound_measures(const PaperScene& scene, const FrameSequence& frames);
+
+/// How far the sounds of picked events ("voices.wav") are from those of the reference variant: the
+/// log-spectral distance per third octave (metrics/sound_spectrum.h) from 100 Hz up to where the
+/// reference knows its modes, of what is less than 40 dB below the loudest band. Absent where one
+/// of both has no such file.
+struct VoiceDistance {
+  double median = 0, low = 0, high = 0;  ///< over the events, with its 95 % bootstrap interval (dB)
+  int count = 0;                         ///< events that were compared
+};
+/// @throws Error  when the two have picked other events
+std::optional<VoiceDistance> voice_distance(const PaperScene& scene, const FrameSequence& frames);
 
 /// Power law of the energies of flaps and cracs (metrics/power_law.h). Absent where no animation
 /// was listened to.

@@ -1,5 +1,6 @@
 #include "experiments/paper/topic.h"
 
+#include "experiments/paper/bank_cache.h"
 #include "experiments/paper/scene.h"
 
 namespace geoprior::paper {
@@ -32,12 +33,13 @@ Topic make_topic() {
   };
   topic.last_parameter = [](const OptionSet& set) -> std::optional<LastParameter> {
     const auto& scene = dynamic_cast<const TypedOptions<PaperSceneOptions>&>(set).options;
-    if (scene.animation) return std::nullopt;  // has its own
+    if (scene.animation || scene.swatches) return std::nullopt;  // have their own
     return LastParameter{scene.duration, "s"};
   };
   topic.methods = methods();
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
+  topic.commands = {bank_command()};
   topic.view = paper_view();
   return topic;
 }

@@ -3,27 +3,21 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <string_view>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "models/paper/sound_air.h"
+#include "models/paper/sound_panel.h"
+#include "models/paper/sound_ring.h"
 
 namespace geoprior::paper {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kLeak = 5e-3;     // m: border that a resonator without free border radiates by
-constexpr double kSilence = 1e-3;  // of its loudest moment, at which a mode is over
-
-/// A damped sine.
-struct Mode {
-  double frequency = 0;  ///< Hz
-  double amplitude = 0;
-  double phase = 0;
-};
 
 double uniform(RandomStream& random, double low, double high) {
   return low + (high - low) * random.uniform();
@@ -39,132 +33,80 @@ std::vector<double> ratios(double low, double high, int count) {
   return all;
 }
 
-/// Magnitude of the spectrum of a raised cosine of length tau and area 1: 1 at f = 0.
-double pulse_spectrum(double f, double tau) {
-  const double x = f * tau;
-  if (std::abs(x - 1) < 1e-6) return 0.5;
-  const double sinc = x < 1e-9 ? 1 : std::sin(kPi * x) / (kPi * x);
-  return std::abs(sinc / (1 - x * x));
+/// Panels that the descriptors may belong to: they do not say how it is held.
+std::vector<SoundPanel> panels_of(double l_r, double l_c, const BankOptions& options) {
+  using enum BeamEnds;
+  const auto panel = [&](double width, BeamEnds along, BeamEnds across) {
+    return SoundPanel{l_r, std::max(width, options.least_width), along, across};
+  };
+  if (l_c < options.least_ruling / 2) {
+    // Creases all around.
+    return {panel(l_r / 1.5, clamped_clamped, clamped_clamped),
+            panel(1.5 * l_r, clamped_clamped, clamped_clamped)};
+  }
+  constexpr double kMargin = 1.2;  // below, the width would be next to nothing
+  // Between two creases, rulings that end at free borders on both sides, or on one.
+  std::vector<SoundPanel> all{panel(l_c / 2, free_free, clamped_clamped),
+                              panel(l_c, clamped_free, clamped_clamped)};
+  // It hangs on one crease along a ruling, or on none.
+  if (l_c > kMargin * l_r) all.push_back(panel((l_c - l_r) / 2, free_free, clamped_free));
+  if (l_c > 2 * kMargin * l_r) all.push_back(panel(l_c / 2 - l_r, free_free, free_free));
+  return all;
 }
 
-/// Frequencies of the supported plate, ascending in m, n; at most `most`, drawn evenly.
-std::vector<double> plate_frequencies(double l, double w, double stiffness, double highest,
-                                      int most, RandomStream& random) {
-  std::vector<double> all;
-  const double c = kPi / 2 * stiffness;
-  for (int m = 1; c * m * m / (l * l) <= highest; ++m) {
-    for (int n = 1;; ++n) {
-      const double f = c * (m * m / (l * l) + n * n / (w * w));
-      if (f > highest) break;
-      all.push_back(f);
-    }
-  }
-  if (all.empty()) all.push_back(highest);  // a facet too small to be heard but as a click
-  // Selection sampling (Knuth, algorithm S): order is kept.
-  std::vector<double> drawn;
-  std::size_t left = std::min(all.size(), static_cast<std::size_t>(most));
-  for (std::size_t i = 0; i < all.size() && left > 0; ++i) {
-    if (random.uniform() * static_cast<double>(all.size() - i) >= static_cast<double>(left))
-      continue;
-    drawn.push_back(all[i]);
-    --left;
-  }
-  return drawn;
+/// One of them, another one for each variant; a half or more of it flips in either direction.
+SoundPanel panel_of(double l_r, double l_c, int variant, const BankOptions& options,
+                    RandomStream& random) {
+  const std::vector<SoundPanel> all = panels_of(l_r, l_c, options);
+  SoundPanel panel = all[static_cast<std::size_t>(variant) % all.size()];
+  const auto flips = [&](double& from, double& to) {
+    const double share = uniform(random, 0.5, 1);
+    from = (1 - share) * random.uniform();
+    to = from + share;
+  };
+  flips(panel.along_from, panel.along_to);
+  flips(panel.across_from, panel.across_to);
+  return panel;
 }
 
-/// Adds a damped sine from a sample on.
-void ring(const Mode& mode, double eta, int rate, Eigen::Index start, Eigen::VectorXd& out) {
-  const double decay = kPi * eta * mode.frequency / rate;
-  const auto length = static_cast<Eigen::Index>(-std::log(kSilence) / decay) + 1;
-  std::complex<double> z = std::polar(mode.amplitude, mode.phase);
-  const std::complex<double> turn = std::polar(std::exp(-decay), 2 * kPi * mode.frequency / rate);
-  const Eigen::Index end = std::min(out.size(), start + length);
-  for (Eigen::Index i = start; i < end; ++i) {
-    out[i] += z.imag();
-    z *= turn;
+/// Adds a snap of a panel, as long as it is heard. Loudness is decided afterwards.
+void add_snap(const SoundPanel& panel, double tau, double gain, double start,
+              const BankOptions& options, const PaperMaterial& material, int rate,
+              RandomStream& random, Eigen::VectorXd& out) {
+  const std::vector<PanelMode> modes =
+      panel_modes(panel, material, tau, options.highest, options.most_modes);
+  double energy = 0;
+  for (const PanelMode& mode : modes) energy += mode.energy;
+  if (!(energy > 0)) return;
+  // Modes below the lowest that is heard are there, and are over when it is.
+  constexpr double kLongest = 0.6, kHeard = 40;  // s, Hz
+  double lowest = options.highest;
+  for (const PanelMode& mode : modes) lowest = std::min(lowest, mode.frequency);
+  const double length =
+      std::min(kLongest, ringing_time(std::max(lowest, kHeard), options.damping)) + tau + 0.02;
+  Eigen::VectorXd sound = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(length * rate));
+  for (const PanelMode& mode : modes) {
+    add_ringing({mode.frequency, gain * mode.pressure / std::sqrt(energy),
+                 uniform(random, 0, 2 * kPi)},
+                options.damping, rate, 0, sound);
   }
-}
-
-/// A raised cosine at the start: the sound sets in as long as the snap takes.
-void fade_in(Eigen::VectorXd& out, Eigen::Index start, double seconds, int rate) {
-  const auto n = static_cast<Eigen::Index>(seconds * rate);
-  for (Eigen::Index i = 0; i < n && start + i < out.size(); ++i) {
-    out[start + i] *=
-        (1 - std::cos(kPi * (static_cast<double>(i) + 0.5) / static_cast<double>(n))) / 2;
-  }
-}
-
-/// Of a mode's pressure, relative: a plate far below its coincidence frequency radiates at its
-/// edges as f^(1/2) in power; where it is smaller than half a wave of sound, both of its sides
-/// cancel each other, and it is a dipole.
-double radiated_amplitude(double f, double size) {
-  constexpr double kSoundSpeed = 343;  // m/s
-  const double waves = 2 * size * f / kSoundSpeed;
-  return std::pow(f / 1000, 0.25) * waves * waves / (1 + waves * waves);
-}
-
-/// A raised cosine at the end: nothing breaks off.
-void fade_out(Eigen::VectorXd& out, int rate) {
-  constexpr double kFade = 0.02;  // s
-  const Eigen::Index n = std::min(out.size(), static_cast<Eigen::Index>(kFade * rate));
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double t = (static_cast<double>(i) + 0.5) / static_cast<double>(n);
-    out[out.size() - 1 - i] *= (1 - std::cos(kPi * t)) / 2;
-  }
-}
-
-/// One snap of a plate, of the energy 1.
-struct Snap {
-  double ruling_length, border, tau;
-};
-
-void add_snap(const Snap& snap, double energy, double start, const BankOptions& options,
-              double stiffness, int rate, RandomStream& random, Eigen::VectorXd& out) {
-  const double width = std::max(snap.border, options.least_ruling);
-  const std::vector<double> frequencies = plate_frequencies(
-      snap.ruling_length, width, stiffness, options.highest, options.most_modes, random);
-  std::vector<Mode> modes;
-  double power = 0;
-  for (const double f : frequencies) {
-    const double excited = pulse_spectrum(f, snap.tau);
-    // Equal shares of what the pulse has at f; a mode's energy is its amplitude squared.
-    power += excited * excited;
-    modes.push_back({f, excited * radiated_amplitude(f, std::max(snap.ruling_length, width)),
-                     uniform(random, 0, 2 * kPi)});
-  }
-  Eigen::VectorXd sound = Eigen::VectorXd::Zero(out.size());
+  fade_in(sound, 0, tau, rate);
+  fade_out(sound, rate);
   const auto first = static_cast<Eigen::Index>(start * rate);
-  const double gain = std::sqrt(energy / std::max(power, 1e-12) * (snap.border + kLeak));
-  for (Mode& mode : modes) {
-    mode.amplitude *= gain;
-    ring(mode, options.damping, rate, first, sound);
+  if (out.size() < first + sound.size()) {
+    out.conservativeResizeLike(Eigen::VectorXd::Zero(first + sound.size()));
   }
-  fade_in(sound, first, snap.tau, rate);
-  out += sound;
+  out.segment(first, sound.size()) += sound;
 }
 
-/// Length of a sound of the plate's lowest mode, until it is silent (s).
-double ring_time(double ruling_length, double border, double stiffness,
-                 const BankOptions& options) {
-  const double width = std::max(border, options.least_ruling);
-  const double lowest =
-      kPi / 2 * stiffness * (1 / (ruling_length * ruling_length) + 1 / (width * width));
-  constexpr double kLongest = 0.6;  // s: lower modes than 120 Hz are not heard
-  return std::min(kLongest, -std::log(kSilence) / (kPi * options.damping * lowest)) + 0.01;
-}
-
-Eigen::VectorXd flap(double ruling_length, double border, const BankOptions& options,
-                     double stiffness, int rate, RandomStream& random) {
-  const double time = ring_time(ruling_length, border, stiffness, options);
-  constexpr double kSpread = 0.06;  // s: over which crackles follow the snap
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>((time + kSpread) * rate));
-  add_snap({ruling_length, border, uniform(random, 1e-3, 3e-3)}, 0.7, 0, options, stiffness, rate,
-           random, out);
-  const int crackles = 3 + static_cast<int>(random.below(6));
+/// Snaps of facets that follow a flap, with energies p(E) ~ E^-1.45 over three decades.
+void add_crackles(const BankOptions& options, const PaperMaterial& material, int rate,
+                  RandomStream& random, Eigen::VectorXd& out) {
+  constexpr double kSpread = 0.06;  // s: over which they follow it
+  const int count = 3 + static_cast<int>(random.below(6));
   std::vector<double> energy;
   double sum = 0;
-  for (int i = 0; i < crackles; ++i) {
-    // p(E) ~ E^-1.45 over three decades.
+  for (int i = 0; i < count; ++i) {
     const double u = random.uniform(), a = -0.45, low = 1, high = 1000;
     energy.push_back(
         std::pow(std::pow(low, a) + u * (std::pow(high, a) - std::pow(low, a)), 1 / a));
@@ -172,21 +114,34 @@ Eigen::VectorXd flap(double ruling_length, double border, const BankOptions& opt
   }
   for (const double e : energy) {
     const double size = uniform(random, 5e-3, 20e-3);
-    add_snap({size, std::min(border, size), uniform(random, 5e-5, 2e-4)}, 0.3 * e / sum,
-             kSpread * random.uniform(), options, stiffness, rate, random, out);
+    const SoundPanel facet = panel_of(size, 0, 0, options, random);
+    add_snap(facet, uniform(random, 5e-5, 2e-4), std::sqrt(options.crackles * e / sum),
+             kSpread * random.uniform(), options, material, rate, random, out);
   }
-  fade_out(out, rate);
+}
+
+/// @return  the sound; `width` gets that of its panel
+Eigen::VectorXd flap(const BankSound& sound, int variant, const BankOptions& options,
+                     const PaperMaterial& material, int rate, RandomStream& random,
+                     double& width) {
+  const SoundPanel panel =
+      panel_of(sound.ruling_length, sound.free_border, variant, options, random);
+  width = panel.width;
+  Eigen::VectorXd out;
+  add_snap(panel, uniform(random, 1e-3, 3e-3), std::sqrt(1 - options.crackles), 0, options,
+           material, rate, random, out);
+  if (options.crackles > 0) add_crackles(options, material, rate, random, out);
   return out;
 }
 
-Eigen::VectorXd crac(double ruling_length, double border, const BankOptions& options,
-                     double stiffness, int rate, RandomStream& random) {
-  // A crumpled region rings in facets no longer than its blocked border lets them.
-  const double size = std::min(ruling_length, 0.02);
-  const double time = ring_time(size, std::min(border, size), stiffness, options);
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(time * rate));
-  add_snap({size, std::min(border, size), uniform(random, 5e-5, 2e-4)}, 1, 0, options, stiffness,
-           rate, random, out);
+Eigen::VectorXd crac(const BankSound& sound, int variant, const BankOptions& options,
+                     const PaperMaterial& material, int rate, RandomStream& random,
+                     double& width) {
+  const SoundPanel panel =
+      panel_of(sound.ruling_length, sound.free_border, variant, options, random);
+  width = panel.width;
+  Eigen::VectorXd out;
+  add_snap(panel, uniform(random, 5e-5, 2e-4), 1, 0, options, material, rate, random, out);
   return out;
 }
 
@@ -220,14 +175,16 @@ Eigen::VectorXd friction(double speed, const BankOptions& options, int rate, Ran
   return out / std::sqrt(out.squaredNorm() / static_cast<double>(n));
 }
 
-/// A few fibres that break.
-Eigen::VectorXd tear(const BankOptions& options, double stiffness, int rate, RandomStream& random) {
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(0.03 * rate));
+/// A few fibres that break, each a facet of some mm.
+Eigen::VectorXd tear(const BankOptions& options, const PaperMaterial& material, int rate,
+                     RandomStream& random) {
+  Eigen::VectorXd out;
   const int fibres = 2 + static_cast<int>(random.below(5));
   for (int i = 0; i < fibres; ++i) {
     const double size = uniform(random, 3e-3, 8e-3);
-    add_snap({size, size, uniform(random, 3e-5, 1e-4)}, 1.0 / fibres, 8e-3 * random.uniform(),
-             options, stiffness, rate, random, out);
+    const SoundPanel facet = panel_of(size, 2 * size, 0, options, random);
+    add_snap(facet, uniform(random, 3e-5, 1e-4), 1 / std::sqrt(fibres), 8e-3 * random.uniform(),
+             options, material, rate, random, out);
   }
   return out;
 }
@@ -235,7 +192,7 @@ Eigen::VectorXd tear(const BankOptions& options, double stiffness, int rate, Ran
 }  // namespace
 
 double pressure_energy(double energy, double free_border) {
-  constexpr double kImpedance = 413;       // of air at 20 degrees, rho c (Pa s/m)
+  constexpr double kImpedance = kAirDensity * kSoundSpeed;  // Pa s/m
   constexpr double kRadiatedShare = 1e-4;  // by a free border of kBorder
   constexpr double kBorder = 0.1;          // m
   const double radiated = kRadiatedShare * (free_border + kLeak) / kBorder * energy;
@@ -267,6 +224,12 @@ void describe(OptionVisitor& v, BankOptions& o) {
           {.doc = "of friction", .unit = "m/s", .min = 1e-6, .max = 100});
   v.value("tears", o.tears, {.doc = "sounds of a step of a tear", .min = 1, .max = 1024});
   v.value("damping", o.damping, {.doc = "loss factor eta of paper", .min = 1e-4, .max = 1});
+  v.value("least_width", o.least_width,
+          {.doc = "of a panel across its rulings", .unit = "m", .min = 1e-4, .max = 1});
+  v.value("crackles", o.crackles,
+          {.doc = "share of a flap's energy in snaps of small facets that follow it",
+           .min = 0,
+           .max = 0.99});
   v.value("highest", o.highest,
           {.doc = "frequency of a mode", .unit = "Hz", .min = 100, .max = 20000});
   v.value("most_modes", o.most_modes, {.doc = "of a sound", .min = 1, .max = 100000});
@@ -275,7 +238,6 @@ void describe(OptionVisitor& v, BankOptions& o) {
 SoundBank generate_bank(const PaperMaterial& material, const BankOptions& options,
                         std::uint64_t seed) {
   SoundBank bank;
-  const double stiffness = std::sqrt(material.bending_stiffness() / material.area_density);
   const std::vector<double> rulings =
       ratios(options.least_ruling, options.most_ruling, options.sizes);
   std::vector<double> borders{0};
@@ -303,24 +265,26 @@ SoundBank generate_bank(const PaperMaterial& material, const BankOptions& option
       BankSound& sound = bank.sounds[i];
       RandomStream random(seed, "paper sound bank " + std::to_string(i));
       const int rate = bank.sample_rate;
-      const double l_r = sound.ruling_length, l_c = sound.free_border;
+      // Neighbouring sizes have other panels: i counts variants, kinds and sizes.
+      const int variant = static_cast<int>(i) % options.variants +
+                          static_cast<int>(i) / (2 * options.variants) * options.variants;
       Eigen::VectorXd samples;
       switch (sound.kind) {
         case SoundKind::flap:
-          samples = flap(l_r, l_c, options, stiffness, rate, random);
+          samples = flap(sound, variant, options, material, rate, random, sound.width);
           break;
         case SoundKind::crac:
-          samples = crac(l_r, l_c, options, stiffness, rate, random);
+          samples = crac(sound, variant, options, material, rate, random, sound.width);
           break;
         case SoundKind::friction:
           samples = friction(sound.speed, options, rate, random);
           break;
         case SoundKind::tear:
-          samples = tear(options, stiffness, rate, random);
+          samples = tear(options, material, rate, random);
           break;
       }
       if (sound.kind != SoundKind::friction) {
-        const double loud = pressure_energy(sound.energy, l_c) * rate;
+        const double loud = pressure_energy(sound.energy, sound.free_border) * rate;
         samples *= std::sqrt(loud / std::max(samples.squaredNorm(), 1e-300));
       }
       sound.samples = samples.cast<float>();
@@ -342,12 +306,17 @@ std::uint64_t checksum(const SoundBank& bank) {
   add(static_cast<std::uint32_t>(bank.sample_rate));
   for (const BankSound& sound : bank.sounds) {
     add(static_cast<std::uint32_t>(sound.kind));
-    for (const double x : {sound.ruling_length, sound.free_border, sound.speed, sound.energy}) {
+    for (const double x : {sound.ruling_length, sound.free_border, sound.width, sound.speed,
+                           sound.energy}) {
       add_number(x);
     }
     for (const float x : sound.samples) add(std::bit_cast<std::uint32_t>(x));
   }
   return hash;
+}
+
+double recorded_checksum(const SoundBank& bank) {
+  return static_cast<double>(checksum(bank) & ((std::uint64_t{1} << 48) - 1));
 }
 
 void require_valid(const SoundBank& bank, const std::string& where) {

@@ -27,6 +27,7 @@ struct BankSound {
   SoundKind kind = SoundKind::flap;
   double ruling_length = 0;      ///< l_r (m); of friction and tears unused
   double free_border = 0;        ///< l_c (m)
+  double width = 0;              ///< across the rulings (m); 0: not known
   double speed = 0;              ///< of friction (m/s)
   double energy = 1e-6;          ///< J
   Eigen::VectorXf samples = {};  ///< mono; friction repeats without a seam
@@ -51,30 +52,31 @@ struct BankOptions {
   double least_speed = 0.01, most_speed = 2;      ///< m/s
   int tears = 16;
   double damping = 0.03;   ///< loss factor eta
-  double highest = 16000;  ///< Hz
-  int most_modes = 400;    ///< of a sound
+  double least_width = 3e-3;  ///< of a panel (m)
+  double crackles = 0;        ///< share of a flap's energy in snaps of facets that follow it
+  double highest = 16000;     ///< Hz
+  int most_modes = 150;       ///< of a sound, those of most energy
 };
 void describe(OptionVisitor& v, BankOptions& options);
 
 /// Synthesises a bank from the plate's equations: the same material, options and seed give the same
 /// samples at any number of threads.
 ///
-/// A resonator is a plate of l_r by w, w its free border, or at least the shortest ruling of the
-/// bank, simply supported where it meets the rest of the sheet:
-///
-///   f_mn = pi/2 sqrt(D/rho_s) ((m/l_r)^2 + (n/w)^2)          damped by exp(-pi eta f t)
-///
-/// up to `highest`, thinned at random to `most_modes`, with random phases. A mode is excited by the
-/// spectrum of a raised cosine as long as the snap, radiates as sqrt(l_c + leak) f^(1/4) (edges of
-/// a plate far below its coincidence frequency; leak: 5 mm, what a resonator without free border is
-/// heard by), and sums to the energy. A flap is a snap of 1 to 3 ms and a few crackles of
-/// it; a crac one of 0.05 to 0.2 ms. Friction is noise from 700 Hz to 6 kHz whose centroid rises
-/// with the speed, modulated by stick and slip; a step of a tear is the break of a few fibres.
+/// A resonator is a rectangle of l_r along its rulings and w across them (sound_panel.h), of which
+/// a half or more flips: its modes get their amplitudes from that and radiate as dipoles, with
+/// phases drawn at random, damped by exp(-pi eta f t). How l_c follows from w depends on what holds
+/// it, so that variants and neighbours differ: between two creases, rulings that end at free
+/// borders on both sides (l_c = 2 w) or on one (w); hanging on one crease (l_r + 2 w) or on none
+/// (2 l_r + 2 w); of creases all around w is two thirds of l_r or one and a half. A flap is a snap of 1 to 3 ms, a crac one of 0.05 to 0.2 ms. Friction is noise from
+/// 700 Hz to 6 kHz whose centroid rises with the speed, modulated by stick and slip; a step of a
+/// tear is the break of a few fibres.
 SoundBank generate_bank(const PaperMaterial& material, const BankOptions& options,
                         std::uint64_t seed);
 
 /// FNV-1a of kinds, descriptors and samples: names a bank in records.
 std::uint64_t checksum(const SoundBank& bank);
+/// Its lowest 48 bits, which a double holds exactly: what runs record.
+double recorded_checksum(const SoundBank& bank);
 
 /// @throws Error  at `where`: no sounds of bends or cracs, descriptors that are negative or not
 ///                finite, a sound without samples or with one that is not finite

@@ -1,6 +1,7 @@
 #include "models/paper/sound_detector.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace geoprior::paper {
@@ -30,14 +31,22 @@ SoundDetector::SoundDetector(const Sheet& sheet, const DetectionOptions& options
       flips_(sampler_.grid(), options.flips),
       slides_(sheet, sampler_.grid(), options.friction) {}
 
+bool SoundDetector::is_held(const Eigen::Vector2d& place) const {
+  return std::any_of(sheet_.handles.begin(), sheet_.handles.end(), [&](const Handle& handle) {
+    return handle.motion && handle.is_active(field_.time) &&
+           handle.distance(place) <= options_.spacing;
+  });
+}
+
 Resonator SoundDetector::resonator(const std::vector<int>& seeds) const {
-  const auto is_held = [&](const Eigen::Vector2d& place) {
-    return std::any_of(sheet_.handles.begin(), sheet_.handles.end(), [&](const Handle& handle) {
-      return handle.motion && handle.is_active(field_.time) &&
-             handle.distance(place) <= options_.spacing;
-    });
-  };
-  return find_resonator(grid(), field_, seeds, is_held, options_.resonator);
+  return find_resonator(
+      grid(), field_, seeds, [&](const Eigen::Vector2d& place) { return is_held(place); },
+      options_.resonator);
+}
+
+ResonatorShape SoundDetector::shape(const SoundEvent& event) const {
+  return resonator_shape(grid(), field_, event,
+                         [&](const Eigen::Vector2d& place) { return is_held(place); });
 }
 
 SoundEvent SoundDetector::snap(const FlipCluster& cluster) const {
@@ -58,7 +67,11 @@ SoundEvent SoundDetector::snap(const FlipCluster& cluster) const {
     mean += flip.speed;
     const double drop = flip.before * flip.before - flip.after * flip.after;
     event.energy += D / 2 * std::max(drop, 0.0) * cell;
+    // The curvature before has the other sign than the one after.
+    event.flips.push_back({flip.cell, flip.after + std::copysign(flip.before, flip.after)});
   }
+  std::sort(event.flips.begin(), event.flips.end(),
+            [](const FlippedCell& a, const FlippedCell& b) { return a.cell < b.cell; });
   const auto n = static_cast<double>(cluster.flips.size());
   event.position /= n;
   mean /= n;

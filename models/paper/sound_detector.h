@@ -9,6 +9,7 @@
 #include "models/paper/sound_flips.h"
 #include "models/paper/sound_friction.h"
 #include "models/paper/sound_resonator.h"
+#include "models/paper/sound_shape.h"
 
 namespace geoprior::paper {
 
@@ -45,6 +46,8 @@ class SoundDetector {
   [[nodiscard]] const SoundGrid& grid() const { return sampler_.grid(); }
   /// The last frame on the grid.
   [[nodiscard]] const SheetField& field() const { return field_; }
+  /// The resonator of an event of the last push, as it is in the last frame.
+  [[nodiscard]] ResonatorShape shape(const SoundEvent& event) const;
   /// From an event to when it is known, friction apart, beside a frame's interval (s).
   [[nodiscard]] double latency() const {
     return options_.flips.together + options_.flips.sudden / 2;
@@ -55,6 +58,7 @@ class SoundDetector {
   void load(StateReader& in, const SheetSnapshot& last);
 
  private:
+  [[nodiscard]] bool is_held(const Eigen::Vector2d& place) const;
   [[nodiscard]] Resonator resonator(const std::vector<int>& seeds) const;
   [[nodiscard]] SoundEvent snap(const FlipCluster& cluster) const;
   void add_snaps(const std::vector<FlipCluster>& clusters, std::vector<SoundEvent>& events) const;

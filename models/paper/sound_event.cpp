@@ -18,6 +18,7 @@ void save(const SoundEvent& event, StateWriter& out) {
   for (const double* x : numbers(event)) out.number(*x);
   out.items(event.sliding);
   out.items(event.cells);
+  out.items(event.flips);
 }
 
 SoundEvent load_sound_event(StateReader& in) {
@@ -26,6 +27,7 @@ SoundEvent load_sound_event(StateReader& in) {
   for (double* x : numbers(event)) *x = in.number<double>();
   in.items(event.sliding);
   in.items(event.cells);
+  in.items(event.flips);
   return event;
 }
 

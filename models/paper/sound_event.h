@@ -22,6 +22,12 @@ struct Sliding {
   double power = 0;  ///< of friction (W)
 };
 
+/// A cell whose curvature has changed its sign in an event.
+struct FlippedCell {
+  int cell = 0;
+  double change = 0;  ///< of the curvature, with its sign (1/m)
+};
+
 /// Something to be heard, and what it depends on.
 struct SoundEvent {
   SoundKind kind = SoundKind::flap;
@@ -36,7 +42,8 @@ struct SoundEvent {
   double flipped_area = 0;            ///< of what changed its sign (m^2)
   double blocked_share = 0;           ///< of the resonator's border
   std::vector<Sliding> sliding = {};  ///< of friction, in order of time
-  std::vector<int> cells = {};        ///< of the resonator, to be drawn
+  std::vector<int> cells = {};        ///< of the resonator, ascending
+  std::vector<FlippedCell> flips = {};  ///< in order of the cells
 };
 
 void save(const SoundEvent& event, StateWriter& out);

@@ -1,10 +1,10 @@
 #include "models/paper/sound_grid.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -69,6 +69,20 @@ struct SheetSampler::Cover {
 namespace {
 
 constexpr double kOnTriangle = -1e-9;  // barycentric
+
+/// The triangle at the centre of a cell, or the nearest one where the mesh cuts a corner of the
+/// pattern; none where the mesh leaves that part of the pattern out.
+PatternLocator::Place place_in_mesh(const SoundGrid& grid, const ShellMesh& mesh,
+                                    const PatternLocator& locator, int cell) {
+  constexpr double kBeside = 0.4;  // of a cell
+  const PatternLocator::Place at = locator.locate(grid.centre(cell));
+  Vector2d there(0, 0);
+  for (int k = 0; k < 3; ++k) {
+    there += at.weights[k] * mesh.pattern.row(mesh.triangles(at.triangle, k)).transpose();
+  }
+  if ((there - grid.centre(cell)).norm() > kBeside * grid.spacing) return {};
+  return at;
+}
 
 /// Which cells have a triangle at their centre, and which hold together over it.
 void join_cells(const SoundGrid& grid, const PatternLocator& locator,
@@ -139,12 +153,13 @@ bool same(const ShellMesh& a, const ShellMesh& b) {
          a.pattern == b.pattern && a.triangles == b.triangles;
 }
 
-/// Direction of the eigenvector whose eigenvalue is smaller in modulus.
+/// Direction of the eigenvector whose eigenvalue is smaller in modulus: mean - radius for a positive
+/// mean of both.
 Vector2d least_bent(const Eigen::RowVector3d& S) {
-  const Eigen::Matrix2d shape = (Eigen::Matrix2d() << S[0], S[1], S[1], S[2]).finished();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(shape);
-  const Vector2d value = solver.eigenvalues().cwiseAbs();
-  return solver.eigenvectors().col(value[0] <= value[1] ? 0 : 1);
+  const double mean = (S[0] + S[2]) / 2;
+  const double largest = std::atan2(2 * S[1], S[0] - S[2]) / 2;
+  const double angle = mean >= 0 ? largest + std::numbers::pi / 2 : largest;
+  return {std::cos(angle), std::sin(angle)};
 }
 
 }  // namespace
@@ -164,7 +179,7 @@ const SheetSampler::Cover& SheetSampler::cover_of(const ShellMesh& mesh) {
   cover->at.resize(static_cast<std::size_t>(grid_.count()));
   for (int c = 0; c < grid_.count(); ++c) {
     const auto i = static_cast<std::size_t>(c);
-    if (grid_.inside[i]) cover->at[i] = locator.locate(grid_.centre(c));
+    if (grid_.inside[i]) cover->at[i] = place_in_mesh(grid_, mesh, locator, c);
   }
   join_cells(grid_, locator, cover->at, cover->joined);
   cover->border = border_of(grid_, mesh, cover->at);

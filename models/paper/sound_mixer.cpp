@@ -7,13 +7,13 @@
 #include <string>
 
 #include "core/error.h"
+#include "models/paper/sound_air.h"
 
 namespace geoprior::paper {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSoundSpeed = 343;  // m/s, in air at 20 degrees
 constexpr double kNearest = 0.05;    // m
 
 Vector3d to_vector(const std::array<double, 3>& x) { return {x[0], x[1], x[2]}; }
@@ -77,6 +77,7 @@ double true_peak(const Eigen::Ref<const Eigen::VectorXd>& x) {
     return taps;
   }();
   const double sample_peak = x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0;
+  if (sample_peak == 0) return 0;
   double peak = sample_peak;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     // Where nothing near is loud, nothing between is louder than the loudest sample.
@@ -110,6 +111,17 @@ void describe(OptionVisitor& v, MixOptions& o) {
           {.doc = "pressure that the largest sample stands for", .unit = "Pa", .min = 1e-9});
   v.value("highest_peak", o.highest_peak,
           {.doc = "true peak that the result stays under", .unit = "dBFS", .min = -120, .max = 0});
+}
+
+Eigen::VectorXd heard_alone(const Voice& voice, int sample_rate) {
+  const auto n = static_cast<double>(voice.samples.size());
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(
+      static_cast<Eigen::Index>(std::ceil(n / voice.rate * sample_rate)));
+  Voice once = voice;
+  once.envelope.clear();
+  once.time = 0;
+  add(once, 0, voice.gain, sample_rate, out);
+  return out;
 }
 
 Mix mix(const std::vector<Voice>& voices, double duration, const MixOptions& options) {

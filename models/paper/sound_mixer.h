@@ -37,6 +37,9 @@ struct Voice {
   std::vector<Eigen::Vector2d> envelope = {};
 };
 
+/// The samples of a voice that sounds once, as they are 1 m away without delay, at another rate.
+Eigen::VectorXd heard_alone(const Voice& voice, int sample_rate);
+
 /// What a mix came to.
 struct Mix {
   Eigen::MatrixXd samples;  ///< one row a sample, one column a channel, full scale 1

@@ -1,6 +1,8 @@
 #include "models/paper/sound_process.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 #include <utility>
 
 #include "core/frame_loop.h"
@@ -11,7 +13,7 @@ namespace {
 using On = NamedArray::On;
 
 /// Events as points with what they depend on.
-Part events_part(const std::vector<SoundEvent>& events, const std::vector<int>& samples) {
+Part events_part(const std::vector<SoundEvent>& events, const std::vector<EventVoice>& heard) {
   Part part;
   part.kind = Part::Kind::points;
   const auto n = static_cast<Eigen::Index>(events.size());
@@ -21,7 +23,7 @@ Part events_part(const std::vector<SoundEvent>& events, const std::vector<int>& 
     const SoundEvent& e = events[static_cast<std::size_t>(i)];
     part.points.row(i) = e.position;
     value.row(i) << static_cast<double>(e.kind), e.time, e.energy, e.ruling_length, e.free_border,
-        e.area, samples[static_cast<std::size_t>(i)];
+        e.area, heard[static_cast<std::size_t>(i)].sample;
   }
   const std::array<std::pair<const char*, const char*>, 7> names{{{"kind", "1"},
                                                                   {"time", "s"},
@@ -85,7 +87,7 @@ Part resonators_part(const SoundGrid& grid, const SheetField& field,
   return part;
 }
 
-Event record_of(const SoundEvent& e, int sample) {
+Event record_of(const SoundEvent& e, double known, const EventVoice& heard) {
   Event event;
   event.time_s = e.time;
   event.kind = kSoundKinds[static_cast<std::size_t>(e.kind)];
@@ -98,9 +100,49 @@ Event record_of(const SoundEvent& e, int sample) {
                    {"flipped_area_m2", e.flipped_area},
                    {"curvature_per_m", e.curvature},
                    {"blocked_share", e.blocked_share},
-                   {"sample", sample}};
+                   {"latency_s", known - e.time},
+                   {"sample", heard.sample}};
+  event.numbers.insert(heard.numbers.begin(), heard.numbers.end());
   return event;
 }
+
+bool is_snap(const SoundEvent& event) {
+  return event.kind == SoundKind::flap || event.kind == SoundKind::crac;
+}
+
+/// Sounds of picked events, one after the other, each as loud as it can be.
+class VoiceFile {
+ public:
+  explicit VoiceFile(int sample_rate) : rate_(sample_rate) {}
+
+  /// @return  where it lies in the file, to be recorded with the event
+  std::map<std::string, double> add(const Voice& voice) {
+    constexpr double kPause = 0.1;  // s
+    Eigen::VectorXd samples = heard_alone(voice, rate_);
+    const double peak = samples.size() > 0 ? samples.cwiseAbs().maxCoeff() : 0;
+    constexpr double kPeak = 0.9;
+    if (peak > 0) samples *= kPeak / peak;
+    const double start = static_cast<double>(length_) / rate_;
+    const auto length = static_cast<double>(samples.size()) / rate_;
+    length_ += samples.size() + static_cast<Eigen::Index>(kPause * rate_);
+    all_.push_back(std::move(samples));
+    starts_.push_back(start);
+    return {{"voice_start_s", start}, {"voice_length_s", length}};
+  }
+  [[nodiscard]] Eigen::MatrixXd samples() const {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(length_, 1);
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      out.col(0).segment(std::lround(starts_[i] * rate_), all_[i].size()) = all_[i];
+    }
+    return out;
+  }
+
+ private:
+  int rate_;
+  Eigen::Index length_ = 0;
+  std::vector<double> starts_;
+  std::vector<Eigen::VectorXd> all_;
+};
 
 class SoundFrames final : public FrameModel {
  public:
@@ -111,30 +153,28 @@ class SoundFrames final : public FrameModel {
         voices_(voices),
         encode_(encode),
         seed_(seed),
-        detector_(sheet, stage.detection) {}
+        detector_(sheet, stage.detection),
+        alone_(stage.mix.sample_rate) {}
 
   [[nodiscard]] int frame_count() const override { return animation_.frame_count(); }
 
   void record(int number, FrameSink& sink, RunContext& context) override {
     SheetSnapshot snapshot = read(number, context);
     const bool last = number + 1 == frame_count();
-    std::vector<SoundEvent> events = detector_.push(snapshot, context);
-    if (last) {
-      for (SoundEvent& e : detector_.finish(context)) events.push_back(std::move(e));
-    }
-    std::vector<int> samples;
+    std::vector<SoundEvent> events;
+    const std::size_t first = events_.size();
     {
-      const Phase phase(context, "choose");
-      for (const SoundEvent& e : events) {
-        chosen_.push_back(choose(e, static_cast<int>(events_.size())));
-        samples.push_back(chosen_.back().sample);
-        events_.push_back(e);
-        events_.back().cells.clear();  // drawn in this frame, and not needed any more
+      const Phase phase(context, "sound");
+      events = detector_.push(snapshot, context);
+      if (last) {
+        for (SoundEvent& e : detector_.finish(context)) events.push_back(std::move(e));
       }
+      const Phase choosing(context, "choose");
+      for (const SoundEvent& e : events) add(e);
     }
     Frame frame;
     frame.parameter = snapshot.time;
-    frame.parts["events"] = events_part(events, samples);
+    frame.parts["events"] = events_part(events, {heard_.begin() + static_cast<std::ptrdiff_t>(first), heard_.end()});
     frame.parts["resonators"] = resonators_part(detector_.grid(), detector_.field(), events);
     if (stage_.surface) {
       Part& surface = frame.parts["surface"];
@@ -146,22 +186,29 @@ class SoundFrames final : public FrameModel {
     std::vector<std::byte> file;
     if (last) file = mixed(frame, context);
     sink.frame(std::move(frame));
-    for (std::size_t i = 0; i < events.size(); ++i) sink.event(record_of(events[i], samples[i]));
-    if (last) sink.artifact({"sound.wav", std::move(file)});
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      sink.event(record_of(events[i], snapshot.time, heard_[first + i]));
+    }
+    if (!last) return;
+    sink.artifact({"sound.wav", std::move(file)});
+    if (stage_.picked.most == 0) return;
+    sink.artifact({"voices.wav", encode_(alone_.samples(), stage_.mix.sample_rate)});
   }
 
   void save(StateWriter& out) const override {
     detector_.save(out);
     out.number(events_.size());
     for (const SoundEvent& e : events_) paper::save(e, out);
+    for (const ResonatorShape& shape : shapes_) paper::save(shape, out);
   }
 
   void load(StateReader& in, int next_frame) override {
     detector_.load(in, animation_.snapshot(next_frame - 1));
-    events_.resize(in.count());
-    for (SoundEvent& e : events_) e = load_sound_event(in);
-    for (std::size_t i = 0; i < events_.size(); ++i) {
-      chosen_.push_back(choose(events_[i], static_cast<int>(i)));
+    std::vector<SoundEvent> events(in.count());
+    for (SoundEvent& e : events) e = load_sound_event(in);
+    for (const SoundEvent& e : events) {
+      const bool shaped = picks(e) && voices_.needs_shapes();
+      add(e, shaped ? load_resonator_shape(in) : ResonatorShape{});
     }
   }
 
@@ -171,23 +218,45 @@ class SoundFrames final : public FrameModel {
     return animation_.snapshot(number);
   }
 
-  [[nodiscard]] EventVoice choose(const SoundEvent& event, int number) const {
-    return voices_.voice(event, {seed_, "paper sound of event " + std::to_string(number)});
+  /// Whether the next event is one of those that are heard alone.
+  [[nodiscard]] bool picks(const SoundEvent& event) const {
+    return is_snap(event) && snaps_ % stage_.picked.every == 0 &&
+           snaps_ / stage_.picked.every < stage_.picked.most;
+  }
+
+  void add(const SoundEvent& event) {
+    const bool shaped = picks(event) && voices_.needs_shapes();
+    add(event, shaped ? detector_.shape(event) : ResonatorShape{});
+  }
+
+  void add(const SoundEvent& event, ResonatorShape shape) {
+    const bool picked = picks(event);
+    if (is_snap(event)) ++snaps_;
+    const std::string stream = "paper sound of event " + std::to_string(events_.size());
+    heard_.push_back(voices_.voice(event, shape, {seed_, stream}));
+    if (picked) heard_.back().numbers.merge(alone_.add(heard_.back().voice));
+    if (picked && voices_.needs_shapes()) shapes_.push_back(std::move(shape));
+    events_.push_back(event);
+    // Drawn in this frame, and not needed any more.
+    events_.back().cells.clear();
+    events_.back().flips.clear();
   }
 
   [[nodiscard]] std::vector<std::byte> mixed(Frame& frame, RunContext& context) const {
     const double start = std::min(0.0, animation_.time(0));
     std::vector<Voice> voices;
-    for (const EventVoice& one : chosen_) {
+    for (const EventVoice& one : heard_) {
       voices.push_back(one.voice);
       voices.back().time -= start;
       for (Eigen::Vector2d& key : voices.back().envelope) key.x() -= start;
     }
     Mix result;
     {
-      const Phase phase(context, "mix");
+      const Phase phase(context, "sound");
+      const Phase mixing(context, "mix");
       result = mix(voices, frame.parameter - start + stage_.tail, stage_.mix);
     }
+    frame.diagnostics.merge(voices_.diagnostics());
     frame.diagnostics["gain_lowered"] = result.lowered;
     if (!events_.empty()) frame.diagnostics["true_peak"] = result.true_peak;
     const Phase phase(context, "encode");
@@ -201,14 +270,28 @@ class SoundFrames final : public FrameModel {
   std::uint64_t seed_;
   SoundDetector detector_;
   std::vector<SoundEvent> events_;
-  std::vector<EventVoice> chosen_;  ///< of each event
+  std::vector<EventVoice> heard_;       ///< of each event
+  std::vector<ResonatorShape> shapes_;  ///< of each picked event, where they are asked for
+  int snaps_ = 0;
+  VoiceFile alone_;
 };
 
 }  // namespace
 
+void describe(OptionVisitor& v, PickedOptions& o) {
+  v.value("most", o.most,
+          {.doc = "flaps and cracs whose sounds are also written alone, one after the other, to "
+                  "voices.wav",
+           .min = 0,
+           .max = 100000});
+  v.value("every", o.every,
+          {.doc = "the first of so many is picked, then the next", .min = 1, .max = 1000000});
+}
+
 void describe(OptionVisitor& v, SoundStage& o) {
   describe_group(v, "detection", o.detection, {.doc = "how events are found"});
   describe_group(v, "mix", o.mix, {.doc = "where it is heard, and how it is written down"});
+  describe_group(v, "picked", o.picked, {.doc = "events that are heard alone"});
   v.value("tail", o.tail,
           {.doc = "length of the sound after the last frame", .unit = "s", .min = 0, .max = 60});
   v.value("surface", o.surface,

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,14 +17,28 @@ namespace geoprior::paper {
 /// What an event sounds like: what distinguishes the methods.
 struct EventVoice {
   Voice voice;
-  int sample = -1;  ///< number of the bank's sound; -1: none
+  int sample = -1;                                  ///< number of the bank's sound; -1: none
+  std::map<std::string, double> numbers = {};       ///< recorded with the event
+  std::shared_ptr<const Eigen::VectorXf> own = {};  ///< what `voice` plays, unless a bank has it
 };
 class SoundVoices {
  public:
   virtual ~SoundVoices() = default;
+  /// @param shape   of the resonator; empty unless `needs_shapes` and the event is a picked one
   /// @param random  of this event alone
-  [[nodiscard]] virtual EventVoice voice(const SoundEvent& event, RandomStream random) const = 0;
+  [[nodiscard]] virtual EventVoice voice(const SoundEvent& event, const ResonatorShape& shape,
+                                         RandomStream random) const = 0;
+  [[nodiscard]] virtual bool needs_shapes() const { return false; }
+  /// Recorded in the last frame.
+  [[nodiscard]] virtual std::map<std::string, double> diagnostics() const { return {}; }
 };
+
+/// Flaps and cracs that are picked to be heard alone.
+struct PickedOptions {
+  int most = 0;   ///< that are picked
+  int every = 1;  ///< the first of so many, then the next
+};
+void describe(OptionVisitor& v, PickedOptions& options);
 
 /// The bytes of a sound file: rows are samples, columns channels, full scale 1.
 using EncodeSound =
@@ -32,6 +47,7 @@ using EncodeSound =
 struct SoundStage {
   DetectionOptions detection;
   MixOptions mix;
+  PickedOptions picked;
   double tail = 0.5;    ///< of the sound after the last frame (s)
   bool surface = true;  ///< whether frames have the sheet, or the events alone
 };

@@ -25,6 +25,11 @@ double distance(const BankSound& sound, const SoundEvent& event, Descriptors des
       std::log(std::max(event.ruling_length, 1e-9) / std::max(sound.ruling_length, 1e-9));
   const double border = std::log((event.free_border + kBorder) / (sound.free_border + kBorder));
   switch (descriptors) {
+    case Descriptors::all: {
+      const double width = event.area / std::max(event.ruling_length, 1e-9);
+      const bool known = sound.width > 0 && width > 0;
+      return std::hypot(ruling, border, known ? std::log(width / sound.width) : 0);
+    }
     case Descriptors::both:
       return std::hypot(ruling, border);
     case Descriptors::ruling:
@@ -42,7 +47,12 @@ class BankVoices final : public SoundVoices {
   BankVoices(SoundBank bank, const SoundOptions& options, const PaperMaterial& material)
       : bank_(std::move(bank)), options_(options), material_(material) {}
 
-  [[nodiscard]] EventVoice voice(const SoundEvent& event, RandomStream random) const override {
+  [[nodiscard]] std::map<std::string, double> diagnostics() const override {
+    return {{"bank_checksum", recorded_checksum(bank_)}};
+  }
+
+  [[nodiscard]] EventVoice voice(const SoundEvent& event, const ResonatorShape& /*shape*/,
+                                 RandomStream random) const override {
     const std::vector<int> order = nearest_sounds(bank_, event, options_.descriptors);
     if (order.empty()) return {};
     // Sounds as near as the last of the nearest are drawn from too: without descriptors, all.
@@ -56,11 +66,20 @@ class BankVoices final : public SoundVoices {
     while (count < order.size() && far(order[count]) <= reach) ++count;
     const int sound = order[random.below(static_cast<std::uint32_t>(count))];
     EventVoice made{voice_of(event, bank_, sound, material_), sound};
+    made.voice.rate *= adaptation(event, sound);
     made.voice.rate *= 1 + options_.detune * (2 * random.uniform() - 1);
     return made;
   }
 
  private:
+  /// By which a sound is played faster.
+  [[nodiscard]] double adaptation(const SoundEvent& event, int sound) const {
+    const double width = bank_.sounds[static_cast<std::size_t>(sound)].width;
+    if (!options_.adapt || !(width > 0) || !(event.area > 0) || !(event.ruling_length > 0)) return 1;
+    constexpr double kMost = 4;  // two octaves
+    return std::clamp(std::pow(width * event.ruling_length / event.area, 2), 1 / kMost, kMost);
+  }
+
   SoundBank bank_;
   SoundOptions options_;
   PaperMaterial material_;
@@ -69,12 +88,15 @@ class BankVoices final : public SoundVoices {
 }  // namespace
 
 void describe(OptionVisitor& v, SoundOptions& o) {
-  static constexpr std::array<std::string_view, 4> kNames{"both", "ruling", "border", "none"};
+  static constexpr std::array<std::string_view, 5> kNames{"all", "both", "ruling", "border",
+                                                           "none"};
   describe(v, o.stage);
   describe_group(v, "bank", o.bank, {.doc = "that is generated where the scene has none"});
   describe_choice(v, "descriptors", o.descriptors, kNames,
-                  {.doc = "of a resonator that choose its sound: l_r, l_c"});
+                  {.doc = "of a resonator that choose its sound: l_r, l_c and its width, the "
+                          "thesis' l_r and l_c, one of both, or none"});
   v.value("nearest", o.nearest, {.doc = "sounds that are drawn from", .min = 1, .max = 100000});
+  v.value("adapt", o.adapt, {.doc = "play a sound faster where the resonator is narrower"});
   v.value("detune", o.detune, {.doc = "largest change of pitch, relative", .min = 0, .max = 0.5});
 }
 

@@ -194,14 +194,20 @@ std::function<void()> CaseRunner::farewell_within_frame(const VariantSpec& varia
   return is_pose ? farewell_ : nullptr;
 }
 
-std::optional<Frame> CaseRunner::reference_frame(const VariantSpec& variant, double parameter) {
-  if (!variant.reference || !has_reference_metrics(topic_)) return std::nullopt;
+const VariantRecord* CaseRunner::reference_record(const VariantSpec& variant) {
+  if (!variant.reference) return nullptr;
   const VariantSpec* reference = find_variant(spec_.variants, *variant.reference);
-  if (reference == nullptr || reference == &variant) return std::nullopt;
-  const VariantRecord& record = state_of(*reference).record;
-  const int index = frame_of_parameter(record.frames, parameter);
+  if (reference == nullptr || reference == &variant) return nullptr;
+  return &state_of(*reference).record;
+}
+
+std::optional<Frame> CaseRunner::reference_frame(const VariantSpec& variant, double parameter) {
+  if (!has_reference_metrics(topic_)) return std::nullopt;
+  const VariantRecord* record = reference_record(variant);
+  if (record == nullptr) return std::nullopt;
+  const int index = frame_of_parameter(record->frames, parameter);
   if (index < 0) return std::nullopt;
-  return recorder_.read_frame(record, static_cast<std::size_t>(index), reference_parts(topic_));
+  return recorder_.read_frame(*record, static_cast<std::size_t>(index), reference_parts(topic_));
 }
 
 void CaseRunner::record_frame(const VariantSpec& variant, Frame frame,
@@ -268,7 +274,13 @@ void CaseRunner::finish(const VariantSpec& variant, journal::EndLine line) {
   const VariantRecord& record = state_of(variant).record;
   // The metrics of a sequence have no meaning on a part of it.
   if (has_sequence_metrics(topic_) && line.error.empty()) {
-    line.summary = measure_sequence(topic_, *scene_, RecordedFrames(recorder_, record, kept_));
+    const KeptFrames none(0);
+    const VariantRecord* of = reference_record(variant);
+    const auto reference = of ? std::optional<RecordedFrames>(std::in_place, recorder_, *of, none)
+                              : std::nullopt;
+    line.summary = measure_sequence(
+        topic_, *scene_,
+        RecordedFrames(recorder_, record, kept_, reference ? &*reference : nullptr));
     kept_ = KeptFrames(kMostKept);
   }
   recorder_.write_collection(line.place);

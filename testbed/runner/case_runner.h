@@ -56,6 +56,8 @@ class CaseRunner {
   /// last checkpoint.
   std::function<void()> farewell_within_frame(const VariantSpec& variant);
   void record_frame(const VariantSpec& variant, Frame frame, const journal::Numbers& seconds = {});
+  /// What is recorded of the variant's reference; null when it has none, or it was left out.
+  [[nodiscard]] const VariantRecord* reference_record(const VariantSpec& variant);
   std::optional<Frame> reference_frame(const VariantSpec& variant, double parameter);
   void log_error(const journal::Place& at, const std::string& message);
   bool time_variants();

@@ -39,8 +39,12 @@ std::shared_ptr<const Frame> KeptFrames::find(std::size_t index) const {
 }
 
 RecordedFrames::RecordedFrames(const Recorder& recorder, const VariantRecord& variant,
-                               const KeptFrames& kept)
-    : recorder_(recorder), variant_(variant), kept_(kept), order_(variant.frames.size()) {
+                               const KeptFrames& kept, const FrameSequence* reference)
+    : recorder_(recorder),
+      variant_(variant),
+      kept_(kept),
+      reference_(reference),
+      order_(variant.frames.size()) {
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
     return variant_.frames[a].parameter < variant_.frames[b].parameter;

@@ -37,7 +37,8 @@ class RecordedFrames final : public FrameSequence {
   static constexpr std::size_t kRemembered = 3;
 
   /// The arguments must outlive this.
-  RecordedFrames(const Recorder& recorder, const VariantRecord& variant, const KeptFrames& kept);
+  RecordedFrames(const Recorder& recorder, const VariantRecord& variant, const KeptFrames& kept,
+                 const FrameSequence* reference = nullptr);
 
   [[nodiscard]] std::size_t size() const override { return order_.size(); }
   [[nodiscard]] double parameter(std::size_t i) const override;
@@ -50,6 +51,7 @@ class RecordedFrames final : public FrameSequence {
       const std::string& name) const override {
     return recorder_.read_artifact(variant_, name);
   }
+  [[nodiscard]] const FrameSequence* reference() const override { return reference_; }
   /// Frames that were read from the disk so far.
   [[nodiscard]] std::size_t frames_read() const { return frames_read_; }
 
@@ -59,6 +61,7 @@ class RecordedFrames final : public FrameSequence {
   const Recorder& recorder_;
   const VariantRecord& variant_;
   const KeptFrames& kept_;
+  const FrameSequence* reference_;
   std::vector<std::size_t> order_;  ///< index of the frame of the i-th smallest parameter
   mutable std::deque<std::pair<std::size_t, std::shared_ptr<const Frame>>> read_;
   mutable std::size_t frames_read_ = 0;

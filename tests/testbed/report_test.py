@@ -144,6 +144,7 @@ def make_processes(folder):
 
 
 RATE = 48000
+ROWS = 420
 
 
 def wav(samples, rate=RATE, tag=1, bits=24):
@@ -228,30 +229,75 @@ class SoundTest(unittest.TestCase):
                 sound.read_wav(broken, "x.wav")
 
     def test_a_sine_has_its_level_at_its_frequency_and_time(self):
-        # A frequency of the transform: 10 of its 512 samples, so that the window loses nothing. The
-        # tone begins in the middle.
-        frequency = 10 * RATE / 512
-        tone = np.concatenate([np.zeros((RATE // 4, 1)), sine(frequency, 0.5)])
-        times, frequencies, levels = sound.spectrogram(sound.Sound(RATE, tone))
-        steady = (times > 0.27) & (times < 0.72)
-        loudest = frequencies[levels[:, steady].argmax(axis=0)]
-        np.testing.assert_array_equal(loudest, frequency)
-        np.testing.assert_allclose(levels.max(axis=0)[steady], 20 * np.log10(0.5), atol=0.01)
-        self.assertLess(levels[:, times < 0.24].max(), -200)
-        constant = sound.spectrogram(sound.Sound(RATE, np.full((RATE, 2), 0.1)))[2]
-        self.assertAlmostEqual(constant[0, 200], -20, places=6)
+        # On both sides of the change of windows and in between. The tone begins in the middle; a
+        # long window reaches 21 ms from its time. A quarter of a dB is lost between two frequencies of
+        # the transform and over the width of a row.
+        for frequency in [60, 100, 300, 499, 501, 700, 999, 1001, 2000]:
+            tone = np.concatenate([np.zeros((RATE // 4, 1)), sine(frequency, 0.5)])
+            times, edges, levels = sound.spectrogram(sound.Sound(RATE, tone), ROWS)
+            steady = (times > 0.28) & (times < 0.72)
+            loudest = levels[:, steady].argmax(axis=0)
+            np.testing.assert_allclose(np.sqrt(edges[loudest] * edges[loudest + 1]), frequency, rtol=0.02)
+            np.testing.assert_allclose(levels.max(axis=0)[steady], 20 * np.log10(0.5), atol=0.25)
+            self.assertLess(levels[:, times < 0.22].max(), -200)
+        # A Hann peak holds 1.5 bins, of 94 Hz, of power: what a row of 285 Hz at 20 kHz makes of it.
+        high = sound.spectrogram(sound.Sound(RATE, sine(19900, 1)), ROWS)[2]
+        self.assertAlmostEqual(high[:, 90].max(), 10 * np.log10(1.5 * 93.75 / 285), delta=0.2)
+
+    def test_channels_are_averaged_in_power(self):
+        tone = sine(1000, 0.5)
+        one = sound.spectrogram(sound.Sound(RATE, tone), ROWS)[2]
+        both = sound.spectrogram(sound.Sound(RATE, np.hstack([tone, 0 * tone])), ROWS)[2]
+        np.testing.assert_allclose(both, one - 10 * np.log10(2), atol=1e-9)
+
+    def test_tones_of_100_and_200_hz_are_told_apart(self):
+        tones = sine(100, 0.5) + sine(200, 0.5)
+        _, edges, levels = sound.spectrogram(sound.Sound(RATE, tones), ROWS)
+        steady = levels[:, 20:-20]
+        low, between, high = steady[np.searchsorted(edges, [100, 150, 200]) - 1]
+        self.assertGreater(min(low.min(), high.min()) - between.max(), 20)
+
+    def test_rows_are_means_over_their_frequencies(self):
+        # The mean of a straight line over an interval is its value in the middle, whether the row is
+        # narrower or wider than a bin.
+        edges = np.concatenate([np.linspace(0, 3, 17), np.geomspace(3.4, 63, 9)])
+        means = sound.row_means(edges, 64)
+        np.testing.assert_allclose(means.sum(axis=1), 1, rtol=1e-12)
+        np.testing.assert_allclose(means @ np.arange(64), (edges[:-1] + edges[1:]) / 2, rtol=1e-12)
+        np.testing.assert_allclose(sound.row_means(np.array([9.5, 19.5]), 64)[0, 11:19], 0.1, rtol=1e-12)
+
+    def test_noise_is_even_over_frequency_on_both_sides_of_the_change(self):
+        # Power of a Hann window of N samples, against a sine: variance sum w^2 / (sum w / 2)^2 = 6 / N.
+        noise = np.random.default_rng(7).normal(0, 0.1, (10 * RATE, 1))
+        _, edges, levels = sound.spectrogram(sound.Sound(RATE, noise), ROWS)
+        means = 10 * np.log10((10**(levels / 10)).mean(axis=1))
+        for window, rows in [(2048, edges[1:] < 500), (512, edges[:-1] > 1000)]:
+            np.testing.assert_allclose(means[rows], 10 * np.log10(0.01 * 6 / window), atol=1)
+            self.assertAlmostEqual(means[rows].mean(), 10 * np.log10(0.01 * 6 / window), delta=0.2)
+        self.assertLess(np.abs(np.diff(means)).max(), 1)  # no seam
+
+    def test_a_click_is_as_long_as_the_windows_of_its_frequencies(self):
+        samples = np.zeros((RATE // 2, 1))
+        samples[RATE // 4 - RATE // 4 % 128] = 1  # a time of the spectra
+        times, edges, levels = sound.spectrogram(sound.Sound(RATE, samples), ROWS)
+        # Amplitude 1 / (sum w / 2) = 4 / N at all frequencies.
+        for window, rows in [(512, edges[:-1] > 1000), (2048, edges[1:] < 500)]:
+            away = np.abs(times - times[93]) > (window / 2 - 0.5) / RATE
+            self.assertLess(levels[rows][:, away].max(), -200)
+            np.testing.assert_allclose(levels[rows].max(axis=1), 20 * np.log10(4 / window), atol=1e-6)
 
     def test_a_click_stays_when_columns_are_joined(self):
-        samples = np.zeros((60 * RATE, 1))  # more windows than are transformed at once
-        samples[43 * RATE] = 1
+        samples = np.zeros((20 * RATE, 1))  # more windows than are transformed at once
+        samples[13 * RATE] = 1
         click = sound.Sound(RATE, samples)
-        times, _, levels = sound.spectrogram(click)
-        self.assertEqual(times[levels.max(axis=0).argmax()], 43)
-        few_times, _, few = sound.spectrogram(click, 60)
+        times, _, levels = sound.spectrogram(click, 40)
+        self.assertEqual(times[levels.max(axis=0).argmax()], 13)
+        few_times, _, few = sound.spectrogram(click, 40, 60)
         self.assertEqual(few.shape[1], 60)
         loudest = few.max(axis=0).argmax()
         self.assertEqual(few[:, loudest].max(), levels.max())
-        self.assertTrue(few_times[loudest] <= 43 < few_times[loudest + 1])
+        self.assertTrue(few_times[loudest] <= 13 < few_times[loudest + 1])
+        np.testing.assert_allclose(few.max(axis=1), levels.max(axis=1), atol=1)
 
     def test_report_plays_the_sound_as_it_was_recorded(self):
         content = wav(sine(1000, 0.5))
@@ -301,7 +347,7 @@ class SoundTest(unittest.TestCase):
 
     def test_all_variants_have_one_range_of_colours(self):
         for amplitude, variant in [(1.0, "dual-quaternion"), (0.01, "implicit")]:
-            add_sound(self.folder, variant, wav(sine(10 * RATE / 512, amplitude), tag=3, bits=32))
+            add_sound(self.folder, variant, wav(sine(1000, amplitude), tag=3, bits=32))
         run = runfile.read_run(self.folder)
         with plots.plt.rc_context(plots.STYLE):
             figure = spectrogram.draw(run, run.cases[0], run.cases[0].variants)
@@ -311,8 +357,41 @@ class SoundTest(unittest.TestCase):
         self.assertEqual(len(spectra), 2)
         self.assertEqual(spectra[0].get_xlim(), spectra[1].get_xlim())
         self.assertEqual(spectra[1].get_xlabel(), "time [s]")
-        self.assertEqual(spectra[1].get_ylabel(), "frequency [kHz]")
+        self.assertEqual(spectra[1].get_ylabel(), "frequency [Hz]")
         plots.plt.close(figure)
+
+    def test_frequencies_are_on_a_logarithmic_axis(self):
+        # Up to half the rate; a sound without any of these frequencies is drawn all the same.
+        for rate, last in [(RATE, "20 k"), (8000, "2 k"), (60, None)]:
+            add_sound(self.folder, "implicit", wav(np.full((rate, 1), 0.5), rate))
+            run = runfile.read_run(self.folder)
+            with plots.plt.rc_context(plots.STYLE):
+                figure = spectrogram.draw(run, run.cases[0], [run.cases[0].variant("implicit")])
+            axes = figure.axes[-2]
+            labels = [label.get_text() for label in axes.get_yticklabels()]
+            every = ["50", "100", "200", "500", "1 k", "2 k", "5 k", "10 k", "20 k"]
+            self.assertEqual(labels, every[:every.index(last) + 1] if last else [])
+            plots.plt.close(figure)
+
+    def test_a_tone_is_drawn_at_its_frequency(self):
+        for frequency in (100, 1000, 10000):
+            add_sound(self.folder, "implicit", wav(sine(frequency, 0.5)))
+            run = runfile.read_run(self.folder)
+            with plots.plt.rc_context(plots.STYLE):
+                figure = spectrogram.draw(run, run.cases[0], [run.cases[0].variant("implicit")])
+            axes = figure.axes[-2]
+            ticks = {label.get_text(): axes.transData.transform((0.25, at))
+                     for at, label in zip(axes.get_yticks(), axes.get_yticklabels())}
+            column, line = ticks[spectrogram.frequency_label(frequency)]
+            figure.canvas.draw()
+            pixels = np.asarray(figure.canvas.buffer_rgba())[::-1, int(column), :3].sum(axis=1, dtype=int)
+            low, high = round(ticks["50"][1]) + 2, round(ticks["20 k"][1]) - 2
+            self.assertAlmostEqual(low + pixels[low:high].argmax(), line, delta=3)
+            plots.plt.close(figure)
+
+    def test_many_events_get_thin_ticks(self):
+        self.assertEqual(spectrogram.tick_width(20), 0.9)
+        self.assertAlmostEqual(spectrogram.tick_width(500) * spectrogram.DPI / 72, 1)  # a pixel
 
     def test_events_are_ticks_at_their_times_by_kind(self):
         add_sound(self.folder, "implicit", wav(sine(1000, 0.5, 2)))

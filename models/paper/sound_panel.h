@@ -1,0 +1,67 @@
+#pragma once
+
+#include <vector>
+
+#include "models/paper/sheet.h"
+
+namespace geoprior::paper {
+
+/// How the two ends of a beam are held.
+enum class BeamEnds { free_free, clamped_clamped, clamped_free };
+
+/// Mode n = 0, 1, … of a beam of length 1: psi'''' = beta^4 psi, integral of psi^2 = 1. The first
+/// two of a free beam are its rigid motions.
+class BeamMode {
+ public:
+  BeamMode(BeamEnds ends, int n);
+  [[nodiscard]] double beta() const { return beta_; }
+  [[nodiscard]] double value(double x) const { return trigonometric(x) + hyperbolic(x); }
+  [[nodiscard]] double slope(double x) const;
+  [[nodiscard]] double bend(double x) const;  ///< psi''
+
+ private:
+  [[nodiscard]] double trigonometric(double x) const;
+  [[nodiscard]] double hyperbolic(double x) const;
+
+  bool rigid_ = false;
+  int n_ = 0;
+  double beta_ = 0;
+  /// sign (cos beta x - sigma sin beta x) + near exp(-beta x) + far exp(-beta (1 - x)): the sums of
+  /// growing exponentials that cancel each other are done by hand.
+  double sign_ = 1, sigma_ = 0, near_ = 0, far_ = 0;
+};
+
+/// A rectangle of paper that rings: `length` along its rulings, `width` across them.
+struct SoundPanel {
+  double length = 0, width = 0;  ///< m
+  BeamEnds along = BeamEnds::free_free, across = BeamEnds::clamped_clamped;
+  /// What flips: from … to along and across, as shares of the panel.
+  double along_from = 0, along_to = 1, across_from = 0, across_to = 1;
+};
+
+/// A mode that a strike has left.
+struct PanelMode {
+  double frequency = 0;  ///< Hz
+  double energy = 0;     ///< relative to the other modes
+  double pressure = 0;   ///< relative, root mean square over directions
+};
+
+/// Modes of the panel after the flip, those of most energy, ascending in frequency.
+///
+/// Shapes are products of beam modes, frequencies Rayleigh's quotients of them (Warburton 1954): a
+/// few per cent above the plate's own. The flip changes the curvature across the rulings by dS in
+/// its rectangle, with which mode phi gets the coordinate q = g / omega^2 |P(f tau)|,
+///
+///   g = -D dS integral of (phi_xx + nu phi_yy),
+///
+/// P the spectrum of a raised cosine of length tau. A mode radiates as a layer of dipoles of the
+/// strength 2 rho omega^2 phi / k_b, k_b the wave number of bending at its frequency
+/// (baselines/paper/modal_sound.h has the same rule).
+///
+/// @param tau      length of the snap (s)
+/// @param highest  frequency (Hz)
+/// @param most     modes
+std::vector<PanelMode> panel_modes(const SoundPanel& panel, const PaperMaterial& material,
+                                   double tau, double highest, int most);
+
+}  // namespace geoprior::paper
