@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 using std::numbers::pi;
-constexpr int kRate = 48000;           // of voices (Hz)
-constexpr double kLongest = 0.6;       // s, as of the generated bank
+constexpr int kRate = 48000;      // of voices (Hz)
+constexpr double kLongest = 0.6;  // s, as of the generated bank
 
 /// Points of the unit sphere, evenly spread.
 std::vector<Vector3d> sphere(int count) {
@@ -59,8 +59,8 @@ StruckModes strike(const ModalSoundOptions& options, const PaperMaterial& materi
   const ModalSupports supports{piece.clamped, {}};
   StruckModes out;
   out.resolved = std::min(resolved_frequency(material, piece.state.mesh), options.highest);
-  const Modes modes = eigenmodes(material, piece.state, supports,
-                                 {options.most_modes, out.resolved, {}});
+  const Modes modes =
+      eigenmodes(material, piece.state, supports, {options.most_modes, out.resolved, {}});
   const Eigen::Index count = modes.frequency.size();
   if (count == 0) return out;
   if (count == options.most_modes) out.resolved = modes.frequency[count - 1];
@@ -69,14 +69,13 @@ StruckModes strike(const ModalSoundOptions& options, const PaperMaterial& materi
   const Eigen::ArrayXd omega = 2 * pi * modes.frequency.array();
   const double tau = event.kind == SoundKind::crac ? options.crac_time : options.flap_time;
   Eigen::ArrayXd coordinate = force.array().abs() / omega.square();
-  for (Eigen::Index m = 0; m < count; ++m)
-    coordinate[m] *= pulse_spectrum(modes.frequency[m], tau);
+  for (Eigen::Index m = 0; m < count; ++m) coordinate[m] *= pulse_spectrum(modes.frequency[m], tau);
   const double energy = (omega * coordinate).square().sum() / 2;
   if (!(energy > 0)) return out;
   coordinate *= std::sqrt(event.energy / energy);
   out.frequency = modes.frequency;
-  out.pressure = coordinate *
-                 radiated_pressure(material, piece.state, modes, options.directions).array();
+  out.pressure =
+      coordinate * radiated_pressure(material, piece.state, modes, options.directions).array();
   return out;
 }
 
@@ -153,8 +152,8 @@ Eigen::VectorXd radiated_pressure(const PaperMaterial& material, const ShellStat
     for (int d = 0; d < directions; ++d) {
       const Eigen::ArrayXd source = jump * w.array() * facing.col(d).array();
       const Eigen::ArrayXd phase = k * along.col(d).array();
-      squares += std::pow((source * phase.cos()).sum(), 2) +
-                 std::pow((source * phase.sin()).sum(), 2);
+      squares +=
+          std::pow((source * phase.cos()).sum(), 2) + std::pow((source * phase.sin()).sum(), 2);
     }
     pressure[m] = k / (4 * pi) * std::sqrt(squares / directions);
   }

@@ -24,15 +24,14 @@ namespace fs = std::filesystem;
 std::string name_of(const PaperMaterial& material, const BankOptions& o, std::uint64_t seed) {
   const BuildInfo& build = build_info();
   StateWriter out;
-  for (const std::string& text :
-       {build.git_commit, build.git_difference, build.compiler, build.build_type, build.flags,
-        build.instruction_set}) {
+  for (const std::string& text : {build.git_commit, build.git_difference, build.compiler,
+                                  build.build_type, build.flags, build.instruction_set}) {
     out.text(text);
   }
-  for (const double x : {material.thickness, material.young_modulus, material.poisson_ratio,
-                         material.area_density, o.least_ruling, o.most_ruling, o.most_border,
-                         o.least_speed, o.most_speed, o.damping, o.least_width, o.crackles,
-                         o.highest}) {
+  for (const double x :
+       {material.thickness, material.young_modulus, material.poisson_ratio, material.area_density,
+        o.least_ruling, o.most_ruling, o.most_border, o.least_speed, o.most_speed, o.damping,
+        o.least_width, o.crackles, o.highest}) {
     out.number(x);
   }
   for (const int n : {o.sizes, o.variants, o.speeds, o.tears, o.most_modes}) out.number(n);
@@ -46,8 +45,8 @@ State bytes_of(const SoundBank& bank) {
   out.number(bank.sounds.size());
   for (const BankSound& sound : bank.sounds) {
     out.number(sound.kind);
-    for (const double x :
-         {sound.ruling_length, sound.free_border, sound.width, sound.speed, sound.energy}) {
+    for (const double x : {sound.ruling_length, sound.free_border, sound.width, sound.root_across,
+                           sound.root_along, sound.speed, sound.energy}) {
       out.number(x);
     }
     out.matrix(sound.samples);
@@ -67,11 +66,11 @@ std::optional<SoundBank> read(const fs::path& file) {
     StateReader in(bytes);
     SoundBank bank;
     bank.sample_rate = in.number<int>();
-    bank.sounds.resize(in.count(sizeof(SoundKind) + 5 * sizeof(double)));
+    bank.sounds.resize(in.count(sizeof(SoundKind) + 7 * sizeof(double)));
     for (BankSound& sound : bank.sounds) {
       sound.kind = in.number<SoundKind>();
-      for (double* x : {&sound.ruling_length, &sound.free_border, &sound.width, &sound.speed,
-                        &sound.energy}) {
+      for (double* x : {&sound.ruling_length, &sound.free_border, &sound.width, &sound.root_across,
+                        &sound.root_along, &sound.speed, &sound.energy}) {
         *x = in.number<double>();
       }
       in.matrix(sound.samples);

@@ -60,6 +60,8 @@ BankSound descriptors_of(const CsvTable& table, const CsvTable::Row& row) {
   number("l_r", sound.ruling_length, snap);
   number("l_c", sound.free_border, snap);
   number("width", sound.width, false);
+  number("root_across", sound.root_across, false);
+  number("root_along", sound.root_along, false);
   number("speed", sound.speed, sound.kind == SoundKind::friction);
   number("energy", sound.energy, false);
   if (!(sound.energy > 0)) throw Error("energy is 0", row.place, "more than 0");
@@ -88,7 +90,9 @@ SoundBank read_bank(const fs::path& folder, std::vector<std::string>& notes,
                     std::vector<fs::path>& inputs) {
   if (!fs::is_directory(folder)) throw Error("is no folder", folder.string());
   const fs::path list = folder / kList;
-  const CsvTable table(list, {"file", "kind"}, {"l_r", "l_c", "width", "speed", "energy", "peak"});
+  const CsvTable table(
+      list, {"file", "kind"},
+      {"l_r", "l_c", "width", "root_across", "root_along", "speed", "energy", "peak"});
   inputs.push_back(list);
   SoundBank bank;
   for (const CsvTable::Row& row : table.rows()) {
@@ -107,15 +111,16 @@ SoundBank read_bank(const fs::path& folder, std::vector<std::string>& notes,
 
 void write_bank(const SoundBank& bank, const fs::path& folder) {
   make_folders(folder);
-  std::string list = "file,kind,l_r,l_c,width,speed,energy,peak\n";
+  std::string list = "file,kind,l_r,l_c,width,root_across,root_along,speed,energy,peak\n";
   for (std::size_t i = 0; i < bank.sounds.size(); ++i) {
     const BankSound& sound = bank.sounds[i];
     const double peak = std::max(1e-30f, sound.samples.cwiseAbs().maxCoeff());
     const std::string kind(kSoundKinds[static_cast<std::size_t>(sound.kind)]);
-    char name[40], numbers[200];
+    char name[40], numbers[300];
     std::snprintf(name, sizeof name, "%04zu-%s.wav", i, kind.c_str());
-    std::snprintf(numbers, sizeof numbers, ",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n",
-                  sound.ruling_length, sound.free_border, sound.width, sound.speed, sound.energy, peak);
+    std::snprintf(numbers, sizeof numbers, ",%.9g,%.9g,%.9g,%.17g,%.17g,%.9g,%.9g,%.9g\n",
+                  sound.ruling_length, sound.free_border, sound.width, sound.root_across,
+                  sound.root_along, sound.speed, sound.energy, peak);
     Sound file{bank.sample_rate, sound.samples.cast<double>() / peak};
     write_file_atomically(folder / name, wav_bytes(file));
     list += std::string(name) + "," + kind + numbers;

@@ -9,9 +9,11 @@
 namespace geoprior::paper {
 
 /// Reads a bank: "bank.csv" has a row a sound, with the columns file, kind (flap, crac, friction,
-/// tear) and, if need be, l_r, l_c, width (m; of a panel, across its rulings), speed (m/s; of friction), energy (J; of the event that is
-/// as loud as the sound at 1 m; default 1e-6) and peak (Pa; pressure of the full scale; default 1).
-/// Files of several channels are averaged, those of another sample rate than the first's resampled.
+/// tear) and, if need be, l_r, l_c, width (m; of a panel, across its rulings), root_across and
+/// root_along (of the beam equation: how it is held, models/paper/sound_bank.h), speed (m/s; of
+/// friction), energy (J; of the event that is as loud as the sound at 1 m; default 1e-6) and peak
+/// (Pa; pressure of the full scale; default 1). Files of several channels are averaged, those of
+/// another sample rate than the first's resampled.
 ///
 /// @param notes   added: what was averaged or resampled
 /// @param inputs  added: every file that was read

@@ -229,13 +229,13 @@ MetricGroup sector_group() {
 }
 
 MetricGroup distance_group() {
-  return reference_metrics<PaperScene>(
-             {"surface"},
-             [](const PaperScene& scene, const Frame& frame,
-                const Frame& reference) -> std::optional<double> {
-               if (scene.animation) return std::nullopt;
-               return hausdorff_ratio(sheet_frame(scene, frame), sheet_frame(scene, reference));
-             })
+  return reference_metrics<PaperScene>({"surface"},
+                                       [](const PaperScene& scene, const Frame& frame,
+                                          const Frame& reference) -> std::optional<double> {
+                                         if (scene.animation) return std::nullopt;
+                                         return hausdorff_ratio(sheet_frame(scene, frame),
+                                                                sheet_frame(scene, reference));
+                                       })
       .row("hausdorff_ratio", "1",
            "Hausdorff distance from the surface of the reference variant, sampled every 32nd of "
            "the pattern's width, over that width",
@@ -290,13 +290,13 @@ MetricGroup tearing_force_group() {
 }
 
 MetricGroup tear_path_group() {
-  return reference_metrics<PaperScene>(
-             {"surface", "tears"},
-             [](const PaperScene& scene, const Frame& frame,
-                const Frame& reference) -> std::optional<double> {
-               if (scene.animation) return std::nullopt;
-               return tear_path_distance(sheet_frame(scene, frame), sheet_frame(scene, reference));
-             })
+  return reference_metrics<PaperScene>({"surface", "tears"},
+                                       [](const PaperScene& scene, const Frame& frame,
+                                          const Frame& reference) -> std::optional<double> {
+                                         if (scene.animation) return std::nullopt;
+                                         return tear_path_distance(sheet_frame(scene, frame),
+                                                                   sheet_frame(scene, reference));
+                                       })
       .row("tear_path_distance", "m",
            "Hausdorff distance of the longest tear from that of the reference variant, in the "
            "pattern, as far as the shorter of both goes",
@@ -323,6 +323,12 @@ MetricGroup sound_group() {
              if (snaps == 0) return std::nullopt;
              return cracs / snaps;
            })
+      .row("resonator_area", "m^2", "area of the resonators of flaps and cracs, median", kNone,
+           kSmooth, [](M m) { return m.area; })
+      .row("resonator_ruling", "m", "mean length of their rulings, l_r, median", kNone, kSmooth,
+           [](M m) { return m.ruling; })
+      .row("resonator_border", "m", "length of their free border, l_c, median", kNone, kSmooth,
+           [](M m) { return m.border; })
       .row("sound_latency", "s",
            "from a flap or crac to the frame in which it is known, median: what a listener waits",
            kLow, kSmooth, [](M m) { return m.latency; })
@@ -336,15 +342,26 @@ MetricGroup sound_group() {
     rows.row(name + "_events", "1", "events of the kind " + name, kNone, kCount,
              [name](M m) { return static_cast<double>(m.of(name).count); });
   }
-  for (const char* kind : {"flap", "crac"}) {
-    const std::string name = kind;
-    rows.row(name + "_duration", "s",
+  const auto quartile = [&](const std::string& name, const std::string& suffix,
+                            double Quartiles::*which, const std::string& of) {
+    const auto read = [name, which](M m, auto member) -> Value {
+      const std::optional<Quartiles> heard = m.of(name).*member;
+      if (!heard) return std::nullopt;
+      return (*heard).*which;
+    };
+    using Kind = SoundMeasures::Kind;
+    rows.row(name + "_duration" + suffix, "s",
              "time in which the energy of a " + name +
-                 ", as it is heard in the mix, falls by 20 dB (Schroeder); median of those that "
-                 "stand alone",
-             kNone, {1e-4, 0.02}, [name](M m) { return m.of(name).duration; })
-        .row(name + "_centroid", "Hz", "mean frequency by power of the same, median", kNone,
-             {1, 0.02}, [name](M m) { return m.of(name).centroid; });
+                 ", as it is heard in the mix, falls by 20 dB (Schroeder): " + of +
+                 " of those that stand alone",
+             kNone, {1e-4, 0.02}, [read](M m) { return read(m, &Kind::duration); })
+        .row(name + "_centroid" + suffix, "Hz", "mean frequency by power of the same, " + of, kNone,
+             {1, 0.02}, [read](M m) { return read(m, &Kind::centroid); });
+  };
+  for (const char* kind : {"flap", "crac"}) {
+    quartile(kind, "", &Quartiles::median, "median");
+    quartile(kind, "_lower", &Quartiles::lower, "lower quartile");
+    quartile(kind, "_upper", &Quartiles::upper, "upper quartile");
   }
   return rows;
 }

@@ -29,6 +29,16 @@ std::vector<Event> within(const std::vector<Event>& events, double start, double
   return kept;
 }
 
+/// Of a number of flaps and cracs; absent without any.
+std::optional<double> median_of_snaps(const std::vector<Event>& events, const char* number) {
+  std::vector<double> values;
+  for (const Event& event : events) {
+    if (event.kind == "flap" || event.kind == "crac") values.push_back(event.numbers.at(number));
+  }
+  if (values.empty()) return {};
+  return median(values);
+}
+
 constexpr double kFloor = 40;    // dB below the loudest band: not heard beside it
 constexpr double kLowest = 100;  // Hz: the band about it is the lowest that is compared
 
@@ -113,19 +123,17 @@ std::optional<SoundMeasures> sound_measures(const PaperScene& scene, const Frame
       out.kinds[kind] = {rate.count, rate.energy_J, {}, {}, 0};
     }
   }
-  std::vector<double> latencies;
-  for (const Event& event : frames.events()) {
-    if (event.kind != "flap" && event.kind != "crac") continue;
-    latencies.push_back(event.numbers.at("latency_s"));
-  }
-  if (!latencies.empty()) out.latency = median(latencies);
+  out.area = median_of_snaps(frames.events(), "area_m2");
+  out.ruling = median_of_snaps(frames.events(), "ruling_length_m");
+  out.border = median_of_snaps(frames.events(), "free_border_m");
+  out.latency = median_of_snaps(frames.events(), "latency_s");
   const auto bursts = sound_bursts(mono, sound.sample_rate, events);
   for (const auto& [kind, heard] : burst_statistics(bursts)) {
     SoundMeasures::Kind& of = out.kinds[kind];
     of.measured = heard.measured;
     if (heard.measured == 0) continue;
-    of.duration = heard.duration_s.median;
-    of.centroid = heard.centroid_hz.median;
+    of.duration = heard.duration_s;
+    of.centroid = heard.centroid_hz;
   }
   double peak = 0;
   for (Eigen::Index c = 0; c < sound.samples.cols(); ++c) {
@@ -138,8 +146,7 @@ std::optional<SoundMeasures> sound_measures(const PaperScene& scene, const Frame
   return out;
 }
 
-std::optional<VoiceDistance> voice_distance(const PaperScene& scene,
-                                            const FrameSequence& frames) {
+std::optional<VoiceDistance> voice_distance(const PaperScene& scene, const FrameSequence& frames) {
   if (!scene.animation || frames.reference() == nullptr) return {};
   const auto own = picked_voices(frames), of = picked_voices(*frames.reference());
   if (!own || !of) return {};

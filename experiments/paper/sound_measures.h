@@ -5,6 +5,7 @@
 #include <string>
 
 #include "experiments/paper/scene.h"
+#include "metrics/sound_bursts.h"
 #include "testbed/frame_sequence.h"
 
 namespace geoprior::paper {
@@ -14,14 +15,17 @@ namespace geoprior::paper {
 struct SoundMeasures {
   struct Kind {
     int count = 0;
-    double energy = 0;               ///< J
-    std::optional<double> duration;  ///< median of the bursts heard in the mix (s)
-    std::optional<double> centroid;  ///< likewise (Hz)
-    double measured = 0;             ///< bursts that could be measured
+    double energy = 0;                  ///< J
+    std::optional<Quartiles> duration;  ///< of the bursts heard in the mix (s)
+    std::optional<Quartiles> centroid;  ///< likewise (Hz)
+    double measured = 0;                ///< bursts that could be measured
   };
   std::map<std::string, Kind> kinds;  ///< "flap", "crac", "friction", "tear"
   double rate = 0;                    ///< of all events (1/s)
   std::optional<double> fano;         ///< factor of their counts in windows of 0.1 s
+  std::optional<double> area;         ///< of the resonators of flaps and cracs, median (m^2)
+  std::optional<double> ruling;       ///< their l_r (m)
+  std::optional<double> border;       ///< their l_c (m)
   std::optional<double> latency;      ///< median of flaps and cracs (s)
   std::optional<double> peak;         ///< true peak of the mix (dBFS); absent for silence
   std::optional<double> centroid;     ///< of the whole mix (Hz)

@@ -17,14 +17,14 @@ enum class Support { free, clamped, bent };
 struct Swatch {
   double ruling = 0, width = 0;  // m
   Support support = Support::free;
-  double curvature = 0;      // before its snap (1/m)
-  Vector2d corner{0, 0};     // of the pattern, lowest u and v (m)
-  double snaps = 0;          // when its curvature is zero (s)
+  double curvature = 0;   // before its snap (1/m)
+  Vector2d corner{0, 0};  // of the pattern, lowest u and v (m)
+  double snaps = 0;       // when its curvature is zero (s)
 };
 
 std::vector<Swatch> swatches_of(const SwatchOptions& options) {
-  for (const auto& [list, name] : {std::pair{&options.rulings, "rulings"},
-                                   std::pair{&options.widths, "widths"}}) {
+  for (const auto& [list, name] :
+       {std::pair{&options.rulings, "rulings"}, std::pair{&options.widths, "widths"}}) {
     const std::string where = "scene.swatches." + std::string(name);
     if (list->empty()) throw Error("is empty", where, "lengths in metres");
     for (const double x : *list) {
@@ -36,8 +36,7 @@ std::vector<Swatch> swatches_of(const SwatchOptions& options) {
     for (const double ruling : options.rulings) {
       for (const double width : options.widths) {
         Swatch& one = all.emplace_back(Swatch{ruling, width, support});
-        one.curvature =
-            support == Support::bent ? std::min(options.bent, 2 / width) : options.flat;
+        one.curvature = support == Support::bent ? std::min(options.bent, 2 / width) : options.flat;
         one.snaps = static_cast<double>(all.size()) * options.interval;
       }
     }
@@ -159,8 +158,9 @@ Handle clamp_of(const Swatch& one) {
 void describe(OptionVisitor& v, SwatchOptions& o) {
   v.value("rulings", o.rulings, {.doc = "lengths along the rulings", .unit = "m"});
   v.value("widths", o.widths, {.doc = "lengths across them; each with each", .unit = "m"});
-  v.value("flat", o.flat,
-          {.doc = "curvature before and after a snap, of flat swatches", .unit = "1/m", .min = 1e-3});
+  v.value(
+      "flat", o.flat,
+      {.doc = "curvature before and after a snap, of flat swatches", .unit = "1/m", .min = 1e-3});
   v.value("bent", o.bent,
           {.doc = "of bent ones, or two over the width where that is less",
            .unit = "1/m",

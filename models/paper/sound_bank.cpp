@@ -17,7 +17,7 @@ namespace geoprior::paper {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kLeak = 5e-3;     // m: border that a resonator without free border radiates by
+constexpr double kLeak = 5e-3;  // m: border that a resonator without free border radiates by
 
 double uniform(RandomStream& random, double low, double high) {
   return low + (high - low) * random.uniform();
@@ -39,15 +39,17 @@ std::vector<SoundPanel> panels_of(double l_r, double l_c, const BankOptions& opt
   const auto panel = [&](double width, BeamEnds along, BeamEnds across) {
     return SoundPanel{l_r, std::max(width, options.least_width), along, across};
   };
-  if (l_c < options.least_ruling / 2) {
-    // Creases all around.
-    return {panel(l_r / 1.5, clamped_clamped, clamped_clamped),
-            panel(1.5 * l_r, clamped_clamped, clamped_clamped)};
+  std::vector<SoundPanel> all;
+  // Creases all around, or nearly so.
+  if (l_c < l_r) {
+    for (const double aspect : {2 / 3.0, 1.5, 3.0})
+      all.push_back(panel(aspect * l_r, clamped_clamped, clamped_clamped));
   }
+  if (l_c < options.least_ruling / 2) return all;
   constexpr double kMargin = 1.2;  // below, the width would be next to nothing
   // Between two creases, rulings that end at free borders on both sides, or on one.
-  std::vector<SoundPanel> all{panel(l_c / 2, free_free, clamped_clamped),
-                              panel(l_c, clamped_free, clamped_clamped)};
+  all.push_back(panel(l_c / 2, free_free, clamped_clamped));
+  all.push_back(panel(l_c, clamped_free, clamped_clamped));
   // It hangs on one crease along a ruling, or on none.
   if (l_c > kMargin * l_r) all.push_back(panel((l_c - l_r) / 2, free_free, clamped_free));
   if (l_c > 2 * kMargin * l_r) all.push_back(panel(l_c / 2 - l_r, free_free, free_free));
@@ -86,9 +88,9 @@ void add_snap(const SoundPanel& panel, double tau, double gain, double start,
       std::min(kLongest, ringing_time(std::max(lowest, kHeard), options.damping)) + tau + 0.02;
   Eigen::VectorXd sound = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(length * rate));
   for (const PanelMode& mode : modes) {
-    add_ringing({mode.frequency, gain * mode.pressure / std::sqrt(energy),
-                 uniform(random, 0, 2 * kPi)},
-                options.damping, rate, 0, sound);
+    add_ringing(
+        {mode.frequency, gain * mode.pressure / std::sqrt(energy), uniform(random, 0, 2 * kPi)},
+        options.damping, rate, 0, sound);
   }
   fade_in(sound, 0, tau, rate);
   fade_out(sound, rate);
@@ -120,13 +122,22 @@ void add_crackles(const BankOptions& options, const PaperMaterial& material, int
   }
 }
 
-/// @return  the sound; `width` gets that of its panel
-Eigen::VectorXd flap(const BankSound& sound, int variant, const BankOptions& options,
-                     const PaperMaterial& material, int rate, RandomStream& random,
-                     double& width) {
+/// Roots of the beam equation of a panel's lowest bending along and across; 0 of free ends along,
+/// where it swings as one.
+void describe_panel(const SoundPanel& panel, BankSound& sound) {
+  const auto root = [](BeamEnds ends) {
+    return BeamMode(ends, ends == BeamEnds::free_free ? 2 : 0).beta();
+  };
+  sound.width = panel.width;
+  sound.root_across = root(panel.across);
+  sound.root_along = panel.along == BeamEnds::free_free ? 0 : root(panel.along);
+}
+
+Eigen::VectorXd flap(BankSound& sound, int variant, const BankOptions& options,
+                     const PaperMaterial& material, int rate, RandomStream& random) {
   const SoundPanel panel =
       panel_of(sound.ruling_length, sound.free_border, variant, options, random);
-  width = panel.width;
+  describe_panel(panel, sound);
   Eigen::VectorXd out;
   add_snap(panel, uniform(random, 1e-3, 3e-3), std::sqrt(1 - options.crackles), 0, options,
            material, rate, random, out);
@@ -134,12 +145,11 @@ Eigen::VectorXd flap(const BankSound& sound, int variant, const BankOptions& opt
   return out;
 }
 
-Eigen::VectorXd crac(const BankSound& sound, int variant, const BankOptions& options,
-                     const PaperMaterial& material, int rate, RandomStream& random,
-                     double& width) {
+Eigen::VectorXd crac(BankSound& sound, int variant, const BankOptions& options,
+                     const PaperMaterial& material, int rate, RandomStream& random) {
   const SoundPanel panel =
       panel_of(sound.ruling_length, sound.free_border, variant, options, random);
-  width = panel.width;
+  describe_panel(panel, sound);
   Eigen::VectorXd out;
   add_snap(panel, uniform(random, 5e-5, 2e-4), 1, 0, options, material, rate, random, out);
   return out;
@@ -193,8 +203,8 @@ Eigen::VectorXd tear(const BankOptions& options, const PaperMaterial& material, 
 
 double pressure_energy(double energy, double free_border) {
   constexpr double kImpedance = kAirDensity * kSoundSpeed;  // Pa s/m
-  constexpr double kRadiatedShare = 1e-4;  // by a free border of kBorder
-  constexpr double kBorder = 0.1;          // m
+  constexpr double kRadiatedShare = 1e-4;                   // by a free border of kBorder
+  constexpr double kBorder = 0.1;                           // m
   const double radiated = kRadiatedShare * (free_border + kLeak) / kBorder * energy;
   return kImpedance / (4 * kPi) * radiated;
 }
@@ -271,10 +281,10 @@ SoundBank generate_bank(const PaperMaterial& material, const BankOptions& option
       Eigen::VectorXd samples;
       switch (sound.kind) {
         case SoundKind::flap:
-          samples = flap(sound, variant, options, material, rate, random, sound.width);
+          samples = flap(sound, variant, options, material, rate, random);
           break;
         case SoundKind::crac:
-          samples = crac(sound, variant, options, material, rate, random, sound.width);
+          samples = crac(sound, variant, options, material, rate, random);
           break;
         case SoundKind::friction:
           samples = friction(sound.speed, options, rate, random);
@@ -306,8 +316,8 @@ std::uint64_t checksum(const SoundBank& bank) {
   add(static_cast<std::uint32_t>(bank.sample_rate));
   for (const BankSound& sound : bank.sounds) {
     add(static_cast<std::uint32_t>(sound.kind));
-    for (const double x : {sound.ruling_length, sound.free_border, sound.width, sound.speed,
-                           sound.energy}) {
+    for (const double x : {sound.ruling_length, sound.free_border, sound.width, sound.root_across,
+                           sound.root_along, sound.speed, sound.energy}) {
       add_number(x);
     }
     for (const float x : sound.samples) add(std::bit_cast<std::uint32_t>(x));

@@ -25,9 +25,12 @@ double pressure_energy(double energy, double free_border);
 /// root mean square 1.
 struct BankSound {
   SoundKind kind = SoundKind::flap;
-  double ruling_length = 0;      ///< l_r (m); of friction and tears unused
-  double free_border = 0;        ///< l_c (m)
-  double width = 0;              ///< across the rulings (m); 0: not known
+  double ruling_length = 0;  ///< l_r (m); of friction and tears unused
+  double free_border = 0;    ///< l_c (m)
+  double width = 0;          ///< of its panel, across the rulings (m); 0: not known
+  /// Roots of the beam equation of its lowest bending across and along the rulings: the frequency
+  /// goes as the root of (root_across / w)^4 + (root_along / l_r)^4.
+  double root_across = 4.73, root_along = 0;
   double speed = 0;              ///< of friction (m/s)
   double energy = 1e-6;          ///< J
   Eigen::VectorXf samples = {};  ///< mono; friction repeats without a seam
@@ -51,7 +54,7 @@ struct BankOptions {
   int speeds = 8;                                 ///< of friction
   double least_speed = 0.01, most_speed = 2;      ///< m/s
   int tears = 16;
-  double damping = 0.03;   ///< loss factor eta
+  double damping = 0.03;      ///< loss factor eta
   double least_width = 3e-3;  ///< of a panel (m)
   double crackles = 0;        ///< share of a flap's energy in snaps of facets that follow it
   double highest = 16000;     ///< Hz
@@ -67,7 +70,8 @@ void describe(OptionVisitor& v, BankOptions& options);
 /// phases drawn at random, damped by exp(-pi eta f t). How l_c follows from w depends on what holds
 /// it, so that variants and neighbours differ: between two creases, rulings that end at free
 /// borders on both sides (l_c = 2 w) or on one (w); hanging on one crease (l_r + 2 w) or on none
-/// (2 l_r + 2 w); of creases all around w is two thirds of l_r or one and a half. A flap is a snap of 1 to 3 ms, a crac one of 0.05 to 0.2 ms. Friction is noise from
+/// (2 l_r + 2 w); with creases (nearly) all around w is two thirds of l_r, one and a half or three
+/// times. A flap is a snap of 1 to 3 ms, a crac one of 0.05 to 0.2 ms. Friction is noise from
 /// 700 Hz to 6 kHz whose centroid rises with the speed, modulated by stick and slip; a step of a
 /// tear is the break of a few fibres.
 SoundBank generate_bank(const PaperMaterial& material, const BankOptions& options,

@@ -19,6 +19,7 @@ void describe(OptionVisitor& v, DetectionOptions& o) {
            .min = 0});
   v.value("least_energy", o.least_energy,
           {.doc = "of a flap or crac; less is what remeshing moves", .unit = "J", .min = 0});
+  v.value("tears", o.tears, {.doc = "whether steps of tears are heard"});
   describe_group(v, "flips", o.flips, {.doc = "sudden changes of the sign of curvature"});
   describe_group(v, "resonator", o.resonator, {.doc = "the part of the sheet that swings"});
   describe_group(v, "friction", o.friction, {.doc = "sliding along obstacles"});
@@ -141,7 +142,7 @@ std::vector<SoundEvent> SoundDetector::push(const SheetSnapshot& frame, RunConte
   }
   const Phase phase(context, "resonators");
   add_snaps(clusters, events);
-  add_tears(frame, events);
+  if (options_.tears) add_tears(frame, events);
   std::stable_sort(events.begin(), events.end(),
                    [](const SoundEvent& a, const SoundEvent& b) { return a.time < b.time; });
   return events;

@@ -18,6 +18,7 @@ struct DetectionOptions {
   double spacing = 3.3e-3;     ///< of the grid: 64 x 90 cells on a sheet of A4 (m)
   double radius = 4e-3;        ///< over which curvature is smoothed (m)
   double least_energy = 1e-9;  ///< of a flap or crac (J)
+  bool tears = true;           ///< whether steps of tears are heard
   FlipOptions flips;
   ResonatorOptions resonator;
   FrictionOptions friction;

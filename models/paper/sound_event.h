@@ -31,18 +31,18 @@ struct FlippedCell {
 /// Something to be heard, and what it depends on.
 struct SoundEvent {
   SoundKind kind = SoundKind::flap;
-  double time = 0;                    ///< of its start (s)
-  double duration = 0;                ///< of the motion that makes it (s)
-  Eigen::Vector3d position{0, 0, 0};  ///< m
-  double energy = 0;                  ///< set free (J)
-  double ruling_length = 0;           ///< l_r of its resonator (m)
-  double free_border = 0;             ///< l_c (m)
-  double area = 0;                    ///< of the resonator, or mean of the contact (m^2)
-  double curvature = 0;               ///< mean |k| of the resonator (1/m)
-  double flipped_area = 0;            ///< of what changed its sign (m^2)
-  double blocked_share = 0;           ///< of the resonator's border
-  std::vector<Sliding> sliding = {};  ///< of friction, in order of time
-  std::vector<int> cells = {};        ///< of the resonator, ascending
+  double time = 0;                      ///< of its start (s)
+  double duration = 0;                  ///< of the motion that makes it (s)
+  Eigen::Vector3d position{0, 0, 0};    ///< m
+  double energy = 0;                    ///< set free (J)
+  double ruling_length = 0;             ///< l_r of its resonator (m)
+  double free_border = 0;               ///< l_c (m)
+  double area = 0;                      ///< of the resonator, or mean of the contact (m^2)
+  double curvature = 0;                 ///< mean |k| of the resonator (1/m)
+  double flipped_area = 0;              ///< of what changed its sign (m^2)
+  double blocked_share = 0;             ///< of the resonator's border
+  std::vector<Sliding> sliding = {};    ///< of friction, in order of time
+  std::vector<int> cells = {};          ///< of the resonator, ascending
   std::vector<FlippedCell> flips = {};  ///< in order of the cells
 };
 

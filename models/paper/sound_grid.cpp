@@ -153,8 +153,8 @@ bool same(const ShellMesh& a, const ShellMesh& b) {
          a.pattern == b.pattern && a.triangles == b.triangles;
 }
 
-/// Direction of the eigenvector whose eigenvalue is smaller in modulus: mean - radius for a positive
-/// mean of both.
+/// Direction of the eigenvector whose eigenvalue is smaller in modulus: mean - radius for a
+/// positive mean of both.
 Vector2d least_bent(const Eigen::RowVector3d& S) {
   const double mean = (S[0] + S[2]) / 2;
   const double largest = std::atan2(2 * S[1], S[0] - S[2]) / 2;

@@ -1,6 +1,7 @@
 #include "models/paper/sound_mixer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -14,9 +15,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kNearest = 0.05;    // m
+constexpr double kNearest = 0.05;  // m
 
 Vector3d to_vector(const std::array<double, 3>& x) { return {x[0], x[1], x[2]}; }
+
+/// The cubic through four samples at `t` of the way from the second to the third.
+inline double cubic(const float* from, double t) {
+  const double a = from[0], b = from[1], c = from[2], d = from[3];
+  return -t * (t - 1) * (t - 2) / 6 * a + (t + 1) * (t - 1) * (t - 2) / 2 * b -
+         (t + 1) * t * (t - 2) / 2 * c + (t + 1) * t * (t - 1) / 6 * d;
+}
 
 /// A sample between two, by the cubic through four; 0 before the first and after the last, unless
 /// the samples repeat.
@@ -25,39 +33,55 @@ double sample_at(std::span<const float> samples, double at, bool repeats) {
   const double floor = std::floor(at);
   const double t = at - floor;
   const auto first = static_cast<std::ptrdiff_t>(floor);
-  const auto value = [&](std::ptrdiff_t i) -> double {
+  const auto value = [&](std::ptrdiff_t i) -> float {
     if (repeats) i = ((i % n) + n) % n;
-    return i < 0 || i >= n ? 0.0 : samples[static_cast<std::size_t>(i)];
+    return i < 0 || i >= n ? 0.0F : samples[static_cast<std::size_t>(i)];
   };
-  const double a = value(first - 1), b = value(first), c = value(first + 1), d = value(first + 2);
-  return -t * (t - 1) * (t - 2) / 6 * a + (t + 1) * (t - 1) * (t - 2) / 2 * b -
-         (t + 1) * t * (t - 2) / 2 * c + (t + 1) * t * (t - 1) / 6 * d;
+  const std::array<float, 4> four{value(first - 1), value(first), value(first + 1),
+                                  value(first + 2)};
+  return cubic(four.data(), t);
+}
+
+/// Adds a voice that sounds once. In the middle of its samples no end of them has to be thought of.
+void add_once(const Voice& voice, double start, double gain, int rate,
+              Eigen::Ref<Eigen::VectorXd> out) {
+  const auto count = static_cast<std::ptrdiff_t>(voice.samples.size());
+  const double length = static_cast<double>(count + 2) / voice.rate;
+  const auto first = std::max<Eigen::Index>(0, static_cast<Eigen::Index>(std::ceil(start * rate)));
+  const auto end = std::min<Eigen::Index>(
+      out.size(), static_cast<Eigen::Index>(std::ceil((start + length) * rate)));
+  for (Eigen::Index i = first; i < end; ++i) {
+    const double at = (static_cast<double>(i) / rate - start) * voice.rate;
+    const auto floor = static_cast<std::ptrdiff_t>(at);  // not negative
+    const bool within = floor >= 1 && floor + 2 < count;
+    out[i] +=
+        gain * (within ? cubic(voice.samples.data() + floor - 1, at - static_cast<double>(floor))
+                       : sample_at(voice.samples, at, false));
+  }
 }
 
 /// Adds one voice as an ear hears it that it reaches after `delay` (s).
 void add(const Voice& voice, double delay, double gain, int rate, Eigen::Ref<Eigen::VectorXd> out) {
   if (voice.samples.empty()) return;
-  const bool repeats = !voice.envelope.empty();
-  const double start = (repeats ? voice.envelope.front().x() : voice.time) + delay;
-  const double length = repeats ? voice.envelope.back().x() - voice.envelope.front().x()
-                                : static_cast<double>(voice.samples.size() + 2) / voice.rate;
+  if (voice.envelope.empty()) {
+    add_once(voice, voice.time + delay, gain, rate, out);
+    return;
+  }
+  const double start = voice.envelope.front().x() + delay;
+  const double length = voice.envelope.back().x() - voice.envelope.front().x();
   const auto first = std::max<Eigen::Index>(0, static_cast<Eigen::Index>(std::ceil(start * rate)));
   const auto end = std::min<Eigen::Index>(
       out.size(), static_cast<Eigen::Index>(std::ceil((start + length) * rate)));
   std::size_t key = 0;
   for (Eigen::Index i = first; i < end; ++i) {
     const double since = static_cast<double>(i) / rate - start;
-    double loud = gain;
-    if (repeats) {
-      const double now = voice.envelope.front().x() + since;
-      while (key + 2 < voice.envelope.size() && voice.envelope[key + 1].x() <= now) ++key;
-      const Eigen::Vector2d &a = voice.envelope[key],
-                            &b = voice.envelope[std::min(key + 1, voice.envelope.size() - 1)];
-      const double share =
-          b.x() > a.x() ? std::clamp((now - a.x()) / (b.x() - a.x()), 0.0, 1.0) : 0;
-      loud *= a.y() + share * (b.y() - a.y());
-    }
-    out[i] += loud * sample_at(voice.samples, since * voice.rate, repeats);
+    const double now = voice.envelope.front().x() + since;
+    while (key + 2 < voice.envelope.size() && voice.envelope[key + 1].x() <= now) ++key;
+    const Eigen::Vector2d &a = voice.envelope[key],
+                          &b = voice.envelope[std::min(key + 1, voice.envelope.size() - 1)];
+    const double share = b.x() > a.x() ? std::clamp((now - a.x()) / (b.x() - a.x()), 0.0, 1.0) : 0;
+    const double loud = gain * (a.y() + share * (b.y() - a.y()));
+    out[i] += loud * sample_at(voice.samples, since * voice.rate, true);
   }
 }
 
@@ -115,8 +139,8 @@ void describe(OptionVisitor& v, MixOptions& o) {
 
 Eigen::VectorXd heard_alone(const Voice& voice, int sample_rate) {
   const auto n = static_cast<double>(voice.samples.size());
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(
-      static_cast<Eigen::Index>(std::ceil(n / voice.rate * sample_rate)));
+  Eigen::VectorXd out =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(std::ceil(n / voice.rate * sample_rate)));
   Voice once = voice;
   once.envelope.clear();
   once.time = 0;

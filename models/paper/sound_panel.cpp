@@ -15,8 +15,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int kMostAcross = 40;      // modes of the beam across the rulings
-constexpr int kMostAlong = 8;        // along them: flips are smooth
+constexpr int kMostAcross = 40;  // modes of the beam across the rulings
+constexpr int kMostAlong = 8;    // along them: flips are smooth
 
 double beta_of(BeamEnds ends, int n) {
   // Roots of cos b cosh b = 1 and of cos b cosh b = -1; beyond the first ones those of the cosine.
@@ -25,7 +25,8 @@ double beta_of(BeamEnds ends, int n) {
   static constexpr std::array<double, 4> kCantilever{1.875104068711961, 4.694091132974175,
                                                      7.854757438237613, 10.995540734875467};
   const int i = ends == BeamEnds::free_free ? n - 2 : n;
-  if (i < 4) return (ends == BeamEnds::clamped_free ? kCantilever : kEqual)[static_cast<std::size_t>(i)];
+  if (i < 4)
+    return (ends == BeamEnds::clamped_free ? kCantilever : kEqual)[static_cast<std::size_t>(i)];
   return ends == BeamEnds::clamped_free ? (i + 0.5) * pi : (i + 1.5) * pi;
 }
 
@@ -110,9 +111,7 @@ double BeamMode::slope(double x) const {
                   near_ * std::exp(-beta_ * x) + far_ * std::exp(-beta_ * (1 - x)));
 }
 
-double BeamMode::bend(double x) const {
-  return beta_ * beta_ * (hyperbolic(x) - trigonometric(x));
-}
+double BeamMode::bend(double x) const { return beta_ * beta_ * (hyperbolic(x) - trigonometric(x)); }
 
 std::vector<PanelMode> panel_modes(const SoundPanel& panel, const PaperMaterial& material,
                                    double tau, double highest, int most) {
@@ -133,23 +132,22 @@ std::vector<PanelMode> panel_modes(const SoundPanel& panel, const PaperMaterial&
   for (std::size_t n = 0; n < across.size(); ++n) {
     for (std::size_t j = 0; j < along.size(); ++j) {
       const Sampled &a = across[n], &b = along[j];
-      const double square = std::pow(a.mode.beta() / w, 4) + std::pow(b.mode.beta() / l, 4) +
-                            2 / (w * w * l * l) *
-                                (nu * a.bend * b.bend + (1 - nu) * a.slope * b.slope);
+      const double square =
+          std::pow(a.mode.beta() / w, 4) + std::pow(b.mode.beta() / l, 4) +
+          2 / (w * w * l * l) * (nu * a.bend * b.bend + (1 - nu) * a.slope * b.slope);
       const double omega = stiffness * std::sqrt(std::max(square, 0.0));
       const double f = omega / (2 * pi);
       constexpr double kRigid = 1e-3;  // Hz: what does not ring
       if (f < kRigid || f > highest) continue;
       // Of a mode of unit mass, but for factors that all have.
-      const double force = (a.turn / w * l * b.part + nu * b.turn / l * w * a.part) /
-                           std::sqrt(w * l);
+      const double force =
+          (a.turn / w * l * b.part + nu * b.turn / l * w * a.part) / std::sqrt(w * l);
       const double q = force / (omega * omega) * pulse_spectrum(f, tau);
       all.push_back({{f, omega * omega * q * q / 2, 0}, n, j, std::abs(q)});
     }
   }
-  std::stable_sort(all.begin(), all.end(), [](const Found& a, const Found& b) {
-    return a.mode.energy > b.mode.energy;
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Found& a, const Found& b) { return a.mode.energy > b.mode.energy; });
   all.resize(std::min(all.size(), static_cast<std::size_t>(most)));
   static const std::vector<Eigen::Vector3d> directions = octant();
   std::vector<PanelMode> modes;

@@ -174,7 +174,8 @@ class SoundFrames final : public FrameModel {
     }
     Frame frame;
     frame.parameter = snapshot.time;
-    frame.parts["events"] = events_part(events, {heard_.begin() + static_cast<std::ptrdiff_t>(first), heard_.end()});
+    frame.parts["events"] =
+        events_part(events, {heard_.begin() + static_cast<std::ptrdiff_t>(first), heard_.end()});
     frame.parts["resonators"] = resonators_part(detector_.grid(), detector_.field(), events);
     if (stage_.surface) {
       Part& surface = frame.parts["surface"];

@@ -27,7 +27,8 @@ Differences differences(const SoundGrid& grid, const SheetField& field, int cell
   const auto there = [&](int side) -> Vector3d {
     return field.place.row(beside[static_cast<std::size_t>(side)]);
   };
-  const bool has_ahead = field.holds(grid, cell, ahead), has_behind = field.holds(grid, cell, behind);
+  const bool has_ahead = field.holds(grid, cell, ahead),
+             has_behind = field.holds(grid, cell, behind);
   if (has_ahead && has_behind) {
     return {(there(ahead) - there(behind)) / 2, there(ahead) - 2 * here + there(behind), true};
   }
@@ -82,10 +83,9 @@ std::vector<int> largest_piece(const SoundGrid& grid, const SheetField& field,
   }
   std::map<int, std::vector<int>> by_piece;
   for (const int c : cells) by_piece[pieces.find(number[c])].push_back(c);
-  const auto largest =
-      std::max_element(by_piece.begin(), by_piece.end(), [](const auto& a, const auto& b) {
-        return a.second.size() < b.second.size();
-      });
+  const auto largest = std::max_element(
+      by_piece.begin(), by_piece.end(),
+      [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
   return largest == by_piece.end() ? std::vector<int>{} : largest->second;
 }
 
@@ -95,8 +95,8 @@ std::map<std::pair<int, int>, double> held_border(const SoundGrid& grid, const S
   std::map<std::pair<int, int>, double> held;
   for (const BorderStretch& stretch : field.border) {
     const Eigen::Vector2d way = stretch.place - grid.centre(stretch.cell);
-    const int side = std::abs(way.x()) >= std::abs(way.y()) ? (way.x() > 0 ? 0 : 2)
-                                                            : (way.y() > 0 ? 1 : 3);
+    const int side =
+        std::abs(way.x()) >= std::abs(way.y()) ? (way.x() > 0 ? 0 : 2) : (way.y() > 0 ? 1 : 3);
     held[{stretch.cell, side}] += is_held(stretch.place) ? stretch.length : -stretch.length;
   }
   return held;
@@ -138,9 +138,7 @@ class Lattice {
   }
 
  private:
-  [[nodiscard]] int local(int c, int a, int b) const {
-    return (c * (s_ + 1) + b) * (s_ + 1) + a;
-  }
+  [[nodiscard]] int local(int c, int a, int b) const { return (c * (s_ + 1) + b) * (s_ + 1) + a; }
 
   const ResonatorShape& shape_;
   int s_;
@@ -233,8 +231,8 @@ ResonatorMesh mesh_of(const ResonatorShape& shape, int subdivision) {
       for (int k = 0; k < s; ++k) {
         const int a = side == 0 ? s : side == 2 ? 0 : k, b = side == 1 ? s : side == 3 ? 0 : k;
         const bool upright = side == 0 || side == 2;
-        out.clamped.push_back(undirected(lattice.vertex(c, a, b),
-                                         lattice.vertex(c, a + !upright, b + upright)));
+        out.clamped.push_back(
+            undirected(lattice.vertex(c, a, b), lattice.vertex(c, a + !upright, b + upright)));
       }
     }
   }

@@ -74,10 +74,17 @@ class BankVoices final : public SoundVoices {
  private:
   /// By which a sound is played faster.
   [[nodiscard]] double adaptation(const SoundEvent& event, int sound) const {
-    const double width = bank_.sounds[static_cast<std::size_t>(sound)].width;
-    if (!options_.adapt || !(width > 0) || !(event.area > 0) || !(event.ruling_length > 0)) return 1;
+    const BankSound& chosen = bank_.sounds[static_cast<std::size_t>(sound)];
+    if (!options_.adapt || !(chosen.width > 0) || !(event.area > 0)) return 1;
+    if (!(event.ruling_length > 0) || !(chosen.ruling_length > 0)) return 1;
+    const auto pitch = [&](double length, double width) {
+      return std::hypot(std::pow(chosen.root_across / width, 2),
+                        std::pow(chosen.root_along / length, 2));
+    };
     constexpr double kMost = 4;  // two octaves
-    return std::clamp(std::pow(width * event.ruling_length / event.area, 2), 1 / kMost, kMost);
+    return std::clamp(pitch(event.ruling_length, event.area / event.ruling_length) /
+                          pitch(chosen.ruling_length, chosen.width),
+                      1 / kMost, kMost);
   }
 
   SoundBank bank_;
@@ -89,7 +96,7 @@ class BankVoices final : public SoundVoices {
 
 void describe(OptionVisitor& v, SoundOptions& o) {
   static constexpr std::array<std::string_view, 5> kNames{"all", "both", "ruling", "border",
-                                                           "none"};
+                                                          "none"};
   describe(v, o.stage);
   describe_group(v, "bank", o.bank, {.doc = "that is generated where the scene has none"});
   describe_choice(v, "descriptors", o.descriptors, kNames,

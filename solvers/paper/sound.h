@@ -17,21 +17,22 @@ namespace geoprior::paper {
 ///
 ///   d^2 = ln^2(l_r / l_r') + ln^2((l_c + l_0) / (l_c' + l_0)),     l_0 = 5 mm,
 ///
-/// as loud as its energy; `all` adds ln^2(w / w') where the sounds have widths. Sliding is a loop of noise of its speed.
+/// as loud as its energy; `all` adds ln^2(w / w') where the sounds have widths. Sliding is a loop
+/// of noise of its speed.
 ///
-/// Two lengths do not say how wide a resonator is, and a bending wave's frequency goes as one over
-/// the square of the width: the sound is played faster or slower by (w' / w)^2, w the resonator's
-/// area over l_r and w' the width of the sound's panel, two octaves at most (the thesis says that
-/// sounds are adapted, not how). A user's sounds without width are played as they are. It does not
+/// Two lengths do not say how wide a resonator is, w = A / l_r. A sound is played faster by the
+/// ratio of the lowest frequencies of a panel of the resonator's lengths and of its own, held in
+/// the same way, two octaves at most (the thesis says that sounds are adapted, not how). A user's
+/// sounds without width are played as they are. The method does not
 /// know how the sheet is bent beyond these numbers, nor what it lies on.
 struct SoundOptions {
   enum class Descriptors { all, both, ruling, border, none };
   SoundStage stage;
-  BankOptions bank;                             ///< unless the scene has one
+  BankOptions bank;                            ///< unless the scene has one
   Descriptors descriptors = Descriptors::all;  ///< that choose a sound
-  int nearest = 3;        ///< sounds that are drawn from
-  bool adapt = true;      ///< change the pitch by how wide the resonator is
-  double detune = 0.05;   ///< largest change of pitch at random, relative
+  int nearest = 3;                             ///< sounds that are drawn from
+  bool adapt = true;                           ///< change the pitch by how wide the resonator is
+  double detune = 0.05;                        ///< largest change of pitch at random, relative
 };
 void describe(OptionVisitor& v, SoundOptions& options);
 

@@ -276,8 +276,8 @@ void CaseRunner::finish(const VariantSpec& variant, journal::EndLine line) {
   if (has_sequence_metrics(topic_) && line.error.empty()) {
     const KeptFrames none(0);
     const VariantRecord* of = reference_record(variant);
-    const auto reference = of ? std::optional<RecordedFrames>(std::in_place, recorder_, *of, none)
-                              : std::nullopt;
+    const auto reference =
+        of ? std::optional<RecordedFrames>(std::in_place, recorder_, *of, none) : std::nullopt;
     line.summary = measure_sequence(
         topic_, *scene_,
         RecordedFrames(recorder_, record, kept_, reference ? &*reference : nullptr));

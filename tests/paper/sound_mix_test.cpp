@@ -4,6 +4,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "baselines/paper/modal_sound.h"
 #include "baselines/paper/plain_sounds.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -128,26 +129,23 @@ TEST(SoundBank, HasTheSoundsOfItsGridAndIsTheSameAtAnyNumberOfThreads) {
   EXPECT_NO_THROW(require_valid(one, "bank"));
 }
 
-TEST(SoundBank, LowestSinglePlateModeIsWhereItsFormulaSays) {
-  // 50 x 50 mm of office paper: pi/2 0.0678 (2/0.05^2) = 85 Hz, alone with most_modes = 1 and
-  // highest below the second (213 Hz).
-  BankOptions options;
-  options.sizes = 1;
-  options.least_ruling = options.most_ruling = 0.05;
-  options.most_border = 0.05;
-  options.variants = 1;
-  options.highest = 100;
-  PaperMaterial paper;
-  const double c = kPi / 2 * std::sqrt(paper.bending_stiffness() / paper.area_density);
-  const double f = 2 * c / (0.05 * 0.05);
-  ASSERT_LT(f, 100);
-  const SoundBank bank = generate_bank(paper, options, 1);
-  const Eigen::VectorXf& flap = bank.sounds.front().samples;
-  // Zero crossings of the ringing sine.
-  int crossings = 0;
-  const int from = 4800, to = 14400;
-  for (int i = from; i < to; ++i) crossings += (flap[i] > 0) != (flap[i + 1] > 0) ? 1 : 0;
-  EXPECT_NEAR(crossings / 2.0 / ((to - from) / 48000.0), f, 3);
+TEST(SoundBank, SoundsHavePanelsWhoseBorderTheyName) {
+  const SoundBank bank = generate_bank({}, {}, 1);
+  for (const SoundKind kind : {SoundKind::flap, SoundKind::crac}) {
+    for (const int i : bank.of(kind)) {
+      const BankSound& sound = bank.sounds[static_cast<std::size_t>(i)];
+      const double l = sound.ruling_length, c = sound.free_border, w = sound.width;
+      EXPECT_GT(w, 0);
+      if (w <= BankOptions{}.least_width) continue;
+      // Between creases, hanging on one, free, or with creases all around.
+      bool known = false;
+      for (const double border : {2 * w, w, l + 2 * w, 2 * (l + w)})
+        known = known || std::abs(c - border) < 1e-9;
+      for (const double aspect : {2 / 3.0, 1.5, 3.0})
+        known = known || (c < l && std::abs(w - aspect * l) < 1e-9);
+      EXPECT_TRUE(known) << l << " " << c << " " << w;
+    }
+  }
 }
 
 /// A sheet that snaps, with one handle at its edge.
@@ -201,6 +199,66 @@ TEST(SoundProcess, RecordsEventsPicturesAndOneSound) {
     EXPECT_GE(e.numbers.at("sample"), 0);
     EXPECT_NEAR(e.numbers.at("ruling_length_m"), 0.3, 0.02);
   }
+}
+
+TEST(SoundProcess, PickedEventsAreHeardAlone) {
+  Sheet sheet;
+  sheet.pattern = rectangle_pattern(0.2, 0.3);
+  SoundOptions options;
+  options.bank.sizes = 3;
+  options.stage.picked = {2, 2};  // of six events the first and the third
+  Recording record;
+  RunContext context;
+  make_sound_process(
+      sheet, snapping(sheet), options.stage,
+      bank_voices(generate_bank(sheet.material, options.bank, 1), options, sheet.material), raw)
+      ->run(record, context, {});
+  ASSERT_EQ(record.artifacts.size(), 2u);
+  EXPECT_EQ(record.artifacts[1].name, "voices.wav");
+  std::vector<double> starts;
+  double end = 0;
+  for (std::size_t i = 0; i < record.events.size(); ++i) {
+    const auto& numbers = record.events[i].numbers;
+    EXPECT_EQ(numbers.contains("voice_start_s"), i == 0 || i == 2);
+    if (!numbers.contains("voice_start_s")) continue;
+    starts.push_back(numbers.at("voice_start_s"));
+    EXPECT_GE(starts.back(), end);
+    end = starts.back() + numbers.at("voice_length_s");
+  }
+  const auto* samples = reinterpret_cast<const double*>(record.artifacts[1].bytes.data());
+  const auto count = static_cast<Eigen::Index>(record.artifacts[1].bytes.size() / sizeof(double));
+  EXPECT_GE(static_cast<double>(count), end * 48000 - 1);
+  for (const double start : starts) {
+    const Eigen::Map<const Eigen::VectorXd> all(samples, count);
+    EXPECT_NEAR(all.segment(std::lround(start * 48000), 4800).cwiseAbs().maxCoeff(), 0.9, 1e-12);
+  }
+}
+
+std::unique_ptr<Process> a_modal_process(const Sheet& sheet) {
+  ModalSoundOptions options;
+  options.stage.picked = {2, 2};
+  options.stage.detection.spacing = 0.01;
+  options.most_modes = 6;
+  options.most_vertices = 100;
+  return make_sound_process(sheet, snapping(sheet), options.stage,
+                            modal_voices(options, sheet.material), raw);
+}
+
+TEST(SoundProcess, ModalSoundsOfPickedEventsSurviveACheckpoint) {
+  Sheet sheet;
+  sheet.pattern = rectangle_pattern(0.2, 0.3);
+  RunContext context;
+  Recording whole, rest;
+  a_modal_process(sheet)->run(whole, context, {});
+  a_modal_process(sheet)->run(rest, context, whole.checkpoints.at(25));
+  ASSERT_EQ(rest.artifacts.size(), 2u);
+  EXPECT_EQ(rest.artifacts[0].bytes, whole.artifacts[0].bytes);
+  EXPECT_EQ(rest.artifacts[1].bytes, whole.artifacts[1].bytes);
+  ASSERT_EQ(whole.events.size(), 6u);
+  const auto& numbers = whole.events[2].numbers;
+  EXPECT_EQ(numbers.at("modes"), 6);
+  EXPECT_GT(numbers.at("radiated_share"), 0);
+  EXPECT_LT(numbers.at("radiated_share"), 1);
 }
 
 TEST(SoundProcess, ResumesToTheSameSound) {

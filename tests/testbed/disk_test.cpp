@@ -58,6 +58,29 @@ TEST_F(Disk, FullIsOneErrorAndARunThatCanBeResumed) {
   }
 }
 
+// A sound is written at the end, and is larger than all else.
+TEST_F(Disk, FullWhileASoundIsWrittenIsOneErrorAndARunThatCanBeResumed) {
+  const auto file = pendulum("frames = 6", "step_s = 1e-4");
+  const ExecuteResult undisturbed = run(load(file), folder() / "undisturbed");
+  rlim_t sound = 0, others = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(undisturbed.folder)) {
+    if (!entry.is_regular_file() || entry.path().filename() == "run.h5") continue;
+    rlim_t& largest = entry.path().extension() == ".wav" ? sound : others;
+    largest = std::max<rlim_t>(largest, entry.file_size());
+  }
+  ASSERT_GT(sound, others);
+  EXPECT_EQ(run_limited(file, sound - 1), 2) << text_of(log());
+  EXPECT_THAT(text_of(log()), HasSubstr("File too large"));
+  EXPECT_THAT(text_of(log()), HasSubstr(".wav"));
+  for (const auto& entry : fs::recursive_directory_iterator(out())) {
+    EXPECT_FALSE(is_temporary_file(entry.path())) << entry.path();
+    EXPECT_NE(entry.path().extension(), ".wav");
+  }
+  const ExecuteResult resumed = run(load(file), out(), true);
+  EXPECT_EQ(resumed.record.content_sha256, undisturbed.record.content_sha256);
+  EXPECT_EQ(lasting_files(out()), lasting_files(undisturbed.folder));
+}
+
 TEST_F(Disk, UnwritableFolderIsOneErrorBeforeAnythingIsComputed) {
   const fs::path nowhere = "/proc/geoprior-run";  // not even root can make a folder there
   ToyProgram program({"run", pendulum().string(), "--no-pictures", "--out", nowhere.string()},
