@@ -25,15 +25,15 @@ double pressure_energy(double energy, double free_border);
 /// root mean square 1.
 struct BankSound {
   SoundKind kind = SoundKind::flap;
-  double ruling_length = 0;  ///< l_r (m); of friction and tears unused
-  double free_border = 0;    ///< l_c (m)
-  double width = 0;          ///< of its panel, across the rulings (m); 0: not known
-  /// Roots of the beam equation of its lowest bending across and along the rulings: the frequency
-  /// goes as the root of (root_across / w)^4 + (root_along / l_r)^4.
-  double root_across = 4.73, root_along = 0;
+  double ruling_length = 0;      ///< l_r (m); of friction and tears unused
+  double free_border = 0;        ///< l_c (m)
   double speed = 0;              ///< of friction (m/s)
   double energy = 1e-6;          ///< J
   Eigen::VectorXf samples = {};  ///< mono; friction repeats without a seam
+  double width = 0;              ///< of its panel, across the rulings (m); 0: not known
+  /// Roots of the beam equation of its lowest bending across and along the rulings: the frequency
+  /// goes as the root of (root_across / w)^4 + (root_along / l_r)^4.
+  double root_across = 4.73, root_along = 0;
 };
 
 /// Sounds to choose from.
