@@ -75,8 +75,10 @@ SoundPanel panel_of(double l_r, double l_c, int variant, const BankOptions& opti
 void add_snap(const SoundPanel& panel, double tau, double gain, double start,
               const BankOptions& options, const PaperMaterial& material, int rate,
               RandomStream& random, Eigen::VectorXd& out) {
-  const std::vector<PanelMode> modes =
+  std::vector<PanelMode> modes =
       panel_modes(panel, material, tau, options.highest, options.most_modes);
+  // A facet too small to be heard but as a click.
+  if (modes.empty()) modes = {{options.highest, 1, 1}};
   double energy = 0;
   for (const PanelMode& mode : modes) energy += mode.energy;
   if (!(energy > 0)) return;

@@ -18,7 +18,11 @@ void save(const SoundEvent& event, StateWriter& out) {
   for (const double* x : numbers(event)) out.number(*x);
   out.items(event.sliding);
   out.items(event.cells);
-  out.items(event.flips);
+  out.number(event.flips.size());
+  for (const FlippedCell& flip : event.flips) {
+    out.number(flip.cell);
+    out.number(flip.change);
+  }
 }
 
 SoundEvent load_sound_event(StateReader& in) {
@@ -27,7 +31,11 @@ SoundEvent load_sound_event(StateReader& in) {
   for (double* x : numbers(event)) *x = in.number<double>();
   in.items(event.sliding);
   in.items(event.cells);
-  in.items(event.flips);
+  event.flips.resize(in.count(sizeof(int) + sizeof(double)));
+  for (FlippedCell& flip : event.flips) {
+    flip.cell = in.number<int>();
+    flip.change = in.number<double>();
+  }
   return event;
 }
 
