@@ -12,9 +12,32 @@ namespace {
 
 using Eigen::Vector2d;
 
+/// Whether a crease passes through a cell.
+bool is_crease(const SoundGrid& grid, const SheetField& field, int cell,
+               const ResonatorOptions& options) {
+  const double k = std::abs(field.curvature[cell]);
+  if (k >= options.fold) return true;
+  if (k < options.block) return false;
+  const Vector2d ruling = field.ruling.row(cell);
+  const Vector2d across = options.beside * Vector2d(-ruling.y(), ruling.x());
+  double sum = 0;
+  int count = 0;
+  for (const Vector2d& p :
+       {Vector2d(grid.centre(cell) + across), Vector2d(grid.centre(cell) - across)}) {
+    const Vector2d from = (p - grid.corner) / grid.spacing;
+    if (from.minCoeff() < 0 || from.x() >= grid.columns || from.y() >= grid.rows) continue;
+    const int other = grid.at(p);
+    if (!field.inside[static_cast<std::size_t>(other)]) continue;
+    sum += std::abs(field.curvature[other]);
+    ++count;
+  }
+  return count == 0 || k * count >= options.contrast * sum;
+}
+
 /// Cells from the seeds on, ascending; `in` gets 1 for them.
 std::vector<int> flood(const SoundGrid& grid, const SheetField& field,
-                       const std::vector<int>& seeds, double block, std::vector<char>& in) {
+                       const std::vector<int>& seeds, const ResonatorOptions& options,
+                       std::vector<char>& in) {
   std::vector<int> cells;
   const auto take = [&](int c) {
     in[static_cast<std::size_t>(c)] = 1;
@@ -32,7 +55,7 @@ std::vector<int> flood(const SoundGrid& grid, const SheetField& field,
     for (int side = 0; side < 4; ++side) {
       const int other = beside[static_cast<std::size_t>(side)];
       if (other < 0 || in[static_cast<std::size_t>(other)]) continue;
-      if (!field.holds(grid, c, side) || std::abs(field.curvature[other]) > block) continue;
+      if (!field.holds(grid, c, side) || is_crease(grid, field, other, options)) continue;
       take(other);
     }
   }
@@ -76,8 +99,17 @@ double ruling_length(const SoundGrid& grid, const SheetField& field, const std::
 }  // namespace
 
 void describe(OptionVisitor& v, ResonatorOptions& o) {
-  v.value("block", o.block,
-          {.doc = "curvature that blocks vibrations", .unit = "1/m", .min = 1e-6});
+  v.value(
+      "block", o.block,
+      {.doc = "least curvature of a crease, which blocks vibrations", .unit = "1/m", .min = 1e-6});
+  v.value("contrast", o.contrast,
+          {.doc = "of a crease's curvature to that of the sheet beside it; 0: none is needed",
+           .min = 0,
+           .max = 1000});
+  v.value("fold", o.fold,
+          {.doc = "curvature that blocks whatever lies beside it", .unit = "1/m", .min = 1e-6});
+  v.value("beside", o.beside,
+          {.doc = "where that is looked at, across the ruling", .unit = "m", .min = 0, .max = 1});
   v.value("crumpled_share", o.crumpled_share,
           {.doc = "share of a resonator's border that is creases, from which on "
                   "it cracs",
@@ -91,7 +123,7 @@ Resonator find_resonator(const SoundGrid& grid, const SheetField& field,
   if (seeds.empty()) throw Error("has no seeds", "resonator");
   std::vector<char> in(static_cast<std::size_t>(grid.count()), 0);
   Resonator found;
-  found.cells = flood(grid, field, seeds, options.block, in);
+  found.cells = flood(grid, field, seeds, options, in);
   found.area = static_cast<double>(found.cells.size()) * grid.cell_area();
   found.ruling_length = ruling_length(grid, field, in, found.cells);
   double blocked = 0, held = 0;

@@ -11,7 +11,10 @@ namespace geoprior::paper {
 
 /// What blocks vibrations.
 struct ResonatorOptions {
-  double block = 20;            ///< curvature that blocks vibrations (1/m)
+  double block = 20;            ///< least curvature of a crease, which blocks vibrations (1/m)
+  double contrast = 1.25;       ///< of a crease to the sheet beside it
+  double fold = 40;             ///< curvature that blocks whatever lies beside it (1/m)
+  double beside = 8e-3;         ///< where that is looked at, across the ruling (m)
   double crumpled_share = 0.5;  ///< of its border that is creases, from which on a resonator cracs
 };
 void describe(OptionVisitor& v, ResonatorOptions& options);
@@ -29,10 +32,13 @@ struct Resonator {
 /// Whether a place of the border is held: it is not free then.
 using IsHeld = std::function<bool(const Eigen::Vector2d& place)>;
 
-/// Flood fill from `seeds` over cells that hold together, to cells bent more than
-/// `options.block`, which are no part of it: a strip of high curvature is a stiff constraint. Seeds
-/// are always part of it. With the smoothing over 4 mm, 20 1/m is a fold of 11 degrees between two
-/// facets; a sheet rolled up to less than 5 cm of radius counts as folded, too.
+/// Flood fill from `seeds` over cells that hold together, to creases, which are no part of it: a
+/// strip of high curvature is a stiff constraint. Seeds are always part of it.
+///
+/// A crease is a ridge of |k|: at least `block`, and at least `contrast` times the mean of |k| at
+/// the two places `beside` it, across its ruling; or it is `fold`, whatever lies beside. So a sheet
+/// that is smoothly rolled up has none until its radius is less than 25 mm; with the smoothing over
+/// 4 mm, 20 1/m is a fold of 11 degrees between two flat facets, 40 1/m one of 23.
 ///
 /// Rulings are straight: l_r is the mean over the cells, each counted by |k|, of the length in the
 /// resonator of the straight line through the cell along its ruling. Of a flat resonator, which has
