@@ -374,9 +374,10 @@ MetricGroup voice_distance_group() {
            "variant's, from 100 Hz to where that one is resolved, 40 dB of range, gain left free: "
            "median over the events",
            kLow, {0.02, 1e-3}, [](M m) { return m.median; })
-      .row("voice_distance_low", "dB", "lower end of its 95 % bootstrap interval", kNone,
-           {0.1, 1e-2}, [](M m) { return m.low; })
-      .row("voice_distance_high", "dB", "upper end of it", kNone, {0.1, 1e-2},
+      .row("voice_distance_low", "dB", "lower end of the 95 % bootstrap interval of voice_distance",
+           kNone, {0.1, 1e-2}, [](M m) { return m.low; })
+      .row("voice_distance_high", "dB",
+           "upper end of the 95 % bootstrap interval of voice_distance", kNone, {0.1, 1e-2},
            [](M m) { return m.high; })
       .row("voices_compared", "1", "events whose sounds were compared", kNone, kCount,
            [](M m) { return static_cast<double>(m.count); });
