@@ -135,25 +135,19 @@ void describe_panel(const SoundPanel& panel, BankSound& sound) {
   sound.root_along = panel.along == BeamEnds::free_free ? 0 : root(panel.along);
 }
 
-Eigen::VectorXd flap(BankSound& sound, int variant, const BankOptions& options,
+/// A flap is a snap of 1 to 3 ms, with crackles if the options say so; a crac one of 0.05 to 0.2
+/// ms.
+Eigen::VectorXd snap(BankSound& sound, int variant, const BankOptions& options,
                      const PaperMaterial& material, int rate, RandomStream& random) {
+  const bool flaps = sound.kind == SoundKind::flap;
+  const double crackles = flaps ? options.crackles : 0;
   const SoundPanel panel =
       panel_of(sound.ruling_length, sound.free_border, variant, options, random);
   describe_panel(panel, sound);
+  const double tau = flaps ? uniform(random, 1e-3, 3e-3) : uniform(random, 5e-5, 2e-4);
   Eigen::VectorXd out;
-  add_snap(panel, uniform(random, 1e-3, 3e-3), std::sqrt(1 - options.crackles), 0, options,
-           material, rate, random, out);
-  if (options.crackles > 0) add_crackles(options, material, rate, random, out);
-  return out;
-}
-
-Eigen::VectorXd crac(BankSound& sound, int variant, const BankOptions& options,
-                     const PaperMaterial& material, int rate, RandomStream& random) {
-  const SoundPanel panel =
-      panel_of(sound.ruling_length, sound.free_border, variant, options, random);
-  describe_panel(panel, sound);
-  Eigen::VectorXd out;
-  add_snap(panel, uniform(random, 5e-5, 2e-4), 1, 0, options, material, rate, random, out);
+  add_snap(panel, tau, std::sqrt(1 - crackles), 0, options, material, rate, random, out);
+  if (crackles > 0) add_crackles(options, material, rate, random, out);
   return out;
 }
 
@@ -283,10 +277,8 @@ SoundBank generate_bank(const PaperMaterial& material, const BankOptions& option
       Eigen::VectorXd samples;
       switch (sound.kind) {
         case SoundKind::flap:
-          samples = flap(sound, variant, options, material, rate, random);
-          break;
         case SoundKind::crac:
-          samples = crac(sound, variant, options, material, rate, random);
+          samples = snap(sound, variant, options, material, rate, random);
           break;
         case SoundKind::friction:
           samples = friction(sound.speed, options, rate, random);
