@@ -31,7 +31,7 @@ std::string name_of(const PaperMaterial& material, const BankOptions& o, std::ui
   for (const double x :
        {material.thickness, material.young_modulus, material.poisson_ratio, material.area_density,
         o.least_ruling, o.most_ruling, o.most_border, o.least_speed, o.most_speed, o.damping,
-        o.least_width, o.crackles, o.highest}) {
+        o.least_width, o.flap_bow, o.crac_bow, o.crackles, o.highest}) {
     out.number(x);
   }
   for (const int n : {o.sizes, o.variants, o.speeds, o.tears, o.most_modes}) out.number(n);
@@ -45,10 +45,7 @@ State bytes_of(const SoundBank& bank) {
   out.number(bank.sounds.size());
   for (const BankSound& sound : bank.sounds) {
     out.number(sound.kind);
-    for (const double x : {sound.ruling_length, sound.free_border, sound.width, sound.root_across,
-                           sound.root_along, sound.speed, sound.energy}) {
-      out.number(x);
-    }
+    for (const BankNumber& number : kBankNumbers) out.number(sound.*number.value);
     out.matrix(sound.samples);
   }
   out.number(checksum(bank));
@@ -66,13 +63,10 @@ std::optional<SoundBank> read(const fs::path& file) {
     StateReader in(bytes);
     SoundBank bank;
     bank.sample_rate = in.number<int>();
-    bank.sounds.resize(in.count(sizeof(SoundKind) + 7 * sizeof(double)));
+    bank.sounds.resize(in.count(sizeof(SoundKind) + kBankNumbers.size() * sizeof(double)));
     for (BankSound& sound : bank.sounds) {
       sound.kind = in.number<SoundKind>();
-      for (double* x : {&sound.ruling_length, &sound.free_border, &sound.width, &sound.root_across,
-                        &sound.root_along, &sound.speed, &sound.energy}) {
-        *x = in.number<double>();
-      }
+      for (const BankNumber& number : kBankNumbers) sound.*number.value = in.number<double>();
       in.matrix(sound.samples);
     }
     const bool same = in.number<std::uint64_t>() == checksum(bank);

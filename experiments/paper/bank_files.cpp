@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <string_view>
 #include <utility>
 
 #include "core/error.h"
@@ -16,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kList = "bank.csv";
+constexpr const char* kPeak = "peak";  // column: what the largest sample stands for
 
 SoundKind kind_of(const std::string& text, const std::string& place) {
   const auto found = std::find(kSoundKinds.begin(), kSoundKinds.end(), text);
@@ -57,13 +59,12 @@ BankSound descriptors_of(const CsvTable& table, const CsvTable::Row& row) {
     to = *x;
   };
   const bool snap = sound.kind == SoundKind::flap || sound.kind == SoundKind::crac;
-  number("l_r", sound.ruling_length, snap);
-  number("l_c", sound.free_border, snap);
-  number("width", sound.width, false);
-  number("root_across", sound.root_across, false);
-  number("root_along", sound.root_along, false);
-  number("speed", sound.speed, sound.kind == SoundKind::friction);
-  number("energy", sound.energy, false);
+  for (const BankNumber& of : kBankNumbers) {
+    const std::string_view name = of.name;
+    const bool needed = name == "speed" ? sound.kind == SoundKind::friction
+                                        : snap && (name == "l_r" || name == "l_c");
+    number(of.name, sound.*of.value, needed);
+  }
   if (!(sound.energy > 0)) throw Error("energy is 0", row.place, "more than 0");
   return sound;
 }
@@ -90,9 +91,9 @@ SoundBank read_bank(const fs::path& folder, std::vector<std::string>& notes,
                     std::vector<fs::path>& inputs) {
   if (!fs::is_directory(folder)) throw Error("is no folder", folder.string());
   const fs::path list = folder / kList;
-  const CsvTable table(
-      list, {"file", "kind"},
-      {"l_r", "l_c", "width", "root_across", "root_along", "speed", "energy", "peak"});
+  std::vector<std::string_view> optional{kPeak};
+  for (const BankNumber& number : kBankNumbers) optional.emplace_back(number.name);
+  const CsvTable table(list, {"file", "kind"}, optional);
   inputs.push_back(list);
   SoundBank bank;
   for (const CsvTable::Row& row : table.rows()) {
@@ -102,7 +103,7 @@ SoundBank read_bank(const fs::path& folder, std::vector<std::string>& notes,
     Sound read = read_wav(file);
     if (bank.sounds.empty()) bank.sample_rate = read.sample_rate;
     sound.samples = mono(std::move(read), bank.sample_rate, file.string(), notes);
-    sound.samples *= static_cast<float>(table.number(row, "peak").value_or(1));
+    sound.samples *= static_cast<float>(table.number(row, kPeak).value_or(1));
     bank.sounds.push_back(std::move(sound));
   }
   require_valid(bank, list.string());
@@ -111,19 +112,26 @@ SoundBank read_bank(const fs::path& folder, std::vector<std::string>& notes,
 
 void write_bank(const SoundBank& bank, const fs::path& folder) {
   make_folders(folder);
-  std::string list = "file,kind,l_r,l_c,width,root_across,root_along,speed,energy,peak\n";
+  std::string list = "file,kind";
+  for (const BankNumber& number : kBankNumbers) list += std::string(",") + number.name;
+  list += std::string(",") + kPeak + "\n";
   for (std::size_t i = 0; i < bank.sounds.size(); ++i) {
     const BankSound& sound = bank.sounds[i];
     const double peak = std::max(1e-30f, sound.samples.cwiseAbs().maxCoeff());
     const std::string kind(kSoundKinds[static_cast<std::size_t>(sound.kind)]);
-    char name[40], numbers[300];
+    char name[40];
     std::snprintf(name, sizeof name, "%04zu-%s.wav", i, kind.c_str());
-    std::snprintf(numbers, sizeof numbers, ",%.9g,%.9g,%.9g,%.17g,%.17g,%.9g,%.9g,%.9g\n",
-                  sound.ruling_length, sound.free_border, sound.width, sound.root_across,
-                  sound.root_along, sound.speed, sound.energy, peak);
     Sound file{bank.sample_rate, sound.samples.cast<double>() / peak};
     write_file_atomically(folder / name, wav_bytes(file));
-    list += std::string(name) + "," + kind + numbers;
+    list += std::string(name) + "," + kind;
+    const auto append = [&list](double x) {
+      char text[32];
+      std::snprintf(text, sizeof text, ",%.17g", x);
+      list += text;
+    };
+    for (const BankNumber& number : kBankNumbers) append(sound.*number.value);
+    append(peak);
+    list += "\n";
   }
   write_file_atomically(folder / kList, list);
 }

@@ -379,6 +379,11 @@ MetricGroup voice_distance_group() {
       .row("voice_distance_high", "dB",
            "upper end of the 95 % bootstrap interval of voice_distance", kNone, {0.1, 1e-2},
            [](M m) { return m.high; })
+      .row(
+          "voice_decay", "1",
+          "doublings between the reverberation times per octave of a picked event's sound and of "
+          "the reference variant's, in octaves within 20 dB of its loudest: median over the events",
+          kLow, {0.05, 1e-3}, [](M m) { return m.decay; })
       .row("voices_compared", "1", "events whose sounds were compared", kNone, kCount,
            [](M m) { return static_cast<double>(m.count); });
 }

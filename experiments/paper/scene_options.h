@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/options.h"
+#include "experiments/paper/sheet_files.h"
 #include "experiments/paper/svg_pattern.h"
 #include "experiments/paper/swatches.h"
 #include "models/paper/sheet.h"
-#include "testbed/formats/sequence_files.h"
 #include "testbed/keyframes.h"
 
 namespace geoprior::paper {
@@ -126,9 +126,9 @@ struct PaperSceneOptions {
   int substeps = 8;
   double handle_step = 1e-4;
   double fold_radius = 0.03;
-  std::optional<SequenceOptions> animation;  ///< what methods of sound listen to
-  std::optional<SwatchOptions> swatches;     ///< or these
-  std::optional<std::string> bank;           ///< folder of sounds for them
+  std::optional<SheetFileOptions> animation;  ///< what methods of sound listen to
+  std::optional<SwatchOptions> swatches;      ///< or these
+  std::optional<std::string> bank;            ///< folder of sounds for them
 };
 void describe(OptionVisitor& v, PaperMaterial& options);
 void describe(OptionVisitor& v, PaperSceneOptions& options);

@@ -120,12 +120,22 @@ void require_of_sheet(const SheetSnapshot& frame, const Pattern& pattern, const 
 
 }  // namespace
 
-std::shared_ptr<const SheetAnimation> open_sheet_files(const SequenceOptions& options,
+void describe(OptionVisitor& v, SheetFileOptions& o) {
+  describe(v, o.sequence);
+  v.value("every", o.every,
+          {.doc = "n: the first frame and every n-th after it are taken", .min = 1});
+}
+
+std::shared_ptr<const SheetAnimation> open_sheet_files(const SheetFileOptions& options,
                                                        const fs::path& folder,
                                                        const Pattern& pattern,
                                                        std::vector<std::string>& warnings,
                                                        std::vector<fs::path>& inputs) {
-  SequenceFiles files = find_sequence(options, folder, warnings, inputs);
+  SequenceFiles files = find_sequence(options.sequence, folder, warnings, inputs);
+  std::size_t number = 0;
+  std::erase_if(files.files, [&](const FrameFile&) {
+    return number++ % static_cast<std::size_t>(options.every) != 0;
+  });
   for (std::size_t i = 1; i < files.files.size(); ++i) {
     if (files.files[i].time > files.files[i - 1].time) continue;
     throw Error("has the time " + std::to_string(files.files[i].time) + " s after " +
@@ -135,7 +145,7 @@ std::shared_ptr<const SheetAnimation> open_sheet_files(const SequenceOptions& op
   for (const FrameFile& file : files.files) {
     if (const auto tears = tears_beside(file.file)) inputs.push_back(*tears);
   }
-  auto sheet = std::make_shared<SheetFiles>(std::move(files), options.path);
+  auto sheet = std::make_shared<SheetFiles>(std::move(files), options.sequence.path);
   const int last = sheet->frame_count() - 1;
   for (const int i : {0, last / 2, last}) {
     require_of_sheet(sheet->snapshot(i), pattern, sheet->path(i));

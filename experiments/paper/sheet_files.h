@@ -11,6 +11,12 @@
 
 namespace geoprior::paper {
 
+struct SheetFileOptions {
+  SequenceOptions sequence;
+  int every = 1;  ///< n: the first frame and every n-th after it are taken
+};
+void describe(OptionVisitor& v, SheetFileOptions& options);
+
 /// An animated sheet on disk, read frame by frame: .vtp files with the point array "pattern" (m),
 /// as the frames of a run have, or .obj files with texture coordinates, which are those of the
 /// pattern in the unit of the file. Beside the part "surface" of a run's frame its part "tears"
@@ -23,7 +29,7 @@ namespace geoprior::paper {
 /// @throws Error    as `open_sequence`, and for frames without coordinates of the pattern, or with
 ///                  those of another sheet: their bounding box differs from the pattern's by more
 ///                  than a hundredth of its width. First, middle and last frame are read here.
-std::shared_ptr<const SheetAnimation> open_sheet_files(const SequenceOptions& options,
+std::shared_ptr<const SheetAnimation> open_sheet_files(const SheetFileOptions& options,
                                                        const std::filesystem::path& folder,
                                                        const Pattern& pattern,
                                                        std::vector<std::string>& warnings,

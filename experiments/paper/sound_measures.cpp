@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "metrics/event_rates.h"
 #include "metrics/sound_bursts.h"
+#include "metrics/sound_decay.h"
 #include "metrics/sound_spectrum.h"
 #include "metrics/true_peak.h"
 #include "testbed/formats/wav_file.h"
@@ -154,7 +155,7 @@ std::optional<VoiceDistance> voice_distance(const PaperScene& scene, const Frame
     throw Error("has picked " + std::to_string(own->size()) + " events", "voices.wav",
                 std::to_string(of->size()) + ", as its reference");
   }
-  std::vector<double> distances;
+  std::vector<double> distances, decays;
   for (std::size_t i = 0; i < own->size(); ++i) {
     if (std::abs((*own)[i].time - (*of)[i].time) > 1e-9) {
       throw Error("picked event " + std::to_string(i) + " is another one than the reference's",
@@ -168,10 +169,19 @@ std::optional<VoiceDistance> voice_distance(const PaperScene& scene, const Frame
     const Eigen::VectorXd levels =
         heard ? *heard : Eigen::VectorXd::Constant(wanted->size(), -kFloor);
     distances.push_back(log_spectral_distance(levels, *wanted, kFloor));
+    const auto rings = octave_decays((*of)[i].samples, (*of)[i].rate, highest);
+    if (rings.empty()) continue;
+    const bool silent = (*own)[i].samples.size() == 0;
+    decays.push_back(
+        decay_difference(silent ? std::vector<BandDecay>{}
+                                : octave_decays((*own)[i].samples, (*own)[i].rate, highest),
+                         rings));
   }
   if (distances.empty()) return {};
-  const Interval median = bootstrap_median(distances, 1);
-  return VoiceDistance{median.value, median.low, median.high, static_cast<int>(distances.size())};
+  const Interval spread = bootstrap_median(distances, 1);
+  VoiceDistance out{spread.value, spread.low, spread.high, static_cast<int>(distances.size()), {}};
+  if (!decays.empty()) out.decay = median(decays);
+  return out;
 }
 
 std::optional<EnergyExponent> energy_exponent(const PaperScene& scene,

@@ -45,6 +45,9 @@ std::optional<SoundMeasures> sound_measures(const PaperScene& scene, const Frame
 struct VoiceDistance {
   double median = 0, low = 0, high = 0;  ///< over the events, with its 95 % bootstrap interval (dB)
   int count = 0;                         ///< events that were compared
+  /// How reverberation times per octave differ (metrics/sound_decay.h), in doublings: median over
+  /// the events for which the reference has a whole octave below where its modes are known.
+  std::optional<double> decay;
 };
 /// @throws Error  when the two have picked other events
 std::optional<VoiceDistance> voice_distance(const PaperScene& scene, const FrameSequence& frames);

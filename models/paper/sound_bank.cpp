@@ -37,7 +37,10 @@ std::vector<double> ratios(double low, double high, int count) {
 std::vector<SoundPanel> panels_of(double l_r, double l_c, const BankOptions& options) {
   using enum BeamEnds;
   const auto panel = [&](double width, BeamEnds along, BeamEnds across) {
-    return SoundPanel{l_r, std::max(width, options.least_width), along, across};
+    return SoundPanel{.length = l_r,
+                      .width = std::max(width, options.least_width),
+                      .along = along,
+                      .across = across};
   };
   std::vector<SoundPanel> all;
   // Creases all around, or nearly so.
@@ -131,6 +134,7 @@ void describe_panel(const SoundPanel& panel, BankSound& sound) {
     return BeamMode(ends, ends == BeamEnds::free_free ? 2 : 0).beta();
   };
   sound.width = panel.width;
+  sound.bow = panel.bow;
   sound.root_across = root(panel.across);
   sound.root_along = panel.along == BeamEnds::free_free ? 0 : root(panel.along);
 }
@@ -141,8 +145,8 @@ Eigen::VectorXd snap(BankSound& sound, int variant, const BankOptions& options,
                      const PaperMaterial& material, int rate, RandomStream& random) {
   const bool flaps = sound.kind == SoundKind::flap;
   const double crackles = flaps ? options.crackles : 0;
-  const SoundPanel panel =
-      panel_of(sound.ruling_length, sound.free_border, variant, options, random);
+  SoundPanel panel = panel_of(sound.ruling_length, sound.free_border, variant, options, random);
+  panel.bow = (flaps ? options.flap_bow : options.crac_bow) * random.uniform();
   describe_panel(panel, sound);
   const double tau = flaps ? uniform(random, 1e-3, 3e-3) : uniform(random, 5e-5, 2e-4);
   Eigen::VectorXd out;
@@ -232,6 +236,10 @@ void describe(OptionVisitor& v, BankOptions& o) {
   v.value("damping", o.damping, {.doc = "loss factor eta of paper", .min = 1e-4, .max = 1});
   v.value("least_width", o.least_width,
           {.doc = "of a panel across its rulings", .unit = "m", .min = 1e-4, .max = 1});
+  v.value("flap_bow", o.flap_bow,
+          {.doc = "largest curvature of a flap's panel", .unit = "1/m", .min = 0, .max = 1000});
+  v.value("crac_bow", o.crac_bow,
+          {.doc = "largest curvature of a crac's panel", .unit = "1/m", .min = 0, .max = 1000});
   v.value("crackles", o.crackles,
           {.doc = "share of a flap's energy in snaps of small facets that follow it",
            .min = 0,
@@ -310,10 +318,7 @@ std::uint64_t checksum(const SoundBank& bank) {
   add(static_cast<std::uint32_t>(bank.sample_rate));
   for (const BankSound& sound : bank.sounds) {
     add(static_cast<std::uint32_t>(sound.kind));
-    for (const double x : {sound.ruling_length, sound.free_border, sound.width, sound.root_across,
-                           sound.root_along, sound.speed, sound.energy}) {
-      add_number(x);
-    }
+    for (const BankNumber& number : kBankNumbers) add_number(sound.*number.value);
     for (const float x : sound.samples) add(std::bit_cast<std::uint32_t>(x));
   }
   return hash;
@@ -329,9 +334,10 @@ void require_valid(const SoundBank& bank, const std::string& where) {
     const std::string place = where + ": sound " + std::to_string(i);
     if (sound.samples.size() == 0) throw Error("has no samples", place);
     if (!sound.samples.allFinite()) throw Error("has a sample that is not finite", place);
-    for (const double x : {sound.ruling_length, sound.free_border, sound.speed}) {
+    for (const BankNumber& number : kBankNumbers) {
+      const double x = sound.*number.value;
       if (!(x >= 0) || !std::isfinite(x)) {
-        throw Error("has the descriptor " + std::to_string(x), place, "0 or more");
+        throw Error(std::string(number.name) + " is " + std::to_string(x), place, "0 or more");
       }
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -31,10 +32,26 @@ struct BankSound {
   double energy = 1e-6;          ///< J
   Eigen::VectorXf samples = {};  ///< mono; friction repeats without a seam
   double width = 0;              ///< of its panel, across the rulings (m); 0: not known
-  /// Roots of the beam equation of its lowest bending across and along the rulings: the frequency
-  /// goes as the root of (root_across / w)^4 + (root_along / l_r)^4.
+  /// Roots of the beam equation of its lowest bending across and along the rulings: how it is held
+  /// (`lowest_frequency`).
   double root_across = 4.73, root_along = 0;
+  double bow = 0;  ///< curvature of its panel (1/m)
 };
+
+/// The numbers that describe a sound, under the names that files have for them, in the order in
+/// which they are written down.
+struct BankNumber {
+  const char* name;
+  double BankSound::*value;
+};
+inline constexpr std::array<BankNumber, 8> kBankNumbers{{{"l_r", &BankSound::ruling_length},
+                                                         {"l_c", &BankSound::free_border},
+                                                         {"width", &BankSound::width},
+                                                         {"root_across", &BankSound::root_across},
+                                                         {"root_along", &BankSound::root_along},
+                                                         {"bow", &BankSound::bow},
+                                                         {"speed", &BankSound::speed},
+                                                         {"energy", &BankSound::energy}}};
 
 /// Sounds to choose from.
 struct SoundBank {
@@ -56,6 +73,8 @@ struct BankOptions {
   int tears = 16;
   double damping = 0.03;      ///< loss factor eta
   double least_width = 3e-3;  ///< of a panel (m)
+  double flap_bow = 10;       ///< largest curvature of a flap's panel (1/m)
+  double crac_bow = 25;       ///< of a crac's
   double crackles = 0;        ///< share of a flap's energy in snaps of facets that follow it
   double highest = 16000;     ///< Hz
   int most_modes = 150;       ///< of a sound, those of most energy

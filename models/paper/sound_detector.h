@@ -17,7 +17,7 @@ namespace geoprior::paper {
 struct DetectionOptions {
   double spacing = 3.3e-3;     ///< of the grid: 64 x 90 cells on a sheet of A4 (m)
   double radius = 4e-3;        ///< over which curvature is smoothed (m)
-  double least_energy = 1e-9;  ///< of a flap or crac (J)
+  double least_energy = 1e-6;  ///< of a flap or crac (J)
   bool tears = true;           ///< whether steps of tears are heard
   FlipOptions flips;
   ResonatorOptions resonator;
@@ -29,9 +29,9 @@ void describe(OptionVisitor& v, DetectionOptions& options);
 /// resonators, sliding, steps of tears. What is found depends on the sheet's motion, not on its
 /// meshes (a grid of the pattern).
 ///
-/// Energy of a flap or crac: what bending sets free in the cells that flip, D/2 (k_before^2 -
-/// k^2) A where that is positive, and the kinetic energy of their motion along their normals in the
-/// frame in which they have flipped, apart from that of the cells together. Of a step of a tear:
+/// Energy of a flap or crac: what bending held in the cells that flip, D/2 k_b^2 A. All of it is
+/// set free until they are flat; what the other side takes up again, and what becomes of it on the
+/// way, depends on the frames that are looked at, and is left out. Of a step of a tear:
 /// E_f times the section it tears.
 class SoundDetector {
  public:
@@ -60,9 +60,9 @@ class SoundDetector {
 
  private:
   [[nodiscard]] bool is_held(const Eigen::Vector2d& place) const;
-  [[nodiscard]] Resonator resonator(const std::vector<int>& seeds) const;
-  [[nodiscard]] SoundEvent snap(const FlipCluster& cluster) const;
-  void add_snaps(const std::vector<FlipCluster>& clusters, std::vector<SoundEvent>& events) const;
+  [[nodiscard]] Resonator resonator(const std::vector<int>& seeds);
+  [[nodiscard]] SoundEvent snap(const FlipCluster& cluster);
+  void add_snaps(const std::vector<FlipCluster>& clusters, std::vector<SoundEvent>& events);
   void add_tears(const SheetSnapshot& frame, std::vector<SoundEvent>& events);
 
   const Sheet& sheet_;
@@ -71,6 +71,7 @@ class SoundDetector {
   FlipDetector flips_;
   SlideDetector slides_;
   SheetField field_;
+  std::vector<int> parts_;            ///< of the last frame between creases; empty: not yet found
   std::optional<double> torn_until_;  ///< steps of tears until then are events, or a cut (s)
 };
 

@@ -38,7 +38,7 @@ struct SoundEvent {
   double ruling_length = 0;             ///< l_r of its resonator (m)
   double free_border = 0;               ///< l_c (m)
   double area = 0;                      ///< of the resonator, or mean of the contact (m^2)
-  double curvature = 0;                 ///< mean |k| of the resonator (1/m)
+  double curvature = 0;                 ///< mean |k| of the resonator between creases (1/m)
   double flipped_area = 0;              ///< of what changed its sign (m^2)
   double blocked_share = 0;             ///< of the resonator's border
   std::vector<Sliding> sliding = {};    ///< of friction, in order of time

@@ -63,8 +63,7 @@ std::vector<CellFlip> FlipDetector::flips_of(const SheetField& field) {
     const double time = (entered + cell.left) / 2;
     if (cell.sign != 0 && duration <= options_.sudden &&
         time - cell.flipped >= options_.refractory) {
-      const double speed = field.velocity.row(c).dot(field.normal.row(c));
-      flips.push_back({c, time, duration, cell.peak, speed, k1});
+      flips.push_back({c, time, duration, cell.peak, k1});
       cell.flipped = time;
     }
     cell.sign = sign;
@@ -148,7 +147,7 @@ void FlipDetector::save(StateWriter& out) const {
   out.number(pending_.size());
   for (const CellFlip& f : pending_) {
     out.number(f.cell);
-    for (const double x : {f.time, f.duration, f.before, f.speed, f.after}) out.number(x);
+    for (const double x : {f.time, f.duration, f.before, f.after}) out.number(x);
   }
 }
 
@@ -160,11 +159,10 @@ void FlipDetector::load(StateReader& in) {
   time_ = in.number<double>();
   started_ = in.number<bool>();
   in.items(held_);
-  pending_.resize(in.count(sizeof(int) + 5 * sizeof(double)));
+  pending_.resize(in.count(sizeof(int) + 4 * sizeof(double)));
   for (CellFlip& f : pending_) {
     f.cell = in.number<int>();
-    for (double* x : {&f.time, &f.duration, &f.before, &f.speed, &f.after})
-      *x = in.number<double>();
+    for (double* x : {&f.time, &f.duration, &f.before, &f.after}) *x = in.number<double>();
   }
 }
 

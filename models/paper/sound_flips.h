@@ -25,7 +25,6 @@ struct CellFlip {
   double time = 0;      ///< at which it passed zero (s)
   double duration = 0;  ///< from one threshold to the other (s)
   double before = 0;    ///< largest curvature in modulus, of late, with the old sign (1/m)
-  double speed = 0;     ///< of the cell along its normal, when it had its new sign (m/s)
   double after = 0;     ///< curvature when it had its new sign (1/m)
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 
 #include "models/paper/sound_air.h"
@@ -73,6 +74,15 @@ std::vector<Eigen::Vector3d> octant() {
   return all;
 }
 
+/// Square of the angular frequency that being bent gives a panel (1/s^2), of wave numbers (1/m).
+double stiffening(const SoundPanel& panel, double along, double across,
+                  const PaperMaterial& material) {
+  if (panel.bow == 0 || along == 0) return 0;
+  const double share = along * along / (along * along + across * across);
+  return material.young_modulus * material.thickness / material.area_density *
+         std::pow(panel.bow * share, 2);
+}
+
 }  // namespace
 
 BeamMode::BeamMode(BeamEnds ends, int n) : n_(n) {
@@ -135,7 +145,9 @@ std::vector<PanelMode> panel_modes(const SoundPanel& panel, const PaperMaterial&
       const double square =
           std::pow(a.mode.beta() / w, 4) + std::pow(b.mode.beta() / l, 4) +
           2 / (w * w * l * l) * (nu * a.bend * b.bend + (1 - nu) * a.slope * b.slope);
-      const double omega = stiffness * std::sqrt(std::max(square, 0.0));
+      const double omega =
+          std::sqrt(stiffness * stiffness * std::max(square, 0.0) +
+                    stiffening(panel, b.mode.beta() / l, a.mode.beta() / w, material));
       const double f = omega / (2 * pi);
       constexpr double kRigid = 1e-3;  // Hz: what does not ring
       if (f < kRigid || f > highest) continue;
@@ -167,6 +179,19 @@ std::vector<PanelMode> panel_modes(const SoundPanel& panel, const PaperMaterial&
     return a.frequency < b.frequency;
   });
   return modes;
+}
+
+double lowest_frequency(const SoundPanel& panel, double root_along, double root_across,
+                        const PaperMaterial& material) {
+  const double along = root_along / panel.length;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < kMostAcross; ++n) {
+    const double across = (root_across + n * pi) / panel.width;
+    const double flat = material.bending_stiffness() / material.area_density *
+                        (std::pow(along, 4) + std::pow(across, 4));
+    lowest = std::min(lowest, flat + stiffening(panel, along, across, material));
+  }
+  return std::sqrt(lowest) / (2 * pi);
 }
 
 }  // namespace geoprior::paper

@@ -34,6 +34,7 @@ class BeamMode {
 /// A rectangle of paper that rings: `length` along its rulings, `width` across them.
 struct SoundPanel {
   double length = 0, width = 0;  ///< m
+  double bow = 0;                ///< curvature across the rulings (1/m)
   BeamEnds along = BeamEnds::free_free, across = BeamEnds::clamped_clamped;
   /// What flips: from … to along and across, as shares of the panel.
   double along_from = 0, along_to = 1, across_from = 0, across_to = 1;
@@ -49,7 +50,10 @@ struct PanelMode {
 /// Modes of the panel after the flip, those of most energy, ascending in frequency.
 ///
 /// Shapes are products of beam modes, frequencies Rayleigh's quotients of them (Warburton 1954): a
-/// few per cent above the plate's own. The flip changes the curvature across the rulings by dS in
+/// few per cent above the plate's own. A panel that is bent across its rulings is stiffer against
+/// all that waves along them, by (E h / rho_s) bow^2 (k_l^2 / (k_l^2 + k_w^2))^2 in omega^2 with
+/// the wave numbers along and across (Donnell's equations of a shallow shell; none for rulings that
+/// stay straight). The flip changes the curvature across the rulings by dS in
 /// its rectangle, with which mode phi gets the coordinate q = g / omega^2 |P(f tau)|,
 ///
 ///   g = -D dS integral of (phi_xx + nu phi_yy),
@@ -63,5 +67,11 @@ struct PanelMode {
 /// @param most     modes
 std::vector<PanelMode> panel_modes(const SoundPanel& panel, const PaperMaterial& material,
                                    double tau, double highest, int most);
+
+/// The lowest frequency (Hz) of a panel whose lowest bending has the roots of the beam equation
+/// `root_along` (0: rulings stay straight) and `root_across`; higher ones across are taken to be
+/// pi apart, and the term of twist is left out. How high a panel rings, to within a tenth.
+double lowest_frequency(const SoundPanel& panel, double root_along, double root_across,
+                        const PaperMaterial& material);
 
 }  // namespace geoprior::paper

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <set>
 #include <string>
 
 #include "core/error.h"
@@ -12,54 +14,51 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Whether a crease passes through a cell.
-bool is_crease(const SoundGrid& grid, const SheetField& field, int cell,
-               const ResonatorOptions& options) {
-  const double k = std::abs(field.curvature[cell]);
-  if (k >= options.fold) return true;
-  if (k < options.block) return false;
-  const Vector2d ruling = field.ruling.row(cell);
-  const Vector2d across = options.beside * Vector2d(-ruling.y(), ruling.x());
-  double sum = 0;
-  int count = 0;
-  for (const Vector2d& p :
-       {Vector2d(grid.centre(cell) + across), Vector2d(grid.centre(cell) - across)}) {
-    const Vector2d from = (p - grid.corner) / grid.spacing;
-    if (from.minCoeff() < 0 || from.x() >= grid.columns || from.y() >= grid.rows) continue;
-    const int other = grid.at(p);
-    if (!field.inside[static_cast<std::size_t>(other)]) continue;
-    sum += std::abs(field.curvature[other]);
-    ++count;
+/// The parts that a fifth of the seeds lie in, of which none is a crease.
+std::set<int> parts_of(const std::vector<int>& parts, const std::vector<int>& seeds) {
+  constexpr double kShare = 0.2;  // of the seeds
+  std::map<int, int> count;
+  int all = 0;
+  for (const int c : seeds) {
+    const int part = parts[static_cast<std::size_t>(c)];
+    if (part < 0) continue;
+    ++count[part];
+    ++all;
   }
-  return count == 0 || k * count >= options.contrast * sum;
+  std::set<int> taken;
+  for (const auto& [part, cells] : count) {
+    if (cells >= kShare * all) taken.insert(part);
+  }
+  return taken;
 }
 
-/// Cells from the seeds on, ascending; `in` gets 1 for them.
-std::vector<int> flood(const SoundGrid& grid, const SheetField& field,
-                       const std::vector<int>& seeds, const ResonatorOptions& options,
-                       std::vector<char>& in) {
-  std::vector<int> cells;
-  const auto take = [&](int c) {
-    in[static_cast<std::size_t>(c)] = 1;
-    cells.push_back(c);
-  };
+/// Cells of the parts about the seeds, ascending; `in` gets 1 for them.
+std::vector<int> cells_about(const SoundGrid& grid, const SheetField& field,
+                             const std::vector<int>& parts, const std::vector<int>& seeds,
+                             std::vector<char>& in) {
   for (const int c : seeds) {
     if (c < 0 || c >= grid.count() || !field.inside[static_cast<std::size_t>(c)]) {
       throw Error("cell " + std::to_string(c) + " lies outside the sheet", "seeds of a resonator");
     }
-    if (!in[static_cast<std::size_t>(c)]) take(c);
+    in[static_cast<std::size_t>(c)] = 1;
   }
-  for (std::size_t next = 0; next < cells.size(); ++next) {
-    const int c = cells[next];
-    const std::array<int, 4> beside = grid.neighbours(c);
-    for (int side = 0; side < 4; ++side) {
-      const int other = beside[static_cast<std::size_t>(side)];
-      if (other < 0 || in[static_cast<std::size_t>(other)]) continue;
-      if (!field.holds(grid, c, side) || is_crease(grid, field, other, options)) continue;
-      take(other);
+  std::set<int> taken = parts_of(parts, seeds);
+  if (taken.empty()) {
+    std::vector<int> beside;
+    for (const int c : seeds) {
+      for (int side = 0; side < 4; ++side) {
+        if (field.holds(grid, c, side))
+          beside.push_back(grid.neighbours(c)[static_cast<std::size_t>(side)]);
+      }
     }
+    taken = parts_of(parts, beside);
   }
-  std::sort(cells.begin(), cells.end());
+  std::vector<int> cells;
+  for (int c = 0; c < grid.count(); ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (taken.contains(parts[i])) in[i] = 1;
+    if (in[i]) cells.push_back(c);
+  }
   return cells;
 }
 
@@ -99,17 +98,7 @@ double ruling_length(const SoundGrid& grid, const SheetField& field, const std::
 }  // namespace
 
 void describe(OptionVisitor& v, ResonatorOptions& o) {
-  v.value(
-      "block", o.block,
-      {.doc = "least curvature of a crease, which blocks vibrations", .unit = "1/m", .min = 1e-6});
-  v.value("contrast", o.contrast,
-          {.doc = "of a crease's curvature to that of the sheet beside it; 0: none is needed",
-           .min = 0,
-           .max = 1000});
-  v.value("fold", o.fold,
-          {.doc = "curvature that blocks whatever lies beside it", .unit = "1/m", .min = 1e-6});
-  v.value("beside", o.beside,
-          {.doc = "where that is looked at, across the ruling", .unit = "m", .min = 0, .max = 1});
+  describe(v, o.creases);
   v.value("crumpled_share", o.crumpled_share,
           {.doc = "share of a resonator's border that is creases, from which on "
                   "it cracs",
@@ -118,17 +107,20 @@ void describe(OptionVisitor& v, ResonatorOptions& o) {
 }
 
 Resonator find_resonator(const SoundGrid& grid, const SheetField& field,
-                         const std::vector<int>& seeds, const IsHeld& is_held,
-                         const ResonatorOptions& options) {
+                         const std::vector<int>& parts, const std::vector<int>& seeds,
+                         const IsHeld& is_held) {
   if (seeds.empty()) throw Error("has no seeds", "resonator");
   std::vector<char> in(static_cast<std::size_t>(grid.count()), 0);
   Resonator found;
-  found.cells = flood(grid, field, seeds, options, in);
+  found.cells = cells_about(grid, field, parts, seeds, in);
   found.area = static_cast<double>(found.cells.size()) * grid.cell_area();
   found.ruling_length = ruling_length(grid, field, in, found.cells);
-  double blocked = 0, held = 0;
+  double blocked = 0, held = 0, between = 0, creased = 0;
+  int smooth = 0;
   for (const int c : found.cells) {
-    found.curvature += std::abs(field.curvature[c]) / static_cast<double>(found.cells.size());
+    const bool crease = parts[static_cast<std::size_t>(c)] < 0;
+    (crease ? creased : between) += std::abs(field.curvature[c]);
+    smooth += crease ? 0 : 1;
     const std::array<int, 4> beside = grid.neighbours(c);
     for (int side = 0; side < 4; ++side) {
       const int other = beside[static_cast<std::size_t>(side)];
@@ -136,6 +128,8 @@ Resonator find_resonator(const SoundGrid& grid, const SheetField& field,
       if (field.holds(grid, c, side)) blocked += std::numbers::pi / 4 * grid.spacing;
     }
   }
+  found.curvature =
+      smooth > 0 ? between / smooth : creased / static_cast<double>(found.cells.size());
   for (const BorderStretch& stretch : field.border) {
     if (!in[static_cast<std::size_t>(stretch.cell)]) continue;
     (is_held(stretch.place) ? held : found.free_border) += stretch.length;

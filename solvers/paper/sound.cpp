@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string_view>
 #include <utility>
 
+#include "models/paper/sound_panel.h"
 #include "models/paper/sound_voice.h"
 
 namespace geoprior::paper {
@@ -15,12 +17,7 @@ using Descriptors = SoundOptions::Descriptors;
 
 double distance(const BankSound& sound, const SoundEvent& event, Descriptors descriptors) {
   constexpr double kBorder = 5e-3;  // l_0 (m)
-  if (event.kind == SoundKind::tear) return 0;
-  if (event.kind == SoundKind::friction) {
-    double speed = 0;
-    for (const Sliding& at : event.sliding) speed = std::max(speed, at.speed);
-    return std::abs(std::log(std::max(speed, 1e-9) / std::max(sound.speed, 1e-9)));
-  }
+  if (event.kind == SoundKind::tear || event.kind == SoundKind::friction) return 0;
   const double ruling =
       std::log(std::max(event.ruling_length, 1e-9) / std::max(sound.ruling_length, 1e-9));
   const double border = std::log((event.free_border + kBorder) / (sound.free_border + kBorder));
@@ -42,6 +39,25 @@ double distance(const BankSound& sound, const SoundEvent& event, Descriptors des
   return 0;
 }
 
+/// Two neighbouring loops and the share of the power that the faster one has.
+struct Blend {
+  std::size_t below = 0, above = 0;
+  double share = 0;
+};
+
+Blend blend(const SoundBank& bank, const std::vector<int>& loops, double speed) {
+  const auto log_speed = [&](std::size_t i) {
+    return std::log(std::max(bank.sounds[static_cast<std::size_t>(loops[i])].speed, 1e-9));
+  };
+  const double here = std::log(std::max(speed, 1e-9));
+  if (here <= log_speed(0)) return {};
+  for (std::size_t i = 1; i < loops.size(); ++i) {
+    if (here >= log_speed(i)) continue;
+    return {i - 1, i, (here - log_speed(i - 1)) / (log_speed(i) - log_speed(i - 1))};
+  }
+  return {loops.size() - 1, loops.size() - 1, 0};
+}
+
 class BankVoices final : public SoundVoices {
  public:
   BankVoices(SoundBank bank, const SoundOptions& options, const PaperMaterial& material)
@@ -53,6 +69,7 @@ class BankVoices final : public SoundVoices {
 
   [[nodiscard]] EventVoice voice(const SoundEvent& event, const ResonatorShape& /*shape*/,
                                  RandomStream random) const override {
+    if (event.kind == SoundKind::friction) return friction(event, random);
     const std::vector<int> order = nearest_sounds(bank_, event, options_.descriptors);
     if (order.empty()) return {};
     // Sounds as near as the last of the nearest are drawn from too: without descriptors, all.
@@ -72,19 +89,41 @@ class BankVoices final : public SoundVoices {
   }
 
  private:
+  /// Recorded is the loop of the speed that is nearest to the fastest moment.
+  [[nodiscard]] EventVoice friction(const SoundEvent& event, RandomStream& random) const {
+    std::map<double, std::vector<int>> by_speed;
+    for (const int i : bank_.of(SoundKind::friction))
+      by_speed[bank_.sounds[static_cast<std::size_t>(i)].speed].push_back(i);
+    if (by_speed.empty()) return {};
+    std::vector<int> loops;
+    for (const auto& entry : by_speed) {
+      loops.push_back(entry.second[random.below(static_cast<std::uint32_t>(entry.second.size()))]);
+    }
+    double fastest = 0;
+    for (const Sliding& at : event.sliding) fastest = std::max(fastest, at.speed);
+    const Blend heard = blend(bank_, loops, fastest);
+    const int sound = loops[heard.share > 0.5 ? heard.above : heard.below];
+    EventVoice made{voice_of(event, bank_, sound, material_), sound};
+    made.own =
+        std::make_shared<const Eigen::VectorXf>(blended_friction(bank_, loops, event.sliding));
+    made.voice.samples = {made.own->data(), static_cast<std::size_t>(made.own->size())};
+    return made;
+  }
+
   /// By which a sound is played faster.
   [[nodiscard]] double adaptation(const SoundEvent& event, int sound) const {
     const BankSound& chosen = bank_.sounds[static_cast<std::size_t>(sound)];
     if (!options_.adapt || !(chosen.width > 0) || !(event.area > 0)) return 1;
     if (!(event.ruling_length > 0) || !(chosen.ruling_length > 0)) return 1;
-    const auto pitch = [&](double length, double width) {
-      return std::hypot(std::pow(chosen.root_across / width, 2),
-                        std::pow(chosen.root_along / length, 2));
+    const auto pitch = [&](double length, double width, double bow) {
+      return lowest_frequency({.length = length, .width = width, .bow = bow}, chosen.root_along,
+                              chosen.root_across, material_);
     };
     constexpr double kMost = 4;  // two octaves
-    return std::clamp(pitch(event.ruling_length, event.area / event.ruling_length) /
-                          pitch(chosen.ruling_length, chosen.width),
-                      1 / kMost, kMost);
+    return std::clamp(
+        pitch(event.ruling_length, event.area / event.ruling_length, event.curvature) /
+            pitch(chosen.ruling_length, chosen.width, chosen.bow),
+        1 / kMost, kMost);
   }
 
   SoundBank bank_;
@@ -117,6 +156,31 @@ std::vector<int> nearest_sounds(const SoundBank& bank, const SoundEvent& event,
   std::vector<int> sounds;
   for (const auto& entry : order) sounds.push_back(entry.second);
   return sounds;
+}
+
+Eigen::VectorXf blended_friction(const SoundBank& bank, const std::vector<int>& loops,
+                                 const std::vector<Sliding>& sliding) {
+  const double start = sliding.front().time, length = sliding.back().time - start;
+  // The mix fades in before the first time and out after the last one.
+  constexpr double kMargin = 0.02;  // s
+  const auto n = static_cast<Eigen::Index>((length + kMargin) * bank.sample_rate) + 1;
+  const auto loop = [&](std::size_t i, Eigen::Index at) {
+    const Eigen::VectorXf& samples = bank.sounds[static_cast<std::size_t>(loops[i])].samples;
+    return samples[at % samples.size()];
+  };
+  Eigen::VectorXf out(n);
+  std::size_t key = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double now = start + static_cast<double>(i) / bank.sample_rate;
+    while (key + 2 < sliding.size() && sliding[key + 1].time <= now) ++key;
+    const Sliding &a = sliding[key], &b = sliding[std::min(key + 1, sliding.size() - 1)];
+    const double share =
+        b.time > a.time ? std::clamp((now - a.time) / (b.time - a.time), 0.0, 1.0) : 0;
+    const Blend heard = blend(bank, loops, a.speed + share * (b.speed - a.speed));
+    out[i] = static_cast<float>(std::sqrt(1 - heard.share)) * loop(heard.below, i) +
+             static_cast<float>(std::sqrt(heard.share)) * loop(heard.above, i);
+  }
+  return out;
 }
 
 std::shared_ptr<const SoundVoices> bank_voices(SoundBank bank, const SoundOptions& options,

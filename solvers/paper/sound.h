@@ -17,14 +17,16 @@ namespace geoprior::paper {
 ///
 ///   d^2 = ln^2(l_r / l_r') + ln^2((l_c + l_0) / (l_c' + l_0)),     l_0 = 5 mm,
 ///
-/// as loud as its energy; `all` adds ln^2(w / w') where the sounds have widths. Sliding is a loop
-/// of noise of its speed.
+/// as loud as its energy; `all` adds ln^2(w / w') where the sounds have widths.
 ///
-/// Two lengths do not say how wide a resonator is, w = A / l_r. A sound is played faster by the
-/// ratio of the lowest frequencies of a panel of the resonator's lengths and of its own, held in
-/// the same way, two octaves at most (the thesis says that sounds are adapted, not how). A user's
-/// sounds without width are played as they are. The method does not
+/// Two lengths do not say how wide a resonator is, w = A / l_r, nor how bent. A sound is played
+/// faster by the ratio of the lowest frequencies of a panel of the resonator's lengths and
+/// curvature and of its own, held in the same way, two octaves at most (the thesis says that sounds
+/// are adapted, not how). A user's sounds without width are played as they are. The method does not
 /// know how the sheet is bent beyond these numbers, nor what it lies on.
+///
+/// Sliding is heard as loops of noise, one drawn for each speed of the bank, of which the two
+/// nearest to the speed of the moment are mixed: powers are linear in its logarithm.
 struct SoundOptions {
   enum class Descriptors { all, both, ruling, border, none };
   SoundStage stage;
@@ -37,9 +39,16 @@ struct SoundOptions {
 void describe(OptionVisitor& v, SoundOptions& options);
 
 /// Numbers of the sounds of the event's kind in the order of their distance; of equals the lower
-/// number first.
+/// number first. Friction and tears have none: all are equal.
 std::vector<int> nearest_sounds(const SoundBank& bank, const SoundEvent& event,
                                 SoundOptions::Descriptors descriptors);
+
+/// Loops of friction blended by the speed of the moment, from the first time of the sliding to the
+/// last, at the rate of the bank; of root mean square 1 where theirs is. Beyond the slowest and the
+/// fastest loop that one sounds.
+/// @param loops  numbers of sounds of the bank, ascending in speed
+Eigen::VectorXf blended_friction(const SoundBank& bank, const std::vector<int>& loops,
+                                 const std::vector<Sliding>& sliding);
 
 /// @param bank  valid (`require_valid`)
 std::shared_ptr<const SoundVoices> bank_voices(SoundBank bank, const SoundOptions& options,

@@ -107,10 +107,12 @@ class SheetFrames : public test::ScratchFolder {
                                    << line << "\n"
                                    << faces;
   }
-  std::shared_ptr<const SheetAnimation> open(const std::string& name, double width = 0.2) {
-    SequenceOptions options;
-    options.path = (folder() / name).string();
-    options.frames_per_second = 50;
+  std::shared_ptr<const SheetAnimation> open(const std::string& name, double width = 0.2,
+                                             int every = 1) {
+    SheetFileOptions options;
+    options.sequence.path = (folder() / name).string();
+    options.sequence.frames_per_second = 50;
+    options.every = every;
     return open_sheet_files(options, {}, rectangle_pattern(width, 0.2), warnings_, inputs_);
   }
 
@@ -130,6 +132,10 @@ TEST_F(SheetFrames, AreReadWithTheirPattern) {
   EXPECT_DOUBLE_EQ(frame.x(2, 2), 0.01);
   EXPECT_EQ(frame.v.rows(), 0);
   EXPECT_EQ(inputs_.size(), 2u);
+  for (const char* more : {"sheet_0002.obj", "sheet_0003.obj", "sheet_0004.obj"}) write_obj(more);
+  const auto half = open("sheet_%04d.obj", 0.2, 2);
+  ASSERT_EQ(half->frame_count(), 3);
+  EXPECT_DOUBLE_EQ(half->time(2), 0.08);
 }
 
 TEST_F(SheetFrames, BadOnesAreNamed) {

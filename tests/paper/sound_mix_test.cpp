@@ -285,5 +285,33 @@ TEST(SoundProcess, NearestSoundsAreNearInBothDescriptors) {
   EXPECT_LT(std::abs(std::log(first.free_border / 0.1)), 0.45);
 }
 
+TEST(BlendedFriction, GoesFromOneLoopToTheNextWithTheSpeed) {
+  SoundBank bank;
+  for (const float level : {1.0f, 3.0f}) {
+    BankSound& loop = bank.sounds.emplace_back();
+    loop.kind = SoundKind::friction;
+    loop.speed = level > 2 ? 0.4 : 0.1;
+    loop.samples = Eigen::VectorXf::Constant(100, level);
+  }
+  const auto at = [&](double speed) {
+    return blended_friction(bank, {0, 1}, {{0, speed, 0, 0}, {1, speed, 0, 0}})[500];
+  };
+  EXPECT_FLOAT_EQ(at(0.01), 1);
+  EXPECT_FLOAT_EQ(at(0.1), 1);
+  EXPECT_FLOAT_EQ(at(0.4), 3);
+  EXPECT_FLOAT_EQ(at(5), 3);
+  // Half of the way in the logarithm: half of each power.
+  EXPECT_NEAR(at(0.2), std::sqrt(0.5) * 4, 1e-5);
+  const Eigen::VectorXf faster =
+      blended_friction(bank, {0, 1}, {{0, 0.1, 0, 0}, {0.5, 0.4, 0, 0}, {2, 0.4, 0, 0}});
+  EXPECT_GE(faster.size(), 2 * bank.sample_rate);
+  EXPECT_FLOAT_EQ(faster[0], 1);
+  EXPECT_NEAR(
+      faster[12000],
+      std::sqrt(1 - std::log(2.5) / std::log(4)) + 3 * std::sqrt(std::log(2.5) / std::log(4)),
+      1e-4);
+  EXPECT_FLOAT_EQ(faster[90000], 3);
+}
+
 }  // namespace
 }  // namespace geoprior::paper

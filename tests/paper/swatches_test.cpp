@@ -79,6 +79,7 @@ TEST(VoiceDistance, IsNothingForTheSameSoundAtAnyGainAndGrowsWithTheInterval) {
   EXPECT_NEAR(distance(500, 0.2), 0, 0.01);
   EXPECT_GT(distance(800, 0.8), 5);
   EXPECT_GT(distance(2000, 0.8), distance(800, 0.8));
+  EXPECT_NEAR(*voice_distance(scene, recorded(500, 0.2, 0.1, &reference))->decay, 0, 0.01);
   EXPECT_FALSE(voice_distance(scene, recorded(500, 0.8, 0.1, nullptr)));
   // Another event: nothing to compare.
   EXPECT_THROW(voice_distance(scene, recorded(500, 0.8, 0.2, &reference)), Error);
