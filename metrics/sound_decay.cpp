@@ -17,6 +17,7 @@ namespace {
 constexpr int kLowestOctave = -3, kHighestOctave = 4;  // 125 Hz, 16 kHz
 const double kHalfOctave = std::pow(10., 0.15);
 constexpr double kNoEnergy = 10;  // doublings
+constexpr double kLeak = -60;     // dB: of the loudest band
 
 double middle_of(int octave) { return 1000 * std::pow(10., 0.3 * octave); }
 
@@ -80,9 +81,12 @@ std::vector<BandDecay> octave_decays(const Eigen::Ref<const Eigen::VectorXd>& sa
     energies.push_back(energy);
     loudest = std::max(loudest, energy);
   }
-  for (std::size_t i = 0; i < bands.size(); ++i)
+  std::vector<BandDecay> heard;
+  for (std::size_t i = 0; i < bands.size(); ++i) {
     bands[i].level_db = 10 * std::log10(energies[i] / loudest);
-  return bands;
+    if (bands[i].level_db >= kLeak) heard.push_back(bands[i]);
+  }
+  return heard;
 }
 
 double decay_difference(const std::vector<BandDecay>& heard, const std::vector<BandDecay>& wanted,

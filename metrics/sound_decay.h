@@ -15,7 +15,8 @@ struct BandDecay {
 };
 
 /// Octave bands from 125 Hz (IEC 61260-1:2014, base 10: 1000 x 10^(3 x / 10) Hz) to the one that
-/// ends below `highest_hz`, in order of frequency; those without energy are left out.
+/// ends below `highest_hz`, in order of frequency; those with less than 1e-6 of the loudest one's
+/// energy, what filters leak, are left out.
 ///
 /// Bands are cut out of the spectrum of the whole sound with raised-cosine flanks a quarter of an
 /// octave wide, which rings by itself: below about 4 periods of the band's middle (33 ms at

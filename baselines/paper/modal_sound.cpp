@@ -42,6 +42,21 @@ Eigen::MatrixX3d vertex_areas(const ShellState& state) {
   return areas;
 }
 
+/// Integral of |grad w|^2 over that of w^2, w by vertices, linear on the triangles (1/m^2).
+double wave_square(const ShellState& state, const Eigen::VectorXd& w) {
+  double slopes = 0, squares = 0;
+  for (int t = 0; t < state.mesh.triangle_count(); ++t) {
+    const Eigen::RowVector3i v = state.mesh.triangles.row(t);
+    Eigen::Matrix2d edges;
+    edges << state.mesh.pattern.row(v[1]) - state.mesh.pattern.row(v[0]),
+        state.mesh.pattern.row(v[2]) - state.mesh.pattern.row(v[0]);
+    const double area = std::abs(edges.determinant()) / 2, a = w[v[0]], b = w[v[1]], c = w[v[2]];
+    slopes += area * (edges.inverse() * Eigen::Vector2d(b - a, c - a)).squaredNorm();
+    squares += area * (a * a + b * b + c * c + a * b + b * c + c * a) / 6;
+  }
+  return squares > 0 ? slopes / squares : 0;
+}
+
 /// The modes of a resonator and how loud each is after the event.
 struct StruckModes {
   Eigen::VectorXd frequency;  ///< Hz
@@ -74,8 +89,7 @@ StruckModes strike(const ModalSoundOptions& options, const PaperMaterial& materi
   if (!(energy > 0)) return out;
   coordinate *= std::sqrt(event.energy / energy);
   out.frequency = modes.frequency;
-  out.pressure =
-      coordinate * radiated_pressure(material, piece.state, modes, options.directions).array();
+  out.pressure = coordinate * radiated_pressure(piece.state, modes, options.directions).array();
   return out;
 }
 
@@ -128,8 +142,7 @@ class ModalVoices final : public SoundVoices {
 
 }  // namespace
 
-Eigen::VectorXd radiated_pressure(const PaperMaterial& material, const ShellState& state,
-                                  const Modes& modes, int directions) {
+Eigen::VectorXd radiated_pressure(const ShellState& state, const Modes& modes, int directions) {
   const Eigen::MatrixX3d areas = vertex_areas(state);
   const Eigen::MatrixX3d normals = areas.rowwise().normalized();
   const std::vector<Vector3d> sky = sphere(directions);
@@ -139,15 +152,14 @@ Eigen::VectorXd radiated_pressure(const PaperMaterial& material, const ShellStat
     along.col(d) = (state.x.rowwise() - middle) * sky[static_cast<std::size_t>(d)];
     facing.col(d) = areas * sky[static_cast<std::size_t>(d)];
   }
+  const double area = areas.rowwise().norm().sum();
   Eigen::VectorXd pressure(modes.frequency.size());
   for (Eigen::Index m = 0; m < pressure.size(); ++m) {
     const double omega = 2 * pi * modes.frequency[m], k = omega / kSoundSpeed;
-    const double wave = omega * std::sqrt(material.area_density / material.bending_stiffness());
-    const double jump =
-        2 * kAirDensity * omega * omega / std::sqrt(std::max(wave - k * k, 1e-12 * wave));
     Eigen::VectorXd w(state.x.rows());
     for (Eigen::Index v = 0; v < w.size(); ++v)
       w[v] = normals.row(v).dot(modes.shape.col(m).segment<3>(3 * v));
+    const double jump = pressure_jump(omega, wave_square(state, w), area);
     double squares = 0;
     for (int d = 0; d < directions; ++d) {
       const Eigen::ArrayXd source = jump * w.array() * facing.col(d).array();

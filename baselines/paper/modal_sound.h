@@ -21,9 +21,9 @@ namespace geoprior::paper {
 /// and all are scaled so that sum omega_m^2 q_m^2 / 2 is the energy of the event. tau is as long as
 /// the snaps of the generated bank are: the comparison says nothing of it.
 ///
-/// Radiation. Far below coincidence a bending wave of length 2 pi / k_b drives the air beside it
-/// along: the pressures of both sides differ by 2 rho omega^2 w / sqrt(k_b^2 - k^2), as on an
-/// endless plate. This difference is a layer of dipoles, whose pressure far away is
+/// Radiation. Far below coincidence a mode drives the air beside it along: the pressures of both
+/// sides differ as beside a plate with waves of its mean wave number (`pressure_jump`,
+/// models/paper/sound_air.h). This difference is a layer of dipoles, whose pressure far away is
 ///
 ///   p(d) = i k / (4 pi r) integral of the difference (n . d) exp(-i k d . x) dA.
 ///
@@ -50,7 +50,6 @@ std::shared_ptr<const SoundVoices> modal_voices(const ModalSoundOptions& options
 /// Root mean square over directions of the pressure at 1 m of each mode at the amplitude 1 of its
 /// coordinate (Pa / (kg^1/2 m)), by the rule above.
 /// @param directions  evenly spread over the sphere (a spiral of Fibonacci)
-Eigen::VectorXd radiated_pressure(const PaperMaterial& material, const ShellState& state,
-                                  const Modes& modes, int directions);
+Eigen::VectorXd radiated_pressure(const ShellState& state, const Modes& modes, int directions);
 
 }  // namespace geoprior::paper

@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <mutex>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -131,11 +133,23 @@ std::shared_ptr<const SheetAnimation> open_sheet_files(const SheetFileOptions& o
                                                        const Pattern& pattern,
                                                        std::vector<std::string>& warnings,
                                                        std::vector<fs::path>& inputs) {
-  SequenceFiles files = find_sequence(options.sequence, folder, warnings, inputs);
+  std::vector<fs::path> found;
+  SequenceFiles files = find_sequence(options.sequence, folder, warnings, found);
+  const std::size_t all = files.files.size();
+  std::set<fs::path> passed_over;
   std::size_t number = 0;
-  std::erase_if(files.files, [&](const FrameFile&) {
-    return number++ % static_cast<std::size_t>(options.every) != 0;
+  std::erase_if(files.files, [&](const FrameFile& file) {
+    const bool passes = number++ % static_cast<std::size_t>(options.every) != 0;
+    if (passes) passed_over.insert(file.file);
+    return passes;
   });
+  if (all > 1 && files.files.size() == 1) {
+    throw Error("every = " + std::to_string(options.every) + " leaves one of " +
+                    std::to_string(all) + " frames",
+                options.sequence.path, "1 to " + std::to_string(all - 1));
+  }
+  std::copy_if(found.begin(), found.end(), std::back_inserter(inputs),
+               [&](const fs::path& file) { return !passed_over.contains(file); });
   for (std::size_t i = 1; i < files.files.size(); ++i) {
     if (files.files[i].time > files.files[i - 1].time) continue;
     throw Error("has the time " + std::to_string(files.files[i].time) + " s after " +

@@ -63,7 +63,9 @@ std::vector<CellFlip> FlipDetector::flips_of(const SheetField& field) {
     const double time = (entered + cell.left) / 2;
     if (cell.sign != 0 && duration <= options_.sudden &&
         time - cell.flipped >= options_.refractory) {
-      flips.push_back({c, time, duration, cell.peak, k1});
+      // Forgotten only until it left its threshold: the rest depends on when the next frame is.
+      const double peak = cell.peak * std::exp((field.time - cell.left) / options_.sudden);
+      flips.push_back({c, time, duration, peak, k1});
       cell.flipped = time;
     }
     cell.sign = sign;

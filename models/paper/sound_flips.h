@@ -24,7 +24,7 @@ struct CellFlip {
   int cell = 0;
   double time = 0;      ///< at which it passed zero (s)
   double duration = 0;  ///< from one threshold to the other (s)
-  double before = 0;    ///< largest curvature in modulus, of late, with the old sign (1/m)
+  double before = 0;    ///< largest |k| before it left its threshold, of late (1/m)
   double after = 0;     ///< curvature when it had its new sign (1/m)
 };
 

@@ -136,7 +136,7 @@ std::vector<PanelMode> panel_modes(const SoundPanel& panel, const PaperMaterial&
   struct Found {
     PanelMode mode;
     std::size_t n, j;
-    double coordinate;
+    double coordinate, wave_square;
   };
   std::vector<Found> all;
   for (std::size_t n = 0; n < across.size(); ++n) {
@@ -155,7 +155,11 @@ std::vector<PanelMode> panel_modes(const SoundPanel& panel, const PaperMaterial&
       const double force =
           (a.turn / w * l * b.part + nu * b.turn / l * w * a.part) / std::sqrt(w * l);
       const double q = force / (omega * omega) * pulse_spectrum(f, tau);
-      all.push_back({{f, omega * omega * q * q / 2, 0}, n, j, std::abs(q)});
+      all.push_back({{f, omega * omega * q * q / 2, 0},
+                     n,
+                     j,
+                     std::abs(q),
+                     a.slope / (w * w) + b.slope / (l * l)});
     }
   }
   std::stable_sort(all.begin(), all.end(),
@@ -170,8 +174,8 @@ std::vector<PanelMode> panel_modes(const SoundPanel& panel, const PaperMaterial&
       mean += d.z() * d.z() * across[found.n].spectrum(k * d.x() * w) *
               along[found.j].spectrum(k * d.y() * l) / static_cast<double>(directions.size());
     }
-    // k times the jump 2 rho omega^2 / k_b times the integral; k_b^2 = omega / stiffness.
-    found.mode.pressure = k * omega * omega / std::sqrt(omega / stiffness) * found.coordinate *
+    // k times the jump times the integral; factors that all modes have are left out.
+    found.mode.pressure = k * pressure_jump(omega, found.wave_square, w * l) * found.coordinate *
                           std::sqrt(w * l) * std::sqrt(mean);
     modes.push_back(found.mode);
   }

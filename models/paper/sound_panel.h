@@ -58,9 +58,9 @@ struct PanelMode {
 ///
 ///   g = -D dS integral of (phi_xx + nu phi_yy),
 ///
-/// P the spectrum of a raised cosine of length tau. A mode radiates as a layer of dipoles of the
-/// strength 2 rho omega^2 phi / k_b, k_b the wave number of bending at its frequency
-/// (baselines/paper/modal_sound.h has the same rule).
+/// P the spectrum of a raised cosine of length tau. A mode radiates as a layer of dipoles, whose
+/// strength is the difference of the pressures on both sides (`pressure_jump`, sound_air.h): the
+/// rule of baselines/paper/modal_sound.h.
 ///
 /// @param tau      length of the snap (s)
 /// @param highest  frequency (Hz)
@@ -70,7 +70,7 @@ std::vector<PanelMode> panel_modes(const SoundPanel& panel, const PaperMaterial&
 
 /// The lowest frequency (Hz) of a panel whose lowest bending has the roots of the beam equation
 /// `root_along` (0: rulings stay straight) and `root_across`; higher ones across are taken to be
-/// pi apart, and the term of twist is left out. How high a panel rings, to within a tenth.
+/// pi apart, and the term of twist is left out. How high a panel rings, to within an eighth.
 double lowest_frequency(const SoundPanel& panel, double root_along, double root_across,
                         const PaperMaterial& material);
 

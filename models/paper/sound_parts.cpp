@@ -103,8 +103,9 @@ std::vector<int> cut_at_creases(const SoundGrid& grid, const SheetField& field,
                                 const CreaseOptions& options) {
   const std::vector<double> distance = from_creases(grid, field, options);
   const auto far = [&](int cell) { return distance[static_cast<std::size_t>(cell)]; };
-  // A crease ends half a cell beside the centre of its last one.
-  const auto width = [&](double way) { return (2 * way - 1) * grid.spacing; };
+  // Widths are known to a cell: of 2 d - 1 cells and of 2 d the middle is d from the creases.
+  const auto at_most = [&](double way) { return 2 * way * grid.spacing; };
+  const auto at_least = [&](double way) { return (2 * way - 1) * grid.spacing; };
   std::vector<int> order;
   for (int c = 0; c < grid.count(); ++c) {
     if (field.inside[static_cast<std::size_t>(c)] && far(c) > 0) order.push_back(c);
@@ -115,7 +116,7 @@ std::vector<int> cut_at_creases(const SoundGrid& grid, const SheetField& field,
   std::vector<char> flooded(static_cast<std::size_t>(grid.count()), 0);
   for (const int c : order) {
     flooded[static_cast<std::size_t>(c)] = 1;
-    widest[static_cast<std::size_t>(c)] = width(far(c));
+    widest[static_cast<std::size_t>(c)] = at_least(far(c));
     // The part on the widest place beside it takes the cell; others join that one, or do not.
     std::array<int, 4> beside{};
     for (int side = 0; side < 4; ++side) {
@@ -130,7 +131,7 @@ std::vector<int> cut_at_creases(const SoundGrid& grid, const SheetField& field,
       if (other < 0) continue;
       const int mine = parts.find(c), its = parts.find(other);
       if (mine == its) continue;
-      const double here = width(far(c));
+      const double here = at_most(far(c));
       const double narrower =
           std::min(widest[static_cast<std::size_t>(mine)], widest[static_cast<std::size_t>(its)]);
       const bool closes = here < options.gap && here < options.neck * narrower;

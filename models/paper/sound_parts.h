@@ -27,10 +27,11 @@ void describe(OptionVisitor& v, CreaseOptions& options);
 /// 4 mm, 20 1/m is a fold of 11 degrees between two flat facets, 40 1/m one of 23.
 ///
 /// Creases that are found so have gaps, through which everything would be one part. A gap lets
-/// nothing pass that is longer than twice its width: one of 10 mm holds up what a bending wave of
-/// office paper carries below 1 kHz. So a gap closes when it is narrower than `gap`, and than
-/// `neck` times the widest place of the narrower of the parts that it joins: a strip is no neck of
-/// itself. Parts are the basins of the distance from the creases, flooded from the widest places
+/// nothing pass that is longer than twice its width: one of 10 mm stops bending waves of office
+/// paper below 1 kHz. So a gap closes when it is narrower than `gap`, and than `neck` times the
+/// widest place of the narrower of the parts that it joins, whatever the cell to which widths are
+/// known: a strip is no neck of itself. Between a crease and the border of the sheet a gap counts
+/// twice. Parts are the basins of the distance from the creases, flooded from the widest places
 /// down, as in watersheds (Vincent and Soille 1991): two that meet become one unless the place
 /// where they meet is such a gap.
 std::vector<int> cut_at_creases(const SoundGrid& grid, const SheetField& field,

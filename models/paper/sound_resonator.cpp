@@ -14,7 +14,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// The parts that a fifth of the seeds lie in, of which none is a crease.
+/// Of the seeds that do not lie on creases: the part that holds most of them, and those that hold a
+/// fifth at least.
 std::set<int> parts_of(const std::vector<int>& parts, const std::vector<int>& seeds) {
   constexpr double kShare = 0.2;  // of the seeds
   std::map<int, int> count;
@@ -25,9 +26,11 @@ std::set<int> parts_of(const std::vector<int>& parts, const std::vector<int>& se
     ++count[part];
     ++all;
   }
+  int most = 0;
+  for (const auto& entry : count) most = std::max(most, entry.second);
   std::set<int> taken;
   for (const auto& [part, cells] : count) {
-    if (cells >= kShare * all) taken.insert(part);
+    if (cells >= kShare * all || (cells == most && taken.empty())) taken.insert(part);
   }
   return taken;
 }
@@ -40,7 +43,6 @@ std::vector<int> cells_about(const SoundGrid& grid, const SheetField& field,
     if (c < 0 || c >= grid.count() || !field.inside[static_cast<std::size_t>(c)]) {
       throw Error("cell " + std::to_string(c) + " lies outside the sheet", "seeds of a resonator");
     }
-    in[static_cast<std::size_t>(c)] = 1;
   }
   std::set<int> taken = parts_of(parts, seeds);
   if (taken.empty()) {
@@ -52,6 +54,9 @@ std::vector<int> cells_about(const SoundGrid& grid, const SheetField& field,
       }
     }
     taken = parts_of(parts, beside);
+  }
+  for (const int c : seeds) {
+    if (parts[static_cast<std::size_t>(c)] < 0) in[static_cast<std::size_t>(c)] = 1;
   }
   std::vector<int> cells;
   for (int c = 0; c < grid.count(); ++c) {

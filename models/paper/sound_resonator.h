@@ -10,6 +10,7 @@
 
 namespace geoprior::paper {
 
+/// What a resonator is, and what kind of sound it makes.
 struct ResonatorOptions {
   CreaseOptions creases;
   double crumpled_share = 0.5;  ///< of its border that is creases, from which on a resonator cracs
@@ -29,17 +30,18 @@ struct Resonator {
 /// Whether a place of the border is held: it is not free then.
 using IsHeld = std::function<bool(const Eigen::Vector2d& place)>;
 
-/// The parts of the sheet between creases (`cut_at_creases`) that hold at least a fifth of the
-/// seeds that lie in any, and the seeds, which may lie on creases. Seeds that all do so stand for
-/// the cells beside them. A crease, a strip of high curvature, is a stiff constraint and no part.
+/// The parts of the sheet between creases (`cut_at_creases`) in which the seeds lie: the one that
+/// holds most of them, and each that holds a fifth at least; and the creases that seeds lie on.
+/// Where all do, the cells beside them stand for them. A crease, a strip of high curvature, is a
+/// stiff constraint and else no part of a resonator.
 ///
 /// Rulings are straight: l_r is the mean over the cells, each counted by |k|, of the length in the
 /// resonator of the straight line through the cell along its ruling. Of a flat resonator, which has
 /// no rulings, it is the root of the area. Its border with the rest of the sheet is a staircase of
 /// cells, whose length counts pi/4, the mean over all directions.
 ///
-/// @throws Error  without seeds, or for one outside the sheet
 /// @param parts    of the sheet, by cell
+/// @throws Error  without seeds, or for one outside the sheet
 Resonator find_resonator(const SoundGrid& grid, const SheetField& field,
                          const std::vector<int>& parts, const std::vector<int>& seeds,
                          const IsHeld& is_held);

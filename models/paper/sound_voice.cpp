@@ -19,15 +19,14 @@ Voice voice_of(const SoundEvent& event, const SoundBank& bank, int sound,
     return voice;
   }
   constexpr double kGravity = 9.81;  // m/s^2
-  constexpr double kFade = 5e-3;     // s: before and after it slides
   constexpr double kBorder = 0.1;    // m: what rubs radiates as a border of that length
-  voice.envelope.emplace_back(event.sliding.front().time - kFade, 0);
+  voice.envelope.emplace_back(event.sliding.front().time - kSlideFade, 0);
   for (const Sliding& at : event.sliding) {
     const double weight = material.friction * material.area_density * kGravity;
     const double power = std::max(at.power, weight * at.speed * at.area);
     voice.envelope.emplace_back(at.time, std::sqrt(pressure_energy(power, kBorder)));
   }
-  voice.envelope.emplace_back(event.sliding.back().time + kFade, 0);
+  voice.envelope.emplace_back(event.sliding.back().time + kSlideFade, 0);
   return voice;
 }
 

@@ -7,6 +7,8 @@
 
 namespace geoprior::paper {
 
+inline constexpr double kSlideFade = 5e-3;  ///< s: a sound of sliding before and after it slides
+
 /// A sound of the bank as loud as the event is. Of friction a loop whose gain follows its power:
 /// that of the recorded pressure, and at least that of the sheet's own weight.
 Voice voice_of(const SoundEvent& event, const SoundBank& bank, int sound,

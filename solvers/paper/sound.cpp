@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/error.h"
 #include "models/paper/sound_panel.h"
 #include "models/paper/sound_voice.h"
 
@@ -45,17 +46,21 @@ struct Blend {
   double share = 0;
 };
 
-Blend blend(const SoundBank& bank, const std::vector<int>& loops, double speed) {
-  const auto log_speed = [&](std::size_t i) {
-    return std::log(std::max(bank.sounds[static_cast<std::size_t>(loops[i])].speed, 1e-9));
-  };
+/// @param logs  logarithms of the loops' speeds, ascending
+Blend blend(const std::vector<double>& logs, double speed) {
   const double here = std::log(std::max(speed, 1e-9));
-  if (here <= log_speed(0)) return {};
-  for (std::size_t i = 1; i < loops.size(); ++i) {
-    if (here >= log_speed(i)) continue;
-    return {i - 1, i, (here - log_speed(i - 1)) / (log_speed(i) - log_speed(i - 1))};
-  }
-  return {loops.size() - 1, loops.size() - 1, 0};
+  if (here <= logs.front()) return {};
+  const auto next = std::upper_bound(logs.begin(), logs.end(), here);
+  const auto above = static_cast<std::size_t>(next - logs.begin());
+  if (next == logs.end()) return {above - 1, above - 1, 0};
+  return {above - 1, above, (here - logs[above - 1]) / (*next - logs[above - 1])};
+}
+
+std::vector<double> log_speeds(const SoundBank& bank, const std::vector<int>& loops) {
+  std::vector<double> logs;
+  for (const int i : loops)
+    logs.push_back(std::log(std::max(bank.sounds.at(static_cast<std::size_t>(i)).speed, 1e-9)));
+  return logs;
 }
 
 class BankVoices final : public SoundVoices {
@@ -101,7 +106,7 @@ class BankVoices final : public SoundVoices {
     }
     double fastest = 0;
     for (const Sliding& at : event.sliding) fastest = std::max(fastest, at.speed);
-    const Blend heard = blend(bank_, loops, fastest);
+    const Blend heard = blend(log_speeds(bank_, loops), fastest);
     const int sound = loops[heard.share > 0.5 ? heard.above : heard.below];
     EventVoice made{voice_of(event, bank_, sound, material_), sound};
     made.own =
@@ -119,11 +124,12 @@ class BankVoices final : public SoundVoices {
       return lowest_frequency({.length = length, .width = width, .bow = bow}, chosen.root_along,
                               chosen.root_across, material_);
     };
-    constexpr double kMost = 4;  // two octaves
-    return std::clamp(
-        pitch(event.ruling_length, event.area / event.ruling_length, event.curvature) /
-            pitch(chosen.ruling_length, chosen.width, chosen.bow),
-        1 / kMost, kMost);
+    const double wanted =
+        pitch(event.ruling_length, event.area / event.ruling_length, event.curvature);
+    const double own = pitch(chosen.ruling_length, chosen.width, chosen.bow);
+    if (!(wanted > 0) || !(own > 0)) return 1;  // a panel that nothing holds
+    constexpr double kMost = 4;                 // two octaves
+    return std::clamp(wanted / own, 1 / kMost, kMost);
   }
 
   SoundBank bank_;
@@ -142,7 +148,8 @@ void describe(OptionVisitor& v, SoundOptions& o) {
                   {.doc = "of a resonator that choose its sound: l_r, l_c and its width, the "
                           "thesis' l_r and l_c, one of both, or none"});
   v.value("nearest", o.nearest, {.doc = "sounds that are drawn from", .min = 1, .max = 100000});
-  v.value("adapt", o.adapt, {.doc = "play a sound faster where the resonator is narrower"});
+  v.value("adapt", o.adapt,
+          {.doc = "play a sound faster where the resonator is narrower or more bent"});
   v.value("detune", o.detune, {.doc = "largest change of pitch, relative", .min = 0, .max = 0.5});
 }
 
@@ -160,14 +167,17 @@ std::vector<int> nearest_sounds(const SoundBank& bank, const SoundEvent& event,
 
 Eigen::VectorXf blended_friction(const SoundBank& bank, const std::vector<int>& loops,
                                  const std::vector<Sliding>& sliding) {
-  const double start = sliding.front().time, length = sliding.back().time - start;
-  // The mix fades in before the first time and out after the last one.
-  constexpr double kMargin = 0.02;  // s
-  const auto n = static_cast<Eigen::Index>((length + kMargin) * bank.sample_rate) + 1;
-  const auto loop = [&](std::size_t i, Eigen::Index at) {
-    const Eigen::VectorXf& samples = bank.sounds[static_cast<std::size_t>(loops[i])].samples;
-    return samples[at % samples.size()];
-  };
+  if (loops.empty()) throw Error("has no loop of friction", "bank", "one at least");
+  if (sliding.empty()) throw Error("has no time at which it slides", "event of friction");
+  const std::vector<double> logs = log_speeds(bank, loops);
+  std::vector<const Eigen::VectorXf*> samples;
+  for (const int i : loops) {
+    samples.push_back(&bank.sounds[static_cast<std::size_t>(i)].samples);
+    if (samples.back()->size() == 0) throw Error("has no samples", "loop " + std::to_string(i));
+  }
+  const double start = sliding.front().time - kSlideFade;
+  const double length = sliding.back().time + kSlideFade - start;
+  const auto n = static_cast<Eigen::Index>(std::ceil(length * bank.sample_rate)) + 1;
   Eigen::VectorXf out(n);
   std::size_t key = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -176,9 +186,10 @@ Eigen::VectorXf blended_friction(const SoundBank& bank, const std::vector<int>& 
     const Sliding &a = sliding[key], &b = sliding[std::min(key + 1, sliding.size() - 1)];
     const double share =
         b.time > a.time ? std::clamp((now - a.time) / (b.time - a.time), 0.0, 1.0) : 0;
-    const Blend heard = blend(bank, loops, a.speed + share * (b.speed - a.speed));
-    out[i] = static_cast<float>(std::sqrt(1 - heard.share)) * loop(heard.below, i) +
-             static_cast<float>(std::sqrt(heard.share)) * loop(heard.above, i);
+    const Blend heard = blend(logs, a.speed + share * (b.speed - a.speed));
+    const Eigen::VectorXf &slow = *samples[heard.below], &fast = *samples[heard.above];
+    out[i] = static_cast<float>(std::sqrt(1 - heard.share)) * slow[i % slow.size()] +
+             static_cast<float>(std::sqrt(heard.share)) * fast[i % fast.size()];
   }
   return out;
 }

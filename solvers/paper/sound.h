@@ -43,10 +43,12 @@ void describe(OptionVisitor& v, SoundOptions& options);
 std::vector<int> nearest_sounds(const SoundBank& bank, const SoundEvent& event,
                                 SoundOptions::Descriptors descriptors);
 
-/// Loops of friction blended by the speed of the moment, from the first time of the sliding to the
-/// last, at the rate of the bank; of root mean square 1 where theirs is. Beyond the slowest and the
-/// fastest loop that one sounds.
-/// @param loops  numbers of sounds of the bank, ascending in speed
+/// Loops of friction blended by the speed of the moment, at the rate of the bank, from `kSlideFade`
+/// before the first time of the sliding to as long after the last (sound_voice.h); of root mean
+/// square 1 where the loops are, which are not correlated. Below the speed of the slowest loop that
+/// one is heard alone, above that of the fastest this one.
+/// @param loops   numbers of sounds of the bank, ascending in speed
+/// @throws Error  without loops, samples of a loop, or times
 Eigen::VectorXf blended_friction(const SoundBank& bank, const std::vector<int>& loops,
                                  const std::vector<Sliding>& sliding);
 

@@ -21,9 +21,11 @@ using ::testing::HasSubstr;
 /// A bank of one flap and one loop of friction, with peaks that a WAV file cannot hold.
 SoundBank a_bank() {
   SoundBank bank;
-  bank.sounds.push_back({SoundKind::flap, 0.05, 0.1});
-  bank.sounds.push_back({SoundKind::friction, 0, 0, 0.3});
+  bank.sounds.push_back({SoundKind::flap});
+  bank.sounds.push_back({SoundKind::friction});
+  double value = 0.01;
   for (BankSound& sound : bank.sounds) {
+    for (const BankNumber& number : kBankNumbers) sound.*number.value = value += 0.0123;
     sound.samples = Eigen::VectorXf::LinSpaced(480, -0.003F, 0.002F);
   }
   return bank;
@@ -50,9 +52,10 @@ TEST_F(BankFiles, SurviveWritingAndReading) {
   ASSERT_EQ(back.sounds.size(), 2u);
   EXPECT_EQ(back.sample_rate, 48000);
   EXPECT_EQ(back.sounds[0].kind, SoundKind::flap);
-  EXPECT_NEAR(back.sounds[0].ruling_length, 0.05, 1e-9);
-  EXPECT_NEAR(back.sounds[0].free_border, 0.1, 1e-9);
-  EXPECT_NEAR(back.sounds[1].speed, 0.3, 1e-9);
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (const BankNumber& number : kBankNumbers)
+      EXPECT_EQ(back.sounds[i].*number.value, bank.sounds[i].*number.value) << number.name;
+  }
   EXPECT_LT((back.sounds[0].samples - bank.sounds[0].samples).cwiseAbs().maxCoeff(), 1e-9F);
   EXPECT_TRUE(notes_.empty());
   EXPECT_EQ(inputs_.size(), 3u);
@@ -133,7 +136,9 @@ TEST_F(SheetFrames, AreReadWithTheirPattern) {
   EXPECT_EQ(frame.v.rows(), 0);
   EXPECT_EQ(inputs_.size(), 2u);
   for (const char* more : {"sheet_0002.obj", "sheet_0003.obj", "sheet_0004.obj"}) write_obj(more);
+  inputs_.clear();
   const auto half = open("sheet_%04d.obj", 0.2, 2);
+  EXPECT_EQ(inputs_.size(), 3u);
   ASSERT_EQ(half->frame_count(), 3);
   EXPECT_DOUBLE_EQ(half->time(2), 0.08);
 }
@@ -150,6 +155,8 @@ TEST_F(SheetFrames, BadOnesAreNamed) {
   write_obj("sheet_0000.obj");
   test::expect_error([&] { open("sheet_%04d.obj", 0.3); }, {"of another sheet"});
   test::expect_error([&] { open("missing_%04d.obj"); }, {"missing"});
+  write_obj("sheet_0001.obj");
+  test::expect_error([&] { open("sheet_%04d.obj", 0.2, 2); }, {"leaves one of 2 frames"});
 }
 
 }  // namespace

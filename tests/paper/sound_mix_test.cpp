@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "models/paper/sound_bank.h"
 #include "models/paper/sound_mixer.h"
+#include "models/paper/sound_panel.h"
 #include "models/paper/sound_process.h"
 #include "models/paper/uniform_mesh.h"
 #include "solvers/paper/sound.h"
@@ -285,6 +286,35 @@ TEST(SoundProcess, NearestSoundsAreNearInBothDescriptors) {
   EXPECT_LT(std::abs(std::log(first.free_border / 0.1)), 0.45);
 }
 
+TEST(SoundProcess, ABentResonatorIsPlayedHigher) {
+  BankOptions options;
+  options.flap_bow = 0;
+  SoundOptions choice;
+  choice.detune = 0;
+  choice.nearest = 1;
+  const PaperMaterial material;
+  SoundBank bank = generate_bank(material, options, 1);
+  // Held at both ends of its rulings.
+  std::erase_if(bank.sounds, [](const BankSound& sound) {
+    return sound.kind != SoundKind::flap || sound.root_along < 4.7;
+  });
+  const auto voices = bank_voices(bank, choice, material);
+  SoundEvent event;
+  event.ruling_length = 0.04;
+  event.area = 0.04 * 0.06;
+  const double flat = voices->voice(event, {}, {1, "test"}).voice.rate;
+  event.curvature = 5;
+  const double bent = voices->voice(event, {}, {1, "test"}).voice.rate;
+  const auto pitch = [&](double bow) {
+    return lowest_frequency({.length = 0.04, .width = 0.06, .bow = bow}, 4.73, 4.73, material);
+  };
+  EXPECT_NEAR(bent / flat, pitch(5) / pitch(0), 1e-3);
+  EXPECT_GT(bent, 1.3 * flat);
+  // A panel that nothing holds has no pitch to change.
+  for (BankSound& sound : bank.sounds) sound.root_across = sound.root_along = 0;
+  EXPECT_EQ(bank_voices(bank, choice, material)->voice(event, {}, {1, "test"}).voice.rate, 48000);
+}
+
 TEST(BlendedFriction, GoesFromOneLoopToTheNextWithTheSpeed) {
   SoundBank bank;
   for (const float level : {1.0f, 3.0f}) {
@@ -307,10 +337,12 @@ TEST(BlendedFriction, GoesFromOneLoopToTheNextWithTheSpeed) {
   EXPECT_GE(faster.size(), 2 * bank.sample_rate);
   EXPECT_FLOAT_EQ(faster[0], 1);
   EXPECT_NEAR(
-      faster[12000],
+      faster[12240],  // it begins 5 ms before
       std::sqrt(1 - std::log(2.5) / std::log(4)) + 3 * std::sqrt(std::log(2.5) / std::log(4)),
       1e-4);
   EXPECT_FLOAT_EQ(faster[90000], 3);
+  EXPECT_THROW(blended_friction(bank, {}, {{0, 0.1, 0, 0}}), Error);
+  EXPECT_THROW(blended_friction(bank, {0}, {}), Error);
 }
 
 }  // namespace
