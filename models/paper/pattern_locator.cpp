@@ -98,7 +98,11 @@ Eigen::Vector3d PatternLocator::barycentric(int f, const Vector2d& p) const {
   return {u, v, 1 - u - v};
 }
 
-PatternLocator::Place PatternLocator::locate(const Vector2d& p) const {
+PatternLocator::Place PatternLocator::locate(const Vector2d& p, int guess) const {
+  if (guess >= 0) {
+    const Eigen::Vector3d weights = barycentric(guess, p);
+    if (weights.minCoeff() > 0) return {guess, weights};
+  }
   const auto cell = static_cast<std::size_t>(row(p.y()) * columns_ + column(p.x()));
   Place best;
   double most = kInside;
@@ -117,9 +121,10 @@ PatternLocator::Place PatternLocator::locate(const Vector2d& p) const {
   return best;
 }
 
-PatternLocator::Place PatternLocator::locate(const Vector2d& p, const Vector2d& from) const {
+PatternLocator::Place PatternLocator::locate(const Vector2d& p, const Vector2d& from,
+                                             int guess) const {
   if (across_.empty()) across_ = EdgeConnectivity(triangles_).across();
-  int f = locate(from).triangle;
+  int f = locate(from, guess).triangle;
   // A straight way enters a triangle once; more steps only rounding could take.
   for (std::size_t steps = 0; steps < across_.size(); ++steps) {
     const Eigen::Vector3d weights = barycentric(f, p);

@@ -16,10 +16,13 @@ class PatternLocator {
     Eigen::Vector3d weights;  ///< barycentric
   };
   /// The triangle that contains `p`, or the nearest one (weights then clamped to it).
-  [[nodiscard]] Place locate(const Eigen::Vector2d& p) const;
+  /// @param guess  looked at first, for points that come in order: the result is the same
+  [[nodiscard]] Place locate(const Eigen::Vector2d& p, int guess = -1) const;
   /// The triangle at the end of the straight way from a point of the mesh to `p`, or where a border
   /// stops it: on a cut, the lip on that side. Weights of a point beyond are negative.
-  [[nodiscard]] Place locate(const Eigen::Vector2d& p, const Eigen::Vector2d& from) const;
+  /// @param guess  looked at first for `from`
+  [[nodiscard]] Place locate(const Eigen::Vector2d& p, const Eigen::Vector2d& from,
+                             int guess = -1) const;
 
  private:
   [[nodiscard]] Eigen::Vector3d barycentric(int triangle, const Eigen::Vector2d& p) const;

@@ -64,6 +64,9 @@ struct SheetSampler::Cover {
   std::vector<PatternLocator::Place> at;  ///< centres of the cells; triangle -1: outside
   std::vector<std::array<char, 2>> joined;
   std::vector<BorderStretch> border;
+  /// Of each cell the ones after and before it, itself where the sheet does not hold.
+  using Beside = std::vector<std::array<int, 2>>;
+  std::array<Beside, 2> beside;  ///< along the rows, along the columns
 };
 
 namespace {
@@ -73,9 +76,9 @@ constexpr double kOnTriangle = -1e-9;  // barycentric
 /// The triangle at the centre of a cell, or the nearest one where the mesh cuts a corner of the
 /// pattern; none where the mesh leaves that part of the pattern out.
 PatternLocator::Place place_in_mesh(const SoundGrid& grid, const ShellMesh& mesh,
-                                    const PatternLocator& locator, int cell) {
+                                    const PatternLocator& locator, int cell, int guess) {
   constexpr double kBeside = 0.4;  // of a cell
-  const PatternLocator::Place at = locator.locate(grid.centre(cell));
+  const PatternLocator::Place at = locator.locate(grid.centre(cell), guess);
   Vector2d there(0, 0);
   for (int k = 0; k < 3; ++k) {
     there += at.weights[k] * mesh.pattern.row(mesh.triangles(at.triangle, k)).transpose();
@@ -99,7 +102,7 @@ void join_cells(const SoundGrid& grid, const PatternLocator& locator,
       if (other < 0) continue;
       joined[i][side] = 1;
       if (other == at[i].triangle) continue;
-      const auto end = locator.locate(grid.centre(beside[side]), grid.centre(c));
+      const auto end = locator.locate(grid.centre(beside[side]), grid.centre(c), at[i].triangle);
       joined[i][side] = end.weights.minCoeff() >= kOnTriangle ? 1 : 0;
     }
   }
@@ -177,12 +180,23 @@ const SheetSampler::Cover& SheetSampler::cover_of(const ShellMesh& mesh) {
   cover->fit = fit_curvature(mesh.pattern, mesh.triangles);
   const PatternLocator locator(mesh);
   cover->at.resize(static_cast<std::size_t>(grid_.count()));
+  int last = -1;
   for (int c = 0; c < grid_.count(); ++c) {
     const auto i = static_cast<std::size_t>(c);
-    if (grid_.inside[i]) cover->at[i] = place_in_mesh(grid_, mesh, locator, c);
+    if (!grid_.inside[i]) continue;
+    cover->at[i] = place_in_mesh(grid_, mesh, locator, c, last);
+    last = cover->at[i].triangle;
   }
   join_cells(grid_, locator, cover->at, cover->joined);
   cover->border = border_of(grid_, mesh, cover->at);
+  for (const std::size_t axis : {0, 1}) {
+    const int step = axis == 0 ? 1 : grid_.columns;
+    const auto holds = [&](int c) { return cover->joined[static_cast<std::size_t>(c)][axis] != 0; };
+    for (int c = 0; c < grid_.count(); ++c) {
+      cover->beside[axis].push_back(
+          {holds(c) ? c + step : c, c >= step && holds(c - step) ? c - step : c});
+    }
+  }
   cover_ = std::move(cover);
   return *cover_;
 }
@@ -190,20 +204,16 @@ const SheetSampler::Cover& SheetSampler::cover_of(const ShellMesh& mesh) {
 /// One pass is the mask (1 4 1)/6 along the rows, then along the columns; a neighbour that the
 /// sheet does not hold together with counts as the cell itself.
 void SheetSampler::smooth(const Cover& cover, Eigen::MatrixX3d& S) const {
-  Eigen::MatrixX3d next(S.rows(), 3);
-  for (int pass = 0; pass < passes_; ++pass) {
-    for (const std::size_t axis : {0, 1}) {
-      const int step = axis == 0 ? 1 : grid_.columns;
-      for (int c = 0; c < grid_.count(); ++c) {
-        Eigen::RowVector3d sum = 4 * S.row(c);
-        const bool after = cover.joined[static_cast<std::size_t>(c)][axis] != 0;
-        const bool before =
-            c >= step && cover.joined[static_cast<std::size_t>(c - step)][axis] != 0;
-        sum += S.row(after ? c + step : c);
-        sum += S.row(before ? c - step : c);
-        next.row(c) = sum / 6;
+  Eigen::VectorXd next(S.rows());
+  for (Eigen::Index component = 0; component < 3; ++component) {
+    for (int pass = 0; pass < passes_; ++pass) {
+      for (const Cover::Beside& beside : cover.beside) {
+        const double* s = S.col(component).data();
+        for (std::size_t c = 0; c < beside.size(); ++c) {
+          next[static_cast<Eigen::Index>(c)] = (4 * s[c] + s[beside[c][0]] + s[beside[c][1]]) / 6;
+        }
+        S.col(component) = next;
       }
-      S.swap(next);
     }
   }
 }
