@@ -47,22 +47,23 @@ Part resonators_part(const SoundGrid& grid, const SheetField& field,
   std::vector<double> kind, number;
   for (std::size_t e = 0; e < events.size(); ++e) {
     for (const int c : events[e].cells) {
-      // From the centre to the neighbours' centres, half of the way: the sheet between them.
+      // From the centre to each neighbour's, half of the way: the sheet between them, which may be
+      // folded there. Where there is none, straight on from the other side.
       const std::array<int, 4> beside = grid.neighbours(c);
-      const auto way = [&](std::size_t there, std::size_t back) -> Eigen::RowVector3d {
-        const Eigen::RowVector3d here = field.place.row(c);
-        if (field.holds(grid, c, static_cast<int>(there)))
-          return (field.place.row(beside[there]) - here) / 2;
-        if (field.holds(grid, c, static_cast<int>(back)))
-          return (here - field.place.row(beside[back])) / 2;
-        return Eigen::RowVector3d::Zero();
-      };
-      const Eigen::RowVector3d here = field.place.row(c), u = way(0, 2), v = way(1, 3);
-      for (const Eigen::RowVector3d& corner :
-           {Eigen::RowVector3d(here - u - v), Eigen::RowVector3d(here + u - v),
-            Eigen::RowVector3d(here + u + v), Eigen::RowVector3d(here - u + v)}) {
-        points.push_back(corner);
+      const Eigen::RowVector3d here = field.place.row(c);
+      std::array<Eigen::RowVector3d, 4> way;
+      for (std::size_t side = 0; side < 4; ++side) {
+        const std::size_t back = (side + 2) % 4;
+        way[side].setZero();
+        if (field.holds(grid, c, static_cast<int>(side))) {
+          way[side] = (field.place.row(beside[side]) - here) / 2;
+        } else if (field.holds(grid, c, static_cast<int>(back))) {
+          way[side] = (here - field.place.row(beside[back])) / 2;
+        }
       }
+      for (const auto& [across, along] : {std::pair{2, 3}, {0, 3}, {0, 1}, {2, 1}})
+        points.emplace_back(here + way[static_cast<std::size_t>(across)] +
+                            way[static_cast<std::size_t>(along)]);
       for (int k = 0; k < 2; ++k) {
         kind.push_back(static_cast<double>(events[e].kind));
         number.push_back(static_cast<double>(e));
