@@ -19,8 +19,8 @@ struct BandDecay {
 /// energy, what filters leak, are left out.
 ///
 /// Bands are cut out of the spectrum of the whole sound with raised-cosine flanks a quarter of an
-/// octave wide, which rings by itself: below about 4 periods of the band's middle (33 ms at
-/// 125 Hz, 4 ms at 1 kHz) all sounds look alike. What is still to come is integrated backward
+/// octave wide, which rings by itself: below about 10 periods of the band's middle (80 ms
+/// at 125 Hz, 10 ms at 1 kHz) all sounds look alike. What is still to come is integrated backward
 /// (Schroeder 1965). A sound that is over before it has fallen by 25 dB is one that ends there.
 /// @param samples  mono, from its onset until it has died away
 /// @throws Error   on no samples, one that is not finite, or a sample rate below 1000 Hz
