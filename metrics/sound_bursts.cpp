@@ -28,9 +28,7 @@ void require_bursts(const Eigen::Ref<const Eigen::VectorXd>& samples, int sample
                     std::to_string(options.clear_db) + " dB",
                 "sound bursts", "positive");
   }
-  for (Eigen::Index i = 0; i < samples.size(); ++i) {
-    if (!std::isfinite(samples(i))) throw Error("it is not finite", "sample " + std::to_string(i));
-  }
+  require_finite_samples(samples);
   const double length = static_cast<double>(samples.size()) / sample_rate;
   for (std::size_t e = 0; e < events.size(); ++e) {
     if (!(events[e].time_s >= 0) || !(events[e].time_s < length)) {

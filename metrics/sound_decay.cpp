@@ -10,6 +10,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "core/error.h"
+#include "metrics/sound_spectrum.h"
 
 namespace geoprior {
 namespace {
@@ -53,7 +54,7 @@ std::vector<BandDecay> octave_decays(const Eigen::Ref<const Eigen::VectorXd>& sa
     throw Error("sample rate " + std::to_string(sample_rate) + " Hz", "sound", "at least 1000");
   }
   if (samples.size() == 0) throw Error("no samples", "sound");
-  if (!samples.allFinite()) throw Error("has a sample that is not finite", "sound");
+  require_finite_samples(samples);
   // Silence on both sides, for filters that ring before and after.
   const Eigen::Index margin = sample_rate / 4;
   const auto padded = static_cast<Eigen::Index>(
@@ -81,12 +82,10 @@ std::vector<BandDecay> octave_decays(const Eigen::Ref<const Eigen::VectorXd>& sa
     energies.push_back(energy);
     loudest = std::max(loudest, energy);
   }
-  std::vector<BandDecay> heard;
-  for (std::size_t i = 0; i < bands.size(); ++i) {
+  for (std::size_t i = 0; i < bands.size(); ++i)
     bands[i].level_db = 10 * std::log10(energies[i] / loudest);
-    if (bands[i].level_db >= kLeak) heard.push_back(bands[i]);
-  }
-  return heard;
+  std::erase_if(bands, [](const BandDecay& band) { return band.level_db < kLeak; });
+  return bands;
 }
 
 double decay_difference(const std::vector<BandDecay>& heard, const std::vector<BandDecay>& wanted,

@@ -13,6 +13,13 @@
 #include "core/error.h"
 
 namespace geoprior {
+
+void require_finite_samples(const Eigen::Ref<const Eigen::VectorXd>& samples) {
+  for (Eigen::Index i = 0; i < samples.size(); ++i) {
+    if (!std::isfinite(samples(i))) throw Error("it is not finite", "sample " + std::to_string(i));
+  }
+}
+
 namespace {
 
 void require_sound(const Eigen::Ref<const Eigen::VectorXd>& samples, int sample_rate) {
@@ -20,9 +27,7 @@ void require_sound(const Eigen::Ref<const Eigen::VectorXd>& samples, int sample_
     throw Error("sample rate " + std::to_string(sample_rate) + " Hz", "sound", "at least 1");
   }
   if (samples.size() == 0) throw Error("no samples", "sound");
-  for (Eigen::Index i = 0; i < samples.size(); ++i) {
-    if (!std::isfinite(samples(i))) throw Error("it is not finite", "sample " + std::to_string(i));
-  }
+  require_finite_samples(samples);
 }
 
 /// Periodic Hann window of n samples.

@@ -7,6 +7,9 @@
 
 namespace geoprior {
 
+/// @throws Error  on a sample that is not finite (names it)
+void require_finite_samples(const Eigen::Ref<const Eigen::VectorXd>& samples);
+
 /// One-sided density of power over frequency. The density of bin k holds from (k - 1/2) to
 /// (k + 1/2) steps, within 0 and half the sample rate; its integral is the mean square of the sound
 /// (full scale = 1), by Parseval's identity.

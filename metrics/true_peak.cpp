@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
 
-#include "core/error.h"
+#include "metrics/sound_spectrum.h"
 
 namespace geoprior {
 namespace {
@@ -44,9 +43,7 @@ Eigen::MatrixXd interpolation_weights() {
 
 double true_peak(const Eigen::Ref<const Eigen::VectorXd>& samples) {
   const Eigen::Index n = samples.size();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (!std::isfinite(samples(i))) throw Error("it is not finite", "sample " + std::to_string(i));
-  }
+  require_finite_samples(samples);
   Eigen::VectorXd padded = Eigen::VectorXd::Zero(n + 2 * kHalfTaps);
   padded.segment(kHalfTaps, n) = samples;
   const Eigen::MatrixXd weights = interpolation_weights();

@@ -50,7 +50,7 @@ double wave_square(const ShellState& state, const Eigen::VectorXd& w) {
     Eigen::Matrix2d edges;
     edges << state.mesh.pattern.row(v[1]) - state.mesh.pattern.row(v[0]),
         state.mesh.pattern.row(v[2]) - state.mesh.pattern.row(v[0]);
-    const double area = std::abs(edges.determinant()) / 2, a = w[v[0]], b = w[v[1]], c = w[v[2]];
+    const double area = pattern_area(state.mesh, t), a = w[v[0]], b = w[v[1]], c = w[v[2]];
     slopes += area * (edges.inverse() * Eigen::Vector2d(b - a, c - a)).squaredNorm();
     squares += area * (a * a + b * b + c * c + a * b + b * c + c * a) / 6;
   }

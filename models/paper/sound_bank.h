@@ -90,7 +90,8 @@ void describe(OptionVisitor& v, BankOptions& options);
 /// it, so that variants and neighbours differ: between two creases, rulings that end at free
 /// borders on both sides (l_c = 2 w) or on one (w); hanging on one crease (l_r + 2 w) or on none
 /// (2 l_r + 2 w); with creases (nearly) all around w is two thirds of l_r, one and a half or three
-/// times. A flap is a snap of 1 to 3 ms, a crac one of 0.05 to 0.2 ms. Friction is noise from
+/// times. How far it is bent across its rulings is drawn, up to `flap_bow` or `crac_bow`. A flap is
+/// a snap of 1 to 3 ms, a crac one of 0.05 to 0.2 ms. Friction is noise from
 /// 700 Hz to 6 kHz whose centroid rises with the speed, modulated by stick and slip; a step of a
 /// tear is the break of a few fibres.
 SoundBank generate_bank(const PaperMaterial& material, const BankOptions& options,

@@ -26,11 +26,12 @@ std::set<int> parts_of(const std::vector<int>& parts, const std::vector<int>& se
     ++count[part];
     ++all;
   }
-  int most = 0;
-  for (const auto& entry : count) most = std::max(most, entry.second);
-  std::set<int> taken;
+  if (count.empty()) return {};
+  const auto most = std::max_element(
+      count.begin(), count.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  std::set<int> taken{most->first};
   for (const auto& [part, cells] : count) {
-    if (cells >= kShare * all || (cells == most && taken.empty())) taken.insert(part);
+    if (cells >= kShare * all) taken.insert(part);
   }
   return taken;
 }

@@ -228,6 +228,12 @@ TEST(SoundEvents, ResonatorEndsAtAFold) {
   EXPECT_THROW(find_resonator(grid, field, parts, {-1}, free), Error);
 }
 
+std::size_t number_of_parts(const std::vector<int>& parts) {
+  std::set<int> all(parts.begin(), parts.end());
+  all.erase(-1);
+  return all.size();
+}
+
 /// Number of parts between a fold along u at v = 0.05 and the rest, with a gap about u = 0.
 std::size_t parts_with_gap(double gap, const CreaseOptions& options) {
   const Sheet sheet = a_sheet();
@@ -238,10 +244,7 @@ std::size_t parts_with_gap(double gap, const CreaseOptions& options) {
     const Eigen::Vector2d at = grid.centre(c);
     if (std::abs(at.y() - 0.05125) < 1e-3 && std::abs(at.x()) > gap / 2) field.curvature[c] = 300;
   }
-  const std::vector<int> parts = cut_at_creases(grid, field, options);
-  std::set<int> all(parts.begin(), parts.end());
-  all.erase(-1);
-  return all.size();
+  return number_of_parts(cut_at_creases(grid, field, options));
 }
 
 TEST(SoundEvents, NarrowGapsOfCreasesClose) {
@@ -265,10 +268,7 @@ TEST(SoundEvents, AStripBetweenCreasesIsNoGap) {
     const double v = grid.centre(c).y();
     if (std::abs(v - 0.04625) < 1e-3 || std::abs(v - 0.05625) < 1e-3) field.curvature[c] = 300;
   }
-  const std::vector<int> parts = cut_at_creases(grid, field, {});
-  std::set<int> all(parts.begin(), parts.end());
-  all.erase(-1);
-  EXPECT_EQ(all.size(), 3u);
+  EXPECT_EQ(number_of_parts(cut_at_creases(grid, field, {})), 3u);
 }
 
 TEST(SoundEvents, AnObliqueStripIsOnePart) {
