@@ -20,6 +20,12 @@ void take_and_free(std::uint64_t bytes) {
 
 std::uint64_t growth(const MemoryUse& use) { return use.peak - use.start; }
 
+/// What the kernel's two readings may be apart from the truth. It counts pages in batches for each
+/// processor (`percpu_counter_batch`: 32 or more) and reads the sum without what is in a batch, so
+/// a process that moved between two processors misses up to 2 x 31 pages of 4 kB in each reading,
+/// as well of its anonymous pages as of its files'. A megabyte holds all of them.
+constexpr std::uint64_t kUncounted = kMegabyte;
+
 /// Growth seen while this much is taken and freed, the nearest to it of five tries: meanwhile the
 /// kernel may take pages of the program away that were idle, and what grew seems less.
 std::size_t seen_growth(std::size_t bytes) {
@@ -34,12 +40,11 @@ std::size_t seen_growth(std::size_t bytes) {
   return nearest;
 }
 
-// Pages of 4 kB, and what else the process may touch meanwhile: a quarter of a megabyte.
 TEST(PeakMemory, SeesAnAllocationOfKnownSizeThatWasFreedAgain) {
   if (!PeakMemory().use()) GTEST_SKIP() << "the kernel does not let a process reset VmHWM";
   const std::size_t seen = seen_growth(64 * kMegabyte);
-  EXPECT_GE(seen, 64 * kMegabyte - kMegabyte / 4);
-  EXPECT_LE(seen, 65 * kMegabyte);
+  EXPECT_GE(seen, 64 * kMegabyte - kUncounted);
+  EXPECT_LE(seen, 64 * kMegabyte + kUncounted);
 }
 
 // A larger allocation before it is forgotten, also when the library would have kept its pages.
@@ -47,10 +52,10 @@ TEST(PeakMemory, ForgetsWhatCameBefore) {
   if (!PeakMemory().use()) GTEST_SKIP() << "the kernel does not let a process reset VmHWM";
   take_and_free(128 * kMegabyte);
   const PeakMemory idle;
-  EXPECT_LE(growth(idle.use().value()), kMegabyte);
+  EXPECT_LE(growth(idle.use().value()), kUncounted);
   const std::size_t seen = seen_growth(32 * kMegabyte);
-  EXPECT_GE(seen, 32 * kMegabyte - kMegabyte / 4);
-  EXPECT_LE(seen, 33 * kMegabyte);
+  EXPECT_GE(seen, 32 * kMegabyte - kUncounted);
+  EXPECT_LE(seen, 32 * kMegabyte + kUncounted);
 }
 
 TEST(PeakMemory, StandsInTheJournalWhereItWasMeasured) {
