@@ -283,8 +283,11 @@ int TearGrowth::grow(const Candidates& candidates, const Follower& follower, She
                      ShellState& state) {
   if (!sheet_.toughness.tears()) return 0;
   for (int steps = 0; steps < options_.most_steps; ++steps) {
-    if (!neighbours_ || neighbours_->triangles != state.mesh.triangles)
+    const Eigen::MatrixX3i& now = state.mesh.triangles;
+    if (!neighbours_ || neighbours_->triangles.rows() != now.rows() ||
+        neighbours_->triangles != now) {
       neighbours_.emplace(state.mesh);
+    }
     const MeshNeighbours& neighbours = *neighbours_;
     std::vector<TearCandidate> places = candidates();
     if (options_.search == TearSearch::everywhere) add_vertices(state.mesh, tears_, places);
