@@ -134,6 +134,8 @@ class Run:
     cases: list[Case]
     studies: list[Study]
     claims: list[Claim]
+    frames_sha256: str = ""  # of frames, events and artifacts only; empty in older runs
+    metrics_sha256: str = ""  # of metrics and summaries only; empty in older runs
     view: dict = field(default_factory=dict)  # [figure_view] of the experiment
     force: bool = False  # read whether or not its files are what was recorded
 
@@ -144,6 +146,7 @@ class Run:
 
 ROOT_TEXTS = ("experiment_id", "title", "figure", "topic", "experiment", "spec_hash",
               "content_sha256")
+LATER_ROOT_TEXTS = ("frames_sha256", "metrics_sha256")
 
 
 def text(value):
@@ -228,10 +231,11 @@ def read_claim(row):
 
 def read_root(folder, file):
     attrs = file.attrs
-    known = set(ROOT_TEXTS) | {"schema_version", "quick"}
+    known = {*ROOT_TEXTS, *LATER_ROOT_TEXTS, "schema_version", "quick"}
     run = Run(
         folder=folder, quick=bool(attrs["quick"]),
         **{name: text(attrs[name]) for name in ROOT_TEXTS},
+        **{name: text(attrs.get(name, "")) for name in LATER_ROOT_TEXTS},
         provenance={decoded(k): text(v) for k, v in sorted(attrs.items()) if k not in known},
         inputs=[(text(i["name"]), text(i["sha256"])) for i in file["inputs"][()]],
         cases=[read_case(n, g) for n, g in by_index(file["cases"])

@@ -219,7 +219,9 @@ Json outcome_json(const RunRecord& record, const std::filesystem::path& folder) 
             {"quick", record.quick},
             {"run", folder.string()},
             {"spec_hash", record.spec_hash},
-            {"content_sha256", record.content_sha256}};
+            {"content_sha256", record.content_sha256},
+            {"frames_sha256", record.frames_sha256},
+            {"metrics_sha256", record.metrics_sha256}};
   json["claims"] = Json::array();
   for (const ClaimRecord& claim : record.claims) {
     json["claims"].push_back({{"text", claim.text},

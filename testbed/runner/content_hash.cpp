@@ -44,8 +44,7 @@ void add_event(const Event& event, std::string& text) {
   text += "\n";
 }
 
-void add_variant(const VariantRecord& variant, std::string& text) {
-  text += "variant " + variant.name + "\n";
+void add_frames(const VariantRecord& variant, std::string& text) {
   for (std::size_t i = 0; i < variant.frames.size(); ++i) {
     text.append("frame ").append(std::to_string(i)).append(" ");
     text.append(hex(variant.frames[i].parameter)).append("\n");
@@ -53,6 +52,9 @@ void add_variant(const VariantRecord& variant, std::string& text) {
   }
   for (const Event& event : variant.events) add_event(event, text);
   add_files("artifact", variant.artifacts, text);
+}
+
+void add_metrics(const VariantRecord& variant, std::string& text) {
   for (const auto& [name, column] : variant.metrics) {
     text += "metric " + name;
     for (const double x : column.values) text.append(" ").append(hex(x));
@@ -63,17 +65,43 @@ void add_variant(const VariantRecord& variant, std::string& text) {
   }
 }
 
-}  // namespace
-
-std::string content_text(const RunRecord& record) {
-  std::string text = "geoprior content 1\n";
+/// `add(variant, text)` for each variant, under the names of its case and its own.
+template <class Add>
+std::string hashed_text(const RunRecord& record, const char* head, const Add& add) {
+  std::string text = std::string("geoprior ") + head + " 1\n";
   for (const CaseRecord* one : by_name(record.cases)) {
     text += "case " + one->name + "\n";
-    for (const VariantRecord* variant : by_name(one->variants)) add_variant(*variant, text);
+    for (const VariantRecord* variant : by_name(one->variants)) {
+      text += "variant " + variant->name + "\n";
+      add(*variant, text);
+    }
   }
   return text;
 }
 
+}  // namespace
+
+std::string content_text(const RunRecord& record) {
+  return hashed_text(record, "content", [](const VariantRecord& variant, std::string& text) {
+    add_frames(variant, text);
+    add_metrics(variant, text);
+  });
+}
+
 std::string content_sha256(const RunRecord& record) { return sha256(content_text(record)); }
+
+std::string frames_sha256(const RunRecord& record) {
+  return sha256(hashed_text(record, "frames", add_frames));
+}
+
+std::string metrics_sha256(const RunRecord& record) {
+  return sha256(hashed_text(record, "metrics", add_metrics));
+}
+
+void set_hashes(RunRecord& record) {
+  record.content_sha256 = content_sha256(record);
+  record.frames_sha256 = frames_sha256(record);
+  record.metrics_sha256 = metrics_sha256(record);
+}
 
 }  // namespace geoprior

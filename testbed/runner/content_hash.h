@@ -12,4 +12,12 @@ std::string content_text(const RunRecord& record);
 
 std::string content_sha256(const RunRecord& record);
 
+/// The same of its halves: what the methods made (frames, events, artifacts), and what was measured
+/// of it (metrics, summaries).
+std::string frames_sha256(const RunRecord& record);
+std::string metrics_sha256(const RunRecord& record);
+
+/// Sets all three of the record.
+void set_hashes(RunRecord& record);
+
 }  // namespace geoprior

@@ -12,7 +12,9 @@
 #include "testbed/runner/content_hash.h"
 #include "testbed/runner/journal.h"
 #include "testbed/runner/measure.h"
+#include "testbed/runner/number_text.h"
 #include "testbed/runner/opened_run.h"
+#include "testbed/runner/processor_time.h"
 #include "testbed/runner/progress.h"
 #include "testbed/runner/provenance.h"
 #include "testbed/runner/recorder.h"
@@ -121,9 +123,10 @@ RunRecord assemble(const Experiment& experiment, const Topic& topic, const RunSt
   record.provenance["start"] = state.run()->start;
   record.provenance["finish"] = utc_now();
   record.provenance["experiment_file"] = state.run()->experiment_file;
+  record.provenance["processor_s"] = rounded_text(state.processor_seconds(), 6);
   record.inputs = all_inputs(state);
   for (const CaseState& one : state.cases()) record.cases.push_back(case_record(one, topic));
-  record.content_sha256 = content_sha256(record);
+  set_hashes(record);
   return record;
 }
 
@@ -148,8 +151,10 @@ bool run_case(const Experiment& experiment, const CaseSpec& spec, const std::vec
     runner.leave_at_once_after([&] { request.farewell(recorder.folder()); });
   }
   bool complete = false;
+  const double before = processor_seconds();
   with_threads(spec.threads,
                [&] { complete = runner.run(*scene.options, scene.inputs, request.timing); });
+  recorder.add(journal::ProcessorLine{processor_seconds() - before}, false);
   return complete;
 }
 

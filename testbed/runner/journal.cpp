@@ -208,6 +208,10 @@ SortedJson write(const ErrorLine& line) {
   return json;
 }
 
+SortedJson write(const ProcessorLine& line) {
+  return {{"kind", "processor"}, {"seconds", number(line.seconds)}};
+}
+
 SortedJson write(const ResultLine& line) {
   return {{"kind", "result"}, {"name", line.file.name}, {"sha256", line.file.sha256}};
 }
@@ -261,6 +265,7 @@ Line read(const SortedJson& json) {
   if (kind == "artifact") return ArtifactLine{place(json), file(json)};
   if (kind == "begin") return BeginLine{place(json), numbers(json.at("timing"))};
   if (kind == "result") return ResultLine{file(json)};
+  if (kind == "processor") return ProcessorLine{number(json.at("seconds"))};
   if (kind == "error") return ErrorLine{place(json), json.at("message")};
   if (kind == "run") {
     return RunLine{json.at("schema_version"), json.at("experiment_id"), json.at("spec_hash"),

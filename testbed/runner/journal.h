@@ -94,13 +94,18 @@ struct ErrorLine {
   Place place;
   std::string message;
 };
+/// Processor time of a case in one program that worked on it, input runs excluded.
+struct ProcessorLine {
+  double seconds = 0;  ///< user and system, of all threads and of child processes
+};
 /// The last line of a finished run: what the journal says was assembled into this file.
 struct ResultLine {
   StoredFile file;  ///< run.h5
 };
 
-using Line = std::variant<RunLine, CaseLine, BeginLine, FrameLine, EventLine, ArtifactLine,
-                          CheckpointLine, ResumeLine, EndLine, TimingLine, ErrorLine, ResultLine>;
+using Line =
+    std::variant<RunLine, CaseLine, BeginLine, FrameLine, EventLine, ArtifactLine, CheckpointLine,
+                 ResumeLine, EndLine, TimingLine, ErrorLine, ProcessorLine, ResultLine>;
 
 /// One JSON object without line break; numbers are exact.
 std::string to_text(const Line& line);

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "testbed/formats/hdf5_content.h"
 #include "testbed/formats/hdf5_file.h"
+#include "testbed/runner/content_hash.h"
 #include "testbed/runner/event_table.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/run_tables.h"
@@ -472,13 +473,25 @@ void check_version(const H5Node& root) {
   }
 }
 
+/// Runs that were written before the content hash was split have its halves nowhere.
+bool is_half(std::string RunRecord::*member) {
+  return member == &RunRecord::frames_sha256 || member == &RunRecord::metrics_sha256;
+}
+
+bool is_in(const std::vector<std::string>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 RunRecord read_root(const H5Node& root) {
   check_version(root);
   RunRecord record;
   record.schema_version = static_cast<int>(root.read_int("schema_version"));
   record.quick = root.read_int("quick") != 0;
-  for (const auto& [name, member] : kRootTexts) record.*member = root.read_text(name);
-  for (const std::string& key : root.attributes()) {
+  const std::vector<std::string> attributes = root.attributes();
+  for (const auto& [name, member] : kRootTexts) {
+    if (is_in(attributes, name) || !is_half(member)) record.*member = root.read_text(name);
+  }
+  for (const std::string& key : attributes) {
     const auto is_key = [&](const auto& entry) { return entry.first == key; };
     if (key == "schema_version" || key == "quick" ||
         std::any_of(kRootTexts.begin(), kRootTexts.end(), is_key)) {
@@ -493,6 +506,8 @@ RunRecord read_root(const H5Node& root) {
   }
   record.studies = read_studies(root.open_group("study"));
   record.claims = read_claims(root, record.schema_version);
+  if (!is_in(attributes, "frames_sha256")) record.frames_sha256 = frames_sha256(record);
+  if (!is_in(attributes, "metrics_sha256")) record.metrics_sha256 = metrics_sha256(record);
   return record;
 }
 

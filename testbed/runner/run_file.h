@@ -11,7 +11,7 @@
 namespace geoprior {
 
 /// The texts of a run that are root attributes of run.h5; any further one is provenance.
-inline constexpr std::array<std::pair<std::string_view, std::string RunRecord::*>, 7> kRootTexts{{
+inline constexpr std::array<std::pair<std::string_view, std::string RunRecord::*>, 9> kRootTexts{{
     {"experiment_id", &RunRecord::experiment_id},
     {"title", &RunRecord::title},
     {"figure", &RunRecord::figure},
@@ -19,6 +19,8 @@ inline constexpr std::array<std::pair<std::string_view, std::string RunRecord::*
     {"experiment", &RunRecord::experiment_toml},
     {"spec_hash", &RunRecord::spec_hash},
     {"content_sha256", &RunRecord::content_sha256},
+    {"frames_sha256", &RunRecord::frames_sha256},
+    {"metrics_sha256", &RunRecord::metrics_sha256},
 }};
 
 /// As `write_run_file(record, file)`, with the tables of the frames, which are read from

@@ -151,6 +151,8 @@ struct RunRecord {
   std::string experiment_toml;  ///< resolved text
   std::string spec_hash;
   std::string content_sha256;                     ///< frames and metrics, without times
+  std::string frames_sha256;                      ///< frames, events and artifacts only
+  std::string metrics_sha256;                     ///< metrics and summaries only
   std::map<std::string, std::string> provenance;  ///< git_commit, compiler, cpu, start, versions, …
   std::vector<StoredFile> inputs;                 ///< file name and sha256
   std::vector<CaseRecord> cases;

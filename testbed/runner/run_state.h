@@ -40,6 +40,8 @@ class RunState {
   [[nodiscard]] CaseState& case_of(const std::string& name);
   [[nodiscard]] VariantState& variant_of(const journal::Place& place);
   [[nodiscard]] const std::optional<journal::RunLine>& run() const { return run_; }
+  /// Of the run so far, s; what a program used on a case that it was killed in is not known.
+  [[nodiscard]] double processor_seconds() const { return processor_seconds_; }
   [[nodiscard]] std::vector<CaseState>& cases() { return cases_; }
   [[nodiscard]] const std::vector<CaseState>& cases() const { return cases_; }
 
@@ -55,9 +57,11 @@ class RunState {
   void apply(const journal::EndLine& line);
   void apply(const journal::TimingLine& line);
   void apply(const journal::ErrorLine& /*line*/) {}
+  void apply(const journal::ProcessorLine& line) { processor_seconds_ += line.seconds; }
   void apply(const journal::ResultLine& /*line*/) {}
 
   std::optional<journal::RunLine> run_;
+  double processor_seconds_ = 0;
   std::vector<CaseState> cases_;
 };
 

@@ -142,6 +142,8 @@ TEST_F(Execute, WritesFilesWithTheirChecksums) {
   const RunRecord read = read_run_file(result.folder / "run.h5");
   EXPECT_EQ(read.content_sha256, result.record.content_sha256);
   EXPECT_EQ(content_sha256(read), read.content_sha256);
+  EXPECT_EQ(frames_sha256(read), read.frames_sha256);
+  EXPECT_EQ(metrics_sha256(read), read.metrics_sha256);
 }
 
 TEST_F(Execute, ContentDoesNotDependOnThreadsOrFolder) {

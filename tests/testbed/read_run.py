@@ -155,33 +155,46 @@ def c_hex(x):
     return f"{mantissa}p{exponent}"
 
 
-def content_text(run):
-    lines = ["geoprior content 1"]
+HALVES = {"frames": ("frames",), "metrics": ("metrics",), "content": ("frames", "metrics")}
+
+
+def content_text(run, what="content"):
+    """The text whose SHA-256 is `<what>_sha256`."""
+    lines = [f"geoprior {what} 1"]
     for case_name in sorted(run["cases"]):
         lines.append(f"case {case_name}")
         variants = run["cases"][case_name]["variants"]
         for name in sorted(variants):
-            v = variants[name]
             lines.append(f"variant {name}")
-            files = v["frames"][:]
-            for i, parameter in enumerate(v["parameter"]):
-                lines.append(f"frame {i} {c_hex(parameter)}")
-                lines += [f"file {f['name'].decode()} {f['sha256'].decode()}" for f in files if f["frame"] == i]
-            for e in v["events"]:
-                numbers = [*e["position"], e["energy_J"], e["duration_s"]]
-                further = [f"{n}={c_hex(e[n])}" for n in sorted(e.dtype.names) if n not in FIELDS and e[n] == e[n]]
-                lines.append(" ".join(["event", c_hex(e["time_s"]), e["kind"].decode(), *map(c_hex, numbers),
-                                       *further]))
-            lines += [f"artifact {a['name'].decode()} {a['sha256'].decode()}" for a in v["artifacts"]]
-            lines += [" ".join(["metric", m, *map(c_hex, v["metrics"][m][:])]) for m in sorted(v["metrics"])]
-            lines += [f"summary {s} {c_hex(v['summary'][s][()])}" for s in sorted(v["summary"])]
+            for half in HALVES[what]:
+                lines += (frame_lines if half == "frames" else metric_lines)(variants[name])
     return "".join(line + "\n" for line in lines)
+
+
+def frame_lines(v):
+    lines = []
+    files = v["frames"][:]
+    for i, parameter in enumerate(v["parameter"]):
+        lines.append(f"frame {i} {c_hex(parameter)}")
+        lines += [f"file {f['name'].decode()} {f['sha256'].decode()}" for f in files if f["frame"] == i]
+    for e in v["events"]:
+        numbers = [*e["position"], e["energy_J"], e["duration_s"]]
+        further = [f"{n}={c_hex(e[n])}" for n in sorted(e.dtype.names) if n not in FIELDS and e[n] == e[n]]
+        lines.append(" ".join(["event", c_hex(e["time_s"]), e["kind"].decode(), *map(c_hex, numbers), *further]))
+    return lines + [f"artifact {a['name'].decode()} {a['sha256'].decode()}" for a in v["artifacts"]]
+
+
+def metric_lines(v):
+    lines = [" ".join(["metric", m, *map(c_hex, v["metrics"][m][:])]) for m in sorted(v["metrics"])]
+    return lines + [f"summary {s} {c_hex(v['summary'][s][()])}" for s in sorted(v["summary"])]
 
 
 def make_schema_1(file):
     """What run.h5 was before processes were timed by frames."""
     with h5py.File(file, "a") as run:
         run.attrs["schema_version"] = 1
+        for half in ("frames_sha256", "metrics_sha256"):
+            del run.attrs[half]
         for case in run["cases"].values():
             rows = case["ratios"][:][["variant", "of", "median_ratio", "low", "high"]]
             del case["ratios"]
@@ -220,7 +233,10 @@ def main():
         with h5py.File(folder / "run.h5") as run:
             check_numbers(folder, run)
             check_frame(folder, run)
-            assert hashlib.sha256(content_text(run).encode()).hexdigest() == run.attrs["content_sha256"]
+            for what in HALVES:
+                computed = hashlib.sha256(content_text(run, what).encode()).hexdigest()
+                assert computed == run.attrs[what + "_sha256"], what
+            assert float(run.attrs["processor_s"]) > 0
         for line in (folder / "journal.jsonl").read_text().splitlines():
             assert "kind" in json.loads(line)
         check_older_schema(sys.argv[1], folder, environment)

@@ -120,6 +120,26 @@ TEST_F(Resume, AfterAKillOfPosesGoesOnAtTheNextFrame) {
   EXPECT_EQ(count_lines(journal(), "frame"), 120U);  // none twice
 }
 
+double processor_seconds_in(const fs::path& run_folder) {
+  return std::stod(read_run_file(run_folder / "run.h5").provenance.at("processor_s"));
+}
+
+TEST_F(Resume, AddsUpProcessorTimeOverThePrograms) {
+  const auto file = pendulum("frames = 6\nframe_delay_ms = 50");
+  ASSERT_GT(interrupt(file, 3, SIGINT), 0) << text_of(log());
+  double first = 0;
+  {
+    const Journal log_of_run(journal());
+    for (const journal::Line& line : log_of_run.lines()) {
+      if (const auto* of_case = std::get_if<journal::ProcessorLine>(&line))
+        first += of_case->seconds;
+    }
+  }
+  EXPECT_GT(first, 0);
+  run(load(file), out(), true);
+  EXPECT_GT(processor_seconds_in(out()), first);
+}
+
 TEST_F(Resume, AfterCtrlC) {
   const auto file = pendulum("frames = 6\nframe_delay_ms = 50");
   EXPECT_GT(interrupt(file, 3, SIGINT), 0) << text_of(log());  // left by itself, not done

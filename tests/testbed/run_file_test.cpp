@@ -60,6 +60,8 @@ RunRecord sample_record() {
   record.experiment_toml = std::string(100000, 'x') + "\n[scene]\n";  // past HDF5's 64 KiB limit
   record.spec_hash = std::string(64, '1');
   record.content_sha256 = std::string(64, '2');
+  record.frames_sha256 = std::string(64, '4');
+  record.metrics_sha256 = std::string(64, '5');
   record.provenance = {{"compiler", "GNU 12.2.0"}, {"git_difference", ""}};
   record.inputs = {{"human.glb", std::string(64, '3')}};
   CaseRecord one;
@@ -149,7 +151,7 @@ std::string dump(const CaseRecord& c) {
 std::string dump(const RunRecord& r) {
   std::string text = std::to_string(r.schema_version) + r.experiment_id + r.title + r.figure +
                      r.topic + (r.quick ? "quick" : "full") + r.experiment_toml + r.spec_hash +
-                     r.content_sha256 + "\n";
+                     r.content_sha256 + r.frames_sha256 + r.metrics_sha256 + "\n";
   for (const auto& [key, value] : r.provenance) text += key + "=" + value + "\n";
   for (const auto& file : r.inputs) text += file.name + file.sha256 + "\n";
   for (const auto& c : r.cases) text += dump(c);
@@ -232,6 +234,47 @@ TEST(ContentHash, SeesDataAndMetricsButNotTimes) {
   RunRecord drawn = record;
   drawn.cases[0].variants[0].frames[0].files[0].sha256[0] = 'f';
   EXPECT_NE(content_sha256(drawn), hash);
+}
+
+TEST(ContentHash, OfTheFramesDoesNotSeeMetricsNorTheOtherWayRound) {
+  const RunRecord record = sample_record();
+  RunRecord measured = record;
+  VariantRecord& of = measured.cases[0].variants[0];
+  of.metrics["overlap_volume"].values[1] = std::nextafter(0.1, 1.0);
+  of.metrics["new_metric"] = {"1", "", "none", {1, 2, 3}};
+  of.summary["new_metric.max"] = {3, "1", "", "none"};
+  EXPECT_EQ(frames_sha256(measured), frames_sha256(record));
+  EXPECT_NE(metrics_sha256(measured), metrics_sha256(record));
+  const auto only_frames_differ = [&](const auto& change) {
+    RunRecord other = record;
+    change(other.cases[0].variants[0]);
+    EXPECT_NE(frames_sha256(other), frames_sha256(record));
+    EXPECT_EQ(metrics_sha256(other), metrics_sha256(record));
+  };
+  only_frames_differ([](VariantRecord& v) { v.frames[0].files[0].sha256[0] = 'f'; });
+  only_frames_differ([](VariantRecord& v) { v.frames[1].parameter = 0; });  // was -0
+  only_frames_differ([](VariantRecord& v) { v.events[0].numbers["sample"] = 8; });
+  only_frames_differ([](VariantRecord& v) { v.artifacts[0].sha256[0] = 'f'; });
+}
+
+TEST_F(RunFile, OfBeforeTheContentHashWasSplitGetsItsHalvesFromWhatItHolds) {
+  RunRecord record = sample_record();
+  record.frames_sha256 = record.metrics_sha256 = "";
+  write_run_file(record, file());
+  const std::string whole = text_of(file());
+  ASSERT_EQ(read_run_file(file()).frames_sha256, "") << "they are read where they are written";
+  // Attributes of other names in their place: what such a file has.
+  std::string older = whole;
+  for (const std::string name : {"frames_sha256", "metrics_sha256"}) {
+    const std::size_t at = older.find(name);
+    ASSERT_NE(at, std::string::npos);
+    older[at] = 'x';
+    ASSERT_EQ(older.find(name), std::string::npos) << "once in the file";
+  }
+  std::ofstream(file(), std::ios::binary) << older;
+  const RunRecord read = read_run_file(file());
+  EXPECT_EQ(read.frames_sha256, frames_sha256(record));
+  EXPECT_EQ(read.metrics_sha256, metrics_sha256(record));
 }
 
 }  // namespace
