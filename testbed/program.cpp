@@ -85,6 +85,16 @@ void add_checks(CommandLine& line) {
   check->add_flag("--mutations", line.check.mutations,
                   "an experiment fails, too, when no claim of it notices that a method is replaced "
                   "by its null");
+  check
+      ->add_option("--jobs", line.check.jobs,
+                   "so many experiments at once, each in a process of its own")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  check
+      ->add_option("--threads", line.check.threads,
+                   "at most so many threads for each; 0: all. Runs are the same")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
   CLI::App* bless = add_command(line, "bless", "make a run's values the reference values");
   bless->add_option("experiment", line.bless.id, "identifier or file")->required();
   bless->add_option("--reason", line.bless.reason, "why the new values are right")

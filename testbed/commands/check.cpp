@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "testbed/commands/blessed_run.h"
 #include "testbed/commands/catalogue.h"
+#include "testbed/commands/check_jobs.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
 #include "testbed/commands/outcome.h"
@@ -154,14 +157,9 @@ Json verdict_json(const Verdict& verdict) {
   return json;
 }
 
-}  // namespace
-
-int check_command(const CommandContext& context, const CheckRequest& request) {
-  std::vector<std::string> ids = request.ids;
-  if (ids.empty()) {
-    for (const CatalogueEntry& entry : catalogue()) ids.push_back(entry.id);
-  }
-  if (ids.empty()) throw Error("there are no experiments to check");
+/// One after the other, in this process.
+int check_in_turn(const CommandContext& context, const CheckRequest& request,
+                  const std::vector<std::string>& ids) {
   install_stop_handler();
   Json json = Json::array();
   bool passed = true;
@@ -174,6 +172,33 @@ int check_command(const CommandContext& context, const CheckRequest& request) {
   }
   if (context.json) print_json({{"passed", passed}, {"experiments", json}});
   return passed ? done : fell_short;
+}
+
+/// Without repetitions of the same file.
+std::vector<std::string> each_once(const std::vector<std::string>& ids) {
+  std::vector<std::string> kept;
+  std::set<std::filesystem::path> files;
+  for (const std::string& id : ids) {
+    if (files.insert(std::filesystem::weakly_canonical(experiment_file(id))).second) {
+      kept.push_back(id);
+    }
+  }
+  return kept;
+}
+
+}  // namespace
+
+int check_command(const CommandContext& context, const CheckRequest& request) {
+  std::vector<std::string> ids = request.ids;
+  if (ids.empty()) {
+    for (const CatalogueEntry& entry : catalogue()) ids.push_back(entry.id);
+  }
+  if (ids.empty()) throw Error("there are no experiments to check");
+  ids = each_once(ids);
+  if (request.jobs > 1 && ids.size() > 1) return check_in_jobs(context, request, ids);
+  int code = done;
+  with_threads(request.threads, [&] { code = check_in_turn(context, request, ids); });
+  return code;
 }
 
 }  // namespace geoprior

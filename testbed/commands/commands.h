@@ -39,6 +39,10 @@ struct CheckRequest {
   std::vector<std::string> ids;  ///< empty: all of the clone
   bool quick = false;
   bool mutations = false;  ///< each experiment has a claim that a null fails
+  int jobs = 1;            ///< experiments at once, each in a process of its own
+  /// At most so many threads a process; 0: all. Not part of what names a run, as --threads of `run`
+  /// is: results do not depend on it.
+  int threads = 0;
 };
 
 struct BlessRequest {

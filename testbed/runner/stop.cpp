@@ -38,7 +38,7 @@ Leaving& leaving() {
 extern "C" void on_stop_signal(int signal) {
   const int error_of_interrupted_call = errno;
   if (stop_flag != 0) {
-    if (const pid_t child = child_to_end.load(); child > 0) ::kill(child, SIGKILL);
+    if (const pid_t child = child_to_end.load(); child != 0) ::kill(child, SIGKILL);
     ::signal(signal, SIG_DFL);
     ::raise(signal);
   }

@@ -43,7 +43,8 @@ class LeaveAtOnce {
   bool active_;
 };
 
-/// The child process that the second Ctrl-C kills together with the program; 0: none.
+/// The child process, or minus the process group, that the second Ctrl-C kills together with the
+/// program; 0: none.
 void end_with_us(pid_t child) noexcept;
 
 }  // namespace geoprior
