@@ -2,6 +2,7 @@
 #include <cctype>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "core/error.h"
@@ -39,6 +40,18 @@ void require_file_of_clone(const Experiment& experiment) {
               experiment.file.string(), own.string());
 }
 
+Blessing blessing_of(const std::string& reason) {
+  const BuildInfo& build = build_info();
+  return {build.git_commit + (build.git_dirty() ? "-modified" : ""), reason};
+}
+
+/// Processor time that the run took, where it was recorded.
+std::optional<double> processor_seconds(const RunRecord& record) {
+  const auto text = record.provenance.find("processor_s");
+  if (text == record.provenance.end()) return std::nullopt;
+  return std::stod(text->second);
+}
+
 }  // namespace
 
 int bless_command(const CommandContext& context, const BlessRequest& request) {
@@ -49,19 +62,17 @@ int bless_command(const CommandContext& context, const BlessRequest& request) {
   const BlessedRun run = run_without_clock(context, std::move(experiment));
   const std::filesystem::path file = reference_file(run.experiment.id);
   Reference reference = read_reference(file);
-  const std::string size = run.experiment.quick ? "quick" : "full";
+  const std::string size = size_of(run.experiment);
   const std::vector<ClaimRecord> claims = decide_claims(run.experiment, run.record);
   const Gates gates(run.experiment, *run.topic);
-  const BuildInfo& build = build_info();
-  const ReferenceSet before = reference.sets[size];
-  ReferenceSet& after = reference.sets[size];
-  after = bless_values(gated_values(run.experiment, *run.topic, run.record, claims), before, gates,
-                       {build.git_commit + (build.git_dirty() ? "-modified" : ""), request.reason});
-  reference.contents[size] = content_of(run.record);
+  BlessedSet& set = reference[size];
+  const ReferenceSet before = std::move(set.values);
+  set = {blessing_of(request.reason), content_of(run.record), processor_seconds(run.record),
+         bless_values(gated_values(run.experiment, *run.topic, run.record, claims), gates)};
   write_reference(reference, file);
 
   for (const std::string& failure : failures(run.record)) say("  note: " + failure);
-  const std::vector<ReferenceChange> changes = changes_of(before, after, gates);
+  const std::vector<ReferenceChange> changes = changes_of(before, set.values, gates);
   for (const std::string& line : difference_lines(changes, kMostLines)) say("  " + line);
   for (const ClaimRecord& claim : claims) {
     if (!claim.holds) say("  note: a claim falls short: " + claim.text + ": " + claim.detail);

@@ -36,6 +36,8 @@ Experiment load_without_clock(const CommandContext& context, const std::string& 
   return experiment;
 }
 
+std::string size_of(const Experiment& experiment) { return experiment.quick ? "quick" : "full"; }
+
 BlessedRun run_without_clock(const CommandContext& context, Experiment experiment) {
   BlessedRun run;
   run.experiment = std::move(experiment);

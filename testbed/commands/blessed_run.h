@@ -21,6 +21,9 @@ struct BlessedRun {
 Experiment load_without_clock(const CommandContext& context, const std::string& id_or_file,
                               bool quick);
 
+/// "full" or "quick": the set of reference values that the experiment's runs belong to.
+std::string size_of(const Experiment& experiment);
+
 /// The run of such an experiment by this build: the one that is there, else a new one without
 /// timing.
 /// @throws Error  when Ctrl-C stopped the run, and as execute does

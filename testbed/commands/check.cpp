@@ -12,7 +12,10 @@
 #include "testbed/commands/console.h"
 #include "testbed/commands/outcome.h"
 #include "testbed/runner/claims.h"
+#include "testbed/runner/opened_run.h"
 #include "testbed/runner/reference.h"
+#include "testbed/runner/run_difference.h"
+#include "testbed/runner/run_folder.h"
 #include "testbed/runner/stop.h"
 
 namespace geoprior {
@@ -33,7 +36,8 @@ struct Verdict {
   bool mutations = false;      ///< asked for: a method replaced by its null must be noticed
   bool mutation_seen = false;  ///< by at least one claim
   bool same_bytes = false;     ///< as the blessed run: its values need no comparison
-  std::string notice;          ///< why the values were compared although nothing need have changed
+  /// Why the values were compared although nothing need have changed, and how the frames differ.
+  std::vector<std::string> notices;
 
   [[nodiscard]] bool passed() const {
     return has_reference && failures.empty() && (mutation_seen || !mutations) &&
@@ -45,15 +49,33 @@ struct Verdict {
   }
 };
 
-/// Decides whether frames and metrics are those of the blessed run, byte by byte.
-void compare_contents(const RunRecord& record, const ContentHash& blessed, Verdict& verdict) {
-  const ContentHash now = content_of(record);
-  if (now.instruction_set != blessed.instruction_set) {
-    verdict.notice = "blessed on " + blessed.instruction_set + ", run on " + now.instruction_set;
-    return;
+/// Says how the run's bytes stand to the blessed ones; frames that are others are held against the
+/// blessed run's where that one is still there.
+void compare_contents(const BlessedRun& run, const ContentHash& blessed, Verdict& verdict) {
+  std::vector<std::string>& notices = verdict.notices;
+  switch (compare_bytes(run.record, blessed)) {
+    case SameBytes::all:
+      verdict.same_bytes = true;
+      return;
+    case SameBytes::incomparable:
+      notices.push_back("blessed on " + blessed.instruction_set + ", run on " +
+                        content_of(run.record).instruction_set);
+      return;
+    case SameBytes::frames:
+      notices.emplace_back("frames are those blessed, metrics are not, byte by byte");
+      return;
+    case SameBytes::none:
+      break;
   }
-  verdict.same_bytes = now.sha256 == blessed.sha256;
-  if (!verdict.same_bytes) verdict.notice = "frames or metrics are not those blessed, byte by byte";
+  notices.emplace_back("frames are not those blessed, byte by byte");
+  const auto before = find_run_where(run.experiment.id, [&](const RunRecord& record) {
+    const SameBytes same = compare_bytes(record, blessed);
+    return same == SameBytes::all || same == SameBytes::frames;
+  });
+  if (!before) return;
+  notices.push_back("compared with the run that was blessed, " + before->string());
+  for (std::string& line : frame_differences(OpenedRun(run.folder, run.record), OpenedRun(*before)))
+    notices.push_back(std::move(line));
 }
 
 Verdict check_one(const CommandContext& context, const std::string& id,
@@ -73,15 +95,13 @@ Verdict check_one(const CommandContext& context, const std::string& id,
     if (claim.known_shortfall) verdict.known_shortfalls[claim.text] = *claim.known_shortfall;
   }
   const Reference reference = read_reference(reference_file(run.experiment.id));
-  const std::string size = run.experiment.quick ? "quick" : "full";
-  const auto set = reference.sets.find(size);
-  verdict.has_reference = set != reference.sets.end();
+  const auto blessed = reference.find(size_of(run.experiment));
+  verdict.has_reference = blessed != reference.end();
   if (!verdict.has_reference) return verdict;
   GatedValues now = gated_values(run.experiment, *run.topic, run.record, verdict.claims);
-  ReferenceSet before = set->second;
+  ReferenceSet before = blessed->second.values;
   verdict.compared = count_values(now);
-  const auto blessed = reference.contents.find(size);
-  if (blessed != reference.contents.end()) compare_contents(run.record, blessed->second, verdict);
+  if (blessed->second.content) compare_contents(run, *blessed->second.content, verdict);
   if (verdict.same_bytes) {
     keep_outside_content(now);
     keep_outside_content(before);
@@ -96,7 +116,7 @@ void say_verdict(const Verdict& verdict, bool quick) {
   say(head + "  " + verdict.id + "  " + std::to_string(verdict.compared) + " values" +
       (verdict.same_bytes ? " (same bytes), " : ", ") + std::to_string(verdict.claims.size()) +
       " claims");
-  if (!verdict.notice.empty()) say("        notice: " + verdict.notice);
+  for (const std::string& notice : verdict.notices) say("        notice: " + notice);
   if (!verdict.has_reference) {
     say("        no reference values; make them with: geoprior bless " + verdict.id +
         (quick ? " --quick" : "") + " --reason \"…\"");
@@ -133,7 +153,7 @@ Json verdict_json(const Verdict& verdict) {
             {"failures", verdict.failures},
             {"same_bytes", verdict.same_bytes},
             {"mutation_seen", verdict.mutation_seen},
-            {"notice", verdict.notice},
+            {"notices", verdict.notices},
             {"mismatches", Json::array()},
             {"claims", Json::array()}};
   for (const Mismatch& m : verdict.mismatches) {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "testbed/runner/headlines.h"
 #include "testbed/runner/studies.h"
 #include "testbed/runner/timing_statistics.h"
 
@@ -79,14 +80,19 @@ bool has_gated_method(const Topic& topic, const VariantRecord& variant) {
   return method == topic.methods.end() || method->gated();
 }
 
-GatedValues values_of_cases(const Topic& topic, const RunRecord& record) {
+GatedValues values_of_cases(const Topic& topic, const std::vector<Headline>& headlines,
+                            const RunRecord& record) {
   GatedValues all;
   for (const CaseRecord& in : record.cases) {
     if (in.claims_only) continue;
     for (const VariantRecord& variant : in.variants) {
       if (is_null_control(variant.role) || !has_gated_method(topic, variant)) continue;
       std::map<std::string, GatedValue>& values = all[in.name][variant.name];
-      for (const auto& [name, value] : variant.summary) values[name] = {value.value, value.unit};
+      for (const Headline& headline : headlines) {
+        if (const auto value = headline_value(in, variant, headline)) {
+          values[headline.name()] = {*value, unit_of(topic, headline.metric)};
+        }
+      }
       add_counted_work(topic, variant, values);
     }
   }
@@ -151,10 +157,6 @@ GatedValues medians_over_seeds(const RunRecord& record, const GatedValues& value
 }
 
 }  // namespace
-
-std::string without_statistic(const std::string& name) {
-  return name.find(':') == std::string::npos ? name.substr(0, name.rfind('.')) : name;
-}
 
 Gates::Gates(const Experiment& experiment, const Topic& topic) {
   for (const MetricEntry& metric : metric_rows(topic)) {
@@ -228,7 +230,7 @@ Gate Gates::of(const std::string& variant, const std::string& name) const {
 
 GatedValues gated_values(const Experiment& experiment, const Topic& topic, const RunRecord& record,
                          const std::vector<ClaimRecord>& claims) {
-  GatedValues values = values_of_cases(topic, record);
+  GatedValues values = values_of_cases(topic, headlines(experiment, topic), record);
   add_shortfalls(experiment, topic, claims, values);
   if (experiment.bifurcates) values = medians_over_seeds(record, values);
   const std::vector<StudyRecord> studies =

@@ -48,10 +48,10 @@ struct GatedValue {
   std::optional<double> size = {};
 };
 
-/// Case, variant, name. Names are those of VariantRecord::summary ("overlap_volume.max"; a metric
-/// of the sequence has no suffix); "diagnostic:<name>" is the mean over the frames of counted work;
-/// "study:<name>" has neither case nor variant (""), "shortfall:<text of the claim>" no variant: by
-/// how much a claim with `known_shortfall` falls short, in its metric's unit.
+/// Case, variant, name. Names are those of headlines ("overlap_volume.max", headlines.h);
+/// "diagnostic:<name>" is the mean over the frames of counted work; "study:<name>" has neither case
+/// nor variant (""), "shortfall:<text of the claim>" no variant: by how much a claim with
+/// `known_shortfall` falls short, in its metric's unit.
 using GatedValues = std::map<std::string, std::map<std::string, std::map<std::string, GatedValue>>>;
 
 /// visit(case, variant, name, value) for each of a set's values, in their order.
@@ -64,11 +64,9 @@ void visit_values(const Values& set, Visit visit) {
   }
 }
 
-/// "overlap_volume" of "overlap_volume.max"; names with a prefix are whole.
-std::string without_statistic(const std::string& name);
-
-/// What `check` compares of a run. Of an experiment that bifurcates it is the median over the
-/// seeds: its cases differ in nothing else and are called "seed=*".
+/// What `check` compares of a run: its headlines, counted work, studies and shortfalls. Of an
+/// experiment that bifurcates it is the median over the seeds: its cases differ in nothing else and
+/// are called "seed=*".
 /// @param claims  decided for this record
 GatedValues gated_values(const Experiment& experiment, const Topic& topic, const RunRecord& record,
                          const std::vector<ClaimRecord>& claims);

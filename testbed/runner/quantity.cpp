@@ -23,33 +23,6 @@ std::string key_list(const Map& map) {
   return text.empty() ? "none there" : text;
 }
 
-double reduced(std::vector<double> values, Reduction how) {
-  std::erase_if(values, [](double x) { return std::isnan(x); });
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto sum = [&] { return std::accumulate(values.begin(), values.end(), 0.0); };
-  switch (how) {
-    case Reduction::max:
-      return *std::max_element(values.begin(), values.end());
-    case Reduction::min:
-      return *std::min_element(values.begin(), values.end());
-    case Reduction::median:
-      return median(values);
-    case Reduction::p95:
-      return quantile(values, 0.95);
-    case Reduction::p99:
-      return quantile(values, 0.99);
-    case Reduction::mean:
-      return sum() / static_cast<double>(values.size());
-    case Reduction::sum:
-      return sum();
-    case Reduction::last:
-      return values.back();
-    case Reduction::every:
-      break;
-  }
-  throw Error("is no number", "reduce = \"every\"", "a claim that is decided frame by frame");
-}
-
 std::size_t frame_at(const CaseRecord& in, const VariantRecord& variant, double parameter) {
   std::string parameters;
   for (std::size_t i = 0; i < variant.frames.size(); ++i) {
@@ -102,6 +75,33 @@ Column column_of(const CaseRecord& in, const VariantRecord& variant, const std::
 }
 
 }  // namespace
+
+double reduced(std::vector<double> values, Reduction how) {
+  std::erase_if(values, [](double x) { return std::isnan(x); });
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto sum = [&] { return std::accumulate(values.begin(), values.end(), 0.0); };
+  switch (how) {
+    case Reduction::max:
+      return *std::max_element(values.begin(), values.end());
+    case Reduction::min:
+      return *std::min_element(values.begin(), values.end());
+    case Reduction::median:
+      return median(values);
+    case Reduction::p95:
+      return quantile(values, 0.95);
+    case Reduction::p99:
+      return quantile(values, 0.99);
+    case Reduction::mean:
+      return sum() / static_cast<double>(values.size());
+    case Reduction::sum:
+      return sum();
+    case Reduction::last:
+      return values.back();
+    case Reduction::every:
+      break;
+  }
+  throw Error("is no number", "reduce = \"every\"", "a claim that is decided frame by frame");
+}
 
 bool same_parameter(double a, double b) {
   return std::abs(a - b) <= 1e-9 * std::max({1.0, std::abs(a), std::abs(b)});

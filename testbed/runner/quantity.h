@@ -29,6 +29,10 @@ Quantity quantity_of(const CaseRecord& in, const VariantRecord& variant, const s
 std::optional<double> value_at(const CaseRecord& in, const VariantRecord& variant,
                                const std::string& name, double parameter);
 
+/// The values that are there, reduced; NaN where there are none.
+/// @throws Error  for `every`, which is no number
+double reduced(std::vector<double> values, Reduction how);
+
 /// Parameters are the same frame when they differ by at most 1e-9 of their size.
 bool same_parameter(double a, double b);
 

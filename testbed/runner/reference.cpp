@@ -1,7 +1,6 @@
 #include "testbed/runner/reference.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -80,6 +79,15 @@ void erase_metrics(Values& values) {
   }
 }
 
+/// Whether any case has a value of that name, of any variant.
+bool known_anywhere(const ReferenceSet& set, const std::string& name) {
+  bool known = false;
+  visit_values(set, [&](const auto&, const auto&, const std::string& other, const auto&) {
+    known = known || other == name;
+  });
+  return known;
+}
+
 std::string gone_text(const std::string& name) {
   return name.starts_with("shortfall:")
              ? "is gone: the claim holds (remove its known_shortfall, and bless)"
@@ -93,15 +101,8 @@ std::filesystem::path reference_file(const std::string& experiment_id) {
 }
 
 Reference read_reference(const std::filesystem::path& file) {
-  if (std::filesystem::exists(file)) return parse_reference(read_whole_file(file), file.string());
-  std::filesystem::path old_form = file;
-  old_form.replace_extension(".json");
-  if (std::filesystem::exists(old_form)) {
-    throw Error("is a reference file of the old form, which is not read any more",
-                old_form.string(),
-                "remove it, then make " + file.filename().string() + " with `geoprior bless`");
-  }
-  return {};
+  if (!std::filesystem::exists(file)) return {};
+  return parse_reference(read_whole_file(file), file.string());
 }
 
 void write_reference(const Reference& reference, const std::filesystem::path& file) {
@@ -125,7 +126,9 @@ std::vector<Mismatch> compare_with_reference(const GatedValues& now, const Refer
     if (const auto* before = find_in(reference, in, variant, name)) {
       judge(gate, value, *before, mismatch);
     } else {
-      mismatch.problem = "has no reference value (bless it)";
+      mismatch.fails = known_anywhere(reference, name);
+      mismatch.problem =
+          mismatch.fails ? "has no reference value (bless it)" : "is new (bless it to hold it)";
     }
     if (!mismatch.problem.empty()) mismatches.push_back(mismatch);
   });
@@ -141,7 +144,17 @@ std::vector<Mismatch> compare_with_reference(const GatedValues& now, const Refer
 ContentHash content_of(const RunRecord& record) {
   const auto instructions = record.provenance.find("instruction_set");
   return {instructions == record.provenance.end() ? "unknown" : instructions->second,
-          record.content_sha256};
+          record.frames_sha256, record.metrics_sha256};
+}
+
+SameBytes compare_bytes(const RunRecord& record, const ContentHash& blessed) {
+  const ContentHash now = content_of(record);
+  if (now.instruction_set != blessed.instruction_set) return SameBytes::incomparable;
+  if (!blessed.content.empty()) {
+    return blessed.content == record.content_sha256 ? SameBytes::all : SameBytes::none;
+  }
+  if (now.frames != blessed.frames) return SameBytes::none;
+  return now.metrics == blessed.metrics ? SameBytes::all : SameBytes::frames;
 }
 
 std::size_t count_values(const GatedValues& values) {
@@ -166,19 +179,14 @@ double rounded_for(double value, const Tolerance& tolerance) {
   return std::abs(rounded - value) <= moved ? rounded : value;
 }
 
-ReferenceSet bless_values(const GatedValues& now, const ReferenceSet& before, const Gates& gates,
-                          const Blessing& blessing) {
+ReferenceSet bless_values(const GatedValues& now, const Gates& gates) {
   ReferenceSet set;
   visit_values(now, [&](const auto& in, const auto& variant, const auto& name, const auto& value) {
     const Gate gate = gates.of(variant, name);
     if (!gate.compared) return;
     const Tolerance tolerance =
         value.size ? Tolerance{gate.tolerance.of(*value.size), 0} : gate.tolerance;
-    const double rounded = rounded_for(value.value, tolerance);
-    const auto* old = find_in(before, in, variant, name);
-    const bool same = old != nullptr && old->unit == value.unit && within(old->value, rounded, 0);
-    set[in][variant][name] =
-        same ? *old : ReferenceValue{rounded, value.unit, blessing.reason, blessing.commit};
+    set[in][variant][name] = {rounded_for(value.value, tolerance), value.unit};
   });
   return set;
 }

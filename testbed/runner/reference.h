@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -16,18 +15,20 @@ namespace geoprior {
 struct ReferenceValue {
   double value = 0;  ///< NaN: there was none
   std::string unit;
-  std::string reason;
-  std::string commit;
 };
 
 /// Case, variant, name of a gated value (gates.h).
 using ReferenceSet =
     std::map<std::string, std::map<std::string, std::map<std::string, ReferenceValue>>>;
 
-/// What the frames, metrics, events and artifacts of the blessed run were, byte by byte.
+/// What the blessed run was, byte by byte.
 struct ContentHash {
   std::string instruction_set;  ///< of the build: other ones round differently
-  std::string sha256;           ///< RunRecord::content_sha256
+  std::string frames;           ///< RunRecord::frames_sha256
+  std::string metrics;          ///< RunRecord::metrics_sha256
+  /// RunRecord::content_sha256, of both together: all that is known of a run blessed before they
+  /// were told apart; else empty.
+  std::string content = {};
 };
 
 struct Blessing {
@@ -35,20 +36,24 @@ struct Blessing {
   std::string reason;
 };
 
-/// results/reference/<id>.txt: one set for full and one for quick runs.
-struct Reference {
-  std::map<std::string, ReferenceSet> sets;     ///< "full", "quick"
-  std::map<std::string, ContentHash> contents;  ///< of a set; absent where it was not recorded
-  /// By the numbers that they have in the file; they keep them.
-  std::map<int, Blessing> blessings;
+/// What was blessed of the full or of the quick runs.
+struct BlessedSet {
+  Blessing blessing;  ///< the last
+  std::optional<ContentHash> content;
+  std::optional<double> processor_s;  ///< processor time that the run took
+  ReferenceSet values;
 };
+
+/// results/reference/<id>.txt: a set "full", a set "quick", or one of them.
+using Reference = std::map<std::string, BlessedSet>;
 
 /// results/reference/<id>.txt of the clone.
 std::filesystem::path reference_file(const std::string& experiment_id);
 
 /// Empty when there is no file.
-/// @throws Error  naming the file, the line and what is wrong there; or a file of the old form
-///                (JSON) that lies where this one is missing
+/// @throws Error  naming the file, the line and what is wrong there: a file of an older form, one
+/// that
+///                is cut off, a row that is there twice
 Reference read_reference(const std::filesystem::path& file);
 
 /// Whole or not at all; the same reference gives the same bytes.
@@ -74,12 +79,16 @@ const ReferenceValue* find_value(const ReferenceSet& set, const std::string& cas
 /// Every gated value against the set: |value - reference| <= absolute + relative |reference|, and
 /// no headline metric worse by more than `headline_limit`. A change for the better is a mismatch
 /// too: reference values follow by `bless`, or they would hide the next loss. Of counted work only
-/// more fails; less is a notice.
+/// more fails; less is a notice, and so is a metric that the set has nowhere.
 std::vector<Mismatch> compare_with_reference(const GatedValues& now, const ReferenceSet& reference,
                                              const Gates& gates);
 
-/// Of a run's frames, metrics, events and artifacts.
+/// Of a run's frames, events and artifacts, and of its metrics.
 ContentHash content_of(const RunRecord& record);
+
+/// How the bytes of a run stand to those blessed.
+enum class SameBytes { all, frames, none, incomparable };
+SameBytes compare_bytes(const RunRecord& record, const ContentHash& blessed);
 
 /// How many values there are.
 std::size_t count_values(const GatedValues& values);
@@ -92,10 +101,8 @@ void keep_outside_content(ReferenceSet& values);
 /// the value itself where 9 are too few.
 double rounded_for(double value, const Tolerance& tolerance);
 
-/// The set that a run's values make, rounded. Values that are as before keep their reason and
-/// commit.
-ReferenceSet bless_values(const GatedValues& now, const ReferenceSet& before, const Gates& gates,
-                          const Blessing& blessing);
+/// The set that a run's values make, rounded.
+ReferenceSet bless_values(const GatedValues& now, const Gates& gates);
 
 /// "experiment, case, variant, metric: problem: value …, reference …, tolerance …".
 std::string mismatch_text(const std::string& experiment_id, const Mismatch& mismatch);

@@ -2,13 +2,20 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
+#include <set>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "core/error.h"
 #include "testbed/runner/reference_text.h"
 
 namespace geoprior {
 namespace {
+
+/// A file says its values once a row, and a row may stand for many cases.
+constexpr std::size_t kMostValues = 1'000'000;
 
 struct Word {
   std::string text;
@@ -23,15 +30,20 @@ class ReferenceParser {
 
   Reference read() {
     next_line();
-    if (line_ != kReferenceFirstLine)
-      fail("is no reference file of this form", std::string(kReferenceFirstLine));
+    if (line_ != kReferenceFirstLine) {
+      fail("is no reference file of this form, or of an older one",
+           std::string(kReferenceFirstLine) +
+               "; remove the file, then make it anew with `geoprior bless`");
+    }
     while (next_line()) {
       if (line_.empty() || line_.front() == '#') continue;
+      if (ended_) fail("stands behind the end");
       const bool is_row = line_.starts_with("  ");
       words_ = words();
       if (words_.empty()) fail("is blank but for spaces", "an empty line");
       is_row ? read_row() : read_head();
     }
+    if (!ended_) fail("the file is cut off", "its last line, end and the number of its rows");
     return std::move(reference_);
   }
 
@@ -83,22 +95,6 @@ class ReferenceParser {
     return !word.is_quoted && word.text == "-" ? std::string() : word.text;
   }
 
-  static bool is_mark(const Word& word) {
-    return !word.is_quoted && word.text.size() > 2 && word.text.front() == '[' &&
-           word.text.back() == ']';
-  }
-
-  [[nodiscard]] int mark_of(const Word& word) const {
-    int number = 0;
-    const char* begin = word.text.data() + 1;
-    const char* end = word.text.data() + word.text.size() - 1;
-    const auto [stop, error] = std::from_chars(begin, end, number);
-    if (!is_mark(word) || error != std::errc{} || stop != end || number < 1) {
-      fail("'" + word.text + "' is no mark of a blessing", "[1], [2], …");
-    }
-    return number;
-  }
-
   [[nodiscard]] double number_of(const Word& word) const {
     double value = 0;
     const char* end = word.text.data() + word.text.size();
@@ -110,47 +106,119 @@ class ReferenceParser {
   }
 
   void read_head() {
-    if (is_mark(words_.front())) return read_blessing();
     const std::string& first = words_.front().text;
     if (first == "set") return read_set();
-    if (first == "content") return read_content();
-    if (first == "unit") return read_unit();
-    fail("'" + first + "' begins no line",
-         "[n], set, content, unit, or two spaces before the line of a metric");
+    if (first == "end") return read_end();
+    const std::map<std::string_view, void (ReferenceParser::*)()> heads{
+        {"blessed", &ReferenceParser::read_blessed}, {"content", &ReferenceParser::read_content},
+        {"frames", &ReferenceParser::read_frames},   {"metrics", &ReferenceParser::read_metrics},
+        {"cost", &ReferenceParser::read_cost},       {"unit", &ReferenceParser::read_unit},
+        {"cases", &ReferenceParser::read_cases},     {"variants", &ReferenceParser::read_variants}};
+    const auto head = heads.find(first);
+    if (head == heads.end() || words_.front().is_quoted) {
+      fail(
+          "'" + first + "' begins no line",
+          "set, blessed, frames, metrics, content, cost, unit, cases, variants, end, or two spaces "
+          "before a row");
+    }
+    require_set();
+    (this->*head->second)();
   }
 
-  void read_blessing() {
-    const int number = mark_of(words_.front());
-    if (set_ != nullptr) fail("a blessing is listed before the sets");
-    if (words_.size() != 3 || !words_[2].is_quoted) {
-      fail("is no blessing", "[n] commit \"reason\"");
-    }
-    if (!reference_.blessings.emplace(number, Blessing{name_of(words_[1]), words_[2].text}).second)
-      fail("blessing " + words_.front().text + " is there twice");
+  void require_set() const {
+    if (set_ == nullptr) fail("belongs to no set", "after the line of a set");
+  }
+
+  void require_words(std::size_t count, const std::string& form) const {
+    if (words_.size() != count) fail("is no line of this kind", form);
+  }
+
+  /// What has just been read of the set is there once.
+  void require_first(const std::string& what) {
+    if (!seen_.insert(what).second) fail("the " + what + " of the set is there twice");
+  }
+
+  /// What a set must have once it is read.
+  void close_set() const {
+    if (set_ == nullptr) return;
+    if (!seen_.contains("blessing")) fail("the set before says not how it was blessed");
+    const bool half =
+        set_->content && set_->content->content.empty() && set_->content->metrics.empty();
+    if (half) fail("the set before has frames and no metrics");
   }
 
   void read_set() {
-    if (words_.size() < 2 || words_.size() > 3) fail("is no set", "set full [n], set quick [n]");
+    close_set();
+    require_words(2, "set full, set quick");
     const std::string& size = words_[1].text;
     if (size != "full" && size != "quick") fail("there is no set '" + size + "'", "full, quick");
-    if (reference_.sets.contains(size)) fail("set " + size + " is there twice");
-    size_ = size;
-    set_ = &reference_.sets[size];
-    usual_ = words_.size() == 3 ? &blessing(words_[2]) : nullptr;
+    if (reference_.contains(size)) fail("set " + size + " is there twice");
+    set_ = &reference_[size];
     units_.clear();
+    seen_.clear();
+    cases_.clear();
+    variants_.clear();
+  }
+
+  void read_end() {
+    close_set();
+    require_words(2, "end, the number of rows");
+    if (number_of(words_[1]) != static_cast<double>(rows_)) {
+      fail("the file has " + std::to_string(rows_) + " rows and not " + words_[1].text,
+           "a file as `geoprior bless` wrote it");
+    }
+    ended_ = true;
+  }
+
+  void read_blessed() {
+    require_first("blessing");
+    if (words_.size() != 3 || !words_[2].is_quoted) {
+      fail("is no blessing", "blessed, the commit, the reason in quotes");
+    }
+    set_->blessing = {name_of(words_[1]), words_[2].text};
+  }
+
+  [[nodiscard]] std::string hash_of(std::size_t word, const std::string& form) const {
+    require_words(word + 1, form);
+    const std::string& hash = words_[word].text;
+    const bool is_hash =
+        hash.size() == 64 && hash.find_first_not_of("0123456789abcdef") == std::string::npos;
+    if (!is_hash) fail("'" + hash + "' is no hash", "64 hexadecimal digits");
+    return hash;
+  }
+
+  ContentHash& content() {
+    if (!set_->content) set_->content.emplace();
+    return *set_->content;
   }
 
   void read_content() {
-    if (set_ == nullptr) fail("belongs to no set", "after the line of a set");
-    const bool is_hash = words_.size() == 3 && words_[2].text.size() == 64 &&
-                         words_[2].text.find_first_not_of("0123456789abcdef") == std::string::npos;
-    if (!is_hash) fail("is no hash", "content, the instruction set, 64 hexadecimal digits");
-    if (reference_.contents.contains(size_)) fail("the content is there twice");
-    reference_.contents[size_] = {words_[1].text, words_[2].text};
+    require_first("content");
+    if (set_->content) fail("the frames are there already", "content, or frames and metrics");
+    content().content = hash_of(2, "content, the instruction set, a hash");
+    content().instruction_set = words_[1].text;
+  }
+
+  void read_frames() {
+    require_first("frames");
+    if (set_->content) fail("the content is there already", "content, or frames and metrics");
+    content().frames = hash_of(2, "frames, the instruction set, a hash");
+    content().instruction_set = words_[1].text;
+  }
+
+  void read_metrics() {
+    require_first("metrics");
+    if (content().frames.empty()) fail("stands behind no line of frames");
+    content().metrics = hash_of(1, "metrics, a hash");
+  }
+
+  void read_cost() {
+    require_first("cost");
+    if (words_.size() != 3 || words_[2].text != "s") fail("is no cost", "cost, a number, s");
+    set_->processor_s = number_of(words_[1]);
   }
 
   void read_unit() {
-    if (set_ == nullptr) fail("belongs to no set", "after the line of a set");
     if (words_.size() < 3) fail("is the unit of nothing", "unit, its name, names of metrics");
     for (std::size_t i = 2; i < words_.size(); ++i) {
       if (!units_.emplace(words_[i].text, name_of(words_[1])).second) {
@@ -159,46 +227,57 @@ class ReferenceParser {
     }
   }
 
-  const Blessing& blessing(const Word& word) const {
-    const auto found = reference_.blessings.find(mark_of(word));
-    if (found == reference_.blessings.end()) fail("there is no blessing " + word.text);
-    return found->second;
+  void read_cases() {
+    for (std::size_t i = 1; i < words_.size(); ++i) cases_.push_back(words_[i].text);
+  }
+
+  void read_variants() {
+    require_first("variants");
+    for (std::size_t i = 1; i < words_.size(); ++i) variants_.push_back(words_[i].text);
   }
 
   void read_row() {
-    if (set_ == nullptr) fail("belongs to no set", "after the line of a set");
-    const Blessing* by = usual_;
-    if (is_mark(words_.back())) {
-      by = &blessing(words_.back());
-      words_.pop_back();
-    }
-    if (by == nullptr) fail("says not how it was blessed", "a mark [n], here or behind the set");
-    const bool same = words_.size() == 5 && !words_[3].is_quoted && words_[3].text == "=";
-    if (!same && words_.size() != 4 && words_.size() != 7) {
-      fail("has " + std::to_string(words_.size()) + " columns",
-           "metric, variant, case, then one value, `=` and one value, or min median max last");
-    }
-    const std::string metric = words_[0].text;
+    require_set();
+    ++rows_;
+    const std::string& metric = words_[0].text;
     const auto unit = units_.find(metric);
     if (unit == units_.end()) fail("metric '" + metric + "' has no unit", "a line `unit` with it");
-    const auto put = [&](std::string_view suffix, const Word& word) {
-      add(metric + std::string(suffix), {number_of(word), unit->second, by->reason, by->commit});
-    };
-    if (!same && words_.size() == 4) return put("", words_[3]);
-    for (std::size_t i = 0; i < kReferenceStatistics.size(); ++i) {
-      put(kReferenceStatistics[i], words_[same ? 4 : 3 + i]);
+    if (words_.size() == 4 && !words_[2].is_quoted && words_[2].text == "=") {
+      return add(name_of(words_[1]), "", number_of(words_[3]));
+    }
+    if (variants_.empty() || words_.size() != 2 + variants_.size()) {
+      fail("has " + std::to_string(words_.size()) + " columns",
+           "metric, cases, and a number of each of " + std::to_string(variants_.size()) +
+               " variants; or metric, case, `=`, a number");
+    }
+    for (const std::string& in : cases_of(words_[1])) {
+      for (std::size_t i = 0; i < variants_.size(); ++i) {
+        const Word& word = words_[2 + i];
+        if (word.is_quoted || word.text != "-") add(in, variants_[i], number_of(word));
+      }
     }
   }
 
-  void add(const std::string& name, const ReferenceValue& value) {
-    auto& values = (*set_)[name_of(words_[2])][name_of(words_[1])];
-    const bool other_form =
-        name.ends_with(".min") && values.contains(name.substr(0, name.rfind('.')));
-    const bool first = values.emplace(name, value).second;
-    if (!first || other_form || values.contains(name + ".min")) {
-      fail("metric '" + words_[0].text + "' of variant '" + words_[1].text + "' in case '" +
-           words_[2].text + "' is there twice");
+  [[nodiscard]] std::vector<std::string> cases_of(const Word& word) const {
+    if (!word.is_quoted && word.text == kAllCases) return cases_;
+    std::vector<std::string> cases;
+    std::istringstream names(word.text);
+    for (std::string name; std::getline(names, name, kBetweenCases);) {
+      if (std::find(cases_.begin(), cases_.end(), name) == cases_.end()) {
+        fail("there is no case '" + name + "'", "those of the line `cases`");
+      }
+      cases.push_back(name);
     }
+    return cases;
+  }
+
+  void add(const std::string& in, const std::string& variant, double value) {
+    const std::string& metric = words_[0].text;
+    if (++values_ > kMostValues) fail("the file has over a million values");
+    if (set_->values[in][variant].emplace(metric, ReferenceValue{value, units_.at(metric)}).second)
+      return;
+    fail("metric '" + metric + "' of variant '" + variant + "' in case '" + in +
+         "' is there twice");
   }
 
   std::istringstream in_;
@@ -207,10 +286,14 @@ class ReferenceParser {
   std::size_t number_ = 0;
   std::vector<Word> words_;
   Reference reference_;
-  std::string size_;
-  ReferenceSet* set_ = nullptr;
-  const Blessing* usual_ = nullptr;
+  std::size_t rows_ = 0;
+  std::size_t values_ = 0;
+  bool ended_ = false;
+  BlessedSet* set_ = nullptr;
+  std::set<std::string> seen_;  ///< lines that a set has once
   std::map<std::string, std::string> units_;
+  std::vector<std::string> cases_;
+  std::vector<std::string> variants_;
 };
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
-#include <tuple>
 
 #include "core/error.h"
 #include "testbed/runner/number_text.h"
@@ -12,29 +12,26 @@ namespace geoprior {
 namespace {
 
 constexpr std::size_t kWidestColumn = 48;
-constexpr std::size_t kNumberColumn = 13;
-constexpr std::size_t kUnitLine = 120;
+constexpr std::size_t kNarrowestNumber = 11;
+constexpr std::size_t kLongestLine = 120;
+constexpr int kDigitsOfCost = 2;
 
-/// Metric, variant, case: the order of the lines, in which the variants of a metric lie together.
-using RowName = std::tuple<std::string, std::string, std::string>;
+/// One number of each variant, absent where it has none.
+using Numbers = std::vector<std::optional<double>>;
 
-/// A line of a set: one value of a sequence, or four of frames.
+/// A line of a set: what a metric comes to in those cases in which all its numbers agree.
 struct Row {
-  std::vector<double> values;  ///< one, or min, median, max, last
-  std::string unit;
-  int blessing = 0;
+  std::string metric;
+  std::vector<std::string> cases;
+  Numbers numbers;
 };
 
-bool is_one_value(const std::string& name) {
-  return name.find(':') != std::string::npos || name.find('.') == std::string::npos;
-}
-
-bool constant(const Row& row) {
-  return row.values.size() == kReferenceStatistics.size() &&
-         std::all_of(row.values.begin(), row.values.end(), [&](double x) {
-           return x == row.values.front() || (std::isnan(x) && std::isnan(row.values.front()));
-         });
-}
+/// A value that no variant has: of a study, or the shortfall of a claim.
+struct LoneRow {
+  std::string name;
+  std::string case_name;
+  double value = 0;
+};
 
 std::string escaped_text(const std::string& text) {
   std::string out = "\"";
@@ -59,130 +56,95 @@ std::string word_of(const std::string& text) {
 
 std::string exact_text(double x) { return std::isnan(x) ? "nan" : number_text(x); }
 
-/// The numbers of blessings: those that the file has, and new ones behind them.
-class BlessingNumbers {
- public:
-  explicit BlessingNumbers(const std::map<int, Blessing>& known) : known_(known) {}
+bool same_number(const std::optional<double>& a, const std::optional<double>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return *a == *b || (std::isnan(*a) && std::isnan(*b));
+}
 
-  int of(const ReferenceValue& value) {
-    for (const auto& [number, blessing] : known_) {
-      if (blessing.commit == value.commit && blessing.reason == value.reason) return number;
-    }
-    const int next = known_.empty() ? 1 : known_.rbegin()->first + 1;
-    known_[next] = {value.commit, value.reason};
-    return next;
-  }
+bool same_numbers(const Numbers& a, const Numbers& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_number);
+}
 
-  /// Those that are left out are forgotten.
-  [[nodiscard]] std::string text(const std::set<int>& used) const {
-    std::string lines;
-    for (const int number : used) {
-      const Blessing& blessing = known_.at(number);
-      lines += "[" + std::to_string(number) + "] " + word_of(blessing.commit) + " " +
-               escaped_text(blessing.reason) + "\n";
-    }
-    return lines;
-  }
-
- private:
-  std::map<int, Blessing> known_;
+/// What the lines of a set are made of, each list in the order of the lines.
+struct Table {
+  std::vector<std::string> cases;
+  std::vector<std::string> variants;
+  std::map<std::string, std::string> unit_of;
+  std::vector<Row> rows;
+  std::vector<LoneRow> lone;
 };
 
-using Rows = std::map<RowName, Row>;
-
-/// The place of a value in its row; @throws Error where the row has another form.
-double& place_in(Row& row, const std::string& suffix, const RowName& name) {
-  const auto statistic =
-      std::find(kReferenceStatistics.begin(), kReferenceStatistics.end(), suffix);
-  const std::size_t size = suffix.empty() ? 1 : kReferenceStatistics.size();
-  if (!suffix.empty() && statistic == kReferenceStatistics.end()) {
-    throw Error("has the statistic '" + suffix + "'", "metric '" + std::get<0>(name) + "'",
-                ".min, .median, .max, .last");
-  }
-  if (row.values.empty()) row.values.assign(size, 0);
-  if (row.values.size() != size) {
-    throw Error("is of frames and of the sequence", "metric '" + std::get<0>(name) + "'");
-  }
-  return suffix.empty()
-             ? row.values.front()
-             : row.values[static_cast<std::size_t>(statistic - kReferenceStatistics.begin())];
+void add_unit(Table& table, const std::string& metric, const std::string& unit) {
+  const auto [known, first] = table.unit_of.emplace(metric, unit);
+  if (first || known->second == unit) return;
+  throw Error("has two units", "metric '" + metric + "'", known->second + " or " + unit);
 }
 
-Rows rows_of(const ReferenceSet& set, BlessingNumbers& numbers) {
-  Rows rows;
-  std::map<RowName, std::size_t> filled;
-  for (const auto& [in, variants] : set) {
-    for (const auto& [variant, values] : variants) {
-      for (const auto& [full_name, value] : values) {
-        const std::size_t dot = is_one_value(full_name) ? full_name.size() : full_name.rfind('.');
-        const RowName name{full_name.substr(0, dot), variant, in};
-        Row& row = rows[name];
-        place_in(row, full_name.substr(dot), name) = value.value;
-        row.unit = value.unit;
-        // One mark a line: that of its youngest value.
-        row.blessing = std::max(row.blessing, numbers.of(value));
-        ++filled[name];
+/// The row of the metric that has these numbers, a new one if need be.
+Row& row_with(std::vector<Row>& rows, const std::string& metric, const Numbers& numbers) {
+  for (Row& row : rows) {
+    if (row.metric == metric && same_numbers(row.numbers, numbers)) return row;
+  }
+  return rows.emplace_back(Row{metric, {}, numbers});
+}
+
+Table table_of(const ReferenceSet& set) {
+  Table table;
+  std::set<std::string> variants, metrics;
+  visit_values(set, [&](const auto& in, const auto& variant, const auto& name, const auto& value) {
+    add_unit(table, name, value.unit);
+    if (variant.empty()) {
+      table.lone.push_back({name, in, value.value});
+      return;
+    }
+    variants.insert(variant);
+    metrics.insert(name);
+    if (table.cases.empty() || table.cases.back() != in) table.cases.push_back(in);
+  });
+  table.variants.assign(variants.begin(), variants.end());
+  for (const std::string& metric : metrics) {
+    for (const std::string& in : table.cases) {
+      Numbers numbers;
+      for (const std::string& variant : table.variants) {
+        const ReferenceValue* value = find_value(set, in, variant, metric);
+        numbers.push_back(value == nullptr ? std::nullopt : std::optional(value->value));
       }
+      const bool none = std::none_of(numbers.begin(), numbers.end(), [](auto x) { return !!x; });
+      if (!none) row_with(table.rows, metric, numbers).cases.push_back(in);
     }
   }
-  for (const auto& [name, row] : rows) {
-    if (filled[name] == row.values.size()) continue;
-    throw Error("has not all of min, median, max and last", "metric '" + std::get<0>(name) + "'");
-  }
-  return rows;
+  return table;
 }
 
-int most_frequent_blessing(const Rows& rows) {
-  std::map<int, std::size_t> count;
-  for (const auto& [name, row] : rows) ++count[row.blessing];
-  const auto most = std::max_element(
-      count.begin(), count.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most == count.end() ? 0 : most->first;
-}
-
-std::string units_text(const Rows& rows) {
-  std::map<std::string, std::string> unit_of;
-  for (const auto& [name, row] : rows) {
-    const std::string& metric = std::get<0>(name);
-    const auto [known, first] = unit_of.emplace(metric, row.unit);
-    if (!first && known->second != row.unit) {
-      throw Error("has two units", "metric '" + metric + "'", known->second + " or " + row.unit);
+/// "head word word …", on as many lines as it takes.
+std::string wrapped(const std::string& head, const std::vector<std::string>& words) {
+  std::string text, line = head;
+  for (const std::string& word : words) {
+    if (line.size() > head.size() && line.size() + 1 + word.size() > kLongestLine) {
+      text += line + "\n";
+      line = head;
     }
+    line += " " + word;
   }
+  return words.empty() ? text : text + line + "\n";
+}
+
+std::string units_text(const Table& table) {
   std::map<std::string, std::vector<std::string>> metrics_in;
-  for (const auto& [metric, unit] : unit_of) metrics_in[unit].push_back(metric);
+  for (const auto& [metric, unit] : table.unit_of) metrics_in[unit].push_back(word_of(metric));
   std::string text;
-  for (const auto& [unit, metrics] : metrics_in) {
-    const std::string head = "unit " + word_of(unit);
-    std::string line = head;
-    for (const std::string& metric : metrics) {
-      const std::string word = " " + word_of(metric);
-      if (line.size() > head.size() && line.size() + word.size() > kUnitLine) {
-        text += line + "\n";
-        line = head;
-      }
-      line += word;
-    }
-    text += line + "\n";
-  }
+  for (const auto& [unit, metrics] : metrics_in) text += wrapped("unit " + word_of(unit), metrics);
   return text;
 }
 
-using Widths = std::array<std::size_t, 3>;
-constexpr std::array<std::string_view, 3> kNameColumns{"metric", "variant", "case"};
-
-Widths widths_of(const Rows& rows) {
-  Widths widths{};
-  const auto widen = [](std::size_t& width, std::size_t size) {
-    width = std::max(width, std::min(size, kWidestColumn) + 2);
-  };
-  for (std::size_t i = 0; i < widths.size(); ++i) widen(widths[i], kNameColumns[i].size());
-  for (const auto& [name, row] : rows) {
-    widen(widths[0], word_of(std::get<0>(name)).size());
-    widen(widths[1], word_of(std::get<1>(name)).size());
-    widen(widths[2], word_of(std::get<2>(name)).size());
+std::string cases_word(const Row& row, const Table& table) {
+  if (row.cases.size() == table.cases.size()) return std::string(kAllCases);
+  std::string word;
+  for (const std::string& in : row.cases) {
+    if (!word.empty()) word += kBetweenCases;
+    word += in;
   }
-  return widths;
+  return word_of(word);
 }
 
 /// The text, filled up with spaces, one at least.
@@ -191,62 +153,74 @@ void append_column(std::string& line, std::string_view text, std::size_t width) 
   line.append(std::max(width, text.size() + 1) - text.size(), ' ');
 }
 
-/// A comment over the columns.
-std::string heading_text(const Widths& widths) {
-  std::string line = "# ";
-  for (std::size_t i = 0; i < widths.size(); ++i) append_column(line, kNameColumns[i], widths[i]);
-  for (const std::string_view statistic : kReferenceStatistics) {
-    append_column(line, statistic.substr(1), kNumberColumn);
-  }
+std::string without_trailing_spaces(std::string line) {
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";
 }
 
-std::string row_text(const RowName& name, const Row& row, const Widths& widths,
-                     int usual_blessing) {
-  std::string line = "  ";
-  append_column(line, word_of(std::get<0>(name)), widths[0]);
-  append_column(line, word_of(std::get<1>(name)), widths[1]);
-  append_column(line, word_of(std::get<2>(name)), widths[2]);
-  if (constant(row)) {
-    line += "= " + exact_text(row.values.front());
-  } else {
-    for (const double value : row.values) append_column(line, exact_text(value), kNumberColumn);
+/// Lines whose columns stand below each other, the names of the variants over their numbers.
+std::string rows_text(const Table& table) {
+  std::size_t names = 0, cases = 0;
+  const auto widen = [](std::size_t& width, std::size_t size) {
+    width = std::max(width, std::min(size, kWidestColumn) + 2);
+  };
+  for (const Row& row : table.rows) {
+    widen(names, word_of(row.metric).size());
+    widen(cases, cases_word(row, table).size());
   }
-  line.erase(line.find_last_not_of(' ') + 1);
-  if (row.blessing != usual_blessing) line += "  [" + std::to_string(row.blessing) + "]";
-  return line + "\n";
-}
-
-std::string set_text(const std::string& size, const Rows& rows, const ContentHash* content) {
-  const int blessing = most_frequent_blessing(rows);
-  std::string text = "\nset " + size;
-  if (!rows.empty()) text += " [" + std::to_string(blessing) + "]";
-  text += "\n";
-  if (content != nullptr) {
-    text += "content " + word_of(content->instruction_set) + " " + content->sha256 + "\n";
+  const auto width_of = [&](std::size_t i) {
+    return std::max(table.variants[i].size(), kNarrowestNumber) + 2;
+  };
+  std::string head;
+  append_column(head, "variants", 2 + names + cases);
+  for (std::size_t i = 0; i < table.variants.size(); ++i) {
+    append_column(head, table.variants[i], width_of(i));
   }
-  text += units_text(rows);
-  const Widths widths = widths_of(rows);
-  if (!rows.empty()) text += heading_text(widths);
-  for (const auto& [name, row] : rows) text += row_text(name, row, widths, blessing);
+  std::string text = table.rows.empty() ? "" : without_trailing_spaces(head);
+  for (const Row& row : table.rows) {
+    std::string line = "  ";
+    append_column(line, word_of(row.metric), names);
+    append_column(line, cases_word(row, table), cases);
+    for (std::size_t i = 0; i < row.numbers.size(); ++i) {
+      append_column(line, row.numbers[i] ? exact_text(*row.numbers[i]) : "-", width_of(i));
+    }
+    text += without_trailing_spaces(line);
+  }
+  for (const LoneRow& row : table.lone) {
+    text += "  " + word_of(row.name) + " " + word_of(row.case_name) + " = " +
+            exact_text(row.value) + "\n";
+  }
   return text;
+}
+
+std::string content_text(const ContentHash& content) {
+  const std::string& on = content.instruction_set;
+  if (!content.content.empty()) return "content " + word_of(on) + " " + content.content + "\n";
+  return "frames " + word_of(on) + " " + content.frames + "\nmetrics " + content.metrics + "\n";
+}
+
+std::string set_text(const std::string& size, const BlessedSet& set, const Table& table) {
+  std::string text = "\nset " + size + "\nblessed " + word_of(set.blessing.commit) + " " +
+                     escaped_text(set.blessing.reason) + "\n";
+  if (set.content) text += content_text(*set.content);
+  if (set.processor_s) text += "cost " + rounded_text(*set.processor_s, kDigitsOfCost) + " s\n";
+  text += units_text(table);
+  text += wrapped("cases", table.cases);
+  return text + rows_text(table);
 }
 
 }  // namespace
 
 std::string reference_text(const Reference& reference) {
-  BlessingNumbers numbers(reference.blessings);
-  std::set<int> used;
-  std::string sets;
-  for (const auto& [size, set] : reference.sets) {
-    const Rows rows = rows_of(set, numbers);
-    for (const auto& [name, row] : rows) used.insert(row.blessing);
-    const auto content = reference.contents.find(size);
-    sets += set_text(size, rows, content == reference.contents.end() ? nullptr : &content->second);
-  }
   std::string text(kReferenceFirstLine);
-  return text.append("\n").append(numbers.text(used)).append(sets);
+  text += "\n";
+  std::size_t rows = 0;
+  for (const auto& [size, set] : reference) {
+    const Table table = table_of(set.values);
+    rows += table.rows.size() + table.lone.size();
+    text += set_text(size, set, table);
+  }
+  return text + "\nend " + std::to_string(rows) + "\n";
 }
 
 }  // namespace geoprior

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <string_view>
 
@@ -8,13 +7,14 @@
 
 namespace geoprior {
 
-constexpr std::string_view kReferenceFirstLine = "geoprior reference 3";
-
-/// Of a metric of frames, in the order of a line's numbers.
-constexpr std::array<std::string_view, 4> kReferenceStatistics{".min", ".median", ".max", ".last"};
+constexpr std::string_view kReferenceFirstLine = "geoprior reference 4";
+/// In the place of a row's cases: all that the set has.
+constexpr std::string_view kAllCases = "*";
+/// Between the cases of a row; no name of a case has it.
+constexpr char kBetweenCases = '|';
 
 /// A reference file as text (docs/file-formats.md): the same reference gives the same bytes.
-/// @throws Error  when a metric has some of min, median, max and last only, or two units
+/// @throws Error  when a metric has two units
 std::string reference_text(const Reference& reference);
 
 }  // namespace geoprior

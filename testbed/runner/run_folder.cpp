@@ -59,9 +59,9 @@ std::vector<fs::path> folders_of(const Experiment& experiment) {
   return folders_of(experiment.id, "-" + short_hash(experiment));
 }
 
-bool has_content(const fs::path& folder, const std::string& content_sha256) {
+bool fits(const fs::path& folder, const std::function<bool(const RunRecord&)>& wanted) {
   try {
-    return recorded_result(folder) && OpenedRun(folder).record().content_sha256 == content_sha256;
+    return recorded_result(folder) && wanted(OpenedRun(folder).record());
   } catch (const Error&) {
     return false;
   }
@@ -232,10 +232,19 @@ std::optional<fs::path> find_run(const Experiment& experiment) {
   return std::nullopt;
 }
 
-fs::path find_run_of_content(const std::string& experiment_id, const std::string& content_sha256) {
+std::optional<fs::path> find_run_where(const std::string& experiment_id,
+                                       const std::function<bool(const RunRecord&)>& wanted) {
   for (const fs::path& folder : folders_of(experiment_id, "-")) {
-    if (has_content(folder, content_sha256)) return folder;
+    if (fits(folder, wanted)) return folder;
   }
+  return std::nullopt;
+}
+
+fs::path find_run_of_content(const std::string& experiment_id, const std::string& content_sha256) {
+  const auto found = find_run_where(experiment_id, [&](const RunRecord& record) {
+    return record.content_sha256 == content_sha256;
+  });
+  if (found) return *found;
   throw Error("the run of '" + experiment_id + "' with content " +
                   content_sha256.substr(0, kShortHash) + " is no longer there",
               (runs_root() / experiment_id).string(), "geoprior run " + experiment_id);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -37,6 +38,11 @@ void require_own_beginning(const Experiment& experiment, const std::filesystem::
 /// Name under which a run records an input file: relative to the clone where it lies inside, else
 /// absolute; `printable`, as it goes into JSON.
 std::string input_name(const std::filesystem::path& file);
+
+/// The newest finished run of an experiment whose record is a wanted one; absent when there is
+/// none.
+std::optional<std::filesystem::path> find_run_where(
+    const std::string& experiment_id, const std::function<bool(const RunRecord&)>& wanted);
 
 /// The newest run of an experiment with that `content_sha256`.
 /// @throws Error  when there is none below runs_root()

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "testbed/runner/headlines.h"
 #include "testbed/runner/reference.h"
 #include "tests/testbed/headline_references.h"
 #include "tests/testbed/run_fixture.h"
@@ -58,9 +59,8 @@ StudySpec study_of_error(const std::string& name, StudyKind kind) {
 CaseRecord case_of(const std::string& name, double error, std::vector<double> iterations) {
   VariantRecord variant;
   variant.name = "v";
-  for (const char* which : {"error.min", "error.median", "error.max", "error.last"}) {
-    variant.summary[which] = {error, "m", "", "lower_is_better"};
-  }
+  variant.frames = {{0, {}}, {1, {}}};
+  variant.metrics["error"] = {"m", "", "lower_is_better", {error / 2, error}};
   variant.diagnostics["iterations"] = {"1", "", std::move(iterations)};
   variant.diagnostics["residual"] = {"1", "", {0.1}};
   CaseRecord in;
@@ -70,7 +70,7 @@ CaseRecord case_of(const std::string& name, double error, std::vector<double> it
 }
 
 ReferenceSet blessed(const GatedValues& values, const Gates& gates) {
-  return bless_values(values, {}, gates, {"c1", "first"});
+  return bless_values(values, gates);
 }
 
 TEST(Gates, HeadlineMetricsMayWorsenByThreePercentWhateverTheirTolerance) {
@@ -194,7 +194,8 @@ TEST(Gates, AMethodWhoseResultsDoNotRepeatIsNotCompared) {
   RunRecord record;
   record.cases = {case_of("default", 1, {2})};
   record.cases[0].variants[0].method = "drifting";
-  const Experiment experiment;
+  Experiment experiment;
+  experiment.claims = {claim_about("error")};
   EXPECT_FALSE(gated_values(experiment, topic, record, {}).at("default").at("v").empty());
   topic.methods[0].ungated = "a library's generator";
   EXPECT_FALSE(gated_values(experiment, topic, record, {}).contains("default"));
@@ -203,6 +204,7 @@ TEST(Gates, AMethodWhoseResultsDoNotRepeatIsNotCompared) {
 TEST(Gates, WhatBifurcatesIsComparedByItsMedianOverTheSeeds) {
   const Topic topic = wide_topic();
   Experiment experiment;
+  experiment.claims = {claim_about("error")};
   experiment.bifurcates = true;
   RunRecord record;
   const std::vector<double> errors{9, 1, 3};
@@ -224,6 +226,50 @@ TEST(Gates, CasesForClaimsOnlyHaveNoReferenceValues) {
   const GatedValues values = gated_values(Experiment(), wide_topic(), record, {});
   EXPECT_TRUE(values.contains("default"));
   EXPECT_FALSE(values.contains("seed=2"));
+}
+
+// What a claim reads is held as the claim reads it; what a figure plots, at its worst.
+TEST(Headlines, AreWhatClaimsReadAndFiguresShow) {
+  Topic topic = wide_topic();
+  MetricGroup& sequence = topic.metrics.emplace_back();
+  sequence.rows = {metric("pop", Direction::lower_is_better, {})};
+  sequence.of_sequence = [](const Scene&, const FrameSequence&) { return MetricValues{}; };
+  topic.metrics.emplace_back().rows = {metric("untold", Direction::lower_is_better, {})};
+  Experiment experiment;
+  const auto claim = [&](const std::string& name, Reduction reduce) -> ClaimSpec& {
+    experiment.claims.push_back(claim_about(name));
+    experiment.claims.back().reduce = reduce;
+    return experiment.claims.back();
+  };
+  claim("error", Reduction::p95);
+  claim("error", Reduction::max).at_parameter = 90;
+  claim("score", Reduction::every).is = Comparison::greater_equal;
+  claim("pop", Reduction::max);
+  claim("timing:solve", Reduction::median);
+  claim("ratio", Reduction::last).of_reduce = Reduction::min;
+  experiment.view.metrics = {"error", "length", "timing:solve"};
+  std::vector<std::string> names;
+  for (const Headline& headline : headlines(experiment, topic)) names.push_back(headline.name());
+  EXPECT_THAT(names, testing::ElementsAre("error.p95", "error@90", "score.min", "pop", "ratio.last",
+                                          "ratio.min", "length.max"));
+}
+
+TEST(Headlines, AreOneNumberEach) {
+  const CaseRecord in = case_of("default", 4, {1});
+  const VariantRecord& variant = in.variants[0];
+  const auto value = [&](const Headline& headline) {
+    return headline_value(in, variant, headline).value();
+  };
+  EXPECT_EQ(value({"error", false, std::nullopt, Reduction::max}), 4);
+  EXPECT_EQ(value({"error", false, std::nullopt, Reduction::mean}), 3);
+  EXPECT_EQ(value({"error", false, 0.0, Reduction::max}), 2);
+  EXPECT_TRUE(std::isnan(value({"error", false, 0.5, Reduction::max}))) << "no such frame";
+  EXPECT_FALSE(headline_value(in, variant, {"score", false, std::nullopt, Reduction::max}));
+  EXPECT_FALSE(headline_value(in, variant, {"pop", true, std::nullopt, Reduction::max}));
+  EXPECT_EQ(without_statistic("error@0.5"), "error");
+  EXPECT_EQ(without_statistic("error.max"), "error");
+  EXPECT_EQ(without_statistic("pop"), "pop");
+  EXPECT_EQ(without_statistic("shortfall:3.5 m"), "shortfall:3.5 m");
 }
 
 class Bifurcating : public test::RunTest {};

@@ -72,12 +72,12 @@ inline void expect_headline_metrics_are_guarded(const Topic& topic) {
     EXPECT_TRUE(reference_text(reference) == read_whole_file(entry.path()))
         << "not as bless writes it: " << entry.path();
     ++files;
-    for (const auto& [size, set] : reference.sets) {
+    for (const auto& [size, set] : reference) {
       LoadRequest load;
       load.quick = size == "quick";
       const Experiment experiment =
           load_experiment(home / "experiments" / (id + ".toml"), {topic}, load);
-      headlines += expect_guarded(set, Gates(experiment, topic), id + " (" + size + ")");
+      headlines += expect_guarded(set.values, Gates(experiment, topic), id + " (" + size + ")");
     }
   }
   EXPECT_GT(files, 0U);

@@ -104,9 +104,8 @@ TEST(Names, OfTheRepositoryFitTheRule) {
       EXPECT_TRUE(is_plain_name(variant.find("name")->text)) << file;
     }
     for (const bool quick : {false, true}) EXPECT_NO_THROW(expand_sweeps(tree, quick)) << file;
-    for (const auto& [size, set] :
-         read_reference(root / "results/reference" / (id + ".txt")).sets) {
-      for (const auto& [name, variants] : set) {
+    for (const auto& [size, set] : read_reference(root / "results/reference" / (id + ".txt"))) {
+      for (const auto& [name, variants] : set.values) {
         std::string of_seeds = name;
         std::replace(of_seeds.begin(), of_seeds.end(), '*', '0');  // medians: "seed=*"
         EXPECT_TRUE(is_name(of_seeds) || name.empty()) << id << " " << name;
@@ -137,7 +136,7 @@ class ForeignNames : public ::testing::Test {
  protected:
   void SetUp() override {
     home_.write("precious/work.txt", "years of work");
-    home_.write("results/reference/toy-circle/disc.txt", "geoprior reference 3\n");
+    home_.write("results/reference/toy-circle/disc.txt", "geoprior reference 4\n\nend 0\n");
     before_ = files();
   }
 

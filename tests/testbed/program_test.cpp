@@ -25,6 +25,9 @@ role = "null"
 options = { segments = 4 }
 )";
 
+/// What a figure plots has reference values.
+const std::string kPlotted = "[figure_view]\nmetrics = [\"radius_error\"]\n";
+
 const std::string kClaim = std::string(kSquare) + R"(
 [[claim]]
 text = "sixteen corners stay within four centimetres"
@@ -210,7 +213,7 @@ TEST_F(Program, CheckNamesTheMetricThatAnOptionChanged) {
   EXPECT_EQ(changed.code, 1);
   EXPECT_THAT(changed.err,
               AllOf(HasSubstr("toy-circle/disc"), HasSubstr("case 'default'"),
-                    HasSubstr("variant 'polygon'"), HasSubstr("metric 'radius_error.max'"),
+                    HasSubstr("variant 'polygon'"), HasSubstr("metric 'radius_error@90'"),
                     HasSubstr("reference 0.034220"), HasSubstr("tolerance")));
   const json verdict = json::parse(changed.out);
   EXPECT_EQ(verdict["passed"], false);
@@ -299,7 +302,7 @@ TEST_F(Program, BlessIsRefusedWithoutAReason) {
 }
 
 TEST_F(Program, QuickAndFullReferencesStandApart) {
-  write(disc_experiment() + "[quick]\n\"variant.polygon.options.segments\" = 8\n");
+  write(disc_experiment() + kPlotted + "[quick]\n\"variant.polygon.options.segments\" = 8\n");
   ASSERT_EQ(run("bless toy-circle/disc --reason full").code, 0);
   EXPECT_EQ(run("check toy-circle/disc --quick").code, 1);
   ASSERT_EQ(run("bless toy-circle/disc --quick --reason quick").code, 0);
@@ -308,12 +311,14 @@ TEST_F(Program, QuickAndFullReferencesStandApart) {
   const Reference reference =
       read_reference(home_.root() / "results/reference/toy-circle/disc.txt");
   const auto value = [&](const char* size) {
-    return *find_value(reference.sets.at(size), "default", "polygon", "radius_error.max");
+    return *find_value(reference.at(size).values, "default", "polygon", "radius_error.max");
   };
   EXPECT_LT(value("full").value, value("quick").value);
-  EXPECT_EQ(value("quick").reason, "quick");
   EXPECT_EQ(value("quick").unit, "m");
-  EXPECT_FALSE(value("quick").commit.empty());
+  EXPECT_EQ(reference.at("quick").blessing.reason, "quick");
+  EXPECT_EQ(reference.at("full").blessing.reason, "full");
+  EXPECT_FALSE(reference.at("full").blessing.commit.empty());
+  EXPECT_GT(reference.at("full").processor_s.value_or(0), 0);
 }
 
 TEST_F(Program, SameBytesNeedNoComparisonAndCountedWorkIsComparedAllTheSame) {
@@ -322,36 +327,78 @@ TEST_F(Program, SameBytesNeedNoComparisonAndCountedWorkIsComparedAllTheSame) {
   EXPECT_THAT(run("check toy-circle/disc").err, HasSubstr("(same bytes)"));
   const auto file = home_.root() / "results/reference/toy-circle/disc.txt";
   Reference reference = read_reference(file);
-  const ContentHash blessed = reference.contents.at("full");
+  const ContentHash blessed = reference.at("full").content.value();
+  const auto check_with = [&](const ContentHash& content) {
+    reference.at("full").content = content;
+    write_reference(reference, file);
+    return run("check toy-circle/disc");
+  };
+  const std::string other(64, '0');
   // The values of other bytes decide, and so do those of another instruction set.
-  reference.contents["full"].sha256 = std::string(64, '0');
-  write_reference(reference, file);
-  const Outcome other = run("check toy-circle/disc");
-  EXPECT_EQ(other.code, 0) << "values are as blessed";
-  EXPECT_THAT(other.err, AllOf(HasSubstr("notice: "), HasSubstr("byte by byte")));
-  reference.contents["full"] = {"another", blessed.sha256};
-  write_reference(reference, file);
-  EXPECT_THAT(run("check toy-circle/disc").err, HasSubstr("notice: blessed on another"));
+  const Outcome frames = check_with({blessed.instruction_set, other, blessed.metrics});
+  EXPECT_EQ(frames.code, 0) << "values are as blessed";
+  EXPECT_THAT(frames.err, HasSubstr("notice: frames are not those blessed, byte by byte"));
+  const Outcome metrics = check_with({blessed.instruction_set, blessed.frames, other});
+  EXPECT_EQ(metrics.code, 0);
+  EXPECT_THAT(metrics.err, HasSubstr("notice: frames are those blessed, metrics are not"));
+  EXPECT_THAT(check_with({"another", blessed.frames, blessed.metrics}).err,
+              HasSubstr("notice: blessed on another"));
+  // Of a run blessed before frames and metrics were told apart, both decide together.
+  EXPECT_THAT(check_with({blessed.instruction_set, "", "", other}).err, HasSubstr("byte by byte"));
   // The hash covers no diagnostics.
-  reference.contents["full"] = blessed;
-  reference.sets["full"]["default"]["polygon"]["diagnostic:evaluations"].value -= 1;
-  write_reference(reference, file);
-  const Outcome more = run("check toy-circle/disc");
+  reference.at("full").values["default"]["polygon"]["diagnostic:evaluations"].value -= 1;
+  const Outcome more = check_with(blessed);
   EXPECT_EQ(more.code, 1);
   EXPECT_THAT(more.err, AllOf(HasSubstr("(same bytes)"), HasSubstr("'diagnostic:evaluations'")));
+}
+
+// With the blessed run at hand, check says which frames are others and by how much.
+TEST_F(Program, OtherFramesAreHeldAgainstTheRunThatWasBlessed) {
+  write(disc_experiment("segments = 16", kPlotted));
+  ASSERT_EQ(run("bless toy-circle/disc --reason x").code, 0);
+  // Every corner moves by a thousandth of 2 m.
+  write(disc_experiment("segments = 16, scale = 0.999", kPlotted));
+  const Outcome other = run("check toy-circle/disc");
+  EXPECT_EQ(other.code, 1);
+  EXPECT_THAT(other.err,
+              AllOf(HasSubstr("'radius_error.max' changed"), HasSubstr("compared with the run"),
+                    HasSubstr("polygon, default: 3 of 3 frames differ, the first at angle 0 deg"),
+                    HasSubstr("moved by up to 0.002 m"), Not(HasSubstr("exact, default"))));
+}
+
+TEST_F(Program, ABrokenReferenceIsNeverOk) {
+  write(disc_experiment("segments = 16", kPlotted));
+  ASSERT_EQ(run("bless toy-circle/disc --reason x").code, 0);
+  const std::string name = "results/reference/toy-circle/disc.txt";
+  const std::string text = toy::Home::read(home_.root() / name);
+  const std::size_t row = text.find("  radius_error.max");
+  const std::string twice = text.substr(row, text.find('\n', row) + 1 - row);
+  for (const std::string& broken :
+       {text.substr(0, text.size() / 2), text.substr(0, row) + twice + text.substr(row),
+        std::string("geoprior reference 3\n[1] c1 \"first\"\n\nset full [1]\n"), std::string()}) {
+    home_.write(name, broken);
+    for (const char* command : {"check toy-circle/disc", "bless toy-circle/disc --reason again"}) {
+      const Outcome outcome = run(command);
+      EXPECT_EQ(outcome.code, 2) << command << "\n" << broken;
+      EXPECT_THAT(outcome.err, AllOf(HasSubstr("disc.txt:"), Not(HasSubstr("ok "))));
+    }
+    EXPECT_EQ(toy::Home::read(home_.root() / name), broken) << "bless replaced it";
+  }
 }
 
 TEST_F(Program, AClaimsMetricMayNotWorsenWithinItsWideTolerance) {
   const std::string wide = "[tolerance]\nradius_error = { absolute = 0, relative = 0.25 }\n";
   const auto problem_of_radius_error = [&](const std::string& claim) {
-    write(disc_experiment("segments = 16", claim + wide));
+    const std::string more = claim + wide + kPlotted;
+    write(disc_experiment("segments = 16", more));
     EXPECT_EQ(run("bless toy-circle/disc --reason x").code, 0);
     // A thousandth of 2 m is 6 % of the error of 0.034 m.
-    write(disc_experiment("segments = 16, scale = 0.999", claim + wide));
+    write(disc_experiment("segments = 16, scale = 0.999", more));
     const json verdict = json::parse(run("check toy-circle/disc --json").out)["experiments"][0];
     std::string problem;
     for (const json& mismatch : verdict["mismatches"]) {
-      if (mismatch["metric"] == "radius_error.max") problem = mismatch["problem"];
+      const std::string metric = mismatch["metric"];
+      if (metric.starts_with("radius_error")) problem = mismatch["problem"];
     }
     return problem;
   };
@@ -360,9 +407,9 @@ TEST_F(Program, AClaimsMetricMayNotWorsenWithinItsWideTolerance) {
 }
 
 TEST_F(Program, BlessSaysWhatItChanges) {
-  write(disc_experiment("segments = 16"));
+  write(disc_experiment("segments = 16", kPlotted));
   EXPECT_THAT(run("bless toy-circle/disc --reason first").err, HasSubstr(" new: "));
-  write(disc_experiment("segments = 8"));
+  write(disc_experiment("segments = 8", kPlotted));
   const Outcome outcome = run("bless toy-circle/disc --reason 'half the corners'");
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("radius_error.max, polygon, default: 0.0342205"),
                                  HasSubstr(" -> 0.136296"), HasSubstr("tolerances)")));

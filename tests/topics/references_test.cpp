@@ -1,0 +1,96 @@
+// The reference values of all topics fit: what a person reviews, and what checking them costs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+
+#include "testbed/formats/atomic_file.h"
+#include "testbed/runner/reference.h"
+#include "testbed/runner/reference_parser.h"
+#include "testbed/runner/reference_text.h"
+
+namespace geoprior::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The topics that were there when the limits were drawn have theirs together, each further one its
+/// own.
+const std::set<std::string> kFirstTopics{"skinning", "paper", "fluid", "details", "sketch"};
+constexpr std::size_t kLinesOfFirst = 9000, kLinesOfOther = 1500;
+constexpr std::uintmax_t kBytesOfFirst = 1'000'000, kBytesOfOther = 170'000;
+
+/// Seconds of processor time of quick runs, as counted when they were blessed.
+constexpr double kCostOfFirst = 480, kCostOfOther = 40;
+constexpr double kCostOfRun = 4, kCostOfLongRun = 10;
+/// Quick runs that no smaller scene shows what they claim.
+const std::set<std::string> kLongRuns{};
+
+struct Sum {
+  std::size_t lines = 0;
+  std::uintmax_t bytes = 0;
+  double cost_s = 0;
+};
+
+/// The file of each experiment, by its identifier.
+std::map<std::string, fs::path> reference_files() {
+  std::map<std::string, fs::path> files;
+  for (const auto& topic : fs::directory_iterator(GEOPRIOR_SOURCE_DIR "/results/reference")) {
+    for (const auto& entry : fs::directory_iterator(topic)) {
+      const fs::path& file = entry.path();
+      files[topic.path().filename().string() + "/" + file.stem().string()] = file;
+    }
+  }
+  return files;
+}
+
+/// "" for the first topics together.
+std::map<std::string, Sum> sums_by_topic() {
+  std::map<std::string, Sum> sums;
+  for (const auto& [id, file] : reference_files()) {
+    const std::string topic = id.substr(0, id.find('/'));
+    Sum& sum = sums[kFirstTopics.contains(topic) ? "" : topic];
+    const std::string text = read_whole_file(file);
+    sum.lines += static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+    sum.bytes += text.size();
+    const Reference reference = parse_reference(text, file.string());
+    if (const auto quick = reference.find("quick"); quick != reference.end()) {
+      sum.cost_s += quick->second.processor_s.value_or(0);
+    }
+  }
+  return sums;
+}
+
+TEST(References, AreAsManyAsAPersonReviews) {
+  for (const auto& [topic, sum] : sums_by_topic()) {
+    EXPECT_LE(sum.lines, topic.empty() ? kLinesOfFirst : kLinesOfOther) << topic;
+    EXPECT_LE(sum.bytes, topic.empty() ? kBytesOfFirst : kBytesOfOther) << topic;
+  }
+}
+
+TEST(References, QuickRunsStayWithinTheirBudget) {
+  for (const auto& [topic, sum] : sums_by_topic()) {
+    EXPECT_LE(sum.cost_s, topic.empty() ? kCostOfFirst : kCostOfOther) << topic;
+    RecordProperty("seconds_" + (topic.empty() ? "first" : topic), std::to_string(sum.cost_s));
+  }
+  for (const auto& [id, file] : reference_files()) {
+    const Reference reference = read_reference(file);
+    ASSERT_TRUE(reference.contains("quick")) << id;
+    const auto& cost = reference.at("quick").processor_s;
+    ASSERT_TRUE(cost.has_value()) << id << " was blessed without its cost";
+    EXPECT_LE(*cost, kLongRuns.contains(id) ? kCostOfLongRun : kCostOfRun) << id;
+  }
+}
+
+TEST(References, AreAsBlessWritesThem) {
+  for (const auto& [id, file] : reference_files()) {
+    const std::string text = read_whole_file(file);
+    EXPECT_TRUE(reference_text(parse_reference(text, file.string())) == text) << id;
+  }
+}
+
+}  // namespace
+}  // namespace geoprior::test
