@@ -59,9 +59,9 @@ int bless_command(const CommandContext& context, const BlessRequest& request) {
   install_stop_handler();
   Experiment experiment = load_without_clock(context, request.id, request.quick);
   require_file_of_clone(experiment);
-  const BlessedRun run = run_without_clock(context, std::move(experiment));
-  const std::filesystem::path file = reference_file(run.experiment.id);
+  const std::filesystem::path file = reference_file(experiment.id);
   Reference reference = read_reference(file);
+  const BlessedRun run = run_without_clock(context, std::move(experiment));
   const std::string size = size_of(run.experiment);
   const std::vector<ClaimRecord> claims = decide_claims(run.experiment, run.record);
   const Gates gates(run.experiment, *run.topic);

@@ -2,6 +2,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -80,7 +81,9 @@ void compare_contents(const BlessedRun& run, const ContentHash& blessed, Verdict
 
 Verdict check_one(const CommandContext& context, const std::string& id,
                   const CheckRequest& request) {
-  const BlessedRun run = run_without_clock(context, load_without_clock(context, id, request.quick));
+  Experiment experiment = load_without_clock(context, id, request.quick);
+  const Reference reference = read_reference(reference_file(experiment.id));
+  const BlessedRun run = run_without_clock(context, std::move(experiment));
   Verdict verdict;
   verdict.id = run.experiment.id;
   verdict.run = run.folder.string();
@@ -94,7 +97,6 @@ Verdict check_one(const CommandContext& context, const std::string& id,
   for (const ClaimSpec& claim : run.experiment.claims) {
     if (claim.known_shortfall) verdict.known_shortfalls[claim.text] = *claim.known_shortfall;
   }
-  const Reference reference = read_reference(reference_file(run.experiment.id));
   const auto blessed = reference.find(size_of(run.experiment));
   verdict.has_reference = blessed != reference.end();
   if (!verdict.has_reference) return verdict;

@@ -9,7 +9,7 @@
 namespace geoprior {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoHeadline = std::numeric_limits<double>::quiet_NaN();
 
 /// Collects headlines, each once.
 class Headlines {
@@ -29,8 +29,11 @@ class Headlines {
     const auto same = [&](const Headline& other) { return other.metric == metric; };
     if (std::any_of(all_.begin(), all_.end(), same)) return;
     const MetricEntry* row = find_metric(topic_, metric);
-    const bool higher = row != nullptr && row->direction == Direction::higher_is_better;
-    add(metric, std::nullopt, higher ? Reduction::min : Reduction::max);
+    if (row == nullptr) return;
+    const bool either = row->direction == Direction::closer_to_target;
+    const bool low = row->direction == Direction::higher_is_better;
+    if (either || low) add(metric, std::nullopt, Reduction::min);
+    if (either || !low) add(metric, std::nullopt, Reduction::max);
   }
 
   std::vector<Headline> take() { return std::move(all_); }
@@ -78,7 +81,7 @@ std::optional<double> headline_value(const CaseRecord& in, const VariantRecord& 
   const auto column = variant.metrics.find(headline.metric);
   if (column == variant.metrics.end()) return std::nullopt;
   if (!headline.at) return reduced(column->second.values, headline.over);
-  return value_at(in, variant, headline.metric, *headline.at).value_or(kNone);
+  return value_at(in, variant, headline.metric, *headline.at).value_or(kNoHeadline);
 }
 
 std::string without_statistic(const std::string& name) {

@@ -79,9 +79,10 @@ void erase_metrics(Values& values) {
   }
 }
 
-/// Whether any case has a value of that name, of any variant.
-bool known_anywhere(const ReferenceSet& set, const std::string& name) {
-  bool known = false;
+/// Whether a value that the set lacks fails: one of a metric that the set has elsewhere, and by how
+/// much a claim falls short, whose sentence says that it is known.
+bool must_be_blessed(const ReferenceSet& set, const std::string& name) {
+  bool known = name.starts_with("shortfall:");
   visit_values(set, [&](const auto&, const auto&, const std::string& other, const auto&) {
     known = known || other == name;
   });
@@ -126,7 +127,7 @@ std::vector<Mismatch> compare_with_reference(const GatedValues& now, const Refer
     if (const auto* before = find_in(reference, in, variant, name)) {
       judge(gate, value, *before, mismatch);
     } else {
-      mismatch.fails = known_anywhere(reference, name);
+      mismatch.fails = must_be_blessed(reference, name);
       mismatch.problem =
           mismatch.fails ? "has no reference value (bless it)" : "is new (bless it to hold it)";
     }

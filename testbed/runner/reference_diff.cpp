@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "testbed/runner/headlines.h"
 #include "testbed/runner/number_text.h"
 
 namespace geoprior {

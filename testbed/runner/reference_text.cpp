@@ -17,13 +17,13 @@ constexpr std::size_t kLongestLine = 120;
 constexpr int kDigitsOfCost = 2;
 
 /// One number of each variant, absent where it has none.
-using Numbers = std::vector<std::optional<double>>;
+using RowNumbers = std::vector<std::optional<double>>;
 
 /// A line of a set: what a metric comes to in those cases in which all its numbers agree.
 struct Row {
   std::string metric;
   std::vector<std::string> cases;
-  Numbers numbers;
+  RowNumbers numbers;
 };
 
 /// A value that no variant has: of a study, or the shortfall of a claim.
@@ -56,13 +56,13 @@ std::string word_of(const std::string& text) {
 
 std::string exact_text(double x) { return std::isnan(x) ? "nan" : number_text(x); }
 
-bool same_number(const std::optional<double>& a, const std::optional<double>& b) {
+bool equal_number(const std::optional<double>& a, const std::optional<double>& b) {
   if (!a || !b) return a.has_value() == b.has_value();
   return *a == *b || (std::isnan(*a) && std::isnan(*b));
 }
 
-bool same_numbers(const Numbers& a, const Numbers& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_number);
+bool equal_numbers(const RowNumbers& a, const RowNumbers& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), equal_number);
 }
 
 /// What the lines of a set are made of, each list in the order of the lines.
@@ -81,9 +81,9 @@ void add_unit(Table& table, const std::string& metric, const std::string& unit) 
 }
 
 /// The row of the metric that has these numbers, a new one if need be.
-Row& row_with(std::vector<Row>& rows, const std::string& metric, const Numbers& numbers) {
+Row& row_with(std::vector<Row>& rows, const std::string& metric, const RowNumbers& numbers) {
   for (Row& row : rows) {
-    if (row.metric == metric && same_numbers(row.numbers, numbers)) return row;
+    if (row.metric == metric && equal_numbers(row.numbers, numbers)) return row;
   }
   return rows.emplace_back(Row{metric, {}, numbers});
 }
@@ -104,7 +104,7 @@ Table table_of(const ReferenceSet& set) {
   table.variants.assign(variants.begin(), variants.end());
   for (const std::string& metric : metrics) {
     for (const std::string& in : table.cases) {
-      Numbers numbers;
+      RowNumbers numbers;
       for (const std::string& variant : table.variants) {
         const ReferenceValue* value = find_value(set, in, variant, metric);
         numbers.push_back(value == nullptr ? std::nullopt : std::optional(value->value));

@@ -27,7 +27,8 @@ class CheckJobs : public ::testing::Test {
  protected:
   void SetUp() override {
     home_.write("experiments/toy-circle/disc.toml", toy::disc_experiment());
-    home_.write("experiments/toy-circle/hexagon.toml", toy::disc_experiment("segments = 6"));
+    home_.write("experiments/toy-circle/hexagon.toml",
+                toy::disc_experiment("segments = 6", toy::kPlotted));
     write_pendulum("swing", "");
   }
   void write_pendulum(const std::string& name, const std::string& scene) const {
@@ -107,7 +108,8 @@ TEST_F(CheckJobs, MakeTheRunsThatOthersFind) {
 
 TEST_F(CheckJobs, FailWithTheWorstExitCodeAndTheOthersAreCheckedAllTheSame) {
   bless_all();
-  home_.write("experiments/toy-circle/hexagon.toml", toy::disc_experiment("segments = 7"));
+  home_.write("experiments/toy-circle/hexagon.toml",
+              toy::disc_experiment("segments = 7", toy::kPlotted));
   const Outcome changed = home_.run("check --json --jobs 2");
   EXPECT_EQ(changed.code, 1);
   const json verdicts = json::parse(changed.out);

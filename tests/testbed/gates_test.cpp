@@ -234,7 +234,8 @@ TEST(Headlines, AreWhatClaimsReadAndFiguresShow) {
   MetricGroup& sequence = topic.metrics.emplace_back();
   sequence.rows = {metric("pop", Direction::lower_is_better, {})};
   sequence.of_sequence = [](const Scene&, const FrameSequence&) { return MetricValues{}; };
-  topic.metrics.emplace_back().rows = {metric("untold", Direction::lower_is_better, {})};
+  topic.metrics.emplace_back().rows = {metric("untold", Direction::closer_to_target, {}),
+                                       metric("unread", Direction::none, {})};
   Experiment experiment;
   const auto claim = [&](const std::string& name, Reduction reduce) -> ClaimSpec& {
     experiment.claims.push_back(claim_about(name));
@@ -247,11 +248,11 @@ TEST(Headlines, AreWhatClaimsReadAndFiguresShow) {
   claim("pop", Reduction::max);
   claim("timing:solve", Reduction::median);
   claim("ratio", Reduction::last).of_reduce = Reduction::min;
-  experiment.view.metrics = {"error", "length", "timing:solve"};
+  experiment.view.metrics = {"error", "length", "untold", "timing:solve"};
   std::vector<std::string> names;
   for (const Headline& headline : headlines(experiment, topic)) names.push_back(headline.name());
   EXPECT_THAT(names, testing::ElementsAre("error.p95", "error@90", "score.min", "pop", "ratio.last",
-                                          "ratio.min", "length.max"));
+                                          "ratio.min", "length.max", "untold.min", "untold.max"));
 }
 
 TEST(Headlines, AreOneNumberEach) {

@@ -15,6 +15,7 @@ using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using toy::disc_experiment;
+using toy::kPlotted;
 using toy::Outcome;
 
 constexpr const char* kSquare = R"(
@@ -24,9 +25,6 @@ method = "polygon"
 role = "null"
 options = { segments = 4 }
 )";
-
-/// What a figure plots has reference values.
-const std::string kPlotted = "[figure_view]\nmetrics = [\"radius_error\"]\n";
 
 const std::string kClaim = std::string(kSquare) + R"(
 [[claim]]

@@ -66,6 +66,9 @@ class Home {
   std::filesystem::path root_;
 };
 
+/// Behind an experiment on the disc: what a figure plots has reference values.
+inline const std::string kPlotted = "[figure_view]\nmetrics = [\"radius_error\"]\n";
+
 /// A small experiment on the disc; `polygon_options` is the inside of an inline table.
 inline std::string disc_experiment(const std::string& polygon_options = "segments = 16",
                                    const std::string& more = "") {
