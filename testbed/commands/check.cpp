@@ -15,6 +15,7 @@
 #include "testbed/runner/claims.h"
 #include "testbed/runner/opened_run.h"
 #include "testbed/runner/reference.h"
+#include "testbed/runner/reference_diff.h"
 #include "testbed/runner/run_difference.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/stop.h"
@@ -23,6 +24,9 @@ namespace geoprior {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// Of the values that moved, those that are listed: the farthest, in tolerances.
+constexpr std::size_t kMostMoved = 12;
 
 /// What a check found of one experiment.
 struct Verdict {
@@ -79,6 +83,18 @@ void compare_contents(const BlessedRun& run, const ContentHash& blessed, Verdict
     notices.push_back(std::move(line));
 }
 
+/// The stored values that moved, those within their tolerance as well.
+void add_moved_values(const GatedValues& now, const ReferenceSet& before, const Gates& gates,
+                      Verdict& verdict) {
+  std::vector<ReferenceChange> moved = changes_of(before, bless_values(now, gates), gates);
+  std::erase_if(moved, [](const ReferenceChange& change) {
+    return change.kind != ReferenceChange::Kind::moved;
+  });
+  const std::vector<std::string> lines = difference_lines(moved, kMostMoved);
+  if (lines.empty()) verdict.notices.emplace_back("no stored value moved");
+  for (const std::string& line : lines) verdict.notices.push_back("moved: " + line);
+}
+
 Verdict check_one(const CommandContext& context, const std::string& id,
                   const CheckRequest& request) {
   Experiment experiment = load_without_clock(context, id, request.quick);
@@ -108,7 +124,9 @@ Verdict check_one(const CommandContext& context, const std::string& id,
     keep_outside_content(now);
     keep_outside_content(before);
   }
-  verdict.mismatches = compare_with_reference(now, before, Gates(run.experiment, *run.topic));
+  const Gates gates(run.experiment, *run.topic);
+  if (!verdict.notices.empty()) add_moved_values(now, before, gates, verdict);
+  verdict.mismatches = compare_with_reference(now, before, gates);
   return verdict;
 }
 

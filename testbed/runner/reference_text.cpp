@@ -12,7 +12,7 @@ namespace geoprior {
 namespace {
 
 constexpr std::size_t kWidestColumn = 48;
-constexpr std::size_t kNarrowestNumber = 11;
+constexpr std::size_t kNarrowestNumber = 13;
 constexpr std::size_t kLongestLine = 120;
 constexpr int kDigitsOfCost = 2;
 
