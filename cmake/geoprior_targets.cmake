@@ -126,6 +126,18 @@ function(geoprior_spine_library name)
     <filesystem> <functional> <map> <memory> <optional> <string> <vector>)
 endfunction()
 
+# geoprior_find_modules(program): the modules that it opens are built with it, and found in its folder.
+function(geoprior_find_modules program)
+  add_dependencies(${program} geoprior_images)
+  get_target_property(folder ${program} RUNTIME_OUTPUT_DIRECTORY)
+  if(NOT folder)
+    set(folder ${CMAKE_CURRENT_BINARY_DIR})
+  endif()
+  if(NOT folder STREQUAL PROJECT_BINARY_DIR)
+    file(CREATE_LINK ${PROJECT_BINARY_DIR}/geoprior_images.so ${folder}/geoprior_images.so SYMBOLIC)
+  endif()
+endfunction()
+
 # geoprior_test(name SOURCES... LIBS...): one GoogleTest executable a topic, its tests discovered one by one.
 # What a test does itself is a small part of its time: it is compiled with -O1, which is quicker to build.
 function(geoprior_test name)
@@ -137,6 +149,7 @@ function(geoprior_test name)
   target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_link_libraries(test_${name} PRIVATE ${arg_LIBS} geoprior_code geoprior_warnings
     GTest::gtest GTest::gmock GTest::gtest_main)
+  geoprior_find_modules(test_${name})
   geoprior_mark_sources(${arg_SOURCES})
   geoprior_unite(test_${name})
   geoprior_precompile(test_${name} test <gmock/gmock.h> <gtest/gtest.h> <Eigen/Core> <Eigen/Geometry> <algorithm> <array>

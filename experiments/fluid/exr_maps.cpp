@@ -1,12 +1,8 @@
 #include "experiments/fluid/exr_maps.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <limits>
 #include <sstream>
 
@@ -14,11 +10,10 @@
 #include "core/limits.h"
 #include "experiments/fluid/feature_files.h"
 #include "testbed/formats/input_file.h"
+#include "testbed/images/image_codec.h"
 
 namespace geoprior::fluid {
 namespace {
-
-namespace oiio = OIIO;
 
 constexpr std::array<const char*, 4> kChannels{"R", "G", "B", "A"};
 constexpr const char* kPrefix = "geoprior:";
@@ -36,26 +31,24 @@ std::string text_of(std::span<const double> numbers) {
   return text;
 }
 
-oiio::ImageSpec header_of(const Feature& feature, std::size_t frame) {
-  oiio::ImageSpec spec(feature.resolution, feature.resolution, 4, oiio::TypeDesc::FLOAT);
-  spec.channelnames.assign(kChannels.begin(), kChannels.end());
-  spec.alpha_channel = 3;
-  spec.attribute("compression", "zip");
-  spec.attribute("DateTime", kNoDate);
-  const auto put = [&](const char* name, std::span<const double> numbers) {
-    spec.attribute(std::string(kPrefix) + name, text_of(numbers));
+ImageHeader header_of(const Feature& feature, std::size_t frame) {
+  ImageHeader header{feature.resolution, feature.resolution, {}, {}};
+  header.channels.assign(kChannels.begin(), kChannels.end());
+  header.entries = {{"compression", "zip"}, {"DateTime", kNoDate}};
+  const auto put = [&](const char* name, const std::string& text) {
+    header.entries.emplace_back(std::string(kPrefix) + name, text);
   };
-  const auto put_one = [&](const char* name, double x) { put(name, std::span(&x, 1)); };
+  const auto put_one = [&](const char* name, double x) { put(name, text_of(std::span(&x, 1))); };
   put_one("id", feature.id);
   put_one("cell", feature.cell);
   put_one("extent", feature.extent);
   put_one("time", feature.times[frame]);
   const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> placement = feature.placement[frame].matrix();
-  put("placement", std::span(placement.data(), 16));
+  put("placement", text_of(std::span(placement.data(), 16)));
   if (!feature.area.empty()) put_one("area", feature.area[frame]);
   if (!feature.volume.empty()) put_one("volume", feature.volume[frame]);
-  spec.attribute(std::string(kPrefix) + "name", feature.name);
-  return spec;
+  put("name", feature.name);
+  return header;
 }
 
 /// Row of the map that a row of the picture holds.
@@ -74,18 +67,11 @@ std::vector<float> pixels_of(const MapFrame& map, int n) {
   return pixels;
 }
 
-std::vector<std::byte> encode(const oiio::ImageSpec& spec, const std::vector<float>& pixels) {
-  std::vector<unsigned char> bytes;
-  oiio::Filesystem::IOVecOutput memory(bytes);
-  const auto output = oiio::ImageOutput::create("exr", &memory);
-  if (!output) throw Error("OpenImageIO cannot write OpenEXR: " + oiio::geterror());
-  if (!output->open("map.exr", spec) ||
-      !output->write_image(oiio::TypeDesc::FLOAT, pixels.data()) || !output->close()) {
-    throw Error("a map could not be encoded: " + output->geterror());
-  }
-  std::vector<std::byte> out(bytes.size());
-  std::memcpy(out.data(), bytes.data(), bytes.size());
-  return out;
+std::vector<std::byte> encode(const ImageHeader& header, const std::vector<float>& pixels) {
+  std::string error;
+  auto bytes = image_codec().encode("exr", header, pixels.data(), error);
+  if (!bytes) throw Error("a map could not be encoded: " + error);
+  return std::move(*bytes);
 }
 
 /// One picture on its way into a feature.
@@ -93,20 +79,21 @@ class Picture {
  public:
   explicit Picture(const std::filesystem::path& file) : name_(file.string()) {
     require_regular_file(file);
-    input_ = oiio::ImageInput::open(name_);
-    if (!input_) throw Error("is no readable picture: " + oiio::geterror(), name_);
-    if (input_->spec().width != input_->spec().height) throw Error("is not square", name_);
+    std::string error;
+    input_ = image_codec().open(name_, error);
+    if (!input_) throw Error("is no readable picture: " + error, name_);
+    if (input_->width() != input_->height()) throw Error("is not square", name_);
     for (const char* channel : kChannels) {
-      if (input_->spec().channelindex(channel) < 0) {
+      if (input_->channel(channel) < 0) {
         throw Error("has no channel " + std::string(channel), name_, "R, G, B, A");
       }
     }
   }
 
-  [[nodiscard]] int size() const { return input_->spec().width; }
+  [[nodiscard]] int size() const { return input_->width(); }
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::string text(const char* key) const {
-    return input_->spec().get_string_attribute(std::string(kPrefix) + key);
+    return input_->text(std::string(kPrefix) + key);
   }
   [[nodiscard]] bool has(const char* key) const { return !text(key).empty(); }
 
@@ -134,19 +121,19 @@ class Picture {
   }
 
   [[nodiscard]] MapFrame map() {
-    const int n = size(), channels = input_->spec().nchannels;
+    const int n = size(), channels = input_->channels();
     const auto width = static_cast<std::size_t>(channels);
     require_justified(static_cast<double>(n) * n * channels * sizeof(float));
     std::vector<float> pixels(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) * width);
-    if (!input_->read_image(0, 0, 0, channels, oiio::TypeDesc::FLOAT, pixels.data())) {
-      throw Error("cannot be read: " + input_->geterror(), name_);
+    if (!input_->read(pixels.data())) {
+      throw Error("cannot be read: " + input_->error(), name_);
     }
     MapFrame map;
     const Eigen::Index texels = static_cast<Eigen::Index>(n) * n;
     map.displacement.resize(texels, 3);
     map.alpha.resize(texels);
     for (int c = 0; c < 4; ++c) {
-      const auto at = static_cast<std::size_t>(input_->spec().channelindex(kChannels[c]));
+      const auto at = static_cast<std::size_t>(input_->channel(kChannels[c]));
       for (Eigen::Index p = 0; p < texels; ++p) {
         const Eigen::Index row = map_row(static_cast<int>(p / n), n);
         const float value = pixels[static_cast<std::size_t>(p) * width + at];
@@ -169,7 +156,7 @@ class Picture {
   }
 
   std::string name_;
-  std::unique_ptr<oiio::ImageInput> input_;
+  std::unique_ptr<ImageInput> input_;
 };
 
 void add_frame(Feature& feature, Picture& picture) {

@@ -1,8 +1,5 @@
 #include "experiments/sketch/picture_file.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,11 +7,10 @@
 
 #include "core/error.h"
 #include "testbed/formats/input_file.h"
+#include "testbed/images/image_codec.h"
 
 namespace geoprior::sketch {
 namespace {
-
-namespace oiio = OIIO;
 
 /// Of what is told of the file's contents, in the order of channels: grey, grey and alpha, colour,
 /// colour and alpha.
@@ -29,19 +25,18 @@ PixelColour over_white(const std::uint8_t* value, int channels) {
   return colour;
 }
 
-PixelImage decoded(oiio::ImageInput& input, const std::string& where) {
-  const oiio::ImageSpec& spec = input.spec();
-  if (static_cast<long long>(spec.width) * spec.height > kMostPicturePixels) {
-    throw Error("the picture has " + std::to_string(spec.width) + " x " +
-                    std::to_string(spec.height) + " pixels",
-                where, "at most " + std::to_string(kMostPicturePixels));
+PixelImage decoded(ImageInput& input, const std::string& where) {
+  const int width = input.width(), height = input.height(), channels = input.channels();
+  if (static_cast<long long>(width) * height > kMostPicturePixels) {
+    throw Error(
+        "the picture has " + std::to_string(width) + " x " + std::to_string(height) + " pixels",
+        where, "at most " + std::to_string(kMostPicturePixels));
   }
-  const int channels = spec.nchannels;
-  const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
+  const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   std::vector<std::uint8_t> values(count * static_cast<std::size_t>(channels));
-  if (channels < 1 || !input.read_image(0, 0, 0, channels, oiio::TypeDesc::UINT8, values.data()))
-    throw Error("the picture cannot be read: " + input.geterror(), where, "a PNG or JPEG file");
-  PixelImage image{spec.width, spec.height, {}};
+  if (channels < 1 || !input.read(values.data()))
+    throw Error("the picture cannot be read: " + input.error(), where, "a PNG or JPEG file");
+  PixelImage image{width, height, {}};
   image.pixels.reserve(count);
   for (std::size_t i = 0; i < count; ++i)
     image.pixels.push_back(
@@ -55,38 +50,32 @@ PixelImage read_picture(const Picture& picture) {
   const std::string where = picture.file.empty() ? "the drawing's picture" : picture.file;
   if (picture.file.empty() && picture.content.empty())
     throw Error("has no picture to take colours from", "view:photo", "an image in its layer");
-  std::unique_ptr<oiio::Filesystem::IOMemReader> memory;
-  std::unique_ptr<oiio::ImageInput> input;
+  std::unique_ptr<ImageInput> input;
+  std::string error;
   if (picture.file.empty()) {
-    memory = std::make_unique<oiio::Filesystem::IOMemReader>(
-        const_cast<char*>(picture.content.data()), picture.content.size());
     const bool png = picture.content.starts_with("\x89PNG");
-    input = oiio::ImageInput::open(png ? "picture.png" : "picture.jpg", nullptr, memory.get());
+    input = image_codec().open(picture.content, png ? "png" : "jpg", error);
   } else {
     require_regular_file(picture.file);
-    input = oiio::ImageInput::open(picture.file);
+    input = image_codec().open(picture.file, error);
   }
-  if (!input)
-    throw Error("the picture cannot be read: " + oiio::geterror(), where, "a PNG or JPEG file");
+  if (!input) throw Error("the picture cannot be read: " + error, where, "a PNG or JPEG file");
   return decoded(*input, where);
 }
 
 std::string png_bytes(const PixelImage& image, double dots_per_metre) {
-  oiio::ImageSpec spec(image.width, image.height, 3, oiio::TypeDesc::UINT8);
-  spec.attribute("png:compressionLevel", 9);
+  ImageHeader header{image.width, image.height, {"R", "G", "B"}, {{"png:compressionLevel", 9}}};
   if (dots_per_metre > 0) {
-    spec.attribute("ResolutionUnit", "m");
-    spec.attribute("XResolution", static_cast<float>(dots_per_metre));
-    spec.attribute("YResolution", static_cast<float>(dots_per_metre));
+    const auto resolution = static_cast<float>(dots_per_metre);
+    header.entries.emplace_back("ResolutionUnit", "m");
+    header.entries.emplace_back("XResolution", resolution);
+    header.entries.emplace_back("YResolution", resolution);
   }
-  std::vector<unsigned char> bytes;
-  oiio::Filesystem::IOVecOutput memory(bytes);
-  const auto output = oiio::ImageOutput::create("png", &memory);
-  if (!output) throw Error("OpenImageIO cannot write PNG: " + oiio::geterror());
-  if (!output->open("picture.png", spec) ||
-      !output->write_image(oiio::TypeDesc::UINT8, image.pixels.data()) || !output->close())
-    throw Error("a picture could not be encoded: " + output->geterror());
-  return {bytes.begin(), bytes.end()};
+  std::string error;
+  const auto* const values = reinterpret_cast<const std::uint8_t*>(image.pixels.data());
+  const auto bytes = image_codec().encode("png", header, values, error);
+  if (!bytes) throw Error("a picture could not be encoded: " + error);
+  return {reinterpret_cast<const char*>(bytes->data()), bytes->size()};
 }
 
 }  // namespace geoprior::sketch
