@@ -138,8 +138,9 @@ function(geoprior_find_modules program)
   endif()
 endfunction()
 
-# geoprior_test(name SOURCES... LIBS...): one GoogleTest executable a topic, its tests discovered one by one.
-# What a test does itself is a small part of its time: it is compiled with -O1, which is quicker to build.
+# geoprior_test(name SOURCES... LIBS...): one GoogleTest executable a topic; ctest runs each suite of it as
+# `<name>.<suite>`, labelled with the name (ctest -L paper), in a process of its own that tests/support watches. What a
+# test does itself is a small part of its time: it is compiled with -O1, which is quicker to build.
 function(geoprior_test name)
   cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
   add_executable(test_${name} ${arg_SOURCES})
@@ -148,7 +149,7 @@ function(geoprior_test name)
     GEOPRIOR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" GEOPRIOR_BINARY_DIR="${PROJECT_BINARY_DIR}")
   target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_link_libraries(test_${name} PRIVATE ${arg_LIBS} geoprior_code geoprior_warnings
-    GTest::gtest GTest::gmock GTest::gtest_main)
+    geoprior_test_main GTest::gtest GTest::gmock)
   geoprior_find_modules(test_${name})
   geoprior_mark_sources(${arg_SOURCES})
   geoprior_unite(test_${name})
@@ -157,5 +158,10 @@ function(geoprior_test name)
   if(GEOPRIOR_SANITIZE)
     target_sources(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/keep_libraries.cpp)
   endif()
-  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST)
+  set(entries ${CMAKE_CURRENT_BINARY_DIR}/test_${name}_entries.cmake)
+  file(GENERATE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_${name}_suites.cmake CONTENT
+    "include(\"${PROJECT_SOURCE_DIR}/cmake/list_suites.cmake\")
+geoprior_list_suites(${name} \"$<TARGET_FILE:test_${name}>\" \"${entries}\")
+include(\"${entries}\")\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${CMAKE_CURRENT_BINARY_DIR}/test_${name}_suites.cmake)
 endfunction()

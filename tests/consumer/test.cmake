@@ -10,4 +10,4 @@ endif()
 add_test(NAME consumer.UsesTheInstalledPackage COMMAND ${CMAKE_COMMAND}
   -DSOURCE=${CMAKE_CURRENT_LIST_DIR} -DBUILD=${PROJECT_BINARY_DIR} -DCONFIG=${CMAKE_BUILD_TYPE}
   -DCXX=${CMAKE_CXX_COMPILER} -DFLAGS=${consumer_flags} -P ${CMAKE_CURRENT_LIST_DIR}/run.cmake)
-set_tests_properties(consumer.UsesTheInstalledPackage PROPERTIES TIMEOUT 300)
+set_tests_properties(consumer.UsesTheInstalledPackage PROPERTIES LABELS consumer COST 1000)

@@ -59,32 +59,32 @@ std::string as_text(const std::vector<std::byte>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-TEST(Fuzz, GltfReaderAcceptsOrThrowsError) {
+TEST(LongFuzz, GltfReaderAcceptsOrThrowsError) {
   run(".gltf", fuzz_gltf);
   run(".glb", fuzz_gltf);
 }
-TEST(Fuzz, BvhReaderAcceptsOrThrowsError) { run(".bvh", fuzz_bvh); }
-TEST(Fuzz, TomlReadersAcceptOrThrowError) { run(".toml", fuzz_toml); }
-TEST(Fuzz, ObjReaderAcceptsOrThrowsError) { run(".obj", fuzz_obj); }
-TEST(Fuzz, PlyReaderAcceptsOrThrowsError) { run(".ply", fuzz_ply); }
-TEST(Fuzz, OffReaderAcceptsOrThrowsError) { run(".off", fuzz_off); }
-TEST(Fuzz, VtkReaderAcceptsOrThrowsError) { run(".vtp", fuzz_vtp); }
-TEST(Fuzz, CollectionReaderAcceptsOrThrowsError) { run(".pvd", fuzz_pvd); }
-TEST(Fuzz, SidecarReaderAcceptsOrThrowsError) { run(".json", fuzz_sidecar); }
-TEST(Fuzz, EditListReaderAcceptsOrThrowsError) { run(".toml", fuzz_edits); }
-TEST(Fuzz, JournalReaderAcceptsOrThrowsError) { run(".jsonl", fuzz_journal); }
-TEST(Fuzz, ReferenceReaderAcceptsOrThrowsError) { run(".txt", fuzz_reference); }
-TEST(Fuzz, PointReaderAcceptsOrThrowsError) { run(".csv", fuzz_points); }
-TEST(Fuzz, DrawingReaderAcceptsOrThrowsError) { run(".svg", fuzz_svg); }
-TEST(Fuzz, SketchReaderAcceptsOrThrowsError) { run(".svg", fuzz_sketch); }
-TEST(Fuzz, TableReaderAcceptsOrThrowsError) { run(".csv", fuzz_table); }
+TEST(LongFuzz, BvhReaderAcceptsOrThrowsError) { run(".bvh", fuzz_bvh); }
+TEST(LongFuzz, TomlReadersAcceptOrThrowError) { run(".toml", fuzz_toml); }
+TEST(LongFuzz, ObjReaderAcceptsOrThrowsError) { run(".obj", fuzz_obj); }
+TEST(LongFuzz, PlyReaderAcceptsOrThrowsError) { run(".ply", fuzz_ply); }
+TEST(LongFuzz, OffReaderAcceptsOrThrowsError) { run(".off", fuzz_off); }
+TEST(LongFuzz, VtkReaderAcceptsOrThrowsError) { run(".vtp", fuzz_vtp); }
+TEST(LongFuzz, CollectionReaderAcceptsOrThrowsError) { run(".pvd", fuzz_pvd); }
+TEST(LongFuzz, SidecarReaderAcceptsOrThrowsError) { run(".json", fuzz_sidecar); }
+TEST(LongFuzz, EditListReaderAcceptsOrThrowsError) { run(".toml", fuzz_edits); }
+TEST(LongFuzz, JournalReaderAcceptsOrThrowsError) { run(".jsonl", fuzz_journal); }
+TEST(LongFuzz, ReferenceReaderAcceptsOrThrowsError) { run(".txt", fuzz_reference); }
+TEST(LongFuzz, PointReaderAcceptsOrThrowsError) { run(".csv", fuzz_points); }
+TEST(LongFuzz, DrawingReaderAcceptsOrThrowsError) { run(".svg", fuzz_svg); }
+TEST(LongFuzz, SketchReaderAcceptsOrThrowsError) { run(".svg", fuzz_sketch); }
+TEST(LongFuzz, TableReaderAcceptsOrThrowsError) { run(".csv", fuzz_table); }
 
-TEST(Fuzz, MapReaderAcceptsOrThrowsError) {
+TEST(LongFuzz, MapReaderAcceptsOrThrowsError) {
   const auto pictures = fluid::exr_maps(sample_features().front(), "map");
   run_on(".exr", {as_text(pictures[0].bytes), as_text(pictures[1].bytes)}, fuzz_exr, 300);
 }
 
-TEST(Fuzz, SoundReaderAcceptsOrThrowsError) {
+TEST(LongFuzz, SoundReaderAcceptsOrThrowsError) {
   const Sound mono{48000, Eigen::VectorXd::LinSpaced(200, -1, 1)};
   const Sound stereo{44100, Eigen::MatrixXd::Constant(100, 2, 0.25)};
   run_on(".wav", {as_text(wav_bytes(mono)), as_text(wav_bytes(stereo))}, fuzz_wav);
@@ -93,12 +93,12 @@ TEST(Fuzz, SoundReaderAcceptsOrThrowsError) {
 // A process for every file: HDF5 crashes on some of them, the reader must not.
 constexpr std::uint64_t kProcesses = 200;
 
-TEST(Fuzz, FeatureLibraryReaderAcceptsOrThrowsError) {
+TEST(LongFuzz, FeatureLibraryReaderAcceptsOrThrowsError) {
   run_on("library", {as_text(fluid::feature_library_bytes(sample_features()))},
          fuzz_feature_library, kProcesses);
 }
 
-TEST(Fuzz, RunFileReaderAcceptsOrThrowsError) {
+TEST(LongFuzz, RunFileReaderAcceptsOrThrowsError) {
   const TestFolder folder;
   make_fake_run(folder.path);
   run_on("run", {read_whole_file(folder.path / "run.h5")}, fuzz_run_file, kProcesses);
