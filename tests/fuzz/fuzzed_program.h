@@ -6,7 +6,7 @@
 
 namespace geoprior::test {
 
-/// Seconds after which a command gets Ctrl-C, and after which it hangs.
+/// Seconds of processor time after which a command gets Ctrl-C, and after which it hangs.
 inline constexpr double kPatience = 2;
 inline constexpr double kHang = 20;
 

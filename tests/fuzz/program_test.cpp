@@ -1,11 +1,13 @@
 // Mutated files of every kind that the program reads, given to the command that reads them.
 //
-// The number of mutations of all kinds together is GEOPRIOR_FUZZ_PROGRAM, else 2000. A file that
-// provokes a fault is kept in tests/fuzz/faults of the build folder.
+// The number of mutations of all kinds together is about GEOPRIOR_FUZZ_PROGRAM, else 400, and of
+// each kind at least five. A file that provokes a fault is kept in tests/fuzz/faults of the build
+// folder.
 
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -28,15 +30,16 @@ using Clock = std::chrono::steady_clock;
 
 std::size_t mutations_asked() {
   const char* text = std::getenv("GEOPRIOR_FUZZ_PROGRAM");
-  return text == nullptr ? 2000 : std::strtoul(text, nullptr, 10);
+  return text == nullptr ? 400 : std::strtoul(text, nullptr, 10);
 }
 
-/// Its part of all mutations.
+/// Its part of all mutations, or the least that a kind gets.
 std::size_t mutations_of(const InputKind& kind) {
+  constexpr double kLeast = 5;
   double all = 0;
   for (const InputKind& each : input_kinds()) all += each.share;
   const double part = static_cast<double>(mutations_asked()) * kind.share / all;
-  return static_cast<std::size_t>(std::ceil(part));
+  return static_cast<std::size_t>(std::ceil(std::max(part, kLeast)));
 }
 
 Files with(Files files, const std::string& name, const std::string& bytes) {
@@ -56,12 +59,11 @@ class Attempt {
 
   /// What became of it, once it has ended; interrupts what takes long.
   std::optional<CommandEnd> poll() {
-    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    if (seconds > kPatience && !end_.interrupted) {
+    if (takes_longer(kPatience) && !end_.interrupted) {
       end_.interrupted = true;
       process_.signal(SIGINT);
     }
-    if (seconds > kHang && !end_.hung) {
+    if (takes_longer(kHang) && !end_.hung) {
       end_.hung = true;
       process_.signal(SIGKILL);
     }
@@ -86,6 +88,14 @@ class Attempt {
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
 
  private:
+  /// Than so many seconds of its processor, or, where it waits for something, far more of the
+  /// clock.
+  [[nodiscard]] bool takes_longer(double seconds) const {
+    constexpr double kOfClock = 30;
+    const std::chrono::duration<double> passed = Clock::now() - start_;
+    return process_.processor_seconds() > seconds || passed.count() > kOfClock * seconds;
+  }
+
   ReadingCommand command_;
   std::string bytes_;
   ScratchHome home_;
@@ -110,7 +120,7 @@ fs::path keep(const InputKind& kind, std::size_t number, const Attempt& attempt)
   return file;
 }
 
-class ProgramFuzz : public ::testing::TestWithParam<InputKind> {
+class LongProgramFuzz : public ::testing::TestWithParam<InputKind> {
  protected:
   /// Two commands at a time.
   void run_mutations(const ProgramInput& input, std::size_t count) {
@@ -170,7 +180,7 @@ class ProgramFuzz : public ::testing::TestWithParam<InputKind> {
   std::map<std::string, std::size_t> ends_, faults_;
 };
 
-TEST_P(ProgramFuzz, EndsInOrderWhateverIsInTheFile) {
+TEST_P(LongProgramFuzz, EndsInOrderWhateverIsInTheFile) {
   const ProgramInput input = GetParam().make();
   run_mutations(input, mutations_of(GetParam()));
   std::printf("%s%s\n", GetParam().name.c_str(), tally().c_str());
@@ -178,7 +188,7 @@ TEST_P(ProgramFuzz, EndsInOrderWhateverIsInTheFile) {
 
 // What the harness runs is what the program does: with the files as they are every command
 // succeeds, in a fork of this process and, the first, as a program of its own.
-TEST_P(ProgramFuzz, ReadsTheFileAsItIs) {
+TEST_P(LongProgramFuzz, ReadsTheFileAsItIs) {
   const ProgramInput input = GetParam().make();
   const auto expect_success = [&](const ReadingCommand& command, const auto& body) {
     Files files = input.home;
@@ -203,7 +213,7 @@ TEST_P(ProgramFuzz, ReadsTheFileAsItIs) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, ProgramFuzz, ::testing::ValuesIn(input_kinds()),
+INSTANTIATE_TEST_SUITE_P(Kinds, LongProgramFuzz, ::testing::ValuesIn(input_kinds()),
                          [](const auto& kind) { return kind.param.name; });
 
 }  // namespace

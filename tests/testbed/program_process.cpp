@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -69,6 +70,13 @@ void ProgramProcess::signal(int number) const { ::kill(pid_, number); }
 int ProgramProcess::wait() { return *collect(0); }
 
 std::optional<int> ProgramProcess::poll() { return collect(WNOHANG); }
+
+double ProgramProcess::processor_seconds() const {
+  clockid_t clock{};
+  timespec used{};
+  if (::clock_getcpuclockid(pid_, &clock) != 0 || ::clock_gettime(clock, &used) != 0) return 0;
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
 
 std::optional<int> ProgramProcess::collect(int flags) {
   int status = 0;

@@ -26,6 +26,8 @@ class ProgramProcess {
   int wait();
   /// The same once it has ended; does not wait.
   std::optional<int> poll();
+  /// Of the processor, used by the child itself so far; 0 once it has ended.
+  [[nodiscard]] double processor_seconds() const;
 
  private:
   std::optional<int> collect(int flags);
