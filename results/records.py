@@ -164,10 +164,14 @@ def write_record(root, data):
     return path
 
 
+def published_folder(root):
+    return Path(root) / "results" / "published"
+
+
 def record_path(root, experiment):
     if not re.fullmatch(r"[\w=,+-][\w=,+.-]*/[\w=,+-][\w=,+.-]*", experiment, re.ASCII):
         raise RunFileError(f"{experiment!r} is no identifier of an experiment (allowed: two names, topic/name)")
-    return Path(root) / "results" / "published" / f"{experiment}.json"
+    return published_folder(root) / f"{experiment}.json"
 
 
 @dataclass
@@ -225,12 +229,18 @@ def read_record(path):
                            empty, empty, empty) for name, s in data["studies"].items()])
     except OSError as error:
         raise RunFileError(f"{path}: {error.strerror}") from error
-    except (KeyError, TypeError, ValueError) as error:
+    except (AttributeError, KeyError, TypeError, ValueError, RecursionError) as error:
         raise RunFileError(f"{path}: not a published record ({type(error).__name__}: {error})") from error
 
 
 def read_records(root):
-    """experiment id: record, of all that are published."""
-    folder = Path(root) / "results" / "published"
-    found = [read_record(path) for path in sorted(folder.glob("*/*.json"))]
-    return {record.experiment_id: record for record in found}
+    """experiment id: record, of all that are published. Raises RunFileError as `read_record` does, and for a
+    record that lies at another experiment's place."""
+    found = {}
+    for path in sorted(published_folder(root).glob("*/*.json")):
+        record = read_record(path)
+        if record_path(root, record.experiment_id) != path:
+            raise RunFileError(f"{path}: is the record of '{record.experiment_id}' (allowed: that of "
+                               f"'{path.parent.name}/{path.stem}')")
+        found[record.experiment_id] = record
+    return found

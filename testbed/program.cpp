@@ -125,7 +125,12 @@ void add_views(CommandLine& line) {
   video->add_option("--out", line.video.out, "folder; absent: video in the run's")
       ->type_name("DIR");
   CLI::App* report = add_command(line, "report", "one HTML page about one or several runs");
-  report->add_option("run", line.report.runs, what + "; none: the newest of every experiment");
+  CLI::Option* of_runs =
+      report->add_option("run", line.report.runs, what + "; none: the newest of every experiment");
+  report
+      ->add_flag("--published", line.report.published,
+                 "instead of runs: all numbers of the records in results/published")
+      ->excludes(of_runs);
   report->add_option("--out", line.report.out, "the page")->type_name("FILE");
   CLI::App* exported = add_command(line, "export", "write the frames of a run for other programs");
   exported->add_option("run", line.exported.run, what)->required();

@@ -74,6 +74,7 @@ struct VideoRequest {
 
 struct ReportRequest {
   std::vector<std::string> runs;  ///< empty: the newest run of every experiment
+  bool published = false;         ///< instead of runs: the records in results/published
   std::optional<std::string> out;
   Unverified unverified = Unverified::refused;
 };

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "core/error.h"
+#include "testbed/home.h"
 #include "testbed/view/python.h"
 #include "testbed/view/render.h"
 #include "testbed/view/spectrogram.h"
@@ -17,6 +18,10 @@ void make_report(const std::vector<fs::path>& run_folders, const fs::path& page,
   if (unverified == Unverified::used) arguments.emplace_back("--force");
   for (const fs::path& folder : run_folders) arguments.push_back(folder.string());
   run_python("report", arguments);
+}
+
+void make_published_report(const fs::path& page) {
+  run_python("published", {"--root", geoprior_home().string(), "--out", page.string()});
 }
 
 namespace {

@@ -26,4 +26,7 @@ Pictures make_pictures(const std::filesystem::path& run_folder, const FigureView
 void make_report(const std::vector<std::filesystem::path>& run_folders,
                  const std::filesystem::path& page, Unverified unverified = Unverified::refused);
 
+/// One page about all records in results/published. @throws Error  as run_python does
+void make_published_report(const std::filesystem::path& page);
+
 }  // namespace geoprior

@@ -43,6 +43,16 @@ std::vector<std::vector<std::string>> overview(const std::vector<fs::path>& fold
   return rows;
 }
 
+/// The page of what is committed: no run is read, none is needed.
+int published_report(const CommandContext& context, const ReportRequest& request) {
+  const fs::path page = request.out ? fs::path(*request.out) : runs_root() / "published.html";
+  if (!request.out) fs::create_directories(page.parent_path());
+  make_published_report(page);
+  say("report   " + page.string());
+  if (context.json) print_json({{"report", page.string()}});
+  return done;
+}
+
 }  // namespace
 
 int render_command(const CommandContext& context, const RenderRequest& request) {
@@ -93,6 +103,7 @@ int video_command(const CommandContext& context, const VideoRequest& request) {
 
 int report_command(const CommandContext& context, const ReportRequest& request) {
   install_stop_handler();
+  if (request.published) return published_report(context, request);
   std::vector<fs::path> folders;
   for (const std::string& run : request.runs) folders.push_back(run_folder_of(run));
   if (request.runs.empty()) {
