@@ -3,7 +3,7 @@
     <!--= EXPRESSION -->1.3 %<!-- -->                        a number in prose
     <!-- begin: KIND … --> … <!-- end -->                    lines that are generated
 
-KIND is `overview`, `experiment ID`, `claims ID`, `times ID[@CASE]`, `figure ID`, `options TOPIC`, or `table`
+KIND is `overview`, `headline ID`, `claims ID`, `times ID[@CASE]`, `figure ID`, `options TOPIC`, or `table`
 followed by the rows of a table whose cells have {EXPRESSION} in the place of numbers.
 """
 
@@ -17,14 +17,14 @@ import expressions
 from expressions import ExpressionError
 from runfile import RunFileError
 from records import Record, read_records
-from summary import claim_list, claims, table, timing_table
+from summary import claim_list, table, timing_table
 
 INLINE = re.compile(r"<!--= (?P<source>.*?) -->(?P<shown>.*?)<!-- -->")
 BLOCK = re.compile(r"^(?P<pad> *)<!-- begin: (?P<source>.*?)\s*-->\n(?P<shown>.*?)^ *<!-- end -->",
                    re.DOTALL | re.MULTILINE)
 FENCED = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
 PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
-LARGEST_DETAILED = 4  # cases of an experiment whose times are all shown
+MOST_HEADLINES = 4  # claims of an experiment below its figure; those that fall short are shown all
 
 
 @dataclass
@@ -72,19 +72,31 @@ def times_lines(record, case):
     return [*lines[1:], "", f"Processor: {record.processor}."] if lines else []
 
 
-def section(record):
-    """Everything that a record says of its experiment."""
-    lines = ["", f"## {record.experiment_id}" + (f" → Figure {record.figure}" if record.figure else ""), "",
-             record.title + ".", "", f"`{record.command}`, {record.processor}."]
-    lines += [f"\n**{line}**\n" for line in record.failures]
-    lines += claims(record, "**Claims**")
-    if record.studies:
-        lines += ["", *table(["study", "value", "95 % interval"],
-                             [[s.name, f"{s.value:.3g}", f"{s.low:.3g} … {s.high:.3g}"] for s in record.studies])]
-    timed = list(record.times)
-    for case in timed[:1] if len(timed) > LARGEST_DETAILED else timed:
-        lines += timing_table(record.timing_rows(case))
-    return [*lines, ""]
+def measured(claims):
+    """`0.0384 <= 0.04 (10 of 10 seeds)`, of the first claim that falls short, or the first; and in how many
+    cases one and the same claim holds."""
+    shown = next((c for c in claims if not c.holds), claims[0])
+    numbers = shown.detail.rpartition(": ")[2]
+    seeds = re.match(r"\d+ of \d+ seeds", shown.detail)
+    held = sum(c.holds for c in claims)
+    verdict = "yes" if held == len(claims) else "**no**"
+    cases = f", {held} of {len(claims)} cases" if len(claims) > 1 else ""
+    return [f"`{numbers}`" + (f" ({seeds[0]})" if seeds else ""), verdict + cases]
+
+
+def headline(record):
+    """Title, command and verdict, and a small table of claims: first of all those that fall short, then those
+    whose null fails them, then the others."""
+    by_text = {}
+    for claim in record.claims:
+        by_text.setdefault(claim.text, []).append(claim)
+    short = [text for text, claims in by_text.items() if not all(c.holds for c in claims)]
+    rank = {text: (text not in short, claims[0].null_verdict != "discriminates") for text, claims in by_text.items()}
+    chosen = sorted(by_text, key=rank.get)[:max(MOST_HEADLINES, len(short))]
+    rows = [[text, *measured(claims)] for text, claims in by_text.items() if text in chosen]
+    verdict = f"{record.held()} of {len(record.claims)} claims hold" if rows else "no claims"
+    return ["", f"*{record.title}.* `{record.command}`: {verdict}.", "",
+            *(table(["claim", "measured", "holds"], rows) if rows else []), ""]
 
 
 def caption(record):
@@ -145,7 +157,7 @@ def block_lines(source, sources):
     kind, _, argument = first.partition(" ")
     if template and kind != "table":
         raise ExpressionError(f"a block of kind '{kind}' has one line")
-    of_record = {"experiment": section, "claims": claim_list, "figure": caption}
+    of_record = {"headline": headline, "claims": claim_list, "figure": caption}
     if kind in of_record:
         return of_record[kind](expressions.record_named(sources.records, argument))
     match kind, bool(argument):
@@ -157,7 +169,7 @@ def block_lines(source, sources):
             return times_of_place(argument, sources.records)
         case "options", True:
             return option_rows(sources, argument)
-    raise ExpressionError(f"unknown block '{first}' (there are overview, experiment ID, claims ID, "
+    raise ExpressionError(f"unknown block '{first}' (there are overview, headline ID, claims ID, "
                           "times ID[@CASE], figure ID, options TOPIC, table)")
 
 

@@ -29,12 +29,12 @@ def claim_list(run):
     return lines
 
 
-def claims(run, heading="## Claims"):
+def claims(run):
     """The list below a line of how many hold; nothing for a run without claims."""
     if not run.claims:
         return []
     held = sum(c.holds for c in run.claims)
-    return ["", f"{heading}: {held} of {len(run.claims)} hold", "", *claim_list(run)]
+    return ["", f"## Claims: {held} of {len(run.claims)} hold", "", *claim_list(run)]
 
 
 def metrics_table(case):

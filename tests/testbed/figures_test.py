@@ -2,7 +2,11 @@
 that say nothing, and records made from a run. Run with Debian's python3."""
 
 import contextlib
+import html
 import io
+import json
+import os
+import re
 import shutil
 import sys
 import tempfile
@@ -16,9 +20,11 @@ sys.path[:0] = [str(HERE), str(REPOSITORY / "results")]
 import expressions  # noqa: E402
 import figures  # noqa: E402
 import pages  # noqa: E402
+import published  # noqa: E402
 import records  # noqa: E402
 from report_test import make_run, signed  # noqa: E402
 from runfile import RunFileError  # noqa: E402
+from wording import beside, interval, number, with_unit  # noqa: E402
 
 
 def run_figures(*arguments):
@@ -60,12 +66,23 @@ class CommittedPages(unittest.TestCase):
             again = pages.rewritten(page, text, self.sources)
             self.assertEqual(pages.differences(page, again, self.sources), [])
 
-    def test_the_gallery_has_every_figure_of_the_thesis(self):
-        markers = pages.markers_of("docs/gallery.md", self.texts["docs/gallery.md"])
-        shown = {marker.source for marker in markers}
-        for record in self.sources.records.values():
-            if record.figure:
-                self.assertIn(f"figure {record.experiment_id}", shown)
+    def test_gallery_and_numbers_have_every_figure_of_the_thesis(self):
+        for page, block in (("docs/gallery.md", "figure"), ("docs/figures.md", "headline")):
+            shown = {marker.source for marker in pages.markers_of(page, self.texts[page])}
+            for record in self.sources.records.values():
+                if record.figure:
+                    self.assertIn(f"{block} {record.experiment_id}", shown)
+
+    def test_link_to_headings_that_are_there(self):
+        """`figures.md#figure-32` and the like, in all pages, after the rule by which GitHub names headings."""
+        anchors = {page: {re.sub(r"[^\w\- ]", "", heading).lower().replace(" ", "-")
+                          for heading in re.findall(r"^#+ (.*)$", text, re.MULTILINE)}
+                   for page, text in self.texts.items()}
+        for page, text in self.texts.items():
+            for target, anchor in re.findall(r"\]\(([^)#\s:]*)#([^)\s]+)\)", text):
+                other = Path(page).parent / target if target else Path(page)
+                name = os.path.normpath(other)
+                self.assertIn(anchor, anchors.get(name, {anchor}), f"{page} links to {target}#{anchor}")
 
     def test_pictures_that_pages_show_are_there(self):
         for page, text in self.texts.items():
@@ -77,7 +94,7 @@ class Scratch(unittest.TestCase):
     """A small repository: one run published, one page that quotes it."""
 
     PAGE = ("# Page\n\nOverlap <!--= test/knee implicit overlap_excess.max in mm³ --><!-- -->.\n\n"
-            "<!-- begin: experiment test/knee -->\n<!-- end -->\n")
+            "<!-- begin: headline test/knee -->\n<!-- end -->\n\n<!-- begin: times test/knee -->\n<!-- end -->\n")
 
     def setUp(self):
         self.root = Path(tempfile.mkdtemp())
@@ -160,7 +177,7 @@ class Checking(Scratch):
         self.page.write_text(self.page.read_text(encoding="utf-8").replace("4.00 ms", "3.00 ms", 1), encoding="utf-8")
         code, _, err = run_figures("--root", self.root, "--check")
         self.assertEqual(code, 1)
-        self.assertRegex(err, r"^docs/page.md:5: block 'experiment test/knee' shows '.*3.00 ms.*4.00 ms")
+        self.assertRegex(err, r"^docs/page.md:16: block 'times test/knee' shows '.*3.00 ms.*4.00 ms")
 
     def test_an_edited_record_is_found(self):
         self.publish()
@@ -172,7 +189,66 @@ class Checking(Scratch):
         self.publish()
         self.page.write_text("# Page\n", encoding="utf-8")
         code, _, err = run_figures("--root", self.root, "--check")
-        self.assertEqual((code, err), (1, "test/knee: published, but no page has a block 'experiment test/knee'\n"))
+        self.assertEqual((code, err), (1, "test/knee: published, but no page has an overview or a block of it\n"))
+
+
+class PageOfAllRecords(Scratch):
+    def test_has_every_claim_time_study_and_value(self):
+        text = html.unescape(published.build(REPOSITORY))
+        for record in records.read_records(REPOSITORY).values():
+            shown = text[text.index(f'id="{record.experiment_id}"'):]
+            shown = shown[:shown.index("</section>")]
+            wanted = [record.content_sha256, record.title, record.processor, *record.failures]
+            wanted += [words for c in record.claims for words in (c.text, c.detail, *beside(c))]
+            wanted += [interval(s.value, s.low, s.high) for s in record.studies]
+            wanted += [with_unit(getattr(row.times, name), "s") for case in record.cases
+                       for row in record.timing_rows(case) for name in ("median", "low", "high", "p95")]
+            wanted += [number(value, 4) for variants in record.values.values() for values in variants.values()
+                       for value in values.values()]
+            for words in wanted:
+                self.assertIn(words, shown, record.experiment_id)
+
+    def test_names_the_record_that_is_damaged(self):
+        self.publish()
+        path = records.record_path(self.root, "test/knee")
+        whole = path.read_text(encoding="utf-8")
+        for damaged in ("", whole[:-200], "[" * 100_000, "[]", whole.replace('"processor"', '"cpu"'),
+                        whole.replace('"low"', '"lower"'), whole.replace('"m^3"', '"m^3", "x": "'),
+                        re.sub(r'"times": \{.*?\n  \}', '"times": []', whole, flags=re.DOTALL),
+                        re.sub(r'"units": \{.*?\n  \}', '"units": {}', whole, flags=re.DOTALL)):
+            path.write_text(damaged, encoding="utf-8")
+            with self.assertRaisesRegex(RunFileError, f"^{path}: not a published record \\(.*\\)$", msg=damaged):
+                published.build(self.root)
+
+    def test_names_a_record_that_is_gone_or_in_anothers_place(self):
+        self.publish()
+        path = records.record_path(self.root, "test/knee")
+        elsewhere = path.rename(path.with_name("elbow.json"))
+        with self.assertRaisesRegex(RunFileError, "elbow.json: is the record of 'test/knee'"):
+            published.build(self.root)
+        elsewhere.unlink()
+        path.symlink_to("nowhere.json")
+        with self.assertRaisesRegex(RunFileError, f"^{path}: No such file or directory$"):
+            published.build(self.root)
+        path.unlink()
+        with self.assertRaisesRegex(RunFileError, f"^{path.parents[1]}: no published records$"):
+            published.build(self.root)
+
+
+class Headlines(Scratch):
+    def test_show_what_falls_short_then_what_discriminates(self):
+        self.publish()
+        path = records.record_path(self.root, "test/knee")
+        data = json.loads(path.read_text(encoding="utf-8"))
+        data["claims"] = [{"holds": i != 6, "case": "default", "text": f"claim {i}", "detail": f"x of y: {i} <= 5 m",
+                           "null_verdict": "exempt" if i < 2 else "discriminates"} for i in range(8)]
+        data["claims"] += [{"holds": False, "case": "other", "text": "claim 7", "detail": "9 of 10 seeds; worst: x: 9 <= 5"}]
+        path.write_text(json.dumps(data), encoding="utf-8")
+        lines = pages.headline(records.read_record(path))
+        self.assertIn("7 of 9 claims hold", lines[1])
+        self.assertEqual(lines[5:-1], ["| claim 2 | `2 <= 5 m` | yes |", "| claim 3 | `3 <= 5 m` | yes |",
+                                       "| claim 6 | `6 <= 5 m` | **no** |",
+                                       "| claim 7 | `9 <= 5` (9 of 10 seeds) | **no**, 1 of 2 cases |"])
 
 
 class Markers(Scratch):
@@ -199,6 +275,7 @@ class Markers(Scratch):
     def test_blocks_that_say_nothing_name_page_and_line(self):
         for source, message in (("picture test/knee", "unknown block 'picture test/knee'"),
                                 ("claims test/elbow", "has no published record"),
+                                ("headline test/elbow", "has no published record"),
                                 ("options nothing", "no experiment of topic 'nothing'"),
                                 ("options", "unknown block 'options'"),
                                 ("table\n| a | b |\n| {test/knee implicit time.median} |", "rows of as many cells"),
