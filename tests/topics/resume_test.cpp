@@ -1,7 +1,6 @@
 // Runs that are killed at random moments go on to the same bytes, with every topic.
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <stdlib.h>
 
 #include <chrono>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "core/random.h"
 #include "experiments/toy/toy_topic.h"
 #include "testbed/runner/run_file.h"
+#include "tests/support/long_tests.h"
 #include "tests/testbed/run_fixture.h"
 
 namespace geoprior::test {
@@ -29,8 +29,7 @@ std::vector<Topic> topics_and_toys() {
 int kills_asked() {
   constexpr double kLong = 100;
   const double experiments = static_cast<double>(topics_and_toys().size());
-  return std::getenv("GEOPRIOR_LONG") == nullptr ? 1
-                                                 : static_cast<int>(std::ceil(kLong / experiments));
+  return at_length() ? static_cast<int>(std::ceil(kLong / experiments)) : 1;
 }
 
 double seconds_since(Clock::time_point start) {
