@@ -1,14 +1,12 @@
 #include "solvers/fluid/mesh_paste.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/corefinement.h>
-#include <CGAL/Polygon_mesh_processing/orientation.h>
-#include <CGAL/Polygon_mesh_processing/self_intersections.h>
-#include <CGAL/Surface_mesh.h>
-
 #include <algorithm>
+#include <array>
 #include <map>
+#include <optional>
+#include <utility>
 
+#include "core/solid.h"
 #include "core/topology.h"
 
 namespace geoprior::fluid {
@@ -42,54 +40,19 @@ void insert_mesh(const TriMesh& mesh, const Eigen::Vector3d& velocity, SurfaceFr
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
-namespace pmp = CGAL::Polygon_mesh_processing;
 using Position = std::array<double, 3>;
 
-/// False when a triangle does not fit (non-manifold).
-bool build(const TriMesh& from, Mesh& to) {
-  std::vector<Mesh::Vertex_index> ids;
-  for (Eigen::Index v = 0; v < from.V.rows(); ++v) {
-    ids.push_back(to.add_vertex({from.V(v, 0), from.V(v, 1), from.V(v, 2)}));
-  }
-  for (Eigen::Index t = 0; t < from.F.rows(); ++t) {
-    const auto id = [&](int k) { return ids[from.F(t, k)]; };
-    if (to.add_face(id(0), id(1), id(2)) == Mesh::null_face()) return false;
-  }
-  return true;
-}
-
-bool is_solid(const Mesh& mesh) {
-  return CGAL::is_closed(mesh) && !pmp::does_self_intersect(mesh) && pmp::does_bound_a_volume(mesh);
+/// Nothing when the mesh bounds no volume or cuts itself.
+std::optional<Solid> solid_of(const TriMesh& mesh) {
+  std::optional<Solid> solid = Solid::of(mesh);
+  if (solid && !solid->bounds_volume()) solid.reset();
+  return solid;
 }
 
 std::map<Position, int> by_position(const TriMesh& mesh) {
   std::map<Position, int> result;
   for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
     result.emplace(Position{mesh.V(v, 0), mesh.V(v, 1), mesh.V(v, 2)}, static_cast<int>(v));
-  }
-  return result;
-}
-
-TriMesh mesh_of(const Mesh& from) {
-  TriMesh result;
-  std::vector<int> ids(from.num_vertices() + from.number_of_removed_vertices(), -1);
-  result.V.resize(static_cast<Eigen::Index>(from.number_of_vertices()), 3);
-  int next = 0;
-  for (const auto v : from.vertices()) {
-    const auto& p = from.point(v);
-    result.V.row(next) << p.x(), p.y(), p.z();
-    ids[v] = next++;
-  }
-  result.F.resize(static_cast<Eigen::Index>(from.number_of_faces()), 3);
-  Eigen::Index t = 0;
-  for (const auto f : from.faces()) {
-    int k = 0;
-    for (const auto v : from.vertices_around_face(from.halfedge(f))) {
-      result.F(t, k++) = ids[v];
-    }
-    ++t;
   }
   return result;
 }
@@ -130,12 +93,13 @@ Eigen::MatrixX3d carried(const TriMesh& mesh, const Eigen::MatrixX3d& before,
 
 bool unite_mesh(const TriMesh& mesh, const Eigen::Vector3d& velocity, SurfaceFrame& target,
                 std::vector<int>& of_target, std::vector<int>& of_mesh) {
-  Mesh a, b, united;
-  if (!build(target.mesh, a) || !build(mesh, b) || !is_solid(a) || !is_solid(b)) return false;
-  if (!pmp::corefine_and_compute_union(a, b, united)) return false;
+  std::optional<Solid> a = solid_of(target.mesh), b = solid_of(mesh);
+  if (!a || !b) return false;
+  const std::optional<Solid> both = united(std::move(*a), std::move(*b));
+  if (!both) return false;
   SurfaceFrame result;
   result.time = target.time;
-  result.mesh = mesh_of(united);
+  result.mesh = both->mesh();
   const std::map<Position, int> in_target = by_position(target.mesh), in_mesh = by_position(mesh);
   of_target.clear();
   of_mesh.clear();
