@@ -3,7 +3,6 @@
 #include <Spectra/SymEigsShiftSolver.h>
 
 #include <Eigen/Dense>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -14,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "core/sparse_ldlt.h"
 
 namespace geoprior::paper {
 namespace {
@@ -35,23 +35,21 @@ struct Pairs {
 /// Factorisation of A - shift I.
 class ShiftedFactor {
  public:
-  explicit ShiftedFactor(const Sparse& A) : A_(A) { solver_.analyzePattern(A); }
+  explicit ShiftedFactor(const Sparse& A) : A_(A) { solver_.analyze(A); }
 
   void factorise(double shift) {
-    solver_.setShift(-shift);
-    solver_.factorize(A_);
-    if (solver_.info() != Eigen::Success)
-      throw Error("the stiffness cannot be factorised", "modes of a sheet");
+    solver_.factorize(A_, -shift);
+    if (!solver_.succeeded()) throw Error("the stiffness cannot be factorised", "modes of a sheet");
   }
   /// Eigenvalues of A below the shift (Sylvester's law of inertia).
   [[nodiscard]] int count_below() const {
-    return static_cast<int>((solver_.vectorD().array() < 0).count());
+    return static_cast<int>((solver_.pivots().array() < 0).count());
   }
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const { return solver_.solve(b); }
 
  private:
   const Sparse& A_;
-  Eigen::SimplicialLDLT<Sparse, Eigen::Lower> solver_;
+  SparseLdlt solver_;
 };
 
 /// P (A - sigma I)^-1 P, P taking out the columns of `known`, as Spectra wants it.

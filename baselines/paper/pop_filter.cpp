@@ -1,10 +1,10 @@
 #include "baselines/paper/pop_filter.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "core/planar.h"
+#include "core/sparse_ldlt.h"
 #include "models/paper/elements.h"
 #include "models/paper/pattern_locator.h"
 #include "models/paper/transfer.h"
@@ -142,8 +142,8 @@ bool Relaxation::step(Eigen::MatrixX3d& x) const {
   Eigen::VectorXd gradient;
   Eigen::SparseMatrix<double> hessian;
   assemble(x, gradient, hessian);
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(hessian);
-  if (factor.info() != Eigen::Success) return false;
+  const SparseLdlt factor(hessian);
+  if (!factor.succeeded()) return false;
   const Eigen::VectorXd move = factor.solve(gradient);
   const double here = objective(x), slope = gradient.dot(move);
   double share = 1;

@@ -1,6 +1,5 @@
 #include "baselines/sketch/abf.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 
 #include "baselines/sketch/lscm.h"
 #include "core/angles.h"
+#include "core/sparse_ldlt.h"
 #include "core/topology.h"
 #include "models/sketch/conformal_energy.h"
 #include "models/sketch/flat_triangles.h"
@@ -64,7 +64,7 @@ class AngleFlattening {
   Eigen::MatrixX3d aim_, weight_, angle_;  ///< beta, beta^-2, alpha
   double penalty_ = 0;                     ///< of the constraints in the merit function
   Eigen::VectorXd multiplier_;             ///< of sum and wheel of every inner vertex
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+  SparseLdlt factor_;
   bool analysed_ = false;
 };
 
@@ -172,10 +172,10 @@ bool AngleFlattening::solve_multipliers() {
   }
   Eigen::SparseMatrix<double> matrix(right.size(), right.size());
   matrix.setFromTriplets(entries.begin(), entries.end());
-  if (!analysed_) factor_.analyzePattern(matrix);
+  if (!analysed_) factor_.analyze(matrix);
   analysed_ = true;
   factor_.factorize(matrix);
-  if (factor_.info() != Eigen::Success) return false;
+  if (!factor_.succeeded()) return false;
   const Eigen::VectorXd solved = factor_.solve(right);
   if (!solved.allFinite()) return false;
   multiplier_ = solved;

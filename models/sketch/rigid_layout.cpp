@@ -1,13 +1,13 @@
 #include "models/sketch/rigid_layout.h"
 
 #include <Eigen/QR>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "core/error.h"
+#include "core/sparse_ldlt.h"
 #include "models/sketch/anderson_mixing.h"
 
 namespace geoprior::sketch {
@@ -60,8 +60,7 @@ std::vector<KeptLength> lengths_on_the_way(std::span<const KeptLength> kept,
 /// shorter would crumple, since u_e (z_b - z_a) falls when an edge turns away from u_e.
 class LengthRows {
  public:
-  LengthRows(std::span<const KeptLength> kept, const Eigen::VectorXcd& z,
-             const Eigen::SimplicialLDLT<SparseReal>& factor)
+  LengthRows(std::span<const KeptLength> kept, const Eigen::VectorXcd& z, const SparseLdlt& factor)
       : kept_(kept), answer_(z.size(), static_cast<Eigen::Index>(kept.size())) {
     Eigen::MatrixXcd rows = Eigen::MatrixXcd::Zero(z.size(), answer_.cols());
     for (Eigen::Index c = 0; c < rows.cols(); ++c) {
@@ -74,7 +73,7 @@ class LengthRows {
       }
       Eigen::MatrixX2d parts(z.size(), 2);
       parts << rows.col(c).real(), rows.col(c).imag();
-      answer_.col(c) = to_complex(factor.solve(parts));
+      answer_.col(c) = to_complex(factor.solve_columns(parts));
     }
     inverse_.compute((rows.adjoint() * answer_).real());
   }
@@ -104,7 +103,7 @@ struct RigidLayout::Impl {
   int n = 0;
   double area = 0;
   std::vector<std::array<double, 3>> weight;
-  Eigen::SimplicialLDLT<SparseReal> factor;
+  SparseLdlt factor;
 
   Impl(std::span<const FlatTriangle> flat, const Eigen::MatrixX3i& faces, int vertex_count)
       : triangles(flat), F(faces), n(vertex_count) {
@@ -140,8 +139,8 @@ void RigidLayout::Impl::factorise() {
   entries.emplace_back(0, 0, 1.0);
   SparseReal matrix(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());
-  factor.compute(matrix);
-  if (factor.info() != Eigen::Success) {
+  factor = SparseLdlt(matrix);
+  if (!factor.succeeded()) {
     throw Error("the weights of the edges cannot be factorised", "flattening",
                 "a connected piece without loose vertices");
   }
@@ -179,7 +178,7 @@ Eigen::VectorXcd RigidLayout::Impl::place(const std::vector<Complex>& turns) con
       right(b, 1) += pull.imag();
     }
   }
-  return to_complex(factor.solve(right));
+  return to_complex(factor.solve_columns(right));
 }
 
 RigidLayout::RigidLayout(std::span<const FlatTriangle> triangles, const Eigen::MatrixX3i& F,

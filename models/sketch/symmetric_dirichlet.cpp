@@ -1,6 +1,5 @@
 #include "models/sketch/symmetric_dirichlet.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/sparse_ldlt.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -109,7 +109,7 @@ class SymmetricDirichlet {
   Eigen::VectorXd gradient_;
   std::vector<Eigen::Triplet<double>> entries_;
   SparseReal hessian_;
-  Eigen::SimplicialLDLT<SparseReal> factor_;
+  SparseLdlt factor_;
   bool analysed_ = false;
 };
 
@@ -182,10 +182,10 @@ Eigen::VectorXcd SymmetricDirichlet::step(const Eigen::VectorXcd& z) {
   // Translations, and turns at a minimum, cost nothing: a small cost to every coordinate.
   const double ridge = kHessianRidge * hessian_.diagonal().mean();
   hessian_.diagonal().array() += ridge;
-  if (!analysed_) factor_.analyzePattern(hessian_);
+  if (!analysed_) factor_.analyze(hessian_);
   analysed_ = true;
   factor_.factorize(hessian_);
-  if (factor_.info() != Eigen::Success) return Eigen::VectorXcd::Zero(n_);
+  if (!factor_.succeeded()) return Eigen::VectorXcd::Zero(n_);
   const Eigen::VectorXd solved = factor_.solve(-gradient_);
   Eigen::VectorXcd result(n_);
   for (Eigen::Index v = 0; v < n_; ++v) result(v) = {solved(2 * v), solved(2 * v + 1)};

@@ -1,6 +1,5 @@
 #include "models/skinning/box_program.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,11 +8,10 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/sparse_ldlt.h"
 
 namespace geoprior::skinning {
 namespace {
-
-using Factor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
 
 /// Multipliers and bounds that are violated by less, in units of x, are round-off.
 constexpr double kRoundOff = 1e-11;
@@ -29,8 +27,8 @@ constexpr double kLargeShare = 0.3;
 /// Changes of all violating unknowns in a row that may leave no fewer of them.
 constexpr int kBlockChances = 10;
 
-void require_factor(const Factor& factor) {
-  if (factor.info() != Eigen::Success)
+void require_factor(const SparseLdlt& factor) {
+  if (!factor.succeeded())
     throw Error("a quadratic program of the weights has no unique solution", "bounded weights",
                 "a mesh without degenerate parts");
 }
@@ -120,7 +118,7 @@ class ActiveSet {
     }
     Eigen::SparseMatrix<double> part(n, n);
     part.setFromTriplets(entries.begin(), entries.end());
-    const Factor factor(part);
+    const SparseLdlt factor(part);
     require_factor(factor);
     const Eigen::VectorXd solution = factor.solve(rhs);
     for (Eigen::Index k = 0; k < n; ++k) x_(free[k]) = solution(k);
@@ -158,7 +156,7 @@ int pivot(ActiveSet& set, int max_pivots) {
 }  // namespace
 
 BoxSolution solve_in_box(const BoxProgram& program, int max_pivots) {
-  const Factor factor(program.Q);
+  const SparseLdlt factor(program.Q);
   require_factor(factor);
   const Eigen::VectorXd diagonal = program.Q.diagonal();
   const auto m = static_cast<std::size_t>(program.C.cols());

@@ -1,12 +1,12 @@
 #include "models/skinning/surface_diffusion.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <vector>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/sparse_ldlt.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -102,9 +102,8 @@ Eigen::VectorXd squared_at_triangles(const TriMesh& mesh, const Eigen::VectorXd&
 
 Eigen::MatrixXd solve_columns(const Sparse& system, const Eigen::MatrixXd& rhs,
                               const std::string& what) {
-  const Eigen::SimplicialLDLT<Sparse> factor(system);
-  if (factor.info() != Eigen::Success)
-    throw Error(what + " has no unique solution", "skin weights");
+  const SparseLdlt factor(system);
+  if (!factor.succeeded()) throw Error(what + " has no unique solution", "skin weights");
   Eigen::MatrixXd solution(rhs.rows(), rhs.cols());
   parallel_blocks(static_cast<std::size_t>(rhs.cols()), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {

@@ -1,7 +1,6 @@
 #include "solvers/fluid/base_surface.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 
 #include "core/disjoint_sets.h"
 #include "core/error.h"
+#include "core/sparse_ldlt.h"
 #include "core/topology.h"
 
 namespace geoprior::fluid {
@@ -135,8 +135,8 @@ Laplacian laplacian_of(const TriMesh& mesh, const Patch& patch, double smallest,
   return result;
 }
 
-void require_solved(const Eigen::SimplicialLDLT<SparseMatrix>& solver, const Patch& patch) {
-  if (solver.info() == Eigen::Success) return;
+void require_solved(const SparseLdlt& solver, const Patch& patch) {
+  if (solver.succeeded()) return;
   throw Error("the bed of the region has no unique solution",
               "vertex " + std::to_string(patch.vertices.front()),
               "a region of triangles with positive areas");
@@ -157,9 +157,9 @@ void solve(const SparseMatrix& L, const Eigen::VectorXd& weights, const Patch& p
     A = moving.transpose() * weights.asDiagonal() * moving;
     b = -(moving.transpose() * (weights.asDiagonal() * (staying * x.bottomRows(all - m))));
   }
-  Eigen::SimplicialLDLT<SparseMatrix> solver(A);
+  const SparseLdlt solver(A);
   require_solved(solver, patch);
-  x.topRows(m) = solver.solve(b);
+  x.topRows(m) = solver.solve_columns(b);
 }
 
 Eigen::MatrixXd patch_positions(const TriMesh& mesh, const Patch& patch) {

@@ -1,11 +1,12 @@
 #include "solvers/paper/isometry_projection.h"
 
 #include <Eigen/LU>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+
+#include "core/sparse_ldlt.h"
 
 namespace geoprior::paper {
 namespace {
@@ -84,7 +85,7 @@ struct IsometryProjector::Impl {
   double mean_length = 1;
   Matrix matrix;
   std::vector<int> diagonal;  ///< places of the diagonal
-  Eigen::SimplicialLDLT<Matrix> solver;
+  SparseLdlt solver;
 
   void build(const ShellMesh& mesh);
   void build_matrix();
@@ -161,7 +162,7 @@ void IsometryProjector::Impl::build_matrix() {
   }
   diagonal.clear();
   for (int k = 0; k < matrix.rows(); ++k) diagonal.push_back(place(k, k));
-  if (matrix.rows() > 0) solver.analyzePattern(matrix);
+  if (matrix.rows() > 0) solver.analyze(matrix);
 }
 
 double IsometryProjector::Impl::merit(const Eigen::MatrixX3d& x, double& largest) const {
@@ -229,7 +230,7 @@ bool IsometryProjector::Impl::factorise(double mu) {
     }
   }
   solver.factorize(matrix);
-  return solver.info() == Eigen::Success;
+  return solver.succeeded();
 }
 
 void IsometryProjector::Impl::move(Eigen::MatrixX3d& x, const Eigen::VectorXd& step) const {

@@ -1,6 +1,5 @@
 #include "solvers/sketch/depth_system.h"
 
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
@@ -9,12 +8,12 @@
 #include "core/angles.h"
 #include "core/error.h"
 #include "core/planar.h"
+#include "core/sparse_ldlt.h"
 
 namespace geoprior::sketch {
 namespace {
 
 using DepthMatrix = Eigen::SparseMatrix<double>;
-using DepthFactor = Eigen::SimplicialLDLT<DepthMatrix>;
 
 /// Length of the coefficients below which a ruling is left out: images of tangents and ruling that
 /// are less than 8 degrees apart, as near a silhouette.
@@ -243,7 +242,7 @@ struct WeakestMode {
   Eigen::VectorXd vector;
 };
 
-WeakestMode weakest_mode(const DepthMatrix& N, const DepthFactor& factor) {
+WeakestMode weakest_mode(const DepthMatrix& N, const SparseLdlt& factor) {
   constexpr int kIterations = 12;
   WeakestMode mode;
   mode.vector.resize(N.rows());
@@ -336,9 +335,9 @@ DepthSolution solve_depth(const DepthProblem& problem, const DepthOptions& optio
   DepthMatrix shifted = N;
   // Keeps the pivots of an undetermined mode away from zero, so that the mode can be found.
   for (int i = 0; i < rows.unknowns(); ++i) shifted.coeffRef(i, i) += 1e-16 * greatest;
-  const DepthFactor factor(shifted);
+  const SparseLdlt factor(shifted);
   const WeakestMode weakest = weakest_mode(N, factor);
-  if (factor.info() != Eigen::Success || weakest.eigenvalue <= options.singular * greatest) {
+  if (!factor.succeeded() || weakest.eigenvalue <= options.singular * greatest) {
     throw Error("depth is not determined", curves_that_move(problem.net, weakest.vector),
                 "a symmetric pair, or a ruling to a border whose depth is known");
   }

@@ -1,7 +1,6 @@
 #include "solvers/sketch/fair_patch.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/planar.h"
+#include "core/sparse_ldlt.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -110,8 +110,7 @@ void solve_inner(const Eigen::MatrixX3d& shape, const Eigen::MatrixX3i& F, Eigen
   }
   Eigen::SparseMatrix<double> L(n, n);
   L.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(L);
-  V.bottomRows(n) = factor.solve(right);
+  V.bottomRows(n) = SparseLdlt(L).solve_columns(right);
 }
 
 /// Triangles between points whose first `count` are the border.

@@ -1,7 +1,6 @@
 #include "solvers/sketch/pinned_transfer.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
@@ -11,12 +10,12 @@
 #include "core/connectivity.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/sparse_ldlt.h"
 
 namespace geoprior::sketch {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
-using Cholesky = Eigen::SimplicialLDLT<Sparse, Eigen::Lower>;
 
 /// Half the cotangents of the corners of each triangle, clamped.
 Eigen::MatrixX3d half_cotangents(const Eigen::MatrixX3d& X, const Eigen::MatrixX3i& F) {
@@ -42,7 +41,7 @@ struct PinnedTransfer::Impl {
   Sparse pattern;             ///< lower triangle
   std::vector<int> diagonal;  ///< place of each vertex' entry in the pattern
   std::vector<int> off;       ///< place of each edge's
-  std::array<Cholesky, 3> solver;
+  std::array<SparseLdlt, 3> solver;
   std::array<bool, 3> factorised{};
 
   Impl(const Eigen::MatrixX3i& triangles, int vertex_count)
@@ -63,7 +62,7 @@ struct PinnedTransfer::Impl {
     for (int e = 0; e < edges.edge_count(); ++e)
       off.push_back(place(edges.edge(e)[1], edges.edge(e)[0]));
     parallel_blocks(3, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t c = begin; c < end; ++c) solver[c].analyzePattern(pattern);
+      for (std::size_t c = begin; c < end; ++c) solver[c].analyze(pattern);
     });
   }
 
@@ -113,7 +112,7 @@ struct PinnedTransfer::Impl {
       rhs[v] = value[v];
     }
     solver[c].factorize(matrix);
-    factorised[c] = solver[c].info() == Eigen::Success;
+    factorised[c] = solver[c].succeeded();
     if (!factorised[c]) return rhs;
     Eigen::VectorXd x = solver[c].solve(rhs);
     if (free) x.array() += X.col(c).mean() - x.mean();

@@ -1,6 +1,5 @@
 #include "solvers/sketch/ruling_warp.h"
 
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/planar.h"
+#include "core/sparse_ldlt.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -163,8 +163,7 @@ void refine_once(const BorderRun& first, const BorderRun& second, double smoothn
   gradient(0) = gradient(n - 1) = 0;
   Eigen::SparseMatrix<double> hessian(n, n);
   hessian.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(hessian);
-  const Eigen::VectorXd step = factor.solve(gradient);
+  const Eigen::VectorXd step = SparseLdlt(hessian).solve(gradient);
   for (int i = 1; i + 1 < n; ++i) image[i] -= step(i);
   make_rising(image, last);
 }
