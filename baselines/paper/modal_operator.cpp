@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/jacobi_svd.h"
 #include "models/paper/lips.h"
 #include "models/paper/sheet_valid.h"
 #include "models/paper/shell_dynamics.h"

@@ -2,12 +2,12 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include "core/error.h"
+#include "core/jacobi_svd.h"
 
 namespace geoprior::sketch {
 namespace {

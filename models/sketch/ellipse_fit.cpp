@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "core/angles.h"
 #include "core/error.h"
+#include "core/jacobi_svd.h"
 #include "models/sketch/curve_fit.h"
 
 namespace geoprior::sketch {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/jacobi_svd.h"
 #include "core/parallel.h"
 
 #define CGAL_EIGEN3_ENABLED 1

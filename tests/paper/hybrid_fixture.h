@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -9,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/jacobi_svd.h"
 #include "core/random.h"
 #include "models/paper/handle_speed.h"
 #include "models/paper/sheet.h"

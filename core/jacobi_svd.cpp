@@ -1,0 +1,3 @@
+#include "core/jacobi_svd.h"
+
+template class Eigen::JacobiSVD<Eigen::MatrixXd>;
