@@ -17,6 +17,13 @@ endif()
 if(GEOPRIOR_ODR)
   target_compile_options(geoprior_code INTERFACE -flto=auto -Wodr)
   target_link_options(geoprior_code INTERFACE -flto=auto -Wodr -Werror=odr -Werror=lto-type-mismatch)
+else()
+  # Comes with the GNU linker and takes a fifth of its time.
+  include(CheckLinkerFlag)
+  check_linker_flag(CXX -fuse-ld=gold GEOPRIOR_HAS_GOLD)
+  if(GEOPRIOR_HAS_GOLD)
+    target_link_options(geoprior_code INTERFACE -fuse-ld=gold)
+  endif()
 endif()
 
 add_library(geoprior_warnings INTERFACE)
