@@ -147,7 +147,11 @@ void keep_only(std::vector<std::string>& names, const std::vector<std::string>& 
   std::erase_if(names, [&](const std::string& name) { return has(dropped, name); });
 }
 
-KnownNames known_names(const TomlNode& root, const std::vector<std::string>& selected, bool quick) {
+/// @param written  the file with all of its sweeps: what is claimed of cases that --set or the
+/// quick
+///                 version leave out is no mistake of the file
+KnownNames known_names(const TomlNode& root, const TomlNode& written,
+                       const std::vector<std::string>& selected, bool quick) {
   KnownNames names;
   for (const TomlNode& node : tables_of(root, "variant")) {
     const std::string& name = node.find("name")->text;
@@ -155,11 +159,10 @@ KnownNames known_names(const TomlNode& root, const std::vector<std::string>& sel
     (runs ? names.variants : names.dropped).push_back(name);
     if (const TomlNode* to = node.find("reference")) names.references[name] = to->text;
   }
-  for (const SweptCase& swept : expand_sweeps(root, quick)) names.cases.push_back(swept.name);
+  for (const SweptCase& swept : expand_sweeps(written, quick)) names.cases.push_back(swept.name);
   if (!quick) return names;
-  // What is claimed of cases that only the full version has is no mistake of the file.
   const std::set<std::string> known(names.cases.begin(), names.cases.end());
-  for (const SweptCase& swept : expand_sweeps(root, false)) {
+  for (const SweptCase& swept : expand_sweeps(written, false)) {
     if (!known.contains(swept.name)) names.cases.push_back(swept.name);
   }
   return names;
@@ -266,7 +269,7 @@ Experiment load_experiment(const std::filesystem::path& file, const std::vector<
   experiment.quick = request.quick || header.size == RunSize::quick;
   const Topic& topic = topic_named(topics, header.topic, root);
 
-  KnownNames names = known_names(root, selected, experiment.quick);
+  KnownNames names = known_names(root, written, selected, experiment.quick);
   drop_sweeps(root, names.dropped);
   TomlNode plain = root;
   plain.erase("sweep");

@@ -42,6 +42,13 @@ void leave_out_claims(TomlNode& root) {
   if (claims->items.empty()) root.erase("claim");
 }
 
+/// --set sweep=[]: the file's own values alone.
+void take_sweeps_out(TomlNode& root, const TomlNode& value) {
+  if (value.kind != TomlNode::Kind::array || !value.items.empty())
+    throw Error("sweeps can only be taken out", value.place, "sweep=[]");
+  root.erase("sweep");
+}
+
 }  // namespace
 
 std::vector<TomlNode> tables_of(const TomlNode& root, const std::string& key) {
@@ -119,8 +126,13 @@ void apply_sets(TomlNode& root, const std::vector<std::string>& sets) {
       text.erase(text.find_last_not_of(" \t") + 1);
       return text;
     };
-    set_experiment_key(root, trimmed(set.substr(0, equals)),
-                       parse_toml_value(trimmed(set.substr(equals + 1)), place));
+    const std::string key = trimmed(set.substr(0, equals));
+    const TomlNode value = parse_toml_value(trimmed(set.substr(equals + 1)), place);
+    if (key == "sweep") {
+      take_sweeps_out(root, value);
+    } else {
+      set_experiment_key(root, key, value);
+    }
   }
 }
 

@@ -152,6 +152,22 @@ TEST_F(Spec, QuickVersionLeavesOutWhatOnlyTheFullOneHas) {
               HasSubstr("segments=9"));
 }
 
+TEST_F(Spec, SweepsAreTakenOutWithWhatIsClaimedOfThem) {
+  const std::string claim =
+      "[[claim]]\ntext = \"c\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = 1\n";
+  const std::string seeds = "[[sweep]]\nkey = \"seed\"\nvalues = [4, 5]\n";
+  const std::string text = toy::disc_experiment() + kSweep + seeds + claim + "over = \"seed\"\n" +
+                           claim + "cases = [\"segments=32\"]\n";
+  LoadRequest alone;
+  alone.sets = {"sweep=[]"};
+  const Experiment one = load(text, alone);
+  EXPECT_THAT(case_names(one), ElementsAre("default"));
+  EXPECT_EQ(one.claims.size(), 1U);
+  EXPECT_EQ(load(one.resolved_toml).claims.size(), 1U);
+  alone.sets = {"sweep=[1]"};
+  EXPECT_THAT(error_of(text, alone), HasSubstr("sweeps can only be taken out"));
+}
+
 TEST_F(Spec, QuickVersionLeavesOutClaimsThatItIsTooShortFor) {
   const auto claim = [](const std::string& text, const std::string& more) {
     return "[[claim]]\ntext = \"" + text +
