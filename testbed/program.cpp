@@ -24,6 +24,7 @@ constexpr const char* kFooter = R"(Examples:
   geoprior run skinning/knee
   geoprior run skinning/knee --quick --variant implicit --set variant.implicit.options.step=0.2
   geoprior describe implicit
+  geoprior measure skinning/knee
   geoprior check --quick
   geoprior bless skinning/knee --reason "sample caps by area, thesis 3.1"
   geoprior report skinning/knee
@@ -41,6 +42,7 @@ struct CommandLine {
   bool markdown = false;
   RunRequest run;
   bool no_pictures = false;
+  MeasureRequest measure;
   CheckRequest check;
   BlessRequest bless;
   RenderRequest render;
@@ -78,6 +80,15 @@ void add_run(CommandLine& line) {
   run->add_flag("--table", request.table, "print the table of all numbers (summary.md has it too)");
 }
 
+void add_measure(CommandLine& line) {
+  CLI::App* measure =
+      add_command(line, "measure", "compute the metrics of a run anew from its recorded frames");
+  measure->add_option("run", line.measure.run, "folder, run.h5, or experiment (its newest run)")
+      ->required();
+  measure->add_option("--out", line.measure.out, "folder of the measured run")->type_name("DIR");
+  measure->add_flag("--no-pictures", line.no_pictures, "numbers only: no figure.png, no report");
+}
+
 void add_checks(CommandLine& line) {
   CLI::App* check = add_command(line, "check", "compare runs with their reference values");
   check->add_option("experiment", line.check.ids, "identifiers or files; none: all");
@@ -101,6 +112,13 @@ void add_checks(CommandLine& line) {
       ->required()
       ->type_name("TEXT");
   bless->add_flag("--quick", line.bless.quick, "the values of quick runs");
+  bless
+      ->add_option("--rows", line.bless.rows,
+                   "only the values of these metrics (a,b), measured on the run that was blessed: "
+                   "nothing is simulated, other values stay")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("METRIC");
 }
 
 /// Lets a command read runs whose files are not what was recorded.
@@ -187,6 +205,7 @@ void build(CommandLine& line, const std::vector<Topic>& topics) {
       ->required();
   describe->add_flag("--markdown", line.markdown, "a table for the documentation, on stdout");
   add_run(line);
+  add_measure(line);
   add_checks(line);
   add_views(line);
   add_topic_commands(line, topics);
@@ -195,12 +214,13 @@ void build(CommandLine& line, const std::vector<Topic>& topics) {
 int dispatch(CommandLine& line, const std::vector<Topic>& topics) {
   const CommandContext context{topics, line.json};
   const std::string command = line.app.get_subcommands().front()->get_name();
-  line.run.pictures = !line.no_pictures;
+  line.run.pictures = line.measure.pictures = !line.no_pictures;
   if (command == "list") {
     return line.list_claims ? list_claims_command(context) : list_command(context);
   }
   if (command == "describe") return describe_command(context, line.described, line.markdown);
   if (command == "run") return run_command(context, line.run);
+  if (command == "measure") return measure_command(context, line.measure);
   if (command == "check") return check_command(context, line.check);
   if (command == "bless") return bless_command(context, line.bless);
   if (command == "render") return render_command(context, line.render);

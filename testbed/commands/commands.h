@@ -45,9 +45,16 @@ struct CheckRequest {
   int threads = 0;
 };
 
+struct MeasureRequest {
+  std::string run;
+  std::optional<std::string> out;
+  bool pictures = true;
+};
+
 struct BlessRequest {
   std::string id;
   std::string reason;
+  std::vector<std::string> rows;  ///< only these metrics, of a stored run; empty: all values
   bool quick = false;
 };
 
@@ -91,6 +98,7 @@ int list_claims_command(const CommandContext& context);
 int describe_command(const CommandContext& context, const std::string& name, bool markdown);
 int run_command(const CommandContext& context, const RunRequest& request);
 int check_command(const CommandContext& context, const CheckRequest& request);
+int measure_command(const CommandContext& context, const MeasureRequest& request);
 int bless_command(const CommandContext& context, const BlessRequest& request);
 int render_command(const CommandContext& context, const RenderRequest& request);
 int video_command(const CommandContext& context, const VideoRequest& request);

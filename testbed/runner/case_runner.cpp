@@ -17,10 +17,6 @@
 namespace geoprior {
 namespace {
 
-/// Frames of a variant that are kept in memory for the metrics of the sequence; the others are read
-/// back.
-constexpr std::size_t kMostKept = std::size_t{256} << 20;
-
 const MethodEntry& method_of(const Topic& topic, const std::string& name) {
   std::string allowed;
   for (const MethodEntry& entry : topic.methods) {
@@ -207,7 +203,7 @@ std::optional<Frame> CaseRunner::reference_frame(const VariantSpec& variant, dou
   if (record == nullptr) return std::nullopt;
   const int index = frame_of_parameter(record->frames, parameter);
   if (index < 0) return std::nullopt;
-  return recorder_.read_frame(*record, static_cast<std::size_t>(index), reference_parts(topic_));
+  return recorder_.files().frame(*record, static_cast<std::size_t>(index), reference_parts(topic_));
 }
 
 void CaseRunner::record_frame(const VariantSpec& variant, Frame frame,
@@ -277,10 +273,11 @@ void CaseRunner::finish(const VariantSpec& variant, journal::EndLine line) {
     const KeptFrames none(0);
     const VariantRecord* of = reference_record(variant);
     const auto reference =
-        of ? std::optional<RecordedFrames>(std::in_place, recorder_, *of, none) : std::nullopt;
+        of ? std::optional<RecordedFrames>(std::in_place, recorder_.files(), *of, none)
+           : std::nullopt;
     line.summary = measure_sequence(
         topic_, *scene_,
-        RecordedFrames(recorder_, record, kept_, reference ? &*reference : nullptr));
+        RecordedFrames(recorder_.files(), record, kept_, reference ? &*reference : nullptr));
     kept_ = KeptFrames(kMostKept);
   }
   recorder_.write_collection(line.place);

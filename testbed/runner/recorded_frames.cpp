@@ -38,9 +38,9 @@ std::shared_ptr<const Frame> KeptFrames::find(std::size_t index) const {
   return found == frames_.end() ? nullptr : found->second;
 }
 
-RecordedFrames::RecordedFrames(const Recorder& recorder, const VariantRecord& variant,
+RecordedFrames::RecordedFrames(const FrameFiles& files, const VariantRecord& variant,
                                const KeptFrames& kept, const FrameSequence* reference)
-    : recorder_(recorder),
+    : files_(files),
       variant_(variant),
       kept_(kept),
       reference_(reference),
@@ -68,7 +68,7 @@ std::shared_ptr<const Frame> RecordedFrames::frame(std::size_t i) const {
   if (auto there = in_memory(index)) return there;
   // Makes room first, so that never more than `kRemembered` are there.
   if (read_.size() == kRemembered) read_.pop_front();
-  auto frame = std::make_shared<const Frame>(recorder_.read_frame(variant_, index));
+  auto frame = std::make_shared<const Frame>(files_.frame(variant_, index));
   ++frames_read_;
   read_.emplace_back(index, frame);
   return frame;
@@ -77,7 +77,7 @@ std::shared_ptr<const Frame> RecordedFrames::frame(std::size_t i) const {
 std::shared_ptr<const Part> RecordedFrames::part(std::size_t i, const std::string& name) const {
   const std::size_t index = order_.at(i);
   if (const auto there = in_memory(index)) return part_of(there, name);
-  Frame only = recorder_.read_frame(variant_, index, {{name}});
+  Frame only = files_.frame(variant_, index, {{name}});
   const auto found = only.parts.find(name);
   if (found == only.parts.end()) return nullptr;
   return std::make_shared<const Part>(std::move(found->second));

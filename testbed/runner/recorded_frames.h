@@ -7,12 +7,16 @@
 #include <vector>
 
 #include "testbed/frame_sequence.h"
-#include "testbed/runner/recorder.h"
+#include "testbed/runner/frame_files.h"
 
 namespace geoprior {
 
 /// Bytes that the numbers of a frame take in memory.
 std::size_t memory_of(const Frame& frame);
+
+/// Bytes of a variant's frames that are kept in memory for the metrics of the sequence; the others
+/// are read back.
+inline constexpr std::size_t kMostKept = std::size_t{256} << 20;
 
 /// Frames that need not be read back because they fitted into memory as they came.
 class KeptFrames {
@@ -37,7 +41,7 @@ class RecordedFrames final : public FrameSequence {
   static constexpr std::size_t kRemembered = 3;
 
   /// The arguments must outlive this.
-  RecordedFrames(const Recorder& recorder, const VariantRecord& variant, const KeptFrames& kept,
+  RecordedFrames(const FrameFiles& files, const VariantRecord& variant, const KeptFrames& kept,
                  const FrameSequence* reference = nullptr);
 
   [[nodiscard]] std::size_t size() const override { return order_.size(); }
@@ -49,7 +53,7 @@ class RecordedFrames final : public FrameSequence {
   [[nodiscard]] const std::vector<Event>& events() const override { return variant_.events; }
   [[nodiscard]] std::optional<std::vector<std::byte>> artifact(
       const std::string& name) const override {
-    return recorder_.read_artifact(variant_, name);
+    return files_.artifact(variant_, name);
   }
   [[nodiscard]] const FrameSequence* reference() const override { return reference_; }
   /// Frames that were read from the disk so far.
@@ -58,7 +62,7 @@ class RecordedFrames final : public FrameSequence {
  private:
   [[nodiscard]] std::shared_ptr<const Frame> in_memory(std::size_t index) const;
 
-  const Recorder& recorder_;
+  const FrameFiles& files_;
   const VariantRecord& variant_;
   const KeptFrames& kept_;
   const FrameSequence* reference_;

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <system_error>
 
 #include "core/error.h"
@@ -13,7 +12,6 @@
 #include "testbed/runner/frame_table.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/number_text.h"
-#include "testbed/runner/opened_run.h"
 #include "testbed/runner/sha256.h"
 
 namespace geoprior {
@@ -22,25 +20,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kNumberWidth = 5;  // "_0000", and more digits past 9999
 constexpr const char* kCheckpoints = "checkpoints";
 constexpr std::array<const char*, 2> kStates{"a.state", "b.state"};
-
-std::string numbered(const std::string& name, std::size_t index) {
-  char number[24];
-  std::snprintf(number, sizeof number, "_%04zu", index);
-  return name + number;
-}
-
-/// "surface" of "surface_0012.vtp".
-std::string without_number(const fs::path& file) {
-  const std::string stem = file.stem().string();
-  const std::size_t at = stem.rfind('_');
-  if (at == std::string::npos || stem.size() - at < kNumberWidth) {
-    throw Error("is no file of a frame", file.string());
-  }
-  return stem.substr(0, at);
-}
 
 fs::path folder_of(const char* room, const journal::Place& place) {
   return fs::path(room) / place.case_name / place.variant;
@@ -78,7 +59,7 @@ void require_finite(const Frame& frame, std::size_t index, const std::string& me
 }
 
 Recorder::Recorder(fs::path folder, Journal& journal, RunState& state)
-    : folder_(std::move(folder)), journal_(journal), state_(state) {}
+    : folder_(std::move(folder)), files_(folder_), journal_(journal), state_(state) {}
 
 void Recorder::add(const journal::Line& line, bool flush) {
   journal_.append(line, flush);
@@ -98,12 +79,12 @@ std::vector<StoredFile> Recorder::write_frame(const journal::Place& place, std::
   std::vector<StoredFile> files;
   for (const auto& [name, part] : frame.parts) {
     require_name(name, "a part", "frame " + std::to_string(index));
-    files.push_back(write(relative / (numbered(name, index) + part_extension(part)),
+    files.push_back(write(relative / (stem_of_part(name, index) + part_extension(part)),
                           part_to_vtk_xml(part, frame.parameter)));
   }
   for (const auto& [name, table] : frame.tables) {
     require_name(name, "a table", "frame " + std::to_string(index));
-    files.push_back(write(relative / (numbered(name, index) + ".csv"), table_to_csv(table)));
+    files.push_back(write(relative / (stem_of_part(name, index) + ".csv"), table_to_csv(table)));
   }
   return files;
 }
@@ -141,26 +122,8 @@ void Recorder::write_checkpoint(const journal::Place& place, const State& state,
   if (before) remove(before->file.name);
 }
 
-std::vector<std::byte> Recorder::read(const StoredFile& stored) const {
-  const fs::path file = path_below(folder_, stored.name);
-  const std::string bytes = read_whole_file(file);
-  if (sha256(bytes) != stored.sha256) {
-    throw Error("is damaged: its checksum is not the one in the journal", file.string());
-  }
-  const auto* begin = reinterpret_cast<const std::byte*>(bytes.data());
-  return {begin, begin + bytes.size()};
-}
-
 State Recorder::read_checkpoint(const journal::CheckpointLine& checkpoint) const {
-  return read(checkpoint.file);
-}
-
-std::optional<std::vector<std::byte>> Recorder::read_artifact(const VariantRecord& variant,
-                                                              const std::string& name) const {
-  for (const StoredFile& file : variant.artifacts) {
-    if (fs::path(file.name).filename() == name) return read(file);
-  }
-  return std::nullopt;
+  return files_.bytes(checkpoint.file);
 }
 
 void Recorder::write_collection(const journal::Place& place) {
@@ -172,7 +135,7 @@ void Recorder::write_collection(const journal::Place& place) {
       const fs::path name(file.name);
       if (name.extension() == ".csv") continue;
       entries.push_back(
-          {frame.parameter, name.lexically_relative(folder).string(), without_number(name)});
+          {frame.parameter, name.lexically_relative(folder).string(), part_of_file(name)});
     }
   }
   write(folder / (place.variant + ".pvd"), pvd_text(entries));
@@ -240,30 +203,6 @@ void Recorder::remove_checkpoints() {
     remove_if_empty(path_below(folder_, fs::path(kCheckpoints) / one.record.name));
   }
   remove_if_empty(path_below(folder_, kCheckpoints));
-}
-
-Frame Recorder::read_frame(const VariantRecord& variant, std::size_t index,
-                           const std::optional<std::set<std::string>>& parts) const {
-  const FrameRecord& record = variant.frames.at(index);
-  Frame frame;
-  frame.parameter = record.parameter;
-  for (const StoredFile& file : record.files) {
-    const fs::path path = path_below(folder_, file.name);
-    const std::string name = without_number(path);
-    if (parts && !parts->contains(name)) continue;
-    require_recorded(path, file.sha256);
-    if (path.extension() == ".csv") {
-      frame.tables[name] = table_from_csv(read_whole_file(path), path.string());
-    } else {
-      frame.parts[name] = read_vtk_part(path);
-    }
-  }
-  for (const auto& [name, column] : variant.diagnostics) {
-    if (index < column.values.size() && !std::isnan(column.values[index])) {
-      frame.diagnostics[name] = column.values[index];
-    }
-  }
-  return frame;
 }
 
 }  // namespace geoprior

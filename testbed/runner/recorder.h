@@ -2,12 +2,12 @@
 
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "core/frame.h"
 #include "core/method.h"
+#include "testbed/runner/frame_files.h"
 #include "testbed/runner/journal.h"
 #include "testbed/runner/run_state.h"
 
@@ -47,25 +47,17 @@ class Recorder {
   /// Of a run that is complete; folders that hold something else stay.
   void remove_checkpoints();
 
-  /// Reads a frame back: equal, bit by bit, to the one that was recorded.
-  /// @param parts  only these of its parts and tables; absent: all. Those it has not are left out
-  /// @throws Error  naming a file that is missing or damaged
-  [[nodiscard]] Frame read_frame(
-      const VariantRecord& variant, std::size_t index,
-      const std::optional<std::set<std::string>>& parts = std::nullopt) const;
-  /// Bytes of the variant's artifact of that name; absent when it has none.
-  /// @throws Error  when its file is missing, or not what was recorded
-  [[nodiscard]] std::optional<std::vector<std::byte>> read_artifact(const VariantRecord& variant,
-                                                                    const std::string& name) const;
+  /// Reads back what was recorded.
+  [[nodiscard]] const FrameFiles& files() const { return files_; }
 
  private:
-  [[nodiscard]] std::vector<std::byte> read(const StoredFile& stored) const;
   StoredFile write(const std::filesystem::path& relative, std::string_view bytes);
   void drop(const journal::ResumeLine& keep);
   void remove(const std::filesystem::path& relative);
   void remove_temporary_files(const std::filesystem::path& relative);
 
   std::filesystem::path folder_;
+  FrameFiles files_;
   Journal& journal_;
   RunState& state_;
 };

@@ -71,14 +71,6 @@ bool is_finished(const fs::path& folder, const std::string& hash) {
   return fs::exists(folder / "run.h5") && recorded_result(folder) && recorded_hash(folder) == hash;
 }
 
-fs::path new_default_folder(const Experiment& experiment) {
-  const fs::path parent = runs_root() / experiment.id;
-  const std::string name = utc_text("%Y%m%dT%H%M%SZ") + "-" + short_hash(experiment);
-  fs::path folder = parent / name;
-  for (int n = 2; fs::exists(folder); ++n) folder = parent / (name + "-" + std::to_string(n));
-  return folder;
-}
-
 /// What a killed program can leave before its run begins: temporary files, and the file by which
 /// earlier versions tried whether a folder is writable.
 bool is_leftover(const fs::path& name) { return is_temporary_file(name) || name == "probe"; }
@@ -122,12 +114,6 @@ fs::path folder_to_resume(const Experiment& experiment, const ExecuteRequest& re
   }
   throw Error("there is no run of '" + experiment.id + "' with this specification to resume",
               (runs_root() / experiment.id).string(), "a run without --resume");
-}
-
-/// The file that a run recorded under `input_name`.
-fs::path input_file(const std::string& name) {
-  const fs::path file = geoprior_home() / name;
-  return fs::exists(file) ? file : geoprior_home() / from_printable(name);
 }
 
 /// Whether the run is of this very file, and every input is what it was when the run read it. A
@@ -190,11 +176,24 @@ std::string input_name(const fs::path& file) {
   return printable((is_outside ? full : relative).string());
 }
 
+fs::path input_file(const std::string& name) {
+  const fs::path file = geoprior_home() / name;
+  return fs::exists(file) ? file : geoprior_home() / from_printable(name);
+}
+
 fs::path runs_root() {
   if (const char* folder = std::getenv("GEOPRIOR_RUNS"); folder != nullptr && *folder != '\0') {
     return folder;
   }
   return geoprior_home() / "results" / "runs";
+}
+
+fs::path unused_run_folder(const std::string& experiment_id, const std::string& hash) {
+  const fs::path parent = runs_root() / experiment_id;
+  const std::string name = utc_text("%Y%m%dT%H%M%SZ") + "-" + hash.substr(0, kShortHash);
+  fs::path folder = parent / name;
+  for (int n = 2; fs::exists(folder); ++n) folder = parent / (name + "-" + std::to_string(n));
+  return folder;
 }
 
 std::string utc_now() { return utc_text("%Y-%m-%dT%H:%M:%SZ"); }
@@ -206,7 +205,7 @@ RunFolder open_run_folder(const Experiment& experiment, const ExecuteRequest& re
     if (request.resume) {
       folder = folder_to_resume(experiment, request);
     } else {
-      folder = request.out ? *request.out : new_default_folder(experiment);
+      folder = request.out ? *request.out : unused_run_folder(experiment.id, experiment.hash);
       if (fs::exists(folder) && !fs::is_directory(folder)) {
         throw Error("is no folder", folder.string(), "a folder that is new or empty");
       }

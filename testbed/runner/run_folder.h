@@ -29,6 +29,9 @@ struct RunFolder {
 /// @throws Error  naming the folder and what is allowed; before anything is computed
 RunFolder open_run_folder(const Experiment& experiment, const ExecuteRequest& request);
 
+/// A folder below runs_root() that is not there yet: <id>/<time of now>-<beginning of the hash>.
+std::filesystem::path unused_run_folder(const std::string& experiment_id, const std::string& hash);
+
 /// A run writes its specification before the first line of its journal, and nothing else: only such
 /// a folder may be gone on with while the journal is empty. What else is there is not ours to
 /// replace or remove.
@@ -38,6 +41,9 @@ void require_own_beginning(const Experiment& experiment, const std::filesystem::
 /// Name under which a run records an input file: relative to the clone where it lies inside, else
 /// absolute; `printable`, as it goes into JSON.
 std::string input_name(const std::filesystem::path& file);
+
+/// The file that a run recorded under that name; it need not exist any more.
+std::filesystem::path input_file(const std::string& name);
 
 /// The newest finished run of an experiment whose record is a wanted one; absent when there is
 /// none.

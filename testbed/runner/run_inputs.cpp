@@ -1,22 +1,17 @@
 #include "testbed/runner/run_inputs.h"
 
 #include <algorithm>
-#include <chrono>
 #include <set>
 #include <sstream>
-#include <thread>
 
 #include "core/error.h"
 #include "testbed/formats/folders.h"
 #include "testbed/home.h"
-#include "testbed/runner/journal.h"
-#include "testbed/runner/making_lock.h"
+#include "testbed/runner/made_run.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/opened_run.h"
 #include "testbed/runner/option_copy.h"
 #include "testbed/runner/run_folder.h"
-#include "testbed/runner/stop.h"
-#include "testbed/streams.h"
 
 namespace geoprior {
 
@@ -103,49 +98,6 @@ class CircleSearch {
   std::set<fs::path> sound_;  ///< visited already, or in the chain
 };
 
-/// Where an input is when nobody else is making it.
-struct Turn {
-  std::optional<fs::path> finished;
-  std::optional<fs::path> unfinished;  ///< to go on with; neither: to be made
-};
-
-/// Waits while another program makes the same run; nothing after a stop.
-std::optional<Turn> wait_for_turn(const Experiment& input, MakingLock& lock) {
-  constexpr std::chrono::milliseconds kPause{200};
-  for (bool told = false; !stop_requested(); told = true) {
-    const bool is_ours = lock.try_lock();
-    Turn turn;
-    turn.unfinished = find_unfinished_run(input);
-    // It may be a run of its own, which needs no lock to be made.
-    const bool is_written = turn.unfinished && is_being_written(*turn.unfinished);
-    turn.finished = find_run(input);
-    if (turn.finished || (is_ours && !is_written)) return turn;
-    if (!told) {
-      say("waiting for " + (turn.unfinished ? turn.unfinished->string() : "a run of " + input.id) +
-          ", which another program is making");
-    }
-    std::this_thread::sleep_for(kPause);
-  }
-  return std::nullopt;
-}
-
-/// Finished already, or made now; nothing after a stop.
-std::optional<OpenedRun> find_or_make(const Experiment& input, const std::vector<Topic>& topics,
-                                      const ExecuteRequest& request) {
-  if (const auto folder = find_run(input)) return OpenedRun(*folder);
-  MakingLock lock(input.hash);
-  const std::optional<Turn> turn = wait_for_turn(input, lock);
-  if (!turn) return std::nullopt;
-  if (turn->finished) return OpenedRun(*turn->finished);
-  ExecuteRequest own = request;
-  own.out = turn->unfinished;
-  own.resume = turn->unfinished.has_value();
-  say(input.id + " is needed first");
-  ExecuteResult made = execute(input, topics, own);
-  if (made.stopped) return std::nullopt;
-  return OpenedRun(made.folder, std::move(made.record));
-}
-
 const VariantRecord& require_variant(const RunRecord& record, const RunReference& reference,
                                      const std::string& text) {
   std::string allowed;
@@ -168,6 +120,17 @@ const StoredFile& require_artifact(const VariantRecord& variant, const std::stri
   }
   throw Error("the variant has no such artifact", "input \"" + text + "\"",
               allowed.empty() ? "none: it left no artifacts" : allowed);
+}
+
+/// Folder of the frames, or the artifact, that a reference means in its run.
+std::string place_in(const OpenedRun& run, const RunReference& reference, const std::string& text) {
+  const VariantRecord& variant = require_variant(run.record(), reference, text);
+  if (!reference.artifact.empty()) {
+    return run.file(require_artifact(variant, reference.artifact, text)).string();
+  }
+  require_recorded_frames(run, variant);
+  const fs::path frames = fs::path("frames") / reference.case_name / reference.variant;
+  return path_below(run.folder(), frames).string();
 }
 
 }  // namespace
@@ -207,24 +170,39 @@ ResolvedScene resolve_run_inputs(const Experiment& experiment, const CaseSpec& s
   const auto file_of_run = [&](const std::string& text) -> std::string {
     if (!is_run_reference(text) || resolved.stopped) return text;
     const RunReference reference = parse_run_reference(text);
-    const auto run = find_or_make(load_input(reference, experiment, topics), topics, request);
+    const Experiment input = load_input(reference, experiment, topics);
+    const auto run = find_or_make_run(input, topics, request, input.id + " is needed first");
     if (!run) {
       resolved.stopped = true;
       return text;
     }
-    const VariantRecord& variant = require_variant(run->record(), reference, text);
     resolved.inputs.push_back({text, run->record().content_sha256});
-    if (!reference.artifact.empty()) {
-      return run->file(require_artifact(variant, reference.artifact, text)).string();
-    }
-    require_recorded_frames(*run, variant);
-    const fs::path frames = fs::path("frames") / reference.case_name / reference.variant;
-    return path_below(run->folder(), frames).string();
+    return place_in(*run, reference, text);
   };
   std::shared_ptr<OptionSet> copy = topic_of(experiment, topics).default_scene();
   copy_options(*spec.scene, *copy, file_of_run);
   resolved.options = std::move(copy);
   return resolved;
+}
+
+std::shared_ptr<const OptionSet> resolve_recorded_inputs(const Experiment& experiment,
+                                                         const CaseSpec& spec,
+                                                         const std::vector<Topic>& topics,
+                                                         const std::vector<StoredFile>& recorded) {
+  const auto place_of_run = [&](const std::string& text) -> std::string {
+    if (!is_run_reference(text)) return text;
+    const RunReference reference = parse_run_reference(text);
+    const auto input = std::find_if(recorded.begin(), recorded.end(),
+                                    [&](const StoredFile& file) { return file.name == text; });
+    if (input == recorded.end()) {
+      throw Error("the run did not record which run it read", "input \"" + text + "\"");
+    }
+    const OpenedRun run(find_run_of_content(reference.experiment_id, input->sha256));
+    return place_in(run, reference, text);
+  };
+  std::shared_ptr<OptionSet> copy = topic_of(experiment, topics).default_scene();
+  copy_options(*spec.scene, *copy, place_of_run);
+  return copy;
 }
 
 }  // namespace geoprior

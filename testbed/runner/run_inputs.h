@@ -38,4 +38,13 @@ void require_no_circle(const Experiment& experiment, const std::vector<Topic>& t
 ResolvedScene resolve_run_inputs(const Experiment& experiment, const CaseSpec& spec,
                                  const std::vector<Topic>& topics, const ExecuteRequest& request);
 
+/// The same of a run that is finished: each reference is the run whose `content_sha256` was
+/// recorded, and none is made.
+/// @param recorded  inputs of the finished run
+/// @throws Error  naming a run that is no longer there
+std::shared_ptr<const OptionSet> resolve_recorded_inputs(const Experiment& experiment,
+                                                         const CaseSpec& spec,
+                                                         const std::vector<Topic>& topics,
+                                                         const std::vector<StoredFile>& recorded);
+
 }  // namespace geoprior

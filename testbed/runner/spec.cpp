@@ -246,9 +246,10 @@ FigureView figure_view_of(const std::string& resolved_toml, const std::string& s
       root, topic_named(topics, topic != nullptr ? topic->text : std::string(), root));
 }
 
-Experiment load_experiment(const std::filesystem::path& file, const std::vector<Topic>& topics,
-                           const LoadRequest& request) {
-  const TomlNode written = parse_toml_file(file);
+namespace {
+
+Experiment load_parsed(const TomlNode& written, const std::filesystem::path& file,
+                       const std::vector<Topic>& topics, const LoadRequest& request) {
   require_known_tables(written);
   TomlNode root = written;
   Experiment experiment;
@@ -298,6 +299,19 @@ Experiment load_experiment(const std::filesystem::path& file, const std::vector<
   }
   experiment.resolved_toml = toml_text(resolved);
   return experiment;
+}
+
+}  // namespace
+
+Experiment load_experiment(const std::filesystem::path& file, const std::vector<Topic>& topics,
+                           const LoadRequest& request) {
+  return load_parsed(parse_toml_file(file), file, topics, request);
+}
+
+Experiment load_recorded_experiment(const std::string& resolved_toml, const std::string& source,
+                                    const std::filesystem::path& file,
+                                    const std::vector<Topic>& topics) {
+  return load_parsed(parse_toml_text(resolved_toml, source), file, topics, {});
 }
 
 }  // namespace geoprior

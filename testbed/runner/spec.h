@@ -132,6 +132,15 @@ struct LoadRequest {
 Experiment load_experiment(const std::filesystem::path& file, const std::vector<Topic>& topics,
                            const LoadRequest& request);
 
+/// The experiment that a run was recorded with, from its resolved text.
+///
+/// @param source  names the text in messages
+/// @param file    of the experiment: relative paths are tried beside it; it need not exist any more
+/// @throws Error  as load_experiment: also where this program no longer knows what the text names
+Experiment load_recorded_experiment(const std::string& resolved_toml, const std::string& source,
+                                    const std::filesystem::path& file,
+                                    const std::vector<Topic>& topics);
+
 /// The topic of a loaded experiment. Throws Error when it is none of `topics`.
 const Topic& topic_of(const Experiment& experiment, const std::vector<Topic>& topics);
 

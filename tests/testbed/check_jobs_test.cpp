@@ -189,5 +189,17 @@ TEST_F(CheckJobs, ThatNeedTheSameInputMakeItOnce) {
   EXPECT_EQ(runs_of("toy-pendulum/one") + runs_of("toy-pendulum/two"), 2U);
 }
 
+TEST_F(CheckJobs, MakeAnInputOnceThatIsCheckedItself) {
+  write_pendulum("swing", "frames = 10\nframe_delay_ms = 20");
+  write_pendulum("needy", "input = \"run:toy-pendulum/swing/exact\"");
+  (void)home_.run("check --jobs 2 toy-pendulum/swing toy-pendulum/needy");
+  EXPECT_EQ(runs_of("toy-pendulum/swing"), 1U) << "at the same time";
+  EXPECT_EQ(home_.run("check --json").code, 1) << "there is no reference";
+  EXPECT_EQ(runs_of("toy-pendulum/swing"), 1U) << "nor again";
+  fs::remove_all(home_.root() / "results/runs/toy-pendulum/needy");
+  EXPECT_EQ(home_.run("check toy-pendulum/swing toy-pendulum/needy").code, 1);
+  EXPECT_EQ(runs_of("toy-pendulum/swing"), 1U) << "nor one after the other";
+}
+
 }  // namespace
 }  // namespace geoprior::test

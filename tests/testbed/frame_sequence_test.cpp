@@ -9,10 +9,8 @@
 
 #include "core/error.h"
 #include "experiments/toy/toy_topic.h"
-#include "testbed/runner/journal.h"
 #include "testbed/runner/measure.h"
 #include "testbed/runner/recorded_frames.h"
-#include "testbed/runner/run_state.h"
 #include "testbed/runner/sha256.h"
 #include "tests/testbed/run_fixture.h"
 
@@ -28,29 +26,21 @@ class FramesOfARun : public RunTest {
  protected:
   void SetUp() override {
     RunTest::SetUp();
-    experiment_ = load(pendulum());
-    run(experiment_, out());
-    journal_.emplace(out() / "journal.jsonl");
-    state_.emplace(experiment_);
-    for (const journal::Line& line : journal_->lines()) state_->apply(line);
-    recorder_.emplace(out(), *journal_, *state_);
+    record_ = *find_variant(run(load(pendulum()), out()).record.cases.at(0), "midpoint");
+    files_.emplace(out());
   }
   [[nodiscard]] fs::path out() const { return folder() / "out"; }
-  [[nodiscard]] const Recorder& recorder() const { return *recorder_; }
-  [[nodiscard]] const VariantRecord& record() {
-    return state_->variant_of({"default", "midpoint"}).record;
-  }
+  [[nodiscard]] const FrameFiles& files() const { return *files_; }
+  [[nodiscard]] const VariantRecord& record() const { return record_; }
 
  private:
-  Experiment experiment_;
-  std::optional<Journal> journal_;
-  std::optional<RunState> state_;
-  std::optional<Recorder> recorder_;
+  VariantRecord record_;
+  std::optional<FrameFiles> files_;
 };
 
 TEST_F(FramesOfARun, HoldNoMoreThanAFewFramesInMemory) {
   const KeptFrames none(0);
-  const RecordedFrames frames(recorder(), record(), none);
+  const RecordedFrames frames(files(), record(), none);
   ASSERT_EQ(frames.size(), 9U);
   std::vector<std::weak_ptr<const Frame>> seen;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -67,15 +57,15 @@ TEST_F(FramesOfARun, HoldNoMoreThanAFewFramesInMemory) {
 }
 
 TEST_F(FramesOfARun, AreEqualWhetherTheyWereKeptOrRead) {
-  const Frame first = recorder().read_frame(record(), 0);
+  const Frame first = files().frame(record(), 0);
   KeptFrames kept(3 * memory_of(first));
-  for (std::size_t i = 0; i < 9; ++i) kept.keep(i, recorder().read_frame(record(), i));
+  for (std::size_t i = 0; i < 9; ++i) kept.keep(i, files().frame(record(), i));
   EXPECT_LE(kept.bytes(), 3 * memory_of(first));
   EXPECT_NE(kept.find(2), nullptr);
   EXPECT_EQ(kept.find(3), nullptr) << "three frames fit";
-  const RecordedFrames frames(recorder(), record(), kept);
+  const RecordedFrames frames(files(), record(), kept);
   for (std::size_t i = 0; i < 9; ++i) {
-    const Frame read = recorder().read_frame(record(), i);
+    const Frame read = files().frame(record(), i);
     EXPECT_EQ(frames.parameter(i), read.parameter);
     EXPECT_EQ(frames.frame(i)->require_part("bob").points, read.require_part("bob").points);
     EXPECT_EQ(frames.frame(i)->require_table("state").rows, read.require_table("state").rows);
@@ -88,7 +78,7 @@ TEST_F(FramesOfARun, ComeInOrderOfParameter) {
   VariantRecord turned = record();
   std::reverse(turned.frames.begin(), turned.frames.end());
   const KeptFrames none(0);
-  const RecordedFrames frames(recorder(), turned, none);
+  const RecordedFrames frames(files(), turned, none);
   const std::vector<double> parameters = frames.parameters();
   EXPECT_TRUE(std::is_sorted(parameters.begin(), parameters.end()));
   EXPECT_EQ(frames.parameter(8), 2);
@@ -98,19 +88,19 @@ TEST_F(FramesOfARun, ComeInOrderOfParameter) {
 TEST_F(FramesOfARun, ReadOnlyThePartThatIsAskedFor) {
   fs::remove(out() / "frames/default/midpoint/warmth_0004.vti");
   const KeptFrames none(0);
-  const RecordedFrames frames(recorder(), record(), none);
+  const RecordedFrames frames(files(), record(), none);
   const std::shared_ptr<const Part> bob = frames.part(4, "bob");
   ASSERT_NE(bob, nullptr);
   EXPECT_EQ(bob->points.rows(), 1);
   EXPECT_EQ(frames.part(4, "nothing"), nullptr);
   EXPECT_EQ(frames.frames_read(), 0U);
   EXPECT_THAT(error_of([&] { (void)frames.frame(4); }), HasSubstr("warmth_0004.vti"));
-  EXPECT_EQ(recorder().read_frame(record(), 4, {{"bob", "state"}}).parts.size(), 1U);
+  EXPECT_EQ(files().frame(record(), 4, {{"bob", "state"}}).parts.size(), 1U);
 }
 
 TEST_F(FramesOfARun, HaveTheEventsInTheOrderInWhichTheyWereRecorded) {
   const KeptFrames none(0);
-  const RecordedFrames frames(recorder(), record(), none);
+  const RecordedFrames frames(files(), record(), none);
   const RunRecord stored = read_run_file(out() / "run.h5");
   const std::vector<Event>& expected = find_variant(stored.cases.at(0), "midpoint")->events;
   ASSERT_GE(expected.size(), 2U);
@@ -124,7 +114,7 @@ TEST_F(FramesOfARun, HaveTheEventsInTheOrderInWhichTheyWereRecorded) {
 
 TEST_F(FramesOfARun, HaveTheArtifactsAsTheyWereRecorded) {
   const KeptFrames none(0);
-  const RecordedFrames frames(recorder(), record(), none);
+  const RecordedFrames frames(files(), record(), none);
   const fs::path file = out() / "artifacts/default/midpoint/swing.wav";
   const auto swing = frames.artifact("swing.wav");
   ASSERT_TRUE(swing.has_value());

@@ -52,12 +52,13 @@ class Home {
     return text.str();
   }
 
-  /// Runs the program with the toy topics on this folder; `arguments` as a shell reads them.
-  [[nodiscard]] Outcome run(const std::string& arguments) const {
+  /// Runs a program, that with the toy topics, on this folder; `arguments` as a shell reads them.
+  [[nodiscard]] Outcome run(const std::string& arguments,
+                            const std::string& program = GEOPRIOR_TOY_PROGRAM) const {
     const auto out = root_ / "stdout.txt", err = root_ / "stderr.txt";
     const std::string command = "GEOPRIOR_HOME='" + root_.string() + "' GEOPRIOR_RUNS= '" +
-                                GEOPRIOR_TOY_PROGRAM + "' " + arguments + " > '" + out.string() +
-                                "' 2> '" + err.string() + "'";
+                                program + "' " + arguments + " > '" + out.string() + "' 2> '" +
+                                err.string() + "'";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
   }

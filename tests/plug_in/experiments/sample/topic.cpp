@@ -1,6 +1,7 @@
 #include "testbed/topic.h"
 
 #include "solvers/sample/growing_square.h"
+#include "testbed/metric_rows.h"
 
 namespace geoprior::sample {
 
@@ -32,6 +33,11 @@ class SampleScene final : public Scene {
   SampleSceneOptions options_;
 };
 
+double edge(const SampleScene&, const Frame& frame) {
+  const Part& square = frame.require_part("surface");
+  return (square.points.row(1) - square.points.row(0)).norm();
+}
+
 }  // namespace
 
 Topic make_topic() {
@@ -48,6 +54,8 @@ Topic make_topic() {
       [](const SampleScene&, const GrowingSquareOptions& options, RunContext&) {
         return std::make_unique<GrowingSquare>(options);
       }));
+  topic.metrics.push_back(frame_metrics<SampleScene>(edge).row("edge", "m", "edge of the square",
+                                                               Direction::none, {1e-12, 1e-9}));
   return topic;
 }
 

@@ -1,0 +1,98 @@
+#include "testbed/runner/made_run.h"
+
+#include <array>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "testbed/runner/journal.h"
+#include "testbed/runner/making_lock.h"
+#include "testbed/runner/run_folder.h"
+#include "testbed/runner/sha256.h"
+#include "testbed/runner/stop.h"
+#include "testbed/streams.h"
+
+namespace geoprior {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// An experiment with its times, and without.
+using Forms = std::array<Experiment, 2>;
+
+std::optional<fs::path> find_finished(const Forms& forms) {
+  for (const Experiment& form : forms) {
+    if (auto folder = find_run(form)) return folder;
+  }
+  return std::nullopt;
+}
+
+/// The folder of a run that another program is writing. It may be a run of its own, which needs no
+/// lock to be made.
+std::optional<fs::path> find_written(const Forms& forms) {
+  for (const Experiment& form : forms) {
+    const auto folder = find_unfinished_run(form);
+    if (folder && is_being_written(*folder)) return folder;
+  }
+  return std::nullopt;
+}
+
+/// Whose turn it is to make the run.
+struct Turn {
+  std::optional<fs::path> finished;  ///< nobody's: it is there; absent: ours
+};
+
+/// Waits while another program makes the same run; nothing after a stop.
+std::optional<Turn> wait_for_turn(const Forms& forms, MakingLock& lock) {
+  constexpr std::chrono::milliseconds kPause{200};
+  for (bool told = false; !stop_requested(); told = true) {
+    const bool is_ours = lock.try_lock();
+    const std::optional<fs::path> written = find_written(forms);
+    const std::optional<fs::path> finished = find_finished(forms);
+    if (finished || (is_ours && !written)) return Turn{finished};
+    if (!told) {
+      say("waiting for " + (written ? written->string() : "a run of " + forms[0].id) +
+          ", which another program is making");
+    }
+    std::this_thread::sleep_for(kPause);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void leave_out_times(Experiment& experiment) {
+  std::erase_if(experiment.studies,
+                [](const StudySpec& study) { return study.quantity.starts_with("timing:"); });
+  std::erase_if(experiment.claims,
+                [](const ClaimSpec& claim) { return claim.exempt == Exemption::timing; });
+}
+
+Experiment without_times(Experiment experiment) {
+  leave_out_times(experiment);
+  experiment.hash = sha256(experiment.hash + " without times");
+  return experiment;
+}
+
+std::optional<OpenedRun> find_or_make_run(const Experiment& experiment,
+                                          const std::vector<Topic>& topics,
+                                          const ExecuteRequest& request,
+                                          const std::string& announcement) {
+  const Forms forms{experiment, without_times(experiment)};
+  if (const auto folder = find_finished(forms)) return OpenedRun(*folder);
+  MakingLock lock(experiment.hash);
+  const std::optional<Turn> turn = wait_for_turn(forms, lock);
+  if (!turn) return std::nullopt;
+  if (turn->finished) return OpenedRun(*turn->finished);
+  const Experiment& made = forms[request.timing ? 0 : 1];
+  ExecuteRequest own = request;
+  own.out = find_unfinished_run(made);
+  own.resume = own.out.has_value();
+  say(announcement);
+  ExecuteResult result = execute(made, topics, own);
+  if (result.stopped) return std::nullopt;
+  return OpenedRun(result.folder, std::move(result.record));
+}
+
+}  // namespace geoprior
