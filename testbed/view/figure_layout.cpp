@@ -396,20 +396,24 @@ std::vector<FigureBlock> make_blocks(const OpenedRun& run, const FigureView& vie
   return blocks;
 }
 
-Picture draw_figure(const std::vector<FigureBlock>& blocks) {
-  std::vector<Layout> layouts;
-  int width = 0;
-  int height = 0;
+FigureSize figure_size(const std::vector<FigureBlock>& blocks) {
+  FigureSize size;
   for (const FigureBlock& block : blocks) {
-    layouts.push_back(make_layout(drawn_rows(block), block));
-    width = std::max(width, layouts.back().width);
-    height += block_height(block, layouts.back());
+    const Layout layout = make_layout(drawn_rows(block), block);
+    size.width = std::max(size.width, layout.width);
+    size.height += block_height(block, layout);
   }
-  Picture picture(width, height);
+  return size;
+}
+
+Picture draw_figure(const std::vector<FigureBlock>& blocks) {
+  const FigureSize size = figure_size(blocks);
+  Picture picture(size.width, size.height);
   int y = kFigureMargin;
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    draw_block(picture, blocks[i], layouts[i], y);
-    y += block_height(blocks[i], layouts[i]);
+  for (const FigureBlock& block : blocks) {
+    const Layout layout = make_layout(drawn_rows(block), block);
+    draw_block(picture, block, layout, y);
+    y += block_height(block, layout);
   }
   return picture;
 }

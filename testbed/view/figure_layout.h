@@ -34,6 +34,15 @@ struct FigureBlock {
 /// @throws Error  when there is nothing to draw, or naming what the run does not have
 std::vector<FigureBlock> make_blocks(const OpenedRun& run, const FigureView& view);
 
+/// In pixels.
+struct FigureSize {
+  int width = 0;
+  int height = 0;
+};
+
+/// Of the picture that `draw_figure` draws of these blocks.
+FigureSize figure_size(const std::vector<FigureBlock>& blocks);
+
 /// Draws the blocks under each other, at the picture's usual width. Needs a Display.
 Picture draw_figure(const std::vector<FigureBlock>& blocks);
 

@@ -24,6 +24,13 @@ TEST(Sample, LongestCostsTooMuch) { burn(0.15); }
 TEST(Sample, ChildCostsTooMuch) {
   EXPECT_EXIT((burn(0.15), ::_exit(0)), ::testing::ExitedWithCode(0), "");
 }
+TEST(Sample, PassesADeathTestOfEitherStyle) {
+  for (const char* style : {"fast", "threadsafe"}) {
+    GTEST_FLAG_SET(death_test_style, style);
+    EXPECT_EXIT(::_exit(3), ::testing::ExitedWithCode(3), "");
+    EXPECT_EXIT(::raise(SIGKILL), ::testing::KilledBySignal(SIGKILL), "");
+  }
+}
 TEST(Sample, Faults) { ::raise(SIGSEGV); }
 TEST(Sample, Aborts) { ::abort(); }
 TEST(Sample, Terminates) { std::terminate(); }

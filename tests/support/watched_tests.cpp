@@ -59,6 +59,9 @@ bool is_debugged() {
   return false;
 }
 
+/// A process that a death test made of this executable: that test judges how it ends.
+bool is_death_test() { return !::testing::internal::GTEST_FLAG(internal_run_death_test).empty(); }
+
 int run_tests(CostLimits limits, Progress& progress) {
   ::testing::UnitTest::GetInstance()->listeners().Append(
       new CostListener(limits, [&](const std::string& place) { progress.say_place(place); }));
@@ -97,7 +100,7 @@ int judge(int status, const Progress& progress) {
 
 int run_watched_tests(CostLimits limits) {
   static Progress progress;
-  if (is_debugged()) return run_tests(limits, progress);
+  if (is_debugged() || is_death_test()) return run_tests(limits, progress);
   std::fflush(nullptr);  // or the child would write it again
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("fork failed");

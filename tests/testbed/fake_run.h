@@ -97,7 +97,8 @@ inline void write_fake_run(const RunRecord& record, const std::filesystem::path&
 
 /// Two variants, three frames at 0, 45 and 90 degrees: boxes that grow in x, with an array
 /// "height" on the points.
-inline RunRecord make_fake_run(const std::filesystem::path& folder) {
+/// @param height_m  of the boxes, in z
+inline RunRecord make_fake_run(const std::filesystem::path& folder, double height_m = 1.0 / 3) {
   RunRecord record;
   record.experiment_id = "test/boxes";
   record.title = "Boxes";
@@ -113,7 +114,7 @@ inline RunRecord make_fake_run(const std::filesystem::path& folder) {
     variant.role = "method";
     variant.status = "done";
     for (int i = 0; i < 3; ++i) {
-      Part part = make_box({0, 0, 0}, {1 + 0.1 * i, 1, 1.0 / 3});
+      Part part = make_box({0, 0, 0}, {1 + 0.1 * i, 1, height_m});
       part.arrays.push_back({"height", "m", NamedArray::On::points, part.points.col(1)});
       add_frame(variant, folder, 45.0 * i, part);
     }

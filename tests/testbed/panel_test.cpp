@@ -178,12 +178,13 @@ std::vector<int> fold_contrasts(const PanelStyle& style) {
   for (const double tilt : {-40.0, 0.0, 40.0}) {
     for (const double axis : {0.0, 30.0, 60.0, 90.0, 120.0, 150.0}) {
       const Part sheet = folded_sheet(10, axis, tilt);
-      const Picture picture = draw_panel({{&sheet}, {}, {}}, above(), style, 200, 200);
+      constexpr int kHalf = 32;  // the picture's side is 4 m: so many pixels are 2 m
+      const Picture picture = draw_panel({{&sheet}, {}, {}}, above(), style, 2 * kHalf, 2 * kHalf);
       const auto at = [&](double x) {  // half a metre to the side of the fold, in pixels
         const double angle = axis * std::numbers::pi / 180;
         const double height = std::sin(angle) * std::cos(tilt * std::numbers::pi / 180);
-        return picture.at(100 + static_cast<int>(50 * x * std::cos(angle)),
-                          100 - static_cast<int>(50 * x * height));
+        return picture.at(kHalf + static_cast<int>(kHalf / 2 * x * std::cos(angle)),
+                          kHalf - static_cast<int>(kHalf / 2 * x * height));
       };
       contrasts.push_back(contrast(at(-0.5), at(0.5)));
     }
