@@ -8,6 +8,7 @@
 #include "metrics/tracking_scores.h"
 #include "models/fluid/injected_sequence.h"
 #include "solvers/fluid/extraction.h"
+#include "tests/support/long_tests.h"
 
 namespace geoprior::fluid {
 namespace {
@@ -47,23 +48,35 @@ InjectedOptions scene(int resolution, std::uint64_t seed) {
   return options;
 }
 
-TrackingScores scores(const InjectedSequence& sequence, const ExtractionOptions& options) {
-  RunContext context;
-  const Extraction extraction = extract_regions(sequence, options, context);
-  // Centres of regions and features agree to within three cells.
-  return tracking_scores(truth_of(sequence), found_in(extraction, options.shortest_track),
-                         {TrackSimilarity::distance, 0.12, 0.5});
-}
-
 ExtractionOptions with_unit() {
   ExtractionOptions options;
   options.segmentation.cell = 0.0115;
   return options;
 }
 
-TEST(Extraction, TracksInjectedFeaturesThroughNoiseAndDropouts) {
-  for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    const TrackingScores s = scores(InjectedSequence(scene(1, seed)), with_unit());
+Extraction extracted(const InjectedSequence& sequence) {
+  RunContext context;
+  return extract_regions(sequence, with_unit(), context);
+}
+
+TrackingScores scores(const InjectedSequence& sequence, const Extraction& extraction) {
+  // Centres of regions and features agree to within three cells.
+  return tracking_scores(truth_of(sequence), found_in(extraction, with_unit().shortest_track),
+                         {TrackSimilarity::distance, 0.12, 0.5});
+}
+
+/// What is found in `scene(1, 1)`: looked at by two tests, made once.
+const Extraction& found_in_first_scene() {
+  static const Extraction found = extracted(InjectedSequence(scene(1, 1)));
+  return found;
+}
+
+/// One seed; with GEOPRIOR_LONG, three.
+TEST(LongExtraction, TracksInjectedFeaturesThroughNoiseAndDropouts) {
+  for (std::uint64_t seed = 1; seed <= (test::at_length() ? 3 : 1); ++seed) {
+    const InjectedSequence sequence(scene(1, seed));
+    const TrackingScores s =
+        scores(sequence, seed == 1 ? found_in_first_scene() : extracted(sequence));
     EXPECT_GE(s.idf1, 0.95) << "seed " << seed;
     EXPECT_EQ(s.fragments, 0) << "seed " << seed;
     EXPECT_EQ(s.switches, 0) << "seed " << seed;
@@ -71,24 +84,25 @@ TEST(Extraction, TracksInjectedFeaturesThroughNoiseAndDropouts) {
   }
 }
 
-TEST(Extraction, FindsTheSameTracksOnFinerMeshes) {
-  for (const int resolution : {2, 4}) {
+/// Twice as fine; with GEOPRIOR_LONG, also four times.
+TEST(LongExtraction, FindsTheSameTracksOnFinerMeshes) {
+  for (int resolution = 2; resolution <= (test::at_length() ? 4 : 2); resolution *= 2) {
     InjectedOptions options = scene(resolution, 1);
     options.bumps = 1;
     options.merges = 0;
     options.rings = options.drops = 1;
-    options.frames = resolution == 4 ? 18 : 30;
-    const TrackingScores s = scores(InjectedSequence(options), with_unit());
+    options.frames = 18;
+    const InjectedSequence sequence(options);
+    const TrackingScores s = scores(sequence, extracted(sequence));
     EXPECT_GE(s.idf1, 0.95) << resolution;
     EXPECT_EQ(s.fragments, 0) << resolution;
     EXPECT_EQ(s.switches, 0) << resolution;
   }
 }
 
-TEST(Extraction, FindsWhatCausedTheWaves) {
+TEST(LongExtraction, FindsWhatCausedTheWaves) {
   const InjectedSequence sequence(scene(1, 1));
-  RunContext context;
-  const Extraction extraction = extract_regions(sequence, with_unit(), context);
+  const Extraction& extraction = found_in_first_scene();
   const auto track_at = [&](int id, bool at_end) {
     const InjectedTruth* seen = nullptr;
     for (const InjectedTruth& t : sequence.truth()) {
@@ -137,11 +151,12 @@ TEST(Extraction, CallsBackWithEveryFrameAndCanLabelItAgain) {
 }
 
 TEST(Extraction, IsTheSameForOneThreadAndTwo) {
-  const InjectedSequence sequence(scene(1, 4));
+  InjectedOptions options = scene(1, 4);
+  options.frames = 12;
+  const InjectedSequence sequence(options);
   const auto run = [&](int threads) {
     Extraction extraction;
-    RunContext context;
-    with_threads(threads, [&] { extraction = extract_regions(sequence, with_unit(), context); });
+    with_threads(threads, [&] { extraction = extracted(sequence); });
     return extraction;
   };
   const Extraction one = run(1), two = run(2);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -48,9 +49,19 @@ Sheet squeezed_square() {
 
 AdaptiveOptions fine() {
   AdaptiveOptions options;
-  options.size_min = 0.005;
-  options.size_max = 0.05;
+  options.size_min = 0.01;
+  options.size_max = 0.06;
   return options;
+}
+
+/// The square under squeeze, made once for the tests that look at it.
+const Recording& squeezed(bool pop_filter) {
+  static const std::array<Recording, 2> recordings = [] {
+    AdaptiveOptions filtered = fine();
+    filtered.pop_filter = true;
+    return std::array{run(squeezed_square(), fine()), run(squeezed_square(), filtered)};
+  }();
+  return recordings[pop_filter ? 1 : 0];
 }
 
 ShellMesh mesh_of(const Frame& frame) {
@@ -64,9 +75,7 @@ ShellMesh mesh_of(const Frame& frame) {
 TEST(AdaptiveSheet, CoversThePatternAndKeepsTheHandlesInEveryFrame) {
   const Sheet sheet = squeezed_square();
   for (const bool pop_filter : {false, true}) {
-    AdaptiveOptions options = fine();
-    options.pop_filter = pop_filter;
-    const Recording recording = run(sheet, options);
+    const Recording& recording = squeezed(pop_filter);
     ASSERT_EQ(recording.frames.size(), static_cast<std::size_t>(sheet.frame_count()));
     for (const Frame& frame : recording.frames) {
       const ShellMesh mesh = mesh_of(frame);
@@ -84,7 +93,7 @@ TEST(AdaptiveSheet, CoversThePatternAndKeepsTheHandlesInEveryFrame) {
 // The square bends about the v axis: along u the sheet is narrower, and the curved sheet needs more
 // triangles than the flat one.
 TEST(AdaptiveSheet, RefinesWhereTheSheetBends) {
-  const Recording recording = run(squeezed_square(), fine());
+  const Recording& recording = squeezed(false);
   EXPECT_GT(recording.frames.back().diagnostics.at("triangles"),
             2 * recording.frames.front().diagnostics.at("triangles"));
   double splits = 0;
@@ -97,9 +106,8 @@ TEST(AdaptiveSheet, RefinesWhereTheSheetBends) {
 }
 
 TEST(AdaptiveSheet, GoesOnFromACheckpointAsIfNothingHadHappened) {
-  const Sheet sheet = squeezed_square();
-  const Recording whole = run(sheet, fine());
-  const Recording rest = run(sheet, fine(), whole.checkpoints[6]);
+  const Recording& whole = squeezed(false);
+  const Recording rest = run(squeezed_square(), fine(), whole.checkpoints[6]);
   ASSERT_EQ(rest.frames.size(), whole.frames.size() - 7);
   for (std::size_t i = 0; i < rest.frames.size(); ++i) {
     const Frame &a = rest.frames[i], &b = whole.frames[i + 7];

@@ -2,13 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <numbers>
 
 #include "core/parallel.h"
 #include "solvers/paper/invariants.h"
 #include "tests/paper/hybrid_fixture.h"
 #include "tests/paper/plane_shapes.h"
+#include "tests/support/long_tests.h"
 
 namespace geoprior::paper {
 namespace {
@@ -199,20 +199,21 @@ int wander(std::uint64_t seed, int frames) {
   return strained;
 }
 
-class HybridWandering : public testing::TestWithParam<int> {};
+class LongHybridWandering : public testing::TestWithParam<int> {};
 
-TEST_P(HybridWandering, KeepsItsInvariantsUnderRandomHandles) {
-  constexpr int kFrames = 500;
-  const int strained = wander(static_cast<std::uint64_t>(GetParam()), kFrames);
+// 80 frames; with GEOPRIOR_LONG, 500.
+TEST_P(LongHybridWandering, KeepsItsInvariantsUnderRandomHandles) {
+  const int frames = test::at_length() ? 500 : 80;
+  const int strained = wander(static_cast<std::uint64_t>(GetParam()), frames);
   // Handles that wander may leave no isometric shape near: with seed 2 a dense sheet (1,500
   // triangles) is strained beyond the line in 8 of the 500 frames, up to 2.9e-3; the hybrid's in 6.
   EXPECT_LE(strained, 8);
 }
 
-/// GEOPRIOR_LONG asks for twenty seeds.
-int last_seed() { return std::getenv("GEOPRIOR_LONG") == nullptr ? 2 : 20; }
+/// With GEOPRIOR_LONG, twenty seeds.
+int last_seed() { return test::at_length() ? 20 : 2; }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, HybridWandering, testing::Range(1, last_seed() + 1));
+INSTANTIATE_TEST_SUITE_P(Seeds, LongHybridWandering, testing::Range(1, last_seed() + 1));
 
 TEST(HybridProcess, GoesOnFromACheckpointAsIfItHadNotStopped) {
   struct Sink final : FrameSink {

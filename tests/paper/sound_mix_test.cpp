@@ -118,20 +118,48 @@ TEST(SoundMixer, RefusesWhatItCannotMix) {
   EXPECT_EQ(silent.samples.cwiseAbs().maxCoeff(), 0);
 }
 
-TEST(SoundBank, HasTheSoundsOfItsGridAndIsTheSameAtAnyNumberOfThreads) {
+/// The bank that is used when none is asked for: made once for all that look at it.
+const SoundBank& default_bank() {
+  static const SoundBank bank = generate_bank({}, {}, 1);
+  return bank;
+}
+
+BankOptions three_sizes() {
+  BankOptions options;
+  options.sizes = 3;
+  return options;
+}
+
+TEST(SoundBank, HasTheSoundsOfItsGrid) {
+  const SoundBank& bank = default_bank();
+  EXPECT_EQ(bank.of(SoundKind::flap).size() + bank.of(SoundKind::crac).size(), 256u);
+  EXPECT_EQ(bank.of(SoundKind::friction).size(), 64u);
+  EXPECT_FALSE(bank.of(SoundKind::tear).empty());
+  EXPECT_NO_THROW(require_valid(bank, "bank"));
+}
+
+TEST(SoundBank, IsTheSameAtAnyNumberOfThreads) {
   SoundBank one, two;
-  with_threads(1, [&] { one = generate_bank({}, {}, 7); });
-  with_threads(2, [&] { two = generate_bank({}, {}, 7); });
-  EXPECT_EQ(one.of(SoundKind::flap).size() + one.of(SoundKind::crac).size(), 256u);
-  EXPECT_EQ(one.of(SoundKind::friction).size(), 64u);
-  EXPECT_FALSE(one.of(SoundKind::tear).empty());
+  with_threads(1, [&] { one = generate_bank({}, three_sizes(), 7); });
+  with_threads(2, [&] { two = generate_bank({}, three_sizes(), 7); });
   EXPECT_EQ(checksum(one), checksum(two));
-  EXPECT_NE(checksum(one), checksum(generate_bank({}, {}, 8)));
-  EXPECT_NO_THROW(require_valid(one, "bank"));
+  EXPECT_NE(checksum(one), checksum(generate_bank({}, three_sizes(), 8)));
+}
+
+TEST(SoundBank, NearestSoundsAreNearInBothDescriptors) {
+  const SoundBank& bank = default_bank();
+  SoundEvent event;
+  event.ruling_length = 0.05;
+  event.free_border = 0.1;
+  const std::vector<int> order = nearest_sounds(bank, event, SoundOptions::Descriptors::both);
+  ASSERT_EQ(order.size(), 128u);
+  const BankSound& first = bank.sounds[static_cast<std::size_t>(order[0])];
+  EXPECT_LT(std::abs(std::log(first.ruling_length / 0.05)), 0.3);
+  EXPECT_LT(std::abs(std::log(first.free_border / 0.1)), 0.45);
 }
 
 TEST(SoundBank, SoundsHavePanelsWhoseBorderTheyName) {
-  const SoundBank bank = generate_bank({}, {}, 1);
+  const SoundBank& bank = default_bank();
   for (const SoundKind kind : {SoundKind::flap, SoundKind::crac}) {
     for (const int i : bank.of(kind)) {
       const BankSound& sound = bank.sounds[static_cast<std::size_t>(i)];
@@ -169,12 +197,11 @@ std::vector<std::byte> raw(const Eigen::MatrixXd& samples, int /*rate*/) {
   return bytes;
 }
 
-std::unique_ptr<Process> a_process(const Sheet& sheet) {
-  SoundOptions options;
-  options.bank.sizes = 3;
-  return make_sound_process(
-      sheet, snapping(sheet), options.stage,
-      bank_voices(generate_bank(sheet.material, options.bank, 1), options, sheet.material), raw);
+/// Played from a small bank of paper, made once.
+std::unique_ptr<Process> a_process(const Sheet& sheet, const SoundOptions& options = {}) {
+  static const SoundBank bank = generate_bank({}, three_sizes(), 1);
+  return make_sound_process(sheet, snapping(sheet), options.stage,
+                            bank_voices(bank, options, sheet.material), raw);
 }
 
 TEST(SoundProcess, RecordsEventsPicturesAndOneSound) {
@@ -206,14 +233,10 @@ TEST(SoundProcess, PickedEventsAreHeardAlone) {
   Sheet sheet;
   sheet.pattern = rectangle_pattern(0.2, 0.3);
   SoundOptions options;
-  options.bank.sizes = 3;
   options.stage.picked = {2, 2};  // of six events the first and the third
   Recording record;
   RunContext context;
-  make_sound_process(
-      sheet, snapping(sheet), options.stage,
-      bank_voices(generate_bank(sheet.material, options.bank, 1), options, sheet.material), raw)
-      ->run(record, context, {});
+  a_process(sheet, options)->run(record, context, {});
   ASSERT_EQ(record.artifacts.size(), 2u);
   EXPECT_EQ(record.artifacts[1].name, "voices.wav");
   std::vector<double> starts;
@@ -274,20 +297,8 @@ TEST(SoundProcess, ResumesToTheSameSound) {
   EXPECT_EQ(rest.frames.size(), whole.frames.size() - 18);
 }
 
-TEST(SoundProcess, NearestSoundsAreNearInBothDescriptors) {
-  const SoundBank bank = generate_bank({}, {}, 1);
-  SoundEvent event;
-  event.ruling_length = 0.05;
-  event.free_border = 0.1;
-  const std::vector<int> order = nearest_sounds(bank, event, SoundOptions::Descriptors::both);
-  ASSERT_EQ(order.size(), 128u);
-  const BankSound& first = bank.sounds[static_cast<std::size_t>(order[0])];
-  EXPECT_LT(std::abs(std::log(first.ruling_length / 0.05)), 0.3);
-  EXPECT_LT(std::abs(std::log(first.free_border / 0.1)), 0.45);
-}
-
 TEST(SoundProcess, ABentResonatorIsPlayedHigher) {
-  BankOptions options;
+  BankOptions options = three_sizes();
   options.flap_bow = 0;
   SoundOptions choice;
   choice.detune = 0;

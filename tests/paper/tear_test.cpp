@@ -304,9 +304,9 @@ Sheet pulled_sheet() {
   return sheet;
 }
 
-DenseOptions few_triangles() {
+DenseOptions few_triangles(int count = 400) {
   DenseOptions options;
-  options.triangles = 400;
+  options.triangles = count;
   return options;
 }
 
@@ -379,7 +379,7 @@ TEST(TearGrowth, ASheetTornThroughFallsIntoTwoParts) {
     handle.motion->keys[1].time = 1.6;
     handle.motion->keys[1].shift *= 7;
   }
-  DenseOptions options = few_triangles();
+  DenseOptions options = few_triangles(150);
   Recording recording;
   RunContext context(1);
   make_dense_sheet(sheet, options)->run(recording, context, {});
@@ -428,7 +428,8 @@ TEST(TearGrowth, TheGeneralSearchTearsASmoothBorder) {
   Sheet sheet = pulled_sheet();
   sheet.pattern.cuts.clear();
   sheet.toughness.energy = 500;
-  DenseOptions options = few_triangles();
+  sheet.duration = 0.5;
+  DenseOptions options = few_triangles(250);
   const auto torn = [&](TearSearch search, double flaw) {
     options.tearing.search = search;
     options.tearing.flaw = flaw;

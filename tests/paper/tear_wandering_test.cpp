@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <vector>
 
 #include "core/planar.h"
@@ -14,6 +13,7 @@
 #include "models/paper/segments.h"
 #include "solvers/paper/invariants.h"
 #include "tests/paper/hybrid_fixture.h"
+#include "tests/support/long_tests.h"
 
 namespace geoprior::paper {
 namespace {
@@ -40,7 +40,8 @@ Sheet pulled_about(std::uint64_t seed, int frames) {
   for (std::size_t i = 0; i < held.size(); ++i) {
     Keys keys{{0, {0, 0, 0}}};
     Eigen::Vector3d at = Eigen::Vector3d::Zero();
-    for (int second = 2; second <= static_cast<int>(sheet.duration) + 2; second += 2) {
+    const int every = test::at_length() ? 2 : 1;
+    for (int second = every; second <= static_cast<int>(sheet.duration) + every; second += every) {
       const double x = random.uniform(), y = random.uniform(), z = random.uniform();
       at = 0.8 * at + 0.2 * Eigen::Vector3d(x - 0.5, y - 0.5, z - 0.5);
       keys.emplace_back(second, at);
@@ -119,12 +120,13 @@ int count_above(const std::vector<double>& areas, double least) {
   return static_cast<int>(std::ranges::count_if(areas, [&](double a) { return a > least; }));
 }
 
-class RandomPulls : public testing::TestWithParam<int> {};
+class LongRandomPulls : public testing::TestWithParam<int> {};
 
-TEST_P(RandomPulls, LeaveASheetThatIsWholeInEveryPart) {
-  constexpr int kFrames = 500;
+// Hands that turn every second for 30 frames; with GEOPRIOR_LONG, every two seconds for 500.
+TEST_P(LongRandomPulls, LeaveASheetThatIsWholeInEveryPart) {
+  const int frames = test::at_length() ? 500 : 30;
   const auto seed = static_cast<std::uint64_t>(GetParam());
-  const Sheet sheet = pulled_about(seed, kFrames);
+  const Sheet sheet = pulled_about(seed, frames);
   int frame = 0, strained = 0;
   double length = 0;
   int most_parts = 1;
@@ -137,7 +139,7 @@ TEST_P(RandomPulls, LeaveASheetThatIsWholeInEveryPart) {
                 testing::IsEmpty())
         << "frame " << frame;
     EXPECT_GE(tears->length(), length) << "tears do not heal";
-    if (tears->length() > length || frame == kFrames) {
+    if (tears->length() > length || frame == frames) {
       const int parts = count_above(Cells(tears->torn()).areas(), kLeastPart);
       EXPECT_LE(count_above(part_areas(state.mesh), kUnsure * kLeastPart), parts) << frame;
       EXPECT_GE(count_above(part_areas(state.mesh), kLeastPart / kUnsure), parts) << frame;
@@ -147,18 +149,18 @@ TEST_P(RandomPulls, LeaveASheetThatIsWholeInEveryPart) {
     const Isometry strain = isometry(state);
     if (strain.rms > 1e-3) ++strained;
   });
-  EXPECT_EQ(frame, kFrames);
+  EXPECT_EQ(frame, frames);
   // Hands that pull where no candidate lies stretch the sheet as far as they give.
-  EXPECT_LE(strained, kFrames / 20);
+  EXPECT_LE(strained, frames / 20);
   RecordProperty("length_mm", static_cast<int>(1e3 * length));
   RecordProperty("parts", most_parts);
   RecordProperty("strained", strained);
 }
 
-/// GEOPRIOR_LONG asks for twenty seeds.
-int last_seed() { return std::getenv("GEOPRIOR_LONG") == nullptr ? 2 : 20; }
+/// With GEOPRIOR_LONG, twenty seeds.
+int last_seed() { return test::at_length() ? 20 : 1; }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomPulls, testing::Range(1, last_seed() + 1));
+INSTANTIATE_TEST_SUITE_P(Seeds, LongRandomPulls, testing::Range(1, last_seed() + 1));
 
 }  // namespace
 }  // namespace geoprior::paper

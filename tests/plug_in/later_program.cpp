@@ -1,5 +1,6 @@
 // The same program of a later commit, in which the topic has one metric more: what adding a metric
 // (docs/architecture.md) makes of program.cpp.
+#include <Eigen/Geometry>
 #include <cstdlib>
 
 #include "core/error.h"

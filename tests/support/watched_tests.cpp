@@ -60,7 +60,7 @@ bool is_debugged() {
 }
 
 /// A process that a death test made of this executable: that test judges how it ends.
-bool is_death_test() { return !::testing::internal::GTEST_FLAG(internal_run_death_test).empty(); }
+bool is_death_test() { return !GTEST_FLAG_GET(internal_run_death_test).empty(); }
 
 int run_tests(CostLimits limits, Progress& progress) {
   ::testing::UnitTest::GetInstance()->listeners().Append(
