@@ -13,10 +13,12 @@
 #include "testbed/formats/wav_file.h"
 #include "tests/fuzz/sample_features.h"
 #include "tests/fuzz/targets.h"
+#include "tests/support/long_tests.h"
 #include "tests/testbed/fake_run.h"
 
 // Seeded mutations of the files in tests/fuzz/corpus: every reader either accepts what it is given
-// or throws Error. The number of mutations is fixed; GEOPRIOR_FUZZ_SECONDS goes on for that long.
+// or throws Error. The number of mutations is fixed, six times as large with GEOPRIOR_LONG;
+// GEOPRIOR_FUZZ_SECONDS goes on for that long.
 
 namespace geoprior::test {
 namespace {
@@ -38,6 +40,7 @@ void run_on(const std::string& name, const std::vector<std::string>& seeds, Targ
   const auto elapsed = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
+  if (!at_length()) mutations /= 6;
   std::uint64_t i = 0;
   for (; i < mutations || elapsed() < seconds_asked(); ++i) {
     RandomStream random(i, "fuzz" + name);

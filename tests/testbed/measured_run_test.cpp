@@ -61,7 +61,7 @@ class Measured : public RunTest {
     const fs::path file = circle("motion = { frames = 4 }");
     std::ofstream(file, std::ios::app)
         << "[[sweep]]\nkey = \"variant.polygon.options.segments\"\nvalues = [4, 8, 16]\n"
-           "quick_values = [5]\n[[study]]\nname = \"order\"\nkind = \"exponent\"\n"
+           "quick_values = [5, 10]\n[[study]]\nname = \"order\"\nkind = \"exponent\"\n"
            "variant = \"polygon\"\nquantity = \"radius_error\"\n"
            "against = \"variant.polygon.options.segments\"\n"
            "[[claim]]\ntext = \"fast\"\nmetric = \"timing:solve\"\nvariant = \"polygon\"\n"

@@ -13,6 +13,7 @@
 
 #include "testbed/view/colors.h"
 #include "testbed/view/display.h"
+#include "tests/support/long_tests.h"
 #include "tests/testbed/fake_run.h"
 
 namespace geoprior {
@@ -196,7 +197,9 @@ std::vector<int> fold_contrasts(const PanelStyle& style) {
 // Two even areas beside each other are told apart from about two of 255 tones on. One light leaves
 // a fold about the axis that points at it even; Lambert's law bounds the median by 2/pi times the
 // range of tones over the range of angles, about 15.
-TEST(Panel, PlainPaperShowsAFoldOfTenDegrees) {
+// Seven seconds of software rendering: with GEOPRIOR_LONG only.
+TEST(LongPanel, PlainPaperShowsAFoldOfTenDegrees) {
+  if (!test::at_length()) GTEST_SKIP() << "GEOPRIOR_LONG is not set";
   const Display display;
   PanelStyle style;
   style.material = PanelStyle::Material::paper;

@@ -153,7 +153,8 @@ TEST_F(Spec, QuickVersionLeavesOutWhatOnlyTheFullOneHas) {
 }
 
 TEST_F(Spec, SweepsAreTakenOutWithWhatIsClaimedOfThem) {
-  const std::string claim = "[[claim]]\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = 1\n";
+  const std::string claim =
+      "[[claim]]\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = 1\n";
   const std::string seeds = "[[sweep]]\nkey = \"seed\"\nvalues = [4, 5]\n";
   const std::string text = toy::disc_experiment() + kSweep + seeds + claim +
                            "text = \"of seeds\"\nover = \"seed\"\n" + claim +
