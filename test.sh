@@ -65,9 +65,6 @@ cheapest_of() {
   if [ -n "$file" ]; then printf '%s\n' "${file%.txt}"; else experiments_of "$1" | sed -n 1p; fi
 }
 
-# The commit that is checked out, or nothing where files differ from it.
-clean_commit() { [ -n "$(git status --porcelain)" ] || git rev-parse HEAD; }
-
 # Every test and every quick run; remembers the commit that passed.
 test_all() {
   local before after

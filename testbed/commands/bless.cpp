@@ -13,6 +13,7 @@
 #include "testbed/commands/console.h"
 #include "testbed/commands/outcome.h"
 #include "testbed/home.h"
+#include "testbed/joined.h"
 #include "testbed/runner/build_info.h"
 #include "testbed/runner/claims.h"
 #include "testbed/runner/content_hash.h"
@@ -129,12 +130,6 @@ void put_rows(const ReferenceSet& values, const std::vector<std::string>& metric
                     "': neither a claim nor its figure reads it",
                 "--rows", allowed_names(metric, {kept.begin(), kept.end()}));
   }
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 /// `bless --rows`: values of these metrics, of the run that was blessed.
