@@ -194,7 +194,8 @@ TEST(PairCurve, OfAPoissonDiskPatternIsZeroBelowItsRadius) {
 // g = 1 + exp(-r^2 / (4 s^2)) / (4 pi s^2 kappa).
 TEST(PairCurve, OfThomasClustersIsKnown) {
   const double s = 0.6, kappa = 0.25, margin = 3;
-  const TriMesh mesh = sampled::sheet(30, 30, 60, 60, 0);
+  const int n = 20;
+  const TriMesh mesh = sampled::sheet(30, 30, n, n, 0);
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(30);
   PairCurve curve;
   const int seeds = 12;
@@ -207,7 +208,8 @@ TEST(PairCurve, OfThomasClustersIsKnown) {
       // Poisson number of children of mean 4 (Knuth: uniforms multiplied until below exp(-4)).
       for (double p = random.uniform(); p > std::exp(-4.); p *= random.uniform()) {
         const double u = x + s * random.normal(), v = y + s * random.normal();
-        if (u > 0 && v > 0 && u < 30 && v < 30) places.push_back(on_cells(u, v, 0.5, 0.5, 60, 60));
+        if (u > 0 && v > 0 && u < 30 && v < 30)
+          places.push_back(on_cells(u, v, 30.0 / n, 30.0 / n, n, n));
       }
     }
     curve = pair_curve(mesh, places, 1);
