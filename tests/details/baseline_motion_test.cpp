@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "baselines/details/dart_throwing.h"
 #include "baselines/details/delaunay_refinement.h"
@@ -8,6 +7,7 @@
 #include "baselines/details/naive_stretch.h"
 #include "tests/details/baseline_runs.h"
 #include "tests/details/random_motion.h"
+#include "tests/support/long_tests.h"
 
 namespace geoprior::details {
 namespace {
@@ -23,9 +23,9 @@ struct Baseline {
 
 class BaselineMotion : public testing::TestWithParam<Baseline> {};
 
-/// 150 steps; with GEOPRIOR_LONG set, 5 x 1,000.
+/// 150 steps; with GEOPRIOR_LONG, 5 x 1,000.
 void wander(const TriMesh& mesh, Make make) {
-  const bool is_long = std::getenv("GEOPRIOR_LONG") != nullptr;
+  const bool is_long = test::at_length();
   for (std::uint64_t seed = 1; seed <= (is_long ? 5 : 1); ++seed) {
     const auto s = scene(mesh, even_details(mesh, 300, seed), stretch(mesh, 1, 1.01));
     const auto method = make(s);

@@ -1,21 +1,21 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <cstdlib>
 
 #include "core/parallel.h"
 #include "solvers/details/self_replicating.h"
 #include "tests/details/detail_scenes.h"
 #include "tests/details/random_motion.h"
+#include "tests/support/long_tests.h"
 
 namespace geoprior::details {
 namespace {
 
 using namespace detail_scenes;
 
-/// 1 x 300 steps; with GEOPRIOR_LONG set, 10 x 2,000.
+/// 1 x 300 steps; with GEOPRIOR_LONG, 10 x 2,000.
 void wander(const TriMesh& mesh, int details, const SelfReplicatingOptions& options) {
-  const bool is_long = std::getenv("GEOPRIOR_LONG") != nullptr;
+  const bool is_long = test::at_length();
   for (std::uint64_t seed = 1; seed <= (is_long ? 10 : 1); ++seed) {
     const auto s = scene(mesh, even_details(mesh, details, seed), stretch(mesh, 1, 1.01));
     const auto method = make_self_replicating(s, options, seed);
@@ -92,7 +92,7 @@ State state_after(const DetailScene& s, const SelfReplicatingOptions& options, i
 
 TEST(SelfReplicatingMotion, OneThreadAndTwoMakeTheSameBytes) {
   const TriMesh mesh = shapes::sphere(5);
-  const auto s = scene(mesh, even_details(mesh, 6000, 1), inflate(mesh, 20, 1.5));
+  const auto s = scene(mesh, even_details(mesh, 6000, 1), inflate(mesh, 5, 1.12));
   for (const bool histogram : {false, true}) {
     SelfReplicatingOptions options;
     options.copies.histogram = histogram;

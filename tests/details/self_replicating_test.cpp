@@ -135,7 +135,7 @@ TEST(SelfReplicating, UniformPatternsKeepTheirPairCorrelation) {
 
 TEST(SelfReplicating, TheHistogramKeepsClusters) {
   const TriMesh mesh = shapes::square(60);
-  const auto s = scene(mesh, clusters(mesh, 80, 1), stretch(mesh, 240, 2));
+  const auto s = scene(mesh, clusters(mesh, 80, 1), stretch(mesh, 120, 2));
   const double naive = correlation_change(s, nothing());
   SelfReplicatingOptions thesis, extension;
   thesis.area_rule = AreaRule::own;
