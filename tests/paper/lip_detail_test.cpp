@@ -241,6 +241,8 @@ Sheet trouser_sheet() {
   sheet.imperfection = 1e-5;
   sheet.toughness.energy = 1e4;
   sheet.duration = 1;
+  sheet.handle_step = 5e-4;
+  sheet.substeps = 4;
   for (const double side : {-1.0, 1.0}) {
     Keyframe start, end;
     end.time = 1;
@@ -259,7 +261,7 @@ class LipDetailOf : public testing::TestWithParam<const char*> {
     RunContext context(1);
     if (std::string(GetParam()) == "dense") {
       DenseOptions options;
-      options.triangles = 400;
+      options.triangles = 200;
       options.tearing.detail.on = on;
       make_dense_sheet(sheet, options)->run(recording, context, {});
     } else {
