@@ -1,5 +1,7 @@
 #include "tests/fuzz/program_input.h"
 
+#include <signal.h>
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -14,6 +16,7 @@
 #include "tests/fuzz/fuzzed_program.h"
 #include "tests/fuzz/mutation.h"
 #include "tests/fuzz/sample_features.h"
+#include "tests/testbed/program_process.h"
 
 namespace geoprior::test {
 namespace {
@@ -273,10 +276,10 @@ std::vector<InputKind> input_kinds() {
       {"RunFileDrawn", kSlow, [=] { return run_input(circle(), "run.h5", {kRender}); }},
       {"RunFileReported", kSlowest,
        [=] { return run_input(with_scripts(circle()), "run.h5", {kReport}); }},
-      {"Frame", 1, [=] { return run_input(circle(), ".vtp", {kExport}); }},
+      {"Frame", 0.5, [=] { return run_input(circle(), ".vtp", {kExport}); }},
       {"FrameDrawn", kSlow,
        [=] { return run_input(circle(), "default/polygon/surface_0002.vtp", {kRender}); }},
-      {"Grid", 1, [=] { return run_input(pendulum(), ".vti", {kExport}); }},
+      {"Grid", 0.3, [=] { return run_input(pendulum(), ".vti", {kExport}); }},
       {"Table", 0.3, [] { return run_input(unassembled_run(), ".csv", {kResume}); }},
   };
 }
