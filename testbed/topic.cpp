@@ -12,6 +12,12 @@ std::vector<std::reference_wrapper<const MetricEntry>> metric_rows(const Topic& 
   return rows;
 }
 
+std::vector<std::string> metric_names(const Topic& topic) {
+  std::vector<std::string> names;
+  for (const MetricEntry& metric : metric_rows(topic)) names.push_back(metric.name);
+  return names;
+}
+
 const MetricGroup& group_of(const Topic& topic, const MetricEntry& row) {
   for (const MetricGroup& group : topic.metrics) {
     for (const MetricEntry& of_group : group.rows) {

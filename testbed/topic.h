@@ -228,6 +228,8 @@ struct Topic {
 /// Rows of all groups of the topic's metric table, in their order.
 std::vector<std::reference_wrapper<const MetricEntry>> metric_rows(const Topic& topic);
 
+std::vector<std::string> metric_names(const Topic& topic);
+
 /// The row of that name, null when there is none.
 const MetricEntry* find_metric(const Topic& topic, const std::string& name);
 

@@ -69,6 +69,7 @@ std::vector<Headline> headlines(const Experiment& experiment, const Topic& topic
   Headlines all(topic);
   for (const ClaimSpec& claim : experiment.claims) add_claim(claim, experiment.studies, all);
   for (const std::string& metric : experiment.view.metrics) all.add_worst(metric);
+  for (const std::string& metric : experiment.checked_metrics) all.add_worst(metric);
   return all.take();
 }
 

@@ -64,9 +64,9 @@ Json table_json(Table table) {
   return writer.json();
 }
 
-/// Sweeps with the values they were expanded with; names belong to the values of full runs, and to
-/// quick ones that stand in for them one for one.
-Json sweep_tables(const TomlNode& root, bool quick) {
+/// Sweeps with the values they were expanded with and the variants that run; names belong to the
+/// values of full runs, and to quick ones that stand in for them one for one.
+Json sweep_tables(const TomlNode& root, bool quick, const std::vector<std::string>& dropped) {
   Json list = Json::array();
   for (const TomlNode& node : tables_of(root, "sweep")) {
     TomlNode kept = node;
@@ -78,7 +78,15 @@ Json sweep_tables(const TomlNode& root, bool quick) {
       if (!one_for_one) kept.erase("names");
     }
     kept.erase("quick_values");
-    list.push_back(json_of(kept));
+    Json table = json_of(kept);
+    if (table.contains("variants") && !table["variants"].empty()) {
+      Json& variants = table["variants"];
+      for (const std::string& name : dropped) {
+        variants.erase(std::remove(variants.begin(), variants.end(), name), variants.end());
+      }
+      if (variants.empty()) continue;
+    }
+    list.push_back(std::move(table));
   }
   return list;
 }
@@ -115,7 +123,7 @@ Json resolved_json(const TomlNode& root, const Experiment& experiment, const Hea
     v["options"] = Json::parse(variant.options_json);
     json["variant"].push_back(v);
   }
-  json["sweep"] = sweep_tables(root, experiment.quick);
+  json["sweep"] = sweep_tables(root, experiment.quick, names.dropped);
   for (const char* key : {"claim", "study"}) {
     Json kept = Json::array();
     for (const TomlNode& node : tables_of(root, key)) {
@@ -168,6 +176,18 @@ KnownNames known_names(const TomlNode& root, const TomlNode& written,
   return names;
 }
 
+/// Quick runs decide no claim about a variant that they leave out: the file says so of both.
+void require_claimed_variants(const TomlNode& root, const std::vector<std::string>& dropped) {
+  for (const TomlNode& claim : tables_of(root, "claim")) {
+    for (const char* member : {"variant", "of", "null"}) {
+      const TomlNode* name = claim.find(member);
+      if (name == nullptr || !has(dropped, name->text)) continue;
+      throw Error("quick runs leave variant '" + name->text + "' out", place_of(claim, member),
+                  "`quick = false` of the claim, too");
+    }
+  }
+}
+
 /// Without its variant a sweep of a variant's options would only repeat the base case.
 void drop_sweeps(TomlNode& root, const std::vector<std::string>& dropped) {
   TomlNode* sweeps = root.find("sweep");
@@ -202,12 +222,18 @@ void read_timing(const TomlNode& root, Experiment& experiment) {
 }
 
 /// What bifurcates is compared over its seeds: there must be some.
-void read_check(const TomlNode& root, Experiment& experiment) {
+void read_check(const TomlNode& root, const Topic& topic, Experiment& experiment) {
   const TomlNode* node = root.find("check");
   if (node == nullptr) return;
   CheckTable table;
   read_options(*node, "check", table);
   experiment.bifurcates = table.bifurcates;
+  experiment.checked_metrics = table.metrics;
+  for (const std::string& metric : table.metrics) {
+    if (find_metric(topic, metric) != nullptr) continue;
+    throw Error("unknown metric '" + metric + "'", place_of(*node, "metrics"),
+                allowed_names(metric, metric_names(topic)));
+  }
   const bool sweeps_seed =
       std::all_of(experiment.cases.begin(), experiment.cases.end(),
                   [](const CaseSpec& one) { return one.swept.contains("seed"); });
@@ -254,7 +280,7 @@ Experiment load_parsed(const TomlNode& written, const std::filesystem::path& fil
   TomlNode root = written;
   Experiment experiment;
   experiment.file = file;
-  const std::vector<std::string> selected = select_variants(root, request.variants);
+  const std::vector<std::string> selected = select_variants(root, request.variants, request.quick);
   apply_quick(root, request.quick);
   apply_sets(root, request.sets);
   if (request.threads) {
@@ -271,6 +297,7 @@ Experiment load_parsed(const TomlNode& written, const std::filesystem::path& fil
   const Topic& topic = topic_named(topics, header.topic, root);
 
   KnownNames names = known_names(root, written, selected, experiment.quick);
+  if (request.variants.empty()) require_claimed_variants(root, names.dropped);
   drop_sweeps(root, names.dropped);
   TomlNode plain = root;
   plain.erase("sweep");
@@ -285,7 +312,7 @@ Experiment load_parsed(const TomlNode& written, const std::filesystem::path& fil
   experiment.tolerances = read_tolerances(root, topic);
   experiment.claims = read_claims(root, topic, names, experiment.tolerances, experiment.studies);
   drop_cases(experiment.claims, experiment.cases);
-  read_check(root, experiment);
+  read_check(root, topic, experiment);
   (void)read_figure_view(root, topic);  // its own mistakes come before frames that are not there
   settle_view_times(written, root, topic, experiment.quick);
   experiment.view = read_figure_view(root, topic);

@@ -106,6 +106,8 @@ struct Experiment {
       tolerances;  ///< [tolerance] overrides of the metric table, by metric or "study:<name>"
   /// [check]: the motion takes one of several paths, and `check` compares medians over the seeds.
   bool bifurcates = false;
+  /// [check]: metrics with reference values that neither a claim nor the figure reads.
+  std::vector<std::string> checked_metrics;
   int timing_repetitions = 1;
   std::optional<int> timing_warm_up;  ///< absent: 1 for pose methods, 0 for processes
   FigureView view;

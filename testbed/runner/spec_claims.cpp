@@ -18,12 +18,6 @@ bool contains(const Names& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-Names metric_names(const Topic& topic) {
-  Names names;
-  for (const MetricEntry& metric : metric_rows(topic)) names.push_back(metric.name);
-  return names;
-}
-
 /// "timing:solve", "diagnostic:iterations" and "study:order" name what no table lists.
 bool has_prefix(const std::string& quantity) {
   return quantity.starts_with("timing:") || quantity.starts_with("diagnostic:");

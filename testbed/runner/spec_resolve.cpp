@@ -98,8 +98,8 @@ HeaderTable read_header(const TomlNode& root) {
 }
 
 std::vector<std::string> select_variants(const TomlNode& root,
-                                         const std::vector<std::string>& requested) {
-  std::vector<std::string> names;
+                                         const std::vector<std::string>& requested, bool quick) {
+  std::vector<std::string> names, quick_names;
   std::map<std::string, std::string> reference;
   for (const TomlNode& node : tables_of(root, "variant")) {
     const VariantTable table = read_variant_table(node);
@@ -108,10 +108,15 @@ std::vector<std::string> select_variants(const TomlNode& root,
                   "names of their own");
     }
     names.push_back(table.name);
+    if (table.quick) quick_names.push_back(table.name);
     if (table.reference) reference[table.name] = *table.reference;
   }
   if (names.empty()) {
     throw Error("has no variants", root.place, "at least one [[variant]]");
+  }
+  if (quick_names.empty()) {
+    throw Error("has no variant of quick runs", root.place,
+                "at least one [[variant]] without `quick = false`");
   }
   for (const TomlNode& node : tables_of(root, "variant")) {
     const TomlNode* to = node.find("reference");
@@ -128,6 +133,9 @@ std::vector<std::string> select_variants(const TomlNode& root,
       name = reference[name];
     }
   };
+  if (requested.empty() && quick && quick_names.size() < names.size()) {
+    for (const std::string& name : quick_names) add(name);
+  }
   for (const std::string& name : requested) {
     if (std::find(names.begin(), names.end(), name) == names.end()) {
       throw Error("there is no variant '" + name + "'", "--variant", allowed_names(name, names));

@@ -25,8 +25,9 @@ std::shared_ptr<const OptionSet> resolve_scene(const TomlNode& root, const Topic
 CaseSpec resolve_case(const SweptCase& swept, const TomlNode& plain, const Topic& topic,
                       const std::vector<std::string>& selected);
 
-/// Names of the selected variants and of the references that they need; empty: all.
+/// Names of the requested variants and of the references that they need; empty: all.
+/// @param requested  empty: all, of a quick run those without `quick = false`
 std::vector<std::string> select_variants(const TomlNode& root,
-                                         const std::vector<std::string>& requested);
+                                         const std::vector<std::string>& requested, bool quick);
 
 }  // namespace geoprior

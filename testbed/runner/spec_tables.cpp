@@ -35,6 +35,7 @@ void describe(OptionVisitor& v, VariantTable& t) {
            "absent: by the method table"});
   v.value("reference", t.reference,
           {.doc = "variant that metrics of distance between variants compare with"});
+  v.value("quick", t.quick, {.doc = "false: quick runs make it only where --variant names it"});
 }
 
 void describe(OptionVisitor& v, SweepTable& t) {
@@ -102,6 +103,8 @@ void describe(OptionVisitor& v, TimingTable& t) {
 void describe(OptionVisitor& v, CheckTable& t) {
   v.value("bifurcates", t.bifurcates,
           {.doc = "compare medians over the sweep of `seed`, not one path"});
+  v.value("metrics", t.metrics,
+          {.doc = "to have reference values though neither a claim nor the figure reads them"});
 }
 
 void describe(OptionVisitor& v, ToleranceTable& t) {

@@ -31,6 +31,7 @@ struct VariantTable {
   std::string method;
   std::optional<std::string> role;
   std::optional<std::string> reference;
+  bool quick = true;
 };
 
 struct SweepTable {
@@ -83,6 +84,7 @@ struct TimingTable {
 
 struct CheckTable {
   bool bifurcates = false;
+  std::vector<std::string> metrics;
 };
 
 struct ToleranceTable {

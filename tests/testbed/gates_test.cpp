@@ -228,8 +228,9 @@ TEST(Gates, CasesForClaimsOnlyHaveNoReferenceValues) {
   EXPECT_FALSE(values.contains("seed=2"));
 }
 
-// What a claim reads is held as the claim reads it; what a figure plots, at its worst.
-TEST(Headlines, AreWhatClaimsReadAndFiguresShow) {
+// What a claim reads is held as the claim reads it; what a figure plots or [check] names, at its
+// worst.
+TEST(Headlines, AreWhatClaimsReadFiguresShowAndCheckNames) {
   Topic topic = wide_topic();
   MetricGroup& sequence = topic.metrics.emplace_back();
   sequence.rows = {metric("pop", Direction::lower_is_better, {})};
@@ -248,7 +249,8 @@ TEST(Headlines, AreWhatClaimsReadAndFiguresShow) {
   claim("pop", Reduction::max);
   claim("timing:solve", Reduction::median);
   claim("ratio", Reduction::last).of_reduce = Reduction::min;
-  experiment.view.metrics = {"error", "length", "untold", "timing:solve"};
+  experiment.view.metrics = {"error", "length", "timing:solve"};
+  experiment.checked_metrics = {"length", "untold"};
   std::vector<std::string> names;
   for (const Headline& headline : headlines(experiment, topic)) names.push_back(headline.name());
   EXPECT_THAT(names, testing::ElementsAre("error.p95", "error@90", "score.min", "pop", "ratio.last",

@@ -184,6 +184,52 @@ TEST_F(Spec, QuickVersionLeavesOutClaimsThatItIsTooShortFor) {
               HasSubstr("quick"));
 }
 
+TEST_F(Spec, QuickVersionLeavesOutVariants) {
+  const auto claim = [](const std::string& more) {
+    return "[[claim]]\ntext = \"t\"\nmetric = \"radius_error\"\nvariant = \"exact\"\nvalue = 1\n" +
+           more;
+  };
+  const std::string octagon =
+      "[[variant]]\nname = \"octagon\"\nmethod = \"polygon\"\nquick = false\n";
+  const std::string sweep =
+      "[[sweep]]\nkey = \"seed\"\nvalues = [2]\nvariants = [\"exact\", \"octagon\"]\n"
+      "[[sweep]]\nkey = \"scene.radius_m\"\nvalues = [3]\nvariants = [\"octagon\"]\n";
+  const std::string text = toy::disc_experiment() + octagon + sweep;
+  const Experiment full = load(text);
+  EXPECT_EQ(full.cases[0].variants.size(), 3U);
+  EXPECT_EQ(full.cases.size(), 3U);
+  const Experiment quick = load(text + claim(""), sized(true));
+  EXPECT_EQ(quick.cases[0].variants.size(), 2U);
+  EXPECT_THAT(case_names(quick), ElementsAre("default", "seed=2"));
+  EXPECT_EQ(load(quick.resolved_toml).hash, quick.hash) << "an experiment file itself";
+  LoadRequest named = sized(true);
+  named.variants = {"octagon"};
+  EXPECT_EQ(load(text, named).cases[0].variants[0].name, "octagon");
+
+  EXPECT_THAT(error_of(text + claim("null = \"octagon\"\n"), sized(true)),
+              AllOf(HasSubstr("quick runs leave variant 'octagon' out"), HasSubstr("null"),
+                    HasSubstr("`quick = false` of the claim")));
+  EXPECT_EQ(load(text + claim("null = \"octagon\"\nquick = false\n"), sized(true)).claims.size(),
+            0U);
+  EXPECT_EQ(load(text + claim("null = \"octagon\"\n")).claims.size(), 1U);
+  std::string none = toy::disc_experiment();
+  for (std::size_t at = 0; (at = none.find("[[variant]]\n", at)) != std::string::npos; at += 30) {
+    none.insert(at + 12, "quick = false\n");
+  }
+  EXPECT_THAT(error_of(none), HasSubstr("has no variant of quick runs"));
+}
+
+TEST_F(Spec, CheckNamesMetricsThatHaveReferenceValues) {
+  const std::string check = "[check]\nmetrics = [\"radius_error\"]\n";
+  const Experiment checked = load(toy::disc_experiment() + check);
+  EXPECT_THAT(checked.checked_metrics, ElementsAre("radius_error"));
+  EXPECT_EQ(checked.hash, load(toy::disc_experiment()).hash) << "no number of the run changes";
+  EXPECT_THAT(load(checked.resolved_toml).checked_metrics, ElementsAre("radius_error"));
+  EXPECT_THAT(error_of(toy::disc_experiment() + "[check]\nmetrics = [\"radius\"]\n"),
+              AllOf(HasSubstr("unknown metric 'radius'"), HasSubstr("disc.toml"),
+                    HasSubstr("did you mean 'radius_error'")));
+}
+
 TEST_F(Spec, SetOverridesWithTomlValuesAndBareWords) {
   const Experiment e =
       load(toy::disc_experiment(),

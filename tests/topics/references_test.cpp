@@ -2,15 +2,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
 #include <string>
 
 #include "testbed/formats/atomic_file.h"
+#include "testbed/runner/headlines.h"
 #include "testbed/runner/reference.h"
 #include "testbed/runner/reference_parser.h"
 #include "testbed/runner/reference_text.h"
+#include "testbed/topic.h"
 
 namespace geoprior::test {
 namespace {
@@ -92,6 +95,29 @@ TEST(References, QuickRunsStayWithinTheirBudget) {
     const auto& cost = reference.at("quick").processor_s;
     ASSERT_TRUE(cost.has_value()) << id << " was blessed without its cost";
     EXPECT_LE(*cost, limit_of(id)) << id;
+  }
+}
+
+/// Else it could be measured in any way, and no check of quick runs would say so.
+TEST(References, HoldAValueOfEveryMetric) {
+  std::map<std::string, std::set<std::string>> held;  // by topic
+  for (const auto& [id, file] : reference_files()) {
+    const Reference reference = read_reference(file);
+    ASSERT_TRUE(reference.contains("quick")) << id;
+    std::set<std::string>& names = held[id.substr(0, id.find('/'))];
+    for (const auto& [case_name, variants] : reference.at("quick").values) {
+      for (const auto& [variant, values] : variants) {
+        for (const auto& [name, value] : values) {
+          if (!std::isnan(value.value)) names.insert(without_statistic(name));
+        }
+      }
+    }
+  }
+  for (const Topic& topic : all_topics()) {
+    for (const MetricEntry& row : metric_rows(topic)) {
+      EXPECT_TRUE(!row.gated() || held[topic.name].contains(row.name))
+          << topic.name << " " << row.name << ": name it in [check] of an experiment that has it";
+    }
   }
 }
 
