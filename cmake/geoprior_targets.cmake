@@ -38,13 +38,13 @@ target_compile_options(geoprior_warnings INTERFACE
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${GEOPRIOR_SANITIZE}>>:-Wno-maybe-uninitialized>
   $<$<BOOL:${GEOPRIOR_WERROR}>:-Werror>)
 
-# geoprior_unite(target): its sources are compiled eight at a time, those with flags of their own alone. Names in anonymous
+# geoprior_unite(target): its sources are compiled sixteen at a time, those with flags of their own alone. Names in anonymous
 # namespaces must differ within a target.
 function(geoprior_unite target)
   if(NOT GEOPRIOR_UNITY)
     return()
   endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
   # A batch includes its sources, for GCC as if they were headers: types of their own are no leak.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()

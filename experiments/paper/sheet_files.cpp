@@ -110,8 +110,8 @@ void require_of_sheet(const SheetSnapshot& frame, const Pattern& pattern, const 
   const Eigen::Vector2d high = frame.mesh.pattern.colwise().maxCoeff().transpose();
   const double off = std::max((low - asked.min()).cwiseAbs().maxCoeff(),
                               (high - asked.max()).cwiseAbs().maxCoeff());
-  constexpr double kShare = 0.01;
-  if (off <= kShare * width(pattern)) return;
+  constexpr double kMostOff = 0.01;
+  if (off <= kMostOff * width(pattern)) return;
   std::ostringstream text, allowed;
   text << "is of another sheet: its pattern reaches from (" << low.transpose() << ") to ("
        << high.transpose() << ") m";

@@ -8,7 +8,7 @@ namespace geoprior::paper {
 namespace {
 
 constexpr int kSteps = 3;
-constexpr double kStep = 0.005;  // s, of the length of a usual step
+constexpr double kUsualStep = 0.005;  // s, of the length of a usual step
 
 }  // namespace
 
@@ -17,7 +17,7 @@ double settled_energy(const Sheet& sheet, const StepperOptions& options, std::ui
   ShellStepper stepper(sheet, options, seed);
   try {
     stepper.set_mesh(state);
-    for (int k = 0; k < kSteps; ++k) stepper.relax(state, kStep);
+    for (int k = 0; k < kSteps; ++k) stepper.relax(state, kUsualStep);
   } catch (const Error&) {
     return std::numeric_limits<double>::infinity();
   }

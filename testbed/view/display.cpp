@@ -29,7 +29,7 @@ constexpr auto kStartTimeout = std::chrono::seconds(20);
 // A server that ends gives up its socket before its lock: one that starts in between takes the
 // number and dies of the lock. Another program's pictures are reason enough to try again.
 constexpr int kStarts = 5;
-const std::string kInstall = "apt-get install xvfb libgl1-mesa-dri";
+const std::string kInstallDisplay = "apt-get install xvfb libgl1-mesa-dri";
 
 /// Whether the X server named by DISPLAY answers. libX11 is loaded at run time: VTK brings it along
 /// and nothing else here needs its headers.
@@ -94,7 +94,7 @@ class Display::Server {
       text = start(program, deadline);
       if (text.empty()) throw_if_stopped();
     }
-    if (text.empty()) throw Error("the virtual display did not start", program, kInstall);
+    if (text.empty()) throw Error("the virtual display did not start", program, kInstallDisplay);
     if (const char* old = std::getenv("DISPLAY")) old_display_ = old;
     ::setenv("DISPLAY", (":" + text).c_str(), 1);
   }
@@ -143,7 +143,7 @@ Display::Display() {
   if (const auto xvfb = find_program("Xvfb")) {
     server_ = std::make_unique<Server>(*xvfb);
   } else if (!user_display_answers()) {
-    throw Error("no display to draw on: Xvfb is not installed", "render", kInstall);
+    throw Error("no display to draw on: Xvfb is not installed", "render", kInstallDisplay);
   }
 }
 

@@ -13,7 +13,7 @@
 namespace geoprior {
 namespace {
 
-const std::string kInstall =
+const std::string kInstallPython =
     "apt-get install python3-h5py python3-matplotlib python3-numpy, or set GEOPRIOR_PYTHON to an "
     "interpreter that has h5py, matplotlib and numpy";
 
@@ -35,7 +35,7 @@ std::string find_python() {
     tried += (tried.empty() ? "" : "; ") + python + ": " + reason;
   }
   throw Error("no Python with h5py, matplotlib and numpy (" + tried + ")", "plots and report",
-              kInstall);
+              kInstallPython);
 }
 
 }  // namespace
