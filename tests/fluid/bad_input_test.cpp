@@ -200,7 +200,7 @@ TEST_F(BadFluid, CoarseTargetsAreRefinedOrRefusedWithTheEdgeNeeded) {
   EXPECT_THAT(warnings("sculpt", coarse), IsEmpty());
 }
 
-const std::string kPool =
+const std::string kPoolScene =
     "volumes = [{ name = \"pool\", shape = { kind = \"box\", centre = [0.1, 0.1, 0.05], size = "
     "[0.2, 0.2, 0.1] } }]";
 std::string tank_of(const std::string& lines) {
@@ -209,24 +209,25 @@ std::string tank_of(const std::string& lines) {
 }
 
 TEST_F(BadFluid, NamesWhatATankCannotHold) {
-  EXPECT_THAT(refusal("liquid", "tank = { size = [10, 10, 10], cell = 0.001, " + kPool + " }\n"),
-              AllOf(HasSubstr("bad.toml:4:"), HasSubstr("scene.tank"),
-                    HasSubstr("cells need about"), HasSubstr("GB"), HasSubstr("fits into")));
   EXPECT_THAT(
-      refusal("liquid", tank_of(kPool + ", solids = [{ name = \"hull\", shape = { kind = "
-                                        "\"sphere\", centre = [0.3, 0.1, 0.1], radius = 0.05 }, "
-                                        "keys = [{ t = 0 }, { t = 0.1, move = [1, 0, 0] }] }]")),
-      AllOf(HasSubstr("bad.toml:6:"), HasSubstr("scene.tank.solids.0"),
-            HasSubstr("'hull' is outside the domain at")));
+      refusal("liquid", "tank = { size = [10, 10, 10], cell = 0.001, " + kPoolScene + " }\n"),
+      AllOf(HasSubstr("bad.toml:4:"), HasSubstr("scene.tank"), HasSubstr("cells need about"),
+            HasSubstr("GB"), HasSubstr("fits into")));
+  EXPECT_THAT(refusal("liquid",
+                      tank_of(kPoolScene + ", solids = [{ name = \"hull\", shape = { kind = "
+                                           "\"sphere\", centre = [0.3, 0.1, 0.1], radius = 0.05 }, "
+                                           "keys = [{ t = 0 }, { t = 0.1, move = [1, 0, 0] }] }]")),
+              AllOf(HasSubstr("bad.toml:6:"), HasSubstr("scene.tank.solids.0"),
+                    HasSubstr("'hull' is outside the domain at")));
   EXPECT_THAT(refusal("liquid", tank_of("open_top = true")),
               AllOf(HasSubstr("scene.tank"), HasSubstr("no liquid")));
 }
 
 TEST_F(BadFluid, NamesTheUnknownKey) {
-  EXPECT_THAT(refusal("liquid", tank_of("cells = 8, " + kPool)),
+  EXPECT_THAT(refusal("liquid", tank_of("cells = 8, " + kPoolScene)),
               AllOf(HasSubstr("bad.toml:6:"), HasSubstr("scene.tank.cells: unknown key"),
                     HasSubstr("did you mean 'cell'?")));
-  EXPECT_THAT(refusal("liquid", tank_of(kPool), "flip = 0.9"),
+  EXPECT_THAT(refusal("liquid", tank_of(kPoolScene), "flip = 0.9"),
               HasSubstr("variant.v.options.flip: unknown key"));
   write("edits.toml", "[[edit]]\nsource = \"splash\"\nmovee = [1, 0, 0]\n");
   EXPECT_THAT(refusal("sculpt", kPaste + kStill + "edit_list = \"edits.toml\"\n"),
@@ -255,7 +256,7 @@ class KilledLiquid : public BadFluid {
         "fluid/killed",
         "title = \"A killed simulation\"\ntopic = \"fluid\"\nseed = 1\n[scene]\nduration = 0.3\n"
         "frame_interval = 0.02\ntank = { size = [0.4, 0.2, 0.2], cell = 0.025, " +
-            kPool + " }\n[[variant]]\nname = \"v\"\nmethod = \"liquid\"\n");
+            kPoolScene + " }\n[[variant]]\nname = \"v\"\nmethod = \"liquid\"\n");
     ExecuteRequest request;
     request.out = out;
     request.timing = false;
@@ -299,22 +300,23 @@ TEST_F(KilledLiquid, GoesOnAtItsLastFrameAndEndsAsUndisturbed) {
 }
 
 TEST_F(BadFluid, AsksForNoMoreFramesThanCanBeNumbered) {
-  EXPECT_THAT(refusal("liquid", "duration = 1e12\ntank = { " + kPool + " }\n"),
+  EXPECT_THAT(refusal("liquid", "duration = 1e12\ntank = { " + kPoolScene + " }\n"),
               AllOf(HasSubstr("bad.toml:4:1"), HasSubstr("scene.duration: asks for"),
                     HasSubstr("frames of 0.04 s"), HasSubstr("at most 100000")));
 }
 
 TEST_F(BadFluid, AsksForNoGridThatDoesNotFit) {
-  EXPECT_THAT(refusal("liquid", "tank = { size = [1e18, 1, 1], cell = 1e-3, " + kPool + " }\n"),
-              AllOf(HasSubstr("bad.toml:4:"), HasSubstr("scene.tank.size.0: asks for"),
-                    HasSubstr("cells")));
+  EXPECT_THAT(
+      refusal("liquid", "tank = { size = [1e18, 1, 1], cell = 1e-3, " + kPoolScene + " }\n"),
+      AllOf(HasSubstr("bad.toml:4:"), HasSubstr("scene.tank.size.0: asks for"),
+            HasSubstr("cells")));
   ::setenv("GEOPRIOR_MEMORY_GB", "0.004", 1);
   EXPECT_THAT(refusal("ocean", "duration = 1\n", "samples = 1024, tiles = 8"),
               AllOf(HasSubstr("bad.toml:9:"), HasSubstr("options.samples: asks for 67125249"),
                     HasSubstr("GB of memory")));
   EXPECT_THAT(refusal("ocean", "target = { kind = \"ocean\", ocean = { samples = 1024 } }\n"),
               AllOf(HasSubstr("bad.toml:4:"), HasSubstr("scene.target.ocean.samples: asks for")));
-  EXPECT_THAT(refusal("liquid", tank_of(kPool), "surface = { cells_per_cell = 8 }"),
+  EXPECT_THAT(refusal("liquid", tank_of(kPoolScene), "surface = { cells_per_cell = 8 }"),
               AllOf(HasSubstr("bad.toml:"), HasSubstr("options.surface.cells_per_cell: asks for")));
   EXPECT_THAT(refusal("extract", "injected = { resolution = 16 }\n"),
               HasSubstr("scene.injected.resolution: asks for"));

@@ -15,7 +15,7 @@ namespace {
 
 using fixtures::cylinder_options;
 
-CylinderOptions tube() { return fixtures::fine_cylinder_options(32, 100); }
+CylinderOptions tube_options() { return fixtures::fine_cylinder_options(32, 100); }
 
 /// Half of the weight's profile across a straight joint, v(s) = weight of the other bone at s = x /
 /// (sqrt(2) l): v'''' = -4 v up to the contact s0 with v = v' = v'' = 0, and v(0) = 1/2, v''(0) =
@@ -59,10 +59,10 @@ class ObstacleProfile {
 TEST(BoundedWeights, SolveTheObstacleProblemOfATube) {
   const ObstacleProfile profile;
   ASSERT_NEAR(profile.curvature_at_contact(), 0, 1e-9);
-  const RiggedMesh rig = two_bone_cylinder(tube());
+  const RiggedMesh rig = two_bone_cylinder(tube_options());
   for (const double length : {0.5, 1.0}) {
     const SkinWeights weights = bounded_weights(rig.mesh, rig.skeleton, {.length = length});
-    const double scale = std::sqrt(2.0) * length * tube().radius;
+    const double scale = std::sqrt(2.0) * length * tube_options().radius;
     double worst = 0;
     for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
       const double x = rig.mesh.V(v, 0);
@@ -77,9 +77,9 @@ TEST(BoundedWeights, SolveTheObstacleProblemOfATube) {
 
 TEST(BoundedWeights, AreExactlyZeroBeyondTheContact) {
   const ObstacleProfile profile;
-  const RiggedMesh rig = two_bone_cylinder(tube());
+  const RiggedMesh rig = two_bone_cylinder(tube_options());
   const SkinWeights weights = bounded_weights(rig.mesh, rig.skeleton, {.length = 1});
-  const double contact = profile.contact() * std::sqrt(2.0) * tube().radius;
+  const double contact = profile.contact() * std::sqrt(2.0) * tube_options().radius;
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
     const double x = rig.mesh.V(v, 0);
     if (x < 1.2 * contact) continue;
