@@ -26,20 +26,39 @@ const std::set<std::string> kFirstTopics{"skinning", "paper", "fluid", "details"
 constexpr std::size_t kLinesOfFirst = 9000, kLinesOfOther = 1500;
 constexpr std::uintmax_t kBytesOfFirst = 1'000'000, kBytesOfOther = 170'000;
 
-/// Seconds of processor time of quick runs, as counted when they were blessed. The first topics
-/// were to cost 480 s and 4 s a run, and do not yet: 55 of their runs cost more. These limits are
-/// what they cost; a further topic is held to what was asked.
-constexpr double kCostOfFirst = 580, kCostOfOther = 40;
-constexpr double kCostOfRunOfFirst = 10, kCostOfRun = 4, kCostOfLongRun = 30;
+/// Seconds of processor time of quick runs, as counted when they were blessed.
+constexpr double kCostOfFirst = 480, kCostOfOther = 40;
+constexpr double kCostOfRun = 4, kCostOfLongRun = 10;
 /// Those whose claims no smaller scene has shown so far.
-const std::set<std::string> kLongRuns{
-    "details/organic",      "paper/sound-ablations", "paper/sound-modes",    "paper/sound-tear",
-    "paper/tear-ablations", "paper/tear-fibres",     "paper/tear-hyperbola", "paper/tear-junction",
-    "paper/tear-onset",     "paper/tear-trouser",    "sketch/armadillo",     "sketch/hat"};
+const std::set<std::string> kLongRuns{"details/organic",
+                                      "fluid/ablations",
+                                      "fluid/paste-vs-resimulation",
+                                      "paper/dcone",
+                                      "paper/dense-adaptive-hybrid",
+                                      "paper/rigidity",
+                                      "paper/snap",
+                                      "paper/sound-ablations",
+                                      "paper/sound-flap-and-crac",
+                                      "paper/sound-modes",
+                                      "paper/sound-resonators",
+                                      "paper/tear-ablations",
+                                      "paper/tear-fibres",
+                                      "paper/tear-hyperbola",
+                                      "paper/tear-junction",
+                                      "paper/tear-onset",
+                                      "paper/tear-trouser",
+                                      "sketch/armadillo",
+                                      "sketch/boot",
+                                      "sketch/hat",
+                                      "sketch/purse",
+                                      "sketch/tunic",
+                                      "skinning/ablations",
+                                      "skinning/elbow",
+                                      "skinning/finger",
+                                      "skinning/weights"};
 
 double limit_of(const std::string& id) {
-  if (kLongRuns.contains(id)) return kCostOfLongRun;
-  return kFirstTopics.contains(id.substr(0, id.find('/'))) ? kCostOfRunOfFirst : kCostOfRun;
+  return kLongRuns.contains(id) ? kCostOfLongRun : kCostOfRun;
 }
 
 struct Sum {
@@ -98,6 +117,11 @@ TEST(References, QuickRunsStayWithinTheirBudget) {
   }
 }
 
+/// Without a value in a quick run that has one: the exponents want more events than such a run has,
+/// and what happens at rest is decided by a claim over seeds.
+const std::set<std::string> kNoValue{"details events_at_rest", "paper energy_exponent",
+                                     "paper energy_exponent_fitted"};
+
 /// Else it could be measured in any way, and no check of quick runs would say so.
 TEST(References, HoldAValueOfEveryMetric) {
   std::map<std::string, std::set<std::string>> held;  // by topic
@@ -115,7 +139,8 @@ TEST(References, HoldAValueOfEveryMetric) {
   }
   for (const Topic& topic : all_topics()) {
     for (const MetricEntry& row : metric_rows(topic)) {
-      EXPECT_TRUE(!row.gated() || held[topic.name].contains(row.name))
+      if (!row.gated() || kNoValue.contains(topic.name + " " + row.name)) continue;
+      EXPECT_TRUE(held[topic.name].contains(row.name))
           << topic.name << " " << row.name << ": name it in [check] of an experiment that has it";
     }
   }
