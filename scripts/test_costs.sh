@@ -23,7 +23,7 @@ costs=$(awk '
 # show <title> <kind> <number of lines>
 show() {
   printf '%s\n' "$1"
-  awk -v kind="$2" '$1 == kind { printf "%8.1f s  %s\n", $2, substr($0, index($0, $3)) }' <<<"$costs" | sort -rn | head -n "$3"
+  awk -v kind="$2" '$1 == kind { printf "%8.1f s  %s\n", $2, substr($0, index($0, $3)) }' <<<"$costs" | sort -rn | sed -n "1,$3p"
 }
 show "by label" label 100
 show "suites" suite 10
