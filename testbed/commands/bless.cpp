@@ -127,7 +127,7 @@ void put_rows(const ReferenceSet& values, const std::vector<std::string>& metric
   for (const std::string& metric : metrics) {
     if (kept.contains(metric)) continue;
     throw Error("the experiment keeps no value of the metric '" + metric +
-                    "': neither a claim nor its figure reads it",
+                    "': neither a claim nor its figure nor [check] reads it",
                 "--rows", allowed_names(metric, {kept.begin(), kept.end()}));
   }
 }

@@ -22,9 +22,8 @@ struct Headline {
 
 /// What the claims of an experiment read, as they read it (their studies, the quantity), and those
 /// metrics of its figure and of `[check]` that no claim reads, at their worst (on either side of a
-/// target). A claim
-/// at every frame reads the worst frame. Times and diagnostics are none; nor are rows that the
-/// metric table leaves `ungated`.
+/// target). A claim at every frame reads the worst frame. Times and diagnostics are none; nor are
+/// rows that the metric table leaves `ungated`.
 std::vector<Headline> headlines(const Experiment& experiment, const Topic& topic);
 
 /// The number of a variant: NaN where the metric has none (no such frame, no value there); absent

@@ -64,9 +64,9 @@ Json table_json(Table table) {
   return writer.json();
 }
 
-/// Sweeps with the values they were expanded with and the variants that run; names belong to the
+/// Sweeps with the values they were expanded with; names belong to the
 /// values of full runs, and to quick ones that stand in for them one for one.
-Json sweep_tables(const TomlNode& root, bool quick, const std::vector<std::string>& dropped) {
+Json sweep_tables(const TomlNode& root, bool quick) {
   Json list = Json::array();
   for (const TomlNode& node : tables_of(root, "sweep")) {
     TomlNode kept = node;
@@ -78,15 +78,7 @@ Json sweep_tables(const TomlNode& root, bool quick, const std::vector<std::strin
       if (!one_for_one) kept.erase("names");
     }
     kept.erase("quick_values");
-    Json table = json_of(kept);
-    if (table.contains("variants") && !table["variants"].empty()) {
-      Json& variants = table["variants"];
-      for (const std::string& name : dropped) {
-        variants.erase(std::remove(variants.begin(), variants.end(), name), variants.end());
-      }
-      if (variants.empty()) continue;
-    }
-    list.push_back(std::move(table));
+    list.push_back(json_of(kept));
   }
   return list;
 }
@@ -123,7 +115,7 @@ Json resolved_json(const TomlNode& root, const Experiment& experiment, const Hea
     v["options"] = Json::parse(variant.options_json);
     json["variant"].push_back(v);
   }
-  json["sweep"] = sweep_tables(root, experiment.quick, names.dropped);
+  json["sweep"] = sweep_tables(root, experiment.quick);
   for (const char* key : {"claim", "study"}) {
     Json kept = Json::array();
     for (const TomlNode& node : tables_of(root, key)) {
@@ -151,8 +143,13 @@ std::string spec_hash(const std::string& text) {
                 "\ndifference " + build.git_difference + "\n");
 }
 
-void keep_only(std::vector<std::string>& names, const std::vector<std::string>& dropped) {
-  std::erase_if(names, [&](const std::string& name) { return has(dropped, name); });
+/// Takes texts out of a list of a table; a list of which nothing is left goes, too.
+template <class Left>
+void leave_out(TomlNode& table, const std::string& key, Left is_left_out) {
+  TomlNode* list = table.find(key);
+  if (list == nullptr || list->items.empty()) return;
+  std::erase_if(list->items, [&](const TomlNode& name) { return is_left_out(name.text); });
+  if (list->items.empty()) table.erase(key);
 }
 
 /// @param written  the file with all of its sweeps: what is claimed of cases that --set or the
@@ -178,25 +175,72 @@ KnownNames known_names(const TomlNode& root, const TomlNode& written,
 
 /// Quick runs decide no claim about a variant that they leave out: the file says so of both.
 void require_claimed_variants(const TomlNode& root, const std::vector<std::string>& dropped) {
-  for (const TomlNode& claim : tables_of(root, "claim")) {
+  const auto require = [&](const TomlNode& table, const TomlNode& claim) {
     for (const char* member : {"variant", "of", "null"}) {
-      const TomlNode* name = claim.find(member);
+      const TomlNode* name = table.find(member);
       if (name == nullptr || !has(dropped, name->text)) continue;
-      throw Error("quick runs leave variant '" + name->text + "' out", place_of(claim, member),
-                  "`quick = false` of the claim, too");
+      throw Error("quick runs leave variant '" + name->text + "' out", place_of(table, member),
+                  "`quick = false` of the claim at " + claim.place + ", too");
+    }
+  };
+  for (const TomlNode& claim : tables_of(root, "claim")) {
+    require(claim, claim);
+    const TomlNode* metric = claim.find("metric");
+    for (const TomlNode& study : tables_of(root, "study")) {
+      const TomlNode* name = study.find("name");
+      const bool read =
+          metric != nullptr && name != nullptr && metric->text == "study:" + name->text;
+      if (read) require(study, claim);
     }
   }
 }
 
-/// Without its variant a sweep of a variant's options would only repeat the base case.
+bool is_grid(const TomlNode& sweep) {
+  const TomlNode* grid = sweep.find("grid");
+  return grid != nullptr && grid->boolean;
+}
+
+/// Takes dropped variants out of the sweeps, and sweeps that are about dropped ones alone: they
+/// would only repeat the base case. A grid runs the variants of all of its sweeps.
 void drop_sweeps(TomlNode& root, const std::vector<std::string>& dropped) {
   TomlNode* sweeps = root.find("sweep");
   if (sweeps == nullptr) return;
+  const auto runs_dropped_alone = [&](const TomlNode& sweep) {
+    const TomlNode* names = sweep.find("variants");
+    return names != nullptr && !names->items.empty() &&
+           std::all_of(names->items.begin(), names->items.end(),
+                       [&](const TomlNode& name) { return has(dropped, name.text); });
+  };
+  const bool grid_goes = std::all_of(
+      sweeps->items.begin(), sweeps->items.end(),
+      [&](const TomlNode& sweep) { return !is_grid(sweep) || runs_dropped_alone(sweep); });
   std::erase_if(sweeps->items, [&](const TomlNode& sweep) {
     const TomlNode* key = sweep.find("key");
-    return key != nullptr && std::any_of(dropped.begin(), dropped.end(), [&](const auto& name) {
-             return key->text.starts_with("variant." + name + ".");
-           });
+    const bool of_dropped =
+        key != nullptr && std::any_of(dropped.begin(), dropped.end(), [&](const auto& name) {
+          return key->text.starts_with("variant." + name + ".");
+        });
+    return of_dropped || (is_grid(sweep) ? grid_goes : runs_dropped_alone(sweep));
+  });
+  for (TomlNode& sweep : sweeps->items) {
+    leave_out(sweep, "variants", [&](const std::string& name) { return has(dropped, name); });
+  }
+}
+
+/// The figure shows what this run makes of what the file asks for.
+void leave_out_of_view(TomlNode& root, const KnownNames& names,
+                       const std::vector<CaseSpec>& cases) {
+  TomlNode* view = root.find("figure_view");
+  if (view == nullptr) return;
+  const auto is_dropped = [&](const std::string& name) { return has(names.dropped, name); };
+  leave_out(*view, "variants", is_dropped);
+  for (const char* row : {"above", "below"}) {
+    if (TomlNode* further = view->find(row)) leave_out(*further, "variants", is_dropped);
+  }
+  leave_out(*view, "cases", [&](const std::string& name) {
+    return has(names.cases, name) &&
+           std::none_of(cases.begin(), cases.end(),
+                        [&](const CaseSpec& made) { return made.name == name; });
   });
 }
 
@@ -230,9 +274,15 @@ void read_check(const TomlNode& root, const Topic& topic, Experiment& experiment
   experiment.bifurcates = table.bifurcates;
   experiment.checked_metrics = table.metrics;
   for (const std::string& metric : table.metrics) {
-    if (find_metric(topic, metric) != nullptr) continue;
-    throw Error("unknown metric '" + metric + "'", place_of(*node, "metrics"),
-                allowed_names(metric, metric_names(topic)));
+    const MetricEntry* row = find_metric(topic, metric);
+    if (row == nullptr) {
+      throw Error("unknown metric '" + metric + "'", place_of(*node, "metrics"),
+                  allowed_names(metric, metric_names(topic)));
+    }
+    if (!row->gated()) {
+      throw Error("metric '" + metric + "' is not checked: " + row->ungated,
+                  place_of(*node, "metrics"), "rows that are not `ungated`");
+    }
   }
   const bool sweeps_seed =
       std::all_of(experiment.cases.begin(), experiment.cases.end(),
@@ -313,10 +363,10 @@ Experiment load_parsed(const TomlNode& written, const std::filesystem::path& fil
   experiment.claims = read_claims(root, topic, names, experiment.tolerances, experiment.studies);
   drop_cases(experiment.claims, experiment.cases);
   read_check(root, topic, experiment);
+  leave_out_of_view(root, names, experiment.cases);
   (void)read_figure_view(root, topic);  // its own mistakes come before frames that are not there
   settle_view_times(written, root, topic, experiment.quick);
   experiment.view = read_figure_view(root, topic);
-  keep_only(experiment.view.variants, names.dropped);
 
   Json resolved = resolved_json(root, experiment, header,
                                 resolve_case(SweptCase{}, plain, topic, selected), names);

@@ -118,16 +118,24 @@ std::vector<std::string> select_variants(const TomlNode& root,
     throw Error("has no variant of quick runs", root.place,
                 "at least one [[variant]] without `quick = false`");
   }
+  const auto contains = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
   for (const TomlNode& node : tables_of(root, "variant")) {
     const TomlNode* to = node.find("reference");
-    if (to != nullptr && std::find(names.begin(), names.end(), to->text) == names.end()) {
+    if (to == nullptr) continue;
+    if (!contains(names, to->text)) {
       throw Error("there is no variant '" + to->text + "'", to->place + ": reference",
                   allowed_names(to->text, names));
+    }
+    if (contains(quick_names, node.find("name")->text) && !contains(quick_names, to->text)) {
+      throw Error("variant '" + to->text + "' is left out of quick runs", to->place + ": reference",
+                  "a reference without `quick = false`");
     }
   }
   std::vector<std::string> selected;
   const auto add = [&](std::string name) {
-    while (std::find(selected.begin(), selected.end(), name) == selected.end()) {
+    while (!contains(selected, name)) {
       selected.push_back(name);
       if (!reference.contains(name)) break;
       name = reference[name];
@@ -137,7 +145,7 @@ std::vector<std::string> select_variants(const TomlNode& root,
     for (const std::string& name : quick_names) add(name);
   }
   for (const std::string& name : requested) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
+    if (!contains(names, name)) {
       throw Error("there is no variant '" + name + "'", "--variant", allowed_names(name, names));
     }
     add(name);

@@ -208,8 +208,9 @@ TEST(PairCurve, OfThomasClustersIsKnown) {
       // Poisson number of children of mean 4 (Knuth: uniforms multiplied until below exp(-4)).
       for (double p = random.uniform(); p > std::exp(-4.); p *= random.uniform()) {
         const double u = x + s * random.normal(), v = y + s * random.normal();
-        if (u > 0 && v > 0 && u < 30 && v < 30)
+        if (u > 0 && v > 0 && u < 30 && v < 30) {
           places.push_back(on_cells(u, v, 30.0 / n, 30.0 / n, n, n));
+        }
       }
     }
     curve = pair_curve(mesh, places, 1);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <vector>
 
 #include "core/planar.h"
@@ -123,9 +122,9 @@ int count_above(const std::vector<double>& areas, double least) {
 class LongRandomPulls : public testing::TestWithParam<int> {};
 
 TEST_P(LongRandomPulls, LeaveASheetThatIsWholeInEveryPart) {
-  const int kFrames = test::at_length() ? 500 : 38;
+  const int frames = test::at_length() ? 500 : 38;
   const auto seed = static_cast<std::uint64_t>(GetParam());
-  const Sheet sheet = pulled_about(seed, kFrames);
+  const Sheet sheet = pulled_about(seed, frames);
   int frame = 0, strained = 0;
   double length = 0;
   int most_parts = 1;
@@ -139,7 +138,7 @@ TEST_P(LongRandomPulls, LeaveASheetThatIsWholeInEveryPart) {
                 testing::IsEmpty())
         << "frame " << frame;
     EXPECT_GE(tears->length(), length) << "tears do not heal";
-    if (tears->length() > length || frame == kFrames) {
+    if (tears->length() > length || frame == frames) {
       const int parts = count_above(Cells(tears->torn()).areas(), kLeastPart);
       EXPECT_LE(count_above(part_areas(state.mesh), kUnsure * kLeastPart), parts) << frame;
       EXPECT_GE(count_above(part_areas(state.mesh), kLeastPart / kUnsure), parts) << frame;
@@ -149,9 +148,9 @@ TEST_P(LongRandomPulls, LeaveASheetThatIsWholeInEveryPart) {
     const Isometry strain = isometry(state);
     if (strain.rms > 1e-3) ++strained;
   });
-  EXPECT_EQ(frame, kFrames);
+  EXPECT_EQ(frame, frames);
   // Hands that pull where no candidate lies stretch the sheet as far as they give.
-  EXPECT_LE(strained, kFrames / 20);
+  EXPECT_LE(strained, frames / 20);
   EXPECT_GT(length, start) << "nothing tore";
   RecordProperty("length_mm", static_cast<int>(1e3 * length));
   RecordProperty("parts", most_parts);

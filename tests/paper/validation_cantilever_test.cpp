@@ -87,8 +87,8 @@ TEST(Cantilever, OdeAgreesWithTheLinearBeamUnderALittleWeight) {
   EXPECT_NEAR(exact_sag(1, 1e-3), 1e-3 * std::pow(kLength, 4) / 8, 1e-12);
 }
 
-/// Second order: on half as many cells the error is four times as large. At 24 cells a side, which
-/// GEOPRIOR_LONG asks for, it is below 2e-3.
+/// Second order: on half as many cells the error is four times as large. On `cells` and twice as
+/// many it falls below 2e-3; by default on half of both, four times that.
 void expect_second_order(const std::function<double(int)>& sag_of, int cells) {
   const PaperMaterial material = beam();
   const double exact = exact_sag(material.bending_stiffness(), material.area_density * 9.81);

@@ -113,14 +113,13 @@ double buckled_from(double start_degrees, double thickness) {
   return sector();
 }
 
-// 138.99 degrees (Cerda and Mahadevan 1998) is the limit of no thickness at small deflection.
-// Sheets start with buckles of other widths, from both sides, and forget them. Thinner ones go
-// towards the limit, slowly: from 115.3 to 116.1 degrees at half the thickness of paper.
+/// Of a sheet as thick as paper; for two tests.
 double buckled_paper() {
   static const double sector = buckled_from(80, 1e-4);
   return sector;
 }
 
+// Sheets start with buckles of other widths, from both sides, and forget them.
 TEST(LongDcone, ForgetsTheSectorItStartsWith) {
   EXPECT_GT(buckled_paper(), 110);
   EXPECT_NEAR(buckled_from(160, 1e-4), buckled_paper(), 0.2);
@@ -129,6 +128,8 @@ TEST(LongDcone, ForgetsTheSectorItStartsWith) {
   }
 }
 
+// 138.99 degrees (Cerda and Mahadevan 1998) is the limit of no thickness at small deflection.
+// Thinner sheets go towards it, slowly: from 115.3 to 116.1 degrees at half the thickness of paper.
 TEST(LongDcone, WidensAsTheSheetGetsThinner) {
   const double thinner = buckled_from(80, 5e-5);
   EXPECT_GT(thinner, buckled_paper() + 0.5);

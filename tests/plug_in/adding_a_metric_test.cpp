@@ -124,7 +124,7 @@ TEST_F(AddingAMetric, IsRefusedWhereItCannotBeMeasuredOrIsNotKept) {
   refused("aera", "did you mean 'area'");
   refused("area --quick", "there is no blessed run of this size");
   home_.write("experiments/sample/growth.toml", kExperiment);
-  refused("area", "neither a claim nor its figure reads it");
+  refused("area", "neither a claim nor its figure nor [check] reads it");
   home_.write("experiments/sample/growth.toml", kExperiment + kClaim);
   fs::remove_all(home_.root() / "results/runs/sample");
   refused("area", "there is no stored run whose frames are those blessed");

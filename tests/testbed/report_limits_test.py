@@ -30,9 +30,9 @@ import runfile  # noqa: E402
 import wording  # noqa: E402
 
 # What mathtext or a font cannot set, or a page or a terminal not show: a few of each kind, with GEOPRIOR_LONG all.
-TEXTS = [r"$\frac{1$", "$$", "bell\x07 esc\x1b[2J", "漢字 🙂", "", "<b>&"]
+TEXTS = [r"$\frac{1$", "$$", "bell\x07 esc\x1b[2J", "漢字 🙂", "", "<b>&\n\t" + "x" * 5000]
 if os.environ.get("GEOPRIOR_LONG"):
-    TEXTS += [r"$\bad$", "a_$b^{$c", "^", "_", "\\", r"\$x$ and $", "{}%&#~", " ", "two\nlines\ttab", "x" * 5000]
+    TEXTS += [r"$\bad$", "a_$b^{$c", "^", "_", "\\", r"\$x$ and $", "{}%&#~", " ", "two\nlines\ttab"]
 
 
 def rename(group, old, new):

@@ -202,6 +202,12 @@ TEST_F(Spec, QuickVersionLeavesOutVariants) {
   EXPECT_EQ(quick.cases[0].variants.size(), 2U);
   EXPECT_THAT(case_names(quick), ElementsAre("default", "seed=2"));
   EXPECT_EQ(load(quick.resolved_toml).hash, quick.hash) << "an experiment file itself";
+  const std::string view =
+      "[figure_view]\nvariants = [\"exact\", \"octagon\"]\ncases = [\"default\", \"radius_m=3\"]\n";
+  const FigureView shown =
+      figure_view_of(load(text + view, sized(true)).resolved_toml, "", topics_);
+  EXPECT_THAT(shown.variants, ElementsAre("exact"));
+  EXPECT_THAT(shown.cases, ElementsAre("default"));
   LoadRequest named = sized(true);
   named.variants = {"octagon"};
   EXPECT_EQ(load(text, named).cases[0].variants[0].name, "octagon");
@@ -212,11 +218,47 @@ TEST_F(Spec, QuickVersionLeavesOutVariants) {
   EXPECT_EQ(load(text + claim("null = \"octagon\"\nquick = false\n"), sized(true)).claims.size(),
             0U);
   EXPECT_EQ(load(text + claim("null = \"octagon\"\n")).claims.size(), 1U);
+  const std::string study =
+      "[[study]]\nname = \"growth\"\nkind = \"exponent\"\nvariant = \"octagon\"\n"
+      "quantity = \"radius_error\"\nagainst = \"seed\"\n"
+      "[[claim]]\ntext = \"s\"\nmetric = \"study:growth\"\nvalue = 1\n";
+  EXPECT_THAT(error_of(text + study, sized(true)),
+              HasSubstr("quick runs leave variant 'octagon' out"));
+  EXPECT_THAT(
+      error_of(text + "[[variant]]\nname = \"x\"\nmethod = \"polygon\"\nreference = \"octagon\"\n"),
+      AllOf(HasSubstr("variant 'octagon' is left out of quick runs"), HasSubstr("reference")));
   std::string none = toy::disc_experiment();
   for (std::size_t at = 0; (at = none.find("[[variant]]\n", at)) != std::string::npos; at += 30) {
     none.insert(at + 12, "quick = false\n");
   }
   EXPECT_THAT(error_of(none), HasSubstr("has no variant of quick runs"));
+}
+
+/// Sweeps about variants that are left out: what was run is what the text says that it is.
+TEST_F(Spec, LeavesOutSweepsOfVariantsThatAreLeftOut) {
+  const auto sweep = [](const std::string& key, const std::string& variants,
+                        const std::string& more) {
+    return "[[sweep]]\nkey = \"" + key + "\"\nvalues = [3, 4]\nvariants = [" + variants + "]\n" +
+           more;
+  };
+  const std::string octagon =
+      "[[variant]]\nname = \"octagon\"\nmethod = \"polygon\"\nquick = false\n";
+  const auto cases_of = [&](const std::string& sweeps) {
+    const Experiment quick = load(toy::disc_experiment() + octagon + sweeps, sized(true));
+    const Experiment again = load(quick.resolved_toml);
+    EXPECT_EQ(case_names(again), case_names(quick)) << sweeps;
+    EXPECT_EQ(again.hash, quick.hash) << sweeps;
+    return case_names(quick);
+  };
+  const std::string grid = "grid = true\n", no_base = "base = false\n";
+  EXPECT_THAT(cases_of(sweep("seed", "\"octagon\"", no_base)), ElementsAre("default"));
+  EXPECT_THAT(
+      cases_of(sweep("seed", "\"octagon\"", grid) + sweep("scene.radius_m", "\"octagon\"", grid)),
+      ElementsAre("default"));
+  EXPECT_THAT(
+      cases_of(sweep("seed", "\"octagon\"", grid) + sweep("scene.radius_m", "\"exact\"", grid)),
+      ElementsAre("default", "seed=3,radius_m=3", "seed=3,radius_m=4", "seed=4,radius_m=3",
+                  "seed=4,radius_m=4"));
 }
 
 TEST_F(Spec, CheckNamesMetricsThatHaveReferenceValues) {
