@@ -102,6 +102,11 @@ TEST(AdaptiveSheet, RefinesWhereTheSheetBends) {
   const Recording& recording = squeezed(false);
   EXPECT_GT(recording.frames.back().diagnostics.at("triangles"),
             2 * recording.frames.front().diagnostics.at("triangles"));
+  AdaptiveOptions blunt = fine();
+  blunt.refine_angle = 1e3;
+  const double without_angle =
+      run(squeezed_square(), blunt).frames.back().diagnostics.at("triangles");
+  EXPECT_GT(recording.frames.back().diagnostics.at("triangles"), 1.5 * without_angle);
   double splits = 0;
   for (const Frame& frame : recording.frames) splits += frame.diagnostics.at("splits");
   EXPECT_GT(splits, 0);
