@@ -155,7 +155,7 @@ void free_directions(const std::vector<Eigen::Vector3d>& held, ModalOperator::Fr
   Eigen::Matrix3Xd directions(3, held.size());
   for (std::size_t i = 0; i < held.size(); ++i)
     directions.col(static_cast<Eigen::Index>(i)) = held[i].normalized();
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(directions, Eigen::ComputeFullU);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(directions), Eigen::ComputeFullU);
   const auto rank = (svd.singularValues().array() > kRankTolerance).count();
   freedom.size = 3 - static_cast<int>(rank);
   freedom.basis.leftCols(freedom.size) = svd.matrixU().rightCols(freedom.size);
