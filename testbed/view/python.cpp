@@ -17,6 +17,10 @@ const std::string kInstallPython =
     "apt-get install python3-h5py python3-matplotlib python3-numpy, or set GEOPRIOR_PYTHON to an "
     "interpreter that has h5py, matplotlib and numpy";
 
+/// Threads of numpy's BLAS, which our scripts never need, wait busily: a third of a second a
+/// script.
+const std::vector<std::string> kEnvironment{"MPLBACKEND=Agg", "OPENBLAS_NUM_THREADS=1"};
+
 /// The interpreter to use. The first python3 on PATH is often another build without our packages,
 /// so Debian's own is tried before it.
 std::string find_python() {
@@ -26,7 +30,8 @@ std::string find_python() {
   }
   std::string tried;
   for (const std::string& python : candidates) {
-    const ChildResult test = run_child({python, "-E", "-c", "import h5py, matplotlib, numpy"});
+    const ChildResult test =
+        run_child({python, "-E", "-c", "import h5py, matplotlib, numpy"}, kEnvironment);
     if (test.exit_code == 0) return python;
     const auto last_line = test.errors.find_last_of('\n', test.errors.size() - 2);
     std::string reason =
@@ -47,7 +52,7 @@ void run_python(const std::string& script, const std::vector<std::string>& argum
   // -B: no __pycache__ in the clone; -E: a foreign PYTHONPATH or PYTHONHOME does not matter.
   std::vector<std::string> command{python, "-B", "-E", file.string()};
   command.insert(command.end(), arguments.begin(), arguments.end());
-  const ChildResult result = run_child(command, {"MPLBACKEND=Agg"});
+  const ChildResult result = run_child(command, kEnvironment);
   std::string text = result.errors;
   while (!text.empty() && text.back() == '\n') text.pop_back();
   if (result.exit_code != 0) {

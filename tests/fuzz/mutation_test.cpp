@@ -94,7 +94,7 @@ TEST(LongFuzz, SoundReaderAcceptsOrThrowsError) {
 }
 
 // A process for every file: HDF5 crashes on some of them, the reader must not.
-constexpr std::uint64_t kProcesses = 240;
+constexpr std::uint64_t kProcesses = 60;
 
 TEST(LongFuzz, FeatureLibraryReaderAcceptsOrThrowsError) {
   run_on("library", {as_text(fluid::feature_library_bytes(sample_features()))},
