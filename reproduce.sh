@@ -31,7 +31,8 @@ if [ "$all" = yes ]; then
   mapfile -t ids < <("$geoprior" list --json | /usr/bin/python3 -c 'import json, sys
 for experiment in json.load(sys.stdin)["experiments"]: print(experiment["id"])')
 elif [ "${#ids[@]}" -eq 0 ]; then
-  # The picture's five methods; ten seeds and three more methods are the study's: ./reproduce.sh skinning/knee.
+  # The picture's five methods; ten seeds, what is claimed over them, and three more methods are the study's:
+  # ./reproduce.sh skinning/knee.
   ids=(skinning/knee)
   shown=(--set 'sweep=[]')
   for variant in linear-blend dual-quaternion delta-mush implicit implicit-smooth; do shown+=(--variant "$variant"); done

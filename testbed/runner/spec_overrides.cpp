@@ -31,22 +31,31 @@ std::vector<std::string> variant_names(const TomlNode& root) {
   return names;
 }
 
-/// Takes claims with `quick = false` out. Values of another type are refused where claims are read.
-void leave_out_claims(TomlNode& root) {
+template <class LeftOut>
+void leave_out_claims(TomlNode& root, LeftOut is_left_out) {
   TomlNode* claims = root.find("claim");
   if (claims == nullptr) return;
-  std::erase_if(claims->items, [](const TomlNode& claim) {
-    const TomlNode* key = claim.find("quick");
-    return key != nullptr && key->kind == TomlNode::Kind::boolean && !key->boolean;
-  });
+  std::erase_if(claims->items, is_left_out);
   if (claims->items.empty()) root.erase("claim");
 }
 
-/// --set sweep=[]: the file's own values alone.
+/// `quick = false`. Values of another type are refused where claims are read.
+bool is_too_long_for_quick_runs(const TomlNode& claim) {
+  const TomlNode* key = claim.find("quick");
+  return key != nullptr && key->kind == TomlNode::Kind::boolean && !key->boolean;
+}
+
+bool is_over_seeds(const TomlNode& claim) {
+  const TomlNode* over = claim.find("over");
+  return over != nullptr && over->text == "seed";
+}
+
+/// --set sweep=[]: the file's own values alone, one seed of which decides no claim over seeds.
 void take_sweeps_out(TomlNode& root, const TomlNode& value) {
   if (value.kind != TomlNode::Kind::array || !value.items.empty())
     throw Error("sweeps can only be taken out", value.place, "sweep=[]");
   root.erase("sweep");
+  leave_out_claims(root, is_over_seeds);
 }
 
 }  // namespace
@@ -111,7 +120,7 @@ void apply_quick(TomlNode& root, bool quick) {
     }
   }
   root.erase("quick");
-  if (quick) leave_out_claims(root);
+  if (quick) leave_out_claims(root, is_too_long_for_quick_runs);
 }
 
 void apply_sets(TomlNode& root, const std::vector<std::string>& sets) {

@@ -15,7 +15,7 @@ void require_known_tables(const TomlNode& root);
 void set_experiment_key(TomlNode& root, const std::string& key, const TomlNode& value);
 
 /// Applies [quick] when asked, and removes it; then "key=value" texts of --set, of which "sweep=[]"
-/// takes all sweeps out.
+/// takes all sweeps out, and claims over seeds with them.
 void apply_quick(TomlNode& root, bool quick);
 void apply_sets(TomlNode& root, const std::vector<std::string>& sets);
 

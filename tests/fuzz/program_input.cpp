@@ -154,6 +154,7 @@ const Words kRunSmall{"run", "small", "--no-pictures", "--threads", "1", "--out"
 const Words kResume{"run", "small", "--no-pictures", "--threads", "1", "--out", kRun, "--resume"};
 const Words kExport{"export", kRun, "--force", "--format", "ply"};
 const Words kRender{"render", kRun, "--force"};
+const Words kMeasure{"measure", kRun, "--no-pictures"};
 const Words kReport{"report", kRun, "--force"};
 
 /// Runs an experiment in a home; `during` sees its folder while it goes on.
@@ -273,6 +274,7 @@ std::vector<InputKind> input_kinds() {
          return run_input(circle(), "journal.jsonl", {kExport, kResume});
        }},
       {"RunFile", 2, [=] { return run_input(circle(), "run.h5", {kExport}); }},
+      {"RunFileMeasured", 0.3, [=] { return run_input(circle(), "run.h5", {kMeasure}); }},
       {"RunFileDrawn", kSlow, [=] { return run_input(circle(), "run.h5", {kRender}); }},
       {"RunFileReported", kSlowest,
        [=] { return run_input(with_scripts(circle()), "run.h5", {kReport}); }},

@@ -158,12 +158,14 @@ TEST_F(Spec, SweepsAreTakenOutWithWhatIsClaimedOfThem) {
   const std::string seeds = "[[sweep]]\nkey = \"seed\"\nvalues = [4, 5]\n";
   const std::string text = toy::disc_experiment() + kSweep + seeds + claim +
                            "text = \"of seeds\"\nover = \"seed\"\n" + claim +
-                           "text = \"of a case\"\ncases = [\"segments=32\"]\n";
+                           "text = \"of a case\"\ncases = [\"segments=32\"]\n" + claim +
+                           "text = \"of the file\"\n";
   LoadRequest alone;
   alone.sets = {"sweep=[]"};
   const Experiment one = load(text, alone);
   EXPECT_THAT(case_names(one), ElementsAre("default"));
-  EXPECT_EQ(one.claims.size(), 1U);
+  ASSERT_EQ(one.claims.size(), 1U) << "one seed decides no claim over seeds";
+  EXPECT_EQ(one.claims[0].text, "of the file");
   EXPECT_EQ(load(one.resolved_toml).claims.size(), 1U);
   alone.sets = {"sweep=[1]"};
   EXPECT_THAT(error_of(text, alone), HasSubstr("sweeps can only be taken out"));
