@@ -173,13 +173,14 @@ int contrast(const Rgb& a, const Rgb& b) {
 }
 
 /// Tones between the two sides of folds of ten degrees: about axes all round, on sheets that face
-/// the eye and that are turned away from it, in ascending order.
+/// the eye and that are turned away from it, in ascending order. Six folds; with GEOPRIOR_LONG, 18.
 std::vector<int> fold_contrasts(const PanelStyle& style) {
+  const double tilt_step = test::at_length() ? 40 : 80, axis_step = test::at_length() ? 30 : 60;
   std::vector<int> contrasts;
-  for (const double tilt : {-40.0, 0.0, 40.0}) {
-    for (const double axis : {0.0, 30.0, 60.0, 90.0, 120.0, 150.0}) {
+  for (double tilt = -40; tilt <= 40; tilt += tilt_step) {
+    for (double axis = 0; axis < 180; axis += axis_step) {
       const Part sheet = folded_sheet(10, axis, tilt);
-      constexpr int kHalf = 32;  // the picture's side is 4 m: so many pixels are 2 m
+      constexpr int kHalf = 100;  // the picture's side is 4 m: so many pixels are 2 m
       const Picture picture = draw_panel({{&sheet}, {}, {}}, above(), style, 2 * kHalf, 2 * kHalf);
       const auto at = [&](double x) {  // half a metre to the side of the fold, in pixels
         const double angle = axis * std::numbers::pi / 180;
@@ -197,9 +198,7 @@ std::vector<int> fold_contrasts(const PanelStyle& style) {
 // Two even areas beside each other are told apart from about two of 255 tones on. One light leaves
 // a fold about the axis that points at it even; Lambert's law bounds the median by 2/pi times the
 // range of tones over the range of angles, about 15.
-// Seven seconds of software rendering: with GEOPRIOR_LONG only.
 TEST(LongPanel, PlainPaperShowsAFoldOfTenDegrees) {
-  if (!test::at_length()) GTEST_SKIP() << "GEOPRIOR_LONG is not set";
   const Display display;
   PanelStyle style;
   style.material = PanelStyle::Material::paper;
@@ -209,7 +208,9 @@ TEST(LongPanel, PlainPaperShowsAFoldOfTenDegrees) {
   const std::vector<int> raking = fold_contrasts(style);
   const std::size_t half = raking.size() / 2;
   EXPECT_GE(raking.front(), 2) << "every fold is seen";
-  EXPECT_GE(raking[raking.size() / 6], 4);
+  if (test::at_length()) {  // few of 18 point at the light
+    EXPECT_GE(raking[raking.size() / 6], 4);
+  }
   EXPECT_GE(raking[half], 10);
   EXPECT_GT(raking[half], usual[half]) << "better than under the light of coloured panels";
 }
