@@ -61,12 +61,10 @@ std::optional<double> processor_seconds(const RunRecord& record) {
 }
 
 void require_metrics(const std::vector<std::string>& names, const Topic& topic) {
-  std::vector<std::string> known;
-  for (const MetricEntry& row : metric_rows(topic)) known.push_back(row.name);
   for (const std::string& name : names) {
     if (find_metric(topic, name) != nullptr) continue;
     throw Error("topic '" + topic.name + "' has no metric '" + name + "'", "--rows",
-                allowed_names(name, known));
+                allowed_names(name, metric_names(topic)));
   }
 }
 

@@ -64,8 +64,8 @@ Json table_json(Table table) {
   return writer.json();
 }
 
-/// Sweeps with the values they were expanded with; names belong to the
-/// values of full runs, and to quick ones that stand in for them one for one.
+/// Sweeps with the values they were expanded with; names belong to the values of full runs, and to
+/// quick ones that stand in for them one for one.
 Json sweep_tables(const TomlNode& root, bool quick) {
   Json list = Json::array();
   for (const TomlNode& node : tables_of(root, "sweep")) {

@@ -12,7 +12,7 @@ namespace geoprior {
 /// What claims and studies may name.
 struct KnownNames {
   std::vector<std::string> variants;  ///< those that run
-  std::vector<std::string> dropped;   ///< those that --variant left out
+  std::vector<std::string> dropped;   ///< those that --variant or a quick run leaves out
   std::vector<std::string> cases;     ///< of this version, and those that only the full one has
   std::vector<std::string> studies;
   std::map<std::string, std::string> references;  ///< of variants, by their name
