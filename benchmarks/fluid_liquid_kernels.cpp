@@ -7,9 +7,9 @@
 
 #include <memory>
 
-#include "baselines/fluid/liquid.h"
-#include "models/fluid/advection.h"
-#include "models/fluid/transfer.h"
+#include "baselines/fluid/liquid/grid/advection.h"
+#include "baselines/fluid/liquid/liquid.h"
+#include "baselines/fluid/liquid/particles/transfer.h"
 
 namespace geoprior::fluid {
 namespace {

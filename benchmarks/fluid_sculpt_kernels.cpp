@@ -13,10 +13,10 @@
 
 #include "core/random.h"
 #include "solvers/fluid/extraction.h"
-#include "solvers/fluid/paste.h"
-#include "solvers/fluid/path_cover.h"
+#include "solvers/fluid/paste/paste.h"
 #include "solvers/fluid/sculpt.h"
 #include "solvers/fluid/sculpt_scene.h"
+#include "solvers/fluid/tracking/path_cover.h"
 
 namespace geoprior::fluid {
 namespace {

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "baselines/paper/dense.h"
-#include "models/paper/cholmod_cholesky.h"
-#include "models/paper/eigen_cholesky.h"
-#include "models/paper/shell_system.h"
-#include "models/paper/sparse_cholesky.h"
-#include "models/paper/stepper.h"
-#include "models/paper/supernodal_cholesky.h"
-#include "models/paper/uniform_mesh.h"
+#include "models/paper/cholesky/cholmod.h"
+#include "models/paper/cholesky/eigen.h"
+#include "models/paper/cholesky/sparse_cholesky.h"
+#include "models/paper/cholesky/supernodal.h"
+#include "models/paper/meshing/uniform_mesh.h"
+#include "models/paper/shell/stepper.h"
+#include "models/paper/shell/system.h"
 
 namespace geoprior::paper {
 namespace {

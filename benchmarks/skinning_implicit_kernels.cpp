@@ -9,12 +9,12 @@
 #include <numbers>
 #include <vector>
 
+#include "core/geometry/procedural.h"
 #include "core/parallel.h"
-#include "core/procedural.h"
 #include "core/random.h"
-#include "solvers/skinning/field_cache.h"
+#include "solvers/skinning/field/field_cache.h"
+#include "solvers/skinning/field/operators.h"
 #include "solvers/skinning/implicit.h"
-#include "solvers/skinning/operators.h"
 
 namespace geoprior::skinning {
 namespace {

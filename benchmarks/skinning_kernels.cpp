@@ -19,14 +19,14 @@
 #include <numbers>
 #include <vector>
 
-#include "baselines/skinning/centres_of_rotation.h"
+#include "baselines/skinning/centers_of_rotation/centers_of_rotation.h"
 #include "baselines/skinning/delta_mush.h"
-#include "baselines/skinning/direct_delta_mush.h"
-#include "baselines/skinning/dual_quaternion.h"
-#include "baselines/skinning/linear_blend.h"
+#include "baselines/skinning/direct_delta_mush/direct_delta_mush.h"
+#include "baselines/skinning/dual_quaternion/dual_quaternion.h"
+#include "baselines/skinning/linear_blend/linear_blend.h"
+#include "baselines/skinning/shared/lanes.h"
 #include "core/parallel.h"
 #include "core/random.h"
-#include "models/skinning/lanes.h"
 
 namespace geoprior::skinning {
 namespace {

@@ -1,18 +1,20 @@
-# geoprior_topic(<name> [ROOT folder] [DEPS libs] [EXPERIMENT_DEPS libs]): everything of a topic, from the folders that
-# carry its name. A folder that is not there, or without sources, gives no target.
+# geoprior_topic(<name> [ROOT folder] [USES topics] [DEPS libs] [EXPERIMENT_DEPS libs]): everything of a topic, from the
+# folders that carry its name. A folder that is not there, or without sources, gives no target.
 #
-#   models/<name>       geoprior_<name>_models        what its method and its baselines share
-#   baselines/<name>    geoprior_<name>_baselines
-#   solvers/<name>      geoprior_<name>               the thesis' method
-#   experiments/<name>  geoprior_<name>_experiments   scenes, tables of methods and metrics; GEOPRIOR_PROGRAM only
-#   tests/<name>        test_<name>                   GEOPRIOR_PROGRAM only
+#   models/<name>         geoprior_<name>_models        what its method and its baselines share
+#   baselines/<name>      geoprior_<name>_baselines
+#   solvers/<name>        geoprior_<name>               the thesis' method
+#   experiments/<name>/*  geoprior_<name>_scene         the folders in it: what scenes are made of; GEOPRIOR_PROGRAM only
+#   experiments/<name>    geoprior_<name>_experiments   the files in it: tables of methods and metrics; GEOPRIOR_PROGRAM only
+#   tests/<name>          test_<name>                   GEOPRIOR_PROGRAM only
 #
-# Each links those above it. DEPS are linked by the first three, EXPERIMENT_DEPS by the experiments; nobody else sees
-# them. ROOT holds the folders of a topic of the tests, of which the program knows nothing. Without it they are the
+# Each links those above it. USES names topics declared before, whose first four a topic may include and link: never their
+# tables, and no circle can be written. DEPS are linked by the first three, EXPERIMENT_DEPS by the scene and the
+# experiments; nobody else sees them. ROOT holds the folders of a topic of the tests, of which the program knows nothing. Without it they are the
 # project's, and what was made is appended to the global properties GEOPRIOR_TOPIC_LIBRARIES (installed),
 # GEOPRIOR_TOPIC_NAMES (listed by experiments/topics.cpp) and GEOPRIOR_TOPIC_EXPERIMENTS (linked by the program).
 function(geoprior_topic topic)
-  cmake_parse_arguments(arg "" "ROOT" "DEPS;EXPERIMENT_DEPS" ${ARGN})
+  cmake_parse_arguments(arg "" "ROOT" "USES;DEPS;EXPERIMENT_DEPS" ${ARGN})
   set(root ${PROJECT_SOURCE_DIR})
   if(arg_ROOT)
     set(root ${arg_ROOT})
@@ -23,8 +25,18 @@ function(geoprior_topic topic)
     endif()
   endif()
   set(below geoprior::core)
+  set(scenes "")
+  foreach(used IN LISTS arg_USES)
+    if(NOT TARGET geoprior_${used})
+      message(FATAL_ERROR "geoprior_topic(${topic} USES ${used}): no topic '${used}' is declared before it and built")
+    endif()
+    list(APPEND below geoprior::${used})
+    if(TARGET geoprior_${used}_scene)
+      list(APPEND scenes geoprior_${used}_scene)
+    endif()
+  endforeach()
   foreach(room models baselines solvers)
-    file(GLOB sources CONFIGURE_DEPENDS ${root}/${room}/${topic}/*.cpp)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${root}/${room}/${topic}/*.cpp)
     if(sources)
       string(REPLACE "_solvers" "" name ${topic}_${room})
       geoprior_library(${name} SOURCES ${sources} PUBLIC ${below} PRIVATE ${arg_DEPS})
@@ -41,14 +53,21 @@ function(geoprior_topic topic)
   if(NOT GEOPRIOR_PROGRAM)
     return()
   endif()
-  file(GLOB sources CONFIGURE_DEPENDS ${root}/experiments/${topic}/*.cpp)
-  geoprior_spine_library(${topic}_experiments SOURCES ${sources} PUBLIC ${below} geoprior::metrics geoprior_testbed
-    PRIVATE ${arg_EXPERIMENT_DEPS} geoprior_cgal)
+  list(APPEND below geoprior::metrics geoprior_testbed ${scenes})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${root}/experiments/${topic}/*.cpp)
+  file(GLOB tables CONFIGURE_DEPENDS ${root}/experiments/${topic}/*.cpp)
+  list(REMOVE_ITEM sources ${tables})
+  if(sources)
+    geoprior_spine_library(${topic}_scene TIMED SOURCES ${sources} PUBLIC ${below} PRIVATE ${arg_EXPERIMENT_DEPS} geoprior_cgal)
+    target_include_directories(geoprior_${topic}_scene PUBLIC ${root})
+    list(APPEND below geoprior_${topic}_scene)
+  endif()
+  geoprior_spine_library(${topic}_experiments SOURCES ${tables} PUBLIC ${below} PRIVATE ${arg_EXPERIMENT_DEPS} geoprior_cgal)
   target_include_directories(geoprior_${topic}_experiments PUBLIC ${root})
   if(NOT arg_ROOT)
     set_property(GLOBAL APPEND PROPERTY GEOPRIOR_TOPIC_EXPERIMENTS geoprior_${topic}_experiments)
   endif()
-  file(GLOB sources CONFIGURE_DEPENDS ${root}/tests/${topic}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${root}/tests/${topic}/*.cpp)
   if(sources)
     geoprior_test(${topic} SOURCES ${sources} LIBS geoprior_${topic}_experiments geoprior_test_support ${arg_DEPS})
   endif()

@@ -6,7 +6,7 @@ namespace geoprior {
 
 /// Indexed triangle mesh: `V` one row per vertex (metres), `F` one row of vertex indices per
 /// triangle, counter-clockwise seen from outside. A value; whether it is closed or manifold is
-/// asked of core/topology.h.
+/// asked of core/geometry/topology.h.
 struct TriMesh {
   Eigen::MatrixX3d V;
   Eigen::MatrixX3i F;

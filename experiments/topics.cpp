@@ -5,6 +5,7 @@
 #define GEOPRIOR_TOPICS(TOPIC) \
   TOPIC(skinning)              \
   TOPIC(paper)                 \
+  TOPIC(sound)                 \
   TOPIC(fluid)                 \
   TOPIC(details)               \
   TOPIC(sketch)

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/inputs/trajectory.h"
 #include "core/options.h"
-#include "core/trajectory.h"
 
 namespace geoprior {
 

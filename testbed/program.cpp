@@ -12,8 +12,8 @@
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
 #include "testbed/commands/message_line.h"
-#include "testbed/runner/build_info.h"
-#include "testbed/runner/stop.h"
+#include "testbed/runner/process/build_info.h"
+#include "testbed/runner/process/stop.h"
 #include "testbed/streams.h"
 
 namespace geoprior {

@@ -16,7 +16,7 @@
 #include "core/options.h"
 #include "testbed/figure_view.h"
 #include "testbed/frame_sequence.h"
-#include "testbed/runner/option_listing.h"
+#include "testbed/runner/options/listing.h"
 
 namespace geoprior {
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <vector>
 
-#include "baselines/details/rest_density.h"
+#include "baselines/details/shared/rest_density.h"
 #include "core/parallel.h"
 #include "core/random.h"
-#include "models/details/detail_step.h"
 #include "models/details/point_grid.h"
+#include "models/details/step.h"
 
 namespace geoprior::details {
 namespace {

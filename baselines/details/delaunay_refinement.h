@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "baselines/details/density_moves.h"
-#include "models/details/detail_process.h"
+#include "baselines/details/shared/density_moves.h"
+#include "models/details/process.h"
 
 namespace geoprior::details {
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "core/options.h"
-#include "models/details/detail_process.h"
+#include "models/details/process.h"
 
 namespace geoprior::details {
 

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <utility>
 
-#include "models/paper/tear_frame.h"
-#include "models/paper/transfer.h"
-#include "models/paper/uniform_mesh.h"
+#include "models/paper/meshing/transfer.h"
+#include "models/paper/meshing/uniform_mesh.h"
+#include "models/paper/tear/frame.h"
 
 namespace geoprior::paper {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "models/paper/sheet_process.h"
-#include "models/paper/tear_growth.h"
-#include "models/paper/uniform_mesh.h"
+#include "models/paper/meshing/uniform_mesh.h"
+#include "models/paper/sheet/process.h"
+#include "models/paper/tear/growth.h"
 
 namespace geoprior::paper {
 

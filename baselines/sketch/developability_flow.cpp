@@ -1,7 +1,7 @@
 #include "baselines/sketch/developability_flow.h"
 
+#include "baselines/sketch/shared/symmetric_eigen.h"
 #include "core/parallel.h"
-#include "models/sketch/symmetric_eigen.h"
 
 namespace geoprior::sketch {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "baselines/sketch/star_geometry.h"
-#include "baselines/sketch/surface_descent.h"
+#include "baselines/sketch/shared/star_geometry.h"
+#include "baselines/sketch/shared/surface_descent.h"
 #include "core/mesh.h"
 #include "core/options.h"
 

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/frame_loop.h"
-#include "models/sketch/ellipse_fit.h"
+#include "models/sketch/drawing/ellipse_fit.h"
 
 namespace geoprior::sketch {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/frame.h"
 #include "core/method.h"
 #include "core/options.h"
-#include "models/sketch/drawing.h"
+#include "models/sketch/drawing/drawing.h"
 
 namespace geoprior::sketch {
 

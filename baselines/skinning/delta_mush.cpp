@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
+#include "baselines/skinning/shared/lanes.h"
 #include "core/error.h"
+#include "core/geometry/topology.h"
 #include "core/parallel.h"
-#include "core/topology.h"
-#include "models/skinning/lanes.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "baselines/skinning/linear_blend.h"
+#include "baselines/skinning/linear_blend/linear_blend.h"
+#include "core/inputs/rig.h"
 #include "core/options.h"
-#include "core/rig.h"
 
 namespace geoprior::skinning {
 

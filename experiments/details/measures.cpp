@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/mesh.h"
-#include "experiments/details/drawing.h"
-#include "metrics/drawn_pop.h"
+#include "experiments/details/scene/drawing.h"
+#include "metrics/contact/drawn_pop.h"
 
 namespace geoprior::details {
 namespace {

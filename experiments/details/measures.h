@@ -3,11 +3,11 @@
 #include <optional>
 
 #include "core/frame.h"
-#include "experiments/details/scene.h"
-#include "metrics/detail_continuity.h"
-#include "metrics/detail_spacing.h"
-#include "metrics/pair_curve.h"
-#include "metrics/radial_spectrum.h"
+#include "experiments/details/scene/scene.h"
+#include "metrics/spacing/detail_continuity.h"
+#include "metrics/spacing/detail_spacing.h"
+#include "metrics/spacing/pair_curve.h"
+#include "metrics/spacing/radial_spectrum.h"
 #include "testbed/frame_sequence.h"
 #include "testbed/memo.h"
 
@@ -92,11 +92,11 @@ struct MotionMeasures {
 MotionMeasures motion_measures(const DetailsScene& scene, const FrameSequence& frames);
 
 /// Largest displacement of the drawn surface from one frame to the next that the deformation of the
-/// bare one does not explain (metrics/drawn_pop.h), over the size of a detail of weight 1, a unit
-/// of the parameter, at the frames that the scene chooses. Both frames are drawn from their parts
-/// "surface" and "details". Samples of surfaces with holes, whose deepest points are no vertices,
-/// are a quarter of a radius apart: a hole is missed by at most a sixth of its radius. Absent
-/// without a `drawing`.
+/// bare one does not explain (metrics/contact/drawn_pop.h), over the size of a detail of weight 1,
+/// a unit of the parameter, at the frames that the scene chooses. Both frames are drawn from their
+/// parts "surface" and "details". Samples of surfaces with holes, whose deepest points are no
+/// vertices, are a quarter of a radius apart: a hole is missed by at most a sixth of its radius.
+/// Absent without a `drawing`.
 Value drawn_popping(const DetailsScene& scene, const FrameSequence& frames);
 
 }  // namespace geoprior::details

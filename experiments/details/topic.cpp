@@ -1,6 +1,6 @@
 #include "experiments/details/topic.h"
 
-#include "experiments/details/scene.h"
+#include "experiments/details/scene/scene.h"
 
 namespace geoprior::details {
 

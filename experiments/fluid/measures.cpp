@@ -7,12 +7,12 @@
 #include <numbers>
 
 #include "core/mesh.h"
-#include "metrics/dam_break.h"
-#include "metrics/self_contact.h"
-#include "metrics/shared_volume.h"
-#include "metrics/slosh.h"
-#include "metrics/surface_distance.h"
-#include "metrics/volume.h"
+#include "metrics/contact/self_contact.h"
+#include "metrics/shape/surface_distance.h"
+#include "metrics/volume/dam_break.h"
+#include "metrics/volume/shared_volume.h"
+#include "metrics/volume/slosh.h"
+#include "metrics/volume/volume.h"
 
 namespace geoprior::fluid {
 namespace {

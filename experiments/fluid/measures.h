@@ -3,12 +3,12 @@
 #include <optional>
 
 #include "core/frame.h"
-#include "experiments/fluid/scene.h"
-#include "metrics/closedness.h"
-#include "metrics/liquid_columns.h"
-#include "metrics/seam.h"
-#include "metrics/tracking_scores.h"
-#include "metrics/wave_modes.h"
+#include "experiments/fluid/scene/scene.h"
+#include "metrics/isometry/seam.h"
+#include "metrics/tracks/scores.h"
+#include "metrics/volume/closedness.h"
+#include "metrics/volume/liquid_columns.h"
+#include "metrics/volume/wave_modes.h"
 #include "testbed/frame_sequence.h"
 
 namespace geoprior::fluid {
@@ -32,7 +32,7 @@ LiquidMeasures liquid_measures(const FluidScene& scene, const Frame& frame);
 
 /// A surface that features were pasted into; absent for others.
 struct PasteMeasures {
-  double seam_angle = 0;  ///< rad: metrics/seam.h
+  double seam_angle = 0;  ///< rad: metrics/isometry/seam.h
   int intersecting_pairs = 0;
 };
 std::optional<PasteMeasures> paste_measures(const FluidScene& scene, const Frame& frame);
@@ -46,8 +46,8 @@ std::optional<SeamJumps> paste_jumps(const FluidScene& scene, const Frame& frame
 /// Absent without the part "particles" and for surfaces that are not closed.
 Value particle_overlap(const FluidScene& scene, const Frame& frame);
 
-/// Front Z = x / a and height H = h / (2a) of a dam break (metrics/dam_break.h); absent for scenes
-/// that are none.
+/// Front Z = x / a and height H = h / (2a) of a dam break (metrics/volume/dam_break.h); absent for
+/// scenes that are none.
 struct DamMeasures {
   double front_time = 0, height_time = 0;  ///< T and tau
   double front = 0, height = 0;

@@ -1,11 +1,11 @@
 #include <cmath>
 
-#include "baselines/fluid/liquid.h"
-#include "baselines/fluid/liquid_process.h"
-#include "baselines/fluid/ocean.h"
+#include "baselines/fluid/liquid/liquid.h"
+#include "baselines/fluid/liquid/process.h"
+#include "baselines/fluid/ocean/ocean.h"
 #include "core/limits.h"
-#include "experiments/fluid/extract_files.h"
-#include "experiments/fluid/scene.h"
+#include "experiments/fluid/scene/extract_files.h"
+#include "experiments/fluid/scene/scene.h"
 #include "experiments/fluid/topic.h"
 #include "solvers/fluid/extract.h"
 #include "solvers/fluid/sculpt.h"

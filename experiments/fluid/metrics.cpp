@@ -4,7 +4,7 @@
 
 #include "experiments/fluid/measures.h"
 #include "experiments/fluid/topic.h"
-#include "metrics/dam_break.h"
+#include "metrics/volume/dam_break.h"
 #include "testbed/metric_rows.h"
 
 namespace geoprior::fluid {

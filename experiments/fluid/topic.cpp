@@ -1,6 +1,6 @@
 #include "experiments/fluid/topic.h"
 
-#include "experiments/fluid/scene.h"
+#include "experiments/fluid/scene/scene.h"
 
 namespace geoprior::fluid {
 

@@ -4,14 +4,14 @@
 #include <memory>
 #include <optional>
 
-#include "core/curvature_fit.h"
 #include "core/frame.h"
-#include "experiments/paper/scene.h"
-#include "metrics/bending_energy.h"
-#include "metrics/developability.h"
-#include "metrics/isometry.h"
-#include "metrics/pattern_mesh.h"
-#include "models/paper/sheet.h"
+#include "core/geometry/curvature_fit.h"
+#include "experiments/paper/scene/scene.h"
+#include "metrics/developability/developability.h"
+#include "metrics/isometry/bending_energy.h"
+#include "metrics/isometry/isometry.h"
+#include "metrics/spacing/pattern_mesh.h"
+#include "models/paper/sheet/sheet.h"
 #include "testbed/frame_sequence.h"
 #include "testbed/memo.h"
 
@@ -40,7 +40,8 @@ SheetFrame sheet_frame(const PaperScene& scene, const Frame& frame);
 IsometrySummary sheet_isometry(const SheetFrame& f);
 DevelopabilitySummary sheet_developability(const SheetFrame& f);
 
-/// Folds, singular points and facets, on a common grid of the pattern (metrics/creases.h).
+/// Folds, singular points and facets, on a common grid of the pattern
+/// (metrics/developability/creases.h).
 struct CreaseMeasures {
   double crease_length = 0;  ///< m
   int cones = 0;             ///< detected apexes
@@ -60,7 +61,7 @@ using FitMemo = Memo<std::shared_ptr<const CurvatureFit>, 4>;
 /// Absent when a triangle has no area in the pattern or is turned over there.
 std::optional<EnergyMeasures> energy_measures(FitMemo& fits, const SheetFrame& f);
 
-/// How the sheet is folded along the edges of its mesh (metrics/folds.h).
+/// How the sheet is folded along the edges of its mesh (metrics/developability/folds.h).
 struct FoldMeasures {
   double cancelling_share = 0;
   double energy = 0;  ///< J
@@ -80,7 +81,7 @@ struct MotionMeasures {
 std::optional<MotionMeasures> motion_measures(FitMemo& fits, const PaperScene& scene,
                                               const FrameSequence& frames);
 
-/// The same of the patches of quadrics (metrics/bending_energy.h).
+/// The same of the patches of quadrics (metrics/isometry/bending_energy.h).
 using QuadricMemo = Memo<std::shared_ptr<const QuadricCurvature>, 4>;
 /// Elastic energy of bending by quadrics (J). Only where every method has a smooth sheet: two
 /// opposite sides of a rectangle held as segments and nothing else at work, as for
@@ -114,15 +115,15 @@ struct HandleForce {
 };
 std::optional<HandleForce> handle_force(const SheetFrame& f);
 
-/// Height of the middle against the closed form (metrics/elastica.h) at the distance of the ends,
-/// relative. Absent unless the scene is a strip: two opposite sides of a rectangle held as
-/// segments, no gravity, no obstacle and no other handle that acts at that time; and until it is
+/// Height of the middle against the closed form (metrics/isometry/elastica.h) at the distance of
+/// the ends, relative. Absent unless the scene is a strip: two opposite sides of a rectangle held
+/// as segments, no gravity, no obstacle and no other handle that acts at that time; and until it is
 /// shortened by a thousandth.
 Value elastica_error(const SheetFrame& f);
 
-/// Width of the buckled sector of a sheet pushed into a ring (degrees): metrics/buckled_sector.h
-/// about the point of the pattern that starts at the centre of the scene's first torus. Absent
-/// without a torus and before there is a cone.
+/// Width of the buckled sector of a sheet pushed into a ring (degrees):
+/// metrics/isometry/buckled_sector.h about the point of the pattern that starts at the centre of
+/// the scene's first torus. Absent without a torus and before there is a cone.
 Value ring_sector(const SheetFrame& f);
 
 /// Hausdorff distance of the two surfaces over the width of the pattern.

@@ -1,12 +1,12 @@
-#include "baselines/paper/adaptive.h"
+#include "baselines/paper/adaptive/adaptive.h"
 #include "baselines/paper/dense.h"
-#include "baselines/paper/modal_sound.h"
-#include "baselines/paper/plain_sounds.h"
-#include "experiments/paper/bank_cache.h"
-#include "experiments/paper/scene.h"
+#include "baselines/sound/modal/modal.h"
+#include "baselines/sound/plain_sounds.h"
+#include "experiments/paper/scene/scene.h"
 #include "experiments/paper/topic.h"
+#include "experiments/sound/scene/bank_cache.h"
 #include "solvers/paper/hybrid.h"
-#include "solvers/paper/sound.h"
+#include "solvers/sound/sound.h"
 #include "testbed/formats/wav_file.h"
 
 namespace geoprior::paper {

@@ -2,9 +2,9 @@
 #include <vector>
 
 #include "experiments/paper/measures.h"
-#include "experiments/paper/sound_measures.h"
 #include "experiments/paper/tear_measures.h"
 #include "experiments/paper/topic.h"
+#include "experiments/sound/measures.h"
 #include "testbed/metric_rows.h"
 
 namespace geoprior::paper {

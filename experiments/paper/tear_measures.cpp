@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "models/paper/lips.h"
+#include "models/paper/tear/lips.h"
 
 namespace geoprior::paper {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "experiments/paper/measures.h"
-#include "metrics/tear_path.h"
+#include "metrics/tracks/tear_path.h"
 
 namespace geoprior::paper {
 

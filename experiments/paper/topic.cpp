@@ -1,7 +1,7 @@
 #include "experiments/paper/topic.h"
 
-#include "experiments/paper/bank_cache.h"
-#include "experiments/paper/scene.h"
+#include "experiments/paper/scene/scene.h"
+#include "experiments/sound/scene/bank_cache.h"
 
 namespace geoprior::paper {
 namespace {

@@ -5,13 +5,13 @@
 #include <string_view>
 #include <utility>
 
-#include "baselines/sketch/abf.h"
-#include "baselines/sketch/cgal_flatten.h"
-#include "baselines/sketch/exact_hull.h"
-#include "baselines/sketch/hull_surface.h"
-#include "baselines/sketch/lscm.h"
+#include "baselines/sketch/flatten/abf.h"
+#include "baselines/sketch/flatten/cgal_flatten.h"
+#include "baselines/sketch/flatten/lscm.h"
+#include "baselines/sketch/visual_hull/exact_hull.h"
+#include "baselines/sketch/visual_hull/visual_hull.h"
 #include "core/error.h"
-#include "experiments/sketch/scene.h"
+#include "experiments/sketch/scene/scene.h"
 #include "solvers/sketch/several_views.h"
 
 namespace geoprior::sketch {

@@ -12,13 +12,13 @@
 
 #include "core/angles.h"
 #include "core/connectivity.h"
-#include "core/topology.h"
-#include "metrics/developability.h"
-#include "metrics/fold_angle.h"
-#include "metrics/mirror_symmetry.h"
-#include "metrics/seam_lengths.h"
-#include "metrics/silhouette_depth.h"
-#include "models/sketch/polyline.h"
+#include "core/geometry/topology.h"
+#include "metrics/developability/developability.h"
+#include "metrics/developability/fold_angle.h"
+#include "metrics/isometry/seam_lengths.h"
+#include "metrics/shape/mirror_symmetry.h"
+#include "metrics/shape/silhouette_depth.h"
+#include "models/sketch/drawing/polyline.h"
 
 namespace geoprior::sketch {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/frame.h"
-#include "experiments/sketch/scene.h"
+#include "experiments/sketch/scene/scene.h"
 #include "testbed/metric_rows.h"
 
 namespace geoprior::sketch {

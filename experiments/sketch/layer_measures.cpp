@@ -10,16 +10,16 @@
 #include <vector>
 
 #include "core/angles.h"
-#include "core/planar.h"
-#include "core/topology.h"
-#include "core/triangle_tree.h"
-#include "metrics/circular_arc.h"
-#include "metrics/intersection_depth.h"
-#include "metrics/mirror_symmetry.h"
-#include "metrics/rim_cover.h"
-#include "metrics/self_contact.h"
-#include "models/sketch/polyline.h"
-#include "solvers/sketch/mirror_plane.h"
+#include "core/geometry/planar.h"
+#include "core/geometry/topology.h"
+#include "core/geometry/triangle_tree.h"
+#include "metrics/contact/intersection_depth.h"
+#include "metrics/contact/self_contact.h"
+#include "metrics/isometry/circular_arc.h"
+#include "metrics/shape/mirror_symmetry.h"
+#include "metrics/spacing/rim_cover.h"
+#include "models/sketch/drawing/polyline.h"
+#include "solvers/sketch/drawing/mirror_plane.h"
 
 namespace geoprior::sketch {
 namespace {

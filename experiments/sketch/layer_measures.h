@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/frame.h"
-#include "experiments/sketch/scene.h"
+#include "experiments/sketch/scene/scene.h"
 
 namespace geoprior::sketch {
 

@@ -8,10 +8,10 @@
 #include <span>
 
 #include "core/angles.h"
-#include "metrics/depth_error.h"
-#include "metrics/projected_holes.h"
-#include "metrics/seam_lengths.h"
-#include "metrics/silhouette.h"
+#include "metrics/isometry/seam_lengths.h"
+#include "metrics/shape/depth_error.h"
+#include "metrics/shape/silhouette.h"
+#include "metrics/spacing/projected_holes.h"
 
 namespace geoprior::sketch {
 namespace {

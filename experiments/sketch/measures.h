@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/frame.h"
-#include "experiments/sketch/scene.h"
-#include "metrics/developability.h"
-#include "metrics/flattening.h"
+#include "experiments/sketch/scene/scene.h"
+#include "metrics/developability/developability.h"
+#include "metrics/isometry/flattening.h"
 
 namespace geoprior::sketch {
 

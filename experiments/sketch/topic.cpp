@@ -1,7 +1,7 @@
 #include "experiments/sketch/topic.h"
 
-#include "experiments/sketch/scene.h"
-#include "experiments/sketch/stroke_kinds.h"
+#include "experiments/sketch/drawing/stroke_kinds.h"
+#include "experiments/sketch/scene/scene.h"
 
 namespace geoprior::sketch {
 

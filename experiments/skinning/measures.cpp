@@ -6,13 +6,13 @@
 #include <limits>
 #include <string>
 
-#include "baselines/skinning/dual_quaternion.h"
+#include "baselines/skinning/dual_quaternion/dual_quaternion.h"
 #include "core/error.h"
-#include "core/topology.h"
-#include "metrics/bend_side.h"
-#include "metrics/pose_return.h"
-#include "metrics/self_contact.h"
-#include "metrics/volume.h"
+#include "core/geometry/topology.h"
+#include "metrics/contact/pose_return.h"
+#include "metrics/contact/self_contact.h"
+#include "metrics/developability/bend_side.h"
+#include "metrics/volume/volume.h"
 
 namespace geoprior::skinning {
 namespace {

@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "core/frame.h"
-#include "experiments/skinning/scene.h"
-#include "metrics/cross_section.h"
-#include "metrics/distance.h"
-#include "metrics/distortion.h"
-#include "metrics/harm.h"
-#include "metrics/mid_ring.h"
-#include "metrics/overlap_volume.h"
-#include "metrics/roughness.h"
-#include "metrics/smoothness.h"
+#include "experiments/skinning/scene/scene.h"
+#include "metrics/contact/harm.h"
+#include "metrics/isometry/distortion.h"
+#include "metrics/shape/cross_section.h"
+#include "metrics/shape/distance.h"
+#include "metrics/shape/mid_ring.h"
+#include "metrics/shape/roughness.h"
+#include "metrics/shape/smoothness.h"
+#include "metrics/volume/overlap_volume.h"
 #include "testbed/memo.h"
 
 namespace geoprior::skinning {

@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "experiments/skinning/axis_guess.h"
-#include "experiments/skinning/characters.h"
+#include "experiments/skinning/scene/axis_guess.h"
+#include "experiments/skinning/scene/characters.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/number_text.h"
-#include "testbed/runner/option_json.h"
+#include "testbed/runner/options/json.h"
 
 namespace geoprior::skinning {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "core/inputs/skeleton.h"
 #include "core/options.h"
-#include "core/skeleton.h"
 #include "testbed/topic.h"
 
 namespace geoprior::skinning {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "experiments/skinning/rig_command.h"
-#include "experiments/skinning/scene.h"
-#include "experiments/skinning/skeleton_file.h"
+#include "experiments/skinning/scene/scene.h"
+#include "experiments/skinning/scene/skeleton_file.h"
 
 namespace geoprior::skinning {
 namespace {

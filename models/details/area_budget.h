@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "models/details/detail_mesh.h"
+#include "models/details/mesh.h"
 
 namespace geoprior::details {
 

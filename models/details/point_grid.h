@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "models/details/detail_mesh.h"
+#include "models/details/mesh.h"
 
 namespace geoprior::details {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/connectivity.h"
-#include "models/details/detail_scene.h"
+#include "models/details/scene.h"
 
 namespace geoprior::details {
 

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "core/frame_loop.h"
-#include "core/topology.h"
-#include "models/sketch/drawing_part.h"
-#include "models/sketch/flat_stretch.h"
+#include "core/geometry/topology.h"
+#include "models/sketch/drawing/drawing_part.h"
+#include "models/sketch/flatten/flat_stretch.h"
 
 namespace geoprior::sketch {
 namespace {

@@ -13,13 +13,13 @@
 #include "core/method.h"
 #include "core/options.h"
 #include "core/state_bytes.h"
-#include "models/sketch/align_views.h"
-#include "models/sketch/drawing.h"
-#include "models/sketch/make_pattern.h"
-#include "models/sketch/pattern.h"
-#include "models/sketch/sketch_surface.h"
-#include "models/sketch/suggested_seam.h"
-#include "models/sketch/taubin.h"
+#include "models/sketch/drawing/align_views.h"
+#include "models/sketch/drawing/drawing.h"
+#include "models/sketch/pattern/make_pattern.h"
+#include "models/sketch/pattern/pattern.h"
+#include "models/sketch/pattern/suggested_seam.h"
+#include "models/sketch/surface/sketch_surface.h"
+#include "models/sketch/surface/taubin.h"
 
 namespace geoprior::sketch {
 

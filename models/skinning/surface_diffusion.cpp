@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/numerics/sparse_ldlt.h"
 #include "core/parallel.h"
-#include "core/sparse_ldlt.h"
 
 namespace geoprior::skinning {
 namespace {

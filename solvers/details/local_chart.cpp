@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/angles.h"
-#include "core/planar.h"
+#include "core/geometry/planar.h"
 
 namespace geoprior::details {
 namespace {

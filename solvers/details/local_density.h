@@ -1,6 +1,6 @@
 #pragma once
 
-#include "models/details/detail_mesh.h"
+#include "models/details/mesh.h"
 
 namespace geoprior::details {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/options.h"
-#include "models/details/detail_mesh.h"
+#include "models/details/mesh.h"
 #include "solvers/details/local_chart.h"
 
 namespace geoprior::details {

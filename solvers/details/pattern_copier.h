@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/options.h"
-#include "models/details/detail_mesh.h"
+#include "models/details/mesh.h"
 #include "models/details/point_grid.h"
 #include "solvers/details/pair_correlation.h"
 #include "solvers/details/triplet_table.h"

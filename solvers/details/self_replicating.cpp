@@ -15,7 +15,7 @@
 #include "core/parallel.h"
 #include "core/state_bytes.h"
 #include "models/details/area_budget.h"
-#include "models/details/detail_step.h"
+#include "models/details/step.h"
 #include "solvers/details/local_density.h"
 
 namespace geoprior::details {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/options.h"
-#include "models/details/detail_process.h"
+#include "models/details/process.h"
 #include "solvers/details/pattern_copier.h"
 
 namespace geoprior::details {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/planar.h"
+#include "core/geometry/planar.h"
 
 namespace geoprior::details {
 namespace {}  // namespace

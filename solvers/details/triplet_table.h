@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/options.h"
-#include "models/details/detail_mesh.h"
+#include "models/details/mesh.h"
 
 namespace geoprior::details {
 

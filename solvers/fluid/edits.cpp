@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "core/trajectory.h"
+#include "core/inputs/trajectory.h"
 
 namespace geoprior::fluid {
 namespace {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/context.h"
-#include "core/surface_sequence.h"
+#include "core/inputs/surface_sequence.h"
 #include "solvers/fluid/feature.h"
-#include "solvers/fluid/segmentation.h"
-#include "solvers/fluid/tracking.h"
+#include "solvers/fluid/features/segmentation.h"
+#include "solvers/fluid/tracking/tracking.h"
 
 namespace geoprior::fluid {
 

@@ -7,7 +7,7 @@
 
 #include "core/mesh.h"
 #include "core/options.h"
-#include "solvers/fluid/tracking.h"
+#include "solvers/fluid/tracking/tracking.h"
 
 namespace geoprior::fluid {
 

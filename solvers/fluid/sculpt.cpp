@@ -9,8 +9,8 @@
 
 #include "core/error.h"
 #include "core/frame_loop.h"
-#include "solvers/fluid/lift.h"
-#include "solvers/fluid/lifted_frames.h"
+#include "solvers/fluid/lift/lift.h"
+#include "solvers/fluid/lift/lifted_frames.h"
 #include "solvers/fluid/warnings.h"
 
 namespace geoprior::fluid {

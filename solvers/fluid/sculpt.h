@@ -5,7 +5,7 @@
 #include "core/method.h"
 #include "core/options.h"
 #include "solvers/fluid/extraction.h"
-#include "solvers/fluid/paste.h"
+#include "solvers/fluid/paste/paste.h"
 #include "solvers/fluid/sculpt_scene.h"
 
 namespace geoprior::fluid {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/surface_sequence.h"
+#include "core/inputs/surface_sequence.h"
 #include "solvers/fluid/edits.h"
 #include "solvers/fluid/feature.h"
 

@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "models/paper/settle.h"
-#include "models/paper/sheet_process.h"
-#include "models/paper/tear_growth.h"
-#include "solvers/paper/structure.h"
+#include "models/paper/sheet/process.h"
+#include "models/paper/sheet/settle.h"
+#include "models/paper/tear/growth.h"
+#include "solvers/paper/sheet/structure.h"
 
 namespace geoprior::paper {
 

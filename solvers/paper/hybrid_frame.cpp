@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "models/paper/pattern.h"
+#include "models/paper/sheet/pattern.h"
 
 namespace geoprior::paper {
 namespace {

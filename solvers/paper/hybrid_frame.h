@@ -1,9 +1,9 @@
 #pragma once
 
 #include "core/frame.h"
-#include "models/paper/shell_state.h"
-#include "solvers/paper/ruling_mesh.h"
-#include "solvers/paper/structure.h"
+#include "models/paper/shell/state.h"
+#include "solvers/paper/meshing/ruling_mesh.h"
+#include "solvers/paper/sheet/structure.h"
 
 namespace geoprior::paper {
 

@@ -6,10 +6,10 @@
 
 #include "core/connectivity.h"
 #include "core/error.h"
-#include "solvers/sketch/dense_matches.h"
-#include "solvers/sketch/fair_patch.h"
-#include "solvers/sketch/ruled_patches.h"
-#include "solvers/sketch/symmetric_pairs.h"
+#include "solvers/sketch/drawing/dense_matches.h"
+#include "solvers/sketch/drawing/symmetric_pairs.h"
+#include "solvers/sketch/surface/fair_patch.h"
+#include "solvers/sketch/surface/ruled_patches.h"
 
 namespace geoprior::sketch {
 namespace {

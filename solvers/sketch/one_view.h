@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "core/options.h"
-#include "models/sketch/drawing.h"
-#include "solvers/sketch/curve_net.h"
-#include "solvers/sketch/depth_system.h"
-#include "solvers/sketch/drawn_panels.h"
-#include "solvers/sketch/mirror_plane.h"
-#include "solvers/sketch/mirror_surface.h"
-#include "solvers/sketch/refine_depth.h"
-#include "solvers/sketch/ruled_fill.h"
-#include "solvers/sketch/ruled_patches.h"
-#include "solvers/sketch/ruling_warp.h"
+#include "models/sketch/drawing/drawing.h"
+#include "solvers/sketch/drawing/curve_net.h"
+#include "solvers/sketch/drawing/depth_system.h"
+#include "solvers/sketch/drawing/drawn_panels.h"
+#include "solvers/sketch/drawing/mirror_plane.h"
+#include "solvers/sketch/drawing/mirror_surface.h"
+#include "solvers/sketch/surface/refine_depth.h"
+#include "solvers/sketch/surface/ruled_fill.h"
+#include "solvers/sketch/surface/ruled_patches.h"
+#include "solvers/sketch/surface/ruling_warp.h"
 
 namespace geoprior::sketch {
 

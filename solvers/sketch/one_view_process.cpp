@@ -7,8 +7,8 @@
 
 #include "core/connectivity.h"
 #include "core/frame_loop.h"
-#include "core/topology.h"
-#include "models/sketch/drawing_part.h"
+#include "core/geometry/topology.h"
+#include "models/sketch/drawing/drawing_part.h"
 #include "models/sketch/sketch_process.h"
 
 namespace geoprior::sketch {

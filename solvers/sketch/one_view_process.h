@@ -8,7 +8,7 @@
 
 #include "core/frame.h"
 #include "core/method.h"
-#include "models/sketch/make_pattern.h"
+#include "models/sketch/pattern/make_pattern.h"
 #include "solvers/sketch/one_view.h"
 
 namespace geoprior::sketch {

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/connectivity.h"
-#include "models/sketch/polyline.h"
-#include "solvers/sketch/pinned_transfer.h"
+#include "models/sketch/drawing/polyline.h"
+#include "solvers/sketch/surface/pinned_transfer.h"
 
 namespace geoprior::sketch {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "core/options.h"
 #include "models/sketch/sketch_process.h"
-#include "solvers/sketch/developable_rotation.h"
-#include "solvers/sketch/fold_rotation.h"
-#include "solvers/sketch/seam_suggestion.h"
-#include "solvers/sketch/zippering.h"
+#include "solvers/sketch/pattern/seam_suggestion.h"
+#include "solvers/sketch/surface/developable_rotation.h"
+#include "solvers/sketch/surface/fold_rotation.h"
+#include "solvers/sketch/surface/zippering.h"
 
 namespace geoprior::sketch {
 

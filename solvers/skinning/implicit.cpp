@@ -5,18 +5,18 @@
 #include <numbers>
 #include <optional>
 
-#include "baselines/skinning/dual_quaternion.h"
+#include "baselines/skinning/dual_quaternion/dual_quaternion.h"
 #include "core/error.h"
+#include "core/geometry/topology.h"
 #include "core/limits.h"
 #include "core/parallel.h"
-#include "core/topology.h"
-#include "solvers/skinning/composition.h"
-#include "solvers/skinning/contact_smoothing.h"
-#include "solvers/skinning/pose_path.h"
-#include "solvers/skinning/projection.h"
-#include "solvers/skinning/relaxation.h"
-#include "solvers/skinning/skin_state.h"
-#include "solvers/skinning/smooth_projection.h"
+#include "solvers/skinning/field/composition.h"
+#include "solvers/skinning/projection/contact_smoothing.h"
+#include "solvers/skinning/projection/pose_path.h"
+#include "solvers/skinning/projection/projection.h"
+#include "solvers/skinning/projection/relaxation.h"
+#include "solvers/skinning/projection/skin_state.h"
+#include "solvers/skinning/smooth/projection.h"
 
 namespace geoprior::skinning {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/context.h"
-#include "core/rig.h"
+#include "core/inputs/rig.h"
 #include "solvers/skinning/implicit_options.h"
 
 namespace geoprior::skinning {

@@ -14,15 +14,15 @@
 #include "testbed/commands/outcome.h"
 #include "testbed/home.h"
 #include "testbed/joined.h"
-#include "testbed/runner/build_info.h"
-#include "testbed/runner/claims.h"
-#include "testbed/runner/content_hash.h"
-#include "testbed/runner/headlines.h"
-#include "testbed/runner/measured_run.h"
-#include "testbed/runner/reference_diff.h"
+#include "testbed/runner/journal/content_hash.h"
+#include "testbed/runner/judgement/claims.h"
+#include "testbed/runner/judgement/measured_run.h"
+#include "testbed/runner/process/build_info.h"
+#include "testbed/runner/process/stop.h"
+#include "testbed/runner/reference/diff.h"
+#include "testbed/runner/reference/headlines.h"
 #include "testbed/runner/run_folder.h"
-#include "testbed/runner/stop.h"
-#include "testbed/runner/toml_tree.h"
+#include "testbed/runner/spec/toml_tree.h"
 
 namespace geoprior {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "testbed/commands/commands.h"
-#include "testbed/runner/spec.h"
+#include "testbed/runner/spec/spec.h"
 
 namespace geoprior {
 

@@ -6,7 +6,7 @@
 #include "testbed/formats/input_file.h"
 #include "testbed/home.h"
 #include "testbed/runner/run_folder.h"
-#include "testbed/runner/toml_tree.h"
+#include "testbed/runner/spec/toml_tree.h"
 
 namespace geoprior {
 namespace {

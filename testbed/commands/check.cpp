@@ -12,13 +12,13 @@
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
 #include "testbed/commands/outcome.h"
-#include "testbed/runner/claims.h"
+#include "testbed/runner/judgement/claims.h"
 #include "testbed/runner/opened_run.h"
-#include "testbed/runner/reference.h"
-#include "testbed/runner/reference_diff.h"
-#include "testbed/runner/run_difference.h"
+#include "testbed/runner/process/stop.h"
+#include "testbed/runner/reference/diff.h"
+#include "testbed/runner/reference/reference.h"
+#include "testbed/runner/reference/run_difference.h"
 #include "testbed/runner/run_folder.h"
-#include "testbed/runner/stop.h"
 
 namespace geoprior {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "core/error.h"
 #include "testbed/commands/console.h"
-#include "testbed/runner/jobs.h"
-#include "testbed/runner/reference.h"
-#include "testbed/runner/stop.h"
+#include "testbed/runner/process/jobs.h"
+#include "testbed/runner/process/stop.h"
+#include "testbed/runner/reference/reference.h"
 #include "testbed/streams.h"
 
 namespace geoprior {

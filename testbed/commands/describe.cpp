@@ -3,11 +3,11 @@
 #include "core/error.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
-#include "testbed/runner/measure.h"
+#include "testbed/runner/judgement/measure.h"
 #include "testbed/runner/number_text.h"
-#include "testbed/runner/option_listing.h"
-#include "testbed/runner/spec_tables.h"
-#include "testbed/runner/toml_tree.h"
+#include "testbed/runner/options/listing.h"
+#include "testbed/runner/spec/tables.h"
+#include "testbed/runner/spec/toml_tree.h"
 
 namespace geoprior {
 namespace {

@@ -3,7 +3,7 @@
 #include "testbed/commands/catalogue.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
-#include "testbed/runner/measure.h"
+#include "testbed/runner/judgement/measure.h"
 
 namespace geoprior {
 namespace {

@@ -6,7 +6,7 @@
 #include "testbed/commands/catalogue.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
-#include "testbed/runner/claims.h"
+#include "testbed/runner/judgement/claims.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/opened_run.h"
 

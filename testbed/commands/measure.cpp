@@ -6,8 +6,8 @@
 #include "testbed/commands/console.h"
 #include "testbed/commands/outcome.h"
 #include "testbed/commands/pictures.h"
-#include "testbed/runner/measured_run.h"
-#include "testbed/runner/stop.h"
+#include "testbed/runner/judgement/measured_run.h"
+#include "testbed/runner/process/stop.h"
 
 namespace geoprior {
 namespace {

@@ -8,10 +8,10 @@
 #include <set>
 
 #include "testbed/commands/console.h"
-#include "testbed/runner/claims.h"
-#include "testbed/runner/frames_text.h"
+#include "testbed/runner/journal/frames_text.h"
+#include "testbed/runner/judgement/claims.h"
+#include "testbed/runner/judgement/timing_statistics.h"
 #include "testbed/runner/number_text.h"
-#include "testbed/runner/timing_statistics.h"
 
 namespace geoprior {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "testbed/runner/run_record.h"
+#include "testbed/runner/journal/run_record.h"
 
 namespace geoprior {
 

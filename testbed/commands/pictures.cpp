@@ -4,9 +4,9 @@
 
 #include "core/error.h"
 #include "testbed/home.h"
+#include "testbed/view/media/spectrogram.h"
 #include "testbed/view/python.h"
 #include "testbed/view/render.h"
-#include "testbed/view/spectrogram.h"
 
 namespace geoprior {
 

@@ -9,7 +9,7 @@
 #include "testbed/commands/outcome.h"
 #include "testbed/commands/pictures.h"
 #include "testbed/runner/execute.h"
-#include "testbed/runner/stop.h"
+#include "testbed/runner/process/stop.h"
 
 namespace geoprior {
 namespace {

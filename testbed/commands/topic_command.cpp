@@ -2,7 +2,7 @@
 
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
-#include "testbed/runner/option_toml.h"
+#include "testbed/runner/options/toml.h"
 
 namespace geoprior {
 namespace {

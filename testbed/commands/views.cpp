@@ -7,12 +7,12 @@
 #include "testbed/commands/outcome.h"
 #include "testbed/commands/pictures.h"
 #include "testbed/formats/folders.h"
+#include "testbed/runner/process/stop.h"
 #include "testbed/runner/run_folder.h"
-#include "testbed/runner/stop.h"
 #include "testbed/view/export.h"
+#include "testbed/view/media/spectrogram.h"
+#include "testbed/view/media/video.h"
 #include "testbed/view/render.h"
-#include "testbed/view/spectrogram.h"
-#include "testbed/view/video.h"
 
 namespace geoprior {
 

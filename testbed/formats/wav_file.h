@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/sound.h"
+#include "core/inputs/sound.h"
 
 namespace geoprior {
 

@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "testbed/runner/quantity.h"
-#include "testbed/runner/timing_statistics.h"
+#include "testbed/runner/judgement/timing_statistics.h"
+#include "testbed/runner/options/quantity.h"
 
 namespace geoprior {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/method.h"
-#include "testbed/runner/run_context.h"
-#include "testbed/runner/run_record.h"
+#include "testbed/runner/journal/run_record.h"
+#include "testbed/runner/process/run_context.h"
 
 namespace geoprior {
 

@@ -5,14 +5,14 @@
 #include "core/error.h"
 #include "core/limits.h"
 #include "testbed/runner/benchmark.h"
-#include "testbed/runner/frames_text.h"
-#include "testbed/runner/measure.h"
-#include "testbed/runner/peak_memory.h"
+#include "testbed/runner/journal/frames_text.h"
+#include "testbed/runner/journal/sha256.h"
+#include "testbed/runner/judgement/measure.h"
+#include "testbed/runner/process/peak_memory.h"
+#include "testbed/runner/process/stop.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/scene_camera.h"
-#include "testbed/runner/scene_place.h"
-#include "testbed/runner/sha256.h"
-#include "testbed/runner/stop.h"
+#include "testbed/runner/spec/scene_place.h"
 
 namespace geoprior {
 namespace {

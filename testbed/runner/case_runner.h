@@ -8,10 +8,10 @@
 
 #include "testbed/runner/benchmark.h"
 #include "testbed/runner/execute.h"
-#include "testbed/runner/progress.h"
-#include "testbed/runner/recorded_frames.h"
-#include "testbed/runner/recorder.h"
-#include "testbed/runner/run_context.h"
+#include "testbed/runner/journal/recorded_frames.h"
+#include "testbed/runner/journal/recorder.h"
+#include "testbed/runner/process/progress.h"
+#include "testbed/runner/process/run_context.h"
 #include "testbed/runner/run_state.h"
 #include "testbed/topic.h"
 

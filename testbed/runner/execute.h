@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "testbed/runner/run_record.h"
-#include "testbed/runner/spec.h"
+#include "testbed/runner/journal/run_record.h"
+#include "testbed/runner/spec/spec.h"
 
 namespace geoprior {
 

@@ -5,11 +5,11 @@
 #include <thread>
 #include <utility>
 
-#include "testbed/runner/journal.h"
+#include "testbed/runner/journal/journal.h"
+#include "testbed/runner/journal/sha256.h"
 #include "testbed/runner/making_lock.h"
+#include "testbed/runner/process/stop.h"
 #include "testbed/runner/run_folder.h"
-#include "testbed/runner/sha256.h"
-#include "testbed/runner/stop.h"
 #include "testbed/streams.h"
 
 namespace geoprior {

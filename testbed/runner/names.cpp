@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
-#include "testbed/runner/event_table.h"
+#include "testbed/runner/journal/event_table.h"
 #include "testbed/streams.h"
 
 namespace geoprior {

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "testbed/runner/journal.h"
-#include "testbed/runner/run_record.h"
+#include "testbed/runner/journal/journal.h"
+#include "testbed/runner/journal/run_record.h"
 
 namespace geoprior {
 

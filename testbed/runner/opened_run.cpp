@@ -7,9 +7,9 @@
 
 #include "core/error.h"
 #include "testbed/formats/folders.h"
-#include "testbed/formats/vtk_files.h"
-#include "testbed/runner/journal.h"
-#include "testbed/runner/sha256.h"
+#include "testbed/formats/vtk/files.h"
+#include "testbed/runner/journal/journal.h"
+#include "testbed/runner/journal/sha256.h"
 #include "testbed/streams.h"
 
 namespace geoprior {

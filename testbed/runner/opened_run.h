@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "testbed/runner/run_record.h"
+#include "testbed/runner/journal/run_record.h"
 
 namespace geoprior {
 

@@ -7,7 +7,7 @@
 
 #include "testbed/formats/folders.h"
 #include "testbed/runner/execute.h"
-#include "testbed/runner/spec.h"
+#include "testbed/runner/spec/spec.h"
 
 namespace geoprior {
 

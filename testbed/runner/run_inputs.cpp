@@ -10,7 +10,7 @@
 #include "testbed/runner/made_run.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/opened_run.h"
-#include "testbed/runner/option_copy.h"
+#include "testbed/runner/options/copy.h"
 #include "testbed/runner/run_folder.h"
 
 namespace geoprior {

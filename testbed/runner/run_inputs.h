@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "testbed/runner/execute.h"
-#include "testbed/runner/spec.h"
+#include "testbed/runner/spec/spec.h"
 
 namespace geoprior {
 

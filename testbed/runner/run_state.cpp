@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "core/error.h"
-#include "testbed/runner/event_table.h"
+#include "testbed/runner/journal/event_table.h"
 #include "testbed/runner/names.h"
 
 namespace geoprior {

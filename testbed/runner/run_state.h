@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "testbed/runner/journal.h"
-#include "testbed/runner/run_record.h"
-#include "testbed/runner/spec.h"
+#include "testbed/runner/journal/journal.h"
+#include "testbed/runner/journal/run_record.h"
+#include "testbed/runner/spec/spec.h"
 
 namespace geoprior {
 

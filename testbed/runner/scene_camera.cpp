@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "testbed/runner/option_json.h"
-#include "testbed/runner/option_toml.h"
+#include "testbed/runner/options/json.h"
+#include "testbed/runner/options/toml.h"
 
 namespace geoprior {
 namespace {

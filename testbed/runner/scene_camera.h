@@ -4,7 +4,7 @@
 
 #include "core/options.h"
 #include "testbed/figure_view.h"
-#include "testbed/runner/run_record.h"
+#include "testbed/runner/journal/run_record.h"
 
 namespace geoprior {
 

@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "testbed/runner/stop.h"
+#include "testbed/runner/process/stop.h"
 
 extern char** environ;  // NOLINT: POSIX
 

@@ -17,7 +17,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "testbed/runner/stop.h"
+#include "testbed/runner/process/stop.h"
 #include "testbed/view/child_process.h"
 
 namespace geoprior {

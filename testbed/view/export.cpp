@@ -15,9 +15,9 @@
 #include "core/mesh.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/folders.h"
-#include "testbed/formats/gltf_writer.h"
-#include "testbed/runner/run_record.h"
-#include "testbed/runner/stop.h"
+#include "testbed/formats/gltf/writer.h"
+#include "testbed/runner/journal/run_record.h"
+#include "testbed/runner/process/stop.h"
 #include "testbed/view/mesh_text.h"
 
 namespace geoprior {

@@ -4,8 +4,8 @@
 
 #include "testbed/runner/scene_camera.h"
 #include "testbed/view/display.h"
-#include "testbed/view/figure_layout.h"
-#include "testbed/view/frame_times.h"
+#include "testbed/view/figure/frame_times.h"
+#include "testbed/view/figure/layout.h"
 
 namespace geoprior {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
-#include "testbed/view/actors.h"
+#include "testbed/view/panel/actors.h"
 
 namespace geoprior {
 namespace {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/frame.h"
-#include "testbed/runner/spec.h"
-#include "testbed/view/panel.h"
+#include "testbed/runner/spec/spec.h"
+#include "testbed/view/panel/panel.h"
 
 namespace geoprior {
 

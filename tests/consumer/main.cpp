@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "baselines/skinning/dual_quaternion.h"
-#include "core/procedural.h"
+#include "baselines/skinning/dual_quaternion/dual_quaternion.h"
+#include "core/geometry/procedural.h"
 
 int main() {
   const geoprior::CylinderOptions options;

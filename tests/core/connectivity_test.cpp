@@ -6,7 +6,7 @@
 #include <map>
 
 #include "core/error.h"
-#include "tests/core/shapes.h"
+#include "tests/core/geometry/shapes.h"
 
 namespace geoprior {
 namespace {

@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-#include "core/procedural.h"
+#include "core/geometry/procedural.h"
 
 namespace geoprior {
 namespace {

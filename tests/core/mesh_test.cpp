@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/core/shapes.h"
+#include "tests/core/geometry/shapes.h"
 
 namespace geoprior {
 namespace {

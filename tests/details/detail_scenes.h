@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/random.h"
-#include "models/details/detail_scene.h"
-#include "tests/core/shapes.h"
+#include "models/details/scene.h"
+#include "tests/core/geometry/shapes.h"
 
 namespace geoprior::details::detail_scenes {
 

@@ -8,7 +8,7 @@
 
 #include "core/mesh.h"
 #include "core/random.h"
-#include "models/details/detail_mesh.h"
+#include "models/details/mesh.h"
 
 namespace geoprior::details::detail_scenes {
 

@@ -2,18 +2,18 @@
 #include <fstream>
 #include <functional>
 
-#include "experiments/details/position_file.h"
-#include "experiments/fluid/exr_maps.h"
-#include "experiments/fluid/feature_files.h"
-#include "experiments/paper/svg_pattern.h"
-#include "experiments/sketch/drawing_file.h"
-#include "testbed/formats/svg_document.h"
+#include "experiments/details/scene/position_file.h"
+#include "experiments/fluid/scene/exr_maps.h"
+#include "experiments/fluid/scene/feature_files.h"
+#include "experiments/paper/scene/svg_pattern.h"
+#include "experiments/sketch/drawing/drawing_file.h"
+#include "testbed/formats/svg/document.h"
 #include "testbed/formats/wav_file.h"
-#include "testbed/runner/run_file.h"
+#include "testbed/runner/journal/run_file.h"
 #include "tests/fuzz/allow_error.h"
 #include "tests/fuzz/scratch_file.h"
 #include "tests/fuzz/targets.h"
-#include "tests/testbed/octahedron.h"
+#include "tests/testbed/formats/octahedron.h"
 
 namespace geoprior::test {
 namespace {

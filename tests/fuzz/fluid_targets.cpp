@@ -1,6 +1,6 @@
-#include "experiments/fluid/edit_list.h"
-#include "testbed/formats/sequence_files_pvd.h"
-#include "testbed/formats/sequence_files_sidecar.h"
+#include "experiments/fluid/scene/edit_list.h"
+#include "testbed/formats/sequence/pvd.h"
+#include "testbed/formats/sequence/sidecar.h"
 #include "tests/fuzz/allow_error.h"
 #include "tests/fuzz/targets.h"
 

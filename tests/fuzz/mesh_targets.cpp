@@ -1,8 +1,8 @@
-#include "testbed/formats/mesh_file.h"
-#include "testbed/formats/mesh_sequence_repair.h"
-#include "testbed/formats/obj_reader.h"
-#include "testbed/formats/off_reader.h"
-#include "testbed/formats/ply_reader.h"
+#include "testbed/formats/mesh/mesh_file.h"
+#include "testbed/formats/mesh/obj_reader.h"
+#include "testbed/formats/mesh/off_reader.h"
+#include "testbed/formats/mesh/ply_reader.h"
+#include "testbed/formats/sequence/repair.h"
 #include "tests/fuzz/allow_error.h"
 #include "tests/fuzz/targets.h"
 

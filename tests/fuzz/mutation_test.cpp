@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/fluid/exr_maps.h"
-#include "experiments/fluid/feature_files.h"
+#include "experiments/fluid/scene/exr_maps.h"
+#include "experiments/fluid/scene/feature_files.h"
 #include "testbed/formats/wav_file.h"
 #include "tests/fuzz/sample_features.h"
 #include "tests/fuzz/targets.h"

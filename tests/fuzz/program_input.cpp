@@ -10,9 +10,9 @@
 
 #include "core/error.h"
 #include "core/frame.h"
-#include "experiments/fluid/feature_files.h"
+#include "experiments/fluid/scene/feature_files.h"
 #include "testbed/formats/atomic_file.h"
-#include "testbed/formats/vtk_files.h"
+#include "testbed/formats/vtk/files.h"
 #include "tests/fuzz/fuzzed_program.h"
 #include "tests/fuzz/mutation.h"
 #include "tests/fuzz/sample_features.h"

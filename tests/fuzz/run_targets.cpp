@@ -1,9 +1,9 @@
 #include <sstream>
 #include <string>
 
-#include "testbed/runner/frame_table.h"
-#include "testbed/runner/journal.h"
-#include "testbed/runner/reference_parser.h"
+#include "testbed/runner/journal/frame_table.h"
+#include "testbed/runner/journal/journal.h"
+#include "testbed/runner/reference/parser.h"
 #include "tests/fuzz/allow_error.h"
 #include "tests/fuzz/targets.h"
 

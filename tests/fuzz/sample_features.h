@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "solvers/fluid/feature.h"
-#include "tests/testbed/octahedron.h"
+#include "tests/testbed/formats/octahedron.h"
 
 namespace geoprior::test {
 

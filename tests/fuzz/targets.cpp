@@ -4,10 +4,10 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/skinning/bvh.h"
-#include "experiments/skinning/skeleton_file.h"
-#include "testbed/formats/gltf_reader.h"
-#include "testbed/runner/toml_tree.h"
+#include "experiments/skinning/scene/bvh.h"
+#include "experiments/skinning/scene/skeleton_file.h"
+#include "testbed/formats/gltf/reader.h"
+#include "testbed/runner/spec/toml_tree.h"
 #include "tests/fuzz/allow_error.h"
 
 namespace geoprior::test {

@@ -1,5 +1,5 @@
-#include "testbed/formats/mesh_sequence_repair.h"
-#include "testbed/formats/vtk_files.h"
+#include "testbed/formats/sequence/repair.h"
+#include "testbed/formats/vtk/files.h"
 #include "tests/fuzz/allow_error.h"
 #include "tests/fuzz/targets.h"
 

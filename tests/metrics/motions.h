@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/rig.h"
+#include "core/inputs/rig.h"
 
 /// Deformations with a known answer.
 namespace geoprior::motions {

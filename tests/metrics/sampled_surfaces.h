@@ -8,7 +8,7 @@
 
 #include "core/mesh.h"
 #include "core/random.h"
-#include "metrics/surface_front.h"
+#include "metrics/developability/surface_front.h"
 
 /// Surfaces that unfold into a plane, and points on any surface.
 namespace geoprior::sampled {

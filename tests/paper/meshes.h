@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "models/paper/shell_state.h"
+#include "models/paper/shell/state.h"
 
 /// Meshes of sheets whose answer is known, for the tests of the paper topic.
 namespace geoprior::paper::meshes {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "baselines/paper/dense.h"
-#include "models/paper/stepper.h"
-#include "models/paper/uniform_mesh.h"
+#include "models/paper/meshing/uniform_mesh.h"
+#include "models/paper/shell/stepper.h"
 
 /// Small sheets in motion, for the tests of the stepper.
 namespace geoprior::paper::sheets {

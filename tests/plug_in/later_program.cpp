@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "testbed/metric_rows.h"
 #include "testbed/program.h"
-#include "testbed/runner/build_info.h"
+#include "testbed/runner/process/build_info.h"
 #include "testbed/topic.h"
 
 namespace geoprior {

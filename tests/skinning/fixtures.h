@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/procedural.h"
+#include "core/inputs/rig.h"
 #include "core/mesh.h"
-#include "core/procedural.h"
 #include "core/random.h"
-#include "core/rig.h"
 
 // Rigs and poses with known answers, shared by the tests of skinning.
 

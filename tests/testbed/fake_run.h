@@ -12,10 +12,10 @@
 
 #include "core/frame.h"
 #include "testbed/formats/atomic_file.h"
-#include "testbed/formats/vtk_files.h"
-#include "testbed/runner/journal.h"
-#include "testbed/runner/run_record.h"
-#include "testbed/runner/sha256.h"
+#include "testbed/formats/vtk/files.h"
+#include "testbed/runner/journal/journal.h"
+#include "testbed/runner/journal/run_record.h"
+#include "testbed/runner/journal/sha256.h"
 
 namespace geoprior {
 

@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "experiments/toy/toy_topic.h"
-#include "testbed/runner/stop.h"
+#include "testbed/runner/process/stop.h"
 #include "tests/testbed/scratch_place.h"
 
 namespace geoprior::test {

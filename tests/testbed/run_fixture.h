@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "testbed/runner/execute.h"
-#include "testbed/runner/spec.h"
+#include "testbed/runner/spec/spec.h"
 #include "tests/testbed/program_process.h"
 
 namespace geoprior::test {

@@ -25,7 +25,7 @@ FILES = {
     "solvers/sound/crackle.cpp": '#include "solvers/paper/folds.h"\n',
     "solvers/skinning/implicit.cpp": '#include "core/mesh.h"\n',
     "experiments/fluid/wake.toml": 'input = "run:fluid/tank/flip"\n',
-    "tests/skinning/implicit_test.cpp": "",
+    "tests/skinning/projection/implicit_test.cpp": "",
     "tests/consumer/main.cpp": "",
 }
 
@@ -72,7 +72,7 @@ class ChangedTopics(Repository):
         self.expect()
 
     def test_a_topic_differs_by_its_folders_however_far_a_change_is_on_its_way(self):
-        for name in ("solvers/skinning/implicit.cpp", "tests/skinning/implicit_test.cpp"):
+        for name in ("solvers/skinning/implicit.cpp", "tests/skinning/projection/implicit_test.cpp"):
             self.write(name, "int changed;\n")
             self.expect("skinning", why=name)
             self.git("add", name)
@@ -92,7 +92,7 @@ class ChangedTopics(Repository):
         (self.root / "experiments/fluid/wake.toml").unlink()
         self.expect("fluid")
         self.git("reset", "--quiet", "--hard")
-        self.git("mv", "tests/skinning/implicit_test.cpp", "experiments/fluid/")
+        self.git("mv", "tests/skinning/projection/implicit_test.cpp", "experiments/fluid/")
         self.expect("skinning", "fluid")
 
     def test_what_uses_a_topic_that_differs_differs_too(self):

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "testbed/commands/catalogue.h"
-#include "testbed/runner/spec.h"
+#include "testbed/runner/spec/spec.h"
 #include "testbed/topic.h"
 
 namespace geoprior::test {

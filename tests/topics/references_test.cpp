@@ -9,10 +9,10 @@
 #include <string>
 
 #include "testbed/formats/atomic_file.h"
-#include "testbed/runner/headlines.h"
-#include "testbed/runner/reference.h"
-#include "testbed/runner/reference_parser.h"
-#include "testbed/runner/reference_text.h"
+#include "testbed/runner/reference/headlines.h"
+#include "testbed/runner/reference/parser.h"
+#include "testbed/runner/reference/reference.h"
+#include "testbed/runner/reference/text.h"
 #include "testbed/topic.h"
 
 namespace geoprior::test {

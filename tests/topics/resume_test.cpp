@@ -9,7 +9,7 @@
 
 #include "core/random.h"
 #include "experiments/toy/toy_topic.h"
-#include "testbed/runner/run_file.h"
+#include "testbed/runner/journal/run_file.h"
 #include "tests/support/long_tests.h"
 #include "tests/testbed/run_fixture.h"
 

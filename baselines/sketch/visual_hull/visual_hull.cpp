@@ -1,0 +1,31 @@
+#include "baselines/sketch/visual_hull/visual_hull.h"
+
+namespace geoprior::sketch {
+namespace {
+
+class HullSurface final : public SketchMethod {
+ public:
+  explicit HullSurface(const Eigen::MatrixX3d& X) : X_(X) {}
+  void step(RunContext& /*context*/) override {}
+  [[nodiscard]] const Eigen::MatrixX3d& positions() const override { return X_; }
+  void load(StateReader& in) override { in.matrix(X_); }
+
+ private:
+  Eigen::MatrixX3d X_;
+};
+
+}  // namespace
+
+void describe(OptionVisitor& v, HullSurfaceOptions& o) {
+  v.value("smoothed", o.smoothed, {.doc = "with the scene's smoothing"});
+}
+
+std::unique_ptr<Process> make_hull_process(const SketchInput& input,
+                                           const HullSurfaceOptions& options) {
+  return make_sketch_process(input, 0, [options](const PreparedSketch& prepared, RunContext&) {
+    return std::make_unique<HullSurface>(options.smoothed ? prepared.start
+                                                          : prepared.surface.hull.mesh.V);
+  });
+}
+
+}  // namespace geoprior::sketch

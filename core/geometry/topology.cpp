@@ -1,0 +1,178 @@
+#include "core/geometry/topology.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <unordered_map>
+
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+struct DirectedEdge {
+  int from;
+  int to;
+};
+
+/// Half-edges that no half-edge of the same edge runs against. A triangle that names a vertex twice
+/// has no border there.
+std::vector<Edge> open_edges(const EdgeConnectivity& c) {
+  std::vector<Edge> open;
+  for (int h = 0; h < c.half_edge_count(); ++h) {
+    if (c.origin(h) == c.tip(h)) continue;
+    const std::span<const int> here = c.half_edges(c.edge_of(h));
+    if (std::none_of(here.begin(), here.end(), [&](int g) { return c.ascends(g) != c.ascends(h); }))
+      open.push_back({c.origin(h), c.tip(h)});
+  }
+  return open;
+}
+
+/// Edges with two half-edges of one direction, in the order of the first such direction.
+std::vector<Edge> repeated_edges(const EdgeConnectivity& c) {
+  std::vector<Edge> repeated;  // directed
+  for (int e = 0; e < c.edge_count(); ++e) {
+    const std::span<const int> here = c.half_edges(e);
+    const auto up = std::count_if(here.begin(), here.end(), [&](int h) { return c.ascends(h); });
+    const auto down = static_cast<std::ptrdiff_t>(here.size()) - up;
+    const auto [low, high] = c.edge(e);
+    if (up > 1) {
+      repeated.push_back({low, high});
+    } else if (down > 1) {
+      repeated.push_back({high, low});
+    }
+  }
+  std::sort(repeated.begin(), repeated.end());
+  for (Edge& e : repeated) e = {std::min(e[0], e[1]), std::max(e[0], e[1])};
+  return repeated;
+}
+
+/// Orders the ring of one vertex by following `next_of`, which maps a neighbour to the one after
+/// it, counter-clockwise. Leaves the ring sorted when the triangles around the vertex are no single
+/// fan.
+void order_ring(std::vector<int>& ring, const std::vector<DirectedEdge>& fan) {
+  std::sort(ring.begin(), ring.end());
+  if (fan.empty()) return;
+  const auto follow = [&](int from) {
+    const auto it =
+        std::find_if(fan.begin(), fan.end(), [&](const DirectedEdge& e) { return e.from == from; });
+    return it == fan.end() ? -1 : it->to;
+  };
+  // A border vertex starts at the neighbour that no triangle leads to.
+  int start = ring.front();
+  for (const int n : ring) {
+    if (std::none_of(fan.begin(), fan.end(), [&](const DirectedEdge& e) { return e.to == n; }))
+      start = n;
+  }
+  std::vector<int> ordered{start};
+  for (int n = follow(start); n >= 0 && n != start && ordered.size() <= ring.size();
+       n = follow(n)) {
+    ordered.push_back(n);
+  }
+  if (ordered.size() == ring.size()) ring = std::move(ordered);
+}
+
+std::string edge_list(const std::vector<Edge>& edges) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(edges.size(), 5); ++i) {
+    text += (i == 0 ? "" : ", ") + std::to_string(edges[i][0]) + "-" + std::to_string(edges[i][1]);
+  }
+  if (edges.size() > 5) text += ", and " + std::to_string(edges.size() - 5) + " more";
+  return text;
+}
+
+struct PositionHash {
+  std::size_t operator()(const std::array<std::uint64_t, 3>& key) const {
+    std::uint64_t h = 0;
+    for (const std::uint64_t k : key) h = (std::rotl(h, 5) ^ k) * 0x9E3779B97F4A7C15ULL;
+    return static_cast<std::size_t>(h ^ (h >> 32));
+  }
+};
+
+}  // namespace
+
+VertexGraph one_rings(const Eigen::MatrixX3i& F, int vertex_count) {
+  const VertexCorners corners(F, vertex_count);
+  VertexGraph graph;
+  graph.offset.reserve(vertex_count + 1);
+  graph.offset.push_back(0);
+  std::vector<int> ring;
+  std::vector<DirectedEdge> fan;  // the edges opposite to the vertex
+  for (int v = 0; v < vertex_count; ++v) {
+    ring.clear();
+    fan.clear();
+    for (const int c : corners.of(v)) {
+      const DirectedEdge opposite{F(c / 3, (c % 3 + 1) % 3), F(c / 3, (c % 3 + 2) % 3)};
+      fan.push_back(opposite);
+      ring.insert(ring.end(), {opposite.from, opposite.to});
+    }
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    order_ring(ring, fan);
+    graph.neighbours.insert(graph.neighbours.end(), ring.begin(), ring.end());
+    graph.offset.push_back(static_cast<int>(graph.neighbours.size()));
+  }
+  return graph;
+}
+
+std::vector<Edge> boundary_edges(const Eigen::MatrixX3i& F) {
+  return open_edges(EdgeConnectivity(F));
+}
+
+std::vector<Edge> non_manifold_edges(const Eigen::MatrixX3i& F) {
+  return repeated_edges(EdgeConnectivity(F));
+}
+
+std::vector<bool> boundary_vertices(const Eigen::MatrixX3i& F, int vertex_count) {
+  std::vector<bool> on_boundary(vertex_count, false);
+  for (const Edge& e : boundary_edges(F)) {
+    on_boundary[e[0]] = true;
+    on_boundary[e[1]] = true;
+  }
+  return on_boundary;
+}
+
+void require_closed_manifold(const TriMesh& mesh, const std::string& who,
+                             const std::string& where) {
+  const EdgeConnectivity connectivity(mesh.F);
+  const std::vector<Edge> bad = repeated_edges(connectivity);
+  if (!bad.empty()) {
+    throw Error(
+        who + " needs a manifold mesh; " + std::to_string(bad.size()) +
+            " edges have more than two triangles or two of equal direction: " + edge_list(bad),
+        where, "two triangles of opposite direction at every edge");
+  }
+  const std::vector<Edge> open = open_edges(connectivity);
+  if (!open.empty()) {
+    throw Error(who + " needs a closed mesh; " + std::to_string(open.size()) +
+                    " boundary edges: " + edge_list(open),
+                where, "two triangles of opposite direction at every edge");
+  }
+}
+
+Weld weld_by_position(const TriMesh& split) {
+  Weld weld;
+  std::unordered_map<std::array<std::uint64_t, 3>, int, PositionHash> seen;
+  for (int v = 0; v < split.vertex_count(); ++v) {
+    std::array<std::uint64_t, 3> key{};
+    for (int k = 0; k < 3; ++k) key[k] = std::bit_cast<std::uint64_t>(split.V(v, k) + 0.0);
+    const auto [it, is_new] = seen.emplace(key, static_cast<int>(weld.split_of_welded.size()));
+    if (is_new) weld.split_of_welded.push_back(v);
+    weld.welded_of_split.push_back(it->second);
+  }
+  weld.mesh.V.resize(static_cast<Eigen::Index>(weld.split_of_welded.size()), 3);
+  for (Eigen::Index v = 0; v < weld.mesh.V.rows(); ++v) {
+    weld.mesh.V.row(v) = split.V.row(weld.split_of_welded[v]);
+  }
+  weld.mesh.F.resize(split.F.rows(), 3);
+  Eigen::Index kept = 0;
+  for (Eigen::Index t = 0; t < split.F.rows(); ++t) {
+    Eigen::RowVector3i f;
+    for (int k = 0; k < 3; ++k) f(k) = weld.welded_of_split[split.F(t, k)];
+    if (f(0) != f(1) && f(1) != f(2) && f(2) != f(0)) weld.mesh.F.row(kept++) = f;
+  }
+  weld.mesh.F.conservativeResize(kept, 3);
+  return weld;
+}
+
+}  // namespace geoprior

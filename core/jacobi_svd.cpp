@@ -1,3 +1,0 @@
-#include "core/jacobi_svd.h"
-
-template class Eigen::JacobiSVD<Eigen::MatrixXd>;

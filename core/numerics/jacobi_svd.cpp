@@ -1,0 +1,3 @@
+#include "core/numerics/jacobi_svd.h"
+
+template class Eigen::JacobiSVD<Eigen::MatrixXd>;

@@ -1,0 +1,36 @@
+#include "experiments/details/scene/options.h"
+
+#include "core/limits.h"
+
+namespace geoprior::details {
+
+void describe(OptionVisitor& v, DetailMotionOptions& options) {
+  v.value("frames", options.frames,
+          {.doc = "after the first, which is the surface at rest", .min = 1, .max = kMostFrames});
+  v.value("duration", options.duration, {.doc = "of the motion", .unit = "s", .min = 1e-9});
+  describe_list(v, "deform", options.deform, {.doc = "operations, one after the other"});
+  describe_group(v, "drag", options.drag,
+                 {.doc = "handles that are dragged, as rigidly as possible, before `deform`"});
+  describe_group(v, "sequence", options.sequence,
+                 {.doc = "instead: meshes on disk with the same triangles in every frame"});
+}
+
+void describe(OptionVisitor& v, DetailSceneOptions& options) {
+  describe_group(v, "surface", options.surface, {.doc = "the smooth surface at rest"});
+  describe_group(v, "pattern", options.pattern, {.doc = "the details on it"});
+  describe_group(v, "motion", options.motion, {.doc = "how it moves"});
+  v.value("detail_height", options.detail_height,
+          {.doc = "of a detail of weight 1, for popping; absent: half of the mean edge of M_d",
+           .unit = "m",
+           .min = 1e-9});
+  v.value("pair_frames", options.pair_frames,
+          {.doc = "frames, evenly over the motion, at which the pair correlation is measured",
+           .min = 1,
+           .max = kMostFrames});
+  v.value("pair_sources", options.pair_sources,
+          {.doc = "details, evenly spread, that distances are then measured from", .min = 2});
+  describe_group(v, "drawing", options.drawing,
+                 {.doc = "details as geometry in some frames; absent: in none"});
+}
+
+}  // namespace geoprior::details

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiments/paper/scene/options.h"
+#include "models/paper/sheet/animation.h"
+#include "models/paper/sheet/sheet.h"
+#include "models/sound/voices/bank.h"
+#include "testbed/topic.h"
+
+namespace geoprior::paper {
+
+/// A sheet, what moves it and what is in its way: what every paper method is given and every paper
+/// metric is measured on.
+class PaperScene final : public ProcessScene {
+ public:
+  Sheet sheet;
+  double fold_radius = 0.03;                        ///< of the discs within which folds cancel (m)
+  std::shared_ptr<const SheetAnimation> animation;  ///< or null: the sheet is simulated
+  std::shared_ptr<const SoundBank> bank;            ///< or null: generated
+
+  [[nodiscard]] std::map<std::string, double> facts() const override;
+  /// @throws Error  when the scene has none; `who` asks
+  [[nodiscard]] const std::shared_ptr<const SheetAnimation>& require_animation(
+      const std::string& who) const;
+};
+
+/// The sheet that the options describe. @throws Error  naming the key
+Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern, std::uint64_t seed);
+
+/// Reads the pattern and makes the sheet; handles that pull it apart by more than 0.1 %, or
+/// that are faster than it can follow (fast_handles.h), are warnings of the scene.
+/// @param folder  of the experiment file, against which relative files are tried first
+/// @param seed    of the experiment, for what the scene draws
+/// @throws Error  naming key or file, and place (see require_valid)
+std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
+                                             const std::filesystem::path& folder,
+                                             std::uint64_t seed);
+
+}  // namespace geoprior::paper

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+#include "models/sketch/drawing/drawing.h"
+
+namespace geoprior::sketch {
+
+/// How a drawing becomes strokes in metres.
+struct DrawingFileOptions {
+  double tolerance = 1e-4;       ///< largest distance of a curve from its chords (m)
+  std::optional<double> unit_m;  ///< metres for one unit of the drawing; absent: what the file says
+  double snap = 0.005;           ///< largest gap that is closed, over the diagonal of the view
+};
+void describe(OptionVisitor& v, DrawingFileOptions& options);
+
+/// A drawing as it was read.
+struct DrawingFile {
+  Drawing drawing;
+  std::vector<std::string> warnings;          ///< what was left out or assumed
+  std::vector<std::filesystem::path> inputs;  ///< the file, and the pictures beside it
+};
+
+/// Most strokes of a view.
+inline constexpr int kMostViewStrokes = 5000;
+
+/// Reads the annotated views of one object from an SVG file.
+///
+/// A view is a group named view:front, view:side, view:top or view:photo (its Inkscape label, else
+/// its id): photo alone, or two or three of the others. What a line in it means says `data-kind`,
+/// else its class, else that of a group around it, else its colour (stroke_kinds.h). Coordinates
+/// are those of the page: metres from its lower left corner, y up; views are not yet aligned.
+///
+/// - Points that coincide with the one before are left out; lines that end near their start are
+///   closed (not pairs, plane vectors and rulings).
+/// - Silhouettes of orthogonal views are joined from open strokes, are closed, simple and
+///   counter-clockwise. In a photo a silhouette is a ruling and stays as it was drawn.
+/// - Pairs and plane vectors are two points.
+/// - A picture (PNG, JPEG; beside the file or embedded) has the place where it is seen.
+///
+/// @throws Error  naming file, line and element: what read_svg_document refuses; no view, one view
+///                too few, drawn twice, unknown or empty; an unknown kind or attribute value; a
+///                stroke without length; a silhouette with a gap or a crossing (names the places);
+///                a picture that is missing, unreadable or turned
+DrawingFile read_drawing(const std::filesystem::path& file, const DrawingFileOptions& options);
+
+}  // namespace geoprior::sketch

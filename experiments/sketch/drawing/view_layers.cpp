@@ -1,0 +1,98 @@
+#include "experiments/sketch/drawing/view_layers.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "core/error.h"
+
+namespace geoprior::sketch {
+namespace {
+
+constexpr std::string_view kViewPrefix = "view:";
+constexpr const char* kViewLayers = "layers view:front, view:side, view:top, view:photo";
+constexpr const char* kViewSets =
+    "two or three of view:front, view:side, view:top, or view:photo alone";
+constexpr std::array<ViewKind, 4> kViewKinds{ViewKind::front, ViewKind::side, ViewKind::top,
+                                             ViewKind::photo};
+
+/// Illustrator writes the ':' of an id as "_x3A_".
+std::string view_layer_name(const SvgGroup& group) {
+  constexpr std::string_view kColon = "_x3A_";
+  std::string name = group.name();
+  const std::size_t at = name.find(kColon);
+  return at == std::string::npos ? name : name.replace(at, kColon.size(), ":");
+}
+
+ViewKind view_kind(const std::string& name, const std::string& place) {
+  for (const ViewKind kind : kViewKinds) {
+    if (name.substr(kViewPrefix.size()) == view_name(kind)) return kind;
+  }
+  throw Error("unknown view '" + name.substr(0, 100) + "'", place, kViewLayers);
+}
+
+/// ": its layers are a, b".
+std::string layers_text(const SvgDocument& document) {
+  std::string list;
+  int count = 0;
+  for (const SvgGroup& group : document.groups) {
+    constexpr int kMostNamed = 10;
+    if (group.layer && ++count <= kMostNamed)
+      list += (list.empty() ? "" : ", ") + group.name().substr(0, 50);
+  }
+  return list.empty() ? "" : ": its layers are " + list;
+}
+
+void require_view_set(const std::vector<ViewKind>& kinds, const std::string& name) {
+  const bool photo = std::find(kinds.begin(), kinds.end(), ViewKind::photo) != kinds.end();
+  if (photo && kinds.size() > 1) throw Error("has view:photo and other views", name, kViewSets);
+  if (!photo && kinds.size() < 2) {
+    throw Error(
+        "a second view is missing: there is only view:" + std::string(view_name(kinds.front())),
+        name, kViewSets);
+  }
+}
+
+}  // namespace
+
+ViewLayers find_view_layers(const SvgDocument& document, std::vector<std::string>& warnings) {
+  ViewLayers layers;
+  std::map<ViewKind, std::size_t> line_of;
+  bool any_hidden = false;
+  for (std::size_t g = 0; g < document.groups.size(); ++g) {
+    const SvgGroup& group = document.groups[g];
+    const std::string name = view_layer_name(group);
+    if (!name.starts_with(kViewPrefix)) continue;
+    const std::string place = document.place("layer", group.tags);
+    const ViewKind kind = view_kind(name, place);
+    if (group.hidden) {
+      any_hidden = true;
+      warnings.push_back(place + ": " + name + " is hidden, and not read");
+      continue;
+    }
+    const auto [known, is_new] = line_of.emplace(kind, group.tags.line);
+    if (!is_new) {
+      throw Error(name + " is drawn twice, here and on line " + std::to_string(known->second),
+                  place, "one layer for each view");
+    }
+    layers.kind_of_group.emplace(static_cast<int>(g), kind);
+  }
+  for (const auto& [kind, line] : line_of) layers.kinds.push_back(kind);
+  if (layers.kinds.empty()) {
+    throw Error(any_hidden ? "every view is hidden" : "has no view" + layers_text(document),
+                document.name, kViewLayers);
+  }
+  require_view_set(layers.kinds, document.name);
+  return layers;
+}
+
+std::optional<ViewKind> view_of_group(const SvgDocument& document, const ViewLayers& layers,
+                                      int group) {
+  for (; group >= 0; group = document.groups[static_cast<std::size_t>(group)].parent) {
+    const auto found = layers.kind_of_group.find(group);
+    if (found != layers.kind_of_group.end()) return found->second;
+  }
+  return std::nullopt;
+}
+
+}  // namespace geoprior::sketch

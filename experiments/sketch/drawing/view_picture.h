@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "models/sketch/drawing/drawing.h"
+#include "testbed/formats/svg/document.h"
+
+namespace geoprior::sketch {
+
+/// Pixels that the head of a PNG or JPEG picture tells, width and height; absent for what is
+/// neither, or is cut off before. Nothing is decoded.
+///
+/// @param bytes  the picture; of a JPEG all of it up to its frame header
+/// Source: PNG, 11.2.1 (W3C 2003); JPEG, B.2.2 (ITU-T T.81).
+std::optional<Eigen::Vector2i> picture_size(std::string_view bytes);
+
+/// A picture of a drawing where it is seen: fitted into its box as `preserveAspectRatio` says.
+/// @throws Error  at `where`: the file is missing or no PNG or JPEG; the picture is turned,
+///                mirrored, or cut off by its box
+Picture view_picture(const SvgImage& image, const std::string& where);
+
+}  // namespace geoprior::sketch

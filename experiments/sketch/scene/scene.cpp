@@ -1,0 +1,204 @@
+#include "experiments/sketch/scene/scene.h"
+
+#include <cstring>
+#include <utility>
+
+#include "core/error.h"
+#include "core/geometry/topology.h"
+#include "experiments/sketch/fabrication/cloth_files.h"
+#include "testbed/formats/gltf/writer.h"
+#include "testbed/formats/mesh/mesh_file.h"
+#include "testbed/home.h"
+
+namespace geoprior::sketch {
+Artifact text_artifact(const std::string& name, const std::string& bytes) {
+  Artifact artifact;
+  artifact.name = name;
+  artifact.bytes.resize(bytes.size());
+  std::memcpy(artifact.bytes.data(), bytes.data(), bytes.size());
+  return artifact;
+}
+
+namespace {
+
+void load_surface(const SketchSceneOptions& o, const std::filesystem::path& folder,
+                  SketchScene& scene) {
+  const std::filesystem::path file = find_file(o.surface, folder, "data", "scene.surface");
+  scene.input_files.push_back(file);
+  TriMesh mesh = weld_by_position(read_mesh_file(file).mesh).mesh;
+  mesh.V *= o.surface_scale;
+  scene.input.surface = std::move(mesh);
+}
+
+void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& folder,
+                  SketchScene& scene) {
+  DrawingFile read = read_drawing(find_file(o.drawing, folder, "data", "scene.drawing"), o.read);
+  scene.input.drawing = std::move(read.drawing);
+  scene.load_warnings = std::move(read.warnings);
+  scene.input_files = std::move(read.inputs);
+  if (scene.input.drawing.find(ViewKind::photo) != nullptr) return;
+  scene.aligned = align_views(scene.input.drawing, o.align);
+  for (const OutlinedView& view : outlined_views(scene.aligned))
+    scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
+}
+
+/// What a known drawing shows is its truth; without a file it is drawn here.
+void load_known(const SketchSceneOptions& o, std::uint64_t seed, SketchScene& scene) {
+  if (o.drawing.empty()) scene.input.drawing = known_drawing(o.known->shape);
+  scene.truth = known_truth(scene.photo(), *o.known, scene_seed(seed, o.known->seed));
+  scene.input.drawing.views = {scene.truth->view};
+}
+
+/// The files of a pattern; of one that cannot be cut out (a baseline's may overlap itself) a text
+/// that says why.
+std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const Eigen::MatrixX3d& surface,
+                                        const FabricationOptions& options) {
+  std::vector<Artifact> artifacts;
+  try {
+    for (const FabricationFile& file : fabrication_files(pattern, options))
+      artifacts.push_back(text_artifact(file.name, file.bytes));
+    if (options.cloth) {
+      for (const FabricationFile& file : cloth_files(pattern, surface))
+        artifacts.push_back(text_artifact(file.name, file.bytes));
+    }
+  } catch (const Error& error) {
+    artifacts = {text_artifact("pattern-refused.txt", std::string(error.what()) + "\n")};
+  }
+  return artifacts;
+}
+
+/// Files of one view: the pattern's, the textured ones, and the drawing that was made here.
+OneViewFiles one_view_files(const SketchSceneOptions& o, const View& view,
+                            const OneViewResult& result, const Pattern& pattern) {
+  OneViewFiles files;
+  if (o.fabrication)
+    files.artifacts = pattern_artifacts(pattern, result.surface.mesh.V, *o.fabrication);
+  std::vector<FabricationFile> made;
+  if (o.textures) {
+    TexturedFiles textured = textured_files(view, result, pattern, *o.textures);
+    made = std::move(textured.files);
+    files.diagnostics = std::move(textured.diagnostics);
+  }
+  if (o.known && o.drawing.empty()) {
+    for (FabricationFile& file : known_drawing_files(o.known->shape))
+      made.push_back(std::move(file));
+  }
+  for (const FabricationFile& file : made)
+    files.artifacts.push_back(text_artifact(file.name, file.bytes));
+  return files;
+}
+
+}  // namespace
+
+void describe(OptionVisitor& v, SketchSceneOptions& o) {
+  v.value("drawing", o.drawing, {.doc = "SVG file with the annotated views"});
+  v.value("surface", o.surface,
+          {.doc = "mesh file in place of a drawing, for methods that need none"});
+  describe_group(v, "synthetic", o.synthetic,
+                 {.doc = "one view of a shape that is known, in place of both"});
+  describe_group(v, "closed_form", o.closed_form,
+                 {.doc = "a surface of closed form, in place of all"});
+  describe_group(v, "layers", o.layers,
+                 {.doc = "one view of a body of rigid layers that is known, in place of them"});
+  describe_group(v, "known", o.known,
+                 {.doc = "the known object that the drawing shows; drawn here without a file"});
+  v.value("surface_scale", o.surface_scale,
+          {.doc = "metres for one unit of that mesh", .unit = "m", .min = 1e-9, .max = 1e9});
+  describe_group(v, "read", o.read, {.doc = "how the drawing becomes strokes"});
+  describe_group(v, "align", o.align, {.doc = "how views are put together"});
+  describe_group(v, "hull", o.hull, {.doc = "the visual hull that all methods begin with"});
+  describe_group(v, "smoothing", o.smoothing, {.doc = "of the hull, before the first step"});
+  describe_group(v, "pattern", o.pattern, {.doc = "how pieces are laid flat"});
+  describe_group(v, "fabrication", o.fabrication, {.doc = "files to cut and sew by"});
+  describe_group(v, "textures", o.textures,
+                 {.doc = "files of one view that carry its photograph's colours"});
+}
+
+std::map<std::string, double> SketchScene::facts() const {
+  std::map<std::string, double> facts;
+  facts["views"] = static_cast<double>(silhouettes.size());
+  facts["triangles_asked"] = input.hull.triangles;
+  if (input.surface) facts["triangles"] = input.surface->triangle_count();
+  return facts;
+}
+
+const View& SketchScene::photo() const {
+  const View* view = input.drawing.find(ViewKind::photo);
+  if (view == nullptr) throw Error("has no view of kind photo", "scene", "a drawing with one view");
+  return *view;
+}
+
+LayerFiles SketchScene::layer_files() const {
+  LayerFiles files;
+  if (!input.files) return files;
+  files.pattern = input.files;
+  files.motion = [](const LayerMotion& motion) -> std::vector<Artifact> {
+    std::vector<GltfLink> links;
+    for (const LayerMotion::Link& link : motion.links)
+      links.push_back({link.name, link.solid, link.pivot, link.axis, link.angles});
+    constexpr double kFrame = 0.125;  // s
+    std::vector<double> times;
+    for (std::size_t i = 0; i < motion.links.front().angles.size(); ++i)
+      times.push_back(kFrame * static_cast<double>(i));
+    return {text_artifact("layers.glb", rigid_chain_glb(links, times, "layers"))};
+  };
+  return files;
+}
+
+OneViewInput SketchScene::photo_input() const {
+  return {photo(), input.pattern, input.patterns, photo_files};
+}
+
+std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options,
+                                               const std::filesystem::path& folder,
+                                               std::uint64_t seed) {
+  const bool drawn = !options.drawing.empty() || options.known;
+  const int given = drawn + !options.surface.empty() + options.synthetic.has_value() +
+                    options.closed_form.has_value() + options.layers.has_value();
+  if (given != 1) {
+    throw Error(std::to_string(given) + " of them are given",
+                "scene.drawing (or scene.known), scene.surface, scene.synthetic, "
+                "scene.closed_form and scene.layers",
+                "one");
+  }
+  auto scene = std::make_shared<SketchScene>();
+  scene->input.align = options.align;
+  scene->input.hull = options.hull;
+  scene->input.smoothing = options.smoothing;
+  scene->input.pattern = options.pattern;
+  if (options.fabrication) {
+    scene->input.files = [fabrication = *options.fabrication](const Pattern& pattern,
+                                                              const Eigen::MatrixX3d& surface) {
+      return pattern_artifacts(pattern, surface, fabrication);
+    };
+  }
+  if (options.fabrication || options.textures || options.known) {
+    scene->photo_files = [options](const View& view, const OneViewResult& result,
+                                   const Pattern& pattern) {
+      return one_view_files(options, view, result, pattern);
+    };
+  }
+  if (options.synthetic) {
+    SyntheticViewOptions shape = *options.synthetic;
+    shape.seed = static_cast<int>(scene_seed(seed, shape.seed));
+    scene->truth = synthetic_view(shape);
+    scene->input.drawing = {"scene.synthetic", {scene->truth->view}};
+  } else if (options.closed_form) {
+    scene->input.surface = closed_form_surface(*options.closed_form);
+    scene->input.patterns = false;
+  } else if (options.layers) {
+    SyntheticLayerOptions body = *options.layers;
+    body.seed = static_cast<int>(scene_seed(seed, body.seed));
+    scene->truth = synthetic_layers(body);
+    scene->input.drawing = {"scene.layers", {scene->truth->view}};
+  } else if (!options.surface.empty()) {
+    load_surface(options, folder, *scene);
+    scene->input.patterns = false;
+  } else if (!options.drawing.empty()) {
+    load_drawing(options, folder, *scene);
+  }
+  if (options.known) load_known(options, seed, *scene);
+  return scene;
+}
+
+}  // namespace geoprior::sketch

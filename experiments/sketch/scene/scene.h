@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+#include "experiments/sketch/drawing/drawing_file.h"
+#include "experiments/sketch/fabrication/fabrication.h"
+#include "experiments/sketch/fabrication/textured_files.h"
+#include "experiments/sketch/truth/closed_form_surface.h"
+#include "experiments/sketch/truth/known_drawing.h"
+#include "experiments/sketch/truth/synthetic_layers.h"
+#include "experiments/sketch/truth/synthetic_views.h"
+#include "metrics/contact/planar_overlap.h"
+#include "models/sketch/sketch_process.h"
+#include "solvers/sketch/layers/layers.h"
+#include "solvers/sketch/one_view_process.h"
+#include "testbed/topic.h"
+
+namespace geoprior::sketch {
+
+/// `[scene]` of a sketch experiment: a drawing, a drawing of a shape that is known, or a surface in
+/// its place.
+struct SketchSceneOptions {
+  std::string drawing;  ///< SVG file
+  std::string surface;  ///< mesh file instead, for methods that need no drawing
+  double surface_scale = 1;
+  std::optional<SyntheticViewOptions> synthetic;  ///< instead of both
+  std::optional<ClosedFormOptions> closed_form;   ///< a surface of closed form, instead of all
+  std::optional<SyntheticLayerOptions> layers;    ///< instead of them
+  std::optional<KnownDrawingOptions> known;       ///< what the drawing shows, or instead of it
+  DrawingFileOptions read;
+  AlignOptions align;
+  HullOptions hull;
+  TaubinOptions smoothing;
+  PatternOptions pattern;
+  std::optional<FabricationOptions> fabrication;
+  std::optional<TexturedFileOptions> textures;
+};
+void describe(OptionVisitor& v, SketchSceneOptions& options);
+
+/// A silhouette that the surface is to have.
+struct DrawnSilhouette {
+  ViewKind view = ViewKind::front;
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
+  PlanarLoop outline;
+};
+
+class SketchScene final : public ProcessScene {
+ public:
+  SketchInput input;  ///< what a method is given
+  std::vector<DrawnSilhouette> silhouettes;
+  Drawing aligned;                     ///< of several views, as methods see them
+  std::optional<SyntheticView> truth;  ///< of a synthetic or known view
+  /// Files that are made of one view; none when empty.
+  std::function<OneViewFiles(const View&, const OneViewResult&, const Pattern&)> photo_files;
+
+  /// The one view of a drawing that has no others.
+  /// @throws Error  when the scene has none
+  [[nodiscard]] const View& photo() const;
+  /// What articulated layers leave beside their frames: a pattern's files and layers.glb.
+  [[nodiscard]] LayerFiles layer_files() const;
+  /// The same with how it is laid flat and what files are made of it.
+  [[nodiscard]] OneViewInput photo_input() const;
+
+  [[nodiscard]] std::string parameter_name() const override { return "iteration"; }
+  [[nodiscard]] std::string parameter_unit() const override { return "1"; }
+  [[nodiscard]] std::map<std::string, double> facts() const override;
+};
+
+/// A file of a run with this text.
+Artifact text_artifact(const std::string& name, const std::string& bytes);
+
+/// @param folder  of the experiment file, against which relative files are tried first
+/// @throws Error  naming key or file, and place
+/// @param seed    of the experiment: of the noise of a synthetic view, beside its own
+std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options,
+                                               const std::filesystem::path& folder,
+                                               std::uint64_t seed);
+
+}  // namespace geoprior::sketch

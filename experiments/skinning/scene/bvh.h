@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/skinning/scene/skeleton_file.h"
+
+namespace geoprior::skinning {
+
+struct BvhChannel {
+  bool is_rotation = true;
+  int axis = 0;  ///< 0 x, 1 y, 2 z
+};
+
+struct BvhJoint {
+  std::string name;
+  int parent = -1;                                   ///< smaller than the joint's own index
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< from the parent, in the file's unit
+  std::vector<BvhChannel> channels;                  ///< in the order of the file
+  int first_column = 0;                              ///< of its channels in `values`
+  std::optional<Eigen::Vector3d> end_site;           ///< from the joint
+};
+
+/// Motion capture in the Biovision hierarchical format.
+struct BvhMotion {
+  std::vector<BvhJoint> joints;
+  double frame_time_s = 0;
+  Eigen::MatrixXd values;  ///< one row a frame; degrees, and lengths in the file's unit
+  /// Turns the file's coordinates into those of the world, where y is up (bvh_up.h).
+  Eigen::Quaterniond to_y_up = Eigen::Quaterniond::Identity();
+
+  [[nodiscard]] int frame_count() const { return static_cast<int>(values.rows()); }
+};
+
+/// @throws Error  naming file and line: syntax, unknown channels, a frame with too few numbers,
+///                numbers that are not finite, counts beyond what the file holds
+BvhMotion read_bvh(const std::filesystem::path& file);
+BvhMotion parse_bvh(std::string_view text, const std::string& name);
+
+/// Rotation of every joint from the file's rest pose (all channels zero) to a frame, in world
+/// coordinates, and the positions of the joints (file's unit).
+struct BvhFrame {
+  std::vector<Eigen::Quaterniond> rotation;
+  std::vector<Eigen::Vector3d> position;
+};
+BvhFrame bvh_frame(const BvhMotion& motion, int frame);
+
+/// Where the joints are in the file's rest pose, in world coordinates (file's unit).
+std::vector<Eigen::Vector3d> rest_positions(const BvhMotion& motion);
+
+/// Carries a motion over to a skeleton by the names in its file.
+///
+/// A joint j driven by joint b of the motion turns, in world coordinates, by R_j = G_b A_j: G_b is
+/// the rotation of b from the file's rest pose, and A_j the smallest rotation that takes the rest
+/// bone of j to the rest bone of b (an arm of an A-pose to that of a T-pose); A_j = 1 where
+/// `bvh_align` is off or a bone has no direction. Other joints follow their parent. The root moves
+/// by that of the motion's root, scaled by the ratio of the two leg lengths (rest height of the
+/// root above the lowest joint), horizontally relative to `origin_frame`.
+class BvhRetarget {
+ public:
+  /// @throws Error  when no joint of the skeleton names a joint of the motion, or one names a joint
+  ///                that the motion does not have
+  BvhRetarget(const BvhMotion& motion, const SkeletonFile& skeleton, int origin_frame);
+  [[nodiscard]] Pose pose(int frame) const;
+
+ private:
+  const BvhMotion& motion_;
+  const SkeletonFile& skeleton_;
+  std::vector<int> driver_;  ///< joint of the motion, or -1
+  std::vector<Eigen::Quaterniond> align_;
+  double scale_ = 1;  ///< metres of the skeleton for one unit of the motion
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  ///< where the motion's root counts as at rest
+};
+
+}  // namespace geoprior::skinning

@@ -1,0 +1,207 @@
+#include "experiments/sound/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "metrics/sound/bursts.h"
+#include "metrics/sound/decay.h"
+#include "metrics/sound/event_rates.h"
+#include "metrics/sound/spectrum.h"
+#include "metrics/sound/true_peak.h"
+#include "testbed/formats/wav_file.h"
+#include "testbed/runner/judgement/timing_statistics.h"
+
+namespace geoprior::paper {
+namespace {
+
+/// Times from the start of the sound, in order; an event before it or after it has no place in it.
+std::vector<Event> within(const std::vector<Event>& events, double start, double duration) {
+  std::vector<Event> kept;
+  for (Event event : events) {
+    event.time_s -= start;
+    if (event.time_s >= 0 && event.time_s < duration) kept.push_back(std::move(event));
+  }
+  std::stable_sort(kept.begin(), kept.end(),
+                   [](const Event& a, const Event& b) { return a.time_s < b.time_s; });
+  return kept;
+}
+
+/// Of a number of flaps and cracs; absent without any.
+std::optional<double> median_of_snaps(const std::vector<Event>& events, const char* number) {
+  std::vector<double> values;
+  for (const Event& event : events) {
+    if (event.kind == "flap" || event.kind == "crac") values.push_back(event.numbers.at(number));
+  }
+  if (values.empty()) return {};
+  return median(values);
+}
+
+constexpr double kFloor = 40;    // dB below the loudest band: not heard beside it
+constexpr double kLowest = 100;  // Hz: the band about it is the lowest that is compared
+
+/// A sound that was recorded alone.
+struct PickedVoice {
+  double time = 0;                                            ///< of its event (s)
+  double resolved = std::numeric_limits<double>::infinity();  ///< of a reference (Hz)
+  Eigen::VectorXd samples;
+  int rate = 0;
+};
+
+std::optional<std::vector<PickedVoice>> picked_voices(const FrameSequence& frames) {
+  const auto file = frames.artifact("voices.wav");
+  if (!file) return {};
+  const Sound all = wav_from_bytes(*file, "voices.wav");
+  std::vector<PickedVoice> voices;
+  for (const Event& event : frames.events()) {
+    const auto start = event.numbers.find("voice_start_s");
+    if (start == event.numbers.end()) continue;
+    PickedVoice& voice = voices.emplace_back();
+    voice.time = event.time_s;
+    voice.rate = all.sample_rate;
+    if (const auto resolved = event.numbers.find("resolved_hz"); resolved != event.numbers.end())
+      voice.resolved = resolved->second;
+    const Eigen::Index first = std::lround(start->second * voice.rate),
+                       length = std::lround(event.numbers.at("voice_length_s") * voice.rate);
+    if (first < 0 || length < 0 || first + length > all.samples.rows()) {
+      throw Error("ends before the sound of the event at " + std::to_string(event.time_s) + " s",
+                  "voices.wav");
+    }
+    voice.samples = all.samples.col(0).segment(first, length);
+  }
+  return voices;
+}
+
+/// Levels of the bands from `kLowest` to below `highest`; absent for silence.
+std::optional<Eigen::VectorXd> audible_levels(const PickedVoice& voice, double highest) {
+  if (voice.samples.size() == 0 || !(voice.samples.cwiseAbs().maxCoeff() > 0)) return {};
+  PowerSpectrum spectrum = whole_spectrum(voice.samples, voice.rate, SoundWindow::none);
+  const double edge = std::pow(10, 0.05);
+  int first = 0, last = kThirdOctaves;
+  while (third_octave_middle(first) * edge < kLowest) ++first;
+  while (last > first && third_octave_middle(last - 1) * edge > highest) --last;
+  if (last == first) return {};
+  // What lies beside is no yardstick for the loudest band.
+  const double from = third_octave_middle(first) / edge,
+               until = third_octave_middle(last - 1) * edge;
+  for (Eigen::Index k = 0; k < spectrum.density.size(); ++k) {
+    const double f = static_cast<double>(k) * spectrum.step_hz;
+    if (f < from || f > until) spectrum.density[k] = 0;
+  }
+  const auto levels = third_octave_levels(spectrum, kFloor);
+  if (!levels) return {};
+  return levels->segment(first, last - first);
+}
+
+}  // namespace
+
+SoundMeasures::Kind SoundMeasures::all() const {
+  Kind sum;
+  for (const auto& entry : kinds) {
+    sum.count += entry.second.count;
+    sum.energy += entry.second.energy;
+  }
+  return sum;
+}
+
+std::optional<SoundMeasures> sound_measures(const PaperScene& scene, const FrameSequence& frames) {
+  const auto file = frames.artifact("sound.wav");
+  if (!scene.animation || !file || frames.size() == 0) return {};
+  const Sound sound = wav_from_bytes(*file, "sound.wav");
+  const Eigen::VectorXd mono = sound.samples.rowwise().mean();
+  const double length = static_cast<double>(mono.size()) / sound.sample_rate;
+  const std::vector<Event> events =
+      within(frames.events(), std::min(0.0, frames.parameter(0)), length);
+  SoundMeasures out;
+  for (const auto& [kind, rate] : event_rates(events, length)) {
+    if (kind.empty()) {
+      out.rate = rate.rate_per_s;
+      out.fano = rate.fano_factor;
+    } else {
+      out.kinds[kind] = {rate.count, rate.energy_J, {}, {}, 0};
+    }
+  }
+  out.area = median_of_snaps(frames.events(), "area_m2");
+  out.ruling = median_of_snaps(frames.events(), "ruling_length_m");
+  out.border = median_of_snaps(frames.events(), "free_border_m");
+  out.latency = median_of_snaps(frames.events(), "latency_s");
+  const auto bursts = sound_bursts(mono, sound.sample_rate, events);
+  for (const auto& [kind, heard] : burst_statistics(bursts)) {
+    SoundMeasures::Kind& of = out.kinds[kind];
+    of.measured = heard.measured;
+    if (heard.measured == 0) continue;
+    of.duration = heard.duration_s;
+    of.centroid = heard.centroid_hz;
+  }
+  double peak = 0;
+  for (Eigen::Index c = 0; c < sound.samples.cols(); ++c) {
+    peak = std::max(peak, true_peak(sound.samples.col(c)));
+  }
+  if (peak > 0) {
+    out.peak = decibels_full_scale(peak);
+    out.centroid = spectral_centroid(whole_spectrum(mono, sound.sample_rate, SoundWindow::none));
+  }
+  return out;
+}
+
+std::optional<VoiceDistance> voice_distance(const PaperScene& scene, const FrameSequence& frames) {
+  if (!scene.animation || frames.reference() == nullptr) return {};
+  const auto own = picked_voices(frames), of = picked_voices(*frames.reference());
+  if (!own || !of) return {};
+  if (own->size() != of->size()) {
+    throw Error("has picked " + std::to_string(own->size()) + " events", "voices.wav",
+                std::to_string(of->size()) + ", as its reference");
+  }
+  std::vector<double> distances, decays;
+  for (std::size_t i = 0; i < own->size(); ++i) {
+    if (std::abs((*own)[i].time - (*of)[i].time) > 1e-9) {
+      throw Error("picked event " + std::to_string(i) + " is another one than the reference's",
+                  "voices.wav");
+    }
+    const double highest = (*of)[i].resolved;
+    const auto wanted = audible_levels((*of)[i], highest);
+    if (!wanted || wanted->size() < 3) continue;
+    const auto heard = audible_levels((*own)[i], highest);
+    // A sound that is silent there is as far away as one of which every band is at the floor.
+    const Eigen::VectorXd levels =
+        heard ? *heard : Eigen::VectorXd::Constant(wanted->size(), -kFloor);
+    distances.push_back(log_spectral_distance(levels, *wanted, kFloor));
+    const auto rings = octave_decays((*of)[i].samples, (*of)[i].rate, highest);
+    if (rings.empty()) continue;
+    const bool silent = (*own)[i].samples.size() == 0;
+    decays.push_back(
+        decay_difference(silent ? std::vector<BandDecay>{}
+                                : octave_decays((*own)[i].samples, (*own)[i].rate, highest),
+                         rings));
+  }
+  if (distances.empty()) return {};
+  const Interval spread = bootstrap_median(distances, 1);
+  VoiceDistance out{spread.value, spread.low, spread.high, static_cast<int>(distances.size()), {}};
+  if (!decays.empty()) out.decay = median(decays);
+  return out;
+}
+
+std::optional<EnergyExponent> energy_exponent(const PaperScene& scene,
+                                              const FrameSequence& frames) {
+  if (!scene.animation) return {};
+  std::vector<Event> snaps;
+  for (const Event& event : frames.events()) {
+    if (event.kind == "flap" || event.kind == "crac") snaps.push_back(event);
+  }
+  std::stable_sort(snaps.begin(), snaps.end(),
+                   [](const Event& a, const Event& b) { return a.time_s < b.time_s; });
+  const PowerLawFit fit = event_energy_exponent(snaps, "");
+  EnergyExponent out;
+  out.stated = fit.stated_exponent();
+  out.count = fit.count;
+  if (fit.count == 0) return out;
+  out.fitted = fit.exponent;
+  out.standard_error = fit.standard_error;
+  out.decades = fit.decades;
+  return out;
+}
+
+}  // namespace geoprior::paper

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "experiments/paper/scene/scene.h"
+#include "metrics/sound/bursts.h"
+#include "testbed/frame_sequence.h"
+
+namespace geoprior::paper {
+
+/// What was recorded of a sound: its events, and the file "sound.wav" that was mixed of them.
+/// Absent where no animation was listened to.
+struct SoundMeasures {
+  struct Kind {
+    int count = 0;
+    double energy = 0;                  ///< J
+    std::optional<Quartiles> duration;  ///< of the bursts heard in the mix (s)
+    std::optional<Quartiles> centroid;  ///< likewise (Hz)
+    double measured = 0;                ///< bursts that could be measured
+  };
+  std::map<std::string, Kind> kinds;  ///< "flap", "crac", "friction", "tear"
+  double rate = 0;                    ///< of all events (1/s)
+  std::optional<double> fano;         ///< factor of their counts in windows of 0.1 s
+  std::optional<double> area;         ///< of the resonators of flaps and cracs, median (m^2)
+  std::optional<double> ruling;       ///< their l_r (m)
+  std::optional<double> border;       ///< their l_c (m)
+  std::optional<double> latency;      ///< median of flaps and cracs (s)
+  std::optional<double> peak;         ///< true peak of the mix (dBFS); absent for silence
+  std::optional<double> centroid;     ///< of the whole mix (Hz)
+
+  [[nodiscard]] Kind of(const std::string& kind) const {
+    const auto found = kinds.find(kind);
+    return found == kinds.end() ? Kind{} : found->second;
+  }
+  [[nodiscard]] Kind all() const;
+};
+std::optional<SoundMeasures> sound_measures(const PaperScene& scene, const FrameSequence& frames);
+
+/// How far the sounds of picked events ("voices.wav") are from those of the reference variant: the
+/// log-spectral distance per third octave (metrics/sound/spectrum.h) from 100 Hz up to where the
+/// reference knows its modes, of what is less than 40 dB below the loudest band. Absent where one
+/// of both has no such file.
+struct VoiceDistance {
+  double median = 0, low = 0, high = 0;  ///< over the events, with its 95 % bootstrap interval (dB)
+  int count = 0;                         ///< events that were compared
+  /// How reverberation times per octave differ (metrics/sound/decay.h), in doublings: median over
+  /// the events for which the reference has a whole octave below where its modes are known.
+  std::optional<double> decay;
+};
+/// @throws Error  when the two have picked other events
+std::optional<VoiceDistance> voice_distance(const PaperScene& scene, const FrameSequence& frames);
+
+/// Power law of the energies of flaps and cracs (metrics/sound/power_law.h). Absent where no
+/// animation was listened to.
+struct EnergyExponent {
+  std::optional<double> stated;  ///< absent: withheld
+  std::optional<double> fitted;  ///< whether it may be stated or not
+  double standard_error = 0;
+  double count = 0;  ///< energies in the tail
+  double decades = 0;
+};
+std::optional<EnergyExponent> energy_exponent(const PaperScene& scene, const FrameSequence& frames);
+
+}  // namespace geoprior::paper

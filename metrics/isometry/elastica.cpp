@@ -1,0 +1,56 @@
+#include "metrics/isometry/elastica.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+/// Convergence is quadratic: this many steps reach round-off for every modulus below 1.
+constexpr int kAgmSteps = 10;
+
+}  // namespace
+
+EllipticIntegrals elliptic_integrals(double modulus) {
+  if (!(modulus >= 0 && modulus < 1)) {
+    throw Error("modulus " + std::to_string(modulus), "elliptic integral", "0 <= k < 1");
+  }
+  double a = 1;
+  double b = std::sqrt((1 - modulus) * (1 + modulus));
+  double power = 0.5;  // 2^(n - 1)
+  double sum = power * modulus * modulus;
+  for (int n = 0; n < kAgmSteps; ++n) {
+    const double c = (a - b) / 2;
+    const double mean = (a + b) / 2;
+    b = std::sqrt(a * b);
+    a = mean;
+    power *= 2;
+    sum += power * c * c;
+  }
+  const double first = std::numbers::pi / (2 * a);
+  return {first, first * (1 - sum)};
+}
+
+double elastica_height(double length, double distance) {
+  if (!(length > 0) || !(distance >= 0) || !(distance <= length)) {
+    throw Error("ends " + std::to_string(distance) + " m apart on a strip of " +
+                    std::to_string(length) + " m",
+                "elastica", "a positive length and 0 … length");
+  }
+  // 2 E / K - 1 falls from 1 to -1 as k goes from 0 to 1; 0, ends that touch, is at k = 0.909.
+  double low = 0;
+  double high = 0.95;
+  for (int i = 0; i < 60; ++i) {
+    const double k = (low + high) / 2;
+    const EllipticIntegrals integrals = elliptic_integrals(k);
+    const bool too_straight = 2 * integrals.second / integrals.first - 1 > distance / length;
+    (too_straight ? low : high) = k;
+  }
+  const double k = (low + high) / 2;
+  return length * k / elliptic_integrals(k).first;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "core/mesh.h"
+#include "metrics/contact/joint_region.h"
+
+namespace geoprior {
+
+/// A joint's region as a closed surface: its triangles, and a fan from the centroid of each border
+/// loop to the loop's edges. Vertices are those of the mesh, then one centroid a loop.
+TriMesh region_surface(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
+                       const JointRegion& region);
+
+/// Volume of a joint's region: of `region_surface` (m^3).
+///
+/// Exact to round-off for the closed surface so made. Because the loops lie where the skin moves
+/// with one bone, the fans move rigidly and a change of this volume is one of the skin between
+/// them. Where a surface overlaps itself the overlap counts twice (read it beside overlap_volume).
+/// The volume of a whole closed mesh is `signed_volume` (core/mesh.h).
+double region_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
+                     const JointRegion& region);
+
+/// Integral of the position over the volume of a closed, outward oriented mesh, divided by the
+/// volume (m): the centre of mass of a homogeneous body. With the density rho and gravity g its
+/// potential energy is -rho V g.centroid.
+/// @throws Error  when the mesh encloses no volume
+Eigen::Vector3d volume_centroid(const TriMesh& mesh);
+
+/// (after - before) / before; 0 when both are 0.
+/// @throws Error  when only `before` is 0
+double relative_change(double before, double after);
+
+}  // namespace geoprior

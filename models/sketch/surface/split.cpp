@@ -1,0 +1,130 @@
+#include "models/sketch/surface/split.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace geoprior::sketch {
+namespace {
+
+class PathSplitter {
+ public:
+  explicit PathSplitter(const TriMesh& mesh)
+      : mesh_(mesh), edges_(mesh.F), node_(static_cast<std::size_t>(edges_.edge_count()), -1) {}
+
+  std::optional<SurfaceSplit> split(std::span<const SurfacePath> paths) {
+    for (const SurfacePath& path : paths) add_nodes(path);
+    for (const Edge& e : split_.path) wanted_.insert(e);
+    split_triangles();
+    const EdgeConnectivity made(split_.triangles);
+    for (const Edge& e : split_.path) {
+      if (!made.find(e[0], e[1])) return {};
+    }
+    return std::move(split_);
+  }
+
+ private:
+  int node_of(const EdgePoint& point) {
+    if (point.is_vertex() || point.share < kSnapShare) return point.edge[0];
+    if (point.share > 1 - kSnapShare) return point.edge[1];
+    int& node = node_[*edges_.find(point.edge[0], point.edge[1])];
+    if (node < 0) {
+      node = mesh_.vertex_count() + static_cast<int>(split_.added.size());
+      split_.added.push_back(point);
+    }
+    return node;
+  }
+
+  void add_nodes(const SurfacePath& path) {
+    int before = -1;
+    for (const EdgePoint& point : path) {
+      const int node = node_of(point);
+      if (before >= 0 && node != before) {
+        const Edge e = undirected(before, node);
+        if (std::find(split_.path.begin(), split_.path.end(), e) == split_.path.end())
+          split_.path.push_back(e);
+      }
+      before = node;
+    }
+  }
+
+  void split_triangles() {
+    std::vector<std::array<int, 3>> made;
+    for (int t = 0; t < mesh_.triangle_count(); ++t) split_triangle(t, made);
+    split_.triangles.resize(static_cast<Eigen::Index>(made.size()), 3);
+    for (std::size_t t = 0; t < made.size(); ++t)
+      split_.triangles.row(static_cast<Eigen::Index>(t)) << made[t][0], made[t][1], made[t][2];
+  }
+
+  void split_triangle(int t, std::vector<std::array<int, 3>>& made) const {
+    std::array<int, 3> at;
+    for (int k = 0; k < 3; ++k) at[k] = node_[edges_.edge_of(3 * t + k)];
+    const auto corner = [&](int k) { return mesh_.F(t, k % 3); };
+    const auto count = std::count_if(at.begin(), at.end(), [](int v) { return v >= 0; });
+    if (count == 0) made.push_back({corner(0), corner(1), corner(2)});
+    if (count == 1) {
+      const int k = at[0] >= 0 ? 0 : at[1] >= 0 ? 1 : 2;
+      made.push_back({corner(k), at[k], corner(k + 2)});
+      made.push_back({at[k], corner(k + 1), corner(k + 2)});
+    }
+    if (count == 2) {
+      // `k` is the whole edge; the two others meet in the corner that is cut off.
+      const int k = at[0] < 0 ? 0 : at[1] < 0 ? 1 : 2;
+      const int b = at[(k + 1) % 3], c = at[(k + 2) % 3];
+      made.push_back({b, corner(k + 2), c});
+      if (wanted_.contains(undirected(corner(k + 1), c))) {
+        made.push_back({corner(k), corner(k + 1), c});
+        made.push_back({corner(k + 1), b, c});
+      } else {
+        made.push_back({corner(k), b, c});
+        made.push_back({corner(k), corner(k + 1), b});
+      }
+    }
+    if (count == 3) {
+      for (int k = 0; k < 3; ++k) made.push_back({corner(k), at[k], at[(k + 2) % 3]});
+      made.push_back({at[0], at[1], at[2]});
+    }
+  }
+
+  const TriMesh& mesh_;
+  EdgeConnectivity edges_;
+  std::vector<int> node_;  ///< new vertex of each edge, -1: none
+  std::set<Edge> wanted_;  ///< edges of the paths
+  SurfaceSplit split_;
+};
+
+}  // namespace
+
+Eigen::MatrixX3d SurfaceSplit::interpolated(const Eigen::MatrixX3d& values) const {
+  Eigen::MatrixX3d result(values.rows() + static_cast<Eigen::Index>(added.size()), 3);
+  result.topRows(values.rows()) = values;
+  for (std::size_t i = 0; i < added.size(); ++i)
+    result.row(values.rows() + static_cast<Eigen::Index>(i)) = added[i].position(values);
+  return result;
+}
+
+std::vector<Edge> SurfaceSplit::split_edges(std::span<const Edge> edges, int first_new) const {
+  std::map<Edge, int> at;
+  for (std::size_t i = 0; i < added.size(); ++i)
+    at[added[i].edge] = first_new + static_cast<int>(i);
+  std::vector<Edge> finer;
+  for (const Edge& e : edges) {
+    const auto found = at.find(e);
+    if (found == at.end()) {
+      finer.push_back(e);
+    } else {
+      finer.push_back({e[0], found->second});
+      finer.push_back({e[1], found->second});
+    }
+  }
+  return finer;
+}
+
+std::optional<SurfaceSplit> split_along(const TriMesh& mesh, std::span<const SurfacePath> paths) {
+  return PathSplitter(mesh).split(paths);
+}
+
+}  // namespace geoprior::sketch

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/connectivity.h"
+#include "core/mesh.h"
+#include "models/sketch/surface/path.h"
+
+namespace geoprior::sketch {
+
+/// A surface whose triangles were split along paths, so that these run along its edges.
+struct SurfaceSplit {
+  Eigen::MatrixX3i triangles;
+  std::vector<EdgePoint> added;  ///< of each new vertex; numbered after the old ones
+  std::vector<Edge> path;        ///< edges of the paths, lower vertex first, in their order
+
+  /// Values at the vertices, with those of the new ones between the ends of their edges.
+  [[nodiscard]] Eigen::MatrixX3d interpolated(const Eigen::MatrixX3d& values) const;
+  /// Edges of the old triangles, lower vertex first, as they are now.
+  /// @param first_new  number of the first new vertex
+  [[nodiscard]] std::vector<Edge> split_edges(std::span<const Edge> edges, int first_new) const;
+};
+
+/// Splits triangles where paths cross them. Where a path passes nearer to a vertex than a sixth of
+/// the edge, the vertex stands in for the crossing: slivers would spoil what is solved on the
+/// surface. An edge is split once: a second path joins the first one there.
+///
+/// New vertices are numbered along the paths, so that equal paths over two meshes of different
+/// numbering split them alike.
+/// @return  nothing when paths cross each other inside a triangle
+std::optional<SurfaceSplit> split_along(const TriMesh& mesh, std::span<const SurfacePath> paths);
+
+}  // namespace geoprior::sketch

@@ -1,0 +1,407 @@
+#include "models/sketch/surface/visual_hull.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "core/error.h"
+#include "core/geometry/topology.h"
+#include "core/limits.h"
+#include "models/sketch/surface/collapse_edges.h"
+#include "models/sketch/surface/nets.h"
+
+namespace geoprior::sketch {
+namespace {
+
+/// Signed distances at the points of a plane grid, exact within two spacings of the outline and
+/// bounds beyond.
+struct PlaneDistances {
+  std::array<int, 2> size{0, 0};
+  std::vector<double> values;
+};
+
+struct HullBox {
+  Eigen::Vector3d low, high;
+};
+
+/// Grid of a hull: points `origin + spacing (i, j, k)`.
+struct HullGrid {
+  std::array<int, 3> size{0, 0, 0};
+  Eigen::Vector3d origin;
+  double spacing = 0;
+};
+
+HullBox box_of(const std::vector<OutlinedView>& views) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  HullBox box{Eigen::Vector3d::Constant(-kInfinity), Eigen::Vector3d::Constant(kInfinity)};
+  for (const OutlinedView& view : views) {
+    for (int c = 0; c < 2; ++c) {
+      const auto [axis, sign] = view_axis(view.frame, c);
+      const double a = sign * view.outline.lowest()[c], b = sign * view.outline.highest()[c];
+      box.low[axis] = std::max(box.low[axis], std::min(a, b));
+      box.high[axis] = std::min(box.high[axis], std::max(a, b));
+    }
+  }
+  return box;
+}
+
+/// Irrational parts of a spacing by which the grid begins before the box: planes of the drawing
+/// should not lie on grid points.
+constexpr std::array<double, 3> kLead{1.38196601125, 1.41421356237, 1.30277563773};
+
+HullGrid grid_over(const HullBox& box, double spacing, int attempt) {
+  HullGrid grid;
+  grid.spacing = spacing;
+  for (int a = 0; a < 3; ++a) {
+    const double lead = kLead[a] + 0.1618033988 * attempt;
+    grid.origin[a] = box.low[a] - lead * spacing;
+    grid.size[a] = static_cast<int>(std::ceil((box.high[a] - grid.origin[a]) / spacing)) + 2;
+  }
+  return grid;
+}
+
+PlaneDistances plane_distances(const OutlinedView& view, const HullGrid& grid) {
+  const std::array<int, 2> axes{view_axis(view.frame, 0).axis, view_axis(view.frame, 1).axis};
+  PlaneDistances plane;
+  plane.size = {grid.size[axes[0]], grid.size[axes[1]]};
+  plane.values.resize(static_cast<std::size_t>(plane.size[0]) *
+                      static_cast<std::size_t>(plane.size[1]));
+  Eigen::Vector3d x = grid.origin;
+  for (int j = 0; j < plane.size[1]; ++j) {
+    x[axes[1]] = grid.origin[axes[1]] + j * grid.spacing;
+    double before = 0;
+    for (int i = 0; i < plane.size[0]; ++i) {
+      // A step changes the distance by at most itself: far from the outline there is nothing to
+      // ask.
+      double& value = plane.values[j * plane.size[0] + i];
+      const double bound = std::abs(before) - grid.spacing;
+      if (i > 0 && bound > 2 * grid.spacing) {
+        value = std::copysign(bound, before);
+      } else {
+        x[axes[0]] = grid.origin[axes[0]] + i * grid.spacing;
+        value = view.outline.nearest(view.project(x)).distance;
+      }
+      before = value;
+    }
+  }
+  return plane;
+}
+
+GridFunction hull_function(const std::vector<OutlinedView>& views, const HullGrid& grid) {
+  GridFunction f;
+  f.size = grid.size;
+  f.origin = grid.origin;
+  f.spacing = grid.spacing;
+  f.values.assign(static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]) *
+                      static_cast<std::size_t>(grid.size[2]),
+                  -std::numeric_limits<double>::infinity());
+  for (const OutlinedView& view : views) {
+    const PlaneDistances plane = plane_distances(view, grid);
+    const int u = view_axis(view.frame, 0).axis, w = view_axis(view.frame, 1).axis;
+    std::array<int, 3> at{};
+    for (at[2] = 0; at[2] < grid.size[2]; ++at[2]) {
+      for (at[1] = 0; at[1] < grid.size[1]; ++at[1]) {
+        for (at[0] = 0; at[0] < grid.size[0]; ++at[0]) {
+          double& value = f.values[f.index(at[0], at[1], at[2])];
+          value = std::max(value, plane.values[at[w] * plane.size[0] + at[u]]);
+        }
+      }
+    }
+  }
+  return f;
+}
+
+/// Where an outline meets the horizontal line at a height; at its nearest end above or below it.
+struct SectionExtent {
+  double low = 0, high = 0;
+};
+
+SectionExtent extent_at(const Outline& outline, double height) {
+  const double margin = 1e-6 * outline.diagonal();
+  const double y =
+      std::clamp(height, outline.lowest().y() + margin, outline.highest().y() - margin);
+  SectionExtent extent{std::numeric_limits<double>::infinity(),
+                       -std::numeric_limits<double>::infinity()};
+  const std::vector<Eigen::Vector2d>& p = outline.points();
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Eigen::Vector2d &a = p[i], &b = p[(i + 1) % p.size()];
+    if ((a.y() < y) == (b.y() < y)) continue;
+    const double x = a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+    extent.low = std::min(extent.low, x);
+    extent.high = std::max(extent.high, x);
+  }
+  return extent;
+}
+
+/// The outline of the top view, scaled at every height to the widths of the views from the front
+/// and from the side. Right is x in front and top; it is -z from the side, which is up in the top
+/// view.
+class TopSections {
+ public:
+  explicit TopSections(const std::vector<OutlinedView>& views)
+      : front_(outline_of(views, ViewKind::front)),
+        side_(outline_of(views, ViewKind::side)),
+        top_(outline_of(views, ViewKind::top)) {}
+
+  /// Moves what is asked at one height into the top view and back.
+  struct AtHeight {
+    Eigen::Vector2d low, scale;
+  };
+  [[nodiscard]] AtHeight at(double y) const {
+    const SectionExtent x = extent_at(front_, y), z = extent_at(side_, y);
+    const Eigen::Vector2d size(x.high - x.low, z.high - z.low);
+    return {{x.low, z.low}, (top_.highest() - top_.lowest()).cwiseQuotient(size)};
+  }
+  /// Not a distance in space, but linear across a cell near the surface, which is all that surface
+  /// nets ask of it.
+  [[nodiscard]] double distance(const AtHeight& at, const Eigen::Vector2d& q) const {
+    return top_.nearest(top_.lowest() + (q - at.low).cwiseProduct(at.scale)).distance /
+           at.scale.maxCoeff();
+  }
+  /// The point moved, at its height, onto the section's outline.
+  [[nodiscard]] Eigen::Vector3d moved_on(const Eigen::Vector3d& x) const {
+    const AtHeight here = at(x.y());
+    const Eigen::Vector2d q(x.x(), -x.z());
+    const Eigen::Vector2d nearest =
+        top_.nearest(top_.lowest() + (q - here.low).cwiseProduct(here.scale)).point;
+    const Eigen::Vector2d to = here.low + (nearest - top_.lowest()).cwiseQuotient(here.scale);
+    return {to.x(), x.y(), -to.y()};
+  }
+
+ private:
+  static const Outline& outline_of(const std::vector<OutlinedView>& views, ViewKind kind) {
+    const auto view = std::find_if(views.begin(), views.end(),
+                                   [&](const OutlinedView& v) { return v.kind == kind; });
+    if (view != views.end()) return view->outline;
+    throw Error(std::string("has no view ") + view_name(kind), "hull.sections = \"top\"",
+                "front, side and top");
+  }
+
+  const Outline &front_, &side_, &top_;
+};
+
+void bound_by_sections(const TopSections& sections, const HullGrid& grid, GridFunction& f) {
+  for (int j = 0; j < grid.size[1]; ++j) {
+    const TopSections::AtHeight here = sections.at(grid.origin.y() + j * grid.spacing);
+    for (int k = 0; k < grid.size[2]; ++k) {
+      for (int i = 0; i < grid.size[0]; ++i) {
+        const Eigen::Vector2d q(grid.origin.x() + i * grid.spacing,
+                                -(grid.origin.z() + k * grid.spacing));
+        double& value = f.values[f.index(i, j, k)];
+        value = std::max(value, sections.distance(here, q));
+      }
+    }
+  }
+}
+
+/// Arc lengths of the corners of an outline: where it turns by more than 30 degrees. Ascending.
+std::vector<double> corners_of(const Outline& outline) {
+  const std::vector<Eigen::Vector2d>& p = outline.points();
+  std::vector<double> corners;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Eigen::Vector2d in = p[i] - p[(i + p.size() - 1) % p.size()];
+    const Eigen::Vector2d out = p[(i + 1) % p.size()] - p[i];
+    if (in.dot(out) < std::cos(0.5236) * in.norm() * out.norm())
+      corners.push_back(outline.arc_length(static_cast<int>(i)));
+  }
+  return corners;
+}
+
+/// Moves vertices of the nets onto the faces of the hull that their cells cross: a face is a view
+/// and a run of its silhouette between two corners. A vertex of two faces comes to lie on the edge
+/// between them, exactly.
+class SilhouetteFit {
+ public:
+  SilhouetteFit(const std::vector<OutlinedView>& views, double spacing, HullSections sections)
+      : views_(views), same_(0.02 * spacing) {
+    if (sections == HullSections::top) sections_.emplace(views);
+    for (const OutlinedView& view : views) corners_.push_back(corners_of(view.outline));
+  }
+
+  [[nodiscard]] Eigen::Vector3d fitted(Eigen::Vector3d x,
+                                       const std::vector<Eigen::Vector3d>& crossings) const {
+    std::vector<std::set<std::size_t>> runs(views_.size());
+    bool on_section = false;
+    for (const Eigen::Vector3d& crossing : crossings)
+      on_section = !add_faces_at(crossing, runs) || on_section;
+    // Two faces that are not at right angles are met in turns.
+    for (int pass = 0; pass < 8; ++pass) {
+      for (std::size_t v = 0; v < views_.size(); ++v) {
+        if (runs[v].empty()) continue;
+        const Eigen::Vector2d q = views_[v].project(x);
+        const Outline& outline = views_[v].outline;
+        const Eigen::Vector2d to = runs[v].size() == 1
+                                       ? outline.nearest(q).point
+                                       : outline.at(nearest_corner(v, outline.nearest(q)));
+        x += views_[v].frame.topRows<2>().transpose() * (to - q);
+      }
+      if (on_section) x = sections_->moved_on(x);
+    }
+    return inside(x);
+  }
+
+ private:
+  /// Adds the runs of all silhouettes that a point of the hull is on; views may share a face.
+  /// @return  false for a point that is inside all of them: on a section
+  bool add_faces_at(const Eigen::Vector3d& x, std::vector<std::set<std::size_t>>& runs) const {
+    std::vector<Outline::Nearest> nearest;
+    double outermost = -std::numeric_limits<double>::infinity();
+    for (const OutlinedView& view : views_) {
+      nearest.push_back(view.outline.nearest(view.project(x)));
+      outermost = std::max(outermost, nearest.back().distance);
+    }
+    if (sections_ && outermost < -same_) return false;
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+      if (nearest[v].distance < outermost - same_) continue;
+      const std::vector<double>& corners = corners_[v];
+      const auto after = std::upper_bound(corners.begin(), corners.end(), nearest[v].arc_length);
+      const auto run = static_cast<std::size_t>(after - corners.begin());
+      runs[v].insert(run == corners.size() ? 0 : run);  // the last run goes on past the first point
+    }
+    return true;
+  }
+
+  /// Arc length of the corner that is nearest along the outline.
+  [[nodiscard]] double nearest_corner(std::size_t view, const Outline::Nearest& from) const {
+    const double length = views_[view].outline.length();
+    double best = from.arc_length, least = std::numeric_limits<double>::infinity();
+    for (const double corner : corners_[view]) {
+      const double way = std::abs(std::remainder(corner - from.arc_length, length));
+      if (way < least) {
+        least = way;
+        best = corner;
+      }
+    }
+    return best;
+  }
+
+  /// What is outside of a silhouette comes in.
+  [[nodiscard]] Eigen::Vector3d inside(Eigen::Vector3d x) const {
+    for (const OutlinedView& view : views_) {
+      const Eigen::Vector2d q = view.project(x);
+      const Outline::Nearest nearest = view.outline.nearest(q);
+      if (nearest.distance > 0) x += view.frame.topRows<2>().transpose() * (nearest.point - q);
+    }
+    return x;
+  }
+
+  const std::vector<OutlinedView>& views_;
+  std::vector<std::vector<double>> corners_;  ///< of each view
+  double same_;  ///< difference of distances at which two views see the same face (m)
+  std::optional<TopSections> sections_;  ///< where the hull has them
+};
+
+void fit_to_silhouettes(QuadMesh& nets, const std::vector<OutlinedView>& views, double spacing,
+                        HullSections sections) {
+  const SilhouetteFit fit(views, spacing, sections);
+  for (Eigen::Index v = 0; v < nets.V.rows(); ++v) {
+    nets.V.row(v) =
+        fit.fitted(nets.V.row(v).transpose(), nets.crossings[static_cast<std::size_t>(v)])
+            .transpose();
+  }
+}
+
+/// Splits quadrilaterals along their shorter diagonals.
+TriMesh split_quads(const QuadMesh& quads) {
+  TriMesh mesh;
+  mesh.V = quads.V;
+  mesh.F.resize(2 * static_cast<Eigen::Index>(quads.quads.size()), 3);
+  Eigen::Index t = 0;
+  for (const std::array<int, 4>& q : quads.quads) {
+    const double first = (mesh.V.row(q[0]) - mesh.V.row(q[2])).squaredNorm();
+    const double second = (mesh.V.row(q[1]) - mesh.V.row(q[3])).squaredNorm();
+    const int turn = first <= second ? 0 : 1;
+    mesh.F.row(t++) << q[turn], q[turn + 1], q[turn + 2];
+    mesh.F.row(t++) << q[turn], q[turn + 2], q[(turn + 3) % 4];
+  }
+  return mesh;
+}
+
+std::vector<std::optional<SilhouettePlace>> places_on(const OutlinedView& view,
+                                                      const Eigen::MatrixX3d& V, double near) {
+  std::vector<std::optional<SilhouettePlace>> places(static_cast<std::size_t>(V.rows()));
+  for (Eigen::Index v = 0; v < V.rows(); ++v) {
+    const Outline::Nearest nearest = view.outline.nearest(view.project(V.row(v).transpose()));
+    if (std::abs(nearest.distance) < near) places[v] = {nearest.arc_length, nearest.normal};
+  }
+  return places;
+}
+
+/// Nets at a spacing, on shifted grids until they are a manifold.
+QuadMesh manifold_nets(const std::vector<OutlinedView>& views, const HullBox& box, double spacing,
+                       HullSections sections) {
+  constexpr int kAttempts = 6;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const HullGrid grid = grid_over(box, spacing, attempt);
+    require_memory(8.0 * grid.size[0] * grid.size[1] * grid.size[2], 1, "grid of the hull",
+                   "hull.triangles");
+    GridFunction f = hull_function(views, grid);
+    if (sections == HullSections::top) bound_by_sections(TopSections(views), grid, f);
+    QuadMesh quads = surface_nets(f);
+    if (!quads.quads.empty() && non_manifold_edges(split_quads(quads).F).empty()) return quads;
+  }
+  throw Error("has parts that are thinner than its grid of " + std::to_string(spacing) + " m",
+              "visual hull", "more triangles");
+}
+
+}  // namespace
+
+void describe(OptionVisitor& v, HullOptions& o) {
+  static constexpr std::array<std::string_view, 2> kSections{"views", "top"};
+  v.value("triangles", o.triangles,
+          {.doc = "triangles of the surface that are aimed at", .min = 100, .max = 1e7});
+  describe_choice(
+      v, "sections", o.sections, kSections,
+      {.doc = "horizontal sections: what the views see, or the top view's outline scaled "
+              "to the widths of front and side"});
+}
+
+std::vector<OutlinedView> outlined_views(const Drawing& aligned) {
+  std::vector<OutlinedView> views;
+  for (const View& view : aligned.views) {
+    if (view.kind == ViewKind::photo) continue;
+    const std::vector<const Stroke*> strokes = strokes_of(view, StrokeKind::silhouette);
+    if (strokes.size() != 1) {
+      throw Error("has " + std::to_string(strokes.size()) + " silhouettes",
+                  aligned.name + ", view " + view_name(view.kind), "one");
+    }
+    views.push_back({view.kind, Outline(strokes[0]->points), view_frame(view.kind)});
+  }
+  return views;
+}
+
+VisualHull visual_hull(const Drawing& aligned, const HullOptions& options) {
+  VisualHull hull;
+  hull.views = outlined_views(aligned);
+  if (hull.views.size() < 2)
+    throw Error("has too few views for a hull", aligned.name, "two of front, side and top");
+  const HullBox box = box_of(hull.views);
+  if (!((box.high - box.low).minCoeff() > 0))
+    throw Error("the views have no point in common", aligned.name);
+  // The number of triangles goes with the inverse square of the spacing: one coarse mesh tells it.
+  const double coarse = (box.high - box.low).norm() / 48;
+  const QuadMesh trial = manifold_nets(hull.views, box, coarse, options.sections);
+  hull.spacing =
+      coarse * std::sqrt(2.0 * static_cast<double>(trial.quads.size()) / options.triangles);
+  QuadMesh quads = manifold_nets(hull.views, box, hull.spacing, options.sections);
+  fit_to_silhouettes(quads, hull.views, hull.spacing, options.sections);
+  hull.mesh = split_quads(quads);
+  // Several vertices of the nets may have gone to one corner.
+  collapse_short_edges(hull.mesh, 0.01 * hull.spacing);
+  place_on_silhouettes(hull);
+  return hull;
+}
+
+void place_on_silhouettes(VisualHull& hull) {
+  hull.places.clear();
+  for (const OutlinedView& view : hull.views)
+    hull.places.push_back(places_on(view, hull.mesh.V, 0.02 * hull.spacing));
+}
+
+}  // namespace geoprior::sketch

@@ -1,0 +1,202 @@
+#include "solvers/sketch/drawing/dense_matches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "core/angles.h"
+#include "core/error.h"
+
+namespace geoprior::sketch {
+namespace {
+
+/// A drawn pair as places on two borders.
+struct PairAnchor {
+  double first = 0;
+  double second = 0;
+  int pair = -1;
+};
+
+/// Stretch of the first border, from `begin` up to `end`, and its image from `image_begin` to
+/// `image_end`, which may run down; numbers of closed borders go on past the last node.
+struct MatchedStretch {
+  double begin = 0;
+  double end = 0;
+  double image_begin = 0;
+  double image_end = 0;
+};
+
+class StretchMatcher {
+ public:
+  StretchMatcher(const CurveNet& net, const MirrorPlane& plane, int half_width, double steep_deg)
+      : net_(net),
+        across_(across_pairs(plane)),
+        half_width_(half_width),
+        least_slope_(std::sin(steep_deg * kDegree)) {}
+
+  void match(int first, int second, const MatchedStretch& stretch,
+             std::vector<DenseMatch>& matches) const;
+  /// Mean distance in u of proportional places: small for the right way round a closed border.
+  [[nodiscard]] double mismatch(int first, int second, const MatchedStretch& stretch) const;
+
+ private:
+  [[nodiscard]] double u_at(int curve, double at) const {
+    return across_.dot(evaluate(net_, position_form(net_, {curve, at})));
+  }
+  /// Derivative of u along the unit tangent in the direction of rising numbers.
+  [[nodiscard]] double slope(int curve, int i) const {
+    const Eigen::Vector2d t =
+        evaluate(net_, tangent_form(net_.curves[curve], i, half_width_)).normalized();
+    return across_.dot(t);
+  }
+  /// Whether u is steep at the image too, in the same sense.
+  [[nodiscard]] bool runs_alike(int curve, double at, double rise) const {
+    const double image = slope(curve, static_cast<int>(std::lround(at)));
+    return image * rise > 0 && std::abs(image) >= least_slope_;
+  }
+  [[nodiscard]] std::optional<double> next_crossing(int curve, double from, double to, double u,
+                                                    bool rising) const;
+
+  const CurveNet& net_;
+  Eigen::Vector2d across_;
+  int half_width_;
+  double least_slope_;
+};
+
+/// First place after `from`, on the way to `to`, where u passes the value in the given sense.
+std::optional<double> StretchMatcher::next_crossing(int curve, double from, double to, double u,
+                                                    bool rising) const {
+  const double way = to >= from ? 1 : -1;
+  double at = from;
+  double value = u_at(curve, at);
+  while (way * (to - at) > 0) {
+    double next = way > 0 ? std::floor(at) + 1 : std::ceil(at) - 1;
+    if (way * (next - to) > 0) next = to;
+    const double next_value = u_at(curve, next);
+    const bool passes = rising ? value <= u && u <= next_value : value >= u && u >= next_value;
+    if (passes && value != next_value) {
+      return at + (u - value) / (next_value - value) * (next - at);
+    }
+    at = next;
+    value = next_value;
+  }
+  return std::nullopt;
+}
+
+void StretchMatcher::match(int first, int second, const MatchedStretch& stretch,
+                           std::vector<DenseMatch>& matches) const {
+  const double way = stretch.image_end >= stretch.image_begin ? 1 : -1;
+  double from = stretch.image_begin;
+  for (int i = static_cast<int>(std::floor(stretch.begin)) + 1; i < stretch.end; ++i) {
+    const double rise = slope(first, i);
+    if (std::abs(rise) < least_slope_) continue;
+    const double u = u_at(first, i);
+    const auto place = next_crossing(second, from, stretch.image_end, u, rise > 0);
+    if (!place || !runs_alike(second, *place, way * rise)) continue;
+    matches.push_back({node_of(net_.curves[first], i), {second, *place}});
+    from = *place;
+  }
+}
+
+double StretchMatcher::mismatch(int first, int second, const MatchedStretch& stretch) const {
+  constexpr int kProbes = 16;
+  double sum = 0;
+  for (int k = 1; k < kProbes; ++k) {
+    const double t = static_cast<double>(k) / kProbes;
+    sum +=
+        std::abs(u_at(first, stretch.begin + t * (stretch.end - stretch.begin)) -
+                 u_at(second, stretch.image_begin + t * (stretch.image_end - stretch.image_begin)));
+  }
+  return sum / (kProbes - 1);
+}
+
+std::vector<PairAnchor> anchors_on(const std::vector<SymmetricPair>& pairs, int first, int second) {
+  std::vector<PairAnchor> anchors;
+  const auto add = [&](const std::vector<CurvePoint>& from, const std::vector<CurvePoint>& to,
+                       int pair) {
+    for (const CurvePoint& a : from) {
+      for (const CurvePoint& b : to) {
+        if (a.curve == first && b.curve == second) anchors.push_back({a.at, b.at, pair});
+      }
+    }
+  };
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    add(pairs[p].point_at, pairs[p].image_at, static_cast<int>(p));
+    if (!pairs[p].in_plane) add(pairs[p].image_at, pairs[p].point_at, static_cast<int>(p));
+  }
+  std::sort(anchors.begin(), anchors.end(), [](const PairAnchor& a, const PairAnchor& b) {
+    return a.first != b.first ? a.first < b.first : a.second < b.second;
+  });
+  return anchors;
+}
+
+/// The stretches between neighbouring anchors when the image runs by `way` (+1 or -1).
+std::vector<MatchedStretch> stretches_between(const std::vector<PairAnchor>& anchors,
+                                              const SketchCurve& first, const SketchCurve& second,
+                                              int way) {
+  std::vector<MatchedStretch> stretches;
+  const bool around = first.closed && second.closed;
+  const std::size_t count = around ? anchors.size() : anchors.size() - 1;
+  for (std::size_t k = 0; k < count; ++k) {
+    const PairAnchor& a = anchors[k];
+    const PairAnchor& b = anchors[(k + 1) % anchors.size()];
+    MatchedStretch s{a.first, b.first, a.second, b.second};
+    if (k + 1 == anchors.size()) s.end += first.size();
+    if (second.closed && way * (s.image_end - s.image_begin) <= 0)
+      s.image_end += way * second.size();
+    stretches.push_back(s);
+  }
+  return stretches;
+}
+
+/// Total way of the images: more than once around says that pairs cross.
+void require_order(const std::vector<PairAnchor>& anchors,
+                   const std::vector<MatchedStretch>& stretches, const SketchCurve& first,
+                   const SketchCurve& second, const std::vector<SymmetricPair>& pairs) {
+  double around = 0;
+  double way = 0;
+  for (std::size_t k = 0; k < stretches.size(); ++k) {
+    const double step = stretches[k].image_end - stretches[k].image_begin;
+    if (way == 0) way = step;
+    around += std::abs(step);
+    const bool turns = !second.closed && way * step < 0;
+    const bool laps = second.closed && around > second.size() * (1 + 1e-9);
+    if (!turns && !laps) continue;
+    const std::string& a = pairs[anchors[k].pair].id;
+    const std::string& b = pairs[anchors[(k + 1) % anchors.size()].pair].id;
+    throw Error("contradictory symmetric pairs: they cross on borders '" + first.id + "' and '" +
+                    second.id + "'",
+                "strokes '" + a + "' and '" + b + "'", "the same order along both borders");
+  }
+}
+
+}  // namespace
+
+std::vector<DenseMatch> dense_matches(const CurveNet& net, const std::vector<SymmetricPair>& pairs,
+                                      const MirrorPlane& plane, int half_width, double steep_deg) {
+  const StretchMatcher matcher(net, plane, half_width, steep_deg);
+  std::vector<DenseMatch> matches;
+  const int count = static_cast<int>(net.curves.size());
+  for (int a = 0; a < count; ++a) {
+    for (int b = 0; b < count; ++b) {
+      const std::vector<PairAnchor> anchors = anchors_on(pairs, a, b);
+      if (anchors.size() < 2) continue;
+      const SketchCurve& first = net.curves[a];
+      const SketchCurve& second = net.curves[b];
+      std::vector<MatchedStretch> stretches = stretches_between(anchors, first, second, -1);
+      if (second.closed && a != b) {
+        const std::vector<MatchedStretch> other = stretches_between(anchors, first, second, 1);
+        double down = 0, up = 0;
+        for (const MatchedStretch& s : stretches) down += matcher.mismatch(a, b, s);
+        for (const MatchedStretch& s : other) up += matcher.mismatch(a, b, s);
+        if (up < down) stretches = other;
+      }
+      require_order(anchors, stretches, first, second, pairs);
+      for (const MatchedStretch& s : stretches) matcher.match(a, b, s, matches);
+    }
+  }
+  return matches;
+}
+
+}  // namespace geoprior::sketch

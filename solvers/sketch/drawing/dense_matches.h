@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "solvers/sketch/drawing/curve_net.h"
+#include "solvers/sketch/drawing/symmetric_pairs.h"
+
+namespace geoprior::sketch {
+
+/// A node of a border and the place of its mirror image on a border.
+struct DenseMatch {
+  int node = -1;
+  CurvePoint image;
+};
+
+/// Symmetric correspondences between drawn pairs (thesis 2.1.3, first step).
+///
+/// In the picture all pairs are parallel to n_xy, so that a point and its image have the same
+/// coordinate u across n_xy. Between two neighbouring pairs on the same two borders, each node of
+/// the first border goes to the place with the same u on the second, with u running the same way,
+/// in monotone order; a closed border that is its own image has pairs in both senses. Nodes where
+/// the border runs within `steep_deg` of n_xy are left out: u is stationary there and noise decides
+/// the place. Nothing is matched beyond the outermost pairs of an open border.
+///
+/// @param half_width  nodes on either side for tangents
+/// @throws Error      when the order of pairs along the two borders differs (names two pairs)
+std::vector<DenseMatch> dense_matches(const CurveNet& net, const std::vector<SymmetricPair>& pairs,
+                                      const MirrorPlane& plane, int half_width,
+                                      double steep_deg = 20);
+
+}  // namespace geoprior::sketch

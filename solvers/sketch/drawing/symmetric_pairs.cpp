@@ -1,0 +1,160 @@
+#include "solvers/sketch/drawing/symmetric_pairs.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+
+namespace geoprior::sketch {
+namespace {
+
+/// Ends of pairs are drawn onto borders by hand: they may miss by this many snapping distances.
+constexpr double kPairReach = 2;
+
+/// The place and, where it is a node of other curves too, its places on them.
+std::vector<CurvePoint> all_places(const CurveNet& net, const CurvePoint& place) {
+  const SketchCurve& curve = net.curves[place.curve];
+  const double rounded = std::round(place.at);
+  const int node = node_of(curve, static_cast<int>(rounded));
+  const double off = (net.points[node] - evaluate(net, position_form(net, place))).norm();
+  std::vector<CurvePoint> places;
+  if (off <= std::max(net.snap, net.spacing / 2)) {
+    for (std::size_t c = 0; c < net.curves.size(); ++c) {
+      if (static_cast<int>(c) == place.curve) continue;
+      const std::vector<int>& nodes = net.curves[c].nodes;
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (nodes[i] == node) places.push_back({static_cast<int>(c), static_cast<double>(i)});
+      }
+    }
+  }
+  // At a junction the place is the junction itself, on every curve.
+  places.insert(places.begin(), places.empty() ? place : CurvePoint{place.curve, rounded});
+  return places;
+}
+
+/// Borders that belong to all panels that a pair names.
+std::vector<int> borders_for_pair(const CurveNet& net, const Stroke& stroke) {
+  const std::vector<std::string> panels = panels_in(stroke.panels);
+  std::vector<int> borders;
+  for (int c = 0; c < static_cast<int>(net.curves.size()); ++c) {
+    const std::vector<std::string>& own = net.curves[c].panels;
+    const bool belongs = std::all_of(panels.begin(), panels.end(), [&](const std::string& name) {
+      return std::find(own.begin(), own.end(), name) != own.end();
+    });
+    if (belongs) borders.push_back(c);
+  }
+  if (borders.empty()) {
+    throw Error("no border belongs to the panels '" + stroke.panels + "' that the pair names",
+                "stroke '" + stroke.id + "'", "panels of one border, or none");
+  }
+  return borders;
+}
+
+NearestOnNet border_of_end(const CurveNet& net, const std::vector<int>& borders,
+                           const Eigen::Vector2d& end, const std::string& where) {
+  NearestOnNet best{{}, kPairReach * net.snap};
+  for (const int c : borders) {
+    const NearestOnNet near = nearest_on_curve(net, c, end);
+    if (near.distance < best.distance) best = near;
+  }
+  if (best.place.curve >= 0) return best;
+  throw Error("an end of the symmetric pair lies on no border", where,
+              "within " + std::to_string(kPairReach * net.snap) + " m of one");
+}
+
+/// Puts the ends onto the nearest borders, or both onto one that is about as near: where the images
+/// of two borders cross, a pair most likely belongs to one border that is its own mirror image.
+std::array<CurvePoint, 2> borders_of_ends(const CurveNet& net, const std::vector<int>& borders,
+                                          const SymmetricPair& pair, const std::string& where) {
+  const NearestOnNet point = border_of_end(net, borders, pair.point, where);
+  const NearestOnNet image = border_of_end(net, borders, pair.image, where);
+  std::array<CurvePoint, 2> best{point.place, image.place};
+  double least = point.distance + image.distance + net.snap;
+  if (point.place.curve == image.place.curve) return best;
+  for (const int c : borders) {
+    const NearestOnNet a = nearest_on_curve(net, c, pair.point);
+    const NearestOnNet b = nearest_on_curve(net, c, pair.image);
+    if (a.distance + b.distance >= least) continue;
+    least = a.distance + b.distance;
+    best = {a.place, b.place};
+  }
+  return best;
+}
+
+SymmetricPair read_pair(const Stroke& stroke, const CurveNet& net) {
+  const std::string where = "stroke '" + stroke.id + "'";
+  if (stroke.points.empty()) throw Error("symmetric pair without points", where, "two points");
+  SymmetricPair pair{stroke.id, stroke.points.front(), stroke.points.back(), false, {}, {}};
+  pair.in_plane = (pair.image - pair.point).norm() <= net.snap / 4;
+  const std::array<CurvePoint, 2> ends =
+      borders_of_ends(net, borders_for_pair(net, stroke), pair, where);
+  pair.point_at = all_places(net, ends[0]);
+  pair.image_at = pair.in_plane ? pair.point_at : all_places(net, ends[1]);
+  pair.point = evaluate(net, position_form(net, pair.point_at.front()));
+  pair.image = evaluate(net, position_form(net, pair.image_at.front()));
+  return pair;
+}
+
+void require_along_normal(const SymmetricPair& pair, const MirrorPlane& plane, double tolerance) {
+  const double miss = std::abs(across_pairs(plane).dot(pair.image - pair.point));
+  if (miss <= tolerance) return;
+  throw Error("symmetric pair contradicts the mirror plane: its direction misses the normal by " +
+                  std::to_string(miss) + " m",
+              "stroke '" + pair.id + "'", "at most " + std::to_string(tolerance) + " m");
+}
+
+/// Two pairs that start at one point but end at two, in either sense.
+void require_one_partner(const SymmetricPair& a, const SymmetricPair& b, double near,
+                         double tolerance) {
+  const std::pair<Eigen::Vector2d, Eigen::Vector2d> from_a[2] = {{a.point, a.image},
+                                                                 {a.image, a.point}};
+  const std::pair<Eigen::Vector2d, Eigen::Vector2d> from_b[2] = {{b.point, b.image},
+                                                                 {b.image, b.point}};
+  for (const auto& [p, p_image] : from_a) {
+    for (const auto& [q, q_image] : from_b) {
+      const double apart = (p_image - q_image).norm();
+      if ((p - q).norm() > near || apart <= tolerance) continue;
+      throw Error("contradictory symmetric pairs: one point has two partners, " +
+                      std::to_string(apart) + " m apart",
+                  "strokes '" + a.id + "' and '" + b.id + "'",
+                  "at most " + std::to_string(tolerance) + " m");
+    }
+  }
+}
+
+}  // namespace
+
+PairDepths pair_depths(const MirrorPlane& plane, const Eigen::Vector2d& p,
+                       const Eigen::Vector2d& image) {
+  const Eigen::Vector2d n = plane.normal.head<2>();
+  const double nz = plane.normal.z();
+  const double difference = nz * (image - p).dot(n) / n.squaredNorm();
+  const double sum = (2 * plane.offset - n.dot(p + image)) / nz;
+  return {(sum - difference) / 2, (sum + difference) / 2};
+}
+
+Eigen::Vector2d across_pairs(const MirrorPlane& plane) {
+  return Eigen::Vector2d(-plane.normal.y(), plane.normal.x()).normalized();
+}
+
+std::vector<SymmetricPair> read_symmetric_pairs(const View& view, const CurveNet& net,
+                                                const MirrorPlane& plane, double tolerance) {
+  std::vector<SymmetricPair> pairs;
+  for (const Stroke* stroke : strokes_of(view, StrokeKind::symmetric_pair))
+    pairs.push_back(read_pair(*stroke, net));
+  if (pairs.empty()) {
+    throw Error("no symmetric pair is drawn: depth is not determined", view_name(view.kind),
+                "one pair or more");
+  }
+  const double miss = tolerance * net.diagonal;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    require_along_normal(pairs[i], plane, miss);
+    for (std::size_t j = 0; j < i; ++j) require_one_partner(pairs[j], pairs[i], net.snap / 2, miss);
+  }
+  return pairs;
+}
+
+}  // namespace geoprior::sketch

@@ -1,0 +1,242 @@
+#include "solvers/sketch/layers/articulated_layers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "core/angles.h"
+#include "core/error.h"
+
+namespace geoprior::sketch {
+namespace {
+
+constexpr int kBisections = 60;
+constexpr int kRadiusBisections = 40;
+constexpr int kStripSamples = 24;  // of an angle, over half of the band
+constexpr int kStripRows = 16;
+
+/// What is kept free between a band and those it lies below.
+struct StripRoom {
+  double depth = 0;         ///< between outer sides at rest (m)
+  double turned_depth = 0;  ///< and where the band is turned (m)
+  double free = 0;          ///< angle either way (rad)
+  double margin = 0;        ///< of the rivets (m)
+};
+
+/// Whether a point keeps its distance from the bands that it lies below.
+bool is_below(const Eigen::Vector3d& P, const std::vector<FrustumBand>& bands, double depth) {
+  return std::all_of(bands.begin(), bands.end(), [&](const FrustumBand& above) {
+    const Eigen::Vector3d p = above.own(P);
+    if (p.x() > 0 || p.x() < -above.length) return true;
+    const double slope = (above.rear_radius - above.front_radius) / above.length;
+    return std::hypot(p.y(), p.z()) <= above.radius_at(p.x()) - depth * std::hypot(1.0, slope);
+  });
+}
+
+/// How far the rear rim of the band before reaches forward of the rear rim of this one, along its
+/// axis: farthest at the back where the body bends down.
+double visible_length(const FrustumBand& band, const FrustumBand& before) {
+  double length = 0;
+  for (int k = 0; k <= kStripSamples; ++k) {
+    const Eigen::Vector3d rim = before.point(0, before.half_angle * k / kStripSamples);
+    length = std::max(length, -band.own(rim).x());
+  }
+  return length;
+}
+
+/// Height above the lower border, less the margin, of the line through a point of the plane.
+double above_border(const FrustumBand& band, const Eigen::Vector3d& point, double margin) {
+  const Eigen::Vector3d p = band.own(point);
+  const double r = band.radius_at(p.x());
+  return p.y() - r * std::cos(band.half_angle - margin / r);
+}
+
+/// s at which the line along the normal through a point of the plane meets the band.
+double line_meets(const FrustumBand& band, const Eigen::Vector3d& own) {
+  return std::acos(std::clamp(own.y() / band.radius_at(own.x()), -1.0, 1.0));
+}
+
+LayerHinge hinge_between(const FrustumBand& front, const FrustumBand& behind, double overlap,
+                         double margin) {
+  LayerHinge hinge;
+  hinge.axis = front.up.cross(front.axis);
+  const auto at_height = [&](double y) -> Eigen::Vector3d {
+    return front.rear - overlap / 2 * front.axis + y * front.up;
+  };
+  // Both heights grow with y: the least y at which neither is negative.
+  double low = -1.5 * front.rear_radius, high = front.rear_radius;
+  for (int i = 0; i < kBisections; ++i) {
+    const double y = (low + high) / 2;
+    const Eigen::Vector3d p = at_height(y);
+    const bool inside = above_border(front, p, margin) >= 0 && above_border(behind, p, margin) >= 0;
+    (inside ? high : low) = y;
+  }
+  hinge.point = at_height(high);
+  const Eigen::Vector3d f = front.own(hinge.point), b = behind.own(hinge.point);
+  hinge.front_hole_at = f.x();
+  hinge.front_hole = line_meets(front, f);
+  hinge.rear_hole_at = b.x();
+  hinge.rear_hole = line_meets(behind, b);
+  return hinge;
+}
+
+/// Whether a band lies below those before it, at rest as a whole, and with its strip when it is
+/// turned about its hinge by `free` either way.
+bool strip_is_below(const FrustumBand& band, double overlap, const std::vector<FrustumBand>& bands,
+                    const StripRoom& room) {
+  const LayerHinge hinge = hinge_between(bands.back(), band, overlap, room.margin);
+  for (const double turned : {0.0, -1.0, -0.5, 0.5, 1.0}) {
+    const Eigen::Isometry3d turn = hinge_turn(hinge, turned * room.free);
+    const double reach = turned == 0 ? band.length : overlap;
+    const double depth = turned == 0 ? room.depth : room.turned_depth;
+    for (int i = 0; i <= kStripRows; ++i) {
+      const double x = -band.length + reach * i / kStripRows;
+      for (int k = 0; k <= kStripSamples; ++k) {
+        const Eigen::Vector3d P = band.point(x, band.half_angle * k / kStripSamples);
+        if (!is_below(turn * P, bands, depth)) return false;
+      }
+    }
+    if (room.free == 0) break;
+  }
+  return true;
+}
+
+/// The largest front radius with which the band lies below those before it.
+void fit_front_radius(FrustumBand& band, double overlap, const std::vector<FrustumBand>& bands,
+                      const StripRoom& room, const std::string& where, const std::string& other) {
+  constexpr double kLeast = 0.5, kMost = 1.5;  // of the radius of the band before
+  double low = kLeast * bands.back().rear_radius, high = kMost * bands.back().rear_radius;
+  band.front_radius = low;
+  if (!strip_is_below(band, overlap, bands, room)) {
+    throw Error("its layer does not fit below that of '" + other + "'", where,
+                "an edge behind the one before it; less overlap or free_deg");
+  }
+  for (int i = 0; i < kRadiusBisections; ++i) {
+    band.front_radius = (low + high) / 2;
+    (strip_is_below(band, overlap, bands, room) ? low : high) = band.front_radius;
+  }
+  band.front_radius = low;
+}
+
+FrustumBand band_to(const ArcCircle& circle) {
+  FrustumBand band;
+  band.rear = circle.centre;
+  band.axis = circle.axis;
+  band.up = circle.up;
+  band.rear_radius = circle.radius;
+  band.half_angle = circle.half_angle;
+  return band;
+}
+
+void add_band(ArticulatedLayers& layers, std::size_t k, const LayerOptions& options) {
+  const ArcCircle& circle = layers.circles[k];
+  const ArcCircle& before = layers.circles[k - 1];
+  FrustumBand band = band_to(circle);
+  const double visible = (circle.centre - before.centre).dot(circle.axis);
+  const std::string where = "stroke '" + circle.id + "'";
+  if (!(visible > 0)) {
+    throw Error("its circle lies before that of '" + before.id + "' along its own axis", where,
+                "arcs in their order along the body");
+  }
+  double overlap = 0;
+  if (k == 1) {
+    band.length = visible;
+    band.front_radius = before.radius;
+    band.half_angle = std::max(band.half_angle, before.half_angle);
+  } else {
+    const FrustumBand& previous = layers.bands.back();
+    overlap = options.overlap * (previous.length - layers.overlaps.back());
+    band.length = visible_length(band, previous) + overlap;
+    const StripRoom room{(options.thickness + options.clearance) * layers.unit,
+                         (options.thickness + options.clearance / 2) * layers.unit,
+                         options.free_deg * kDegree, options.rivet_margin * layers.unit};
+    fit_front_radius(band, overlap, layers.bands, room, where, before.id);
+  }
+  layers.bands.push_back(band);
+  layers.overlaps.push_back(overlap);
+}
+
+}  // namespace
+
+void describe(OptionVisitor& v, LayerOptions& o) {
+  static constexpr std::array<std::string_view, 3> kAxes{"rivets", "centre", "crown"};
+  const auto share = [&](const char* key, double& x, const char* doc, double most) {
+    v.value(key, x, {.doc = doc, .min = 0, .max = most});
+  };
+  v.value("vector_ratio", o.vector_ratio,
+          {.doc = "length in space of sym-a over that of sym-b", .min = 1e-3, .max = 1e3});
+  v.value("constrained", o.constrained,
+          {.doc = "circles are fitted within the mirror plane, not read off their ellipses"});
+  share("overlap", o.overlap, "of a layer below the one before, over that one's visible length",
+        0.95);
+  share("thickness", o.thickness, "of the sheet, over the mean radius", 0.2);
+  share("clearance", o.clearance, "between overlapping layers, over the mean radius", 0.2);
+  share("rivet_margin", o.rivet_margin, "from rivet to lower border, over the mean radius", 0.5);
+  share("rivet_radius", o.rivet_radius, "of its hole, over the mean radius", 0.2);
+  v.value("free_deg", o.free_deg,
+          {.doc = "of a joint either way, for which the strip below the layer before has room",
+           .unit = "deg",
+           .min = 0,
+           .max = 45});
+  v.value("max_angle_deg", o.max_angle_deg,
+          {.doc = "of a joint either way, where nothing stops it earlier",
+           .unit = "deg",
+           .min = 0,
+           .max = 90});
+  v.value("keep_covered", o.keep_covered,
+          {.doc = "a joint stops before a gap opens between its layers"});
+  describe_choice(v, "axis", o.axis, kAxes,
+                  {.doc = "what layers turn about in the motion; limits are those of rivets"});
+  v.value("around", o.grid.around, {.doc = "segments of a rim", .min = 8, .max = 2000});
+  v.value("along", o.grid.along, {.doc = "segments of a generator", .min = 2, .max = 200});
+  v.value("poses", o.poses, {.doc = "of the motion, beside the rest", .min = 4, .max = 1000});
+}
+
+ArticulatedLayers build_layers(const View& view, const LayerOptions& options) {
+  ArticulatedLayers layers;
+  layers.planes = drawn_mirror_planes(view, options.vector_ratio);
+  layers.circles = fit_arc_circles(view, layers.planes.chosen, options.constrained);
+  for (const ArcCircle& circle : layers.circles) layers.unit += circle.radius;
+  layers.unit /= static_cast<double>(layers.circles.size());
+  for (std::size_t k = 1; k < layers.circles.size(); ++k) add_band(layers, k, options);
+  for (std::size_t j = 0; j + 1 < layers.bands.size(); ++j) {
+    layers.hinges.push_back(hinge_between(layers.bands[j], layers.bands[j + 1],
+                                          layers.overlaps[j + 1],
+                                          options.rivet_margin * layers.unit));
+  }
+  return layers;
+}
+
+std::vector<Eigen::Isometry3d> layer_poses(const ArticulatedLayers& layers,
+                                           const std::vector<double>& angles) {
+  std::vector<Eigen::Isometry3d> poses{Eigen::Isometry3d::Identity()};
+  for (std::size_t j = 0; j < layers.hinges.size(); ++j)
+    poses.push_back(poses.back() * hinge_turn(layers.hinges[j], angles[j]));
+  return poses;
+}
+
+Eigen::Vector3d hinge_point(const ArticulatedLayers& layers, std::size_t hinge, HingeAxis axis) {
+  const LayerHinge& joint = layers.hinges[hinge];
+  const FrustumBand& front = layers.bands[hinge];
+  const double x = front.own(joint.point).x();
+  switch (axis) {
+    case HingeAxis::centre:
+      return front.rear + x * front.axis;
+    case HingeAxis::crown:
+      return front.point(x, 0);
+    case HingeAxis::rivets:
+      break;
+  }
+  return joint.point;
+}
+
+Eigen::Isometry3d hinge_turn(const LayerHinge& hinge, double angle) {
+  Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
+  turn.linear() = Eigen::AngleAxisd(angle, hinge.axis).toRotationMatrix();
+  turn.translation() = hinge.point - turn.linear() * hinge.point;
+  return turn;
+}
+
+}  // namespace geoprior::sketch

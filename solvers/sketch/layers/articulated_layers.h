@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+#include "solvers/sketch/drawing/mirror_plane.h"
+#include "solvers/sketch/layers/arc_circle.h"
+#include "solvers/sketch/layers/frustum_band.h"
+
+namespace geoprior::sketch {
+
+/// About what neighbouring layers turn when they are shown in motion.
+enum class HingeAxis {
+  rivets,  ///< the line through the rivets at the ends of the arcs
+  centre,  ///< a line through the circle's centre
+  crown,   ///< a line along the back, where a rigger would put a chain of joints
+};
+
+/// Parameters of articulated layers. Lengths are shares of the mean radius of the circles, so that
+/// a drawing at another scale gives the same shape.
+struct LayerOptions {
+  double vector_ratio = 1;  ///< length in space of sym-a over that of sym-b
+  bool constrained = true;  ///< circles are fitted within the mirror plane, not read off ellipses
+  /// How far a layer reaches below the one before it, over the visible length of that one.
+  double overlap = 0.5;
+  double thickness = 0.008;  ///< of the sheet
+  double clearance = 0.012;  ///< between a layer and the part of the next that lies below it
+  /// Angle of a joint either way for which the strip below has room: on a body that grows thinner
+  /// it must be narrower than the clearance alone asks for, or it is stuck.
+  double free_deg = 8;
+  double rivet_margin = 0.08;  ///< from a rivet to the lower border of both of its layers
+  double rivet_radius = 0.02;  ///< of its hole
+  double max_angle_deg = 30;   ///< of a joint either way, where nothing stops it earlier
+  /// A joint stops before a gap opens between its layers, or one vanishes below the other.
+  bool keep_covered = true;
+  HingeAxis axis = HingeAxis::rivets;  ///< of the motion; limits are those of the rivets
+  BandGrid grid = {};
+  int poses = 16;  ///< of the motion, beside the rest
+};
+void describe(OptionVisitor& v, LayerOptions& options);
+
+/// Joint of two neighbouring layers: a line along the mirror plane's normal.
+struct LayerHinge {
+  Eigen::Vector3d point{0, 0, 0};          ///< in the mirror plane, at rest (m)
+  Eigen::Vector3d axis{1, 0, 0};           ///< unit; a positive angle curls the body up
+  double front_hole = 0;                   ///< s of the hole in the layer before, +- (rad)
+  double front_hole_at = 0;                ///< x of that hole
+  double rear_hole = 0, rear_hole_at = 0;  ///< in the layer behind
+  double curl = 0, stretch = 0;            ///< largest angles both ways, >= 0 (rad)
+};
+
+/// Rigid layers, from the first arc to the last, and what joins them.
+struct ArticulatedLayers {
+  MirrorPlanes planes;  ///< the one used, and the other reading of the same picture
+  std::vector<ArcCircle> circles;
+  std::vector<FrustumBand> bands;  ///< one less; band j ends at circle j + 1
+  std::vector<double> overlaps;    ///< of each band below the one before; 0 for the first (m)
+  std::vector<LayerHinge> hinges;  ///< one less again; hinge j joins bands j and j + 1
+  double unit = 0;                 ///< mean radius (m)
+};
+
+/// Circles, bands and hinges; without joint limits (joint_range.h).
+///
+/// Band j is the frustum whose rear rim is circle j + 1, as it was drawn, about that circle's axis.
+/// It reaches forward to the farthest point of the circle before it and `overlap` farther; there
+/// its radius is the largest with which it stays below the bands before it: by `clearance` at rest,
+/// and by half of that where its strip is turned by up to `free_deg`. Its rivets lie halfway along
+/// the overlap, where a line along the mirror plane's normal meets both bands `rivet_margin` inside
+/// of their lower borders.
+///
+/// @throws Error  as `drawn_mirror_planes` and `fit_arc_circles`; a layer that does not fit below
+///                the one before it (names both strokes)
+/// Source: thesis figure 2.14 gives the idea; the construction is ours.
+ArticulatedLayers build_layers(const View& view, const LayerOptions& options);
+
+/// Where each band is when every hinge is turned by its angle: band 0 stays.
+std::vector<Eigen::Isometry3d> layer_poses(const ArticulatedLayers& layers,
+                                           const std::vector<double>& angles);
+
+/// Line that a hinge turns about with another choice of axis.
+Eigen::Vector3d hinge_point(const ArticulatedLayers& layers, std::size_t hinge, HingeAxis axis);
+
+/// Turns by an angle about the hinge.
+Eigen::Isometry3d hinge_turn(const LayerHinge& hinge, double angle);
+
+}  // namespace geoprior::sketch

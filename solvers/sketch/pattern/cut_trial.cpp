@@ -1,0 +1,143 @@
+#include "solvers/sketch/pattern/cut_trial.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <span>
+#include <utility>
+
+#include "core/angles.h"
+#include "models/sketch/flatten/flat_stretch.h"
+#include "models/sketch/flatten/flatten.h"
+#include "models/sketch/surface/shortest_cut.h"
+
+namespace geoprior::sketch {
+namespace {
+
+FlatMeasure measured(const TriMesh& part, const TrialOptions& options) {
+  const Flattening flat = flatten(part, options.pattern.flatten);
+  FlatMeasure measure;
+  measure.sound = flat.report.flipped.empty() && flat.report.overlaps.empty();
+  const double bound = std::log1p(options.tolerance);
+  for (int t = 0; t < part.triangle_count(); ++t) {
+    Eigen::Matrix<double, 3, 2> on_surface, in_plane = Eigen::Matrix<double, 3, 2>::Zero();
+    for (int k = 0; k < 2; ++k) {
+      on_surface.col(k) = (part.V.row(part.F(t, k + 1)) - part.V.row(part.F(t, 0))).transpose();
+      in_plane.col(k).head<2>() =
+          (flat.points.row(part.F(t, k + 1)) - flat.points.row(part.F(t, 0))).transpose();
+    }
+    const double area = on_surface.col(0).cross(on_surface.col(1)).norm() / 2;
+    const double stretch = std::abs(log_stretch(in_plane, on_surface));
+    measure.area += area;
+    measure.strain += area * std::min(stretch, 1.0);
+    if (stretch < bound) measure.within += area;
+  }
+  return measure;
+}
+
+std::vector<SurfacePath> opening_of(const CutPiece& part, const TrialOptions& options) {
+  std::vector<SurfacePath> paths;
+  if (part.genus() == 0 && part.border_count() > 1) {
+    const SurfacePath across = bridge(part, options.mirror);
+    if (!across.empty()) paths.push_back(renumbered(across, part.surface_vertex));
+  }
+  if (!paths.empty()) return paths;
+  for (const Edge& e : shortest_cut(part.mesh))
+    paths.push_back({at_vertex(part.surface_vertex[e[0]]), at_vertex(part.surface_vertex[e[1]])});
+  return paths;
+}
+
+}  // namespace
+
+CutLines lines_of(const std::vector<SurfacePath>& paths, const TriMesh& mesh) {
+  const Eigen::MatrixX3d N = vertex_normals(mesh);
+  CutLines lines;
+  for (const SurfacePath& path : paths) {
+    Eigen::MatrixX3d line(static_cast<Eigen::Index>(path.size()), 3), normal = line;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      line.row(static_cast<Eigen::Index>(i)) = path[i].position(mesh.V);
+      normal.row(static_cast<Eigen::Index>(i)) = path[i].position(N).normalized();
+    }
+    lines.length += length(path, mesh.V);
+    lines.points.push_back(std::move(line));
+    lines.normals.push_back(std::move(normal));
+  }
+  return lines;
+}
+
+std::optional<Openings> open_rings(SeamedSurface& surface, int seam, const TrialOptions& options) {
+  constexpr int kMostOpenings = 64;
+  Openings openings;
+  for (int i = 0; i < kMostOpenings; ++i) {
+    const std::vector<CutPiece> parts = cut_surface(surface.mesh, surface.seams);
+    const auto closed = std::find_if(parts.begin(), parts.end(), [&](const CutPiece& part) {
+      return !can_be_laid_flat(part, options.pattern.hole_tolerance_deg * kDegree);
+    });
+    if (closed == parts.end()) return openings;
+    const std::vector<SurfacePath> paths = opening_of(*closed, options);
+    openings.lines.append(lines_of(paths, surface.mesh));
+    openings.cuts.push_back(paths);
+    if (!surface.cut(paths, seam)) return {};
+  }
+  return {};
+}
+
+std::vector<Panel> panels_of(const SeamedSurface& surface) {
+  const EdgeConnectivity edges(surface.mesh.F);
+  std::vector<int> piece_of(static_cast<std::size_t>(surface.mesh.triangle_count()));
+  const std::vector<CutPiece> pieces = cut_surface(surface.mesh, surface.seams);
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    for (const int t : pieces[p].surface_triangle) piece_of[t] = static_cast<int>(p);
+  }
+  std::vector<SeamEdge> outer, inner;
+  for (const SeamEdge& seam : surface.seams) {
+    const std::span<const int> both = edges.half_edges(*edges.find(seam.edge[0], seam.edge[1]));
+    const bool own = both.size() == 2 && piece_of[both[0] / 3] == piece_of[both[1] / 3];
+    (own ? inner : outer).push_back(seam);
+  }
+  std::vector<Panel> panels;
+  for (CutPiece& piece : cut_surface(surface.mesh, outer)) {
+    std::map<Edge, Edge> local;  // of an edge of the surface
+    for (int t = 0; t < piece.mesh.triangle_count(); ++t) {
+      for (int k = 0; k < 3; ++k) {
+        const int a = piece.mesh.F(t, k), b = piece.mesh.F(t, (k + 1) % 3);
+        const int u = piece.surface_vertex[a], v = piece.surface_vertex[b];
+        local[{std::min(u, v), std::max(u, v)}] = {a, b};
+      }
+    }
+    Panel& panel = panels.emplace_back();
+    for (const SeamEdge& seam : inner) {
+      const auto found =
+          local.find({std::min(seam.edge[0], seam.edge[1]), std::max(seam.edge[0], seam.edge[1])});
+      if (found != local.end()) panel.inner.push_back({found->second, seam.seam});
+    }
+    panel.piece = std::move(piece);
+  }
+  return panels;
+}
+
+std::optional<CutTrial> try_cut(const Panel& panel, const std::vector<SurfacePath>& paths,
+                                const TrialOptions& options) {
+  CutTrial trial;
+  trial.cut = paths;
+  trial.lines = lines_of(paths, panel.piece.mesh);
+  SeamedSurface surface{panel.piece.mesh, panel.inner};
+  int next_seam = 0;
+  for (const SeamEdge& e : panel.inner) next_seam = std::max(next_seam, e.seam + 1);
+  if (!paths.empty() && !surface.cut(paths, next_seam)) return {};
+  for (const CutPiece& part : cut_surface(surface.mesh, surface.seams)) {
+    const double area = triangle_areas(part.mesh.V, part.mesh.F).sum();
+    trial.least_part = trial.parts == 0 ? area : std::min(trial.least_part, area);
+    ++trial.parts;
+  }
+  const std::optional<Openings> openings = open_rings(surface, next_seam + 1, options);
+  if (!openings) return {};
+  trial.opening_length = openings->lines.length;
+  for (const CutPiece& part : cut_surface(surface.mesh, surface.seams))
+    trial.flat.add(measured(part.mesh, options));
+  return trial;
+}
+
+}  // namespace geoprior::sketch

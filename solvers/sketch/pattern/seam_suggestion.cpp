@@ -1,0 +1,276 @@
+#include "solvers/sketch/pattern/seam_suggestion.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
+#include <numeric>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "models/sketch/surface/shortest_cut.h"
+#include "solvers/sketch/pattern/cut_candidates.h"
+#include "solvers/sketch/pattern/cut_trial.h"
+#include "solvers/sketch/pattern/random_cuts.h"
+
+namespace geoprior::sketch {
+namespace {
+
+/// Of trials; the pattern that is made in the end has its own options.
+constexpr int kTrialIterations = 60;
+constexpr double kTrialTolerance = 1e-6;
+
+class GreedySuggester {
+ public:
+  GreedySuggester(const TriMesh& surface, std::span<const SeamEdge> seams,
+                  const SeamSuggestionOptions& options, const PatternOptions& pattern)
+      : options_(options), work_{surface, {seams.begin(), seams.end()}} {
+    for (const SeamEdge& e : seams) next_seam_ = std::max(next_seam_, e.seam + 1);
+    trial_.pattern = pattern;
+    trial_.pattern.flatten.iterations = std::min(pattern.flatten.iterations, kTrialIterations);
+    trial_.pattern.flatten.tolerance = std::max(pattern.flatten.tolerance, kTrialTolerance);
+    trial_.tolerance = options.tolerance;
+    if (options.symmetric) trial_.mirror = mirror_axis(surface);
+  }
+
+  std::vector<SuggestedSeam> suggest() {
+    std::vector<SuggestedSeam> suggestions;
+    while (static_cast<int>(suggestions.size()) < options_.count) {
+      std::optional<SuggestedSeam> next = suggest_one();
+      if (!next) break;
+      suggestions.push_back(std::move(*next));
+    }
+    return suggestions;
+  }
+
+ private:
+  struct Scored {
+    CutTrial trial;
+    double score = 0;
+  };
+
+  [[nodiscard]] std::vector<CutTrial> measure(const std::vector<Panel>& pieces) const;
+  std::optional<SuggestedSeam> suggest_one();
+  [[nodiscard]] std::optional<Scored> best_cut(const Panel& piece, const CutTrial& before) const;
+  [[nodiscard]] std::optional<Scored> score(const Panel& piece,
+                                            const std::vector<SurfacePath>& paths,
+                                            const CutTrial& before) const;
+  [[nodiscard]] std::vector<std::vector<SurfacePath>> candidates(const Panel& panel) const;
+  [[nodiscard]] std::optional<std::size_t> mirror_image(const std::vector<Panel>& pieces,
+                                                        std::size_t piece) const;
+  void apply(SuggestedSeam& suggestion);
+
+  SeamSuggestionOptions options_;
+  TrialOptions trial_;
+  SeamedSurface work_;
+  int next_seam_ = 0;
+};
+
+/// Every piece as it is.
+std::vector<CutTrial> GreedySuggester::measure(const std::vector<Panel>& pieces) const {
+  std::vector<CutTrial> measures(pieces.size());
+  std::vector<std::exception_ptr> errors(pieces.size());
+  parallel_blocks(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      try {
+        std::optional<CutTrial> trial = try_cut(pieces[p], {}, trial_);
+        if (!trial) throw Error("cannot be cut open", "piece " + std::to_string(p + 1));
+        measures[p] = std::move(*trial);
+      } catch (...) {
+        errors[p] = std::current_exception();
+      }
+    }
+  });
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+  return measures;
+}
+
+/// Of the panel with its own seams closed, and of what it is when they are open: a loop may cross
+/// them, a dart may end on them.
+std::vector<std::vector<SurfacePath>> GreedySuggester::candidates(const Panel& panel) const {
+  const CutCandidateOptions options{options_.crease, trial_.mirror};
+  std::vector<std::vector<SurfacePath>> found;
+  if (!panel.piece.borders.empty()) found = cut_candidates(panel.piece, options);
+  // A closed piece is slit first: its scale is known at a border only.
+  std::vector<SeamEdge> open = panel.inner, slit;
+  if (panel.piece.borders.empty() && open.empty()) {
+    for (const Edge& e : shortest_cut(panel.piece.mesh)) slit.push_back({e, 0});
+    open = slit;
+  }
+  if (open.empty()) return found;
+  const CutPiece opened = cut_surface(panel.piece.mesh, open).front();
+  for (std::vector<SurfacePath>& paths : cut_candidates(opened, options)) {
+    for (SurfacePath& path : paths) path = renumbered(path, opened.surface_vertex);
+    // What ends on the slit needs the slit.
+    for (const SeamEdge& e : slit) paths.push_back({at_vertex(e.edge[0]), at_vertex(e.edge[1])});
+    found.push_back(std::move(paths));
+  }
+  return found;
+}
+
+std::optional<GreedySuggester::Scored> GreedySuggester::score(const Panel& piece,
+                                                              const std::vector<SurfacePath>& paths,
+                                                              const CutTrial& before) const {
+  std::optional<CutTrial> trial;
+  try {
+    trial = try_cut(piece, paths, trial_);
+  } catch (const Error&) {
+    return {};  // a part that cannot be laid flat: no suggestion
+  }
+  if (!trial || (before.flat.sound && !trial->flat.sound)) return {};
+  if (trial->parts > 1 && trial->least_part < options_.min_part * trial->flat.area) return {};
+  const double added = trial->lines.length;
+  if (added < options_.min_length || added > options_.max_length) return {};
+  const double removed = (before.flat.strain - trial->flat.strain) / before.flat.strain;
+  const double opened = std::max(0.0, trial->opening_length - before.opening_length);
+  const double cost = options_.length_weight * (added + opened) / std::sqrt(before.flat.area);
+  return Scored{std::move(*trial), removed - cost};
+}
+
+std::optional<GreedySuggester::Scored> GreedySuggester::best_cut(const Panel& piece,
+                                                                 const CutTrial& before) const {
+  const std::vector<std::vector<SurfacePath>> all = candidates(piece);
+  std::vector<std::optional<Scored>> scored(all.size());
+  parallel_blocks(all.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) scored[i] = score(piece, all[i], before);
+  });
+  std::optional<Scored>* best = nullptr;
+  for (std::optional<Scored>& candidate : scored) {
+    if (candidate && candidate->score > 0 && (!best || candidate->score > (*best)->score))
+      best = &candidate;
+  }
+  if (!best) return {};
+  if (options_.rule == SuggestionRule::measured) return std::move(*best);
+  const std::vector<SurfacePath> by_lot =
+      random_cuts(piece.piece.mesh, (*best)->trial.lines.length, options_.seed);
+  std::optional<CutTrial> trial = try_cut(piece, by_lot, trial_);
+  if (!trial) return {};
+  return Scored{std::move(*trial), 0};
+}
+
+/// The other piece that lies where the image of this one is, with about its area.
+std::optional<std::size_t> GreedySuggester::mirror_image(const std::vector<Panel>& pieces,
+                                                         std::size_t piece) const {
+  constexpr double kNear = 0.03;  // of the diagonal, and of the area
+  if (!trial_.mirror || options_.rule != SuggestionRule::measured) return {};
+  const auto area_and_centre = [](const TriMesh& mesh) {
+    const Eigen::VectorXd areas = triangle_areas(mesh.V, mesh.F);
+    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+      for (int k = 0; k < 3; ++k) sum += areas(t) / 3 * mesh.V.row(mesh.F(t, k));
+    }
+    return std::pair(areas.sum(), Eigen::RowVector3d(sum / areas.sum()));
+  };
+  const double diagonal = bounding_box_diagonal(work_.mesh.V);
+  const auto [area, centre] = area_and_centre(pieces[piece].piece.mesh);
+  const Eigen::RowVector3d image = trial_.mirror->mirrored(centre);
+  if ((image - centre).norm() < kNear * diagonal) return {};  // its own image
+  for (std::size_t other = 0; other < pieces.size(); ++other) {
+    if (other == piece) continue;
+    const auto [other_area, other_centre] = area_and_centre(pieces[other].piece.mesh);
+    if ((other_centre - image).norm() < kNear * diagonal &&
+        std::abs(other_area - area) < kNear * area) {
+      return other;
+    }
+  }
+  return {};
+}
+
+/// Makes a cut, which is in the numbers of the whole surface.
+void GreedySuggester::apply(SuggestedSeam& suggestion) {
+  if (!work_.cut(suggestion.cut, next_seam_++))
+    throw Error("a cut of a piece cannot be made on the surface", "suggested seam");
+  SeamedSurface opened = work_;
+  if (std::optional<Openings> openings = open_rings(opened, next_seam_, trial_)) {
+    suggestion.openings = std::move(openings->cuts);
+    suggestion.opening_lines = std::move(openings->lines);
+  }
+}
+
+std::optional<SuggestedSeam> GreedySuggester::suggest_one() {
+  const std::vector<Panel> pieces = panels_of(work_);
+  const std::vector<CutTrial> measures = measure(pieces);
+  FlatMeasure whole;
+  for (const CutTrial& m : measures) whole.add(m.flat);
+  if (!(whole.within < options_.share * whole.area)) return {};
+  std::vector<std::size_t> order(pieces.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return measures[a].flat.strain > measures[b].flat.strain;
+  });
+  for (const std::size_t p : order) {
+    const FlatMeasure& then = measures[p].flat;
+    if (!(then.within < then.area)) continue;
+    std::optional<Scored> best = best_cut(pieces[p], measures[p]);
+    if (!best) continue;
+    SuggestedSeam suggestion;
+    FlatMeasure now = whole;
+    const auto take = [&](std::size_t piece, CutTrial trial) {
+      now.within += trial.flat.within - measures[piece].flat.within;
+      now.strain += trial.flat.strain - measures[piece].flat.strain;
+      suggestion.lines.append(trial.lines);
+      for (const SurfacePath& path : trial.cut)
+        suggestion.cut.push_back(renumbered(path, pieces[piece].piece.surface_vertex));
+    };
+    suggestion.is_dart = best->trial.parts == 1;
+    if (const std::optional<std::size_t> image = mirror_image(pieces, p)) {
+      const std::vector<SurfacePath> cut = mirrored_cut(
+          pieces[*image].piece, best->trial.lines.points, {options_.crease, trial_.mirror});
+      std::optional<Scored> mirrored;
+      if (!cut.empty()) mirrored = score(pieces[*image], cut, measures[*image]);
+      if (mirrored) take(*image, std::move(mirrored->trial));
+    }
+    take(p, std::move(best->trial));
+    suggestion.share_before = whole.within / whole.area;
+    suggestion.strain_before = whole.strain / whole.area;
+    suggestion.share_after = now.within / whole.area;
+    suggestion.strain_after = now.strain / whole.area;
+    apply(suggestion);
+    return suggestion;
+  }
+  return {};
+}
+
+}  // namespace
+
+void describe(OptionVisitor& v, SeamSuggestionOptions& o) {
+  static constexpr std::array<std::string_view, 2> kRules{"measured", "chance"};
+  v.value("tolerance", o.tolerance,
+          {.doc = "stretch that the pattern may have", .min = 1e-6, .max = 1});
+  v.value("share", o.share,
+          {.doc = "of the area within the tolerance, at which nothing more is suggested",
+           .min = 0,
+           .max = 1});
+  v.value("count", o.count, {.doc = "most suggestions", .min = 0, .max = 100});
+  v.value("min_length", o.min_length,
+          {.doc = "of all cuts of a suggestion", .unit = "m", .min = 0});
+  v.value("max_length", o.max_length,
+          {.doc = "of all cuts of a suggestion", .unit = "m", .min = 0});
+  v.value(
+      "min_part", o.min_part,
+      {.doc = "least area of what a cut parts off, over that of its piece", .min = 0, .max = 0.5});
+  v.value("length_weight", o.length_weight,
+          {.doc = "share of the error that a cut as long as the root of the piece's area has to "
+                  "remove to be worth it",
+           .min = 0});
+  v.value("crease", o.crease,
+          {.doc = "how much cheaper cuts are along lines of concentrated curvature",
+           .min = 0,
+           .max = 100});
+  v.value("symmetric", o.symmetric, {.doc = "mirrored surfaces get mirrored suggestions"});
+  describe_choice(v, "rule", o.rule, kRules, {.doc = "where suggested cuts lie"});
+  v.value("seed", o.seed, {.doc = "of chance", .min = 0});
+}
+
+std::vector<SuggestedSeam> suggest_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
+                                         const SeamSuggestionOptions& options,
+                                         const PatternOptions& pattern) {
+  return GreedySuggester(surface, seams, options, pattern).suggest();
+}
+
+}  // namespace geoprior::sketch

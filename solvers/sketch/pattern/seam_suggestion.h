@@ -1,0 +1,59 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/mesh.h"
+#include "core/options.h"
+#include "models/sketch/pattern/make_pattern.h"
+#include "models/sketch/pattern/suggested_seam.h"
+
+namespace geoprior::sketch {
+
+/// Where suggested cuts lie.
+enum class SuggestionRule {
+  measured,  ///< the candidate that takes out most for its length, by flattening anew
+  chance,    ///< straight cuts from places on the border drawn by lot, as long in all as that one
+};
+
+struct SeamSuggestionOptions {
+  double tolerance = 0.02;      ///< stretch that a pattern may have
+  double share = 0.95;          ///< of the area within it at which nothing more is suggested
+  int count = 3;                ///< most suggestions
+  double min_length = 0.02;     ///< of a suggestion, all its cuts together (m)
+  double max_length = 10;       ///< m
+  double min_part = 0.05;       ///< least area of what a cut parts off, over that of its piece
+  double length_weight = 0.05;  ///< what a length of the root of the area costs, in removed error
+  double crease = 0.3;          ///< how much cheaper cuts are along concentrated curvature
+  bool symmetric = true;        ///< mirrored surfaces get mirrored suggestions
+  SuggestionRule rule = SuggestionRule::measured;
+  int seed = 0;  ///< of `chance`
+};
+void describe(OptionVisitor& v, SeamSuggestionOptions& options);
+
+/// Seams and darts that would make the pattern of a surface fit it (the thesis, end of 2.1.2: "at
+/// the current state, the interpretation of the non-developable part is fully let to the user").
+///
+/// Greedy: of the piece whose pattern is strained most, every candidate (`cut_candidates`) is cut
+/// and its parts are laid flat (`try_cut`); suggested is the one with the largest
+///
+///   (E - E') / E - length_weight * length / sqrt(area),
+///
+/// E the integral of |log stretch| over the piece before, E' after the cut, both measured. When the
+/// surface is its own mirror image and the piece's image is another piece, that one is cut alike,
+/// in the same suggestion. Then all begins anew on the cut surface, until the share of the area
+/// within the tolerance is reached. Candidates whose parts overlap themselves in the plane are left
+/// out when the piece did not.
+///
+/// It cannot: move a seam that is there, take cuts back, look two cuts ahead, or know what a tailor
+/// likes. Work is that of flattening a piece some thirty times a suggestion.
+/// @param surface  of length m, oriented manifold
+/// @param seams    that it is cut along already
+/// @return         in rank order; each is meant to be made after those before it
+/// @throws Error   as `cut_surface` and `flatten`
+/// Source: ours; places from Ben-Chen, Gotsman and Bunin 2008.
+std::vector<SuggestedSeam> suggest_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
+                                         const SeamSuggestionOptions& options,
+                                         const PatternOptions& pattern = {});
+
+}  // namespace geoprior::sketch

@@ -1,0 +1,336 @@
+#include "solvers/sketch/photo/bake_texture.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/connectivity.h"
+#include "core/disjoint_sets.h"
+#include "core/error.h"
+
+namespace geoprior::sketch {
+namespace {
+
+constexpr double kInch = 0.0254;
+constexpr int kMostSide = 30000;
+
+/// Colour at pixel coordinates, bilinear; beyond the border that of the border.
+Eigen::Vector3d photo_colour(const PixelImage& photo, const Eigen::Vector2d& at) {
+  const double x = std::clamp(at.x(), 0.0, photo.width - 1.0);
+  const double y = std::clamp(at.y(), 0.0, photo.height - 1.0);
+  const int left = static_cast<int>(x), top = static_cast<int>(y);
+  const int right = std::min(left + 1, photo.width - 1),
+            bottom = std::min(top + 1, photo.height - 1);
+  const double s = x - left, t = y - top;
+  const auto at_pixel = [&](int column, int row) {
+    const PixelColour& c = photo.at(column, row);
+    return Eigen::Vector3d(c[0], c[1], c[2]);
+  };
+  return (1 - t) * ((1 - s) * at_pixel(left, top) + s * at_pixel(right, top)) +
+         t * ((1 - s) * at_pixel(left, bottom) + s * at_pixel(right, bottom));
+}
+
+PixelColour rounded_colour(const Eigen::Vector3d& c) {
+  PixelColour colour{};
+  for (int k = 0; k < 3; ++k)
+    colour[static_cast<std::size_t>(k)] =
+        static_cast<std::uint8_t>(std::lround(std::clamp(c(k), 0.0, 255.0)));
+  return colour;
+}
+
+/// What the photograph shows of the surface.
+class SeenSurface {
+ public:
+  SeenSurface(const View& view, const PixelImage& photo, const OneViewResult& result,
+              const BakeOptions& options);
+
+  /// Colour of a point that is seen, at its place in the picture; nothing when it is not.
+  /// @param normal  of the surface there, to the outside
+  [[nodiscard]] std::optional<Eigen::Vector3d> colour(const Eigen::Vector3d& point,
+                                                      const Eigen::Vector3d& normal,
+                                                      const Eigen::Vector2d& texture) const;
+  /// Texture coordinates of a point's own image.
+  [[nodiscard]] Eigen::Vector2d projected(const Eigen::Vector3d& point) const {
+    return (point.head<2>() - origin_).cwiseQuotient(size_);
+  }
+  [[nodiscard]] const Eigen::MatrixX3d& normals() const { return normals_; }
+
+ private:
+  void decide_outsides(const OneViewResult& result);
+
+  const PixelImage& photo_;
+  BakeOptions options_;
+  Eigen::Vector2d origin_, size_;
+  PixelGrid grid_;
+  NearestTriangles nearest_;
+  Eigen::MatrixX3d normals_;  ///< of the triangles, to the outside
+  double behind_;
+};
+
+SeenSurface::SeenSurface(const View& view, const PixelImage& photo, const OneViewResult& result,
+                         const BakeOptions& options)
+    : photo_(photo),
+      options_(options),
+      origin_(view.picture.origin),
+      size_(view.picture.size),
+      normals_(triangle_normals(result.surface.mesh)) {
+  const TriMesh& mesh = result.surface.mesh;
+  // A square grid over the picture, about as fine as its pixels.
+  grid_.origin = origin_;
+  grid_.pixel = size_.x() / photo.width;
+  grid_.width = photo.width;
+  grid_.height = static_cast<int>(std::ceil(size_.y() / grid_.pixel));
+  nearest_ = nearest_triangles(mesh, grid_);
+  behind_ = options.behind * bounding_box_diagonal(mesh.V);
+  decide_outsides(result);
+}
+
+/// A connected surface has one outside.
+void SeenSurface::decide_outsides(const OneViewResult& result) {
+  const EdgeConnectivity edges(result.surface.mesh.F);
+  const auto count = static_cast<int>(result.surface.mesh.F.rows());
+  DisjointSets parts(count);
+  for (int h = 0; h < 3 * count; ++h)
+    if (edges.twin(h) >= 0) parts.join(h / 3, edges.twin(h) / 3);
+  std::vector<double> facing(static_cast<std::size_t>(count), 0);
+  for (const int t : nearest_.triangle) {
+    if (t >= 0) facing[static_cast<std::size_t>(parts.find(t))] += normals_(t, 2) > 0 ? 1 : -1;
+  }
+  for (int t = 0; t < count; ++t) {
+    if (facing[static_cast<std::size_t>(parts.find(t))] < 0) normals_.row(t) *= -1;
+  }
+}
+
+std::optional<Eigen::Vector3d> SeenSurface::colour(const Eigen::Vector3d& point,
+                                                   const Eigen::Vector3d& normal,
+                                                   const Eigen::Vector2d& texture) const {
+  if (normal.z() < options_.least_facing) return {};
+  const Eigen::Vector2d at = grid_.pixels_at(point.head<2>());
+  const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
+  if (x < 0 || y < 0 || x >= grid_.width || y >= grid_.height) return {};
+  const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.width) +
+                        static_cast<std::size_t>(x);
+  if (nearest_.depth[i] > point.z() + behind_) return {};
+  return photo_colour(photo_,
+                      {texture.x() * photo_.width - 0.5, (1 - texture.y()) * photo_.height - 0.5});
+}
+
+/// The pieces of a pattern as one mesh in z = 0, with the places of its points in space.
+struct PatternInSpace {
+  TriMesh flat;
+  std::vector<int> vertex;    ///< of the surface, of each point
+  std::vector<int> triangle;  ///< of the surface, of each triangle
+};
+
+PatternInSpace merged_pieces(const Pattern& pattern) {
+  PatternInSpace merged;
+  Eigen::Index points = 0, triangles = 0;
+  for (const PatternPiece& piece : pattern.pieces) {
+    points += piece.points.rows();
+    triangles += piece.triangles.rows();
+  }
+  merged.flat.V = Eigen::MatrixX3d::Zero(points, 3);
+  merged.flat.F.resize(triangles, 3);
+  Eigen::Index v = 0, t = 0;
+  for (const PatternPiece& piece : pattern.pieces) {
+    merged.flat.V.block(v, 0, piece.points.rows(), 2) = piece.points;
+    merged.flat.F.middleRows(t, piece.triangles.rows()) =
+        piece.triangles.array() + static_cast<int>(v);
+    merged.vertex.insert(merged.vertex.end(), piece.surface_vertex.begin(),
+                         piece.surface_vertex.end());
+    merged.triangle.insert(merged.triangle.end(), piece.surface_triangle.begin(),
+                           piece.surface_triangle.end());
+    v += piece.points.rows();
+    t += piece.triangles.rows();
+  }
+  return merged;
+}
+
+PixelGrid pattern_grid(const TriMesh& flat, double photo_pixel, const BakeOptions& o) {
+  PixelGrid grid;
+  const Eigen::Vector2d low = flat.V.leftCols<2>().colwise().minCoeff().transpose();
+  const Eigen::Vector2d high = flat.V.leftCols<2>().colwise().maxCoeff().transpose();
+  const Eigen::Vector2d size = high - low;
+  const int rim = o.bleed + 1;
+  grid.pixel = o.dpi ? kInch / *o.dpi
+                     : std::max(photo_pixel, size.maxCoeff() / std::max(o.most_side - 2 * rim, 1));
+  const Eigen::Vector2d pixels = (size / grid.pixel).array().ceil();
+  if (!(pixels.maxCoeff() + 2 * rim <= kMostSide)) {
+    throw Error(
+        "the pattern's picture would be " + std::to_string(pixels.maxCoeff()) + " pixels large",
+        "textures.dpi", "at most " + std::to_string(kMostSide));
+  }
+  grid.width = static_cast<int>(pixels.x()) + 2 * rim;
+  grid.height = static_cast<int>(pixels.y()) + 2 * rim;
+  grid.origin = low - grid.pixel * Eigen::Vector2d(rim, rim);
+  return grid;
+}
+
+/// Where a pixel's colour comes from.
+enum class TexelSource : std::uint8_t { none, seen, mirrored, flat };
+
+class PatternBaker {
+ public:
+  PatternBaker(const SeenSurface& seen, const OneViewResult& result, const PatternInSpace& pieces,
+               const PixelGrid& grid)
+      : seen_(seen),
+        result_(result),
+        pieces_(pieces),
+        grid_(grid),
+        covered_(nearest_triangles(pieces.flat, grid)),
+        colour_(covered_.triangle.size(), Eigen::Vector3d::Constant(255)),
+        source_(covered_.triangle.size(), TexelSource::none) {}
+
+  BakedPattern bake(int bleed);
+
+ private:
+  [[nodiscard]] int patch_at(std::size_t texel) const {
+    const int t = pieces_.triangle[static_cast<std::size_t>(covered_.triangle[texel])];
+    return result_.surface.patch[static_cast<std::size_t>(t)];
+  }
+  void colour_texel(std::size_t texel);
+  void fill_hidden();
+  void bleed_once();
+
+  const SeenSurface& seen_;
+  const OneViewResult& result_;
+  const PatternInSpace& pieces_;
+  PixelGrid grid_;
+  NearestTriangles covered_;
+  std::vector<Eigen::Vector3d> colour_;
+  std::vector<TexelSource> source_;
+};
+
+void PatternBaker::colour_texel(std::size_t texel) {
+  const TexturedSurface& surface = result_.surface;
+  const int flat = covered_.triangle[texel];
+  const int t = pieces_.triangle[static_cast<std::size_t>(flat)];
+  Eigen::Vector3d point(0, 0, 0);
+  Eigen::Vector2d texture(0, 0);
+  for (int k = 0; k < 3; ++k) {
+    const int v = pieces_.vertex[static_cast<std::size_t>(pieces_.flat.F(flat, k))];
+    point += covered_.weights[texel](k) * surface.mesh.V.row(v).transpose();
+    texture += covered_.weights[texel](k) * surface.texture.row(v).transpose();
+  }
+  const MirrorPlane& plane = result_.planes.chosen;
+  const auto reflected = [&](const Eigen::Vector3d& n) -> Eigen::Vector3d {
+    return n - 2 * n.dot(plane.normal) * plane.normal;
+  };
+  Eigen::Vector3d normal = seen_.normals().row(t).transpose();
+  if (surface.mirror_image[static_cast<std::size_t>(t)]) {
+    point = mirrored(plane, point);
+    normal = reflected(normal);
+  }
+  source_[texel] = TexelSource::seen;
+  std::optional<Eigen::Vector3d> colour = seen_.colour(point, normal, texture);
+  if (!colour) {
+    const Eigen::Vector3d image = mirrored(plane, point);
+    source_[texel] = TexelSource::mirrored;
+    colour = seen_.colour(image, reflected(normal), seen_.projected(image));
+  }
+  if (!colour) source_[texel] = TexelSource::flat;
+  if (colour) colour_[texel] = *colour;
+}
+
+/// Mean colours where nothing is seen.
+void PatternBaker::fill_hidden() {
+  std::vector<Eigen::Vector3d> sum(result_.patches.size(), Eigen::Vector3d::Zero());
+  std::vector<double> count(result_.patches.size(), 0);
+  Eigen::Vector3d all(0, 0, 0);
+  double number = 0;
+  for (std::size_t i = 0; i < source_.size(); ++i) {
+    if (source_[i] != TexelSource::seen && source_[i] != TexelSource::mirrored) continue;
+    const auto p = static_cast<std::size_t>(patch_at(i));
+    sum[p] += colour_[i];
+    all += colour_[i];
+    ++count[p];
+    ++number;
+  }
+  for (std::size_t i = 0; i < source_.size(); ++i) {
+    if (source_[i] != TexelSource::flat) continue;
+    const auto p = static_cast<std::size_t>(patch_at(i));
+    if (count[p] > 0) {
+      colour_[i] = sum[p] / count[p];
+    } else if (number > 0) {
+      colour_[i] = all / number;
+    }
+  }
+}
+
+/// Pixels beside coloured ones get their mean.
+void PatternBaker::bleed_once() {
+  std::vector<TexelSource> grown = source_;
+  for (int y = 0; y < grid_.height; ++y) {
+    for (int x = 0; x < grid_.width; ++x) {
+      const auto at = [&](int i, int j) {
+        return static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.width) +
+               static_cast<std::size_t>(i);
+      };
+      if (source_[at(x, y)] != TexelSource::none) continue;
+      Eigen::Vector3d sum(0, 0, 0);
+      int count = 0;
+      for (int j = std::max(y - 1, 0); j <= std::min(y + 1, grid_.height - 1); ++j) {
+        for (int i = std::max(x - 1, 0); i <= std::min(x + 1, grid_.width - 1); ++i) {
+          if (source_[at(i, j)] == TexelSource::none) continue;
+          sum += colour_[at(i, j)];
+          ++count;
+        }
+      }
+      if (count == 0) continue;
+      colour_[at(x, y)] = sum / count;
+      grown[at(x, y)] = TexelSource::flat;
+    }
+  }
+  source_ = std::move(grown);
+}
+
+BakedPattern PatternBaker::bake(int bleed) {
+  for (std::size_t i = 0; i < source_.size(); ++i)
+    if (covered_.covered(i)) colour_texel(i);
+  BakedPattern baked;
+  baked.grid = grid_;
+  double all = 0;
+  for (const TexelSource source : source_) {
+    all += source != TexelSource::none ? 1 : 0;
+    baked.seen += source == TexelSource::seen ? 1 : 0;
+    baked.mirrored += source == TexelSource::mirrored ? 1 : 0;
+    baked.flat += source == TexelSource::flat ? 1 : 0;
+  }
+  for (double* share : {&baked.seen, &baked.mirrored, &baked.flat}) *share /= std::max(all, 1.0);
+  fill_hidden();
+  for (int k = 0; k < bleed; ++k) bleed_once();
+  baked.image = {grid_.width, grid_.height, {}};
+  for (const Eigen::Vector3d& c : colour_) baked.image.pixels.push_back(rounded_colour(c));
+  return baked;
+}
+
+}  // namespace
+
+void describe(OptionVisitor& v, BakeOptions& o) {
+  v.value("dpi", o.dpi,
+          {.doc = "of the pattern's picture; absent: about the photograph's own",
+           .unit = "1/inch",
+           .min = 1,
+           .max = 1200});
+  v.value("most_side", o.most_side,
+          {.doc = "pixels of its longer side, without dpi", .min = 64, .max = kMostSide});
+  v.value("bleed", o.bleed,
+          {.doc = "pixels that colours go on beyond the border", .min = 0, .max = 64});
+  v.value("least_facing", o.least_facing,
+          {.doc = "cosine to the eye below which a side is not read", .min = 0, .max = 1});
+  v.value(
+      "behind", o.behind,
+      {.doc = "what hides is nearer by this share of the surface's diagonal", .min = 0, .max = 1});
+}
+
+BakedPattern bake_pattern(const View& view, const PixelImage& photo, const OneViewResult& result,
+                          const Pattern& pattern, const BakeOptions& options) {
+  const SeenSurface seen(view, photo, result, options);
+  const PatternInSpace pieces = merged_pieces(pattern);
+  const PixelGrid grid = pattern_grid(pieces.flat, view.picture.size.x() / photo.width, options);
+  return PatternBaker(seen, result, pieces, grid).bake(options.bleed);
+}
+
+}  // namespace geoprior::sketch

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+
+#include "core/options.h"
+#include "models/sketch/drawing/drawing.h"
+#include "models/sketch/pattern/pattern.h"
+#include "solvers/sketch/one_view.h"
+#include "solvers/sketch/photo/nearest_triangles.h"
+#include "solvers/sketch/photo/pixel_image.h"
+
+namespace geoprior::sketch {
+
+struct BakeOptions {
+  std::optional<double> dpi = {};  ///< of the pattern's picture; absent: about the photograph's own
+  int most_side = 2048;            ///< pixels of its longer side, without dpi
+  int bleed = 4;                   ///< pixels that colours go on beyond the border
+  double least_facing = 0.2;       ///< cosine to the eye below which a side is not read
+  double behind = 0.01;            ///< of the surface's diagonal: what hides is nearer by more
+};
+void describe(OptionVisitor& v, BakeOptions& options);
+
+/// The photograph on the pattern.
+struct BakedPattern {
+  PixelImage image;     ///< white where no piece is
+  PixelGrid grid;       ///< places of its pixels in the pattern (m)
+  double seen = 0;      ///< share of the pieces' area that the photograph shows
+  double mirrored = 0;  ///< … that is hidden, but whose mirror image is seen
+  double flat = 0;      ///< … that nothing shows
+};
+
+/// Colours of the flat pieces from the photograph (thesis 2.1.3: the hidden half has the texture of
+/// the visible one).
+///
+/// A pixel of a piece is a point of the surface; what was made by mirroring stands for its source.
+/// Its colour is that of the photograph at its place in the picture (`TexturedSurface::texture`)
+/// when the point faces the eye and nothing lies before it; else that of its mirror image, where
+/// that is seen; else the mean of what is seen of its patch, or of all patches. Which side of a
+/// connected surface is its outside is decided by what most of its visible area turns to the eye.
+/// The result is symmetric: a sign on one half is on both, mirrored.
+///
+/// Colours are those of the photograph, with its light and shade in them.
+///
+/// @param view   with its picture's place; @param photo its pixels
+/// @throws Error on a pattern larger than 30000 pixels a side
+BakedPattern bake_pattern(const View& view, const PixelImage& photo, const OneViewResult& result,
+                          const Pattern& pattern, const BakeOptions& options = {});
+
+}  // namespace geoprior::sketch

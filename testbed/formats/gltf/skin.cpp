@@ -1,0 +1,385 @@
+#include "testbed/formats/gltf/skin.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/error.h"
+
+namespace geoprior::gltf {
+namespace {
+
+std::vector<Eigen::Affine3d> inverse_bind_matrices(const Model& model, const Skin& skin,
+                                                   const std::string& where) {
+  const std::size_t n = skin.joints.size();
+  std::vector<Eigen::Affine3d> result(n, Eigen::Affine3d::Identity());
+  if (!skin.inverse_bind_matrices) return result;
+  const Accessor& accessor = model.accessors[*skin.inverse_bind_matrices];
+  if (accessor.columns != 16 || accessor.component != Component::f32 || accessor.count < n) {
+    throw Error("inverse bind matrices are not one float MAT4 for each of the " +
+                    std::to_string(n) + " joints",
+                where);
+  }
+  const Eigen::MatrixXd values = decode(model, *skin.inverse_bind_matrices);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Matrix<double, 16, 1> row = values.row(static_cast<Eigen::Index>(i)).transpose();
+    const Eigen::Map<const Eigen::Matrix4d> m(row.data());
+    const std::string joint = where + ", bind matrix of joint " + std::to_string(i);
+    if (!row.allFinite()) throw Error("not finite", joint);
+    const Eigen::Matrix3d linear = m.topLeftCorner<3, 3>();
+    // Relative to the size of the entries: units of a file may be anything.
+    const double size = linear.norm();
+    if (!(std::abs(linear.determinant()) > 1e-9 * size * size * size))
+      throw Error("singular (determinant " + std::to_string(linear.determinant()) + ")", joint,
+                  "an invertible matrix");
+    if ((m.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() > 1e-4)
+      throw Error("not affine", joint, "last row 0 0 0 1");
+    result[i].linear() = linear;
+    result[i].translation() = m.topRightCorner<3, 1>();
+  }
+  return result;
+}
+
+/// Nearest ancestor of a node that is a joint, or -1.
+int parent_joint(const Model& model, std::size_t node, const std::vector<int>& joint_of_node) {
+  for (auto at = model.nodes[node].parent; at; at = model.nodes[*at].parent) {
+    if (joint_of_node[*at] >= 0) return joint_of_node[*at];
+  }
+  return -1;
+}
+
+std::string unique_name(const Node& node, int joint, std::set<std::string>& used) {
+  std::string name = node.name.empty() ? "joint-" + std::to_string(joint) : node.name;
+  for (int k = 2; !used.insert(name).second; ++k) name = node.name + "-" + std::to_string(k);
+  return name;
+}
+
+/// Directions at rest of a joint's own axes; absent where they are beyond the numbers' range.
+std::optional<Eigen::Matrix3d> unit_axes(const Eigen::Affine3d& from_rest) {
+  Eigen::Matrix3d axes = from_rest.linear().inverse();
+  axes /= axes.cwiseAbs().maxCoeff();
+  axes.colwise().normalize();
+  const bool are_unit = ((axes.colwise().norm().array() - 1).abs() < 1e-6).all();
+  return are_unit ? std::optional(axes) : std::nullopt;
+}
+
+void set_tails(Skeleton& skeleton) {
+  const auto children = skeleton.children();
+  for (std::size_t j = 0; j < children.size(); ++j) {
+    if (children[j].empty()) continue;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const int c : children[j]) mean += skeleton.joints[c].head;
+    mean /= static_cast<double>(children[j].size());
+    const Eigen::Vector3d& head = skeleton.joints[j].head;
+    if ((mean - head).norm() > 1e-9 * (1 + head.norm())) skeleton.joints[j].tail = mean;
+  }
+}
+
+bool is_weight_type(const Accessor& a) {
+  return a.columns == 4 &&
+         (a.component == Component::f32 ||
+          (a.normalized && (a.component == Component::u8 || a.component == Component::u16)));
+}
+
+bool is_joint_type(const Accessor& a) {
+  return a.columns == 4 && !a.normalized &&
+         (a.component == Component::u8 || a.component == Component::u16);
+}
+
+std::size_t attribute(const Primitive& primitive, const std::string& name,
+                      const std::string& where) {
+  const auto it = primitive.attributes.find(name);
+  if (it == primitive.attributes.end()) throw Error("no " + name + " for a skinned mesh", where);
+  return it->second;
+}
+
+}  // namespace
+
+std::vector<Eigen::Affine3d> world_transforms(const Model& model) {
+  std::vector<Eigen::Affine3d> world(model.nodes.size());
+  for (const std::size_t i : model.node_order) {
+    const Node& node = model.nodes[i];
+    Eigen::Affine3d local;
+    if (node.matrix) {
+      local = *node.matrix;
+    } else {
+      local = Eigen::Translation3d(node.translation) * node.rotation * Eigen::Scaling(node.scale);
+    }
+    world[i] = node.parent ? world[*node.parent] * local : local;
+    if (!world[i].matrix().allFinite()) {
+      throw Error("the transform overflows", place(model, "/nodes/" + std::to_string(i)));
+    }
+  }
+  return world;
+}
+
+SkinData read_skin(const Model& model, std::size_t skin_index) {
+  const Skin& skin = model.skins[skin_index];
+  const std::string where = place(model, "/skins/" + std::to_string(skin_index));
+  const auto inverse_bind = inverse_bind_matrices(model, skin, where);
+  std::vector<int> entry_of_node(model.nodes.size(), -1);
+  for (std::size_t i = 0; i < skin.joints.size(); ++i)
+    entry_of_node[skin.joints[i]] = static_cast<int>(i);
+
+  SkinData result;
+  result.joint_of_skin.assign(skin.joints.size(), -1);
+  std::vector<int> joint_of_node(model.nodes.size(), -1);
+  std::vector<std::size_t> entry_of_joint;
+  std::set<std::string> names;
+  for (const std::size_t node : model.node_order) {
+    if (entry_of_node[node] < 0) continue;
+    const int joint = result.skeleton.size();
+    result.joint_of_skin[entry_of_node[node]] = joint;
+    entry_of_joint.push_back(static_cast<std::size_t>(entry_of_node[node]));
+    result.node_of_joint.push_back(node);
+    result.skeleton.joints.push_back({unique_name(model.nodes[node], joint, names),
+                                      parent_joint(model, node, joint_of_node),
+                                      Eigen::Vector3d::Zero(),
+                                      std::nullopt,
+                                      {}});
+    joint_of_node[node] = joint;
+  }
+
+  const auto world = world_transforms(model);
+  result.to_rest = world[result.node_of_joint[0]] * inverse_bind[entry_of_joint[0]];
+  const double size = result.to_rest.linear().norm();
+  if (!result.to_rest.matrix().allFinite() ||
+      !(std::abs(result.to_rest.linear().determinant()) > 1e-9 * size * size * size)) {
+    throw Error("the root joint '" + result.skeleton.joints[0].name + "' flattens the mesh", where,
+                "transforms that can be inverted");
+  }
+  const Eigen::Affine3d from_rest_to_mesh = result.to_rest.inverse();
+  for (std::size_t j = 0; j < entry_of_joint.size(); ++j) {
+    const Eigen::Affine3d& inverse = inverse_bind[entry_of_joint[j]];
+    result.skeleton.joints[j].head = result.to_rest * inverse.inverse().translation();
+    result.from_rest.push_back(inverse * from_rest_to_mesh);
+    result.skeleton.joints[j].frame = unit_axes(result.from_rest.back());
+  }
+  set_tails(result.skeleton);
+  validate(result.skeleton);
+  return result;
+}
+
+void read_influences(const Model& model, const Primitive& primitive, const std::string& where,
+                     const SkinData& skin, int vertex_count, int first_vertex,
+                     std::vector<Eigen::Triplet<double>>& triplets, bool& renormalised) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(vertex_count);
+  const std::size_t first_triplet = triplets.size();
+  for (int set = 0; set == 0 || primitive.attributes.count("WEIGHTS_" + std::to_string(set)) > 0;
+       ++set) {
+    const std::string suffix = std::to_string(set);
+    const std::size_t joints_at = attribute(primitive, "JOINTS_" + suffix, where);
+    const std::size_t weights_at = attribute(primitive, "WEIGHTS_" + suffix, where);
+    const Accessor& joint_accessor = model.accessors[joints_at];
+    const Accessor& weight_accessor = model.accessors[weights_at];
+    if (!is_joint_type(joint_accessor) || !is_weight_type(weight_accessor) ||
+        joint_accessor.count != static_cast<std::size_t>(vertex_count) ||
+        weight_accessor.count != static_cast<std::size_t>(vertex_count)) {
+      throw Error("JOINTS_" + suffix + " and WEIGHTS_" + suffix + " do not fit the positions",
+                  where, "VEC4 of u8 or u16, and of float or normalised u8 or u16, one a vertex");
+    }
+    const Eigen::MatrixXd joints = decode(model, joints_at);
+    const Eigen::MatrixXd weights = decode(model, weights_at);
+    for (int v = 0; v < vertex_count; ++v) {
+      for (int k = 0; k < 4; ++k) {
+        const double w = weights(v, k);
+        const std::string vertex = where + ", vertex " + std::to_string(v);
+        if (!std::isfinite(w) || w < 0)
+          throw Error("weight " + std::to_string(w), vertex, "finite and >= 0");
+        if (w == 0) continue;  // the joint of an unused slot may be anything
+        const auto entry = static_cast<std::size_t>(joints(v, k));
+        if (entry >= skin.joint_of_skin.size())
+          throw Error("joint index " + std::to_string(entry) + " is out of range", vertex,
+                      "0 to " + std::to_string(skin.joint_of_skin.size() - 1));
+        triplets.emplace_back(first_vertex + v, skin.joint_of_skin[entry], w);
+        sums[v] += w;
+      }
+    }
+  }
+  for (int v = 0; v < vertex_count; ++v) {
+    if (!(sums[v] > 0) || !std::isfinite(1 / sums[v])) {
+      throw Error("its weights sum to " + std::to_string(sums[v]),
+                  where + ", vertex " + std::to_string(v), "a sum above zero");
+    }
+    // Quantised weights miss 1 by half a step of 1/255 for each of four influences.
+    if (std::abs(sums[v] - 1) > 0.01) renormalised = true;
+  }
+  for (std::size_t i = first_triplet; i < triplets.size(); ++i) {
+    const auto& t = triplets[i];
+    triplets[i] = {t.row(), t.col(), t.value() / sums[t.row() - first_vertex]};
+  }
+}
+
+}  // namespace geoprior::gltf
+
+namespace geoprior {
+namespace gltf {
+namespace {
+
+using Property = GltfTrack::Property;
+using Interpolation = GltfTrack::Interpolation;
+
+GltfTrack read_track(const Model& model, const Sampler& sampler, Property property,
+                     const std::string& where) {
+  GltfTrack track;
+  track.property = property;
+  track.interpolation = sampler.interpolation == "STEP"          ? Interpolation::step
+                        : sampler.interpolation == "CUBICSPLINE" ? Interpolation::cubic_spline
+                                                                 : Interpolation::linear;
+  const Accessor& input = model.accessors[sampler.input];
+  const Accessor& output = model.accessors[sampler.output];
+  const int columns = property == Property::rotation ? 4 : 3;
+  const std::size_t rows = track.interpolation == Interpolation::cubic_spline ? 3 : 1;
+  if (!input.view || input.columns != 1 || input.component != Component::f32)
+    throw Error("the times are not float SCALAR with data", where);
+  if (output.columns != columns || output.count != rows * input.count) {
+    throw Error(
+        "the values do not fit the times", where,
+        std::to_string(rows * input.count) + " of " + std::to_string(columns) + " components");
+  }
+  track.times = decode(model, sampler.input);
+  track.values = decode(model, sampler.output);
+  for (Eigen::Index i = 0; i < track.times.size(); ++i) {
+    const bool increases = i == 0 || track.times[i] > track.times[i - 1];
+    if (!std::isfinite(track.times[i]) || !increases)
+      throw Error("the times do not increase at key " + std::to_string(i), where);
+  }
+  if (!track.values.allFinite()) throw Error("a value is not finite", where);
+  return track;
+}
+
+std::optional<Property> property_of(const std::string& path) {
+  if (path == "translation") return Property::translation;
+  if (path == "rotation") return Property::rotation;
+  if (path == "scale") return Property::scale;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<GltfClip> read_clips(const Model& model, const std::vector<int>& node_of_model,
+                                 std::vector<std::string>& ignored) {
+  std::vector<GltfClip> clips;
+  bool other_paths = false;
+  for (std::size_t a = 0; a < model.animations.size(); ++a) {
+    GltfClip clip;
+    clip.name = model.animations[a].name;
+    for (std::size_t c = 0; c < model.animations[a].channels.size(); ++c) {
+      const Channel& channel = model.animations[a].channels[c];
+      const auto property = property_of(channel.path);
+      if (!property) other_paths = true;
+      if (!property || !channel.node) continue;
+      const std::string where =
+          place(model, "/animations/" + std::to_string(a) + "/channels/" + std::to_string(c));
+      if (model.nodes[*channel.node].matrix)
+        throw Error("animates a node that is given by a matrix", where,
+                    "nodes with translation, rotation and scale");
+      GltfTrack track =
+          read_track(model, model.animations[a].samplers[channel.sampler], *property, where);
+      track.node = node_of_model[*channel.node];
+      const double first = track.times[0];
+      const double last = track.times[track.times.size() - 1];
+      clip.start_s = clip.tracks.empty() ? first : std::min(clip.start_s, first);
+      clip.end_s = clip.tracks.empty() ? last : std::max(clip.end_s, last);
+      clip.tracks.push_back(std::move(track));
+    }
+    if (!clip.tracks.empty()) clips.push_back(std::move(clip));
+  }
+  if (other_paths) ignored.emplace_back("animation of morph targets or other properties");
+  return clips;
+}
+
+}  // namespace gltf
+
+namespace {
+
+/// Rows of `values` to read at a time: key `i`, the next one, and the fraction between them.
+struct Between {
+  Eigen::Index i = 0;
+  Eigen::Index next = 0;
+  double fraction = 0;
+  double span = 0;
+};
+
+Between between(const Eigen::VectorXd& times, double t) {
+  const double* begin = times.data();
+  const double* end = begin + times.size();
+  const double* after = std::upper_bound(begin, end, t);
+  if (after == begin) return {};
+  const Eigen::Index i = after - begin - 1;
+  if (after == end) return {i, i, 0, 0};
+  const double span = times[i + 1] - times[i];
+  return {i, i + 1, (t - times[i]) / span, span};
+}
+
+/// Hermite spline of glTF 2.0 appendix C: values and tangents (per second) at both keys.
+Eigen::VectorXd cubic_spline(const Eigen::MatrixXd& values, const Between& b) {
+  const double t = b.fraction;
+  const double t2 = t * t;
+  const double t3 = t2 * t;
+  return ((2 * t3 - 3 * t2 + 1) * values.row(3 * b.i + 1) +
+          b.span * (t3 - 2 * t2 + t) * values.row(3 * b.i + 2) +
+          (-2 * t3 + 3 * t2) * values.row(3 * b.next + 1) +
+          b.span * (t3 - t2) * values.row(3 * b.next))
+      .transpose();
+}
+
+Eigen::Quaterniond quaternion(const Eigen::VectorXd& xyzw) {
+  const Eigen::Quaterniond q(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
+  return q.norm() > 1e-9 ? q.normalized() : Eigen::Quaterniond::Identity();
+}
+
+Eigen::VectorXd sample(const GltfTrack& track, double time_s) {
+  const Between b = between(track.times, time_s);
+  if (track.interpolation == GltfTrack::Interpolation::cubic_spline)
+    return cubic_spline(track.values, b);
+  if (track.interpolation == GltfTrack::Interpolation::step || b.next == b.i)
+    return track.values.row(b.i).transpose();
+  if (track.property == GltfTrack::Property::rotation) {
+    const Eigen::Quaterniond q = quaternion(track.values.row(b.i).transpose())
+                                     .slerp(b.fraction, quaternion(track.values.row(b.next)));
+    return q.coeffs();
+  }
+  return ((1 - b.fraction) * track.values.row(b.i) + b.fraction * track.values.row(b.next))
+      .transpose();
+}
+
+}  // namespace
+
+Pose clip_pose(const GltfCharacter& character, const GltfClip& clip, double time_s) {
+  std::vector<GltfNode> nodes = character.binding.nodes;
+  for (const GltfTrack& track : clip.tracks) {
+    GltfNode& node = nodes[track.node];
+    const Eigen::VectorXd x = sample(track, time_s);
+    switch (track.property) {
+      case GltfTrack::Property::translation:
+        node.translation = x;
+        break;
+      case GltfTrack::Property::rotation:
+        node.rotation = quaternion(x);
+        break;
+      case GltfTrack::Property::scale:
+        node.scale = x;
+        break;
+    }
+  }
+  std::vector<Eigen::Affine3d> world(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const GltfNode& n = nodes[i];
+    Eigen::Affine3d local;
+    if (n.matrix) {
+      local = *n.matrix;
+    } else {
+      local = Eigen::Translation3d(n.translation) * n.rotation * Eigen::Scaling(n.scale);
+    }
+    world[i] = n.parent < 0 ? local : world[n.parent] * local;
+  }
+  Pose pose;
+  for (std::size_t j = 0; j < character.binding.joint_node.size(); ++j) {
+    pose.push_back(world[character.binding.joint_node[j]] * character.binding.from_rest[j]);
+  }
+  return pose;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,93 @@
+#include "testbed/formats/mesh/obj_reader.h"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "testbed/formats/mesh/polygon_soup.h"
+#include "testbed/formats/text/lines.h"
+
+namespace geoprior {
+namespace {
+
+/// An index from 0. Positive ones may name something that comes later.
+int index_from_zero(std::string_view word, std::size_t so_far, const char* what,
+                    const TextLines& lines) {
+  const long long index = lines.integer(word);
+  const auto count = static_cast<long long>(so_far);
+  if (index == 0 || index < -count || index > std::numeric_limits<int>::max()) {
+    throw Error(std::string("refers to ") + what + " " + std::to_string(index) + " of " +
+                    std::to_string(count),
+                lines.place(), "1 and up, or -1 and down");
+  }
+  return static_cast<int>(index > 0 ? index - 1 : count + index);
+}
+
+/// Texture coordinates, and which of them the corners have; none of what is not the same at every
+/// corner of a vertex.
+class Texture {
+ public:
+  void add(double s, double t) { coordinates_.emplace_back(s, t); }
+  /// A corner "v", "v/vt", "v//vn" or "v/vt/vn" of a vertex.
+  void corner(std::string_view word, int vertex, const TextLines& lines) {
+    const std::size_t first = word.find('/');
+    const std::string_view text =
+        first == word.npos ? "" : word.substr(first + 1, word.find('/', first + 1) - first - 1);
+    if (text.empty()) {
+      whole_ = false;
+      return;
+    }
+    const int index = index_from_zero(text, coordinates_.size(), "texture coordinate", lines);
+    const auto v = static_cast<std::size_t>(vertex);
+    if (of_vertex_.size() <= v) of_vertex_.resize(v + 1, -1);
+    if (of_vertex_[v] >= 0 && of_vertex_[v] != index) whole_ = false;
+    of_vertex_[v] = index;
+  }
+  [[nodiscard]] Eigen::MatrixX2d rows(Eigen::Index vertices) const {
+    Eigen::MatrixX2d rows(vertices, 2);
+    if (!whole_ || static_cast<Eigen::Index>(of_vertex_.size()) != vertices) return {};
+    for (Eigen::Index v = 0; v < vertices; ++v) {
+      const int index = of_vertex_[static_cast<std::size_t>(v)];
+      if (index < 0 || index >= static_cast<int>(coordinates_.size())) return {};
+      rows.row(v) = coordinates_[static_cast<std::size_t>(index)];
+    }
+    return rows;
+  }
+
+ private:
+  std::vector<Eigen::RowVector2d> coordinates_;
+  std::vector<int> of_vertex_;
+  bool whole_ = true;
+};
+
+}  // namespace
+
+MeshFile parse_obj(std::string_view bytes, const std::string& name) {
+  PolygonSoup soup;
+  Texture texture;
+  TextLines lines(bytes, name);
+  while (lines.next_with_words()) {
+    const auto& words = lines.words();
+    if (words.back() == "\\") throw Error("lines that go on are not read", lines.place());
+    if (words[0] == "v") {
+      lines.require_words(4, "v x y z");
+      soup.points.emplace_back(lines.number_at(1), lines.number_at(2), lines.number_at(3));
+    } else if (words[0] == "vt" && words.size() >= 3) {
+      texture.add(lines.number_at(1), lines.number_at(2));
+    } else if (words[0] == "f") {
+      lines.require_words(4, "f and three corners or more");
+      for (std::size_t i = 1; i < words.size(); ++i) {
+        const std::string_view vertex = words[i].substr(0, words[i].find('/'));
+        soup.corners.push_back(index_from_zero(vertex, soup.points.size(), "vertex", lines));
+        texture.corner(words[i], soup.corners.back(), lines);
+      }
+      soup.end_face();
+    }
+  }
+  MeshFile file = mesh_of(soup, name);
+  file.pattern = texture.rows(file.mesh.V.rows());
+  return file;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,231 @@
+#include "testbed/formats/mesh/ply_reader.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#include "core/error.h"
+#include "testbed/formats/mesh/ply_header.h"
+#include "testbed/formats/mesh/polygon_soup.h"
+#include "testbed/formats/text/lines.h"
+
+namespace geoprior {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "little-endian PLY is read as it is");
+
+using Element = PlyHeader::Element;
+using Type = PlyHeader::Type;
+
+/// The values of a binary file, one after the other.
+class BinaryValues {
+ public:
+  BinaryValues(std::string_view data, std::size_t first_byte, bool swapped, std::string name)
+      : data_(data), first_(first_byte), swapped_(swapped), name_(std::move(name)) {}
+
+  double next(Type type) {
+    switch (type) {
+      case Type::int8:
+        return take<std::int8_t>();
+      case Type::uint8:
+        return take<std::uint8_t>();
+      case Type::int16:
+        return take<std::int16_t>();
+      case Type::uint16:
+        return take<std::uint16_t>();
+      case Type::int32:
+        return take<std::int32_t>();
+      case Type::uint32:
+        return take<std::uint32_t>();
+      case Type::float32:
+        return static_cast<double>(take<float>());
+      case Type::float64:
+        return take<double>();
+    }
+    return 0;
+  }
+  [[nodiscard]] std::size_t left() const { return data_.size() - at_; }
+  [[nodiscard]] std::string place() const {
+    return name_ + ", byte " + std::to_string(first_ + at_);
+  }
+  /// Whether `count` elements can follow at all.
+  [[nodiscard]] bool can_hold(const Element& element, long long count) const {
+    return static_cast<double>(element.least_bytes()) * static_cast<double>(count) <=
+           static_cast<double>(left());
+  }
+  [[nodiscard]] bool at_end(const Element& element) const { return left() < element.least_bytes(); }
+
+ private:
+  template <class T>
+  T take() {
+    if (left() < sizeof(T)) throw Error("is truncated", place());
+    std::array<char, sizeof(T)> bytes{};
+    std::memcpy(bytes.data(), data_.data() + at_, sizeof(T));
+    if (swapped_) std::reverse(bytes.begin(), bytes.end());
+    at_ += sizeof(T);
+    T value;
+    std::memcpy(&value, bytes.data(), sizeof(T));
+    return value;
+  }
+
+  std::string_view data_;
+  std::size_t first_, at_ = 0;
+  bool swapped_;
+  std::string name_;
+};
+
+/// The values of a text, words in any arrangement of lines.
+class TextValues {
+ public:
+  TextValues(std::string_view data, int first_line, const std::string& name)
+      : lines_(data, name, first_line) {}
+
+  double next(Type) {
+    if (!has_word()) throw Error("is truncated", lines_.place());
+    // A fraction is only read as such: indices are checked where they are used.
+    return lines_.number_at(word_++);
+  }
+  [[nodiscard]] std::string place() const { return lines_.place(); }
+  [[nodiscard]] bool can_hold(const Element&, long long count) const {
+    return static_cast<double>(count) <=
+           static_cast<double>(lines_.rest().size() + lines_.line().size());
+  }
+  [[nodiscard]] bool at_end(const Element& element) {
+    return !element.properties.empty() && !has_word();
+  }
+
+ private:
+  bool has_word() {
+    if (word_ < lines_.words().size()) return true;
+    word_ = 0;
+    return lines_.next_with_words();
+  }
+
+  TextLines lines_;
+  std::size_t word_ = 0;
+};
+
+template <class Values>
+int integer(double value, const char* what, const Values& at) {
+  constexpr double kMost = std::numeric_limits<int>::max();
+  if (!(std::abs(value) <= kMost) || value != std::floor(value)) {
+    throw Error(std::string(what) + " is no whole number", at.place());
+  }
+  return static_cast<int>(value);
+}
+
+/// Reads the elements in the order of the file into a soup.
+template <class Values>
+class ElementReader {
+ public:
+  ElementReader(Values values, PolygonSoup& soup) : values_(std::move(values)), soup_(soup) {}
+
+  void read(const Element& element) {
+    if (element.properties.empty()) return;
+    if (!values_.can_hold(element, element.count)) truncated(element, 0);
+    if (element.name == "vertex") return vertices(element);
+    if (element.name == "face") return faces(element);
+    rows(
+        element, [](std::size_t, double) {}, [] {});
+  }
+
+ private:
+  [[noreturn]] void truncated(const Element& element, long long i) const {
+    throw Error("is truncated: has not all " + std::to_string(element.count) + " of '" +
+                    element.name + "', ends before or in number " + std::to_string(i),
+                values_.place());
+  }
+
+  int length(const PlyHeader::Property& property) {
+    const int n = integer(values_.next(*property.count), "length of a list", values_);
+    if (n < 0) throw Error("length of a list is negative", values_.place());
+    return n;
+  }
+
+  /// Goes through all values: `value(property, x)` for each number, `end()` after each element.
+  template <class Value, class End>
+  void rows(const Element& element, const Value& value, const End& end) {
+    for (long long i = 0; i < element.count; ++i) {
+      if (values_.at_end(element)) truncated(element, i);
+      for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        const PlyHeader::Property& property = element.properties[p];
+        const int n = property.count ? length(property) : 1;
+        for (int k = 0; k < n; ++k) value(p, values_.next(property.type));
+      }
+      end();
+    }
+  }
+
+  void vertices(const Element& element) {
+    const auto x = element.find({"x"}), y = element.find({"y"}), z = element.find({"z"});
+    if (!x || !y || !z) throw Error("its vertices have no x, y, z", values_.place());
+    const auto u = element.find({"vx", "velocity_0"}), v = element.find({"vy", "velocity_1"}),
+               w = element.find({"vz", "velocity_2"});
+    const bool moving = u && v && w;
+    std::vector<double> row(element.properties.size());
+    soup_.points.reserve(element.count);
+    const auto finite = [&](Eigen::Vector3d vector, const char* what) {
+      if (vector.allFinite()) return vector;
+      throw Error(std::string(what) + " of vertex " + std::to_string(soup_.points.size()) +
+                      " is not finite",
+                  values_.place());
+    };
+    rows(
+        element, [&](std::size_t p, double value) { row[p] = value; },
+        [&] {
+          if (moving) {
+            soup_.velocity.push_back(finite({row[*u], row[*v], row[*w]}, "velocity"));
+          }
+          soup_.points.push_back(finite({row[*x], row[*y], row[*z]}, "position"));
+        });
+  }
+
+  void faces(const Element& element) {
+    const auto corners = element.find({"vertex_indices", "vertex_index"});
+    if (!corners || !element.properties[*corners].count) {
+      throw Error("its faces have no list vertex_indices", values_.place());
+    }
+    soup_.ends.reserve(element.count);
+    rows(
+        element,
+        [&](std::size_t p, double value) {
+          if (p == *corners) {
+            soup_.corners.push_back(integer(value, "index of a vertex", values_));
+          }
+        },
+        [&] { soup_.end_face(); });
+  }
+
+  Values values_;
+  PolygonSoup& soup_;
+};
+
+template <class Values>
+void read_elements(const PlyHeader& header, Values values, PolygonSoup& soup) {
+  ElementReader<Values> reader(std::move(values), soup);
+  for (const Element& element : header.elements) reader.read(element);
+}
+
+}  // namespace
+
+MeshFile parse_ply(std::string_view bytes, const std::string& name) {
+  const PlyHeader header = parse_ply_header(bytes, name);
+  if (header.element("vertex") == nullptr) throw Error("has no element 'vertex'", name);
+  if (header.element("face") == nullptr) {
+    throw Error("has no element 'face'", name, "faces; strips and points are not read");
+  }
+  PolygonSoup soup;
+  const std::string_view data = bytes.substr(header.data);
+  if (header.format == PlyHeader::Format::ascii) {
+    read_elements(header, TextValues(data, header.data_line, name), soup);
+  } else {
+    const bool swapped = header.format == PlyHeader::Format::big_endian;
+    read_elements(header, BinaryValues(data, header.data, swapped, name), soup);
+  }
+  return mesh_of(soup, name);
+}
+
+}  // namespace geoprior

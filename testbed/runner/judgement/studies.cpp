@@ -1,0 +1,127 @@
+#include "testbed/runner/judgement/studies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "core/error.h"
+#include "testbed/runner/judgement/statistics.h"
+#include "testbed/runner/options/quantity.h"
+
+namespace geoprior {
+namespace {
+
+/// x of a case: a fact of the scene, or the swept value; absent when the case has neither.
+std::optional<double> abscissa(const CaseRecord& in, const StudySpec& study) {
+  if (const auto fact = in.facts.find(study.against); fact != in.facts.end()) return fact->second;
+  const auto swept = in.swept.find(study.against);
+  if (swept == in.swept.end()) return std::nullopt;
+  char* end = nullptr;
+  const double x = std::strtod(swept->second.c_str(), &end);
+  if (end == swept->second.c_str() || *end != 0) {
+    throw Error("swept value " + swept->second + " is no number",
+                "study '" + study.name + "', case '" + in.name + "'", "numbers");
+  }
+  return x;
+}
+
+void require_positive(double value, const std::string& what, const StudySpec& study,
+                      const CaseRecord& in) {
+  if (value > 0) return;
+  throw Error(what + " is not positive, it has no logarithm",
+              "study '" + study.name + "', case '" + in.name + "'");
+}
+
+bool is_slope(const StudySpec& study) {
+  return study.kind == StudyKind::exponent || study.kind == StudyKind::order;
+}
+
+/// The study's quantity of a variant in a case; absent when the case does not have the variant, or
+/// only some of its frames.
+std::optional<double> value_in(const CaseRecord& in, const std::string& name,
+                               const StudySpec& study) {
+  const auto variant = std::find_if(in.variants.begin(), in.variants.end(),
+                                    [&](const auto& v) { return v.name == name; });
+  if (variant == in.variants.end() || variant->status == "failed") return std::nullopt;
+  return quantity_of(in, *variant, study.quantity, std::nullopt, study.reduce).value;
+}
+
+void add_point(StudyRecord& record, const StudySpec& study, const CaseRecord& in) {
+  const std::optional<double> x =
+      is_slope(study) ? abscissa(in, study) : static_cast<double>(record.x.size());
+  const std::optional<double> y = x ? value_in(in, study.variant, study) : std::nullopt;
+  if (!y) return;
+  if (study.kind == StudyKind::within_spread) {
+    const std::optional<double> other = value_in(in, study.of, study);
+    if (!other) return;
+    record.y_of.push_back(*other);
+  }
+  if (is_slope(study)) {
+    require_positive(*x, study.against, study, in);
+    require_positive(*y, study.quantity, study, in);
+  }
+  record.x.push_back(*x);
+  record.y.push_back(*y);
+}
+
+Interval logarithmic_slope(const StudyRecord& record) {
+  std::vector<double> x, y;
+  for (const double value : record.x) x.push_back(std::log(value));
+  for (const double value : record.y) y.push_back(std::log(value));
+  return slope_with_interval(x, y);
+}
+
+Interval interval_of(const StudySpec& study, const StudyRecord& record, std::uint64_t seed) {
+  if (study.kind == StudyKind::spread) {
+    return spread_with_interval(record.y, RandomStream(seed, "study " + study.name));
+  }
+  if (study.kind == StudyKind::within_spread) {
+    return median_distance_with_interval(record.y, record.y_of,
+                                         RandomStream(seed, "study " + study.name));
+  }
+  const Interval slope = logarithmic_slope(record);
+  // Errors fall with a smaller step, or with a larger count: the order is positive either way.
+  if (study.kind == StudyKind::order && study.finer == Finer::larger) {
+    return {-slope.value, -slope.high, -slope.low};
+  }
+  return slope;
+}
+
+std::string needed_by(const StudySpec& study) {
+  if (study.kind == StudyKind::spread)
+    return "at least 2 cases with variant '" + study.variant + "'";
+  if (study.kind == StudyKind::within_spread) {
+    return "at least 2 cases with variants '" + study.variant + "' and '" + study.of + "'";
+  }
+  return "at least 2 cases with '" + study.against + "', a fact of the scene or a swept key";
+}
+
+}  // namespace
+
+std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRecord& record) {
+  std::vector<StudyRecord> studies;
+  for (const StudySpec& study : experiment.studies) {
+    StudyRecord made;
+    made.name = study.name;
+    made.kind = text_of(study.kind);
+    made.quantity = study.quantity;
+    for (const CaseRecord& in : record.cases) {
+      const bool named = study.cases.empty() || std::find(study.cases.begin(), study.cases.end(),
+                                                          in.name) != study.cases.end();
+      if (named) add_point(made, study, in);
+    }
+    if (made.x.size() < 2) {
+      throw Error("only " + std::to_string(made.x.size()) + " cases have what it needs",
+                  "study '" + study.name + "'", needed_by(study));
+    }
+    const Interval interval =
+        interval_of(study, made, record.cases.empty() ? 1 : record.cases.front().seed);
+    made.value = interval.value;
+    made.low = interval.low;
+    made.high = interval.high;
+    studies.push_back(std::move(made));
+  }
+  return studies;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "testbed/runner/journal/run_record.h"
+#include "testbed/runner/spec/spec.h"
+
+namespace geoprior {
+
+/// Quantities across cases, with a 95 % interval (t for slopes, bootstrap for spreads).
+std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRecord& record);
+
+}  // namespace geoprior

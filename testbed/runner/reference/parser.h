@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "testbed/runner/reference/reference.h"
+
+namespace geoprior {
+
+/// Reads what `reference_text` writes, strictly.
+/// @param source  name of the file, for errors
+/// @throws Error  "source:line" with what is wrong there
+Reference parse_reference(const std::string& text, const std::string& source);
+
+}  // namespace geoprior

@@ -1,0 +1,325 @@
+#include "testbed/runner/spec/claims.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/limits.h"
+#include "testbed/runner/names.h"
+#include "testbed/runner/options/toml.h"
+#include "testbed/runner/spec/overrides.h"
+#include "testbed/runner/spec/tables.h"
+
+namespace geoprior {
+namespace {
+
+using Names = std::vector<std::string>;
+
+bool contains(const Names& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// "timing:solve", "diagnostic:iterations" and "study:order" name what no table lists.
+bool has_prefix(const std::string& quantity) {
+  return quantity.starts_with("timing:") || quantity.starts_with("diagnostic:");
+}
+
+void require_metric(const std::string& name, const Topic& topic, const std::string& place,
+                    const Names& studies) {
+  if (has_prefix(name)) return;
+  if (name.starts_with("study:")) {
+    if (contains(studies, name.substr(6))) return;
+    throw Error("unknown study '" + name.substr(6) + "'", place,
+                allowed_names(name.substr(6), studies));
+  }
+  Names names = metric_names(topic);
+  if (contains(names, name)) return;
+  for (const char* prefix : {"timing:<phase>", "diagnostic:<name>", "study:<name>"}) {
+    names.emplace_back(prefix);
+  }
+  throw Error("unknown metric '" + name + "'", place, allowed_names(name, names));
+}
+
+void require_cases(const Names& cases, const KnownNames& names, const TomlNode& node) {
+  for (const std::string& name : cases) {
+    if (contains(names.cases, name)) continue;
+    throw Error("there is no case '" + name + "'", place_of(node, "cases"),
+                allowed_names(name, names.cases));
+  }
+}
+
+/// False when --variant left the variant out; throws when there never was one.
+bool runs(const std::string& variant, const KnownNames& names, const std::string& place) {
+  if (contains(names.variants, variant)) return true;
+  if (contains(names.dropped, variant)) return false;
+  Names all = names.variants;
+  all.insert(all.end(), names.dropped.begin(), names.dropped.end());
+  throw Error("there is no variant '" + variant + "'", place, allowed_names(variant, all));
+}
+
+/// `at = { angle_deg = 90 }`: one number under the parameter's name.
+void read_at(const TomlNode* at, std::optional<double>& parameter, std::string* key) {
+  if (at == nullptr) return;
+  const bool one = at->kind == TomlNode::Kind::table && at->items.size() == 1;
+  if (!one) {
+    throw Error("does not give one parameter", at->place + ": at",
+                "a table of one number, { angle_deg = 90 }");
+  }
+  struct At {
+    std::string key;
+    double value = 0;
+  };
+  At read{at->keys.front(), 0};
+  OptionTomlReader reader(*at, "at");
+  reader.value(read.key, read.value, {.doc = "parameter of the frame"});
+  parameter = read.value;
+  if (key != nullptr) *key = read.key;
+}
+
+/// `OfReduction` is `same`, then the enumerators of `Reduction` in their order.
+Reduction reduction_of(OfReduction x) { return static_cast<Reduction>(static_cast<int>(x) - 1); }
+
+ClaimSpec claim_of(const ClaimTable& table, const TomlNode& node) {
+  ClaimSpec claim;
+  require_line(table.text, "a claim", place_of(node, "text"));
+  claim.text = table.text;
+  claim.metric = table.metric;
+  claim.variant = table.variant.value_or("");
+  claim.of = table.of;
+  claim.value = table.value;
+  claim.is = table.is;
+  claim.factor = table.factor;
+  claim.offset = table.offset;
+  claim.tolerance = table.tolerance;
+  claim.known_shortfall = table.known_shortfall;
+  claim.reduce = table.reduce;
+  if (table.of_reduce != OfReduction::same) claim.of_reduce = reduction_of(table.of_reduce);
+  claim.cases = table.cases;
+  claim.over = table.over;
+  claim.null = table.null;
+  read_at(node.find("at"), claim.at_parameter, &claim.at_key);
+  return claim;
+}
+
+void require_sides(const ClaimSpec& claim, const TomlNode& node) {
+  if (claim.of.has_value() == claim.value.has_value()) {
+    throw Error(claim.of ? "has both `of` and `value`" : "is compared with nothing",
+                node.place + ": claim", "either `of`, a variant, or `value`, a number");
+  }
+  const bool study = claim.metric.starts_with("study:");
+  if (study && (!claim.variant.empty() || claim.of || claim.at_parameter || !claim.cases.empty())) {
+    throw Error("a study has one value for the whole experiment", place_of(node, "metric"),
+                "metric, is, value, factor, offset, tolerance");
+  }
+  if (!study && claim.variant.empty()) {
+    throw Error("is missing", place_of(node, "variant"), "the variant whose value is judged");
+  }
+  const bool reduces = node.find("reduce") != nullptr || claim.of_reduce;
+  if (claim.at_parameter && reduces) {
+    throw Error("`at` picks one frame, `reduce` and `of_reduce` take all", node.place + ": claim",
+                "one of the two");
+  }
+  if (claim.of_reduce && !claim.of) {
+    throw Error("reduces the frames of no variant", place_of(node, "of_reduce"),
+                "with `of`, which may be the variant itself");
+  }
+  if (claim.of_reduce && claim.reduce == Reduction::every) {
+    throw Error("`every` compares frame by frame", place_of(node, "of_reduce"),
+                "another `reduce`, or no `of_reduce`");
+  }
+}
+
+/// `reference_metric` is what the claim measures, if that compares with a reference; else null.
+void require_null(const ClaimSpec& claim, const std::string& variant,
+                  const MetricEntry* reference_metric, const KnownNames& names,
+                  const TomlNode& node) {
+  const std::string place = place_of(node, "null"), &null = *claim.null;
+  if (null == variant) {
+    throw Error("is the variant itself", place, "another variant, one that must fail the claim");
+  }
+  const auto reference_of = [&](const std::string& name) {
+    const auto found = names.references.find(name);
+    return found == names.references.end() ? std::string() : found->second;
+  };
+  if (reference_metric != nullptr && reference_of(null) != reference_of(variant)) {
+    throw Error("'" + reference_metric->name + "' of '" + null + "' is not measured against '" +
+                    reference_of(variant) + "'",
+                place, "a null with the reference of '" + variant + "'");
+  }
+  const bool strict = claim.is == Comparison::less || claim.is == Comparison::greater;
+  if (null_is_yardstick(claim) && !strict) {
+    throw Error("would pass: it is what '" + variant + "' is compared with", place_of(node, "is"),
+                "\"<\" or \">\", a factor, or another null");
+  }
+}
+
+void complete(ClaimSpec& claim, const Topic& topic, const KnownNames& names,
+              const std::map<std::string, Tolerance>& tolerances,
+              const std::vector<StudySpec>& studies, const TomlNode& node) {
+  const StudySpec* study = study_of(claim, studies);
+  const std::string& quantity = study != nullptr ? study->quantity : claim.metric;
+  const MetricEntry* metric = find_metric(topic, quantity);
+  if (quantity.starts_with("timing:")) claim.exempt = Exemption::timing;
+  if (metric != nullptr && metric->oracle) claim.exempt = Exemption::oracle;
+  // The slope or the spread of a metric has another unit than it has.
+  if (metric != nullptr && study == nullptr) {
+    const auto own = tolerances.find(metric->name);
+    claim.metric_tolerance = own == tolerances.end() ? metric->tolerance : own->second;
+  }
+  // Without a null that --variant left out the claim is decided, and nothing is said of its worth.
+  if (claim.null && !runs(*claim.null, names, place_of(node, "null"))) claim.null.reset();
+  if (!claim.null) return;
+  const bool compares = metric != nullptr && group_of(topic, *metric).needs_reference;
+  require_null(claim, study != nullptr ? study->variant : claim.variant,
+               compares ? metric : nullptr, names, node);
+}
+
+void require_own_text(const ClaimSpec& claim, const std::vector<ClaimSpec>& before,
+                      const TomlNode& node) {
+  const auto same = [&](const ClaimSpec& other) { return other.text == claim.text; };
+  if (std::none_of(before.begin(), before.end(), same)) return;
+  throw Error("two claims say '" + claim.text + "'", place_of(node, "text"), "texts of their own");
+}
+
+}  // namespace
+
+std::vector<ClaimSpec> read_claims(const TomlNode& root, const Topic& topic,
+                                   const KnownNames& names,
+                                   const std::map<std::string, Tolerance>& tolerances,
+                                   const std::vector<StudySpec>& decided_studies) {
+  std::vector<ClaimSpec> claims;
+  for (const TomlNode& node : tables_of(root, "claim")) {
+    TomlNode plain = node;
+    plain.erase("at");
+    ClaimTable table;
+    read_options(plain, "claim", table);
+    ClaimSpec claim = claim_of(table, node);
+    require_sides(claim, node);
+    require_own_text(claim, claims, node);
+    Names studies = names.studies;
+    bool decidable = true;
+    if (claim.metric.starts_with("study:") && !contains(studies, claim.metric.substr(6))) {
+      // A study about a variant that --variant left out is no mistake of the file.
+      for (const TomlNode& study : tables_of(root, "study")) {
+        const TomlNode* name = study.find("name");
+        if (name != nullptr && name->text == claim.metric.substr(6)) decidable = false;
+      }
+    }
+    if (decidable) require_metric(claim.metric, topic, place_of(node, "metric"), studies);
+    require_cases(claim.cases, names, node);
+    if (!claim.variant.empty()) {
+      decidable = runs(claim.variant, names, place_of(node, "variant")) && decidable;
+    }
+    if (claim.of) decidable = runs(*claim.of, names, place_of(node, "of")) && decidable;
+    if (!decidable) continue;
+    complete(claim, topic, names, tolerances, decided_studies, node);
+    claims.push_back(std::move(claim));
+  }
+  return claims;
+}
+
+std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
+                                    const KnownNames& names) {
+  std::vector<StudySpec> studies;
+  Names seen;
+  for (const TomlNode& node : tables_of(root, "study")) {
+    StudyTable table;
+    read_options(node, "study", table);
+    require_text_name(table.name, "a study", place_of(node, "name"));
+    if (contains(seen, table.name)) {
+      throw Error("two studies are called '" + table.name + "'", place_of(node, "name"),
+                  "names of their own");
+    }
+    seen.push_back(table.name);
+    require_cases(table.cases, names, node);
+    if (table.quantity.starts_with("study:")) {
+      throw Error("a study of a study", place_of(node, "quantity"), "a metric");
+    }
+    require_metric(table.quantity, topic, place_of(node, "quantity"), {});
+    if (table.reduce == Reduction::every) {
+      throw Error("a study needs one value a case", place_of(node, "reduce"),
+                  "max, min, median, p95, p99, mean, sum, last");
+    }
+    const bool slope = table.kind == StudyKind::exponent || table.kind == StudyKind::order;
+    if (slope && !table.against) {
+      throw Error("is missing", place_of(node, "against"),
+                  "a fact of the scene or a swept key, the x of the slope");
+    }
+    const bool compares = table.kind == StudyKind::within_spread;
+    if (compares != table.of.has_value()) {
+      throw Error(compares ? "is missing" : "has no meaning for this kind", place_of(node, "of"),
+                  "the variant whose spread is the yardstick, for kind = \"within-spread\"");
+    }
+    bool decidable = runs(table.variant, names, place_of(node, "variant"));
+    if (table.of) decidable = runs(*table.of, names, place_of(node, "of")) && decidable;
+    if (!decidable) continue;
+    studies.push_back({table.name, table.kind, table.variant, table.quantity,
+                       table.against.value_or(""), table.reduce, table.cases, table.finer,
+                       table.of.value_or("")});
+  }
+  return studies;
+}
+
+std::map<std::string, Tolerance> read_tolerances(const TomlNode& root, const Topic& topic) {
+  std::map<std::string, Tolerance> tolerances;
+  const TomlNode* table = root.find("tolerance");
+  if (table == nullptr) return tolerances;
+  Names names = metric_names(topic);
+  for (const TomlNode& study : tables_of(root, "study")) {
+    if (const TomlNode* name = study.find("name")) names.push_back("study:" + name->text);
+  }
+  for (std::size_t i = 0; i < table->keys.size(); ++i) {
+    const std::string& metric = table->keys[i];
+    const TomlNode& node = table->items[i];
+    if (!contains(names, metric)) {
+      throw Error("unknown metric '" + metric + "'", node.place + ": tolerance",
+                  allowed_names(metric, names));
+    }
+    ToleranceTable read;
+    read_options(node, "tolerance." + metric, read);
+    tolerances[metric] = {read.absolute, read.relative};
+  }
+  return tolerances;
+}
+
+/// Most frames of a figure, each a row or a column of panels.
+constexpr double kMostFigureFrames = 100;
+
+FigureView read_figure_view(const TomlNode& root, const Topic& topic) {
+  FigureViewTable table(topic.view);
+  FigureView& view = table.view;
+  if (const TomlNode* node = root.find("figure_view")) {
+    for (const char* key : {"target", "direction", "up", "height_m"}) {
+      if (node->find(key) != nullptr) view.camera_is_free = false;
+    }
+    // The topic's classes are those of its own array.
+    if (node->find("color_by") != nullptr) view.classes.clear();
+    TomlNode plain = *node;
+    plain.erase("at");
+    read_options(plain, "figure_view", table);
+    read_at(node->find("at"), view.at_parameter, nullptr);
+    if (!table.target.empty() && table.target.size() != 3) {
+      throw Error("has " + std::to_string(table.target.size()) + " elements",
+                  place_of(*node, "target"), "an array of 3 numbers");
+    }
+    require_count(static_cast<double>(view.parameters.size()), "frames of a figure",
+                  kMostFigureFrames, place_of(*node, "parameters"));
+    if (view.color_by && view.color_by->empty()) view.color_by.reset();
+    if (!view.classes.empty() && !view.color_by) {
+      throw Error("names the values of no array", place_of(*node, "classes"), "with `color_by`");
+    }
+    for (const std::string& name : view.pattern) {
+      if (contains(view.overlays, name)) continue;
+      throw Error("'" + name + "' is not drawn over the sheet", place_of(*node, "pattern"),
+                  allowed_names(name, view.overlays));
+    }
+    if (view.expected && (view.pattern.empty() || view.expected->points.size() < 2)) {
+      throw Error("is no curve in a pattern", place_of(*node, "expected"),
+                  "at least two points, with `pattern`");
+    }
+  }
+  view.target.reset();
+  if (table.target.size() == 3) view.target = {table.target[0], table.target[1], table.target[2]};
+  return view;
+}
+
+}  // namespace geoprior

@@ -1,0 +1,394 @@
+#include "testbed/runner/spec/spec.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/error.h"
+#include "testbed/runner/journal/sha256.h"
+#include "testbed/runner/names.h"
+#include "testbed/runner/options/json.h"
+#include "testbed/runner/options/toml.h"
+#include "testbed/runner/process/build_info.h"
+#include "testbed/runner/spec/claims.h"
+#include "testbed/runner/spec/json.h"
+#include "testbed/runner/spec/overrides.h"
+#include "testbed/runner/spec/resolve.h"
+#include "testbed/runner/spec/sweeps.h"
+#include "testbed/runner/spec/tables.h"
+#include "testbed/runner/spec/view_times.h"
+#include "testbed/streams.h"
+
+namespace geoprior {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+const Topic& topic_named(const std::vector<Topic>& topics, const std::string& name,
+                         const TomlNode& root) {
+  std::vector<std::string> names;
+  for (const Topic& topic : topics) {
+    if (topic.name == name) return topic;
+    names.push_back(topic.name);
+  }
+  const TomlNode* node = root.find("topic");
+  throw Error("unknown topic '" + name + "'",
+              (node != nullptr ? node->place : root.place) + ": topic", allowed_names(name, names));
+}
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// experiments/<folder>/<stem>.toml is <folder>/<stem>; any other file is <topic>/<stem>.
+std::string id_of(const std::filesystem::path& file, const std::string& topic) {
+  const std::filesystem::path whole = std::filesystem::absolute(file).lexically_normal();
+  const std::filesystem::path folder = whole.parent_path();
+  const bool placed = folder.parent_path().filename() == "experiments";
+  return name_from(placed ? folder.filename().string() : topic) + "/" +
+         name_from(whole.stem().string());
+}
+
+std::string read_id(const TomlNode& root, const HeaderTable& header,
+                    const std::filesystem::path& file) {
+  if (!header.id) return id_of(file, header.topic);
+  require_experiment_id(*header.id, place_of(root, "id"));
+  return *header.id;
+}
+
+template <class Table>
+Json table_json(Table table) {
+  OptionJsonWriter writer;
+  describe(writer, table);
+  return writer.json();
+}
+
+/// Sweeps with the values they were expanded with; names belong to the values of full runs, and to
+/// quick ones that stand in for them one for one.
+Json sweep_tables(const TomlNode& root, bool quick) {
+  Json list = Json::array();
+  for (const TomlNode& node : tables_of(root, "sweep")) {
+    TomlNode kept = node;
+    if (const TomlNode* reduced = node.find("quick_values"); reduced != nullptr && quick) {
+      if (reduced->items.empty()) continue;
+      const TomlNode values = *reduced;
+      const bool one_for_one = values.items.size() == node.find("values")->items.size();
+      kept.set("values", values);
+      if (!one_for_one) kept.erase("names");
+    }
+    kept.erase("quick_values");
+    list.push_back(json_of(kept));
+  }
+  return list;
+}
+
+/// Takes cases that are not made out of the table's `cases`; false when that leaves none.
+bool keep_cases(Json& table, const std::vector<CaseSpec>& cases) {
+  if (!table.contains("cases")) return true;
+  Json kept = Json::array();
+  for (const Json& name : table["cases"]) {
+    const bool made = std::any_of(cases.begin(), cases.end(),
+                                  [&](const CaseSpec& one) { return name == one.name; });
+    if (made) kept.push_back(name);
+  }
+  table["cases"] = kept;
+  return !kept.empty();
+}
+
+Json resolved_json(const TomlNode& root, const Experiment& experiment, const HeaderTable& header,
+                   const CaseSpec& base, const KnownNames& names) {
+  Json json = table_json(header);
+  json["id"] = experiment.id;
+  json["size"] = experiment.quick ? "quick" : "full";
+  json["scene"] = Json::parse(base.scene_json);
+  json["timing"] = {{"repetitions", experiment.timing_repetitions}};
+  if (experiment.timing_warm_up) json["timing"]["warm_up"] = *experiment.timing_warm_up;
+  for (const auto& [metric, tolerance] : experiment.tolerances) {
+    json["tolerance"][metric] = {{"absolute", tolerance.absolute},
+                                 {"relative", tolerance.relative}};
+  }
+  json["variant"] = Json::array();
+  for (const VariantSpec& variant : base.variants) {
+    Json v{{"name", variant.name}, {"method", variant.method}, {"role", variant.role}};
+    if (variant.reference) v["reference"] = *variant.reference;
+    v["options"] = Json::parse(variant.options_json);
+    json["variant"].push_back(v);
+  }
+  json["sweep"] = sweep_tables(root, experiment.quick);
+  for (const char* key : {"claim", "study"}) {
+    Json kept = Json::array();
+    for (const TomlNode& node : tables_of(root, key)) {
+      Json table = json_of(node);
+      const auto left_out = [&](const char* member) {
+        return table.contains(member) && has(names.dropped, table[member].get<std::string>());
+      };
+      const std::string metric = table.value("metric", "");
+      const bool no_study = metric.starts_with("study:") && !has(names.studies, metric.substr(6));
+      const bool no_case = !keep_cases(table, experiment.cases);
+      if (left_out("null")) table.erase("null");
+      if (!left_out("variant") && !left_out("of") && !no_study && !no_case) kept.push_back(table);
+    }
+    json[key] = kept;
+  }
+  for (const char* key : {"sweep", "claim", "study"}) {
+    if (json[key].empty()) json.erase(key);
+  }
+  return json;
+}
+
+std::string spec_hash(const std::string& text) {
+  const BuildInfo& build = build_info();
+  return sha256(text + "\nversion " + build.version + "\ncommit " + build.git_commit +
+                "\ndifference " + build.git_difference + "\n");
+}
+
+/// Takes texts out of a list of a table; a list of which nothing is left goes, too.
+template <class Left>
+void leave_out(TomlNode& table, const std::string& key, Left is_left_out) {
+  TomlNode* list = table.find(key);
+  if (list == nullptr || list->items.empty()) return;
+  std::erase_if(list->items, [&](const TomlNode& name) { return is_left_out(name.text); });
+  if (list->items.empty()) table.erase(key);
+}
+
+/// @param written  the file with all of its sweeps: what is claimed of cases that --set or the
+/// quick
+///                 version leave out is no mistake of the file
+KnownNames known_names(const TomlNode& root, const TomlNode& written,
+                       const std::vector<std::string>& selected, bool quick) {
+  KnownNames names;
+  for (const TomlNode& node : tables_of(root, "variant")) {
+    const std::string& name = node.find("name")->text;
+    const bool runs = selected.empty() || has(selected, name);
+    (runs ? names.variants : names.dropped).push_back(name);
+    if (const TomlNode* to = node.find("reference")) names.references[name] = to->text;
+  }
+  for (const SweptCase& swept : expand_sweeps(written, quick)) names.cases.push_back(swept.name);
+  if (!quick) return names;
+  const std::set<std::string> known(names.cases.begin(), names.cases.end());
+  for (const SweptCase& swept : expand_sweeps(written, false)) {
+    if (!known.contains(swept.name)) names.cases.push_back(swept.name);
+  }
+  return names;
+}
+
+/// Quick runs decide no claim about a variant that they leave out: the file says so of both.
+void require_claimed_variants(const TomlNode& root, const std::vector<std::string>& dropped) {
+  const auto require = [&](const TomlNode& table, const TomlNode& claim) {
+    for (const char* member : {"variant", "of", "null"}) {
+      const TomlNode* name = table.find(member);
+      if (name == nullptr || !has(dropped, name->text)) continue;
+      throw Error("quick runs leave variant '" + name->text + "' out", place_of(table, member),
+                  "`quick = false` of the claim at " + claim.place + ", too");
+    }
+  };
+  for (const TomlNode& claim : tables_of(root, "claim")) {
+    require(claim, claim);
+    const TomlNode* metric = claim.find("metric");
+    for (const TomlNode& study : tables_of(root, "study")) {
+      const TomlNode* name = study.find("name");
+      const bool read =
+          metric != nullptr && name != nullptr && metric->text == "study:" + name->text;
+      if (read) require(study, claim);
+    }
+  }
+}
+
+bool is_grid(const TomlNode& sweep) {
+  const TomlNode* grid = sweep.find("grid");
+  return grid != nullptr && grid->boolean;
+}
+
+/// Takes dropped variants out of the sweeps, and sweeps that are about dropped ones alone: they
+/// would only repeat the base case. A grid runs the variants of all of its sweeps.
+void drop_sweeps(TomlNode& root, const std::vector<std::string>& dropped) {
+  TomlNode* sweeps = root.find("sweep");
+  if (sweeps == nullptr) return;
+  const auto runs_dropped_alone = [&](const TomlNode& sweep) {
+    const TomlNode* names = sweep.find("variants");
+    return names != nullptr && !names->items.empty() &&
+           std::all_of(names->items.begin(), names->items.end(),
+                       [&](const TomlNode& name) { return has(dropped, name.text); });
+  };
+  const bool grid_goes = std::all_of(
+      sweeps->items.begin(), sweeps->items.end(),
+      [&](const TomlNode& sweep) { return !is_grid(sweep) || runs_dropped_alone(sweep); });
+  std::erase_if(sweeps->items, [&](const TomlNode& sweep) {
+    const TomlNode* key = sweep.find("key");
+    const bool of_dropped =
+        key != nullptr && std::any_of(dropped.begin(), dropped.end(), [&](const auto& name) {
+          return key->text.starts_with("variant." + name + ".");
+        });
+    return of_dropped || (is_grid(sweep) ? grid_goes : runs_dropped_alone(sweep));
+  });
+  for (TomlNode& sweep : sweeps->items) {
+    leave_out(sweep, "variants", [&](const std::string& name) { return has(dropped, name); });
+  }
+}
+
+/// The figure shows what this run makes of what the file asks for.
+void leave_out_of_view(TomlNode& root, const KnownNames& names,
+                       const std::vector<CaseSpec>& cases) {
+  TomlNode* view = root.find("figure_view");
+  if (view == nullptr) return;
+  const auto is_dropped = [&](const std::string& name) { return has(names.dropped, name); };
+  leave_out(*view, "variants", is_dropped);
+  for (const char* row : {"above", "below"}) {
+    if (TomlNode* further = view->find(row)) leave_out(*further, "variants", is_dropped);
+  }
+  leave_out(*view, "cases", [&](const std::string& name) {
+    return has(names.cases, name) &&
+           std::none_of(cases.begin(), cases.end(),
+                        [&](const CaseSpec& made) { return made.name == name; });
+  });
+}
+
+/// Forgets cases that `drop_sweeps` took away or that only the full version has; what was only
+/// about them goes too.
+template <class Specs>
+void drop_cases(Specs& specs, const std::vector<CaseSpec>& cases) {
+  std::erase_if(specs, [&](auto& spec) {
+    if (spec.cases.empty()) return false;
+    std::erase_if(spec.cases, [&](const std::string& name) {
+      return std::none_of(cases.begin(), cases.end(),
+                          [&](const CaseSpec& made) { return made.name == name; });
+    });
+    return spec.cases.empty();
+  });
+}
+
+void read_timing(const TomlNode& root, Experiment& experiment) {
+  TimingTable timing;
+  if (const TomlNode* table = root.find("timing")) read_options(*table, "timing", timing);
+  experiment.timing_repetitions = timing.repetitions;
+  experiment.timing_warm_up = timing.warm_up;
+}
+
+/// What bifurcates is compared over its seeds: there must be some.
+void read_check(const TomlNode& root, const Topic& topic, Experiment& experiment) {
+  const TomlNode* node = root.find("check");
+  if (node == nullptr) return;
+  CheckTable table;
+  read_options(*node, "check", table);
+  experiment.bifurcates = table.bifurcates;
+  experiment.checked_metrics = table.metrics;
+  for (const std::string& metric : table.metrics) {
+    const MetricEntry* row = find_metric(topic, metric);
+    if (row == nullptr) {
+      throw Error("unknown metric '" + metric + "'", place_of(*node, "metrics"),
+                  allowed_names(metric, metric_names(topic)));
+    }
+    if (!row->gated()) {
+      throw Error("metric '" + metric + "' is not checked: " + row->ungated,
+                  place_of(*node, "metrics"), "rows that are not `ungated`");
+    }
+  }
+  const bool sweeps_seed =
+      std::all_of(experiment.cases.begin(), experiment.cases.end(),
+                  [](const CaseSpec& one) { return one.swept.contains("seed"); });
+  if (experiment.bifurcates && !sweeps_seed) {
+    throw Error("there are no seeds to take the median over", place_of(*node, "bifurcates"),
+                "with a [[sweep]] over `seed`, base = false");
+  }
+}
+
+}  // namespace
+
+const StudySpec* study_of(const ClaimSpec& claim, const std::vector<StudySpec>& studies) {
+  const auto found = std::find_if(studies.begin(), studies.end(), [&](const StudySpec& study) {
+    return "study:" + study.name == claim.metric;
+  });
+  return found == studies.end() ? nullptr : &*found;
+}
+
+bool null_is_yardstick(const ClaimSpec& claim) {
+  return claim.null && claim.of == claim.null && claim.factor == 1 && claim.offset == 0 &&
+         !claim.of_reduce;
+}
+
+const Topic& topic_of(const Experiment& experiment, const std::vector<Topic>& topics) {
+  for (const Topic& topic : topics) {
+    if (topic.name == experiment.topic) return topic;
+  }
+  throw Error("unknown topic '" + experiment.topic + "'", experiment.file.string());
+}
+
+FigureView figure_view_of(const std::string& resolved_toml, const std::string& source,
+                          const std::vector<Topic>& topics) {
+  const TomlNode root = parse_toml_text(resolved_toml, source);
+  const TomlNode* topic = root.find("topic");
+  return read_figure_view(
+      root, topic_named(topics, topic != nullptr ? topic->text : std::string(), root));
+}
+
+namespace {
+
+Experiment load_parsed(const TomlNode& written, const std::filesystem::path& file,
+                       const std::vector<Topic>& topics, const LoadRequest& request) {
+  require_known_tables(written);
+  TomlNode root = written;
+  Experiment experiment;
+  experiment.file = file;
+  const std::vector<std::string> selected = select_variants(root, request.variants, request.quick);
+  apply_quick(root, request.quick);
+  apply_sets(root, request.sets);
+  if (request.threads) {
+    set_experiment_key(root, "threads",
+                       parse_toml_value(std::to_string(*request.threads), "--threads"));
+  }
+  const HeaderTable header = read_header(root);
+  experiment.id = read_id(root, header, file);
+  require_line(header.title, "the title", place_of(root, "title"));
+  experiment.title = header.title;
+  experiment.figure = header.figure;
+  experiment.topic = header.topic;
+  experiment.quick = request.quick || header.size == RunSize::quick;
+  const Topic& topic = topic_named(topics, header.topic, root);
+
+  KnownNames names = known_names(root, written, selected, experiment.quick);
+  if (request.variants.empty()) require_claimed_variants(root, names.dropped);
+  drop_sweeps(root, names.dropped);
+  TomlNode plain = root;
+  plain.erase("sweep");
+  for (const SweptCase& swept : expand_sweeps(root, experiment.quick)) {
+    CaseSpec made = resolve_case(swept, plain, topic, selected);
+    if (!made.variants.empty()) experiment.cases.push_back(std::move(made));
+  }
+  read_timing(root, experiment);
+  experiment.studies = read_studies(root, topic, names);
+  drop_cases(experiment.studies, experiment.cases);
+  for (const StudySpec& study : experiment.studies) names.studies.push_back(study.name);
+  experiment.tolerances = read_tolerances(root, topic);
+  experiment.claims = read_claims(root, topic, names, experiment.tolerances, experiment.studies);
+  drop_cases(experiment.claims, experiment.cases);
+  read_check(root, topic, experiment);
+  leave_out_of_view(root, names, experiment.cases);
+  (void)read_figure_view(root, topic);  // its own mistakes come before frames that are not there
+  settle_view_times(written, root, topic, experiment.quick);
+  experiment.view = read_figure_view(root, topic);
+
+  Json resolved = resolved_json(root, experiment, header,
+                                resolve_case(SweptCase{}, plain, topic, selected), names);
+  experiment.hash = spec_hash(toml_text(resolved));
+  for (const char* key : {"figure_view", "check"}) {
+    if (const TomlNode* table = root.find(key)) resolved[key] = json_of(*table);
+  }
+  experiment.resolved_toml = toml_text(resolved);
+  return experiment;
+}
+
+}  // namespace
+
+Experiment load_experiment(const std::filesystem::path& file, const std::vector<Topic>& topics,
+                           const LoadRequest& request) {
+  return load_parsed(parse_toml_file(file), file, topics, request);
+}
+
+Experiment load_recorded_experiment(const std::string& resolved_toml, const std::string& source,
+                                    const std::filesystem::path& file,
+                                    const std::vector<Topic>& topics) {
+  return load_parsed(parse_toml_text(resolved_toml, source), file, topics, {});
+}
+
+}  // namespace geoprior

@@ -1,0 +1,168 @@
+// What a [scene] table of the topic describes, and whole runs on it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "experiments/details/scene/scene.h"
+#include "experiments/details/topic.h"
+#include "testbed/formats/vtk/files.h"
+#include "testbed/view/mesh_text.h"
+#include "tests/testbed/run_fixture.h"
+
+namespace geoprior::details {
+namespace {
+
+using namespace test;
+
+using ::testing::HasSubstr;
+
+namespace fs = std::filesystem;
+
+class DetailsScenes : public RunTest {
+ protected:
+  /// @param only  method; empty: all
+  [[nodiscard]] Experiment experiment(const std::string& scene_lines, const std::string& only,
+                                      std::optional<int> threads = {}) const {
+    std::string text = "title = \"A scene\"\ntopic = \"details\"\n[scene]\n" + scene_lines;
+    for (const MethodEntry& method : methods())
+      if (only.empty() || method.name == only)
+        text += "\n[[variant]]\nname = \"" + method.name + "\"\nmethod = \"" + method.name + "\"\n";
+    LoadRequest request;
+    request.threads = threads;
+    return load_experiment(write_experiment("details/scene", text), {make_topic()}, request);
+  }
+  [[nodiscard]] std::shared_ptr<DetailsScene> scene(const std::string& scene_lines,
+                                                    std::uint64_t seed = 1) const {
+    const auto loaded = make_topic().load(*experiment(scene_lines, "").cases[0].scene,
+                                          folder() / "experiments" / "details", seed);
+    return std::dynamic_pointer_cast<DetailsScene>(loaded);
+  }
+  [[nodiscard]] ExecuteResult run(const std::string& scene_lines, const std::string& only,
+                                  const std::string& out, std::optional<int> threads = {}) const {
+    ExecuteRequest request;
+    request.out = folder() / out;
+    request.timing = false;
+    request.only_declared = true;
+    return execute(experiment(scene_lines, only, threads), {make_topic()}, request);
+  }
+};
+
+const std::string kSmall =
+    "surface = { kind = \"blob\", radius = 0.5, edge = 0.12 }\n"
+    "pattern = { count = 60, types = 2 }\npair_frames = 1\n"
+    "motion = { frames = 6, deform = [{ kind = \"inflate\", keys = [{ t = 0, value = 1 }, { t = 1, "
+    "value = 1.3 }] }] }\n";
+
+std::vector<Eigen::Vector3d> places_of(const DetailsScene& scene,
+                                       const std::vector<Detail>& details) {
+  std::vector<Eigen::Vector3d> places;
+  for (const Detail& d : details)
+    places.push_back(position_of(d.at, scene.input.surface.V, scene.input.surface.F));
+  return places;
+}
+
+TEST_F(DetailsScenes, SeedOfTheExperimentReachesThePattern) {
+  for (const std::string kind : {"poisson-disk", "uniform", "grid", "clusters"}) {
+    const std::string lines = "pattern = { kind = \"" + kind + "\", count = 60 }\n";
+    const auto one = scene(lines, 1), again = scene(lines, 1), two = scene(lines, 2);
+    const auto places = places_of(*one, one->input.details);
+    EXPECT_EQ(places, places_of(*again, again->input.details)) << kind;
+    EXPECT_NE(places, places_of(*two, two->input.details)) << kind;
+    for (std::size_t i = 0; i < one->resamples.size(); ++i) {
+      EXPECT_NE(places, places_of(*one, one->resamples[i])) << kind;
+      EXPECT_NE(places_of(*one, one->resamples[i]), places_of(*two, two->resamples[i])) << kind;
+    }
+  }
+}
+
+TEST_F(DetailsScenes, DefaultsToThousandDetailsOnASquareMetre) {
+  const auto s = scene("");
+  EXPECT_EQ(s->input.details.size(), 1000U);
+  EXPECT_NEAR(triangle_areas(s->input.surface.V, s->input.surface.F).sum(), 1, 1e-12);
+  EXPECT_EQ(s->input.motion->frame_count(), 241);
+  EXPECT_EQ(s->resamples.size(), 3U);
+  EXPECT_NE(s->resamples[0][0].at.barycentric, s->input.details[0].at.barycentric);
+}
+
+TEST_F(DetailsScenes, ReadSurfacesInTheirUnitAndTurnThem) {
+  Part part;
+  part.points.resize(4, 3);
+  part.points << 0, 0, 0, 100, 0, 0, 100, 100, 0, 0, 100, 0;
+  part.triangles.resize(2, 3);
+  part.triangles << 0, 1, 2, 0, 2, 3;
+  fs::create_directories(folder() / "experiments" / "details");
+  std::ofstream(folder() / "experiments" / "details" / "cm.obj") << part_to_obj(part, "");
+  const auto s = scene(
+      "surface = { kind = \"file\", file = \"cm.obj\", scale = 0.01, turn_deg = [90, 0, 0] }\n"
+      "pattern = { kind = \"uniform\", count = 10 }\n");
+  EXPECT_NEAR((s->input.surface.V.row(2) - Eigen::RowVector3d(1, 0, 1)).norm(), 0, 1e-12);
+  ASSERT_EQ(s->inputs().size(), 1U);
+  EXPECT_EQ(s->inputs()[0].filename(), "cm.obj");
+}
+
+TEST_F(DetailsScenes, TakeTheirDensityFromAnArrayOfTheSurface) {
+  Part part;
+  part.points.resize(6, 3);
+  part.points << 0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0;
+  part.triangles.resize(4, 3);
+  part.triangles << 0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4;
+  Eigen::VectorXd density(6);
+  density << 1, 0, 0, 1, 0, 0;
+  part.arrays.push_back({"rho", "1", NamedArray::On::points, density});
+  fs::create_directories(folder() / "experiments" / "details");
+  std::ofstream(folder() / "experiments" / "details" / "s.vtp", std::ios::binary)
+      << part_to_vtk_xml(part, 0);
+  const auto s = scene(
+      "surface = { kind = \"file\", file = \"s.vtp\" }\npattern = { kind = \"uniform\", count = "
+      "200, density = { kind = \"array\", array = \"rho\" } }\n");
+  for (const Detail& d : s->input.details)
+    EXPECT_LE(position_of(d.at, s->input.surface.V, s->input.surface.F).x(), 1 + 1e-12);
+}
+
+TEST_F(DetailsScenes, WarnOfAPatternThatDoesNotFit) {
+  const auto warnings = scene("pattern = { count = 200, radius = 0.95 }\n")->warnings();
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0], HasSubstr("details of 200 found a place"));
+}
+
+TEST_F(DetailsScenes, RunWithEveryMethodAndAreTheSameForAnyNumberOfThreads) {
+  const ExecuteResult one = run(kSmall, "", "one", 1);
+  for (const VariantRecord& v : one.record.cases.front().variants) {
+    EXPECT_EQ(v.status, "done") << v.name << ": " << v.error;
+    EXPECT_EQ(v.frames.size(), 7U) << v.name;
+    for (const char* metric : {"mean_edge_change", "visible_edge_change", "density_ratio"})
+      EXPECT_EQ(v.metrics.at(metric).values.size(), 7U) << v.name;
+    for (const char* metric : {"worst_edge_change", "popping", "weight_step", "churn"})
+      EXPECT_TRUE(v.summary.contains(metric)) << v.name << ", " << metric;
+  }
+  const ExecuteResult two = run(kSmall, "", "two", 2);
+  EXPECT_EQ(one.record.content_sha256, two.record.content_sha256);
+}
+
+// Frames 0, 3 and 6 of six; spikes stand on the surface, holes leave less of it.
+TEST_F(DetailsScenes, AreDrawnInTheFramesAskedFor) {
+  for (const std::string kind : {"spike", "mesh", "hole"}) {
+    const std::string drawing =
+        "drawing = { frames = 2, look = { kind = \"" + kind + "\", radius = 0.25 } }\n";
+    const ExecuteResult result = run(kSmall + drawing, "self-replicating", kind);
+    const VariantRecord& v = result.record.cases.front().variants.front();
+    for (std::size_t i = 0; i < v.frames.size(); ++i) {
+      const fs::path file = result.folder / "frames" / "default" / v.name /
+                            ("drawn_000" + std::to_string(i) + ".vtp");
+      EXPECT_EQ(fs::exists(file), i % 3 == 0) << file;
+    }
+    const fs::path frames = result.folder / "frames" / "default" / v.name;
+    const Part drawn = read_vtk_part(frames / "drawn_0006.vtp");
+    const Part surface = read_vtk_part(frames / "surface_0006.vtp");
+    const double more = triangle_areas(drawn.points, drawn.triangles).sum() -
+                        triangle_areas(surface.points, surface.triangles).sum();
+    EXPECT_EQ(more < 0, kind == "hole") << kind;
+    ASSERT_EQ(drawn.arrays.size(), 1U);
+    EXPECT_EQ(drawn.arrays[0].name, "kind");
+    EXPECT_EQ(drawn.arrays[0].values.maxCoeff(), kind == "hole" ? 0 : 2) << "born by now";
+  }
+}
+
+}  // namespace
+}  // namespace geoprior::details

@@ -1,0 +1,42 @@
+#include "metrics/contact/pose_return.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+Pose turned(double angle) {
+  Pose pose = rest_pose(2);
+  pose[1].rotate(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX()));
+  return pose;
+}
+
+const Eigen::MatrixX3d kAt = Eigen::MatrixX3d::Zero(3, 3);
+
+TEST(PoseReturn, IsTheLargestDistanceOverTheRadius) {
+  Eigen::MatrixX3d off = kAt;
+  off(0, 1) = 0.02;  // a fifth of its radius
+  off(1, 2) = 0.03;  // a tenth
+  off(2, 0) = 9;     // without a radius
+  const Eigen::Vector3d radius(0.1, 0.3, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_NEAR(pose_return({kAt, 5 * off, off}, {turned(0), turned(0.5), turned(0)}, radius).value(),
+              0.2, 1e-12);
+  EXPECT_EQ(pose_return({kAt, off, kAt}, {turned(0), turned(0.5), turned(0)}, radius), 0);
+}
+
+TEST(PoseReturn, IsAbsentWhenNoPoseComesTwice) {
+  const Eigen::Vector3d radius = Eigen::Vector3d::Ones();
+  EXPECT_FALSE(pose_return({kAt, kAt}, {turned(0), turned(1e-6)}, radius).has_value());
+  EXPECT_FALSE(pose_return({}, {}, radius).has_value());
+}
+
+TEST(PoseReturn, NeedsAPoseAFrame) {
+  EXPECT_THROW((void)pose_return({kAt}, {}, Eigen::Vector3d::Ones()), Error);
+}
+
+}  // namespace
+}  // namespace geoprior

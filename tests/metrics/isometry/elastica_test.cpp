@@ -1,0 +1,85 @@
+#include "metrics/isometry/elastica.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+/// The strip itself: theta'' = -load sin(theta) over arc length 1, theta(0) = `slope`, theta'(0) =
+/// 0 (no moment at a pinned end), by Runge-Kutta; the load makes theta(1/2) = 0.
+struct Strip {
+  double theta = 0, x = 0, y = 0;  ///< at the middle
+};
+Strip half_strip(double slope, double load) {
+  constexpr int kSteps = 2000;
+  const double h = 0.5 / kSteps;
+  Strip s{slope, 0, 0};
+  double curvature = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double t0 = s.theta, c0 = curvature;
+    const double t1 = t0 + h / 2 * c0, c1 = c0 - h / 2 * load * std::sin(t0);
+    const double t2 = t0 + h / 2 * c1, c2 = c0 - h / 2 * load * std::sin(t1);
+    const double t3 = t0 + h * c2, c3 = c0 - h * load * std::sin(t2);
+    const double middle = (t1 + t2) / 2;
+    s.theta += h / 6 * (c0 + 2 * c1 + 2 * c2 + c3);
+    curvature -= h / 6 * load * (std::sin(t0) + 2 * std::sin(t1) + 2 * std::sin(t2) + std::sin(t3));
+    s.x += h / 6 * (std::cos(t0) + 4 * std::cos(middle) + std::cos(s.theta));
+    s.y += h / 6 * (std::sin(t0) + 4 * std::sin(middle) + std::sin(s.theta));
+  }
+  return s;
+}
+
+TEST(Elastica, AgreesWithTheStripsDifferentialEquation) {
+  for (const double slope : {0.3, 1.0, 1.5, 2.2}) {
+    double low = 9;  // Euler's load is pi^2
+    double high = 40;
+    for (int i = 0; i < 60; ++i) {
+      const double load = (low + high) / 2;
+      (half_strip(slope, load).theta > 0 ? low : high) = load;
+    }
+    const Strip middle = half_strip(slope, (low + high) / 2);
+    EXPECT_NEAR(elastica_height(1, 2 * middle.x), middle.y, 1e-8) << slope;
+  }
+}
+
+TEST(Elastica, OfASmallShorteningIsASine) {
+  for (const double shortening : {1e-3, 1e-5}) {
+    const double sine = 2 / std::numbers::pi * std::sqrt(shortening);
+    // The next term of the series is 5/8 of the shortening, relative.
+    EXPECT_NEAR(elastica_height(1, 1 - shortening) / sine, 1, shortening);
+  }
+  EXPECT_NEAR(elastica_height(0.2, 0.2), 0, 1e-9);
+}
+
+TEST(Elastica, ScalesWithItsLength) {
+  EXPECT_NEAR(elastica_height(0.3, 0.21), 0.3 * elastica_height(1, 0.7), 1e-14);
+}
+
+TEST(Elastica, RefusesEndsFartherApartThanTheStripIsLong) {
+  EXPECT_THROW(elastica_height(0.2, 0.21), Error);
+  EXPECT_THROW(elastica_height(0.2, -0.01), Error);
+  EXPECT_THROW(elastica_height(0, 0), Error);
+}
+
+TEST(EllipticIntegrals, HaveTheirTabulatedValues) {
+  // Abramowitz and Stegun, table 17.1, m = k^2 = 0.5 and 0.
+  const EllipticIntegrals half = elliptic_integrals(std::sqrt(0.5));
+  EXPECT_NEAR(half.first, 1.854074677301372, 1e-14);
+  EXPECT_NEAR(half.second, 1.350643881047675, 1e-14);
+  EXPECT_NEAR(elliptic_integrals(0).first, std::numbers::pi / 2, 1e-15);
+  EXPECT_NEAR(elliptic_integrals(0).second, std::numbers::pi / 2, 1e-15);
+  // Legendre's relation, E K' + E' K - K K' = pi / 2.
+  const EllipticIntegrals a = elliptic_integrals(0.6);
+  const EllipticIntegrals b = elliptic_integrals(0.8);
+  EXPECT_NEAR(a.second * b.first + b.second * a.first - a.first * b.first, std::numbers::pi / 2,
+              1e-14);
+  EXPECT_THROW(elliptic_integrals(1), Error);
+}
+
+}  // namespace
+}  // namespace geoprior

@@ -1,0 +1,63 @@
+// Metrics of a tear's path, on paths with known answers.
+
+#include "metrics/tracks/tear_path.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+using Eigen::Vector2d;
+
+const Vector2d kA(-0.1, 0), kB(0.1, 0);
+
+TEST(TearPath, BisectorKeepsToTheHyperbola) {
+  // |CA| - |CB| is conserved exactly; what drifts is the integration, at third order.
+  const TearPath path = bisector_path({0.02, 0.05}, kA, kB, 0.2, 1e-3);
+  EXPECT_NEAR(path_length(path), 0.2, 1e-12);
+  EXPECT_LT(focal_drift(path, kA, kB), 1e-6);
+  const double coarse = focal_drift(bisector_path({0.02, 0.05}, kA, kB, 0.2, 0.01), kA, kB);
+  const double fine = focal_drift(bisector_path({0.02, 0.05}, kA, kB, 0.2, 0.005), kA, kB);
+  EXPECT_LT(coarse, 1e-4);
+  EXPECT_NEAR(std::log2(coarse / fine), 3, 0.3);
+}
+
+TEST(TearPath, SymmetricPullsTearStraightOn) {
+  const TearPath path = bisector_path({0, 0.05}, kA, kB, 0.1, 1e-3);
+  EXPECT_NEAR(chord_angle_deg(path, {0, 1}), 0, 1e-9);
+  EXPECT_NEAR(path_bow(path), 0, 1e-12);
+  EXPECT_THROW(static_cast<void>(bisector_path({0.02, 0}, kA, kB, 0.1, 1e-3)), Error);
+}
+
+TEST(TearPath, DriftOfAStraightLineIsWhatItIs) {
+  // Straight up from (0.05, 0): |CA| - |CB| falls from 0.1.
+  const TearPath path{{0.05, 0}, {0.05, 0.1}};
+  const double end = std::hypot(0.15, 0.1) - std::hypot(0.05, 0.1);
+  EXPECT_NEAR(focal_drift(path, kA, kB), (0.1 - end) / 0.2, 1e-12);
+  EXPECT_THROW(static_cast<void>(focal_drift(path, kA, kA)), Error);
+}
+
+TEST(TearPath, AngleBowAndDistanceOfSimplePaths) {
+  const TearPath arc{{0, 0}, {1, 1}, {2, 0}};
+  EXPECT_NEAR(path_bow(arc), 0.5, 1e-12);
+  EXPECT_NEAR(chord_angle_deg(arc, {1, 1}), 45, 1e-9);
+  const TearPath shifted{{0, 0.25}, {1, 1.25}, {2, 0.25}};
+  EXPECT_NEAR(path_distance(arc, shifted), 0.25, 1e-12);
+  EXPECT_NEAR(path_distance(arc, {{0, 0}, {2, 0}}), 1, 1e-12);
+  EXPECT_THROW(static_cast<void>(path_distance(arc, {})), Error);
+}
+
+TEST(TearPath, OnsetForceIsTheClosedForm) {
+  // K e / (2 cos(theta / 2)): a right angle at C; legs of a trouser side by side.
+  EXPECT_NEAR(onset_force({0, 0.1}, kA, kB, 1e4, 1e-4), 1 / (2 * std::cos(std::numbers::pi / 4)),
+              1e-12);
+  EXPECT_NEAR(onset_force({0, 0}, {0, -1}, {0, -1}, 1e4, 1e-4), 0.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace geoprior

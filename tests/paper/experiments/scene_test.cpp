@@ -1,0 +1,134 @@
+#include "experiments/paper/scene/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "experiments/paper/topic.h"
+#include "tests/testbed/run_fixture.h"
+
+namespace geoprior::paper {
+namespace {
+
+using namespace test;
+
+class PaperScenes : public RunTest {
+ protected:
+  /// What a [scene] table describes.
+  [[nodiscard]] PaperScene scene(const std::string& scene_lines) const {
+    const auto file = write_experiment(
+        "paper/scene", "title = \"A scene\"\ntopic = \"paper\"\n[scene]\n" + scene_lines +
+                           "\n[[variant]]\nname = \"dense\"\nmethod = \"dense\"\n");
+    const Experiment experiment = load_experiment(file, {make_topic()}, {});
+    const auto loaded = make_topic().load(*experiment.cases[0].scene, file.parent_path(), 1);
+    return dynamic_cast<const PaperScene&>(*loaded);
+  }
+  [[nodiscard]] Sheet sheet(const std::string& scene_lines) const {
+    return scene(scene_lines).sheet;
+  }
+};
+
+TEST_F(PaperScenes, DefaultsToAnA4SheetOfOfficePaper) {
+  const Sheet s = sheet("");
+  EXPECT_NEAR(signed_area(s.pattern), 0.21 * 0.297, 1e-15);
+  EXPECT_EQ(s.material.thickness, 1e-4);
+  EXPECT_EQ(s.material.area_density, 0.08);
+  EXPECT_EQ(s.gravity, Eigen::Vector3d(0, 0, -9.81));
+}
+
+TEST_F(PaperScenes, TurnIsAxisTimesAngleInDegrees) {
+  const Sheet s = sheet(
+      "handles = [{ points = [{ u = 0, v = 0.1 }], keys = [{ t = 0 }, { t = 2, move = [1, 2, 3], "
+      "turn_deg = [0, 0, 90] }] }]\n"
+      "placement = { move = [0, 0, 1], turn_deg = [90, 0, 0] }\n");
+  const Eigen::Vector3d turned = s.handles[0].motion->at(2).turn * Eigen::Vector3d::UnitX();
+  EXPECT_NEAR((turned - Eigen::Vector3d::UnitY()).norm(), 0, 1e-15);
+  EXPECT_EQ(s.handles[0].motion->at(2).shift, Eigen::Vector3d(1, 2, 3));
+  const Eigen::Vector3d placed = s.placement * Eigen::Vector3d(0, 0.1, 0);
+  EXPECT_NEAR((placed - Eigen::Vector3d(0, 0, 1.1)).norm(), 0, 1e-15);
+}
+
+TEST_F(PaperScenes, ReadsEveryShapeOfHandleAndObstacle) {
+  const Sheet s = sheet(
+      "handles = [\n"
+      "  { segment = [-0.1, 0, 0.1, 0.05], keys = [{ t = 0 }], active = [{ from = 0, to = 1 }] },\n"
+      "  { disc = { u = 0, v = -0.1, radius = 0.01 }, force = [0, 0, 0.5] },\n"
+      "]\n"
+      "obstacles = [\n"
+      "  { kind = \"plane\", centre = [0, 0, -1], axis = [0, 0, 5] },\n"
+      "  { kind = \"hollow-sphere\", radius = 0.5, radii = [{ t = 0, radius = 0.5 }, { t = 1, "
+      "radius = 0.2 }] },\n"
+      "  { kind = \"cylinder\", centre = [0, 0, 0.2], axis = [1, 0, 0], radius = 0.1, half_length "
+      "= 0.3, keys = [{ t = 0 }, { t = 1, move = [0, 0, -0.1] }] },\n"
+      "  { kind = \"torus\", centre = [0, 0, -0.1], radius = 0.05, tube_radius = 0.01 },\n"
+      "]\n");
+  ASSERT_EQ(s.handles.size(), 2U);
+  EXPECT_TRUE(s.handles[0].covers({0, 0.025}));
+  EXPECT_FALSE(s.handles[0].is_active(1.5));
+  EXPECT_TRUE(s.handles[1].covers({0.005, -0.1}));
+  EXPECT_EQ(*s.handles[1].force, Eigen::Vector3d(0, 0, 0.5));
+  ASSERT_EQ(s.obstacles.size(), 4U);
+  const Eigen::Vector3d x(0, 0, 0.05);
+  EXPECT_NEAR(s.obstacles[0].contact(x, 0).distance, 1.05, 1e-15);
+  EXPECT_NEAR(s.obstacles[1].contact(x, 1).distance, 0.15, 1e-15);
+  EXPECT_NEAR(s.obstacles[2].contact(x, 1).distance, -0.05, 1e-15);
+  EXPECT_NEAR(s.obstacles[3].contact(x, 0).distance, std::hypot(0.15, 0.05) - 0.01, 1e-15);
+}
+
+/// Two corners of a pattern 0.2 m wide; the right one moves by `move`, from 0 to 1 s.
+std::string two_corners(const std::string& pattern, const std::string& move) {
+  return "duration = 2\npattern = " + pattern +
+         "\nhandles = [{ name = \"l\", points = [{ u = -0.1, v = -0.1 }], keys = [{ t = 0 }] }, "
+         "{ name = \"r\", points = [{ u = 0.1, v = -0.1 }], keys = [{ t = 0 }, { t = 1, move = " +
+         move + " }, { t = 2 }] }]\n";
+}
+const std::string kSquare = "{ kind = \"rectangle\", width = 0.2, height = 0.2 }";
+
+// 0.3 mm of 0.2 m are 0.15 %, and 0.1 mm are 0.05 %.
+TEST_F(PaperScenes, WarnOnceOfHandlesThatPullTheSheetApart) {
+  const auto warnings = scene(two_corners(kSquare, "[3e-4, 0, 0]")).warnings();
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0], ::testing::HasSubstr("scene.handles.0 'l' and scene.handles.1 'r'"));
+  EXPECT_THAT(warnings[0], ::testing::HasSubstr("at t = 1 s"));
+  EXPECT_TRUE(scene(two_corners(kSquare, "[1e-4, 0, 0]")).warnings().empty());
+  EXPECT_TRUE(scene(two_corners(kSquare, "[-0.05, 0, 0.1]")).warnings().empty());
+}
+
+// Between two keys at rest the cubic is fastest in the middle, at 3/2 of the mean: 0.15 m in 1 s
+// make 0.225 m/s, and the sheet is 0.2 m wide.
+TEST_F(PaperScenes, WarnOnceOfHandlesThatAreFasterThanTheSheetIsWideInASecond) {
+  const auto warnings = scene(two_corners(kSquare, "[-0.15, 0, 0]")).warnings();
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0], ::testing::HasSubstr("scene.handles.1 'r' moves at 0.225 m/s at t = "));
+  EXPECT_THAT(warnings[0], ::testing::HasSubstr("beyond 0.2 m/s"));
+  EXPECT_TRUE(scene(two_corners(kSquare, "[-0.13, 0, 0]")).warnings().empty()) << "0.195 m/s";
+}
+
+// Between the feet of the notch the sheet has 0.28 m: their 0.2 m in the plane bound nothing.
+TEST_F(PaperScenes, WarnOfNothingOnAPatternThatIsNotConvex) {
+  const std::string notched =
+      "{ kind = \"polygon\", points = [{ u = -0.1, v = -0.1 }, { u = 0, v = 0 }, { u = 0.1, v = "
+      "-0.1 }, { u = 0.1, v = 0.1 }, { u = -0.1, v = 0.1 }] }";
+  EXPECT_TRUE(scene(two_corners(notched, "[0.02, 0, 0]")).warnings().empty());
+}
+
+// The same triangle clockwise and counter-clockwise, and drawn in millimetres.
+TEST_F(PaperScenes, PatternsRunCounterClockwiseHoweverTheyAreGiven) {
+  const std::string corners[] = {"{ u = 0, v = 0 }", "{ u = 0.2, v = 0 }", "{ u = 0, v = 0.1 }"};
+  const auto polygon = [&](int a, int b, int c) {
+    return sheet("pattern = { kind = \"polygon\", points = [" + corners[a] + ", " + corners[b] +
+                 ", " + corners[c] + "] }\n");
+  };
+  EXPECT_NEAR(signed_area(polygon(0, 1, 2).pattern), 0.01, 1e-15);
+  EXPECT_NEAR(signed_area(polygon(0, 2, 1).pattern), 0.01, 1e-15);
+  const auto drawing = folder() / "experiments" / "paper" / "triangle.svg";
+  std::filesystem::create_directories(drawing.parent_path());
+  std::ofstream(drawing) << "<svg><path id='t' d='M0 0 h200 l-200 100z'/></svg>";
+  EXPECT_NEAR(signed_area(sheet("pattern = { kind = \"svg\", file = \"triangle.svg\" }\n").pattern),
+              0.01, 1e-15);
+}
+
+}  // namespace
+}  // namespace geoprior::paper

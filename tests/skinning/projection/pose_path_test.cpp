@@ -1,0 +1,62 @@
+#include "solvers/skinning/projection/pose_path.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/error.h"
+#include "core/geometry/procedural.h"
+#include "tests/skinning/fixtures.h"
+
+namespace geoprior::skinning {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+double angle_at(const Pose& pose, int joint, int parent) {
+  const Eigen::Matrix3d turn = pose[static_cast<std::size_t>(parent)].linear().transpose() *
+                               pose[static_cast<std::size_t>(joint)].linear();
+  return Eigen::AngleAxisd(turn).angle();
+}
+
+TEST(PosePath, TurnsJointsInEqualSteps) {
+  const RiggedMesh rig = two_bone_cylinder(fixtures::cylinder_options());
+  const int joint = rig.skeleton.index_of("upper");
+  const int parent = rig.skeleton.joints[static_cast<std::size_t>(joint)].parent;
+  PosePath path(rig.skeleton);
+  EXPECT_EQ(path.go_to(rest_pose(rig.skeleton.size()), 10 * kDegree), 1);
+  const Pose end = fixtures::turned(rig, "upper", "flexion", 75 * kDegree);
+  ASSERT_EQ(path.go_to(end, 10 * kDegree), 8);
+  const Joint& upper = rig.skeleton.joints[static_cast<std::size_t>(joint)];
+  for (int step = 1; step <= 8; ++step) {
+    const Pose& pose = path.at(step);
+    EXPECT_NEAR(angle_at(pose, joint, parent), 75 * kDegree * step / 8, 1e-9);
+    EXPECT_LE((pose[static_cast<std::size_t>(joint)] * upper.head - upper.head).norm(), 1e-12)
+        << "the joint stays in place";
+  }
+  EXPECT_EQ(path.at(8)[static_cast<std::size_t>(joint)].matrix(),
+            end[static_cast<std::size_t>(joint)].matrix());
+}
+
+TEST(PosePath, GoesOnFromWhereItIs) {
+  const RiggedMesh rig = two_bone_cylinder(fixtures::cylinder_options());
+  PosePath path(rig.skeleton);
+  path.go_to(rest_pose(rig.skeleton.size()), kDegree);
+  EXPECT_EQ(path.go_to(fixtures::turned(rig, "upper", "flexion", 20 * kDegree), 10 * kDegree), 2);
+  EXPECT_EQ(path.go_to(fixtures::turned(rig, "upper", "flexion", 15 * kDegree), 10 * kDegree), 1);
+  EXPECT_EQ(path.go_to(fixtures::turned(rig, "upper", "flexion", -20 * kDegree), 10 * kDegree), 4);
+}
+
+TEST(PosePath, BeginsAtRest) {
+  const RiggedMesh rig = two_bone_cylinder(fixtures::cylinder_options());
+  PosePath path(rig.skeleton);
+  const Pose away = fixtures::turned(rig, "upper", "flexion", 20 * kDegree);
+  EXPECT_THROW(path.go_to(away, kDegree), Error);
+  path.go_to(rest_pose(rig.skeleton.size()), kDegree);
+  EXPECT_NO_THROW(path.go_to(away, kDegree));
+  path.restart();
+  EXPECT_THROW(path.go_to(away, kDegree), Error);
+}
+
+}  // namespace
+}  // namespace geoprior::skinning
