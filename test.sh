@@ -55,12 +55,22 @@ experiments_of() {
 # The commit that is checked out, or nothing where files differ from it.
 clean_commit() { [ -n "$(git status --porcelain)" ] || git rev-parse HEAD; }
 
+# The reference values of a topic's experiments, one file a line: an experiment may say its own identifier.
+references_of() {
+  local name id
+  for name in $(experiments_of "$1"); do
+    id=$(sed -n 's/^id *= *"\(.*\)"$/\1/p' "experiments/$name.toml")
+    id=results/reference/${id:-$name}.txt
+    [ ! -f "$id" ] || printf '%s\n' "$id"
+  done
+}
+
 # Of a topic's experiments the one whose quick run costs least, by its reference values.
 cheapest_of() {
   local file
   file=$(awk '$1 == "set" { quick = $2 == "quick" }
       quick && $1 == "cost" && (least == "" || $2 < least) { least = $2; file = FILENAME }
-      END { print file }' "results/reference/$1"/*.txt)
+      END { print file }' /dev/null $(references_of "$1"))
   file=${file#results/reference/}
   if [ -n "$file" ]; then printf '%s\n' "${file%.txt}"; else experiments_of "$1" | sed -n 1p; fi
 }

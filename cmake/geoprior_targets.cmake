@@ -92,8 +92,7 @@ endfunction()
 
 # Sources in which GCC 12 takes the assignment of a short text for an overflow (GCC bug 105651, mended in 13).
 set(GEOPRIOR_FALSE_OVERFLOWS
-  experiments/details/metrics.cpp experiments/fluid/scene/exr_maps.cpp experiments/skinning/methods.cpp
-  testbed/formats/sequence/repair.cpp)
+  experiments/details/metrics.cpp experiments/skinning/methods.cpp testbed/formats/sequence/repair.cpp)
 list(TRANSFORM GEOPRIOR_FALSE_OVERFLOWS PREPEND ${PROJECT_SOURCE_DIR}/)
 
 # geoprior_library(name SOURCES... [PUBLIC libs] [PRIVATE libs]): a static library `geoprior_<name>`, alias

@@ -1,29 +1,10 @@
 #include "baselines/paper/adaptive/adaptive.h"
 #include "baselines/paper/dense.h"
-#include "baselines/sound/modal/modal.h"
-#include "baselines/sound/plain_sounds.h"
 #include "experiments/paper/scene/scene.h"
 #include "experiments/paper/topic.h"
-#include "experiments/sound/scene/bank_cache.h"
 #include "solvers/paper/hybrid.h"
-#include "solvers/sound/sound.h"
-#include "testbed/formats/wav_file.h"
 
 namespace geoprior::paper {
-namespace {
-
-std::vector<std::byte> encode(const Eigen::MatrixXd& samples, int sample_rate) {
-  return wav_bytes({sample_rate, samples});
-}
-
-/// The user's, or one that the options generate.
-SoundBank bank_of(const PaperScene& scene, const BankOptions& options, std::uint64_t seed) {
-  if (scene.bank) return *scene.bank;
-  return cached_bank(scene.sheet.material, options, seed, bank_folder());
-}
-
-}  // namespace
-
 std::vector<MethodEntry> methods() {
   using S = PaperScene;
   return {
@@ -43,41 +24,6 @@ std::vector<MethodEntry> methods() {
           "thesis 3.2.1; Schreck et al. 2015",
           [](const S& scene, const HybridOptions& options, RunContext&) {
             return make_hybrid_sheet(scene.sheet, options);
-          }),
-      method_entry<S, SoundOptions>(
-          "sound", false, "events of an animated sheet, sounded by a bank indexed by resonators",
-          "thesis 3.2.3; Schreck et al. 2016",
-          [](const S& scene, const SoundOptions& options, RunContext& context) {
-            const auto& animation = scene.require_animation("the method 'sound'");
-            return make_sound_process(scene.sheet, animation, options.stage,
-                                      bank_voices(bank_of(scene, options.bank, context.seed()),
-                                                  options, scene.sheet.material),
-                                      encode);
-          }),
-      method_entry<S, ClickOptions>(
-          "clicks", true, "the same events, one click each", "docs/methods/paper-sound.md",
-          [](const S& scene, const ClickOptions& options, RunContext&) {
-            const auto& animation = scene.require_animation("the method 'clicks'");
-            return make_sound_process(scene.sheet, animation, options.stage, click_voices(options),
-                                      encode);
-          }),
-      method_entry<S, RandomSoundOptions>(
-          "random-sounds", true, "the same events, a sound of the bank at random each",
-          "docs/methods/paper-sound.md",
-          [](const S& scene, const RandomSoundOptions& options, RunContext& context) {
-            const auto& animation = scene.require_animation("the method 'random-sounds'");
-            return make_sound_process(
-                scene.sheet, animation, options.stage,
-                random_voices(bank_of(scene, options.bank, context.seed()), scene.sheet.material),
-                encode);
-          }),
-      method_entry<S, ModalSoundOptions>(
-          "modal", true, "picked events, sounded by the eigenmodes of their resonators",
-          "docs/methods/paper-sound.md; Fahy and Gardonio 2007",
-          [](const S& scene, const ModalSoundOptions& options, RunContext&) {
-            const auto& animation = scene.require_animation("the method 'modal'");
-            return make_sound_process(scene.sheet, animation, options.stage,
-                                      modal_voices(options, scene.sheet.material), encode);
           }),
   };
 }
@@ -135,11 +81,6 @@ std::vector<DiagnosticEntry> diagnostics() {
       {"projection_iterations", "1", "iterations of the projection to isometry", true, kWork},
       {"strain_before", "1", "largest principal Green strain of a triangle before it, in modulus"},
       {"strain_after", "1", "the same after it"},
-      // Recorded by methods of sound.
-      {"events", "1", "events since the start"},
-      {"bank_checksum", "1", "lowest 48 bits of the FNV-1a hash of the bank that was played"},
-      {"true_peak", "dBFS", "of the whole sound; absent when it is silent"},
-      {"gain_lowered", "dB", "by which the whole was made quieter to stay under highest_peak"},
   };
 }
 

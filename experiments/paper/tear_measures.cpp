@@ -128,7 +128,6 @@ Value energy_gap(FitMemo& fits, const SheetFrame& f) {
 }
 
 std::optional<TearingForces> tearing_forces(const PaperScene& scene, const FrameSequence& frames) {
-  if (scene.animation) return {};
   TearingForces out;
   std::vector<double> growing;
   double length = 0;

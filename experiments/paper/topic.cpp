@@ -1,7 +1,6 @@
 #include "experiments/paper/topic.h"
 
 #include "experiments/paper/scene/scene.h"
-#include "experiments/sound/scene/bank_cache.h"
 
 namespace geoprior::paper {
 namespace {
@@ -25,7 +24,7 @@ FigureView paper_view() {
 Topic make_topic() {
   Topic topic;
   topic.name = "paper";
-  topic.summary = "a sheet of paper bends, crumples, tears and sounds between handles (thesis 3.2)";
+  topic.summary = "a sheet of paper bends, crumples and tears between handles (thesis 3.2)";
   topic.default_scene = [] { return std::make_unique<TypedOptions<PaperSceneOptions>>(); };
   topic.load = [](const OptionSet& set, const std::filesystem::path& folder, std::uint64_t seed) {
     return load_paper_scene(dynamic_cast<const TypedOptions<PaperSceneOptions>&>(set).options,
@@ -33,13 +32,11 @@ Topic make_topic() {
   };
   topic.last_parameter = [](const OptionSet& set) -> std::optional<LastParameter> {
     const auto& scene = dynamic_cast<const TypedOptions<PaperSceneOptions>&>(set).options;
-    if (scene.animation || scene.swatches) return std::nullopt;  // have their own
     return LastParameter{scene.duration, "s"};
   };
   topic.methods = methods();
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
-  topic.commands = {bank_command()};
   topic.view = paper_view();
   return topic;
 }

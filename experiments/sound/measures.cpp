@@ -15,7 +15,7 @@
 #include "testbed/formats/wav_file.h"
 #include "testbed/runner/judgement/timing_statistics.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 /// Times from the start of the sound, in order; an event before it or after it has no place in it.
@@ -107,9 +107,9 @@ SoundMeasures::Kind SoundMeasures::all() const {
   return sum;
 }
 
-std::optional<SoundMeasures> sound_measures(const PaperScene& scene, const FrameSequence& frames) {
+std::optional<SoundMeasures> sound_measures(const FrameSequence& frames) {
   const auto file = frames.artifact("sound.wav");
-  if (!scene.animation || !file || frames.size() == 0) return {};
+  if (!file || frames.size() == 0) return {};
   const Sound sound = wav_from_bytes(*file, "sound.wav");
   const Eigen::VectorXd mono = sound.samples.rowwise().mean();
   const double length = static_cast<double>(mono.size()) / sound.sample_rate;
@@ -147,8 +147,8 @@ std::optional<SoundMeasures> sound_measures(const PaperScene& scene, const Frame
   return out;
 }
 
-std::optional<VoiceDistance> voice_distance(const PaperScene& scene, const FrameSequence& frames) {
-  if (!scene.animation || frames.reference() == nullptr) return {};
+std::optional<VoiceDistance> voice_distance(const FrameSequence& frames) {
+  if (frames.reference() == nullptr) return {};
   const auto own = picked_voices(frames), of = picked_voices(*frames.reference());
   if (!own || !of) return {};
   if (own->size() != of->size()) {
@@ -184,9 +184,7 @@ std::optional<VoiceDistance> voice_distance(const PaperScene& scene, const Frame
   return out;
 }
 
-std::optional<EnergyExponent> energy_exponent(const PaperScene& scene,
-                                              const FrameSequence& frames) {
-  if (!scene.animation) return {};
+std::optional<EnergyExponent> energy_exponent(const FrameSequence& frames) {
   std::vector<Event> snaps;
   for (const Event& event : frames.events()) {
     if (event.kind == "flap" || event.kind == "crac") snaps.push_back(event);
@@ -204,4 +202,4 @@ std::optional<EnergyExponent> energy_exponent(const PaperScene& scene,
   return out;
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -4,14 +4,12 @@
 #include <optional>
 #include <string>
 
-#include "experiments/paper/scene/scene.h"
 #include "metrics/sound/bursts.h"
 #include "testbed/frame_sequence.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// What was recorded of a sound: its events, and the file "sound.wav" that was mixed of them.
-/// Absent where no animation was listened to.
 struct SoundMeasures {
   struct Kind {
     int count = 0;
@@ -36,7 +34,7 @@ struct SoundMeasures {
   }
   [[nodiscard]] Kind all() const;
 };
-std::optional<SoundMeasures> sound_measures(const PaperScene& scene, const FrameSequence& frames);
+std::optional<SoundMeasures> sound_measures(const FrameSequence& frames);
 
 /// How far the sounds of picked events ("voices.wav") are from those of the reference variant: the
 /// log-spectral distance per third octave (metrics/sound/spectrum.h) from 100 Hz up to where the
@@ -50,7 +48,7 @@ struct VoiceDistance {
   std::optional<double> decay;
 };
 /// @throws Error  when the two have picked other events
-std::optional<VoiceDistance> voice_distance(const PaperScene& scene, const FrameSequence& frames);
+std::optional<VoiceDistance> voice_distance(const FrameSequence& frames);
 
 /// Power law of the energies of flaps and cracs (metrics/sound/power_law.h). Absent where no
 /// animation was listened to.
@@ -61,6 +59,6 @@ struct EnergyExponent {
   double count = 0;  ///< energies in the tail
   double decades = 0;
 };
-std::optional<EnergyExponent> energy_exponent(const PaperScene& scene, const FrameSequence& frames);
+std::optional<EnergyExponent> energy_exponent(const FrameSequence& frames);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

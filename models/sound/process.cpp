@@ -7,7 +7,7 @@
 
 #include "core/frame_loop.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 using On = NamedArray::On;
@@ -200,8 +200,8 @@ class SoundFrames final : public FrameModel {
   void save(StateWriter& out) const override {
     detector_.save(out);
     out.number(events_.size());
-    for (const SoundEvent& e : events_) paper::save(e, out);
-    for (const ResonatorShape& shape : shapes_) paper::save(shape, out);
+    for (const SoundEvent& e : events_) sound::save(e, out);
+    for (const ResonatorShape& shape : shapes_) sound::save(shape, out);
   }
 
   void load(StateReader& in, int next_frame) override {
@@ -320,4 +320,4 @@ std::unique_ptr<Process> make_sound_process(const Sheet& sheet,
   });
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "core/method.h"
-#include "models/paper/sheet/animation.h"
+#include "models/sound/animation.h"
 #include "models/sound/events/detector.h"
 #include "models/sound/voices/mixer.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// What an event sounds like: what distinguishes the methods.
 struct EventVoice {
@@ -73,4 +73,4 @@ std::unique_ptr<Process> make_sound_process(const Sheet& sheet,
                                             std::shared_ptr<const SoundVoices> voices,
                                             EncodeSound encode);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

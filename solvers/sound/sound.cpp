@@ -11,7 +11,7 @@
 #include "models/sound/resonators/panel.h"
 #include "models/sound/voices/voice.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 using Descriptors = SoundOptions::Descriptors;
@@ -199,4 +199,4 @@ std::shared_ptr<const SoundVoices> bank_voices(SoundBank bank, const SoundOption
   return std::make_shared<BankVoices>(std::move(bank), options, material);
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -5,7 +5,7 @@
 #include "models/sound/process.h"
 #include "models/sound/voices/bank.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// The sound of an animated sheet, put together from a bank (thesis 3.2.3; Schreck et al. 2016).
 ///
@@ -56,4 +56,4 @@ Eigen::VectorXf blended_friction(const SoundBank& bank, const std::vector<int>& 
 std::shared_ptr<const SoundVoices> bank_voices(SoundBank bank, const SoundOptions& options,
                                                const PaperMaterial& material);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

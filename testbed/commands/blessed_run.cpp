@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/error.h"
-#include "testbed/commands/catalogue.h"
 #include "testbed/commands/console.h"
+#include "testbed/commands/find.h"
 #include "testbed/runner/made_run.h"
 #include "testbed/streams.h"
 

@@ -6,11 +6,12 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "testbed/catalogue.h"
 #include "testbed/commands/blessed_run.h"
-#include "testbed/commands/catalogue.h"
 #include "testbed/commands/check_jobs.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
+#include "testbed/commands/find.h"
 #include "testbed/commands/outcome.h"
 #include "testbed/runner/judgement/claims.h"
 #include "testbed/runner/opened_run.h"

@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "testbed/commands/catalogue.h"
+#include "testbed/catalogue.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
 #include "testbed/runner/judgement/measure.h"

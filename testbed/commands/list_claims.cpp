@@ -3,9 +3,10 @@
 #include <optional>
 
 #include "core/error.h"
-#include "testbed/commands/catalogue.h"
+#include "testbed/catalogue.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
+#include "testbed/commands/find.h"
 #include "testbed/runner/judgement/claims.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/opened_run.h"

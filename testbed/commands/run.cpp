@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "testbed/commands/catalogue.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
+#include "testbed/commands/find.h"
 #include "testbed/commands/outcome.h"
 #include "testbed/commands/pictures.h"
 #include "testbed/runner/execute.h"

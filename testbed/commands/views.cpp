@@ -1,9 +1,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "testbed/commands/catalogue.h"
+#include "testbed/catalogue.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
+#include "testbed/commands/find.h"
 #include "testbed/commands/outcome.h"
 #include "testbed/commands/pictures.h"
 #include "testbed/formats/folders.h"

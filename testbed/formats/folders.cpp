@@ -27,6 +27,14 @@ fs::path path_below(const fs::path& folder, const fs::path& relative) {
   return path;
 }
 
+std::vector<fs::path> sorted_entries(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) entries.push_back(entry.path());
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
 MadeFolders::MadeFolders(const fs::path& folder) {
   std::error_code ignored;
   // A link to nothing is there: it is nothing that we made.

@@ -14,6 +14,9 @@ namespace geoprior {
 std::filesystem::path path_below(const std::filesystem::path& folder,
                                  const std::filesystem::path& relative);
 
+/// What is directly in a folder, sorted by name; nothing where there is no such folder.
+std::vector<std::filesystem::path> sorted_entries(const std::filesystem::path& folder);
+
 /// Folders made for output. Those that are still empty go with this object: what is refused leaves
 /// no folder that was not there before.
 class MadeFolders {

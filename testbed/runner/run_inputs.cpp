@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "testbed/catalogue.h"
 #include "testbed/formats/folders.h"
-#include "testbed/home.h"
 #include "testbed/runner/made_run.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/opened_run.h"
@@ -25,11 +25,10 @@ constexpr std::string_view kPrefix = "run:";
 fs::path file_of(const std::string& id, const Experiment& needed_by) {
   const fs::path name = id + ".toml";
   const fs::path beside = needed_by.file.parent_path();
-  const std::vector<fs::path> places{beside.parent_path() / name, beside / name.filename(),
-                                     geoprior_home() / "experiments" / name};
-  for (const fs::path& file : places) {
+  for (const fs::path& file : {beside.parent_path() / name, beside / name.filename()}) {
     if (fs::is_regular_file(file)) return file;
   }
+  if (const auto file = catalogued_file(id)) return *file;
   throw Error("there is no experiment '" + id + "' to take as input", needed_by.file.string(),
               "an experiment of the testbed, or a file beside this one");
 }

@@ -11,14 +11,14 @@
 #include "models/sound/events/detector.h"
 #include "tests/paper/meshes.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 constexpr double kWidth = 0.2, kHeight = 0.3;
 
 Sheet a_sheet() {
   Sheet sheet;
-  sheet.pattern = rectangle_pattern(kWidth, kHeight);
+  sheet.pattern = paper::rectangle_pattern(kWidth, kHeight);
   return sheet;
 }
 
@@ -27,12 +27,13 @@ SheetSnapshot rolled_at(const ShellMesh& mesh, double time, double curvature, do
   SheetSnapshot frame;
   frame.time = time;
   frame.mesh = mesh;
-  frame.x = meshes::rolled(mesh.pattern, std::abs(curvature) < 1e-9 ? 1e-9 : curvature, angle);
+  frame.x =
+      paper::meshes::rolled(mesh.pattern, std::abs(curvature) < 1e-9 ? 1e-9 : curvature, angle);
   return frame;
 }
 
 ShellMesh a_mesh(const Sheet& sheet, int triangles = 1500) {
-  return uniform_mesh(sheet.pattern, triangles, UniformLayout::delaunay, {}, 1);
+  return paper::uniform_mesh(sheet.pattern, triangles, paper::UniformLayout::delaunay, {}, 1);
 }
 
 std::vector<SoundEvent> all_events(const Sheet& sheet, const DetectionOptions& options,
@@ -59,12 +60,12 @@ std::vector<SheetSnapshot> motion(const ShellMesh& mesh, double until, double in
 }
 
 TEST(SoundGrid, CoversThePatternWithCells) {
-  const SoundGrid grid = sound_grid(rectangle_pattern(0.21, 0.297), 3.3e-3);
+  const SoundGrid grid = sound_grid(paper::rectangle_pattern(0.21, 0.297), 3.3e-3);
   EXPECT_EQ(grid.columns, 64);
   EXPECT_EQ(grid.rows, 90);
   EXPECT_EQ(grid.at(grid.centre(1234)), 1234);
-  EXPECT_THROW(sound_grid(rectangle_pattern(0.21, 0.297), 0.5), Error);
-  EXPECT_THROW(sound_grid(rectangle_pattern(0.21, 0.297), 0), Error);
+  EXPECT_THROW(sound_grid(paper::rectangle_pattern(0.21, 0.297), 0.5), Error);
+  EXPECT_THROW(sound_grid(paper::rectangle_pattern(0.21, 0.297), 0), Error);
 }
 
 TEST(SoundGrid, SeesTheCurvatureAndRulingsOfACylinderOnEveryMesh) {
@@ -94,7 +95,8 @@ TEST(SoundGrid, BorderIsAsLongAsThePatterns) {
 TEST(SoundGrid, LipsSeparateCells) {
   Sheet sheet = a_sheet();
   sheet.pattern.cuts = {{{0.0012, -kHeight / 2}, {0.0012, 0}}};
-  const ShellMesh mesh = uniform_mesh(sheet.pattern, 1500, UniformLayout::delaunay, {}, 1);
+  const ShellMesh mesh =
+      paper::uniform_mesh(sheet.pattern, 1500, paper::UniformLayout::delaunay, {}, 1);
   SheetSampler sampler(sound_grid(sheet.pattern, 5e-3), 4e-3);
   const SheetField field = sampler.sample(rolled_at(mesh, 0, 5));
   const SoundGrid& grid = sampler.grid();
@@ -401,4 +403,4 @@ TEST(SoundEvents, FramesThatAreNoSheetAreRefused) {
 }
 
 }  // namespace
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "core/error.h"
-#include "experiments/paper/scene/sheet_files.h"
 #include "experiments/sound/scene/bank_files.h"
+#include "experiments/sound/scene/sheet_files.h"
 #include "testbed/formats/wav_file.h"
 #include "tests/testbed/scratch_folder.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 namespace fs = std::filesystem;
@@ -116,7 +116,7 @@ class SheetFrames : public test::ScratchFolder {
     options.sequence.path = (folder() / name).string();
     options.sequence.frames_per_second = 50;
     options.every = every;
-    return open_sheet_files(options, {}, rectangle_pattern(width, 0.2), warnings_, inputs_);
+    return open_sheet_files(options, {}, paper::rectangle_pattern(width, 0.2), warnings_, inputs_);
   }
 
   std::vector<std::string> warnings_;
@@ -160,4 +160,4 @@ TEST_F(SheetFrames, BadOnesAreNamed) {
 }
 
 }  // namespace
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -4,8 +4,9 @@
 #include <cstring>
 #include <numbers>
 
+#include "baselines/sound/clicks.h"
 #include "baselines/sound/modal/modal.h"
-#include "baselines/sound/plain_sounds.h"
+#include "baselines/sound/random_sounds.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "models/paper/meshing/uniform_mesh.h"
@@ -17,7 +18,7 @@
 #include "tests/paper/meshes.h"
 #include "tests/sound/recording.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -179,13 +180,14 @@ TEST(SoundBank, SoundsHavePanelsWhoseBorderTheyName) {
 
 /// A sheet that snaps, with one handle at its edge.
 std::shared_ptr<const SheetAnimation> snapping(const Sheet& sheet) {
-  const ShellMesh mesh = uniform_mesh(sheet.pattern, 400, UniformLayout::delaunay, {}, 1);
+  const ShellMesh mesh =
+      paper::uniform_mesh(sheet.pattern, 400, paper::UniformLayout::delaunay, {}, 1);
   std::vector<SheetSnapshot> frames;
   for (int i = 0; i <= 40; ++i) {
     SheetSnapshot frame;
     frame.time = 0.01 * i;
     frame.mesh = mesh;
-    frame.x = meshes::rolled(mesh.pattern, 25 * std::cos(2 * kPi * 8 * frame.time + 0.1), 0);
+    frame.x = paper::meshes::rolled(mesh.pattern, 25 * std::cos(2 * kPi * 8 * frame.time + 0.1), 0);
     frames.push_back(std::move(frame));
   }
   return std::make_shared<StoredSheetAnimation>(std::move(frames), "snapping");
@@ -206,7 +208,7 @@ std::unique_ptr<Process> a_process(const Sheet& sheet, const SoundOptions& optio
 
 TEST(SoundProcess, RecordsEventsPicturesAndOneSound) {
   Sheet sheet;
-  sheet.pattern = rectangle_pattern(0.2, 0.3);
+  sheet.pattern = paper::rectangle_pattern(0.2, 0.3);
   Recording record;
   RunContext context;
   a_process(sheet)->run(record, context, {});
@@ -231,7 +233,7 @@ TEST(SoundProcess, RecordsEventsPicturesAndOneSound) {
 
 TEST(SoundProcess, PickedEventsAreHeardAlone) {
   Sheet sheet;
-  sheet.pattern = rectangle_pattern(0.2, 0.3);
+  sheet.pattern = paper::rectangle_pattern(0.2, 0.3);
   SoundOptions options;
   options.stage.picked = {2, 2};  // of six events the first and the third
   Recording record;
@@ -270,7 +272,7 @@ std::unique_ptr<Process> a_modal_process(const Sheet& sheet) {
 
 TEST(SoundProcess, ModalSoundsOfPickedEventsSurviveACheckpoint) {
   Sheet sheet;
-  sheet.pattern = rectangle_pattern(0.2, 0.3);
+  sheet.pattern = paper::rectangle_pattern(0.2, 0.3);
   RunContext context;
   Recording whole, rest;
   a_modal_process(sheet)->run(whole, context, {});
@@ -287,7 +289,7 @@ TEST(SoundProcess, ModalSoundsOfPickedEventsSurviveACheckpoint) {
 
 TEST(SoundProcess, ResumesToTheSameSound) {
   Sheet sheet;
-  sheet.pattern = rectangle_pattern(0.2, 0.3);
+  sheet.pattern = paper::rectangle_pattern(0.2, 0.3);
   RunContext context;
   Recording whole, rest;
   a_process(sheet)->run(whole, context, {});
@@ -357,4 +359,4 @@ TEST(BlendedFriction, GoesFromOneLoopToTheNextWithTheSpeed) {
 }
 
 }  // namespace
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -14,7 +14,7 @@
 #include "tests/paper/shell/plate_ritz.h"
 
 // Eigenmodes of the dense shell against plates and panels whose frequencies are known.
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 using ::testing::HasSubstr;
@@ -38,13 +38,13 @@ std::vector<Edge> left_edges(const ShellMesh& mesh) {
 ModalOptions lowest(int count) { return {.most = count}; }
 
 Eigen::VectorXd free_frequencies(const ShellMesh& mesh, int count) {
-  return eigenmodes({}, meshes::flat_state(mesh), {}, lowest(count)).frequency;
+  return eigenmodes({}, paper::meshes::flat_state(mesh), {}, lowest(count)).frequency;
 }
 
 /// Panel whose rulings run along u, on a cylinder of curvature `kappa`.
 ShellState rolled_state(const ShellMesh& mesh, double kappa) {
-  ShellState state = meshes::flat_state(mesh);
-  state.x = meshes::rolled(mesh.pattern, kappa, std::numbers::pi / 2);
+  ShellState state = paper::meshes::flat_state(mesh);
+  state.x = paper::meshes::rolled(mesh.pattern, kappa, std::numbers::pi / 2);
   return state;
 }
 
@@ -71,13 +71,13 @@ TEST(PlateRitz, AgreesWithPublishedPlates) {
   steel.thickness = 0.05;
   steel.young_modulus = 200e9;
   steel.area_density = 8000 * steel.thickness;
-  const Eigen::VectorXd free = ritz::plate(steel, 10, 10, false, 10);
+  const Eigen::VectorXd free = paper::ritz::plate(steel, 10, 10, false, 10);
   EXPECT_NEAR(free[0], 1.622, 5e-4);
   EXPECT_NEAR(free[1], 2.360, 1e-3);
   EXPECT_NEAR(free[2], 2.922, 5e-4);
   const Eigen::Vector4d leissa(13.49, 19.79, 24.43, 35.02);
   const Eigen::VectorXd lambda = parameters(free, steel, 10);
-  const Eigen::VectorXd clamped = parameters(ritz::plate(steel, 10, 10, true, 6), steel, 10);
+  const Eigen::VectorXd clamped = parameters(paper::ritz::plate(steel, 10, 10, true, 6), steel, 10);
   Eigen::VectorXd barton(6);
   barton << 3.492, 8.525, 21.43, 27.33, 31.11, 54.44;
   for (int i = 0; i < 4; ++i) {
@@ -89,22 +89,22 @@ TEST(PlateRitz, AgreesWithPublishedPlates) {
     EXPECT_GT(clamped[i], 0.99 * barton[i]);
   }
   // More polynomials change nothing.
-  EXPECT_LT(largest_error(ritz::plate(steel, 10, 10, false, 10, 17), free), 1e-6);
+  EXPECT_LT(largest_error(paper::ritz::plate(steel, 10, 10, false, 10, 17), free), 1e-6);
 }
 
 // A panel that is all but flat is a plate.
 TEST(PlateRitz, PanelWithoutCurvatureIsAPlate) {
-  EXPECT_LT(
-      largest_error(ritz::panel({}, 0.04, 0.04, 1e-3, 6), ritz::plate({}, 0.04, 0.04, false, 6)),
-      1e-5);
+  EXPECT_LT(largest_error(paper::ritz::panel({}, 0.04, 0.04, 1e-3, 6),
+                          paper::ritz::plate({}, 0.04, 0.04, false, 6)),
+            1e-5);
 }
 
 TEST(Modes, FreeSquareHasThePublishedFrequencies) {
-  const Eigen::VectorXd exact = ritz::plate({}, kSide, kSide, false, 10);
+  const Eigen::VectorXd exact = paper::ritz::plate({}, kSide, kSide, false, 10);
   for (const bool random : {false, true}) {
     const int n = 36;
-    const ShellMesh mesh =
-        random ? meshes::delaunay(n, n, kSide, kSide) : meshes::grid(n, n, kSide, kSide, true);
+    const ShellMesh mesh = random ? paper::meshes::delaunay(n, n, kSide, kSide)
+                                  : paper::meshes::grid(n, n, kSide, kSide, true);
     const Eigen::VectorXd found = free_frequencies(mesh, 10);
     EXPECT_LT(largest_error(found, exact), 0.01);
     EXPECT_NEAR(parameters(found, {}, kSide)[0], 13.49, 0.0135 * 13.49 / 3);
@@ -112,32 +112,33 @@ TEST(Modes, FreeSquareHasThePublishedFrequencies) {
 }
 
 TEST(Modes, FrequenciesOfTheFreeSquareConvergeWithSecondOrder) {
-  const Eigen::VectorXd exact = ritz::plate({}, kSide, kSide, false, 10);
+  const Eigen::VectorXd exact = paper::ritz::plate({}, kSide, kSide, false, 10);
   for (const bool alternating : {false, true}) {
     const auto found = [&](int n) {
-      return free_frequencies(meshes::grid(n, n, kSide, kSide, alternating), 10);
+      return free_frequencies(paper::meshes::grid(n, n, kSide, kSide, alternating), 10);
     };
     expect_second_order("free", found(14), found(28), exact);
   }
 }
 
 TEST(Modes, ClampedEdgeNeitherMovesNorTurns) {
-  const Eigen::VectorXd exact = ritz::plate({}, kSide, kSide, true, 6);
+  const Eigen::VectorXd exact = paper::ritz::plate({}, kSide, kSide, true, 6);
   const auto found = [&](const ShellMesh& mesh) {
-    return eigenmodes({}, meshes::flat_state(mesh), {.clamped = left_edges(mesh)}, lowest(6))
+    return eigenmodes({}, paper::meshes::flat_state(mesh), {.clamped = left_edges(mesh)}, lowest(6))
         .frequency;
   };
-  const Eigen::VectorXd fine = found(meshes::grid(32, 32, kSide, kSide, true));
+  const Eigen::VectorXd fine = found(paper::meshes::grid(32, 32, kSide, kSide, true));
   EXPECT_LT(largest_error(fine, exact), 0.01);
-  expect_second_order("clamped", found(meshes::grid(16, 16, kSide, kSide, true)), fine, exact);
-  EXPECT_LT(largest_error(found(meshes::delaunay(32, 32, kSide, kSide)), exact), 0.01);
+  expect_second_order("clamped", found(paper::meshes::grid(16, 16, kSide, kSide, true)), fine,
+                      exact);
+  EXPECT_LT(largest_error(found(paper::meshes::delaunay(32, 32, kSide, kSide)), exact), 0.01);
 }
 
 // f = pi/2 sqrt(D / rho_s) (m^2 / a^2 + n^2 / b^2).
 TEST(Modes, HeldNormalsAreSimplySupported) {
   const PaperMaterial material;
   const double a = 0.02, b = 0.03;
-  const ShellMesh mesh = meshes::grid(32, 48, a, b, true);
+  const ShellMesh mesh = paper::meshes::grid(32, 48, a, b, true);
   ModalSupports supports;
   const std::vector<bool> border = boundary_vertices(mesh.triangles, mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
@@ -150,20 +151,21 @@ TEST(Modes, HeldNormalsAreSimplySupported) {
                       std::sqrt(material.bending_stiffness() / material.area_density) *
                       (m * m / (a * a) + n * n / (b * b)));
   std::sort(exact.begin(), exact.end());
-  const Modes modes = eigenmodes(material, meshes::flat_state(mesh), supports, lowest(6));
+  const Modes modes = eigenmodes(material, paper::meshes::flat_state(mesh), supports, lowest(6));
   for (int i = 0; i < 6; ++i)
     EXPECT_NEAR(modes.frequency[i] / exact[static_cast<std::size_t>(i)], 1, 0.01);
 }
 
 // omega ~ h / a^2 sqrt(E / rho): thickness at constant density of the material, so rho_s ~ h.
 TEST(Modes, FrequenciesScaleAsThicknessOverAreaAndNothingElse) {
-  const ShellMesh mesh = meshes::delaunay(7, 6, 0.03, 0.025);
+  const ShellMesh mesh = paper::meshes::delaunay(7, 6, 0.03, 0.025);
   const Eigen::VectorXd one = free_frequencies(mesh, 6);
   PaperMaterial card;
   card.thickness *= 3;
   card.area_density *= 3;
   EXPECT_LT(
-      largest_error(eigenmodes(card, meshes::flat_state(mesh), {}, lowest(6)).frequency, 3 * one),
+      largest_error(eigenmodes(card, paper::meshes::flat_state(mesh), {}, lowest(6)).frequency,
+                    3 * one),
       1e-7);
   ShellMesh larger = mesh;
   larger.pattern *= 2;
@@ -171,10 +173,11 @@ TEST(Modes, FrequenciesScaleAsThicknessOverAreaAndNothingElse) {
   PaperMaterial stiff;
   stiff.young_modulus *= 4;
   EXPECT_LT(
-      largest_error(eigenmodes(stiff, meshes::flat_state(mesh), {}, lowest(6)).frequency, 2 * one),
+      largest_error(eigenmodes(stiff, paper::meshes::flat_state(mesh), {}, lowest(6)).frequency,
+                    2 * one),
       1e-7);
   // Placed elsewhere in space and turned.
-  ShellState moved = meshes::flat_state(mesh);
+  ShellState moved = paper::meshes::flat_state(mesh);
   moved.x =
       (moved.x * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).matrix()).rowwise() +
       Eigen::RowVector3d(0.1, -0.2, 0.3);
@@ -189,7 +192,7 @@ Eigen::VectorXd masses_by_component(const Modes& modes) {
 }
 
 TEST(Modes, ShapesAreMassOrthonormalAndNotRigid) {
-  const ShellMesh mesh = meshes::grid(12, 12, 0.03, 0.03, true);
+  const ShellMesh mesh = paper::meshes::grid(12, 12, 0.03, 0.03, true);
   for (const double kappa : {1e-9, 20.0}) {
     const Modes modes = eigenmodes({}, rolled_state(mesh, kappa), {}, lowest(60));
     const Eigen::VectorXd mass = masses_by_component(modes);
@@ -209,9 +212,9 @@ TEST(Modes, ShapesAreMassOrthonormalAndNotRigid) {
 
 // The forces of the dense solver, differentiated along a shape: f'(x) phi = -omega^2 M phi.
 TEST(Modes, AreThoseOfTheDenseSolversForces) {
-  Sheet sheet = sheets::free_sheet(0.04, 0.03);
-  const ShellState rest = sheets::at_rest(sheet, 150, UniformLayout::delaunay);
-  ShellStepper stepper(sheet, {}, 1);
+  Sheet sheet = paper::sheets::free_sheet(0.04, 0.03);
+  const ShellState rest = paper::sheets::at_rest(sheet, 150, paper::UniformLayout::delaunay);
+  paper::ShellStepper stepper(sheet, {}, 1);
   stepper.set_mesh(rest);
   const Modes modes = eigenmodes(sheet.material, rest, {}, lowest(12));
   const auto forces = [&](Eigen::Index k, double amount) {
@@ -235,12 +238,12 @@ TEST(Modes, AreThoseOfTheDenseSolversForces) {
 // curvature; those that bend its rulings rise with it.
 TEST(Modes, CylindricalPanelHasTheFrequenciesOfKoitersShell) {
   const double a = 0.04;
-  const Eigen::VectorXd slightly = ritz::panel({}, a, a, 10, 7);
-  const Eigen::VectorXd strongly = ritz::panel({}, a, a, 20, 7);
+  const Eigen::VectorXd slightly = paper::ritz::panel({}, a, a, 10, 7);
+  const Eigen::VectorXd strongly = paper::ritz::panel({}, a, a, 20, 7);
   EXPECT_LT(largest_error(strongly.head(3), slightly), 0.02);
   EXPECT_GT(strongly[5], 1.25 * slightly[5]);
   const auto found = [&](double kappa) {
-    const ShellMesh mesh = meshes::grid(40, 40, a, a, true);
+    const ShellMesh mesh = paper::meshes::grid(40, 40, a, a, true);
     return eigenmodes({}, rolled_state(mesh, kappa), {}, lowest(7)).frequency;
   };
   EXPECT_LT(largest_error(found(10), slightly), 0.01);
@@ -253,7 +256,7 @@ TEST(Modes, CylindricalPanelHasTheFrequenciesOfKoitersShell) {
 TEST(Modes, CurvedFacetIsStiffenedAsDonnellSays) {
   const PaperMaterial material;
   const double a = 0.03, b = 0.02, kappa = 10;
-  const ShellMesh mesh = meshes::grid(42, 28, a, b, true);
+  const ShellMesh mesh = paper::meshes::grid(42, 28, a, b, true);
   const ShellState state = rolled_state(mesh, kappa);
   ModalSupports supports;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
@@ -283,7 +286,7 @@ TEST(Modes, CurvedFacetIsStiffenedAsDonnellSays) {
 
 // The rest shape is taken to be the shape: curvature that has become plastic changes nothing.
 TEST(Modes, DoNotDependOnTheRestCurvature) {
-  const ShellMesh mesh = meshes::delaunay(8, 8, 0.03, 0.03);
+  const ShellMesh mesh = paper::meshes::delaunay(8, 8, 0.03, 0.03);
   const ShellState bent = rolled_state(mesh, 20);
   ShellState creased = bent;
   creased.plastic_curvature.col(2).setConstant(20);
@@ -292,8 +295,8 @@ TEST(Modes, DoNotDependOnTheRestCurvature) {
 }
 
 TEST(Modes, BelowAFrequencyAreAllOfThem) {
-  const ShellMesh mesh = meshes::grid(14, 14, 0.03, 0.03, true);
-  const ShellState state = meshes::flat_state(mesh);
+  const ShellMesh mesh = paper::meshes::grid(14, 14, 0.03, 0.03, true);
+  const ShellState state = paper::meshes::flat_state(mesh);
   const Modes many = eigenmodes({}, state, {}, lowest(40));
   const double between = (many.frequency[24] + many.frequency[25]) / 2;
   const Modes below = eigenmodes({}, state, {}, {.most = 40, .up_to = between});
@@ -305,7 +308,7 @@ TEST(Modes, BelowAFrequencyAreAllOfThem) {
 
 // Lanczos' method and the dense solver, on either side of their threshold.
 TEST(Modes, SparseAndDenseSolversAgree) {
-  const ShellMesh mesh = meshes::grid(10, 10, 0.03, 0.03, true);
+  const ShellMesh mesh = paper::meshes::grid(10, 10, 0.03, 0.03, true);
   const ShellState state = rolled_state(mesh, 10);
   const int all = 3 * mesh.vertex_count() - 6;
   const Eigen::VectorXd dense = eigenmodes({}, state, {}, lowest(all)).frequency;
@@ -315,8 +318,8 @@ TEST(Modes, SparseAndDenseSolversAgree) {
 // Rigid motions that the supports leave are not among the modes: the sheet hung up along a line
 // turns about it.
 TEST(Modes, LeaveOutTheSwingOfASheetHungAlongALine) {
-  const ShellMesh mesh = meshes::grid(10, 10, 0.03, 0.03, true);
-  const ShellState state = meshes::flat_state(mesh);
+  const ShellMesh mesh = paper::meshes::grid(10, 10, 0.03, 0.03, true);
+  const ShellState state = paper::meshes::flat_state(mesh);
   ModalSupports supports;
   for (const auto& [a, b] : left_edges(mesh)) {
     for (const int v : {a, b})
@@ -328,7 +331,7 @@ TEST(Modes, LeaveOutTheSwingOfASheetHungAlongALine) {
 }
 
 TEST(Modes, AreTheSameAtAnyThreadCount) {
-  const ShellState state = rolled_state(meshes::delaunay(12, 12, 0.03, 0.03), 15);
+  const ShellState state = rolled_state(paper::meshes::delaunay(12, 12, 0.03, 0.03), 15);
   Modes one, two;
   with_threads(1, [&] { one = eigenmodes({}, state, {}, lowest(20)); });
   with_threads(2, [&] { two = eigenmodes({}, state, {}, lowest(20)); });
@@ -337,7 +340,7 @@ TEST(Modes, AreTheSameAtAnyThreadCount) {
 }
 
 TEST(Modes, ResolvedFrequencyIsThatOfAWaveOfEightEdges) {
-  const ShellMesh mesh = meshes::equilateral(6, 6, 0.002);
+  const ShellMesh mesh = paper::meshes::equilateral(6, 6, 0.002);
   const PaperMaterial material;
   const double k = 2 * std::numbers::pi / 0.016;
   EXPECT_NEAR(resolved_frequency(material, mesh),
@@ -357,8 +360,8 @@ std::string refusal(const ShellState& state, const ModalSupports& supports = {},
 }
 
 TEST(Modes, RefuseWhatIsNoSheet) {
-  const ShellMesh mesh = meshes::grid(2, 2, 0.02, 0.02, true);
-  const ShellState good = meshes::flat_state(mesh);
+  const ShellMesh mesh = paper::meshes::grid(2, 2, 0.02, 0.02, true);
+  const ShellState good = paper::meshes::flat_state(mesh);
   EXPECT_EQ(refusal(good), "no error");
   EXPECT_THAT(refusal(ShellState{}), HasSubstr("has no triangles"));
   ShellState state = good;
@@ -387,8 +390,8 @@ TEST(Modes, RefuseWhatIsNoSheet) {
 }
 
 TEST(Modes, RefuseMoreThanTheMeshHasAndSupportsThatAreNone) {
-  const ShellMesh mesh = meshes::grid(2, 2, 0.02, 0.02, true);
-  const ShellState state = meshes::flat_state(mesh);
+  const ShellMesh mesh = paper::meshes::grid(2, 2, 0.02, 0.02, true);
+  const ShellState state = paper::meshes::flat_state(mesh);
   EXPECT_EQ(refusal(state, {}, 21), "no error");
   EXPECT_THAT(refusal(state, {}, 22),
               HasSubstr("22 modes are asked for of a mesh with 9 vertices (allowed: at most 21)"));
@@ -403,4 +406,4 @@ TEST(Modes, RefuseMoreThanTheMeshHasAndSupportsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

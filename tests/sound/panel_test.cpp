@@ -11,7 +11,7 @@
 #include "models/sound/resonators/shape.h"
 #include "models/sound/voices/ring.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 double integral(const auto& f) {
@@ -244,4 +244,4 @@ TEST(SoundPanel, BeingBentRaisesWhatWavesAlongTheRulings) {
 }
 
 }  // namespace
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

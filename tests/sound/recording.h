@@ -5,7 +5,7 @@
 
 #include "core/method.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// Keeps what a process hands over.
 class Recording final : public FrameSink {
@@ -21,4 +21,4 @@ class Recording final : public FrameSink {
   std::vector<State> checkpoints;
 };
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "testbed/commands/catalogue.h"
+#include "testbed/catalogue.h"
 #include "testbed/runner/spec/spec.h"
 #include "testbed/topic.h"
 

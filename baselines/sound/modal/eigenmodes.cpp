@@ -15,7 +15,7 @@
 #include "core/numerics/sparse_ldlt.h"
 #include "core/random.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
@@ -205,4 +205,4 @@ double resolved_frequency(const PaperMaterial& material, const ShellMesh& mesh) 
          (2 * std::numbers::pi);
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -5,7 +5,7 @@
 
 #include "baselines/sound/modal/operator.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// Reference for the sound of a sheet: the eigenmodes of the dense solver's shell (its stiffness,
 /// its mass: modal_operator.h) about a shape, flat, clamped along edges or bent,
@@ -33,7 +33,7 @@ struct Modes {
 struct ModalOptions {
   int most = 60;                     ///< modes, from the lowest on
   std::optional<double> up_to = {};  ///< only modes below this frequency (Hz)
-  BendingLaw bending = {};
+  paper::BendingLaw bending = {};
 };
 
 /// The lowest modes of a sheet about the places `state.x`.
@@ -46,4 +46,4 @@ Modes eigenmodes(const PaperMaterial& material, const ShellState& state,
 /// (8 l), omega = k^2 sqrt(D / rho_s).
 double resolved_frequency(const PaperMaterial& material, const ShellMesh& mesh);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

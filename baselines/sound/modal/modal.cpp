@@ -10,7 +10,7 @@
 #include "models/sound/voices/air.h"
 #include "models/sound/voices/ring.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 using Eigen::Vector3d;
@@ -193,4 +193,4 @@ std::shared_ptr<const SoundVoices> modal_voices(const ModalSoundOptions& options
   return std::make_shared<ModalVoices>(options, material);
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -5,7 +5,7 @@
 #include "baselines/sound/modal/eigenmodes.h"
 #include "models/sound/process.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// Reference: what a resonator's spectrum should be. The picked flaps and cracs sound as the
 /// eigenmodes of the shell that their resonator is (baselines/sound/modal/eigenmodes.h), clamped
@@ -52,4 +52,4 @@ std::shared_ptr<const SoundVoices> modal_voices(const ModalSoundOptions& options
 /// @param directions  evenly spread over the sphere (a spiral of Fibonacci)
 Eigen::VectorXd radiated_pressure(const ShellState& state, const Modes& modes, int directions);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

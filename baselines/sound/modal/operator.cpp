@@ -15,7 +15,7 @@
 #include "models/paper/shell/dynamics.h"
 #include "models/paper/tear/lips.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 constexpr const char* kWho = "modes of a sheet";
@@ -44,7 +44,7 @@ void require_state(const ShellState& state) {
   }
   if (!state.plastic_curvature.allFinite() || !state.damage.allFinite())
     throw Error("plastic curvature or damage is not finite", kWho);
-  const int parts = part_count(mesh.triangles);
+  const int parts = paper::part_count(mesh.triangles);
   if (parts > 1)
     throw Error("the mesh is in " + std::to_string(parts) + " parts", kWho, "one part");
 }
@@ -196,7 +196,7 @@ std::vector<Edge> sorted_edges(const std::vector<Edge>& edges) {
 }
 
 ModalOperator::ModalOperator(const PaperMaterial& material, const ShellState& sheet,
-                             const ModalSupports& supports, const BendingLaw& law)
+                             const ModalSupports& supports, const paper::BendingLaw& law)
     : state(with_mirrors(checked(material, sheet), supports.clamped, nodes)),
       elements(state.mesh, material, law),
       triangles(sheet.mesh.triangle_count()),
@@ -219,9 +219,9 @@ void ModalOperator::free_vertices(const ModalSupports& supports) {
 
 void ModalOperator::assemble() {
   std::vector<Eigen::Triplet<double>> triplets;
-  ShellElements::Local local;
+  paper::ShellElements::Local local;
   for (int e = 0; e < triangles; ++e) {
-    elements.evaluate(e, state, state.x, ShellElements::Order::material_hessian, local);
+    elements.evaluate(e, state, state.x, paper::ShellElements::Order::material_hessian, local);
     const auto members = elements.nodes(e);
     const auto map = [&](std::size_t i, const Freedom& f) -> Eigen::Matrix3d {
       const Node& node = nodes[members[i]];
@@ -304,10 +304,10 @@ Eigen::VectorXd ModalOperator::curvature_load(const Eigen::MatrixX3d& change) co
   after.plastic_curvature.setZero();
   after.plastic_curvature.topRows(triangles) = change;
   Eigen::VectorXd load = Eigen::VectorXd::Zero(3 * mass.size());
-  ShellElements::Local without, with;
+  paper::ShellElements::Local without, with;
   for (int e = 0; e < triangles; ++e) {
-    elements.evaluate(e, before, state.x, ShellElements::Order::gradient, without);
-    elements.evaluate(e, after, state.x, ShellElements::Order::gradient, with);
+    elements.evaluate(e, before, state.x, paper::ShellElements::Order::gradient, without);
+    elements.evaluate(e, after, state.x, paper::ShellElements::Order::gradient, with);
     const auto members = elements.nodes(e);
     for (std::size_t i = 0; i < members.size(); ++i) {
       const Node& node = nodes[members[i]];
@@ -319,4 +319,4 @@ Eigen::VectorXd ModalOperator::curvature_load(const Eigen::MatrixX3d& change) co
   return load;
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

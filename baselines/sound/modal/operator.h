@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "models/paper/shell/elements.h"
+#include "models/sound/sheet.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// How the border of a piece of paper is held while it rings. Border edges that are not named are
 /// free.
@@ -26,7 +27,7 @@ std::vector<Edge> sorted_edges(const std::vector<Edge>& edges);
 
 /// Small vibrations of the dense solver's own shell about a shape, K u = omega^2 M u.
 ///
-/// K is the sum of the elements' material Hessians (ShellElements, Order::material_hessian), M the
+/// K is the sum of the elements' material Hessians (paper::ShellElements, Order::material_hessian), M the
 /// lumped masses of the stepper. So the shape is taken for one free of stress, whether it is bent
 /// elastically or creased: K does not depend on the rest curvature. What that leaves out of a sheet
 /// bent elastically by the curvature kappa are the moments it holds, (kappa / k)^2 of the
@@ -47,7 +48,7 @@ struct ModalOperator {
   ///                without vertex or direction, a material out of range, and when nothing is left
   ///                to move
   ModalOperator(const PaperMaterial& material, const ShellState& state,
-                const ModalSupports& supports, const BendingLaw& law);
+                const ModalSupports& supports, const paper::BendingLaw& law);
 
   /// Displacements (3 n x k; m, by vertices x0 y0 z0 x1 ...) of `unknowns` x k scaled unknowns.
   [[nodiscard]] Eigen::MatrixXd displacements(const Eigen::MatrixXd& scaled) const;
@@ -69,7 +70,7 @@ struct ModalOperator {
 
   std::vector<Node> nodes;
   ShellState state;  ///< mirror triangles and corners behind those of the sheet
-  ShellElements elements;
+  paper::ShellElements elements;
   int triangles = 0;              ///< of the sheet
   std::vector<Freedom> freedoms;  ///< of the sheet's vertices
   Eigen::VectorXd mass;           ///< of the sheet's vertices (kg)
@@ -83,4 +84,4 @@ struct ModalOperator {
   void find_rigid_motions(const ModalSupports& supports);
 };
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -8,9 +8,7 @@
 #include <vector>
 
 #include "experiments/paper/scene/options.h"
-#include "models/paper/sheet/animation.h"
 #include "models/paper/sheet/sheet.h"
-#include "models/sound/voices/bank.h"
 #include "testbed/topic.h"
 
 namespace geoprior::paper {
@@ -20,14 +18,9 @@ namespace geoprior::paper {
 class PaperScene final : public ProcessScene {
  public:
   Sheet sheet;
-  double fold_radius = 0.03;                        ///< of the discs within which folds cancel (m)
-  std::shared_ptr<const SheetAnimation> animation;  ///< or null: the sheet is simulated
-  std::shared_ptr<const SoundBank> bank;            ///< or null: generated
+  double fold_radius = 0.03;  ///< of the discs within which folds cancel (m)
 
   [[nodiscard]] std::map<std::string, double> facts() const override;
-  /// @throws Error  when the scene has none; `who` asks
-  [[nodiscard]] const std::shared_ptr<const SheetAnimation>& require_animation(
-      const std::string& who) const;
 };
 
 /// The sheet that the options describe. @throws Error  naming the key

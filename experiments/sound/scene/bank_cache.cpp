@@ -15,7 +15,7 @@
 #include "testbed/runner/journal/sha256.h"
 #include "testbed/runner/process/build_info.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 namespace fs = std::filesystem;
@@ -136,4 +136,4 @@ TopicCommand bank_command() {
                                            "folder", "made, or empty", write_generated);
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -6,7 +6,7 @@
 #include "models/sound/voices/bank.h"
 #include "testbed/topic.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// What `generate_bank` makes, read from `folder` where this very build has made it before, and
 /// left there else. A file whose bank has another checksum than the one behind it is made anew; a
@@ -21,4 +21,4 @@ std::filesystem::path bank_folder();
 /// used as a user's own.
 TopicCommand bank_command();
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

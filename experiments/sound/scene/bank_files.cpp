@@ -11,7 +11,7 @@
 #include "testbed/formats/text/csv_table.h"
 #include "testbed/formats/wav_file.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 namespace fs = std::filesystem;
@@ -136,4 +136,4 @@ void write_bank(const SoundBank& bank, const fs::path& folder) {
   write_file_atomically(folder / kList, list);
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

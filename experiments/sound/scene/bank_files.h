@@ -6,7 +6,7 @@
 
 #include "models/sound/voices/bank.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// Reads a bank: "bank.csv" has a row a sound, with the columns file, kind (flap, crac, friction,
 /// tear) and, if need be, l_r, l_c, width (m; of a panel, across its rulings), root_across and
@@ -28,4 +28,4 @@ SoundBank read_bank(const std::filesystem::path& folder, std::vector<std::string
 /// folder is made; files that are there are replaced.
 void write_bank(const SoundBank& bank, const std::filesystem::path& folder);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

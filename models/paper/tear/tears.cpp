@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// A point so near to an edge, over the pattern's width, lies on it.
-constexpr double kOnEdge = 1e-9;
+/// A point so near to a knot of a tear, over the pattern's width, lies on it.
+constexpr double kOnKnot = 1e-9;
 
 }  // namespace
 
@@ -90,7 +90,7 @@ void Tears::join(int tear, const Vector2d& end) {
     Tear& other = tears_[t];
     if (static_cast<int>(t) == tear || other.knots.size() < 2) continue;
     const Vector2d& last_knot = other.path[other.knots[other.knots.size() - 2]];
-    if (distance_to_segment(end, last_knot, other.tip()) <= kOnEdge * width(whole_))
+    if (distance_to_segment(end, last_knot, other.tip()) <= kOnKnot * width(whole_))
       other.joined = true;
   }
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 using Eigen::Vector3d;
 
@@ -167,4 +167,4 @@ void SoundDetector::load(StateReader& in, const SheetSnapshot& last) {
   sampler_.set_last(field_);
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

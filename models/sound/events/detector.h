@@ -4,14 +4,14 @@
 #include <vector>
 
 #include "core/context.h"
-#include "models/paper/sheet/sheet.h"
 #include "models/sound/events/event.h"
 #include "models/sound/events/flips.h"
 #include "models/sound/events/friction.h"
 #include "models/sound/resonators/resonator.h"
 #include "models/sound/resonators/shape.h"
+#include "models/sound/sheet.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// How what a sheet sounds like is found.
 struct DetectionOptions {
@@ -75,4 +75,4 @@ class SoundDetector {
   std::optional<double> torn_until_;  ///< steps of tears until then are events, or a cut (s)
 };
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

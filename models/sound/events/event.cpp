@@ -1,6 +1,6 @@
 #include "models/sound/events/event.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 /// The plain numbers of an event, in the order in which they are saved.
@@ -39,4 +39,4 @@ SoundEvent load_sound_event(StateReader& in) {
   return event;
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -7,7 +7,7 @@
 
 #include "core/state_bytes.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// What makes a sound (thesis 3.2.3): a smooth region that snaps to the other side, a crumpled one
 /// that does, a sheet that slides, a step of a tear.
@@ -49,4 +49,4 @@ struct SoundEvent {
 void save(const SoundEvent& event, StateWriter& out);
 SoundEvent load_sound_event(StateReader& in);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

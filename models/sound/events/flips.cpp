@@ -9,7 +9,7 @@
 
 #include "core/disjoint_sets.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 bool before(const CellFlip& a, const CellFlip& b) {
@@ -168,4 +168,4 @@ void FlipDetector::load(StateReader& in) {
   }
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

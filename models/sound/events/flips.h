@@ -7,7 +7,7 @@
 #include "core/state_bytes.h"
 #include "models/sound/resonators/grid.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// When a change of the curvature's sign is sudden enough to be heard.
 struct FlipOptions {
@@ -74,4 +74,4 @@ class FlipDetector {
   std::vector<std::array<char, 4>> held_;  ///< whether cells with flips hold to their neighbours
 };
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

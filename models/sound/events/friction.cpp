@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 using Eigen::Vector3d;
 
@@ -42,7 +42,7 @@ SoundEvent SlideDetector::event_of(const Course& course) const {
 std::vector<SoundEvent> SlideDetector::push(const SheetField& field) {
   std::vector<SoundEvent> ended;
   for (std::size_t k = 0; k < courses_.size(); ++k) {
-    const ObstacleAt obstacle(sheet_.obstacles[k], field.time);
+    const paper::ObstacleAt obstacle(sheet_.obstacles[k], field.time);
     Course& course = courses_[k];
     Sliding now{field.time};
     for (int c = 0; c < grid_.count(); ++c) {
@@ -100,4 +100,4 @@ void SlideDetector::load(StateReader& in) {
   }
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -4,11 +4,11 @@
 
 #include "core/options.h"
 #include "models/paper/contact/contact.h"
-#include "models/paper/sheet/sheet.h"
 #include "models/sound/events/event.h"
 #include "models/sound/resonators/grid.h"
+#include "models/sound/sheet.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// When a sheet slides audibly.
 struct FrictionOptions {
@@ -46,8 +46,8 @@ class SlideDetector {
   const Sheet& sheet_;
   const SoundGrid& grid_;
   FrictionOptions options_;
-  ObstacleContactOptions contact_;
+  paper::ObstacleContactOptions contact_;
   std::vector<Course> courses_;  ///< one an obstacle
 };
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

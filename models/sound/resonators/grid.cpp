@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "models/paper/sheet/pattern_locator.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 using Eigen::Vector2d;
 
@@ -61,7 +61,7 @@ bool SheetField::holds(const SoundGrid& grid, int cell, int side) const {
 struct SheetSampler::Cover {
   ShellMesh mesh;
   CurvatureFit fit;
-  std::vector<PatternLocator::Place> at;  ///< centres of the cells; triangle -1: outside
+  std::vector<paper::PatternLocator::Place> at;  ///< centres of the cells; triangle -1: outside
   std::vector<std::array<char, 2>> joined;
   std::vector<BorderStretch> border;
   /// Of each cell the ones after and before it, itself where the sheet does not hold.
@@ -75,10 +75,10 @@ constexpr double kOnTriangle = -1e-9;  // barycentric
 
 /// The triangle at the centre of a cell, or the nearest one where the mesh cuts a corner of the
 /// pattern; none where the mesh leaves that part of the pattern out.
-PatternLocator::Place place_in_mesh(const SoundGrid& grid, const ShellMesh& mesh,
-                                    const PatternLocator& locator, int cell, int guess) {
+paper::PatternLocator::Place place_in_mesh(const SoundGrid& grid, const ShellMesh& mesh,
+                                    const paper::PatternLocator& locator, int cell, int guess) {
   constexpr double kBeside = 0.4;  // of a cell
-  const PatternLocator::Place at = locator.locate(grid.centre(cell), guess);
+  const paper::PatternLocator::Place at = locator.locate(grid.centre(cell), guess);
   Vector2d there(0, 0);
   for (int k = 0; k < 3; ++k) {
     there += at.weights[k] * mesh.pattern.row(mesh.triangles(at.triangle, k)).transpose();
@@ -88,8 +88,8 @@ PatternLocator::Place place_in_mesh(const SoundGrid& grid, const ShellMesh& mesh
 }
 
 /// Which cells have a triangle at their centre, and which hold together over it.
-void join_cells(const SoundGrid& grid, const PatternLocator& locator,
-                const std::vector<PatternLocator::Place>& at,
+void join_cells(const SoundGrid& grid, const paper::PatternLocator& locator,
+                const std::vector<paper::PatternLocator::Place>& at,
                 std::vector<std::array<char, 2>>& joined) {
   joined.assign(at.size(), {0, 0});
   for (int c = 0; c < grid.count(); ++c) {
@@ -110,7 +110,7 @@ void join_cells(const SoundGrid& grid, const PatternLocator& locator,
 
 /// The cell of the sheet whose centre is nearest to a place of the border, on the side of the
 /// triangle there; -1 when none is within two cells.
-int bounded_cell(const SoundGrid& grid, const std::vector<PatternLocator::Place>& at,
+int bounded_cell(const SoundGrid& grid, const std::vector<paper::PatternLocator::Place>& at,
                  const Vector2d& place, const Vector2d& inwards) {
   const int middle = grid.at(place + 0.25 * grid.spacing * inwards);
   int best = -1;
@@ -132,7 +132,7 @@ int bounded_cell(const SoundGrid& grid, const std::vector<PatternLocator::Place>
 }
 
 std::vector<BorderStretch> border_of(const SoundGrid& grid, const ShellMesh& mesh,
-                                     const std::vector<PatternLocator::Place>& at) {
+                                     const std::vector<paper::PatternLocator::Place>& at) {
   std::vector<BorderStretch> border;
   const EdgeConnectivity connectivity(mesh.triangles);
   for (int h = 0; h < connectivity.half_edge_count(); ++h) {
@@ -178,7 +178,7 @@ const SheetSampler::Cover& SheetSampler::cover_of(const ShellMesh& mesh) {
   auto cover = std::make_shared<Cover>();
   cover->mesh = mesh;
   cover->fit = fit_curvature(mesh.pattern, mesh.triangles);
-  const PatternLocator locator(mesh);
+  const paper::PatternLocator locator(mesh);
   cover->at.resize(static_cast<std::size_t>(grid_.count()));
   int last = -1;
   for (int c = 0; c < grid_.count(); ++c) {
@@ -234,7 +234,7 @@ SheetField SheetSampler::sample(const SheetSnapshot& frame) {
   Eigen::MatrixX3d S = Eigen::MatrixX3d::Zero(n, 3);
   const bool moves = frame.v.rows() == frame.x.rows();
   for (int c = 0; c < n; ++c) {
-    const PatternLocator::Place& at = cover.at[static_cast<std::size_t>(c)];
+    const paper::PatternLocator::Place& at = cover.at[static_cast<std::size_t>(c)];
     if (at.triangle < 0) continue;
     field.inside[static_cast<std::size_t>(c)] = 1;
     S.row(c) = shape.row(at.triangle);
@@ -259,4 +259,4 @@ SheetField SheetSampler::sample(const SheetSnapshot& frame) {
   return field;
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/geometry/curvature_fit.h"
-#include "models/paper/sheet/animation.h"
-#include "models/paper/sheet/pattern.h"
+#include "models/sound/animation.h"
+#include "models/sound/sheet.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// A fixed grid of square cells over a pattern. What is measured on it survives every remeshing,
 /// and can be compared between meshes.
@@ -93,4 +93,4 @@ class SheetSampler {
   std::optional<SheetField> last_;
 };
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

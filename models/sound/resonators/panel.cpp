@@ -11,7 +11,7 @@
 #include "models/sound/voices/air.h"
 #include "models/sound/voices/ring.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 using std::numbers::pi;
@@ -198,4 +198,4 @@ double lowest_frequency(const SoundPanel& panel, double root_along, double root_
   return std::sqrt(lowest) / (2 * pi);
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

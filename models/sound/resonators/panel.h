@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "models/paper/sheet/sheet.h"
+#include "models/sound/sheet.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// How the two ends of a beam are held.
 enum class BeamEnds { free_free, clamped_clamped, clamped_free };
@@ -74,4 +74,4 @@ std::vector<PanelMode> panel_modes(const SoundPanel& panel, const PaperMaterial&
 double lowest_frequency(const SoundPanel& panel, double root_along, double root_across,
                         const PaperMaterial& material);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

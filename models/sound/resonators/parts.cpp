@@ -11,7 +11,7 @@
 
 #include "core/disjoint_sets.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 using Eigen::Vector2d;
@@ -147,4 +147,4 @@ std::vector<int> cut_at_creases(const SoundGrid& grid, const SheetField& field,
   return part;
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -5,7 +5,7 @@
 #include "core/options.h"
 #include "models/sound/resonators/grid.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// What blocks vibrations.
 struct CreaseOptions {
@@ -37,4 +37,4 @@ void describe(OptionVisitor& v, CreaseOptions& options);
 std::vector<int> cut_at_creases(const SoundGrid& grid, const SheetField& field,
                                 const CreaseOptions& options);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 using Eigen::Vector2d;
@@ -145,4 +145,4 @@ Resonator find_resonator(const SoundGrid& grid, const SheetField& field,
   return found;
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -8,7 +8,7 @@
 #include "models/sound/resonators/grid.h"
 #include "models/sound/resonators/parts.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// What a resonator is, and what kind of sound it makes.
 struct ResonatorOptions {
@@ -46,4 +46,4 @@ Resonator find_resonator(const SoundGrid& grid, const SheetField& field,
                          const std::vector<int>& parts, const std::vector<int>& seeds,
                          const IsHeld& is_held);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -8,7 +8,7 @@
 #include "core/disjoint_sets.h"
 #include "core/error.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 using Eigen::Vector3d;
@@ -269,4 +269,4 @@ ResonatorShape load_resonator_shape(StateReader& in) {
   return shape;
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

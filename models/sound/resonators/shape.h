@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "core/state_bytes.h"
-#include "models/paper/shell/state.h"
 #include "models/sound/events/event.h"
 #include "models/sound/resonators/grid.h"
 #include "models/sound/resonators/resonator.h"
+#include "models/sound/sheet.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// A resonator as the piece of the sheet that it is, at one time: its cells in space, how each of
 /// their sides is bounded, and what the event has changed. A solver of shells can mesh it.
@@ -56,4 +56,4 @@ ResonatorMesh mesh_of(const ResonatorShape& shape, int subdivision);
 void save(const ResonatorShape& shape, StateWriter& out);
 ResonatorShape load_resonator_shape(StateReader& in);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// Air at 20 degrees.
 inline constexpr double kSoundSpeed = 343;    // m/s
@@ -28,4 +28,4 @@ inline double pressure_jump(double omega, double wave_square, double area) {
   return 2 * kAirDensity * omega * omega / std::sqrt(std::max(square - k * k, square / 4));
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -13,7 +13,7 @@
 #include "models/sound/voices/air.h"
 #include "models/sound/voices/ring.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -346,4 +346,4 @@ void require_valid(const SoundBank& bank, const std::string& where) {
   }
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/options.h"
-#include "models/paper/sheet/sheet.h"
 #include "models/sound/events/event.h"
+#include "models/sound/sheet.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// Integral over time of the squared pressure, 1 m away, of what radiates from an event (Pa^2 s).
 ///
@@ -62,7 +62,7 @@ struct SoundBank {
   [[nodiscard]] std::vector<int> of(SoundKind kind) const;
 };
 
-/// How a bank is generated. Nothing is recorded: docs/methods/paper-sound.md has the physics.
+/// How a bank is generated. Nothing is recorded: docs/methods/sound.md has the physics.
 struct BankOptions {
   int sizes = 8;                                  ///< of l_r and of l_c each
   int variants = 2;                               ///< of flaps and of cracs for each pair
@@ -106,4 +106,4 @@ double recorded_checksum(const SoundBank& bank);
 ///                finite, a sound without samples or with one that is not finite
 void require_valid(const SoundBank& bank, const std::string& where);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "models/sound/voices/air.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 using Eigen::Vector3d;
@@ -193,4 +193,4 @@ Mix mix(const std::vector<Voice>& voices, double duration, const MixOptions& opt
   return result;
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -7,7 +7,7 @@
 
 #include "core/options.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// Where the sound is heard, and how it is written down.
 struct MixOptions {
@@ -58,4 +58,4 @@ struct Mix {
 /// @throws Error    on another sample rate than 44100 or 48000, or a wall without normal
 Mix mix(const std::vector<Voice>& voices, double duration, const MixOptions& options);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -5,7 +5,7 @@
 #include <complex>
 #include <numbers>
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 using std::numbers::pi;
@@ -52,4 +52,4 @@ void fade_out(Eigen::Ref<Eigen::VectorXd> out, int rate) {
   for (Eigen::Index i = 0; i < n; ++i) out[out.size() - 1 - i] *= rising(i, n);
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

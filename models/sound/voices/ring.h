@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// Share of its loudest moment at which what rings is over.
 inline constexpr double kSilence = 1e-3;
@@ -31,4 +31,4 @@ void fade_in(Eigen::Ref<Eigen::VectorXd> out, Eigen::Index start, double seconds
 /// One over the last 20 ms: nothing breaks off.
 void fade_out(Eigen::Ref<Eigen::VectorXd> out, int sample_rate);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 Voice voice_of(const SoundEvent& event, const SoundBank& bank, int sound,
                const PaperMaterial& material) {
@@ -30,4 +30,4 @@ Voice voice_of(const SoundEvent& event, const SoundBank& bank, int sound,
   return voice;
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "core/random.h"
-#include "models/paper/sheet/sheet.h"
+#include "models/sound/sheet.h"
 #include "models/sound/voices/bank.h"
 #include "models/sound/voices/mixer.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 inline constexpr double kSlideFade = 5e-3;  ///< s: a sound of sliding before and after it slides
 
@@ -14,4 +14,4 @@ inline constexpr double kSlideFade = 5e-3;  ///< s: a sound of sliding before an
 Voice voice_of(const SoundEvent& event, const SoundBank& bank, int sound,
                const PaperMaterial& material);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

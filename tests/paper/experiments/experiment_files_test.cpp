@@ -24,17 +24,11 @@ std::vector<fs::path> experiment_files() {
   return {files.begin(), files.end()};
 }
 
-/// Whether it listens to the frames of another run, which are not there before that is made.
-bool listens(const CaseSpec& c) {
-  return dynamic_cast<const TypedOptions<PaperSceneOptions>&>(*c.scene)
-      .options.animation.has_value();
-}
-
 /// What moves faster than a sheet follows on purpose: five fast hands, a sheet that is shaken.
 bool is_fast(const fs::path& file) { return file.stem() == "fast-hands" || file.stem() == "shake"; }
 
 TEST(PaperExperiments, AreThoseThatTheTopicHas) {
-  EXPECT_EQ(experiment_files().size(), 38U);
+  EXPECT_EQ(experiment_files().size(), 31U);
   for (const fs::path& file : experiment_files()) {
     for (const bool quick : {false, true}) {
       LoadRequest request;
@@ -42,7 +36,6 @@ TEST(PaperExperiments, AreThoseThatTheTopicHas) {
       const Experiment experiment = load_experiment(file, {make_topic()}, request);
       EXPECT_FALSE(experiment.cases.empty()) << file;
       for (const CaseSpec& c : experiment.cases) {
-        if (listens(c)) continue;
         EXPECT_NO_THROW(make_topic().load(*c.scene, file.parent_path(), c.seed)) << file;
       }
     }
@@ -54,7 +47,6 @@ TEST(PaperExperiments, AreThoseThatTheTopicHas) {
 TEST(PaperExperiments, NeverPullTwoHandlesFartherApartThanTheirPatternAllows) {
   for (const fs::path& file : experiment_files()) {
     const Experiment experiment = load_experiment(file, {make_topic()}, {});
-    if (listens(experiment.cases[0])) continue;
     const auto scene = make_topic().load(*experiment.cases[0].scene, file.parent_path(), 1);
     const Sheet& sheet = dynamic_cast<const PaperScene&>(*scene).sheet;
     if (!sheet.toughness.tears()) {
@@ -71,7 +63,6 @@ TEST(PaperExperiments, NeverPullTwoHandlesFartherApartThanTheirPatternAllows) {
 TEST(PaperExperiments, OnlyFastHandsAreFasterThanASheetCanFollow) {
   for (const fs::path& file : experiment_files()) {
     const Experiment experiment = load_experiment(file, {make_topic()}, {});
-    if (listens(experiment.cases[0])) continue;
     const auto scene = make_topic().load(*experiment.cases[0].scene, file.parent_path(), 1);
     const auto warning =
         fast_handle_warning(dynamic_cast<const PaperScene&>(*scene).sheet, "scene");

@@ -1,4 +1,4 @@
-#include "experiments/paper/scene/sheet_files.h"
+#include "experiments/sound/scene/sheet_files.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include "testbed/formats/mesh/mesh_file.h"
 #include "testbed/formats/vtk/files.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 namespace fs = std::filesystem;
@@ -167,4 +167,4 @@ std::shared_ptr<const SheetAnimation> open_sheet_files(const SheetFileOptions& o
   return sheet;
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -2,22 +2,8 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace geoprior {
-
-/// An experiment file of the clone, as `list` shows it.
-struct CatalogueEntry {
-  std::string id;
-  std::string title;
-  std::string figure;
-  std::string topic;
-  std::filesystem::path file;
-};
-
-/// experiments/<topic>/<name>.toml of the clone, sorted; files with a second dot in their name
-/// (human.skeleton.toml) are inputs.
-std::vector<CatalogueEntry> catalogue();
 
 /// The file of an identifier of the catalogue, or a file that is named itself.
 /// @throws Error  naming identifiers that are near

@@ -1,4 +1,4 @@
-#include "experiments/paper/scene/swatches.h"
+#include "experiments/sound/scene/swatches.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "models/sound/process.h"
 #include "testbed/formats/wav_file.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 TEST(Swatches, EachIsOneFlapWithItsLengths) {
@@ -70,20 +70,18 @@ FramesInMemory recorded(double frequency, double gain, double time,
 }
 
 TEST(VoiceDistance, IsNothingForTheSameSoundAtAnyGainAndGrowsWithTheInterval) {
-  PaperScene scene;
-  scene.animation = std::make_shared<StoredSheetAnimation>(std::vector<SheetSnapshot>{}, "none");
   const FramesInMemory reference = recorded(500, 0.8, 0.1, nullptr);
   const auto distance = [&](double frequency, double gain) {
-    return voice_distance(scene, recorded(frequency, gain, 0.1, &reference))->median;
+    return voice_distance(recorded(frequency, gain, 0.1, &reference))->median;
   };
   EXPECT_NEAR(distance(500, 0.2), 0, 0.01);
   EXPECT_GT(distance(800, 0.8), 5);
   EXPECT_GT(distance(2000, 0.8), distance(800, 0.8));
-  EXPECT_NEAR(*voice_distance(scene, recorded(500, 0.2, 0.1, &reference))->decay, 0, 0.01);
-  EXPECT_FALSE(voice_distance(scene, recorded(500, 0.8, 0.1, nullptr)));
+  EXPECT_NEAR(*voice_distance(recorded(500, 0.2, 0.1, &reference))->decay, 0, 0.01);
+  EXPECT_FALSE(voice_distance(recorded(500, 0.8, 0.1, nullptr)));
   // Another event: nothing to compare.
-  EXPECT_THROW(voice_distance(scene, recorded(500, 0.8, 0.2, &reference)), Error);
+  EXPECT_THROW(voice_distance(recorded(500, 0.8, 0.2, &reference)), Error);
 }
 
 }  // namespace
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "core/options.h"
-#include "models/paper/sheet/animation.h"
-#include "models/paper/sheet/sheet.h"
+#include "models/sound/animation.h"
+#include "models/sound/sheet.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// Rectangles of paper that snap one after the other: resonators of known lengths, for banks to be
 /// judged by. Each pair of a length along the rulings and a width across is cut three times: free,
@@ -28,4 +28,4 @@ void describe(OptionVisitor& v, SwatchOptions& options);
 /// @throws Error  without lengths or widths, or for one that is not positive
 std::shared_ptr<const SheetAnimation> make_swatches(const SwatchOptions& options, Sheet& sheet);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

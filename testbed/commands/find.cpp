@@ -1,50 +1,17 @@
-#include "testbed/commands/catalogue.h"
+#include "testbed/commands/find.h"
 
 #include <algorithm>
 
 #include "core/error.h"
+#include "testbed/catalogue.h"
+#include "testbed/formats/folders.h"
 #include "testbed/formats/input_file.h"
-#include "testbed/home.h"
 #include "testbed/runner/run_folder.h"
-#include "testbed/runner/spec/toml_tree.h"
 
 namespace geoprior {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string text_of(const TomlNode& root, const char* key) {
-  const TomlNode* node = root.find(key);
-  return node == nullptr ? std::string() : node->text;
-}
-
-std::vector<fs::path> sorted_entries(const fs::path& folder) {
-  std::vector<fs::path> entries;
-  std::error_code none;
-  for (const auto& entry : fs::directory_iterator(folder, none)) entries.push_back(entry.path());
-  std::sort(entries.begin(), entries.end());
-  return entries;
-}
-
-}  // namespace
-
-std::vector<CatalogueEntry> catalogue() {
-  std::vector<CatalogueEntry> entries;
-  for (const fs::path& folder : sorted_entries(geoprior_home() / "experiments")) {
-    if (!fs::is_directory(folder)) continue;
-    for (const fs::path& file : sorted_entries(folder)) {
-      const bool experiment = file.extension() == ".toml" && !file.stem().has_extension();
-      if (!experiment) continue;
-      const std::string id = folder.filename().string() + "/" + file.stem().string();
-      const TomlNode root = parse_toml_file(file);
-      entries.push_back(
-          {id, text_of(root, "title"), text_of(root, "figure"), text_of(root, "topic"), file});
-    }
-  }
-  return entries;
-}
-
-namespace {
 
 /// Whether a name means a file and no identifier: by its ending, or by where it begins.
 bool is_file_name(const std::string& name) {
@@ -58,9 +25,8 @@ bool is_file_name(const std::string& name) {
 fs::path experiment_file(const std::string& id_or_file) {
   if (fs::is_regular_file(id_or_file)) return id_or_file;
   if (fs::exists(id_or_file) && !fs::is_directory(id_or_file)) require_regular_file(id_or_file);
-  const fs::path file = geoprior_home() / "experiments" / (id_or_file + ".toml");
-  if (fs::is_regular_file(file)) return file;
   if (is_file_name(id_or_file)) throw Error("no such file", id_or_file);
+  if (const auto file = catalogued_file(id_or_file)) return *file;
   std::vector<std::string> ids;
   for (const CatalogueEntry& entry : catalogue()) ids.push_back(entry.id);
   throw Error("there is no experiment '" + id_or_file + "'", "", allowed_names(id_or_file, ids));

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "models/paper/shell/state.h"
+#include "models/sound/sheet.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// A place that the tip of a tear has come to.
 struct TornPlace {
@@ -58,4 +58,4 @@ class StoredSheetAnimation final : public SheetAnimation {
 ///                or a triangle that is turned over in the pattern or has no area there
 void require_valid(const SheetSnapshot& frame, const std::string& where);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "models/paper/sheet/animation.h"
-#include "models/paper/sheet/pattern.h"
+#include "models/sound/animation.h"
+#include "models/sound/sheet.h"
 #include "testbed/formats/sequence/files.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 
 /// The frames of an animated sheet, and which of them are looked at.
 struct SheetFileOptions {
@@ -36,4 +36,4 @@ std::shared_ptr<const SheetAnimation> open_sheet_files(const SheetFileOptions& o
                                                        std::vector<std::string>& warnings,
                                                        std::vector<std::filesystem::path>& inputs);
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -1,10 +1,10 @@
-#include "models/paper/sheet/animation.h"
+#include "models/sound/animation.h"
 
 #include <utility>
 
 #include "core/error.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 void require_finite(const Eigen::MatrixXd& rows, const char* what, const std::string& where) {
@@ -50,4 +50,4 @@ void require_valid(const SheetSnapshot& frame, const std::string& where) {
   }
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

@@ -1,4 +1,4 @@
-#include "experiments/paper/scene/swatches.h"
+#include "experiments/sound/scene/swatches.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace geoprior::paper {
+namespace geoprior::sound {
 namespace {
 
 using Eigen::Vector2d;
@@ -176,7 +176,7 @@ std::shared_ptr<const SheetAnimation> make_swatches(const SwatchOptions& options
   }
   std::vector<Swatch> swatches = swatches_of(options);
   const Vector2d size = lay_out(swatches);
-  sheet.pattern = rectangle_pattern(size.x(), size.y());
+  sheet.pattern = paper::rectangle_pattern(size.x(), size.y());
   sheet.handles.clear();
   for (const Swatch& one : swatches) {
     if (one.support == Support::clamped) sheet.handles.push_back(clamp_of(one));
@@ -184,4 +184,4 @@ std::shared_ptr<const SheetAnimation> make_swatches(const SwatchOptions& options
   return std::make_shared<Swatches>(std::move(swatches), options);
 }
 
-}  // namespace geoprior::paper
+}  // namespace geoprior::sound

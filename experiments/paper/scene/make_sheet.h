@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/paper/scene/sheet_options.h"
+#include "models/paper/sheet/sheet.h"
+
+namespace geoprior::paper {
+
+/// The pattern that the options describe, with its holes and cuts.
+/// @param folder  of the experiment file, against which a relative file is tried first
+/// @param files   added: the file of an SVG pattern
+/// @throws Error  naming the key, or file and place
+Pattern make_pattern(const PatternOptions& options, const std::filesystem::path& folder,
+                     std::vector<std::filesystem::path>& files);
+
+/// @param where   the key of the handle, for messages
+/// @throws Error  naming the key
+Handle make_handle(const HandleOptions& options, const std::string& where);
+
+/// @param where   the key of the obstacle, for messages
+/// @throws Error  naming the key
+Obstacle make_obstacle(const ObstacleOptions& options, const std::string& where);
+
+/// @param seed  of the experiment
+Toughness make_toughness(const ToughnessOptions& options, std::uint64_t seed);
+
+}  // namespace geoprior::paper

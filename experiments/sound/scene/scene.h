@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "experiments/sound/scene/options.h"
+#include "models/sound/animation.h"
+#include "models/sound/voices/bank.h"
+#include "testbed/topic.h"
+
+namespace geoprior::sound {
+
+/// An animated sheet, what holds it and what it slides along: what every method of sound is given.
+class SoundScene final : public ProcessScene {
+ public:
+  Sheet sheet;
+  std::shared_ptr<const SheetAnimation> animation;
+  std::shared_ptr<const SoundBank> bank;  ///< or null: generated
+
+  [[nodiscard]] std::map<std::string, double> facts() const override;
+};
+
+/// Opens the animation and reads the bank.
+/// @param folder  of the experiment file, against which relative files are tried first
+/// @param seed    of the experiment, for what the scene draws
+/// @throws Error  naming key or file, and place (see require_valid)
+std::shared_ptr<SoundScene> load_sound_scene(const SoundSceneOptions& options,
+                                             const std::filesystem::path& folder,
+                                             std::uint64_t seed);
+
+}  // namespace geoprior::sound
