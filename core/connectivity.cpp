@@ -79,6 +79,24 @@ void EdgeConnectivity::sort_half_edges() {
     }
   }
   begin_.push_back(count);
+  valence_.assign(vertex_count, 0);
+  ring_begin_.assign(vertex_count, -1);
+  find_ring_begins();
+}
+
+/// The ring of a vertex begins with the neighbour from which no half-edge comes back, the last of
+/// them if there are several, or else with the lowest neighbour.
+void EdgeConnectivity::find_ring_begins() {
+  for (int e = 0; e < edge_count(); ++e) {
+    const auto [low, high] = edges_[e];
+    const int up = half_edge_from(low, e), down = half_edge_from(high, e);
+    const auto look_at = [&](int vertex, int out, int back) {
+      if (back < 0 || valence_[vertex] == 0) ring_begin_[vertex] = out;
+      ++valence_[vertex];
+    };
+    look_at(low, up, down);
+    if (high != low) look_at(high, down, up);
+  }
 }
 
 std::vector<std::array<int, 3>> EdgeConnectivity::across() const {
@@ -104,6 +122,35 @@ std::optional<int> EdgeConnectivity::find(int u, int v) const {
   const auto at = std::lower_bound(edges_.begin(), edges_.end(), wanted);
   if (at == edges_.end() || *at != wanted) return std::nullopt;
   return static_cast<int>(at - edges_.begin());
+}
+
+int EdgeConnectivity::half_edge_from(int vertex, int edge) const {
+  for (const int h : half_edges(edge)) {
+    if (origin(h) == vertex) return h;
+  }
+  return -1;
+}
+
+bool EdgeConnectivity::has_ring(int vertex) const {
+  const int all = valence(vertex);
+  if (all == 0) return true;
+  const int begin = ring_begin(vertex);
+  int seen = 1;
+  for (int h = begin; h >= 0 && seen <= all; ++seen) {
+    const int back = previous(h);
+    if (origin(back) == tip(begin)) break;
+    h = half_edge_from(vertex, edge_of(back));
+    if (h < 0) return seen + 1 == all;
+  }
+  return begin >= 0 && seen == all;
+}
+
+Ring ring(const EdgeConnectivity& edges, int vertex) {
+  if (!edges.has_ring(vertex)) {
+    throw Error("the triangles at it are no single fan", "vertex " + std::to_string(vertex),
+                "a vertex of a consistently oriented manifold");
+  }
+  return {RingIterator(edges, vertex)};
 }
 
 std::optional<int> EdgeConnectivity::first_repeated() const {

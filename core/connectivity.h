@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,9 +35,14 @@ class EdgeConnectivity {
 
   [[nodiscard]] int half_edge_count() const { return static_cast<int>(origin_.size()); }
   [[nodiscard]] int edge_count() const { return static_cast<int>(edges_.size()); }
+  /// One more than the largest index.
+  [[nodiscard]] int vertex_count() const { return static_cast<int>(valence_.size()); }
 
   static constexpr int next(int half_edge) {
     return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
+  }
+  static constexpr int previous(int half_edge) {
+    return half_edge % 3 == 0 ? half_edge + 2 : half_edge - 1;
   }
   [[nodiscard]] int origin(int half_edge) const { return origin_[half_edge]; }
   [[nodiscard]] int tip(int half_edge) const { return origin_[next(half_edge)]; }
@@ -71,8 +77,21 @@ class EdgeConnectivity {
   [[nodiscard]] int left(int edge) const { return triangle_beside(edge, true); }
   /// Triangle in which it runs from the higher to the lower one; -1: none.
   [[nodiscard]] int right(int edge) const { return triangle_beside(edge, false); }
-  /// Edge between two vertices, in any order.
+  /// Edge between two vertices, in any order; none where there is no such edge. By bisection.
   [[nodiscard]] std::optional<int> find(int u, int v) const;
+
+  /// Number of neighbours of a vertex; 0 for one without triangles.
+  [[nodiscard]] int valence(int vertex) const {
+    return vertex < vertex_count() ? valence_[vertex] : 0;
+  }
+  /// Whether the triangles at a vertex join its neighbours in one cycle or one chain, as they do on
+  /// a consistently oriented manifold.
+  [[nodiscard]] bool has_ring(int vertex) const;
+  /// Half-edge out of a vertex with triangles with which its ring begins; of a vertex without a
+  /// ring, any one or -1.
+  [[nodiscard]] int ring_begin(int vertex) const { return ring_begin_[vertex]; }
+  /// First half-edge from a vertex along an edge at it; -1 where none leaves it.
+  [[nodiscard]] int half_edge_from(int vertex, int edge) const;
 
   /// First half-edge that runs the same way as an earlier one of its edge. There is one just where
   /// the triangles are no consistently oriented manifold along an edge: of three half-edges two run
@@ -81,6 +100,7 @@ class EdgeConnectivity {
 
  private:
   void sort_half_edges();
+  void find_ring_begins();
   [[nodiscard]] int triangle_beside(int edge, bool ascending) const;
 
   std::vector<int> origin_;     ///< of each half-edge
@@ -88,7 +108,71 @@ class EdgeConnectivity {
   std::vector<int> half_edge_;  ///< of edge e: from begin_[e] to begin_[e + 1]
   std::vector<int> begin_;      ///< edge count + 1
   std::vector<Edge> edges_;
+  std::vector<int> valence_;     ///< of each vertex
+  std::vector<int> ring_begin_;  ///< of each vertex; -1: no half-edge leaves it there
 };
+
+/// Walks over the neighbours of a vertex, from triangle to triangle.
+class RingIterator {
+ public:
+  using value_type = int;
+  using difference_type = std::ptrdiff_t;
+
+  RingIterator() = default;
+  /// @param vertex  one that has a ring
+  RingIterator(const EdgeConnectivity& edges, int vertex)
+      : edges_(&edges), vertex_(vertex), left_(edges.valence(vertex)) {
+    if (left_ == 0) return;
+    half_edge_ = edges.ring_begin(vertex);
+    neighbour_ = edges.tip(half_edge_);
+  }
+
+  int operator*() const { return neighbour_; }
+  RingIterator& operator++() {
+    if (--left_ == 0) return *this;
+    const int back = EdgeConnectivity::previous(half_edge_);
+    neighbour_ = edges_->origin(back);
+    half_edge_ = edges_->half_edge_from(vertex_, edges_->edge_of(back));
+    return *this;
+  }
+  RingIterator operator++(int) {
+    RingIterator before = *this;
+    ++*this;
+    return before;
+  }
+  friend bool operator==(const RingIterator& a, const RingIterator& b) {
+    return a.left_ == b.left_;
+  }
+  friend bool operator==(const RingIterator& it, std::default_sentinel_t) { return it.left_ == 0; }
+
+ private:
+  const EdgeConnectivity* edges_ = nullptr;
+  int vertex_ = -1;
+  int half_edge_ = -1;  ///< to the neighbour; -1 at the last one of a border vertex
+  int neighbour_ = -1;
+  int left_ = 0;  ///< neighbours from this one on
+};
+
+/// Range of the neighbours of a vertex; see `ring`.
+struct Ring {
+  RingIterator first;
+
+  [[nodiscard]] RingIterator begin() const { return first; }
+  [[nodiscard]] std::default_sentinel_t end() const { return {}; }
+};
+
+/// The neighbours of a vertex in the order around it, each once:
+/// `for (const int v : ring(edges, i))`.
+///
+/// They follow each other counter-clockwise, seen from outside. Around a vertex inside the surface
+/// they begin with the lowest one; at the border they run from one border edge to the other: from
+/// the one that a triangle runs out along, to the one that a triangle comes back along. A vertex
+/// without triangles has none. Each step is a look at one edge; nothing is stored.
+///
+/// @param edges   outlives the range
+/// @throws Error  where the neighbours lie in no such order, as at a vertex in which two fans meet
+///                or at an edge with three triangles (names the vertex)
+Ring ring(const EdgeConnectivity& edges, int vertex);
 
 /// The corners of triangles at every vertex: corner c = 3 t + k is corner k of triangle t. Linear.
 class VertexCorners {

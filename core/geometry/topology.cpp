@@ -10,11 +10,6 @@
 namespace geoprior {
 namespace {
 
-struct DirectedEdge {
-  int from;
-  int to;
-};
-
 /// Half-edges that no half-edge of the same edge runs against. A triangle that names a vertex twice
 /// has no border there.
 std::vector<Edge> open_edges(const EdgeConnectivity& c) {
@@ -47,31 +42,6 @@ std::vector<Edge> repeated_edges(const EdgeConnectivity& c) {
   return repeated;
 }
 
-/// Orders the ring of one vertex by following `next_of`, which maps a neighbour to the one after
-/// it, counter-clockwise. Leaves the ring sorted when the triangles around the vertex are no single
-/// fan.
-void order_ring(std::vector<int>& ring, const std::vector<DirectedEdge>& fan) {
-  std::sort(ring.begin(), ring.end());
-  if (fan.empty()) return;
-  const auto follow = [&](int from) {
-    const auto it =
-        std::find_if(fan.begin(), fan.end(), [&](const DirectedEdge& e) { return e.from == from; });
-    return it == fan.end() ? -1 : it->to;
-  };
-  // A border vertex starts at the neighbour that no triangle leads to.
-  int start = ring.front();
-  for (const int n : ring) {
-    if (std::none_of(fan.begin(), fan.end(), [&](const DirectedEdge& e) { return e.to == n; }))
-      start = n;
-  }
-  std::vector<int> ordered{start};
-  for (int n = follow(start); n >= 0 && n != start && ordered.size() <= ring.size();
-       n = follow(n)) {
-    ordered.push_back(n);
-  }
-  if (ordered.size() == ring.size()) ring = std::move(ordered);
-}
-
 std::string edge_list(const std::vector<Edge>& edges) {
   std::string text;
   for (std::size_t i = 0; i < std::min<std::size_t>(edges.size(), 5); ++i) {
@@ -92,25 +62,19 @@ struct PositionHash {
 }  // namespace
 
 VertexGraph one_rings(const Eigen::MatrixX3i& F, int vertex_count) {
-  const VertexCorners corners(F, vertex_count);
+  const EdgeConnectivity edges(F);
   VertexGraph graph;
-  graph.offset.reserve(vertex_count + 1);
-  graph.offset.push_back(0);
-  std::vector<int> ring;
-  std::vector<DirectedEdge> fan;  // the edges opposite to the vertex
+  graph.offset.assign(1, 0);
+  for (int v = 0; v < vertex_count; ++v) graph.offset.push_back(graph.offset[v] + edges.valence(v));
+  graph.neighbours.resize(graph.offset.back());
+  std::vector<int> next(graph.offset.begin(), graph.offset.end() - 1);
+  for (const auto& [low, high] : edges.edges()) {  // ascends, and so do the neighbours
+    graph.neighbours[next[low]++] = high;
+    if (low != high) graph.neighbours[next[high]++] = low;
+  }
   for (int v = 0; v < vertex_count; ++v) {
-    ring.clear();
-    fan.clear();
-    for (const int c : corners.of(v)) {
-      const DirectedEdge opposite{F(c / 3, (c % 3 + 1) % 3), F(c / 3, (c % 3 + 2) % 3)};
-      fan.push_back(opposite);
-      ring.insert(ring.end(), {opposite.from, opposite.to});
-    }
-    std::sort(ring.begin(), ring.end());
-    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-    order_ring(ring, fan);
-    graph.neighbours.insert(graph.neighbours.end(), ring.begin(), ring.end());
-    graph.offset.push_back(static_cast<int>(graph.neighbours.size()));
+    if (edges.has_ring(v))
+      std::ranges::copy(ring(edges, v), graph.neighbours.begin() + graph.offset[v]);
   }
   return graph;
 }

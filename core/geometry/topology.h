@@ -22,9 +22,8 @@ struct VertexGraph {
   }
 };
 
-/// One ring of every vertex. Interior vertices of a manifold get their neighbours in cyclic order,
-/// counter-clockwise seen from outside (mean-value coordinates need it); at a border the order
-/// starts at the border; elsewhere sorted.
+/// The `ring` of every vertex, for those who walk around each of them more than once (mean-value
+/// coordinates need the cyclic order). Where there is no such order, the neighbours ascend.
 VertexGraph one_rings(const Eigen::MatrixX3i& F, int vertex_count);
 
 /// Directed edges that have no opposite, in the order of the triangles: empty for a closed mesh.

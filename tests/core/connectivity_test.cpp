@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 
 #include "core/error.h"
 #include "tests/core/geometry/shapes.h"
@@ -105,6 +107,92 @@ TEST(EdgeConnectivity, NoTrianglesHaveNoEdges) {
   EXPECT_EQ(c.edge_count(), 0);
   EXPECT_TRUE(c.across().empty());
   EXPECT_FALSE(c.find(0, 1));
+}
+
+std::vector<int> ring_of(const EdgeConnectivity& edges, int vertex) {
+  std::vector<int> neighbours;
+  for (const int v : ring(edges, vertex)) neighbours.push_back(v);
+  return neighbours;
+}
+
+/// A fan about vertex 0: triangle k is 0, k + 1, k + 2, and the last one closes it or not.
+Eigen::MatrixX3i fan(int triangles, bool closed) {
+  Eigen::MatrixX3i F(triangles, 3);
+  for (int k = 0; k < triangles; ++k) F.row(k) << 0, k + 1, k + 2;
+  if (closed) F(triangles - 1, 2) = 1;
+  return F;
+}
+
+TEST(Ring, GoesCounterClockwiseAroundAVertexInside) {
+  const TriMesh mesh = shapes::square(2);
+  const EdgeConnectivity edges(mesh.F);
+  EXPECT_EQ(edges.vertex_count(), 9);
+  EXPECT_EQ(edges.valence(4), 6);
+  const std::vector<int> neighbours = ring_of(edges, 4);
+  ASSERT_EQ(neighbours.size(), 6U);
+  EXPECT_EQ(neighbours[0], *std::min_element(neighbours.begin(), neighbours.end()));
+  double turned = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Eigen::RowVector3d a = mesh.V.row(neighbours[i]) - mesh.V.row(4);
+    const Eigen::RowVector3d b = mesh.V.row(neighbours[(i + 1) % 6]) - mesh.V.row(4);
+    const double turn = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+    EXPECT_GT(turn, 0);
+    turned += turn;
+  }
+  EXPECT_NEAR(turned, 2 * std::numbers::pi, 1e-12);
+}
+
+TEST(Ring, RunsFromBorderEdgeToBorderEdge) {
+  const EdgeConnectivity edges(fan(3, false));
+  EXPECT_EQ(ring_of(edges, 0), (std::vector<int>{1, 2, 3, 4}));
+  EXPECT_EQ(ring_of(edges, 1), (std::vector<int>{2, 0}));
+  EXPECT_EQ(ring_of(edges, 3), (std::vector<int>{4, 0, 2}));
+  const EdgeConnectivity whole(fan(3, true));
+  EXPECT_EQ(ring_of(whole, 0), (std::vector<int>{1, 2, 3}));
+}
+
+TEST(Ring, OfAClosedMeshHasEveryEdgeFromBothEnds) {
+  const TriMesh mesh = shapes::sphere(2);
+  const EdgeConnectivity edges(mesh.F);
+  int sum = 0;
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const std::vector<int> neighbours = ring_of(edges, v);
+    ASSERT_EQ(static_cast<int>(neighbours.size()), edges.valence(v));
+    sum += edges.valence(v);
+    for (std::size_t i = 0; i < neighbours.size(); ++i) {
+      const auto edge = edges.find(v, neighbours[i]);
+      ASSERT_TRUE(edge);
+      // The triangle on the left of the way out holds the next one.
+      const int out = edges.half_edge_from(v, *edge);
+      EXPECT_EQ(edges.origin(EdgeConnectivity::previous(out)),
+                neighbours[(i + 1) % neighbours.size()]);
+    }
+  }
+  EXPECT_EQ(sum, 2 * edges.edge_count());
+}
+
+TEST(Ring, OfAVertexWithoutTrianglesIsEmpty) {
+  Eigen::MatrixX3i F(1, 3);
+  F << 0, 1, 3;
+  const EdgeConnectivity edges(F);
+  EXPECT_TRUE(ring_of(edges, 2).empty());
+  EXPECT_TRUE(ring_of(edges, 9).empty());
+  EXPECT_EQ(edges.valence(9), 0);
+}
+
+TEST(Ring, IsRefusedWhereFansMeetOrAnEdgeHasThreeTriangles) {
+  Eigen::MatrixX3i open(2, 3), closed(8, 3), three(3, 3), turned(2, 3);
+  open << 0, 1, 2, 0, 3, 4;
+  const TriMesh tetrahedron = shapes::tetrahedron();
+  closed << tetrahedron.F, (tetrahedron.F.array() == 0).select(0, tetrahedron.F.array() + 3);
+  three << 0, 1, 2, 1, 0, 3, 0, 1, 4;
+  turned << 0, 1, 2, 0, 3, 2;  // two triangles that turn opposite ways
+  for (const Eigen::MatrixX3i& F : {open, closed, three, turned}) {
+    const EdgeConnectivity edges(F);
+    EXPECT_FALSE(edges.has_ring(0)) << F;
+    EXPECT_THROW(ring(edges, 0), Error) << F;
+  }
+  EXPECT_EQ(ring_of(EdgeConnectivity(closed), 5).size(), 3U) << "elsewhere there is one";
 }
 
 TEST(VertexCorners, HoldEveryCornerOnceAscending) {
