@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 #include <string>
-#include <unordered_map>
 
 #include "core/connectivity.h"
 #include "core/error.h"
@@ -15,12 +13,6 @@ namespace geoprior {
 namespace {
 
 using Triplet = Eigen::Triplet<double>;
-
-std::uint64_t edge_key(int a, int b) {
-  const auto [low, high] = std::minmax(a, b);
-  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(low)) << 32U) |
-         static_cast<std::uint32_t>(high);
-}
 
 /// An undirected edge with its (at most two) triangles and the vertices opposite to it.
 struct EdgeInfo {
@@ -270,7 +262,8 @@ SplitSubdivision subdivide_split(const TriMesh& split, const std::vector<int>& w
   SplitSubdivision result;
   result.welded_of_split = welded_of_split;
   const auto old_count = static_cast<int>(step.stencil.cols());
-  std::unordered_map<std::uint64_t, int> midpoint_of;
+  const EdgeConnectivity edges(split.F);
+  std::vector<int> midpoint(edges.edge_count(), -1);
   // A corner of a new triangle, in the split vertices of its parent.
   const auto split_vertex = [&](int parent, int corner) {
     const auto of_welded = [&](int w) {
@@ -282,13 +275,13 @@ SplitSubdivision subdivide_split(const TriMesh& split, const std::vector<int>& w
     if (corner < old_count) return of_welded(corner);
     const auto& edge = step.split_edge[corner - old_count];
     const int a = of_welded(edge[0]), b = of_welded(edge[1]);
-    const auto next = static_cast<int>(result.welded_of_split.size());
-    const auto [it, is_new] = midpoint_of.emplace(edge_key(a, b), next);
-    if (is_new) {
+    int& vertex = midpoint[edges.find(a, b).value()];
+    if (vertex < 0) {
+      vertex = static_cast<int>(result.welded_of_split.size());
       result.welded_of_split.push_back(corner);
       result.split_edge.push_back({a, b});
     }
-    return it->second;
+    return vertex;
   };
   result.mesh.F.resize(step.F.rows(), 3);
   for (Eigen::Index t = 0; t < step.F.rows(); ++t) {

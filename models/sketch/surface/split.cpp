@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -107,13 +106,14 @@ Eigen::MatrixX3d SurfaceSplit::interpolated(const Eigen::MatrixX3d& values) cons
 }
 
 std::vector<Edge> SurfaceSplit::split_edges(std::span<const Edge> edges, int first_new) const {
-  std::map<Edge, int> at;
-  for (std::size_t i = 0; i < added.size(); ++i)
-    at[added[i].edge] = first_new + static_cast<int>(i);
+  std::vector<std::pair<Edge, int>> middle;  // of the edges that were split
+  for (const EdgePoint& point : added)
+    middle.emplace_back(point.edge, first_new + static_cast<int>(middle.size()));
+  std::sort(middle.begin(), middle.end());
   std::vector<Edge> finer;
   for (const Edge& e : edges) {
-    const auto found = at.find(e);
-    if (found == at.end()) {
+    const auto found = std::ranges::lower_bound(middle, e, {}, &std::pair<Edge, int>::first);
+    if (found == middle.end() || found->first != e) {
       finer.push_back(e);
     } else {
       finer.push_back({e[0], found->second});

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <tuple>
 #include <utility>
@@ -94,23 +93,16 @@ void number_cells(RulingMesh& result) {
 
 /// Opens the mesh along its cuts; rulings that end there keep to their side.
 void open(const std::vector<Eigen::Vector2i>& lips, RulingMesh& result) {
-  const Eigen::MatrixX3i before = result.mesh.triangles;
+  const EdgeConnectivity edges(result.mesh.triangles);
   open_along(result.mesh, lips);
-  std::map<Edge, Edge> opened;  // of the directed edges of triangles
-  for (int f = 0; f < static_cast<int>(before.rows()); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      const int next = (k + 1) % 3;
-      opened[{before(f, k), before(f, next)}] = {result.mesh.triangles(f, k),
-                                                 result.mesh.triangles(f, next)};
-    }
-  }
   for (std::vector<int>& path : result.ruling_paths) {
     const std::vector<int> old = path;
     for (std::size_t k = 0; k + 1 < old.size(); ++k) {
-      if (const auto at = opened.find({old[k], old[k + 1]}); at != opened.end()) {
-        path[k] = at->second[0];
-        path[k + 1] = at->second[1];
-      }
+      const auto edge = edges.find(old[k], old[k + 1]);
+      const int h = edge ? edges.half_edge_from(old[k], *edge) : -1;
+      if (h < 0) continue;
+      path[k] = result.mesh.triangles(h / 3, h % 3);
+      path[k + 1] = result.mesh.triangles(h / 3, (h % 3 + 1) % 3);
     }
   }
 }

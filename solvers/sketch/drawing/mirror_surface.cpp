@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <utility>
+
+#include "core/connectivity.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -18,14 +18,15 @@ class KeptHalf {
 
  private:
   int kept(int vertex);
-  int crossing(int a, int b);
+  int crossing(int half_edge);
   int add(const Eigen::Vector3d& position, const Eigen::Vector2d& texture, bool in_plane);
 
   const TexturedSurface& surface_;
   Eigen::MatrixX3d V_;        // of the surface, with near vertices put onto the plane
   Eigen::VectorXd distance_;  // positive on the side that is kept
   std::vector<int> number_;
-  std::map<std::pair<int, int>, int> crossings_;
+  EdgeConnectivity edges_;
+  std::vector<int> crossing_;  // new vertex of each edge, -1: none yet
   std::vector<Eigen::Vector3d> position_;
   std::vector<Eigen::Vector2d> texture_;
   std::vector<bool> in_plane_;
@@ -38,7 +39,9 @@ KeptHalf::KeptHalf(const TexturedSurface& surface, const MirrorPlane& plane, boo
     : surface_(surface),
       V_(surface.mesh.V),
       distance_(V_.rows()),
-      number_(static_cast<std::size_t>(V_.rows()), -1) {
+      number_(static_cast<std::size_t>(V_.rows()), -1),
+      edges_(surface.mesh.F),
+      crossing_(edges_.edge_count(), -1) {
   for (Eigen::Index v = 0; v < V_.rows(); ++v) {
     const double d = signed_distance(plane, V_.row(v).transpose());
     const bool on_plane = std::abs(d) <= near;
@@ -62,16 +65,16 @@ int KeptHalf::kept(int vertex) {
   return number_[vertex];
 }
 
-int KeptHalf::crossing(int a, int b) {
-  if (a > b) std::swap(a, b);
-  const auto [entry, is_new] = crossings_.try_emplace({a, b}, -1);
-  if (is_new) {
+int KeptHalf::crossing(int half_edge) {
+  const int edge = edges_.edge_of(half_edge);
+  if (crossing_[edge] < 0) {
+    const auto [a, b] = edges_.edge(edge);
     const double t = distance_(a) / (distance_(a) - distance_(b));
-    entry->second =
+    crossing_[edge] =
         add(((1 - t) * V_.row(a) + t * V_.row(b)).transpose(),
             ((1 - t) * surface_.texture.row(a) + t * surface_.texture.row(b)).transpose(), true);
   }
-  return entry->second;
+  return crossing_[edge];
 }
 
 /// The part of a triangle on the side that is kept, a fan of triangles.
@@ -82,7 +85,8 @@ void KeptHalf::cut(Eigen::Index triangle) {
   for (int k = 0; k < 3; ++k) {
     const int a = corner(k), b = corner((k + 1) % 3);
     if (distance_(a) >= 0) polygon.push_back(kept(a));
-    if (distance_(a) * distance_(b) < 0) polygon.push_back(crossing(a, b));
+    if (distance_(a) * distance_(b) < 0)
+      polygon.push_back(crossing(3 * static_cast<int>(triangle) + k));
   }
   for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
     triangles_.push_back({polygon[0], polygon[k], polygon[k + 1]});

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "core/angles.h"
+#include "core/connectivity.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/parallel.h"
 
@@ -22,23 +22,17 @@ constexpr int kRimSamples = 24;
 struct LayerSolid {
   TriMesh mesh;
   TriangleTree tree;
-  std::vector<std::pair<int, int>> edges;
+  std::vector<Edge> edges;
 
-  explicit LayerSolid(TriMesh solid) : mesh(std::move(solid)), tree(mesh) {
-    std::set<std::pair<int, int>> unique;
-    for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
-      for (int k = 0; k < 3; ++k) unique.insert(std::minmax(mesh.F(t, k), mesh.F(t, (k + 1) % 3)));
-    }
-    edges.assign(unique.begin(), unique.end());
-  }
+  explicit LayerSolid(TriMesh solid)
+      : mesh(std::move(solid)), tree(mesh), edges(EdgeConnectivity(mesh.F).edges()) {}
 };
 
 /// Whether an edge of b, moved, meets a triangle of a.
 bool edges_meet(const LayerSolid& a, const LayerSolid& b, const Eigen::Isometry3d& move) {
   const Eigen::Matrix3Xd X = (move.linear() * b.mesh.V.transpose()).colwise() + move.translation();
-  return std::any_of(b.edges.begin(), b.edges.end(), [&](const std::pair<int, int>& e) {
-    return a.tree.meets_segment(X.col(e.first), X.col(e.second));
-  });
+  return std::any_of(b.edges.begin(), b.edges.end(),
+                     [&](const Edge& e) { return a.tree.meets_segment(X.col(e[0]), X.col(e[1])); });
 }
 
 /// Whether two layers touch when b is moved against a.

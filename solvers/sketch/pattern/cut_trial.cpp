@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <span>
 #include <utility>
 
 #include "core/angles.h"
+#include "core/connectivity.h"
 #include "models/sketch/flatten/flat_stretch.h"
 #include "models/sketch/flatten/flatten.h"
 #include "models/sketch/surface/shortest_cut.h"
@@ -99,19 +99,15 @@ std::vector<Panel> panels_of(const SeamedSurface& surface) {
   }
   std::vector<Panel> panels;
   for (CutPiece& piece : cut_surface(surface.mesh, outer)) {
-    std::map<Edge, Edge> local;  // of an edge of the surface
-    for (int t = 0; t < piece.mesh.triangle_count(); ++t) {
-      for (int k = 0; k < 3; ++k) {
-        const int a = piece.mesh.F(t, k), b = piece.mesh.F(t, (k + 1) % 3);
-        const int u = piece.surface_vertex[a], v = piece.surface_vertex[b];
-        local[{std::min(u, v), std::max(u, v)}] = {a, b};
-      }
-    }
+    const Eigen::MatrixX3i& local = piece.mesh.F;
+    const EdgeConnectivity on_surface(
+        local.unaryExpr([&](int v) { return piece.surface_vertex[v]; }).eval());
     Panel& panel = panels.emplace_back();
     for (const SeamEdge& seam : inner) {
-      const auto found =
-          local.find({std::min(seam.edge[0], seam.edge[1]), std::max(seam.edge[0], seam.edge[1])});
-      if (found != local.end()) panel.inner.push_back({found->second, seam.seam});
+      const auto edge = on_surface.find(seam.edge[0], seam.edge[1]);
+      if (!edge) continue;
+      const int h = on_surface.half_edges(*edge).back();
+      panel.inner.push_back({{local(h / 3, h % 3), local(h / 3, (h % 3 + 1) % 3)}, seam.seam});
     }
     panel.piece = std::move(piece);
   }

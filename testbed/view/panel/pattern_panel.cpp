@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "core/connectivity.h"
 #include "core/error.h"
 #include "testbed/view/figure/colors.h"
 #include "testbed/view/figure/legend.h"
@@ -126,19 +127,16 @@ PatternWindow fit_pattern(const std::vector<const Part*>& sheets) {
 
 std::vector<CurveSegment> pattern_border(const Part& sheet) {
   const Eigen::MatrixX2d places = pattern_of(sheet, "sheet");
-  std::map<std::pair<int, int>, int> triangles_of;
-  const auto edge = [](int a, int b) { return std::pair(std::min(a, b), std::max(a, b)); };
-  for (const auto& t : sheet.triangles.rowwise()) {
-    for (int i = 0; i < 3; ++i) ++triangles_of[edge(t[i], t[(i + 1) % 3])];
-  }
+  const EdgeConnectivity edges(sheet.triangles);
   std::vector<CurveSegment> border;
-  for (const auto& t : sheet.triangles.rowwise()) {
+  for (int f = 0; f < static_cast<int>(sheet.triangles.rows()); ++f) {
+    const auto t = sheet.triangles.row(f);
     Eigen::Matrix2d sides;
     sides << places.row(t[1]) - places.row(t[0]), places.row(t[2]) - places.row(t[0]);
     const bool clockwise = sides.determinant() < 0;
     for (int i = 0; i < 3; ++i) {
       int from = t[i], to = t[(i + 1) % 3];
-      if (triangles_of.at(edge(from, to)) != 1) continue;
+      if (edges.half_edges(edges.edge_of(3 * f + i)).size() != 1) continue;
       if (clockwise) std::swap(from, to);
       const CurveSegment side{places.row(from), places.row(to)};
       if (side.from.allFinite() && side.to.allFinite()) border.push_back(side);
