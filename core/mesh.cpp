@@ -5,6 +5,10 @@
 
 namespace geoprior {
 
+bool same_triangles(const Eigen::MatrixX3i& a, const Eigen::MatrixX3i& b) {
+  return a.rows() == b.rows() && a == b;
+}
+
 double bounding_box_diagonal(const Eigen::MatrixX3d& V) {
   if (V.rows() == 0) return 0;
   return (V.colwise().maxCoeff() - V.colwise().minCoeff()).norm();

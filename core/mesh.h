@@ -15,6 +15,10 @@ struct TriMesh {
   [[nodiscard]] int triangle_count() const { return static_cast<int>(F.rows()); }
 };
 
+/// Whether two lists name the same vertices, triangle by triangle and corner by corner. Lists of
+/// different lengths differ; Eigen's own comparison would read past the shorter one.
+bool same_triangles(const Eigen::MatrixX3i& a, const Eigen::MatrixX3i& b);
+
 /// Length of the diagonal of the axis-aligned bounding box of the rows of `V`; 0 for no rows.
 double bounding_box_diagonal(const Eigen::MatrixX3d& V);
 

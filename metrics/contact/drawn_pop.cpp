@@ -40,8 +40,7 @@ class FramedSurface {
 }  // namespace
 
 TriMesh carried_drawing(const TriMesh& drawn, const TriMesh& before, const TriMesh& now) {
-  if (before.F.rows() != now.F.rows() || before.F != now.F ||
-      before.vertex_count() != now.vertex_count()) {
+  if (!same_triangles(before.F, now.F) || before.vertex_count() != now.vertex_count()) {
     throw Error("the surface's triangles changed", "drawing that is carried",
                 "two states of one mesh");
   }

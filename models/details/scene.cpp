@@ -158,7 +158,7 @@ std::shared_ptr<const SurfaceMotion> motion_of_sequence(const SurfaceSequence& s
   for (int i = 0; i < sequence.frame_count(); ++i) {
     SurfaceFrame frame = sequence.frame(i);
     if (i == 0) first = frame.mesh.F;
-    if (frame.mesh.F.rows() != first.rows() || frame.mesh.F != first ||
+    if (!same_triangles(frame.mesh.F, first) ||
         (i > 0 && frame.mesh.V.rows() != positions[0].rows())) {
       throw Error("its triangles are not those of the first frame",
                   sequence.name() + ", frame " + std::to_string(i), "a sequence of fixed topology");

@@ -114,8 +114,7 @@ int export_texts(const OpenedRun& run, const CaseRecord& c, const VariantRecord&
 bool same_topology(const std::vector<Part>& parts) {
   return std::all_of(parts.begin(), parts.end(), [&](const Part& part) {
     return part.points.rows() == parts.front().points.rows() &&
-           part.triangles.rows() == parts.front().triangles.rows() &&
-           part.triangles == parts.front().triangles;
+           same_triangles(part.triangles, parts.front().triangles);
   });
 }
 

@@ -28,6 +28,18 @@ TEST(Mesh, AreasOfASquareSumToOne) {
   EXPECT_NEAR(areas.maxCoeff(), 0.02, 1e-16);
 }
 
+TEST(Mesh, TriangleListsOfDifferentLengthsAreNotTheSame) {
+  const Eigen::MatrixX3i all = shapes::octahedron().F, none(0, 3);
+  Eigen::MatrixX3i turned = all;
+  turned.row(7) << all(7, 1), all(7, 2), all(7, 0);
+  EXPECT_TRUE(same_triangles(all, shapes::octahedron().F));
+  EXPECT_TRUE(same_triangles(none, none));
+  EXPECT_FALSE(same_triangles(all, all.topRows(7)));
+  EXPECT_FALSE(same_triangles(all.topRows(7), all));
+  EXPECT_FALSE(same_triangles(none, all));
+  EXPECT_FALSE(same_triangles(all, turned)) << "the same triangle from another corner";
+}
+
 TEST(Mesh, NormalsPointOutwards) {
   const TriMesh mesh = shapes::octahedron();
   const Eigen::MatrixX3d normals = vertex_normals(mesh);

@@ -10,6 +10,7 @@
 #include "core/angles.h"
 #include "core/error.h"
 #include "core/geometry/planar.h"
+#include "core/mesh.h"
 #include "models/paper/shell/relaxation.h"
 #include "models/paper/tear/lips.h"
 
@@ -284,8 +285,7 @@ int TearGrowth::grow(const Candidates& candidates, const Follower& follower, She
   if (!sheet_.toughness.tears()) return 0;
   for (int steps = 0; steps < options_.most_steps; ++steps) {
     const Eigen::MatrixX3i& now = state.mesh.triangles;
-    if (!neighbours_ || neighbours_->triangles.rows() != now.rows() ||
-        neighbours_->triangles != now) {
+    if (!neighbours_ || !same_triangles(neighbours_->triangles, now)) {
       neighbours_.emplace(state.mesh);
     }
     const MeshNeighbours& neighbours = *neighbours_;

@@ -10,6 +10,7 @@
 
 #include "core/connectivity.h"
 #include "core/error.h"
+#include "core/mesh.h"
 #include "models/paper/sheet/pattern_locator.h"
 
 namespace geoprior::sound {
@@ -152,8 +153,8 @@ std::vector<BorderStretch> border_of(const SoundGrid& grid, const ShellMesh& mes
 }
 
 bool same(const ShellMesh& a, const ShellMesh& b) {
-  return a.pattern.rows() == b.pattern.rows() && a.triangles.rows() == b.triangles.rows() &&
-         a.pattern == b.pattern && a.triangles == b.triangles;
+  return a.pattern.rows() == b.pattern.rows() && a.pattern == b.pattern &&
+         same_triangles(a.triangles, b.triangles);
 }
 
 /// Direction of the eigenvector whose eigenvalue is smaller in modulus: mean - radius for a
