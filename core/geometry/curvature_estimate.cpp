@@ -9,7 +9,7 @@
 namespace geoprior {
 namespace {
 
-using Hinge = CurvatureFit::Hinge;
+using Hinge = CurvatureHinge;
 /// Smallest ratio of singular values at which a direction of S counts as observed, for rows of unit
 /// length in the affine frame of the patch. The inverse multiplies by up to its reciprocal what the
 /// fit cannot represent, the variation of S over the patch: fans about an apex, whose edges all see

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "core/geometry/curvature_fit.h"
+#include "core/geometry/curvature_hinge.h"
 
 namespace geoprior {
 
@@ -16,14 +16,14 @@ Eigen::Vector3d mandel(const Eigen::Matrix2d& S);
 /// (core/geometry/curvature_fit.h). Exact for constant curvature, but its constant moments are not
 /// in equilibrium.
 struct CurvatureEstimate {
-  std::vector<CurvatureFit::Term> terms;  ///< coefficients as (uu, sqrt2 uv, vv)
-  int rank = 0;                           ///< of the equations; under 3: folds
+  std::vector<CurvatureTerm> terms;  ///< coefficients as (uu, sqrt2 uv, vv)
+  int rank = 0;                      ///< of the equations; under 3: folds
 };
 
 /// @param hinges       with their jumps
 /// @param of_triangle  hinge at each edge of each triangle, -1 at the border
 CurvatureEstimate estimate_curvature(const Eigen::MatrixX2d& pattern,
-                                     const std::vector<CurvatureFit::Hinge>& hinges,
+                                     const std::vector<CurvatureHinge>& hinges,
                                      const std::vector<std::array<int, 3>>& of_triangle,
                                      int triangle);
 

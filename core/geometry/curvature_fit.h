@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "core/geometry/curvature_hinge.h"
+
 namespace geoprior {
 
 /// Shape operators of a bent sheet from the dihedral angles of its triangles.
@@ -34,18 +36,8 @@ namespace geoprior {
 struct CurvatureFit {
   static constexpr int kMostTerms = 16;
   static constexpr int kMostVertices = 16;
-
-  struct Hinge {
-    int a, b;         ///< the edge, as in the triangle `left`
-    int left, right;  ///< triangles
-    int c, d;         ///< vertices opposite to the edge in left and right
-    /// Jump of the slope across the edge, left less right, per unit of S_uu, S_uv, S_vv (m).
-    Eigen::Vector3d jump;
-  };
-  struct Term {
-    int hinge;
-    Eigen::Vector3d coefficient;  ///< of S_uu, S_uv, S_vv (1/m per rad)
-  };
+  using Hinge = CurvatureHinge;
+  using Term = CurvatureTerm;
   std::vector<Hinge> hinges;  ///< interior edges
   /// Of each triangle, at most `kMostTerms`; its own edges come first. Together they touch at most
   /// `kMostVertices` vertices.

@@ -13,10 +13,10 @@
 namespace geoprior {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
-using SolidMesh = decltype(Solid::Data::mesh);
+using SolidMesh = decltype(SolidData::mesh);
 
 std::optional<Solid> Solid::of(const TriMesh& mesh) {
-  auto data = std::make_unique<Data>();
+  auto data = std::make_unique<SolidData>();
   std::vector<SolidMesh::Vertex_index> ids;
   for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
     ids.push_back(data->mesh.add_vertex({mesh.V(v, 0), mesh.V(v, 1), mesh.V(v, 2)}));
@@ -28,7 +28,7 @@ std::optional<Solid> Solid::of(const TriMesh& mesh) {
   return Solid(std::move(data));
 }
 
-Solid::Solid(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+Solid::Solid(std::unique_ptr<SolidData> data) : data_(std::move(data)) {}
 Solid::Solid(Solid&& other) noexcept = default;
 Solid& Solid::operator=(Solid&& other) noexcept = default;
 Solid::~Solid() = default;
@@ -64,13 +64,13 @@ TriMesh Solid::mesh() const {
 }
 
 std::optional<Solid> united(Solid a, Solid b) {
-  auto result = std::make_unique<Solid::Data>();
+  auto result = std::make_unique<SolidData>();
   const bool made = pmp::corefine_and_compute_union(a.data().mesh, b.data().mesh, result->mesh);
   return made ? std::optional(Solid(std::move(result))) : std::nullopt;
 }
 
 std::optional<Solid> common(Solid a, Solid b) {
-  auto result = std::make_unique<Solid::Data>();
+  auto result = std::make_unique<SolidData>();
   const bool made =
       pmp::corefine_and_compute_intersection(a.data().mesh, b.data().mesh, result->mesh);
   return made ? std::optional(Solid(std::move(result))) : std::nullopt;

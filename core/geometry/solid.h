@@ -7,6 +7,8 @@
 
 namespace geoprior {
 
+struct SolidData;  // solid_data.h: brings CGAL
+
 /// A surface of triangles in the form that exact Booleans take.
 ///
 /// Predicates are exact, constructed points are rounded: a result may cut itself by round-off, and
@@ -14,12 +16,10 @@ namespace geoprior {
 /// Source: CGAL 5.5, Polygon Mesh Processing (corefinement).
 class Solid {
  public:
-  struct Data;  ///< solid_data.h
-
   /// Vertices and triangles in the mesh's order; nothing when a triangle does not fit beside those
   /// before it (an edge of three, two fans about a vertex, another orientation).
   static std::optional<Solid> of(const TriMesh& mesh);
-  explicit Solid(std::unique_ptr<Data> data);
+  explicit Solid(std::unique_ptr<SolidData> data);
   Solid(Solid&& other) noexcept;
   Solid& operator=(Solid&& other) noexcept;
   ~Solid();
@@ -29,10 +29,10 @@ class Solid {
   [[nodiscard]] bool empty() const;
   [[nodiscard]] double area() const;
   [[nodiscard]] TriMesh mesh() const;
-  [[nodiscard]] Data& data() { return *data_; }
+  [[nodiscard]] SolidData& data() { return *data_; }
 
  private:
-  std::unique_ptr<Data> data_;
+  std::unique_ptr<SolidData> data_;
 };
 
 /// What is in one of two solids, or in both; nothing where that is no manifold. Both must bound

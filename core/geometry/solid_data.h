@@ -4,11 +4,10 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 
-#include "core/geometry/solid.h"
-
 namespace geoprior {
 
-struct Solid::Data {
+/// What a Solid (core/geometry/solid.h) holds.
+struct SolidData {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   CGAL::Surface_mesh<Kernel::Point_3> mesh;
 };

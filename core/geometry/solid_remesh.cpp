@@ -12,7 +12,7 @@ namespace geoprior {
 void remesh(Solid& solid, double edge_length, double crease_deg, int passes) {
   namespace pmp = CGAL::Polygon_mesh_processing;
   auto& mesh = solid.data().mesh;
-  using Edge = decltype(Solid::Data::mesh)::Edge_index;
+  using Edge = decltype(SolidData::mesh)::Edge_index;
   auto crease = mesh.add_property_map<Edge, bool>("e:crease", false).first;
   pmp::detect_sharp_edges(mesh, crease_deg, crease);
   std::vector<Edge> kept;
