@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/limits.h"
 #include "testbed/formats/input_file.h"
+#include "testbed/formats/system_reason.h"
 
 namespace geoprior {
 
@@ -87,24 +88,6 @@ std::string read_all(const Descriptor& descriptor, const fs::path& file) {
 }
 
 }  // namespace
-
-std::string system_reason(int error_number) {
-  const std::string text = std::generic_category().message(error_number);
-  switch (error_number) {
-    case ENOSPC:
-      return "disk full: " + text;
-    case EDQUOT:
-      return "disk quota used up: " + text;
-    case EFBIG:
-      return "file size limit reached: " + text;
-    case EACCES:
-    case EPERM:
-    case EROFS:
-      return "not writable: " + text;
-    default:
-      return text;
-  }
-}
 
 void write_all(int descriptor, std::string_view bytes, const fs::path& file) {
   while (!bytes.empty()) {

@@ -50,8 +50,4 @@ void write_all(int descriptor, std::string_view bytes, const std::filesystem::pa
 /// Flushes a file or folder to the disk. @throws Error naming it and the reason.
 void flush_to_disk(const std::filesystem::path& file_or_folder);
 
-/// The system's reason for an error number in words that help: "disk full: No space left on
-/// device".
-std::string system_reason(int error_number);
-
 }  // namespace geoprior

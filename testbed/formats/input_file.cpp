@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "core/error.h"
-#include "testbed/formats/atomic_file.h"
+#include "testbed/formats/system_reason.h"
 
 namespace geoprior {
 

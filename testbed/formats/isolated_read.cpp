@@ -23,6 +23,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/system_reason.h"
 
 namespace geoprior {
 namespace {

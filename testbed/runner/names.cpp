@@ -5,7 +5,6 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
-#include "testbed/runner/journal/event_table.h"
 #include "testbed/streams.h"
 
 namespace geoprior {
@@ -31,11 +30,6 @@ bool is_name_character(char c) {
 
 bool has_name_length(std::string_view name) { return !name.empty() && name.size() <= kLongestName; }
 
-bool is_file_name(std::string_view name) {
-  return !name.empty() && name.size() <= kLongestName + kLongestEnding && name.front() != '.' &&
-         std::all_of(name.begin(), name.end(), is_name_character) && !is_temporary_file(name);
-}
-
 bool is_line(std::string_view text) {
   while (!text.empty()) {
     const std::size_t length = printable_length(text);
@@ -57,26 +51,6 @@ Error no_name(std::string_view name, const std::string& what, const std::string&
   return Error(quoted_name(name) + length + " is no name of " + what, where, allowed);
 }
 
-void require_file_of_variant(const std::vector<StoredFile>& files, std::string_view room,
-                             const journal::Place& place, const std::string& where) {
-  for (const StoredFile& file : files) require_stored_file(file, room, place, where);
-}
-
-void require_names(const CaseRecord& one, const std::string& cases) {
-  require_name(one.name, "a case", cases);
-  const std::string variants = cases + "/" + one.name + "/variants";
-  for (const VariantRecord& variant : one.variants) {
-    require_plain_name(variant.name, "a variant", variants);
-    const journal::Place place{one.name, variant.name};
-    const std::string group = variants + "/" + variant.name;
-    for (const FrameRecord& frame : variant.frames) {
-      require_file_of_variant(frame.files, "frames", place, group + "/frames");
-    }
-    require_file_of_variant(variant.artifacts, "artifacts", place, group + "/artifacts");
-    for (const Event& event : variant.events) require_event_numbers(event, group + "/events");
-  }
-}
-
 }  // namespace
 
 std::string quoted_name(std::string_view text) {
@@ -91,6 +65,11 @@ std::string quoted_name(std::string_view text) {
     text.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return out + (text.empty() ? "'" : "…'");
+}
+
+bool is_file_name(std::string_view name) {
+  return !name.empty() && name.size() <= kLongestName + kLongestEnding && name.front() != '.' &&
+         std::all_of(name.begin(), name.end(), is_name_character) && !is_temporary_file(name);
 }
 
 bool is_name(std::string_view name) { return has_name_length(name) && is_file_name(name); }
@@ -145,22 +124,6 @@ std::string name_from(std::string_view text) {
   if (name.empty() || name.front() == '.') name.replace(0, 1, "-");
   if (is_temporary_file(name)) name.back() = '-';
   return name;
-}
-
-void require_stored_file(const StoredFile& file, std::string_view room, const journal::Place& place,
-                         const std::string& where) {
-  const std::string folder = std::string(room) + "/" + place.case_name + "/" + place.variant + "/";
-  const std::string_view name = file.name;
-  if (name.starts_with(folder) && is_file_name(name.substr(folder.size()))) return;
-  throw Error(quoted_name(name) + " is no file of this place of a run", where, folder + "<name>");
-}
-
-void require_names(const RunRecord& record, const std::string& file) {
-  require_experiment_id(record.experiment_id, file + ": /@experiment_id");
-  for (const CaseRecord& one : record.cases) require_names(one, file + ": /cases");
-  for (const StudyRecord& study : record.studies) {
-    require_text_name(study.name, "a study", file + ": /study");
-  }
 }
 
 }  // namespace geoprior

@@ -4,9 +4,6 @@
 #include <string>
 #include <string_view>
 
-#include "testbed/runner/journal/journal.h"
-#include "testbed/runner/journal/run_record.h"
-
 namespace geoprior {
 
 /// The rule for names that become files and folders (docs/experiments.md#names): cases, variants,
@@ -19,6 +16,8 @@ inline constexpr std::size_t kLongestName = 128;
 /// 1 to `kLongestName` letters, digits and _ - . + = , (ASCII), no dot in front, not what ends the
 /// names of temporary files.
 bool is_name(std::string_view name);
+/// As `is_name`, but long enough for a frame's number and extension behind the name of a part.
+bool is_file_name(std::string_view name);
 /// Letters, digits, - and _ only: names that dotted keys and run references take apart.
 bool is_plain_name(std::string_view name);
 
@@ -45,15 +44,5 @@ std::string name_from(std::string_view text);
 
 /// The text on one line and not too long, in quotes, for messages about names that are none.
 std::string quoted_name(std::string_view text);
-
-/// @param room  "frames", "artifacts" or "checkpoints"
-/// @throws Error  unless the file is `<room>/<case>/<variant>/<name>`
-void require_stored_file(const StoredFile& file, std::string_view room, const journal::Place& place,
-                         const std::string& where);
-
-/// The names of a run that was read: its cases, variants and studies, the files of frames and
-/// artifacts, the numbers of its events.
-/// @throws Error  naming file and place
-void require_names(const RunRecord& record, const std::string& file);
 
 }  // namespace geoprior

@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "testbed/runner/journal/event_table.h"
-#include "testbed/runner/names.h"
+#include "testbed/runner/journal/record_names.h"
 
 namespace geoprior {
 

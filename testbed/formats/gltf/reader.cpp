@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "testbed/formats/gltf/clips.h"
 #include "testbed/formats/gltf/container.h"
 #include "testbed/formats/gltf/model.h"
 #include "testbed/formats/gltf/skin.h"

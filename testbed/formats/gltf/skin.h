@@ -4,7 +4,6 @@
 
 #include "core/inputs/skeleton.h"
 #include "testbed/formats/gltf/model.h"
-#include "testbed/formats/gltf/reader.h"
 
 namespace geoprior::gltf {
 
@@ -30,9 +29,5 @@ SkinData read_skin(const Model& model, std::size_t skin);
 void read_influences(const Model& model, const Primitive& primitive, const std::string& where,
                      const SkinData& skin, int vertex_count, int first_vertex,
                      std::vector<Eigen::Triplet<double>>& triplets, bool& renormalised);
-
-/// Clips of the file on nodes renumbered by `node_of_model`.
-std::vector<GltfClip> read_clips(const Model& model, const std::vector<int>& node_of_model,
-                                 std::vector<std::string>& ignored);
 
 }  // namespace geoprior::gltf

@@ -1,23 +1,11 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <string_view>
 
-#include "core/mesh.h"
+#include "testbed/formats/mesh/parsed_mesh.h"
 
 namespace geoprior {
-
-/// A surface as a file has it, polygons cut into triangles; nothing is welded, turned or dropped.
-struct MeshFile {
-  TriMesh mesh;
-  Eigen::MatrixX3d velocity;  ///< one row per vertex (units of the file per s), or no rows
-  /// Flat coordinates of the vertices: the point array `pattern` of a .vtp, or `vt` of an .obj
-  /// whose corners have one each, the same at every corner of a vertex; or no rows.
-  Eigen::MatrixX2d pattern = {};
-  std::optional<double> time = {};  ///< TimeValue of a .vtp (s)
-};
 
 /// Reads .obj, .ply, .off or .vtp by extension (any case).
 ///

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "testbed/formats/mesh/mesh_file.h"
+#include "testbed/formats/mesh/parsed_mesh.h"
 
 namespace geoprior {
 

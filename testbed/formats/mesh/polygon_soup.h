@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "testbed/formats/mesh/mesh_file.h"
+#include "testbed/formats/mesh/parsed_mesh.h"
 
 namespace geoprior {
 

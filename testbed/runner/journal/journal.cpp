@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/input_file.h"
+#include "testbed/formats/system_reason.h"
 #include "testbed/formats/text/nesting.h"
 
 namespace geoprior::journal {

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/folders.h"
+#include "testbed/formats/system_reason.h"
 #include "testbed/formats/vtk/files.h"
 #include "testbed/runner/journal/event_table.h"
 #include "testbed/runner/journal/frame_table.h"

@@ -8,8 +8,8 @@
 #include "testbed/formats/hdf5/file.h"
 #include "testbed/runner/journal/content_hash.h"
 #include "testbed/runner/journal/event_table.h"
+#include "testbed/runner/journal/record_names.h"
 #include "testbed/runner/journal/run_tables.h"
-#include "testbed/runner/names.h"
 
 namespace geoprior {
 namespace {

@@ -8,6 +8,8 @@
 #include "core/parallel.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/folders.h"
+#include "testbed/formats/system_reason.h"
+#include "testbed/runner/inputs/run_inputs.h"
 #include "testbed/runner/journal/content_hash.h"
 #include "testbed/runner/journal/journal.h"
 #include "testbed/runner/journal/recorded_frames.h"
@@ -20,7 +22,7 @@
 #include "testbed/runner/process/build_info.h"
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/run_folder.h"
-#include "testbed/runner/run_inputs.h"
+#include "testbed/runner/spec/spec.h"
 
 namespace geoprior {
 

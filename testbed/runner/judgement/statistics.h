@@ -4,14 +4,9 @@
 #include <string_view>
 
 #include "core/random.h"
+#include "testbed/runner/judgement/interval.h"
 
 namespace geoprior {
-
-struct Interval {
-  double value = 0;
-  double low = 0;
-  double high = 0;
-};
 
 /// Slope of the least-squares line through (x, y) with its 95 % t-interval, normal errors in y.
 /// Two points fix the slope and say nothing of its error: the interval is NaN.

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "testbed/runner/judgement/statistics.h"
+#include "testbed/runner/judgement/interval.h"
 
 namespace geoprior {
 

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "testbed/formats/atomic_file.h"
+#include "testbed/formats/system_reason.h"
 #include "testbed/runner/process/stop.h"
 
 namespace geoprior {

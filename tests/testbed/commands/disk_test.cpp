@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/system_reason.h"
 #include "tests/testbed/run_fixture.h"
 
 namespace geoprior::test {

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace geoprior {
+
+/// A number with the interval that it lies in, of 95 % unless said otherwise.
+struct Interval {
+  double value = 0;
+  double low = 0;
+  double high = 0;
+};
+
+}  // namespace geoprior
