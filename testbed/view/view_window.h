@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/frame.h"
-#include "testbed/runner/spec/spec.h"
-#include "testbed/view/panel/panel.h"
+#include "testbed/runner/spec/experiment.h"
+#include "testbed/view/panel/content.h"
 
 namespace geoprior {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "testbed/runner/reference/reference.h"
+#include "testbed/runner/reference/blessed.h"
 
 namespace geoprior {
 

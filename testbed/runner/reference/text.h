@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "testbed/runner/reference/reference.h"
+#include "testbed/runner/reference/blessed.h"
 
 namespace geoprior {
 

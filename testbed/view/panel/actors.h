@@ -5,7 +5,7 @@
 
 #include "core/frame.h"
 #include "testbed/view/figure/colors.h"
-#include "testbed/view/panel/panel.h"
+#include "testbed/view/panel/content.h"
 
 class vtkActor;
 template <class T>

@@ -5,7 +5,7 @@
 
 #include "core/frame.h"
 #include "testbed/view/figure/picture.h"
-#include "testbed/view/panel/panel.h"
+#include "testbed/view/panel/content.h"
 #include "testbed/view/panel/plane_curves.h"
 
 namespace geoprior {

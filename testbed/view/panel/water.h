@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "testbed/view/panel/panel.h"
+#include "testbed/view/panel/content.h"
 
 class vtkActor;
 
