@@ -14,6 +14,7 @@
 #include "testbed/commands/message_line.h"
 #include "testbed/runner/process/build_info.h"
 #include "testbed/runner/process/stop.h"
+#include "testbed/runner/spec/spec.h"
 #include "testbed/streams.h"
 
 namespace geoprior {

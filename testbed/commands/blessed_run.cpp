@@ -8,7 +8,8 @@
 #include "core/error.h"
 #include "testbed/commands/console.h"
 #include "testbed/commands/find.h"
-#include "testbed/runner/made_run.h"
+#include "testbed/runner/inputs/made_run.h"
+#include "testbed/runner/spec/spec.h"
 #include "testbed/streams.h"
 
 namespace geoprior {

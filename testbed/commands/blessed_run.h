@@ -4,7 +4,7 @@
 #include <string>
 
 #include "testbed/commands/commands.h"
-#include "testbed/runner/spec/spec.h"
+#include "testbed/runner/spec/experiment.h"
 
 namespace geoprior {
 

@@ -10,6 +10,7 @@
 #include "testbed/runner/judgement/claims.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/opened_run.h"
+#include "testbed/runner/spec/spec.h"
 
 namespace geoprior {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "testbed/runner/opened_run.h"
-#include "testbed/runner/spec/spec.h"
+#include "testbed/runner/spec/experiment.h"
 
 namespace geoprior {
 

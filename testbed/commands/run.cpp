@@ -10,6 +10,7 @@
 #include "testbed/commands/pictures.h"
 #include "testbed/runner/execute.h"
 #include "testbed/runner/process/stop.h"
+#include "testbed/runner/spec/spec.h"
 
 namespace geoprior {
 namespace {

@@ -10,6 +10,7 @@
 #include "testbed/formats/folders.h"
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/run_folder.h"
+#include "testbed/runner/spec/spec.h"
 #include "testbed/view/export.h"
 #include "testbed/view/media/spectrogram.h"
 #include "testbed/view/media/video.h"

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "testbed/runner/benchmark.h"
-#include "testbed/runner/execute.h"
 #include "testbed/runner/journal/recorded_frames.h"
 #include "testbed/runner/journal/recorder.h"
 #include "testbed/runner/process/progress.h"
 #include "testbed/runner/process/run_context.h"
 #include "testbed/runner/run_state.h"
+#include "testbed/runner/spec/experiment.h"
 #include "testbed/topic.h"
 
 namespace geoprior {

@@ -13,12 +13,13 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/system_reason.h"
 #include "testbed/home.h"
+#include "testbed/runner/inputs/run_reference.h"
 #include "testbed/runner/journal/journal.h"
 #include "testbed/runner/journal/sha256.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/opened_run.h"
-#include "testbed/runner/run_inputs.h"
 #include "testbed/runner/spec/json.h"
 #include "testbed/streams.h"
 

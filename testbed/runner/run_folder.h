@@ -6,8 +6,9 @@
 #include <string>
 
 #include "testbed/formats/folders.h"
-#include "testbed/runner/execute.h"
-#include "testbed/runner/spec/spec.h"
+#include "testbed/runner/execute_request.h"
+#include "testbed/runner/journal/run_record.h"
+#include "testbed/runner/spec/experiment.h"
 
 namespace geoprior {
 
@@ -44,6 +45,9 @@ std::string input_name(const std::filesystem::path& file);
 
 /// The file that a run recorded under that name; it need not exist any more.
 std::filesystem::path input_file(const std::string& name);
+
+/// A finished run of the same hash, newest first; absent when there is none.
+std::optional<std::filesystem::path> find_run(const Experiment& experiment);
 
 /// The newest finished run of an experiment whose record is a wanted one; absent when there is
 /// none.

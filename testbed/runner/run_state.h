@@ -7,7 +7,7 @@
 
 #include "testbed/runner/journal/journal.h"
 #include "testbed/runner/journal/run_record.h"
-#include "testbed/runner/spec/spec.h"
+#include "testbed/runner/spec/experiment.h"
 
 namespace geoprior {
 

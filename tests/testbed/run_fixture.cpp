@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "experiments/toy/toy_topic.h"
 #include "testbed/runner/process/stop.h"
+#include "testbed/runner/spec/spec.h"
 #include "tests/testbed/scratch_place.h"
 
 namespace geoprior::test {

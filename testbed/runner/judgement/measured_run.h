@@ -7,7 +7,7 @@
 
 #include "testbed/runner/journal/run_record.h"
 #include "testbed/runner/opened_run.h"
-#include "testbed/runner/spec/spec.h"
+#include "testbed/runner/spec/experiment.h"
 #include "testbed/topic.h"
 
 namespace geoprior {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "testbed/runner/journal/run_record.h"
-#include "testbed/runner/spec/spec.h"
+#include "testbed/runner/spec/experiment.h"
 
 namespace geoprior {
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "testbed/runner/spec/spec.h"
+#include "testbed/runner/spec/experiment.h"
 #include "testbed/runner/spec/toml_tree.h"
 
 namespace geoprior {

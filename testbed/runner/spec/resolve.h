@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "testbed/runner/spec/spec.h"
+#include "testbed/runner/spec/experiment.h"
 #include "testbed/runner/spec/sweeps.h"
 #include "testbed/runner/spec/tables.h"
 #include "testbed/runner/spec/toml_tree.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "core/error.h"
 #include "testbed/runner/journal/sha256.h"
@@ -12,6 +11,7 @@
 #include "testbed/runner/process/build_info.h"
 #include "testbed/runner/spec/claims.h"
 #include "testbed/runner/spec/json.h"
+#include "testbed/runner/spec/left_out.h"
 #include "testbed/runner/spec/overrides.h"
 #include "testbed/runner/spec/resolve.h"
 #include "testbed/runner/spec/sweeps.h"
@@ -143,121 +143,6 @@ std::string spec_hash(const std::string& text) {
                 "\ndifference " + build.git_difference + "\n");
 }
 
-/// Takes texts out of a list of a table; a list of which nothing is left goes, too.
-template <class Left>
-void leave_out(TomlNode& table, const std::string& key, Left is_left_out) {
-  TomlNode* list = table.find(key);
-  if (list == nullptr || list->items.empty()) return;
-  std::erase_if(list->items, [&](const TomlNode& name) { return is_left_out(name.text); });
-  if (list->items.empty()) table.erase(key);
-}
-
-/// @param written  the file with all of its sweeps: what is claimed of cases that --set or the
-/// quick
-///                 version leave out is no mistake of the file
-KnownNames known_names(const TomlNode& root, const TomlNode& written,
-                       const std::vector<std::string>& selected, bool quick) {
-  KnownNames names;
-  for (const TomlNode& node : tables_of(root, "variant")) {
-    const std::string& name = node.find("name")->text;
-    const bool runs = selected.empty() || has(selected, name);
-    (runs ? names.variants : names.dropped).push_back(name);
-    if (const TomlNode* to = node.find("reference")) names.references[name] = to->text;
-  }
-  for (const SweptCase& swept : expand_sweeps(written, quick)) names.cases.push_back(swept.name);
-  if (!quick) return names;
-  const std::set<std::string> known(names.cases.begin(), names.cases.end());
-  for (const SweptCase& swept : expand_sweeps(written, false)) {
-    if (!known.contains(swept.name)) names.cases.push_back(swept.name);
-  }
-  return names;
-}
-
-/// Quick runs decide no claim about a variant that they leave out: the file says so of both.
-void require_claimed_variants(const TomlNode& root, const std::vector<std::string>& dropped) {
-  const auto require = [&](const TomlNode& table, const TomlNode& claim) {
-    for (const char* member : {"variant", "of", "null"}) {
-      const TomlNode* name = table.find(member);
-      if (name == nullptr || !has(dropped, name->text)) continue;
-      throw Error("quick runs leave variant '" + name->text + "' out", place_of(table, member),
-                  "`quick = false` of the claim at " + claim.place + ", too");
-    }
-  };
-  for (const TomlNode& claim : tables_of(root, "claim")) {
-    require(claim, claim);
-    const TomlNode* metric = claim.find("metric");
-    for (const TomlNode& study : tables_of(root, "study")) {
-      const TomlNode* name = study.find("name");
-      const bool read =
-          metric != nullptr && name != nullptr && metric->text == "study:" + name->text;
-      if (read) require(study, claim);
-    }
-  }
-}
-
-bool is_grid(const TomlNode& sweep) {
-  const TomlNode* grid = sweep.find("grid");
-  return grid != nullptr && grid->boolean;
-}
-
-/// Takes dropped variants out of the sweeps, and sweeps that are about dropped ones alone: they
-/// would only repeat the base case. A grid runs the variants of all of its sweeps.
-void drop_sweeps(TomlNode& root, const std::vector<std::string>& dropped) {
-  TomlNode* sweeps = root.find("sweep");
-  if (sweeps == nullptr) return;
-  const auto runs_dropped_alone = [&](const TomlNode& sweep) {
-    const TomlNode* names = sweep.find("variants");
-    return names != nullptr && !names->items.empty() &&
-           std::all_of(names->items.begin(), names->items.end(),
-                       [&](const TomlNode& name) { return has(dropped, name.text); });
-  };
-  const bool grid_goes = std::all_of(
-      sweeps->items.begin(), sweeps->items.end(),
-      [&](const TomlNode& sweep) { return !is_grid(sweep) || runs_dropped_alone(sweep); });
-  std::erase_if(sweeps->items, [&](const TomlNode& sweep) {
-    const TomlNode* key = sweep.find("key");
-    const bool of_dropped =
-        key != nullptr && std::any_of(dropped.begin(), dropped.end(), [&](const auto& name) {
-          return key->text.starts_with("variant." + name + ".");
-        });
-    return of_dropped || (is_grid(sweep) ? grid_goes : runs_dropped_alone(sweep));
-  });
-  for (TomlNode& sweep : sweeps->items) {
-    leave_out(sweep, "variants", [&](const std::string& name) { return has(dropped, name); });
-  }
-}
-
-/// The figure shows what this run makes of what the file asks for.
-void leave_out_of_view(TomlNode& root, const KnownNames& names,
-                       const std::vector<CaseSpec>& cases) {
-  TomlNode* view = root.find("figure_view");
-  if (view == nullptr) return;
-  const auto is_dropped = [&](const std::string& name) { return has(names.dropped, name); };
-  leave_out(*view, "variants", is_dropped);
-  for (const char* row : {"above", "below"}) {
-    if (TomlNode* further = view->find(row)) leave_out(*further, "variants", is_dropped);
-  }
-  leave_out(*view, "cases", [&](const std::string& name) {
-    return has(names.cases, name) &&
-           std::none_of(cases.begin(), cases.end(),
-                        [&](const CaseSpec& made) { return made.name == name; });
-  });
-}
-
-/// Forgets cases that `drop_sweeps` took away or that only the full version has; what was only
-/// about them goes too.
-template <class Specs>
-void drop_cases(Specs& specs, const std::vector<CaseSpec>& cases) {
-  std::erase_if(specs, [&](auto& spec) {
-    if (spec.cases.empty()) return false;
-    std::erase_if(spec.cases, [&](const std::string& name) {
-      return std::none_of(cases.begin(), cases.end(),
-                          [&](const CaseSpec& made) { return made.name == name; });
-    });
-    return spec.cases.empty();
-  });
-}
-
 void read_timing(const TomlNode& root, Experiment& experiment) {
   TimingTable timing;
   if (const TomlNode* table = root.find("timing")) read_options(*table, "timing", timing);
@@ -294,25 +179,6 @@ void read_check(const TomlNode& root, const Topic& topic, Experiment& experiment
 }
 
 }  // namespace
-
-const StudySpec* study_of(const ClaimSpec& claim, const std::vector<StudySpec>& studies) {
-  const auto found = std::find_if(studies.begin(), studies.end(), [&](const StudySpec& study) {
-    return "study:" + study.name == claim.metric;
-  });
-  return found == studies.end() ? nullptr : &*found;
-}
-
-bool null_is_yardstick(const ClaimSpec& claim) {
-  return claim.null && claim.of == claim.null && claim.factor == 1 && claim.offset == 0 &&
-         !claim.of_reduce;
-}
-
-const Topic& topic_of(const Experiment& experiment, const std::vector<Topic>& topics) {
-  for (const Topic& topic : topics) {
-    if (topic.name == experiment.topic) return topic;
-  }
-  throw Error("unknown topic '" + experiment.topic + "'", experiment.file.string());
-}
 
 FigureView figure_view_of(const std::string& resolved_toml, const std::string& source,
                           const std::vector<Topic>& topics) {

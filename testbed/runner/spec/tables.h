@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/options.h"
-#include "testbed/runner/spec/spec.h"
+#include "testbed/figure_view.h"
 #include "testbed/runner/spec/terms.h"
 
 namespace geoprior {

@@ -7,7 +7,7 @@
 
 #include "core/frame.h"
 #include "testbed/runner/opened_run.h"
-#include "testbed/runner/spec/spec.h"
+#include "testbed/runner/spec/experiment.h"
 
 namespace geoprior {
 

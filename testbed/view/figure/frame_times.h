@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "testbed/runner/journal/run_record.h"
-#include "testbed/runner/spec/spec.h"
+#include "testbed/runner/spec/experiment.h"
 
 namespace geoprior {
 

@@ -8,9 +8,9 @@
 
 #include "core/error.h"
 #include "core/limits.h"
+#include "testbed/runner/inputs/run_reference.h"
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/run_folder.h"
-#include "testbed/runner/run_inputs.h"
 #include "testbed/view/panel/section.h"
 #include "testbed/view/view_window.h"
 

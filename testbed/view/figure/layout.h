@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "testbed/runner/opened_run.h"
-#include "testbed/runner/spec/spec.h"
+#include "testbed/runner/spec/experiment.h"
 #include "testbed/view/figure/cells.h"
 #include "testbed/view/figure/legend.h"
 #include "testbed/view/figure/picture.h"

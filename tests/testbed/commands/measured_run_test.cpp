@@ -13,6 +13,7 @@
 #include "testbed/metric_rows.h"
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/run_folder.h"
+#include "testbed/runner/spec/spec.h"
 #include "tests/testbed/run_fixture.h"
 #include "tests/testbed/toy_home.h"
 

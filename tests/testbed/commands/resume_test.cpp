@@ -11,6 +11,7 @@
 #include "experiments/toy/toy_topic.h"
 #include "testbed/runner/journal/journal.h"
 #include "testbed/runner/process/stop.h"
+#include "testbed/runner/spec/spec.h"
 #include "tests/testbed/run_fixture.h"
 
 namespace geoprior::test {

@@ -11,6 +11,7 @@
 #include "testbed/formats/atomic_file.h"
 #include "testbed/runner/reference/reference.h"
 #include "testbed/runner/reference/text.h"
+#include "testbed/runner/spec/spec.h"
 
 namespace geoprior::test {
 

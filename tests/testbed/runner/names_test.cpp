@@ -10,9 +10,9 @@
 #include <regex>
 
 #include "core/error.h"
+#include "testbed/runner/inputs/run_reference.h"
 #include "testbed/runner/journal/run_file.h"
 #include "testbed/runner/reference/reference.h"
-#include "testbed/runner/run_inputs.h"
 #include "testbed/runner/spec/sweeps.h"
 #include "testbed/runner/spec/toml_tree.h"
 #include "testbed/view/export.h"

@@ -1,15 +1,16 @@
-#include "testbed/runner/made_run.h"
+#include "testbed/runner/inputs/made_run.h"
 
 #include <array>
 #include <chrono>
 #include <thread>
 #include <utility>
 
+#include "testbed/runner/inputs/making_lock.h"
 #include "testbed/runner/journal/journal.h"
 #include "testbed/runner/journal/sha256.h"
-#include "testbed/runner/making_lock.h"
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/run_folder.h"
+#include "testbed/runner/single_run.h"
 #include "testbed/streams.h"
 
 namespace geoprior {
@@ -90,9 +91,15 @@ std::optional<OpenedRun> find_or_make_run(const Experiment& experiment,
   own.out = find_unfinished_run(made);
   own.resume = own.out.has_value();
   say(announcement);
-  ExecuteResult result = execute(made, topics, own);
+  ExecuteResult result = run_once(made, topics, own, input_maker(topics));
   if (result.stopped) return std::nullopt;
   return OpenedRun(result.folder, std::move(result.record));
+}
+
+InputMaker input_maker(const std::vector<Topic>& topics) {
+  return [&topics](const Experiment& input, const ExecuteRequest& request) {
+    return find_or_make_run(input, topics, request, input.id + " is needed first");
+  };
 }
 
 }  // namespace geoprior

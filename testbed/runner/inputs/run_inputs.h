@@ -1,26 +1,17 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "testbed/runner/execute.h"
-#include "testbed/runner/spec/spec.h"
+#include "testbed/runner/execute_request.h"
+#include "testbed/runner/journal/run_record.h"
+#include "testbed/runner/opened_run.h"
+#include "testbed/runner/spec/experiment.h"
 
 namespace geoprior {
-
-/// A text option "run:<experiment id>/<variant>" or "run:<experiment id>/<case>/<variant>"; the id
-/// has two parts, "fluid/boat-wake". "#<file>" behind it means an artifact of the variant.
-struct RunReference {
-  std::string experiment_id;
-  std::string case_name = "default";
-  std::string variant;
-  std::string artifact;  ///< empty: the frames
-};
-
-bool is_run_reference(const std::string& text);
-/// @throws Error  when the text has not three or four parts, or no file name behind "#"
-RunReference parse_run_reference(const std::string& text);
 
 /// A scene whose run references are replaced by the folders of the frames, or the artifacts, that
 /// they mean.
@@ -33,10 +24,15 @@ struct ResolvedScene {
 /// @throws Error  naming the experiments, when runs need each other in a circle
 void require_no_circle(const Experiment& experiment, const std::vector<Topic>& topics);
 
-/// Finds the finished run of each reference, or makes it first; waits where another program is
-/// making it. The experiment must be in no circle.
+/// How the finished run of an input is got, made first where there is none (`find_or_make_run`);
+/// absent after Ctrl-C.
+using InputMaker =
+    std::function<std::optional<OpenedRun>(const Experiment& input, const ExecuteRequest& request)>;
+
+/// Has the run of each reference made. The experiment must be in no circle.
 ResolvedScene resolve_run_inputs(const Experiment& experiment, const CaseSpec& spec,
-                                 const std::vector<Topic>& topics, const ExecuteRequest& request);
+                                 const std::vector<Topic>& topics, const ExecuteRequest& request,
+                                 const InputMaker& make);
 
 /// The same of a run that is finished: each reference is the run whose `content_sha256` was
 /// recorded, and none is made.

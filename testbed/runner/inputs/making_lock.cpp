@@ -1,4 +1,4 @@
-#include "testbed/runner/making_lock.h"
+#include "testbed/runner/inputs/making_lock.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/system_reason.h"
 #include "testbed/runner/run_folder.h"
 
 namespace geoprior {

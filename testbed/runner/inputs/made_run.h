@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "testbed/runner/execute.h"
+#include "testbed/runner/execute_request.h"
+#include "testbed/runner/inputs/run_inputs.h"
 #include "testbed/runner/opened_run.h"
-#include "testbed/runner/spec/spec.h"
+#include "testbed/runner/spec/experiment.h"
 
 namespace geoprior {
 
@@ -30,5 +31,9 @@ std::optional<OpenedRun> find_or_make_run(const Experiment& experiment,
                                           const std::vector<Topic>& topics,
                                           const ExecuteRequest& request,
                                           const std::string& announcement);
+
+/// Finds or makes the runs that are inputs of others, and their inputs likewise.
+/// @param topics  must outlive what is returned
+InputMaker input_maker(const std::vector<Topic>& topics);
 
 }  // namespace geoprior

@@ -1,25 +1,21 @@
-#include "testbed/runner/run_inputs.h"
+#include "testbed/runner/inputs/run_inputs.h"
 
 #include <algorithm>
 #include <set>
-#include <sstream>
 
 #include "core/error.h"
 #include "testbed/catalogue.h"
 #include "testbed/formats/folders.h"
-#include "testbed/runner/made_run.h"
-#include "testbed/runner/names.h"
-#include "testbed/runner/opened_run.h"
+#include "testbed/runner/inputs/run_reference.h"
 #include "testbed/runner/options/copy.h"
 #include "testbed/runner/run_folder.h"
+#include "testbed/runner/spec/spec.h"
 
 namespace geoprior {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr std::string_view kPrefix = "run:";
 
 /// <id>.toml among the experiments of the clone, or beside the experiment that needs it.
 fs::path file_of(const std::string& id, const Experiment& needed_by) {
@@ -134,43 +130,19 @@ std::string place_in(const OpenedRun& run, const RunReference& reference, const 
 
 }  // namespace
 
-bool is_run_reference(const std::string& text) { return text.starts_with(kPrefix); }
-
-RunReference parse_run_reference(const std::string& text) {
-  std::vector<std::string> parts;
-  const std::size_t hash = std::min(text.find('#'), text.size());
-  const std::string place = text.substr(kPrefix.size(), hash - kPrefix.size());
-  std::istringstream in(place);
-  for (std::string part; std::getline(in, part, '/');) parts.push_back(part);
-  const bool named = std::all_of(parts.begin(), parts.end(),
-                                 [](const std::string& part) { return is_name(part); });
-  const std::string artifact = text.substr(std::min(hash + 1, text.size()));
-  if (!named || !(artifact.empty() || is_name(artifact)) || parts.size() < 3 || parts.size() > 4 ||
-      place.ends_with('/') || text.ends_with('#')) {
-    throw Error("no reference to a run: " + quoted_name(text), "",
-                "\"run:<topic>/<experiment>/<variant>\" or "
-                "\"run:<topic>/<experiment>/<case>/<variant>\", and \"#<file>\" for an artifact");
-  }
-  RunReference reference;
-  reference.artifact = artifact;
-  reference.experiment_id = parts[0] + "/" + parts[1];
-  if (parts.size() == 4) reference.case_name = parts[2];
-  reference.variant = parts.back();
-  return reference;
-}
-
 void require_no_circle(const Experiment& experiment, const std::vector<Topic>& topics) {
   CircleSearch(topics).visit(experiment);
 }
 
 ResolvedScene resolve_run_inputs(const Experiment& experiment, const CaseSpec& spec,
-                                 const std::vector<Topic>& topics, const ExecuteRequest& request) {
+                                 const std::vector<Topic>& topics, const ExecuteRequest& request,
+                                 const InputMaker& make) {
   ResolvedScene resolved;
   const auto file_of_run = [&](const std::string& text) -> std::string {
     if (!is_run_reference(text) || resolved.stopped) return text;
     const RunReference reference = parse_run_reference(text);
     const Experiment input = load_input(reference, experiment, topics);
-    const auto run = find_or_make_run(input, topics, request, input.id + " is needed first");
+    const auto run = make(input, request);
     if (!run) {
       resolved.stopped = true;
       return text;
