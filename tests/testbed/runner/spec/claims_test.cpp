@@ -1,0 +1,117 @@
+// Claims and studies as they are read: nulls, reductions, yardsticks.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/testbed/runner/spec/spec_fixture.h"
+
+namespace geoprior::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class SpecClaims : public SpecTest {};
+
+TEST_F(SpecClaims, ClaimsAreCheckedAgainstMetricsVariantsAndCases) {
+  const auto claim = [&](const std::string& rest) {
+    return error_of(toy::disc_experiment() + "[[claim]]\ntext = \"t\"\n" + rest);
+  };
+  EXPECT_THAT(claim("metric = \"radius_eror\"\nvariant = \"exact\"\nvalue = 1"),
+              HasSubstr("did you mean 'radius_error'"));
+  EXPECT_THAT(claim("metric = \"radius_error\"\nvariant = \"exat\"\nvalue = 1"),
+              HasSubstr("did you mean 'exact'"));
+  EXPECT_THAT(claim("metric = \"radius_error\"\nvariant = \"exact\""),
+              HasSubstr("compared with nothing"));
+  EXPECT_THAT(claim("metric = \"radius_error\"\nvariant = \"exact\"\nvalue = 1\nof = \"polygon\""),
+              HasSubstr("both"));
+  EXPECT_THAT(claim("metric = \"radius_error\"\nvariant = \"exact\"\nvalue = 1\ncases = [\"x\"]"),
+              HasSubstr("default"));
+  EXPECT_THAT(claim("metric = \"radius_error\"\nvariant = \"exact\"\nvalue = 1\nat = 90"),
+              HasSubstr("{ angle_deg = 90 }"));
+  EXPECT_THAT(claim("metric = \"study:none\"\nvalue = 1"), HasSubstr("unknown study"));
+  EXPECT_EQ(claim("metric = \"timing:solve\"\nvariant = \"exact\"\nof = \"polygon\"\nis = \">\""),
+            "no error");
+}
+
+/// A claim about the polygon, with a null called "square".
+std::string with_null(const std::string& rest, const std::string& reference = "exact") {
+  return toy::disc_experiment() +
+         "[[variant]]\nname = \"square\"\nmethod = \"polygon\"\nrole = \"null\"\n" +
+         (reference.empty() ? "" : "reference = \"" + reference + "\"\n") +
+         "options = { segments = 4 }\n"
+         "[[claim]]\ntext = \"t\"\nvariant = \"polygon\"\n" +
+         rest;
+}
+
+TEST_F(SpecClaims, NullsAreOtherVariantsThatCanFailTheClaim) {
+  const std::string metric = "metric = \"radius_error\"\nvalue = 0.1\n";
+  const Experiment e = load(with_null(metric + "null = \"square\"\n"));
+  EXPECT_EQ(e.claims.at(0).null, "square");
+  EXPECT_EQ(e.cases.at(0).variants.at(2).role, "null");
+  EXPECT_EQ(e.claims.at(0).metric_tolerance.absolute,
+            find_metric(topic_of(e, topics_), "radius_error")->tolerance.absolute);
+  EXPECT_THAT(
+      error_of(with_null(metric + "null = \"sqare\"\n")),
+      AllOf(HasSubstr("null: there is no variant 'sqare'"), HasSubstr("did you mean 'square'")));
+  EXPECT_THAT(error_of(with_null(metric + "null = \"polygon\"\n")),
+              HasSubstr("null: is the variant itself"));
+  const std::string of = "metric = \"radius_error\"\nof = \"exact\"\nnull = \"exact\"\n";
+  EXPECT_THAT(error_of(with_null(of + "is = \"<=\"\n")), HasSubstr("would pass: it is what"));
+  EXPECT_EQ(error_of(with_null(of + "is = \"<\"\n")), "no error");
+  EXPECT_EQ(error_of(with_null(of + "is = \"<=\"\nfactor = 0.5\n")), "no error");
+}
+
+TEST_F(SpecClaims, ANullHasTheReferenceOfItsVariant) {
+  const std::string claim = "metric = \"distance_to_reference\"\nvalue = 0.1\nnull = \"square\"\n";
+  EXPECT_EQ(error_of(with_null(claim)), "no error");
+  EXPECT_THAT(error_of(with_null(claim, "")), HasSubstr("is not measured against 'exact'"));
+}
+
+TEST_F(SpecClaims, TimesNeedNoNullAndOneLeftOutIsForgotten) {
+  const Experiment timed = load(with_null("metric = \"timing:solve\"\nvalue = 1\n"));
+  EXPECT_EQ(timed.claims.at(0).exempt, Exemption::timing);
+  const std::string text = with_null("metric = \"radius_error\"\nvalue = 0.1\nnull = \"square\"\n");
+  const Experiment alone = load(text, only({"polygon"}));
+  EXPECT_FALSE(alone.claims.at(0).null.has_value());
+  EXPECT_EQ(load(alone.resolved_toml).claims.size(), 1U);
+}
+
+TEST_F(SpecClaims, TwoClaimsOfOneTextAreRefused) {
+  const std::string claim =
+      "[[claim]]\ntext = \"t\"\nmetric = \"radius_error\"\nvariant = \"exact\"\nvalue = 1\n";
+  EXPECT_THAT(error_of(toy::disc_experiment() + claim + claim), HasSubstr("two claims say 't'"));
+}
+
+TEST_F(SpecClaims, ReductionsOfBothSidesOfAClaim) {
+  const std::string head =
+      "[[claim]]\ntext = \"t\"\nmetric = \"timing:solve\"\nvariant = \"polygon\"\n";
+  const Experiment e =
+      load(disc_with(head + "of = \"polygon\"\nreduce = \"p95\"\nof_reduce = \"median\"\n"));
+  EXPECT_EQ(e.claims.at(0).reduce, Reduction::p95);
+  EXPECT_EQ(e.claims.at(0).of_reduce, Reduction::median);
+  EXPECT_FALSE(load(disc_with(head + "of = \"exact\"\n")).claims.at(0).of_reduce.has_value());
+  EXPECT_THAT(error_of(disc_with(head + "value = 1\nof_reduce = \"median\"\n")),
+              HasSubstr("reduces the frames of no variant"));
+  EXPECT_THAT(error_of(disc_with(head + "of = \"exact\"\nat = { angle_deg = 90 }\n"
+                                        "of_reduce = \"median\"\n")),
+              HasSubstr("`at` picks one frame"));
+  EXPECT_THAT(error_of(disc_with(head + "of = \"exact\"\nreduce = \"every\"\n"
+                                        "of_reduce = \"median\"\n")),
+              HasSubstr("frame by frame"));
+}
+
+TEST_F(SpecClaims, WithinSpreadNamesItsYardstick) {
+  const std::string sweep = "[[sweep]]\nkey = \"seed\"\nvalues = [1, 2, 3]\nbase = false\n";
+  const auto study = [&](const std::string& kind, const std::string& of) {
+    return disc_with(sweep + "[[study]]\nname = \"near\"\nkind = \"" + kind +
+                     "\"\nvariant = \"polygon\"\nquantity = \"radius_error\"\n" + of);
+  };
+  EXPECT_EQ(load(study("within-spread", "of = \"exact\"\n")).studies.at(0).of, "exact");
+  EXPECT_THAT(error_of(study("within-spread", "")), HasSubstr("of: is missing"));
+  EXPECT_THAT(error_of(study("spread", "of = \"exact\"\n")), HasSubstr("no meaning"));
+  EXPECT_THAT(error_of(study("within-spread", "of = \"circle\"\n")),
+              HasSubstr("no variant 'circle'"));
+}
+
+}  // namespace
+}  // namespace geoprior::test
