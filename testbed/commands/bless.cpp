@@ -152,6 +152,7 @@ int bless_rows(const CommandContext& context, const BlessRequest& request, Exper
   // Only where nothing else was measured otherwise do the bytes stand for the other values.
   if (metrics_sha256(without_metrics(run.record, request.rows)) == set.content->metrics) {
     set.content = content_of(run.record);
+    if (run.experiment.keeps_outcomes) set.outcomes = outcomes_of(run.record, *run.topic);
   }
   set.blessing = blessing_of("rows " + joined(request.rows) + ": " + request.reason);
   write_reference(reference, file);
@@ -188,6 +189,7 @@ int bless_command(const CommandContext& context, const BlessRequest& request) {
   const ReferenceSet before = std::move(set.values);
   set = {blessing_of(request.reason), content_of(run.record), processor_seconds(run.record),
          bless_values(gated_values(run.experiment, *run.topic, run.record, claims), gates)};
+  if (run.experiment.keeps_outcomes) set.outcomes = outcomes_of(run.record, *run.topic);
   write_reference(reference, file);
 
   for (const std::string& failure : failures(run.record)) say("  note: " + failure);

@@ -36,7 +36,7 @@ struct Verdict {
   std::size_t compared = 0;
   std::vector<Mismatch> mismatches;
   std::vector<ClaimRecord> claims;
-  std::vector<std::string> failures;                    ///< of variants that an error ended
+  std::vector<std::string> failures;  ///< of variants that an error ended, and of outcomes
   std::map<std::string, std::string> known_shortfalls;  ///< text of a claim, why it falls short
   bool has_reference = true;
   bool mutations = false;      ///< asked for: a method replaced by its null must be noticed
@@ -96,6 +96,18 @@ void add_moved_values(const GatedValues& now, const ReferenceSet& before, const 
   for (const std::string& line : lines) verdict.notices.push_back("moved: " + line);
 }
 
+/// Which columns came to something else, and which now come to the same.
+void add_outcomes(const BlessedRun& run, const Outcomes& blessed, Verdict& verdict) {
+  Outcomes now;
+  if (run.experiment.keeps_outcomes) now = outcomes_of(run.record, *run.topic);
+  const OutcomeDifference difference = compare_outcomes(now, blessed);
+  const auto append = [](std::vector<std::string>& all, const std::vector<std::string>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  append(verdict.notices, difference.notices);
+  append(verdict.failures, difference.failures);
+}
+
 Verdict check_one(const CommandContext& context, const std::string& id,
                   const CheckRequest& request) {
   Experiment experiment = load_without_clock(context, id, request.quick);
@@ -128,6 +140,7 @@ Verdict check_one(const CommandContext& context, const std::string& id,
   const Gates gates(run.experiment, *run.topic);
   if (!verdict.notices.empty()) add_moved_values(now, before, gates, verdict);
   verdict.mismatches = compare_with_reference(now, before, gates);
+  add_outcomes(run, blessed->second.outcomes, verdict);
   return verdict;
 }
 

@@ -54,15 +54,19 @@ void add_frames(const VariantRecord& variant, std::string& text) {
   add_files("artifact", variant.artifacts, text);
 }
 
+void add_metric(const std::string& name, const MetricColumn& column, std::string& text) {
+  text += "metric " + name;
+  for (const double x : column.values) text.append(" ").append(hex(x));
+  text += "\n";
+}
+
+void add_summary(const std::string& name, const SummaryValue& value, std::string& text) {
+  text.append("summary ").append(name).append(" ").append(hex(value.value)).append("\n");
+}
+
 void add_metrics(const VariantRecord& variant, std::string& text) {
-  for (const auto& [name, column] : variant.metrics) {
-    text += "metric " + name;
-    for (const double x : column.values) text.append(" ").append(hex(x));
-    text += "\n";
-  }
-  for (const auto& [name, value] : variant.summary) {
-    text.append("summary ").append(name).append(" ").append(hex(value.value)).append("\n");
-  }
+  for (const auto& [name, column] : variant.metrics) add_metric(name, column, text);
+  for (const auto& [name, value] : variant.summary) add_summary(name, value, text);
 }
 
 /// `add(variant, text)` for each variant, under the names of its case and its own.
@@ -96,6 +100,23 @@ std::string frames_sha256(const RunRecord& record) {
 
 std::string metrics_sha256(const RunRecord& record) {
   return sha256(hashed_text(record, "metrics", add_metrics));
+}
+
+std::string outcome_text(const VariantRecord& variant,
+                         const std::function<bool(const std::string& name)>& counts) {
+  std::string text = "geoprior outcome 1\n";
+  for (const Event& event : variant.events) add_event(event, text);
+  for (const StoredFile& file : variant.artifacts) {
+    // The folders before it are named after case and variant.
+    add_files("artifact", {{file.name.substr(file.name.rfind('/') + 1), file.sha256}}, text);
+  }
+  for (const auto& [name, column] : variant.metrics) {
+    if (counts(name)) add_metric(name, column, text);
+  }
+  for (const auto& [name, value] : variant.summary) {
+    if (counts(name)) add_summary(name, value, text);
+  }
+  return text;
 }
 
 void set_hashes(RunRecord& record) {

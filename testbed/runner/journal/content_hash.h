@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "testbed/runner/journal/run_record.h"
@@ -16,6 +17,12 @@ std::string content_sha256(const RunRecord& record);
 /// of it (metrics, summaries).
 std::string frames_sha256(const RunRecord& record);
 std::string metrics_sha256(const RunRecord& record);
+
+/// What a variant came to beside its frames' files: events, artifacts, and those metrics and
+/// summaries that count. It names neither the variant nor its case, so that two variants with the
+/// same results have the same text.
+std::string outcome_text(const VariantRecord& variant,
+                         const std::function<bool(const std::string& name)>& counts);
 
 /// Sets all three of the record.
 void set_hashes(RunRecord& record);

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "testbed/runner/reference/outcomes.h"
+
 namespace geoprior {
 
 /// One value that was blessed.
@@ -37,6 +39,7 @@ struct BlessedSet {
   std::optional<ContentHash> content;
   std::optional<double> processor_s;  ///< processor time that the run took
   ReferenceSet values;
+  Outcomes outcomes = {};  ///< of experiments whose `[check]` asks for them
 };
 
 /// results/reference/<id>.txt: a set "full", a set "quick", or one of them.

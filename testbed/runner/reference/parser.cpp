@@ -113,13 +113,13 @@ class ReferenceParser {
         {"blessed", &ReferenceParser::read_blessed}, {"content", &ReferenceParser::read_content},
         {"frames", &ReferenceParser::read_frames},   {"metrics", &ReferenceParser::read_metrics},
         {"cost", &ReferenceParser::read_cost},       {"unit", &ReferenceParser::read_unit},
-        {"cases", &ReferenceParser::read_cases},     {"variants", &ReferenceParser::read_variants}};
+        {"cases", &ReferenceParser::read_cases},     {"variants", &ReferenceParser::read_variants},
+        {"outcome", &ReferenceParser::read_outcome}};
     const auto head = heads.find(first);
     if (head == heads.end() || words_.front().is_quoted) {
-      fail(
-          "'" + first + "' begins no line",
-          "set, blessed, frames, metrics, content, cost, unit, cases, variants, end, or two spaces "
-          "before a row");
+      fail("'" + first + "' begins no line",
+           "set, blessed, frames, metrics, content, cost, unit, cases, variants, outcome, end, or "
+           "two spaces before a row");
     }
     require_set();
     (this->*head->second)();
@@ -234,6 +234,21 @@ class ReferenceParser {
   void read_variants() {
     require_first("variants");
     for (std::size_t i = 1; i < words_.size(); ++i) variants_.push_back(words_[i].text);
+  }
+
+  void read_outcome() {
+    ++rows_;
+    require_words(4, "outcome, the case, the variant, a hash");
+    const std::string& hash = words_[3].text;
+    const bool is_hash = hash.size() == kOutcomeDigits &&
+                         hash.find_first_not_of("0123456789abcdef") == std::string::npos;
+    if (!is_hash) {
+      fail("'" + hash + "' is no outcome", std::to_string(kOutcomeDigits) + " hexadecimal digits");
+    }
+    const std::string in = name_of(words_[1]), variant = name_of(words_[2]);
+    if (!set_->outcomes[in].emplace(variant, hash).second) {
+      fail("the outcome of variant '" + variant + "' in case '" + in + "' is there twice");
+    }
   }
 
   void read_row() {

@@ -199,6 +199,16 @@ std::string content_text(const ContentHash& content) {
   return "frames " + word_of(on) + " " + content.frames + "\nmetrics " + content.metrics + "\n";
 }
 
+std::string outcomes_text(const Outcomes& outcomes) {
+  std::string text;
+  for (const auto& [in, variants] : outcomes) {
+    for (const auto& [variant, hash] : variants) {
+      text += "outcome " + word_of(in) + " " + word_of(variant) + " " + hash + "\n";
+    }
+  }
+  return text;
+}
+
 std::string set_text(const std::string& size, const BlessedSet& set, const Table& table) {
   std::string text = "\nset " + size + "\nblessed " + word_of(set.blessing.commit) + " " +
                      escaped_text(set.blessing.reason) + "\n";
@@ -206,7 +216,7 @@ std::string set_text(const std::string& size, const BlessedSet& set, const Table
   if (set.processor_s) text += "cost " + rounded_text(*set.processor_s, kDigitsOfCost) + " s\n";
   text += units_text(table);
   text += wrapped("cases", table.cases);
-  return text + rows_text(table);
+  return text + rows_text(table) + outcomes_text(set.outcomes);
 }
 
 }  // namespace
@@ -218,6 +228,7 @@ std::string reference_text(const Reference& reference) {
   for (const auto& [size, set] : reference) {
     const Table table = table_of(set.values);
     rows += table.rows.size() + table.lone.size();
+    for (const auto& [in, variants] : set.outcomes) rows += variants.size();
     text += set_text(size, set, table);
   }
   return text + "\nend " + std::to_string(rows) + "\n";

@@ -108,6 +108,8 @@ struct Experiment {
   bool bifurcates = false;
   /// [check]: metrics with reference values that neither a claim nor the figure reads.
   std::vector<std::string> checked_metrics;
+  /// [check]: the reference keeps a hash of what each column came to (reference/outcomes.h).
+  bool keeps_outcomes = false;
   int timing_repetitions = 1;
   std::optional<int> timing_warm_up;  ///< absent: 1 for pose methods, 0 for processes
   FigureView view;

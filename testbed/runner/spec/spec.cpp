@@ -158,6 +158,7 @@ void read_check(const TomlNode& root, const Topic& topic, Experiment& experiment
   read_options(*node, "check", table);
   experiment.bifurcates = table.bifurcates;
   experiment.checked_metrics = table.metrics;
+  experiment.keeps_outcomes = table.outcomes;
   for (const std::string& metric : table.metrics) {
     const MetricEntry* row = find_metric(topic, metric);
     if (row == nullptr) {

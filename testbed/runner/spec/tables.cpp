@@ -103,8 +103,12 @@ void describe(OptionVisitor& v, TimingTable& t) {
 void describe(OptionVisitor& v, CheckTable& t) {
   v.value("bifurcates", t.bifurcates,
           {.doc = "compare medians over the sweep of `seed`, not one path"});
-  v.value("metrics", t.metrics,
-          {.doc = "to have reference values though neither a claim nor the figure reads them"});
+  v.value(
+      "metrics", t.metrics,
+      {.doc = "metrics with reference values though neither a claim nor the figure reads them"});
+  v.value("outcomes", t.outcomes,
+          {.doc = "the reference keeps a hash of what each case and variant came to (metrics, "
+                  "events, artifacts): which options did something"});
 }
 
 void describe(OptionVisitor& v, ToleranceTable& t) {

@@ -85,6 +85,7 @@ struct TimingTable {
 struct CheckTable {
   bool bifurcates = false;
   std::vector<std::string> metrics;
+  bool outcomes = false;
 };
 
 struct ToleranceTable {

@@ -191,6 +191,13 @@ TEST(ReferenceText, WhatIsMalformedIsNamedByFileAndLine) {
       {set + row + row, "r.txt:8: metric 'error' of variant 'v' in case 'a' is there twice"},
       {set + row + "  error * 1 2\n", "r.txt:8: metric 'error' of variant 'v' in case 'a'"},
       {set + row, "r.txt:8: the file is cut off"},
+      {head + "outcome a v 0123456789ab\n", "r.txt:2: belongs to no set"},
+      {set + "outcome a v\n", "r.txt:7: is no line of this kind"},
+      {set + "outcome a v 0123456789\n", "r.txt:7: '0123456789' is no outcome"},
+      {set + "outcome a v 0123456789AB\n", "r.txt:7: '0123456789AB' is no outcome"},
+      {set + "outcome a v 0123456789ab\noutcome a v 0123456789ab\n",
+       "r.txt:8: the outcome of variant 'v' in case 'a' is there twice"},
+      {set + row + "outcome a v 0123456789ab\nend 1\n", "r.txt:9: the file has 2 rows and not 1"},
       {set + row + "end 2\n", "r.txt:8: the file has 1 rows and not 2"},
       {set + row + "end 1\n" + row, "r.txt:9: stands behind the end"},
   };

@@ -62,14 +62,14 @@ TEST_F(SpecView, FigureViewBeginsWithThatOfTheTopic) {
   EXPECT_FALSE(view_of("[figure_view]\ncolor_by = \"\"\n").color_by);
 }
 
-std::vector<double> drawn(const Experiment& e) { return e.view.parameters; }
+std::vector<double> drawn_parameters(const Experiment& e) { return e.view.parameters; }
 
 // The toy's disc ends at 90 degrees, its quick run at what the test says.
 TEST_F(SpecView, AFrameOfTheFigureBeyondTheEndOfTheRunIsRefused) {
   const auto text = [](const std::string& frames) {
     return disc_with("[figure_view]\n" + frames + "\n");
   };
-  EXPECT_THAT(drawn(load(text("parameters = [30, 90]"))), ElementsAre(30, 90));
+  EXPECT_THAT(drawn_parameters(load(text("parameters = [30, 90]"))), ElementsAre(30, 90));
   const std::string message = error_of(text("parameters = [30, 91]"));
   EXPECT_THAT(message, AllOf(HasSubstr("disc.toml:"), HasSubstr("figure_view.parameters"),
                              HasSubstr("91 deg lies beyond the end of the run"),
@@ -85,17 +85,19 @@ TEST_F(SpecView, FramesOfTheFigureAreJudgedAgainstTheFullRun) {
   const auto text = [](const std::string& frames) {
     return disc_with("[figure_view]\n" + frames + "\n[quick]\n\"scene.motion.to_deg\" = 20\n");
   };
-  EXPECT_THAT(drawn(load(text("parameters = [10, 90]"), sized(true))), ElementsAre(10, 20));
+  EXPECT_THAT(drawn_parameters(load(text("parameters = [10, 90]"), sized(true))),
+              ElementsAre(10, 20));
   EXPECT_THAT(error_of(text("parameters = [91]"), sized(true)), HasSubstr("at most 90 deg"));
   const LoadRequest shorter = with({"scene.motion.to_deg=45"});
-  EXPECT_THAT(drawn(load(text("parameters = [10, 90]"), shorter)), ElementsAre(10, 45));
+  EXPECT_THAT(drawn_parameters(load(text("parameters = [10, 90]"), shorter)), ElementsAre(10, 45));
   const LoadRequest longer = with({"scene.motion.to_deg=180", "figure_view.parameters=[135]"});
-  EXPECT_THAT(drawn(load(text("parameters = [10]"), longer)), ElementsAre(135));
+  EXPECT_THAT(drawn_parameters(load(text("parameters = [10]"), longer)), ElementsAre(135));
   for (const LoadRequest& request : {sized(true), shorter, longer}) {
     const Experiment first = load(text("parameters = [10, 90]"), request);
     const Experiment again =
         load_experiment(home_.write("spec.toml", first.resolved_toml), topics_, {});
-    EXPECT_EQ(drawn(again), drawn(first)) << "the resolved text is an experiment file itself";
+    EXPECT_EQ(drawn_parameters(again), drawn(first))
+        << "the resolved text is an experiment file itself";
   }
 }
 
@@ -106,7 +108,7 @@ TEST_F(SpecView, FramesOfTheFigureMayLieInAnyCaseThatIsDrawn) {
            "[[sweep]]\nkey = \"scene.motion.to_deg\"\nvalues = [30, 180]\n" +
            "[figure_view]\nparameters = [150]\n" + view;
   };
-  EXPECT_THAT(drawn(load(text(""))), ElementsAre(150));
+  EXPECT_THAT(drawn_parameters(load(text(""))), ElementsAre(150));
   EXPECT_THAT(error_of(text("cases = [\"default\", \"to_deg=30\"]\n")),
               HasSubstr("at most 90 deg"));
 }
