@@ -204,6 +204,7 @@ void OptionLister::group(std::string_view key, const OptionInfo& info,
 void OptionLister::optional_group(std::string_view key, bool& present, const OptionInfo& info,
                                   const std::function<void()>& inside) {
   add(key, "table", present ? "" : "false", info);
+  walked_.rows.back().may_be_absent = true;
   present = true;
   add_inside(std::string(key), inside);
 }
