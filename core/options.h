@@ -8,6 +8,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace geoprior {
@@ -21,6 +24,24 @@ struct OptionInfo {
   bool required = false;  ///< no default: the file must give it
 };
 
+/// The types of options, in the one place that lists them.
+template <class... T>
+struct OptionTypeList {
+  using Value = std::variant<T...>;
+  using Reference = std::variant<T*...>;
+  template <class X>
+  static constexpr bool kHas = (std::is_same_v<X, T> || ...);
+};
+using OptionTypes =
+    OptionTypeList<double, int, bool, std::string, std::vector<double>, std::vector<std::string>,
+                   std::optional<double>, std::optional<int>, std::optional<std::string>,
+                   std::array<double, 3>, std::array<int, 3>>;
+using OptionValue = OptionTypes::Value;
+using OptionReference = OptionTypes::Reference;  ///< never null
+
+template <class T>
+concept IsOptionType = OptionTypes::kHas<T>;
+
 /// Walks the options of a method or a scene. One `describe` serves parsing, validation, help text
 /// and the record.
 ///
@@ -31,18 +52,10 @@ class OptionVisitor {
  public:
   virtual ~OptionVisitor() = default;
 
-  virtual void value(std::string_view key, double& x, const OptionInfo& info) = 0;
-  virtual void value(std::string_view key, int& x, const OptionInfo& info) = 0;
-  virtual void value(std::string_view key, bool& x, const OptionInfo& info) = 0;
-  virtual void value(std::string_view key, std::string& x, const OptionInfo& info) = 0;
-  virtual void value(std::string_view key, std::vector<double>& x, const OptionInfo& info) = 0;
-  virtual void value(std::string_view key, std::vector<std::string>& x, const OptionInfo& info) = 0;
-  virtual void value(std::string_view key, std::optional<double>& x, const OptionInfo& info) = 0;
-  virtual void value(std::string_view key, std::optional<int>& x, const OptionInfo& info) = 0;
-  virtual void value(std::string_view key, std::optional<std::string>& x,
-                     const OptionInfo& info) = 0;
-  virtual void value(std::string_view key, std::array<double, 3>& x, const OptionInfo& info) = 0;
-  virtual void value(std::string_view key, std::array<int, 3>& x, const OptionInfo& info) = 0;
+  template <IsOptionType T>
+  void value(std::string_view key, T& x, const OptionInfo& info) {
+    visit_value(key, OptionReference(std::in_place_type<T*>, &x), info);
+  }
   /// One of `names`, stored as its index.
   virtual void choice(std::string_view key, int& index, std::span<const std::string_view> names,
                       const OptionInfo& info) = 0;
@@ -61,6 +74,11 @@ class OptionVisitor {
   virtual void list(std::string_view key, std::size_t count, const OptionInfo& info,
                     const std::function<void(std::size_t)>& resize,
                     const std::function<void(std::size_t)>& inside) = 0;
+
+ protected:
+  /// What is done to a value; `std::visit` tells its type.
+  virtual void visit_value(std::string_view key, const OptionReference& x,
+                           const OptionInfo& info) = 0;
 };
 
 /// An enum option: `names[i]` is the text of the enumerator of value i.

@@ -1,28 +1,16 @@
 #include "testbed/runner/options/copy.h"
 
 #include <deque>
-#include <variant>
-
-#include "testbed/runner/options/values_definition.h"
 
 namespace geoprior {
 
 namespace {
 
-using Value =
-    std::variant<double, int, bool, std::string, std::vector<double>, std::vector<std::string>,
-                 std::optional<double>, std::optional<int>, std::optional<std::string>,
-                 std::array<double, 3>, std::array<int, 3>, std::size_t>;
-
-/// Both walks see the same members in the same order; `value` is what they do to each.
-class Walk : public OptionValues<Walk> {
+/// Both walks see the same members in the same order; `exchange_value` is what they do to each.
+class Walk : public OptionVisitor {
  public:
-  explicit Walk(std::deque<Value>& values) : values_(values) {}
+  explicit Walk(std::deque<OptionValue>& values) : values_(values) {}
 
-  template <class T>
-  void visit_value(std::string_view, T& x, const OptionInfo&) {
-    exchange(x);
-  }
   void choice(std::string_view, int& index, std::span<const std::string_view>,
               const OptionInfo&) override {
     exchange(index);
@@ -41,14 +29,17 @@ class Walk : public OptionValues<Walk> {
   }
 
  protected:
-  virtual void exchange_value(Value& value) = 0;
+  virtual void exchange_value(OptionValue& value) = 0;
+  void visit_value(std::string_view, const OptionReference& x, const OptionInfo&) final {
+    std::visit([&](auto* value) { exchange(*value); }, x);
+  }
   template <class T>
   void exchange(T& x) {
-    Value value = x;
+    OptionValue value = x;
     exchange_value(value);
     x = std::get<T>(std::move(value));
   }
-  std::deque<Value>& values_;
+  std::deque<OptionValue>& values_;
 };
 
 class Collect final : public Walk {
@@ -57,28 +48,31 @@ class Collect final : public Walk {
   void list(std::string_view, std::size_t count, const OptionInfo&,
             const std::function<void(std::size_t)>&,
             const std::function<void(std::size_t)>& inside) override {
-    exchange(count);
+    int elements = static_cast<int>(count);
+    exchange(elements);
     for (std::size_t i = 0; i < count; ++i) inside(i);
   }
 
  private:
-  void exchange_value(Value& value) override { values_.push_back(value); }
+  void exchange_value(OptionValue& value) override { values_.push_back(value); }
 };
 
 class Assign final : public Walk {
  public:
-  Assign(std::deque<Value>& values, const std::function<std::string(const std::string&)>& on_text)
+  Assign(std::deque<OptionValue>& values,
+         const std::function<std::string(const std::string&)>& on_text)
       : Walk(values), on_text_(on_text) {}
   void list(std::string_view, std::size_t count, const OptionInfo&,
             const std::function<void(std::size_t)>& resize,
             const std::function<void(std::size_t)>& inside) override {
-    exchange(count);
-    resize(count);
-    for (std::size_t i = 0; i < count; ++i) inside(i);
+    int elements = static_cast<int>(count);
+    exchange(elements);
+    resize(elements);
+    for (int i = 0; i < elements; ++i) inside(i);
   }
 
  private:
-  void exchange_value(Value& value) override {
+  void exchange_value(OptionValue& value) override {
     value = std::move(values_.front());
     values_.pop_front();
     if (auto* text = std::get_if<std::string>(&value)) *text = on_text_(*text);
@@ -96,7 +90,7 @@ class Assign final : public Walk {
 
 void copy_options(const OptionSet& from, OptionSet& to,
                   const std::function<std::string(const std::string&)>& on_text) {
-  std::deque<Value> values;
+  std::deque<OptionValue> values;
   Collect collect(values);
   // `visit` is not const because readers assign; this visitor puts back what it finds.
   const_cast<OptionSet&>(from).visit(collect);

@@ -4,7 +4,6 @@
 #include <cctype>
 
 #include "testbed/runner/number_text.h"
-#include "testbed/runner/options/values_definition.h"
 
 namespace geoprior {
 
@@ -23,16 +22,18 @@ Json OptionJsonWriter::walk(const std::function<void()>& inside) {
   return nested;
 }
 
-template <class T>
-void OptionJsonWriter::visit_value(std::string_view key, T& x, const OptionInfo&) {
-  if constexpr (requires { x.has_value(); }) {
-    member(key) = x ? Json(*x) : Json(nullptr);
-  } else {
-    member(key) = x;
-  }
+void OptionJsonWriter::visit_value(std::string_view key, const OptionReference& x,
+                                   const OptionInfo&) {
+  std::visit(
+      [&](const auto* value) {
+        if constexpr (requires { value->has_value(); }) {
+          member(key) = *value ? Json(**value) : Json(nullptr);
+        } else {
+          member(key) = *value;
+        }
+      },
+      x);
 }
-
-template class OptionValues<OptionJsonWriter>;
 
 void OptionJsonWriter::choice(std::string_view key, int& index,
                               std::span<const std::string_view> names, const OptionInfo&) {

@@ -5,16 +5,12 @@
 #include <vector>
 
 #include "core/options.h"
-#include "testbed/runner/options/values.h"
 
 namespace geoprior {
 
-class OptionJsonWriter;
-extern template class OptionValues<OptionJsonWriter>;
-
 /// Writes the options that `describe` walks as JSON, every option with its value, in the order of
 /// `describe`; absent optionals are null.
-class OptionJsonWriter final : public OptionValues<OptionJsonWriter> {
+class OptionJsonWriter final : public OptionVisitor {
  public:
   OptionJsonWriter();
   [[nodiscard]] const nlohmann::ordered_json& json() const { return root_; }
@@ -32,9 +28,7 @@ class OptionJsonWriter final : public OptionValues<OptionJsonWriter> {
             const std::function<void(std::size_t)>& inside) override;
 
  private:
-  friend OptionValues<OptionJsonWriter>;
-  template <class T>
-  void visit_value(std::string_view key, T& x, const OptionInfo& info);
+  void visit_value(std::string_view key, const OptionReference& x, const OptionInfo& info) override;
   nlohmann::ordered_json& member(std::string_view key);
   nlohmann::ordered_json walk(const std::function<void()>& inside);
 

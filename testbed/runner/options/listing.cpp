@@ -7,7 +7,6 @@
 #include "testbed/joined.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/options/toml.h"
-#include "testbed/runner/options/values_definition.h"
 
 namespace geoprior {
 namespace {
@@ -78,7 +77,7 @@ void insert_new(std::vector<OptionRow>& all, const std::vector<OptionRow>& more)
   }
 }
 
-class OptionLister final : public OptionValues<OptionLister> {
+class OptionLister final : public OptionVisitor {
  public:
   /// Walks a table once for every tag of its choices.
   std::vector<OptionRow> walk(const std::string& prefix, const std::function<void()>& inside);
@@ -95,13 +94,12 @@ class OptionLister final : public OptionValues<OptionLister> {
             const std::function<void(std::size_t)>& resize,
             const std::function<void(std::size_t)>& inside) override;
 
-  template <class T>
-  void visit_value(std::string_view key, T& x, const OptionInfo& info) {
-    const Shown as = shown(x);
+ private:
+  void visit_value(std::string_view key, const OptionReference& x,
+                   const OptionInfo& info) override {
+    const Shown as = std::visit([](const auto* value) { return shown(*value); }, x);
     add(key, as.type, as.value, info);
   }
-
- private:
   Walked walk_once(const std::string& prefix, Forced forced, const std::function<void()>& inside);
   void walk_tags(const std::string& prefix, std::size_t tag, Walked& all,
                  const std::function<void()>& inside);

@@ -7,7 +7,6 @@
 
 #include "core/error.h"
 #include "testbed/runner/number_text.h"
-#include "testbed/runner/options/values_definition.h"
 
 namespace geoprior {
 namespace {
@@ -172,12 +171,14 @@ T OptionTomlReader::read(const TomlNode& node, std::string_view key, const Optio
   }
 }
 
-template <class T>
-void OptionTomlReader::visit_value(std::string_view key, T& x, const OptionInfo& info) {
-  if (const TomlNode* node = take(key, info)) x = read<T>(*node, key, info);
+void OptionTomlReader::visit_value(std::string_view key, const OptionReference& x,
+                                   const OptionInfo& info) {
+  const TomlNode* node = take(key, info);
+  if (node == nullptr) return;
+  std::visit(
+      [&](auto* value) { *value = read<std::remove_pointer_t<decltype(value)>>(*node, key, info); },
+      x);
 }
-
-template class OptionValues<OptionTomlReader>;
 
 void OptionTomlReader::choice(std::string_view key, int& index,
                               std::span<const std::string_view> names, const OptionInfo& info) {

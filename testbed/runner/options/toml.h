@@ -4,20 +4,16 @@
 #include <vector>
 
 #include "core/options.h"
-#include "testbed/runner/options/values.h"
 #include "testbed/runner/spec/toml_tree.h"
 
 namespace geoprior {
-
-class OptionTomlReader;
-extern template class OptionValues<OptionTomlReader>;
 
 /// Reads a TOML table into the options that `describe` walks.
 ///
 /// Absent keys keep their default. Unknown keys, wrong types, NaN, infinities and values out of
 /// range throw Error "file:line:column: key …: problem (allowed: …)". A table that may be absent
 /// (`optional_group`) may also be switched off with `key = false`.
-class OptionTomlReader final : public OptionValues<OptionTomlReader> {
+class OptionTomlReader final : public OptionVisitor {
  public:
   /// @param table  must outlive the reader
   /// @param path   dotted key of the table, "" at the top: for messages
@@ -38,9 +34,7 @@ class OptionTomlReader final : public OptionValues<OptionTomlReader> {
             const std::function<void(std::size_t)>& inside) override;
 
  private:
-  friend OptionValues<OptionTomlReader>;
-  template <class T>
-  void visit_value(std::string_view key, T& x, const OptionInfo& info);
+  void visit_value(std::string_view key, const OptionReference& x, const OptionInfo& info) override;
   struct Level {
     const TomlNode* table;
     std::string path;
