@@ -62,10 +62,10 @@ struct FigureView {
   Across across = Across::variants;    ///< what stands side by side; the others are rows
   std::string part = "surface";
   std::string label;  ///< of the rows, when others are above or below; absent: the part's
-  std::optional<std::string> color_by;  ///< array of the part; absent: plain material
-  std::vector<std::string> classes;     ///< of `color_by`: the names of its integers 0, 1, …
-  bool identities = false;              ///< the integers of `color_by` tell things apart, 0 is none
-  Shading shading = Shading::smooth;    ///< flat: one tone a triangle
+  std::optional<std::string> color_by;
+  std::vector<std::string> classes;  ///< of `color_by`: the names of its integers 0, 1, …
+  bool identities = false;           ///< the integers of `color_by` tell things apart, 0 is none
+  Shading shading = Shading::smooth;
   Material material =
       Material::clay;  ///< paper: an open sheet with two sides; water: reflects a sky
   bool edges = false;  ///< the triangles' edges as thin lines
@@ -73,7 +73,7 @@ struct FigureView {
   /// light that grazes.
   bool plain = false;
   std::optional<std::array<double, 3>> target;
-  std::array<double, 3> direction{0, 0, 1};  ///< from the target to the eye
+  std::array<double, 3> direction{0, 0, 1};
   std::array<double, 3> up{0, 1, 0};
   std::optional<double> height_m;  ///< height of the view (parallel projection)
   /// The experiment file gives none of the last four: a scene may suggest them.

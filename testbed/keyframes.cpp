@@ -21,11 +21,11 @@ void require_less_than_half_a_turn(const KeyOptions& before, const KeyOptions& k
 }  // namespace
 
 void describe(OptionVisitor& v, KeyOptions& options) {
-  v.value("t", options.t, {.doc = "time", .unit = "s", .required = true});
-  v.value("move", options.move, {.doc = "from where it starts", .unit = "m"});
-  v.value(
-      "turn_deg", options.turn_deg,
-      {.doc = "axis times angle, about its centre; less than 180 from key to key", .unit = "deg"});
+  v.value("t", options.t, {.doc = "time of the key", .unit = "s", .required = true});
+  v.value("move", options.move, {.doc = "displacement from the place at the start", .unit = "m"});
+  v.value("turn_deg", options.turn_deg,
+          {.doc = "rotation about the centre, axis times angle; less than 180 from key to key",
+           .unit = "deg"});
 }
 
 void describe_keys(OptionVisitor& v, std::vector<KeyOptions>& keys) {

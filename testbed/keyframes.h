@@ -14,8 +14,8 @@ namespace geoprior {
 /// Position and orientation at a time, as experiment files give it.
 struct KeyOptions {
   double t = 0;
-  std::array<double, 3> move{0, 0, 0};      ///< from where it starts (m)
-  std::array<double, 3> turn_deg{0, 0, 0};  ///< axis times angle
+  std::array<double, 3> move{0, 0, 0};
+  std::array<double, 3> turn_deg{0, 0, 0};
 };
 void describe(OptionVisitor& v, KeyOptions& options);
 

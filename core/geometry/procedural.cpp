@@ -240,9 +240,11 @@ RiggedMesh capsule_finger(const FingerOptions& options) {
 }
 
 void describe(OptionVisitor& v, CylinderOptions& options) {
-  v.value("radius", options.radius, {.doc = "r", .unit = "m", .min = 1e-6});
+  v.value("radius", options.radius, {.doc = "radius r of the cylinder", .unit = "m", .min = 1e-6});
   v.value("half_length", options.half_length,
-          {.doc = "from the joint to either end of the straight part", .unit = "m", .min = 1e-6});
+          {.doc = "length from the joint to either end of the straight part",
+           .unit = "m",
+           .min = 1e-6});
   v.value("cap_height", options.cap_height,
           {.doc = "half axis of the end caps along the bone; 0: flat", .unit = "m", .min = 0});
   v.value("segments", options.segments, {.doc = "vertices of a ring", .min = 3, .max = 100000});
@@ -257,18 +259,19 @@ void describe(OptionVisitor& v, FingerOptions& options) {
   v.value("hand_length", options.hand_length,
           {.doc = "stump of the hand before the first joint", .unit = "m", .min = 1e-6});
   v.value("phalanx_length", options.phalanx_length,
-          {.doc = "proximal, middle, distal", .unit = "m", .min = 1e-6});
+          {.doc = "lengths of the proximal, middle and distal phalanx", .unit = "m", .min = 1e-6});
   std::vector<double> radius(options.radius.begin(), options.radius.end());
   v.value("radius", radius,
-          {.doc = "at the base of each phalanx and at the tip: four numbers",
+          {.doc = "radii at the base of each phalanx and at the tip: four numbers",
            .unit = "m",
            .min = 1e-6});
   if (radius.size() != options.radius.size())
     throw Error(std::to_string(radius.size()) + " numbers", "scene.finger.radius", "4");
   std::copy(radius.begin(), radius.end(), options.radius.begin());
   v.value("segments", options.segments, {.doc = "vertices of a ring", .min = 3, .max = 100000});
-  v.value("ramp_width", options.ramp_width,
-          {.doc = "of the weights about a joint, in local radii", .min = 1e-6, .max = 10});
+  v.value(
+      "ramp_width", options.ramp_width,
+      {.doc = "width of the weights' ramp about a joint, in local radii", .min = 1e-6, .max = 10});
   v.value("ring_spacing", options.ring_spacing,
           {.doc = "distance of rings in edge lengths of a ring", .min = 0.01, .max = 100});
 }

@@ -9,12 +9,12 @@ namespace geoprior {
 
 /// A closed tube about the x axis, bent or twisted at the origin.
 struct CylinderOptions {
-  double radius = 0.1;       ///< r (m)
-  double half_length = 0.5;  ///< from the joint to either end of the straight part (m)
+  double radius = 0.1;       // m
+  double half_length = 0.5;  // m
   double cap_height = 0.1;   ///< half axis of the elliptic end caps along x (m); 0: flat
-  int segments = 48;         ///< vertices of a ring
-  int rings_per_half = 40;   ///< rings of the straight part on one side; one more lies at x = 0
-  double ramp_width = 0.2;   ///< length along x over which the weights pass from 1, 0 to 0, 1 (m)
+  int segments = 48;
+  int rings_per_half = 40;  ///< rings of the straight part on one side; one more lies at x = 0
+  double ramp_width = 0.2;  ///< length along x over which the weights pass from 1, 0 to 0, 1 (m)
 };
 void describe(OptionVisitor& v, CylinderOptions& options);
 
@@ -36,12 +36,12 @@ std::vector<int> mid_ring(const CylinderOptions& options);
 /// A straight finger of three phalanges on a stump of the hand, about the x axis.
 struct FingerOptions {
   double hand_length = 0.03;                                ///< of the stump before x = 0 (m)
-  std::array<double, 3> phalanx_length{0.04, 0.025, 0.02};  ///< proximal, middle, distal (m)
+  std::array<double, 3> phalanx_length{0.04, 0.025, 0.02};  // m
   /// Radius at the base of each phalanx and at the centre of the tip's half sphere (m).
   std::array<double, 4> radius{0.010, 0.009, 0.0082, 0.0074};
-  int segments = 40;          ///< vertices of a ring
-  double ramp_width = 1.0;    ///< of the weights about a joint, in local radii
-  double ring_spacing = 1.0;  ///< distance of rings in edge lengths of a ring
+  int segments = 40;
+  double ramp_width = 1.0;
+  double ring_spacing = 1.0;
 };
 void describe(OptionVisitor& v, FingerOptions& options);
 

@@ -107,8 +107,9 @@ Described describe_file(const Topic& topic, const TopicFile& file) {
 std::vector<Described> experiment_tables() {
   const OptionRow options{"options", "table", "", "", "", "geoprior describe <method>"};
   const OptionRow at{"at", "table", "", "", "", "one frame by its parameter, { angle_deg = 90 }"};
-  const OptionRow values{"values", "array", "required", "", "", "of the key, one case each"};
-  const OptionRow quick_values{"quick_values", "array", "", "", "", "those of quick runs"};
+  const OptionRow values{"values", "array", "required", "", "", "values of the key, one case each"};
+  const OptionRow quick_values{
+      "quick_values", "array", "", "", "", "values of the key in quick runs"};
   const OptionRow quick{"\"<dotted key>\"",
                         "any",
                         "",

@@ -25,7 +25,7 @@ const std::string* suggested_camera(const FigureView& view, const RunRecord& rec
 
 void describe(OptionVisitor& v, Camera& camera) {
   v.value("target", camera.target, {.doc = "centre of the view", .unit = "m"});
-  v.value("direction", camera.direction, {.doc = "from the target to the eye"});
+  v.value("direction", camera.direction, {.doc = "direction from the target to the eye"});
   v.value("up", camera.up, {.doc = "upwards in the picture"});
   v.value("height_m", camera.height_m,
           {.doc = "height of the view", .unit = "m", .min = 1e-12, .max = 1e12});

@@ -82,7 +82,7 @@ void describe(OptionVisitor& v, SequenceOptions& o) {
           {.doc = "numbered files (name_%04d.obj, .ply, .vtp, .off), a folder of them, a .pvd, one "
                   "mesh, or run:<topic>/<experiment>/<variant>",
            .required = true});
-  v.value("part", o.part, {.doc = "of a folder or .pvd that holds several"});
+  v.value("part", o.part, {.doc = "part to read of a folder or .pvd that holds several"});
   describe_choice(v, "up", o.up, kUp, {.doc = "axis of the files that points up; no sidecar: z"});
   v.value("scale", o.scale,
           {.doc = "metres a unit of the files; default: sidecar, else 1", .min = 1e-9, .max = 1e9});

@@ -21,9 +21,9 @@ struct SequenceOptions {
   /// Numbered files "splash_%04d.ply" (.obj, .ply, .vtp, .off), a folder with one such sequence
   /// (the frames of a run), a .pvd, or one mesh file: a still.
   std::string path;
-  std::string part = "surface";  ///< of a folder or .pvd that holds several
+  std::string part = "surface";
   UpAxis up = UpAxis::from_sidecar;
-  std::optional<double> scale;  ///< metres a unit of the files; default: sidecar, else 1
+  std::optional<double> scale;
   /// Default: sidecar, else the times of the files (.pvd, TimeValue), else 25 with a warning.
   std::optional<double> frames_per_second;
   std::optional<double> start;     ///< time of the first frame (s); default: sidecar, the files', 0

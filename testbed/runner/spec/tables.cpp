@@ -17,17 +17,18 @@ constexpr std::array<std::string_view, 2> kAcross{"variants", "states"};
 void describe(OptionVisitor& v, HeaderTable& t) {
   v.value("title", t.title, {.doc = "what is shown, one line", .required = true});
   v.value("figure", t.figure, {.doc = "figure of the thesis; empty for a study of our own"});
-  v.value("topic", t.topic, {.doc = "which scenes, methods and metrics", .required = true});
+  v.value("topic", t.topic,
+          {.doc = "topic, whose scenes, methods and metrics are meant", .required = true});
   v.value("id", t.id,
           {.doc = "identifier, two names: topic/name; absent: from the file's folder and name"});
   describe_choice(v, "size", t.size, kSizes, {.doc = "quick in the resolved text of a quick run"});
-  v.value("seed", t.seed, {.doc = "of every random stream", .min = 0});
-  v.value("threads", t.threads, {.doc = "0: all", .min = 0, .max = 1024});
+  v.value("seed", t.seed, {.doc = "seed of every random stream", .min = 0});
+  v.value("threads", t.threads, {.doc = "number of threads; 0: all", .min = 0, .max = 1024});
 }
 
 void describe(OptionVisitor& v, VariantTable& t) {
   v.value("name", t.name, {.doc = "letters, digits, '-' and '_'", .required = true});
-  v.value("method", t.method, {.doc = "of the topic's method table", .required = true});
+  v.value("method", t.method, {.doc = "a name of the topic's method table", .required = true});
   v.value(
       "role", t.role,
       {.doc =
@@ -41,59 +42,67 @@ void describe(OptionVisitor& v, VariantTable& t) {
 void describe(OptionVisitor& v, SweepTable& t) {
   v.value("key", t.key,
           {.doc = "scene.*, seed, threads or variant.<name>.options.*", .required = true});
-  v.value("names", t.names, {.doc = "of the cases, one a value; absent: key=value"});
-  v.value("variants", t.variants, {.doc = "that run in these cases; absent: all"});
+  v.value("names", t.names, {.doc = "names of the cases, one a value; absent: key=value"});
+  v.value("variants", t.variants, {.doc = "variants that run in the sweep's cases; absent: all"});
   v.value("grid", t.grid, {.doc = "product with the other sweeps that say so"});
   v.value("base", t.base, {.doc = "false: no case 'default' beside the sweep's own"});
-  v.value("claims_only", t.claims_only,
-          {.doc = "its cases decide claims and studies: not blessed, timed again or drawn"});
+  v.value(
+      "claims_only", t.claims_only,
+      {.doc = "the sweep's cases decide claims and studies: not blessed, timed again or drawn"});
 }
 
 void describe(OptionVisitor& v, ClaimTable& t) {
   v.value("text", t.text, {.doc = "the statement in words", .required = true});
   v.value("metric", t.metric,
-          {.doc = "of the metric table, timing:<phase>, diagnostic:<name> or study:<name>",
+          {.doc = "a name of the metric table, timing:<phase>, diagnostic:<name> or study:<name>",
            .required = true});
-  v.value("variant", t.variant, {.doc = "whose value is judged"});
-  v.value("of", t.of, {.doc = "variant that it is compared with"});
-  v.value("value", t.value, {.doc = "number that it is compared with, in the metric's unit"});
-  describe_choice(v, "is", t.is, kComparisons, {.doc = "comparison"});
-  v.value("factor", t.factor, {.doc = "times the other side"});
-  v.value("offset", t.offset, {.doc = "added to the other side, in the metric's unit"});
-  v.value("tolerance", t.tolerance, {.doc = "for ==, in the metric's unit", .min = 0});
+  v.value("variant", t.variant, {.doc = "variant whose value is judged"});
+  v.value("of", t.of, {.doc = "variant that the claim's variant is compared with"});
+  v.value("value", t.value,
+          {.doc = "number that the variant is compared with, in the metric's unit"});
+  describe_choice(v, "is", t.is, kComparisons,
+                  {.doc = "comparison of the variant's value with the other side"});
+  v.value("factor", t.factor, {.doc = "factor on the other side"});
+  v.value("offset", t.offset, {.doc = "number added to the other side, in the metric's unit"});
+  v.value("tolerance", t.tolerance,
+          {.doc = "difference that == allows, in the metric's unit", .min = 0});
   v.value("known_shortfall", t.known_shortfall,
           {.doc = "why the claim falls short, where that is known: check lets it pass"});
-  describe_choice(v, "reduce", t.reduce, kReductions,
-                  {.doc = "over the frames, without `at`; every: it must hold frame by frame"});
+  describe_choice(
+      v, "reduce", t.reduce, kReductions,
+      {.doc = "one number of all frames, without `at`; every: the claim must hold frame by frame"});
   describe_choice(v, "of_reduce", t.of_reduce, kOfReductions,
-                  {.doc = "over the frames of the other side; same: as `reduce`"});
+                  {.doc = "one number of all frames of the other side; same: as `reduce`"});
   v.value("cases", t.cases, {.doc = "names of cases; absent: all that have the variants"});
-  describe_choice(v, "over", t.over, kClaimOvers,
-                  {.doc = "seed: 9 of 10 seeds of a case decide together, at least ten of them"});
+  describe_choice(
+      v, "over", t.over, kClaimOvers,
+      {.doc = "what decides: each case, or 9 of 10 seeds of a case together (at least ten seeds)"});
   v.value("null", t.null,
           {.doc = "variant that must fail the same inequality in place of `variant`"});
-  v.value("quick", t.quick, {.doc = "false: quick runs are too short for it, and leave it out"});
+  v.value("quick", t.quick,
+          {.doc = "false: quick runs are too short for the claim, and leave it out"});
 }
 
 void describe(OptionVisitor& v, StudyTable& t) {
-  v.value("name", t.name, {.doc = "of the study", .required = true});
+  v.value("name", t.name, {.doc = "name of the study", .required = true});
   describe_choice(v, "kind", t.kind, kStudyKinds,
                   {.doc = "slope in log-log, observed order of convergence, standard deviation, or "
                           "distance of two medians over half the range of `of`"});
-  v.value("variant", t.variant, {.doc = "whose quantity", .required = true});
-  v.value("quantity", t.quantity,
-          {.doc = "of the metric table, timing:<phase> or diagnostic:<name>", .required = true});
-  v.value("of", t.of, {.doc = "of within-spread: the variant whose range is the yardstick"});
+  v.value("variant", t.variant, {.doc = "variant whose quantity is studied", .required = true});
+  v.value(
+      "quantity", t.quantity,
+      {.doc = "a name of the metric table, timing:<phase> or diagnostic:<name>", .required = true});
+  v.value("of", t.of, {.doc = "variant whose range is the yardstick, of within-spread"});
   v.value("against", t.against, {.doc = "a fact of the scene, or a swept key"});
   describe_choice(v, "finer", t.finer, kFiner,
                   {.doc = "x of the finer discretisation: a step is smaller, a count larger"});
-  describe_choice(v, "reduce", t.reduce, kReductions, {.doc = "over the frames"});
+  describe_choice(v, "reduce", t.reduce, kReductions, {.doc = "one number of all frames"});
   v.value("cases", t.cases, {.doc = "names of cases; absent: all that have what is asked"});
 }
 
 void describe(OptionVisitor& v, TimingTable& t) {
   v.value("repetitions", t.repetitions,
-          {.doc = "of each solve; whole runs of processes", .min = 1, .max = 1000});
+          {.doc = "repetitions of each solve; of processes whole runs", .min = 1, .max = 1000});
   v.value("warm_up", t.warm_up,
           {.doc = "rounds that are not counted; absent: 1 of pose methods, 0 of processes",
            .min = 0,
@@ -112,23 +121,25 @@ void describe(OptionVisitor& v, CheckTable& t) {
 }
 
 void describe(OptionVisitor& v, ToleranceTable& t) {
-  v.value("absolute", t.absolute, {.doc = "in the metric's unit", .min = 0});
-  v.value("relative", t.relative, {.doc = "fraction of the reference value", .min = 0});
+  v.value("absolute", t.absolute,
+          {.doc = "difference that is allowed, in the metric's unit", .min = 0});
+  v.value("relative", t.relative,
+          {.doc = "difference that is allowed, as a fraction of the reference value", .min = 0});
 }
 
 void describe(OptionVisitor& v, SectionView& t) {
-  v.value("origin", t.origin, {.doc = "point of the plane", .unit = "m"});
-  v.value("normal", t.normal, {.doc = "across the plane"});
+  v.value("origin", t.origin, {.doc = "point of the cutting plane", .unit = "m"});
+  v.value("normal", t.normal, {.doc = "direction across the cutting plane"});
 }
 
 void describe(OptionVisitor& v, FurtherRow& t) {
   v.value("part", t.part, {.doc = "part of the frames"});
   v.value("input", t.input,
           {.doc = "a \"run:…\" of the scene whose frames these are; absent: this run's"});
-  v.value("label", t.label, {.doc = "of the row; absent: the part's name"});
+  v.value("label", t.label, {.doc = "label of the row; absent: the part's name"});
   v.value("color_by", t.color_by, {.doc = "array of the part; absent: plain material"});
   v.value("classes", t.classes, {.doc = "names of the integers 0, 1, … in `color_by`"});
-  v.value("direction", t.direction, {.doc = "towards the eye"});
+  v.value("direction", t.direction, {.doc = "direction towards the eye"});
   v.value("up", t.up, {.doc = "upward in the picture"});
   v.value("height_m", t.height_m,
           {.doc = "height of the view; absent: fitted", .unit = "m", .min = 1e-12});
@@ -143,8 +154,8 @@ void describe(OptionVisitor& v, PlanePoint& t) {
 }
 
 void describe(OptionVisitor& v, ExpectedCurve& t) {
-  v.value("label", t.label, {.doc = "in the legend"});
-  describe_list(v, "points", t.points, {.doc = "of the pattern, joined by straight lines"});
+  v.value("label", t.label, {.doc = "name of the curve in the legend"});
+  describe_list(v, "points", t.points, {.doc = "points of the pattern, joined by straight lines"});
 }
 
 void describe(OptionVisitor& v, FigureViewTable& table) {
@@ -155,7 +166,7 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
                   {.doc = "what stands side by side; states: the frames, a row a variant"});
   v.value("part", t.part, {.doc = "part of the frames"});
   v.value("label", t.label,
-          {.doc = "of the rows between `above` and `below`; absent: the part's name"});
+          {.doc = "label of the rows between `above` and `below`; absent: the part's name"});
   v.value("color_by", t.color_by, {.doc = "array of the part; \"\": plain material"});
   v.value("classes", t.classes,
           {.doc = "names of the integers 0, 1, … in `color_by`: a legend instead of a scale"});
@@ -163,13 +174,13 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
           {.doc = "the integers of `color_by` tell things apart and 0 is none: a colour each"});
   describe_choice(v, "shading", t.shading, kShadings, {.doc = "flat: one tone a triangle"});
   describe_choice(v, "material", t.material, kMaterials,
-                  {.doc = "of what has no colour; paper: white, the back side darker"});
+                  {.doc = "material of what has no colour; paper: white, the back side darker"});
   v.value("edges", t.edges, {.doc = "edges of the triangles as thin lines"});
   v.value("plain", t.plain,
           {.doc = "adds the same panels plain and flat under lights that graze: under each row, "
                   "beside it where it has one column"});
   v.value("target", table.target, {.doc = "point looked at; absent: fitted", .unit = "m"});
-  v.value("direction", t.direction, {.doc = "from the target to the eye"});
+  v.value("direction", t.direction, {.doc = "direction from the target to the eye"});
   v.value("up", t.up, {.doc = "upward in the picture"});
   v.value("height_m", t.height_m,
           {.doc = "height of the view; absent: fitted", .unit = "m", .min = 1e-12});
@@ -180,7 +191,7 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
   v.value("overlays", t.overlays,
           {.doc = "further parts drawn over `part`: lines thin, points as balls"});
   v.value("pattern", t.pattern,
-          {.doc = "those of `overlays` that are drawn over the flat pattern beside the sheet; "
+          {.doc = "overlays that are drawn over the flat pattern beside the sheet; "
                   "absent: no pattern"});
   describe_group(v, "expected", t.expected,
                  {.doc = "a curve that theory says, dashed in the patterns"});
