@@ -35,17 +35,13 @@ OptionRow row(const std::string& key, const std::string& type, const std::string
 }
 
 /// A scene with a tagged choice, a table that may be absent, and a list.
-const std::vector<OptionRow> kRows{row("size", "number"),
-                                   row("cut", "table"),
-                                   row("cut.depth", "number"),
-                                   row("shape", "table"),
-                                   row("shape.kind", "choice"),
-                                   row("shape.file", "text", "kind = file"),
-                                   row("shape.radius", "number", "kind = disc, open = yes"),
-                                   row("handles", "tables"),
-                                   row("handles[].stiffness", "number"),
-                                   row("handles[].kind", "choice"),
-                                   row("handles[].path", "text", "kind = path")};
+const OptionRows kRows({row("size", "number"), row("cut", "table"), row("cut.depth", "number"),
+                        row("shape", "table"), row("shape.kind", "choice"),
+                        row("shape.file", "text", "kind = file"),
+                        row("shape.radius", "number", "kind = disc, open = yes"),
+                        row("handles", "tables"), row("handles[].stiffness", "number"),
+                        row("handles[].kind", "choice"),
+                        row("handles[].path", "text", "kind = path")});
 
 std::set<std::string> turned(const std::string& a, const std::string& b) {
   return turned_rows(flat(a), flat(b), kRows);

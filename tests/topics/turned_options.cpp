@@ -4,6 +4,7 @@
 #include <cmath>
 #include <regex>
 #include <sstream>
+#include <utility>
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
@@ -33,12 +34,6 @@ void flatten(const Json& value, const std::string& key, FlatOptions& flat) {
   }
 }
 
-const OptionRow* row_named(const std::vector<OptionRow>& rows, const std::string& key) {
-  const auto row =
-      std::find_if(rows.begin(), rows.end(), [&](const OptionRow& one) { return one.key == key; });
-  return row == rows.end() ? nullptr : &*row;
-}
-
 /// The choices that select a member: "kind" and "form" of "kind = disc | svg, form = open".
 std::vector<std::string> choices_in(const std::string& when) {
   std::vector<std::string> names;
@@ -50,47 +45,58 @@ std::vector<std::string> choices_in(const std::string& when) {
   return names;
 }
 
-/// Whether `when`, which names choices of a table around `key`, names `choice`.
-bool selects(const std::string& choice, const std::string& key, const std::string& when) {
-  for (const std::string& name : choices_in(when)) {
-    for (std::size_t dot = 0; dot != std::string::npos; dot = key.find('.', dot + 1)) {
-      if (choice == (dot == 0 ? name : key.substr(0, dot + 1) + name)) return true;
+/// The tables around a key, the outermost first: "", "a.", "a.b[0]." of "a.b[0].c".
+std::vector<std::string> tables_around(const std::string& key) {
+  std::vector<std::string> tables{""};
+  for (std::size_t dot = key.find('.'); dot != std::string::npos; dot = key.find('.', dot + 1)) {
+    tables.push_back(key.substr(0, dot + 1));
+  }
+  return tables;
+}
+
+/// Whether a table or list around the key is another one.
+bool comes_with_table(const std::string& key, const std::set<std::string>& differ) {
+  for (std::size_t i = 1; i < key.size(); ++i) {
+    if ((key[i] == '.' || key[i] == '[') && differ.contains(key.substr(0, i))) return true;
+  }
+  return false;
+}
+
+/// Whether a choice that selects the key is another one.
+bool comes_with_choice(const std::string& key, const std::set<std::string>& differ,
+                       const OptionRows& rows) {
+  const OptionRow* row = rows.find(row_key(key));
+  if (row == nullptr) return false;
+  for (const std::string& name : choices_in(row->when)) {
+    for (const std::string& table : tables_around(key)) {
+      const std::string choice = table + name;
+      if (choice == key || !differ.contains(choice)) continue;
+      const OptionRow* tag = rows.find(row_key(choice));
+      if (tag != nullptr && tag->type == "choice") return true;
     }
   }
   return false;
 }
 
-/// Whether that `key` differs follows from that `other` does.
-bool takes_along(const std::string& other, const std::string& key,
-                 const std::vector<OptionRow>& rows) {
-  if (key.starts_with(other + ".") || key.starts_with(other + "[")) return true;
-  const OptionRow* choice = row_named(rows, row_key(other));
-  const OptionRow* row = row_named(rows, row_key(key));
-  return choice != nullptr && row != nullptr && choice->type == "choice" &&
-         selects(other, key, row->when);
-}
-
-std::vector<std::string> differing_keys(const FlatOptions& a, const FlatOptions& b) {
-  std::vector<std::string> keys;
+std::set<std::string> differing_keys(const FlatOptions& a, const FlatOptions& b) {
+  std::set<std::string> keys;
   for (const auto& [key, value] : a) {
     const auto other = b.find(key);
-    if (other == b.end() || other->second != value) keys.push_back(key);
+    if (other == b.end() || other->second != value) keys.insert(key);
   }
   for (const auto& [key, value] : b) {
-    if (!a.contains(key)) keys.push_back(key);
+    if (!a.contains(key)) keys.insert(key);
   }
   return keys;
 }
 
 /// Those keys that no other one takes along.
 std::vector<std::string> turned_keys(const FlatOptions& a, const FlatOptions& b,
-                                     const std::vector<OptionRow>& rows) {
-  const std::vector<std::string> differ = differing_keys(a, b);
+                                     const OptionRows& rows) {
+  const std::set<std::string> differ = differing_keys(a, b);
   std::vector<std::string> keys;
   for (const std::string& key : differ) {
-    const bool follows = std::any_of(differ.begin(), differ.end(), [&](const std::string& other) {
-      return other != key && takes_along(other, key, rows);
-    });
+    const bool follows = comes_with_table(key, differ) || comes_with_choice(key, differ, rows);
     if (!follows) keys.push_back(key);
   }
   return keys;
@@ -158,6 +164,15 @@ bool is_told_by_claim(const Experiment& experiment, const std::string& in, const
 
 }  // namespace
 
+OptionRows::OptionRows(std::vector<OptionRow> rows) : rows_(std::move(rows)) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) index_[rows_[i].key] = i;
+}
+
+const OptionRow* OptionRows::find(const std::string& key) const {
+  const auto at = index_.find(key);
+  return at == index_.end() ? nullptr : &rows_[at->second];
+}
+
 FlatOptions flat_options(const Json& options) {
   FlatOptions flat;
   flatten(options, "", flat);
@@ -174,7 +189,7 @@ std::string row_key(const std::string& key) {
 }
 
 std::set<std::string> turned_rows(const FlatOptions& a, const FlatOptions& b,
-                                  const std::vector<OptionRow>& rows) {
+                                  const OptionRows& rows) {
   std::set<std::string> turned;
   for (const std::string& key : turned_keys(a, b, rows)) turned.insert(row_key(key));
   return turned;
@@ -205,10 +220,10 @@ struct TurnedOptions::Column {
 };
 
 TurnedOptions::TurnedOptions(const Topic& topic) : topic_(topic.name), places_{"scene"} {
-  rows_["scene"] = listed(*topic.default_scene());
+  rows_.emplace("scene", listed(*topic.default_scene()));
   for (const MethodEntry& method : topic.methods) {
     places_.push_back(method.name);
-    rows_[method.name] = listed(*method.default_options());
+    rows_.emplace(method.name, listed(*method.default_options()));
   }
   for (const MetricGroup& group : topic.metrics) {
     if (!group.needs_reference) continue;
@@ -216,9 +231,7 @@ TurnedOptions::TurnedOptions(const Topic& topic) : topic_(topic.name), places_{"
   }
 }
 
-const std::vector<OptionRow>& TurnedOptions::rows_of(const std::string& place) const {
-  return rows_.at(place);
-}
+const OptionRows& TurnedOptions::rows_of(const std::string& place) const { return rows_.at(place); }
 
 void TurnedOptions::add(const Experiment& experiment, const BlessedSet* blessed) {
   std::vector<FlatOptions> scenes;
@@ -261,7 +274,7 @@ void TurnedOptions::compare(const Experiment& experiment, const BlessedSet* bles
                            a.variant->name + ", " + a.in + " against " + b.variant->name + ", " +
                            b.in;
   const Evidence evidence{effect(experiment, blessed, a, b), text};
-  const OptionRow* listed_row = row_named(rows_of(place), row);
+  const OptionRow* listed_row = rows_of(place).find(row);
   if (listed_row == nullptr || listed_row->type != "choice") {
     note(place, row, "", evidence);
     return;
@@ -327,7 +340,7 @@ TurnedOptions::Evidence TurnedOptions::evidence_of(const std::string& place, con
 std::vector<OptionUnit> TurnedOptions::units() const {
   std::vector<OptionUnit> units;
   for (const std::string& place : places_) {
-    for (const OptionRow& row : rows_of(place)) {
+    for (const OptionRow& row : rows_of(place).rows()) {
       // A table that is always there has no value of its own.
       if (row.type == "table" && !row.may_be_absent) continue;
       for (const std::string& value : values_of(row)) {

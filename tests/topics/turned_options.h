@@ -1,6 +1,5 @@
 #pragma once
 
-#include <compare>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -27,11 +26,24 @@ FlatOptions flat_options(const nlohmann::ordered_json& options);
 /// "handles[].stiffness" of "handles[1].stiffness": as the rows of a listing are called.
 std::string row_key(const std::string& key);
 
+/// The rows of a listing, to be found by their keys.
+class OptionRows {
+ public:
+  explicit OptionRows(std::vector<OptionRow> rows);
+  [[nodiscard]] const std::vector<OptionRow>& rows() const { return rows_; }
+  /// Null where there is none.
+  [[nodiscard]] const OptionRow* find(const std::string& key) const;
+
+ private:
+  std::vector<OptionRow> rows_;
+  std::map<std::string, std::size_t> index_;
+};
+
 /// The options in which two columns differ, but for those that another difference takes along: the
 /// members that a choice selects, what is in a table that one of them lacks, the elements of lists
 /// of different lengths. Elements of one list count as one option.
 std::set<std::string> turned_rows(const FlatOptions& a, const FlatOptions& b,
-                                  const std::vector<OptionRow>& rows);
+                                  const OptionRows& rows);
 
 /// How far an option, or a value of a choice, has come to be turned.
 enum class Turned {
@@ -71,7 +83,7 @@ class TurnedOptions {
     std::string columns;
   };
 
-  [[nodiscard]] const std::vector<OptionRow>& rows_of(const std::string& place) const;
+  [[nodiscard]] const OptionRows& rows_of(const std::string& place) const;
   void compare(const Experiment& experiment, const BlessedSet* blessed, const Column& a,
                const Column& b);
   void note(const std::string& place, const std::string& row, const std::string& value,
@@ -83,7 +95,7 @@ class TurnedOptions {
 
   std::string topic_;
   std::vector<std::string> places_;  ///< "scene", then the methods
-  std::map<std::string, std::vector<OptionRow>> rows_;
+  std::map<std::string, OptionRows> rows_;
   std::set<std::string> reference_metrics_;
   /// By place, row, and value of a choice ("" of other options).
   std::map<std::string, std::map<std::string, std::map<std::string, Evidence>>> found_;
