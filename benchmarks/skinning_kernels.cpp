@@ -180,9 +180,9 @@ void skin_delta_mush(benchmark::State& state) {
   measure(state, 0, [&] { method.deform(pose, posed); });
 }
 
-void skin_centres_of_rotation(benchmark::State& state) {
+void skin_centers_of_rotation(benchmark::State& state) {
   const RiggedMesh& rig = shared_tube(static_cast<int>(state.range(0)));
-  const CentresOfRotation method(rig);
+  const CentersOfRotation method(rig);
   const Pose pose = curled(rig.skeleton);
   Eigen::MatrixX3d posed;
   // The arms are read beside what linear blending moves.
@@ -217,9 +217,9 @@ void copy_same_bytes(benchmark::State& state) {
 BENCHMARK(copy_same_bytes)->Arg(18000)->Arg(1000000)->Arg(4000000)->UseRealTime();
 BENCHMARK(skin_linear_blend)->Arg(18000)->Arg(1000000)->Arg(4000000)->UseRealTime();
 BENCHMARK(skin_dual_quaternion)->Arg(18000)->Arg(1000000)->Arg(4000000)->UseRealTime();
-BENCHMARK(skin_centres_of_rotation)->Arg(18000)->UseRealTime();
+BENCHMARK(skin_centers_of_rotation)->Arg(18000)->UseRealTime();
 BENCHMARK(skin_direct_delta_mush)->Arg(18000)->UseRealTime();
-BENCHMARK(prepare<CentresOfRotation>)
+BENCHMARK(prepare<CentersOfRotation>)
     ->Arg(18000)
     ->Iterations(1)
     ->UseRealTime()

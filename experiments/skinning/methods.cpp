@@ -131,12 +131,12 @@ std::vector<MethodEntry> methods() {
           [](const S& scene, const NoOptions&, RunContext&) {
             return std::make_unique<SkinningMethod<DualQuaternionBlend>>(scene);
           }),
-      method_entry<S, CentresOfRotationOptions>(
+      method_entry<S, CentersOfRotationOptions>(
           "centers-of-rotation", true,
           "blended rotation about the place of the skin with similar weights",
           "Le and Hodgins 2016",
-          [](const S& scene, const CentresOfRotationOptions& options, RunContext&) {
-            return std::make_unique<SkinningMethod<CentresOfRotation>>(scene, options);
+          [](const S& scene, const CentersOfRotationOptions& options, RunContext&) {
+            return std::make_unique<SkinningMethod<CentersOfRotation>>(scene, options);
           }),
       method_entry<S, DeltaMushOptions>(
           "delta-mush", true, "smoothed linear blend with the rest pose's detail put back",

@@ -56,7 +56,7 @@ struct SamplingOptions {
 void describe(OptionVisitor& v, SamplingOptions& options);
 
 /// How vertices come to their iso-values: all together, as one smooth correction
-/// (smooth_projection.h), the same with contact that begins where the pose before left it, or each
+/// (smooth/projection.h), the same with contact that begins where the pose before left it, or each
 /// along its own gradient, as published (projection.h).
 enum class ProjectionKind { smooth, tracking, marching };
 

@@ -13,7 +13,7 @@
 namespace geoprior::skinning {
 namespace {
 
-constexpr const char* kCentresOfRotation = "centres of rotation";
+constexpr const char* kCentersOfRotation = "centers of rotation";
 
 /// sum_j w_j s_j q_j of one vertex, made unit.
 Eigen::Quaterniond blended_rotation(const std::vector<Eigen::Quaterniond>& q,
@@ -29,44 +29,44 @@ Eigen::Quaterniond blended_rotation(const std::vector<Eigen::Quaterniond>& q,
   return sum.normalized();
 }
 
-/// The rig with its centres of rotation in place of the vertices.
-RiggedMesh moved_to(const RiggedMesh& rig, const Eigen::MatrixX3d& centres) {
+/// The rig with its centers of rotation in place of the vertices.
+RiggedMesh moved_to(const RiggedMesh& rig, const Eigen::MatrixX3d& centers) {
   RiggedMesh moved = rig;
-  moved.mesh.V = centres;
+  moved.mesh.V = centers;
   return moved;
 }
 
 }  // namespace
 
-Eigen::MatrixX3d blend_about_centres(const RiggedMesh& rig, const Eigen::MatrixX3d& centres,
+Eigen::MatrixX3d blend_about_centers(const RiggedMesh& rig, const Eigen::MatrixX3d& centers,
                                      const Pose& pose) {
-  require_finite_pose(pose, rig.skeleton.size(), kCentresOfRotation);
-  if (centres.rows() != rig.mesh.vertex_count())
-    throw Error(std::to_string(centres.rows()) + " centres of rotation", kCentresOfRotation,
+  require_finite_pose(pose, rig.skeleton.size(), kCentersOfRotation);
+  if (centers.rows() != rig.mesh.vertex_count())
+    throw Error(std::to_string(centers.rows()) + " centers of rotation", kCentersOfRotation,
                 std::to_string(rig.mesh.vertex_count()));
   std::vector<Eigen::Quaterniond> q;
   for (const Eigen::Affine3d& transform : pose)
     q.emplace_back(Eigen::Quaterniond(rotation_of(transform)).normalized());
   Eigen::MatrixX3d posed(rig.mesh.vertex_count(), 3);
   for (int i = 0; i < rig.mesh.vertex_count(); ++i) {
-    const Eigen::Vector3d centre = centres.row(i);
+    const Eigen::Vector3d center = centers.row(i);
     Eigen::Vector3d moved = Eigen::Vector3d::Zero();
     for (SkinWeights::InnerIterator w(rig.weights, i); w; ++w)
-      moved += w.value() * (pose[w.col()] * centre);
-    const Eigen::Vector3d arm = rig.mesh.V.row(i).transpose() - centre;
+      moved += w.value() * (pose[w.col()] * center);
+    const Eigen::Vector3d arm = rig.mesh.V.row(i).transpose() - center;
     posed.row(i) = moved + blended_rotation(q, rig.weights, i) * arm;
   }
   return posed;
 }
 
-CentresOfRotation::CentresOfRotation(const RiggedMesh& rig, const CentresOfRotationOptions& options)
-    : centres_(centres_of_rotation(rig, options)), influences_(moved_to(rig, centres_)) {
+CentersOfRotation::CentersOfRotation(const RiggedMesh& rig, const CentersOfRotationOptions& options)
+    : centers_(centers_of_rotation(rig, options)), influences_(moved_to(rig, centers_)) {
   arms_ = PackedInfluences(rig).rest;
   for (std::size_t i = 0; i < arms_.size(); ++i) arms_[i] -= influences_.rest[i];
 }
 
-void CentresOfRotation::deform(const Pose& pose, Eigen::MatrixX3d& posed) const {
-  require_finite_pose(pose, influences_.joint_count, kCentresOfRotation);
+void CentersOfRotation::deform(const Pose& pose, Eigen::MatrixX3d& posed) const {
+  require_finite_pose(pose, influences_.joint_count, kCentersOfRotation);
   lanes::JointTable<lanes::TurningJoint> table(pose.size());
   for (std::size_t j = 0; j < pose.size(); ++j) {
     Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(table[j].row.data()) =

@@ -115,7 +115,7 @@ int pieces_along_an_edge(const TriangleWeights& weights, double step) {
   return std::max(1, static_cast<int>(std::ceil(change.maxCoeff() / step - 1e-9)));
 }
 
-PiecesOfPairs pieces_by_pair(const RiggedMesh& rig, const CentresOfRotationOptions& options) {
+PiecesOfPairs pieces_by_pair(const RiggedMesh& rig, const CentersOfRotationOptions& options) {
   PiecesOfPairs pairs;
   for (Eigen::Index t = 0; t < rig.mesh.F.rows(); ++t) {
     const TriangleWeights weights = weights_of(rig, t);
@@ -189,7 +189,7 @@ void add_pair(const SharedPieces& pieces, double a, double b, double sigma, Mome
 
 double total(const Double4& x) { return (x[0] + x[1]) + (x[2] + x[3]); }
 
-Eigen::Vector3d centre_of(int vertex, const RiggedMesh& rig, const PiecesOfPairs& pairs,
+Eigen::Vector3d center_of(int vertex, const RiggedMesh& rig, const PiecesOfPairs& pairs,
                           double sigma) {
   Moments moments;
   for (SkinWeights::InnerIterator j(rig.weights, vertex); j; ++j) {
@@ -205,18 +205,18 @@ Eigen::Vector3d centre_of(int vertex, const RiggedMesh& rig, const PiecesOfPairs
   return Eigen::Vector3d(total(moments.x), total(moments.y), total(moments.z)) / mass;
 }
 
-void check_options(const CentresOfRotationOptions& options) {
+void check_options(const CentersOfRotationOptions& options) {
   if (!(options.similarity_width > 0 && std::isfinite(options.similarity_width)))
-    throw Error("similarity_width of centres of rotation is not positive", "", "> 0");
+    throw Error("similarity_width of centers of rotation is not positive", "", "> 0");
   if (!(options.weight_step >= 0.01 && options.weight_step <= 1))
-    throw Error("weight_step of centres of rotation is out of range", "", "0.01 to 1");
+    throw Error("weight_step of centers of rotation is out of range", "", "0.01 to 1");
   if (!(options.weight_cell >= 0 && options.weight_cell <= 0.1))
-    throw Error("weight_cell of centres of rotation is out of range", "", "0 to 0.1");
+    throw Error("weight_cell of centers of rotation is out of range", "", "0 to 0.1");
 }
 
 }  // namespace
 
-void describe(OptionVisitor& v, CentresOfRotationOptions& options) {
+void describe(OptionVisitor& v, CentersOfRotationOptions& options) {
   v.value(
       "similarity_width", options.similarity_width,
       {.doc = "sigma: how different the weights of similar places may be", .min = 1e-3, .max = 10});
@@ -245,19 +245,19 @@ double weight_similarity(const Eigen::VectorXd& a, const Eigen::VectorXd& b, dou
   return sum;
 }
 
-Eigen::MatrixX3d centres_of_rotation(const RiggedMesh& rig,
-                                     const CentresOfRotationOptions& options) {
+Eigen::MatrixX3d centers_of_rotation(const RiggedMesh& rig,
+                                     const CentersOfRotationOptions& options) {
   check_options(options);
   require_skinnable(rig);
   const PiecesOfPairs pairs = pieces_by_pair(rig, options);
-  Eigen::MatrixX3d centres(rig.mesh.vertex_count(), 3);
-  parallel_blocks(static_cast<std::size_t>(centres.rows()), 64,
+  Eigen::MatrixX3d centers(rig.mesh.vertex_count(), 3);
+  parallel_blocks(static_cast<std::size_t>(centers.rows()), 64,
                   [&](std::size_t begin, std::size_t end) {
                     for (std::size_t v = begin; v < end; ++v)
-                      centres.row(static_cast<Eigen::Index>(v)) =
-                          centre_of(static_cast<int>(v), rig, pairs, options.similarity_width);
+                      centers.row(static_cast<Eigen::Index>(v)) =
+                          center_of(static_cast<int>(v), rig, pairs, options.similarity_width);
                   });
-  return centres;
+  return centers;
 }
 
 }  // namespace geoprior::skinning

@@ -7,12 +7,12 @@
 
 namespace geoprior::skinning {
 
-struct CentresOfRotationOptions {
+struct CentersOfRotationOptions {
   double similarity_width = 0.1;  ///< sigma: how different the weights of similar places may be
   double weight_step = 0.1;       ///< largest change of a weight over a piece of the integral
   double weight_cell = 0.005;     ///< pieces this near in weight are taken together; 0: none
 };
-void describe(OptionVisitor& v, CentresOfRotationOptions& options);
+void describe(OptionVisitor& v, CentersOfRotationOptions& options);
 
 /// How alike two places of the skin are blended, by their weights a and b (one entry a joint):
 ///
@@ -23,7 +23,7 @@ void describe(OptionVisitor& v, CentresOfRotationOptions& options);
 /// Source: Le and Hodgins 2016.
 double weight_similarity(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double sigma);
 
-/// Optimised centre of rotation of every vertex: the mean place of the skin whose weights are
+/// Optimised center of rotation of every vertex: the mean place of the skin whose weights are
 /// similar to its own,
 ///
 ///   p*_i = integral of s(w_i, w(x)) x dx / integral of s(w_i, w(x)) dx   over the rest surface.
@@ -35,7 +35,7 @@ double weight_similarity(const Eigen::VectorXd& a, const Eigen::VectorXd& b, dou
 /// s is a sum over pairs of joints: pieces are listed by pair, and a vertex visits the lists of its
 /// own pairs. In a list, pieces whose two weights fall in one cell of width `weight_cell` are
 /// replaced by their mean, so that a list is no longer than there are cells. With a cell of 1/20
-/// sigma this moves centres by less than a thousandth of the length over which weights change
+/// sigma this moves centers by less than a thousandth of the length over which weights change
 /// (tested); with `weight_cell = 0` every piece is summed.
 ///
 /// @param rig  welded mesh of n vertices, skeleton of m joints, weights n x m
@@ -43,7 +43,7 @@ double weight_similarity(const Eigen::VectorXd& a, const Eigen::VectorXd& b, dou
 /// @throws Error  as require_skinnable(), and for options out of range
 /// Source: Le and Hodgins 2016; the paper subdivides where weights differ by more than
 /// 0.1 and restricts the sum to neighbours in weight space, where this has cells.
-Eigen::MatrixX3d centres_of_rotation(const RiggedMesh& rig,
-                                     const CentresOfRotationOptions& options = {});
+Eigen::MatrixX3d centers_of_rotation(const RiggedMesh& rig,
+                                     const CentersOfRotationOptions& options = {});
 
 }  // namespace geoprior::skinning

@@ -5,7 +5,7 @@
 #include "baselines/skinning/dual_quaternion/lanes.h"
 #include "baselines/skinning/linear_blend/lanes.h"
 
-// Blending about centres of rotation, four vertices at a time: what blend_about_centres() writes
+// Blending about centers of rotation, four vertices at a time: what blend_about_centers() writes
 // out for one.
 
 #pragma GCC diagnostic push

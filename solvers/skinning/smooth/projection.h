@@ -18,7 +18,7 @@ namespace geoprior::skinning {
 /// of each.
 ///
 /// Section: where the field of a limb knows the skin, it asks for its iso-value along its gradient
-/// (a Newton step, eq. 3.2); neighbours follow by bending energy (smooth_system.h). It is asked
+/// (a Newton step, eq. 3.2); neighbours follow by bending energy (smooth/system.h). It is asked
 /// nothing where the gradient does not agree with the skinned normal (a vertex beyond a medial
 /// axis), where the support ends, near contact, and about the trunk, whose bones are shorter than
 /// thick: skin there is no tube about a bone.

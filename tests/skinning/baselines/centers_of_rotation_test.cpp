@@ -19,7 +19,7 @@ namespace {
 using fixtures::cylinder_options;
 
 /// The header's quotient for one vertex with one piece a triangle, every triangle visited.
-Eigen::RowVector3d centre_by_definition(const RiggedMesh& rig, const Eigen::MatrixXd& weights,
+Eigen::RowVector3d center_by_definition(const RiggedMesh& rig, const Eigen::MatrixXd& weights,
                                         int vertex, double sigma) {
   double mass = 0;
   Eigen::RowVector3d moment = Eigen::RowVector3d::Zero();
@@ -49,18 +49,18 @@ TEST(WeightSimilarity, IsSymmetricLargestAtEqualWeightsAndZeroWithoutTwoCommonJo
   EXPECT_NEAR(weight_similarity(two, near, 0.1), 2 * 0.21 * 0.24 * std::exp(-1), 1e-15);
 }
 
-TEST(CentresOfRotation, ListsOfPairsAgreeWithTheDefinition) {
-  CentresOfRotationOptions options;
+TEST(CentersOfRotation, ListsOfPairsAgreeWithTheDefinition) {
+  CentersOfRotationOptions options;
   options.weight_step = 1;
   options.weight_cell = 0;
   FingerOptions finger;
   finger.segments = 10;
   for (const RiggedMesh& rig : {capsule_finger(finger), fixtures::cylinder_of_many_influences(4)}) {
-    const Eigen::MatrixX3d centres = centres_of_rotation(rig, options);
+    const Eigen::MatrixX3d centers = centers_of_rotation(rig, options);
     const Eigen::MatrixXd weights = rig.weights;
     for (int v = 0; v < rig.mesh.vertex_count(); v += 7) {
       EXPECT_LE(
-          (centres.row(v) - centre_by_definition(rig, weights, v, options.similarity_width)).norm(),
+          (centers.row(v) - center_by_definition(rig, weights, v, options.similarity_width)).norm(),
           1e-12 * bounding_box_diagonal(rig.mesh.V))
           << v;
     }
@@ -83,12 +83,12 @@ RiggedMesh irregular_tube() {
   return rig;
 }
 
-TEST(CentresOfRotation, CellsOfWeightMoveCentresByAThousandthOfTheRampAtMost) {
-  CentresOfRotationOptions every;
+TEST(CentersOfRotation, CellsOfWeightMoveCentersByAThousandthOfTheRampAtMost) {
+  CentersOfRotationOptions every;
   every.weight_cell = 0;
   const RiggedMesh rig = irregular_tube();
   const double moved =
-      fixtures::largest_distance(centres_of_rotation(rig), centres_of_rotation(rig, every));
+      fixtures::largest_distance(centers_of_rotation(rig), centers_of_rotation(rig, every));
   EXPECT_GT(moved, 0);
   EXPECT_LE(moved, 1e-3 * cylinder_options().ramp_width);
 }
@@ -96,12 +96,12 @@ TEST(CentresOfRotation, CellsOfWeightMoveCentresByAThousandthOfTheRampAtMost) {
 // On a tube with the weight b = 1/2 + x / W the integral is one over b:
 // p*_x / W = integral of b (1 - b) exp(-(a - b)^2 / sigma^2) (b - 1/2) / the same without (b -
 // 1/2).
-TEST(CentresOfRotation, OfATubeLieOnItsAxisWhereTheIntegralOverTheRampSays) {
+TEST(CentersOfRotation, OfATubeLieOnItsAxisWhereTheIntegralOverTheRampSays) {
   const RiggedMesh rig = two_bone_cylinder(cylinder_options());
-  CentresOfRotationOptions options;
+  CentersOfRotationOptions options;
   options.weight_step = 0.01;
   options.weight_cell = 0;
-  const Eigen::MatrixX3d centres = centres_of_rotation(rig, options);
+  const Eigen::MatrixX3d centers = centers_of_rotation(rig, options);
   int blended = 0;
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
     const double a = rig.weights.coeff(v, 1);
@@ -116,21 +116,21 @@ TEST(CentresOfRotation, OfATubeLieOnItsAxisWhereTheIntegralOverTheRampSays) {
       moment += s * (b - 0.5);
     }
     const double x = cylinder_options().ramp_width * moment / mass;
-    EXPECT_NEAR(centres(v, 0), x, 1e-4 * cylinder_options().ramp_width) << "weight " << a;
-    EXPECT_NEAR(std::hypot(centres(v, 1), centres(v, 2)), 0, 1e-12);
+    EXPECT_NEAR(centers(v, 0), x, 1e-4 * cylinder_options().ramp_width) << "weight " << a;
+    EXPECT_NEAR(std::hypot(centers(v, 1), centers(v, 2)), 0, 1e-12);
   }
   EXPECT_GT(blended, 100);
 }
 
-TEST(CentresOfRotation, RestPoseReturnsTheInput) {
-  EXPECT_LE(fixtures::rest_pose_error<CentresOfRotation>(), 1e-15);
+TEST(CentersOfRotation, RestPoseReturnsTheInput) {
+  EXPECT_LE(fixtures::rest_pose_error<CentersOfRotation>(), 1e-15);
 }
 
-TEST(CentresOfRotation, VerticesOfOneJointFollowItAlsoWhereItScales) {
+TEST(CentersOfRotation, VerticesOfOneJointFollowItAlsoWhereItScales) {
   const RiggedMesh rig = two_bone_cylinder(cylinder_options());
   Pose pose = fixtures::turned(rig, "upper", "flexion", 1.1);
   pose[1] = pose[1] * Eigen::Scaling(1.3, 0.8, 1.1);
-  const Eigen::MatrixX3d posed = fixtures::deformed<CentresOfRotation>(rig, pose);
+  const Eigen::MatrixX3d posed = fixtures::deformed<CentersOfRotation>(rig, pose);
   int rigid = 0;
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
     if (rig.weights.coeff(v, 1) < 1) continue;
@@ -141,9 +141,9 @@ TEST(CentresOfRotation, VerticesOfOneJointFollowItAlsoWhereItScales) {
   EXPECT_GT(rigid, 100);
 }
 
-TEST(CentresOfRotation, TurnsWithARigidMotionOfAllJoints) {
+TEST(CentersOfRotation, TurnsWithARigidMotionOfAllJoints) {
   const RiggedMesh rig = capsule_finger();
-  const CentresOfRotation method(rig);
+  const CentersOfRotation method(rig);
   const Pose pose = fixtures::curled(rig, 0.9);
   Eigen::MatrixX3d still, moved;
   method.deform(pose, still);
@@ -159,10 +159,10 @@ TEST(CentresOfRotation, TurnsWithARigidMotionOfAllJoints) {
   }
 }
 
-// Centres on the axis of a twist stay where they are and rings turn about them.
-TEST(CentresOfRotation, TwistKeepsTheRadiusOfEveryRing) {
+// Centers on the axis of a twist stay where they are and rings turn about them.
+TEST(CentersOfRotation, TwistKeepsTheRadiusOfEveryRing) {
   const RiggedMesh rig = two_bone_cylinder(cylinder_options());
-  const CentresOfRotation method(rig);
+  const CentersOfRotation method(rig);
   Eigen::MatrixX3d posed;
   for (const double degrees : {10.0, 45.0, 90.0, 135.0, 170.0, 179.0}) {
     method.deform(fixtures::turned(rig, "upper", "twist", degrees * kDegree), posed);
@@ -174,11 +174,11 @@ TEST(CentresOfRotation, TwistKeepsTheRadiusOfEveryRing) {
   }
 }
 
-// The mid-ring's centre is the joint itself: the ring turns by half the angle and keeps its shape
+// The mid-ring's center is the joint itself: the ring turns by half the angle and keeps its shape
 // (linear blend: an ellipse of half axes r cos(theta / 2) and r).
-TEST(CentresOfRotation, BendTurnsTheMidRingByHalfTheAngle) {
+TEST(CentersOfRotation, BendTurnsTheMidRingByHalfTheAngle) {
   const RiggedMesh rig = two_bone_cylinder(cylinder_options());
-  const CentresOfRotation method(rig);
+  const CentersOfRotation method(rig);
   Eigen::MatrixX3d posed;
   for (const double degrees : {10.0, 60.0, 120.0, 160.0}) {
     method.deform(fixtures::turned(rig, "upper", "flexion", degrees * kDegree), posed);
@@ -190,12 +190,12 @@ TEST(CentresOfRotation, BendTurnsTheMidRingByHalfTheAngle) {
   }
 }
 
-// Dual quaternions move blended rings on circles about the joint, which bulges; centres of rotation
+// Dual quaternions move blended rings on circles about the joint, which bulges; centers of rotation
 // take the chord: the outer side is never farther from the joint.
-TEST(CentresOfRotation, BendBulgesLessThanDualQuaternions) {
+TEST(CentersOfRotation, BendBulgesLessThanDualQuaternions) {
   const RiggedMesh rig = two_bone_cylinder(cylinder_options());
   const Pose pose = fixtures::turned(rig, "upper", "flexion", 90 * kDegree);
-  const Eigen::MatrixX3d posed = fixtures::deformed<CentresOfRotation>(rig, pose);
+  const Eigen::MatrixX3d posed = fixtures::deformed<CentersOfRotation>(rig, pose);
   const Eigen::MatrixX3d circles = fixtures::deformed<DualQuaternionBlend>(rig, pose);
   double most = 0;
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
@@ -208,7 +208,7 @@ TEST(CentresOfRotation, BendBulgesLessThanDualQuaternions) {
   EXPECT_GT(most, 0.03 * cylinder_options().radius);
 }
 
-TEST(CentresOfRotation, LanesAgreeWithTheFormula) {
+TEST(CentersOfRotation, LanesAgreeWithTheFormula) {
   for (int copies = 1; copies <= 5; ++copies) {
     const RiggedMesh rig = fixtures::cylinder_of_many_influences(copies);
     Pose pose = fixtures::turned(rig, "upper", "flexion", 1.1);
@@ -216,58 +216,58 @@ TEST(CentresOfRotation, LanesAgreeWithTheFormula) {
       const Eigen::Vector3d axis(1, 0.2 * static_cast<double>(j), -0.3);
       pose[j] = Eigen::AngleAxisd(0.4 * static_cast<double>(j), axis.normalized()) * pose[1];
     }
-    const CentresOfRotation method(rig);
+    const CentersOfRotation method(rig);
     Eigen::MatrixX3d posed;
     method.deform(pose, posed);
     // Weights are packed as floats: 6e-8 of the distances, which are below 2 m.
-    EXPECT_LE(fixtures::largest_distance(posed, blend_about_centres(rig, method.centres(), pose)),
+    EXPECT_LE(fixtures::largest_distance(posed, blend_about_centers(rig, method.centers(), pose)),
               2e-7)
         << copies;
   }
 }
 
-TEST(CentresOfRotation, SameBitsForOneAndTwoThreads) {
+TEST(CentersOfRotation, SameBitsForOneAndTwoThreads) {
   CylinderOptions options;
   options.segments = 96;
   const RiggedMesh rig = two_bone_cylinder(options);
   const Pose pose = fixtures::turned(rig, "upper", "flexion", 1.3);
   Eigen::MatrixX3d one, two;
-  with_threads(1, [&] { CentresOfRotation(rig).deform(pose, one); });
-  with_threads(2, [&] { CentresOfRotation(rig).deform(pose, two); });
+  with_threads(1, [&] { CentersOfRotation(rig).deform(pose, one); });
+  with_threads(2, [&] { CentersOfRotation(rig).deform(pose, two); });
   EXPECT_TRUE((one.array() == two.array()).all());
 }
 
-TEST(CentresOfRotation, RefusesWrongInput) {
+TEST(CentersOfRotation, RefusesWrongInput) {
   RiggedMesh rig = two_bone_cylinder(cylinder_options());
-  const CentresOfRotation method(rig);
+  const CentersOfRotation method(rig);
   Eigen::MatrixX3d posed;
   EXPECT_THROW(method.deform(rest_pose(1), posed), Error);
   Pose pose = rest_pose(2);
   pose[1].translation().x() = std::nan("");
   EXPECT_THROW(method.deform(pose, posed), Error);
-  EXPECT_THROW(blend_about_centres(rig, method.centres().topRows(3), rest_pose(2)), Error);
+  EXPECT_THROW(blend_about_centers(rig, method.centers().topRows(3), rest_pose(2)), Error);
   EXPECT_THROW(weight_similarity(Eigen::Vector2d(0.5, 0.5), Eigen::Vector3d::Zero(), 0.1), Error);
   EXPECT_THROW(weight_similarity(Eigen::Vector2d(0.5, 0.5), Eigen::Vector2d(0.5, 0.5), 0), Error);
   for (const double sigma : {0.0, -1.0, std::nan("")}) {
-    CentresOfRotationOptions options;
+    CentersOfRotationOptions options;
     options.similarity_width = sigma;
-    EXPECT_THROW(CentresOfRotation(rig, options), Error) << sigma;
+    EXPECT_THROW(CentersOfRotation(rig, options), Error) << sigma;
   }
   for (const double step : {0.0, 1.5, std::nan("")}) {
-    CentresOfRotationOptions options;
+    CentersOfRotationOptions options;
     options.weight_step = step;
-    EXPECT_THROW(CentresOfRotation(rig, options), Error) << step;
+    EXPECT_THROW(CentersOfRotation(rig, options), Error) << step;
   }
   for (const double cell : {-0.1, 0.5, std::nan("")}) {
-    CentresOfRotationOptions options;
+    CentersOfRotationOptions options;
     options.weight_cell = cell;
-    EXPECT_THROW(CentresOfRotation(rig, options), Error) << cell;
+    EXPECT_THROW(CentersOfRotation(rig, options), Error) << cell;
   }
   RiggedMesh nan = rig;
   nan.mesh.V(5, 1) = std::nan("");
-  EXPECT_THROW(CentresOfRotation{nan}, Error);
+  EXPECT_THROW(CentersOfRotation{nan}, Error);
   rig.weights *= 0.5;
-  EXPECT_THROW(CentresOfRotation{rig}, Error);
+  EXPECT_THROW(CentersOfRotation{rig}, Error);
 }
 
 }  // namespace

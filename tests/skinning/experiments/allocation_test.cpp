@@ -58,8 +58,8 @@ TEST_F(AllocationsOfAPose, DeltaMushMakesNone) {
   expect_none([&](const Pose& pose) { method.deform(pose, posed); });
 }
 
-TEST_F(AllocationsOfAPose, CentresOfRotationMakeNone) {
-  const CentresOfRotation method(rig);
+TEST_F(AllocationsOfAPose, CentersOfRotationMakeNone) {
+  const CentersOfRotation method(rig);
   expect_none([&](const Pose& pose) { method.deform(pose, posed); });
 }
 

@@ -41,7 +41,7 @@ struct Asked {
     }
   }
 
-  /// The minimiser of what smooth_system.h states, by a dense factorisation.
+  /// The minimiser of what smooth/system.h states, by a dense factorisation.
   [[nodiscard]] Eigen::VectorXd exact() const {
     const auto n = static_cast<Eigen::Index>(state.size());
     const Eigen::MatrixXd L(positive_cotangent_laplacian(rig.mesh));
