@@ -12,6 +12,9 @@ namespace {
 /// Residual over what is asked at which the solution is good enough for a skin.
 constexpr double kEnough = 1e-2;
 
+/// Slivers count as this share of the mean area, so that bending them stays finite.
+constexpr double kLeastArea = 1e-3;
+
 /// Lengths over which a displacement decays between what is asked and what stands still.
 constexpr double kReach = 1.5;
 
@@ -32,9 +35,29 @@ float gap2(const Float4Bounds& a, const Float4Bounds& b) {
 SmoothSystem::SmoothSystem(const TriMesh& mesh, const SkinState& state,
                            const std::vector<float>& radius)
     : size_(state.size()) {
-  const Eigen::SparseMatrix<double> stiffness = positive_cotangent_laplacian(mesh);
+  weigh_vertices(mesh, state, radius);
+  list_stiffness(mesh, state);
+  sum_bend_diagonal();
+  bound_blocks(state, radius);
+  coarse_.emplace(state, CoarseSpace::Rings{offset_, neighbour_}, radius, vertex_normals(mesh),
+                  laplace(), bend_, area_);
+  allocate();
+}
+
+void SmoothSystem::weigh_vertices(const TriMesh& mesh, const SkinState& state,
+                                  const std::vector<float>& radius) {
   const Eigen::VectorXd areas = vertex_areas(mesh);
   const double mean_area = areas.mean();
+  for (std::size_t s = 0; s < size_; ++s) {
+    const double area = std::max(kLeastArea * mean_area, areas(state.vertex[s]));
+    const double r2 = static_cast<double>(radius[s]) * static_cast<double>(radius[s]);
+    area_.push_back(static_cast<float>(area / mean_area));
+    bend_.push_back(static_cast<float>(r2 * r2 / (area * mean_area)));
+  }
+}
+
+void SmoothSystem::list_stiffness(const TriMesh& mesh, const SkinState& state) {
+  const Eigen::SparseMatrix<double> stiffness = positive_cotangent_laplacian(mesh);
   std::vector<int> slot_of(size_);
   for (std::size_t s = 0; s < size_; ++s)
     slot_of[static_cast<std::size_t>(state.vertex[s])] = static_cast<int>(s);
@@ -50,11 +73,10 @@ SmoothSystem::SmoothSystem(const TriMesh& mesh, const SkinState& state,
       conductance_.push_back(static_cast<float>(-it.value()));
     }
     offset_.push_back(static_cast<int>(neighbour_.size()));
-    const double area = std::max(1e-3 * mean_area, areas(v));
-    const double r2 = static_cast<double>(radius[s]) * static_cast<double>(radius[s]);
-    area_.push_back(static_cast<float>(area / mean_area));
-    bend_.push_back(static_cast<float>(r2 * r2 / (area * mean_area)));
   }
+}
+
+void SmoothSystem::sum_bend_diagonal() {
   for (std::size_t s = 0; s < size_; ++s) {
     float sum = diagonal_[s] * diagonal_[s] * bend_[s];
     for (auto j = static_cast<std::size_t>(offset_[s]);
@@ -62,6 +84,9 @@ SmoothSystem::SmoothSystem(const TriMesh& mesh, const SkinState& state,
       sum += conductance_[j] * conductance_[j] * bend_[static_cast<std::size_t>(neighbour_[j])];
     bend_diagonal_.push_back(sum);
   }
+}
+
+void SmoothSystem::bound_blocks(const SkinState& state, const std::vector<float>& radius) {
   near_blocks_.resize(state.block_count());
   bounds_.resize(near_blocks_.size());
   radius_.assign(near_blocks_.size(), 0);
@@ -77,6 +102,9 @@ SmoothSystem::SmoothSystem(const TriMesh& mesh, const SkinState& state,
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
   }
+}
+
+Eigen::SparseMatrix<double> SmoothSystem::laplace() const {
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t s = 0; s < size_; ++s) {
     const int row = static_cast<int>(s);
@@ -86,11 +114,12 @@ SmoothSystem::SmoothSystem(const TriMesh& mesh, const SkinState& state,
       entries.emplace_back(row, neighbour_[k], -static_cast<double>(conductance_[k]));
     }
   }
-  Eigen::SparseMatrix<double> laplace(static_cast<Eigen::Index>(size_),
-                                      static_cast<Eigen::Index>(size_));
-  laplace.setFromTriplets(entries.begin(), entries.end());
-  coarse_.emplace(state, CoarseSpace::Rings{offset_, neighbour_}, radius, vertex_normals(mesh),
-                  laplace, bend_, area_);
+  Eigen::SparseMatrix<double> L(static_cast<Eigen::Index>(size_), static_cast<Eigen::Index>(size_));
+  L.setFromTriplets(entries.begin(), entries.end());
+  return L;
+}
+
+void SmoothSystem::allocate() {
   chosen_.assign(near_blocks_.size(), 0);
   partial_.assign(near_blocks_.size(), 0);
   reached_ = chosen_;
@@ -112,7 +141,15 @@ void SmoothSystem::close(std::vector<Float4>& u) {
 void SmoothSystem::open(const std::vector<Demand>& demands, const Options& options) {
   // kappa r^4 / l^4 = mu: the length l at which bending and anchor are equal.
   const double decay = std::sqrt(2.0) * std::pow(bending(options.cutoff) / options.anchor, 0.25);
-  const auto reach = static_cast<float>(kReach * decay);
+  list_asked(demands);
+  reach_around_asked(static_cast<float>(kReach * decay));
+  front_.clear();
+  for (std::size_t b = 0; b < reached_.size(); ++b)
+    if (reached_[b] != 0) front_.push_back(static_cast<int>(b));
+  open(front_);
+}
+
+void SmoothSystem::list_asked(const std::vector<Demand>& demands) {
   asked_.clear();
   for (std::size_t b = 0; b < chosen_.size(); ++b) {
     const std::size_t begin = b * SkinState::kBlock;
@@ -122,6 +159,9 @@ void SmoothSystem::open(const std::vector<Demand>& demands, const Options& optio
       asked = demands[s].weight * std::abs(demands[s].amount) > 0;
     if (asked) asked_.push_back(static_cast<int>(b));
   }
+}
+
+void SmoothSystem::reach_around_asked(float reach) {
   std::fill(reached_.begin(), reached_.end(), std::uint8_t{0});
   for (const int from : asked_) {
     // Through blocks that touch: what is near across a gap belongs to another part of the skin.
@@ -141,10 +181,6 @@ void SmoothSystem::open(const std::vector<Demand>& demands, const Options& optio
     }
   }
   std::fill(seen_.begin(), seen_.end(), 0);
-  front_.clear();
-  for (std::size_t b = 0; b < reached_.size(); ++b)
-    if (reached_[b] != 0) front_.push_back(static_cast<int>(b));
-  open(front_);
 }
 
 void SmoothSystem::open(const std::vector<int>& blocks) {
@@ -218,35 +254,9 @@ int SmoothSystem::solve(const std::vector<Demand>& demands, const Options& optio
   if (blocks_.empty()) return 0;
   const auto kappa = static_cast<float>(bending(options.cutoff));
   const auto diagonal = static_cast<float>(options.anchor);
-  // Slots of closed blocks are read as neighbours: they hold zero (`close`).
-  apply(demands, u, kappa, diagonal);
-  each_open([&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      const Demand& demand = demands[s];
-      const Float4 asked = demand.direction * splat(demand.weight * demand.amount);
-      residual_[s] = splat(area_[s]) * asked - image_[s];
-      const float same = kappa * bend_diagonal_[s] + area_[s] * diagonal;
-      const float along = area_[s] * demand.weight;
-      inverse_[s] = 1 / same;
-      share_[s] = along / (same + along);
-      search_[s] = splat(area_[s]) * asked;
-    }
-  });
+  start_residual(demands, u, kappa, diagonal);
   const double enough = kEnough * kEnough * precondition(demands, search_);
-  slots_.clear();
-  for (const int block : blocks_) {
-    const std::size_t first = static_cast<std::size_t>(block) * SkinState::kBlock;
-    for (std::size_t s = first; s < std::min(size_, first + SkinState::kBlock); ++s)
-      if (demands[s].weight > 0) slots_.push_back(static_cast<int>(s));
-  }
-  coarse_->solve(demands, slots_, area_, residual_, kappa, diagonal, blocks_, search_);
-  apply(demands, search_, kappa, diagonal);
-  each_open([&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      u[s] += search_[s];
-      residual_[s] -= image_[s];
-    }
-  });
+  correct_coarsely(demands, u, kappa, diagonal);
   double energy = precondition(demands, residual_);
   double last = 1;
   int done = 0;
@@ -267,6 +277,42 @@ int SmoothSystem::solve(const std::vector<Demand>& demands, const Options& optio
     energy = precondition(demands, residual_);
   }
   return done;
+}
+
+void SmoothSystem::start_residual(const std::vector<Demand>& demands, const std::vector<Float4>& u,
+                                  float kappa, float diagonal) {
+  // Slots of closed blocks are read as neighbours: they hold zero (`close`).
+  apply(demands, u, kappa, diagonal);
+  each_open([&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const Demand& demand = demands[s];
+      const Float4 asked = demand.direction * splat(demand.weight * demand.amount);
+      residual_[s] = splat(area_[s]) * asked - image_[s];
+      const float same = kappa * bend_diagonal_[s] + area_[s] * diagonal;
+      const float along = area_[s] * demand.weight;
+      inverse_[s] = 1 / same;
+      share_[s] = along / (same + along);
+      search_[s] = splat(area_[s]) * asked;
+    }
+  });
+}
+
+void SmoothSystem::correct_coarsely(const std::vector<Demand>& demands, std::vector<Float4>& u,
+                                    float kappa, float diagonal) {
+  slots_.clear();
+  for (const int block : blocks_) {
+    const std::size_t first = static_cast<std::size_t>(block) * SkinState::kBlock;
+    for (std::size_t s = first; s < std::min(size_, first + SkinState::kBlock); ++s)
+      if (demands[s].weight > 0) slots_.push_back(static_cast<int>(s));
+  }
+  coarse_->solve(demands, slots_, area_, residual_, kappa, diagonal, blocks_, search_);
+  apply(demands, search_, kappa, diagonal);
+  each_open([&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      u[s] += search_[s];
+      residual_[s] -= image_[s];
+    }
+  });
 }
 
 }  // namespace geoprior::skinning

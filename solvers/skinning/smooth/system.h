@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -59,6 +60,29 @@ class SmoothSystem {
   }
 
  private:
+  // What is made once, in this order.
+  /// area_ and bend_.
+  void weigh_vertices(const TriMesh& mesh, const SkinState& state,
+                      const std::vector<float>& radius);
+  /// L over slots, row by row: offset_, neighbour_, conductance_, diagonal_.
+  void list_stiffness(const TriMesh& mesh, const SkinState& state);
+  void sum_bend_diagonal();
+  /// What is near to each block, its box and its largest radius.
+  void bound_blocks(const SkinState& state, const std::vector<float>& radius);
+  /// L over slots as a matrix, for the coarse space.
+  [[nodiscard]] Eigen::SparseMatrix<double> laplace() const;
+  void allocate();
+
+  /// Blocks in which something is asked.
+  void list_asked(const std::vector<Demand>& demands);
+  /// Marks the blocks around those within `reach` of their radii.
+  void reach_around_asked(float reach);
+  /// residual_ of u, the preconditioner, and the right side in search_.
+  void start_residual(const std::vector<Demand>& demands, const std::vector<Float4>& u, float kappa,
+                      float diagonal);
+  /// Adds to u what the coarse space finds.
+  void correct_coarsely(const std::vector<Demand>& demands, std::vector<Float4>& u, float kappa,
+                        float diagonal);
   void bend(const std::vector<Float4>& x, float kappa);
   /// image_ = system times x. @return its product with x
   double apply(const std::vector<Demand>& demands, const std::vector<Float4>& x, float kappa,
