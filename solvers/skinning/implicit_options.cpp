@@ -21,18 +21,19 @@ void describe_fields(OptionVisitor& v, ImplicitOptions& o) {
                   {.doc = "operator between the fields of the two bones of a joint"});
   describe_choice(v, "opening", o.opening, kOpeningNames,
                   {.doc = "opening angle theta of the blend over the angle between gradients"});
-  v.value("ricci_exponent", o.ricci_exponent,
-          {.doc = "n of the Ricci operator; large: union", .min = 1, .max = 100});
+  v.value(
+      "ricci_exponent", o.ricci_exponent,
+      {.doc = "n of the Ricci operator; a large one is nearly the union", .min = 1, .max = 100});
   describe_list(v, "joint_blends", o.joint_blends,
                 {.doc = "joints whose operator differs from the others"});
   v.value("limb_contact", o.limb_contact,
-          {.doc = "contact operator between limbs that no joint connects (off: maximum)"});
+          {.doc = "contact operator between limbs that no joint connects; off: their maximum"});
   v.value("contact_gap", o.contact_gap,
-          {.doc = "by how much a vertex' own field exceeds the other limb's in contact",
+          {.doc = "excess of a vertex' own field over the other limb's in contact (marching)",
            .min = 0,
            .max = 0.1});
   describe_choice(v, "partition", o.partition, kPartitionNames,
-                  {.doc = "which bone a vertex belongs to"});
+                  {.doc = "rule by which a vertex belongs to a bone"});
   describe_group(v, "sampling", o.sampling,
                  {.doc = "samples to which each bone's field is fitted"});
   describe_choice(v, "support", o.support, kSupportNames,
@@ -42,7 +43,7 @@ void describe_fields(OptionVisitor& v, ImplicitOptions& o) {
            .min = 0.1,
            .max = 10});
   v.value("grid", o.grid,
-          {.doc = "field cache: grid^3 nodes a bone; 0 evaluates exactly (slow reference)",
+          {.doc = "field cache of grid^3 nodes a bone; 0 evaluates exactly (slow reference)",
            .min = 0,
            .max = 256});
 }
@@ -52,20 +53,23 @@ void describe_solve(OptionVisitor& v, ImplicitOptions& o) {
       v, "projection", o.projection, kProjectionNames,
       {.doc = "one smooth correction, the same with contact that is tracked from pose to pose, or "
               "every vertex along its own gradient"});
-  describe_group(v, "smooth", o.smooth, {.doc = "of the smooth correction"});
+  describe_group(v, "smooth", o.smooth, {.doc = "the smooth correction, tracked or not"});
   describe_choice(v, "schedule", o.schedule, kScheduleNames,
                   {.doc = "order of the passes: the paper's, or the authors' released code's"});
-  v.value("step", o.step, {.doc = "Delta L of eq. 3.2", .min = 1e-3, .max = 1.5});
+  v.value("step", o.step,
+          {.doc = "Delta L of eq. 3.2: share of the Newton step that is taken",
+           .min = 1e-3,
+           .max = 1.5});
   v.value("max_step", o.max_step,
-          {.doc = "longest step, in support radii r", .min = 1e-3, .max = 10});
+          {.doc = "longest step of a vertex, in support radii r", .min = 1e-3, .max = 10});
   v.value("stop_angle_deg", o.stop_angle_deg,
-          {.doc = "a larger angle between consecutive gradients is a contact",
+          {.doc = "angle between consecutive gradients beyond which a vertex is in contact",
            .unit = "deg",
            .min = 1,
            .max = 180});
   v.value("bisect_at_stop", o.bisect_at_stop,
-          {.doc = "move stopped vertices onto f1 = f2 instead of back to the last step"});
-  v.value("stop_on_growth", o.stop_on_growth, {.doc = "stop a vertex whose field error grows"});
+          {.doc = "moves stopped vertices onto f1 = f2 instead of back to the last step"});
+  v.value("stop_on_growth", o.stop_on_growth, {.doc = "stops a vertex whose field error grows"});
   v.value(
       "leave_far_side", o.leave_far_side,
       {.doc = "vertices that the field pushes against their skinned normal walk along it first"});
@@ -82,6 +86,70 @@ void describe_solve(OptionVisitor& v, ImplicitOptions& o) {
           {.doc = "Laplacian passes at contacts, weighted by beta", .min = 0, .max = 100});
 }
 
+/// What holds sections and contacts alike, and how both are solved for.
+void describe_correction(OptionVisitor& v, SmoothOptions& o) {
+  v.value("section", o.section,
+          {.doc = "share of what the fields of limbs ask for that is followed; 0: contact alone",
+           .min = 0,
+           .max = 1});
+  v.value("cutoff", o.cutoff,
+          {.doc = "wavelength of a section's correction of which half the amplitude is left, in "
+                  "local radii",
+           .min = 0.05,
+           .max = 10});
+  v.value("anchor", o.anchor,
+          {.doc = "pull of a section's correction to zero, over the weight of a field's demand",
+           .min = 1e-6,
+           .max = 1});
+  v.value(
+      "evaluations", o.evaluations,
+      {.doc = "evaluations of the fields for sections; 0: nothing is corrected (a null control)",
+       .min = 0,
+       .max = 100});
+  v.value("tracking_step_deg", o.tracking_step_deg,
+          {.doc = "largest turn of a joint between two poses that is tracked in one step",
+           .unit = "deg",
+           .min = 0.1,
+           .max = 180});
+  v.value(
+      "iterations", o.iterations,
+      {.doc = "most steps of the linear solver after its coarse level", .min = 1, .max = 10000});
+}
+
+void describe_contact(OptionVisitor& v, SmoothOptions& o) {
+  v.value("contact_cutoff", o.contact_cutoff,
+          {.doc = "wavelength of the displacement in contact of which half the amplitude is left, "
+                  "in local radii",
+           .min = 0.05,
+           .max = 10});
+  v.value("contact_anchor", o.contact_anchor,
+          {.doc = "pull of the displacement in contact to zero, over the weight of a demand",
+           .min = 1e-6,
+           .max = 10});
+  v.value("contact_gap", o.contact_gap,
+          {.doc = "how much deeper a vertex stays in its own field than in another's, in local "
+                  "radii",
+           .min = 0,
+           .max = 1});
+  v.value("contact_weight", o.contact_weight,
+          {.doc = "weight of what contact asks over that of a section's demand",
+           .min = 1e-3,
+           .max = 1000});
+  v.value("contact_band", o.contact_band,
+          {.doc = "depth about contact over which its force grows from nothing, in local radii",
+           .min = 0,
+           .max = 1});
+  v.value("contact_reach", o.contact_reach,
+          {.doc = "distance within which a vertex looks for skin that faces it, in local radii",
+           .min = 0,
+           .max = 10});
+  v.value("contact_evaluations", o.contact_evaluations,
+          {.doc = "evaluations of the fields in contact; 0: contact is not resolved (a null "
+                  "control)",
+           .min = 0,
+           .max = 100});
+}
+
 }  // namespace
 
 void describe(OptionVisitor& v, JointBlend& o) {
@@ -89,103 +157,35 @@ void describe(OptionVisitor& v, JointBlend& o) {
   describe_choice(v, "blend", o.blend, kBlendNames,
                   {.doc = "operator of this joint; absent: that of the others"});
   describe_choice(v, "opening", o.opening, kOpeningNames,
-                  {.doc = "its opening curve; absent: that of the others"});
+                  {.doc = "opening curve of this joint; absent: that of the others"});
 }
 
 void describe(OptionVisitor& v, SamplingOptions& o) {
   v.value("samples", o.samples,
-          {.doc = "N of eq. 3.1: samples per bone, caps not counted", .min = 4, .max = 400});
+          {.doc = "N of eq. 3.1: samples of a bone, caps not counted", .min = 4, .max = 400});
   v.value("fold", o.fold,
-          {.doc = "reject samples where (p - nearest point of the bone) . n is below this times r",
+          {.doc = "least (p - nearest point of the bone) . n of a sample, in support radii r",
            .min = -1,
            .max = 1});
   v.value("trim_head", o.trim_head,
-          {.doc = "leave out samples within this fraction of the bone from a joint at its head",
+          {.doc = "share of the bone without samples at its head, if that is a joint",
            .min = -1,
            .max = 0.5});
   v.value("trim_tail", o.trim_tail,
-          {.doc = "the same at its tail, where another bone begins", .min = -1, .max = 0.5});
+          {.doc = "share of the bone without samples at its tail, if another bone begins there",
+           .min = -1,
+           .max = 0.5});
   describe_choice(v, "caps", o.caps, kCapNames,
                   {.doc = "what closes a field beyond a joint: one sample on the axis, or a dome"});
-  v.value(
-      "cap_scale", o.cap_scale,
-      {.doc = "its distance from the joint over that of the nearest sample", .min = 0.1, .max = 5});
+  v.value("cap_scale", o.cap_scale,
+          {.doc = "distance of a cap from its joint over that of the nearest sample",
+           .min = 0.1,
+           .max = 5});
 }
 
 void describe(OptionVisitor& v, SmoothOptions& o) {
-  v.value("section", o.section,
-          {.doc = "share of what the fields of limbs ask for that is followed; 0: contact alone",
-           .min = 0,
-           .max = 1});
-  v.value("cutoff", o.cutoff,
-          {.doc = "wavelength, in local radii, of which half the amplitude is left",
-           .min = 0.05,
-           .max = 10});
-  v.value("contact_cutoff", o.contact_cutoff,
-          {.doc = "the same of the displacement in contact", .min = 0.05, .max = 10});
-  v.value("anchor", o.anchor,
-          {.doc = "what draws the correction to zero, over the weight of a field's demand",
-           .min = 1e-6,
-           .max = 1});
-  v.value("contact_anchor", o.contact_anchor,
-          {.doc = "the same in contact", .min = 1e-6, .max = 10});
-  v.value("contact_gap", o.contact_gap,
-          {.doc = "by how much a vertex is deeper in its own field than in another's, in local "
-                  "radii",
-           .min = 0,
-           .max = 1});
-  v.value("contact_weight", o.contact_weight,
-          {.doc = "of what contact asks, over the weight of a section's demand",
-           .min = 1e-3,
-           .max = 1000});
-  v.value("contact_band", o.contact_band,
-          {.doc = "before contact, within which skin that was moved is held, in local radii",
-           .min = 0,
-           .max = 1});
-  v.value("contact_reach", o.contact_reach,
-          {.doc = "within which skin that faces a vertex is looked for, in local radii",
-           .min = 0,
-           .max = 10});
-  v.value("dead_zone", o.dead_zone,
-          {.doc = "smaller demands fade out, in local radii", .min = 0, .max = 1});
-  v.value("largest", o.largest,
-          {.doc = "largest demand of a field, in local radii", .min = 0, .max = 10});
-  v.value("trunk_ratio", o.trunk_ratio,
-          {.doc = "length over thickness up to which a bone's field says nothing of the section",
-           .min = 0,
-           .max = 100});
-  v.value("limb_ratio", o.limb_ratio, {.doc = "and from which it says all", .min = 0, .max = 100});
-  v.value("agree_low", o.agree_low,
-          {.doc = "cosine of gradient and skinned normal up to which a field is not believed",
-           .min = -1,
-           .max = 1});
-  v.value("agree_high", o.agree_high, {.doc = "and from which it is", .min = -1, .max = 1});
-  v.value(
-      "facing_low", o.facing_low,
-      {.doc = "cosine of the other field's gradient and the skinned normal up to which there is "
-              "no contact",
-       .min = -1,
-       .max = 1});
-  v.value("facing_high", o.facing_high, {.doc = "and from which there is", .min = -1, .max = 1});
-  v.value("crowd", o.crowd,
-          {.doc = "how far below contact another bone's field already silences the own one",
-           .min = 0,
-           .max = 1});
-  v.value("preparation_passes", o.preparation_passes,
-          {.doc = "smoothing of radii and trust over the skin", .min = 0, .max = 100});
-  v.value("evaluations", o.evaluations,
-          {.doc = "of the fields; 0: nothing is corrected (a null control)", .min = 0, .max = 100});
-  v.value("contact_evaluations", o.contact_evaluations,
-          {.doc = "of the fields in contact; 0: contact is not resolved (a null control)",
-           .min = 0,
-           .max = 100});
-  v.value("tracking_step_deg", o.tracking_step_deg,
-          {.doc = "largest turn of a joint from one pose to the next that is tracked in one step",
-           .min = 0.1,
-           .max = 180});
-  v.value(
-      "iterations", o.iterations,
-      {.doc = "steps of the linear solver after its coarse level at most", .min = 1, .max = 10000});
+  describe_correction(v, o);
+  describe_contact(v, o);
 }
 
 void describe(OptionVisitor& v, ImplicitOptions& o) {

@@ -45,13 +45,12 @@ void describe(OptionVisitor& v, JointBlend& options);
 
 /// Samples from which the field of each bone is fitted (thesis 3.1, N and p_k, n_k of eq. 3.1).
 struct SamplingOptions {
-  int samples = 80;      ///< N per bone, caps not counted
-  double fold = 0;       ///< reject samples with (p - nearest point of the bone) . n below fold r
-  double trim_head = 0;  ///< drop samples within this fraction of the bone from its head
-  double trim_tail = 0;  ///< and from its tail, where another bone begins
-  CapKind caps = CapKind::point;  ///< what closes the field beyond joints (caps.h)
-  double cap_scale =
-      0.9;  ///< distance of the cap from the joint on the axis, over that of the nearest sample
+  int samples = 80;  ///< N
+  double fold = 0;
+  double trim_head = 0;
+  double trim_tail = 0;
+  CapKind caps = CapKind::point;
+  double cap_scale = 0.9;
 };
 void describe(OptionVisitor& v, SamplingOptions& options);
 
@@ -63,29 +62,19 @@ enum class ProjectionKind { smooth, tracking, marching };
 /// The smooth correction. Lengths are shares of the local radius: the distance of the skin from its
 /// bone.
 struct SmoothOptions {
-  double section = 0.5;  ///< share of what fields ask for that is followed
-  double cutoff = 2.2;   ///< wavelength whose amplitude is halved
+  double section = 0.5;
+  double cutoff = 2.2;
   double contact_cutoff = 1.2;
-  double anchor = 0.15;  ///< mu, over the weight of what fields ask
+  double anchor = 0.15;  ///< mu
   double contact_anchor = 0.02;
-  double contact_gap = 0.06;  ///< by how much a vertex is deeper in its own field than in another
-  double contact_weight = 3;  ///< of what contact asks, over the weight of what sections ask
-  double contact_band = 0.1;  ///< before contact, within which skin that was moved is held
-  double contact_reach = 1;   ///< within which skin that faces a vertex is looked for
-  double dead_zone = 0.01;    ///< what asks for less is not followed
-  double largest = 0.5;       ///< correction that a field may ask for
-  double trunk_ratio = 1.0;   ///< length over thickness up to which a bone's field is no limb's
-  double limb_ratio = 1.4;    ///< and from which it is
-  double agree_low = 0.3;     ///< cosine of gradient and skinned normal: below it nothing is known
-  double agree_high = 0.8;
-  double facing_low = -0.5;  ///< cosine at which a contact begins to hold
-  double facing_high = 0;
-  double crowd = 0.5;  ///< of a field below contact: within it nothing is asked of the section
-  int preparation_passes = 5;
-  int evaluations = 2;  ///< of the fields
+  double contact_gap = 0.06;
+  double contact_weight = 3;
+  double contact_band = 0.1;
+  double contact_reach = 1;
+  int evaluations = 2;
   int contact_evaluations = 5;
-  double tracking_step_deg = 10;  ///< largest turn of a joint between two poses that are followed
-  int iterations = 6;             ///< of the linear solver after its coarse level
+  double tracking_step_deg = 10;
+  int iterations = 6;
 };
 void describe(OptionVisitor& v, SmoothOptions& options);
 
@@ -95,33 +84,30 @@ struct ImplicitOptions {
   OpeningPreset opening = OpeningPreset::elbow_soft;
   double ricci_exponent = 8;
   std::vector<JointBlend> joint_blends;
-  bool limb_contact = true;  ///< contact operator between limbs that no joint connects
-
-  double contact_gap =
-      0.02;  ///< by how much a vertex' own field exceeds the other limb's in contact
+  bool limb_contact = true;
+  double contact_gap = 0.02;
 
   PartitionRule partition = PartitionRule::closest_bone;
   SamplingOptions sampling;
   SupportKind support = SupportKind::quintic;
-  double radius_scale = 1;  ///< support radius r over the largest distance of skin from bone
-  int grid = 32;            ///< nodes of the field cache: grid^3 a bone; 0 evaluates exactly
+  double radius_scale = 1;
+  int grid = 32;
 
   ProjectionKind projection = ProjectionKind::marching;
   SmoothOptions smooth;
 
   Schedule schedule = Schedule::paper;
-  double step = 0.35;           ///< Delta L of eq. 3.2
-  double max_step = 0.25;       ///< longest step, in r
-  double stop_angle_deg = 55;   ///< between consecutive gradients: contact
-  bool bisect_at_stop = true;   ///< move stopped vertices onto f1 = f2
-  bool stop_on_growth = false;  ///< stop where the error grows
-  bool leave_far_side = true;   ///< vertices that start beyond a medial axis first walk back
-  double tolerance = 1e-3;      ///< |F - iso| at which a vertex is done
+  double step = 0.35;  ///< Delta L of eq. 3.2
+  double max_step = 0.25;
+  double stop_angle_deg = 55;
+  bool bisect_at_stop = true;
+  bool stop_on_growth = false;
+  bool leave_far_side = true;
+  double tolerance = 1e-3;
   int max_iterations = 40;
-
   bool relaxation = true;
-  int diffusion_passes = 3;  ///< spreading of the contact mark beta
-  int smoothing_passes = 5;  ///< Laplacian passes weighted by beta
+  int diffusion_passes = 3;
+  int smoothing_passes = 5;
 };
 void describe(OptionVisitor& v, ImplicitOptions& options);
 

@@ -10,6 +10,10 @@
 namespace geoprior::skinning {
 namespace {
 
+/// Changes of a bone's active set after which the weights are refused: a guard of ours, for meshes
+/// whose active set never settles.
+constexpr int kMostPivots = 300;
+
 /// Half the integral of l^4 (laplacian w)^2 is w^T (this) w / 2.
 Eigen::SparseMatrix<double> biharmonic_energy(const TriMesh& mesh, const Eigen::VectorXd& area,
                                               const Eigen::VectorXd& length) {
@@ -22,7 +26,6 @@ void require_bounded_options(const BoundedWeightsOptions& options) {
   if (!(options.length > 0) || !std::isfinite(options.length))
     throw Error("length is not positive", "bounded weights", "> 0");
   require_influence_limit(options.max_influences, "bounded weights");
-  if (options.max_pivots < 1) throw Error("max_pivots is not positive", "bounded weights", ">= 1");
 }
 
 }  // namespace
@@ -33,8 +36,6 @@ void describe(OptionVisitor& v, BoundedWeightsOptions& options) {
            .min = 0.01,
            .max = 20});
   describe_influence_limit(v, options.max_influences);
-  v.value("max_pivots", options.max_pivots,
-          {.doc = "changes of a bone's active set, after which the weights are refused", .min = 1});
 }
 
 BoxSolution bounded_biharmonic(const TriMesh& mesh, const std::vector<Bone>& bones,
@@ -46,7 +47,7 @@ BoxSolution bounded_biharmonic(const TriMesh& mesh, const std::vector<Bone>& bon
   program.Q = biharmonic_energy(mesh, area.cwiseMax(1e-3 * area.mean()),
                                 options.length * local_radii(mesh, bones, contacts));
   program.Q.diagonal() += program.C.rowwise().sum();
-  return solve_in_box(program, options.max_pivots);
+  return solve_in_box(program, kMostPivots);
 }
 
 SkinWeights bounded_weights(const TriMesh& mesh, const Skeleton& skeleton,

@@ -8,9 +8,8 @@
 namespace geoprior::skinning {
 
 struct BoundedWeightsOptions {
-  double length = 0.75;    ///< l: how far a joint is smoothed to both sides, in local radii
-  int max_influences = 4;  ///< strongest kept and renormalised; 0 keeps all
-  int max_pivots = 300;    ///< changes of a bone's active set, after which weights are refused
+  double length = 0.75;  ///< l
+  int max_influences = 4;
 };
 void describe(OptionVisitor& v, BoundedWeightsOptions& options);
 

@@ -16,6 +16,35 @@ constexpr float kNothing = 1e-5F;
 /// Of the local radius: a displacement that is no more than this is not kept for the next pose.
 constexpr float kKept = 1e-4F;
 
+// What a field may ask, and when it is believed: ours, found on the joints of the body and the
+// finger; ramps, because a threshold would make skin jump.
+
+/// Smaller demands of a section fade out, larger ones are bounded; in local radii.
+constexpr float kDeadZone = 0.01F;
+constexpr float kLargestDemand = 0.5F;
+
+/// Length of a bone over the thickness of its skin: up to the first its field says nothing of the
+/// section (a part of the trunk), from the second on it says all (a limb).
+constexpr float kTrunkRatio = 1.0F;
+constexpr float kLimbRatio = 1.4F;
+
+/// Cosine of gradient and skinned normal: a field is not believed up to the first (beyond a medial
+/// axis they part), entirely from the second on.
+constexpr float kDisagrees = 0.3F;
+constexpr float kAgrees = 0.8F;
+
+/// Cosine of the other field's gradient and the skinned normal: no contact up to the first, a whole
+/// one from the second on.
+constexpr float kTurnedAway = -0.5F;
+constexpr float kFacing = 0.0F;
+
+/// How far below contact another bone's field begins to silence the own one, in local radii.
+constexpr float kCrowd = 0.5F;
+
+/// Means over one rings that smooth radii and trust: rings at a joint belong to one bone or the
+/// other, and their values jump there.
+constexpr int kPreparationPasses = 5;
+
 constexpr std::size_t kBlocksOfTask = 4;
 constexpr std::size_t kSlotsOfTask = 512;
 
@@ -30,21 +59,20 @@ float ramp(float low, float high, float x) {
 float length_of(Float4 v) { return std::sqrt(dot3(v, v)); }
 
 /// 1 for a limb, longer than thick, 0 for a part of the trunk.
-std::vector<double> limb_likeness(const BonePartition& partition, const SmoothOptions& options) {
+std::vector<double> limb_likeness(const BonePartition& partition) {
   std::vector<double> likeness;
   for (const FieldBone& bone : partition.bones) {
     const double ratio = (bone.tail - bone.head).norm() / (2 * bone.radius);
-    likeness.push_back(static_cast<double>(ramp(static_cast<float>(options.trunk_ratio),
-                                                static_cast<float>(options.limb_ratio),
-                                                static_cast<float>(ratio))));
+    likeness.push_back(
+        static_cast<double>(ramp(kTrunkRatio, kLimbRatio, static_cast<float>(ratio))));
   }
   return likeness;
 }
 
-/// Means over one rings, `passes` times.
-void smooth_values(std::vector<float>& values, const SkinState& state, int passes) {
+/// Means over one rings, `kPreparationPasses` times.
+void smooth_values(std::vector<float>& values, const SkinState& state) {
   std::vector<float> next(values.size());
-  for (int i = 0; i < passes; ++i) {
+  for (int i = 0; i < kPreparationPasses; ++i) {
     for (std::size_t s = 0; s < values.size(); ++s) {
       float sum = values[s];
       for (int j = state.ring_offset[s]; j < state.ring_offset[s + 1]; ++j)
@@ -74,7 +102,7 @@ EndTrust end_trust(const BonePartition& partition, const std::vector<double>& li
 }
 
 std::vector<float> local_radii(const RiggedMesh& rig, const BonePartition& partition,
-                               const SkinState& state, int passes) {
+                               const SkinState& state) {
   std::vector<float> radius;
   for (std::size_t s = 0; s < state.size(); ++s) {
     double r = 0;
@@ -85,7 +113,7 @@ std::vector<float> local_radii(const RiggedMesh& rig, const BonePartition& parti
     }
     radius.push_back(static_cast<float>(r));
   }
-  smooth_values(radius, state, passes);
+  smooth_values(radius, state);
   return radius;
 }
 
@@ -154,14 +182,14 @@ SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& p
     : field_(field),
       options_(options.smooth),
       gap_(static_cast<float>(options.smooth.contact_gap)),
-      radius_(local_radii(rig, partition, state, options.smooth.preparation_passes)),
+      radius_(local_radii(rig, partition, state)),
       system_(rig.mesh, state, radius_),
       rotation_(state.size()),
       demand_(state.size()),
       moved_(state.size()),
       seen_(state.size()),
       kept_(state.size()) {
-  const EndTrust trust = end_trust(partition, limb_likeness(partition, options_));
+  const EndTrust trust = end_trust(partition, limb_likeness(partition));
   for (std::size_t s = 0; s < state.size(); ++s) {
     if (state.owner[s] < 0) {
       trust_.push_back(0);
@@ -173,7 +201,7 @@ SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& p
     const auto share = static_cast<double>(ramp(0.3F, 0.7F, static_cast<float>(along)));
     trust_.push_back(static_cast<float>(trust.head[b] + share * (trust.tail[b] - trust.head[b])));
   }
-  smooth_values(trust_, state, options_.preparation_passes);
+  smooth_values(trust_, state);
 }
 
 void SmoothProjection::blend_rotations(const SkinState& state,
@@ -226,14 +254,13 @@ float SmoothProjection::slack_of(std::size_t slot, int bone) const {
 float SmoothProjection::facing_of(const BoneSample& other, Float4 outward) const {
   const float lengths = length_of(other.inward) * length_of(outward);
   if (!(lengths > 0)) return 0;
-  return ramp(static_cast<float>(options_.facing_low), static_cast<float>(options_.facing_high),
-              dot3(other.inward, outward) / lengths);
+  return ramp(kTurnedAway, kFacing, dot3(other.inward, outward) / lengths);
 }
 
 float SmoothProjection::crowding(const SkinState& state, std::size_t slot,
                                  const Sampled& at) const {
   const Float4 outward = state.outward[slot];
-  const float margin = static_cast<float>(options_.crowd) * radius_[slot];
+  const float margin = kCrowd * radius_[slot];
   float crowd = 0;
   for (const BoneSample& other : at.all()) {
     if (other.bone == state.owner[slot]) continue;
@@ -271,8 +298,7 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
   const auto met =
       proximity_.facing(state, slot, static_cast<float>(options_.contact_reach) * radius);
   if (!met) return {};
-  const float depth = std::min(
-      {deepest, met->depth + gap_ * radius, static_cast<float>(options_.largest) * radius});
+  const float depth = std::min({deepest, met->depth + gap_ * radius, kLargestDemand * radius});
   if (depth <= -band) return {};
   // A Newton step on a hinge that bends within the band, so that contact does not switch.
   const bool bends = depth < band;
@@ -296,14 +322,13 @@ Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot
   const float outward_length = length_of(outward);
   if (!(slope * radius > 1e-3F) || !(outward_length > 0)) return {};
   const float agree =
-      ramp(static_cast<float>(options_.agree_low), static_cast<float>(options_.agree_high),
-           -dot3(all.gradient, outward) / (slope * outward_length));
+      ramp(kDisagrees, kAgrees, -dot3(all.gradient, outward) / (slope * outward_length));
   const float known = ramp(0.02F, 0.15F, all.value) * (1 - ramp(0.85F, 0.98F, all.value));
   const float free = 1 - crowding(state, slot, at);
   const Float4 n = all.gradient / splat(slope);
   const float before = dot3(n, moved_[slot]);
-  const float dead = static_cast<float>(options_.dead_zone) * radius;
-  const float reach = static_cast<float>(options_.largest) * radius;
+  const float dead = kDeadZone * radius;
+  const float reach = kLargestDemand * radius;
   float wanted = (state.iso[slot] - all.value) / slope + before;
   wanted *= wanted * wanted / (wanted * wanted + dead * dead);
   wanted /= std::sqrt(1 + wanted * wanted / (reach * reach));

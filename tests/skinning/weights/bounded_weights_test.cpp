@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "experiments/skinning/weights/bone_contacts.h"
+#include "experiments/skinning/weights/box_program.h"
 #include "tests/skinning/fixtures.h"
 
 namespace geoprior::skinning {
@@ -155,17 +156,27 @@ std::string error_of(const RiggedMesh& rig, const BoundedWeightsOptions& options
   return "";
 }
 
-TEST(BoundedWeights, AreRefusedWhenTheyCannotBeSolvedFor) {
-  const RiggedMesh finger = capsule_finger();
-  EXPECT_THAT(error_of(finger, {.max_pivots = 1}),
-              testing::HasSubstr("not found in 1 changes of the active set"));
+// The first solution, (2, 1/2), violates a bound: a single change of the active set does not
+// settle.
+TEST(BoxProgram, IsRefusedWhenItsActiveSetDoesNotSettle) {
+  BoxProgram program;
+  program.Q.resize(2, 2);
+  program.Q.setIdentity();
+  program.C = Eigen::Vector2d(2, 0.5);
+  EXPECT_EQ(solve_in_box(program, 2).X, Eigen::MatrixXd(Eigen::Vector2d(1, 0.5)));
+  std::string error;
+  try {
+    solve_in_box(program, 1);
+  } catch (const Error& e) {
+    error = e.what();
+  }
+  EXPECT_THAT(error, testing::HasSubstr("not found in 1 changes of the active set"));
 }
 
 TEST(BoundedWeights, RefuseWrongInput) {
   RiggedMesh rig = two_bone_cylinder(cylinder_options());
   EXPECT_NE(error_of(rig, {.length = 0}), "");
   EXPECT_NE(error_of(rig, {.max_influences = -1}), "");
-  EXPECT_NE(error_of(rig, {.max_pivots = 0}), "");
   const TriMesh flat{Eigen::MatrixX3d::Zero(3, 3), Eigen::MatrixX3i(Eigen::RowVector3i(0, 1, 2))};
   EXPECT_THROW(bounded_weights(flat, rig.skeleton), Error);
   rig.mesh.V(3, 1) = std::nan("");
