@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <limits>
 #include <string>
 
 #include "baselines/skinning/dual_quaternion/dual_quaternion.h"
@@ -17,8 +16,6 @@
 namespace geoprior::skinning {
 namespace {
 
-constexpr double kGlobalSpacings = 768;  // columns along the diagonal of a whole body
-constexpr double kGlobalDepth = 48;      // detection depth of a whole body, in column spacings
 constexpr double kIdentityPose = 1e-12;  // entry of a transform that still is the rest pose
 
 const Eigen::MatrixX3d& surface_of(const SkinningScene& scene, const Frame& frame) {
@@ -73,15 +70,6 @@ bool is_closed(Shared& shared, const TriMesh& mesh) {
   return shared.closed.get(key, [&] { return boundary_edges(mesh.F).empty(); });
 }
 
-double body_spacing(const TriMesh& mesh) { return bounding_box_diagonal(mesh.V) / kGlobalSpacings; }
-
-OverlapStudy body_overlap(const TriMesh& mesh, const Eigen::MatrixX3d& V) {
-  Eigen::AlignedBox3d box;
-  for (Eigen::Index v = 0; v < V.rows(); ++v) box.extend(V.row(v).transpose());
-  const double spacing = body_spacing(mesh);
-  return overlap_study(V, mesh.F, box, spacing, kGlobalDepth * spacing);
-}
-
 /// About the region's joints, or of the whole body (null); above rest.
 std::optional<OverlapStudy> excess(Shared& shared, const Measured& m, const JointRegion* region) {
   if (!is_closed(shared, m.mesh())) return std::nullopt;
@@ -90,9 +78,8 @@ std::optional<OverlapStudy> excess(Shared& shared, const Measured& m, const Join
     if (region) add_pose(key, pose);
     if (region) add_region(key, *region);
     return shared.overlap.get(key, [&] {
-      if (!region) return body_overlap(m.mesh(), V);
-      return overlap_study(V, m.mesh().F, joint_box(*region, pose), region_column_spacing(*region),
-                           smallest_radius(*region));
+      if (region) return region_overlap_study(V, m.mesh().F, *region, pose);
+      return body_overlap_study(V, m.mesh().F, body_column_spacing(m.mesh().V));
     });
   };
   const OverlapStudy rest = study(m.mesh().V, rest_pose(m.scene.rig.skeleton.size()));
@@ -117,7 +104,8 @@ std::shared_ptr<const TrianglePairList> pairs_of(Shared& shared, const TriMesh& 
 std::vector<int> overlapping_triangles(Shared& shared, const TriMesh& mesh,
                                        const Eigen::MatrixX3d& V) {
   std::vector<int> triangles;
-  if (is_closed(shared, mesh)) triangles = triangles_about_overlap(V, mesh.F, body_spacing(mesh));
+  if (is_closed(shared, mesh))
+    triangles = triangles_about_overlap(V, mesh.F, body_column_spacing(mesh.V));
   for (const auto& [a, b] : *pairs_of(shared, mesh, V)) {
     triangles.push_back(a);
     triangles.push_back(b);
@@ -129,15 +117,6 @@ std::vector<int> overlapping_triangles(Shared& shared, const TriMesh& mesh,
 
 std::shared_ptr<const BoneRings> rings_of(Shared& shared, const RiggedMesh& rig) {
   return shared.rings.get(key_of(rig), [&] { return std::make_shared<const BoneRings>(rig); });
-}
-
-/// Of every vertex; NaN without a ring.
-Eigen::VectorXd local_radii(Shared& shared, const SkinningScene& scene) {
-  const auto rings = rings_of(shared, scene.rig);
-  Eigen::VectorXd radius(scene.rig.mesh.vertex_count());
-  for (int v = 0; v < scene.rig.mesh.vertex_count(); ++v)
-    radius(v) = rings->radius(v).value_or(std::numeric_limits<double>::quiet_NaN());
-  return radius;
 }
 
 std::shared_ptr<const PlainPose> plain_pose(Shared& shared, const Measured& m) {
@@ -164,27 +143,6 @@ std::vector<int> vertices_of_regions(const SkinningScene& scene, const OfRegion&
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   return vertices;
-}
-
-/// Posed vertices carried back to rest by the joint of largest weight each: rigid motion drops out.
-Eigen::MatrixX3d in_bone_frame(const Measured& m) {
-  const SkinWeights& weights = m.scene.rig.weights;
-  std::vector<Eigen::Affine3d> back;
-  back.reserve(m.pose.size());
-  for (const Eigen::Affine3d& T : m.pose) back.push_back(T.inverse());
-  Eigen::MatrixX3d local(m.posed.rows(), 3);
-  for (int v = 0; v < static_cast<int>(local.rows()); ++v) {
-    Eigen::Index dominant = 0;
-    double largest = -1;
-    for (SkinWeights::InnerIterator it(weights, v); it; ++it) {
-      if (it.value() <= largest) continue;
-      largest = it.value();
-      dominant = it.col();
-    }
-    const Eigen::Vector3d x = m.posed.row(v).transpose();
-    local.row(v) = (back[dominant] * x).transpose();
-  }
-  return local;
 }
 
 }  // namespace
@@ -220,7 +178,7 @@ Value volume_change_union(Shared& shared, const Measured& m) {
 Value volume_change_union_body(Shared& shared, const Measured& m) {
   const std::optional<OverlapStudy> above = excess(shared, m, nullptr);
   if (!above) return std::nullopt;
-  const double spacing = body_spacing(m.mesh());
+  const double spacing = body_column_spacing(m.mesh().V);
   const double rest = shared.union_volume.get(
       key_of(m.mesh(), m.mesh().V), [&] { return union_volume(m.mesh().V, m.mesh().F, spacing); });
   const double change = signed_volume(m.posed, m.mesh().F) - signed_volume(m.mesh().V, m.mesh().F) -
@@ -339,11 +297,11 @@ Pops pops(Shared& shared, const SkinningScene& scene, const FrameSequence& frame
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::shared_ptr<const Frame> frame = frames.frame(i);
     const Measured m = measured(scene, *frame);
-    positions.push_back(in_bone_frame(m));
+    positions.push_back(in_bone_frame(scene.rig.weights, m.pose, m.posed));
     poses.push_back(m.pose);
   }
   Pops pops;
-  pops.pose_return = pose_return(positions, poses, local_radii(shared, scene));
+  pops.pose_return = pose_return(positions, poses, rings_of(shared, scene.rig)->radii());
   if (scene.parameter_unit_label == "deg") pops.motion = motion_smoothness(positions, parameters);
   if (frames.size() < 3 || !equally_spaced(parameters) || scene.regions.empty()) return pops;
   pops.second_difference = second_difference_max(

@@ -116,6 +116,13 @@ std::optional<double> BoneRings::radius(int vertex) const {
   return std::sqrt(ring.whole.moment / ring.whole.area);
 }
 
+Eigen::VectorXd BoneRings::radii() const {
+  Eigen::VectorXd all(vertex_count());
+  for (int v = 0; v < vertex_count(); ++v)
+    all(v) = radius(v).value_or(std::numeric_limits<double>::quiet_NaN());
+  return all;
+}
+
 Eigen::VectorXd BoneRings::section_ratios(const Eigen::MatrixX3d& posed, const Pose& pose) const {
   if (posed.rows() != static_cast<Eigen::Index>(ring_of_.size())) {
     throw Error(std::to_string(posed.rows()) + " posed vertices", "rings of skin",

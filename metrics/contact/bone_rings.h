@@ -22,6 +22,8 @@ class BoneRings {
   /// Root mean square distance of the vertex' ring from its bone at rest (m): the local radius.
   /// Absent where the joint has no bone, or the ring fewer than six vertices.
   [[nodiscard]] std::optional<double> radius(int vertex) const;
+  /// Of every vertex; NaN where it is absent.
+  [[nodiscard]] Eigen::VectorXd radii() const;
 
   /// Area of each vertex' ring, or of the quarter of it (about the bone) that has changed most,
   /// over that at rest, by the mean square distance from the bone as the pose carries it; NaN where

@@ -19,6 +19,26 @@ bool same_pose(const Pose& a, const Pose& b) {
 
 }  // namespace
 
+Eigen::MatrixX3d in_bone_frame(const SkinWeights& weights, const Pose& pose,
+                               const Eigen::MatrixX3d& posed) {
+  std::vector<Eigen::Affine3d> back;
+  back.reserve(pose.size());
+  for (const Eigen::Affine3d& T : pose) back.push_back(T.inverse());
+  Eigen::MatrixX3d local(posed.rows(), 3);
+  for (int v = 0; v < static_cast<int>(local.rows()); ++v) {
+    Eigen::Index dominant = 0;
+    double largest = -1;
+    for (SkinWeights::InnerIterator it(weights, v); it; ++it) {
+      if (it.value() <= largest) continue;
+      largest = it.value();
+      dominant = it.col();
+    }
+    const Eigen::Vector3d x = posed.row(v).transpose();
+    local.row(v) = (back[dominant] * x).transpose();
+  }
+  return local;
+}
+
 std::optional<double> pose_return(const std::vector<Eigen::MatrixX3d>& positions,
                                   const std::vector<Pose>& poses, const Eigen::VectorXd& radius) {
   if (positions.size() != poses.size()) {

@@ -13,6 +13,9 @@
 namespace geoprior {
 namespace {
 
+constexpr double kBodySpacings = 768;  // columns along the diagonal of a whole body
+constexpr double kBodyDepth = 48;      // detection depth of a whole body, in column spacings
+
 constexpr int kRowsOfStrip = 16;
 constexpr double kMaxColumns = 268435456;  // 2^28
 constexpr double kSpacingsOfRadius = 24;
@@ -362,6 +365,23 @@ OverlapStudy overlap_study(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
   study.unbalanced_columns =
       coarse.unbalanced_columns + fine.unbalanced_columns + across.unbalanced_columns;
   return study;
+}
+
+double body_column_spacing(const Eigen::MatrixX3d& rest) {
+  return bounding_box_diagonal(rest) / kBodySpacings;
+}
+
+OverlapStudy body_overlap_study(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
+                                double spacing) {
+  Eigen::AlignedBox3d box;
+  for (Eigen::Index v = 0; v < V.rows(); ++v) box.extend(V.row(v).transpose());
+  return overlap_study(V, F, box, spacing, kBodyDepth * spacing);
+}
+
+OverlapStudy region_overlap_study(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
+                                  const JointRegion& region, const Pose& pose) {
+  return overlap_study(V, F, joint_box(region, pose), region_column_spacing(region),
+                       smallest_radius(region));
 }
 
 Eigen::AlignedBox3d joint_box(const JointRegion& region, const Pose& pose) {

@@ -57,6 +57,18 @@ struct OverlapStudy {
 OverlapStudy overlap_study(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
                            const Eigen::AlignedBox3d& box, double spacing, double depth_scale);
 
+/// Distance of the columns of a whole body (m), from its rest pose: 768 along the diagonal.
+double body_column_spacing(const Eigen::MatrixX3d& rest);
+
+/// The study of all of a closed mesh; `spacing` from `body_column_spacing`, so that it is the same
+/// in every pose. Detects what is 48 columns deep: a finger's crease on a body.
+OverlapStudy body_overlap_study(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
+                                double spacing);
+
+/// The study about a region's joints, in `joint_box`, to the depth of their smallest radius.
+OverlapStudy region_overlap_study(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
+                                  const JointRegion& region, const Pose& pose);
+
 /// Triangles of a closed mesh in which columns enter or leave an overlap: they bound it. Ascending.
 /// Overlaps that fit between the columns are missed: `intersecting_triangles` finds those.
 /// @throws Error   as `overlap_volume`

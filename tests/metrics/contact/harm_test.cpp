@@ -18,10 +18,12 @@ TEST(BoneRings, OfACylinderHaveItsRadius) {
   const RiggedMesh rig = two_bone_cylinder();
   const double radius = CylinderOptions().radius;
   const BoneRings rings(rig);
+  const Eigen::VectorXd radii = rings.radii();
   for (int v = 0; v < rig.mesh.vertex_count(); ++v) {
     const double from_axis = rig.mesh.V.row(v).tail(2).norm();
     if (from_axis < 0.99 * radius) continue;  // the ends are closed by vertices nearer to the axis
     ASSERT_TRUE(rings.radius(v)) << v;
+    EXPECT_EQ(radii(v), *rings.radius(v));
     EXPECT_LE(*rings.radius(v), radius + 1e-12);
     const bool near_an_end = std::abs(rig.mesh.V(v, 0)) > CylinderOptions().half_length - radius;
     if (!near_an_end) {

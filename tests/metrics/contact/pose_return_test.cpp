@@ -17,6 +17,23 @@ Pose turned(double angle) {
 
 const Eigen::MatrixX3d kAt = Eigen::MatrixX3d::Zero(3, 3);
 
+TEST(InBoneFrame, OfSkinThatMovesWithItsBonesIsTheRestPose) {
+  Eigen::MatrixX3d rest(3, 3);
+  rest << 0, 1, 0, 0, 2, 1, 1, 0, 2;
+  SkinWeights weights(3, 2);
+  weights.insert(0, 0) = 1;
+  weights.insert(1, 0) = 0.4;
+  weights.insert(1, 1) = 0.6;
+  weights.insert(2, 0) = 0.5;  // of equals the first
+  weights.insert(2, 1) = 0.5;
+  const Pose pose = turned(0.8);
+  Eigen::MatrixX3d posed = rest;
+  posed.row(1) = (pose[1] * Eigen::Vector3d(rest.row(1))).transpose();
+  EXPECT_TRUE(in_bone_frame(weights, pose, posed).isApprox(rest, 1e-12));
+  posed(2, 2) += 0.1;
+  EXPECT_NEAR((in_bone_frame(weights, pose, posed) - rest).norm(), 0.1, 1e-12);
+}
+
 TEST(PoseReturn, IsTheLargestDistanceOverTheRadius) {
   Eigen::MatrixX3d off = kAt;
   off(0, 1) = 0.02;  // a fifth of its radius

@@ -31,6 +31,40 @@ TEST(OverlapVolume, EmbeddedSurfacesHaveNone) {
   }
 }
 
+// Columns of 1/768 of the diagonal: the lens of two unit spheres to a thousandth.
+TEST(BodyOverlap, OfTwoSpheresIsTheirLens) {
+  const double d = 1.2;
+  const TriMesh m =
+      shapes::together(shapes::sphere(1, {0, 0, 0}, 5), shapes::sphere(1, {d, 0, 0}, 5));
+  const double spacing = body_column_spacing(m.V);
+  EXPECT_NEAR(spacing, std::hypot(2 + d, 2, 2) / 768, 1e-5);
+  const OverlapStudy study = body_overlap_study(m.V, m.F, spacing);
+  EXPECT_NEAR(study.volume / lens(1, d), 1, 4e-3);
+  EXPECT_LT(study.noise_floor, 1e-3 * study.volume);
+  EXPECT_EQ(study.cut_area, 0);
+}
+
+// About a joint in the middle of one sphere alone, whose box the lens passes through.
+TEST(RegionOverlap, CountsWhatIsInTheBoxOfTheJoints) {
+  const double d = 1.2;
+  const TriMesh m =
+      shapes::together(shapes::sphere(1, {0, 0, 0}, 5), shapes::sphere(1, {d, 0, 0}, 5));
+  JointRegion region;
+  region.extent = 1;
+  JointRegion::Hinge hinge;
+  hinge.joint = 0;
+  hinge.head = Eigen::Vector3d::Zero();
+  hinge.radius = 1;
+  region.hinges = {hinge};
+  const OverlapStudy all = region_overlap_study(m.V, m.F, region, rest_pose(1));
+  EXPECT_NEAR(all.volume / lens(1, d), 1, 1e-2);
+  // The box of twice 0.3 about the joint ends at x = 0.6, the plane that halves the lens.
+  region.hinges[0].radius = 0.3;
+  const OverlapStudy half = region_overlap_study(m.V, m.F, region, rest_pose(1));
+  EXPECT_GT(half.cut_area, 0);
+  EXPECT_LT(half.volume, 0.5 * lens(1, d));
+}
+
 TEST(OverlapVolume, TwoBoxesAgreeWithinTheBorderColumns) {
   const TriMesh m =
       shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}), shapes::box({0.6, 0.3, 0.5}, {2, 2, 2}));
