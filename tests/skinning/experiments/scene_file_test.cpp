@@ -1,0 +1,105 @@
+// What a [scene] table says of a user's own files: skeleton, animation, the axis that is up.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "experiments/skinning/scene/scene.h"
+#include "experiments/skinning/topic.h"
+#include "tests/testbed/formats/gltf_samples.h"
+#include "tests/testbed/run_fixture.h"
+
+namespace geoprior::skinning {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr const char* kMine = "character = \"my.glb\"\n";
+
+class SkinningSceneFile : public test::RunTest {
+ protected:
+  [[nodiscard]] std::shared_ptr<SkinningScene> scene(const std::string& scene_lines) const {
+    const auto file = write_experiment(
+        "skinning/mine", "title = \"Mine\"\ntopic = \"skinning\"\n[scene]\n" + scene_lines +
+                             "\n[[variant]]\nname = \"a\"\nmethod = \"linear-blend\"\n");
+    const Experiment experiment = load_experiment(file, {make_topic()}, {});
+    const auto loaded = make_topic().load(*experiment.cases[0].scene, file.parent_path(), 1);
+    return std::dynamic_pointer_cast<SkinningScene>(loaded);
+  }
+  [[nodiscard]] std::string error(const std::string& scene_lines) const {
+    return test::error_of([&] { static_cast<void>(scene(scene_lines)); });
+  }
+  /// A file beside the experiment.
+  void write(const std::string& name, const std::string& text) const {
+    const auto path = folder() / "experiments" / "skinning" / name;
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path, std::ios::binary) << text;
+  }
+  void write_character(const test::GltfSample& sample) const {
+    const std::vector<std::byte> bytes = sample.bytes();
+    write("my.glb", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  }
+};
+
+TEST_F(SkinningSceneFile, SkeletonGivesTheAxesThatTheCharactersOwnHasNot) {
+  write_character(test::skinned_square());
+  write("my.skeleton.toml",
+        "[joint.hip]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\n"
+        "[joint.knee]\nparent = \"hip\"\nhead = [0, 1, 0]\naxes = { flexion = \"+z\" }\n");
+  const std::string bend = "motion = { joint = \"knee\", frames = 2 }\nregions = [\"hip\"]\n";
+  EXPECT_THAT(error(kMine + bend), HasSubstr("no axis 'flexion'"));
+  const auto turned = scene(kMine + bend + "skeleton = \"my.skeleton.toml\"\n");
+  // About +z, 90 degrees carry the knee's (1, 1, 0) to (0, 2, 0).
+  const Eigen::Vector3d corner = turned->pose_at(90)[1] * Eigen::Vector3d(1, 1, 0);
+  EXPECT_NEAR((corner - Eigen::Vector3d(0, 2, 0)).norm(), 0, 1e-12);
+}
+
+TEST_F(SkinningSceneFile, ClipIsTheAnimationOfThatName) {
+  test::GltfSample two = test::skinned_square();
+  two.json["animations"].push_back(two.json["animations"][0]);
+  two.json["animations"][1]["name"] = "bend back";
+  const float h = std::sqrt(0.5F);
+  two.json["animations"][1]["samplers"][0]["output"] =
+      two.accessor<float>({0, 0, 0, 1, 0, 0, -h, h}, "VEC4", 4, 5126);
+  write_character(two);
+  const auto corner = [&](const std::string& name) {
+    const auto clip = scene(kMine + ("motion = { kind = \"clip\", frames = 2" + name + " }"));
+    return Eigen::Vector3d(clip->pose_at(1)[1] * Eigen::Vector3d(1, 1, 0));
+  };
+  EXPECT_NEAR((corner("") - Eigen::Vector3d(0, 2, 0)).norm(), 0, 1e-6);
+  EXPECT_NEAR((corner(", name = \"bend back\"") - Eigen::Vector3d(0, 0, 0)).norm(), 0, 1e-6);
+  EXPECT_THAT(error(kMine + std::string("motion = { kind = \"clip\", name = \"fly\" }")),
+              AllOf(HasSubstr("no clip 'fly'"), HasSubstr("bend, bend back")));
+}
+
+// A line of two bones does not tell which axis is up: the file's y, unless the scene says so.
+TEST_F(SkinningSceneFile, AxisThatIsUpTurnsTheCapturedMotion) {
+  write_character(test::skinned_square());
+  write("my.skeleton.toml",
+        "[joint.hip]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\nbvh = \"Hips\"\n"
+        "[joint.knee]\nparent = \"hip\"\nhead = [0, 1, 0]\ntail = [0, 2, 0]\nbvh = \"Knee\"\n");
+  const auto arm = [&](const std::string& offset, const std::string& up) {
+    write("my.bvh",
+          "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition "
+          "Zrotation Yrotation Xrotation\nJOINT Knee\n{\nOFFSET " +
+              offset + "\nCHANNELS 3 Yrotation Xrotation Zrotation\nEnd Site\n{\nOFFSET " + offset +
+              "\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.5\n0 0 0  0 0 0  0 0 0\n"
+              "0 0 0  90 0 0  0 0 0\n");
+    const auto captured = scene(
+        kMine + ("skeleton = \"my.skeleton.toml\"\nmotion = { kind = \"bvh\", file = \"my.bvh\"" +
+                 up + " }\n"));
+    return Eigen::Vector3d(captured->pose_at(0.5)[0].linear() * Eigen::Vector3d::UnitX());
+  };
+  // A quarter turn about the file's z: about the mesh's z, or about its y where z is up.
+  EXPECT_NEAR((arm("0 4 0", "") - Eigen::Vector3d::UnitY()).norm(), 0, 1e-9);
+  EXPECT_NEAR((arm("0 4 0", ", bvh_up = \"y\"") - Eigen::Vector3d::UnitY()).norm(), 0, 1e-9);
+  EXPECT_NEAR((arm("0 0 4", ", bvh_up = \"z\"") + Eigen::Vector3d::UnitZ()).norm(), 0, 1e-9);
+  // Where x is up, z is horizontal, and a turn about it still lays the arm down.
+  EXPECT_NEAR(std::abs(arm("4 0 0", ", bvh_up = \"x\"").y()), 1, 1e-9);
+}
+
+}  // namespace
+}  // namespace geoprior::skinning
