@@ -11,9 +11,9 @@
 namespace geoprior::skinning {
 
 struct DeltaMushOptions {
-  int iterations = 20;      ///< smoothing passes, at rest and posed alike
-  double step = 0.5;        ///< move towards the mean of the neighbours in one pass
-  bool pin_border = false;  ///< border vertices of an open mesh stay where blending put them
+  int iterations = 20;
+  double step = 0.5;
+  bool pin_border = false;
 };
 void describe(OptionVisitor& v, DeltaMushOptions& options);
 

@@ -240,7 +240,7 @@ RiggedMesh capsule_finger(const FingerOptions& options) {
 }
 
 void describe(OptionVisitor& v, CylinderOptions& options) {
-  v.value("radius", options.radius, {.doc = "radius r of the cylinder", .unit = "m", .min = 1e-6});
+  v.value("radius", options.radius, {.doc = "r, radius of the tube", .unit = "m", .min = 1e-6});
   v.value("half_length", options.half_length,
           {.doc = "length from the joint to either end of the straight part",
            .unit = "m",
@@ -256,10 +256,13 @@ void describe(OptionVisitor& v, CylinderOptions& options) {
 }
 
 void describe(OptionVisitor& v, FingerOptions& options) {
-  v.value("hand_length", options.hand_length,
-          {.doc = "stump of the hand before the first joint", .unit = "m", .min = 1e-6});
+  v.value(
+      "hand_length", options.hand_length,
+      {.doc = "length of the stump of the hand before the first joint", .unit = "m", .min = 1e-6});
   v.value("phalanx_length", options.phalanx_length,
-          {.doc = "lengths of the proximal, middle and distal phalanx", .unit = "m", .min = 1e-6});
+          {.doc = "lengths of the proximal, the middle and the distal phalanx",
+           .unit = "m",
+           .min = 1e-6});
   std::vector<double> radius(options.radius.begin(), options.radius.end());
   v.value("radius", radius,
           {.doc = "radii at the base of each phalanx and at the tip: four numbers",
@@ -269,9 +272,10 @@ void describe(OptionVisitor& v, FingerOptions& options) {
     throw Error(std::to_string(radius.size()) + " numbers", "scene.finger.radius", "4");
   std::copy(radius.begin(), radius.end(), options.radius.begin());
   v.value("segments", options.segments, {.doc = "vertices of a ring", .min = 3, .max = 100000});
-  v.value(
-      "ramp_width", options.ramp_width,
-      {.doc = "width of the weights' ramp about a joint, in local radii", .min = 1e-6, .max = 10});
+  v.value("ramp_width", options.ramp_width,
+          {.doc = "length over which the weights pass from bone to bone, in local radii",
+           .min = 1e-6,
+           .max = 10});
   v.value("ring_spacing", options.ring_spacing,
           {.doc = "distance of rings in edge lengths of a ring", .min = 0.01, .max = 100});
 }

@@ -7,14 +7,14 @@
 
 namespace geoprior {
 
-/// A closed tube about the x axis, bent or twisted at the origin.
+/// A closed tube about the x axis, bent or twisted at the origin; lengths in metres.
 struct CylinderOptions {
-  double radius = 0.1;       // m
-  double half_length = 0.5;  // m
-  double cap_height = 0.1;   ///< half axis of the elliptic end caps along x (m); 0: flat
+  double radius = 0.1;
+  double half_length = 0.5;
+  double cap_height = 0.1;  ///< half axis of an ellipse
   int segments = 48;
-  int rings_per_half = 40;  ///< rings of the straight part on one side; one more lies at x = 0
-  double ramp_width = 0.2;  ///< length along x over which the weights pass from 1, 0 to 0, 1 (m)
+  int rings_per_half = 40;  ///< one more lies at x = 0
+  double ramp_width = 0.2;
 };
 void describe(OptionVisitor& v, CylinderOptions& options);
 
@@ -33,12 +33,12 @@ RiggedMesh two_bone_cylinder(const CylinderOptions& options = {});
 /// from +y to +z.
 std::vector<int> mid_ring(const CylinderOptions& options);
 
-/// A straight finger of three phalanges on a stump of the hand, about the x axis.
+/// A straight finger of three phalanges on a stump of the hand, about the x axis; lengths in
+/// metres.
 struct FingerOptions {
-  double hand_length = 0.03;                                ///< of the stump before x = 0 (m)
-  std::array<double, 3> phalanx_length{0.04, 0.025, 0.02};  // m
-  /// Radius at the base of each phalanx and at the centre of the tip's half sphere (m).
-  std::array<double, 4> radius{0.010, 0.009, 0.0082, 0.0074};
+  double hand_length = 0.03;  ///< before x = 0
+  std::array<double, 3> phalanx_length{0.04, 0.025, 0.02};
+  std::array<double, 4> radius{0.010, 0.009, 0.0082, 0.0074};  ///< the last of a half sphere
   int segments = 40;
   double ramp_width = 1.0;
   double ring_spacing = 1.0;

@@ -225,7 +225,7 @@ void describe(OptionVisitor& v, CentersOfRotationOptions& options) {
            .min = 0.01,
            .max = 1});
   v.value("weight_cell", options.weight_cell,
-          {.doc = "pieces whose weights fall in one cell of this width are taken together; 0: none",
+          {.doc = "width of a cell of weights whose pieces are taken together; 0: none are",
            .min = 0,
            .max = 0.1});
 }

@@ -8,9 +8,9 @@
 namespace geoprior::skinning {
 
 struct CentersOfRotationOptions {
-  double similarity_width = 0.1;  ///< sigma: how different the weights of similar places may be
-  double weight_step = 0.1;       ///< largest change of a weight over a piece of the integral
-  double weight_cell = 0.005;     ///< pieces this near in weight are taken together; 0: none
+  double similarity_width = 0.1;  ///< sigma
+  double weight_step = 0.1;
+  double weight_cell = 0.005;
 };
 void describe(OptionVisitor& v, CentersOfRotationOptions& options);
 

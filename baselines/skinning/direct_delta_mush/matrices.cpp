@@ -213,19 +213,21 @@ void check(const DirectDeltaMushOptions& options) {
 
 void describe(OptionVisitor& v, DirectDeltaMushOptions& options) {
   v.value("iterations", options.iterations,
-          {.doc = "p, implicit smoothing steps", .min = 1, .max = 1000});
+          {.doc = "p, number of implicit smoothing steps", .min = 1, .max = 1000});
   v.value(
       "lambda", options.lambda,
       {.doc = "length of a smoothing step of the shape around a vertex", .min = 1e-3, .max = 1e3});
   v.value("kappa", options.kappa,
-          {.doc = "length of a smoothing step of the weights that carry it; at most lambda",
+          {.doc = "length of a smoothing step of the weights that carry a vertex; at most lambda",
            .min = 0,
            .max = 1e3});
   v.value(
       "alpha", options.alpha,
       {.doc = "share of the smoothed weights in the translation; below 1", .min = 0, .max = 0.999});
   v.value("smallest_influence", options.smallest_influence,
-          {.doc = "smoothed weights below it move with the strongest joint", .min = 0, .max = 0.1});
+          {.doc = "smoothed weight below which an influence moves with the strongest joint",
+           .min = 0,
+           .max = 0.1});
 }
 
 DirectDeltaMushMatrices direct_delta_mush_matrices(const RiggedMesh& rig,

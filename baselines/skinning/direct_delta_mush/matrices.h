@@ -10,11 +10,11 @@
 namespace geoprior::skinning {
 
 struct DirectDeltaMushOptions {
-  int iterations = 20;  ///< p, implicit smoothing steps
-  double lambda = 3;    ///< length of a step for the shape around a vertex
-  double kappa = 1;     ///< length of a step for the weights that carry it; at most lambda
-  double alpha = 0.8;   ///< share of the smoothed weights in the translation, 0 to below 1
-  double smallest_influence = 1e-5;  ///< smoothed weights below it move with the strongest joint
+  int iterations = 20;  ///< p
+  double lambda = 3;
+  double kappa = 1;
+  double alpha = 0.8;
+  double smallest_influence = 1e-5;
 };
 void describe(OptionVisitor& v, DirectDeltaMushOptions& options);
 

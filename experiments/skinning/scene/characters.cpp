@@ -415,22 +415,26 @@ void describe(OptionVisitor& v, CharacterOptions& options) {
                                                             "bounded", "narrow"};
   v.value("character", options.character,
           {.doc = "\"human\", \"cylinder\", \"finger\", or a .glb or .gltf file"});
-  v.value("mesh", options.mesh,
-          {.doc = "name of the file's mesh; absent: all meshes of its first skin, else all"});
+  v.value(
+      "mesh", options.mesh,
+      {.doc =
+           "name of the mesh of the file that is read; absent: all of its first skin, else all"});
   v.value("skeleton", options.skeleton,
           {.doc = "skeleton file that overrides the file's hierarchy"});
   v.value("unit_m", options.unit_m,
           {.doc = "metres for one unit of the file", .unit = "m", .min = 1e-9, .max = 1e9});
-  describe_choice(v, "weights", options.weights, kWeights,
-                  {.doc = "weights of the file, or computed: by heat diffusion, bounded and "
-                          "smooth, or narrow as a hand paints them"});
-  describe_group(v, "heat", options.heat, {.doc = "bone heat diffusion"});
+  describe_choice(
+      v, "weights", options.weights, kWeights,
+      {.doc = "where weights come from: the file, heat diffusion, bounded and smooth, or "
+              "narrow as a hand paints them"});
+  describe_group(v, "heat", options.heat, {.doc = "weights by bone heat diffusion"});
   describe_group(v, "bounded", options.bounded, {.doc = "biharmonic weights within bounds"});
-  describe_group(v, "narrow", options.narrow, {.doc = "nearest bones with a painted-like falloff"});
+  describe_group(v, "narrow", options.narrow,
+                 {.doc = "weights of the nearest bones with a painted-like falloff"});
   describe_group(v, "cylinder", options.cylinder, {.doc = "shape of character = \"cylinder\""});
   describe_group(v, "finger", options.finger, {.doc = "shape of character = \"finger\""});
   v.value("simplify_to", options.simplify_to,
-          {.doc = "collapse edges until so many vertices are left (weights computed anew), before "
+          {.doc = "vertices that are left by collapsing edges, with weights computed anew, before "
                   "refining",
            .min = 4});
   describe_list(v, "refine", options.refine,

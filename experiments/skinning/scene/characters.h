@@ -19,15 +19,15 @@ enum class WeightSource { file_or_heat, file, heat, bounded, narrow };
 
 /// Refinement of a part of the mesh before anything else is done with it.
 struct RefineOptions {
-  std::vector<std::string> region{"all"};  ///< joints whose skin is refined, or "all"
+  std::vector<std::string> region{"all"};
   int levels = 1;
-  double extent = 2;  ///< of a joint's region along its bones, in local radii
+  double extent = 2;
 };
 void describe(OptionVisitor& v, RefineOptions& options);
 
 /// Which character, and how its mesh, skeleton and weights come about.
 struct CharacterOptions {
-  std::string character = "human";  ///< "human", "cylinder", "finger" or a .glb or .gltf file
+  std::string character = "human";
   std::optional<std::string> mesh;
   std::optional<std::string> skeleton;
   double unit_m = 1;

@@ -206,27 +206,33 @@ Motion make_bvh(const MotionOptions& options, const Character& character,
 
 void describe_ramp(OptionVisitor& v, MotionOptions& options) {
   v.value("joint", options.joint, {.doc = "joint that turns"});
-  v.value("axis", options.axis,
-          {.doc = "name that the skeleton file gives, or \"+x\" … \"-z\" (of the mesh), \"local "
-                  "+x\" … (the joint's own)"});
-  v.value("from_deg", options.from_deg, {.doc = "first angle", .unit = "deg"});
-  v.value("to_deg", options.to_deg, {.doc = "last angle", .unit = "deg"});
+  v.value(
+      "axis", options.axis,
+      {.doc = "axis by the name that the skeleton file gives, or \"+x\" … \"-z\" (of the mesh), "
+              "\"local +x\" … (the joint's own)"});
+  v.value("from_deg", options.from_deg,
+          {.doc = "angle of the joint in the first frame", .unit = "deg"});
+  v.value("to_deg", options.to_deg, {.doc = "angle of the joint in the last frame", .unit = "deg"});
   describe_list(v, "joints", options.joints,
                 {.doc = "further joints that turn at the same time; the parameter is the angle of "
                         "the first of all"});
   v.value("frames", options.frames,
-          {.doc = "equally spaced; of a loop: those on the way out", .min = 1, .max = kMostFrames});
+          {.doc = "number of frames, equally spaced; of a loop: on the way out",
+           .min = 1,
+           .max = kMostFrames});
 }
 
 }  // namespace
 
 void describe(OptionVisitor& v, JointRamp& options) {
   v.value("joint", options.joint, {.doc = "joint that turns", .required = true});
-  v.value("axis", options.axis,
-          {.doc = "name that the skeleton file gives, or \"+x\" … \"-z\" (of the mesh), \"local "
-                  "+x\" … (the joint's own)"});
-  v.value("from_deg", options.from_deg, {.doc = "first angle", .unit = "deg"});
-  v.value("to_deg", options.to_deg, {.doc = "last angle", .unit = "deg"});
+  v.value(
+      "axis", options.axis,
+      {.doc = "axis by the name that the skeleton file gives, or \"+x\" … \"-z\" (of the mesh), "
+              "\"local +x\" … (the joint's own)"});
+  v.value("from_deg", options.from_deg,
+          {.doc = "angle of the joint in the first frame", .unit = "deg"});
+  v.value("to_deg", options.to_deg, {.doc = "angle of the joint in the last frame", .unit = "deg"});
 }
 
 void describe(OptionVisitor& v, MotionOptions& options) {
@@ -244,19 +250,27 @@ void describe(OptionVisitor& v, MotionOptions& options) {
       break;
     case MotionKind::poses:
       v.value("file", options.file, {.doc = "pose file"});
-      v.value("names", options.names, {.doc = "poses in order; empty: all of the file"});
+      v.value("names", options.names,
+              {.doc = "names of the poses in order; empty: all of the file"});
       break;
     case MotionKind::clip:
-      v.value("name", options.name, {.doc = "animation of the file; absent: its first"});
-      v.value("start_s", options.start_s, {.doc = "absent: the clip's start", .unit = "s"});
-      v.value("end_s", options.end_s, {.doc = "absent: the clip's end", .unit = "s"});
-      v.value("frames", options.frames, {.doc = "equally spaced", .min = 1, .max = kMostFrames});
+      v.value("name", options.name,
+              {.doc = "name of the animation of the file; absent: its first"});
+      v.value("start_s", options.start_s,
+              {.doc = "time of the first frame; absent: the clip's start", .unit = "s"});
+      v.value("end_s", options.end_s,
+              {.doc = "time of the last frame; absent: the clip's end", .unit = "s"});
+      v.value("frames", options.frames,
+              {.doc = "number of frames, equally spaced", .min = 1, .max = kMostFrames});
       break;
     case MotionKind::bvh:
       v.value("file", options.file, {.doc = "motion capture file"});
-      v.value("first_frame", options.first_frame, {.doc = "counted from 0", .min = 0});
-      v.value("last_frame", options.last_frame, {.doc = "absent: the last", .min = 0});
-      v.value("stride", options.stride, {.doc = "every n-th frame", .min = 1});
+      v.value("first_frame", options.first_frame,
+              {.doc = "first frame that is taken, counted from 0", .min = 0});
+      v.value("last_frame", options.last_frame,
+              {.doc = "last frame that is taken; absent: that of the file", .min = 0});
+      v.value("stride", options.stride,
+              {.doc = "frames from one that is taken to the next", .min = 1});
       v.value("origin_frame", options.origin_frame,
               {.doc = "frame at which the root stands over the origin", .min = 0});
       describe_choice(v, "bvh_up", options.bvh_up, kUps,

@@ -36,7 +36,7 @@ struct MotionOptions {
   int frames = 25;
   // poses, bvh
   std::optional<std::string> file;
-  std::vector<std::string> names;  ///< poses: empty: all of the file
+  std::vector<std::string> names;
   // clip
   std::optional<std::string> name;
   std::optional<double> start_s;

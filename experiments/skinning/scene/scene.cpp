@@ -81,9 +81,10 @@ void describe(OptionVisitor& v, SkinningSceneOptions& options) {
   describe_group(v, "motion", options.motion, {.doc = "what the character does"});
   v.value("regions", options.regions,
           {.doc = "joints whose regions are measured; empty: those that a ramp turns"});
-  v.value(
-      "region_extent", options.region_extent,
-      {.doc = "half length of a region along the bones, in local radii", .min = 0.1, .max = 20});
+  v.value("region_extent", options.region_extent,
+          {.doc = "half length of a measured region along the bones, in local radii",
+           .min = 0.1,
+           .max = 20});
 }
 
 std::map<std::string, double> SkinningScene::facts() const {

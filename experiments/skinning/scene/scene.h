@@ -19,8 +19,8 @@ namespace geoprior::skinning {
 struct SkinningSceneOptions {
   CharacterOptions character;
   MotionOptions motion;
-  std::vector<std::string> regions;  ///< empty: the joints that a ramp turns
-  double region_extent = 2;          ///< half length along the bones, in local radii
+  std::vector<std::string> regions;
+  double region_extent = 2;
 };
 void describe(OptionVisitor& v, SkinningSceneOptions& options);
 

@@ -72,9 +72,12 @@ void describe(OptionVisitor& v, HeatWeightsOptions& options) {
            .max = 1e6});
   v.value(
       "max_influences", options.max_influences,
-      {.doc = "strongest influences kept and renormalised; 0 keeps all", .min = 0, .max = 65535});
+      {.doc =
+           "influences of a vertex that are kept, strongest first, and renormalised; 0 keeps all",
+       .min = 0,
+       .max = 65535});
   v.value("smallest_weight", options.smallest_weight,
-          {.doc = "weaker influences are dropped", .min = 0, .max = 0.1});
+          {.doc = "weight below which an influence is dropped", .min = 0, .max = 0.1});
 }
 
 SkinWeights heat_weights(const TriMesh& mesh, const Skeleton& skeleton,

@@ -6,9 +6,9 @@
 namespace geoprior::skinning {
 
 struct HeatWeightsOptions {
-  double heat = 1.0;              ///< c in H = c / d^2
-  int max_influences = 4;         ///< strongest kept and renormalised; 0 keeps all
-  double smallest_weight = 1e-4;  ///< weaker influences are dropped before renormalising
+  double heat = 1.0;  ///< c
+  int max_influences = 4;
+  double smallest_weight = 1e-4;
 };
 void describe(OptionVisitor& v, HeatWeightsOptions& options);
 

@@ -37,11 +37,12 @@ void check(const NarrowWeightsOptions& options) {
 }  // namespace
 
 void describe(OptionVisitor& v, NarrowWeightsOptions& options) {
-  v.value("width", options.width,
-          {.doc = "of the band across a joint over which the weight passes from bone to bone, in "
-                  "local radii",
-           .min = 0.01,
-           .max = 20});
+  v.value(
+      "width", options.width,
+      {.doc = "width of the band across a joint over which the weight passes from bone to bone, "
+              "in local radii",
+       .min = 0.01,
+       .max = 20});
   describe_influence_limit(v, options.max_influences);
 }
 

@@ -6,8 +6,8 @@
 namespace geoprior::skinning {
 
 struct NarrowWeightsOptions {
-  double width = 1.0;      ///< of the falloff across a joint, in local radii
-  int max_influences = 4;  ///< strongest kept and renormalised; 0 keeps all
+  double width = 1.0;
+  int max_influences = 4;
 };
 void describe(OptionVisitor& v, NarrowWeightsOptions& options);
 

@@ -57,11 +57,12 @@ SkinWeights strongest_influences(const Eigen::MatrixXd& values, const std::vecto
 }
 
 void describe_influence_limit(OptionVisitor& v, int& max_influences) {
-  v.value("max_influences", max_influences,
-          {.doc = "strongest influences kept, less the largest left out, and renormalised; 0 keeps "
-                  "all",
-           .min = 0,
-           .max = 65535});
+  v.value(
+      "max_influences", max_influences,
+      {.doc = "influences of a vertex that are kept, less the largest left out, and renormalised; "
+              "0 keeps all",
+       .min = 0,
+       .max = 65535});
 }
 
 void require_influence_limit(int max_influences, const std::string& who) {
