@@ -121,9 +121,12 @@ def flat_options(options, prefix=""):
 
 
 def option_rows(sources, topic):
-    """What the experiments set by hand instead of a method's defaults; null controls show nothing."""
+    """What the experiments set by hand instead of a method's defaults; null controls show nothing, and options*.toml
+    turns every option, one at a time."""
     rows = []
     for path in sorted((sources.root / "experiments" / topic).glob("*.toml")):
+        if path.stem.startswith("options"):
+            continue
         spec = tomllib.loads(path.read_text(encoding="utf-8"))
         rows += [[f"`{path.stem}`", spec.get("figure") or "–", variant["name"],
                   ", ".join(flat_options(variant["options"]))]
