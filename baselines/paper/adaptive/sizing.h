@@ -4,7 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "baselines/paper/adaptive/adaptive.h"
+#include "baselines/paper/adaptive/sizing_options.h"
+#include "models/paper/contact/obstacle.h"
+#include "models/paper/shell/state.h"
 
 namespace geoprior::paper {
 

@@ -8,8 +8,9 @@
 #include "models/paper/contact/contact.h"
 #include "models/paper/sheet/handle_map.h"
 #include "models/paper/shell/elements.h"
+#include "models/paper/shell/energies.h"
 #include "models/paper/shell/secant_pairs.h"
-#include "models/paper/shell/stepper.h"
+#include "models/paper/shell/stepper_options.h"
 #include "models/paper/shell/system.h"
 
 namespace geoprior::paper {

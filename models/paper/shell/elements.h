@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "core/geometry/curvature_fit.h"
+#include "models/paper/sheet/sheet.h"
+#include "models/paper/shell/bending_law.h"
 #include "models/paper/shell/state.h"
-#include "models/paper/shell/stepper.h"
 
 namespace geoprior::paper {
 

@@ -5,55 +5,12 @@
 #include <vector>
 
 #include "core/context.h"
-#include "core/options.h"
 #include "models/paper/sheet/sheet.h"
+#include "models/paper/shell/energies.h"
 #include "models/paper/shell/state.h"
+#include "models/paper/shell/stepper_options.h"
 
 namespace geoprior::paper {
-
-enum class BendingModel { shape_operator, hinge };
-/// How a mesh resists bending (ShellElements).
-struct BendingLaw {
-  BendingModel model = BendingModel::shape_operator;
-  double hinge_calibration =
-      4;  ///< D_hinge / D that makes equilateral hinges as stiff as the plate
-  /// Stiffness against what the fitted curvature leaves of the angles at borders and folds,
-  /// relative to what the plate opposes to the curvature that would give an edge that angle. It
-  /// must be positive, or border edges hinge freely, and small, since it resists the variation of
-  /// curvature, which the plate does not: a curvature that varies by a tenth over a patch gets 1e-3
-  /// of its energy added.
-  double fit_residual = 0.1;
-};
-enum class Integration { linear, newton };  ///< one linear solve a step, or implicit Euler solved
-/// automatic takes `supernodal`, ours, which was fastest at every size measured (200 to 4,096
-/// triangles).
-enum class LinearSolver { automatic, eigen, cholmod, supernodal };
-
-/// How a sheet is stepped in time; the same for every mesh, so that meshes are compared and nothing
-/// else.
-struct StepperOptions {
-  Integration integration = Integration::linear;
-  BendingLaw bending;
-  bool plasticity = true;
-  int newton_iterations = 100;     ///< most, of a step
-  double newton_tolerance = 1e-8;  ///< on the residual, relative to the typical force of the step
-  int most_halvings = 8;           ///< of a step that does not converge, before the run ends
-  LinearSolver solver = LinearSolver::automatic;
-  int dissection_from = 3000;      ///< triangles from which unknowns are ordered by dissection
-  double contact_distance = 5e-4;  ///< gap at which an obstacle begins to push (m)
-  double contact_stiffness = 1e9;  ///< of the push, per area of sheet (N/m^3)
-  double contact_spacing = 0.01;   ///< of the points of a triangle tested against obstacles (m)
-  double creep_speed = 1e-3;       ///< slip at which friction reaches 0.7 of Coulomb's (m/s)
-};
-void describe(OptionVisitor& v, StepperOptions& options);
-
-/// Mechanical energies (J).
-struct ShellEnergies {
-  double membrane = 0, bending = 0, kinetic = 0, gravity = 0, contact = 0;
-  double hands = 0;  ///< of hands that give
-  /// What a sheet at rest makes small, weight and contact apart.
-  [[nodiscard]] double strain() const { return membrane + bending + hands; }
-};
 
 /// What one step took.
 struct StepReport {
@@ -65,7 +22,7 @@ struct StepReport {
       handle_force;  ///< on the sheet by each handle, mean over the step (N)
 };
 
-/// Implicit time stepping of one sheet (equations: shell_dynamics.h): elastic shell, handles, dead
+/// Implicit time stepping of one sheet (equations: dynamics.h): elastic shell, handles, dead
 /// loads, contact with obstacles, then plastic flow. Keeps the analysis of the connectivity
 /// (masses, element fits, sparsity, offsets, symbolic factorisation) until the connectivity
 /// changes.

@@ -6,7 +6,7 @@
 
 #include "models/paper/sheet/process.h"
 #include "models/paper/tear/growth.h"
-#include "solvers/paper/hybrid.h"
+#include "solvers/paper/hybrid_options.h"
 #include "solvers/paper/meshing/ruling_editor.h"
 #include "solvers/paper/meshing/ruling_mesh.h"
 #include "solvers/paper/sheet/propagation.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solvers/paper/hybrid.h"
+#include "solvers/paper/hybrid_options.h"
 #include "solvers/paper/meshing/ruling_editor.h"
 #include "solvers/paper/shell/bending_guide.h"
 

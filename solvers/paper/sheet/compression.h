@@ -5,7 +5,7 @@
 
 #include "models/paper/sheet/sheet.h"
 #include "models/paper/shell/state.h"
-#include "solvers/paper/hybrid.h"
+#include "solvers/paper/hybrid_options.h"
 #include "solvers/paper/meshing/ruling_editor.h"
 #include "solvers/paper/meshing/ruling_mesh.h"
 

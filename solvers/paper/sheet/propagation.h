@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "solvers/paper/hybrid.h"
+#include "solvers/paper/hybrid_options.h"
 #include "solvers/paper/meshing/ruling_editor.h"
 #include "solvers/paper/sheet/compression.h"
 

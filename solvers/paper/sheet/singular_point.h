@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "solvers/paper/hybrid.h"
+#include "solvers/paper/hybrid_options.h"
 #include "solvers/paper/meshing/ruling_editor.h"
 
 namespace geoprior::paper {

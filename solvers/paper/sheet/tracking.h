@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "models/paper/shell/state.h"
-#include "solvers/paper/hybrid.h"
+#include "solvers/paper/hybrid_options.h"
 #include "solvers/paper/meshing/ruling_editor.h"
 #include "solvers/paper/meshing/ruling_mesh.h"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "models/paper/tear/growth.h"
-#include "solvers/paper/hybrid.h"
+#include "solvers/paper/hybrid_options.h"
 #include "solvers/paper/meshing/ruling_editor.h"
 
 namespace geoprior::paper {

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/options.h"
+#include "models/paper/shell/bending_law.h"
+
+namespace geoprior::paper {
+
+enum class Integration { linear, newton };  ///< one linear solve a step, or implicit Euler solved
+/// automatic takes `supernodal`, ours, which was fastest at every size measured (200 to 4,096
+/// triangles).
+enum class LinearSolver { automatic, eigen, cholmod, supernodal };
+
+/// How a sheet is stepped in time; the same for every mesh, so that meshes are compared and nothing
+/// else.
+struct StepperOptions {
+  Integration integration = Integration::linear;
+  BendingLaw bending;
+  bool plasticity = true;
+  int newton_iterations = 100;     ///< most, of a step
+  double newton_tolerance = 1e-8;  ///< on the residual, relative to the typical force of the step
+  int most_halvings = 8;           ///< of a step that does not converge, before the run ends
+  LinearSolver solver = LinearSolver::automatic;
+  int dissection_from = 3000;      ///< triangles from which unknowns are ordered by dissection
+  double contact_distance = 5e-4;  ///< gap at which an obstacle begins to push (m)
+  double contact_stiffness = 1e9;  ///< of the push, per area of sheet (N/m^3)
+  double contact_spacing = 0.01;   ///< of the points of a triangle tested against obstacles (m)
+  double creep_speed = 1e-3;       ///< slip at which friction reaches 0.7 of Coulomb's (m/s)
+};
+void describe(OptionVisitor& v, StepperOptions& options);
+
+}  // namespace geoprior::paper
