@@ -13,7 +13,7 @@ struct ShellStepper::Impl {
   StepperOptions options;
   std::uint64_t seed = 1;
   std::unique_ptr<ShellDynamics> dynamics;
-  ShellDynamics::Step trial;
+  StepResult trial;
 
   [[nodiscard]] ShellDynamics& of(const ShellState& state) const;
   [[nodiscard]] StepReport empty_report() const {

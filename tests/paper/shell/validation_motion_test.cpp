@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "models/paper/shell/dynamics.h"
+#include "models/paper/shell/lumped_mass.h"
 #include "tests/paper/meshes.h"
 #include "tests/paper/sheets.h"
 
