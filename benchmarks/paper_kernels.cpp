@@ -14,6 +14,7 @@
 #include "models/paper/cholesky/sparse_cholesky.h"
 #include "models/paper/cholesky/supernodal.h"
 #include "models/paper/meshing/uniform_mesh.h"
+#include "models/paper/shell/step/matrix.h"
 #include "models/paper/shell/stepper.h"
 #include "models/paper/shell/system.h"
 
@@ -40,7 +41,7 @@ Sheet bent_sheet() {
 constexpr double kStep = 0.005;
 
 struct Bent {
-  explicit Bent(int triangles, LinearSolver solver = LinearSolver::automatic) {
+  explicit Bent(int triangles, LinearSolver solver = LinearSolver::supernodal) {
     sheet = bent_sheet();
     state = resting_state(sheet,
                           uniform_mesh(sheet.pattern, triangles, UniformLayout::structured,
@@ -69,9 +70,9 @@ struct Parts {
       offset.push_back(static_cast<int>(members.size()));
     }
     const NodeGraph graph = couple_groups(bent.state.mesh.vertex_count(), offset, members);
-    const std::vector<int> position = elimination_order(
-        graph, elements.size() < StepperOptions{}.dissection_from ? Ordering::minimum_degree
-                                                                  : Ordering::nested_dissection);
+    const std::vector<int> position =
+        elimination_order(graph, elements.size() < kDissectionFrom ? Ordering::minimum_degree
+                                                                   : Ordering::nested_dissection);
     using Triangle = BlockMatrix::Triangle;
     matrix = BlockMatrix(graph, position, eigen ? Triangle::upper : Triangle::lower);
     system.emplace(elements, position, matrix);

@@ -8,8 +8,6 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kBendingNames{"shape-operator", "hinge"};
 constexpr std::array<std::string_view, 2> kIntegrationNames{"linear", "newton"};
-constexpr std::array<std::string_view, 4> kSolverNames{"automatic", "eigen", "cholmod",
-                                                       "supernodal"};
 
 void describe_contact(OptionVisitor& v, StepperOptions& o) {
   v.value("contact_distance", o.contact_distance,
@@ -50,11 +48,6 @@ void describe(OptionVisitor& v, StepperOptions& o) {
           {.doc = "residual relative to the forces of the step", .min = 1e-14, .max = 1});
   v.value("most_halvings", o.most_halvings,
           {.doc = "of a step that does not converge, before the run ends", .min = 0, .max = 30});
-  describe_choice(v, "solver", o.solver, kSolverNames, {.doc = "sparse factorisation"});
-  v.value("dissection_from", o.dissection_from,
-          {.doc = "triangles from which unknowns are ordered by nested dissection, not by degree",
-           .min = 0,
-           .max = 1e9});
   describe_contact(v, o);
 }
 

@@ -36,6 +36,18 @@ constexpr double kAskew = 45 * kDegree;
 /// Directions tried where the toughness depends on them.
 constexpr int kDirections = 720;
 
+// Ours, chosen: what a tear does between two time steps.
+/// Steps of all tears after one time step.
+constexpr int kMostSteps = 10;
+/// Of the implicit steps from rest that a sheet relaxes in (s).
+constexpr double kRelaxTime = 1e-3;
+/// Of them, after a tear has grown; and most of them, while the sheet has more energy than before.
+constexpr int kRelaxSteps = 2, kMostRelaxSteps = 20;
+/// Farthest that a tear's path lies from the edges of its lips (m).
+constexpr double kPathTolerance = 1e-4;
+/// A tear that comes so near to a border or a tear ends there (m).
+constexpr double kMargin = 1e-3;
+
 /// The vertex at a place, unless there is none or the sheet is open there.
 std::optional<int> vertex_at(const ShellMesh& mesh, const Vector2d& p, double tolerance) {
   std::optional<int> found;
@@ -83,7 +95,7 @@ std::vector<TearCandidate> plain_candidates(const Sheet& sheet, const Tears& tea
 }
 
 TearGrowth::TearGrowth(const Sheet& sheet, const TearOptions& options)
-    : sheet_(sheet), options_(options), tears_(sheet.pattern, options.path_tolerance) {
+    : sheet_(sheet), options_(options), tears_(sheet.pattern, kPathTolerance) {
   if (!(options.step > 1e3 * kSame * width(sheet.pattern))) {
     throw Error("step of a tear is lost in the rounding of the pattern", "tearing.step",
                 "more than a millionth of the pattern's width");
@@ -191,7 +203,7 @@ std::optional<TearGrowth::Growing> TearGrowth::look_at(const TearCandidate& cand
 std::optional<TearGrowth::Growing> TearGrowth::at_rest(Growing growing, ShellStepper& stepper,
                                                        ShellState state,
                                                        const MeshNeighbours& neighbours) const {
-  Relaxation relaxation(options_.relax_time, stepper, state);
+  Relaxation relaxation(kRelaxTime, stepper, state);
   for (int i = 0; i < options_.rest_steps; ++i) {
     const bool whole = relaxation.step(stepper, state);
     auto next = look_at(growing.candidate, stepper, state, neighbours);
@@ -225,7 +237,7 @@ double TearGrowth::go(int tear, const Vector2d& to, const Follower& follower, Sh
   const ShellState old = state;
   const double energy = stepper.energies(state).strain();
   const Vector2d from = tears_.all()[tear].tip();
-  const auto stop = tears_.obstruction(tear, to, options_.margin);
+  const auto stop = tears_.obstruction(tear, to, kMargin);
   tears_.advance(tear, stop.value_or(to), state.time);
   if (stop) tears_.end(tear);
   const auto too_small = [&] {
@@ -252,9 +264,9 @@ double TearGrowth::go(int tear, const Vector2d& to, const Follower& follower, Sh
     stepper.set_mesh(state);
   }
   // What the new mesh has strained is not for the sheet to move by.
-  Relaxation relaxation(options_.relax_time, stepper, state);
-  for (int i = 0; i < options_.most_relax_steps; ++i) {
-    if (i >= options_.relax_steps && relaxation.energy() <= energy) break;
+  Relaxation relaxation(kRelaxTime, stepper, state);
+  for (int i = 0; i < kMostRelaxSteps; ++i) {
+    if (i >= kRelaxSteps && relaxation.energy() <= energy) break;
     relaxation.step(stepper, state);
   }
   return energy - relaxation.energy();
@@ -283,7 +295,7 @@ void TearGrowth::take_step(const Growing& growing, const Follower& follower, She
 int TearGrowth::grow(const Candidates& candidates, const Follower& follower, ShellStepper& stepper,
                      ShellState& state) {
   if (!sheet_.toughness.tears()) return 0;
-  for (int steps = 0; steps < options_.most_steps; ++steps) {
+  for (int steps = 0; steps < kMostSteps; ++steps) {
     const Eigen::MatrixX3i& now = state.mesh.triangles;
     if (!neighbours_ || !same_triangles(neighbours_->triangles, now)) {
       neighbours_.emplace(state.mesh);
@@ -305,7 +317,7 @@ int TearGrowth::grow(const Candidates& candidates, const Follower& follower, She
     if (!strongest) return steps;
     take_step(*strongest, follower, stepper, state);
   }
-  return options_.most_steps;
+  return kMostSteps;
 }
 
 void TearGrowth::save(StateWriter& out) const {

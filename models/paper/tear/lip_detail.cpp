@@ -96,12 +96,13 @@ TornPoint torn_point(const TornWay& way, double s, const LipDetailOptions& o, st
   TornPoint p;
   p.length = s;
   p.place = way.place(s);
-  p.left = perpendicular(way.direction(s, o.spacing));
-  p.displacement = o.noise * fade_at_ends(s, way.length(), o.noise_length) *
-                   fractal_noise(s / o.noise_length, kLineRow, seed);
+  p.left = perpendicular(way.direction(s, LipDetailOptions::kSpacing));
+  p.displacement = o.noise * fade_at_ends(s, way.length(), LipDetailOptions::kWave) *
+                   fractal_noise(s / LipDetailOptions::kWave, kLineRow, seed);
   const double shear = way.shear(s);
   const double ragged =
-      kNarrowest + (1 - kNarrowest) * (1 + fractal_noise(s / o.noise_length, kBandRow, seed)) / 2;
+      kNarrowest +
+      (1 - kNarrowest) * (1 + fractal_noise(s / LipDetailOptions::kWave, kBandRow, seed)) / 2;
   if (o.bevel > 0)
     p.bevel = o.bevel * ragged * smooth_step(std::abs(shear) / kFullShear) *
               fade_at_ends(s, way.length(), o.bevel);
@@ -243,9 +244,9 @@ std::vector<TornPoint> torn_line(const Tear& tear, const LipDetailOptions& optio
   const TornWay way(tear);
   std::vector<TornPoint> line;
   if (!(way.length() > 0)) return line;
-  const auto whole = static_cast<int>(std::ceil(way.length() / options.spacing));
+  const auto whole = static_cast<int>(std::ceil(way.length() / LipDetailOptions::kSpacing));
   for (int i = 0; i <= whole; ++i) {
-    const double s = std::min(i * options.spacing, way.length());
+    const double s = std::min(i * LipDetailOptions::kSpacing, way.length());
     TornPoint next = torn_point(way, s, options, seed);
     if (!line.empty() && line.back().displacement * next.displacement < 0) {
       const double before = std::abs(line.back().displacement);
@@ -266,7 +267,7 @@ std::vector<Fibre> lip_fibres(const Tear& tear, const LipDetailOptions& options,
   for (const int lip : {0, 1}) {
     const int row = kFibreRow + kRowsOfALip * lip;
     for (int k = 0;; ++k) {
-      const double s = (k + lattice_value(k, row, seed)) * options.fibre_spacing;
+      const double s = (k + lattice_value(k, row, seed)) * LipDetailOptions::kFibreSpacing;
       // Nearer to the tip the lips are not far enough apart for it.
       if (s > way.length() - options.fibre_length) break;
       Fibre& fibre = fibres.emplace_back();
@@ -274,7 +275,7 @@ std::vector<Fibre> lip_fibres(const Tear& tear, const LipDetailOptions& options,
       fibre.lip = lip;
       const Vector2d out = -inwards(fibre.at.left, lip);
       const double lean =
-          options.fibre_spread_deg * kDegree * (2 * lattice_value(k, row + 1, seed) - 1);
+          LipDetailOptions::kFibreSpreadDeg * kDegree * (2 * lattice_value(k, row + 1, seed) - 1);
       const double length =
           options.fibre_length * (kShortest + (1 - kShortest) * lattice_value(k, row + 2, seed));
       fibre.root = fibre.at.place + fibre.at.gain(lip) * out;
@@ -313,24 +314,13 @@ void describe(OptionVisitor& v, LipDetailOptions& o) {
            .unit = "m",
            .min = 0,
            .max = 0.1});
-  v.value("noise_length", o.noise_length,
-          {.doc = "of its longest waves", .unit = "m", .min = 1e-6, .max = 10});
-  v.value("fibre_spacing", o.fibre_spacing,
-          {.doc = "of the fibres along a lip", .unit = "m", .min = 1e-6, .max = 10});
   v.value("fibre_length", o.fibre_length,
           {.doc = "of the longest fibre", .unit = "m", .min = 0, .max = 0.1});
-  v.value("fibre_spread_deg", o.fibre_spread_deg,
-          {.doc = "most that a fibre leans from the normal of its lip",
-           .unit = "deg",
-           .min = 0,
-           .max = 89});
   v.value("bevel", o.bevel,
           {.doc = "width of the band on one lip in which the layers of the paper have split",
            .unit = "m",
            .min = 0,
            .max = 0.1});
-  v.value("spacing", o.spacing,
-          {.doc = "of the points along the lips", .unit = "m", .min = 1e-5, .max = 1});
 }
 
 }  // namespace geoprior::paper

@@ -18,20 +18,21 @@ namespace geoprior::paper {
 ///
 /// The torn line is the tip's way displaced to its left by
 ///
-///   d(s) = noise f(s) sum_o 2^-o (2 N_o(2^o s / noise_length) - 1) / sum_o 2^-o,   o = 0 … 3,
+///   d(s) = noise f(s) sum_o 2^-o (2 N_o(2^o s / kWave) - 1) / sum_o 2^-o,   o = 0 … 3,
 ///
 /// s the arc length, N_o value noise in [0, 1), f a fade to zero at the tip and where the tear
 /// began. Both lips have the one line: what one gains the other lacks. A band along one lip, where
 /// the layers of the paper have split, is as wide as the tear was sheared out of the plane there.
 struct LipDetailOptions {
+  static constexpr double kWave = 2e-3;          ///< longest of the torn line (m); chosen
+  static constexpr double kFibreSpacing = 1e-3;  ///< along a lip (m); chosen
+  static constexpr double kFibreSpreadDeg = 30;  ///< most from the normal of the lip; chosen
+  static constexpr double kSpacing = 5e-4;       ///< of the points along the lips (m); chosen
+
   bool on = false;
   double noise = 5e-4;           ///< most that the torn line leaves the tip's way (m)
-  double noise_length = 2e-3;    ///< of its longest waves (m)
-  double fibre_spacing = 1e-3;   ///< along a lip (m)
   double fibre_length = 1.5e-3;  ///< of the longest (m)
-  double fibre_spread_deg = 30;  ///< most that one leans from the normal of the lip
   double bevel = 2e-3;           ///< width of the band (m)
-  double spacing = 5e-4;         ///< of the points along the lips (m)
 };
 void describe(OptionVisitor& v, LipDetailOptions& options);
 
@@ -49,7 +50,7 @@ struct TornPoint {
     return std::max(0.0, lip == 0 ? -displacement : displacement);
   }
 };
-/// Every `spacing` along a tear, at its ends, and where the torn line crosses the tip's way; none
+/// Every `kSpacing` along a tear, at its ends, and where the torn line crosses the tip's way; none
 /// of a tear without length. What the sheet began with was cut and has not torn.
 /// @param seed  the tear's own: `lip_seed`
 std::vector<TornPoint> torn_line(const Tear& tear, const LipDetailOptions& options,

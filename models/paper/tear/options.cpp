@@ -20,8 +20,6 @@ void describe(OptionVisitor& v, TearOptions& o) {
        .max = 10});
   v.value("step", o.step,
           {.doc = "length by which a tear grows", .unit = "m", .min = 1e-9, .max = 10});
-  v.value("most_steps", o.most_steps,
-          {.doc = "of all tears after one time step", .min = 1, .max = 100000});
   describe_choice(v, "search", o.search, kSearches,
                   {.doc = "at candidates, or at every vertex of the mesh"});
   describe_choice(
@@ -35,11 +33,6 @@ void describe(OptionVisitor& v, TearOptions& o) {
                           "or (a null) 45 degrees from it"});
   v.value("most_turn_deg", o.most_turn_deg,
           {.doc = "of a tear from one step to the next", .unit = "deg", .min = 0, .max = 180});
-  v.value("relax_time", o.relax_time,
-          {.doc = "of the implicit steps from rest that the sheet relaxes in",
-           .unit = "s",
-           .min = 1e-9,
-           .max = 10});
   v.value("rest_steps", o.rest_steps,
           {.doc = "most of them, for a pull to come to rest in before a tear grows",
            .min = 1,
@@ -51,22 +44,6 @@ void describe(OptionVisitor& v, TearOptions& o) {
            .max = 180});
   v.value("rest_change", o.rest_change,
           {.doc = "of what it releases, likewise, relative", .min = 0, .max = 1e9});
-  v.value("relax_steps", o.relax_steps,
-          {.doc = "of them, after it has grown", .min = 0, .max = 1000});
-  v.value("most_relax_steps", o.most_relax_steps,
-          {.doc = "of them, while the sheet has more elastic energy than before it grew",
-           .min = 0,
-           .max = 1000});
-  v.value("path_tolerance", o.path_tolerance,
-          {.doc = "farthest that a tear's path lies from the edges of its lips",
-           .unit = "m",
-           .min = 1e-9,
-           .max = 1});
-  v.value("margin", o.margin,
-          {.doc = "a tear that comes so near to a border or a tear ends there",
-           .unit = "m",
-           .min = 1e-9,
-           .max = 1});
   v.value("least_part", o.least_part,
           {.doc = "smallest area that a tear may cut off", .unit = "m^2", .min = 0, .max = 1});
   describe_group(v, "detail", o.detail,

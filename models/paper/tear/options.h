@@ -28,23 +28,16 @@ struct TearOptions {
   PullOptions pull;
   TearSearch search = TearSearch::candidates;
   TearRelease release = TearRelease::j_integral;
-  double flaw = 4e-3;   ///< length of the sheet's flaws, from which smooth places tear (m)
-  double step = 2e-3;   ///< length by which a tear grows (m)
-  int most_steps = 10;  ///< of all tears after one time step
+  double flaw = 4e-3;  ///< length of the sheet's flaws, from which smooth places tear (m)
+  double step = 2e-3;  ///< length by which a tear grows (m)
   TearIntegrator integrator = TearIntegrator::midpoint;
   TearDirection direction = TearDirection::steepest;
   double most_turn_deg = 30;  ///< that a tear turns in a step
-  double relax_time = 1e-3;   ///< of the implicit steps from rest that a sheet relaxes in (s)
-  int rest_steps = 20;        ///< most of them, for a pull to come to rest in before a tear grows
+  int rest_steps = 20;        ///< most, for a pull to come to rest in before a tear grows
   double rest_turn_deg = 1;   ///< of a pull at rest, from one such step to the next
   double rest_change = 0.02;  ///< of what it releases, likewise, relative
-  int relax_steps = 2;        ///< of them, after it has grown
-  int most_relax_steps = 20;  ///< of them, while the sheet has more energy than before it grew
-  double path_tolerance =
-      1e-4;                  ///< farthest that a tear's path lies from the edges of its lips (m)
-  double margin = 1e-3;      ///< a tear that comes so near to a border ends there (m)
-  double least_part = 1e-6;  ///< smallest area that a tear may cut off (m^2)
-  LipDetailOptions detail;   ///< what is drawn along the lips
+  double least_part = 1e-6;   ///< smallest area that a tear may cut off (m^2)
+  LipDetailOptions detail;    ///< what is drawn along the lips
 };
 void describe(OptionVisitor& v, TearOptions& options);
 

@@ -136,7 +136,7 @@ TEST(LipDetail, TornLineKeepsWhatItWasWhenTheTearGrows) {
   }
   const auto after = torn_line(tears.all()[0], options, lip_seed(1, 0));
   EXPECT_EQ(after.back().bevel_lip, 1);
-  for (std::size_t i = 0; before[i].length < 0.04 - options.noise_length; ++i) {
+  for (std::size_t i = 0; before[i].length < 0.04 - LipDetailOptions::kWave; ++i) {
     ASSERT_NEAR(before[i].length, after[i].length, 1e-15);
     EXPECT_NEAR(before[i].displacement, after[i].displacement, 1e-15);
     EXPECT_EQ(before[i].bevel_lip, after[i].bevel_lip);
@@ -159,17 +159,16 @@ TEST(LipDetail, BandLiesOnTheLipThatWasPulledUp) {
 
 TEST(LipDetail, FibresLeaveTheirLipWithinTheConeAndTheLength) {
   const Tears tears = bent_tear(0.08, 0);
-  LipDetailOptions options;
-  options.fibre_spread_deg = 25;
+  const LipDetailOptions options;
   const auto fibres = lip_fibres(tears.all()[0], options, lip_seed(1, 0));
-  EXPECT_NEAR(static_cast<double>(fibres.size()), 2 * 0.08 / options.fibre_spacing, 6);
+  EXPECT_NEAR(static_cast<double>(fibres.size()), 2 * 0.08 / LipDetailOptions::kFibreSpacing, 6);
   double most = 0;
   for (const Fibre& fibre : fibres) {
     const Vector2d out = fibre.lip == 0 ? Vector2d(-fibre.at.left) : fibre.at.left;
     const Vector2d strand = fibre.end - fibre.root;
     const double lean = std::abs(signed_angle(out, strand)) / kDegree;
     most = std::max(most, lean);
-    EXPECT_LE(lean, 25 + 1e-9);
+    EXPECT_LE(lean, LipDetailOptions::kFibreSpreadDeg + 1e-9);
     EXPECT_GE(strand.norm(), 0.3 * options.fibre_length - 1e-12);
     EXPECT_LE(strand.norm(), options.fibre_length + 1e-12);
     EXPECT_NEAR((fibre.root - fibre.at.place).dot(out), fibre.at.gain(fibre.lip), 1e-15);
@@ -217,8 +216,7 @@ TEST(LipDetail, SameSeedSameBytes) {
 }
 
 TEST(LipDetail, RefusesOptionsOutOfRange) {
-  for (const char* key : {"noise", "noise_length", "fibre_spacing", "fibre_length",
-                          "fibre_spread_deg", "bevel", "spacing"}) {
+  for (const char* key : {"noise", "fibre_length", "bevel"}) {
     for (const char* value : {"nan", "-0.001", "inf"}) {
       const std::string toml = std::string("detail = { ") + key + " = " + value + " }\n";
       TearOptions options;

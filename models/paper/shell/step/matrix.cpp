@@ -29,7 +29,7 @@ std::unique_ptr<SparseCholesky> make_cholesky(LinearSolver solver, const BlockMa
 }  // namespace
 
 StepMatrix::StepMatrix(const ShellElements& elements, int vertices, const StepperOptions& options) {
-  const bool large = elements.size() >= options.dissection_from;
+  const bool large = elements.size() >= kDissectionFrom;
   const NodeGraph graph = element_graph(elements, vertices);
   position_ =
       elimination_order(graph, large ? Ordering::nested_dissection : Ordering::minimum_degree);
