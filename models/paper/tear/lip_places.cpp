@@ -11,7 +11,7 @@ using Eigen::Vector2d;
 /// Distance from a lip, over the size of the pattern.
 constexpr double kBeside = 1e-3;
 /// Barycentric weight that rounding takes a point on an edge to.
-constexpr double kInside = -1e-9;
+constexpr double kLeastWeight = -1e-9;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ std::optional<RowVector3d> LipPlaces::behind_lip(const Vector2d& p, const Vector
                                                  double depth) const {
   const Vector2d in = inwards(left, lip);
   const PatternLocator::Place at = locator_.locate(p + depth * in, p + beside_ * in);
-  if (at.weights.minCoeff() < kInside) return std::nullopt;
+  if (at.weights.minCoeff() < kLeastWeight) return std::nullopt;
   return in_space(at);
 }
 

@@ -49,6 +49,37 @@ void add_lattice(const PaperStructure& structure, const Pattern& pattern, double
   }
 }
 
+/// What must be a vertex: corners, cuts, anchors, singular points and ends of rulings.
+/// @return  the vertices of the singular points
+std::vector<int> add_structure_points(const PaperStructure& structure, const Pattern& pattern,
+                                      const std::vector<Vector2d>& anchors, PointSet& set) {
+  for (const Vector2d& p : corners(pattern)) set.add(p);
+  for (const auto& cut : pattern.cuts) {
+    for (const Vector2d& p : cut) set.add(p);
+  }
+  for (const Vector2d& p : anchors) set.add(p);
+  std::vector<int> singular;
+  for (const SingularPoint& s : structure.singular_points) singular.push_back(set.add(s.position));
+  for (const Ruling& r : structure.rulings) {
+    set.add(r.a);
+    set.add(r.b);
+  }
+  return singular;
+}
+
+/// A vertex on every ruling that leaves a tip.
+void add_rings(const PaperStructure& structure, const MeshSizes& sizes, PointSet& set) {
+  for (const Ruling& r : structure.rulings) {
+    for (const auto& [from, to, end] :
+         {std::tuple(r.a, r.b, r.singular_a), std::tuple(r.b, r.a, r.singular_b)}) {
+      if (!end || !structure.singular_points[*end].tear) continue;
+      const double length = (to - from).norm();
+      if (length > kRingRoom * sizes.flat)
+        set.add(from + (to - from) * kRing * sizes.flat / length);
+    }
+  }
+}
+
 /// Vertices along a ruling; none near an anchor on it.
 void divide_ruling(const Ruling& ruling, const std::vector<Vector2d>& anchors,
                    const MeshSizes& sizes, PointSet& set) {
@@ -129,28 +160,9 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
   const double tolerance = 1e-9 * width(pattern);
   PointSet set(tolerance);
   RulingMesh result;
-  for (const Vector2d& p : corners(pattern)) set.add(p);
-  for (const auto& cut : pattern.cuts) {
-    for (const Vector2d& p : cut) set.add(p);
-  }
-  for (const Vector2d& p : anchors) set.add(p);
-  for (const SingularPoint& s : structure.singular_points) {
-    result.singular_vertices.push_back(set.add(s.position));
-  }
-  for (const Ruling& r : structure.rulings) {
-    set.add(r.a);
-    set.add(r.b);
-  }
+  result.singular_vertices = add_structure_points(structure, pattern, anchors, set);
   for (const Ruling& r : structure.rulings) divide_ruling(r, anchors, sizes, set);
-  for (const Ruling& r : structure.rulings) {
-    for (const auto& [from, to, end] :
-         {std::tuple(r.a, r.b, r.singular_a), std::tuple(r.b, r.a, r.singular_b)}) {
-      if (!end || !structure.singular_points[*end].tear) continue;
-      const double length = (to - from).norm();
-      if (length > kRingRoom * sizes.flat)
-        set.add(from + (to - from) * kRing * sizes.flat / length);
-    }
-  }
+  add_rings(structure, sizes, set);
   const std::vector<std::vector<int>> loops = border_chains(pattern, sizes.flat, tolerance, set);
   std::vector<Eigen::Vector2i> segments = cut_segments(pattern, sizes.flat, tolerance, set);
   const std::vector<Eigen::Vector2i> lips = segments;

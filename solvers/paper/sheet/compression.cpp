@@ -202,60 +202,92 @@ std::vector<Demand> find_demands(const Sheet& sheet, const ShellState& state,
   return demands;
 }
 
-std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const ShellMesh& mesh,
-                                       double group_angle_deg) {
-  const double group_angle = group_angle_deg * kDegree;
-  const EdgeConnectivity edges(mesh.triangles);
-  std::vector<int> order;
-  for (std::size_t f = 0; f < demands.size(); ++f) {
-    if (demands[f].weight > 0) order.push_back(static_cast<int>(f));
-  }
-  const auto strength = [&](int f) { return demands[f].weight * area(mesh, f); };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int f, int g) { return strength(f) > strength(g); });
-  std::vector<bool> taken(demands.size(), false);
-  std::vector<DemandGroup> groups;
-  for (const int seed : order) {
-    if (taken[seed]) continue;
-    const Demand& first = demands[seed];
+namespace {
+
+double strength_of(const std::vector<Demand>& demands, const ShellMesh& mesh, int f) {
+  return demands[f].weight * area(mesh, f);
+}
+
+/// Demands in triangles that touch, each within `limit` of the direction of the first.
+class GroupGrower {
+ public:
+  GroupGrower(const std::vector<Demand>& demands, const ShellMesh& mesh)
+      : demands_(demands), mesh_(mesh), edges_(mesh.triangles), taken_(demands.size(), false) {}
+
+  [[nodiscard]] bool is_taken(int f) const { return taken_[f]; }
+
+  [[nodiscard]] DemandGroup grow(int seed, double limit) {
+    const Demand& first = demands_[seed];
     DemandGroup group;
     group.bent_ground = first.bent_ground;
     group.by_bending = first.by_bending;
-    group.triangles.push_back(seed);
-    taken[seed] = true;
-    const double limit = first.bent_ground ? group_angle : std::max(group_angle, kFlatGroupAngle);
+    take(seed, group);
     Matrix2d sum = Matrix2d::Zero();
     for (std::size_t k = 0; k < group.triangles.size(); ++k) {
       const int f = group.triangles[k];
-      const Vector2d& d = demands[f].direction;
-      sum += strength(f) * d * d.transpose();
-      group.strength += strength(f);
-      group.excess = std::max(group.excess, demands[f].excess);
-      group.centre += strength(f) * centroid(mesh, f);
+      const Vector2d& d = demands_[f].direction;
+      const double strength = strength_of(demands_, mesh_, f);
+      sum += strength * d * d.transpose();
+      group.strength += strength;
+      group.excess = std::max(group.excess, demands_[f].excess);
+      group.centre += strength * centroid(mesh_, f);
       for (int corner = 0; corner < 3; ++corner) {
-        const int next = edges.across(f, corner);
-        if (next < 0 || taken[next]) continue;
-        const Demand& other = demands[next];
-        if (other.weight <= 0 || other.bent_ground != first.bent_ground ||
-            other.by_bending != first.by_bending ||
-            line_angle(other.direction, first.direction) > limit) {
-          continue;
-        }
-        taken[next] = true;
-        group.triangles.push_back(next);
+        const int next = edges_.across(f, corner);
+        if (next >= 0 && !taken_[next] && is_like(demands_[next], first, limit)) take(next, group);
       }
     }
     group.centre /= group.strength;
     group.direction = principal(sum(0, 0), sum(0, 1), sum(1, 1), false).direction;
+    measure_extent(group);
+    return group;
+  }
+
+ private:
+  void take(int f, DemandGroup& group) {
+    taken_[f] = true;
+    group.triangles.push_back(f);
+  }
+  static bool is_like(const Demand& other, const Demand& first, double limit) {
+    return other.weight > 0 && other.bent_ground == first.bent_ground &&
+           other.by_bending == first.by_bending &&
+           line_angle(other.direction, first.direction) <= limit;
+  }
+  void measure_extent(DemandGroup& group) const {
     for (const int f : group.triangles) {
       for (int k = 0; k < 3; ++k) {
-        const Vector2d p = mesh.pattern.row(mesh.triangles(f, k));
+        const Vector2d p = mesh_.pattern.row(mesh_.triangles(f, k));
         const double along = (p - group.centre).dot(group.direction);
         group.low = std::min(group.low, along);
         group.high = std::max(group.high, along);
       }
     }
-    groups.push_back(std::move(group));
+  }
+
+  const std::vector<Demand>& demands_;
+  const ShellMesh& mesh_;
+  EdgeConnectivity edges_;
+  std::vector<bool> taken_;
+};
+
+}  // namespace
+
+std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const ShellMesh& mesh,
+                                       double group_angle_deg) {
+  const double group_angle = group_angle_deg * kDegree;
+  std::vector<int> order;
+  for (std::size_t f = 0; f < demands.size(); ++f) {
+    if (demands[f].weight > 0) order.push_back(static_cast<int>(f));
+  }
+  std::stable_sort(order.begin(), order.end(), [&](int f, int g) {
+    return strength_of(demands, mesh, f) > strength_of(demands, mesh, g);
+  });
+  GroupGrower grower(demands, mesh);
+  std::vector<DemandGroup> groups;
+  for (const int seed : order) {
+    if (grower.is_taken(seed)) continue;
+    const double limit =
+        demands[seed].bent_ground ? group_angle : std::max(group_angle, kFlatGroupAngle);
+    groups.push_back(grower.grow(seed, limit));
   }
   std::stable_sort(groups.begin(), groups.end(), [](const DemandGroup& a, const DemandGroup& b) {
     return a.strength > b.strength;

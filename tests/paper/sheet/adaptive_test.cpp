@@ -186,6 +186,46 @@ TEST(Remesh, KeepsTheBordersOfHoles) {
   }
 }
 
+/// Of plastic curvature and damage over the pattern.
+Eigen::Vector4d integral(const ShellState& s) {
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  for (int f = 0; f < s.mesh.triangle_count(); ++f) {
+    const double area = plane_shapes::twice_area(s.mesh, f) / 2;
+    sum.head<3>() += area * s.plastic_curvature.row(f).transpose();
+    sum[3] += area * s.damage[f];
+  }
+  return sum;
+}
+
+struct Edits {
+  int splits = 0, flips = 0, collapses = 0;
+};
+
+/// 400 operations in all, at random edges.
+Edits edit_at_random(RandomStream& random, EditableSheet& sheet) {
+  Edits done;
+  while (done.splits + done.flips + done.collapses < 400) {
+    const auto t =
+        static_cast<int>(random.below(static_cast<std::uint32_t>(sheet.triangles().size())));
+    if (sheet.triangles()[t].vertex[0] < 0) continue;
+    const EditableSheet::Side side{t, static_cast<int>(random.below(3))};
+    const std::uint32_t operation = random.below(3);
+    if (operation == 0 && done.splits < 150) {
+      sheet.split(side);
+      ++done.splits;
+    } else if (operation == 1 && sheet.can_flip(side, 0.02)) {
+      sheet.flip(side);
+      ++done.flips;
+    } else if (operation == 2) {
+      const int a = sheet.start(side), b = sheet.end(side);
+      if (!sheet.can_collapse(a, b, 0.02, 1)) continue;
+      sheet.collapse(a, b);
+      ++done.collapses;
+    }
+  }
+  return done;
+}
+
 TEST(EditableSheet, SurvivesRandomOperations) {
   for (const Pattern& pattern : {rectangle_pattern(0.2, 0.3), disc_pattern(0.1, 24),
                                  plane_shapes::ell_pattern(), plane_shapes::ring_pattern()}) {
@@ -195,15 +235,6 @@ TEST(EditableSheet, SurvivesRandomOperations) {
       for (int k = 0; k < 3; ++k) state.plastic_curvature(f, k) = random.normal();
       state.damage[f] = random.uniform();
     }
-    const auto integral = [](const ShellState& s) {
-      Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-      for (int f = 0; f < s.mesh.triangle_count(); ++f) {
-        const double area = plane_shapes::twice_area(s.mesh, f) / 2;
-        sum.head<3>() += area * s.plastic_curvature.row(f).transpose();
-        sum[3] += area * s.damage[f];
-      }
-      return sum;
-    };
     const Eigen::Vector4d before = integral(state);
     EditableSheet sheet(state);
     for (auto& v : sheet.vertices()) {
@@ -214,29 +245,10 @@ TEST(EditableSheet, SurvivesRandomOperations) {
         if (v.pattern == corner) v.kind = EditableSheet::Kind::fixed;
       }
     }
-    int splits = 0, flips = 0, collapses = 0;
-    while (splits + flips + collapses < 400) {
-      const auto t =
-          static_cast<int>(random.below(static_cast<std::uint32_t>(sheet.triangles().size())));
-      if (sheet.triangles()[t].vertex[0] < 0) continue;
-      const EditableSheet::Side side{t, static_cast<int>(random.below(3))};
-      const std::uint32_t operation = random.below(3);
-      if (operation == 0 && splits < 150) {
-        sheet.split(side);
-        ++splits;
-      } else if (operation == 1 && sheet.can_flip(side, 0.02)) {
-        sheet.flip(side);
-        ++flips;
-      } else if (operation == 2) {
-        const int a = sheet.start(side), b = sheet.end(side);
-        if (!sheet.can_collapse(a, b, 0.02, 1)) continue;
-        sheet.collapse(a, b);
-        ++collapses;
-      }
-    }
-    EXPECT_GT(splits, 50);
-    EXPECT_GT(flips, 50);
-    EXPECT_GT(collapses, 50);
+    const Edits done = edit_at_random(random, sheet);
+    EXPECT_GT(done.splits, 50);
+    EXPECT_GT(done.flips, 50);
+    EXPECT_GT(done.collapses, 50);
     const ShellState after = sheet.state(0);
     expect_sound(after.mesh, pattern);
     EXPECT_LT((integral(after) - before).norm(), 1e-11 * before.norm());
