@@ -1,7 +1,6 @@
 #include "experiments/paper/measures.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -17,7 +16,9 @@
 #include "metrics/developability/folds.h"
 #include "metrics/isometry/buckled_sector.h"
 #include "metrics/isometry/elastica.h"
+#include "metrics/isometry/energy_spike.h"
 #include "metrics/isometry/shell_energy.h"
+#include "metrics/shape/second_differences.h"
 #include "metrics/shape/smoothness.h"
 #include "metrics/shape/surface_distance.h"
 #include "metrics/tracks/weighted_quantile.h"
@@ -213,30 +214,16 @@ std::optional<MotionMeasures> motion_measures(FitMemo& fits, const PaperScene& s
   const std::vector<double> times = frames.parameters();
   if (times.size() < 3 || !equally_spaced(times)) return std::nullopt;
   const std::vector<Eigen::Vector2d> samples = motion_samples(scene.sheet.pattern);
-  std::array<Eigen::MatrixX3d, 3> x;
-  std::vector<double> differences, energies;
+  SecondDifferences differences;
+  std::vector<double> energies;
   for (std::size_t i = 0; i < times.size(); ++i) {
     const std::shared_ptr<const Frame> frame = frames.frame(i);
     const SheetFrame f = sheet_frame(scene, *frame);
     const auto energy = energy_measures(fits, f);
     energies.push_back(energy ? energy->membrane + energy->bending : 0);
-    x[i % 3] = places_of(samples, f);
-    if (i < 2) continue;
-    const Eigen::VectorXd difference =
-        (x[i % 3] - 2 * x[(i + 2) % 3] + x[(i + 1) % 3]).rowwise().norm();
-    differences.insert(differences.end(), difference.begin(), difference.end());
+    differences.add(places_of(samples, f));
   }
-  MotionMeasures out;
-  const auto at = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() * 19 / 20);
-  std::nth_element(differences.begin(), at, differences.end());
-  out.second_difference_p95 = *at;
-  const double least = kWorthAnEnergy * *std::max_element(energies.begin(), energies.end());
-  for (std::size_t i = 1; i + 1 < energies.size(); ++i) {
-    const double beside = std::max(energies[i - 1], energies[i + 1]);
-    if (energies[i] > least && beside > 0)
-      out.energy_spike = std::max(out.energy_spike, energies[i] / beside);
-  }
-  return out;
+  return MotionMeasures{differences.quantile(95), energy_spike(energies, kWorthAnEnergy)};
 }
 
 Value quadric_bending_energy(QuadricMemo& quadrics, const SheetFrame& f) {
@@ -297,19 +284,16 @@ Value elastica_error(const SheetFrame& f) {
   if (!strip) return std::nullopt;
   const PatternLocator locator({f.pattern, f.triangles()});
   const auto in_space = [&](const Eigen::Vector2d& p) { return place_of(p, locator, f); };
-  double distance = 0;
-  double height = 0;
+  std::vector<BentLine> lines;
   for (int i = 0; i < kStripSamples; ++i) {
     const double s = (i + 0.5) / kStripSamples;
-    const Eigen::Vector3d a = in_space(strip->at(s, 0));
-    const Eigen::Vector3d chord = in_space(strip->at(s, 1)) - a;
-    const Eigen::Vector3d rise = in_space(strip->at(s, 0.5)) - a;
-    distance += chord.norm() / kStripSamples;
-    height += rise.cross(chord).norm() / chord.norm() / kStripSamples;
+    lines.push_back(
+        {in_space(strip->at(s, 0)), in_space(strip->at(s, 0.5)), in_space(strip->at(s, 1))});
   }
-  if (distance > (1 - kLeastShortening) * strip->length()) return std::nullopt;
-  const double exact = elastica_height(strip->length(), distance);
-  return std::abs(height - exact) / exact;
+  const StripRise rise = strip_rise(lines);
+  if (rise.distance > (1 - kLeastShortening) * strip->length()) return std::nullopt;
+  const double exact = elastica_height(strip->length(), rise.distance);
+  return std::abs(rise.height - exact) / exact;
 }
 
 Value ring_sector(const SheetFrame& f) {

@@ -26,30 +26,6 @@ std::optional<std::pair<Vector2d, Vector2d>> two_hands(const Sheet& sheet) {
   return std::pair(hands[0], hands[1]);
 }
 
-const TearPath* longest(const std::vector<TearPath>& paths) {
-  const TearPath* best = nullptr;
-  double most = 0;
-  for (const TearPath& path : paths) {
-    const double length = path_length(path);
-    if (length <= most) continue;
-    most = length;
-    best = &path;
-  }
-  return best;
-}
-
-/// The first `length` of a path.
-TearPath shortened(const TearPath& path, double length) {
-  TearPath result{path.front()};
-  for (std::size_t i = 1; i < path.size() && length > 0; ++i) {
-    const double step = (path[i] - path[i - 1]).norm();
-    if (!(step > 0)) continue;
-    result.push_back(path[i - 1] + std::min(1.0, length / step) * (path[i] - path[i - 1]));
-    length -= step;
-  }
-  return result;
-}
-
 /// Of a tear along paths: E_f times the section, by the middle of every step (J).
 double fracture_energy(const Sheet& sheet, const std::vector<TearPath>& paths) {
   double sum = 0;
@@ -102,7 +78,7 @@ std::optional<TearMeasures> tear_measures(const SheetFrame& f) {
   m.energy = fracture_energy(f.sheet, torn->paths);
   m.parts = part_count(f.triangles());
   const auto hands = two_hands(f.sheet);
-  const TearPath* path = longest(torn->paths);
+  const TearPath* path = longest_path(torn->paths);
   if (path == nullptr) return m;
   m.bow = path_bow(*path);
   if (!hands) return m;
@@ -160,10 +136,10 @@ std::optional<TearingForces> tearing_forces(const PaperScene& scene, const Frame
 Value tear_path_distance(const SheetFrame& f, const SheetFrame& reference) {
   const auto here = torn_sheet(f.frame), there = torn_sheet(reference.frame);
   if (!here || !there) return std::nullopt;
-  const TearPath *p = longest(here->paths), *q = longest(there->paths);
+  const TearPath *p = longest_path(here->paths), *q = longest_path(there->paths);
   if (p == nullptr || q == nullptr) return std::nullopt;
   const double length = std::min(path_length(*p), path_length(*q));
-  return path_distance(shortened(*p, length), shortened(*q, length));
+  return path_distance(first_part(*p, length), first_part(*q, length));
 }
 
 }  // namespace geoprior::paper

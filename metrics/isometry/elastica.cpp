@@ -53,4 +53,16 @@ double elastica_height(double length, double distance) {
   return length * k / elliptic_integrals(k).first;
 }
 
+StripRise strip_rise(std::span<const BentLine> lines) {
+  StripRise mean;
+  const auto count = static_cast<double>(lines.size());
+  for (const BentLine& line : lines) {
+    const Eigen::Vector3d chord = line.end - line.start;
+    const Eigen::Vector3d rise = line.middle - line.start;
+    mean.distance += chord.norm() / count;
+    mean.height += rise.cross(chord).norm() / chord.norm() / count;
+  }
+  return mean;
+}
+
 }  // namespace geoprior

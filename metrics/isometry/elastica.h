@@ -1,5 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <span>
+
 namespace geoprior {
 
 /// Complete elliptic integrals K(k) and E(k) of modulus k, 0 <= k < 1, by the arithmetic-geometric
@@ -23,5 +26,17 @@ EllipticIntegrals elliptic_integrals(double modulus);
 /// @throws Error    when they are out of range
 /// Source: Love, A Treatise on the Mathematical Theory of Elasticity, art. 263.
 double elastica_height(double length, double distance);
+
+/// A line across a bent strip, from one held end to the other.
+struct BentLine {
+  Eigen::Vector3d start, middle, end;  ///< m
+};
+/// How a strip stands over the line through its ends, mean of lines across it (m).
+struct StripRise {
+  double distance = 0;  ///< of the ends
+  double height = 0;    ///< of the middle over the line
+};
+/// @param lines  at least one, none whose ends are one point
+StripRise strip_rise(std::span<const BentLine> lines);
 
 }  // namespace geoprior

@@ -35,6 +35,29 @@ double path_length(const TearPath& path) {
   return sum;
 }
 
+const TearPath* longest_path(const std::vector<TearPath>& paths) {
+  const TearPath* best = nullptr;
+  double most = 0;
+  for (const TearPath& path : paths) {
+    const double length = path_length(path);
+    if (length <= most) continue;
+    most = length;
+    best = &path;
+  }
+  return best;
+}
+
+TearPath first_part(const TearPath& path, double length) {
+  TearPath result{path.front()};
+  for (std::size_t i = 1; i < path.size() && length > 0; ++i) {
+    const double step = (path[i] - path[i - 1]).norm();
+    if (!(step > 0)) continue;
+    result.push_back(path[i - 1] + std::min(1.0, length / step) * (path[i] - path[i - 1]));
+    length -= step;
+  }
+  return result;
+}
+
 double focal_drift(const TearPath& path, const Vector2d& a, const Vector2d& b) {
   require_points(path);
   const double distance = (b - a).norm();

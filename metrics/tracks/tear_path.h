@@ -11,6 +11,13 @@ using TearPath = std::vector<Eigen::Vector2d>;
 /// Length (m).
 double path_length(const TearPath& path);
 
+/// The longest of the paths, the first of those as long; null when none has a length.
+const TearPath* longest_path(const std::vector<TearPath>& paths);
+
+/// The first `length` (m) of a path, or the whole of a shorter one, without steps of no length.
+/// @param path  not empty
+TearPath first_part(const TearPath& path, double length);
+
 /// How far |CA| - |CB| of a tip C goes from what it is at the start, over |AB|: 0 on a hyperbola
 /// with the foci A and B, which the tear of a taut inextensible sheet follows (O'Keefe 1994).
 /// @throws Error  when A and B are one point or the path is empty

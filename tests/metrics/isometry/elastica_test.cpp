@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "core/error.h"
 
@@ -79,6 +80,22 @@ TEST(EllipticIntegrals, HaveTheirTabulatedValues) {
   EXPECT_NEAR(a.second * b.first + b.second * a.first - a.first * b.first, std::numbers::pi / 2,
               1e-14);
   EXPECT_THROW(elliptic_integrals(1), Error);
+}
+
+/// Half a circle of radius r stands r over its diameter 2 r, wherever it is and however it is
+/// turned.
+TEST(StripRise, OfAHalfCylinderIsItsRadius) {
+  constexpr double kRadius = 0.03;
+  const Eigen::Vector3d axis = Eigen::Vector3d(1, 2, 2) / 3, along = Eigen::Vector3d(2, 1, -2) / 3;
+  std::vector<BentLine> lines;
+  for (int i = 0; i < 5; ++i) {
+    const Eigen::Vector3d centre = 0.01 * i * axis + Eigen::Vector3d(0.1, 0, 0);
+    lines.push_back(
+        {centre - kRadius * along, centre + kRadius * axis.cross(along), centre + kRadius * along});
+  }
+  const StripRise rise = strip_rise(lines);
+  EXPECT_NEAR(rise.distance, 2 * kRadius, 1e-15);
+  EXPECT_NEAR(rise.height, kRadius, 1e-15);
 }
 
 }  // namespace

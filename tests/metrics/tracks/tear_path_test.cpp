@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "core/error.h"
 
@@ -57,6 +58,19 @@ TEST(TearPath, OnsetForceIsTheClosedForm) {
   EXPECT_NEAR(onset_force({0, 0.1}, kA, kB, 1e4, 1e-4), 1 / (2 * std::cos(std::numbers::pi / 4)),
               1e-12);
   EXPECT_NEAR(onset_force({0, 0}, {0, -1}, {0, -1}, 1e4, 1e-4), 0.5, 1e-12);
+}
+
+TEST(TearPath, TheLongestIsTheFirstOfThoseAsLong) {
+  const std::vector<TearPath> paths{{{0, 0}}, {{0, 0}, {0, 2}}, {{0, 0}, {1, 0}, {1, 1}}};
+  EXPECT_EQ(longest_path(paths), &paths[1]);
+  EXPECT_EQ(longest_path({{{0.1, 0.2}}}), nullptr) << "a point has no length";
+}
+
+TEST(TearPath, TheFirstPartHasTheLengthAskedFor) {
+  const TearPath path{{0, 0}, {1, 0}, {1, 0}, {1, 1}};
+  EXPECT_EQ(first_part(path, 1.25), (TearPath{{0, 0}, {1, 0}, {1, 0.25}}));
+  EXPECT_DOUBLE_EQ(path_length(first_part(path, 9)), 2);
+  EXPECT_EQ(first_part(path, 0), (TearPath{{0, 0}}));
 }
 
 }  // namespace
