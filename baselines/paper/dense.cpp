@@ -88,13 +88,14 @@ class UniformMesher final : public SheetMesher {
 
 void describe(OptionVisitor& v, DenseOptions& options) {
   v.value("triangles", options.triangles,
-          {.doc = "of the uniform mesh, aimed at", .min = 2, .max = 1e6});
+          {.doc = "number of triangles that the uniform mesh aims at", .min = 2, .max = 1e6});
   describe_choice(v, "layout", options.layout, kLayoutNames,
-                  {.doc = "automatic: structured for upright rectangles, otherwise equilateral; "
-                          "structured: squares "
-                          "with alternating diagonals"});
-  describe_group(v, "tearing", options.tearing, {.doc = "of scenes whose paper tears"});
-  describe_group(v, "stepper", options.stepper, {.doc = "time stepping"});
+                  {.doc = "layout of the mesh: structured (squares with alternating diagonals), "
+                          "equilateral, delaunay (irregular), or automatic: structured on upright "
+                          "rectangles, otherwise equilateral"});
+  describe_group(v, "tearing", options.tearing,
+                 {.doc = "how tears grow in scenes whose paper tears"});
+  describe_group(v, "stepper", options.stepper, {.doc = "how the sheet is stepped in time"});
 }
 
 std::unique_ptr<Process> make_dense_sheet(const Sheet& sheet, const DenseOptions& options) {

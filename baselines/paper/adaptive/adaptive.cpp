@@ -150,10 +150,13 @@ class AdaptiveMesher final : public SheetMesher {
 void describe(OptionVisitor& v, AdaptiveOptions& options) {
   describe(v, static_cast<SizingOptions&>(options));
   v.value("pop_filter", options.pop_filter,
-          {.doc = "moves vertices with new triangles until forces are what they were"});
-  describe_group(v, "settle", options.settle, {.doc = "after every change of the mesh"});
-  describe_group(v, "tearing", options.tearing, {.doc = "of scenes whose paper tears"});
-  describe_group(v, "stepper", options.stepper, {.doc = "time stepping"});
+          {.doc = "moves vertices with new triangles until the elastic forces are what they were "
+                  "before remeshing"});
+  describe_group(v, "settle", options.settle,
+                 {.doc = "how the sheet comes to rest after every change of the mesh"});
+  describe_group(v, "tearing", options.tearing,
+                 {.doc = "how tears grow in scenes whose paper tears"});
+  describe_group(v, "stepper", options.stepper, {.doc = "how the sheet is stepped in time"});
 }
 
 std::unique_ptr<Process> make_adaptive_sheet(const Sheet& sheet, const AdaptiveOptions& options) {

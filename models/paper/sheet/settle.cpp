@@ -25,13 +25,20 @@ void describe(OptionVisitor& v, SettleOptions& o) {
   v.value(
       "steps", o.steps,
       {.doc = "most implicit steps from rest after a new mesh; 0: none", .min = 0, .max = 1000});
-  v.value("time", o.time, {.doc = "length of each", .unit = "s", .min = 1e-9, .max = 10});
+  v.value("time", o.time,
+          {.doc = "length of an implicit step in which a new mesh settles",
+           .unit = "s",
+           .min = 1e-9,
+           .max = 10});
   v.value("strain", o.strain,
-          {.doc = "root mean square that is little enough", .min = 1e-12, .max = 1});
-  v.value("gain", o.gain,
-          {.doc = "part of the elastic energy that a step must release for another to follow",
-           .min = 0,
+          {.doc = "root mean square of the strain at which a new mesh has settled",
+           .min = 1e-12,
            .max = 1});
+  v.value(
+      "gain", o.gain,
+      {.doc = "part of the elastic energy that an implicit step must release for another to follow",
+       .min = 0,
+       .max = 1});
 }
 
 int settle(const Sheet& sheet, const SettleOptions& options, ShellStepper& stepper,

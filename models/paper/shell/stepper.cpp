@@ -7,6 +7,13 @@
 #include "models/paper/shell/plasticity.h"
 
 namespace geoprior::paper {
+namespace {
+
+/// Of a step that does not converge, before the run ends; chosen: a 256th of a step that still does
+/// not converge never will.
+constexpr int kMostHalvings = 8;
+
+}  // namespace
 
 struct ShellStepper::Impl {
   Sheet sheet;
@@ -54,9 +61,8 @@ void ShellStepper::Impl::advance(ShellState& state, double dt, int halvings_left
   if (refused(options.integration) &&
       (!may_solve || flow.may_overshoot || refused(Integration::newton))) {
     if (halvings_left == 0) {
-      throw Error(
-          "the step does not converge after " + std::to_string(options.most_halvings) + " halvings",
-          "time " + std::to_string(state.time) + " s");
+      throw Error("the step does not converge after " + std::to_string(kMostHalvings) + " halvings",
+                  "time " + std::to_string(state.time) + " s");
     }
     ++report.halvings;
     advance(state, dt / 2, halvings_left - 1, flow, report);
@@ -98,8 +104,7 @@ StepReport ShellStepper::step(ShellState& state, double dt, RunContext& /*contex
   StepReport report = impl_->empty_report();
   const ShellState before = state;
   try {
-    impl_->advance(state, dt, impl_->options.most_halvings, {impl_->options.plasticity, false, dt},
-                   report);
+    impl_->advance(state, dt, kMostHalvings, {impl_->options.plasticity, false, dt}, report);
   } catch (...) {
     state = before;
     throw;
@@ -115,7 +120,7 @@ void ShellStepper::relax(ShellState& state, double dt) {
   rested.v.setZero();
   rested.time = state.time - dt;
   StepReport report = impl_->empty_report();
-  impl_->advance(rested, dt, impl_->options.most_halvings, {false, true, dt}, report);
+  impl_->advance(rested, dt, kMostHalvings, {false, true, dt}, report);
   state.x.swap(rested.x);
 }
 

@@ -43,7 +43,7 @@ class ShellStepper {
   void set_mesh(const ShellState& state);
 
   /// Advances by `dt` (s); halves the step when it does not converge (NaN, residual, inverted
-  /// pattern map) or, linear, stretches the sheet with energy from nowhere, up to `most_halvings`,
+  /// pattern map) or, linear, stretches the sheet with energy from nowhere, up to eight times,
   /// then throws Error naming the time.
   StepReport step(ShellState& state, double dt, RunContext& context);
 

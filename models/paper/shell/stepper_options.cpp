@@ -13,9 +13,12 @@ void describe_contact(OptionVisitor& v, StepperOptions& o) {
   v.value("contact_distance", o.contact_distance,
           {.doc = "gap at which an obstacle begins to push", .unit = "m", .min = 1e-6, .max = 0.1});
   v.value("contact_stiffness", o.contact_stiffness,
-          {.doc = "of the push, per area of sheet", .unit = "N/m^3", .min = 1, .max = 1e12});
+          {.doc = "push of an obstacle per depth and area of sheet",
+           .unit = "N/m^3",
+           .min = 1,
+           .max = 1e12});
   v.value("contact_spacing", o.contact_spacing,
-          {.doc = "distance of the points of a triangle that are tested against obstacles",
+          {.doc = "greatest distance of the points of a triangle that are tested against obstacles",
            .unit = "m",
            .min = 1e-4,
            .max = 10});
@@ -30,24 +33,31 @@ void describe_contact(OptionVisitor& v, StepperOptions& o) {
 
 void describe(OptionVisitor& v, StepperOptions& o) {
   describe_choice(v, "integration", o.integration, kIntegrationNames,
-                  {.doc = "one linear solve a step, or implicit Euler solved by Newton"});
+                  {.doc = "one linear solve a step, or implicit Euler solved by Newton's method"});
   describe_choice(v, "bending", o.bending.model, kBendingNames,
-                  {.doc = "plate energy of the shape operator, or hinges"});
-  v.value("hinge_calibration", o.bending.hinge_calibration,
-          {.doc = "factor of the hinge energy", .min = 1e-3, .max = 1e3});
+                  {.doc = "bending energy: that of a plate with the fitted shape operator, or "
+                          "hinges at the edges"});
+  v.value(
+      "hinge_calibration", o.bending.hinge_calibration,
+      {.doc =
+           "factor of the bending energy of hinges; 4 makes equilateral ones as stiff as the plate",
+       .min = 1e-3,
+       .max = 1e3});
   v.value("fit_residual", o.bending.fit_residual,
           {.doc = "stiffness against angles at borders and folds that the fitted curvature leaves, "
                   "relative to the plate's",
            .min = 1e-6,
            .max = 10});
-  v.value("plasticity", o.plasticity,
-          {.doc = "the sheet creases where its elastic curvature exceeds the material's yield"});
+  v.value(
+      "plasticity", o.plasticity,
+      {.doc =
+           "whether the sheet creases where its elastic curvature exceeds the material's yield"});
   v.value("newton_iterations", o.newton_iterations,
-          {.doc = "most linear solves of a step", .min = 1, .max = 1000});
+          {.doc = "most linear solves of a step by Newton's method", .min = 1, .max = 1000});
   v.value("newton_tolerance", o.newton_tolerance,
-          {.doc = "residual relative to the forces of the step", .min = 1e-14, .max = 1});
-  v.value("most_halvings", o.most_halvings,
-          {.doc = "of a step that does not converge, before the run ends", .min = 0, .max = 30});
+          {.doc = "residual at which Newton's method ends, relative to the forces of the step",
+           .min = 1e-14,
+           .max = 1});
   describe_contact(v, o);
 }
 

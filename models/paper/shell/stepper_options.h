@@ -19,7 +19,6 @@ struct StepperOptions {
   bool plasticity = true;
   int newton_iterations = 100;     ///< most, of a step
   double newton_tolerance = 1e-8;  ///< on the residual, relative to the typical force of the step
-  int most_halvings = 8;           ///< of a step that does not converge, before the run ends
   LinearSolver solver = LinearSolver::supernodal;
   double contact_distance = 5e-4;  ///< gap at which an obstacle begins to push (m)
   double contact_stiffness = 1e9;  ///< of the push, per area of sheet (N/m^3)

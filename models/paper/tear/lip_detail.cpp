@@ -310,14 +310,15 @@ void add_lip_detail(const Tears& tears, const LipDetailOptions& options, std::ui
 void describe(OptionVisitor& v, LipDetailOptions& o) {
   v.value("on", o.on, {.doc = "adds the parts lip_detail and fibres to every frame"});
   v.value("noise", o.noise,
-          {.doc = "most that the torn line leaves the way of the tip",
+          {.doc = "farthest that the torn line leaves the way of the tip; 0: straight lips",
            .unit = "m",
            .min = 0,
            .max = 0.1});
-  v.value("fibre_length", o.fibre_length,
-          {.doc = "of the longest fibre", .unit = "m", .min = 0, .max = 0.1});
+  v.value(
+      "fibre_length", o.fibre_length,
+      {.doc = "length of the longest fibres of a lip; 0: none", .unit = "m", .min = 0, .max = 0.1});
   v.value("bevel", o.bevel,
-          {.doc = "width of the band on one lip in which the layers of the paper have split",
+          {.doc = "greatest width of the band along a lip; 0: none",
            .unit = "m",
            .min = 0,
            .max = 0.1});

@@ -275,15 +275,16 @@ std::optional<TipPull> pull_on_flaw(const Sheet& sheet, const ShellState& state,
 
 void describe(OptionVisitor& v, PullOptions& o) {
   v.value("reach", o.reach,
-          {.doc = "radius of the part of the sheet about a tip on which the pull is measured",
+          {.doc = "radius of the part of the sheet about a tip on which its pull is measured",
            .unit = "m",
            .min = 1e-6,
            .max = 100});
-  v.value(
-      "lines", o.lines,
-      {.doc = "directions tried for the line that parts left from right", .min = 1, .max = 10000});
+  v.value("lines", o.lines,
+          {.doc = "number of directions tried for the line that parts left from right at a tip",
+           .min = 1,
+           .max = 10000});
   v.value("least_opposition_deg", o.least_opposition_deg,
-          {.doc = "smallest angle in space between the two resultants of a pull",
+          {.doc = "smallest angle in space between the two resultants of a pull that tears",
            .unit = "deg",
            .min = 0,
            .max = 180});

@@ -63,7 +63,7 @@ TEST(TearPath, OnsetForceIsTheClosedForm) {
 TEST(TearPath, TheLongestIsTheFirstOfThoseAsLong) {
   const std::vector<TearPath> paths{{{0, 0}}, {{0, 0}, {0, 2}}, {{0, 0}, {1, 0}, {1, 1}}};
   EXPECT_EQ(longest_path(paths), &paths[1]);
-  EXPECT_EQ(longest_path({{{0.1, 0.2}}}), nullptr) << "a point has no length";
+  EXPECT_EQ(longest_path({TearPath{{0.1, 0.2}}}), nullptr) << "a point has no length";
 }
 
 TEST(TearPath, TheFirstPartHasTheLengthAskedFor) {
