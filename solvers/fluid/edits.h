@@ -51,6 +51,12 @@ struct Edit {
 };
 void describe(OptionVisitor& v, Edit& options);
 
+/// A feature and what is done to it.
+struct Insertion {
+  const Feature* feature = nullptr;
+  Edit edit;
+};
+
 /// @throws Error  naming the edit: box, interval, keys or scale that have no meaning
 void require_valid(const Edit& edit);
 

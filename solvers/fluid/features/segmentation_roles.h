@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "solvers/fluid/features/segmentation.h"
+#include "solvers/fluid/features/segmentation_options.h"
 #include "solvers/fluid/features/surface_components.h"
 
 namespace geoprior::fluid {

@@ -4,9 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "solvers/fluid/features/segmentation.h"
+#include "solvers/fluid/features/segmentation_options.h"
 
 namespace geoprior::fluid {
+
+/// On |H| h: a region grows from vertices above `high` through those above `low`.
+struct Thresholds {
+  double high = 0.12, low = 0.04;
+};
 
 /// Thresholds on s = |H| h from samples of the free surface, frame by frame.
 ///

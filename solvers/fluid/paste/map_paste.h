@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "solvers/fluid/edits.h"
 #include "solvers/fluid/lift/displacement_map_sampler.h"
-#include "solvers/fluid/paste/paste.h"
+#include "solvers/fluid/paste/options.h"
 #include "solvers/fluid/paste/refinement.h"
 
 namespace geoprior::fluid {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "solvers/fluid/tracking/motion.h"
+#include "solvers/fluid/tracking/track.h"
 
 namespace geoprior::fluid {
 

@@ -4,7 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "solvers/fluid/tracking/tracking.h"
+#include "solvers/fluid/features/regions.h"
+#include "solvers/fluid/tracking/options.h"
 
 namespace geoprior::fluid {
 

@@ -29,9 +29,9 @@ float furthest(const std::vector<Eigen::Vector3f>& a, const std::vector<Eigen::V
 
 /// The three stages of the header for one particle, in metres.
 Eigen::Vector3d ralston(const MacGrid& velocity, double dt, const Eigen::Vector3d& x) {
-  const Eigen::Vector3d k1 = velocity.velocity(x);
-  const Eigen::Vector3d k2 = velocity.velocity(x + dt / 2 * k1);
-  const Eigen::Vector3d k3 = velocity.velocity(x + 3 * dt / 4 * k2);
+  const Eigen::Vector3d k1 = velocity_at(velocity, x);
+  const Eigen::Vector3d k2 = velocity_at(velocity, x + dt / 2 * k1);
+  const Eigen::Vector3d k3 = velocity_at(velocity, x + 3 * dt / 4 * k2);
   return x + dt / 9 * (2 * k1 + 3 * k2 + 4 * k3);
 }
 
@@ -231,7 +231,7 @@ TEST(LiquidExtrapolation, ClosedFacesOfASolidKeepItsNormalVelocityAndSlipAlong) 
   constrain_to_solids(solids, known, grid);
   const Eigen::Vector3f n = normal.cast<float>();
   const Eigen::Vector3f expected = u - (u - solid).dot(n) * n;
-  EXPECT_LT((grid.velocity({4, 4, 4}).cast<float>() - expected).norm(), 1e-5F);
+  EXPECT_LT((velocity_at(grid, {4, 4, 4}).cast<float>() - expected).norm(), 1e-5F);
 }
 
 /// Distance that particles in boxes of half a cell, jittered, give for liquid up to a height.

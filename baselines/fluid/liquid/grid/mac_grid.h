@@ -67,8 +67,6 @@ struct MacGrid {
 
   MacGrid() = default;
   explicit MacGrid(const GridShape& grid);
-  /// Trilinear in each component; clamped to the domain.
-  [[nodiscard]] Eigen::Vector3d velocity(const Eigen::Vector3d& x) const;
 };
 
 /// How much of each face and cell is free of solids, and how fast the solids move there.

@@ -129,4 +129,7 @@ class FaceSampler {
   std::array<GridSampler, 3> component_;
 };
 
+/// Velocity at a point (m/s), trilinear in each component; clamped to the domain.
+Eigen::Vector3d velocity_at(const MacGrid& grid, const Eigen::Vector3d& x);
+
 }  // namespace geoprior::fluid

@@ -3,7 +3,6 @@
 #include <memory>
 #include <vector>
 
-#include "baselines/fluid/liquid/pressure/pressure.h"
 #include "baselines/fluid/liquid/pressure/system.h"
 
 namespace geoprior::fluid {

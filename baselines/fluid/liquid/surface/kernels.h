@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "baselines/fluid/liquid/surface/liquid_surface.h"
+#include "baselines/fluid/liquid/grid/mac_grid.h"
+#include "baselines/fluid/liquid/particles/particles.h"
+#include "baselines/fluid/liquid/surface/options.h"
 
 namespace geoprior::fluid {
 

@@ -1,10 +1,9 @@
 #include "baselines/fluid/liquid/surface/liquid_surface.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 
+#include "baselines/fluid/liquid/grid/mac_grid_sampler.h"
 #include "baselines/fluid/liquid/surface/kernels.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -151,24 +150,9 @@ Eigen::MatrixX3d surface_velocity(const MacGrid& velocity, const Eigen::MatrixX3
   Eigen::MatrixX3d result(points.rows(), 3);
   parallel_blocks(points.rows(), 2048, [&](std::size_t begin, std::size_t end) {
     for (auto p = static_cast<Eigen::Index>(begin); p < static_cast<Eigen::Index>(end); ++p)
-      result.row(p) = velocity.velocity(Eigen::Vector3d(points.row(p))).transpose();
+      result.row(p) = velocity_at(velocity, points.row(p)).transpose();
   });
   return result;
-}
-
-void describe(OptionVisitor& v, LiquidSurfaceOptions& options) {
-  static constexpr std::array<std::string_view, 2> kKernels{"zhu-bridson", "anisotropic"};
-  describe_choice(v, "kernel", options.kernel, kKernels, {.doc = "how particles become a field"});
-  v.value("cells_per_cell", options.cells_per_cell,
-          {.doc = "resolution of the surface's grid relative to the simulation's",
-           .min = 0.25,
-           .max = 8});
-  v.value("particle_radius", options.particle_radius,
-          {.doc = "r_p in cells of the simulation", .min = 0.1, .max = 4});
-  v.value("kernel_radius", options.kernel_radius,
-          {.doc = "R = this times r_p", .min = 1, .max = 16});
-  v.value("smoothing", options.smoothing,
-          {.doc = "passes of smoothing of the field", .min = 0, .max = 100});
 }
 
 }  // namespace geoprior::fluid

@@ -4,20 +4,9 @@
 
 #include "baselines/fluid/liquid/grid/mac_grid.h"
 #include "baselines/fluid/liquid/particles/particles.h"
-#include "core/options.h"
+#include "baselines/fluid/liquid/surface/options.h"
 
 namespace geoprior::fluid {
-
-enum class SurfaceKernel { zhu_bridson, anisotropic };
-
-struct LiquidSurfaceOptions {
-  SurfaceKernel kernel = SurfaceKernel::zhu_bridson;
-  double cells_per_cell = 1;     ///< resolution of the surface's grid relative to the simulation's
-  double particle_radius = 0.5;  ///< r_p in cells of the simulation
-  double kernel_radius = 4;      ///< R = this times r_p (Zhu and Bridson)
-  int smoothing = 1;             ///< passes of smoothing of the field
-};
-void describe(OptionVisitor& v, LiquidSurfaceOptions& options);
 
 /// Signed distance like field of the particles at the nodes of a grid, negative in the liquid.
 ///

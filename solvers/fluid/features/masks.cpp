@@ -1,4 +1,4 @@
-#include "solvers/fluid/paste/masks.h"
+#include "solvers/fluid/features/masks.h"
 
 #include <algorithm>
 
