@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <numbers>
 
 #include "core/mesh.h"
 #include "metrics/contact/self_contact.h"
 #include "metrics/shape/surface_distance.h"
+#include "metrics/tracks/tracked_objects.h"
 #include "metrics/volume/dam_break.h"
+#include "metrics/volume/enclosed_volume.h"
+#include "metrics/volume/seam_columns.h"
 #include "metrics/volume/shared_volume.h"
 #include "metrics/volume/slosh.h"
 #include "metrics/volume/volume.h"
@@ -20,14 +21,6 @@ namespace {
 TriMesh mesh_of(const Part& part) { return {part.points, part.triangles}; }
 
 TriMesh mesh_of(const Frame& frame) { return mesh_of(surface_part(frame)); }
-
-/// Volume that a closed surface encloses (m^3); absent for others and without triangles.
-Value enclosed_volume(const TriMesh& mesh, const Closedness& closed) {
-  if (mesh.triangle_count() == 0 || closed.defects() != 0) return {};
-  return signed_volume(mesh.V, mesh.F);
-}
-
-Value enclosed_volume(const TriMesh& mesh) { return enclosed_volume(mesh, closedness(mesh)); }
 
 /// Absent without gauges or triangles.
 std::optional<Columns> columns_of(const FluidScene& scene, const TriMesh& mesh) {
@@ -42,66 +35,15 @@ bool is_sloshing(const FluidScene& scene) {
   return volumes.size() == 1 && volumes.front().shape.kind == LiquidShape::Kind::half_space;
 }
 
-/// Largest |V - V0| / V0; absent when a volume is.
-Value largest_drift(const std::vector<Value>& volumes) {
-  Value drift;
-  for (const Value& volume : volumes) {
-    if (!volume || *volumes.front() == 0) return {};
-    drift = std::max(drift.value_or(0), std::abs(*volume / *volumes.front() - 1));
-  }
-  return drift;
-}
-
-/// Relative error of the frequency of the first standing wave.
-Value slosh_error(const FluidScene& scene, const std::vector<double>& times,
-                  const std::vector<std::optional<Columns>>& columns) {
-  std::vector<double> swing;
-  for (const std::optional<Columns>& at : columns) {
-    if (!at) return {};
-    swing.push_back(slosh_amplitude(*at, *scene.gauges));
-  }
-  if (swing.empty()) return {};
-  const double measured = crossing_frequency(times, swing);
-  const double length = scene.tank->cells.x() * scene.tank->cell;
-  const double expected =
-      slosh_frequency(length, columns.front()->depth.mean(), scene.gravity.norm());
-  if (measured == 0 || expected == 0) return {};
-  return std::abs(measured / expected - 1);
-}
-
-enum class GaugeCover : char { unknown, bed, pasted };
-
-/// What the vertices of the bed in a gauge's square say: pasted when a feature moved one of them,
-/// unknown when there is none.
-std::vector<GaugeCover> gauge_cover(const ColumnGrid& grid, const Part& surface,
-                                    const Eigen::MatrixX3i& bed) {
-  std::vector<GaugeCover> cover(grid.count(), GaugeCover::unknown);
+/// A flag a vertex: whether a feature moved it; absent for surfaces that none was pasted into.
+std::optional<std::vector<char>> moved_by_features(const Part& surface) {
   const NamedArray* feature = surface.find_array("feature");
-  if (feature == nullptr) return cover;
-  for (const int v : bed.reshaped()) {
-    const Eigen::Vector2d at =
-        (surface.points.row(v).head<2>().transpose() - grid.origin) / grid.spacing;
-    const int i = static_cast<int>(std::floor(at.x())), j = static_cast<int>(std::floor(at.y()));
-    if (i < 0 || j < 0 || i >= grid.nx || j >= grid.ny) continue;
-    GaugeCover& here = cover[grid.index(i, j)];
-    here = std::max(here, feature->values(v, 0) == 0 ? GaugeCover::bed : GaugeCover::pasted);
+  if (feature == nullptr) return {};
+  std::vector<char> moved(surface.points.rows());
+  for (std::size_t v = 0; v < moved.size(); ++v) {
+    moved[v] = feature->values(static_cast<Eigen::Index>(v), 0) != 0 ? 1 : 0;
   }
-  return cover;
-}
-
-/// Pasted gauges beside one that is bed.
-std::vector<char> seam_gauges(const ColumnGrid& grid, const std::vector<GaugeCover>& cover) {
-  std::vector<char> seam(cover.size(), 0);
-  const auto at = [&](int i, int j) { return cover[grid.index(i, j)]; };
-  for (int j = 1; j + 1 < grid.ny; ++j) {
-    for (int i = 1; i + 1 < grid.nx; ++i) {
-      if (at(i, j) != GaugeCover::pasted) continue;
-      const auto beside = {at(i - 1, j), at(i + 1, j), at(i, j - 1), at(i, j + 1)};
-      const bool border = std::count(beside.begin(), beside.end(), GaugeCover::bed) > 0;
-      if (border) seam[grid.index(i, j)] = 1;
-    }
-  }
-  return seam;
+  return moved;
 }
 
 /// What a frame of the sequence shows to the gauges.
@@ -123,55 +65,13 @@ GaugeFrame gauge_frame(const FluidScene& scene, const FrameSequence& frames, std
   const auto bed_of = [](const TriMesh& mesh) { return TriMesh{mesh.V, largest_component(mesh)}; };
   const TriMesh bed = bed_of(mesh_of(*surface));
   gauge.heights = columns(bed, *scene.gauges).top;
-  gauge.seam = seam_gauges(*scene.gauges, gauge_cover(*scene.gauges, *surface, bed.F));
+  const std::optional<std::vector<char>> moved = moved_by_features(*surface);
+  gauge.seam = moved ? seam_columns(*scene.gauges, bed, *moved)
+                     : std::vector<char>(scene.gauges->count(), 0);
   const SurfaceSequence& target = *scene.sculpt.target;
   const int frame = target.nearest_frame(frames.parameter(i));
   gauge.target = columns(bed_of(target.frame(frame).mesh), *scene.gauges).top;
   return gauge;
-}
-
-Eigen::VectorXd only(const Eigen::VectorXd& values, const std::vector<char>& where) {
-  Eigen::VectorXd kept = values;
-  for (Eigen::Index i = 0; i < kept.size(); ++i) {
-    if (where[i] == 0) {
-      kept[i] = std::numeric_limits<double>::quiet_NaN();
-    }
-  }
-  return kept;
-}
-
-/// Objects of one frame by the track of their vertices.
-std::vector<TrackedObject> tracked_objects(const Part& surface, const NamedArray& track,
-                                           const NamedArray& kind) {
-  struct Sum {
-    TrackedObject object;
-    double area = 0;
-  };
-  std::map<int, Sum> sums;
-  const Eigen::VectorXd areas = triangle_areas(surface.points, surface.triangles);
-  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
-    for (int c = 0; c < 3; ++c) {
-      const int v = surface.triangles(t, c);
-      const int id = static_cast<int>(track.values(v, 0));
-      if (id == 0) continue;
-      const Eigen::Vector3d x = surface.points.row(v);
-      const auto [at, is_new] = sums.try_emplace(id);
-      TrackedObject& object = at->second.object;
-      if (is_new) object.box_min = object.box_max = x;
-      object.id = id;
-      object.kind = static_cast<int>(kind.values(v, 0));
-      object.box_min = object.box_min.cwiseMin(x);
-      object.box_max = object.box_max.cwiseMax(x);
-      object.centre += areas[t] * x;
-      at->second.area += areas[t];
-    }
-  }
-  std::vector<TrackedObject> objects;
-  for (auto& [id, sum] : sums) {
-    if (sum.area > 0) sum.object.centre /= sum.area;
-    objects.push_back(sum.object);
-  }
-  return objects;
 }
 
 TrackedFrames true_objects(const InjectedSequence& injected) {
@@ -181,17 +81,6 @@ TrackedFrames true_objects(const InjectedSequence& injected) {
         {truth.id, truth.isolated ? 1 : 2, truth.centre, truth.box_min, truth.box_max});
   }
   return frames;
-}
-
-/// A flag a vertex: whether a feature moved it; absent for surfaces that none was pasted into.
-std::optional<std::vector<char>> moved_by_features(const Part& surface) {
-  const NamedArray* feature = surface.find_array("feature");
-  if (feature == nullptr) return {};
-  std::vector<char> moved(surface.points.rows());
-  for (std::size_t v = 0; v < moved.size(); ++v) {
-    moved[v] = feature->values(static_cast<Eigen::Index>(v), 0) != 0 ? 1 : 0;
-  }
-  return moved;
 }
 
 }  // namespace
@@ -290,19 +179,25 @@ Value volume_change(const FluidScene&, const Frame& frame, const Frame& referenc
 
 std::optional<TankMeasures> tank_measures(const FluidScene& scene, const FrameSequence& frames) {
   if (!scene.tank || !scene.tank->sources.empty()) return {};
-  const bool sloshes = is_sloshing(scene);
+  bool sloshes = is_sloshing(scene);
   std::vector<Value> volumes;
-  std::vector<std::optional<Columns>> gauges;
+  std::vector<Columns> gauges;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const auto surface = frames.part(i, "surface");
     if (!surface) return {};
     const TriMesh mesh = mesh_of(*surface);
     volumes.push_back(enclosed_volume(mesh));
-    if (sloshes) gauges.push_back(columns_of(scene, mesh));
+    if (!sloshes) continue;
+    const std::optional<Columns> at = columns_of(scene, mesh);
+    sloshes = at.has_value();
+    if (at) gauges.push_back(*at);
   }
   TankMeasures m;
   m.volume_drift = largest_drift(volumes);
-  if (sloshes) m.slosh_frequency_error = slosh_error(scene, frames.parameters(), gauges);
+  if (!sloshes) return m;
+  const double length = scene.tank->cells.x() * scene.tank->cell;
+  m.slosh_frequency_error = slosh_frequency_error(frames.parameters(), gauges, *scene.gauges,
+                                                  length, scene.gravity.norm());
   return m;
 }
 
@@ -369,11 +264,12 @@ SecondDifference second_difference(const FluidScene& scene, const FrameSequence&
     if (before.heights.size() == 0 || now.heights.size() == 0 || after.heights.size() == 0) {
       return {};
     }
-    const Eigen::VectorXd middle = at_seam ? only(now.heights, now.seam) : now.heights;
+    const Eigen::VectorXd middle = at_seam ? values_where(now.heights, now.seam) : now.heights;
     pasted = std::max(pasted, largest_second_difference(before.heights, middle, after.heights));
     if (at_seam) {
-      target = std::max(target, largest_second_difference(before.target, only(now.target, now.seam),
-                                                          after.target));
+      target =
+          std::max(target, largest_second_difference(
+                               before.target, values_where(now.target, now.seam), after.target));
     }
     before = std::move(now);
     now = std::move(after);
@@ -394,7 +290,7 @@ std::optional<TrackingScores> scores_against_truth(const FluidScene& scene,
     const NamedArray* track = surface->find_array("track");
     const NamedArray* kind = surface->find_array("kind");
     if (track == nullptr || kind == nullptr) return {};
-    found.push_back(tracked_objects(*surface, *track, *kind));
+    found.push_back(tracked_objects(mesh_of(*surface), track->values.col(0), kind->values.col(0)));
   }
   if (found.size() != truth.size()) return {};
   TrackingScoreOptions options;

@@ -40,4 +40,16 @@ double slosh_frequency(double length, double depth, double gravity) {
   return std::sqrt(gravity * k * std::tanh(k * depth));
 }
 
+std::optional<double> slosh_frequency_error(const std::vector<double>& times,
+                                            const std::vector<Columns>& columns,
+                                            const ColumnGrid& grid, double length, double gravity) {
+  if (columns.empty()) return {};
+  std::vector<double> swing;
+  for (const Columns& at : columns) swing.push_back(slosh_amplitude(at, grid));
+  const double measured = crossing_frequency(times, swing);
+  const double expected = slosh_frequency(length, columns.front().depth.mean(), gravity);
+  if (measured == 0 || expected == 0) return {};
+  return std::abs(measured / expected - 1);
+}
+
 }  // namespace geoprior

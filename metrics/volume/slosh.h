@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "metrics/volume/liquid_columns.h"
@@ -17,5 +18,13 @@ double crossing_frequency(const std::vector<double>& times, const std::vector<do
 
 /// Linear theory: sqrt(g k tanh(k H)) with k = pi / L (rad/s).
 double slosh_frequency(double length, double depth, double gravity);
+
+/// |w / w0 - 1| of the first standing wave that the gauges saw over time, w0 that of linear theory
+/// at the first instant's mean depth. Absent where the water does not swing twice.
+/// @param columns  of every time, the depths of a closed surface
+/// @param length   of the tank along x (m)
+std::optional<double> slosh_frequency_error(const std::vector<double>& times,
+                                            const std::vector<Columns>& columns,
+                                            const ColumnGrid& grid, double length, double gravity);
 
 }  // namespace geoprior
