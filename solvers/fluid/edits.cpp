@@ -180,47 +180,60 @@ namespace {
 constexpr double kFarAway = 1e6;  // m, s
 
 void describe_selection(OptionVisitor& v, Edit& o) {
-  v.value("name", o.name, {.doc = "what messages call the edit"});
-  v.value("source", o.source, {.doc = "sequence or library of the scene the features come from"});
-  v.value("ids", o.ids, {.doc = "ids of features; none: selected by what follows", .min = 1});
+  v.value("name", o.name, {.doc = "name of the edit in messages"});
+  v.value("source", o.source,
+          {.doc = "sequence or library of the scene that the features come from"});
+  v.value("ids", o.ids,
+          {.doc = "ids of the features; none: all that meet box, interval and smallest_area",
+           .min = 1});
   v.value("box", o.box,
-          {.doc = "x0 y0 z0 x1 y1 z1 that holds the feature's centre at some time; none: any",
+          {.doc = "box x0 y0 z0 x1 y1 z1 that holds the feature's centre at some time; none: any",
            .unit = "m"});
-  v.value("interval", o.interval,
-          {.doc = "t0 t1 in which the feature lives for some time; none: any", .unit = "s"});
+  v.value(
+      "interval", o.interval,
+      {.doc = "times t0 t1 between which the feature lives for a while; none: any", .unit = "s"});
   v.value("smallest_area", o.smallest_area,
-          {.doc = "largest area in time at least this", .unit = "m^2", .min = 0, .max = 1e12});
+          {.doc = "least size that the feature has when it is largest",
+           .unit = "m^2",
+           .min = 0,
+           .max = 1e12});
   v.value("cut", o.cut,
-          {.doc = "the source is the target: its bed is put back under the features, drops are "
-                  "removed, before anything is pasted"});
+          {.doc = "takes the features out of the target, which is their source, before anything is "
+                  "pasted"});
 }
 
 void describe_space(OptionVisitor& v, Edit& o) {
-  v.value("move", o.move, {.doc = "translation", .unit = "m"});
+  v.value("move", o.move, {.doc = "translation of the feature", .unit = "m"});
   v.value("turn_deg", o.turn_deg,
           {.doc = "rotation about the up axis through the pivot",
            .unit = "deg",
            .min = -3600,
            .max = 3600});
-  v.value("pivot_x", o.pivot_x, {.doc = "default: the feature's first centre", .unit = "m"});
-  v.value("pivot_y", o.pivot_y, {.doc = "default: the feature's first centre", .unit = "m"});
+  v.value("pivot_x", o.pivot_x,
+          {.doc = "x of the pivot; absent: of the feature's first centre", .unit = "m"});
+  v.value("pivot_y", o.pivot_y,
+          {.doc = "y of the pivot; absent: of the feature's first centre", .unit = "m"});
   v.value("scale", o.scale,
-          {.doc = "along the feature's own axes: path, across, up", .min = 1e-3, .max = 1e3});
-  v.value("scale_path", o.scale_path, {.doc = "the path is scaled too, about the pivot"});
-  v.value("mirror", o.mirror, {.doc = "across the upright plane of the feature's first x axis"});
-  v.value("froude", o.froude,
-          {.doc = "scale the path too and let time run sqrt(scale) slower: omega^2 = g k is kept"});
+          {.doc = "scale along the feature's own axes: path, across, up", .min = 1e-3, .max = 1e3});
+  v.value("scale_path", o.scale_path, {.doc = "scales the feature's path too, about the pivot"});
+  v.value("mirror", o.mirror,
+          {.doc = "mirrors the feature across the upright plane of its first x axis"});
+  v.value(
+      "froude", o.froude,
+      {.doc =
+           "scales the path too and lets time run sqrt(scale) slower, which keeps omega^2 = g k"});
 }
 
 void describe_time(OptionVisitor& v, Edit& o) {
   v.value("start", o.start,
-          {.doc = "target time of the feature's first frame; default: its own", .unit = "s"});
-  v.value("speed", o.speed, {.doc = "of the feature's clock", .min = 1e-3, .max = 1e3});
-  describe_list(v, "retime", o.retime,
-                {.doc = "target times and the source times shown then, instead of start and speed "
-                        "(monotone cubic)"});
+          {.doc = "target time of the feature's first frame; absent: its own", .unit = "s"});
+  v.value("speed", o.speed, {.doc = "speed of the feature's clock", .min = 1e-3, .max = 1e3});
+  describe_list(
+      v, "retime", o.retime,
+      {.doc =
+           "keys of a monotone cubic from target time to source time, instead of start and speed"});
   describe_list(v, "trajectory", o.trajectory,
-                {.doc = "positions of the feature's centre at times; the fine motion stays"});
+                {.doc = "positions of the feature's centre at times; its fine motion stays"});
   v.value("fade_in", o.fade_in,
           {.doc = "time over which a map grows (quintic)", .unit = "s", .min = 0, .max = kFarAway});
   v.value(
@@ -231,23 +244,27 @@ void describe_time(OptionVisitor& v, Edit& o) {
 }  // namespace
 
 void describe(OptionVisitor& v, EditKey& o) {
-  v.value("t", o.t, {.doc = "on the target's clock", .unit = "s", .required = true});
+  v.value("t", o.t,
+          {.doc = "time of the key on the target's clock", .unit = "s", .required = true});
   v.value("position", o.position,
-          {.doc = "of the feature's centre", .unit = "m", .required = true});
+          {.doc = "position of the feature's centre", .unit = "m", .required = true});
 }
 
 void describe(OptionVisitor& v, TimeKey& o) {
-  v.value("target", o.target, {.doc = "target time", .unit = "s", .required = true});
-  v.value("source", o.source, {.doc = "source time shown then", .unit = "s", .required = true});
+  v.value("target", o.target,
+          {.doc = "time of the key on the target's clock", .unit = "s", .required = true});
+  v.value("source", o.source,
+          {.doc = "source time that is shown at the key", .unit = "s", .required = true});
 }
 
 void describe(OptionVisitor& v, Edit& o) {
   describe_selection(v, o);
   describe_space(v, o);
   describe_time(v, o);
-  v.value("volume_lock", o.volume_lock, {.doc = "the pasted map adds no volume"});
-  v.value("unite", o.unite,
-          {.doc = "isolated features: exact union with the target instead of overlap"});
+  v.value("volume_lock", o.volume_lock, {.doc = "shifts the pasted map so that it adds no volume"});
+  v.value(
+      "unite", o.unite,
+      {.doc = "unites isolated features with the target exactly, instead of letting them overlap"});
 }
 
 void require_valid(const Edit& edit) {

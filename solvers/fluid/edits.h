@@ -12,8 +12,8 @@
 namespace geoprior::fluid {
 
 struct EditKey {
-  double t = 0;                             ///< on the target's clock (s)
-  std::array<double, 3> position{0, 0, 0};  ///< of the feature's centre (m)
+  double t = 0;
+  std::array<double, 3> position{0, 0, 0};
 };
 void describe(OptionVisitor& v, EditKey& options);
 
@@ -27,27 +27,27 @@ void describe(OptionVisitor& v, TimeKey& options);
 /// edit list.
 struct Edit {
   std::string name;
-  std::string source;       ///< which of the scene's sequences or libraries
-  std::vector<double> ids;  ///< of features; empty: by box and size below
+  std::string source;
+  std::vector<double> ids;
   std::vector<double>
       box;  ///< x0 y0 z0 x1 y1 z1 that holds the feature's centre at some time; empty: any
-  std::vector<double> interval;  ///< t0 t1 in which it lives; empty: any
-  double smallest_area = 0;      ///< largest area in time at least this (m^2)
+  std::vector<double> interval;
+  double smallest_area = 0;
   bool cut = false;  ///< the source is the target: the features are taken out of it first
-  std::array<double, 3> move{0, 0, 0};     ///< m
-  double turn_deg = 0;                     ///< about the up axis, through the pivot
+  std::array<double, 3> move{0, 0, 0};  ///< m
+  double turn_deg = 0;
   std::optional<double> pivot_x, pivot_y;  ///< default: the feature's first centre
-  std::array<double, 3> scale{1, 1, 1};    ///< along the feature's own axes
-  bool scale_path = false;                 ///< the path is scaled too, about the pivot
-  bool mirror = false;                     ///< across the upright plane of its first x axis
-  bool froude = false;          ///< path scaled, time sqrt(scale) slower (omega^2 = g k kept)
-  std::optional<double> start;  ///< target time of the feature's first frame (s); default: its own
-  double speed = 1;             ///< of the clock
-  std::vector<TimeKey> retime;  ///< instead of start and speed
-  std::vector<EditKey> trajectory;   ///< positions at times; the fine motion stays
+  std::array<double, 3> scale{1, 1, 1};
+  bool scale_path = false;
+  bool mirror = false;
+  bool froude = false;
+  std::optional<double> start;
+  double speed = 1;
+  std::vector<TimeKey> retime;
+  std::vector<EditKey> trajectory;
   double fade_in = 0, fade_out = 0;  ///< s, quintic
-  bool volume_lock = false;          ///< the pasted map adds no volume
-  bool unite = false;                ///< isolated: exact union with the target instead of overlap
+  bool volume_lock = false;
+  bool unite = false;
 };
 void describe(OptionVisitor& v, Edit& options);
 

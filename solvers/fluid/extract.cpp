@@ -209,10 +209,10 @@ class ExtractFrames final : public FrameModel {
 }  // namespace
 
 void describe(OptionVisitor& v, ExtractOptions& o) {
-  describe_group(v, "extraction", o.extraction, {.doc = "features of the source"});
+  describe_group(v, "extraction", o.extraction, {.doc = "how features are found and lifted out"});
   v.value("lift", o.lift, {.doc = "lifts the features out: their maps are recorded and stored"});
   v.value("map_feature", o.map_feature,
-          {.doc = "id of the differential feature whose map is recorded; absent: the largest",
+          {.doc = "differential feature whose map is recorded, by its id; absent: the largest",
            .min = 1});
 }
 

@@ -30,11 +30,12 @@ class FrameWarnings {
 }  // namespace
 
 void describe(OptionVisitor& v, ExtractionOptions& o) {
-  describe_group(v, "segmentation", o.segmentation, {.doc = "regions of a frame"});
-  describe_group(v, "tracking", o.tracking, {.doc = "regions joined over time"});
+  describe_group(v, "segmentation", o.segmentation,
+                 {.doc = "how the regions of a frame are found"});
+  describe_group(v, "tracking", o.tracking, {.doc = "how regions are joined over time"});
   describe_group(v, "map", o.map, {.doc = "displacement maps of differential features"});
   v.value("shortest_track", o.shortest_track,
-          {.doc = "frames; shorter features are not lifted out", .min = 1, .max = 1e6});
+          {.doc = "least number of frames of a feature that is lifted out", .min = 1, .max = 1e6});
 }
 
 Extraction extract_regions(

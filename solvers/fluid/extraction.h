@@ -18,7 +18,7 @@ struct ExtractionOptions {
   SegmentationOptions segmentation;
   TrackingOptions tracking;
   MapOptions map;
-  int shortest_track = 3;  ///< frames; shorter features are not lifted out
+  int shortest_track = 3;
 };
 void describe(OptionVisitor& v, ExtractionOptions& options);
 

@@ -15,28 +15,29 @@ std::size_t Feature::bytes() const {
 }
 
 void describe(OptionVisitor& v, MapOptions& o) {
-  v.value("texel", o.texel, {.doc = "of a map, at most", .unit = "h", .min = 0.05, .max = 10});
+  v.value("texel", o.texel,
+          {.doc = "largest edge of a map's texel", .unit = "h", .min = 0.05, .max = 10});
   v.value("max_resolution", o.max_resolution,
-          {.doc = "most texels along an edge of a map, above the wish of texel",
+          {.doc = "most texels along an edge of a map, which limits what `texel` asks for",
            .min = 8,
            .max = 4096});
   v.value("min_resolution", o.min_resolution,
           {.doc = "fewest texels along an edge of a map", .min = 8, .max = 4096});
   v.value("vector_map", o.vector_map,
-          {.doc = "vector displacements; false: heights along the base normal"});
+          {.doc = "maps hold vectors; without, heights along the normal of the bed"});
   v.value("border", o.border,
-          {.doc = "width outside the region over which alpha falls to 0 and the bed is made",
+          {.doc = "width beside the region over which alpha falls to 0 and the bed is made",
            .unit = "h",
            .min = 0.5,
            .max = 100});
   v.value("margin", o.margin,
-          {.doc = "extent of the map relative to the region's", .min = 1, .max = 4});
+          {.doc = "ratio of the map's extent to the region's", .min = 1, .max = 4});
   v.value("smoothing_window", o.smoothing_window,
-          {.doc = "frames over which the moving frame is smoothed (Savitzky-Golay, order 2)",
+          {.doc = "frames over which the moving frame is smoothed (Savitzky and Golay, order 2)",
            .min = 1,
            .max = 101});
   v.value("base_smoothing", o.base_smoothing,
-          {.doc = "of the bed in time: weight of the mean of the frames before and after",
+          {.doc = "weight of the frames before and after in the mean that smooths the bed in time",
            .min = 0,
            .max = 1});
 }

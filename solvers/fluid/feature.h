@@ -42,17 +42,16 @@ struct Feature {
 };
 
 struct MapOptions {
-  double texel = 0.5;  ///< at most this (h)
+  double texel = 0.5;
   int max_resolution = 256;
   int min_resolution = 32;
-  bool vector_map = true;  ///< false: heights along the base normal only (ablation)
-  /// Width outside the region over which alpha falls to 0 and the bed is made (h). The bed goes on
-  /// with the surface's slope at its end: three cells would leave a quarter of a small splash
-  /// there.
+  bool vector_map = true;
+  /// The bed goes on with the surface's slope at its end: three cells would leave a quarter of a
+  /// small splash there.
   double border = 6;
-  double margin = 1.2;          ///< extent of the map relative to the region's
-  int smoothing_window = 7;     ///< frames, Savitzky-Golay (order 2) of the placement
-  double base_smoothing = 0.5;  ///< of the base in time: weight of the mean of its neighbours
+  double margin = 1.2;
+  int smoothing_window = 7;
+  double base_smoothing = 0.5;
 };
 void describe(OptionVisitor& v, MapOptions& options);
 

@@ -304,7 +304,7 @@ std::unique_ptr<Process> make_sculpt(const SculptScene& scene, const SculptOptio
 }
 
 void describe(OptionVisitor& v, SculptOptions& o) {
-  describe_group(v, "extraction", o.extraction, {.doc = "features of the sources"});
+  describe_group(v, "extraction", o.extraction, {.doc = "how features are found in the sources"});
   describe_group(v, "paste", o.paste, {.doc = "how features are put into the target"});
 }
 

@@ -24,18 +24,18 @@ enum class VolumeCorrection { none, density };
 /// splitting of advection and pressure of first, which damps eddies at large steps.
 struct LiquidOptions {
   TransferKind transfer = TransferKind::flip;
-  double pic_fraction = 0.03;  ///< alpha: share of PIC in the FLIP update
+  double pic_fraction = 0.03;  ///< alpha
   int particles_per_cell = 8;
-  double cfl = 3;         ///< cells that the fastest particle may cross in a substep
-  int max_substeps = 32;  ///< of a frame; a frame that needs more ends the run with an Error
+  double cfl = 3;
+  int max_substeps = 32;
   /// `density` moves particles, without changing their velocity, so that their density stays even.
   VolumeCorrection volume_correction = VolumeCorrection::density;
-  double volume_rate = 30;  ///< 1/s: deviations of density decay at this rate
-  bool reseed = true;       ///< keep 3 … 2 x particles_per_cell particles in a full cell
+  double volume_rate = 30;
+  bool reseed = true;
   PressureOptions pressure;
   LiquidSurfaceOptions surface;
-  bool record_particles = false;   ///< part "particles" of a frame
-  int record_particles_every = 1;  ///< frames: a splash has more bytes of particles than of surface
+  bool record_particles = false;
+  int record_particles_every = 1;  ///< a splash has more bytes of particles than of surface
 };
 void describe(OptionVisitor& v, LiquidOptions& options);
 

@@ -241,35 +241,38 @@ void describe(OptionVisitor& v, OceanOptions& o) {
                                                             "jonswap", "tma"};
   static constexpr std::array<std::string_view, 4> kSpreadings{"none", "cosine-squared",
                                                                "mitsuyasu", "one-sided"};
-  describe_choice(v, "spectrum", o.spectrum, kSpectra, {.doc = "S(omega)"});
-  describe_choice(v, "spreading", o.spreading, kSpreadings,
-                  {.doc = "D(theta): all directions; 2/pi cos^2; cos^2s(theta/2); downwind half"});
+  describe_choice(v, "spectrum", o.spectrum, kSpectra, {.doc = "spectrum S(omega) of the waves"});
+  describe_choice(
+      v, "spreading", o.spreading, kSpreadings,
+      {.doc = "spreading D(theta): all directions; 2/pi cos^2; cos^2s(theta/2); downwind half"});
+  v.value("samples", o.samples,
+          {.doc = "samples N along each edge of the patch, a power of two",
+           .min = 4,
+           .max = kMostSamples});
+  v.value("size", o.size, {.doc = "edge L of the patch", .unit = "m", .min = 1e-6, .max = 1e7});
   v.value(
-      "samples", o.samples,
-      {.doc = "N, along each edge of the patch, a power of two", .min = 4, .max = kMostSamples});
-  v.value("size", o.size, {.doc = "L, edge of the patch", .unit = "m", .min = 1e-6, .max = 1e7});
-  v.value("wind_speed", o.wind_speed,
-          {.doc = "U, 10 m above the sea", .unit = "m/s", .min = 1e-3, .max = 200});
+      "wind_speed", o.wind_speed,
+      {.doc = "speed U of the wind 10 m above the sea", .unit = "m/s", .min = 1e-3, .max = 200});
   v.value("wind_direction_deg", o.wind_direction_deg,
-          {.doc = "where it blows to, from +x towards +y", .unit = "deg"});
+          {.doc = "direction that the wind blows to, from +x towards +y", .unit = "deg"});
   v.value("fetch", o.fetch,
-          {.doc = "F, distance over which it blows (jonswap, tma)", .unit = "m", .min = 1e-3});
+          {.doc = "distance F over which the wind blows (jonswap, tma)", .unit = "m", .min = 1e-3});
   v.value("peak_enhancement", o.peak_enhancement,
-          {.doc = "gamma (jonswap, tma)", .min = 1, .max = 20});
-  v.value("depth", o.depth, {.doc = "H", .unit = "m", .min = 1e-6});
-  v.value("gravity", o.gravity, {.doc = "g", .unit = "m/s^2", .min = 1e-6});
+          {.doc = "enhancement gamma of the spectrum's peak (jonswap, tma)", .min = 1, .max = 20});
+  v.value("depth", o.depth, {.doc = "depth H of the water", .unit = "m", .min = 1e-6});
+  v.value("gravity", o.gravity, {.doc = "acceleration g of gravity", .unit = "m/s^2", .min = 1e-6});
   v.value("choppiness", o.choppiness,
-          {.doc = "lambda, scale of the horizontal displacement", .min = 0, .max = 10});
+          {.doc = "scale lambda of the horizontal displacement", .min = 0, .max = 10});
   v.value("smallest_wave", o.smallest_wave,
-          {.doc = "length s of waves that are damped by 1/e, shorter ones more",
+          {.doc = "length s of waves that are damped by 1/e; shorter ones are damped more",
            .unit = "m",
            .min = 0});
   v.value("amplitude", o.amplitude,
           {.doc = "significant wave height to scale to; absent: as the spectrum says",
            .unit = "m",
            .min = 0});
-  v.value("mean_level", o.mean_level, {.doc = "z of the rest surface", .unit = "m"});
-  v.value("tiles", o.tiles, {.doc = "patches along x and y", .min = 1, .max = 64});
+  v.value("mean_level", o.mean_level, {.doc = "level z of the rest surface", .unit = "m"});
+  v.value("tiles", o.tiles, {.doc = "patches along x and along y", .min = 1, .max = 64});
 }
 
 double vertices_of(const OceanOptions& o) {

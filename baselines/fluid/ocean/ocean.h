@@ -22,19 +22,19 @@ enum class SpreadingKind { none, cosine_squared, mitsuyasu, one_sided };
 struct OceanOptions {
   SpectrumKind spectrum = SpectrumKind::jonswap;
   SpreadingKind spreading = SpreadingKind::cosine_squared;
-  int samples = 128;                ///< N x N of the patch, a power of two
-  double size = 100;                ///< L, edge of the patch (m)
-  double wind_speed = 10;           ///< U at 10 m (m/s)
-  double wind_direction_deg = 0;    ///< where it blows to, from +x towards +y
-  double fetch = 100e3;             ///< F (m): JONSWAP, TMA
-  double peak_enhancement = 3.3;    ///< gamma: JONSWAP, TMA
-  double depth = 1000;              ///< H (m)
-  double gravity = 9.81;            ///< m/s^2
-  double choppiness = 1;            ///< lambda of the horizontal displacement
-  double smallest_wave = 0;         ///< waves shorter than this are damped by exp(-(k s/2pi)^2) (m)
-  std::optional<double> amplitude;  ///< significant wave height to scale to (m); as the spectrum
-  double mean_level = 0;            ///< z of the rest surface (m)
-  int tiles = 1;                    ///< the patch repeated this many times along x and y
+  int samples = 128;
+  double size = 100;
+  double wind_speed = 10;
+  double wind_direction_deg = 0;
+  double fetch = 100e3;
+  double peak_enhancement = 3.3;
+  double depth = 1000;
+  double gravity = 9.81;
+  double choppiness = 1;
+  double smallest_wave = 0;  ///< damping exp(-(k s/2pi)^2)
+  std::optional<double> amplitude;
+  double mean_level = 0;
+  int tiles = 1;
 };
 void describe(OptionVisitor& v, OceanOptions& options);
 

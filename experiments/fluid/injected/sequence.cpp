@@ -67,29 +67,36 @@ TriMesh contoured_sphere(const Eigen::Vector3d& centre, double radius, double sp
 }  // namespace
 
 void describe(OptionVisitor& v, InjectedOptions& o) {
-  v.value("bumps", o.bumps, {.doc = "Gaussian bumps, each in a lane", .min = 0, .max = 100});
-  v.value("rings", o.rings, {.doc = "ring waves", .min = 0, .max = 100});
-  v.value("drops", o.drops, {.doc = "drops that fall where a ring begins", .min = 0, .max = 100});
+  v.value("bumps", o.bumps,
+          {.doc = "Gaussian bumps that travel, each in a lane of its own", .min = 0, .max = 100});
+  v.value("rings", o.rings,
+          {.doc = "ring waves that expand, each in a place of its own", .min = 0, .max = 100});
+  v.value("drops", o.drops,
+          {.doc = "drops that fall where a ring begins, at most as many as rings",
+           .min = 0,
+           .max = 100});
   v.value("crossings", o.crossings,
-          {.doc = "pairs of drops that pass closely", .min = 0, .max = 100});
-  v.value("merges", o.merges, {.doc = "pairs of bumps that merge", .min = 0, .max = 100});
+          {.doc = "pairs of drops that pass each other closely", .min = 0, .max = 100});
+  v.value("merges", o.merges,
+          {.doc = "pairs of bumps of which one runs into the other", .min = 0, .max = 100});
   v.value(
       "dropout", o.dropout,
       {.doc = "probability that a feature begins to be missing in a frame", .min = 0, .max = 1});
   v.value("longest_dropout", o.longest_dropout,
-          {.doc = "frames that a feature may be missing in a row", .min = 1, .max = 100});
+          {.doc = "frames in a row that a feature may be missing", .min = 1, .max = 100});
   v.value("noise", o.noise,
           {.doc = "standard deviation of the distance at lattice nodes",
            .unit = "h",
            .min = 0,
            .max = 1});
-  v.value("resolution", o.resolution, {.doc = "lattice nodes per cell", .min = 1, .max = 16});
-  v.value("frames", o.frames, {.doc = "frames", .min = 1, .max = 10000});
-  v.value("cell", o.cell, {.doc = "cell of resolution 1", .unit = "m", .min = 1e-6, .max = 1e6});
+  v.value("resolution", o.resolution, {.doc = "lattice nodes along a cell", .min = 1, .max = 16});
+  v.value("frames", o.frames, {.doc = "number of frames", .min = 1, .max = 10000});
+  v.value("cell", o.cell,
+          {.doc = "edge of a cell at resolution 1", .unit = "m", .min = 1e-6, .max = 1e6});
   v.value("frame_interval", o.frame_interval,
-          {.doc = "between frames", .unit = "s", .min = 1e-6, .max = 1e3});
-  v.value("tank", o.tank, {.doc = "a closed tank instead of an open height field"});
-  v.value("velocity", o.velocity, {.doc = "frames carry velocities"});
+          {.doc = "time from frame to frame", .unit = "s", .min = 1e-6, .max = 1e3});
+  v.value("tank", o.tank, {.doc = "makes a closed tank instead of an open height field"});
+  v.value("velocity", o.velocity, {.doc = "gives the frames velocities, those of the drops"});
 }
 
 InjectedSequence::InjectedSequence(const InjectedOptions& options) : options_(options) {

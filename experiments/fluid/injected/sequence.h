@@ -12,20 +12,20 @@ namespace geoprior::fluid {
 /// against: a pool with bumps that travel in lanes, rings that expand where drops fall, drops that
 /// cross each other in the air. No physics but the drops' parabolas.
 struct InjectedOptions {
-  int bumps = 2;       ///< Gaussian bumps, each travelling along a lane of its own
-  int rings = 3;       ///< ring waves, each expanding in a place of its own
-  int drops = 2;       ///< drops that fall where a ring begins; at most `rings`
-  int crossings = 1;   ///< pairs of drops that pass each other closely
-  int merges = 0;      ///< pairs of bumps, in lanes of their own, of which one runs into the other
+  int bumps = 2;
+  int rings = 3;
+  int drops = 2;
+  int crossings = 1;
+  int merges = 0;
   double dropout = 0;  ///< share of frames, but its first and last two, that miss a feature
-  int longest_dropout = 1;  ///< frames
-  double noise = 0;         ///< standard deviation of the surface's distance at lattice nodes (h)
-  int resolution = 1;       ///< lattice nodes per `cell`, along each axis
+  int longest_dropout = 1;
+  double noise = 0;
+  int resolution = 1;
   int frames = 36;
-  double cell = 0.02;                ///< of resolution 1 (m); features do not depend on resolution
-  double frame_interval = 1.0 / 30;  ///< s
-  bool tank = false;                 ///< closed: floor and sides; else an open height field
-  bool velocity = false;             ///< gives the drops' velocities with the frames
+  double cell = 0.02;
+  double frame_interval = 1.0 / 30;
+  bool tank = false;
+  bool velocity = false;
   std::uint64_t seed = 1;
 };
 void describe(OptionVisitor& v, InjectedOptions& options);

@@ -19,13 +19,13 @@ namespace geoprior::fluid {
 struct LiquidShapeOptions {
   LiquidShape::Kind kind = LiquidShape::Kind::box;
   std::array<double, 3> centre{0, 0, 0};
-  std::array<double, 3> size{1, 1, 1};  ///< full edges of the box (m)
+  std::array<double, 3> size{1, 1, 1};
   double radius = 0.1;
   std::array<double, 3> axis{0, 0, 1};
-  double length = 0.2;    ///< of the cylinder (m)
-  std::string file;       ///< mesh: .obj, .ply, .off, .vtp
-  double scale = 1;       ///< metres a unit of the file
-  double turn_z_deg = 0;  ///< of the mesh about z, before it is placed
+  double length = 0.2;
+  std::string file;
+  double scale = 1;
+  double turn_z_deg = 0;
 };
 void describe(OptionVisitor& v, LiquidShapeOptions& options);
 
@@ -87,12 +87,12 @@ enum class TargetKind { sequence, mesh, ocean, injected };
 struct TargetOptions {
   TargetKind kind = TargetKind::sequence;
   SequenceOptions sequence;
-  std::string file;                         ///< mesh
-  double scale = 1;                         ///< metres a unit of the file
-  std::array<double, 3> move{0, 0, 0};      ///< of the mesh, after scale and turn (m)
-  std::array<double, 3> turn_deg{0, 0, 0};  ///< axis times angle
+  std::string file;
+  double scale = 1;
+  std::array<double, 3> move{0, 0, 0};
+  std::array<double, 3> turn_deg{0, 0, 0};
   OceanOptions ocean;
-  int ocean_seed = 1;  ///< of the waves' amplitudes and phases
+  int ocean_seed = 1;
 };
 void describe(OptionVisitor& v, TargetOptions& options);
 
@@ -101,7 +101,7 @@ void describe(OptionVisitor& v, TargetOptions& options);
 struct FluidSceneOptions {
   double duration = 1;
   double frame_interval = 0.04;
-  double start = 0;  ///< time of the first frame of a paste (s)
+  double start = 0;
   std::array<double, 3> gravity{0, 0, -9.81};
   std::optional<TankOptions> tank;
   std::optional<InjectedOptions> injected;
@@ -109,7 +109,7 @@ struct FluidSceneOptions {
   std::vector<LibraryOptions> libraries;
   std::optional<TargetOptions> target;
   std::vector<Edit> edits;
-  std::optional<std::string> edit_list;  ///< file of further edits
+  std::optional<std::string> edit_list;
 };
 void describe(OptionVisitor& v, FluidSceneOptions& options);
 

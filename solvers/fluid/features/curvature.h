@@ -12,8 +12,7 @@ enum class CurvatureKind { cotangent, jet };
 
 struct CurvatureOptions {
   CurvatureKind kind = CurvatureKind::cotangent;
-  double cotangent_limit = 20;  ///< cotangents are clamped to ± this: slivers of contouring
-  int smoothing = 2;            ///< passes of H <- (H + mean of the ring) / 2, by area
+  int smoothing = 2;  ///< passes of H <- (H + mean of the ring) / 2, by area
 };
 void describe(OptionVisitor& v, CurvatureOptions& options);
 

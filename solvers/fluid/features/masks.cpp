@@ -49,21 +49,21 @@ bool in_tank_band(const Wall& tank, const Eigen::Vector3d& x, const Eigen::Vecto
 }  // namespace
 
 void describe(OptionVisitor& v, MaskBox& o) {
-  v.value("low", o.low, {.doc = "lower corner", .unit = "m", .required = true});
-  v.value("high", o.high, {.doc = "upper corner", .unit = "m", .required = true});
+  v.value("low", o.low, {.doc = "lower corner of the box", .unit = "m", .required = true});
+  v.value("high", o.high, {.doc = "upper corner of the box", .unit = "m", .required = true});
 }
 
 void describe(OptionVisitor& v, MaskOptions& o) {
   v.value("infer_walls", o.infer_walls,
-          {.doc = "find the walls of a closed tank: planar sides and floor of the bounding box"});
+          {.doc = "finds the walls of a closed tank: planar sides and floor of the bounding box"});
   v.value("band", o.band,
-          {.doc = "vertices within this distance of a wall or solid are masked",
+          {.doc = "distance from a wall or solid within which vertices are masked",
            .unit = "h",
            .min = 0,
            .max = 100});
   describe_list(v, "containers", o.containers,
-                {.doc = "tanks given: their sides and floors are walls"});
-  describe_list(v, "solids", o.solids, {.doc = "bodies in the liquid given as boxes"});
+                {.doc = "tanks as boxes, whose sides and floors are walls"});
+  describe_list(v, "solids", o.solids, {.doc = "bodies in the liquid as boxes"});
 }
 
 Wall infer_walls(std::span<const std::vector<WallSample>> frames, double cell) {

@@ -10,17 +10,17 @@
 namespace geoprior::fluid {
 
 struct MaskBox {
-  std::array<double, 3> low{0, 0, 0}, high{1, 1, 1};  ///< corners (m)
+  std::array<double, 3> low{0, 0, 0}, high{1, 1, 1};
 };
 void describe(OptionVisitor& v, MaskBox& options);
 
 /// Parts of a frame that are not considered, because a wall or a solid bends the surface there:
 /// given as boxes, or inferred.
 struct MaskOptions {
-  bool infer_walls = true;  ///< planar sides and floor of the sequence's bounding box
-  double band = 2.5;        ///< vertices within this many cells of a wall or solid are masked
-  std::vector<MaskBox> containers;  ///< tanks: sides and floor of these
-  std::vector<MaskBox> solids;      ///< bodies in the liquid: all around these
+  bool infer_walls = true;
+  double band = 2.5;
+  std::vector<MaskBox> containers;
+  std::vector<MaskBox> solids;
 };
 void describe(OptionVisitor& v, MaskOptions& options);
 

@@ -226,6 +226,19 @@ std::vector<int> label_drops(const Canvas& c, const std::vector<char>& masked, d
   return drops;
 }
 
+/// Vertices of the bed that waves hold: thresholds, then closing, opening and holes.
+std::vector<char> waves_of(const Canvas& c, const Thresholds& thresholds,
+                           const SegmentationOptions& options, double cell) {
+  std::vector<char> set = hysteresis(c, thresholds.high / cell, thresholds.low / cell);
+  Morphology morphology(c.graph, c.active);
+  morphology.dilate(set, options.close_radius * cell);
+  morphology.erode(set, options.close_radius * cell);
+  morphology.erode(set, options.open_radius * cell);
+  morphology.dilate(set, options.open_radius * cell);
+  morphology.fill_holes(set, c.shape.area, options.largest_hole * cell * cell);
+  return set;
+}
+
 void require_frame(const SurfaceFrame& frame, int frame_index) {
   if (frame.velocity.rows() != 0 && frame.velocity.rows() != frame.mesh.V.rows()) {
     throw Error(std::to_string(frame.velocity.rows()) + " velocities for " +
@@ -262,14 +275,7 @@ SegmentedFrame Segmenter::segment(const SurfaceFrame& frame, int frame_index) co
     c.active[v] = role == ComponentRole::bed && result.masked[v] == 0;
   }
 
-  std::vector<char> set = hysteresis(c, thresholds_.high / cell_, thresholds_.low / cell_);
-  Morphology morphology(c.graph, c.active);
-  morphology.dilate(set, options_.close_radius * cell_);
-  morphology.erode(set, options_.close_radius * cell_);
-  morphology.erode(set, options_.open_radius * cell_);
-  morphology.dilate(set, options_.open_radius * cell_);
-  morphology.fill_holes(set, c.shape.area, options_.largest_hole * cell_ * cell_);
-
+  const std::vector<char> set = waves_of(c, thresholds_, options_, cell_);
   const double smallest = options_.smallest_area * cell_ * cell_;
   const int waves = label_parts(c, set, smallest, 1, result.label) - 1;
   const std::vector<int> drops = label_drops(c, result.masked, smallest, waves + 1, result.label);

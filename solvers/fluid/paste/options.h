@@ -11,13 +11,12 @@ enum class MappingKind { automatic, projection, exponential };
 
 struct PasteOptions {
   MappingKind mapping = MappingKind::automatic;
-  bool refine = true;  ///< split target edges longer than `refine_texels` texels under a map
+  bool refine = true;
   double refine_texels = 2;
-  double projection_reach =
-      1;  ///< how far along the normal the target may lie from the map's plane, in extents
-  int max_triangles = 4'000'000;  ///< refused beyond, with the size needed
-  bool velocity = true;           ///< rates of the displacements are added to known velocities
-  bool leave_out = false;  ///< nothing is pasted: the null control of claims about pasted features
+  double projection_reach = 1;
+  int max_triangles = 4'000'000;
+  bool velocity = true;
+  bool leave_out = false;
 };
 void describe(OptionVisitor& v, PasteOptions& options);
 

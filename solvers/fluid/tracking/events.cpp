@@ -9,6 +9,11 @@
 namespace geoprior::fluid {
 namespace {
 
+// Chosen: the thesis proposes a graph of causes, and no figures.
+constexpr double kOverlapForEvent = 0.3;  ///< share of cubes that makes a split or merge
+constexpr double kCauseDelay = 0.25;      ///< from a drop's end to the wave's begin, at most (s)
+constexpr double kCauseReach = 6;         ///< from the drop to the wave, beside its radius (h)
+
 /// Looks for events at the ends of tracks.
 class EventFinder {
  public:
@@ -61,7 +66,7 @@ class EventFinder {
   template <class Suits>
   [[nodiscard]] int best_overlap(int r, int frame, bool moves_other, const Suits& suits) const {
     int best = -1;
-    double most = options_.overlap_for_event;
+    double most = kOverlapForEvent;
     const double dt = times_[frame] - time_of(r);
     const Eigen::Vector3d own_way = moves_other ? Eigen::Vector3d::Zero() : way(r, dt);
     for (int o = offset_[frame]; o < offset_[frame + 1]; ++o) {
@@ -113,12 +118,12 @@ class EventFinder {
       if (drop.kind != RegionKind::isolated || delay <= 0) continue;
       const auto next = static_cast<std::size_t>(region(last).frame) + 1;
       const double step = times_[next] - time_of(last);
-      if (delay > std::max(options_.cause_delay, step)) continue;
+      if (delay > std::max(kCauseDelay, step)) continue;
       const Eigen::Vector3d at = region(last).centre, on = at + way(last, step);
       const double distance =
           std::sqrt(std::min(box.squaredExteriorDistance(at), box.squaredExteriorDistance(on)));
       const double size = std::cbrt(0.75 / std::numbers::pi * region(last).volume);
-      if (distance > options_.cause_reach * cell_ + size || distance >= nearest) continue;
+      if (distance > kCauseReach * cell_ + size || distance >= nearest) continue;
       nearest = distance;
       cause = drop.id;
     }

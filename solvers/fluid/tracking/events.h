@@ -12,10 +12,10 @@ namespace geoprior::fluid {
 ///  - split: a track begins where a region of another, which goes on, was in the frame before;
 ///  - merge: a track ends where a region of another, which was there already, is in the next frame;
 ///  - causes: an isolated track ends, and a differential one that no split began begins close to
-///    where it was heading, within `cause_delay` and `cause_reach`. Every wave has one cause at
-///    most, the nearest.
+///    where it was heading, within a quarter of a second and six cells beside its radius. Every
+///    wave has one cause at most, the nearest.
 /// Regions are where their motion takes them; they overlap when the smaller one's cubes (two cells,
-/// give or take one) are shared by `overlap_for_event`. An end in the last frame is no end, a
+/// give or take one) are shared by three in ten. An end in the last frame is no end, a
 /// beginning in the first no beginning.
 /// @return  by frame, kind, from, to
 std::vector<TrackEvent> track_events(std::span<const Region> regions, std::span<const double> times,

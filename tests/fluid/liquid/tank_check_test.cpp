@@ -59,7 +59,7 @@ TEST_P(TankCheckOf, NamesWhatIsWrongAndWhere) {
   EXPECT_THAT(problem, testing::HasSubstr(GetParam().what));
 }
 
-const double kNan = std::numeric_limits<double>::quiet_NaN();
+const double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 TriMesh tetrahedron() {
   TriMesh mesh;
@@ -75,28 +75,32 @@ void use_mesh(Tank& tank, const TriMesh& mesh) {
   tank.solids[0].shape.mesh = mesh;
 }
 
-std::vector<Fault> faults() {
-  return {Fault{"ZeroCell", [](Tank& t) { t.cell = 0; }, "scene.cell", "positive"},
-          Fault{"NanCell", [](Tank& t) { t.cell = kNan; }, "scene.cell", "positive"},
-          Fault{"NoCells", [](Tank& t) { t.cells.y() = 0; }, "scene.cells", "at least 1"},
-          Fault{"NanGravity", [](Tank& t) { t.gravity.x() = kNan; }, "scene.gravity", "finite"},
-          Fault{"ZeroDensity", [](Tank& t) { t.density = 0; }, "scene.density", "positive"},
-          Fault{"ZeroInterval", [](Tank& t) { t.frame_interval = 0; }, "scene.frame_interval",
-                "positive"},
-          Fault{"NegativeDuration", [](Tank& t) { t.duration = -1; }, "scene.duration", "-1"},
-          Fault{"ZeroRadius", [](Tank& t) { t.solids[0].shape.radius = 0; },
-                "scene.solids.0.shape.radius", "positive"},
-          Fault{"NanCentre", [](Tank& t) { t.solids[0].shape.centre.z() = kNan; },
-                "scene.solids.0.shape.centre", "finite"},
-          Fault{"NanVelocity", [](Tank& t) { t.volumes[0].velocity.x() = kNan; },
-                "scene.volumes.0.velocity", "finite"},
-          Fault{"LongAxis",
-                [](Tank& t) {
-                  t.solids[0].shape.kind = LiquidShape::Kind::half_space;
-                  t.solids[0].shape.axis = {0, 0, 2};
-                },
-                "scene.solids.0.shape.axis", "unit"},
-          Fault{"VolumeOutside", [](Tank& t) { t.volumes[0].shape.centre.x() = 9; },
+std::vector<Fault> faults_of_numbers() {
+  return {
+      Fault{"ZeroCell", [](Tank& t) { t.cell = 0; }, "scene.cell", "positive"},
+      Fault{"NanCell", [](Tank& t) { t.cell = kNotANumber; }, "scene.cell", "positive"},
+      Fault{"NoCells", [](Tank& t) { t.cells.y() = 0; }, "scene.cells", "at least 1"},
+      Fault{"NanGravity", [](Tank& t) { t.gravity.x() = kNotANumber; }, "scene.gravity", "finite"},
+      Fault{"ZeroDensity", [](Tank& t) { t.density = 0; }, "scene.density", "positive"},
+      Fault{"ZeroInterval", [](Tank& t) { t.frame_interval = 0; }, "scene.frame_interval",
+            "positive"},
+      Fault{"NegativeDuration", [](Tank& t) { t.duration = -1; }, "scene.duration", "-1"},
+      Fault{"ZeroRadius", [](Tank& t) { t.solids[0].shape.radius = 0; },
+            "scene.solids.0.shape.radius", "positive"},
+      Fault{"NanCentre", [](Tank& t) { t.solids[0].shape.centre.z() = kNotANumber; },
+            "scene.solids.0.shape.centre", "finite"},
+      Fault{"NanVelocity", [](Tank& t) { t.volumes[0].velocity.x() = kNotANumber; },
+            "scene.volumes.0.velocity", "finite"},
+      Fault{"LongAxis",
+            [](Tank& t) {
+              t.solids[0].shape.kind = LiquidShape::Kind::half_space;
+              t.solids[0].shape.axis = {0, 0, 2};
+            },
+            "scene.solids.0.shape.axis", "unit"}};
+}
+
+std::vector<Fault> faults_of_places() {
+  return {Fault{"VolumeOutside", [](Tank& t) { t.volumes[0].shape.centre.x() = 9; },
                 "scene.volumes.0.shape", "'pool' holds no cell"},
           Fault{"VolumeBetweenCentres",
                 [](Tank& t) {
@@ -125,8 +129,11 @@ std::vector<Fault> faults() {
                 },
                 "scene.solids.0.motion.1.time", "increase"},
           Fault{"NoKeys", [](Tank& t) { t.solids[0].motion = Trajectory{}; },
-                "scene.solids.0.motion", "at least one key"},
-          Fault{"OpenMesh",
+                "scene.solids.0.motion", "at least one key"}};
+}
+
+std::vector<Fault> faults_of_meshes() {
+  return {Fault{"OpenMesh",
                 [](Tank& t) {
                   TriMesh mesh = tetrahedron();
                   mesh.F.conservativeResize(3, 3);
@@ -143,13 +150,16 @@ std::vector<Fault> faults() {
           Fault{"NanVertex",
                 [](Tank& t) {
                   TriMesh mesh = tetrahedron();
-                  mesh.V(2, 1) = kNan;
+                  mesh.V(2, 1) = kNotANumber;
                   use_mesh(t, mesh);
                 },
                 "scene.solids.0.shape.mesh", "vertex 2"},
           Fault{"EmptyMesh", [](Tank& t) { use_mesh(t, {}); }, "scene.solids.0.shape.mesh",
-                "no triangles"},
-          Fault{"SourceThatEndsBeforeItStarts",
+                "no triangles"}};
+}
+
+std::vector<Fault> faults_of_sources_and_size() {
+  return {Fault{"SourceThatEndsBeforeItStarts",
                 [](Tank& t) {
                   LiquidSource source;
                   source.shape.centre = {0.5, 0.5, 0.5};
@@ -168,7 +178,11 @@ std::vector<Fault> faults() {
 
 std::string name_of(const testing::TestParamInfo<Fault>& fault) { return fault.param.name; }
 
-INSTANTIATE_TEST_SUITE_P(Faults, TankCheckOf, testing::ValuesIn(faults()), name_of);
+INSTANTIATE_TEST_SUITE_P(Numbers, TankCheckOf, testing::ValuesIn(faults_of_numbers()), name_of);
+INSTANTIATE_TEST_SUITE_P(Places, TankCheckOf, testing::ValuesIn(faults_of_places()), name_of);
+INSTANTIATE_TEST_SUITE_P(Meshes, TankCheckOf, testing::ValuesIn(faults_of_meshes()), name_of);
+INSTANTIATE_TEST_SUITE_P(Sources, TankCheckOf, testing::ValuesIn(faults_of_sources_and_size()),
+                         name_of);
 
 TEST(TankCheck, ASoundTankPasses) {
   EXPECT_EQ(problem_of(sound_tank()), "");

@@ -327,18 +327,21 @@ PressureReport PressureSolver::project(const SolidFractions& solids,
 void describe(OptionVisitor& v, PressureOptions& options) {
   static constexpr std::array<std::string_view, 2> kPreconditioners{"multigrid",
                                                                     "incomplete-cholesky"};
-  describe_choice(v, "preconditioner", options.preconditioner, kPreconditioners,
-                  {.doc = "of the conjugate gradients: V-cycle of aggregates, or MIC(0)"});
+  describe_choice(
+      v, "preconditioner", options.preconditioner, kPreconditioners,
+      {.doc = "preconditioner of the conjugate gradients: a V-cycle of aggregates, or MIC(0)"});
   v.value("tolerance", options.tolerance,
           {.doc = "largest residual relative to the largest right-hand side",
            .min = 1e-12,
            .max = 0.1});
-  v.value("max_iterations", options.max_iterations,
-          {.doc = "of the conjugate gradients; 0: the velocity stays as it is (a null control)",
-           .min = 0,
-           .max = 1e6});
+  v.value(
+      "max_iterations", options.max_iterations,
+      {.doc =
+           "most iterations of the conjugate gradients; with 0 the velocity stays (a null control)",
+       .min = 0,
+       .max = 1e6});
   v.value("smallest_theta", options.smallest_theta,
-          {.doc = "fraction between liquid and air centres is clamped to this",
+          {.doc = "least fraction of liquid between the centres of a liquid cell and of air",
            .min = 1e-6,
            .max = 0.5});
 }

@@ -13,8 +13,8 @@ enum class PressurePreconditioner { multigrid, incomplete_cholesky };
 
 struct PressureOptions {
   PressurePreconditioner preconditioner = PressurePreconditioner::multigrid;
-  double tolerance = 1e-5;   ///< largest residual relative to the largest right-hand side
-  int max_iterations = 400;  ///< 0: the velocity stays as it is (a null control)
+  double tolerance = 1e-5;
+  int max_iterations = 400;
   /// Ghost-fluid fraction is clamped to this: moves a surface by at most this share of a cell.
   double smallest_theta = 0.01;
 };
