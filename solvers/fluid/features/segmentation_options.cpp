@@ -61,7 +61,6 @@ void describe(OptionVisitor& v, SegmentationOptions& o) {
                   "if that is open)",
            .min = 0,
            .max = 1});
-  v.value("handles", o.handles, {.doc = "isolated components may have handles, as torn crowns do"});
 }
 
 }  // namespace geoprior::fluid

@@ -27,7 +27,6 @@ struct SegmentationOptions {
   double open_radius = 1;
   double largest_hole = 100;
   double largest_drop = 0.1;
-  bool handles = true;
 };
 void describe(OptionVisitor& v, SegmentationOptions& options);
 

@@ -20,8 +20,7 @@ ComponentRoles component_roles(const SurfaceComponents& components,
           largest->closed ? std::abs(c.volume) <= options.largest_drop * std::abs(largest->volume)
                           : c.area <= options.largest_drop * largest->area;
       if (outward * c.volume < 0) role = ComponentRole::bubble;
-      if (outward * c.volume > 0 && small && (options.handles || c.euler == 2))
-        role = ComponentRole::drop;
+      if (outward * c.volume > 0 && small) role = ComponentRole::drop;
     }
     result.role.push_back(role);
   }

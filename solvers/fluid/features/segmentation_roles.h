@@ -10,7 +10,8 @@ namespace geoprior::fluid {
 enum class ComponentRole { bed, drop, bubble };
 
 /// What every component of a frame is. The largest by area is bed; others are drops when they are
-/// closed, of its orientation and small beside it (by volume; by area beside an open bed), bubbles
+/// closed, of its orientation and small beside it (by volume; by area beside an open bed), with
+/// handles or without as torn crowns have them, bubbles
 /// when closed and of the opposite orientation, else bed.
 struct ComponentRoles {
   std::vector<ComponentRole> role;

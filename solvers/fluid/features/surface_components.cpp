@@ -11,11 +11,9 @@ void flood(const SurfaceGraph& g, int start, int label, SurfaceComponents& resul
   SurfaceComponent& component = result.list.emplace_back();
   queue.assign(1, start);
   result.of_vertex[start] = label;
-  std::size_t half_edges = 0;
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const int v = queue[i];
     component.closed = component.closed && g.border[v] == 0;
-    half_edges += g.neighbours(queue[i]).size();
     for (const int n : g.neighbours(queue[i])) {
       if (result.of_vertex[n] >= 0) continue;
       result.of_vertex[n] = label;
@@ -23,7 +21,6 @@ void flood(const SurfaceGraph& g, int start, int label, SurfaceComponents& resul
     }
   }
   component.vertices = static_cast<int>(queue.size());
-  component.euler = component.vertices - static_cast<int>(half_edges / 2);
 }
 
 }  // namespace
@@ -47,7 +44,6 @@ SurfaceComponents surface_components(const SurfaceGraph& g) {
     const Eigen::Vector3d c = g.x[t[2]] - origin;
     const Eigen::Vector3d twice = (b - a).cross(c - a);
     const double volume = a.dot(b.cross(c)) / 6;
-    ++component.euler;
     component.area += twice.norm() / 2;
     component.upward += twice.z() / 2;
     component.volume += volume;

@@ -11,7 +11,6 @@ namespace geoprior::fluid {
 struct SurfaceComponent {
   int vertices = 0;
   bool closed = true;  ///< no vertex on a border
-  int euler = 0;       ///< V - E + F: 2 without handles
   double area = 0;     ///< m^2
   double volume = 0;   ///< signed, of a closed one (m^3); negative: oriented inwards
   double upward = 0;   ///< integral of the normal's z (m^2)

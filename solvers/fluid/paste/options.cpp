@@ -26,9 +26,6 @@ void describe(OptionVisitor& v, PasteOptions& o) {
            .max = 1000});
   v.value("max_triangles", o.max_triangles,
           {.doc = "triangles beyond which a refined target is refused", .min = 1});
-  v.value(
-      "velocity", o.velocity,
-      {.doc = "adds the rates of the displacements to the target's velocity where that is known"});
   v.value("leave_out", o.leave_out,
           {.doc = "pastes nothing: the target less what was cut out of it (a null control)"});
 }

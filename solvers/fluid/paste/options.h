@@ -15,7 +15,6 @@ struct PasteOptions {
   double refine_texels = 2;
   double projection_reach = 1;
   int max_triangles = 4'000'000;
-  bool velocity = true;
   bool leave_out = false;
 };
 void describe(OptionVisitor& v, PasteOptions& options);

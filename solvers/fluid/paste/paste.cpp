@@ -125,7 +125,7 @@ std::vector<PlacedMap> place_maps(const std::vector<Present>& present, double ti
     std::vector<MapCoordinates*> others;
     for (PlacedMap& other : placed) others.push_back(&other.places);
     refine_under_map(mesh, next.map, options, who(p), next.places, others);
-    if (options.velocity && !mesh.velocity.empty()) next.instants = instants_about(p, time, up);
+    if (!mesh.velocity.empty()) next.instants = instants_about(p, time, up);
     placed.push_back(std::move(next));
   }
   return placed;
