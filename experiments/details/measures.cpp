@@ -4,63 +4,22 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "core/mesh.h"
 #include "experiments/details/scene/drawing.h"
+#include "experiments/details/scene/frame_parts.h"
 #include "metrics/contact/drawn_pop.h"
+#include "metrics/spacing/plane_spectrum.h"
 
 namespace geoprior::details {
 namespace {
 
-template <class T>
-std::vector<T> column(const Part& part, const char* name) {
-  const Eigen::MatrixXd& values = part.require_array(name, NamedArray::On::points, 1).values;
-  std::vector<T> out(values.rows());
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = static_cast<T>(values(static_cast<Eigen::Index>(i), 0));
-  return out;
-}
-
-/// The details of a frame with what `largest_pop` reads, whose spans point into it.
-struct FrameDetails {
-  std::vector<std::int64_t> birth;
-  std::vector<double> weight, target;
-  std::vector<int> face;
-  Eigen::MatrixX3d barycentric;
-
-  explicit FrameDetails(const Part& part)
-      : birth(column<std::int64_t>(part, "birth")),
-        weight(column<double>(part, "weight")),
-        target(column<double>(part, "target_weight")),
-        face(column<int>(part, "face")),
-        barycentric(part.require_array("barycentric", NamedArray::On::points, 3).values) {}
-
-  [[nodiscard]] DetailsOfFrame state() const { return {birth, weight}; }
-  [[nodiscard]] AnchoredDetails anchored() const { return {state(), face, barycentric}; }
-
-  /// Details that are new, or that began to fade, since `before`.
-  [[nodiscard]] int events_since(const FrameDetails& before) const {
-    std::set<std::int64_t> there(before.birth.begin(), before.birth.end()), fading;
-    for (std::size_t i = 0; i < before.birth.size(); ++i)
-      if (before.target[i] == 0) fading.insert(before.birth[i]);
-    int events = 0;
-    for (std::size_t i = 0; i < birth.size(); ++i) {
-      const bool is_new = !there.contains(birth[i]);
-      const bool fades = target[i] == 0 && !fading.contains(birth[i]);
-      if (is_new || fades) ++events;
-    }
-    return events;
-  }
-};
-
 /// Height of a detail of weight 1 (m); 0 when nothing says it.
 double height_of(const DetailsScene& scene) {
   if (scene.chosen_height) return *scene.chosen_height;
-  return spacing_of(scene.rest().require_part("detail_mesh"), 0).mean / 2;
+  return scene.rest_edge() / 2;
 }
 
 /// One frame of a motion.
@@ -69,23 +28,6 @@ struct FrameState {
   FrameDetails details;
   int still = 0;  ///< frames that the surface has not moved for
 };
-
-std::vector<SurfacePoint> places_of(const std::vector<Detail>& details) {
-  std::vector<SurfacePoint> places;
-  for (const Detail& d : details) places.push_back(d.at);
-  return places;
-}
-
-std::vector<SurfacePoint> visible_places(const Part& part) {
-  const FrameDetails details(part);
-  std::vector<SurfacePoint> places;
-  for (std::size_t i = 0; i < details.face.size(); ++i) {
-    if (!(details.weight[i] > 0.5)) continue;
-    const auto b = details.barycentric.row(static_cast<Eigen::Index>(i));
-    places.push_back({details.face[i], b.transpose()});
-  }
-  return places;
-}
 
 PairCurve curve_of(PairMemo& memo, const DetailsScene& scene, const Part& surface,
                    const std::vector<SurfacePoint>& places, double unit) {
@@ -107,39 +49,6 @@ PairCurve curve_of(PairMemo& memo, const DetailsScene& scene, const Part& surfac
   });
 }
 
-/// A rectangle in a plane of constant z with edges along x and y.
-bool fills_rectangle(const Part& surface) {
-  const Eigen::RowVector3d size =
-      surface.points.colwise().maxCoeff() - surface.points.colwise().minCoeff();
-  if (size.z() > 1e-9 * size.norm()) return false;
-  const double area = triangle_areas(surface.points, surface.triangles).sum();
-  return std::abs(area - size.x() * size.y()) <= 1e-6 * area;
-}
-
-RadialSpectrum spectrum_of(const Part& plane, const std::vector<SurfacePoint>& places,
-                           double unit) {
-  Eigen::MatrixX2d points(static_cast<Eigen::Index>(places.size()), 2);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    points.row(static_cast<Eigen::Index>(i)) =
-        position_of(places[i], plane.points, plane.triangles).head<2>();
-  }
-  const Eigen::Vector2d low = plane.points.leftCols<2>().colwise().minCoeff();
-  const Eigen::Vector2d high = plane.points.leftCols<2>().colwise().maxCoeff();
-  // A detail on the border may be off by round-off.
-  points = points.cwiseMax(low.transpose().replicate(points.rows(), 1))
-               .cwiseMin(high.transpose().replicate(points.rows(), 1));
-  return radial_spectrum(points, low, high, unit);
-}
-
-/// The ring of a pattern that keeps its distance is near 1 cycle a spacing; beyond, few agree.
-double elongation_of(const RadialSpectrum& spectrum) {
-  constexpr double kBeyondRing = 1.2;
-  const Eigen::VectorXd weight =
-      (spectrum.frequency.array() < kBeyondRing)
-          .select(spectrum.count.cast<double>(), Eigen::VectorXd::Zero(spectrum.count.size()));
-  return spectrum.elongation.dot(weight) / weight.sum();
-}
-
 ContentKey key_of(const Frame& rest) {
   ContentKey key;
   key.add_matrix(rest.require_part("surface").points);
@@ -151,10 +60,12 @@ SpectrumAtRest spectrum_at_rest(SpectrumMemo& memo, const DetailsScene& scene, d
   return memo.get(key_of(scene.rest()), [&] {
     const Part& plane = scene.rest().require_part("surface");
     SpectrumAtRest rest;
-    rest.spectrum = spectrum_of(plane, places_of(scene.input.details), unit);
+    const auto spectrum = [&](const std::vector<Detail>& details) {
+      return plane_spectrum({plane.points, plane.triangles}, places_of(details), unit);
+    };
+    rest.spectrum = spectrum(scene.input.details);
     for (const auto& resample : scene.resamples) {
-      const double distance =
-          radial_spectrum_distance(spectrum_of(plane, places_of(resample), unit), rest.spectrum);
+      const double distance = radial_spectrum_distance(spectrum(resample), rest.spectrum);
       rest.noise = rest.noise.value_or(0) + distance / static_cast<double>(scene.resamples.size());
     }
     return rest;
@@ -163,10 +74,9 @@ SpectrumAtRest spectrum_at_rest(SpectrumMemo& memo, const DetailsScene& scene, d
 
 PairAtRest pairs_at_rest(PairMemo& memo, const DetailsScene& scene) {
   const Part& surface = scene.rest().require_part("surface");
-  const Part& mesh = scene.rest().require_part("detail_mesh");
   return memo.at_rest.get(key_of(scene.rest()), [&] {
     PairAtRest rest;
-    rest.unit = spacing_of(mesh, 0).mean;
+    rest.unit = scene.rest_edge();
     if (!(rest.unit > 0)) return rest;
     const auto curve = [&](const std::vector<Detail>& details) {
       return curve_of(memo, scene, surface, places_of(details), rest.unit);
@@ -213,11 +123,6 @@ Value worst_edge_change(const DetailsScene& scene, const FrameSequence& frames, 
 
 }  // namespace
 
-DetailSpacing spacing_of(const Part& mesh, double reference) {
-  const std::vector<char> ghosts = column<char>(mesh, "ghost");
-  return detail_spacing(mesh.points, mesh.triangles, ghosts, reference);
-}
-
 std::optional<SpacingPair> spacing_pair(const DetailsScene& scene, const Frame& frame,
                                         const char* mesh) {
   SpacingPair pair;
@@ -233,14 +138,12 @@ DensityMeasures density_measures(const DetailsScene& scene, const Frame& frame) 
     const Part& surface = f.require_part("surface");
     return triangle_areas(surface.points, surface.triangles);
   };
-  const std::vector<int> faces = column<int>(scene.rest().require_part("details"), "face");
-  const std::vector<double> weights = column<double>(frame.require_part("details"), "weight");
+  const FrameDetails original(scene.rest().require_part("details"));
+  const FrameDetails details(frame.require_part("details"));
   const Eigen::VectorXd then = areas(scene.rest()), now = areas(frame);
-  const auto count = static_cast<int>(weights.size());
-  const auto visible =
-      std::count_if(weights.begin(), weights.end(), [](double w) { return w > 0.5; });
-  return {density_ratio(count, faces, then, now),
-          density_ratio(static_cast<int>(visible), faces, then, now),
+  const auto count = static_cast<int>(details.weight.size());
+  return {density_ratio(count, original.face, then, now),
+          density_ratio(details.visible_count(), original.face, then, now),
           static_cast<double>(count) / static_cast<double>(scene.input.details.size())};
 }
 
@@ -254,7 +157,7 @@ std::optional<PairMeasures> pair_measures(PairMemo& memo, const DetailsScene& sc
     return pair_curve_distance(curve_of(memo, scene, now, places, rest.unit), rest.curve);
   };
   PairMeasures m;
-  m.distance = distance(visible_places(frame.require_part("details")));
+  m.distance = distance(FrameDetails(frame.require_part("details")).visible_places());
   m.naive = distance(places_of(scene.input.details));
   m.noise = rest.noise;
   return m;
@@ -266,16 +169,20 @@ std::optional<SpectrumMeasures> spectrum_measures(SpectrumMemo& memo, const Deta
   const Part& surface = frame.require_part("surface");
   const Part& details = frame.require_part("details");
   if (!scene.measures_pairs(frame.parameter) || details.points.rows() > kMostDetails) return {};
-  if (!fills_rectangle(surface) || !fills_rectangle(scene.rest().require_part("surface")))
-    return {};
-  const double unit = spacing_of(scene.rest().require_part("detail_mesh"), 0).mean;
+  const auto is_rectangle = [](const Part& part) {
+    return fills_rectangle({part.points, part.triangles});
+  };
+  if (!is_rectangle(surface) || !is_rectangle(scene.rest().require_part("surface"))) return {};
+  const double unit = scene.rest_edge();
   if (!(unit > 0)) return {};
   const SpectrumAtRest rest = spectrum_at_rest(memo, scene, unit);
-  const RadialSpectrum now = spectrum_of(surface, visible_places(details), unit);
+  const RadialSpectrum now = plane_spectrum({surface.points, surface.triangles},
+                                            FrameDetails(details).visible_places(), unit);
   SpectrumMeasures m;
   m.distance = radial_spectrum_distance(now, rest.spectrum);
   m.noise = rest.noise;
-  m.elongation = elongation_of(now);
+  // The ring of a pattern that keeps its distance is near 1 cycle a spacing; beyond, few agree.
+  m.elongation = mean_elongation(now, 1.2);
   return m;
 }
 
@@ -300,7 +207,8 @@ MotionMeasures motion_measures(const DetailsScene& scene, const FrameSequence& f
     }
     if (now.surface->points == before.surface->points) now.still = before.still + 1;
     if (now.still > kStillAfter)
-      m.at_rest = m.at_rest.value_or(0) + now.details.events_since(before.details);
+      m.at_rest = m.at_rest.value_or(0) +
+                  details_that_begin(before.details.targets(), now.details.targets());
     before = std::move(now);
   }
   m.events = detail_events(changes);
@@ -310,8 +218,7 @@ MotionMeasures motion_measures(const DetailsScene& scene, const FrameSequence& f
 
 Value drawn_popping(const DetailsScene& scene, const FrameSequence& frames) {
   if (!scene.drawing) return {};
-  const double edge = spacing_of(scene.rest().require_part("detail_mesh"), 0).mean;
-  const double size = drawn_size(scene.drawing->look, edge);
+  const double size = drawn_size(scene.drawing->look, scene.rest_edge());
   const double spacing = pop_sample_spacing(scene.drawing->look.kind, size);
   Value popping;
   for (std::size_t i = 1; i < frames.size(); ++i) {

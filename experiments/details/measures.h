@@ -17,9 +17,6 @@ namespace geoprior::details {
 /// motion, absent where they have no meaning.
 using Value = std::optional<double>;
 
-/// Lengths of the edges of a mesh of details; `outside` is against the reference length (m).
-DetailSpacing spacing_of(const Part& mesh, double reference);
-
 /// Lengths of the edges of "detail_mesh" (all details) or "visible_mesh" (those that one sees), in
 /// the frame and at rest; `outside` is against the mean at rest. Absent without edges.
 struct SpacingPair {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -109,6 +110,20 @@ DetailEvents detail_events(std::span<const DetailChanges> changes) {
   }
   events.churn = events.inserted + events.removed - std::abs(events.inserted - events.removed);
   return events;
+}
+
+int details_that_begin(const DetailTargets& before, const DetailTargets& now) {
+  const std::set<std::int64_t> there(before.birth.begin(), before.birth.end());
+  std::set<std::int64_t> fading;
+  for (std::size_t i = 0; i < before.birth.size(); ++i)
+    if (before.target[i] == 0) fading.insert(before.birth[i]);
+  int begin = 0;
+  for (std::size_t i = 0; i < now.birth.size(); ++i) {
+    const bool is_new = !there.contains(now.birth[i]);
+    const bool fades = now.target[i] == 0 && !fading.contains(now.birth[i]);
+    if (is_new || fades) ++begin;
+  }
+  return begin;
 }
 
 int turns(std::span<const double> values, double least) {

@@ -35,6 +35,16 @@ struct DetailEvents {
 };
 DetailEvents detail_events(std::span<const DetailChanges> changes);
 
+/// Where the weights of the details of one frame go, by rows.
+struct DetailTargets {
+  std::span<const std::int64_t> birth;  ///< identity, the same in all frames
+  std::span<const double> target;       ///< weight that the detail goes to: 0 while it fades
+};
+
+/// Details that are new, or that fade and did not before: what a method begins by itself in a frame
+/// in which nothing moves. Weights that are still on their way to their targets are no event.
+int details_that_begin(const DetailTargets& before, const DetailTargets& now);
+
 /// How often a number goes from growing to shrinking or back, by at least `least` from the last
 /// extreme. Stretching and returning once makes one turn, five times nine; more than the motion has
 /// are oscillations. Constant: 0.

@@ -138,4 +138,12 @@ double radial_spectrum_distance(const RadialSpectrum& a, const RadialSpectrum& b
   return a.step * (a.power - b.power).cwiseAbs().sum();
 }
 
+double mean_elongation(const RadialSpectrum& spectrum, double highest) {
+  const Eigen::VectorXd weight =
+      (spectrum.frequency.array() < highest)
+          .select(spectrum.count.cast<double>(), Eigen::VectorXd::Zero(spectrum.count.size()));
+  if (!(weight.sum() > 0)) throw Error("no frequency is below", "mean_elongation");
+  return spectrum.elongation.dot(weight) / weight.sum();
+}
+
 }  // namespace geoprior

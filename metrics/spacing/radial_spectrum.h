@@ -50,4 +50,9 @@ RadialSpectrum radial_spectrum(const Eigen::MatrixX2d& points, const Eigen::Vect
 /// @throws Error  when they have different bins
 double radial_spectrum_distance(const RadialSpectrum& a, const RadialSpectrum& b);
 
+/// Mean elongation over the frequencies below `highest` (middles of bins): how much one axis is
+/// preferred by the spacings that a pattern keeps.
+/// @throws Error  without such frequencies
+double mean_elongation(const RadialSpectrum& spectrum, double highest);
+
 }  // namespace geoprior

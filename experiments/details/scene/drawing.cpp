@@ -1,11 +1,10 @@
 #include "experiments/details/scene/drawing.h"
 
 #include <optional>
+#include <string>
 #include <utility>
 
-#include "core/limits.h"
-#include "experiments/details/measures.h"
-#include "experiments/details/scene/scene.h"
+#include "experiments/details/drawing/detail_drawing.h"
 
 namespace geoprior::details {
 namespace {
@@ -65,27 +64,9 @@ class DrawnProcess final : public Process {
 
 }  // namespace
 
-void describe(OptionVisitor& v, DetailDrawingOptions& options) {
-  v.value("frames", options.frames,
-          {.doc = "drawn beside the first, evenly over the motion", .min = 1, .max = kMostFrames});
-  v.value("pop_frames", options.pop_frames,
-          {.doc = "evenly over the motion, at which popping of the drawing since the frame before "
-                  "is measured",
-           .min = 1,
-           .max = kMostFrames});
-  describe_group(v, "look", options.look, {.doc = "what a detail is drawn as"});
-  const bool given =
-      options.look.kind == DrawnKind::mesh && options.look.instance.shape == InstanceShape::given;
-  if (given) {
-    v.value("file", options.file,
-            {.doc = "mesh of a detail (z its normal): .obj, .ply, .off, .vtp", .required = true});
-  }
-}
-
 Part drawn_surface(Frame& frame, const DetailsScene& scene) {
-  const double edge = spacing_of(scene.rest().require_part("detail_mesh"), 0).mean;
   const DrawingOptions& look = scene.drawing->look;
-  const std::string name = add_drawing(frame, look, edge, scene.instance);
+  const std::string name = add_drawing(frame, look, scene.rest_edge(), scene.instance);
   const Part drawing = std::move(frame.parts.extract(name).mapped());
   Eigen::VectorXd kind = classes_of(drawing, frame.require_part("details"));
   Part drawn;

@@ -1,25 +1,12 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "core/frame.h"
 #include "core/method.h"
-#include "core/options.h"
-#include "experiments/details/drawing/detail_drawing.h"
+#include "experiments/details/scene/scene.h"
 
 namespace geoprior::details {
-
-class DetailsScene;
-
-/// `drawing`: details as geometry, in some of the recorded frames.
-struct DetailDrawingOptions {
-  int frames = 1;      ///< beside the first, evenly over the motion
-  int pop_frames = 2;  ///< at which popping of the drawing is measured
-  DrawingOptions look;
-  std::string file;  ///< of the mesh that is put onto the surface: kind mesh, shape given
-};
-void describe(OptionVisitor& v, DetailDrawingOptions& options);
 
 /// The surface of the frame's parts "surface" and "details" as the scene's `drawing` has it: with
 /// spikes or meshes on it, or with holes in it. Point array "kind": 0 the surface, 1 details of the

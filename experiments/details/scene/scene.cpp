@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/limits.h"
+#include "experiments/details/scene/frame_parts.h"
 #include "experiments/details/scene/position_file.h"
 #include "models/details/process.h"
 #include "testbed/formats/mesh/mesh_file.h"
@@ -166,6 +167,10 @@ const Frame& DetailsScene::rest() const {
         detail_frame(build_detail_mesh(input.surface, input.details), input.motion->parameter(0));
   });
   return rest_;
+}
+
+double DetailsScene::rest_edge() const {
+  return spacing_of(rest().require_part("detail_mesh"), 0).mean;
 }
 
 bool DetailsScene::is_one_of(int count, double parameter) const {

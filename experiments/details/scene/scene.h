@@ -34,6 +34,8 @@ class DetailsScene final : public ProcessScene {
   /// The frame of a method that has done nothing yet: surface and M_d at rest. Made when it is
   /// first asked for; safe from several threads.
   [[nodiscard]] const Frame& rest() const;
+  /// Mean edge of M_d among details at rest (m); 0 without such edges.
+  [[nodiscard]] double rest_edge() const;
   /// Whether the pair correlation is measured in the frame with that parameter.
   [[nodiscard]] bool measures_pairs(double parameter) const;
   [[nodiscard]] bool is_drawn(double parameter) const;

@@ -38,6 +38,15 @@ TEST(DetailChanges, FollowIdentitiesAndNotRows) {
   EXPECT_EQ(all.largest_step, 1);
 }
 
+// 5 is new; 1 begins to fade, 2 faded before, 3 is gone, 4 grows on: two begin.
+TEST(DetailsThatBegin, AreNewOrBeginToFade) {
+  const std::vector<std::int64_t> before{1, 2, 3, 4}, now{5, 4, 2, 1};
+  const std::vector<double> targets_before{1, 0, 0, 1}, targets_now{1, 1, 0, 0};
+  EXPECT_EQ(details_that_begin({before, targets_before}, {now, targets_now}), 2);
+  EXPECT_EQ(details_that_begin({before, targets_before}, {before, targets_before}), 0);
+  EXPECT_EQ(details_that_begin({{}, {}}, {now, targets_now}), 4);
+}
+
 // Net +3 from 5 insertions and 2 removals: 2 of each cancel.
 TEST(DetailEvents, ChurnIsWhatCancels) {
   const std::vector<DetailChanges> steps{{4, 0, 0.1}, {0, 2, 0.3}, {1, 0, 0.2}};
