@@ -86,7 +86,7 @@ void DetailMesh::load(StateReader& in) {
 void describe_lengths(OptionVisitor& v, LengthRule& rule) {
   static constexpr std::array<std::string_view, 2> kNames{"chord", "geodesic"};
   describe_choice(v, "lengths", rule, kNames,
-                  {.doc = "edges of M_d: distance of their ends, or along the surface"});
+                  {.doc = "edges of M_d are measured between their ends, or along the surface"});
 }
 
 void measure_edges(DetailMesh& d, LengthRule rule) {

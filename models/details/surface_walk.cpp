@@ -67,6 +67,71 @@ void try_face(int face, const Eigen::Vector3d& target, const SurfaceTopology& su
   if (d < best.distance2 * (1 - 1e-12)) best = {{face, b}, d};
 }
 
+/// A straight path within a face.
+struct Heading {
+  Eigen::Vector3d velocity;   ///< of the barycentric coordinates (1/m): constant within the face
+  Eigen::Vector3d direction;  ///< unit, in the face's plane
+};
+
+Heading heading_in(int face, const Eigen::Vector3d& d, const SurfaceTopology& surface, Points x) {
+  const auto c = corners_of(face, surface, x);
+  const Eigen::Vector3d n = (c[1] - c[0]).cross(c[2] - c[0]);
+  Heading heading;
+  heading.direction = (d - n * (n.dot(d) / n.squaredNorm())).normalized();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d edge = c[(k + 2) % 3] - c[(k + 1) % 3];
+    heading.velocity[static_cast<Eigen::Index>(k)] =
+        n.cross(edge).dot(heading.direction) / n.squaredNorm();
+  }
+  return heading;
+}
+
+/// Where a path leaves its face.
+struct Exit {
+  double after = 0;   ///< this length (m), at most what is left of the path
+  int opposite = -1;  ///< corner opposite to the edge; -1: the path ends before
+};
+
+/// @param entered  corner opposite to the edge that the path came by (-1: it starts here): leaving
+///                 through it at once is round-off
+Exit exit_of(const SurfacePoint& p, const Eigen::Vector3d& velocity, int entered, double length) {
+  Exit exit{length, -1};
+  for (int k = 0; k < 3; ++k) {
+    if (k == entered || !(velocity[k] < 0)) continue;
+    const double t = std::max(p.barycentric[k], 0.0) / -velocity[k];
+    if (t < exit.after) exit = {t, k};
+  }
+  return exit;
+}
+
+/// Unfolds the path over an edge into the face beyond: the point stays, the angle to the edge too.
+/// @return  corner of the face beyond that is opposite to the edge
+int cross_edge(std::size_t edge, const SurfaceTopology& surface, Points x, SurfacePoint& p,
+               Heading& heading) {
+  const auto& face = surface.face[p.face];
+  const auto c = corners_of(p.face, surface, x);
+  const Eigen::Vector3d along = (c[(edge + 1) % 3] - c[edge]).normalized();
+  const double cosine = heading.direction.dot(along);
+  const int a = face[edge], b = face[(edge + 1) % 3];
+  SurfacePoint q{surface.across[p.face][edge], Eigen::Vector3d::Zero()};
+  int opposite = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int w = surface.face[q.face][k];
+    if (w == a)
+      q.barycentric[k] = p.barycentric[static_cast<Eigen::Index>(edge)];
+    else if (w == b)
+      q.barycentric[k] = p.barycentric[static_cast<Eigen::Index>((edge + 1) % 3)];
+    else
+      opposite = k;
+  }
+  const Eigen::Vector3d in = corners_of(q.face, surface, x)[opposite] - x[a];
+  const Eigen::Vector3d across = (in - along * in.dot(along)).normalized();
+  heading = heading_in(
+      q.face, cosine * along + std::sqrt(std::max(0.0, 1 - cosine * cosine)) * across, surface, x);
+  p = q;
+  return opposite;
+}
+
 }  // namespace
 
 SurfaceTopology::SurfaceTopology(const TriMesh& rest)
@@ -140,66 +205,19 @@ SurfacePoint walk_to_nearest(const SurfacePoint& start, const Eigen::Vector3d& t
 
 SurfacePoint trace_straight(const SurfacePoint& start, const Eigen::Vector3d& direction,
                             double length, const SurfaceTopology& surface, Points x) {
+  constexpr int kMostFaces = 100000;  // a path that circles a vertex for ever ends too
   SurfacePoint p = start;
-  // Velocity in barycentric coordinates: exact within a face.
-  const auto barycentric_velocity = [&](int face, const Eigen::Vector3d& d) {
-    const auto c = corners_of(face, surface, x);
-    const Eigen::Vector3d n = (c[1] - c[0]).cross(c[2] - c[0]);
-    const Eigen::Vector3d u = (d - n * (n.dot(d) / n.squaredNorm())).normalized();
-    Eigen::Vector3d v;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Eigen::Vector3d edge = c[(k + 2) % 3] - c[(k + 1) % 3];
-      v[static_cast<Eigen::Index>(k)] = n.cross(edge).dot(u) / n.squaredNorm();
-    }
-    return std::pair(v, u);
-  };
-  auto [v, u] = barycentric_velocity(p.face, direction);
+  Heading heading = heading_in(p.face, direction, surface, x);
   int entered = -1;
-  for (int steps = 0; steps < 100000 && length > 0; ++steps) {
-    double reach = length;
-    int out = -1;
-    for (int k = 0; k < 3; ++k) {
-      if (k == entered || !(v[k] < 0)) continue;
-      const double t = std::max(p.barycentric[k], 0.0) / -v[k];
-      if (t < reach) {
-        reach = t;
-        out = k;
-      }
-    }
-    p.barycentric = (p.barycentric + reach * v).cwiseMax(0.0);
+  for (int steps = 0; steps < kMostFaces && length > 0; ++steps) {
+    const Exit exit = exit_of(p, heading.velocity, entered, length);
+    p.barycentric = (p.barycentric + exit.after * heading.velocity).cwiseMax(0.0);
     p.barycentric /= p.barycentric.sum();
-    length -= reach;
-    if (out < 0) break;
-    const auto edge = static_cast<std::size_t>((out + 1) % 3);
-    const auto from = static_cast<std::size_t>(p.face);
-    const int g = surface.across[from][edge];
-    if (g < 0) break;
-    // Unfold: the angle to the common edge is kept.
-    const auto c = corners_of(p.face, surface, x);
-    const Eigen::Vector3d along = (c[(edge + 1) % 3] - c[edge]).normalized();
-    const double cosine = u.dot(along);
-    const int a = surface.face[from][edge], b = surface.face[from][(edge + 1) % 3];
-    const auto& other = surface.face[g];
-    SurfacePoint q{g, Eigen::Vector3d::Zero()};
-    int opposite = 0;
-    for (int k = 0; k < 3; ++k) {
-      const int w = other[k];
-      if (w == a)
-        q.barycentric[k] = p.barycentric[static_cast<Eigen::Index>(edge)];
-      else if (w == b)
-        q.barycentric[k] = p.barycentric[static_cast<Eigen::Index>((edge + 1) % 3)];
-      else
-        opposite = k;
-    }
-    const auto d = corners_of(g, surface, x);
-    const Eigen::Vector3d in = d[opposite] - x[a];
-    const Eigen::Vector3d across = (in - along * in.dot(along)).normalized();
-    std::tie(v, u) = barycentric_velocity(
-        g, cosine * along + std::sqrt(std::max(0.0, 1 - cosine * cosine)) * across);
-    p = q;
-    entered = opposite;
-    // The edge just crossed is the one opposite to `opposite`: leaving through it at once is
-    // round-off.
+    length -= exit.after;
+    if (exit.opposite < 0) break;
+    const auto edge = static_cast<std::size_t>((exit.opposite + 1) % 3);
+    if (surface.across[p.face][edge] < 0) break;
+    entered = cross_edge(edge, surface, x, p, heading);
   }
   return p;
 }

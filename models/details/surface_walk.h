@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "core/connectivity.h"
-#include "models/details/scene.h"
+#include "core/geometry/surface_point.h"
+#include "core/mesh.h"
 
 namespace geoprior::details {
 
