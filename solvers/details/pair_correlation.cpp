@@ -65,10 +65,13 @@ void PairCorrelation::distances(const DetailMesh& details, int t,
 
 void describe(OptionVisitor& v, PairCorrelationOptions& options) {
   v.value("radius", options.radius,
-          {.doc = "largest distance in mean edges of M_d", .min = 0.5, .max = 10});
-  v.value("bins", options.bins, {.doc = "of the distance", .min = 2, .max = 512});
+          {.doc = "largest distance of the pair correlation, in mean edges of M_d",
+           .min = 0.5,
+           .max = 10});
+  v.value("bins", options.bins,
+          {.doc = "intervals of distance of the pair correlation", .min = 2, .max = 512});
   v.value("bandwidth", options.bandwidth,
-          {.doc = "sigma of the Gaussian kernel in mean edges", .min = 0.01, .max = 1});
+          {.doc = "sigma of the Gaussian kernel, in mean edges of M_d", .min = 0.01, .max = 1});
 }
 
 }  // namespace geoprior::details

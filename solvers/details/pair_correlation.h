@@ -12,9 +12,9 @@ namespace geoprior::details {
 /// Pair correlation of details by distance along M_d, the histogram that thesis 2.2.2 proposes as
 /// an extension.
 struct PairCorrelationOptions {
-  double radius = 3;       ///< largest distance in mean edges of the original
-  int bins = 24;           ///< of the distance
-  double bandwidth = 0.1;  ///< sigma of the Gaussian kernel in mean edges
+  double radius = 3;
+  int bins = 24;
+  double bandwidth = 0.1;
 };
 void describe(OptionVisitor& v, PairCorrelationOptions& options);
 

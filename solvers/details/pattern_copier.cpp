@@ -78,8 +78,7 @@ std::optional<std::vector<NewDetail>> PatternCopier::copies_for(const DetailMesh
                                                                 int room, const Accept& accept) {
   const std::array<double, 3> edges{now.mesh.length(3 * t), now.mesh.length(3 * t + 1),
                                     now.mesh.length(3 * t + 2)};
-  table_.closest(edges, std::min(room, options_.triplets.interior_capacity),
-                 options_.histogram ? options_.candidates : kTries, matches_);
+  table_.closest(edges, room, options_.histogram ? options_.candidates : kTries, matches_);
   if (matches_.empty()) return std::nullopt;
   std::vector<NewDetail> chosen;
   const TripletMatch* copied = nullptr;
@@ -191,13 +190,16 @@ double PatternCopier::carried_angle(const TripletMatch& match, int source, const
 }
 
 void describe(OptionVisitor& v, PatternCopierOptions& options) {
-  v.value("histogram", options.histogram,
-          {.doc = "choose among candidate triplets by the pair correlation (the extension)"});
+  v.value(
+      "histogram", options.histogram,
+      {.doc =
+           "triplets are chosen by the pair correlation that their copies give (the extension)"});
   v.value("candidates", options.candidates,
-          {.doc = "m: triplets that the extension compares", .min = 1, .max = 64});
-  describe_group(v, "triplets", options.triplets, {.doc = "the table of triplets T"});
+          {.doc = "m: triplets that the extension compares for a triangle", .min = 1, .max = 64});
+  describe_group(v, "triplets", options.triplets,
+                 {.doc = "the table T of triplets of the original"});
   describe_group(v, "pair_correlation", options.pair_correlation,
-                 {.doc = "the histogram of the extension"});
+                 {.doc = "the pair correlation that the extension compares"});
 }
 
 }  // namespace geoprior::details

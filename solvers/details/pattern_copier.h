@@ -10,14 +10,15 @@
 #include "models/details/mesh.h"
 #include "models/details/point_grid.h"
 #include "solvers/details/pair_correlation.h"
+#include "solvers/details/triplet_options.h"
 #include "solvers/details/triplet_table.h"
 
 namespace geoprior::details {
 
 struct PatternCopierOptions {
   TripletOptions triplets;
-  bool histogram = false;  ///< choose among candidates by the pair correlation (the extension)
-  int candidates = 6;      ///< m: triplets compared by the extension
+  bool histogram = false;
+  int candidates = 6;
   PairCorrelationOptions pair_correlation;
 };
 void describe(OptionVisitor& v, PatternCopierOptions& options);

@@ -293,29 +293,32 @@ std::unique_ptr<Process> make_self_replicating_process(const DetailScene& scene,
 void describe(OptionVisitor& v, SelfReplicatingOptions& options) {
   static constexpr std::array<std::string_view, 3> kAreaRules{"own", "mean", "budget"};
   static constexpr std::array<std::string_view, 2> kWeightLaws{"frame", "motion"};
-  describe_choice(v, "area_rule", options.area_rule, kAreaRules,
-                  {.doc = "reference area of a triangle: its own, the mean, or a local budget"});
+  describe_choice(
+      v, "area_rule", options.area_rule, kAreaRules,
+      {.doc = "area that a triangle is held against: its own at first, the mean, or that "
+              "of a patch's budget"});
   v.value("stretch_threshold", options.stretch_threshold,
-          {.doc = "tau: a triangle is filled above this factor (own, mean)", .min = 1.01});
-  v.value(
-      "shrink_threshold", options.shrink_threshold,
-      {.doc = "tau_c: a triangle loses a detail below 1 / this factor (own, mean)", .min = 1.01});
+          {.doc = "tau: a triangle above this multiple of its area is filled (rules own, mean)",
+           .min = 1.01});
+  v.value("shrink_threshold", options.shrink_threshold,
+          {.doc = "tau_c: a triangle below its area / tau_c loses a detail (rules own, mean)",
+           .min = 1.01});
   v.value("patch_details", options.patch_details,
-          {.doc = "budget: details of a patch at rest", .min = 1});
+          {.doc = "details of a patch at rest (rule budget)", .min = 1});
   v.value("dead_band", options.dead_band,
-          {.doc = "budget: a patch acts when off by more than 1/2 + this", .min = 0, .max = 10});
-  v.value(
-      "anticipate", options.anticipate,
-      {.doc = "budget: patches ask for what they need K / 4 frames ahead when they grow, 3 K / 4 "
-              "when they shrink, K = 1 / weight_rate"});
-  v.value("max_insertions", options.max_insertions,
-          {.doc = "most details inserted in a frame; absent: no limit", .min = 1});
+          {.doc = "a patch acts when its details are off by more than 1/2 + this (rule budget)",
+           .min = 0,
+           .max = 10});
+  v.value("anticipate", options.anticipate,
+          {.doc = "growing patches ask K / 4 frames ahead, shrinking ones 3 K / 4, with "
+                  "K = 1 / weight_rate (rule budget)"});
   describe_choice(v, "weight_law", options.weight_law, kWeightLaws,
-                  {.doc = "weights change per frame, or per amount of motion"});
+                  {.doc = "weights change by the frame, or by the motion of the surface"});
   v.value("weight_rate", options.weight_rate,
           {.doc = "largest change of a weight in a frame", .min = 1e-3, .max = 1});
-  v.value("motion_rate", options.motion_rate,
-          {.doc = "law motion: change of weight per mean edge of displacement", .min = 0});
+  v.value(
+      "motion_rate", options.motion_rate,
+      {.doc = "change of a weight while the surface moves by a mean edge (law motion)", .min = 0});
   describe_lengths(v, options.lengths);
   describe(v, options.copies);
 }
@@ -337,7 +340,6 @@ void SelfReplicating::insert() {
   copier_.begin_frame(now_);
   use_new_marks();
   act_in_order(Need::more, [&](int t) {
-    if (options_.max_insertions && counts_.inserted >= *options_.max_insertions) return;
     // A triangle that an insertion of this frame rewrote has a corner that is marked.
     if (now_.mesh.triangle_alive(t) && !marked(t)) fill(t);
   });

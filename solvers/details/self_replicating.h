@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "core/options.h"
 #include "models/details/process.h"
@@ -38,19 +37,14 @@ enum class WeightLaw {
 /// structure beyond neighbours (clusters) more uniform; `histogram` counters that.
 struct SelfReplicatingOptions {
   AreaRule area_rule = AreaRule::budget;
-  double stretch_threshold = 1.75;  ///< tau, rules own and mean
-  double shrink_threshold = 1.75;   ///< tau_c, rules own and mean
-  int patch_details = 48;           ///< budget: details of a patch at rest
-  double dead_band = 0.1;           ///< budget: a patch acts when off by more than 1/2 + this
-  /// budget: patches ask for what they need some frames ahead if they go on as in the last frame,
-  /// because details take K = 1 / weight_rate frames to appear and to fade: K / 4 ahead when they
-  /// grow (a newborn is in M_d at once and visible after K / 2), 3 K / 4 when they shrink (a fading
-  /// detail is visible for K / 2 and in M_d for K).
-  bool anticipate = true;
-  std::optional<int> max_insertions;  ///< of a frame; absent: no limit
+  double stretch_threshold = 1.75;
+  double shrink_threshold = 1.75;
+  int patch_details = 48;
+  double dead_band = 0.1;
+  bool anticipate = true;  ///< see `lead_of`
   WeightLaw weight_law = WeightLaw::frame;
-  double weight_rate = 0.1;  ///< largest change of a weight in a frame
-  double motion_rate = 1;    ///< law motion: change of weight per mean edge of displacement
+  double weight_rate = 0.1;
+  double motion_rate = 1;
   LengthRule lengths = LengthRule::chord;
   PatternCopierOptions copies;
 };

@@ -1,12 +1,13 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "core/random.h"
+#include "models/details/mesh.h"
 #include "solvers/details/local_chart.h"
-#include "solvers/details/triplet_table.h"
+#include "solvers/details/triplet_options.h"
 
 namespace geoprior::details {
 
@@ -16,6 +17,20 @@ struct TriangleKeys {
   double least_angle = 0;  ///< rad
 };
 TriangleKeys keys_of(const std::array<double, 3>& edges);
+
+/// A detail inside a triplet.
+struct TripletInterior {
+  int detail = 0;
+  std::array<float, 2> first_two{};  ///< of its barycentric coordinates; the third makes 1
+  [[nodiscard]] Eigen::Vector3d barycentric() const {
+    const double a = first_two[0], b = first_two[1];
+    return {a, b, 1 - a - b};
+  }
+};
+
+/// Most details inside a triplet: larger ones are left out. Chosen: with R = 3 mean edges few have
+/// more.
+inline constexpr int kMostInside = 8;
 
 /// A triplet that qualifies, before the table decides whether to keep it.
 struct FoundTriplet {

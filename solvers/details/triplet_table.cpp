@@ -14,6 +14,11 @@
 namespace geoprior::details {
 namespace {
 
+/// Details whose surroundings are searched at most. Chosen: at some 85 triplets each
+/// (details/ablations, diagnostic triplets_met) they about fill the default table, 24 in each of
+/// 128 x 128 cells.
+constexpr std::size_t kMostSources = 4000;
+
 /// Sources whose surroundings are searched: details, evenly spread over their numbers.
 std::vector<int> sources_of(const DetailMesh& original, const TripletOptions& options) {
   std::vector<int> details;
@@ -23,10 +28,10 @@ std::vector<int> sources_of(const DetailMesh& original, const TripletOptions& op
     throw Error("all triplets of " + std::to_string(details.size()) + " details", "triplets",
                 "at most 400 details, or local triplets");
   }
-  const auto most = static_cast<std::size_t>(options.max_sources);
-  if (options.all || details.size() <= most) return details;
+  if (options.all || details.size() <= kMostSources) return details;
   std::vector<int> some;
-  for (std::size_t i = 0; i < most; ++i) some.push_back(details[i * details.size() / most]);
+  for (std::size_t i = 0; i < kMostSources; ++i)
+    some.push_back(details[i * details.size() / kMostSources]);
   return some;
 }
 
@@ -34,7 +39,7 @@ std::vector<int> sources_of(const DetailMesh& original, const TripletOptions& op
 void require_table(const TripletOptions& options) {
   const double triplets =
       static_cast<double>(options.cells) * options.cells * options.cell_capacity;
-  const double interiors = triplets * options.interior_capacity;
+  const double interiors = triplets * kMostInside;
   const std::string where = "options.triplets.cells";
   require_memory(triplets * sizeof(FoundTriplet) + interiors * sizeof(TripletInterior), triplets,
                  "triplets", where);
@@ -170,22 +175,6 @@ void TripletTable::closest(const std::array<double, 3>& edges, int max_interior,
     match.order = order;
     match.mirrored = entry_[match.triplet].clockwise != odd;
   }
-}
-
-void describe(OptionVisitor& v, TripletOptions& options) {
-  v.value("radius", options.radius,
-          {.doc = "R: largest edge of a triplet in mean edges of M_d", .min = 1, .max = 10});
-  v.value("all", options.all,
-          {.doc = "all triplets whatever their size, as the thesis says (at most 400 details)"});
-  v.value("interior_only", options.interior_only,
-          {.doc = "only triplets with a detail strictly inside"});
-  v.value("cells", options.cells, {.doc = "of the grid along either key", .min = 4, .max = 1024});
-  v.value("cell_capacity", options.cell_capacity,
-          {.doc = "triplets kept in a cell", .min = 1, .max = 1024});
-  v.value("max_sources", options.max_sources,
-          {.doc = "details whose surroundings are searched for triplets", .min = 1});
-  v.value("interior_capacity", options.interior_capacity,
-          {.doc = "most details inside a triplet", .min = 1, .max = 64});
 }
 
 }  // namespace geoprior::details

@@ -7,32 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "core/options.h"
 #include "models/details/mesh.h"
+#include "solvers/details/triplet_builder.h"
+#include "solvers/details/triplet_options.h"
 
 namespace geoprior::details {
-
-/// Which triangles of three details of the original the table holds (thesis 2.2.2: all of them).
-struct TripletOptions {
-  double radius = 3;          ///< R: largest edge of a triplet in mean edges of M_d
-  bool all = false;           ///< all triplets whatever their size (at most 400 details)
-  bool interior_only = true;  ///< only triplets with a detail strictly inside
-  int cells = 128;            ///< of the grid along either key
-  int cell_capacity = 24;     ///< triplets kept in a cell, drawn at random among those met
-  int max_sources = 4000;     ///< details whose surroundings are searched, evenly spread over all
-  int interior_capacity = 8;  ///< details inside; triplets with more are left out
-};
-void describe(OptionVisitor& v, TripletOptions& options);
-
-/// A detail inside a triplet.
-struct TripletInterior {
-  int detail = 0;
-  std::array<float, 2> first_two{};  ///< of its barycentric coordinates; the third makes 1
-  [[nodiscard]] Eigen::Vector3d barycentric() const {
-    const double a = first_two[0], b = first_two[1];
-    return {a, b, 1 - a - b};
-  }
-};
 
 /// Answer of a query: the corners of the triplet in the order in which its edges fit best.
 struct TripletMatch {
