@@ -139,11 +139,13 @@ class DartThrowing final : public DetailMethod {
 
 void describe(OptionVisitor& v, DartThrowingOptions& options) {
   v.value("radius", options.radius,
-          {.doc = "smallest distance in units of 1 / sqrt(density at rest)", .min = 0.3, .max = 2});
+          {.doc = "smallest distance between details, in units of 1 / sqrt(density at rest)",
+           .min = 0.3,
+           .max = 2});
   v.value("stretch_threshold", options.stretch_threshold,
-          {.doc = "a face is stretched above this ratio of area now / at rest", .min = 1});
+          {.doc = "a face is stretched above this ratio of its area to that at rest", .min = 1});
   v.value("darts", options.darts,
-          {.doc = "thrown into a triangle with room, a frame", .min = 1, .max = 1000});
+          {.doc = "darts thrown into a triangle with room, in a frame", .min = 1, .max = 1000});
   v.value("weight_rate", options.weight_rate,
           {.doc = "largest change of a weight in a frame", .min = 1e-3, .max = 1});
   describe_lengths(v, options.lengths);

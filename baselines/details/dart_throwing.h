@@ -20,10 +20,10 @@ namespace geoprior::details {
 /// What it cannot do: it never removes a detail, so a squeezed surface stays crowded; and gaps that
 /// the pattern had on purpose (clusters) are filled once their region is stretched.
 struct DartThrowingOptions {
-  double radius = 0.834;           ///< smallest distance in units of 1 / sqrt(density at rest)
-  double stretch_threshold = 1.1;  ///< a face is stretched above this ratio of area now / at rest
-  int darts = 8;                   ///< thrown into a triangle with room, a frame
-  double weight_rate = 0.1;        ///< largest change of a weight in a frame
+  double radius = 0.834;
+  double stretch_threshold = 1.1;
+  int darts = 8;
+  double weight_rate = 0.1;
   LengthRule lengths = LengthRule::chord;
 };
 void describe(OptionVisitor& v, DartThrowingOptions& options);

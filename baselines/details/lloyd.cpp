@@ -14,9 +14,9 @@ namespace {
 /// Details that move towards each other by this part of a height do not turn a triangle over.
 constexpr double kLargestSlide = 0.25;
 
-class LloydRelaxation final : public DensityMethod {
+class Lloyd final : public DensityMethod {
  public:
-  LloydRelaxation(const DetailScene& scene, const LloydRelaxationOptions& options)
+  Lloyd(const DetailScene& scene, const LloydOptions& options)
       : DensityMethod(scene, options), options_(options) {}
 
   void diagnose(std::map<std::string, double>& into) const override {
@@ -102,31 +102,30 @@ class LloydRelaxation final : public DensityMethod {
     }
   }
 
-  LloydRelaxationOptions options_;
+  LloydOptions options_;
   std::vector<double> slide_;  ///< per site, of the last frame (m)
 };
 
 }  // namespace
 
-void describe(OptionVisitor& v, LloydRelaxationOptions& options) {
+void describe(OptionVisitor& v, LloydOptions& options) {
   v.value("iterations", options.iterations,
-          {.doc = "of a frame in which the surface moves", .min = 0, .max = 1000});
+          {.doc = "relaxations of a frame in which the surface moves", .min = 0, .max = 1000});
   v.value("relaxation", options.relaxation,
-          {.doc = "part of the way to the centroid", .min = 0, .max = 2});
+          {.doc = "part of the way to the centroid of its cell that a detail goes",
+           .min = 0,
+           .max = 2});
   describe(v, static_cast<DensityMoveOptions&>(options));
 }
 
-std::unique_ptr<DetailMethod> make_lloyd_relaxation(const DetailScene& scene,
-                                                    const LloydRelaxationOptions& options) {
+std::unique_ptr<DetailMethod> make_lloyd(const DetailScene& scene, const LloydOptions& options) {
   require_valid(scene);
-  return std::make_unique<LloydRelaxation>(scene, options);
+  return std::make_unique<Lloyd>(scene, options);
 }
 
-std::unique_ptr<Process> make_lloyd_relaxation_process(const DetailScene& scene,
-                                                       const LloydRelaxationOptions& options) {
-  return make_detail_process(scene, [options](const DetailScene& s, RunContext&) {
-    return make_lloyd_relaxation(s, options);
-  });
+std::unique_ptr<Process> make_lloyd_process(const DetailScene& scene, const LloydOptions& options) {
+  return make_detail_process(
+      scene, [options](const DetailScene& s, RunContext&) { return make_lloyd(s, options); });
 }
 
 }  // namespace geoprior::details

@@ -21,24 +21,22 @@ namespace geoprior::details {
 /// What it cannot do: details do not stay where they were on the surface; a pattern at random
 /// becomes a lattice with faults, whose mean edge is shorter than that of the original at equal
 /// density; clusters dissolve. Nothing slides while the surface stands still.
-struct LloydRelaxationOptions : DensityMoveOptions {
+struct LloydOptions : DensityMoveOptions {
   /// A detail that slides over the rim of a patch changes two by one: a wider dead band.
-  LloydRelaxationOptions() { dead_band = 0.5; }
+  LloydOptions() { dead_band = 0.5; }
 
-  int iterations = 4;     ///< of a frame in which the surface moves
-  double relaxation = 1;  ///< part of the way to the centroid
+  int iterations = 4;
+  double relaxation = 1;
 };
-void describe(OptionVisitor& v, LloydRelaxationOptions& options);
+void describe(OptionVisitor& v, LloydOptions& options);
 
 /// The method frame by frame. Phases inside a step: "move", "budget", "merge", "insert", "relax",
 /// "weights". Diagnostics: inserted, revived, fading (started in the frame), flips, refused_flips,
 /// max_weight_change, and of the last frame mean_slide and max_slide: what the relaxation moved
 /// details by, summed over iterations [m].
-std::unique_ptr<DetailMethod> make_lloyd_relaxation(const DetailScene& scene,
-                                                    const LloydRelaxationOptions& options);
+std::unique_ptr<DetailMethod> make_lloyd(const DetailScene& scene, const LloydOptions& options);
 
 /// The method as a process: `make_detail_process` around it.
-std::unique_ptr<Process> make_lloyd_relaxation_process(const DetailScene& scene,
-                                                       const LloydRelaxationOptions& options);
+std::unique_ptr<Process> make_lloyd_process(const DetailScene& scene, const LloydOptions& options);
 
 }  // namespace geoprior::details

@@ -13,6 +13,10 @@
 namespace geoprior::details {
 namespace {
 
+/// A frame has fewer details after so many darts for each it asks for. Chosen: the default radius
+/// needs a few dozen.
+constexpr std::size_t kDartsPerDetail = 100;
+
 /// Darts of a batch that share a random stream.
 constexpr std::size_t kBlock = 256;
 
@@ -24,9 +28,9 @@ struct TriedPlace {
   bool lands = false;
 };
 
-class Rescatter final : public DetailMethod {
+class ReScatter final : public DetailMethod {
  public:
-  Rescatter(const DetailScene& scene, const RescatterOptions& options, std::uint64_t seed)
+  ReScatter(const DetailScene& scene, const ReScatterOptions& options, std::uint64_t seed)
       : options_(options),
         seed_(seed ^ fnv1a("rescatter")),
         now_(build_detail_mesh(scene.surface, scene.details)),
@@ -105,7 +109,7 @@ class Rescatter final : public DetailMethod {
   [[nodiscard]] std::vector<Detail> scatter() {
     const std::vector<double> sums = partial_sums();
     const auto wanted = static_cast<std::size_t>(std::max(3.0, std::round(sums.back())));
-    const std::size_t most = wanted * static_cast<std::size_t>(options_.darts_per_detail);
+    const std::size_t most = wanted * kDartsPerDetail;
     PointGrid grid(options_.radius * density_.mean_spacing(), wanted);
     std::vector<Detail> scattered;
     std::vector<TriedPlace> batch(std::max(wanted, kBlock));
@@ -145,7 +149,7 @@ class Rescatter final : public DetailMethod {
     now_.frame = frame;
   }
 
-  RescatterOptions options_;
+  ReScatterOptions options_;
   std::uint64_t seed_;
   DetailMesh now_;
   RestDensity density_;
@@ -156,24 +160,23 @@ class Rescatter final : public DetailMethod {
 
 }  // namespace
 
-void describe(OptionVisitor& v, RescatterOptions& options) {
-  v.value(
-      "radius", options.radius,
-      {.doc = "smallest distance in units of 1 / sqrt(density at rest)", .min = 0.1, .max = 0.83});
-  v.value("darts_per_detail", options.darts_per_detail,
-          {.doc = "after so many darts a frame has fewer details", .min = 1, .max = 100000});
+void describe(OptionVisitor& v, ReScatterOptions& options) {
+  v.value("radius", options.radius,
+          {.doc = "smallest distance between details, in units of 1 / sqrt(density at rest)",
+           .min = 0.1,
+           .max = 0.83});
 }
 
-std::unique_ptr<DetailMethod> make_rescatter(const DetailScene& scene,
-                                             const RescatterOptions& options, std::uint64_t seed) {
+std::unique_ptr<DetailMethod> make_re_scatter(const DetailScene& scene,
+                                              const ReScatterOptions& options, std::uint64_t seed) {
   require_valid(scene);
-  return std::make_unique<Rescatter>(scene, options, seed);
+  return std::make_unique<ReScatter>(scene, options, seed);
 }
 
-std::unique_ptr<Process> make_rescatter_process(const DetailScene& scene,
-                                                const RescatterOptions& options) {
+std::unique_ptr<Process> make_re_scatter_process(const DetailScene& scene,
+                                                 const ReScatterOptions& options) {
   return make_detail_process(scene, [options](const DetailScene& s, RunContext& context) {
-    return make_rescatter(s, options, context.seed());
+    return make_re_scatter(s, options, context.seed());
   });
 }
 

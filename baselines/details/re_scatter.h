@@ -18,19 +18,18 @@ namespace geoprior::details {
 /// surface asks for. At random no more than 0.697 / r^2 per area fit (Feder 1980), so the number is
 /// reached for radius < 0.834, with the more darts the nearer to it. Types and tangent directions
 /// are those of details at rest, drawn at random.
-struct RescatterOptions {
-  double radius = 0.78;        ///< smallest distance in units of 1 / sqrt(density at rest)
-  int darts_per_detail = 100;  ///< after so many darts a frame has fewer details
+struct ReScatterOptions {
+  double radius = 0.78;
 };
-void describe(OptionVisitor& v, RescatterOptions& options);
+void describe(OptionVisitor& v, ReScatterOptions& options);
 
 /// The method frame by frame. Phases inside a step: "move", "scatter", "build".
 /// Diagnostics: inserted, removed (all of the frame before), darts.
-std::unique_ptr<DetailMethod> make_rescatter(const DetailScene& scene,
-                                             const RescatterOptions& options, std::uint64_t seed);
+std::unique_ptr<DetailMethod> make_re_scatter(const DetailScene& scene,
+                                              const ReScatterOptions& options, std::uint64_t seed);
 
 /// The method as a process: `make_detail_process` around it.
-std::unique_ptr<Process> make_rescatter_process(const DetailScene& scene,
-                                                const RescatterOptions& options);
+std::unique_ptr<Process> make_re_scatter_process(const DetailScene& scene,
+                                                 const ReScatterOptions& options);
 
 }  // namespace geoprior::details

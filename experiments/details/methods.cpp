@@ -26,11 +26,11 @@ std::vector<MethodEntry> methods() {
           [](const S& scene, const NaiveStretchOptions& options, RunContext&) {
             return with_drawing(make_naive_stretch_process(scene.input, options), scene);
           }),
-      method_entry<S, RescatterOptions>(
+      method_entry<S, ReScatterOptions>(
           "re-scatter", true, "all details are scattered anew in every frame",
           "Poisson-disk by dart throwing: Cook 1986",
-          [](const S& scene, const RescatterOptions& options, RunContext&) {
-            return with_drawing(make_rescatter_process(scene.input, options), scene);
+          [](const S& scene, const ReScatterOptions& options, RunContext&) {
+            return with_drawing(make_re_scatter_process(scene.input, options), scene);
           }),
       method_entry<S, DartThrowingOptions>(
           "dart-throwing", true, "darts thrown where the surface is stretched become details",
@@ -44,11 +44,11 @@ std::vector<MethodEntry> methods() {
           [](const S& scene, const DelaunayRefinementOptions& options, RunContext&) {
             return with_drawing(make_delaunay_refinement_process(scene.input, options), scene);
           }),
-      method_entry<S, LloydRelaxationOptions>(
+      method_entry<S, LloydOptions>(
           "lloyd", true, "details slide to the centroids of their Voronoi cells in every frame",
           "Lloyd 1982; Du, Faber and Gunzburger 1999",
-          [](const S& scene, const LloydRelaxationOptions& options, RunContext&) {
-            return with_drawing(make_lloyd_relaxation_process(scene.input, options), scene);
+          [](const S& scene, const LloydOptions& options, RunContext&) {
+            return with_drawing(make_lloyd_process(scene.input, options), scene);
           }),
   };
 }

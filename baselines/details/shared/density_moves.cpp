@@ -273,15 +273,20 @@ void DensityMethod::load(StateReader& in) {
 
 void describe(OptionVisitor& v, DensityMoveOptions& options) {
   v.value("circumradius", options.circumradius,
-          {.doc = "least circumradius that is filled, in units of the lattice's", .min = 0});
+          {.doc = "smallest circumradius that is filled, over that of the lattice of the density",
+           .min = 0});
   v.value("shortest_edge", options.shortest_edge,
-          {.doc = "edges below may lose an end, in units of the lattice's", .min = 0});
+          {.doc = "an edge may lose an end below this length, over that of the lattice of the "
+                  "density",
+           .min = 0});
   v.value("patch_details", options.patch_details, {.doc = "details of a patch at rest", .min = 1});
   v.value("dead_band", options.dead_band,
-          {.doc = "a patch acts when off by more than 1/2 + this", .min = 0, .max = 10});
+          {.doc = "a patch acts when its details are off by more than 1/2 + this",
+           .min = 0,
+           .max = 10});
   v.value("anticipate", options.anticipate,
-          {.doc = "patches ask for what they need K / 4 frames ahead when they grow, 3 K / 4 when "
-                  "they shrink, K = 1 / weight_rate"});
+          {.doc = "growing patches ask K / 4 frames ahead, shrinking ones 3 K / 4, with "
+                  "K = 1 / weight_rate"});
   v.value("weight_rate", options.weight_rate,
           {.doc = "largest change of a weight in a frame", .min = 1e-3, .max = 1});
   describe_lengths(v, options.lengths);

@@ -42,12 +42,12 @@ std::optional<MeshPoint> circumcentre(const IntrinsicTriangulation& mesh, int t)
 
 /// Options of the methods that keep their number of details by `DensityMoves`.
 struct DensityMoveOptions {
-  double circumradius = 1;   ///< least circumradius filled, in units of the lattice's
-  double shortest_edge = 1;  ///< edges below may lose an end, in units of the lattice's
-  int patch_details = 48;    ///< details of a patch at rest
-  double dead_band = 0.1;    ///< a patch acts when off by more than 1/2 + this
-  bool anticipate = true;    ///< patches ask ahead, as `SelfReplicatingOptions::anticipate`
-  double weight_rate = 0.1;  ///< largest change of a weight in a frame
+  double circumradius = 1;
+  double shortest_edge = 1;
+  int patch_details = 48;
+  double dead_band = 0.1;
+  bool anticipate = true;  ///< see `lead_of`
+  double weight_rate = 0.1;
   LengthRule lengths = LengthRule::chord;
 };
 void describe(OptionVisitor& v, DensityMoveOptions& options);

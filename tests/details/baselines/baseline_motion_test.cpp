@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
         Baseline{"darts", [](const DetailScene& s) { return make_dart_throwing(s, {}, 1); }},
         Baseline{"refinement",
                  [](const DetailScene& s) { return make_delaunay_refinement(s, {}); }},
-        Baseline{"lloyd", [](const DetailScene& s) { return make_lloyd_relaxation(s, {}); }}),
+        Baseline{"lloyd", [](const DetailScene& s) { return make_lloyd(s, {}); }}),
     [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace

@@ -26,7 +26,7 @@ struct Box {
 };
 
 /// Equilateral lattice of `columns` points along x, half an edge and more inside the borders.
-std::vector<Detail> lattice(const TriMesh& mesh, int columns) {
+std::vector<Detail> details_on_lattice(const TriMesh& mesh, int columns) {
   const Box box(mesh.V);
   const double edge = (box.right - box.left) / columns;
   const SurfaceTopology surface(mesh);
@@ -49,7 +49,7 @@ std::vector<Detail> lattice(const TriMesh& mesh, int columns) {
 TEST(VoronoiCell, OfALatticeIsItsHexagon) {
   // Area sqrt(3) / 2 edge^2, corners edge / sqrt(3) away, centroid at the detail.
   const TriMesh mesh = shapes::square(20);
-  const DetailMesh d = build_detail_mesh(mesh, lattice(mesh, 9));
+  const DetailMesh d = build_detail_mesh(mesh, details_on_lattice(mesh, 9));
   const std::vector<double> spacing = spacing_of_sites(d, RestDensity(d));
   const Box box(mesh.V);
   const double edge = (box.right - box.left) / 9;
@@ -71,7 +71,7 @@ TEST(VoronoiCell, OfALatticeIsItsHexagon) {
 TEST(VoronoiCell, CentroidLeansToTheDenserSide) {
   // Half the spacing on the right is four times the density and sixteen times the weight.
   const TriMesh mesh = shapes::square(20);
-  const DetailMesh d = build_detail_mesh(mesh, lattice(mesh, 9));
+  const DetailMesh d = build_detail_mesh(mesh, details_on_lattice(mesh, 9));
   const Box box(mesh.V);
   const double edge = (box.right - box.left) / 9;
   CellChart chart;
@@ -112,12 +112,12 @@ TEST(VoronoiCell, CellsTileTheSurface) {
   }
 }
 
-TEST(LloydRelaxation, EvensThePatternOfAPlaneThatIsStretched) {
+TEST(Lloyd, EvensThePatternOfAPlaneThatIsStretched) {
   // A lattice has edges of 1.075 / sqrt(density); the original, drawn at random, longer ones: the
   // mean edge falls by some per cent at equal density, while the variation falls to less than half.
   const TriMesh mesh = shapes::square(30);
   const auto s = scene(mesh, even_details(mesh, 600, 1), stretch(mesh, 60, 2));
-  const auto method = make_lloyd_relaxation(s, {});
+  const auto method = make_lloyd(s, {});
   const auto naive = make_naive_stretch(s, {});
   EXPECT_GT(spacing_over_motion(*naive, s).all, 0.35);
   const double before = spacing_in(detail_frame(method->details(), 0), "detail_mesh").variation;
@@ -129,14 +129,14 @@ TEST(LloydRelaxation, EvensThePatternOfAPlaneThatIsStretched) {
   expect_sound(method->details());
 }
 
-TEST(LloydRelaxation, NoTriangleTurnsOver) {
+TEST(Lloyd, NoTriangleTurnsOver) {
   // M_d knows lengths alone, so that only its drawing tells: in a plane all triangles turn left and
   // tile it, whatever the slides, from a pattern with details close together and a sudden stretch.
   const TriMesh mesh = shapes::square(20);
   const auto s = scene(mesh, random_details(mesh, 400, 1), stretch(mesh, 4, 3));
-  LloydRelaxationOptions options;
+  LloydOptions options;
   options.iterations = 20;
-  const auto method = make_lloyd_relaxation(s, options);
+  const auto method = make_lloyd(s, options);
   RunContext context;
   for (int frame = 1; frame <= 4; ++frame) {
     method->step(s.motion->positions(frame), context);
@@ -153,12 +153,12 @@ TEST(LloydRelaxation, NoTriangleTurnsOver) {
   }
 }
 
-TEST(LloydRelaxation, KeepsDetailsAtTheBorder) {
+TEST(Lloyd, KeepsDetailsAtTheBorder) {
   // A strip along the border as wide as the spacing holds its share of the details: a border that
   // repelled like a detail would leave a third of it empty.
   const TriMesh mesh = shapes::square(40);
   const auto s = scene(mesh, even_details(mesh, 900, 1), stretch(mesh, 40, 1.2));
-  const auto method = make_lloyd_relaxation(s, {});
+  const auto method = make_lloyd(s, {});
   run_through(*method, s);
   const DetailMesh& d = method->details();
   const Box box(s.motion->positions(40));
@@ -171,7 +171,7 @@ TEST(LloydRelaxation, KeepsDetailsAtTheBorder) {
   EXPECT_NEAR(within / (share * d.detail_count()), 1, 0.15);
 }
 
-TEST(LloydRelaxation, KeepsAnUnevenDensity) {
+TEST(Lloyd, KeepsAnUnevenDensity) {
   // Four fifths of the details on the left half: as many after the relaxation.
   const TriMesh mesh = shapes::square(32);
   const Box box(mesh.V);
@@ -181,7 +181,7 @@ TEST(LloydRelaxation, KeepsAnUnevenDensity) {
     for (const Detail& d : even_details(mesh, left ? 1600 : 400, left ? 1 : 2))
       if ((position_of(d.at, mesh.V, mesh.F).x() < middle) == left) details.push_back(d);
   const auto s = scene(mesh, details, stretch(mesh, 40, 1.5));
-  const auto method = make_lloyd_relaxation(s, {});
+  const auto method = make_lloyd(s, {});
   run_through(*method, s);
   const DetailMesh& d = method->details();
   const double now =
@@ -192,11 +192,11 @@ TEST(LloydRelaxation, KeepsAnUnevenDensity) {
   EXPECT_NEAR(static_cast<double>(left) / d.detail_count(), 0.8, 0.03);
 }
 
-TEST(LloydRelaxation, FadesDetailsWhenSqueezed) {
+TEST(Lloyd, FadesDetailsWhenSqueezed) {
   const TriMesh mesh = shapes::sphere(4);
   const auto s = scene(mesh, even_details(mesh, 600, 1), inflate(mesh, 60, 0.5));
   EXPECT_LT(spacing_over_motion(*make_naive_stretch(s, {}), s).all, -0.25);
-  const auto method = make_lloyd_relaxation(s, {});
+  const auto method = make_lloyd(s, {});
   const SpacingOverMotion change = spacing_over_motion(*method, s);
   EXPECT_LT(std::abs(change.all), 0.08);
   EXPECT_LT(std::abs(change.visible), 0.08);
@@ -207,10 +207,10 @@ TEST(LloydRelaxation, FadesDetailsWhenSqueezed) {
   expect_sound(method->details());
 }
 
-TEST(LloydRelaxation, RestsWithTheSurface) {
+TEST(Lloyd, RestsWithTheSurface) {
   const TriMesh mesh = shapes::sphere(4);
   const auto s = scene(mesh, random_details(mesh, 500, 1), inflate(mesh, 1, 1.1));
-  const auto method = make_lloyd_relaxation(s, {});
+  const auto method = make_lloyd(s, {});
   RunContext context;
   method->step(s.motion->positions(0), context);
   EXPECT_EQ(diagnostic(*method, "max_slide"), 0);
@@ -229,13 +229,13 @@ TEST(LloydRelaxation, RestsWithTheSurface) {
   EXPECT_EQ(method->details().frame, 23);
 }
 
-TEST(LloydRelaxation, SameForAnyThreadCountAndAfterAStop) {
+TEST(Lloyd, SameForAnyThreadCountAndAfterAStop) {
   const TriMesh mesh = shapes::sphere(4);
   const auto s = scene(mesh, even_details(mesh, 1500, 1), inflate(mesh, 8, 2));
-  expect_same_bytes_for_any_thread_count([&] { return make_lloyd_relaxation(s, {}); }, s);
+  expect_same_bytes_for_any_thread_count([&] { return make_lloyd(s, {}); }, s);
   for (const double factor : {2.0, 0.5}) {
     const auto small = scene(mesh, even_details(mesh, 300, 1), inflate(mesh, 16, factor));
-    expect_resumed_run_is_the_same([&] { return make_lloyd_relaxation_process(small, {}); }, 6);
+    expect_resumed_run_is_the_same([&] { return make_lloyd_process(small, {}); }, 6);
   }
 }
 

@@ -12,12 +12,12 @@ namespace {
 
 using namespace detail_scenes;
 
-TEST(Rescatter, KeepsTheDensityUnderStretchAndCompression) {
+TEST(ReScatter, KeepsTheDensityUnderStretchAndCompression) {
   // Density at rest x area now, to the rounding of the number: darts suffice for radius 0.78.
   const TriMesh mesh = shapes::sphere(4);
   for (const double factor : {0.5, 1.5, 2.0}) {
     const auto s = scene(mesh, even_details(mesh, 400, 1), inflate(mesh, 4, factor));
-    const auto method = make_rescatter(s, {}, 1);
+    const auto method = make_re_scatter(s, {}, 1);
     RunContext context;
     for (int frame = 1; frame <= 4; ++frame) {
       method->step(s.motion->positions(frame), context);
@@ -28,7 +28,7 @@ TEST(Rescatter, KeepsTheDensityUnderStretchAndCompression) {
   }
 }
 
-TEST(Rescatter, KeepsTheDensityOfEitherHalfOfAnUnevenPattern) {
+TEST(ReScatter, KeepsTheDensityOfEitherHalfOfAnUnevenPattern) {
   // Nine tenths of the details on the left half, evenly on either: the numbers stay within four
   // standard deviations of a binomial count, which is wider than that of a Poisson-disk pattern.
   const TriMesh mesh = shapes::square(32);
@@ -41,7 +41,7 @@ TEST(Rescatter, KeepsTheDensityOfEitherHalfOfAnUnevenPattern) {
   add(1440, true);
   add(160, false);
   const auto s = scene(mesh, details, stretch(mesh, 1, 2));
-  const auto method = make_rescatter(s, {}, 1);
+  const auto method = make_re_scatter(s, {}, 1);
   run_through(*method, s);
   const DetailMesh& d = method->details();
   int left = 0;
@@ -52,24 +52,24 @@ TEST(Rescatter, KeepsTheDensityOfEitherHalfOfAnUnevenPattern) {
   EXPECT_NEAR(left, 0.9 * n, 4 * std::sqrt(n * 0.09));
 }
 
-TEST(Rescatter, SpacingBeatsNaiveStretch) {
+TEST(ReScatter, SpacingBeatsNaiveStretch) {
   // Twice the length gives +43 to +45 % without a remedy (isotropic pattern: the mean of
   // sqrt(4 cos^2 + sin^2) over directions is 1.54, less what flips take back). A re-scatter keeps
   // the density; its pattern is another one, whose mean edge differs by a few per cent.
   const TriMesh mesh = shapes::square(24);
   const auto s = scene(mesh, even_details(mesh, 400, 1), stretch(mesh, 10, 2));
   const double naive = spacing_over_motion(*make_naive_stretch(s, {}), s).all;
-  const SpacingOverMotion change = spacing_over_motion(*make_rescatter(s, {}, 1), s);
+  const SpacingOverMotion change = spacing_over_motion(*make_re_scatter(s, {}, 1), s);
   EXPECT_GT(naive, 0.35);
   EXPECT_LT(std::abs(change.all), 0.06);
   EXPECT_EQ(change.all, change.visible);
 }
 
-TEST(Rescatter, RespectsTheDistance) {
+TEST(ReScatter, RespectsTheDistance) {
   const TriMesh mesh = shapes::square(24);
   const auto s = scene(mesh, even_details(mesh, 400, 1), stretch(mesh, 1, 2));
   const RestDensity density(build_detail_mesh(mesh, s.details));
-  const auto method = make_rescatter(s, {}, 1);
+  const auto method = make_re_scatter(s, {}, 1);
   run_through(*method, s);
   const DetailMesh& d = method->details();
   for (std::size_t i = 0; i < d.site.size(); ++i)
@@ -80,10 +80,10 @@ TEST(Rescatter, RespectsTheDistance) {
       }
 }
 
-TEST(Rescatter, EveryDetailIsNewUnlessTheSurfaceStandsStill) {
+TEST(ReScatter, EveryDetailIsNewUnlessTheSurfaceStandsStill) {
   const TriMesh mesh = shapes::square(16);
   const auto s = scene(mesh, even_details(mesh, 150, 1), stretch(mesh, 3, 1.3));
-  const auto method = make_rescatter(s, {}, 1);
+  const auto method = make_re_scatter(s, {}, 1);
   RunContext context;
   std::int64_t oldest = 0;
   for (int frame = 1; frame <= 3; ++frame) {
@@ -101,11 +101,11 @@ TEST(Rescatter, EveryDetailIsNewUnlessTheSurfaceStandsStill) {
   EXPECT_EQ(method->details().frame, 4);
 }
 
-TEST(Rescatter, SameForAnyThreadCountAndAfterAStop) {
+TEST(ReScatter, SameForAnyThreadCountAndAfterAStop) {
   const TriMesh mesh = shapes::sphere(4);
   const auto s = scene(mesh, even_details(mesh, 1500, 1), inflate(mesh, 6, 2));
-  expect_same_bytes_for_any_thread_count([&] { return make_rescatter(s, {}, 1); }, s);
-  expect_resumed_run_is_the_same([&] { return make_rescatter_process(s, {}); }, 2);
+  expect_same_bytes_for_any_thread_count([&] { return make_re_scatter(s, {}, 1); }, s);
+  expect_resumed_run_is_the_same([&] { return make_re_scatter_process(s, {}); }, 2);
 }
 
 }  // namespace
