@@ -12,10 +12,18 @@
 namespace geoprior::details {
 namespace {
 
-/// Radii that leave room between holes (see HoleOptions).
+/// Largest sum of two radii over the distance of their details. Chosen: what is left between two
+/// holes is seen.
+constexpr double kHoleSpacing = 0.85;
+
+/// Holes are cut above this share of the radius. Chosen: smaller ones are not seen, and their
+/// borders would be finer than all else in the mesh.
+constexpr double kLeastHole = 0.04;
+
+/// Radii that leave room between holes (see `cut_holes`).
 std::vector<double> radii_apart(const std::vector<double>& wanted,
                                 const std::vector<Eigen::Vector3d>& at,
-                                const std::vector<Eigen::Vector3d>& normal, double spacing) {
+                                const std::vector<Eigen::Vector3d>& normal) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < wanted.size(); ++i)
     if (wanted[i] > 0) order.push_back(i);
@@ -28,10 +36,10 @@ std::vector<double> radii_apart(const std::vector<double>& wanted,
     const std::size_t i = order[a];
     for (std::size_t b = a + 1; b < order.size(); ++b) {
       const std::size_t j = order[b];
-      if (spacing * (at[j].x() - at[i].x()) > wanted[i] + most) break;
+      if (kHoleSpacing * (at[j].x() - at[i].x()) > wanted[i] + most) break;
       // The other side of a thin part is near in space only.
       if (normal[i].dot(normal[j]) < 0) continue;
-      const double overlap = wanted[i] + wanted[j] - spacing * (at[i] - at[j]).norm();
+      const double overlap = wanted[i] + wanted[j] - kHoleSpacing * (at[i] - at[j]).norm();
       if (!(overlap > 0)) continue;
       const double wi = wanted[i] * wanted[i], wj = wanted[j] * wanted[j];
       radius[i] = std::min(radius[i], wanted[i] - overlap * wj / (wi + wj));
@@ -69,17 +77,9 @@ DrawnDetails compact(const HoledMesh& cut) {
 
 }  // namespace
 
-void describe(OptionVisitor& v, HoleOptions& o) {
-  v.value("segments", o.segments, {"of the border of a hole, about", "", 8, 512});
-  v.value("spacing", o.spacing,
-          {"largest sum of two radii, in units of the distance of the details", "", 0.1, 0.9});
-  v.value("least", o.least, {"holes are cut above this share of the radius", "", 0.001, 1});
-}
-
 CutSurface cut_holes(const SurfaceTopology& surface, std::span<const Eigen::Vector3d> x,
-                     std::span<const DrawnAnchor> anchors, const HoleOptions& options,
-                     double radius) {
-  const double least = options.least * radius;
+                     std::span<const DrawnAnchor> anchors, double radius) {
+  const double least = kLeastHole * radius;
   const std::size_t n = anchors.size();
   const auto normals = normals_at(surface, x, anchors);
   std::vector<double> wanted(n);
@@ -92,7 +92,7 @@ CutSurface cut_holes(const SurfaceTopology& surface, std::span<const Eigen::Vect
   CutSurface result;
   result.radius.assign(n, 0);
   std::vector<double> apart = wanted;
-  if (n > 0) apart = radii_apart(wanted, at, normals, options.spacing);
+  if (n > 0) apart = radii_apart(wanted, at, normals);
   std::vector<HoleChart> charts(n);
   parallel_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
     HoleCharter charter(surface, x);
@@ -105,7 +105,7 @@ CutSurface cut_holes(const SurfaceTopology& surface, std::span<const Eigen::Vect
     result.radius[i] = charts[i].radius;
     mesh.add(static_cast<int>(i), charts[i]);
   }
-  mesh.refine(options.segments, least);
+  mesh.refine(kHoleSegments, least);
   for (std::size_t i = 0, added = 0; i < n; ++i)
     if (result.radius[i] > 0) result.radius[i] = mesh.radius(static_cast<int>(added++));
   result.drawn = compact(mesh.cut());

@@ -53,20 +53,21 @@ std::string part_name(DrawnKind kind) {
 void describe(OptionVisitor& v, DrawingOptions& o) {
   static constexpr std::array<std::string_view, 3> kKinds{"spike", "mesh", "hole"};
   static constexpr std::array<std::string_view, 2> kUnits{"mean_edge", "metre"};
-  describe_choice(v, "kind", o.kind, kKinds, {"what a detail is drawn as"});
+  describe_choice(
+      v, "kind", o.kind, kKinds,
+      {"a detail is drawn as a procedural spike, a mesh on the surface, or a hole in it"});
   describe_choice(v, "unit", o.unit, kUnits,
-                  {"of radius and height: the mean edge of M_d at rest, or metres"});
-  v.value("radius", o.radius, {"of a detail of weight 1, in `unit`", "", 0, 1e6});
-  v.value("type", o.type, {"draws only details of this type; without: all"});
+                  {"radius and height are given in the mean edge of M_d at rest, or in metres"});
+  v.value("radius", o.radius, {"radius of a detail of weight 1, in `unit`", "", 0, 1e6});
+  v.value("type", o.type, {"the one type of details that is drawn; absent: all types"});
   switch (o.kind) {
     case DrawnKind::spike:
-      describe_group(v, "spike", o.spike, {"a procedural spike"});
+      describe_group(v, "spike", o.spike, {"procedural spike of a detail"});
       break;
     case DrawnKind::mesh:
-      describe_group(v, "instance", o.instance, {"a mesh put onto the surface"});
+      describe_group(v, "instance", o.instance, {"mesh of a detail, put onto the surface"});
       break;
     case DrawnKind::hole:
-      describe_group(v, "hole", o.hole, {"a hole cut into the surface"});
       break;
   }
 }
@@ -80,10 +81,10 @@ void require_drawable(const DrawingOptions& options, std::size_t details, const 
   const auto count = static_cast<double>(details);
   switch (options.kind) {
     case DrawnKind::spike:
-      return require_vertices(count * options.spike.sectors * (options.spike.rings + 1.0),
+      return require_vertices(count * kSpikeSectors * (kSpikeRings + 1.0),
                               "scene.drawing.look.spike");
     case DrawnKind::hole:
-      return require_vertices(count * options.hole.segments, "scene.drawing.look.hole.segments");
+      return require_vertices(count * kHoleSegments, "scene.drawing.look.kind");
     case DrawnKind::mesh:
       break;
   }
@@ -104,7 +105,7 @@ DrawnDetails draw_details(const SurfaceTopology& surface, std::span<const Eigen:
     case DrawnKind::spike:
       return draw_spikes(surface, x, drawn, options.spike, radius, options.spike.height * unit);
     case DrawnKind::hole:
-      return cut_holes(surface, x, drawn, options.hole, radius).drawn;
+      return cut_holes(surface, x, drawn, radius).drawn;
     case DrawnKind::mesh:
       break;
   }

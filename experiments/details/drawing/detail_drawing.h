@@ -21,12 +21,11 @@ enum class DrawnUnit { mean_edge, metre };
 /// methods are drawn alike, from what a recorded frame holds.
 struct DrawingOptions {
   DrawnKind kind = DrawnKind::spike;
-  DrawnUnit unit = DrawnUnit::mean_edge;  ///< of radius and height
-  double radius = 0.35;                   ///< of a detail of weight 1: base, unit of a mesh, hole
-  std::optional<int> type;                ///< only details of this type; without: all
+  DrawnUnit unit = DrawnUnit::mean_edge;
+  double radius = 0.35;  ///< base of a spike, unit of a mesh, radius of a hole
+  std::optional<int> type;
   SpikeOptions spike;
   InstanceOptions instance;
-  HoleOptions hole;
 };
 void describe(OptionVisitor& v, DrawingOptions& options);
 
@@ -47,9 +46,8 @@ void require_drawable(const DrawingOptions& options, std::size_t details,
 /// @param surface    triangles of the surface; manifold
 /// @param x          its vertices now (m)
 /// @param anchors    details on it; those of weight 0 are not drawn
-/// @param mean_edge  of M_d at rest (m): what lengths in mean edges are measured in, the same in
-/// all
-///                   frames, so that details keep their size
+/// @param mean_edge  of M_d at rest (m): what lengths in mean edges are measured in, the same
+///                   in all frames, so that details keep their size
 /// @param instance   for kind `mesh` with shape `given`, else unused
 /// @throws Error     for an anchor off the surface (names it), an instance without triangles, or a
 ///                   mean edge that is needed and not positive

@@ -57,9 +57,10 @@ Eigen::Vector3d knob_point(double s, double angle) {
 
 void describe(OptionVisitor& v, InstanceOptions& o) {
   static constexpr std::array<std::string_view, 3> kShapes{"plate", "knob", "given"};
-  describe_choice(v, "shape", o.shape, kShapes, {"mesh of a detail"});
+  describe_choice(v, "shape", o.shape, kShapes,
+                  {"mesh of a detail: one of ours, or given by `file`"});
   v.value("sink", o.sink,
-          {"how deep z = 0 of the mesh lies below the surface, in radii", "", -1, 1});
+          {"depth of the mesh's plane z = 0 below the surface, in radii", "", -1, 1});
 }
 
 TriMesh instance_mesh(InstanceShape shape) {

@@ -19,7 +19,7 @@ enum class InstanceShape {
 /// tangent direction, its unit of length weight x radius.
 struct InstanceOptions {
   InstanceShape shape = InstanceShape::plate;
-  double sink = 0.08;  ///< how deep z = 0 lies below the surface, in radii
+  double sink = 0.08;
 };
 void describe(OptionVisitor& v, InstanceOptions& options);
 

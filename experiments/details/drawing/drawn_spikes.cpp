@@ -48,9 +48,9 @@ Ring profile_at(SpikeProfile profile, double u, double lean) {
 /// From the innermost ring to the one below the surface.
 std::vector<Ring> rings_of(const SpikeOptions& options) {
   std::vector<Ring> rings;
-  for (int j = options.rings - 1; j >= 0; --j)
+  for (int j = kSpikeRings - 1; j >= 0; --j)
     rings.push_back(
-        profile_at(options.profile, static_cast<double>(j) / options.rings, options.lean));
+        profile_at(options.profile, static_cast<double>(j) / kSpikeRings, options.lean));
   rings.push_back(profile_at(options.profile, -0.08, options.lean));
   return rings;
 }
@@ -80,14 +80,14 @@ class SpikeDrawer {
         radius_(radius),
         height_(height),
         rings_(rings_of(options)),
-        triangles_(spike_triangles(options.sectors, static_cast<int>(rings_.size()))),
+        triangles_(spike_triangles(kSpikeSectors, static_cast<int>(rings_.size()))),
         rays_(surface, x),
         distance_(rings_.size()),
         on_surface_(rings_.size()),
-        point_(rings_.size() * static_cast<std::size_t>(options.sectors) + 2),
+        point_(rings_.size() * static_cast<std::size_t>(kSpikeSectors) + 2),
         normal_(point_.size()) {
-    for (int k = 0; k < options.sectors; ++k) {
-      const double angle = 2 * std::numbers::pi * k / options.sectors;
+    for (int k = 0; k < kSpikeSectors; ++k) {
+      const double angle = 2 * std::numbers::pi * k / kSpikeSectors;
       ray_.emplace_back(std::cos(angle), std::sin(angle));
     }
   }
@@ -102,7 +102,7 @@ class SpikeDrawer {
     const Eigen::Vector3d ahead = anchor.weight * height_ * rays_.tangent();
     for (std::size_t j = 0; j < rings_.size(); ++j)
       distance_[j] = rings_[j].radius * width * radius_;
-    const auto sectors = static_cast<std::size_t>(options_.sectors);
+    const auto sectors = static_cast<std::size_t>(kSpikeSectors);
     Eigen::Vector3d bottom = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < sectors; ++k) {
       rays_.trace(ray_[k], distance_, on_surface_);
@@ -112,7 +112,7 @@ class SpikeDrawer {
     }
     const Ring tip = profile_at(options_.profile, 1, options_.lean);
     point_[point_.size() - 2] = rays_.origin() + tip.height * up + tip.lean * ahead;
-    point_[point_.size() - 1] = bottom / options_.sectors;
+    point_[point_.size() - 1] = bottom / kSpikeSectors;
   }
 
   void write(int detail, std::size_t number, DrawnDetails& drawn) {
@@ -152,12 +152,11 @@ void describe(OptionVisitor& v, SpikeOptions& o) {
   static constexpr std::array<std::string_view, 3> kProfiles{"cone", "dome", "thorn"};
   static constexpr std::array<std::string_view, 2> kScales{"size", "height"};
   describe_choice(v, "profile", o.profile, kProfiles, {"shape of a spike"});
-  v.value("height", o.height, {"of weight 1, in `unit`", "", 0, 1e6});
-  v.value("lean", o.lean, {"thorn: share of the height that its tip is off", "", -10, 10});
+  v.value("height", o.height, {"height of a spike of weight 1, in `unit`", "", 0, 1e6});
+  v.value("lean", o.lean,
+          {"share of the height that the tip of a thorn is off along the tangent", "", -10, 10});
   describe_choice(v, "weight_scales", o.weight_scales, kScales,
-                  {"what the weight scales: height and radius, or the height alone"});
-  v.value("sectors", o.sectors, {"rays from the middle to the foot", "", 3, 256});
-  v.value("rings", o.rings, {"rings between foot and tip", "", 1, 256});
+                  {"the weight scales height and radius (size), or the height alone"});
 }
 
 DrawnDetails draw_spikes(const SurfaceTopology& surface, std::span<const Eigen::Vector3d> x,

@@ -9,6 +9,11 @@
 
 namespace geoprior::details {
 
+/// Rays from the middle of a spike to its foot, and rings between foot and tip. Chosen for
+/// pictures.
+inline constexpr int kSpikeSectors = 12;
+inline constexpr int kSpikeRings = 4;
+
 enum class SpikeProfile {
   cone,  ///< straight sides
   dome,  ///< rounded: height 1 - s^2 at the share s of the radius
@@ -27,11 +32,9 @@ enum class WeightScales {
 /// profile below the surface, and leaves no gap where the surface is hollow.
 struct SpikeOptions {
   SpikeProfile profile = SpikeProfile::cone;
-  double height = 0.8;  ///< of weight 1, in the drawing's unit of length
-  double lean = 0.6;    ///< thorn: its tip is that share of the height off, along the tangent
+  double height = 0.8;
+  double lean = 0.6;
   WeightScales weight_scales = WeightScales::size;
-  int sectors = 12;  ///< rays
-  int rings = 4;     ///< between foot and tip
 };
 void describe(OptionVisitor& v, SpikeOptions& options);
 

@@ -202,9 +202,9 @@ Eigen::VectorXd falloff_of(const DeformationOptions& options, const Eigen::Matri
 }  // namespace
 
 void describe(OptionVisitor& v, AmountKey& key) {
-  v.value("t", key.t, {.doc = "time", .unit = "s", .required = true});
+  v.value("t", key.t, {.doc = "time of an amount", .unit = "s", .required = true});
   v.value("value", key.value,
-          {.doc = "factor; of twist and bend an angle in degrees", .required = true});
+          {.doc = "amount: a factor, of twist and bend an angle in degrees", .required = true});
 }
 
 void describe(OptionVisitor& v, DeformationOptions& options) {
@@ -217,28 +217,37 @@ void describe(OptionVisitor& v, DeformationOptions& options) {
               "the distance from axis, from, to; twist: degrees about axis, from, to; "
               "bend: degrees of axis towards side, from, to"});
   describe_list(v, "keys", options.keys,
-                {.doc = "how much at times that increase, linear between"});
-  v.value("centre", options.centre, {.doc = "of the operation and of its falloff", .unit = "m"});
+                {.doc = "amounts of the operation at times that increase, linear between"});
+  v.value("centre", options.centre,
+          {.doc = "centre of the operation and of the ball that limits it", .unit = "m"});
   if (has_axis(options.kind)) {
-    v.value("axis", options.axis, {.doc = "through the centre, of any length"});
+    v.value("axis", options.axis,
+            {.doc = "axis of the operation through its centre, of any length"});
     v.value("from", options.from,
-            {.doc = "where it begins along the axis; absent: at the end", .unit = "m"});
+            {.doc = "place along the axis where the operation begins; absent: at the lower end",
+             .unit = "m"});
     v.value("to", options.to,
-            {.doc = "where it ends along the axis; absent: at the end", .unit = "m"});
+            {.doc = "place along the axis where the operation ends; absent: at the upper end",
+             .unit = "m"});
   }
   if (options.kind == Kind::stretch) {
     v.value("cross", options.cross,
-            {.doc = "across, the surface is multiplied by factor^-cross", .min = -1, .max = 1});
+            {.doc = "across the axis, the surface is multiplied by factor^-cross",
+             .min = -1,
+             .max = 1});
     v.value("ramp", options.ramp,
-            {.doc = "share of from … to in which it sets in and out", .min = 0, .max = 1});
+            {.doc = "share of from … to in which a stretch sets in and out", .min = 0, .max = 1});
   }
   if (options.kind == Kind::inflate) {
     v.value("smooth", options.smooth,
-            {.doc = "times that its normals are averaged over neighbours", .min = 0, .max = 10000});
+            {.doc = "times that the normals of an inflation are averaged over neighbours",
+             .min = 0,
+             .max = 10000});
   }
-  if (options.kind == Kind::bend) v.value("side", options.side, {.doc = "towards which it bends"});
+  if (options.kind == Kind::bend)
+    v.value("side", options.side, {.doc = "direction towards which a bend turns the axis"});
   v.value("radius", options.radius,
-          {.doc = "of the ball about the centre it acts in; absent: everywhere",
+          {.doc = "radius of the ball about the centre that limits the operation; absent: none",
            .unit = "m",
            .min = 1e-9});
 }

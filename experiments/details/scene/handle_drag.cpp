@@ -94,15 +94,19 @@ Eigen::MatrixX3d positions_of(const Mesh& mesh) {
 }  // namespace
 
 void describe(OptionVisitor& v, HandleBallOptions& options) {
-  v.value("centre", options.centre, {.doc = "of the ball, at rest", .unit = "m"});
-  v.value("radius", options.radius, {.doc = "vertices within are held", .unit = "m", .min = 1e-9});
+  v.value("centre", options.centre, {.doc = "centre of the handle's ball, at rest", .unit = "m"});
+  v.value(
+      "radius", options.radius,
+      {.doc = "radius of the handle's ball, whose vertices are held", .unit = "m", .min = 1e-9});
   describe_keys(v, options.keys);
 }
 
 void describe(OptionVisitor& v, HandleDragOptions& options) {
   describe_list(v, "handles", options.handles, {.doc = "balls of vertices that are held or moved"});
   v.value("iterations", options.iterations,
-          {.doc = "local and global steps of a frame", .min = 1, .max = 1000});
+          {.doc = "local and global steps that the surface makes after the handles in a frame",
+           .min = 1,
+           .max = 1000});
 }
 
 std::shared_ptr<const SurfaceMotion> drag_handles(const TriMesh& rest,

@@ -273,17 +273,24 @@ std::vector<Detail> scatter(const TriMesh& surface, const DetailPatternOptions& 
 void describe(OptionVisitor& v, DensityOptions& options) {
   static constexpr std::array<std::string_view, 3> kKinds{"constant", "gradient", "array"};
   describe_choice(v, "kind", options.kind, kKinds,
-                  {.doc = "constant; gradient: axis, from, to; array: array"});
+                  {.doc = "the density is the same everywhere, a gradient (axis, from, to), or an "
+                          "array of the surface"});
   if (options.kind == DensityKind::gradient) {
-    v.value("axis", options.axis, {.doc = "along which it changes, any length"});
+    v.value("axis", options.axis, {.doc = "axis along which the density changes, of any length"});
     v.value("from", options.from,
-            {.doc = "at the lower end of the surface", .min = 0, .max = kMostDensity});
+            {.doc = "density at the lower end of the surface along the axis",
+             .min = 0,
+             .max = kMostDensity});
     v.value("to", options.to,
-            {.doc = "at the upper end, linear between", .min = 0, .max = kMostDensity});
+            {.doc = "density at the upper end of the surface along the axis, linear between",
+             .min = 0,
+             .max = kMostDensity});
   }
   if (options.kind == DensityKind::array) {
-    v.value("array", options.array,
-            {.doc = "array of the points of the surface's .vtp, not negative", .required = true});
+    v.value(
+        "array", options.array,
+        {.doc = "array of the points of the surface's .vtp that holds the density, not negative",
+         .required = true});
   }
 }
 
@@ -293,18 +300,22 @@ void describe(OptionVisitor& v, RegionOptions& options) {
                   {.doc = "half-space: point, direction (into it); ball: point, radius; facing: "
                           "direction, angle_deg of normals to it"});
   if (options.kind != RegionKind::facing) {
-    v.value("point", options.point, {.doc = "of the plane, or centre", .unit = "m"});
+    v.value("point", options.point,
+            {.doc = "point of the half space's plane, or centre of the ball", .unit = "m"});
   }
   if (options.kind != RegionKind::ball) {
-    v.value("direction", options.direction, {.doc = "of any length"});
+    v.value("direction", options.direction,
+            {.doc = "direction into the half space, or that normals face, of any length"});
   } else {
-    v.value("radius", options.radius, {.doc = "of the ball", .unit = "m", .min = 1e-9});
+    v.value("radius", options.radius, {.doc = "radius of the ball", .unit = "m", .min = 1e-9});
   }
   if (options.kind == RegionKind::facing) {
-    v.value("angle_deg", options.angle_deg,
-            {.doc = "largest angle of a normal", .unit = "deg", .min = 0, .max = 180});
+    v.value(
+        "angle_deg", options.angle_deg,
+        {.doc = "largest angle of a normal to the direction", .unit = "deg", .min = 0, .max = 180});
   }
-  v.value("outside", options.outside, {.doc = "true: where the condition does not hold"});
+  v.value("outside", options.outside,
+          {.doc = "the condition is turned round: details are where it does not hold"});
 }
 
 void describe(OptionVisitor& v, DetailPatternOptions& options) {
@@ -315,39 +326,50 @@ void describe(OptionVisitor& v, DetailPatternOptions& options) {
                           "each other; clusters: cluster_size, cluster_radius; file: file"});
   if (options.kind == PatternKind::file) {
     v.value("file", options.file,
-            {.doc = "positions: .csv with the columns x, y, z and, if need be, weight, type; or "
+            {.doc = "positions of details: .csv with the columns x, y, z and, if need be, weight, "
+                    "type; or "
                     "the vertices of a mesh file",
              .required = true});
-    v.value("max_distance", options.max_distance,
-            {.doc = "of a position from the surface; absent: a hundredth of its size",
-             .unit = "m",
-             .min = 0});
+    v.value(
+        "max_distance", options.max_distance,
+        {.doc = "largest distance of a position from the surface; absent: a hundredth of its size",
+         .unit = "m",
+         .min = 0});
   } else {
-    v.value("count", options.count, {.doc = "details asked for", .min = 3, .max = 2000000});
-    describe_group(v, "density", options.density, {.doc = "details per area, relative"});
+    v.value("count", options.count,
+            {.doc = "number of details asked for", .min = 3, .max = 2000000});
+    describe_group(v, "density", options.density,
+                   {.doc = "details per area, relative to elsewhere"});
     describe_list(v, "region", options.region,
                   {.doc = "conditions that must all hold where there are details"});
-    v.value("types", options.types, {.doc = "kinds of details, drawn at random", .min = 1});
+    v.value("types", options.types, {.doc = "types of details, drawn at random", .min = 1});
   }
   if (options.kind == PatternKind::poisson_disk || options.kind == PatternKind::clusters) {
     v.value("radius", options.radius,
-            {.doc = "smallest distance x sqrt(density), of details or of centres of clusters",
+            {.doc = "smallest distance of details, or of centres of clusters, times sqrt(density)",
              .min = 0,
              .max = 1});
   }
   if (options.kind == PatternKind::grid) {
-    v.value("jitter", options.jitter, {.doc = "range of the shift / spacing", .min = 0, .max = 1});
+    v.value(
+        "jitter", options.jitter,
+        {.doc = "range of a detail's shift along each axis, over the spacing", .min = 0, .max = 1});
   }
   if (options.kind == PatternKind::clusters) {
     v.value("cluster_size", options.cluster_size,
-            {.doc = "details of a cluster", .min = 2, .max = 20});
-    v.value("cluster_radius", options.cluster_radius,
-            {.doc = "of a cluster / spacing of the centres", .min = 0.01, .max = 0.5});
+            {.doc = "number of details of a cluster", .min = 2, .max = 20});
+    v.value(
+        "cluster_radius", options.cluster_radius,
+        {.doc = "radius of a cluster, over the spacing of the centres", .min = 0.01, .max = 0.5});
   }
-  v.value("aligned", options.aligned, {.doc = "tangents along `direction`, else at random"});
-  v.value("direction", options.direction, {.doc = "of aligned tangents"});
+  v.value("aligned", options.aligned,
+          {.doc = "tangents of details lie along `direction`, else at random"});
+  v.value("direction", options.direction,
+          {.doc = "direction of aligned tangents, projected to the surface"});
   v.value("seed", options.seed,
-          {.doc = "of places, types and tangents, beside the experiment's", .min = 0, .max = 2e9});
+          {.doc = "seed of places, types and tangents, added to that of the experiment",
+           .min = 0,
+           .max = 2e9});
 }
 
 }  // namespace geoprior::details

@@ -91,24 +91,28 @@ void describe(OptionVisitor& v, DetailSurfaceOptions& options) {
     v.value(key, x, {.doc = doc, .unit = "m", .min = kSmallest, .max = kLargest});
   };
   if (options.kind == Kind::plane) {
-    length("width", options.width, "along x");
-    length("height", options.height, "along y");
+    length("width", options.width, "width of the plane, along x");
+    length("height", options.height, "height of the plane, along y");
   }
   const bool round = options.kind == Kind::sphere || options.kind == Kind::torus ||
                      options.kind == Kind::capsule || options.kind == Kind::blob;
-  if (round) length("radius", options.radius, "of the body, or of the ring");
-  if (options.kind == Kind::torus) length("tube_radius", options.tube_radius, "of the tube");
-  if (options.kind == Kind::capsule) length("length", options.length, "of the straight part");
+  if (round) length("radius", options.radius, "radius of the body, or of the ring of a torus");
+  if (options.kind == Kind::torus)
+    length("tube_radius", options.tube_radius, "radius of the tube of a torus");
+  if (options.kind == Kind::capsule)
+    length("length", options.length, "length of the straight part of a capsule");
   if (options.kind == Kind::blob) {
-    v.value("bumps", options.bumps, {.doc = "height of its bumps / radius", .min = 0, .max = 0.5});
+    v.value("bumps", options.bumps,
+            {.doc = "height of the bumps of a blob, over its radius", .min = 0, .max = 0.5});
   }
   if (options.kind == Kind::file) {
-    v.value("file", options.file, {.doc = "mesh: .obj, .ply, .off, .vtp", .required = true});
+    v.value("file", options.file,
+            {.doc = "mesh of the surface: .obj, .ply, .off, .vtp", .required = true});
     v.value("scale", options.scale, {.doc = "metres for one unit of the file", .min = 1e-9});
     v.value("turn_deg", options.turn_deg,
-            {.doc = "of the file's mesh: axis times angle", .unit = "deg"});
+            {.doc = "turn of the file's mesh: axis times angle", .unit = "deg"});
   } else if (options.kind != Kind::sequence) {
-    length("edge", options.edge, "about the edges of its triangles");
+    length("edge", options.edge, "length of the edges of the surface's triangles, about");
   }
 }
 

@@ -235,17 +235,17 @@ TEST_F(BadDetails, AskForNoSurfaceAndNoGridThatWraps) {
 
 TEST_F(BadDetails, AskForNoDrawingAndNoTableThatDoesNotFit) {
   ::setenv("GEOPRIOR_MEMORY_GB", "0.02", 1);
-  EXPECT_THAT(refusal(kPlane + kFew + kStretch +
-                      "drawing = { look = { spike = { sectors = 256, rings = 256 } } }\n"),
+  EXPECT_THAT(refusal(kPlane + "pattern = { kind = \"uniform\", count = 5000 }\n" + kStretch +
+                      "drawing = { look = { kind = \"spike\" } }\n"),
               AllOf(HasSubstr("bad.toml:7:"), HasSubstr("scene.drawing.look.spike: asks for")));
   EXPECT_THAT(refusal(kPlane + kFew +
                       "motion = { frames = 100000, drag = { handles = [{ radius = "
                       "0.1 }] } }\n"),
               AllOf(HasSubstr("bad.toml:6:"), HasSubstr("scene.motion.frames: asks for 100001")));
   ::unsetenv("GEOPRIOR_MEMORY_GB");
-  EXPECT_THAT(refusal(kPlane + kFew + kStretch,
-                      "triplets = { cells = 1024, cell_capacity = 1024, interior_capacity = 64 }"),
-              AllOf(HasSubstr("bad.toml:11:"), HasSubstr("options.triplets.cells: asks for")));
+  EXPECT_THAT(
+      refusal(kPlane + kFew + kStretch, "triplets = { cells = 1024, cell_capacity = 1024 }"),
+      AllOf(HasSubstr("bad.toml:11:"), HasSubstr("options.triplets.cells: asks for")));
 }
 
 }  // namespace

@@ -144,15 +144,15 @@ TEST(Spikes, StandOnACurvedSurface) {
   const TriMesh sphere = shapes::sphere(6);
   const auto anchors = random_anchors(sphere, 40);
   DrawingOptions options = in_metres(DrawnKind::spike, 0.3);
-  options.spike.sectors = 12;
-  options.spike.rings = 4;
   const DrawnDetails drawn = draw_details(sphere, anchors, options, 0);
-  const Eigen::Index per_spike = 12 * 5 + 2;
+  const Eigen::Index per_spike = kSpikeSectors * (kSpikeRings + 1) + 2;
   ASSERT_EQ(drawn.mesh.V.rows(), 40 * per_spike);
   for (Eigen::Index spike = 0; spike < 40; ++spike) {
-    for (Eigen::Index k = 0; k < 12; ++k) {
-      EXPECT_NEAR(drawn.mesh.V.row(spike * per_spike + 12 * 3 + k).norm(), 1, 2.4e-4);
-      EXPECT_LT(drawn.mesh.V.row(spike * per_spike + 12 * 4 + k).norm(), 1);
+    for (Eigen::Index k = 0; k < kSpikeSectors; ++k) {
+      EXPECT_NEAR(
+          drawn.mesh.V.row(spike * per_spike + kSpikeSectors * (kSpikeRings - 1) + k).norm(), 1,
+          2.4e-4);
+      EXPECT_LT(drawn.mesh.V.row(spike * per_spike + kSpikeSectors * kSpikeRings + k).norm(), 1);
     }
   }
 }

@@ -23,9 +23,8 @@ std::vector<DrawnAnchor> anchors_at(const std::vector<Detail>& details, double w
   return anchors;
 }
 
-CutSurface cut(const TriMesh& mesh, const std::vector<DrawnAnchor>& anchors, double radius,
-               const HoleOptions& options = {}) {
-  return cut_holes(SurfaceTopology(mesh), points_of(mesh), anchors, options, radius);
+CutSurface cut(const TriMesh& mesh, const std::vector<DrawnAnchor>& anchors, double radius) {
+  return cut_holes(SurfaceTopology(mesh), points_of(mesh), anchors, radius);
 }
 
 int holes_of(const CutSurface& surface) {
