@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <string>
 
+#include "core/error.h"
 #include "experiments/details/scene/scene.h"
 #include "experiments/details/topic.h"
 #include "testbed/formats/vtk/files.h"
@@ -118,6 +120,92 @@ TEST_F(DetailsScenes, TakeTheirDensityFromAnArrayOfTheSurface) {
       "200, density = { kind = \"array\", array = \"rho\" } }\n");
   for (const Detail& d : s->input.details)
     EXPECT_LE(position_of(d.at, s->input.surface.V, s->input.surface.F).x(), 1 + 1e-12);
+}
+
+// The second position is 0.02 off the square of a metre: more than a hundredth of its diagonal.
+TEST_F(DetailsScenes, ReadThePlacesOfDetailsUpToTheDistanceAllowed) {
+  fs::create_directories(folder() / "experiments" / "details");
+  std::ofstream(folder() / "experiments" / "details" / "places.csv")
+      << "x,y,z,weight\n0,0,0,1\n0.2,0.1,0.02,0.5\n-0.3,0.4,0,1\n";
+  const std::string pattern = "pattern = { kind = \"file\", file = \"places.csv\"";
+  const auto s = scene(pattern + ", max_distance = 0.03 }\n");
+  const std::vector<Eigen::Vector3d> places = places_of(*s, s->input.details);
+  ASSERT_EQ(places.size(), 3U);
+  EXPECT_NEAR((places[1] - Eigen::Vector3d(0.2, 0.1, 0)).norm(), 0, 1e-12);
+  EXPECT_EQ(s->input.details[1].weight, 0.5);
+  EXPECT_TRUE(s->resamples.empty());
+  EXPECT_THROW(scene(pattern + " }\n"), Error);
+}
+
+/// A rectangle of 200 x 100 in the plane that a file calls level, `stretch` times as long.
+Part clip_frame(double stretch, bool y_up) {
+  Part part;
+  part.points.resize(4, 3);
+  part.points << 0, 0, 0, 200, 0, 0, 200, 100, 0, 0, 100, 0;
+  part.points.col(0) *= stretch;
+  if (y_up) {
+    part.points.col(2) = -part.points.col(1);
+    part.points.col(1).setZero();
+  }
+  part.triangles.resize(2, 3);
+  part.triangles << 0, 1, 2, 0, 2, 3;
+  return part;
+}
+
+// Frames 1 to 3 of 0 … 4 in centimetres with y up, 10 a second, the first of them at 2 s.
+TEST_F(DetailsScenes, ReadTheMotionFromFilesInTheirUnitsAndTimes) {
+  fs::create_directories(folder() / "experiments" / "details");
+  for (int i = 0; i < 5; ++i) {
+    std::ofstream(folder() / "experiments" / "details" / ("clip_" + std::to_string(i) + ".obj"))
+        << part_to_obj(clip_frame(1 + 0.1 * i, true), "");
+  }
+  const auto s = scene(
+      "surface = { kind = \"sequence\" }\npattern = { kind = \"uniform\", count = 10 }\n"
+      "motion.sequence = { path = \"clip_%d.obj\", up = \"y\", scale = 0.01, "
+      "frames_per_second = 10, start = 2, first = 1, last = 3 }\n");
+  ASSERT_EQ(s->input.motion->frame_count(), 3);
+  EXPECT_NEAR(s->input.motion->parameter(0), 2, 1e-12);
+  EXPECT_NEAR(s->input.motion->parameter(2), 2.2, 1e-12);
+  EXPECT_NEAR(s->input.surface.V.col(0).maxCoeff(), 2.2, 1e-6);
+  EXPECT_NEAR(s->input.surface.V.col(1).maxCoeff(), 1, 1e-6);
+  EXPECT_NEAR(s->input.surface.V.col(2).cwiseAbs().maxCoeff(), 0, 1e-12);
+  EXPECT_NEAR(s->input.motion->positions(2).col(0).maxCoeff(), 2.6, 1e-6);
+}
+
+TEST_F(DetailsScenes, ReadThePartOfARecordedMotion) {
+  const fs::path frames = folder() / "experiments" / "details" / "frames";
+  fs::create_directories(frames);
+  for (int i = 0; i < 3; ++i) {
+    const std::string number = "_000" + std::to_string(i) + ".vtp";
+    std::ofstream(frames / ("sheet" + number), std::ios::binary)
+        << part_to_vtk_xml(clip_frame(1 + 0.1 * i, false), i);
+    std::ofstream(frames / ("surface" + number), std::ios::binary)
+        << part_to_vtk_xml(clip_frame(5, false), i);
+  }
+  const auto s = scene(
+      "surface = { kind = \"sequence\" }\npattern = { kind = \"uniform\", count = 10 }\n"
+      "motion.sequence = { path = \"frames\", part = \"sheet\" }\n");
+  EXPECT_EQ(s->input.motion->frame_count(), 3);
+  EXPECT_NEAR(s->input.motion->positions(2).col(0).maxCoeff(), 240, 1e-6);
+}
+
+TEST_F(DetailsScenes, ReadTheMeshThatADetailIsDrawnAs) {
+  Part tetrahedron;
+  tetrahedron.points.resize(4, 3);
+  tetrahedron.points << 1, 0, 0, -0.5, 0.9, 0, -0.5, -0.9, 0, 0, 0, 1;
+  tetrahedron.triangles.resize(4, 3);
+  tetrahedron.triangles << 0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3;
+  fs::create_directories(folder() / "experiments" / "details");
+  std::ofstream(folder() / "experiments" / "details" / "thorn.obj") << part_to_obj(tetrahedron, "");
+  const ExecuteResult result =
+      run(kSmall +
+              "drawing = { look = { kind = \"mesh\", instance = { shape = \"given\" } }, "
+              "file = \"thorn.obj\" }\n",
+          "naive-stretch", "given");
+  const fs::path frames = result.folder / "frames" / "default" / "naive-stretch";
+  const Part drawn = read_vtk_part(frames / "drawn_0000.vtp");
+  const Part surface = read_vtk_part(frames / "surface_0000.vtp");
+  EXPECT_EQ(drawn.points.rows(), surface.points.rows() + 4 * 60);
 }
 
 TEST_F(DetailsScenes, WarnOfAPatternThatDoesNotFit) {
