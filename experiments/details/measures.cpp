@@ -29,9 +29,24 @@ struct FrameState {
   int still = 0;  ///< frames that the surface has not moved for
 };
 
+ContentKey key_of(const Frame& rest) {
+  ContentKey key;
+  key.add_matrix(rest.require_part("surface").points);
+  key.add_matrix(rest.require_part("detail_mesh").points);
+  return key;
+}
+
+/// What the scene says of how pairs are measured: cases of one run may differ in it alone.
+ContentKey key_of_pairs(const DetailsScene& scene) {
+  ContentKey key = key_of(scene.rest());
+  key.add(static_cast<std::uint64_t>(scene.pair_sources));
+  for (const char inside : scene.region) key.add(static_cast<std::uint64_t>(inside));
+  return key;
+}
+
 PairCurve curve_of(PairMemo& memo, const DetailsScene& scene, const Part& surface,
                    const std::vector<SurfacePoint>& places, double unit) {
-  ContentKey key;
+  ContentKey key = key_of_pairs(scene);
   key.add_matrix(surface.points);
   key.add_matrix(surface.triangles);
   for (const SurfacePoint& p : places) {
@@ -47,13 +62,6 @@ PairCurve curve_of(PairMemo& memo, const DetailsScene& scene, const Part& surfac
     options.sources = scene.pair_sources;
     return pair_curve({surface.points, surface.triangles}, places, unit, options, mask);
   });
-}
-
-ContentKey key_of(const Frame& rest) {
-  ContentKey key;
-  key.add_matrix(rest.require_part("surface").points);
-  key.add_matrix(rest.require_part("detail_mesh").points);
-  return key;
 }
 
 SpectrumAtRest spectrum_at_rest(SpectrumMemo& memo, const DetailsScene& scene, double unit) {
@@ -74,7 +82,7 @@ SpectrumAtRest spectrum_at_rest(SpectrumMemo& memo, const DetailsScene& scene, d
 
 PairAtRest pairs_at_rest(PairMemo& memo, const DetailsScene& scene) {
   const Part& surface = scene.rest().require_part("surface");
-  return memo.at_rest.get(key_of(scene.rest()), [&] {
+  return memo.at_rest.get(key_of_pairs(scene), [&] {
     PairAtRest rest;
     rest.unit = scene.rest_edge();
     if (!(rest.unit > 0)) return rest;

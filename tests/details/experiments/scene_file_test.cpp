@@ -208,6 +208,42 @@ TEST_F(DetailsScenes, ReadTheMeshThatADetailIsDrawnAs) {
   EXPECT_EQ(drawn.points.rows(), surface.points.rows() + 4 * 60);
 }
 
+// Three details of weight 1/2 drawn with radius 0.1 m and height 0.2 m: the weight halves the
+// height always, the width with it unless the height alone is scaled.
+TEST_F(DetailsScenes, DrawSpikesWhoseWeightScalesWhatIsAskedFor) {
+  fs::create_directories(folder() / "experiments" / "details");
+  std::ofstream(folder() / "experiments" / "details" / "half.csv")
+      << "x,y,z,weight\n0,0,0,0.5\n0.3,0.3,0,0.5\n-0.3,0.3,0,0.5\n";
+  for (const std::string scales : {"size", "height"}) {
+    const ExecuteResult result =
+        run("pattern = { kind = \"file\", file = \"half.csv\" }\nmotion.frames = 1\n"
+            "drawing.look = { unit = \"metre\", radius = 0.1, spike = { height = 0.2, "
+            "weight_scales = \"" +
+                scales + "\" } }\n",
+            "naive-stretch", scales);
+    const fs::path frames = result.folder / "frames" / "default" / "naive-stretch";
+    const Part drawn = read_vtk_part(frames / "drawn_0000.vtp");
+    const auto base = read_vtk_part(frames / "surface_0000.vtp").points.rows();
+    const Eigen::MatrixX3d spikes = drawn.points.bottomRows(drawn.points.rows() - base);
+    EXPECT_NEAR(spikes.col(2).maxCoeff(), 0.1, 1e-6) << scales;
+    const double foot = spikes.col(0).maxCoeff() - 0.3;
+    EXPECT_NEAR(foot, scales == "size" ? 0.05 : 0.1, 0.01) << scales;
+  }
+}
+
+// What is measured once for all cases of a run is kept apart where cases differ in how it is
+// measured.
+TEST_F(DetailsScenes, MeasurePairsFromTheDetailsThatTheirCaseAsksFor) {
+  const ExecuteResult result =
+      run(kSmall + "[[sweep]]\nkey = \"scene.pair_sources\"\nvalues = [10]\n", "naive-stretch",
+          "sources");
+  std::vector<std::vector<double>> distances;
+  for (const CaseRecord& c : result.record.cases)
+    distances.push_back(c.variants.front().metrics.at("pair_distance").values);
+  ASSERT_EQ(distances.size(), 2U);
+  EXPECT_NE(distances[0].back(), distances[1].back());
+}
+
 TEST_F(DetailsScenes, WarnOfAPatternThatDoesNotFit) {
   const auto warnings = scene("pattern = { count = 200, radius = 0.95 }\n")->warnings();
   ASSERT_EQ(warnings.size(), 1U);
