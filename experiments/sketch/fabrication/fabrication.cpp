@@ -7,6 +7,7 @@
 #include "experiments/sketch/fabrication/pattern_map.h"
 #include "experiments/sketch/fabrication/pattern_pdf.h"
 #include "experiments/sketch/fabrication/pattern_svg.h"
+#include "experiments/sketch/pattern/sheet_layout.h"
 
 namespace geoprior::sketch {
 

@@ -1,83 +1,8 @@
 #include "experiments/sketch/pattern/sheet.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <numeric>
-
-#include "experiments/sketch/pattern/piece_drawing.h"
-#include "experiments/sketch/pattern/sheet_text.h"
-#include "models/sketch/pattern/piece_border.h"
 
 namespace geoprior::sketch {
-namespace {
-
-constexpr double kSheetTitle = 6;    // height of the title (mm)
-constexpr double kSheetNote = 3.5;   // height of the line below it (mm)
-constexpr double kSheetFooter = 20;  // title, note and scale bar (mm)
-constexpr double kBarText = 25;      // room for "100 mm" beside the bar (mm)
-
-std::u32string widened_ascii(std::string_view ascii) { return {ascii.begin(), ascii.end()}; }
-
-std::string millimetres_text(double x) {
-  std::array<char, 32> buffer{};
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), x, std::chars_format::general, 4);
-  return std::string(buffer.data(), end.ptr) + " mm";
-}
-
-/// Rows from the bottom up, highest pieces first; gives the sheet's size.
-void place_sheet_pieces(PatternSheet& sheet, const SheetOptions& options) {
-  const double gap = options.gap_mm;
-  double area = 0, widest = kScaleBar + kBarText;
-  for (const SheetPiece& piece : sheet.pieces) {
-    area += (piece.size.x() + gap) * (piece.size.y() + gap);
-    widest = std::max(widest, piece.size.x());
-  }
-  const double row = std::max({options.width_mm - 2 * gap, widest, std::sqrt(1.3 * area)});
-  std::vector<std::size_t> order(sheet.pieces.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return sheet.pieces[a].size.y() > sheet.pieces[b].size.y();
-  });
-  double x = gap, y = kSheetFooter + 2 * gap, highest = 0, right = gap + kScaleBar + kBarText;
-  for (const std::size_t k : order) {
-    SheetPiece& piece = sheet.pieces[k];
-    if (x > gap && x + piece.size.x() > gap + row) {
-      y += highest + gap;
-      x = gap;
-      highest = 0;
-    }
-    piece.place = {x, y};
-    x += piece.size.x() + gap;
-    highest = std::max(highest, piece.size.y());
-    right = std::max(right, x - gap);
-  }
-  sheet.size = {std::max(right + gap, options.width_mm), y + highest + gap};
-}
-
-void draw_scale_bar(PatternSheet& sheet, const Eigen::Vector2d& at) {
-  sheet.lines.push_back({SheetLayer::text, false, {at, at + Eigen::Vector2d(kScaleBar, 0)}});
-  for (int i = 0; i <= 10; ++i) {
-    const Eigen::Vector2d foot = at + Eigen::Vector2d(i * kScaleBar / 10, 0);
-    sheet.lines.push_back(
-        {SheetLayer::text, false, {foot, foot + Eigen::Vector2d(0, i % 5 == 0 ? 4 : 2)}});
-  }
-  const std::u32string length = widened_ascii(millimetres_text(kScaleBar));
-  sheet.texts.push_back({at + Eigen::Vector2d(kScaleBar + 3, 2), 4, length, TextAnchor::left});
-}
-
-/// Begins at the left margin, set smaller where the sheet is too narrow for it.
-void write_sheet_line(PatternSheet& sheet, const Eigen::Vector2d& left, double height,
-                      const std::u32string& text) {
-  if (text.empty()) return;
-  const double width = helvetica_width(text);
-  const double h = std::min(height, (sheet.size.x() - 2 * left.x()) / (1.15 * width));
-  sheet.texts.push_back({left, h, text, TextAnchor::left});
-}
-
-}  // namespace
 
 std::string_view layer_name(SheetLayer layer) {
   static constexpr std::array<std::string_view, 8> kNames{"cut",   "sew",  "fold",  "notch",
@@ -122,28 +47,6 @@ void describe(OptionVisitor& v, SheetOptions& o) {
            .min = 0,
            .max = 1e5});
   v.value("title", o.title, {.doc = "written above the scale bar"});
-}
-
-PatternSheet pattern_sheet(const Pattern& pattern, const SheetOptions& options) {
-  require_drawable(pattern);
-  const std::vector<Notch> notches =
-      paired_notches(pattern, {.spacing = options.notch_spacing_mm / 1000});
-  PatternSheet sheet;
-  sheet.title = label_text(options.title, 80);
-  for (int k = 0; k < static_cast<int>(pattern.pieces.size()); ++k) {
-    sheet.pieces.push_back(draw_piece(pattern, k, notches, options));
-  }
-  place_sheet_pieces(sheet, options);
-  const Eigen::Vector2d corner(options.gap_mm, options.gap_mm);
-  draw_scale_bar(sheet, corner);
-  write_sheet_line(sheet, corner + Eigen::Vector2d(0, 15), kSheetTitle, sheet.title);
-  const std::size_t n = pattern.pieces.size();
-  write_sheet_line(
-      sheet, corner + Eigen::Vector2d(0, 8), kSheetNote,
-      widened_ascii("Seam allowance " + millimetres_text(options.allowance_mm) + ", hem " +
-                    millimetres_text(options.hem_mm) + ", " + std::to_string(n) +
-                    (n == 1 ? " piece" : " pieces") + ", true scale"));
-  return sheet;
 }
 
 }  // namespace geoprior::sketch

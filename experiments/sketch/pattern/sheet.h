@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "core/options.h"
-#include "experiments/sketch/pattern/notches.h"
-#include "models/sketch/pattern/pattern.h"
 #include "models/sketch/surface/positive_winding.h"
 
 namespace geoprior::sketch {
@@ -111,12 +109,5 @@ std::vector<SheetLayer> used_layers(const PatternSheet& sheet);
 
 /// Length of the scale bar (mm).
 inline constexpr double kScaleBar = 100;
-
-/// Lays out a pattern: cutting lines with allowance, sewing lines, folds, notches with numbers that
-/// pair them, grain arrow and name of each piece, title and scale bar. Pieces stand in rows, the
-/// highest first, the grain upwards.
-///
-/// @throws Error  naming the piece that cannot be drawn or cut (piece_border.h, seam_allowance.h)
-PatternSheet pattern_sheet(const Pattern& pattern, const SheetOptions& options);
 
 }  // namespace geoprior::sketch

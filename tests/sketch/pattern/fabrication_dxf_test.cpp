@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "experiments/sketch/fabrication/pattern_dxf.h"
+#include "experiments/sketch/pattern/sheet_layout.h"
 #include "tests/sketch/drawing/panel_check.h"
 #include "tests/sketch/pattern/flat_patterns.h"
 #include "tests/testbed/run_fixture.h"

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "experiments/sketch/fabrication/pattern_pdf.h"
+#include "experiments/sketch/pattern/sheet_layout.h"
 #include "tests/sketch/drawing/panel_check.h"
 #include "tests/sketch/pattern/flat_patterns.h"
 #include "tests/testbed/run_fixture.h"

@@ -15,6 +15,7 @@
 #include "experiments/sketch/fabrication/pattern_map.h"
 #include "experiments/sketch/fabrication/pattern_svg.h"
 #include "experiments/sketch/fabrication/written_number.h"
+#include "experiments/sketch/pattern/sheet_layout.h"
 #include "experiments/sketch/pattern/sheet_text.h"
 #include "experiments/sketch/truth/clear_box.h"
 #include "tests/sketch/drawing/panel_check.h"
