@@ -23,13 +23,6 @@ enum class FlattenBy { rigid, lscm, abf, cgal_arap, cgal_lscm };
 constexpr std::array<std::string_view, 5> kFlattenings{"rigid", "lscm", "abf", "cgal-arap",
                                                        "cgal-lscm"};
 
-void describe_flattening(OptionVisitor& v, FlattenBy& by) {
-  describe_choice(v, "by", by, kFlattenings,
-                  {.doc = "how a piece is laid flat: rigid is the topic's own, lscm and abf least "
-                          "squares conformal and angle-based (ABF++), the others are CGAL's; "
-                          "where its as-rigid-as-possible gives up, its conformal map"});
-}
-
 /// CGAL mends what its as-rigid-as-possible turns over by a pass that refuses some borders (those
 /// of remeshed pieces that are folded over a part of the border); a road that ends there is no
 /// comparison.
@@ -65,24 +58,39 @@ SketchInput with_flattening(SketchInput input, FlattenBy by) {
   return input;
 }
 
+/// The surface is that of several-views with its defaults; only how long it goes on is asked.
+struct ComparedSurface {
+  int iterations = SeveralViewsOptions{}.iterations;
+
+  [[nodiscard]] SeveralViewsOptions options() const {
+    SeveralViewsOptions all;
+    all.iterations = iterations;
+    return all;
+  }
+};
+void describe(OptionVisitor& v, ComparedSurface& o) {
+  v.value("iterations", o.iterations,
+          {.doc = "Iterations of several-views by which the surface is made; a frame each.",
+           .min = 1,
+           .max = 1000});
+}
+
 struct FlattenedOptions {
   FlattenBy by = FlattenBy::rigid;
-  SeveralViewsOptions surface;
+  ComparedSurface surface;
 };
 void describe(OptionVisitor& v, FlattenedOptions& o) {
-  describe_flattening(v, o.by);
-  describe_group(v, "surface", o.surface, {.doc = "how the surface of a drawing is made"});
+  describe_choice(v, "by", o.by, kFlattenings,
+                  {.doc = "How a piece is laid flat: our as-rigid-as-possible, least squares "
+                          "conformal, angle-based (ABF++), or CGAL's two."});
+  describe_group(v, "surface", o.surface, {.doc = "How the surface of a drawing is made."});
 }
 
 struct SlowRoadOptions {
-  FlattenBy by = FlattenBy::cgal_arap;
-  ExactHullOptions hull;
-  SeveralViewsOptions surface;
+  ComparedSurface surface;
 };
 void describe(OptionVisitor& v, SlowRoadOptions& o) {
-  describe_flattening(v, o.by);
-  describe_group(v, "hull", o.hull, {.doc = "exact hull and its remeshing"});
-  describe_group(v, "surface", o.surface, {.doc = "how the surface is made from it"});
+  describe_group(v, "surface", o.surface, {.doc = "How the surface is made from the exact hull."});
 }
 
 std::unique_ptr<Process> flattened_process(const SketchScene& scene,
@@ -90,16 +98,16 @@ std::unique_ptr<Process> flattened_process(const SketchScene& scene,
   const SketchInput input = with_flattening(scene.input, options.by);
   // A surface that is given is laid flat as it is.
   return input.surface ? make_hull_process(input, {})
-                       : make_several_views_process(input, options.surface);
+                       : make_several_views_process(input, options.surface.options());
 }
 
 std::unique_ptr<Process> slow_road_process(const SketchScene& scene,
                                            const SlowRoadOptions& options) {
-  SketchInput input = with_flattening(scene.input, options.by);
-  input.make_hull = [asked = input.hull, options](const Drawing& aligned) {
-    return exact_hull(aligned, asked, options.hull);
+  SketchInput input = with_flattening(scene.input, FlattenBy::cgal_arap);
+  input.make_hull = [asked = input.hull](const Drawing& aligned) {
+    return exact_hull(aligned, asked);
   };
-  return make_several_views_process(input, options.surface);
+  return make_several_views_process(input, options.surface.options());
 }
 
 }  // namespace

@@ -232,36 +232,27 @@ double AngleFlattening::step() {
 
 }  // namespace
 
-void describe(OptionVisitor& v, AbfOptions& options) {
-  v.value("iterations", options.iterations, {.doc = "most Newton steps", .min = 1});
-  v.value("tolerance", options.tolerance,
-          {.doc = "of the constraints and of the last step's angles", .unit = "rad", .min = 1e-13});
-  v.value("least_angle_deg", options.least_angle_deg,
-          {.doc = "angles of thinner triangles are aimed at this",
-           .unit = "deg",
-           .min = 1e-6,
-           .max = 10});
-}
-
-AbfAngles abf_angles(const TriMesh& disc, const AbfOptions& options) {
+AbfAngles abf_angles(const TriMesh& disc) {
+  constexpr int kNewtonSteps = 100;               // most; ten are usual
+  constexpr double kAbfTolerance = 1e-11;         // of the constraints and of the last angles (rad)
+  constexpr double kLeastAngle = 0.05 * kDegree;  // angles of thinner triangles are aimed at this
   disc_border(disc, "angle-based flattening");
-  AngleFlattening problem(disc, options.least_angle_deg * kDegree);
+  AngleFlattening problem(disc, kLeastAngle);
   AbfAngles result;
-  while (result.iterations < options.iterations && !result.converged) {
+  while (result.iterations < kNewtonSteps && !result.converged) {
     ++result.iterations;
     const double change = problem.step();
     if (change < 0) break;
-    result.converged =
-        change <= std::sqrt(options.tolerance) && problem.violation() <= options.tolerance;
+    result.converged = change <= std::sqrt(kAbfTolerance) && problem.violation() <= kAbfTolerance;
   }
   result.angle = problem.angle();
   result.constraint = problem.violation();
   return result;
 }
 
-Eigen::MatrixX2d flatten_abf(const TriMesh& disc, const AbfOptions& options) {
+Eigen::MatrixX2d flatten_abf(const TriMesh& disc) {
   const std::vector<int> border = disc_border(disc, "angle-based flattening");
-  const AbfAngles angles = abf_angles(disc, options);
+  const AbfAngles angles = abf_angles(disc);
   std::vector<std::array<double, 3>> cot;
   cot.reserve(static_cast<std::size_t>(disc.triangle_count()));
   for (int t = 0; t < disc.triangle_count(); ++t) {

@@ -3,16 +3,8 @@
 #include <Eigen/Core>
 
 #include "core/mesh.h"
-#include "core/options.h"
 
 namespace geoprior::sketch {
-
-struct AbfOptions {
-  int iterations = 100;           ///< most Newton steps
-  double tolerance = 1e-11;       ///< of the constraints and of the last step's angles (rad)
-  double least_angle_deg = 0.05;  ///< angles of thinner triangles are aimed at this
-};
-void describe(OptionVisitor& v, AbfOptions& options);
 
 /// The angles of a flat layout that are nearest to those of a surface.
 struct AbfAngles {
@@ -41,7 +33,7 @@ struct AbfAngles {
 /// Source: Sheffer, Lévy, Mogilnitsky, Bogomyakov, ABF++: Fast and Robust Angle Based Flattening,
 /// 2005, sections 2 and 3; Zayer, Lévy, Seidel, Linear Angle Based Parameterization, 2007 (the
 /// logarithm).
-AbfAngles abf_angles(const TriMesh& disc, const AbfOptions& options = {});
+AbfAngles abf_angles(const TriMesh& disc);
 
 /// The layout of those angles, by least squares on z_last - z_0 = (sin alpha_next / sin alpha_last)
 /// exp(i alpha_0) (z_next - z_0) in every triangle, which is a least squares conformal map (ABF++,
@@ -49,6 +41,6 @@ AbfAngles abf_angles(const TriMesh& disc, const AbfOptions& options = {});
 ///
 /// @return        n x 2 (m)
 /// @throws Error  unless the mesh is a disc
-Eigen::MatrixX2d flatten_abf(const TriMesh& disc, const AbfOptions& options = {});
+Eigen::MatrixX2d flatten_abf(const TriMesh& disc);
 
 }  // namespace geoprior::sketch

@@ -73,16 +73,6 @@ Eigen::MatrixX2d parameterise(const TriMesh& disc, Parameterizer parameterizer,
 
 }  // namespace
 
-void describe(OptionVisitor& v, CgalArapOptions& options) {
-  v.value("lambda", options.lambda,
-          {.doc = "0: as similar as possible, large: as rigid as possible", .min = 0});
-  v.value("iterations", options.iterations, {.doc = "most local and global steps", .min = 0});
-  v.value("tolerance", options.tolerance,
-          {.doc = "relative change of the energy at which it stops", .min = 0});
-}
-
-void describe(OptionVisitor& /*v*/, CgalLscmOptions& /*options*/) {}
-
 Eigen::MatrixX2d flatten_cgal_arap(const TriMesh& disc, const CgalArapOptions& options) {
   using Arap = smp::ARAP_parameterizer_3<CgalMesh>;
   return parameterise(disc,
@@ -91,7 +81,7 @@ Eigen::MatrixX2d flatten_cgal_arap(const TriMesh& disc, const CgalArapOptions& o
                       "CGAL as-rigid-as-possible");
 }
 
-Eigen::MatrixX2d flatten_cgal_lscm(const TriMesh& disc, const CgalLscmOptions& /*options*/) {
+Eigen::MatrixX2d flatten_cgal_lscm(const TriMesh& disc) {
   const Eigen::MatrixX2d points =
       parameterise(disc, smp::LSCM_parameterizer_3<CgalMesh>(), "CGAL least squares conformal map");
   Eigen::VectorXcd z = to_complex(points);

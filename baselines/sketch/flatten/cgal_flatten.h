@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 
 #include "core/mesh.h"
-#include "core/options.h"
 
 namespace geoprior::sketch {
 
@@ -12,7 +11,6 @@ struct CgalArapOptions {
   int iterations = 50;      ///< most local and global steps
   double tolerance = 1e-6;  ///< relative change of the energy at which it stops
 };
-void describe(OptionVisitor& v, CgalArapOptions& options);
 
 /// As-rigid-as-possible parameterisation of CGAL, by default in its default settings.
 ///
@@ -26,15 +24,12 @@ void describe(OptionVisitor& v, CgalArapOptions& options);
 /// Source: CGAL 5.5, Triangulated Surface Mesh Parameterization; Liu et al. 2008.
 Eigen::MatrixX2d flatten_cgal_arap(const TriMesh& disc, const CgalArapOptions& options = {});
 
-struct CgalLscmOptions {};
-void describe(OptionVisitor& v, CgalLscmOptions& options);
-
 /// Least squares conformal map of CGAL with the two pins that it chooses, scaled to the surface's
 /// area.
 ///
 /// @return        n x 2 (m)
 /// @throws Error  unless the mesh is a disc, and with CGAL's message when it gives up
 /// Source: CGAL 5.5, Triangulated Surface Mesh Parameterization; Lévy et al. 2002.
-Eigen::MatrixX2d flatten_cgal_lscm(const TriMesh& disc, const CgalLscmOptions& options = {});
+Eigen::MatrixX2d flatten_cgal_lscm(const TriMesh& disc);
 
 }  // namespace geoprior::sketch

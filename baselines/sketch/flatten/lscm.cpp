@@ -8,10 +8,12 @@
 
 namespace geoprior::sketch {
 
-void describe(OptionVisitor& v, LscmOptions& options) {
-  v.value("largest_cotangent", options.largest_cotangent,
-          {.doc = "weights of thinner triangles are those of this cotangent", .min = 2});
-}
+namespace {
+
+/// Weights of thinner triangles are those of this cotangent, which only keeps the matrix finite.
+constexpr double kLargestLscmCotangent = 1e6;
+
+}  // namespace
 
 std::array<int, 2> farthest_pair(const TriMesh& mesh, std::span<const int> vertices) {
   std::array<int, 2> pair{vertices.front(), vertices.back()};
@@ -27,9 +29,9 @@ std::array<int, 2> farthest_pair(const TriMesh& mesh, std::span<const int> verti
   return pair;
 }
 
-Eigen::MatrixX2d flatten_lscm(const TriMesh& disc, const LscmOptions& options) {
+Eigen::MatrixX2d flatten_lscm(const TriMesh& disc) {
   const std::vector<int> border = disc_border(disc, "least squares conformal map");
-  const std::vector<FlatTriangle> triangles = flat_triangles(disc, options.largest_cotangent);
+  const std::vector<FlatTriangle> triangles = flat_triangles(disc, kLargestLscmCotangent);
   const std::array<int, 2> pins = farthest_pair(disc, border);
   const double distance = (disc.V.row(pins[0]) - disc.V.row(pins[1])).norm();
   Eigen::VectorXcd z = pinned_conformal_map(

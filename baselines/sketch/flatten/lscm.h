@@ -5,14 +5,8 @@
 #include <span>
 
 #include "core/mesh.h"
-#include "core/options.h"
 
 namespace geoprior::sketch {
-
-struct LscmOptions {
-  double largest_cotangent = 1e6;  ///< weights of thinner triangles are those of this cotangent
-};
-void describe(OptionVisitor& v, LscmOptions& options);
 
 /// Least squares conformal map with a free border.
 ///
@@ -25,7 +19,7 @@ void describe(OptionVisitor& v, LscmOptions& options);
 /// @return        n x 2 (m)
 /// @throws Error  unless the mesh is a disc
 /// Source: Lévy, Petitjean, Ray, Maillot, Least Squares Conformal Maps, 2002.
-Eigen::MatrixX2d flatten_lscm(const TriMesh& disc, const LscmOptions& options = {});
+Eigen::MatrixX2d flatten_lscm(const TriMesh& disc);
 
 /// The two of some vertices that are farthest apart; of equal pairs the first. Quadratic.
 std::array<int, 2> farthest_pair(const TriMesh& mesh, std::span<const int> vertices);

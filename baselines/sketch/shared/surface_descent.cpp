@@ -22,6 +22,11 @@ namespace {
 constexpr double kArmijo = 1e-4;
 /// A direction is given up when even this part of it does not lead down.
 constexpr double kShortestPart = 1e-6;
+/// Longest move of a vertex in a step, in mean edge lengths; largest turn of a triangle's normal; a
+/// triangle with a smaller angle than the last does not get thinner. The guard is ours.
+constexpr double kLargestMove = 0.3;
+constexpr double kLargestTurn = 45 * kDegree;
+constexpr double kThinAngle = 1 * kDegree;
 /// Vertices of triangles that get too thin are held; this many times over, since holding them bends
 /// the triangles around.
 constexpr int kRoundsOfHolding = 8;
@@ -72,12 +77,6 @@ void describe(OptionVisitor& v, DescentOptions& options) {
   describe_choice(v, "metric", options.metric, kMetricNames,
                   {.doc = "what a gradient is divided by: nothing, K, or K M^-1 K"});
   v.value("fixed_border", options.fixed_border, {.doc = "whether the border stays"});
-  v.value("largest_move", options.largest_move,
-          {.doc = "of a vertex in a step, in mean edge lengths", .min = 1e-6, .max = 10});
-  v.value("largest_turn_deg", options.largest_turn_deg,
-          {.doc = "of a triangle's normal in a step", .unit = "deg", .min = 0.1, .max = 90});
-  v.value("smallest_angle_deg", options.smallest_angle_deg,
-          {.doc = "a triangle below it does not get thinner", .unit = "deg", .min = 0, .max = 30});
 }
 
 SurfaceDescent::SurfaceDescent(const TriMesh& mesh, PositionEnergy energy,
@@ -127,7 +126,7 @@ double SurfaceDescent::evaluate(const Eigen::MatrixX3d& x, Eigen::MatrixX3d& gra
 }
 
 bool SurfaceDescent::turns_too_far(const Eigen::MatrixX3d& x) const {
-  const double least = std::cos(options_.largest_turn_deg * kDegree);
+  const double least = std::cos(kLargestTurn);
   std::atomic<bool> too_far = false;
   parallel_blocks(static_cast<std::size_t>(mesh_.F.rows()), kGuardedTogether,
                   [&](std::size_t begin, std::size_t end) {
@@ -142,7 +141,7 @@ bool SurfaceDescent::turns_too_far(const Eigen::MatrixX3d& x) const {
 }
 
 bool SurfaceDescent::hold_thin(const Eigen::MatrixX3d& x, Eigen::MatrixX3d& direction) const {
-  const double thin = std::sin(options_.smallest_angle_deg * kDegree);
+  const double thin = std::sin(kThinAngle);
   std::vector<char> offends(static_cast<std::size_t>(mesh_.F.rows()), 0);
   parallel_blocks(offends.size(), kGuardedTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -173,7 +172,7 @@ bool SurfaceDescent::admit(double part, Eigen::MatrixX3d& direction,
 
 bool SurfaceDescent::search(Eigen::MatrixX3d direction) {
   const double longest = direction.rowwise().norm().maxCoeff();
-  const double allowed = options_.largest_move * mean_edge_;
+  const double allowed = kLargestMove * mean_edge_;
   if (!(longest > 0)) return false;
   if (longest > allowed) direction *= allowed / longest;
   Eigen::MatrixX3d there, gradient;

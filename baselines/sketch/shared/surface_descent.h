@@ -20,12 +20,9 @@ enum class DescentMetric {
 
 /// How an energy of the positions is descended.
 struct DescentOptions {
-  int memory = 10;  ///< steps that L-BFGS remembers; 0: preconditioned gradient
+  int memory = 10;
   DescentMetric metric = DescentMetric::laplacian;
-  bool fixed_border = true;         ///< vertices of the border stay
-  double largest_move = 0.3;        ///< of a vertex in a step, in mean edge lengths
-  double largest_turn_deg = 45;     ///< of a triangle's normal in a step
-  double smallest_angle_deg = 1.0;  ///< a triangle below it does not get thinner
+  bool fixed_border = true;
 };
 void describe(OptionVisitor& v, DescentOptions& options);
 

@@ -17,6 +17,12 @@
 namespace geoprior::sketch {
 namespace {
 
+/// Passes of isotropic remeshing. Ours: nobody names a number.
+constexpr int kRemeshings = 5;
+/// Edges at which the hull turns by more are kept: those between the views' faces turn by 90
+/// degrees, chords of a round silhouette by a few.
+constexpr double kCreaseDegrees = 30;
+
 /// Longer than any object in the drawing, so that no solid ends within another.
 double extrusion_of(const std::vector<OutlinedView>& views) {
   double size = 0;
@@ -71,17 +77,7 @@ Solid intersection_of(const std::vector<OutlinedView>& views, const std::string&
 
 }  // namespace
 
-void describe(OptionVisitor& v, ExactHullOptions& o) {
-  v.value("remeshing", o.remeshing, {.doc = "passes of isotropic remeshing", .min = 0, .max = 100});
-  v.value("crease_deg", o.crease_deg,
-          {.doc = "edges at which the hull turns by more are kept",
-           .unit = "deg",
-           .min = 1,
-           .max = 179});
-}
-
-VisualHull exact_hull(const Drawing& aligned, const HullOptions& hull,
-                      const ExactHullOptions& options) {
+VisualHull exact_hull(const Drawing& aligned, const HullOptions& hull) {
   VisualHull result;
   result.views = outlined_views(aligned);
   if (result.views.size() < 2)
@@ -89,7 +85,7 @@ VisualHull exact_hull(const Drawing& aligned, const HullOptions& hull,
   Solid solid = intersection_of(result.views, aligned.name);
   // Equilateral triangles of that edge have the surface's area in all.
   result.spacing = std::sqrt(4 / std::numbers::sqrt3 * solid.area() / hull.triangles);
-  remesh(solid, result.spacing, options.crease_deg, options.remeshing);
+  remesh(solid, result.spacing, kCreaseDegrees, kRemeshings);
   result.mesh = solid.mesh();
   place_on_silhouettes(result);
   return result;

@@ -1,15 +1,8 @@
 #pragma once
 
-#include "core/options.h"
 #include "models/sketch/surface/visual_hull.h"
 
 namespace geoprior::sketch {
-
-struct ExactHullOptions {
-  int remeshing = 5;       ///< passes of isotropic remeshing
-  double crease_deg = 30;  ///< edges at which the hull turns by more are kept
-};
-void describe(OptionVisitor& v, ExactHullOptions& options);
 
 /// The visual hull by the slow road: every silhouette extruded along its view to a solid, the
 /// solids intersected exactly, the result remeshed to equal edges. To compare with `visual_hull`,
@@ -23,7 +16,6 @@ void describe(OptionVisitor& v, ExactHullOptions& options);
 /// @throws Error   with fewer views; when the intersection is no solid
 /// Source: CGAL 5.5, Polygon Mesh Processing (corefinement, isotropic remeshing after Botsch and
 /// Kobbelt 2004).
-VisualHull exact_hull(const Drawing& aligned, const HullOptions& hull,
-                      const ExactHullOptions& options = {});
+VisualHull exact_hull(const Drawing& aligned, const HullOptions& hull);
 
 }  // namespace geoprior::sketch

@@ -21,7 +21,7 @@ std::string view_layer_name(const SvgGroup& group) {
   constexpr std::string_view kColon = "_x3A_";
   std::string name = group.name();
   const std::size_t at = name.find(kColon);
-  return at == std::string::npos ? name : name.replace(at, kColon.size(), ":");
+  return at == std::string::npos ? name : name.replace(at, kColon.size(), 1, ':');
 }
 
 ViewKind view_kind(const std::string& name, const std::string& place) {

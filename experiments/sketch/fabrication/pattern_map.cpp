@@ -92,7 +92,7 @@ std::string pattern_map_csv(const Pattern& pattern, const PatternSheet& sheet) {
       out += std::to_string(k) + "," + std::to_string(i) + "," +
              std::to_string(piece.surface_vertex[static_cast<std::size_t>(i)]);
       for (const double x : {1000 * p.x(), 1000 * p.y(), on_sheet.x(), on_sheet.y()}) {
-        out += "," + written_number(x);
+        out.append(",").append(written_number(x));
       }
       out += "\n";
     }

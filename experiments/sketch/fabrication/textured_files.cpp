@@ -17,7 +17,7 @@ std::string obj_text(const OneViewResult& result, const Pattern& pattern, const 
   const Eigen::MatrixX3d& V = result.surface.mesh.V;
   for (Eigen::Index v = 0; v < V.rows(); ++v) {
     text += "v";
-    for (int k = 0; k < 3; ++k) text += " " + written_number(V(v, k), kDigits);
+    for (int k = 0; k < 3; ++k) text.append(" ").append(written_number(V(v, k), kDigits));
     text += "\n";
   }
   const Eigen::Vector2d size = grid.pixel * Eigen::Vector2d(grid.width, grid.height);
@@ -27,8 +27,8 @@ std::string obj_text(const OneViewResult& result, const Pattern& pattern, const 
     for (Eigen::Index p = 0; p < piece.points.rows(); ++p) {
       const Eigen::Vector2d at = piece.points.row(p).transpose();
       const Eigen::Vector2d uv = (at - grid.origin).cwiseQuotient(size);
-      text +=
-          "vt " + written_number(uv.x(), kDigits) + " " + written_number(uv.y(), kDigits) + "\n";
+      text.append("vt ").append(written_number(uv.x(), kDigits));
+      text.append(" ").append(written_number(uv.y(), kDigits)).append("\n");
     }
     std::string name = piece.name;
     for (char& c : name) c = c == ' ' ? '_' : c;
@@ -37,8 +37,9 @@ std::string obj_text(const OneViewResult& result, const Pattern& pattern, const 
       faces += "f";
       for (int k = 0; k < 3; ++k) {
         const int p = piece.triangles(t, k);
-        faces += " " + std::to_string(piece.surface_vertex[static_cast<std::size_t>(p)] + 1) + "/" +
-                 std::to_string(first + p);
+        faces.append(" ").append(
+            std::to_string(piece.surface_vertex[static_cast<std::size_t>(p)] + 1));
+        faces.append("/").append(std::to_string(first + p));
       }
       faces += "\n";
     }

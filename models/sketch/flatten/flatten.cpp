@@ -14,11 +14,15 @@
 namespace geoprior::sketch {
 namespace {
 
+/// Depth of triangles that count as overlapping, over the diagonal of the layout: ours, above what
+/// rounding leaves of triangles that touch.
+constexpr double kOverlapDepth = 1e-6;
+
 /// A map that turns nothing over, from the conformal one or a convex layout, made as isometric as
 /// the symmetric Dirichlet energy can; nothing when both turn something over.
 bool lay_without_flips(const TriMesh& piece, const std::vector<FlatTriangle>& triangles,
-                       const std::vector<int>& border, const FlattenOptions& options,
-                       Eigen::VectorXcd start, Eigen::VectorXcd& z, FlattenReport& report) {
+                       const std::vector<int>& border, Eigen::VectorXcd start, Eigen::VectorXcd& z,
+                       FlattenReport& report) {
   const auto all_counter_clockwise = [&] {
     for (int t = 0; t < piece.triangle_count(); ++t) {
       const auto corner = [&](int k) { return start(piece.F(t, k)); };
@@ -28,9 +32,7 @@ bool lay_without_flips(const TriMesh& piece, const std::vector<FlatTriangle>& tr
   };
   if (!all_counter_clockwise()) start = convex_layout(piece, triangles, border);
   if (!all_counter_clockwise()) return false;
-  SymmetricDirichletOptions lower;
-  lower.iterations = options.unflip_iterations;
-  report.unflip_iterations = lower_symmetric_dirichlet(triangles, piece.F, start, lower).iterations;
+  report.unflip_iterations = lower_symmetric_dirichlet(triangles, piece.F, start, {}).iterations;
   z = start;
   return true;
 }
@@ -64,21 +66,13 @@ void describe(OptionVisitor& v, FlattenOptions& options) {
           {.doc = "relative change of its energy at which it stops", .min = 0});
   v.value("mixing", options.mixing,
           {.doc = "steps that the Anderson acceleration combines; 0: none", .min = 0, .max = 20});
-  v.value("largest_cotangent", options.largest_cotangent,
-          {.doc = "weights of needles are those of this cotangent", .min = 2});
   v.value("unflip", options.unflip,
           {.doc = "make a layout with triangles turned over anew, by symmetric Dirichlet energy"});
-  v.value("unflip_iterations", options.unflip_iterations,
-          {.doc = "most Newton steps for that", .min = 1});
-  v.value("overlap_depth", options.overlap_depth,
-          {.doc = "depth of triangles that count as overlapping, over the piece's diagonal",
-           .min = 0,
-           .max = 1});
 }
 
 Flattening flatten(const TriMesh& piece, const FlattenOptions& options) {
   const std::vector<int> border = piece_borders(piece, "flattening").front();
-  const std::vector<FlatTriangle> triangles = flat_triangles(piece, options.largest_cotangent);
+  const std::vector<FlatTriangle> triangles = flat_triangles(piece);
   Flattening flat;
   FlattenReport& report = flat.report;
   Eigen::VectorXcd start =
@@ -92,7 +86,7 @@ Flattening flatten(const TriMesh& piece, const FlattenOptions& options) {
   report.flipped = flipped_triangles(triangles, piece.F, z);
   report.flipped_when_rigid = static_cast<int>(report.flipped.size());
   if (options.unflip && !report.flipped.empty() &&
-      lay_without_flips(piece, triangles, border, options, start, z, report)) {
+      lay_without_flips(piece, triangles, border, start, z, report)) {
     report.flipped = flipped_triangles(triangles, piece.F, z);
   }
   double area = 0;
@@ -100,14 +94,14 @@ Flattening flatten(const TriMesh& piece, const FlattenOptions& options) {
   report.strain = area > 0 ? std::sqrt(2 * rigid.energy(z) / area) : 0;
   centre_on_area(triangles, piece.F, z);
   flat.points = to_points(z);
-  report.overlaps = overlapping_triangles(flat.points, piece.F,
-                                          options.overlap_depth * flat_diagonal(flat.points));
+  report.overlaps =
+      overlapping_triangles(flat.points, piece.F, kOverlapDepth * flat_diagonal(flat.points));
   return flat;
 }
 
 void hold_lengths(const TriMesh& piece, std::span<const KeptLength> kept,
                   const FlattenOptions& options, Flattening& flat) {
-  const std::vector<FlatTriangle> triangles = flat_triangles(piece, options.largest_cotangent);
+  const std::vector<FlatTriangle> triangles = flat_triangles(piece);
   const RigidLayout rigid(triangles, piece.F, piece.vertex_count());
   Flattening held = flat;
   Eigen::VectorXcd z = to_complex(flat.points);
@@ -115,8 +109,8 @@ void hold_lengths(const TriMesh& piece, std::span<const KeptLength> kept,
   centre_on_area(triangles, piece.F, z);
   held.points = to_points(z);
   held.report.flipped = flipped_triangles(triangles, piece.F, z);
-  held.report.overlaps = overlapping_triangles(held.points, piece.F,
-                                               options.overlap_depth * flat_diagonal(held.points));
+  held.report.overlaps =
+      overlapping_triangles(held.points, piece.F, kOverlapDepth * flat_diagonal(held.points));
   if (held.report.flipped.size() > flat.report.flipped.size() ||
       held.report.overlaps.size() > flat.report.overlaps.size()) {
     z = to_complex(flat.points);

@@ -12,13 +12,10 @@
 namespace geoprior::sketch {
 
 struct FlattenOptions {
-  int iterations = 300;           ///< most steps of as-rigid-as-possible
-  double tolerance = 1e-9;        ///< relative change of its energy at which it stops
-  int mixing = 6;                 ///< window of the Anderson acceleration; 0: none
-  double largest_cotangent = 20;  ///< weights of needles are those of this cotangent
-  bool unflip = true;             ///< whether a layout with triangles turned over is made anew
-  int unflip_iterations = 200;    ///< most Newton steps of the symmetric Dirichlet energy for it
-  double overlap_depth = 1e-6;    ///< of triangles that count as overlapping, over the diagonal
+  int iterations = 300;
+  double tolerance = 1e-9;
+  int mixing = 6;
+  bool unflip = true;
 };
 void describe(OptionVisitor& v, FlattenOptions& options);
 

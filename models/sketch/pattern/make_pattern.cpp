@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "core/angles.h"
-#include "core/error.h"
 #include "core/geometry/planar.h"
 #include "core/parallel.h"
 #include "models/sketch/pattern/layout.h"
@@ -27,14 +26,8 @@ constexpr double kLeastUp = 0.1;
 std::vector<SeamEdge> opening_seams(const std::vector<CutPiece>& pieces, int seam,
                                     const PatternOptions& options) {
   std::vector<SeamEdge> added;
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    const CutPiece& piece = pieces[p];
+  for (const CutPiece& piece : pieces) {
     if (can_be_laid_flat(piece, options.hole_tolerance_deg * kDegree)) continue;
-    if (!options.cut_open) {
-      throw Error("piece has " + std::to_string(piece.border_count()) + " borders and " +
-                      std::to_string(piece.genus()) + " handles and would have to be cut open",
-                  "piece " + std::to_string(p + 1), "a disc, or seams that make it one");
-    }
     for (const Edge& edge : shortest_cut(piece.mesh))
       added.push_back({{piece.surface_vertex[edge[0]], piece.surface_vertex[edge[1]]}, seam});
     ++seam;
@@ -200,8 +193,6 @@ void describe(OptionVisitor& v, PatternOptions& options) {
           {.doc = "bring both sides of every seam to one length"});
   v.value("seam_mismatch", options.seam_mismatch,
           {.doc = "difference that they may keep, of their length", .min = 0, .max = 1});
-  v.value("cut_open", options.cut_open,
-          {.doc = "cut pieces that cannot be laid flat along their shortest cut"});
   v.value("hole_tolerance_deg", options.hole_tolerance_deg,
           {.doc = "a border that turns by -360 degrees within this is a hole and stays",
            .unit = "deg",

@@ -30,7 +30,6 @@ struct PatternOptions {
   std::optional<double> width = {};  ///< of the shelves (m); about a square when absent
   bool equal_seams = true;           ///< bring both sides of every seam to one length
   double seam_mismatch = 0.004;      ///< difference that they may keep, of their length
-  bool cut_open = true;              ///< whether pieces that cannot be laid flat are cut further
   /// A border that turns by -2 pi within this is a hole in something flat and stays (deg).
   double hole_tolerance_deg = 10;
 };
@@ -59,8 +58,7 @@ struct MadePattern {
 /// in parallel; the result is the same at any number of threads.
 ///
 /// @param surface  of length m
-/// @throws Error   as `cut_surface` and `flatten`; when a piece would have to be cut open and
-///                 `cut_open` is off
+/// @throws Error   as `cut_surface` and `flatten`
 MadePattern make_pattern(const TriMesh& surface, std::span<const SeamEdge> seams,
                          const PatternOptions& options = {});
 

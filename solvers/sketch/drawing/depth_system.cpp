@@ -13,6 +13,9 @@
 namespace geoprior::sketch {
 namespace {
 
+/// Least over greatest eigenvalue below which depth is undetermined: some hundred roundings.
+constexpr double kSingular = 1e-13;
+
 using DepthMatrix = Eigen::SparseMatrix<double>;
 
 /// Length of the coefficients below which a ruling is left out: images of tangents and ruling that
@@ -295,10 +298,6 @@ void describe(OptionVisitor& v, DepthOptions& o) {
            .unit = "deg",
            .min = 0,
            .max = 180});
-  v.value("singular", o.singular,
-          {.doc = "least over greatest eigenvalue below which depth is undetermined",
-           .min = 0,
-           .max = 1});
 }
 
 const char* depth_term_name(DepthTerm term) {
@@ -337,7 +336,7 @@ DepthSolution solve_depth(const DepthProblem& problem, const DepthOptions& optio
   for (int i = 0; i < rows.unknowns(); ++i) shifted.coeffRef(i, i) += 1e-16 * greatest;
   const SparseLdlt factor(shifted);
   const WeakestMode weakest = weakest_mode(N, factor);
-  if (!factor.succeeded() || weakest.eigenvalue <= options.singular * greatest) {
+  if (!factor.succeeded() || weakest.eigenvalue <= kSingular * greatest) {
     throw Error("depth is not determined", curves_that_move(problem.net, weakest.vector),
                 "a symmetric pair, or a ruling to a border whose depth is known");
   }

@@ -27,7 +27,6 @@ struct DepthOptions {
   double parallel_planes = 0;
   int tangent_half_width = 4;  ///< nodes on either side
   double end_angle_deg = 1;    ///< rulings whose end angles differ by more are not trusted
-  double singular = 1e-13;     ///< least over greatest eigenvalue below which depth is undetermined
 };
 void describe(OptionVisitor& v, DepthOptions& options);
 
@@ -87,7 +86,7 @@ std::vector<RulingForms> trusted_rulings(const CurveNet& net, const RuledPatch& 
 ///   z = a x + b y + c2. The thesis assumes it of cones but does not list it as a term: weight 0.
 ///
 /// @throws Error  when the depth of curves is not determined: the normal matrix has an eigenvalue
-///                below `singular` times the greatest (names the curves that can move)
+///                below 1e-13 times the greatest (names the curves that can move)
 DepthSolution solve_depth(const DepthProblem& problem, const DepthOptions& options);
 
 }  // namespace geoprior::sketch

@@ -22,6 +22,11 @@ namespace {
 /// Of trials; the pattern that is made in the end has its own options.
 constexpr int kTrialIterations = 60;
 constexpr double kTrialTolerance = 1e-6;
+/// Length of all cuts of a suggestion: shorter ones are not worth sewing, longer ones are not of
+/// anything that is sewn (m). Ours.
+constexpr double kShortestSuggestion = 0.02, kLongestSuggestion = 10;
+/// Least area of what a cut parts off, over that of its piece: scraps are no pieces. Ours.
+constexpr double kLeastPart = 0.05;
 
 class GreedySuggester {
  public:
@@ -123,9 +128,9 @@ std::optional<GreedySuggester::Scored> GreedySuggester::score(const Panel& piece
     return {};  // a part that cannot be laid flat: no suggestion
   }
   if (!trial || (before.flat.sound && !trial->flat.sound)) return {};
-  if (trial->parts > 1 && trial->least_part < options_.min_part * trial->flat.area) return {};
+  if (trial->parts > 1 && trial->least_part < kLeastPart * trial->flat.area) return {};
   const double added = trial->lines.length;
-  if (added < options_.min_length || added > options_.max_length) return {};
+  if (added < kShortestSuggestion || added > kLongestSuggestion) return {};
   const double removed = (before.flat.strain - trial->flat.strain) / before.flat.strain;
   const double opened = std::max(0.0, trial->opening_length - before.opening_length);
   const double cost = options_.length_weight * (added + opened) / std::sqrt(before.flat.area);
@@ -247,13 +252,6 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& o) {
            .min = 0,
            .max = 1});
   v.value("count", o.count, {.doc = "most suggestions", .min = 0, .max = 100});
-  v.value("min_length", o.min_length,
-          {.doc = "of all cuts of a suggestion", .unit = "m", .min = 0});
-  v.value("max_length", o.max_length,
-          {.doc = "of all cuts of a suggestion", .unit = "m", .min = 0});
-  v.value(
-      "min_part", o.min_part,
-      {.doc = "least area of what a cut parts off, over that of its piece", .min = 0, .max = 0.5});
   v.value("length_weight", o.length_weight,
           {.doc = "share of the error that a cut as long as the root of the piece's area has to "
                   "remove to be worth it",

@@ -20,9 +20,6 @@ struct SeamSuggestionOptions {
   double tolerance = 0.02;      ///< stretch that a pattern may have
   double share = 0.95;          ///< of the area within it at which nothing more is suggested
   int count = 3;                ///< most suggestions
-  double min_length = 0.02;     ///< of a suggestion, all its cuts together (m)
-  double max_length = 10;       ///< m
-  double min_part = 0.05;       ///< least area of what a cut parts off, over that of its piece
   double length_weight = 0.05;  ///< what a length of the root of the area costs, in removed error
   double crease = 0.3;          ///< how much cheaper cuts are along concentrated curvature
   bool symmetric = true;        ///< mirrored surfaces get mirrored suggestions

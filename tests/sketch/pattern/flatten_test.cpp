@@ -469,8 +469,6 @@ TEST(MakePattern, TurnsPiecesUpAndCutsTubesOpen) {
   options.grain = GrainRule::longest;
   const PatternPiece upright = make_pattern(tube, {}, options).pattern.pieces[0];
   EXPECT_NEAR(upright.points.col(1).maxCoeff(), 24 * std::sin(std::numbers::pi / 24), 1e-6);
-  options.cut_open = false;
-  EXPECT_THROW(make_pattern(tube, {}, options), Error);
 }
 
 // A frame keeps its hole: no further cut, and the outer border comes first.

@@ -1,0 +1,111 @@
+// What the user draws, in which unit and by how steady a hand: options of the scene that no sweep
+// turns, each from an experiment file to its effect.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "experiments/sketch/scene/scene.h"
+#include "experiments/sketch/topic.h"
+#include "tests/testbed/run_fixture.h"
+
+namespace geoprior::sketch {
+namespace {
+
+using geoprior::test::error_of;
+using ::testing::HasSubstr;
+
+class SketchScenes : public geoprior::test::RunTest {
+ protected:
+  [[nodiscard]] std::shared_ptr<SketchScene> scene(const std::string& lines) const {
+    const auto file = write_experiment(
+        "sketch/scene", "title = \"A scene\"\ntopic = \"sketch\"\n[scene]\n" + lines +
+                            "[[variant]]\nname = \"hull\"\nmethod = "
+                            "\"visual-hull\"\n");
+    const Experiment experiment = load_experiment(file, {make_topic()}, {});
+    return std::dynamic_pointer_cast<SketchScene>(
+        make_topic().load(*experiment.cases[0].scene, file.parent_path(), 1));
+  }
+  void write_input(const std::string& name, const std::string& text) const {
+    const auto below = folder() / "experiments" / "sketch";
+    std::filesystem::create_directories(below);
+    std::ofstream(below / name) << text;
+  }
+  /// Front and side of a box of 40 x 40 x 20 mm, a millimetre a unit.
+  void write_box(const std::string& front, const std::string& side) const {
+    const auto view = [](const std::string& name, const std::string& path) {
+      return "<g id='view:" + name + "'><path id='" + name + "' d='" + path +
+             "' style='fill:none;stroke:#000000'/></g>\n";
+    };
+    write_input("box.svg",
+                "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 60' width='100mm' "
+                "height='60mm'>\n" +
+                    view("front", front) + view("side", side) + "</svg>\n");
+  }
+  static constexpr const char* kFront = "M10 10h40v40h-40z";
+  static constexpr const char* kSide = "M60 10h20v40h-20z";
+};
+
+double width_of_front(const SketchScene& scene) {
+  double low = 1e9, high = -1e9;
+  for (const Eigen::Vector2d& p : scene.silhouettes.at(0).outline) {
+    low = std::min(low, p.x());
+    high = std::max(high, p.x());
+  }
+  return high - low;
+}
+
+TEST_F(SketchScenes, ReadsASurfaceInItsUnit) {
+  write_input("patch.off", "OFF\n4 2 0\n0 0 0\n5 0 0\n5 3 0\n0 3 0\n3 0 1 2\n3 0 2 3\n");
+  const auto metres = scene("surface = \"patch.off\"\n");
+  ASSERT_TRUE(metres->input.surface);
+  EXPECT_EQ(metres->input.surface->V.col(0).maxCoeff(), 5);
+  EXPECT_FALSE(metres->input.patterns);
+  const auto centimetres = scene("surface = \"patch.off\"\nsurface_scale = 0.01\n");
+  EXPECT_DOUBLE_EQ(centimetres->input.surface->V.col(0).maxCoeff(), 0.05);
+}
+
+TEST_F(SketchScenes, ReadsADrawingInItsUnit) {
+  write_box(kFront, kSide);
+  EXPECT_NEAR(width_of_front(*scene("drawing = \"box.svg\"\n")), 0.04, 1e-12);
+  EXPECT_NEAR(width_of_front(*scene("drawing = \"box.svg\"\nread = { unit_m = 0.01 }\n")), 0.4,
+              1e-12);
+}
+
+// The front's line ends 2 mm before its start: 3.6 percent of the view's diagonal.
+TEST_F(SketchScenes, ClosesGapsUpToTheSnap) {
+  write_box("M10 10h40v40h-40v-38", kSide);
+  EXPECT_THAT(error_of([&] { (void)scene("drawing = \"box.svg\"\n"); }), HasSubstr("gap of 2 mm"));
+  const auto closed = scene("drawing = \"box.svg\"\nread = { snap = 0.05 }\n");
+  EXPECT_EQ(closed->silhouettes.size(), 2U);
+}
+
+// The side is drawn 5 percent higher than the front.
+TEST_F(SketchScenes, AlignsViewsWithinTheTolerance) {
+  write_box(kFront, "M60 8h20v42h-20z");
+  EXPECT_THAT(error_of([&] { (void)scene("drawing = \"box.svg\"\n"); }), HasSubstr("side"));
+  const auto aligned = scene("drawing = \"box.svg\"\nalign = { tolerance = 0.1 }\n");
+  double high = 0;
+  for (const Eigen::Vector2d& p : aligned->silhouettes.at(1).outline) high = std::max(high, p.y());
+  EXPECT_NEAR(high, 0.04, 1e-12) << "scaled to the front's height";
+}
+
+TEST_F(SketchScenes, DrawsWhatIsKnownInPlaceOfAFile) {
+  const auto frustum = scene("synthetic = {}\n");
+  ASSERT_TRUE(frustum->truth);
+  EXPECT_TRUE(frustum->truth->conical);
+  const auto body = scene("layers = { arcs = 5 }\n");
+  ASSERT_TRUE(body->truth);
+  EXPECT_EQ(strokes_of(body->photo(), StrokeKind::arc).size(), 5U);
+  const auto cap = scene("closed_form = { rings = 3 }\n");
+  ASSERT_TRUE(cap->input.surface);
+  EXPECT_EQ(cap->input.surface->V.rows(), 1 + 6 + 12 + 18);
+  EXPECT_THAT(error_of([&] { (void)scene("synthetic = {}\nlayers = {}\n"); }),
+              HasSubstr("2 of them are given"));
+}
+
+}  // namespace
+}  // namespace geoprior::sketch
