@@ -13,6 +13,7 @@
 #include "core/angles.h"
 #include "core/connectivity.h"
 #include "core/geometry/topology.h"
+#include "experiments/sketch/sewn_lines.h"
 #include "metrics/developability/developability.h"
 #include "metrics/developability/fold_angle.h"
 #include "metrics/isometry/seam_lengths.h"
@@ -114,30 +115,6 @@ std::map<int, std::vector<int>> panels_of(const Frame& frame) {
   return panels;
 }
 
-/// Points of every sewn stretch, in order, and the stretch it is sewn to.
-struct SewnStretches {
-  std::map<int, std::vector<int>> points;
-  std::map<int, int> partner;
-};
-
-SewnStretches sewn_stretches(const Frame& frame) {
-  const FrameTable& sewn = frame.require_table("sewn");
-  SewnStretches stretches;
-  for (Eigen::Index i = 0; i < sewn.rows.rows(); ++i) {
-    const int stretch = static_cast<int>(sewn.rows(i, 0));
-    stretches.points[stretch].push_back(static_cast<int>(sewn.rows(i, 3)));
-    stretches.partner[stretch] = static_cast<int>(sewn.rows(i, 1));
-  }
-  return stretches;
-}
-
-Eigen::MatrixX2d flat_line(const Part& pattern, const std::vector<int>& points) {
-  Eigen::MatrixX2d line(static_cast<Eigen::Index>(points.size()), 2);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    line.row(static_cast<Eigen::Index>(i)) = pattern.points.row(points[i]).head<2>();
-  return line;
-}
-
 }  // namespace
 
 FoldMeasures fold_measures(const SketchScene& scene, const Frame& frame) {
@@ -203,14 +180,8 @@ GaussMeasures gauss_measures(const SketchScene& /*scene*/, const Frame& frame) {
 SeamPointMeasures seam_point_measures(const SketchScene& /*scene*/, const Frame& frame) {
   SeamPointMeasures measures;
   if (frame.find_part("pattern") == nullptr) return measures;
-  const Part& pattern = frame.require_part("pattern");
-  const SewnStretches sewn = sewn_stretches(frame);
-  for (const auto& [stretch, other] : sewn.partner) {
-    if (stretch >= other) continue;
-    std::vector<int> reversed = sewn.points.at(other);
-    std::reverse(reversed.begin(), reversed.end());
-    const geoprior::SeamMismatch seam =
-        seam_mismatch(flat_line(pattern, sewn.points.at(stretch)), flat_line(pattern, reversed));
+  for (const auto& [left, right] : sewn_lines(frame)) {
+    const geoprior::SeamMismatch seam = seam_mismatch(left, right);
     const double length = (seam.left_length + seam.right_length) / 2;
     measures.shift_percent =
         std::max(measures.shift_percent.value_or(0), 100 * seam.shift_max / length);

@@ -5,16 +5,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 #include <vector>
 
 #include "core/angles.h"
-#include "core/geometry/planar.h"
-#include "core/geometry/topology.h"
 #include "core/geometry/triangle_tree.h"
 #include "metrics/contact/intersection_depth.h"
 #include "metrics/contact/self_contact.h"
+#include "metrics/isometry/border_lengths.h"
 #include "metrics/isometry/circular_arc.h"
 #include "metrics/shape/mirror_symmetry.h"
 #include "metrics/spacing/rim_cover.h"
@@ -79,11 +77,9 @@ void add_circle_errors(const SyntheticView& truth, std::size_t stroke,
   Eigen::MatrixX3d real(static_cast<Eigen::Index>(known.size()), 3);
   for (std::size_t i = 0; i < known.size(); ++i)
     real.row(static_cast<Eigen::Index>(i)) = known[i].transpose();
-  const CircularArc a = circular_arc(points), b = circular_arc(real);
-  const double radius = std::abs(a.radius / b.radius - 1);
-  const double axis = std::atan2(a.axis.cross(b.axis).norm(), std::abs(a.axis.dot(b.axis)));
-  measures.radius_error = std::max(measures.radius_error.value_or(0), radius);
-  measures.axis_error_deg = std::max(measures.axis_error_deg.value_or(0), axis / kDegree);
+  const ArcDifference off = arc_difference(circular_arc(points), circular_arc(real));
+  measures.radius_error = std::max(measures.radius_error.value_or(0), off.radius);
+  measures.axis_error_deg = std::max(measures.axis_error_deg.value_or(0), off.axis / kDegree);
 }
 
 /// Squared distances of a stroke's points from the image of a line: their sum and the largest.
@@ -169,50 +165,6 @@ void measure_symmetry(const SketchScene& scene, const Frame& frame, double width
   measures.asymmetry_percent = kPercentOf * symmetry.hausdorff / width;
 }
 
-/// Border of a set of triangles as closed chains of vertices.
-std::vector<std::vector<int>> border_chains(const Eigen::MatrixX3i& F) {
-  std::map<int, int> next;
-  for (const Edge& e : boundary_edges(F)) next[e[0]] = e[1];
-  std::vector<std::vector<int>> chains;
-  while (!next.empty()) {
-    std::vector<int> chain;
-    int v = next.begin()->first;
-    for (auto found = next.find(v); found != next.end(); found = next.find(v)) {
-      chain.push_back(v);
-      v = found->second;
-      next.erase(found);
-    }
-    chains.push_back(std::move(chain));
-  }
-  return chains;
-}
-
-/// A closed chain cut where the flat border turns by more than 45 degrees.
-std::vector<std::vector<int>> between_corners(const std::vector<int>& chain, const Part& flat) {
-  const std::size_t n = chain.size();
-  const auto at = [&](std::size_t i) -> Eigen::Vector2d {
-    return flat.points.row(chain[i % n]).head<2>().transpose();
-  };
-  std::vector<std::size_t> corners;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double turn = signed_angle(at(i) - at(i + n - 1), at(i + 1) - at(i));
-    if (std::abs(turn) > kFullTurn / 8) corners.push_back(i);
-  }
-  std::vector<std::vector<int>> stretches;
-  for (std::size_t c = 0; c < corners.size(); ++c) {
-    const std::size_t end = c + 1 < corners.size() ? corners[c + 1] : corners[0] + n;
-    std::vector<int> stretch;
-    for (std::size_t i = corners[c]; i <= end; ++i) stretch.push_back(chain[i % n]);
-    stretches.push_back(std::move(stretch));
-  }
-  return stretches;
-}
-
-double chain_length(const Eigen::MatrixX3d& points) {
-  return points.rows() < 3 ? (points.row(0) - points.row(points.rows() - 1)).norm()
-                           : circular_arc(points).length;
-}
-
 }  // namespace
 
 ArcMeasures arc_measures(const SketchScene& scene, const Frame& frame) {
@@ -257,20 +209,10 @@ std::optional<double> sector_length_error(const SketchScene& /*scene*/, const Fr
   const Part& flat = frame.require_part("pattern", Part::Kind::triangles);
   const Part& surface = frame.require_part("surface", Part::Kind::triangles);
   const auto& vertex = flat.require_array("surface_vertex", LayerOn::points, 1).values;
-  double worst = 0;
-  for (const std::vector<int>& chain : border_chains(flat.triangles)) {
-    for (const std::vector<int>& stretch : between_corners(chain, flat)) {
-      const auto n = static_cast<Eigen::Index>(stretch.size());
-      Eigen::MatrixX3d laid(n, 3), real(n, 3);
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const int v = stretch[static_cast<std::size_t>(i)];
-        laid.row(i) = flat.points.row(v);
-        real.row(i) = surface.points.row(static_cast<Eigen::Index>(vertex(v)));
-      }
-      worst = std::max(worst, std::abs(chain_length(laid) / chain_length(real) - 1));
-    }
-  }
-  return worst;
+  Eigen::MatrixX3d real(flat.points.rows(), 3);
+  for (Eigen::Index i = 0; i < real.rows(); ++i)
+    real.row(i) = surface.points.row(static_cast<Eigen::Index>(vertex(i)));
+  return border_length_error(flat.points.leftCols<2>(), flat.triangles, real);
 }
 
 }  // namespace geoprior::sketch

@@ -1,6 +1,7 @@
 #include "experiments/sketch/measures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -8,6 +9,8 @@
 #include <span>
 
 #include "core/angles.h"
+#include "experiments/sketch/sewn_lines.h"
+#include "metrics/developability/ruling_angle.h"
 #include "metrics/isometry/seam_lengths.h"
 #include "metrics/shape/depth_error.h"
 #include "metrics/shape/silhouette.h"
@@ -54,29 +57,9 @@ std::vector<FlatPiece> flat_pieces(const Frame& frame) {
 
 /// Largest relative difference of two stretches that are sewn together.
 std::optional<double> largest_mismatch(const Frame& frame) {
-  const FrameTable& sewn = frame.require_table("sewn");
-  const Part& pattern = frame.require_part("pattern");
-  std::map<int, std::vector<int>> points;
-  std::map<int, int> partner;
-  for (Eigen::Index i = 0; i < sewn.rows.rows(); ++i) {
-    const int stretch = static_cast<int>(sewn.rows(i, 0));
-    points[stretch].push_back(static_cast<int>(sewn.rows(i, 3)));
-    partner[stretch] = static_cast<int>(sewn.rows(i, 1));
-  }
-  const auto line = [&](std::vector<int> vertices, bool reversed) {
-    if (reversed) std::reverse(vertices.begin(), vertices.end());
-    Eigen::MatrixX2d xy(static_cast<Eigen::Index>(vertices.size()), 2);
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-      xy.row(static_cast<Eigen::Index>(i)) = pattern.points.row(vertices[i]).head<2>();
-    return xy;
-  };
   std::optional<double> largest;
-  for (const auto& [stretch, other] : partner) {
-    if (stretch >= other) continue;  // the two sides of a dart included: each pair once
-    const double relative =
-        seam_mismatch(line(points[stretch], false), line(points[other], true)).relative;
-    largest = std::max(largest.value_or(0), relative);
-  }
+  for (const auto& [left, right] : sewn_lines(frame))
+    largest = std::max(largest.value_or(0), seam_mismatch(left, right).relative);
   return largest;
 }
 
@@ -182,20 +165,14 @@ void add_panel_areas(const SyntheticView& truth, const Frame& frame, TruthMeasur
 std::optional<double> ruling_angle(const SyntheticView& truth, const Frame& frame, double offset) {
   const Part* rulings = frame.find_part("rulings");
   if (!truth.conical || rulings == nullptr) return {};
-  double sum = 0;
-  int count = 0;
+  std::vector<std::array<Eigen::Vector3d, 2>> ends;
   for (const std::vector<int>& line : rulings->lines) {
-    const Eigen::Vector3d a = rulings->points.row(line.front()).transpose();
-    const Eigen::Vector3d b = rulings->points.row(line.back()).transpose();
-    if (a == b) continue;
-    const Eigen::Vector3d middle = (a + b) / 2 + Eigen::Vector3d(0, 0, offset);
-    const Eigen::Vector3d generator = truth.apex - middle;
-    const double angle = std::atan2(generator.cross(b - a).norm(), std::abs(generator.dot(b - a)));
-    sum += angle * angle;
-    ++count;
+    ends.push_back({rulings->points.row(line.front()).transpose(),
+                    rulings->points.row(line.back()).transpose()});
   }
-  if (count == 0) return {};
-  return std::sqrt(sum / count) / kDegree;
+  const std::optional<double> rms = ruling_angle_rms(ends, truth.apex, {0, 0, offset});
+  if (!rms) return {};
+  return *rms / kDegree;
 }
 
 }  // namespace

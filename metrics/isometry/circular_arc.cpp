@@ -57,4 +57,9 @@ CircularArc circular_arc(const Eigen::MatrixX3d& points) {
   return arc;
 }
 
+ArcDifference arc_difference(const CircularArc& arc, const CircularArc& truth) {
+  return {std::abs(arc.radius / truth.radius - 1),
+          std::atan2(arc.axis.cross(truth.axis).norm(), std::abs(arc.axis.dot(truth.axis)))};
+}
+
 }  // namespace geoprior

@@ -22,4 +22,11 @@ struct CircularArc {
 /// @throws Error  on fewer than three points, or where first, middle and last are not distinct
 CircularArc circular_arc(const Eigen::MatrixX3d& points);
 
+/// How an arc differs from the one that it ought to be, whatever their centres.
+struct ArcDifference {
+  double radius = 0;  ///< relative to the true one
+  double axis = 0;    ///< angle between the axes' lines (rad), 0 to pi / 2
+};
+ArcDifference arc_difference(const CircularArc& arc, const CircularArc& truth);
+
 }  // namespace geoprior

@@ -19,6 +19,22 @@ Eigen::MatrixX3d arc_points(double radius, double from, double to, int count, do
   return points;
 }
 
+// The same circle drawn the other way about has the same axis; a tilt of 0.2 rad is told, and a
+// radius of 2.1 for 2.
+TEST(ArcDifference, TellsRadiusAndAxisWithoutSense) {
+  const CircularArc truth = circular_arc(arc_points(2, 0, 2, 21));
+  const CircularArc back = circular_arc(arc_points(2, 2, 0, 21, 5));
+  EXPECT_NEAR(arc_difference(back, truth).axis, 0, 1e-9);
+  EXPECT_NEAR(arc_difference(back, truth).radius, 0, 1e-9);
+  Eigen::MatrixX3d tilted = arc_points(2.1, 0, 2, 21);
+  for (int i = 0; i < 21; ++i) {
+    const double y = tilted(i, 1);
+    tilted.row(i).head<2>() << -std::sin(0.2) * y, std::cos(0.2) * y;
+  }
+  EXPECT_NEAR(arc_difference(circular_arc(tilted), truth).axis, 0.2, 1e-9);
+  EXPECT_NEAR(arc_difference(circular_arc(tilted), truth).radius, 0.05, 1e-9);
+}
+
 // r times the angle, also beyond half a turn; a sum over the chords would be 0.4 % short.
 TEST(CircularArc, HasTheLengthOfTheArcAndNotOfItsChords) {
   for (const double angle : {0.01, 1.0, 3.0, 5.5}) {
