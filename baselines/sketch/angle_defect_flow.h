@@ -31,7 +31,7 @@ class AngleDefectEnergy {
 };
 
 struct AngleDefectFlowOptions {
-  double closeness = 0;  ///< weight of the term that holds vertices; 0: none
+  double closeness = 0;
   DescentOptions descent;
 };
 void describe(OptionVisitor& v, AngleDefectFlowOptions& options);

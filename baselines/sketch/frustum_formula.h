@@ -20,7 +20,7 @@ enum class FrustumReading {
 
 struct FrustumFormulaOptions {
   FrustumReading reading = FrustumReading::towards;
-  int around = 48;  ///< segments of a rim of the surface
+  int around = 48;
 };
 void describe(OptionVisitor& v, FrustumFormulaOptions& options);
 

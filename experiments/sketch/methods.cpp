@@ -8,9 +8,10 @@
 #include "baselines/sketch/frustum_formula.h"
 #include "baselines/sketch/gauss_thinning/gauss_thinning.h"
 #include "baselines/sketch/visual_hull/visual_hull.h"
-#include "experiments/sketch/compared_methods.h"
 #include "experiments/sketch/drawing/suggested_drawing.h"
+#include "experiments/sketch/flattened.h"
 #include "experiments/sketch/scene/scene.h"
+#include "experiments/sketch/slow_road.h"
 #include "experiments/sketch/topic.h"
 #include "solvers/sketch/layers/layers.h"
 #include "solvers/sketch/one_view_process.h"
@@ -28,7 +29,8 @@ struct FlowRun {
 
 template <class Options>
 void describe(OptionVisitor& v, FlowRun<Options>& o) {
-  v.value("iterations", o.iterations, {.doc = "steps; a frame each", .min = 1, .max = 100000});
+  v.value("iterations", o.iterations,
+          {.doc = "number of steps; a frame each", .min = 1, .max = 100000});
   describe(v, o.flow);
 }
 
@@ -107,11 +109,11 @@ std::vector<MethodEntry> methods() {
           [](const S& scene, const FrustumFormulaOptions& options, RunContext&) {
             return make_frustum_formula_process(scene.photo(), options);
           }),
-      method_entry<S, HullSurfaceOptions>(
+      method_entry<S, VisualHullOptions>(
           "visual-hull", true, "all points that every view sees, as it is or smoothed",
           "Rivers, Durand and Igarashi 2010; Taubin 1995",
-          [](const S& scene, const HullSurfaceOptions& options, RunContext&) {
-            return make_hull_process(scene.input, options);
+          [](const S& scene, const VisualHullOptions& options, RunContext&) {
+            return make_visual_hull_process(scene.input, options);
           }),
       flow_entry<GaussThinning, GaussThinningOptions>(
           "gauss-thinning", "normals are turned onto great circles, silhouettes are not known",
@@ -123,7 +125,8 @@ std::vector<MethodEntry> methods() {
           "angle-defect-flow", "the squared angle defects are descended, silhouettes are not known",
           "Wang and Tang 2004"),
   };
-  for (MethodEntry& entry : compared_methods()) all.push_back(std::move(entry));
+  all.push_back(flattened_method());
+  all.push_back(slow_road_method());
   return all;
 }
 

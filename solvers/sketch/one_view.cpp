@@ -207,20 +207,20 @@ void fill_patches(const View& view, const std::vector<DrawnPanel>& panels,
 }  // namespace
 
 void describe(OptionVisitor& v, OneViewOptions& o) {
-  describe_group(v, "curves", o.curves, {.doc = "sampling of borders"});
-  describe_group(v, "rulings", o.rulings, {.doc = "time warping of rulings"});
+  describe_group(v, "curves", o.curves, {.doc = "how borders are sampled"});
+  describe_group(v, "rulings", o.rulings, {.doc = "how rulings are found by time warping"});
   describe_group(v, "depth", o.depth, {.doc = "weights of the quadratic energy"});
   v.value("vector_ratio", o.vector_ratio,
           {.doc = "length in space of sym-a over that of sym-b", .min = 1e-3, .max = 1e3});
   v.value("pair_tolerance", o.pair_tolerance,
-          {.doc = "of the direction of a symmetric pair, of the drawing's diagonal",
+          {.doc = "tolerance on the direction of a symmetric pair, over the drawing's diagonal",
            .min = 1e-6,
            .max = 1});
   v.value("fair_solves", o.fair_solves,
           {.doc = "solves with the surface's own Laplacian in panels without rulings",
            .min = 0,
            .max = 1000});
-  v.value("mirror", o.mirror, {.doc = "keep the more visible half and mirror it"});
+  v.value("mirror", o.mirror, {.doc = "whether the more visible half is kept and mirrored"});
   describe_group(v, "refine", o.refine,
                  {.doc = "non-linear least squares with the mirror plane free, after the linear"});
 }

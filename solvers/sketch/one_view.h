@@ -25,10 +25,10 @@ struct OneViewOptions {
   CurveNetOptions curves;
   RulingWarpOptions rulings;
   DepthOptions depth;
-  double vector_ratio = 1;       ///< length in space of sym-a over that of sym-b
-  double pair_tolerance = 0.03;  ///< of a pair's direction, of the drawing's diagonal
-  int fair_solves = 6;           ///< with the surface's own Laplacian, in panels without rulings
-  bool mirror = true;            ///< keep one half and mirror it
+  double vector_ratio = 1;
+  double pair_tolerance = 0.03;
+  int fair_solves = 6;
+  bool mirror = true;
   std::optional<RefineOptions> refine = {};  ///< non-linear, from the quadratic energy's minimum
 };
 void describe(OptionVisitor& v, OneViewOptions& options);

@@ -175,29 +175,32 @@ class SeveralViews final : public SketchMethod {
 
 void describe(OptionVisitor& v, SuggestedSeamsOptions& o) {
   describe(v, o.find);
-  v.value("apply", o.apply,
-          {.doc = "the first so many suggestions are cut, and the iterations go on",
-           .min = 0,
-           .max = 100});
-  v.value("iterations", o.iterations, {.doc = "after that", .min = 1, .max = 1000});
+  v.value(
+      "apply", o.apply,
+      {.doc = "number of suggestions that are cut before iterations go on", .min = 0, .max = 100});
+  v.value("iterations", o.iterations,
+          {.doc = "iterations after suggestions were cut", .min = 1, .max = 1000});
 }
 
 void describe(OptionVisitor& v, SeveralViewsOptions& o) {
-  v.value("iterations", o.iterations, {.doc = "steps; a frame each", .min = 1, .max = 1000});
+  v.value("iterations", o.iterations,
+          {.doc = "number of steps; a frame each", .min = 1, .max = 1000});
   describe_choice(v, "order", o.order, kOrders,
                   {.doc = "how silhouettes and developability follow each other"});
   describe_group(v, "developability", o.developability, {.doc = "what triangles are turned to"});
-  describe_group(v, "fold", o.fold, {.doc = "what drawn folds ask"});
-  v.value("silhouettes", o.silhouettes, {.doc = "silhouettes are pulled onto the drawing"});
+  describe_group(v, "fold", o.fold, {.doc = "what drawn folds ask of the surface"});
+  v.value("silhouettes", o.silhouettes, {.doc = "whether silhouettes are pulled onto the drawing"});
   describe_choice(v, "silhouette", o.silhouette, kSilhouetteChoices,
                   {.doc = "which edges carry a silhouette: those that protrude most, or those "
                           "nearest to one plane"});
-  v.value("folds", o.folds, {.doc = "drawn folds are asked for"});
-  v.value("pin_seams", o.pin_seams, {.doc = "seams stay where they were drawn, in their view"});
+  v.value("folds", o.folds, {.doc = "whether drawn folds are asked for"});
+  v.value("pin_seams", o.pin_seams,
+          {.doc = "whether seams stay where they were drawn, in their view"});
   v.value("across_seams", o.across_seams,
-          {.doc = "cones are fitted to triangles on both sides of a seam"});
-  v.value("drawn_seams", o.drawn_seams, {.doc = "seams of the drawing are there"});
-  describe_group(v, "suggest", o.suggest, {.doc = "seams and darts for the surface of the end"});
+          {.doc = "whether cones are fitted to triangles on both sides of a seam"});
+  v.value("drawn_seams", o.drawn_seams, {.doc = "whether seams of the drawing are there"});
+  describe_group(v, "suggest", o.suggest,
+                 {.doc = "seams and darts that are suggested for the surface of the end"});
 }
 
 std::unique_ptr<SketchMethod> make_several_views(const PreparedSketch& prepared,

@@ -23,8 +23,8 @@ enum class StepOrder {
 /// Seams and darts that are suggested for the surface of the last step.
 struct SuggestedSeamsOptions {
   SeamSuggestionOptions find;
-  int apply = 0;       ///< the first so many are cut, and the iterations go on
-  int iterations = 5;  ///< after that
+  int apply = 0;
+  int iterations = 5;
 };
 void describe(OptionVisitor& v, SuggestedSeamsOptions& options);
 
@@ -35,10 +35,10 @@ struct SeveralViewsOptions {
   FoldOptions fold;
   bool silhouettes = true;  ///< false: developability alone
   SilhouetteChoice silhouette = SilhouetteChoice::protruding;
-  bool folds = true;         ///< false: drawn folds ask for nothing
-  bool pin_seams = true;     ///< seams stay where they were drawn, in their view
-  bool across_seams = true;  ///< cones are fitted to triangles on both sides of a seam
-  bool drawn_seams = true;   ///< false: seams of the drawing are left out
+  bool folds = true;  ///< false: drawn folds ask for nothing
+  bool pin_seams = true;
+  bool across_seams = true;
+  bool drawn_seams = true;  ///< false: seams of the drawing are left out
   std::optional<SuggestedSeamsOptions> suggest = {};
 };
 void describe(OptionVisitor& v, SeveralViewsOptions& options);

@@ -86,14 +86,18 @@ class NeighbourWalk {
 }  // namespace
 
 void describe(OptionVisitor& v, GaussThinningOptions& options) {
-  v.value("radius", options.radius,
-          {.doc = "of a neighbourhood, in diagonals of the bounding box", .min = 0, .max = 1});
+  v.value(
+      "radius", options.radius,
+      {.doc = "radius of a neighbourhood, in diagonals of the bounding box", .min = 0, .max = 1});
   v.value("start_angle_deg", options.start_angle_deg,
-          {.doc = "of the cone of normals that count, at first", .unit = "deg", .max = 180});
-  v.value("final_angle_deg", options.final_angle_deg,
-          {.doc = "of that cone in the end", .unit = "deg", .max = 180});
+          {.doc = "angle of the cone of normals that count, at first", .unit = "deg", .max = 180});
+  v.value(
+      "final_angle_deg", options.final_angle_deg,
+      {.doc = "angle of the cone of normals that count, in the end", .unit = "deg", .max = 180});
   v.value("shrink", options.shrink,
-          {.doc = "of the cone from one step to the next", .min = 0, .max = 1});
+          {.doc = "factor on the angle of the cone of normals from one step to the next",
+           .min = 0,
+           .max = 1});
 }
 
 GaussThinning::GaussThinning(const TriMesh& mesh, const GaussThinningOptions& options)

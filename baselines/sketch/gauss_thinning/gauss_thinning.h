@@ -10,10 +10,10 @@
 namespace geoprior::sketch {
 
 struct GaussThinningOptions {
-  double radius = 0.03;          ///< of a neighbourhood, in diagonals of the bounding box
-  double start_angle_deg = 25;   ///< of the cone about a normal in which others count, at first
-  double final_angle_deg = 2.5;  ///< of that cone in the end
-  double shrink = 0.98;          ///< of the cone from one step to the next
+  double radius = 0.03;
+  double start_angle_deg = 25;  ///< of the cone about a normal in which others count, at first
+  double final_angle_deg = 2.5;
+  double shrink = 0.98;
 };
 void describe(OptionVisitor& v, GaussThinningOptions& options);
 

@@ -76,7 +76,7 @@ void describe(OptionVisitor& v, DescentOptions& options) {
           {.doc = "steps that L-BFGS remembers; 0: preconditioned gradient", .min = 0, .max = 100});
   describe_choice(v, "metric", options.metric, kMetricNames,
                   {.doc = "what a gradient is divided by: nothing, K, or K M^-1 K"});
-  v.value("fixed_border", options.fixed_border, {.doc = "whether the border stays"});
+  v.value("fixed_border", options.fixed_border, {.doc = "whether vertices of the border stay"});
 }
 
 SurfaceDescent::SurfaceDescent(const TriMesh& mesh, PositionEnergy energy,

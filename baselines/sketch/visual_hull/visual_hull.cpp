@@ -3,9 +3,9 @@
 namespace geoprior::sketch {
 namespace {
 
-class HullSurface final : public SketchMethod {
+class ShownHull final : public SketchMethod {
  public:
-  explicit HullSurface(const Eigen::MatrixX3d& X) : X_(X) {}
+  explicit ShownHull(const Eigen::MatrixX3d& X) : X_(X) {}
   void step(RunContext& /*context*/) override {}
   [[nodiscard]] const Eigen::MatrixX3d& positions() const override { return X_; }
   void load(StateReader& in) override { in.matrix(X_); }
@@ -16,15 +16,15 @@ class HullSurface final : public SketchMethod {
 
 }  // namespace
 
-void describe(OptionVisitor& v, HullSurfaceOptions& o) {
-  v.value("smoothed", o.smoothed, {.doc = "with the scene's smoothing"});
+void describe(OptionVisitor& v, VisualHullOptions& o) {
+  v.value("smoothed", o.smoothed, {.doc = "whether the hull is smoothed as the methods begin"});
 }
 
-std::unique_ptr<Process> make_hull_process(const SketchInput& input,
-                                           const HullSurfaceOptions& options) {
+std::unique_ptr<Process> make_visual_hull_process(const SketchInput& input,
+                                                  const VisualHullOptions& options) {
   return make_sketch_process(input, 0, [options](const PreparedSketch& prepared, RunContext&) {
-    return std::make_unique<HullSurface>(options.smoothed ? prepared.start
-                                                          : prepared.surface.hull.mesh.V);
+    return std::make_unique<ShownHull>(options.smoothed ? prepared.start
+                                                        : prepared.surface.hull.mesh.V);
   });
 }
 

@@ -7,15 +7,15 @@
 
 namespace geoprior::sketch {
 
-struct HullSurfaceOptions {
-  bool smoothed = false;  ///< as the methods begin
+struct VisualHullOptions {
+  bool smoothed = false;
 };
-void describe(OptionVisitor& v, HullSurfaceOptions& options);
+void describe(OptionVisitor& v, VisualHullOptions& options);
 
 /// What the thesis' method begins with, laid flat: the visual hull, which has the silhouettes and
 /// sharp edges between the views' faces, or the same smoothed (Taubin 1995), which has neither. One
 /// frame.
-std::unique_ptr<Process> make_hull_process(const SketchInput& input,
-                                           const HullSurfaceOptions& options);
+std::unique_ptr<Process> make_visual_hull_process(const SketchInput& input,
+                                                  const VisualHullOptions& options);
 
 }  // namespace geoprior::sketch

@@ -12,9 +12,9 @@ namespace geoprior::sketch {
 
 /// How a drawing becomes strokes in metres.
 struct DrawingFileOptions {
-  double tolerance = 1e-4;       ///< largest distance of a curve from its chords (m)
-  std::optional<double> unit_m;  ///< metres for one unit of the drawing; absent: what the file says
-  double snap = 0.005;           ///< largest gap that is closed, over the diagonal of the view
+  double tolerance = 1e-4;
+  std::optional<double> unit_m;
+  double snap = 0.005;
 };
 void describe(OptionVisitor& v, DrawingFileOptions& options);
 

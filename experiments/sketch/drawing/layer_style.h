@@ -18,7 +18,7 @@ struct LayerStyle {
   std::string text = "#000000";
   std::string drill = "#ff8000";
   std::string place = "#00a0a0";
-  double line_mm = 0.25;  ///< width of lines
+  double line_mm = 0.25;
 
   [[nodiscard]] const std::string& colour(SheetLayer layer) const;
 };

@@ -16,14 +16,13 @@ void describe(OptionVisitor& v, FabricationOptions& options) {
   describe(v, options.sheet);
   describe_group(v, "layers", options.layers, {.doc = "colours for laser cutters"});
   describe_choice(v, "page", options.pages.paper, kPapers,
-                  {.doc = "sheet: one page as large as the pattern; a4, letter: pages to join"});
+                  {.doc = "paper: one sheet as large as the pattern, or pages to join"});
   v.value("margin_mm", options.pages.margin_mm,
           {.doc = "blank border of a page", .unit = "mm", .min = 0, .max = 50});
   v.value("overlap_mm", options.pages.overlap_mm,
-          {.doc = "of neighbouring pages", .unit = "mm", .min = 0, .max = 50});
+          {.doc = "overlap of neighbouring pages", .unit = "mm", .min = 0, .max = 50});
   v.value("cloth", options.cloth,
-          {.doc = "garment.obj and garment.json too: the surface with material coordinates, and "
-                  "what is sewn to what, for cloth simulators"});
+          {.doc = "whether garment.obj and garment.json are written, for cloth simulators"});
 }
 
 std::vector<FabricationFile> fabrication_files(const Pattern& pattern,

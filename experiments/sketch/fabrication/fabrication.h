@@ -16,7 +16,7 @@ struct FabricationOptions {
   SheetOptions sheet;
   LayerStyle layers;
   TileOptions pages;
-  bool cloth = false;  ///< garment.obj and garment.json too, for cloth simulators
+  bool cloth = false;
 };
 
 /// One description for parsing, validation and help.

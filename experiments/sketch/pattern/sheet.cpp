@@ -33,20 +33,22 @@ void describe(OptionVisitor& v, SheetOptions& o) {
   v.value("miter_limit", o.miter_limit,
           {.doc = "how far corners of the allowance reach, in allowances", .min = 1, .max = 20});
   v.value("notch_spacing_mm", o.notch_spacing_mm,
-          {.doc = "of notches along a seam, about", .unit = "mm", .min = 5, .max = 1e5});
+          {.doc = "distance of notches along a seam, about", .unit = "mm", .min = 5, .max = 1e5});
   v.value("notch_length_mm", o.notch_length_mm,
-          {.doc = "of a notch's tick", .unit = "mm", .min = 0.5, .max = 20});
+          {.doc = "length of a notch's tick", .unit = "mm", .min = 0.5, .max = 20});
   v.value("text_mm", o.text_mm,
           {.doc = "height of pieces' names", .unit = "mm", .min = 2, .max = 100});
-  v.value(
-      "gap_mm", o.gap_mm,
-      {.doc = "between pieces and to the edge of the sheet", .unit = "mm", .min = 1, .max = 100});
+  v.value("gap_mm", o.gap_mm,
+          {.doc = "distance between pieces and to the edge of the sheet",
+           .unit = "mm",
+           .min = 1,
+           .max = 100});
   v.value("width_mm", o.width_mm,
           {.doc = "width of the sheet at least; 0: as the pieces need",
            .unit = "mm",
            .min = 0,
            .max = 1e5});
-  v.value("title", o.title, {.doc = "written above the scale bar"});
+  v.value("title", o.title, {.doc = "title that is written above the scale bar"});
 }
 
 }  // namespace geoprior::sketch

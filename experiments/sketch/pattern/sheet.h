@@ -32,15 +32,15 @@ std::string_view layer_name(SheetLayer layer);
 
 /// How a pattern is laid out for cutting. Millimetres.
 struct SheetOptions {
-  double allowance_mm = 7;        ///< outside edges that are sewn
-  double hem_mm = 7;              ///< outside edges that are free
-  double miter_limit = 2.5;       ///< of corners of the allowance (seam_allowance.h)
-  double notch_spacing_mm = 80;   ///< of notches along a seam, about
-  double notch_length_mm = 4;     ///< of the tick, from the cutting line inwards
-  double text_mm = 6;             ///< height of pieces' names, less where there is no room
-  double gap_mm = 10;             ///< between pieces, and to the edge of the sheet
-  double width_mm = 0;            ///< of the sheet at least; 0: about as wide as high
-  std::string title = "Pattern";  ///< above the scale bar
+  double allowance_mm = 7;
+  double hem_mm = 7;
+  double miter_limit = 2.5;
+  double notch_spacing_mm = 80;
+  double notch_length_mm = 4;  ///< of the tick, from the cutting line inwards
+  double text_mm = 6;          ///< height of pieces' names, less where there is no room
+  double gap_mm = 10;
+  double width_mm = 0;  ///< of the sheet at least; 0: about as wide as high
+  std::string title = "Pattern";
 };
 
 /// One description for parsing, validation and help.

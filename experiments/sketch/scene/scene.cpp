@@ -95,19 +95,23 @@ void describe(OptionVisitor& v, SketchSceneOptions& o) {
   v.value("surface", o.surface,
           {.doc = "mesh file in place of a drawing, for methods that need none"});
   describe_group(v, "synthetic", o.synthetic,
-                 {.doc = "one view of a shape that is known, in place of both"});
+                 {.doc = "one view of a shape that is known, in place of a drawing"});
   describe_group(v, "closed_form", o.closed_form,
-                 {.doc = "a surface of closed form, in place of all"});
+                 {.doc = "a surface of closed form, in place of a drawing"});
   describe_group(v, "layers", o.layers,
-                 {.doc = "one view of a body of rigid layers that is known, in place of them"});
+                 {.doc = "one view of a known body of rigid layers, in place of a drawing"});
   describe_group(v, "known", o.known,
                  {.doc = "the known object that the drawing shows; drawn here without a file"});
   v.value("surface_scale", o.surface_scale,
-          {.doc = "metres for one unit of that mesh", .unit = "m", .min = 1e-9, .max = 1e9});
+          {.doc = "metres for one unit of the surface's mesh file",
+           .unit = "m",
+           .min = 1e-9,
+           .max = 1e9});
   describe_group(v, "read", o.read, {.doc = "how the drawing becomes strokes"});
   describe_group(v, "align", o.align, {.doc = "how views are put together"});
   describe_group(v, "hull", o.hull, {.doc = "the visual hull that all methods begin with"});
-  describe_group(v, "smoothing", o.smoothing, {.doc = "of the hull, before the first step"});
+  describe_group(v, "smoothing", o.smoothing,
+                 {.doc = "how the hull is smoothed before the first step"});
   describe_group(v, "pattern", o.pattern, {.doc = "how pieces are laid flat"});
   describe_group(v, "fabrication", o.fabrication, {.doc = "files to cut and sew by"});
   describe_group(v, "textures", o.textures,

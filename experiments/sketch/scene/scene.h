@@ -28,13 +28,13 @@ namespace geoprior::sketch {
 /// `[scene]` of a sketch experiment: a drawing, a drawing of a shape that is known, or a surface in
 /// its place.
 struct SketchSceneOptions {
-  std::string drawing;  ///< SVG file
-  std::string surface;  ///< mesh file instead, for methods that need no drawing
+  std::string drawing;
+  std::string surface;
   double surface_scale = 1;
-  std::optional<SyntheticViewOptions> synthetic;  ///< instead of both
-  std::optional<ClosedFormOptions> closed_form;   ///< a surface of closed form, instead of all
-  std::optional<SyntheticLayerOptions> layers;    ///< instead of them
-  std::optional<KnownDrawingOptions> known;       ///< what the drawing shows, or instead of it
+  std::optional<SyntheticViewOptions> synthetic;
+  std::optional<ClosedFormOptions> closed_form;
+  std::optional<SyntheticLayerOptions> layers;
+  std::optional<KnownDrawingOptions> known;
   DrawingFileOptions read;
   AlignOptions align;
   HullOptions hull;

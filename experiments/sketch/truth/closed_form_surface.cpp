@@ -83,22 +83,28 @@ TriMesh cone_sector(const ClosedFormOptions& o) {
 
 void describe(OptionVisitor& v, ClosedFormOptions& o) {
   static constexpr std::array<std::string_view, 2> kShapes{"sphere-cap", "cone-sector"};
-  describe_choice(v, "shape", o.shape, kShapes, {.doc = "the surface"});
+  describe_choice(v, "shape", o.shape, kShapes, {.doc = "the shape of the surface"});
   v.value("radius", o.radius,
-          {.doc = "of the sphere; slant distance of the cone's far end from its apex",
+          {.doc = "radius of the sphere; slant distance of the cone's far end from its apex",
            .unit = "m",
            .min = 1e-6,
            .max = 1e6});
-  v.value("angle_deg", o.angle_deg,
-          {.doc = "from the cap's pole to its rim; of the sector when it is flat",
+  v.value(
+      "angle_deg", o.angle_deg,
+      {.doc = "angle from the cap's pole to its rim; angle of the cone's sector when it is flat",
+       .unit = "deg",
+       .min = 1,
+       .max = 170});
+  v.value("inner_share", o.inner_share,
+          {.doc = "distance of the cone's near end from its apex over that of the far one",
+           .min = 0.01,
+           .max = 0.99});
+  v.value("wrap_deg", o.wrap_deg,
+          {.doc = "angle that the cone's sector takes about the axis",
            .unit = "deg",
            .min = 1,
-           .max = 170});
-  v.value("inner_share", o.inner_share,
-          {.doc = "near end of the cone over the far one", .min = 0.01, .max = 0.99});
-  v.value("wrap_deg", o.wrap_deg,
-          {.doc = "that the sector takes about the axis", .unit = "deg", .min = 1, .max = 359});
-  v.value("rings", o.rings, {.doc = "of triangles", .min = 2, .max = 2000});
+           .max = 359});
+  v.value("rings", o.rings, {.doc = "rings of triangles", .min = 2, .max = 2000});
 }
 
 TriMesh closed_form_surface(const ClosedFormOptions& options) {

@@ -13,11 +13,11 @@ enum class ClosedFormShape {
 /// A disc whose best pattern is known.
 struct ClosedFormOptions {
   ClosedFormShape shape = ClosedFormShape::sphere_cap;
-  double radius = 0.1;    ///< of the sphere; slant distance of the cone's far end from its apex (m)
-  double angle_deg = 40;  ///< from the cap's pole to its rim; of the sector when it is flat
-  double inner_share = 0.4;  ///< near end of the cone over the far one
-  double wrap_deg = 250;     ///< that the sector takes about the cone's axis
-  int rings = 40;            ///< of triangles
+  double radius = 0.1;
+  double angle_deg = 40;
+  double inner_share = 0.4;
+  double wrap_deg = 250;
+  int rings = 40;
 };
 void describe(OptionVisitor& v, ClosedFormOptions& options);
 

@@ -106,14 +106,16 @@ std::string known_name(KnownShape shape) {
 }
 
 void describe(OptionVisitor& v, KnownDrawingOptions& o) {
-  describe_choice(v, "shape", o.shape, kKnownNames, {.doc = "what the drawing shows"});
+  describe_choice(v, "shape", o.shape, kKnownNames, {.doc = "the object that the drawing shows"});
   v.value("noise", o.noise,
-          {.doc = "standard deviation of drawn points (of the height)", .min = 0, .max = 1});
-  v.value("vector_stretch", o.vector_stretch,
-          {.doc = "of the upright vector of the mirror plane: the two are unequal in space",
-           .min = 0.1,
-           .max = 10});
-  v.value("seed", o.seed, {.doc = "of the noise", .min = 0, .max = 1000000000});
+          {.doc = "standard deviation of drawn points, over the height", .min = 0, .max = 1});
+  v.value(
+      "vector_stretch", o.vector_stretch,
+      {.doc =
+           "factor on the upright vector of the mirror plane, which makes the two unequal in space",
+       .min = 0.1,
+       .max = 10});
+  v.value("seed", o.seed, {.doc = "seed of the noise", .min = 0, .max = 1000000000});
 }
 
 std::vector<FabricationFile> known_drawing_files(KnownShape shape) {

@@ -13,7 +13,7 @@ namespace geoprior::sketch {
 /// `scene.known`: what a drawing shows, so that its reconstruction can be measured.
 struct KnownDrawingOptions {
   KnownShape shape = KnownShape::bag;
-  double noise = 0;           ///< standard deviation of drawn points, of the height
+  double noise = 0;
   double vector_stretch = 1;  ///< of sym-a: above 1 the two vectors are of unequal length in space
   int seed = 1;
 };

@@ -105,19 +105,21 @@ void describe(OptionVisitor& v, SyntheticLayerOptions& o) {
   const auto angle = [&](const char* key, double& x, const char* doc, double least, double most) {
     v.value(key, x, {.doc = doc, .unit = "deg", .min = least, .max = most});
   };
-  v.value("arcs", o.arcs, {.doc = "one more than layers", .min = 2, .max = 200});
-  size("radius", o.radius, "of the widest circle");
-  size("end_radius", o.end_radius, "of the first and the last circle");
-  size("length", o.length, "of the line of centres");
-  angle("bend_deg", o.bend_deg, "turn of the line of centres", -180, 180);
-  angle("half_angle_deg", o.half_angle_deg, "of every arc", 10, 170);
-  angle("hidden_deg", o.hidden_deg, "of every arc is not drawn", 0, 320);
-  angle("yaw_deg", o.yaw_deg, "of the mirror plane's normal from the eye's direction", -180, 180);
-  angle("pitch_deg", o.pitch_deg, "of the eye above the horizon", -90, 90);
-  v.value("points", o.points, {.doc = "drawn on an arc", .min = 5, .max = 10000});
+  v.value("arcs", o.arcs, {.doc = "number of arcs, one more than layers", .min = 2, .max = 200});
+  size("radius", o.radius, "radius of the widest circle");
+  size("end_radius", o.end_radius, "radius of the first and the last circle");
+  size("length", o.length, "length of the line of centres");
+  angle("bend_deg", o.bend_deg, "turn of the line of centres from first to last circle", -180, 180);
+  angle("half_angle_deg", o.half_angle_deg, "half the angle of every arc", 10, 170);
+  angle("hidden_deg", o.hidden_deg, "angle of every arc, at its far end, that is not drawn", 0,
+        320);
+  angle("yaw_deg", o.yaw_deg, "angle of the mirror plane's normal from the eye's direction", -180,
+        180);
+  angle("pitch_deg", o.pitch_deg, "angle of the eye above the horizon", -90, 90);
+  v.value("points", o.points, {.doc = "points drawn on an arc", .min = 5, .max = 10000});
   v.value("noise", o.noise,
-          {.doc = "standard deviation of drawn points (of the length)", .min = 0, .max = 1});
-  v.value("seed", o.seed, {.doc = "of the noise", .min = 0, .max = 1000000000});
+          {.doc = "standard deviation of drawn points, over the length", .min = 0, .max = 1});
+  v.value("seed", o.seed, {.doc = "seed of the noise", .min = 0, .max = 1000000000});
 }
 
 SyntheticView synthetic_layers(const SyntheticLayerOptions& options) {

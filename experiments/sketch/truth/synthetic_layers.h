@@ -8,17 +8,17 @@ namespace geoprior::sketch {
 /// A body of rigid layers whose drawing is known with its depth: circles across the mirror plane,
 /// their centres along an arc of a circle in it.
 struct SyntheticLayerOptions {
-  int arcs = 8;                 ///< one more than layers
-  double radius = 1;            ///< of the widest circle, in the middle (m)
-  double end_radius = 0.6;      ///< of the first and the last; a parabola between (m)
-  double length = 2.4;          ///< of the line of centres (m)
-  double bend_deg = 60;         ///< by how much it turns from the first circle to the last
-  double half_angle_deg = 105;  ///< of every arc
-  double hidden_deg = 60;       ///< of every arc, at the far end, is not drawn
-  double yaw_deg = 40;          ///< of the mirror plane's normal from the direction of the eye
-  double pitch_deg = 25;        ///< of the eye above the horizon
-  int points = 60;              ///< drawn on an arc
-  double noise = 0;             ///< standard deviation of drawn points, of the length
+  int arcs = 8;
+  double radius = 1;
+  double end_radius = 0.6;  ///< of the first and the last; a parabola between (m)
+  double length = 2.4;
+  double bend_deg = 60;
+  double half_angle_deg = 105;
+  double hidden_deg = 60;
+  double yaw_deg = 40;
+  double pitch_deg = 25;
+  int points = 60;
+  double noise = 0;
   int seed = 1;
 };
 void describe(OptionVisitor& v, SyntheticLayerOptions& options);

@@ -166,26 +166,27 @@ void describe(OptionVisitor& v, SyntheticViewOptions& o) {
   const auto size = [&](const char* key, double& x, const char* doc) {
     v.value(key, x, {.doc = doc, .unit = "m", .min = 1e-3, .max = 1e3});
   };
-  size("radius", o.radius, "of the lower circle; half the tent's width");
-  size("top_radius", o.top_radius, "of the upper circle");
-  size("height", o.height, "of the shape");
-  size("length", o.length, "of the tent's ridge");
+  size("radius", o.radius, "radius of the lower circle; half the tent's width");
+  size("top_radius", o.top_radius, "radius of the upper circle");
+  size("height", o.height, "height of the shape");
+  size("length", o.length, "length of the tent's ridge");
   const auto angle = [&](const char* key, double& x, const char* doc) {
     v.value(key, x, {.doc = doc, .unit = "deg", .min = -180, .max = 180});
   };
-  angle("yaw_deg", o.yaw_deg, "turn about the upright axis");
-  angle("pitch_deg", o.pitch_deg, "of the eye above the horizon");
-  v.value("points", o.points, {.doc = "drawn on a circle", .min = 12, .max = 100000});
+  angle("yaw_deg", o.yaw_deg, "turn of the shape about the upright axis");
+  angle("pitch_deg", o.pitch_deg, "angle of the eye above the horizon");
+  v.value("points", o.points, {.doc = "points drawn on a circle", .min = 12, .max = 100000});
   v.value("lower_pairs", o.lower_pairs,
           {.doc = "symmetric pairs on the lower circle", .min = 0, .max = 1000});
   v.value("upper_pairs", o.upper_pairs,
           {.doc = "symmetric pairs on the upper circle", .min = 0, .max = 1000});
   v.value("upper_point", o.upper_point,
-          {.doc = "marks a point of the mirror plane on the upper circle"});
+          {.doc = "whether a point of the mirror plane is marked on the upper circle"});
   v.value("noise", o.noise,
-          {.doc = "standard deviation of drawn points (of the height)", .min = 0, .max = 1});
-  v.value("noisy_vectors", o.noisy_vectors, {.doc = "noise on the mirror plane's vectors too"});
-  v.value("seed", o.seed, {.doc = "of the noise", .min = 0, .max = 1000000000});
+          {.doc = "standard deviation of drawn points, over the height", .min = 0, .max = 1});
+  v.value("noisy_vectors", o.noisy_vectors,
+          {.doc = "whether the mirror plane's vectors are noisy too"});
+  v.value("seed", o.seed, {.doc = "seed of the noise", .min = 0, .max = 1000000000});
 }
 
 Eigen::Matrix3d turned_view(double yaw_deg, double pitch_deg) {

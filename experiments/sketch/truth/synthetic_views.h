@@ -20,18 +20,18 @@ enum class SyntheticShape {
 /// The object stands on y = 0 about the y axis, is turned about it, and tilted towards the eye.
 struct SyntheticViewOptions {
   SyntheticShape shape = SyntheticShape::frustum;
-  double radius = 1;           ///< of the lower circle; half the tent's width (m)
-  double top_radius = 0.6;     ///< of the upper circle; equal radii: a cylinder (m)
-  double height = 1.5;         ///< m
-  double length = 2;           ///< of the tent's ridge (m)
-  double yaw_deg = 35;         ///< of the mirror plane's normal from the picture's plane
-  double pitch_deg = 25;       ///< of the eye above the horizon
-  int points = 240;            ///< drawn on a circle
-  int lower_pairs = 4;         ///< symmetric pairs on the lower circle
-  int upper_pairs = 0;         ///< on the upper circle
-  bool upper_point = true;     ///< marks a point of the mirror plane on the upper circle
-  double noise = 0;            ///< standard deviation of drawn points, of the height
-  bool noisy_vectors = false;  ///< the mirror plane's vectors are noisy too
+  double radius = 1;
+  double top_radius = 0.6;  ///< of the upper circle; equal radii: a cylinder (m)
+  double height = 1.5;      ///< m
+  double length = 2;
+  double yaw_deg = 35;  ///< of the mirror plane's normal from the picture's plane
+  double pitch_deg = 25;
+  int points = 240;
+  int lower_pairs = 4;
+  int upper_pairs = 0;
+  bool upper_point = true;
+  double noise = 0;
+  bool noisy_vectors = false;
   int seed = 1;
 };
 void describe(OptionVisitor& v, SyntheticViewOptions& options);

@@ -47,7 +47,9 @@ std::string percent(double ratio) {
 
 void describe(OptionVisitor& v, AlignOptions& o) {
   v.value("tolerance", o.tolerance,
-          {.doc = "by how much the extents that two views share may differ", .min = 0, .max = 0.5});
+          {.doc = "relative difference that the extents shared by two views may have",
+           .min = 0,
+           .max = 0.5});
 }
 
 Drawing align_views(const Drawing& drawing, const AlignOptions& options) {

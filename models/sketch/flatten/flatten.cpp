@@ -63,11 +63,12 @@ void describe(OptionVisitor& v, FlattenOptions& options) {
   v.value("iterations", options.iterations,
           {.doc = "most steps of as-rigid-as-possible", .min = 0});
   v.value("tolerance", options.tolerance,
-          {.doc = "relative change of its energy at which it stops", .min = 0});
+          {.doc = "relative change of energy at which as-rigid-as-possible stops", .min = 0});
   v.value("mixing", options.mixing,
           {.doc = "steps that the Anderson acceleration combines; 0: none", .min = 0, .max = 20});
   v.value("unflip", options.unflip,
-          {.doc = "make a layout with triangles turned over anew, by symmetric Dirichlet energy"});
+          {.doc = "whether a layout with triangles turned over is made anew, by symmetric "
+                  "Dirichlet energy"});
 }
 
 Flattening flatten(const TriMesh& piece, const FlattenOptions& options) {

@@ -184,20 +184,24 @@ void lay_pieces(const std::vector<CutPiece>& cut, const PatternOptions& options,
 void describe(OptionVisitor& v, PatternOptions& options) {
   static constexpr std::array<std::string_view, 2> kGrainRules{"up", "longest"};
   describe_group(v, "flatten", options.flatten, {.doc = "how a piece is laid flat"});
-  describe_choice(v, "grain", options.grain, kGrainRules,
-                  {.doc = "what points upwards: the surface's up, or the longest direction"});
-  v.value("gap", options.gap, {.doc = "least distance of pieces", .unit = "m", .min = 0});
-  v.value("width", options.width,
-          {.doc = "of the sheet; about a square when absent", .unit = "m", .min = 0});
+  describe_choice(
+      v, "grain", options.grain, kGrainRules,
+      {.doc = "what of a piece points upwards: the surface's up, or its longest direction"});
+  v.value("gap", options.gap,
+          {.doc = "least distance between the boxes of pieces", .unit = "m", .min = 0});
+  v.value(
+      "width", options.width,
+      {.doc = "width of the pattern's shelves; about a square when absent", .unit = "m", .min = 0});
   v.value("equal_seams", options.equal_seams,
-          {.doc = "bring both sides of every seam to one length"});
+          {.doc = "whether both sides of every seam are brought to one length"});
   v.value("seam_mismatch", options.seam_mismatch,
-          {.doc = "difference that they may keep, of their length", .min = 0, .max = 1});
-  v.value("hole_tolerance_deg", options.hole_tolerance_deg,
-          {.doc = "a border that turns by -360 degrees within this is a hole and stays",
-           .unit = "deg",
-           .min = 0,
-           .max = 180});
+          {.doc = "relative difference that both sides of a seam may keep", .min = 0, .max = 1});
+  v.value(
+      "hole_tolerance_deg", options.hole_tolerance_deg,
+      {.doc = "tolerance on -360 degrees within which a border's turn makes it a hole that stays",
+       .unit = "deg",
+       .min = 0,
+       .max = 180});
 }
 
 bool can_be_laid_flat(const CutPiece& piece, double hole_tolerance) {

@@ -26,10 +26,10 @@ struct PatternOptions {
   /// empty.
   std::function<Eigen::MatrixX2d(const TriMesh&)> lay_disc = {};
   GrainRule grain = GrainRule::up;
-  double gap = 0.02;                 ///< least distance between the boxes of pieces (m)
-  std::optional<double> width = {};  ///< of the shelves (m); about a square when absent
-  bool equal_seams = true;           ///< bring both sides of every seam to one length
-  double seam_mismatch = 0.004;      ///< difference that they may keep, of their length
+  double gap = 0.02;
+  std::optional<double> width = {};
+  bool equal_seams = true;
+  double seam_mismatch = 0.004;
   /// A border that turns by -2 pi within this is a hole in something flat and stays (deg).
   double hole_tolerance_deg = 10;
 };

@@ -74,13 +74,14 @@ void filter_step(const Averages& averages, double factor, const Eigen::Matrix3Xd
 }  // namespace
 
 void describe(OptionVisitor& v, TaubinOptions& options) {
-  v.value("lambda", options.lambda, {.doc = "of the step that shrinks", .min = 0, .max = 1});
-  v.value("mu", options.mu, {.doc = "of the step that swells", .min = -2, .max = 0});
+  v.value("lambda", options.lambda, {.doc = "factor of the step that shrinks", .min = 0, .max = 1});
+  v.value("mu", options.mu, {.doc = "factor of the step that swells", .min = -2, .max = 0});
   v.value("double_steps", options.double_steps,
           {.doc = "pairs of a shrinking and a swelling step", .min = 0, .max = 100000});
   describe_choice(v, "weight", options.weight, kTaubinWeightNames,
                   {.doc = "how much neighbours count: all the same, or by cotangents"});
-  v.value("fixed_border", options.fixed_border, {.doc = "whether the border stays"});
+  v.value("fixed_border", options.fixed_border,
+          {.doc = "whether vertices of the border stay; otherwise neighbours along it count"});
 }
 
 Eigen::MatrixX3d taubin_smoothed(const TriMesh& mesh, const TaubinOptions& options) {

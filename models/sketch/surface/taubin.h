@@ -20,11 +20,11 @@ enum class NeighbourWeight {
 /// -L, 0 ... 2) by (1 - lambda k)(1 - mu k): by 1 at k = 0 and at the pass frequency
 /// 1 / lambda + 1 / mu (0.113 with the defaults), by slightly more between them, by less above.
 struct TaubinOptions {
-  double lambda = 0.5;    ///< of the step that shrinks
-  double mu = -0.53;      ///< of the step that swells
-  int double_steps = 50;  ///< pairs of such steps
+  double lambda = 0.5;
+  double mu = -0.53;
+  int double_steps = 50;
   NeighbourWeight weight = NeighbourWeight::umbrella;
-  bool fixed_border = true;  ///< vertices of the border stay; otherwise neighbours along it count
+  bool fixed_border = true;
 };
 void describe(OptionVisitor& v, TaubinOptions& options);
 

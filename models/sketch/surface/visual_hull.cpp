@@ -355,11 +355,10 @@ QuadMesh manifold_nets(const std::vector<OutlinedView>& views, const HullBox& bo
 void describe(OptionVisitor& v, HullOptions& o) {
   static constexpr std::array<std::string_view, 2> kSections{"views", "top"};
   v.value("triangles", o.triangles,
-          {.doc = "triangles of the surface that are aimed at", .min = 100, .max = 1e7});
-  describe_choice(
-      v, "sections", o.sections, kSections,
-      {.doc = "horizontal sections: what the views see, or the top view's outline scaled "
-              "to the widths of front and side"});
+          {.doc = "number of triangles that the hull is aimed at", .min = 100, .max = 1e7});
+  describe_choice(v, "sections", o.sections, kSections,
+                  {.doc = "horizontal sections: what the views see, or the top view's outline "
+                          "scaled to front and side"});
 }
 
 std::vector<OutlinedView> outlined_views(const Drawing& aligned) {

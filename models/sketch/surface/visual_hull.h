@@ -18,7 +18,7 @@ enum class HullSections {
 };
 
 struct HullOptions {
-  int triangles = 8000;  ///< aimed at
+  int triangles = 8000;
   HullSections sections = HullSections::views;
 };
 void describe(OptionVisitor& v, HullOptions& options);

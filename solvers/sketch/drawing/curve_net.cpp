@@ -304,13 +304,13 @@ void mark_hidden(const View& view, CurveNet& net) {
 }  // namespace
 
 void describe(OptionVisitor& v, CurveNetOptions& o) {
-  v.value("samples", o.samples, {.doc = "on the longest border", .min = 12, .max = 2000});
+  v.value("samples", o.samples, {.doc = "samples of the longest border", .min = 12, .max = 2000});
   v.value("snap", o.snap,
-          {.doc = "ends closer than this share of the drawing's diagonal are one junction",
+          {.doc = "distance of ends that are one junction, over the drawing's diagonal",
            .min = 0,
            .max = 0.2});
   v.value("corner_deg", o.corner_deg,
-          {.doc = "a vertex between long chords that turns more is a corner",
+          {.doc = "turn of a vertex between long chords above which it is a corner",
            .unit = "deg",
            .min = 5,
            .max = 180});

@@ -12,9 +12,9 @@ namespace geoprior::sketch {
 
 /// How the borders of a one-view drawing become sampled curves.
 struct CurveNetOptions {
-  int samples = 96;        ///< on the longest curve
-  double snap = 0.02;      ///< ends closer than this are one junction (of the drawing's diagonal)
-  double corner_deg = 40;  ///< a vertex between two long chords that turns more is a corner
+  int samples = 96;  ///< on the longest curve
+  double snap = 0.02;
+  double corner_deg = 40;
 };
 void describe(OptionVisitor& v, CurveNetOptions& options);
 

@@ -294,7 +294,7 @@ void describe(OptionVisitor& v, DepthOptions& o) {
   v.value("tangent_half_width", o.tangent_half_width,
           {.doc = "nodes on either side in the fit of a tangent", .min = 1, .max = 100});
   v.value("end_angle_deg", o.end_angle_deg,
-          {.doc = "rulings whose end angles differ by more are left out",
+          {.doc = "difference of its end angles above which a ruling is left out",
            .unit = "deg",
            .min = 0,
            .max = 180});

@@ -25,8 +25,8 @@ struct DepthOptions {
   double developability = 1;
   double planarity = 1;
   double parallel_planes = 0;
-  int tangent_half_width = 4;  ///< nodes on either side
-  double end_angle_deg = 1;    ///< rulings whose end angles differ by more are not trusted
+  int tangent_half_width = 4;
+  double end_angle_deg = 1;  ///< rulings whose end angles differ by more are not trusted
 };
 void describe(OptionVisitor& v, DepthOptions& options);
 

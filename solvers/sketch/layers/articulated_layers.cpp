@@ -167,31 +167,36 @@ void describe(OptionVisitor& v, LayerOptions& o) {
   };
   v.value("vector_ratio", o.vector_ratio,
           {.doc = "length in space of sym-a over that of sym-b", .min = 1e-3, .max = 1e3});
-  v.value("constrained", o.constrained,
-          {.doc = "circles are fitted within the mirror plane, not read off their ellipses"});
-  share("overlap", o.overlap, "of a layer below the one before, over that one's visible length",
-        0.95);
-  share("thickness", o.thickness, "of the sheet, over the mean radius", 0.2);
-  share("clearance", o.clearance, "between overlapping layers, over the mean radius", 0.2);
-  share("rivet_margin", o.rivet_margin, "from rivet to lower border, over the mean radius", 0.5);
-  share("rivet_radius", o.rivet_radius, "of its hole, over the mean radius", 0.2);
+  v.value(
+      "constrained", o.constrained,
+      {.doc = "whether circles are fitted within the mirror plane, not read off their ellipses"});
+  share("overlap", o.overlap,
+        "overlap of a layer below the one before, over that one's visible length", 0.95);
+  share("thickness", o.thickness, "thickness of the sheet, over the mean radius of the circles",
+        0.2);
+  share("clearance", o.clearance,
+        "clearance between overlapping layers, over the mean radius of the circles", 0.2);
+  share("rivet_margin", o.rivet_margin,
+        "distance from rivet to lower border, over the mean radius of the circles", 0.5);
+  share("rivet_radius", o.rivet_radius,
+        "radius of a rivet's hole, over the mean radius of the circles", 0.2);
   v.value("free_deg", o.free_deg,
-          {.doc = "of a joint either way, for which the strip below the layer before has room",
+          {.doc = "angle of a joint either way for which the strip below the layer before has room",
            .unit = "deg",
            .min = 0,
            .max = 45});
   v.value("max_angle_deg", o.max_angle_deg,
-          {.doc = "of a joint either way, where nothing stops it earlier",
+          {.doc = "largest angle of a joint either way, where nothing stops it earlier",
            .unit = "deg",
            .min = 0,
            .max = 90});
   v.value("keep_covered", o.keep_covered,
-          {.doc = "a joint stops before a gap opens between its layers"});
+          {.doc = "whether a joint stops before a gap opens between its layers"});
   describe_choice(v, "axis", o.axis, kAxes,
-                  {.doc = "what layers turn about in the motion; limits are those of rivets"});
+                  {.doc = "what layers turn about in the motion; limits are those of the rivets"});
   v.value("around", o.grid.around, {.doc = "segments of a rim", .min = 8, .max = 2000});
   v.value("along", o.grid.along, {.doc = "segments of a generator", .min = 2, .max = 200});
-  v.value("poses", o.poses, {.doc = "of the motion, beside the rest", .min = 4, .max = 1000});
+  v.value("poses", o.poses, {.doc = "poses of the motion, beside the rest", .min = 4, .max = 1000});
 }
 
 ArticulatedLayers build_layers(const View& view, const LayerOptions& options) {

@@ -21,23 +21,23 @@ enum class HingeAxis {
 /// Parameters of articulated layers. Lengths are shares of the mean radius of the circles, so that
 /// a drawing at another scale gives the same shape.
 struct LayerOptions {
-  double vector_ratio = 1;  ///< length in space of sym-a over that of sym-b
-  bool constrained = true;  ///< circles are fitted within the mirror plane, not read off ellipses
+  double vector_ratio = 1;
+  bool constrained = true;
   /// How far a layer reaches below the one before it, over the visible length of that one.
   double overlap = 0.5;
-  double thickness = 0.008;  ///< of the sheet
+  double thickness = 0.008;
   double clearance = 0.012;  ///< between a layer and the part of the next that lies below it
   /// Angle of a joint either way for which the strip below has room: on a body that grows thinner
   /// it must be narrower than the clearance alone asks for, or it is stuck.
   double free_deg = 8;
-  double rivet_margin = 0.08;  ///< from a rivet to the lower border of both of its layers
-  double rivet_radius = 0.02;  ///< of its hole
-  double max_angle_deg = 30;   ///< of a joint either way, where nothing stops it earlier
+  double rivet_margin = 0.08;
+  double rivet_radius = 0.02;
+  double max_angle_deg = 30;
   /// A joint stops before a gap opens between its layers, or one vanishes below the other.
   bool keep_covered = true;
-  HingeAxis axis = HingeAxis::rivets;  ///< of the motion; limits are those of the rivets
+  HingeAxis axis = HingeAxis::rivets;
   BandGrid grid = {};
-  int poses = 16;  ///< of the motion, beside the rest
+  int poses = 16;
 };
 void describe(OptionVisitor& v, LayerOptions& options);
 

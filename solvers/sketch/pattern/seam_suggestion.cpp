@@ -248,21 +248,20 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& o) {
   v.value("tolerance", o.tolerance,
           {.doc = "stretch that the pattern may have", .min = 1e-6, .max = 1});
   v.value("share", o.share,
-          {.doc = "of the area within the tolerance, at which nothing more is suggested",
+          {.doc = "share of the area within the tolerance at which nothing more is suggested",
            .min = 0,
            .max = 1});
-  v.value("count", o.count, {.doc = "most suggestions", .min = 0, .max = 100});
+  v.value("count", o.count, {.doc = "most suggestions that are made", .min = 0, .max = 100});
   v.value("length_weight", o.length_weight,
-          {.doc = "share of the error that a cut as long as the root of the piece's area has to "
-                  "remove to be worth it",
+          {.doc = "share of the error that a cut as long as the root of a piece's area must remove",
            .min = 0});
   v.value("crease", o.crease,
           {.doc = "how much cheaper cuts are along lines of concentrated curvature",
            .min = 0,
            .max = 100});
-  v.value("symmetric", o.symmetric, {.doc = "mirrored surfaces get mirrored suggestions"});
+  v.value("symmetric", o.symmetric, {.doc = "whether mirrored surfaces get mirrored suggestions"});
   describe_choice(v, "rule", o.rule, kRules, {.doc = "where suggested cuts lie"});
-  v.value("seed", o.seed, {.doc = "of chance", .min = 0});
+  v.value("seed", o.seed, {.doc = "seed of cuts by chance", .min = 0});
 }
 
 std::vector<SuggestedSeam> suggest_seams(const TriMesh& surface, std::span<const SeamEdge> seams,

@@ -17,14 +17,14 @@ enum class SuggestionRule {
 };
 
 struct SeamSuggestionOptions {
-  double tolerance = 0.02;      ///< stretch that a pattern may have
-  double share = 0.95;          ///< of the area within it at which nothing more is suggested
-  int count = 3;                ///< most suggestions
+  double tolerance = 0.02;
+  double share = 0.95;
+  int count = 3;
   double length_weight = 0.05;  ///< what a length of the root of the area costs, in removed error
-  double crease = 0.3;          ///< how much cheaper cuts are along concentrated curvature
-  bool symmetric = true;        ///< mirrored surfaces get mirrored suggestions
+  double crease = 0.3;
+  bool symmetric = true;
   SuggestionRule rule = SuggestionRule::measured;
-  int seed = 0;  ///< of `chance`
+  int seed = 0;
 };
 void describe(OptionVisitor& v, SeamSuggestionOptions& options);
 

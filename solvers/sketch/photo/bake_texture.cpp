@@ -310,19 +310,20 @@ BakedPattern PatternBaker::bake(int bleed) {
 
 void describe(OptionVisitor& v, BakeOptions& o) {
   v.value("dpi", o.dpi,
-          {.doc = "of the pattern's picture; absent: about the photograph's own",
+          {.doc = "resolution of the pattern's picture; absent: about the photograph's own",
            .unit = "1/inch",
            .min = 1,
            .max = 1200});
   v.value("most_side", o.most_side,
-          {.doc = "pixels of its longer side, without dpi", .min = 64, .max = kMostSide});
+          {.doc = "pixels of the picture's longer side, without dpi", .min = 64, .max = kMostSide});
   v.value("bleed", o.bleed,
           {.doc = "pixels that colours go on beyond the border", .min = 0, .max = 64});
   v.value("least_facing", o.least_facing,
           {.doc = "cosine to the eye below which a side is not read", .min = 0, .max = 1});
-  v.value(
-      "behind", o.behind,
-      {.doc = "what hides is nearer by this share of the surface's diagonal", .min = 0, .max = 1});
+  v.value("behind", o.behind,
+          {.doc = "depth by which what hides must be nearer, over the surface's diagonal",
+           .min = 0,
+           .max = 1});
 }
 
 BakedPattern bake_pattern(const View& view, const PixelImage& photo, const OneViewResult& result,

@@ -12,11 +12,11 @@
 namespace geoprior::sketch {
 
 struct BakeOptions {
-  std::optional<double> dpi = {};  ///< of the pattern's picture; absent: about the photograph's own
-  int most_side = 2048;            ///< pixels of its longer side, without dpi
-  int bleed = 4;                   ///< pixels that colours go on beyond the border
-  double least_facing = 0.2;       ///< cosine to the eye below which a side is not read
-  double behind = 0.01;            ///< of the surface's diagonal: what hides is nearer by more
+  std::optional<double> dpi = {};
+  int most_side = 2048;
+  int bleed = 4;
+  double least_facing = 0.2;
+  double behind = 0.01;
 };
 void describe(OptionVisitor& v, BakeOptions& options);
 

@@ -62,7 +62,7 @@ Eigen::Matrix3d turned_to(const Eigen::Vector3d& n, const Eigen::Vector3d& A, do
 void describe(OptionVisitor& v, DevelopableRotationOptions& o) {
   describe_choice(v, "fit", o.fit, kFits, {.doc = "how the axis A of a cone is chosen (eq. 2.1)"});
   v.value("guard_deg", o.guard_deg,
-          {.doc = "smallest angle between the axis and the mean normal, of guarded",
+          {.doc = "smallest angle between axis and mean normal of a guarded fit",
            .unit = "deg",
            .min = 0,
            .max = 90});

@@ -17,9 +17,9 @@ enum class ConeFit {
 
 struct DevelopableRotationOptions {
   ConeFit fit = ConeFit::guarded;
-  double guard_deg = 30;    ///< smallest angle between axis and mean normal
-  int rings = 1;            ///< of triangles about each that a cone is fitted to
-  double relaxation = 1.5;  ///< share of the turn to the cone that is made; 1: the equation
+  double guard_deg = 30;
+  int rings = 1;
+  double relaxation = 1.5;
 };
 void describe(OptionVisitor& v, DevelopableRotationOptions& options);
 

@@ -91,7 +91,7 @@ FoldSide other_side(FoldSide side) {
 
 void describe(OptionVisitor& v, FoldOptions& o) {
   v.value("angle_deg", o.angle_deg,
-          {.doc = "between normal and view direction on the contour of a fold",
+          {.doc = "angle between normal and view direction on the contour of a fold",
            .unit = "deg",
            .min = 0,
            .max = 90});

@@ -10,8 +10,8 @@
 namespace geoprior::sketch {
 
 struct FoldOptions {
-  double angle_deg = 60;  ///< between the normal on a fold's contour and the view direction
-  double width = 0.03;    ///< distance along the surface over which a fold fades (m)
+  double angle_deg = 60;
+  double width = 0.03;
 };
 void describe(OptionVisitor& v, FoldOptions& options);
 

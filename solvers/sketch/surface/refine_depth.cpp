@@ -395,9 +395,9 @@ void describe(OptionVisitor& v, RefineOptions& o) {
   weight("right_angle", o.right_angle,
          "weight of the right angle between the mirror plane's two vectors");
   weight("vector_ratio", o.vector_ratio,
-         "weight of the given ratio of their lengths; 0: the ratio is found");
-  v.value("perspective", o.perspective, {.doc = "weak perspective is unknown too"});
-  weight("flatness", o.flatness, "weight of no perspective");
+         "weight of the given ratio of the plane's two vectors; 0: the ratio is found");
+  v.value("perspective", o.perspective, {.doc = "whether weak perspective is unknown too"});
+  weight("flatness", o.flatness, "weight of having no perspective");
 }
 
 RefinedDepth refine_depth(const View& view, const DepthProblem& problem, const DepthSolution& start,

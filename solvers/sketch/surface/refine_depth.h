@@ -11,12 +11,12 @@ namespace geoprior::sketch {
 
 /// Parameters of the refinement beside those of the linear system.
 struct RefineOptions {
-  int iterations = 60;       ///< most steps of Levenberg and Marquardt
-  double accuracy = 30;      ///< factor on the weight of where nodes were drawn
-  double right_angle = 10;   ///< weight of the right angle between the plane's two vectors
-  double vector_ratio = 0;   ///< weight of the ratio of their lengths; 0: it is found
-  bool perspective = false;  ///< weak perspective: one more unknown
-  double flatness = 1e-4;    ///< weight of no perspective, when it is unknown
+  int iterations = 60;
+  double accuracy = 30;
+  double right_angle = 10;
+  double vector_ratio = 0;
+  bool perspective = false;
+  double flatness = 1e-4;  ///< weight of no perspective, when it is unknown
 };
 void describe(OptionVisitor& v, RefineOptions& options);
 

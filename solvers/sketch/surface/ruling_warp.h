@@ -18,9 +18,9 @@ struct BorderRun {
 enum class WarpEnd { both_end, second_open, first_open };
 
 struct RulingWarpOptions {
-  double collinearity = 0.1;  ///< weight of the angle between successive rulings
-  double band = 0.15;         ///< of the warping path about the diagonal, when both runs end
-  double smoothness = 1e-3;   ///< of the map between the runs, in its refinement (rad^2)
+  double collinearity = 0.1;
+  double band = 0.15;        ///< of the warping path about the diagonal, when both runs end
+  double smoothness = 1e-3;  ///< of the map between the runs, in its refinement (rad^2)
 };
 void describe(OptionVisitor& v, RulingWarpOptions& options);
 
