@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "experiments/toy/toy_topic.h"
-#include "testbed/commands/catalogue.h"
+#include "testbed/catalogue.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/joined.h"
 #include "tests/testbed/run_fixture.h"
