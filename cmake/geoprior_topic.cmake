@@ -10,26 +10,68 @@
 #
 # Each links those above it. USES names topics declared before, whose first four a topic may include and link: never their
 # tables, and no circle can be written. DEPS are linked by the first three, EXPERIMENT_DEPS by the scene and the
-# experiments; nobody else sees them. ROOT holds the folders of a topic of the tests, of which the program knows nothing. Without it they are the
-# project's, and what was made is appended to the global properties GEOPRIOR_TOPIC_LIBRARIES (installed),
-# GEOPRIOR_TOPIC_NAMES (listed by experiments/topics.cpp) and GEOPRIOR_TOPIC_EXPERIMENTS (linked by the program).
+# experiments; nobody else sees them. What is declared is made by geoprior_make_topics: the topics that GEOPRIOR_TOPICS asks
+# for and those that they use. ROOT holds the folders of a topic of the tests, of which the program knows nothing: it is made
+# at once.
 function(geoprior_topic topic)
+  cmake_parse_arguments(arg "" "ROOT" "USES;DEPS;EXPERIMENT_DEPS" ${ARGN})
+  if(arg_ROOT)
+    geoprior_make_topic(${topic} ${ARGN})
+    return()
+  endif()
+  get_property(known GLOBAL PROPERTY GEOPRIOR_KNOWN_TOPICS)
+  foreach(used IN LISTS arg_USES)
+    if(NOT used IN_LIST known)
+      message(FATAL_ERROR "geoprior_topic(${topic} USES ${used}): no topic '${used}' is declared before it")
+    endif()
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY GEOPRIOR_KNOWN_TOPICS ${topic})
+  set_property(GLOBAL PROPERTY GEOPRIOR_USES_${topic} ${arg_USES})
+  set_property(GLOBAL PROPERTY GEOPRIOR_ARGUMENTS_${topic} ${ARGN})
+endfunction()
+
+# geoprior_make_topics(): the targets of the topics that are asked for, in the order of their declarations. What was made is
+# appended to the global properties GEOPRIOR_TOPIC_LIBRARIES (installed), GEOPRIOR_TOPIC_NAMES (listed by
+# experiments/topics.cpp) and GEOPRIOR_TOPIC_EXPERIMENTS (linked by the program); GEOPRIOR_KNOWN_TOPICS has all names.
+function(geoprior_make_topics)
+  get_property(known GLOBAL PROPERTY GEOPRIOR_KNOWN_TOPICS)
+  set(wanted ${GEOPRIOR_TOPICS})
+  if(NOT wanted)
+    set(wanted ${known})
+  endif()
+  foreach(topic IN LISTS wanted)
+    if(NOT topic IN_LIST known)
+      string(REPLACE ";" ", " names "${known}")
+      message(FATAL_ERROR "GEOPRIOR_TOPICS: there is no topic '${topic}' (allowed: ${names})")
+    endif()
+  endforeach()
+  # What a topic uses was declared before it: one walk from the last to the first finds all.
+  set(backwards ${known})
+  list(REVERSE backwards)
+  foreach(topic IN LISTS backwards)
+    if(topic IN_LIST wanted)
+      get_property(used GLOBAL PROPERTY GEOPRIOR_USES_${topic})
+      list(APPEND wanted ${used})
+    endif()
+  endforeach()
+  foreach(topic IN LISTS known)
+    if(topic IN_LIST wanted)
+      get_property(arguments GLOBAL PROPERTY GEOPRIOR_ARGUMENTS_${topic})
+      geoprior_make_topic(${topic} ${arguments})
+    endif()
+  endforeach()
+endfunction()
+
+# geoprior_make_topic(<name> …): the targets of one topic, by the arguments of geoprior_topic.
+function(geoprior_make_topic topic)
   cmake_parse_arguments(arg "" "ROOT" "USES;DEPS;EXPERIMENT_DEPS" ${ARGN})
   set(root ${PROJECT_SOURCE_DIR})
   if(arg_ROOT)
     set(root ${arg_ROOT})
-  else()
-    set_property(GLOBAL APPEND PROPERTY GEOPRIOR_KNOWN_TOPICS ${topic})
-    if(GEOPRIOR_TOPICS AND NOT topic IN_LIST GEOPRIOR_TOPICS)
-      return()
-    endif()
   endif()
   set(below geoprior::core)
   set(scenes "")
   foreach(used IN LISTS arg_USES)
-    if(NOT TARGET geoprior_${used})
-      message(FATAL_ERROR "geoprior_topic(${topic} USES ${used}): no topic '${used}' is declared before it and built")
-    endif()
     list(APPEND below geoprior::${used})
     if(TARGET geoprior_${used}_scene)
       list(APPEND scenes geoprior_${used}_scene)
