@@ -1,5 +1,6 @@
 # cmake -DSOURCE=tests/consumer -DBUILD=build/<preset> [-DCONFIG=Release] [-DCXX=g++] -P run.cmake
-# Installs the build into BUILD/install-test, then configures, builds and runs the consumer against it.
+# Installs the build into BUILD/install-test, then configures, builds and runs the examples against it, as a part of
+# someone else's project.
 get_filename_component(ROOT ${SOURCE}/../.. ABSOLUTE)
 set(prefix ${BUILD}/install-test)
 set(consumer ${BUILD}/consumer-test)
@@ -22,8 +23,7 @@ foreach(file ${package})
     message(FATAL_ERROR "${file} names ${ROOT}")
   endif()
 endforeach()
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${consumer} -G Ninja -DCMAKE_PREFIX_PATH=${prefix}
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${consumer} -G Ninja -DEXAMPLES=${ROOT}/examples -DCMAKE_PREFIX_PATH=${prefix}
     -DCMAKE_BUILD_TYPE=${CONFIG} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS})
 run(${CMAKE_COMMAND} --build ${consumer})
-run(${consumer}/consumer)
-run(${consumer}/consumer_paper)
+run(${CMAKE_CTEST_COMMAND} --test-dir ${consumer} --output-on-failure --no-tests=error)

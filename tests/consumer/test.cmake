@@ -1,4 +1,7 @@
-if(NOT TARGET geoprior_skinning OR NOT TARGET geoprior_paper)
+get_property(topics_left_out GLOBAL PROPERTY GEOPRIOR_KNOWN_TOPICS)
+get_property(topics_built GLOBAL PROPERTY GEOPRIOR_TOPIC_NAMES)
+list(REMOVE_ITEM topics_left_out ${topics_built})
+if(topics_left_out)
   return()
 endif()
 

@@ -4,7 +4,7 @@
 set(tree ${BUILD}/plug-in-test)
 file(REMOVE_RECURSE ${tree})
 file(MAKE_DIRECTORY ${tree}/solvers ${tree}/experiments)
-foreach(entry baselines benchmarks cmake core metrics models testbed tests)
+foreach(entry baselines benchmarks cmake core examples metrics models testbed tests)
   file(CREATE_LINK ${SOURCE}/${entry} ${tree}/${entry} SYMBOLIC)
 endforeach()
 foreach(entry CMakeLists.txt main.cpp)
