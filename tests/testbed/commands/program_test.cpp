@@ -26,7 +26,7 @@ role = "null"
 options = { segments = 4 }
 )";
 
-const std::string kClaim = std::string(kSquare) + R"(
+const std::string kSquareClaim = std::string(kSquare) + R"(
 [[claim]]
 text = "sixteen corners stay within four centimetres"
 metric = "radius_error"
@@ -129,7 +129,7 @@ TEST_F(Program, AFileThatIsMissingIsNoUnknownExperiment) {
 }
 
 TEST_F(Program, RunRecordsAndDecidesClaims) {
-  write(disc_experiment("segments = 16", kClaim));
+  write(disc_experiment("segments = 16", kSquareClaim));
   const Outcome good = run("run toy-circle/disc --no-pictures --json");
   ASSERT_EQ(good.code, 0) << good.err;
   const json run_json = json::parse(good.out);
@@ -198,7 +198,7 @@ TEST_F(Program, BadInputExitsWithTwoAndLeavesNothingBehind) {
 }
 
 TEST_F(Program, CheckNamesTheMetricThatAnOptionChanged) {
-  write(disc_experiment("segments = 16", kClaim));
+  write(disc_experiment("segments = 16", kSquareClaim));
   const Outcome without = run("check toy-circle/disc");
   EXPECT_EQ(without.code, 1);
   EXPECT_THAT(without.err, HasSubstr("no reference values"));
@@ -206,7 +206,7 @@ TEST_F(Program, CheckNamesTheMetricThatAnOptionChanged) {
   const Outcome same = run("check");
   EXPECT_EQ(same.code, 0) << same.err;
 
-  write(disc_experiment("segments = 15", kClaim));
+  write(disc_experiment("segments = 15", kSquareClaim));
   const Outcome changed = run("check --json");
   EXPECT_EQ(changed.code, 1);
   EXPECT_THAT(changed.err,
@@ -274,7 +274,7 @@ TEST_F(Program, CheckFailsOnClaimsThatCannot) {
 }
 
 TEST_F(Program, NullsAreNeitherTimedNorShownAndClaimsAreListed) {
-  write(disc_experiment("segments = 16", kClaim));
+  write(disc_experiment("segments = 16", kSquareClaim));
   EXPECT_THAT(run("list --claims").err, AllOf(HasSubstr("toy-circle/disc  (no run yet)"),
                                               HasSubstr("sixteen corners"), HasSubstr("square")));
   const Outcome outcome = run("run toy-circle/disc --no-pictures --table --json");
@@ -403,7 +403,7 @@ TEST_F(Program, AClaimsMetricMayNotWorsenWithinItsWideTolerance) {
     return problem;
   };
   EXPECT_EQ(problem_of_radius_error(""), "") << "no claim is about it";
-  EXPECT_EQ(problem_of_radius_error(kClaim), "is named by a claim and changed for the worse");
+  EXPECT_EQ(problem_of_radius_error(kSquareClaim), "is named by a claim and changed for the worse");
 }
 
 TEST_F(Program, BlessSaysWhatItChanges) {

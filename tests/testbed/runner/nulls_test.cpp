@@ -176,7 +176,7 @@ TEST(Nulls, SlackIsValueOverLimit) {
 }
 
 /// Ten seeds of one case: errors of the variant and of the null.
-RunRecord seeds(const std::vector<double>& own, const std::vector<double>& null) {
+RunRecord values_of_seeds(const std::vector<double>& own, const std::vector<double>& null) {
   RunRecord run;
   for (std::size_t i = 0; i < own.size(); ++i) {
     const std::string seed = std::to_string(i + 1);
@@ -198,18 +198,18 @@ TEST(SeedClaims, NineOfTenDecide) {
   const std::vector<double> bad(10, 9);
   std::vector<double> own(10, 1);
   own[3] = 5;
-  const ClaimRecord record = decided(over_seeds(), seeds(own, bad));
+  const ClaimRecord record = decided(over_seeds(), values_of_seeds(own, bad));
   EXPECT_TRUE(record.holds);
   EXPECT_EQ(record.case_name, "default");
   EXPECT_EQ(record.left, 5) << "the worst seed speaks";
   EXPECT_THAT(record.detail, HasSubstr("9 of 10 seeds; worst: error of a (max): 5 <= 2 m"));
   EXPECT_EQ(record.null.verdict, Discrimination::discriminates);
   own[4] = 5;
-  EXPECT_FALSE(decided(over_seeds(), seeds(own, bad)).holds);
+  EXPECT_FALSE(decided(over_seeds(), values_of_seeds(own, bad)).holds);
 }
 
 TEST(SeedClaims, CasesForClaimsOnlyDecideNothingByThemselves) {
-  RunRecord run = seeds({1, 1, 1}, {9, 9, 9});
+  RunRecord run = values_of_seeds({1, 1, 1}, {9, 9, 9});
   for (CaseRecord& in : run.cases) in.claims_only = in.name != "default";
   const auto decided_cases = [&](const ClaimSpec& claim) {
     Experiment experiment;
@@ -232,29 +232,29 @@ TEST(SeedClaims, TheNullFailsInNineOfTen) {
   const std::vector<double> own(10, 1);
   std::vector<double> null(10, 9);
   null[0] = 1;
-  EXPECT_EQ(verdict(over_seeds(), seeds(own, null)), Discrimination::discriminates);
+  EXPECT_EQ(verdict(over_seeds(), values_of_seeds(own, null)), Discrimination::discriminates);
   null[1] = 1;
-  EXPECT_EQ(verdict(over_seeds(), seeds(own, null)), Discrimination::is_void);
+  EXPECT_EQ(verdict(over_seeds(), values_of_seeds(own, null)), Discrimination::is_void);
 }
 
 TEST(SeedClaims, FewerThanTenAreAnErrorOfFullRuns) {
   Experiment experiment;
   experiment.claims = {over_seeds()};
-  const RunRecord three = seeds({1, 1, 1}, {9, 9, 9});
+  const RunRecord three = values_of_seeds({1, 1, 1}, {9, 9, 9});
   EXPECT_THROW(decide_claims(experiment, three), Error);
   experiment.quick = true;
   EXPECT_TRUE(decide_claims(experiment, three).at(0).holds);
 }
 
 TEST(SeedClaims, ASeedWithoutTheNullLeavesThemUndecided) {
-  RunRecord run = seeds(std::vector<double>(10, 1), std::vector<double>(10, 9));
+  RunRecord run = values_of_seeds(std::vector<double>(10, 1), std::vector<double>(10, 9));
   run.cases[7].variants.pop_back();
   EXPECT_EQ(verdict(over_seeds(), run), Discrimination::undecided);
 }
 
 TEST(SeedClaims, OtherSweepsKeepTheirSeedsApart) {
-  RunRecord run = seeds(std::vector<double>(10, 1), std::vector<double>(10, 9));
-  RunRecord finer = seeds(std::vector<double>(10, 3), std::vector<double>(10, 9));
+  RunRecord run = values_of_seeds(std::vector<double>(10, 1), std::vector<double>(10, 9));
+  RunRecord finer = values_of_seeds(std::vector<double>(10, 3), std::vector<double>(10, 9));
   for (CaseRecord& in : finer.cases) {
     in.name = "finer," + in.name;
     in.swept["cells"] = "64";

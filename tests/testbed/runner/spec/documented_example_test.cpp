@@ -33,9 +33,9 @@ void describe(OptionVisitor& v, KneeScene& o) {
   });
 }
 
-struct NoOptions {};
+struct NoKneeOptions {};
 
-void describe(OptionVisitor&, NoOptions&) {}
+void describe(OptionVisitor&, NoKneeOptions&) {}
 
 struct ImplicitLike {
   std::string blend;
@@ -54,7 +54,7 @@ Topic knee_topic() {
   topic.default_scene = [] { return std::make_unique<TypedOptions<KneeScene>>(); };
   MethodEntry baseline{"dual-quaternion", true, "", "", {}, {}},
       implicit{"implicit", false, "", "", {}, {}};
-  baseline.default_options = [] { return std::make_unique<TypedOptions<NoOptions>>(); };
+  baseline.default_options = [] { return std::make_unique<TypedOptions<NoKneeOptions>>(); };
   implicit.default_options = [] { return std::make_unique<TypedOptions<ImplicitLike>>(); };
   topic.methods = {baseline, implicit};
   topic.metrics.emplace_back().rows.emplace_back().name = "overlap_volume";
