@@ -102,7 +102,7 @@ Texts all_texts() {
 }
 
 // A line each text:
-//   build/release/test_topics --gtest_filter=OptionTexts.* | grep '^  '
+//   build/release/tests/test_topics --gtest_filter=OptionTexts.* | grep '^  '
 TEST(OptionTexts, StandAlone) {
   std::set<std::string> lines;
   for (const auto& [where, rows] : all_texts()) {

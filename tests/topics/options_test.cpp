@@ -248,7 +248,7 @@ std::vector<UsersChoice> users_choices_of(const std::string& topic) {
 }
 
 // A line each option, or value of a choice, that no experiment turns:
-//   build/release/test_topics --gtest_filter=Options.AreTurned* | grep '^  '
+//   build/release/tests/test_topics --gtest_filter=Options.AreTurned* | grep '^  '
 TEST(Options, AreTurnedOrAreAUsersChoice) {
   const std::vector<Topic> topics = all_topics();
   const std::vector<CatalogueEntry> experiments = catalogue();
