@@ -14,6 +14,10 @@
 namespace geoprior::sketch {
 namespace {
 
+/// Solves with the surface's own Laplacian in panels without rulings.
+/// Ours.
+constexpr int kFairSolves = 6;
+
 /// Vertices nearer to the mirror plane than this share of the spacing are put onto it.
 constexpr double kPlaneReach = 0.1;
 /// Halves whose visible borders differ by less than this share are equally visible.
@@ -194,9 +198,8 @@ void fill_patches(const View& view, const std::vector<DrawnPanel>& panels,
     for (std::size_t k = 0; k < panel.loop.size(); ++k)
       border.row(static_cast<Eigen::Index>(k)) = nodes.row(panel.loop[k]);
     const std::string where = "panel '" + panel.name + "'";
-    const TriMesh mesh = panel.flat
-                             ? flat_patch(border, where)
-                             : fair_patch(border, result.net.spacing, options.fair_solves, where);
+    const TriMesh mesh = panel.flat ? flat_patch(border, where)
+                                    : fair_patch(border, result.net.spacing, kFairSolves, where);
     builder.add_panel(panel.loop, mesh, static_cast<int>(result.patches.size()));
     result.patches.push_back({panel.name, false, panel.flat, {}, {}});
   }
@@ -216,10 +219,6 @@ void describe(OptionVisitor& v, OneViewOptions& o) {
           {.doc = "tolerance on the direction of a symmetric pair, over the drawing's diagonal",
            .min = 1e-6,
            .max = 1});
-  v.value("fair_solves", o.fair_solves,
-          {.doc = "solves with the surface's own Laplacian in panels without rulings",
-           .min = 0,
-           .max = 1000});
   v.value("mirror", o.mirror, {.doc = "whether the more visible half is kept and mirrored"});
   describe_group(v, "refine", o.refine,
                  {.doc = "non-linear least squares with the mirror plane free, after the linear"});

@@ -27,7 +27,6 @@ struct OneViewOptions {
   DepthOptions depth;
   double vector_ratio = 1;
   double pair_tolerance = 0.03;
-  int fair_solves = 6;
   bool mirror = true;
   std::optional<RefineOptions> refine = {};  ///< non-linear, from the quadratic energy's minimum
 };

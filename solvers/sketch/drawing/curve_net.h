@@ -14,7 +14,6 @@ namespace geoprior::sketch {
 struct CurveNetOptions {
   int samples = 96;  ///< on the longest curve
   double snap = 0.02;
-  double corner_deg = 40;
 };
 void describe(OptionVisitor& v, CurveNetOptions& options);
 

@@ -29,6 +29,20 @@ class SketchScenes : public geoprior::test::RunTest {
     return std::dynamic_pointer_cast<SketchScene>(
         make_topic().load(*experiment.cases[0].scene, file.parent_path(), 1));
   }
+  /// The record of one variant of this method.
+  [[nodiscard]] VariantRecord run(const std::string& scene_lines, const std::string& method,
+                                  const std::string& options, const std::string& out) const {
+    const auto file = write_experiment(
+        "sketch/run", "title = \"A run\"\ntopic = \"sketch\"\n[scene]\n" + scene_lines +
+                          "[[variant]]\nname = \"one\"\nmethod = \"" + method + "\"\noptions = { " +
+                          options + " }\n");
+    ExecuteRequest request;
+    request.out = folder() / out;
+    request.timing = false;
+    return execute(load_experiment(file, {make_topic()}, {}), {make_topic()}, request)
+        .record.cases.at(0)
+        .variants.at(0);
+  }
   void write_input(const std::string& name, const std::string& text) const {
     const auto below = folder() / "experiments" / "sketch";
     std::filesystem::create_directories(below);
@@ -105,6 +119,26 @@ TEST_F(SketchScenes, DrawsWhatIsKnownInPlaceOfAFile) {
   EXPECT_EQ(cap->input.surface->V.rows(), 1 + 6 + 12 + 18);
   EXPECT_THAT(error_of([&] { (void)scene("synthetic = {}\nlayers = {}\n"); }),
               HasSubstr("2 of them are given"));
+}
+
+// Drawn points are off by 2 percent of the frustum's height.
+TEST_F(SketchScenes, RefusesPairsBeyondTheTolerance) {
+  const std::string unsteady = "synthetic = { noise = 0.02, lower_pairs = 3 }\n";
+  EXPECT_EQ(run(unsteady, "one-view", "pair_tolerance = 0.3", "loose").status, "done");
+  const VariantRecord strict = run(unsteady, "one-view", "pair_tolerance = 1e-5", "strict");
+  EXPECT_EQ(strict.status, "failed");
+  EXPECT_THAT(strict.error, HasSubstr("symmetric pair contradicts the mirror plane"));
+}
+
+TEST_F(SketchScenes, GoesOnForAsManyIterationsAsAsked) {
+  write_box(kFront, kSide);
+  const std::string box = "drawing = \"box.svg\"\nhull = { triangles = 200 }\n";
+  for (const int iterations : {1, 3}) {
+    const std::string asked = "surface = { iterations = " + std::to_string(iterations) + " }";
+    const VariantRecord record = run(box, "slow-road", asked, "run" + std::to_string(iterations));
+    EXPECT_EQ(record.status, "done") << record.error;
+    EXPECT_EQ(record.frames.size(), static_cast<std::size_t>(iterations + 1));
+  }
 }
 
 }  // namespace
