@@ -75,30 +75,56 @@ TEST_F(SkinningSceneFile, ClipIsTheAnimationOfThatName) {
               AllOf(HasSubstr("no clip 'fly'"), HasSubstr("bend, bend back")));
 }
 
-// A line of two bones does not tell which axis is up: the file's y, unless the scene says so.
-TEST_F(SkinningSceneFile, AxisThatIsUpTurnsTheCapturedMotion) {
-  write_character(test::skinned_square());
-  write("my.skeleton.toml",
-        "[joint.hip]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\nbvh = \"Hips\"\n"
-        "[joint.knee]\nparent = \"hip\"\nhead = [0, 1, 0]\ntail = [0, 2, 0]\nbvh = \"Knee\"\n");
-  const auto arm = [&](const std::string& offset, const std::string& up) {
-    write("my.bvh",
-          "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition "
-          "Zrotation Yrotation Xrotation\nJOINT Knee\n{\nOFFSET " +
-              offset + "\nCHANNELS 3 Yrotation Xrotation Zrotation\nEnd Site\n{\nOFFSET " + offset +
-              "\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.5\n0 0 0  0 0 0  0 0 0\n"
-              "0 0 0  90 0 0  0 0 0\n");
+/// An arm of two bones, upright in the axis `offset` of the file; in the second frame its root
+/// stands at (3, 0, 2) and is turned by 90 degrees about the file's z.
+std::string captured_arm(const std::string& offset) {
+  return "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition "
+         "Zrotation Yrotation Xrotation\nJOINT Knee\n{\nOFFSET " +
+         offset + "\nCHANNELS 3 Yrotation Xrotation Zrotation\nEnd Site\n{\nOFFSET " + offset +
+         "\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.5\n0 0 0  0 0 0  0 0 0\n"
+         "3 0 2  90 0 0  0 0 0\n";
+}
+
+class CapturedArm : public SkinningSceneFile {
+ protected:
+  /// The root's transform in a frame.
+  [[nodiscard]] Eigen::Affine3d root(const std::string& offset, const std::string& motion_lines,
+                                     double time) const {
+    write_character(test::skinned_square());
+    write("my.skeleton.toml",
+          "[joint.hip]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\nbvh = \"Hips\"\n"
+          "[joint.knee]\nparent = \"hip\"\nhead = [0, 1, 0]\ntail = [0, 2, 0]\nbvh = \"Knee\"\n");
+    write("my.bvh", captured_arm(offset));
     const auto captured = scene(
         kMine + ("skeleton = \"my.skeleton.toml\"\nmotion = { kind = \"bvh\", file = \"my.bvh\"" +
-                 up + " }\n"));
-    return Eigen::Vector3d(captured->pose_at(0.5)[0].linear() * Eigen::Vector3d::UnitX());
+                 motion_lines + " }\n"));
+    return captured->pose_at(time)[0];
+  }
+};
+
+// A line of two bones does not tell which axis is up: the file's y, unless the scene says so.
+TEST_F(CapturedArm, IsTurnedByTheAxisThatIsUp) {
+  const auto turned = [&](const std::string& offset, const std::string& up) {
+    return Eigen::Vector3d(root(offset, up, 0.5).linear() * Eigen::Vector3d::UnitX());
   };
   // A quarter turn about the file's z: about the mesh's z, or about its y where z is up.
-  EXPECT_NEAR((arm("0 4 0", "") - Eigen::Vector3d::UnitY()).norm(), 0, 1e-9);
-  EXPECT_NEAR((arm("0 4 0", ", bvh_up = \"y\"") - Eigen::Vector3d::UnitY()).norm(), 0, 1e-9);
-  EXPECT_NEAR((arm("0 0 4", ", bvh_up = \"z\"") + Eigen::Vector3d::UnitZ()).norm(), 0, 1e-9);
-  // Where x is up, z is horizontal, and a turn about it still lays the arm down.
-  EXPECT_NEAR(std::abs(arm("4 0 0", ", bvh_up = \"x\"").y()), 1, 1e-9);
+  EXPECT_NEAR((turned("0 4 0", "") - Eigen::Vector3d::UnitY()).norm(), 0, 1e-9);
+  EXPECT_NEAR((turned("0 4 0", ", bvh_up = \"y\"") - Eigen::Vector3d::UnitY()).norm(), 0, 1e-9);
+  EXPECT_NEAR((turned("0 0 4", ", bvh_up = \"z\"") + Eigen::Vector3d::UnitZ()).norm(), 0, 1e-9);
+  // Where x is up, z is horizontal, and a turn about it lays the upright arm down.
+  EXPECT_NEAR((root("4 0 0", ", bvh_up = \"x\"", 0.5).linear() * Eigen::Vector3d::UnitY()).y(), 0,
+              1e-9);
+}
+
+TEST_F(CapturedArm, StandsOverTheOriginInTheFrameAskedFor) {
+  const auto beside = [&](const std::string& origin, double time) {
+    const Eigen::Vector3d at = root("0 4 0", origin, time).translation();
+    return std::hypot(at.x(), at.z());
+  };
+  EXPECT_NEAR(beside("", 0), 0, 1e-12);
+  EXPECT_GT(beside("", 0.5), 0.1);
+  EXPECT_NEAR(beside(", origin_frame = 1", 0.5), 0, 1e-12);
+  EXPECT_NEAR(beside(", origin_frame = 1", 0), beside("", 0.5), 1e-12);
 }
 
 }  // namespace
