@@ -10,7 +10,7 @@ namespace geoprior::paper {
 
 /// Baseline: one uniform mesh from start to end.
 struct DenseOptions {
-  int triangles = 4096;  ///< aimed at
+  int triangles = 4096;
   UniformLayout layout = UniformLayout::automatic;
   TearOptions tearing;
   StepperOptions stepper;

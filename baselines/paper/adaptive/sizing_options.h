@@ -10,14 +10,14 @@ namespace geoprior::paper {
 /// paper/square-compress: at an angle of 0.3 (cloth) the sheet kinks where it should bend, at an
 /// aspect of 0.1 it takes a third more triangles for the same shape.
 struct SizingOptions {
-  double size_min = 0.01;      ///< smallest edge length asked for (m)
-  double size_max = 0.2;       ///< largest (m)
-  double refine_angle = 0.15;  ///< change of normal along an edge (rad)
+  double size_min = 0.01;      ///< m
+  double size_max = 0.2;       ///< m
+  double refine_angle = 0.15;  ///< rad
   /// Edge length times the root of the compressive strain along it (m): up to a factor 2 / pi the
   /// height of the wrinkle that the edge would hide.
   double refine_compression = 5e-4;
-  double refine_velocity = 0.5;  ///< difference of velocity along an edge (m/s)
-  double aspect_min = 0.05;      ///< smallest ratio of the two sizes at a vertex
+  double refine_velocity = 0.5;  ///< m/s
+  double aspect_min = 0.05;
 };
 void describe(OptionVisitor& v, SizingOptions& options);
 

@@ -8,41 +8,49 @@ constexpr double kLargest = 1e6;
 }  // namespace
 
 void describe(OptionVisitor& v, PatternPointOptions& options) {
-  v.value("u", options.u, {.doc = "first coordinate", .unit = "m", .required = true});
-  v.value("v", options.v, {.doc = "second coordinate", .unit = "m", .required = true});
+  v.value("u", options.u,
+          {.doc = "first coordinate of a point of the pattern", .unit = "m", .required = true});
+  v.value("v", options.v,
+          {.doc = "second coordinate of a point of the pattern", .unit = "m", .required = true});
 }
 
 void describe(OptionVisitor& v, HoleOptions& options) {
   describe_list(v, "points", options.points,
-                {.doc = "corners in order, either way round", .required = true});
+                {.doc = "corners of a hole in order, either way round", .required = true});
 }
 
 void describe(OptionVisitor& v, CutOptions& options) {
-  describe_list(
-      v, "points", options.points,
-      {.doc = "from one end to the other; an end on the border, on a hole or on an earlier "
-              "cut opens it, another is a tip",
-       .required = true});
+  describe_list(v, "points", options.points,
+                {.doc = "points of a cut from one end to the other; an end on the border, on a "
+                        "hole or on an earlier cut opens it, another is a tip",
+                 .required = true});
 }
 
 void describe(OptionVisitor& v, ToughnessOptions& options) {
   v.value("energy", options.energy,
-          {.doc = "K, that tearing a unit of area of the section takes; absent: it does not tear",
+          {.doc = "energy K that tearing a unit of area of the section takes; absent: the paper "
+                  "does not tear",
            .unit = "J/m^2",
            .min = 1e-9,
            .max = 1e9});
   v.value("noise", options.noise,
-          {.doc = "depth of the texture T, which lies between 1 - noise and 1",
+          {.doc = "depth of the texture of the toughness, which lies between 1 - noise and 1",
            .min = 0,
            .max = 1 - 1e-9});
   v.value("noise_length", options.noise_length,
-          {.doc = "of the waves of the texture", .unit = "m", .min = 1e-6, .max = kLargest});
-  v.value("seed", options.seed, {.doc = "of the texture", .min = 0});
-  v.value("grain_deg", options.grain_deg,
-          {.doc = "direction of the fibres in the pattern, from u towards v", .unit = "deg"});
+          {.doc = "length of the waves of the texture of the toughness",
+           .unit = "m",
+           .min = 1e-6,
+           .max = kLargest});
   v.value(
-      "across", options.across,
-      {.doc = "K across the fibres over K along them; needs grain_deg", .min = 1e-6, .max = 1e6});
+      "seed", options.seed,
+      {.doc = "seed of the texture of the toughness, added to that of the experiment", .min = 0});
+  v.value("grain_deg", options.grain_deg,
+          {.doc = "direction of the fibres that tears follow, from u towards v", .unit = "deg"});
+  v.value("across", options.across,
+          {.doc = "toughness across the fibres over that along them; needs grain_deg",
+           .min = 1e-6,
+           .max = 1e6});
 }
 
 void describe(OptionVisitor& v, PatternOptions& options) {
@@ -53,21 +61,24 @@ void describe(OptionVisitor& v, PatternOptions& options) {
   switch (options.kind) {
     case PatternKind::rectangle:
       v.value("width", options.width,
-              {.doc = "along u", .unit = "m", .min = 1e-6, .max = kLargest});
+              {.doc = "width of a rectangle, along u", .unit = "m", .min = 1e-6, .max = kLargest});
       v.value("height", options.height,
-              {.doc = "along v", .unit = "m", .min = 1e-6, .max = kLargest});
+              {.doc = "height of a rectangle, along v", .unit = "m", .min = 1e-6, .max = kLargest});
       break;
     case PatternKind::disc:
-      v.value("radius", options.radius,
-              {.doc = "of the circle about the origin", .unit = "m", .min = 1e-6, .max = kLargest});
-      v.value("corners", options.corners, {.doc = "of its outline", .min = 3, .max = kMostCorners});
+      v.value(
+          "radius", options.radius,
+          {.doc = "radius of a disc about the origin", .unit = "m", .min = 1e-6, .max = kLargest});
+      v.value("corners", options.corners,
+              {.doc = "number of corners of the outline of a disc", .min = 3, .max = kMostCorners});
       break;
     case PatternKind::polygon:
       describe_list(v, "points", options.points,
-                    {.doc = "corners in order, either way round", .required = true});
+                    {.doc = "corners of a polygon in order, either way round", .required = true});
       break;
     case PatternKind::svg:
-      v.value("file", options.file, {.doc = "SVG file", .required = true});
+      v.value("file", options.file,
+              {.doc = "SVG file that the pattern is read from", .required = true});
       v.value("path", options.svg.path,
               {.doc = "id of the path, polygon, polyline, rect, circle or ellipse, its subpaths "
                       "border and holes; absent: the only one"});
@@ -77,71 +88,96 @@ void describe(OptionVisitor& v, PatternOptions& options) {
                .min = 1e-9,
                .max = kLargest});
       v.value("tolerance", options.svg.tolerance,
-              {.doc = "largest distance of a curve from its chords", .unit = "m", .min = 1e-9});
-      v.value("centred", options.svg.centred, {.doc = "middle of the shape's box at the origin"});
+              {.doc = "largest distance of a curve of the drawing from its chords",
+               .unit = "m",
+               .min = 1e-9});
+      v.value("centred", options.svg.centred,
+              {.doc = "puts the middle of the shape's box at the origin"});
       break;
   }
   if (options.kind != PatternKind::svg) {
-    describe_list(v, "holes", options.holes, {.doc = "polygons that are cut out of it"});
+    describe_list(v, "holes", options.holes, {.doc = "polygons that are cut out of the pattern"});
   }
-  describe_list(v, "cuts", options.cuts, {.doc = "lines along which it is open from the start"});
+  describe_list(v, "cuts", options.cuts,
+                {.doc = "lines along which the pattern is open from the start"});
 }
 
 void describe(OptionVisitor& v, PaperMaterial& options) {
-  v.value("thickness", options.thickness, {.doc = "h", .unit = "m", .min = 1e-9, .max = 1});
-  v.value("young_modulus", options.young_modulus, {.doc = "E", .unit = "Pa", .min = 1e-3});
-  v.value("poisson_ratio", options.poisson_ratio, {.doc = "nu", .min = 0, .max = 0.499});
+  v.value("thickness", options.thickness,
+          {.doc = "thickness h of the paper", .unit = "m", .min = 1e-9, .max = 1});
+  v.value("young_modulus", options.young_modulus,
+          {.doc = "Young's modulus E of the paper", .unit = "Pa", .min = 1e-3});
+  v.value("poisson_ratio", options.poisson_ratio,
+          {.doc = "Poisson's ratio nu of the paper", .min = 0, .max = 0.499});
   v.value("area_density", options.area_density,
-          {.doc = "mass of an area", .unit = "kg/m^2", .min = 1e-9});
+          {.doc = "mass of an area of the paper", .unit = "kg/m^2", .min = 1e-9});
   v.value("yield_curvature", options.yield_curvature,
           {.doc = "elastic curvature beyond which the sheet creases", .unit = "1/m", .min = 1e-9});
   v.value("weakening", options.weakening,
-          {.doc = "bending stiffness falls by 1 / (1 + weakening * damage)", .min = 0});
-  v.value("friction", options.friction, {.doc = "Coulomb, against obstacles", .min = 0});
-  v.value("grain_deg", options.grain_deg,
-          {.doc = "direction of the fibres in the pattern, from u towards v", .unit = "deg"});
+          {.doc = "weakening of bending by damage: its stiffness falls by 1 / (1 + weakening "
+                  "* damage)",
+           .min = 0});
+  v.value("friction", options.friction,
+          {.doc = "Coulomb friction of the sheet against obstacles", .min = 0});
+  v.value(
+      "grain_deg", options.grain_deg,
+      {.doc = "direction of the fibres that bend more stiffly, from u towards v", .unit = "deg"});
   v.value("along", options.along,
           {.doc = "bending stiffness along the fibres over that across them; needs grain_deg",
            .min = 1e-3,
            .max = 1e3});
   v.value("damping", options.damping,
-          {.doc = "proportional to stiffness (Rayleigh)", .unit = "s", .min = 0});
+          {.doc = "time of the damping that is proportional to stiffness (Rayleigh)",
+           .unit = "s",
+           .min = 0});
 }
 
 void describe(OptionVisitor& v, IntervalOptions& options) {
-  v.value("from", options.from, {.doc = "first time", .unit = "s", .required = true});
-  v.value("to", options.to, {.doc = "last time", .unit = "s", .required = true});
+  v.value("from", options.from,
+          {.doc = "first time of an interval", .unit = "s", .required = true});
+  v.value("to", options.to, {.doc = "last time of an interval", .unit = "s", .required = true});
 }
 
 void describe(OptionVisitor& v, DiscOptions& options) {
-  v.value("u", options.u, {.doc = "centre", .unit = "m", .required = true});
-  v.value("v", options.v, {.doc = "centre", .unit = "m", .required = true});
-  v.value("radius", options.radius, {.doc = "of the disc", .unit = "m", .min = 1e-9});
+  v.value("u", options.u,
+          {.doc = "first coordinate of the centre of a disc", .unit = "m", .required = true});
+  v.value("v", options.v,
+          {.doc = "second coordinate of the centre of a disc", .unit = "m", .required = true});
+  v.value("radius", options.radius,
+          {.doc = "radius of a disc that is held", .unit = "m", .min = 1e-9});
 }
 
 void describe(OptionVisitor& v, HandleOptions& options) {
-  v.value("name", options.name, {.doc = "for messages"});
-  describe_list(v, "points", options.points, {.doc = "points of the pattern that are held, or …"});
+  v.value("name", options.name, {.doc = "name of a handle, for messages"});
+  describe_list(v, "points", options.points,
+                {.doc = "points of the pattern that a handle holds; instead: segment or disc"});
   v.value("segment", options.segment,
-          {.doc = "… a straight line of it: u v of one end, u v of the other, or …", .unit = "m"});
-  describe_group(v, "disc", options.disc, {.doc = "… a disc of it"});
+          {.doc = "straight line of the pattern that a handle holds: u v of one end, u v of the "
+                  "other; instead: points or disc",
+           .unit = "m"});
+  describe_group(v, "disc", options.disc,
+                 {.doc = "disc of the pattern that a handle holds; instead: points or segment"});
   describe_keys(v, options.keys);
   v.value("stiffness", options.stiffness,
-          {.doc = "of a hand that gives: what it holds departs from its place by the force over "
-                  "this; absent: not at all",
+          {.doc = "stiffness of a hand that gives: what it holds departs from its place by the "
+                  "force over this; absent: not at all",
            .unit = "N/m",
            .min = 1e-6,
            .max = 1e9});
-  v.value("force", options.force,
-          {.doc = "instead of keys: x y z of a dead load, spread over the shape", .unit = "N"});
+  v.value(
+      "force", options.force,
+      {.doc = "dead load x y z of a handle, spread over its shape, instead of keys", .unit = "N"});
   describe_list(v, "active", options.active,
-                {.doc = "times at which it holds or pulls; empty: always"});
+                {.doc = "times at which a handle holds or pulls; empty: always"});
 }
 
 void describe(OptionVisitor& v, RadiusKeyOptions& options) {
-  v.value("t", options.t, {.doc = "time", .unit = "s", .required = true});
+  v.value("t", options.t, {.doc = "time of a radius", .unit = "s", .required = true});
   v.value("radius", options.radius,
-          {.doc = "at that time, linear between", .unit = "m", .min = 1e-9, .required = true});
+          {.doc = "radius of an obstacle at that time, linear between",
+           .unit = "m",
+           .min = 1e-9,
+           .required = true});
 }
 
 void describe(OptionVisitor& v, ObstacleOptions& options) {
@@ -151,21 +187,28 @@ void describe(OptionVisitor& v, ObstacleOptions& options) {
                   {.doc = "plane: centre, axis (its normal); sphere, hollow-sphere (the sheet is "
                           "inside): centre, radius; cylinder: centre, axis, radius, half_length; "
                           "torus: centre, axis, radius, tube_radius"});
-  v.value("name", options.name, {.doc = "for messages"});
-  v.value("centre", options.centre, {.doc = "at the start", .unit = "m"});
+  v.value("name", options.name, {.doc = "name of an obstacle, for messages"});
+  v.value("centre", options.centre, {.doc = "centre of an obstacle at the start", .unit = "m"});
   if (options.kind == Obstacle::Kind::plane || options.kind == Obstacle::Kind::cylinder ||
       options.kind == Obstacle::Kind::torus) {
-    v.value("axis", options.axis, {.doc = "normal or axis, any length"});
+    v.value("axis", options.axis,
+            {.doc = "normal of a plane, axis of a cylinder or torus, of any length"});
   }
   if (options.kind != Obstacle::Kind::plane) {
-    v.value("radius", options.radius, {.doc = "of the body or ring", .unit = "m", .min = 1e-9});
-    describe_list(v, "radii", options.radii, {.doc = "radius over time; empty: constant"});
+    v.value("radius", options.radius,
+            {.doc = "radius of a sphere or cylinder, or of the ring of a torus",
+             .unit = "m",
+             .min = 1e-9});
+    describe_list(v, "radii", options.radii,
+                  {.doc = "radius of an obstacle over time; empty: constant"});
   }
   if (options.kind == Obstacle::Kind::torus) {
-    v.value("tube_radius", options.tube_radius, {.doc = "of the wire", .unit = "m", .min = 1e-9});
+    v.value("tube_radius", options.tube_radius,
+            {.doc = "radius of the wire of a torus", .unit = "m", .min = 1e-9});
   }
   if (options.kind == Obstacle::Kind::cylinder) {
-    v.value("half_length", options.half_length, {.doc = "0: endless", .unit = "m", .min = 0});
+    v.value("half_length", options.half_length,
+            {.doc = "half the length of a cylinder; 0: endless", .unit = "m", .min = 0});
   }
   describe_keys(v, options.keys);
 }

@@ -9,10 +9,10 @@ namespace geoprior::paper {
 
 /// How a sheet comes to rest on a mesh that has just been made.
 struct SettleOptions {
-  int steps = 20;        ///< most implicit steps from rest; 0: none
-  double time = 1e-3;    ///< length of each (s)
-  double strain = 2e-4;  ///< root mean square that is little enough
-  double gain = 0.02;    ///< part of the elastic energy that a step must at least release
+  int steps = 20;
+  double time = 1e-3;  ///< s
+  double strain = 2e-4;
+  double gain = 0.02;
 };
 void describe(OptionVisitor& v, SettleOptions& options);
 

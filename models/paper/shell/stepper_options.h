@@ -17,13 +17,13 @@ struct StepperOptions {
   Integration integration = Integration::linear;
   BendingLaw bending;
   bool plasticity = true;
-  int newton_iterations = 100;     ///< most, of a step
-  double newton_tolerance = 1e-8;  ///< on the residual, relative to the typical force of the step
+  int newton_iterations = 100;
+  double newton_tolerance = 1e-8;
   LinearSolver solver = LinearSolver::supernodal;
-  double contact_distance = 5e-4;  ///< gap at which an obstacle begins to push (m)
-  double contact_stiffness = 1e9;  ///< of the push, per area of sheet (N/m^3)
-  double contact_spacing = 0.01;   ///< of the points of a triangle tested against obstacles (m)
-  double creep_speed = 1e-3;       ///< slip at which friction reaches 0.7 of Coulomb's (m/s)
+  double contact_distance = 5e-4;  ///< m
+  double contact_stiffness = 1e9;  ///< N/m^3
+  double contact_spacing = 0.01;   ///< m
+  double creep_speed = 1e-3;       ///< m/s
 };
 void describe(OptionVisitor& v, StepperOptions& options);
 

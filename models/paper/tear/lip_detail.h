@@ -30,9 +30,9 @@ struct LipDetailOptions {
   static constexpr double kSpacing = 5e-4;       ///< of the points along the lips (m); chosen
 
   bool on = false;
-  double noise = 5e-4;           ///< most that the torn line leaves the tip's way (m)
-  double fibre_length = 1.5e-3;  ///< of the longest (m)
-  double bevel = 2e-3;           ///< width of the band (m)
+  double noise = 5e-4;           ///< m
+  double fibre_length = 1.5e-3;  ///< m
+  double bevel = 2e-3;           ///< m
 };
 void describe(OptionVisitor& v, LipDetailOptions& options);
 
@@ -42,7 +42,7 @@ struct TornPoint {
   Eigen::Vector2d place{0, 0};  ///< of the tip's way, in the pattern (m)
   Eigen::Vector2d left{0, 0};   ///< across, to the left of the way (unit)
   double displacement = 0;      ///< of the torn line from it, to the left (m)
-  double bevel = 0;             ///< width of the band (m)
+  double bevel = 0;             ///< m
   int bevel_lip = 0;            ///< that it lies on: 0 left, 1 right
 
   /// By how much the torn line leaves a lip longer than the mesh has it (m).

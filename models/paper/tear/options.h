@@ -28,16 +28,16 @@ struct TearOptions {
   PullOptions pull;
   TearSearch search = TearSearch::candidates;
   TearRelease release = TearRelease::j_integral;
-  double flaw = 4e-3;  ///< length of the sheet's flaws, from which smooth places tear (m)
-  double step = 2e-3;  ///< length by which a tear grows (m)
+  double flaw = 4e-3;  ///< m
+  double step = 2e-3;  ///< m
   TearIntegrator integrator = TearIntegrator::midpoint;
   TearDirection direction = TearDirection::steepest;
-  double most_turn_deg = 30;  ///< that a tear turns in a step
-  int rest_steps = 20;        ///< most, for a pull to come to rest in before a tear grows
-  double rest_turn_deg = 1;   ///< of a pull at rest, from one such step to the next
-  double rest_change = 0.02;  ///< of what it releases, likewise, relative
-  double least_part = 1e-6;   ///< smallest area that a tear may cut off (m^2)
-  LipDetailOptions detail;    ///< what is drawn along the lips
+  double most_turn_deg = 30;
+  int rest_steps = 20;
+  double rest_turn_deg = 1;
+  double rest_change = 0.02;
+  double least_part = 1e-6;  ///< m^2
+  LipDetailOptions detail;
 };
 void describe(OptionVisitor& v, TearOptions& options);
 

@@ -13,8 +13,8 @@ namespace geoprior::paper {
 
 /// How the forces about a point are gathered and grouped.
 struct PullOptions {
-  double reach = 0.08;  ///< radius of the part of the sheet on which the pull is measured (m)
-  int lines = 64;       ///< directions tried for the line that parts left from right
+  double reach = 0.08;  ///< m
+  int lines = 64;
   /// Smallest angle between the two resultants in space: pulls that point the same way tear
   /// nothing.
   double least_opposition_deg = 90;

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <fstream>
+#include <numbers>
+#include <string>
 
 #include "experiments/paper/topic.h"
 #include "tests/testbed/run_fixture.h"
@@ -36,6 +38,25 @@ TEST_F(PaperScenes, DefaultsToAnA4SheetOfOfficePaper) {
   EXPECT_EQ(s.material.thickness, 1e-4);
   EXPECT_EQ(s.material.area_density, 0.08);
   EXPECT_EQ(s.gravity, Eigen::Vector3d(0, 0, -9.81));
+}
+
+/// A quarter disc of 2 units, y down in the drawing, and a triangle beside it.
+TEST_F(PaperScenes, ReadADrawingInItsUnitAndPlace) {
+  std::ofstream(write_experiment("paper/scene", "").parent_path() / "shapes.svg")
+      << "<svg xmlns='http://www.w3.org/2000/svg'><path id='fan' d='M0 0 L2 0 A2 2 0 0 1 0 2Z'/>"
+         "<path id='flag' d='M0 0 L1 0 L0 1Z'/></svg>";
+  const auto pattern = [&](const std::string& more) {
+    return sheet("pattern = { kind = \"svg\", file = \"shapes.svg\", " + more + " }\n").pattern;
+  };
+  EXPECT_NEAR(signed_area(pattern("path = \"flag\"")), 0.5e-6, 1e-18) << "millimetres";
+  EXPECT_NEAR(signed_area(pattern("path = \"flag\", unit_m = 0.1")), 0.5e-2, 1e-15);
+  const std::string fan = "path = \"fan\", unit_m = 0.1, tolerance = ";
+  const Pattern fine = pattern(fan + "1e-5"), coarse = pattern(fan + "1e-2");
+  EXPECT_NEAR(signed_area(fine), std::numbers::pi * 0.01, 1e-5);
+  EXPECT_GT(fine.border.size(), 3 * coarse.border.size());
+  EXPECT_NEAR(bounding_box(fine).center().norm(), 0, 1e-15);
+  const Eigen::AlignedBox2d drawn = bounding_box(pattern(fan + "1e-5, centred = false"));
+  EXPECT_NEAR((drawn.min() - Eigen::Vector2d(0, -0.2)).norm(), 0, 1e-12);
 }
 
 TEST_F(PaperScenes, TurnIsAxisTimesAngleInDegrees) {

@@ -13,10 +13,12 @@
 #include "models/paper/sheet/pattern_locator.h"
 #include "tests/paper/contact/plane_shapes.h"
 #include "tests/paper/sheets.h"
-#include "tests/sound/recording.h"
+#include "tests/support/recording.h"
 
 namespace geoprior::paper {
 namespace {
+
+using test::Recording;
 
 Recording run(const Sheet& sheet, const AdaptiveOptions& options,
               const std::optional<State>& from = {}) {

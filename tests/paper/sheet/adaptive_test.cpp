@@ -15,10 +15,12 @@
 #include "models/paper/meshing/uniform_mesh.h"
 #include "tests/paper/contact/plane_shapes.h"
 #include "tests/paper/meshes.h"
-#include "tests/sound/recording.h"
+#include "tests/support/recording.h"
 
 namespace geoprior::paper {
 namespace {
+
+using test::Recording;
 
 using meshes::flat_state;
 

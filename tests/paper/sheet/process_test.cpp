@@ -12,10 +12,12 @@
 #include "models/paper/meshing/transfer.h"
 #include "models/paper/meshing/uniform_mesh.h"
 #include "models/paper/sheet/handle_speed.h"
-#include "tests/sound/recording.h"
+#include "tests/support/recording.h"
 
 namespace geoprior::paper {
 namespace {
+
+using test::Recording;
 
 using ::testing::HasSubstr;
 

@@ -17,10 +17,12 @@
 #include "solvers/paper/hybrid.h"
 #include "testbed/home.h"
 #include "testbed/runner/spec/spec.h"
-#include "tests/sound/recording.h"
+#include "tests/support/recording.h"
 
 namespace geoprior::paper {
 namespace {
+
+using test::Recording;
 
 namespace fs = std::filesystem;
 

@@ -19,10 +19,12 @@
 #include "solvers/paper/hybrid.h"
 #include "testbed/runner/options/toml.h"
 #include "tests/paper/sheets.h"
-#include "tests/sound/recording.h"
+#include "tests/support/recording.h"
 
 namespace geoprior::paper {
 namespace {
+
+using test::Recording;
 
 using Eigen::Vector2d;
 

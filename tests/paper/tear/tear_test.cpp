@@ -23,10 +23,12 @@
 #include "models/paper/tear/tears.h"
 #include "solvers/paper/hybrid.h"
 #include "tests/paper/sheets.h"
-#include "tests/sound/recording.h"
+#include "tests/support/recording.h"
 
 namespace geoprior::paper {
 namespace {
+
+using test::Recording;
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
