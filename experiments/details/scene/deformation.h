@@ -40,12 +40,12 @@ struct DeformationOptions {
   std::vector<AmountKey> keys;
   std::array<double, 3> centre{0, 0, 0};
   std::array<double, 3> axis{1, 0, 0};
-  std::array<double, 3> side{0, 0, 1};  ///< of a bend
-  double cross = 0;                     ///< of a stretch
-  std::optional<double> from, to;       ///< along the axis from the centre (m)
-  int smooth = 0;                       ///< of an inflation
-  double ramp = 0.5;                    ///< of a stretch: share of from … to in which it sets in
-  std::optional<double> radius;         ///< of the falloff (m)
+  std::array<double, 3> side{0, 0, 1};
+  double cross = 0;
+  std::optional<double> from, to;
+  int smooth = 0;
+  double ramp = 0.5;
+  std::optional<double> radius;
 };
 void describe(OptionVisitor& v, DeformationOptions& options);
 

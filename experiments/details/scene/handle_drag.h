@@ -13,15 +13,15 @@ namespace geoprior::details {
 /// Vertices that are held and moved: those in a ball at rest.
 struct HandleBallOptions {
   std::array<double, 3> centre{0, 0, 0};
-  double radius = 0.1;           ///< m
-  std::vector<KeyOptions> keys;  ///< motion about the centre; none: held
+  double radius = 0.1;  ///< m
+  std::vector<KeyOptions> keys;
 };
 void describe(OptionVisitor& v, HandleBallOptions& options);
 
 /// Handles are moved, the rest of the surface follows as rigidly as possible.
 struct HandleDragOptions {
   std::vector<HandleBallOptions> handles;
-  int iterations = 5;  ///< local and global steps of a frame
+  int iterations = 5;
 };
 void describe(OptionVisitor& v, HandleDragOptions& options);
 

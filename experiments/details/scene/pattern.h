@@ -18,9 +18,9 @@ enum class RegionKind { half_space, ball, facing };
 /// How many details an area gets, relative to elsewhere. A tagged choice by `kind`.
 struct DensityOptions {
   DensityKind kind = DensityKind::constant;
-  std::array<double, 3> axis{1, 0, 0};  ///< of the gradient, any length
-  double from = 1, to = 1;              ///< of the gradient: at its two ends of the surface
-  std::string array;                    ///< of the points of the surface's file (.vtp)
+  std::array<double, 3> axis{1, 0, 0};
+  double from = 1, to = 1;  ///< of the gradient: at its two ends of the surface
+  std::string array;
 };
 void describe(OptionVisitor& v, DensityOptions& options);
 
@@ -29,9 +29,9 @@ struct RegionOptions {
   RegionKind kind = RegionKind::half_space;
   std::array<double, 3> point{0, 0, 0};      ///< of the half space's plane, centre of the ball (m)
   std::array<double, 3> direction{0, 0, 1};  ///< into the half space; that normals face
-  double radius = 1;                         ///< of the ball (m)
-  double angle_deg = 60;                     ///< largest angle of a normal to the direction
-  bool outside = false;                      ///< the condition turned round
+  double radius = 1;
+  double angle_deg = 60;
+  bool outside = false;
 };
 void describe(OptionVisitor& v, RegionOptions& options);
 
@@ -39,16 +39,16 @@ void describe(OptionVisitor& v, RegionOptions& options);
 struct DetailPatternOptions {
   PatternKind kind = PatternKind::poisson_disk;
   int count = 1000;
-  double radius = 0.78;          ///< poisson_disk: smallest distance x sqrt(density)
-  double jitter = 0.6;           ///< grid: largest shift along each axis over the spacing
-  int cluster_size = 6;          ///< details of a cluster
-  double cluster_radius = 0.25;  ///< of a cluster over the spacing of their centres
+  double radius = 0.78;  ///< poisson_disk: smallest distance x sqrt(density)
+  double jitter = 0.6;
+  int cluster_size = 6;
+  double cluster_radius = 0.25;
   DensityOptions density;
   std::vector<RegionOptions> region;
-  std::string file;                    ///< of positions
-  std::optional<double> max_distance;  ///< of a position of the file from the surface (m)
-  int types = 1;                       ///< kinds of details, drawn at random
-  bool aligned = false;                ///< tangents along `direction`, else at random
+  std::string file;
+  std::optional<double> max_distance;
+  int types = 1;
+  bool aligned = false;
   std::array<double, 3> direction{1, 0, 0};
   int seed = 1;
 };

@@ -16,13 +16,13 @@ struct DetailSurfaceOptions {
   DetailSurfaceKind kind = DetailSurfaceKind::plane;
   double width = 1, height = 1;  ///< of the plane, along x and y, centred at the origin (m)
   double radius = 0.5;           ///< of sphere, blob and capsule, of the torus' ring (m)
-  double tube_radius = 0.2;      ///< of the torus (m)
-  double length = 1;             ///< straight part of the capsule, along x (m)
-  double bumps = 0.2;            ///< of the blob: height over radius
-  double edge = 0.03;            ///< edges of the triangles are about as long (m)
-  std::string file;              ///< mesh: .obj, .ply, .off, .vtp
-  double scale = 1;              ///< metres a unit of the file
-  std::array<double, 3> turn_deg{0, 0, 0};  ///< of the file's mesh: axis times angle
+  double tube_radius = 0.2;
+  double length = 1;
+  double bumps = 0.2;
+  double edge = 0.03;
+  std::string file;
+  double scale = 1;
+  std::array<double, 3> turn_deg{0, 0, 0};
 };
 void describe(OptionVisitor& v, DetailSurfaceOptions& options);
 
