@@ -238,11 +238,10 @@ void describe(OptionVisitor& v, JointRamp& options) {
 void describe(OptionVisitor& v, MotionOptions& options) {
   static constexpr std::array<std::string_view, 5> kKinds{"ramp", "loop", "poses", "clip", "bvh"};
   static constexpr std::array<std::string_view, 4> kUps{"guess", "x", "y", "z"};
-  describe_choice(v, "kind", options.kind, kKinds,
-                  {.doc = "ramp: joint angles; loop: a ramp out and back, by steps; poses: file, "
-                          "names; clip: name, start_s, end_s, "
-                          "frames of the character's file; bvh: file, first_frame, last_frame, "
-                          "stride, origin_frame, bvh_up"});
+  describe_choice(
+      v, "kind", options.kind, kKinds,
+      {.doc = "a ramp of joint angles, a loop out and back, poses of a file, a clip of the "
+              "character's file, or captured motion"});
   switch (options.kind) {
     case MotionKind::ramp:
     case MotionKind::loop:
