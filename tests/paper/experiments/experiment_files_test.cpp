@@ -24,11 +24,16 @@ std::vector<fs::path> experiment_files() {
   return {files.begin(), files.end()};
 }
 
-/// What moves faster than a sheet follows on purpose: five fast hands, a sheet that is shaken.
-bool is_fast(const fs::path& file) { return file.stem() == "fast-hands" || file.stem() == "shake"; }
+/// What moves faster than a sheet follows on purpose: five fast hands, a sheet that is shaken, and
+/// short scenes that show what options do.
+bool is_fast(const fs::path& file) {
+  static const std::set<fs::path> fast{"fast-hands",       "shake",         "options-hybrid",
+                                       "options-adaptive", "options-tears", "options-scene"};
+  return fast.contains(file.stem());
+}
 
 TEST(PaperExperiments, AreThoseThatTheTopicHas) {
-  EXPECT_EQ(experiment_files().size(), 31U);
+  EXPECT_EQ(experiment_files().size(), 36U);
   for (const fs::path& file : experiment_files()) {
     for (const bool quick : {false, true}) {
       LoadRequest request;
