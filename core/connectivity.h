@@ -140,9 +140,6 @@ class RingIterator {
     ++*this;
     return before;
   }
-  friend bool operator==(const RingIterator& a, const RingIterator& b) {
-    return a.left_ == b.left_;
-  }
   friend bool operator==(const RingIterator& it, std::default_sentinel_t) { return it.left_ == 0; }
 
  private:
