@@ -43,7 +43,7 @@ class ClickVoices final : public SoundVoices {
 
 void describe(OptionVisitor& v, ClickOptions& o) {
   describe(v, o.stage);
-  v.value("length", o.length, {.doc = "of the click", .unit = "s", .min = 1e-4, .max = 1});
+  v.value("length", o.length, {.doc = "length of a click", .unit = "s", .min = 1e-4, .max = 1});
 }
 
 std::shared_ptr<const SoundVoices> click_voices(const ClickOptions& options) {

@@ -10,7 +10,7 @@ namespace geoprior::sound {
 /// makes it. Sliding is one click where it begins.
 struct ClickOptions {
   SoundStage stage;
-  double length = 1e-3;  ///< of the click (s)
+  double length = 1e-3;
 };
 void describe(OptionVisitor& v, ClickOptions& options);
 std::shared_ptr<const SoundVoices> click_voices(const ClickOptions& options);

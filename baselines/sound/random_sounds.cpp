@@ -38,7 +38,8 @@ class RandomVoices final : public SoundVoices {
 
 void describe(OptionVisitor& v, RandomSoundOptions& o) {
   describe(v, o.stage);
-  describe_group(v, "bank", o.bank, {.doc = "that is generated where the scene has none"});
+  describe_group(v, "bank", o.bank,
+                 {.doc = "bank of sounds that is generated where the scene has none"});
 }
 
 std::shared_ptr<const SoundVoices> random_voices(SoundBank bank, const PaperMaterial& material) {

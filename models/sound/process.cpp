@@ -282,17 +282,20 @@ class SoundFrames final : public FrameModel {
 
 void describe(OptionVisitor& v, PickedOptions& o) {
   v.value("most", o.most,
-          {.doc = "flaps and cracs whose sounds are also written alone, one after the other, to "
-                  "voices.wav",
+          {.doc = "most flaps and cracs whose sounds are also written alone, one after the other, "
+                  "to voices.wav",
            .min = 0,
            .max = 100000});
   v.value("every", o.every,
-          {.doc = "the first of so many is picked, then the next", .min = 1, .max = 1000000});
+          {.doc = "flaps and cracs of which the first is picked to be heard alone",
+           .min = 1,
+           .max = 1000000});
 }
 
 void describe(OptionVisitor& v, SoundStage& o) {
   describe_group(v, "detection", o.detection, {.doc = "how events are found"});
-  describe_group(v, "mix", o.mix, {.doc = "where it is heard, and how it is written down"});
+  describe_group(v, "mix", o.mix,
+                 {.doc = "where the sheet is heard, and how its sound is written down"});
   describe_group(v, "picked", o.picked, {.doc = "events that are heard alone"});
   v.value("tail", o.tail,
           {.doc = "length of the sound after the last frame", .unit = "s", .min = 0, .max = 60});

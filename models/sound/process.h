@@ -35,8 +35,8 @@ class SoundVoices {
 
 /// Flaps and cracs that are picked to be heard alone.
 struct PickedOptions {
-  int most = 0;   ///< that are picked
-  int every = 1;  ///< the first of so many, then the next
+  int most = 0;
+  int every = 1;
 };
 void describe(OptionVisitor& v, PickedOptions& options);
 
@@ -48,8 +48,8 @@ struct SoundStage {
   DetectionOptions detection;
   MixOptions mix;
   PickedOptions picked;
-  double tail = 0.5;    ///< of the sound after the last frame (s)
-  bool surface = true;  ///< whether frames have the sheet, or the events alone
+  double tail = 0.5;
+  bool surface = true;
 };
 void describe(OptionVisitor& v, SoundStage& options);
 

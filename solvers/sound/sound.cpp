@@ -143,14 +143,18 @@ void describe(OptionVisitor& v, SoundOptions& o) {
   static constexpr std::array<std::string_view, 5> kNames{"all", "both", "ruling", "border",
                                                           "none"};
   describe(v, o.stage);
-  describe_group(v, "bank", o.bank, {.doc = "that is generated where the scene has none"});
-  describe_choice(v, "descriptors", o.descriptors, kNames,
-                  {.doc = "of a resonator that choose its sound: l_r, l_c and its width, the "
-                          "thesis' l_r and l_c, one of both, or none"});
-  v.value("nearest", o.nearest, {.doc = "sounds that are drawn from", .min = 1, .max = 100000});
+  describe_group(v, "bank", o.bank,
+                 {.doc = "bank of sounds that is generated where the scene has none"});
+  describe_choice(
+      v, "descriptors", o.descriptors, kNames,
+      {.doc = "lengths of a resonator that choose its sound: l_r, l_c and its width, the "
+              "thesis' l_r and l_c, one of both, or none"});
+  v.value("nearest", o.nearest,
+          {.doc = "nearest sounds of the bank that one is drawn from", .min = 1, .max = 100000});
   v.value("adapt", o.adapt,
-          {.doc = "play a sound faster where the resonator is narrower or more bent"});
-  v.value("detune", o.detune, {.doc = "largest change of pitch, relative", .min = 0, .max = 0.5});
+          {.doc = "whether a sound is played faster where the resonator is narrower or more bent"});
+  v.value("detune", o.detune,
+          {.doc = "largest change of pitch at random, relative", .min = 0, .max = 0.5});
 }
 
 std::vector<int> nearest_sounds(const SoundBank& bank, const SoundEvent& event,

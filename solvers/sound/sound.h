@@ -30,11 +30,11 @@ namespace geoprior::sound {
 struct SoundOptions {
   enum class Descriptors { all, both, ruling, border, none };
   SoundStage stage;
-  BankOptions bank;                            ///< unless the scene has one
-  Descriptors descriptors = Descriptors::all;  ///< that choose a sound
-  int nearest = 3;                             ///< sounds that are drawn from
-  bool adapt = true;                           ///< change the pitch by how wide the resonator is
-  double detune = 0.05;                        ///< largest change of pitch at random, relative
+  BankOptions bank;  ///< unless the scene has one
+  Descriptors descriptors = Descriptors::all;
+  int nearest = 3;
+  bool adapt = true;
+  double detune = 0.05;
 };
 void describe(OptionVisitor& v, SoundOptions& options);
 

@@ -166,7 +166,7 @@ TEST(SoundBank, SoundsHavePanelsWhoseBorderTheyName) {
       const BankSound& sound = bank.sounds[static_cast<std::size_t>(i)];
       const double l = sound.ruling_length, c = sound.free_border, w = sound.width;
       EXPECT_GT(w, 0);
-      if (w <= BankOptions{}.least_width) continue;
+      if (w <= kLeastPanelWidth) continue;
       // Between creases, hanging on one, free, or with creases all around.
       bool known = false;
       for (const double border : {2 * w, w, l + 2 * w, 2 * (l + w)})

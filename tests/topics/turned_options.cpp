@@ -162,6 +162,12 @@ bool is_told_by_claim(const Experiment& experiment, const std::string& in, const
       });
 }
 
+/// One struct that several methods have describes its options to all of them in the same words.
+bool are_described_alike(const OptionRow& a, const OptionRow& b) {
+  return a.type == b.type && a.default_value == b.default_value && a.range == b.range &&
+         a.unit == b.unit && a.doc == b.doc;
+}
+
 }  // namespace
 
 OptionRows::OptionRows(std::vector<OptionRow> rows) : rows_(std::move(rows)) {
@@ -337,6 +343,20 @@ TurnedOptions::Evidence TurnedOptions::evidence_of(const std::string& place, con
   return best;
 }
 
+TurnedOptions::Evidence TurnedOptions::shared_evidence_of(const std::string& place,
+                                                          const OptionRow& row,
+                                                          const std::string& value) const {
+  Evidence best = evidence_of(place, row, value);
+  if (place == "scene") return best;
+  for (const std::string& other : places_) {
+    const OptionRow* there = other == "scene" ? nullptr : rows_of(other).find(row.key);
+    if (there == nullptr || !are_described_alike(row, *there)) continue;
+    const Evidence evidence = evidence_of(other, *there, value);
+    if (evidence.turned > best.turned) best = evidence;
+  }
+  return best;
+}
+
 std::vector<OptionUnit> TurnedOptions::units() const {
   std::vector<OptionUnit> units;
   for (const std::string& place : places_) {
@@ -344,7 +364,7 @@ std::vector<OptionUnit> TurnedOptions::units() const {
       // A table that is always there has no value of its own.
       if (row.type == "table" && !row.may_be_absent) continue;
       for (const std::string& value : values_of(row)) {
-        const Evidence found = evidence_of(place, row, value);
+        const Evidence found = shared_evidence_of(place, row, value);
         units.push_back({topic_ + "/" + place, value.empty() ? row.key : row.key + "=" + value,
                          found.turned, found.columns});
       }

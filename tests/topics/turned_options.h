@@ -90,6 +90,9 @@ class TurnedOptions {
             const Evidence& evidence);
   [[nodiscard]] Evidence evidence_of(const std::string& place, const OptionRow& row,
                                      const std::string& value) const;
+  /// Of what several methods share, the best that is known of any.
+  [[nodiscard]] Evidence shared_evidence_of(const std::string& place, const OptionRow& row,
+                                            const std::string& value) const;
   [[nodiscard]] Turned effect(const Experiment& experiment, const BlessedSet* blessed,
                               const Column& a, const Column& b) const;
 

@@ -13,6 +13,11 @@
 namespace geoprior::sound {
 namespace {
 
+/// tau (s), in the middle of what the generated bank has: the comparison says nothing of it.
+constexpr double kFlapTime = 1.7e-3, kCracTime = 1e-4;
+/// Over which a mode's pressure is averaged: a spiral of Fibonacci, 0.26 sr each.
+constexpr int kDirections = 48;
+
 using Eigen::Vector3d;
 
 using std::numbers::pi;
@@ -82,14 +87,14 @@ StruckModes strike(const ModalSoundOptions& options, const PaperMaterial& materi
   const ModalOperator shell(material, piece.state, supports, {});
   const Eigen::VectorXd force = modes.shape.transpose() * shell.curvature_load(piece.change);
   const Eigen::ArrayXd omega = 2 * pi * modes.frequency.array();
-  const double tau = event.kind == SoundKind::crac ? options.crac_time : options.flap_time;
+  const double tau = event.kind == SoundKind::crac ? kCracTime : kFlapTime;
   Eigen::ArrayXd coordinate = force.array().abs() / omega.square();
   for (Eigen::Index m = 0; m < count; ++m) coordinate[m] *= pulse_spectrum(modes.frequency[m], tau);
   const double energy = (omega * coordinate).square().sum() / 2;
   if (!(energy > 0)) return out;
   coordinate *= std::sqrt(event.energy / energy);
   out.frequency = modes.frequency;
-  out.pressure = coordinate * radiated_pressure(piece.state, modes, options.directions).array();
+  out.pressure = coordinate * radiated_pressure(piece.state, modes, kDirections).array();
   return out;
 }
 
@@ -119,7 +124,7 @@ class ModalVoices final : public SoundVoices {
         (modes.pressure.array().square() / (4 * pi * options_.damping * modes.frequency.array()))
             .sum();
     made.numbers["radiated_share"] = radiated / event.energy;
-    const double tau = event.kind == SoundKind::crac ? options_.crac_time : options_.flap_time;
+    const double tau = event.kind == SoundKind::crac ? kCracTime : kFlapTime;
     const double length =
         std::min(kLongest, ringing_time(modes.frequency[0], options_.damping)) + tau + 0.02;
     Eigen::VectorXd samples = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(length * kRate));
@@ -174,18 +179,15 @@ Eigen::VectorXd radiated_pressure(const ShellState& state, const Modes& modes, i
 
 void describe(OptionVisitor& v, ModalSoundOptions& o) {
   describe(v, o.stage);
-  v.value("damping", o.damping, {.doc = "loss factor eta of paper", .min = 1e-4, .max = 1});
-  v.value("flap_time", o.flap_time,
-          {.doc = "in which a flap strikes", .unit = "s", .min = 1e-6, .max = 1});
-  v.value("crac_time", o.crac_time,
-          {.doc = "in which a crac strikes", .unit = "s", .min = 1e-6, .max = 1});
+  v.value("damping", o.damping,
+          {.doc = "loss factor eta of the paper that rings", .min = 1e-4, .max = 1});
   v.value("highest", o.highest,
-          {.doc = "frequency of a mode", .unit = "Hz", .min = 100, .max = 20000});
-  v.value("most_modes", o.most_modes, {.doc = "of a resonator", .min = 1, .max = 10000});
+          {.doc = "highest frequency of a mode", .unit = "Hz", .min = 100, .max = 20000});
+  v.value("most_modes", o.most_modes, {.doc = "most modes of a resonator", .min = 1, .max = 10000});
   v.value("most_vertices", o.most_vertices,
-          {.doc = "of its mesh, unless it has more cells", .min = 16, .max = 1000000});
-  v.value("directions", o.directions,
-          {.doc = "over which the pressure is averaged", .min = 6, .max = 10000});
+          {.doc = "most vertices of a resonator's mesh, unless it has more cells",
+           .min = 16,
+           .max = 1000000});
 }
 
 std::shared_ptr<const SoundVoices> modal_voices(const ModalSoundOptions& options,

@@ -32,13 +32,10 @@ namespace geoprior::sound {
 /// bank's. Phases are drawn at random, as the bank's are.
 struct ModalSoundOptions {
   SoundStage stage;
-  double damping = 0.03;      ///< loss factor eta
-  double flap_time = 1.7e-3;  ///< tau of a flap (s): middle of the bank's
-  double crac_time = 1e-4;    ///< of a crac (s)
-  double highest = 16000;     ///< frequency of a mode (Hz)
-  int most_modes = 150;       ///< of a resonator
-  int most_vertices = 2500;   ///< of its mesh, unless it has more cells
-  int directions = 48;        ///< over which the pressure is averaged
+  double damping = 0.03;
+  double highest = 16000;
+  int most_modes = 150;
+  int most_vertices = 2500;
 };
 void describe(OptionVisitor& v, ModalSoundOptions& options);
 

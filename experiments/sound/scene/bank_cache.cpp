@@ -30,8 +30,7 @@ std::string name_of(const PaperMaterial& material, const BankOptions& o, std::ui
   }
   for (const double x :
        {material.thickness, material.young_modulus, material.poisson_ratio, material.area_density,
-        o.least_ruling, o.most_ruling, o.most_border, o.least_speed, o.most_speed, o.damping,
-        o.least_width, o.flap_bow, o.crac_bow, o.crackles, o.highest}) {
+        o.damping, o.flap_bow, o.crac_bow, o.crackles, o.highest}) {
     out.number(x);
   }
   for (const int n : {o.sizes, o.variants, o.speeds, o.tears, o.most_modes}) out.number(n);

@@ -156,17 +156,22 @@ Handle clamp_of(const Swatch& one) {
 }  // namespace
 
 void describe(OptionVisitor& v, SwatchOptions& o) {
-  v.value("rulings", o.rulings, {.doc = "lengths along the rulings", .unit = "m"});
-  v.value("widths", o.widths, {.doc = "lengths across them; each with each", .unit = "m"});
+  v.value("rulings", o.rulings, {.doc = "lengths of swatches along their rulings", .unit = "m"});
+  v.value("widths", o.widths,
+          {.doc = "lengths across the rulings of swatches, each with each length along them",
+           .unit = "m"});
   v.value(
       "flat", o.flat,
       {.doc = "curvature before and after a snap, of flat swatches", .unit = "1/m", .min = 1e-3});
   v.value("bent", o.bent,
-          {.doc = "of bent ones, or two over the width where that is less",
+          {.doc = "curvature of bent swatches before and after a snap, or two over the width where "
+                  "that is less",
            .unit = "1/m",
            .min = 1e-3});
-  v.value("snap", o.snap, {.doc = "length of a snap", .unit = "s", .min = 1e-6, .max = 1});
-  v.value("interval", o.interval, {.doc = "between snaps", .unit = "s", .min = 1e-3, .max = 10});
+  v.value("snap", o.snap,
+          {.doc = "time that a swatch takes to snap", .unit = "s", .min = 1e-6, .max = 1});
+  v.value("interval", o.interval,
+          {.doc = "time from a snap to the next", .unit = "s", .min = 1e-3, .max = 10});
 }
 
 std::shared_ptr<const SheetAnimation> make_swatches(const SwatchOptions& options, Sheet& sheet) {

@@ -13,12 +13,12 @@ namespace geoprior::sound {
 /// judged by. Each pair of a length along the rulings and a width across is cut three times: free,
 /// clamped along one ruling, and free but strongly bent, as over a cylinder.
 struct SwatchOptions {
-  std::vector<double> rulings{0.015, 0.03, 0.06, 0.12};  ///< l_r (m)
-  std::vector<double> widths{0.015, 0.03, 0.06, 0.12};   ///< across the rulings (m)
-  double flat = 8;         ///< curvature before and after a snap of the flat ones (1/m)
-  double bent = 18;        ///< of the bent ones, or two over the width where that is less (1/m)
-  double snap = 0.01;      ///< length of a snap (s)
-  double interval = 0.25;  ///< between snaps (s)
+  std::vector<double> rulings{0.015, 0.03, 0.06, 0.12};  ///< l_r
+  std::vector<double> widths{0.015, 0.03, 0.06, 0.12};
+  double flat = 8;
+  double bent = 18;
+  double snap = 0.01;
+  double interval = 0.25;
 };
 void describe(OptionVisitor& v, SwatchOptions& options);
 

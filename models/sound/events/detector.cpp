@@ -8,24 +8,32 @@ namespace geoprior::sound {
 
 using Eigen::Vector3d;
 
+namespace {
+
+/// Share of a resonator's border that is no free border, from which on it cracs: the thesis gives
+/// none; at half neither kind of border is the longer one.
+constexpr double kCrumpledShare = 0.5;
+
+}  // namespace
+
 void describe(OptionVisitor& v, DetectionOptions& o) {
   v.value("spacing", o.spacing,
-          {.doc = "of the grid of the pattern on which curvature is looked at",
+          {.doc = "spacing of the grid of the pattern on which curvature is looked at",
            .unit = "m",
            .min = 1e-6});
   v.value("radius", o.radius,
-          {.doc = "over which curvature is smoothed: a Gaussian's standard deviation",
+          {.doc = "radius over which curvature is smoothed: a Gaussian's standard deviation",
            .unit = "m",
            .min = 0});
   v.value("least_energy", o.least_energy,
-          {.doc = "of a flap or crac: half a square centimetre of office paper that is bent to a "
-                  "radius of 10 cm holds 1e-6 J",
+          {.doc = "least energy of a flap or crac: half a square centimetre of office paper bent "
+                  "to a radius of 10 cm holds 1e-6 J",
            .unit = "J",
            .min = 0});
   v.value("tears", o.tears, {.doc = "whether steps of tears are heard"});
   describe_group(v, "flips", o.flips, {.doc = "sudden changes of the sign of curvature"});
-  describe_group(v, "resonator", o.resonator, {.doc = "the part of the sheet that swings"});
-  describe_group(v, "friction", o.friction, {.doc = "sliding along obstacles"});
+  describe_group(v, "resonator", o.resonator,
+                 {.doc = "what bounds the part of the sheet that swings"});
 }
 
 SoundDetector::SoundDetector(const Sheet& sheet, const DetectionOptions& options)
@@ -33,7 +41,7 @@ SoundDetector::SoundDetector(const Sheet& sheet, const DetectionOptions& options
       options_(options),
       sampler_(sound_grid(sheet.pattern, options.spacing), options.radius),
       flips_(sampler_.grid(), options.flips),
-      slides_(sheet, sampler_.grid(), options.friction) {}
+      slides_(sheet, sampler_.grid()) {}
 
 bool SoundDetector::is_held(const Eigen::Vector2d& place) const {
   return std::any_of(sheet_.handles.begin(), sheet_.handles.end(), [&](const Handle& handle) {
@@ -43,7 +51,7 @@ bool SoundDetector::is_held(const Eigen::Vector2d& place) const {
 }
 
 Resonator SoundDetector::resonator(const std::vector<int>& seeds) {
-  if (parts_.empty()) parts_ = cut_at_creases(grid(), field_, options_.resonator.creases);
+  if (parts_.empty()) parts_ = cut_at_creases(grid(), field_, options_.resonator);
   return find_resonator(grid(), field_, parts_, seeds,
                         [&](const Eigen::Vector2d& place) { return is_held(place); });
 }
@@ -75,8 +83,7 @@ SoundEvent SoundDetector::snap(const FlipCluster& cluster) {
   event.position /= static_cast<double>(cluster.flips.size());
   if (seeds.empty()) return event;
   Resonator found = resonator(seeds);
-  event.kind =
-      found.blocked_share > options_.resonator.crumpled_share ? SoundKind::crac : SoundKind::flap;
+  event.kind = found.blocked_share > kCrumpledShare ? SoundKind::crac : SoundKind::flap;
   event.ruling_length = found.ruling_length;
   event.free_border = found.free_border;
   event.area = found.area;

@@ -15,13 +15,12 @@ namespace geoprior::sound {
 
 /// How what a sheet sounds like is found.
 struct DetectionOptions {
-  double spacing = 3.3e-3;     ///< of the grid: 64 x 90 cells on a sheet of A4 (m)
-  double radius = 4e-3;        ///< over which curvature is smoothed (m)
-  double least_energy = 1e-6;  ///< of a flap or crac (J)
-  bool tears = true;           ///< whether steps of tears are heard
+  double spacing = 3.3e-3;  ///< 64 x 90 cells on a sheet of A4
+  double radius = 4e-3;
+  double least_energy = 1e-6;
+  bool tears = true;
   FlipOptions flips;
-  ResonatorOptions resonator;
-  FrictionOptions friction;
+  CreaseOptions resonator;
 };
 void describe(OptionVisitor& v, DetectionOptions& options);
 

@@ -22,14 +22,17 @@ void describe(OptionVisitor& v, FlipOptions& o) {
   v.value("threshold", o.threshold,
           {.doc = "curvature beyond which a cell has a sign, k_min", .unit = "1/m", .min = 1e-6});
   v.value("sudden", o.sudden,
-          {.doc = "longest time from one threshold to the other", .unit = "s", .min = 1e-6});
+          {.doc = "longest time in which a flip goes from k_min on one side to k_min on the other",
+           .unit = "s",
+           .min = 1e-6});
   v.value("refractory", o.refractory,
           {.doc = "time after a flip in which a cell makes no other", .unit = "s", .min = 0});
   v.value("together", o.together,
-          {.doc = "flips of neighbours that follow the first by less are one event",
+          {.doc = "time after the first flip in which flips of neighbours belong to its event",
            .unit = "s",
            .min = 0});
-  v.value("least_area", o.least_area, {.doc = "of the cells of an event", .unit = "m^2", .min = 0});
+  v.value("least_area", o.least_area,
+          {.doc = "least area of the cells of an event", .unit = "m^2", .min = 0});
 }
 
 FlipDetector::FlipDetector(const SoundGrid& grid, const FlipOptions& options)

@@ -11,11 +11,11 @@ namespace geoprior::sound {
 
 /// When a change of the curvature's sign is sudden enough to be heard.
 struct FlipOptions {
-  double threshold = 5;      ///< curvature beyond which a cell has a sign, k_min (1/m)
-  double sudden = 0.04;      ///< longest time from one threshold to the other (s)
-  double refractory = 0.02;  ///< of a cell (s)
-  double together = 0.02;    ///< flips that follow the first one by less are one event (s)
-  double least_area = 5e-5;  ///< of the cells of an event (m^2)
+  double threshold = 5;
+  double sudden = 0.04;
+  double refractory = 0.02;
+  double together = 0.02;
+  double least_area = 5e-5;
 };
 void describe(OptionVisitor& v, FlipOptions& options);
 

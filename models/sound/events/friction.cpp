@@ -6,19 +6,8 @@ namespace geoprior::sound {
 
 using Eigen::Vector3d;
 
-void describe(OptionVisitor& v, FrictionOptions& o) {
-  v.value("margin", o.margin,
-          {.doc = "distance from an obstacle beyond the contact distance that counts as contact",
-           .unit = "m",
-           .min = 0});
-  v.value("least_speed", o.least_speed,
-          {.doc = "slip speed from which on a place slides", .unit = "m/s", .min = 1e-9});
-  v.value("pause", o.pause, {.doc = "a longer one ends an event", .unit = "s", .min = 0});
-}
-
-SlideDetector::SlideDetector(const Sheet& sheet, const SoundGrid& grid,
-                             const FrictionOptions& options)
-    : sheet_(sheet), grid_(grid), options_(options), courses_(sheet.obstacles.size()) {}
+SlideDetector::SlideDetector(const Sheet& sheet, const SoundGrid& grid)
+    : sheet_(sheet), grid_(grid), courses_(sheet.obstacles.size()) {}
 
 SoundEvent SlideDetector::event_of(const Course& course) const {
   SoundEvent event;
@@ -49,10 +38,10 @@ std::vector<SoundEvent> SlideDetector::push(const SheetField& field) {
       if (!field.inside[static_cast<std::size_t>(c)]) continue;
       const Vector3d place = field.place.row(c);
       const Obstacle::Contact contact = obstacle.contact(place);
-      if (contact.distance > contact_.distance + options_.margin) continue;
+      if (contact.distance > contact_.distance + kSlideMargin) continue;
       const Vector3d relative = field.velocity.row(c).transpose() - contact.velocity;
       const double slip = (relative - relative.dot(contact.normal) * contact.normal).norm();
-      if (slip < options_.least_speed) continue;
+      if (slip < kLeastSlideSpeed) continue;
       const double area = grid_.cell_area();
       const double pressure =
           contact_.stiffness * std::max(0.0, contact_.distance - contact.distance);
@@ -68,7 +57,7 @@ std::vector<SoundEvent> SlideDetector::push(const SheetField& field) {
       continue;
     }
     if (course.sliding.empty()) continue;
-    if (field.time - course.sliding.back().time <= options_.pause) continue;
+    if (field.time - course.sliding.back().time <= kSlidePause) continue;
     ended.push_back(event_of(course));
     course = {};
   }

@@ -23,7 +23,7 @@ bool is_crease(const SoundGrid& grid, const SheetField& field, int cell,
   if (k >= options.fold) return true;
   if (k < options.block) return false;
   const Vector2d ruling = field.ruling.row(cell);
-  const Vector2d across = options.beside * Vector2d(-ruling.y(), ruling.x());
+  const Vector2d across = kBesideCrease * Vector2d(-ruling.y(), ruling.x());
   double sum = 0;
   int count = 0;
   for (const Vector2d& p :
@@ -80,21 +80,23 @@ void describe(OptionVisitor& v, CreaseOptions& o) {
   v.value(
       "block", o.block,
       {.doc = "least curvature of a crease, which blocks vibrations", .unit = "1/m", .min = 1e-6});
-  v.value("contrast", o.contrast,
-          {.doc = "of a crease's curvature to that of the sheet beside it; 0: none is needed",
-           .min = 0,
-           .max = 1000});
+  v.value(
+      "contrast", o.contrast,
+      {.doc =
+           "least ratio of a crease's curvature to that of the sheet beside it; 0: none is needed",
+       .min = 0,
+       .max = 1000});
   v.value("fold", o.fold,
-          {.doc = "curvature that blocks whatever lies beside it", .unit = "1/m", .min = 1e-6});
-  v.value("beside", o.beside,
-          {.doc = "where that is looked at, across the ruling", .unit = "m", .min = 0, .max = 1});
+          {.doc = "curvature that blocks vibrations whatever lies beside it",
+           .unit = "1/m",
+           .min = 1e-6});
   v.value("gap", o.gap,
-          {.doc = "between creases: a narrower one closes; 0: none does",
+          {.doc = "width below which a gap between creases closes; 0: none does",
            .unit = "m",
            .min = 0,
            .max = 1});
   v.value("neck", o.neck,
-          {.doc = "a gap closes if it is narrower than this share of the part on either side",
+          {.doc = "largest width of a gap that closes, over that of the part on either side",
            .min = 0,
            .max = 1});
 }

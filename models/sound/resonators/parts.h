@@ -9,22 +9,25 @@ namespace geoprior::sound {
 
 /// What blocks vibrations.
 struct CreaseOptions {
-  double block = 20;       ///< least curvature of a crease (1/m)
-  double contrast = 1.25;  ///< of a crease to the sheet beside it
-  double fold = 40;        ///< curvature that blocks whatever lies beside it (1/m)
-  double beside = 8e-3;    ///< where that is looked at, across the ruling (m)
-  double gap = 0.01;       ///< between creases: a narrower one closes (m)
-  double neck = 0.5;       ///< if it is narrower than this share of the part on either side
+  double block = 20;
+  double contrast = 1.25;
+  double fold = 40;
+  double gap = 0.01;
+  double neck = 0.5;
 };
+/// How far from a crease, across its ruling, the sheet beside it is looked at: twice the smoothing
+/// of curvature (m).
+inline constexpr double kBesideCrease = 8e-3;
 void describe(OptionVisitor& v, CreaseOptions& options);
 
 /// Cuts a sheet up at its creases: the number of each cell's part, -1 for creases and for cells
 /// outside the sheet.
 ///
 /// A crease is a ridge of |k|: at least `block`, and at least `contrast` times the mean of |k| at
-/// the two places `beside` it, across its ruling; or it is `fold`, whatever lies beside. So a sheet
-/// that is smoothly rolled up has none until its radius is less than 25 mm; with the smoothing over
-/// 4 mm, 20 1/m is a fold of 11 degrees between two flat facets, 40 1/m one of 23.
+/// the two places `kBesideCrease` from it, across its ruling; or it is `fold`, whatever lies
+/// beside. So a sheet that is smoothly rolled up has none until its radius is less than 25 mm; with
+/// the smoothing over 4 mm, 20 1/m is a fold of 11 degrees between two flat facets, 40 1/m one
+/// of 23.
 ///
 /// Creases that are found so have gaps, through which everything would be one part. A gap lets
 /// nothing pass that is longer than twice its width: one of 10 mm stops bending waves of office

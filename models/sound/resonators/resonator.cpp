@@ -103,15 +103,6 @@ double ruling_length(const SoundGrid& grid, const SheetField& field, const std::
 
 }  // namespace
 
-void describe(OptionVisitor& v, ResonatorOptions& o) {
-  describe(v, o.creases);
-  v.value("crumpled_share", o.crumpled_share,
-          {.doc = "share of a resonator's border that is creases, from which on "
-                  "it cracs",
-           .min = 0,
-           .max = 1});
-}
-
 Resonator find_resonator(const SoundGrid& grid, const SheetField& field,
                          const std::vector<int>& parts, const std::vector<int>& seeds,
                          const IsHeld& is_held) {

@@ -10,13 +10,6 @@
 
 namespace geoprior::sound {
 
-/// What a resonator is, and what kind of sound it makes.
-struct ResonatorOptions {
-  CreaseOptions creases;
-  double crumpled_share = 0.5;  ///< of its border that is creases, from which on a resonator cracs
-};
-void describe(OptionVisitor& v, ResonatorOptions& options);
-
 /// The part of a sheet that swings freely after an event (thesis 3.2.3, Figure 3.18).
 struct Resonator {
   std::vector<int> cells;    ///< ascending

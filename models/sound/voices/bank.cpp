@@ -19,6 +19,11 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kLeak = 5e-3;  // m: border that a resonator without free border radiates by
 
+// What resonators of sheets up to A3 have: lengths along rulings, free borders (m), speeds of
+// slipping (m/s).
+constexpr double kLeastRuling = 5e-3, kMostRuling = 0.3, kMostBorder = 0.6;
+constexpr double kLeastSpeed = 0.01, kMostSpeed = 2;
+
 double uniform(RandomStream& random, double low, double high) {
   return low + (high - low) * random.uniform();
 }
@@ -34,11 +39,11 @@ std::vector<double> ratios(double low, double high, int count) {
 }
 
 /// Panels that the descriptors may belong to: they do not say how it is held.
-std::vector<SoundPanel> panels_of(double l_r, double l_c, const BankOptions& options) {
+std::vector<SoundPanel> panels_of(double l_r, double l_c) {
   using enum BeamEnds;
   const auto panel = [&](double width, BeamEnds along, BeamEnds across) {
     return SoundPanel{.length = l_r,
-                      .width = std::max(width, options.least_width),
+                      .width = std::max(width, kLeastPanelWidth),
                       .along = along,
                       .across = across};
   };
@@ -48,7 +53,7 @@ std::vector<SoundPanel> panels_of(double l_r, double l_c, const BankOptions& opt
     for (const double aspect : {2 / 3.0, 1.5, 3.0})
       all.push_back(panel(aspect * l_r, clamped_clamped, clamped_clamped));
   }
-  if (l_c < options.least_ruling / 2) return all;
+  if (l_c < kLeastRuling / 2) return all;
   constexpr double kMargin = 1.2;  // below, the width would be next to nothing
   // Between two creases, rulings that end at free borders on both sides, or on one.
   all.push_back(panel(l_c / 2, free_free, clamped_clamped));
@@ -60,9 +65,8 @@ std::vector<SoundPanel> panels_of(double l_r, double l_c, const BankOptions& opt
 }
 
 /// One of them, another one for each variant; a half or more of it flips in either direction.
-SoundPanel panel_of(double l_r, double l_c, int variant, const BankOptions& options,
-                    RandomStream& random) {
-  const std::vector<SoundPanel> all = panels_of(l_r, l_c, options);
+SoundPanel panel_of(double l_r, double l_c, int variant, RandomStream& random) {
+  const std::vector<SoundPanel> all = panels_of(l_r, l_c);
   SoundPanel panel = all[static_cast<std::size_t>(variant) % all.size()];
   const auto flips = [&](double& from, double& to) {
     const double share = uniform(random, 0.5, 1);
@@ -121,7 +125,7 @@ void add_crackles(const BankOptions& options, const PaperMaterial& material, int
   }
   for (const double e : energy) {
     const double size = uniform(random, 5e-3, 20e-3);
-    const SoundPanel facet = panel_of(size, 0, 0, options, random);
+    const SoundPanel facet = panel_of(size, 0, 0, random);
     add_snap(facet, uniform(random, 5e-5, 2e-4), std::sqrt(options.crackles * e / sum),
              kSpread * random.uniform(), options, material, rate, random, out);
   }
@@ -145,7 +149,7 @@ Eigen::VectorXd snap(BankSound& sound, int variant, const BankOptions& options,
                      const PaperMaterial& material, int rate, RandomStream& random) {
   const bool flaps = sound.kind == SoundKind::flap;
   const double crackles = flaps ? options.crackles : 0;
-  SoundPanel panel = panel_of(sound.ruling_length, sound.free_border, variant, options, random);
+  SoundPanel panel = panel_of(sound.ruling_length, sound.free_border, variant, random);
   panel.bow = (flaps ? options.flap_bow : options.crac_bow) * random.uniform();
   describe_panel(panel, sound);
   const double tau = flaps ? uniform(random, 1e-3, 3e-3) : uniform(random, 5e-5, 2e-4);
@@ -156,11 +160,10 @@ Eigen::VectorXd snap(BankSound& sound, int variant, const BankOptions& options,
 }
 
 /// Noise of a band, by a two-pole filter run twice round: it repeats without a seam.
-Eigen::VectorXd friction(double speed, const BankOptions& options, int rate, RandomStream& random) {
+Eigen::VectorXd friction(double speed, int rate, RandomStream& random) {
   constexpr double kLength = 1.0;  // s
   const auto n = static_cast<Eigen::Index>(kLength * rate);
-  const double share =
-      std::log(speed / options.least_speed) / std::log(options.most_speed / options.least_speed);
+  const double share = std::log(speed / kLeastSpeed) / std::log(kMostSpeed / kLeastSpeed);
   const double centre = 1200 * std::pow(3.0, std::clamp(share, 0.0, 1.0));
   Eigen::VectorXd noise(n), out = Eigen::VectorXd::Zero(n);
   for (Eigen::Index i = 0; i < n; ++i) noise[i] = random.normal();
@@ -192,7 +195,7 @@ Eigen::VectorXd tear(const BankOptions& options, const PaperMaterial& material, 
   const int fibres = 2 + static_cast<int>(random.below(5));
   for (int i = 0; i < fibres; ++i) {
     const double size = uniform(random, 3e-3, 8e-3);
-    const SoundPanel facet = panel_of(size, 2 * size, 0, options, random);
+    const SoundPanel facet = panel_of(size, 2 * size, 0, random);
     add_snap(facet, uniform(random, 3e-5, 1e-4), 1 / std::sqrt(fibres), 8e-3 * random.uniform(),
              options, material, rate, random, out);
   }
@@ -218,24 +221,20 @@ std::vector<int> SoundBank::of(SoundKind kind) const {
 }
 
 void describe(OptionVisitor& v, BankOptions& o) {
-  v.value("sizes", o.sizes, {.doc = "of l_r and of l_c each", .min = 1, .max = 64});
+  v.value("sizes", o.sizes,
+          {.doc = "lengths l_r along rulings in the bank, and as many lengths l_c of free border",
+           .min = 1,
+           .max = 64});
   v.value("variants", o.variants,
-          {.doc = "of flaps, and of cracs, for each pair of sizes", .min = 1, .max = 64});
-  v.value("least_ruling", o.least_ruling,
-          {.doc = "smallest l_r", .unit = "m", .min = 1e-4, .max = 10});
-  v.value("most_ruling", o.most_ruling,
-          {.doc = "largest l_r", .unit = "m", .min = 1e-4, .max = 10});
-  v.value("most_border", o.most_border,
-          {.doc = "largest l_c", .unit = "m", .min = 1e-4, .max = 10});
-  v.value("speeds", o.speeds, {.doc = "of friction, eight variants each", .min = 1, .max = 64});
-  v.value("least_speed", o.least_speed,
-          {.doc = "of friction", .unit = "m/s", .min = 1e-6, .max = 100});
-  v.value("most_speed", o.most_speed,
-          {.doc = "of friction", .unit = "m/s", .min = 1e-6, .max = 100});
-  v.value("tears", o.tears, {.doc = "sounds of a step of a tear", .min = 1, .max = 1024});
-  v.value("damping", o.damping, {.doc = "loss factor eta of paper", .min = 1e-4, .max = 1});
-  v.value("least_width", o.least_width,
-          {.doc = "of a panel across its rulings", .unit = "m", .min = 1e-4, .max = 1});
+          {.doc = "flaps, and as many cracs, in the bank for each pair of lengths",
+           .min = 1,
+           .max = 64});
+  v.value("speeds", o.speeds,
+          {.doc = "speeds of friction in the bank, eight variants each", .min = 1, .max = 64});
+  v.value("tears", o.tears,
+          {.doc = "sounds of a step of a tear in the bank", .min = 1, .max = 1024});
+  v.value("damping", o.damping,
+          {.doc = "loss factor eta of the paper of the bank", .min = 1e-4, .max = 1});
   v.value("flap_bow", o.flap_bow,
           {.doc = "largest curvature of a flap's panel", .unit = "1/m", .min = 0, .max = 1000});
   v.value("crac_bow", o.crac_bow,
@@ -244,20 +243,20 @@ void describe(OptionVisitor& v, BankOptions& o) {
           {.doc = "share of a flap's energy in snaps of small facets that follow it",
            .min = 0,
            .max = 0.99});
-  v.value("highest", o.highest,
-          {.doc = "frequency of a mode", .unit = "Hz", .min = 100, .max = 20000});
-  v.value("most_modes", o.most_modes, {.doc = "of a sound", .min = 1, .max = 100000});
+  v.value(
+      "highest", o.highest,
+      {.doc = "highest frequency of a mode in the bank", .unit = "Hz", .min = 100, .max = 20000});
+  v.value("most_modes", o.most_modes,
+          {.doc = "modes of a sound of the bank, those of most energy", .min = 1, .max = 100000});
 }
 
 SoundBank generate_bank(const PaperMaterial& material, const BankOptions& options,
                         std::uint64_t seed) {
   SoundBank bank;
-  const std::vector<double> rulings =
-      ratios(options.least_ruling, options.most_ruling, options.sizes);
+  const std::vector<double> rulings = ratios(kLeastRuling, kMostRuling, options.sizes);
   std::vector<double> borders{0};
   if (options.sizes > 1) {
-    const std::vector<double> more =
-        ratios(options.least_ruling, options.most_border, options.sizes - 1);
+    const std::vector<double> more = ratios(kLeastRuling, kMostBorder, options.sizes - 1);
     borders.insert(borders.end(), more.begin(), more.end());
   }
   for (const double l_r : rulings) {
@@ -268,7 +267,7 @@ SoundBank generate_bank(const PaperMaterial& material, const BankOptions& option
     }
   }
   constexpr int kVariantsOfFriction = 8;
-  for (const double speed : ratios(options.least_speed, options.most_speed, options.speeds)) {
+  for (const double speed : ratios(kLeastSpeed, kMostSpeed, options.speeds)) {
     for (int i = 0; i < kVariantsOfFriction; ++i) {
       bank.sounds.push_back({SoundKind::friction, 0, 0, speed});
     }
@@ -289,7 +288,7 @@ SoundBank generate_bank(const PaperMaterial& material, const BankOptions& option
           samples = snap(sound, variant, options, material, rate, random);
           break;
         case SoundKind::friction:
-          samples = friction(sound.speed, options, rate, random);
+          samples = friction(sound.speed, rate, random);
           break;
         case SoundKind::tear:
           samples = tear(options, material, rate, random);

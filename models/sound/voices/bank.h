@@ -62,22 +62,20 @@ struct SoundBank {
   [[nodiscard]] std::vector<int> of(SoundKind kind) const;
 };
 
+inline constexpr double kLeastPanelWidth = 3e-3;  ///< of the bank, across the rulings (m)
+
 /// How a bank is generated. Nothing is recorded: docs/methods/sound.md has the physics.
 struct BankOptions {
-  int sizes = 8;                                  ///< of l_r and of l_c each
-  int variants = 2;                               ///< of flaps and of cracs for each pair
-  double least_ruling = 5e-3, most_ruling = 0.3;  ///< l_r (m)
-  double most_border = 0.6;                       ///< l_c (m)
-  int speeds = 8;                                 ///< of friction
-  double least_speed = 0.01, most_speed = 2;      ///< m/s
+  int sizes = 8;
+  int variants = 2;
+  int speeds = 8;
   int tears = 16;
-  double damping = 0.03;      ///< loss factor eta
-  double least_width = 3e-3;  ///< of a panel (m)
-  double flap_bow = 10;       ///< largest curvature of a flap's panel (1/m)
-  double crac_bow = 25;       ///< of a crac's
-  double crackles = 0;        ///< share of a flap's energy in snaps of facets that follow it
-  double highest = 16000;     ///< Hz
-  int most_modes = 150;       ///< of a sound, those of most energy
+  double damping = 0.03;
+  double flap_bow = 10;
+  double crac_bow = 25;
+  double crackles = 0;
+  double highest = 16000;
+  int most_modes = 150;
 };
 void describe(OptionVisitor& v, BankOptions& options);
 

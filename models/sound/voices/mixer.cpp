@@ -121,20 +121,25 @@ double true_peak(const Eigen::Ref<const Eigen::VectorXd>& x) {
 
 void describe(OptionVisitor& v, MixOptions& o) {
   v.value("sample_rate", o.sample_rate,
-          {.doc = "44100 or 48000", .unit = "Hz", .min = 44100, .max = 48000});
-  v.value("stereo", o.stereo, {.doc = "two ears, else one between them"});
-  v.value("listener", o.listener, {.doc = "middle of the ears", .unit = "m"});
+          {.doc = "samples of the sound file in a second: 44100 or 48000",
+           .unit = "Hz",
+           .min = 44100,
+           .max = 48000});
+  v.value("stereo", o.stereo, {.doc = "whether two ears hear the sheet, or one between them"});
+  v.value("listener", o.listener, {.doc = "middle of the listener's ears", .unit = "m"});
   v.value("right", o.right, {.doc = "direction from the left ear to the right one"});
-  v.value("ears", o.ears, {.doc = "distance of the ears", .unit = "m", .min = 0, .max = 10});
+  v.value("ears", o.ears,
+          {.doc = "distance of the listener's ears", .unit = "m", .min = 0, .max = 10});
   v.value("wall", o.wall, {.doc = "whether a wall or a table throws sound back"});
-  v.value("wall_point", o.wall_point, {.doc = "a point of it", .unit = "m"});
-  v.value("wall_normal", o.wall_normal, {.doc = "its normal, of any length"});
+  v.value("wall_point", o.wall_point, {.doc = "a point of the wall", .unit = "m"});
+  v.value("wall_normal", o.wall_normal, {.doc = "normal of the wall, of any length"});
   v.value("reflection", o.reflection,
-          {.doc = "share of the pressure that it throws back", .min = -1, .max = 1});
+          {.doc = "share of the pressure that the wall throws back", .min = -1, .max = 1});
   v.value("full_scale", o.full_scale,
           {.doc = "pressure that the largest sample stands for", .unit = "Pa", .min = 1e-9});
-  v.value("highest_peak", o.highest_peak,
-          {.doc = "true peak that the result stays under", .unit = "dBFS", .min = -120, .max = 0});
+  v.value(
+      "highest_peak", o.highest_peak,
+      {.doc = "true peak that the whole sound stays under", .unit = "dBFS", .min = -120, .max = 0});
 }
 
 Eigen::VectorXd heard_alone(const Voice& voice, int sample_rate) {

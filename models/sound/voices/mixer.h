@@ -11,17 +11,17 @@ namespace geoprior::sound {
 
 /// Where the sound is heard, and how it is written down.
 struct MixOptions {
-  int sample_rate = 48000;  ///< 44100 or 48000 Hz
+  int sample_rate = 48000;
   bool stereo = true;
-  std::array<double, 3> listener{0, -0.6, 0.4};  ///< middle of the ears (m)
-  std::array<double, 3> right{1, 0, 0};          ///< from the left ear to the right one
-  double ears = 0.18;                            ///< apart (m)
-  bool wall = true;                              ///< reflects: a table, a wall
-  std::array<double, 3> wall_point{0, 0, -0.3};  ///< a point of it (m)
+  std::array<double, 3> listener{0, -0.6, 0.4};
+  std::array<double, 3> right{1, 0, 0};
+  double ears = 0.18;
+  bool wall = true;
+  std::array<double, 3> wall_point{0, 0, -0.3};
   std::array<double, 3> wall_normal{0, 0, 1};
-  double reflection = 0.5;   ///< share of the pressure that it throws back
-  double full_scale = 0.2;   ///< pressure that the largest sample stands for (Pa)
-  double highest_peak = -1;  ///< true peak that the result stays under (dBFS)
+  double reflection = 0.5;
+  double full_scale = 0.2;
+  double highest_peak = -1;
 };
 void describe(OptionVisitor& v, MixOptions& options);
 
