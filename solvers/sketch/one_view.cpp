@@ -182,8 +182,7 @@ std::string name_of_patch(const CurveNet& net, const RuledPatch& patch) {
 }
 
 /// Fills the patches and welds them.
-void fill_patches(const View& view, const std::vector<DrawnPanel>& panels,
-                  const OneViewOptions& options, OneViewResult& result) {
+void fill_patches(const View& view, const std::vector<DrawnPanel>& panels, OneViewResult& result) {
   SurfaceBuilder builder(result);
   const Eigen::MatrixX3d& nodes = result.depth.nodes;
   for (const RuledPatch& ruled : result.rulings) {
@@ -250,7 +249,7 @@ OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& optio
     result.depth = result.refined->solution;
     result.planes.chosen = result.refined->plane;
   }
-  fill_patches(view, panels, options, result);
+  fill_patches(view, panels, result);
   if (!options.mirror || result.surface.mesh.F.rows() == 0) return result;
   const auto [positive, negative] = visible_lengths(result);
   result.kept_positive = positive >= (1 - kEvenHalves) * negative;
