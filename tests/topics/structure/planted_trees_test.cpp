@@ -138,13 +138,18 @@ TEST_F(PlantedTree, MethodsWithoutHeaderAreFound) {
   plant("baselines/paper/parts/visual_hull.h", {});
   plant("baselines/paper/re_scatter.cpp", {});
   plant("solvers/paper/drawing/one_view.h", {});
+  plant("experiments/paper/flattened.h", {});
+  plant("experiments/paper/scene/lloyd.h", {});
   EXPECT_THAT(methods_without_header(tree(), {{"paper", "adaptive", true},
                                               {"paper", "visual-hull", true},
                                               {"paper", "re-scatter", true},
+                                              {"paper", "flattened", true},
+                                              {"paper", "lloyd", true},
                                               {"paper", "one-view", false},
                                               {"paper", "adaptive", false}}),
               ElementsAre("paper/visual-hull: no baselines/paper/visual_hull.h",
                           "paper/re-scatter: no baselines/paper/re_scatter.h",
+                          "paper/lloyd: no baselines/paper/lloyd.h",
                           "paper/adaptive: no solvers/paper/adaptive.h"));
 }
 

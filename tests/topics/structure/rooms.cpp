@@ -127,7 +127,8 @@ std::vector<std::string> methods_without_header(const SourceTree& tree,
     const bool found =
         method.is_baseline
             ? tree.headers.contains(folder + name + ".h") ||
-                  tree.headers.contains(folder + name + header)
+                  tree.headers.contains(folder + name + header) ||
+                  tree.headers.contains("experiments/" + method.topic + header)
             : std::any_of(tree.headers.begin(), tree.headers.end(), [&](const std::string& path) {
                 return path.starts_with(folder) && path.ends_with(header);
               });

@@ -29,7 +29,8 @@ struct MethodName {
 };
 
 /// Methods without a header of their name (- as _): baselines/<topic>/<name>.h or
-/// baselines/<topic>/<name>/<name>.h, and anywhere below solvers/<topic> for a method.
+/// baselines/<topic>/<name>/<name>.h for a baseline, or experiments/<topic>/<name>.h where it is
+/// the method itself with one of its steps exchanged; anywhere below solvers/<topic> for a method.
 std::vector<std::string> methods_without_header(const SourceTree& tree,
                                                 const std::vector<MethodName>& methods);
 
