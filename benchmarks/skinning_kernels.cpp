@@ -94,8 +94,7 @@ Pose curled(const Skeleton& skeleton) {
 /// Source and destination of a copy that moves `bytes` in all.
 class Copy {
  public:
-  explicit Copy(double bytes)
-      : from_(static_cast<std::size_t>(bytes / 16), 1.0), to_(from_.size(), 0.0) {}
+  explicit Copy(double bytes) : from_(bytes / 16, 1.0), to_(from_.size(), 0.0) {}
   void run() {
     constexpr std::size_t kBlock = 2048;
     parallel_blocks(from_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
@@ -103,9 +102,7 @@ class Copy {
         lanes::stream(from_.data() + begin, to_.data() + begin, end - begin);
         lanes::stream_fence();
       } else {
-        std::copy(from_.begin() + static_cast<std::ptrdiff_t>(begin),
-                  from_.begin() + static_cast<std::ptrdiff_t>(end),
-                  to_.begin() + static_cast<std::ptrdiff_t>(begin));
+        std::copy(from_.begin() + begin, from_.begin() + end, to_.begin() + begin);
       }
       benchmark::ClobberMemory();
     });

@@ -74,7 +74,7 @@ Eigen::Index Part::count(NamedArray::On on) const {
     return product;
   }
   if (of_points || kind == Kind::points) return points.rows();
-  return kind == Kind::triangles ? triangles.rows() : static_cast<Eigen::Index>(lines.size());
+  return kind == Kind::triangles ? triangles.rows() : std::ssize(lines);
 }
 
 const NamedArray* Part::find_array(std::string_view name) const {

@@ -27,8 +27,7 @@ void with_threads(int threads, const std::function<void()>& body) {
     body();
     return;
   }
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(threads));
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(threads);
   arena.execute(body);
 }

@@ -35,7 +35,7 @@ void StateReader::require_size(Eigen::Index rows, Eigen::Index cols, std::size_t
     throw Error("holds a matrix of another shape", "checkpoint", "an unharmed one");
   }
   const std::size_t left = (state_.size() - at_) / scalar;
-  if (cols > 0 && static_cast<std::size_t>(rows) > left / static_cast<std::size_t>(cols)) {
+  if (cols > 0 && static_cast<std::size_t>(rows) > left / cols) {
     throw ends_early();
   }
 }

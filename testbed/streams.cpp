@@ -56,7 +56,7 @@ void reserve_standard_streams() {
   for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
     if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
     // `open` takes the lowest free descriptor: this one, as those below are taken.
-    if (::open("/dev/null", kModes[static_cast<std::size_t>(stream)]) != stream) ::_exit(2);
+    if (::open("/dev/null", kModes[stream]) != stream) ::_exit(2);
   }
 }
 

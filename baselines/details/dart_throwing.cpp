@@ -93,10 +93,10 @@ class DartThrowing final : public DetailMethod {
         room[t] = now_.mesh.triangle_alive(static_cast<int>(t)) && has_room(static_cast<int>(t));
     });
     std::vector<Dart> darts;
-    for (std::size_t t = 0; t < room.size(); ++t) {
+    for (int t = 0; t < std::ssize(room); ++t) {
       if (room[t] == 0) continue;
       Dart dart;
-      dart.triangle = static_cast<int>(t);
+      dart.triangle = t;
       dart.corner = now_.mesh.corners(dart.triangle);
       darts.push_back(dart);
     }

@@ -68,7 +68,7 @@ class ReScatter final : public DetailMethod {
     ++now_.frame;
     bool moved = false;
     for (std::size_t v = 0; v < now_.x.size(); ++v) {
-      const Eigen::Vector3d x = V.row(static_cast<Eigen::Index>(v)).transpose();
+      const Eigen::Vector3d x = V.row(v).transpose();
       moved = moved || now_.x[v] != x;
       now_.x[v] = x;
     }
@@ -79,8 +79,8 @@ class ReScatter final : public DetailMethod {
   [[nodiscard]] std::vector<double> partial_sums() const {
     std::vector<double> sums(now_.surface->face.size());
     double sum = 0;
-    for (std::size_t f = 0; f < sums.size(); ++f) {
-      const int face = static_cast<int>(f);
+    for (int f = 0; f < std::ssize(sums); ++f) {
+      const int face = f;
       sum += density_.at(face) * area_of_face(face, *now_.surface, now_.x);
       sums[f] = sum;
     }

@@ -43,11 +43,10 @@ double AngleDefectEnergy::operator()(const Eigen::MatrixX3d& x, Eigen::MatrixX3d
     at_vertex_(v) = defect * defect;
     for (const int c : stars_.corners().of(v)) derivatives_.by_angle(c) = -2 * defect;
   };
-  parallel_blocks(static_cast<std::size_t>(stars_.vertex_count()), kDefectsTogether,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t i = begin; i < end; ++i)
-                      if (stars_.interior(static_cast<int>(i))) add_star(static_cast<int>(i));
-                  });
+  parallel_blocks(stars_.vertex_count(), kDefectsTogether, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (stars_.interior(static_cast<int>(i))) add_star(static_cast<int>(i));
+  });
   const Eigen::MatrixX3d moved = x - start_;
   if (gradient != nullptr) {
     stars_.gradient(derivatives_, *gradient);

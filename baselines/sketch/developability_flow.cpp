@@ -32,13 +32,12 @@ double HingeEnergy::operator()(const Eigen::MatrixX3d& x, Eigen::MatrixX3d* grad
   derivatives_.by_angle.setZero(stars_.corner_count());
   derivatives_.by_normal.setZero(3, stars_.corner_count());
   at_vertex_.setZero(stars_.vertex_count());
-  parallel_blocks(static_cast<std::size_t>(stars_.vertex_count()), kHingesTogether,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t i = begin; i < end; ++i) {
-                      const int v = static_cast<int>(i);
-                      if (stars_.interior(v)) at_vertex_(v) = add_vertex(v);
-                    }
-                  });
+  parallel_blocks(stars_.vertex_count(), kHingesTogether, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const int v = static_cast<int>(i);
+      if (stars_.interior(v)) at_vertex_(v) = add_vertex(v);
+    }
+  });
   if (gradient != nullptr) stars_.gradient(derivatives_, *gradient);
   return at_vertex_.sum();
 }

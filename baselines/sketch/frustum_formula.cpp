@@ -25,13 +25,13 @@ struct DrawnEllipse {
 std::vector<DrawnEllipse> drawn_ellipses(const View& view) {
   std::vector<DrawnEllipse> drawn;
   const bool arcs = !strokes_of(view, StrokeKind::arc).empty();
-  for (std::size_t i = 0; i < view.strokes.size(); ++i) {
+  for (int i = 0; i < std::ssize(view.strokes); ++i) {
     const Stroke& stroke = view.strokes[i];
     const bool rim =
         arcs ? stroke.kind == StrokeKind::arc : stroke.kind == StrokeKind::border && stroke.closed;
     if (!rim) continue;
     const EllipseFit fit = fit_ellipse(stroke.points, "stroke '" + stroke.id + "'");
-    drawn.push_back({static_cast<int>(i), fit.ellipse});
+    drawn.push_back({i, fit.ellipse});
   }
   if (drawn.size() < 2) {
     throw Error("has " + std::to_string(drawn.size()) + " circles", "view:photo",
@@ -73,13 +73,12 @@ Part formula_strokes(const std::vector<EllipseCircle>& circles, const View& view
       stroke.push_back(circle.stroke);
       drawn_at.push_back(static_cast<double>(i));
     }
-    if (view.strokes[static_cast<std::size_t>(circle.stroke)].closed) line.push_back(line.front());
+    if (view.strokes[circle.stroke].closed) line.push_back(line.front());
     part.lines.push_back(std::move(line));
   }
-  const auto n = static_cast<Eigen::Index>(points.size());
+  const Eigen::Index n = points.size();
   part.points.resize(n, 3);
-  for (Eigen::Index i = 0; i < n; ++i)
-    part.points.row(i) = points[static_cast<std::size_t>(i)].transpose();
+  for (Eigen::Index i = 0; i < n; ++i) part.points.row(i) = points[i].transpose();
   using On = NamedArray::On;
   part.arrays = {{"stroke", "1", On::points, Eigen::Map<Eigen::VectorXd>(stroke.data(), n)},
                  {"drawn_at", "1", On::points, Eigen::Map<Eigen::VectorXd>(drawn_at.data(), n)}};
@@ -93,7 +92,7 @@ Part formula_surface(const std::vector<EllipseCircle>& circles, int around) {
   part.points.resize(Eigen::Index{row} * rows, 3);
   part.triangles.resize(Eigen::Index{2} * around * (rows - 1), 3);
   for (int r = 0; r < rows; ++r) {
-    const std::vector<Eigen::Vector3d>& points = circles[static_cast<std::size_t>(r)].points;
+    const std::vector<Eigen::Vector3d>& points = circles[r].points;
     for (int k = 0; k <= around; ++k) {
       const double at = static_cast<double>(points.size() - 1) * k / around;
       const auto i = std::min(static_cast<std::size_t>(at), points.size() - 2);
@@ -161,8 +160,7 @@ std::vector<EllipseCircle> frustum_formula(const View& view, const FrustumFormul
       const double phi = (tilt(before) + tilt(ellipse)) / 2;
       if (!(phi > kLeastTilt)) {
         throw Error("circles are seen along their axis, and depth is not determined",
-                    "stroke '" + view.strokes[static_cast<std::size_t>(drawn[k].stroke)].id + "'",
-                    "a view from the side");
+                    "stroke '" + view.strokes[drawn[k].stroke].id + "'", "a view from the side");
       }
       z += depth * (ellipse.centre - before.centre).norm() / std::tan(phi);
     }
@@ -173,7 +171,7 @@ std::vector<EllipseCircle> frustum_formula(const View& view, const FrustumFormul
     circle.axis =
         axis_along(ellipse, drawn[next].ellipse.centre - drawn[last].ellipse.centre, depth);
     circle.radius = ellipse.major;
-    for (const Eigen::Vector2d& p : view.strokes[static_cast<std::size_t>(circle.stroke)].points) {
+    for (const Eigen::Vector2d& p : view.strokes[circle.stroke].points) {
       const Eigen::Vector2d foot = ellipse.point(ellipse.anomaly(p));
       circle.points.push_back(on_plane(circle, foot));
     }

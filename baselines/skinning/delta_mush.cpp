@@ -62,7 +62,7 @@ DeltaMush::DeltaMush(const RiggedMesh& rig, const DeltaMushOptions& options)
     : blend_(rig), options_(options) {
   if (options.iterations < 0) throw Error("delta mush iterations are negative", "", ">= 0");
   if (!(options.step >= 0 && options.step <= 1)) throw Error("delta mush step", "", "0 to 1");
-  const auto n = static_cast<std::size_t>(rig.mesh.vertex_count());
+  const std::size_t n = rig.mesh.vertex_count();
   current_.resize(n);
   next_.resize(n);
   detail_.resize(n);
@@ -80,7 +80,7 @@ DeltaMush::DeltaMush(const RiggedMesh& rig, const DeltaMushOptions& options)
   load(rig.mesh.V);
   smooth();
   for (std::size_t v = 0; v < n; ++v) {
-    const auto row = static_cast<Eigen::Index>(v);
+    const Eigen::Index row = v;
     const Point& s = current_[v];
     rest_offset_[v] = {rig.mesh.V(row, 0) - s.x, rig.mesh.V(row, 1) - s.y, rig.mesh.V(row, 2) - s.z,
                        0};
@@ -139,8 +139,7 @@ void DeltaMush::build_frames() {
     }
     const LocalFrame frame = orthonormal(along, across);
     if (!frame.valid) {
-      std::fill(frame_weight_.begin() + static_cast<std::ptrdiff_t>(begin),
-                frame_weight_.begin() + static_cast<std::ptrdiff_t>(end), FrameWeight{0, 0});
+      std::fill(frame_weight_.begin() + begin, frame_weight_.begin() + end, FrameWeight{0, 0});
       continue;
     }
     const Eigen::Vector3d offset(rest_offset_[v].x, rest_offset_[v].y, rest_offset_[v].z);
@@ -151,7 +150,7 @@ void DeltaMush::build_frames() {
 void DeltaMush::load(const Eigen::MatrixX3d& V) {
   parallel_blocks(current_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const auto row = static_cast<Eigen::Index>(v);
+      const Eigen::Index row = v;
       current_[v] = {V(row, 0), V(row, 1), V(row, 2), 0};
     }
   });
@@ -167,7 +166,7 @@ void DeltaMush::smooth() {
         Double4 sum = lanes::all(0);
         for (std::uint32_t i = first; i < last; ++i) sum += lanes::load(&points[ring_[i]].x);
         // p + step (mean of the ring - p), with pull = step / size.
-        const auto size = static_cast<double>(last - first);
+        const double size = last - first;
         lanes::store(&next_[v].x, p + lanes::all(pull_[v]) * (sum - lanes::all(size) * p));
       }
     });
@@ -193,7 +192,7 @@ void DeltaMush::deform(const Pose& pose, Eigen::MatrixX3d& posed) {
       const LocalFrame frame =
           orthonormal({along4[0], along4[1], along4[2]}, {across4[0], across4[1], across4[2]});
       const Eigen::Vector3d s(p[0], p[1], p[2]);
-      const auto row = static_cast<Eigen::Index>(v);
+      const Eigen::Index row = v;
       if (frame.valid) {
         const Point& d = detail_[v];
         posed.row(row) = s + d.x * frame.t + d.y * frame.b + d.z * frame.n;

@@ -131,7 +131,7 @@ struct Observation {
 Observation observe(const Eigen::MatrixX2d& pattern, const std::vector<Hinge>& hinges,
                     const Patch& patch) {
   Observation seen;
-  const auto n = static_cast<Eigen::Index>(patch.edges().size());
+  const Eigen::Index n = patch.edges().size();
   seen.rows.resize(n, 3);
   if (n == 0) return seen;
   seen.from_affine = affine_frame(pattern, patch);
@@ -162,7 +162,7 @@ Columns3 fitted(const std::vector<Hinge>& hinges, const Patch& patch, const Obse
 /// triangles at its edge, as curvature across the edge.
 Columns3 folds(const Eigen::MatrixX2d& pattern, const std::vector<Hinge>& hinges,
                const Patch& patch) {
-  Columns3 coefficients(3, static_cast<Eigen::Index>(patch.edges().size()));
+  Columns3 coefficients(3, patch.edges().size());
   for (Eigen::Index i = 0; i < coefficients.cols(); ++i) {
     const Hinge& h = hinges[patch.edges()[i]];
     const Eigen::Vector2d edge = (pattern.row(h.b) - pattern.row(h.a)).normalized();
@@ -203,7 +203,7 @@ CurvatureEstimate estimate_curvature(const Eigen::MatrixX2d& pattern,
   result.rank = seen.rank;
   result.terms.reserve(patch.edges().size());
   for (std::size_t i = 0; i < patch.edges().size(); ++i)
-    result.terms.push_back({patch.edges()[i], coefficients.col(static_cast<Eigen::Index>(i))});
+    result.terms.push_back({patch.edges()[i], coefficients.col(i)});
   return result;
 }
 

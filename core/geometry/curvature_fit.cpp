@@ -64,7 +64,7 @@ std::vector<Hinge> find_hinges(const Eigen::MatrixX3i& F,
   }
   std::vector<Hinge> hinges;
   of_triangle.assign(F.rows(), {-1, -1, -1});
-  for (int t = 0; t < static_cast<int>(F.rows()); ++t)
+  for (int t = 0; t < F.rows(); ++t)
     for (int k = 0; k < 3; ++k) {
       const int opposite = connectivity.twin(3 * t + k);
       if (opposite < 0 || opposite / 3 < t) continue;
@@ -87,7 +87,7 @@ struct Assembly {
   const std::vector<CurvatureEstimate>& estimates;
 
   [[nodiscard]] Terms terms(int triangle) const {
-    const auto t = static_cast<std::size_t>(triangle);
+    const std::size_t t = triangle;
     if (fit.rank[t] < 3) return estimates[t].terms;
     Terms sum;
     sum.reserve(CurvatureFit::kMostTerms);
@@ -110,7 +110,7 @@ struct Assembly {
 
   /// l alpha n n' / A of one edge.
   void add_edge(Terms& sum, int triangle, int k) const {
-    const auto t = static_cast<std::size_t>(triangle);
+    const std::size_t t = triangle;
     const int a = triangles(triangle, k), b = triangles(triangle, (k + 1) % 3);
     const Eigen::Vector2d edge = pattern.row(b) - pattern.row(a);
     const Eigen::Vector2d normal(-edge.y(), edge.x());
@@ -213,10 +213,10 @@ Eigen::MatrixX3d shape_operators(const CurvatureFit& fit, const Eigen::MatrixX3d
   std::vector<double> angle;
   angle.reserve(fit.hinges.size());
   for (const Hinge& h : fit.hinges) angle.push_back(dihedral_angle(x, h));
-  Eigen::MatrixX3d S = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(fit.terms.size()), 3);
+  Eigen::MatrixX3d S = Eigen::MatrixX3d::Zero(fit.terms.size(), 3);
   for (std::size_t t = 0; t < fit.terms.size(); ++t)
     for (const CurvatureFit::Term& term : fit.terms[t])
-      S.row(static_cast<Eigen::Index>(t)) += term.coefficient.transpose() * angle[term.hinge];
+      S.row(t) += term.coefficient.transpose() * angle[term.hinge];
   return S;
 }
 

@@ -98,9 +98,9 @@ Eigen::MatrixX3i triangles_inside(const Triangulation& t) {
     triangles.emplace_back(face->vertex(0)->info(), face->vertex(1)->info(),
                            face->vertex(2)->info());
   }
-  Eigen::MatrixX3i result(static_cast<Eigen::Index>(triangles.size()), 3);
+  Eigen::MatrixX3i result(triangles.size(), 3);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    result.row(static_cast<Eigen::Index>(i)) = triangles[i];
+    result.row(i) = triangles[i];
   }
   return result;
 }

@@ -117,7 +117,7 @@ Joint joint_on_x_axis(const std::string& name, int parent, double head, double t
 template <class Step>
 SkinWeights chain_weights(const Eigen::MatrixX3d& V, int joints, const Step& step) {
   std::vector<Eigen::Triplet<double>> entries;
-  for (int v = 0; v < static_cast<int>(V.rows()); ++v) {
+  for (int v = 0; v < V.rows(); ++v) {
     double reached = 1;
     for (int j = 0; j < joints; ++j) {
       const double next = j + 1 < joints ? step(j + 1, V(v, 0)) : 0;

@@ -79,13 +79,12 @@ class Simplifier {
 };
 
 Simplifier::Simplifier(const TriMesh& mesh) : F_(mesh.F) {
-  const auto n = static_cast<std::size_t>(mesh.vertex_count());
+  const std::size_t n = mesh.vertex_count();
   quadrics_.assign(n, Quadric::Zero());
   fans_.resize(n);
   version_.assign(n, -1);
   triangle_lives_.assign(F_.rows(), true);
-  for (std::size_t v = 0; v < n; ++v)
-    positions_.emplace_back(mesh.V.row(static_cast<Eigen::Index>(v)));
+  for (std::size_t v = 0; v < n; ++v) positions_.emplace_back(mesh.V.row(v));
   for (int t = 0; t < mesh.triangle_count(); ++t) {
     const Eigen::Vector3d normal = (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0));
     const double area = 0.5 * normal.norm();
@@ -186,8 +185,8 @@ bool Simplifier::keeps_shape(const Collapse& c) const {
       std::array<Eigen::Vector3d, 3> p{corner(t, 0), corner(t, 1), corner(t, 2)};
       const Eigen::Vector3d before = (p[1] - p[0]).cross(p[2] - p[0]);
       worst_before = std::min(worst_before, quality(p[0], p[1], p[2]));
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (F_(t, static_cast<int>(k)) == v) p[k] = c.position;
+      for (int k = 0; k < 3; ++k) {
+        if (F_(t, k) == v) p[k] = c.position;
       }
       const Eigen::Vector3d after = (p[1] - p[0]).cross(p[2] - p[0]);
       if (before.dot(after) < kLeastTurnCosine * before.norm() * after.norm()) return false;
@@ -238,7 +237,7 @@ TriMesh Simplifier::result() const {
   }
   mesh.F.resize(std::count(triangle_lives_.begin(), triangle_lives_.end(), true), 3);
   Eigen::Index row = 0;
-  for (int t = 0; t < static_cast<int>(F_.rows()); ++t) {
+  for (int t = 0; t < F_.rows(); ++t) {
     if (!triangle_lives_[t]) continue;
     for (int k = 0; k < 3; ++k) mesh.F(row, k) = index[F_(t, k)];
     ++row;
@@ -247,7 +246,7 @@ TriMesh Simplifier::result() const {
 }
 
 TriMesh Simplifier::run(int target_vertices) {
-  for (int v = 0; v < static_cast<int>(positions_.size()); ++v) {
+  for (int v = 0; v < std::ssize(positions_); ++v) {
     for (const int u : ring(v)) {
       if (u > v) queue_.push(candidate(v, u));
     }

@@ -22,7 +22,7 @@ std::optional<Solid> Solid::of(const TriMesh& mesh) {
     ids.push_back(data->mesh.add_vertex({mesh.V(v, 0), mesh.V(v, 1), mesh.V(v, 2)}));
   }
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
-    const auto id = [&](int k) { return ids[static_cast<std::size_t>(mesh.F(t, k))]; };
+    const auto id = [&](int k) { return ids[mesh.F(t, k)]; };
     if (data->mesh.add_face(id(0), id(1), id(2)) == SolidMesh::null_face()) return std::nullopt;
   }
   return Solid(std::move(data));
@@ -46,14 +46,14 @@ TriMesh Solid::mesh() const {
   const SolidMesh& from = data_->mesh;
   TriMesh result;
   std::vector<int> ids(from.num_vertices(), -1);  // with those that were removed
-  result.V.resize(static_cast<Eigen::Index>(from.number_of_vertices()), 3);
+  result.V.resize(from.number_of_vertices(), 3);
   int next = 0;
   for (const auto v : from.vertices()) {
     const auto& p = from.point(v);
     result.V.row(next) << p.x(), p.y(), p.z();
     ids[v] = next++;
   }
-  result.F.resize(static_cast<Eigen::Index>(from.number_of_faces()), 3);
+  result.F.resize(from.number_of_faces(), 3);
   Eigen::Index t = 0;
   for (const auto f : from.faces()) {
     int k = 0;

@@ -64,19 +64,19 @@ std::vector<bool> quartered_triangles(const EdgeTable& table, std::vector<bool> 
   std::vector<int> split_edges(table.of.size(), 0);
   std::vector<bool> edge_is_split(table.edges.size(), false);
   std::vector<int> stack;
-  for (std::size_t t = 0; t < quartered.size(); ++t) {
-    if (quartered[t]) stack.push_back(static_cast<int>(t));
+  for (int t = 0; t < std::ssize(quartered); ++t) {
+    if (quartered[t]) stack.push_back(t);
   }
   while (!stack.empty()) {
-    const auto t = static_cast<std::size_t>(stack.back());
+    const std::size_t t = stack.back();
     stack.pop_back();
     for (const int e : table.of[t]) {
-      const auto edge = static_cast<std::size_t>(e);
+      const std::size_t edge = e;
       if (edge_is_split[edge]) continue;
       edge_is_split[edge] = true;
       for (const int side : table.edges[edge].triangle) {
         if (side < 0) continue;
-        const auto s = static_cast<std::size_t>(side);
+        const std::size_t s = side;
         if (++split_edges[s] >= 2 && !quartered[s]) {
           quartered[s] = true;
           stack.push_back(side);
@@ -96,7 +96,7 @@ void split_triangles(const Eigen::MatrixX3i& F, const EdgeTable& table,
     result.parent.push_back(parent);
     result.quartered.push_back(quartered[parent]);
   };
-  for (int t = 0; t < static_cast<int>(F.rows()); ++t) {
+  for (int t = 0; t < F.rows(); ++t) {
     std::array<int, 3> mid{};
     for (std::size_t k = 0; k < 3; ++k) {
       const int e = table.of[t][k];
@@ -121,9 +121,8 @@ void split_triangles(const Eigen::MatrixX3i& F, const EdgeTable& table,
       add(t, a, b, c);
     }
   }
-  result.F.resize(static_cast<Eigen::Index>(rows.size()), 3);
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    result.F.row(static_cast<Eigen::Index>(i)) = rows[i];
+  result.F.resize(rows.size(), 3);
+  for (std::size_t i = 0; i < rows.size(); ++i) result.F.row(i) = rows[i];
 }
 
 /// Rows of old vertices: smoothed where every triangle around is quartered, else kept.
@@ -133,7 +132,7 @@ void old_vertex_rows(const Eigen::MatrixX3i& F, int vertex_count,
   std::vector<int> triangles(vertex_count, 0);
   for (Eigen::Index t = 0; t < F.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
-      const auto v = static_cast<std::size_t>(F(t, k));
+      const std::size_t v = F(t, k);
       ++triangles[v];
       if (!quartered[t]) moves[v] = false;
     }
@@ -199,7 +198,7 @@ RiggedMesh apply(const RiggedMesh& rig, const Subdivision& step) {
 
 Subdivision loop_subdivision(const Eigen::MatrixX3i& F, int vertex_count,
                              const std::vector<bool>& refine) {
-  const auto triangles = static_cast<std::size_t>(F.rows());
+  const std::size_t triangles = F.rows();
   if (!refine.empty() && refine.size() != triangles) {
     throw Error(std::to_string(refine.size()) + " marks for the triangles to subdivide", "",
                 std::to_string(triangles));
@@ -287,7 +286,7 @@ SplitSubdivision subdivide_split(const TriMesh& split, const std::vector<int>& w
   for (Eigen::Index t = 0; t < step.F.rows(); ++t) {
     for (int k = 0; k < 3; ++k) result.mesh.F(t, k) = split_vertex(step.parent[t], step.F(t, k));
   }
-  result.mesh.V.resize(static_cast<Eigen::Index>(result.welded_of_split.size()), 3);
+  result.mesh.V.resize(result.welded_of_split.size(), 3);
   for (Eigen::Index v = 0; v < result.mesh.V.rows(); ++v)
     result.mesh.V.row(v) = welded_positions.row(result.welded_of_split[v]);
   return result;

@@ -29,7 +29,7 @@ std::vector<Edge> repeated_edges(const EdgeConnectivity& c) {
   for (int e = 0; e < c.edge_count(); ++e) {
     const std::span<const int> here = c.half_edges(e);
     const auto up = std::count_if(here.begin(), here.end(), [&](int h) { return c.ascends(h); });
-    const auto down = static_cast<std::ptrdiff_t>(here.size()) - up;
+    const auto down = std::ssize(here) - up;
     const auto [low, high] = c.edge(e);
     if (up > 1) {
       repeated.push_back({low, high});
@@ -55,7 +55,7 @@ struct PositionHash {
   std::size_t operator()(const std::array<std::uint64_t, 3>& key) const {
     std::uint64_t h = 0;
     for (const std::uint64_t k : key) h = (std::rotl(h, 5) ^ k) * 0x9E3779B97F4A7C15ULL;
-    return static_cast<std::size_t>(h ^ (h >> 32));
+    return h ^ (h >> 32);
   }
 };
 
@@ -124,7 +124,7 @@ Weld weld_by_position(const TriMesh& split) {
     if (is_new) weld.split_of_welded.push_back(v);
     weld.welded_of_split.push_back(it->second);
   }
-  weld.mesh.V.resize(static_cast<Eigen::Index>(weld.split_of_welded.size()), 3);
+  weld.mesh.V.resize(weld.split_of_welded.size(), 3);
   for (Eigen::Index v = 0; v < weld.mesh.V.rows(); ++v) {
     weld.mesh.V.row(v) = split.V.row(weld.split_of_welded[v]);
   }

@@ -16,8 +16,8 @@ struct VertexGraph {
   std::vector<int> neighbours;
 
   [[nodiscard]] std::span<const int> of(int v) const {
-    const auto begin = static_cast<std::size_t>(offset[v]);
-    const auto end = static_cast<std::size_t>(offset[v + 1]);
+    const std::size_t begin = offset[v];
+    const std::size_t end = offset[v + 1];
     return {neighbours.data() + begin, end - begin};
   }
 };

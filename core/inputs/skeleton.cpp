@@ -11,8 +11,8 @@ namespace geoprior {
 
 int Skeleton::index_of(std::string_view name) const {
   std::string names;
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    if (joints[j].name == name) return static_cast<int>(j);
+  for (int j = 0; j < std::ssize(joints); ++j) {
+    if (joints[j].name == name) return j;
     names += (j == 0 ? "" : ", ") + joints[j].name;
   }
   throw Error("no joint '" + std::string(name) + "'", "skeleton", names);
@@ -20,19 +20,19 @@ int Skeleton::index_of(std::string_view name) const {
 
 std::vector<std::vector<int>> Skeleton::children() const {
   std::vector<std::vector<int>> result(joints.size());
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    if (joints[j].parent >= 0) result[joints[j].parent].push_back(static_cast<int>(j));
+  for (int j = 0; j < std::ssize(joints); ++j) {
+    if (joints[j].parent >= 0) result[joints[j].parent].push_back(j);
   }
   return result;
 }
 
 void validate(const Skeleton& skeleton) {
   std::set<std::string_view> names;
-  for (std::size_t j = 0; j < skeleton.joints.size(); ++j) {
+  for (int j = 0; j < std::ssize(skeleton.joints); ++j) {
     const Joint& joint = skeleton.joints[j];
     const std::string where = "joint '" + joint.name + "'";
     if (!names.insert(joint.name).second) throw Error("two joints of this name", where);
-    if (joint.parent < -1 || joint.parent >= static_cast<int>(j)) {
+    if (joint.parent < -1 || joint.parent >= j) {
       throw Error("its parent does not come before it", where);
     }
     if (!joint.head.allFinite() || (joint.tail && !joint.tail->allFinite())) {
@@ -47,13 +47,11 @@ void validate(const Skeleton& skeleton) {
   }
 }
 
-Pose rest_pose(int joint_count) {
-  return Pose(static_cast<std::size_t>(joint_count), Eigen::Affine3d::Identity());
-}
+Pose rest_pose(int joint_count) { return Pose(joint_count, Eigen::Affine3d::Identity()); }
 
 Pose pose_from_rotations(const Skeleton& skeleton, const std::vector<JointRotation>& rotations,
                          const Eigen::Vector3d& root_translation) {
-  const auto n = static_cast<std::size_t>(skeleton.size());
+  const std::size_t n = skeleton.size();
   std::vector<Eigen::Quaterniond> local(n, Eigen::Quaterniond::Identity());
   for (const JointRotation& r : rotations) {
     auto& q = local.at(r.joint);

@@ -75,7 +75,7 @@ GaugeFrame gauge_frame(const FluidScene& scene, const FrameSequence& frames, std
 }
 
 TrackedFrames true_objects(const InjectedSequence& injected) {
-  TrackedFrames frames(static_cast<std::size_t>(injected.frame_count()));
+  TrackedFrames frames(injected.frame_count());
   for (const InjectedTruth& truth : injected.truth()) {
     frames[truth.frame].push_back(
         {truth.id, truth.isolated ? 1 : 2, truth.centre, truth.box_min, truth.box_max});

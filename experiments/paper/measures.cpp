@@ -97,9 +97,9 @@ Eigen::Vector3d place_of(const Eigen::Vector2d& p, const PatternLocator& locator
 
 Eigen::MatrixX3d places_of(const std::vector<Eigen::Vector2d>& points, const SheetFrame& f) {
   const PatternLocator locator({f.pattern, f.triangles()});
-  Eigen::MatrixX3d x(static_cast<Eigen::Index>(points.size()), 3);
+  Eigen::MatrixX3d x(points.size(), 3);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    x.row(static_cast<Eigen::Index>(i)) = place_of(points[i], locator, f).transpose();
+    x.row(i) = place_of(points[i], locator, f).transpose();
   }
   return x;
 }

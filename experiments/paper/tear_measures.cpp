@@ -126,7 +126,7 @@ std::optional<TearingForces> tearing_forces(const PaperScene& scene, const Frame
                                     f.sheet.toughness.energy, f.sheet.material.thickness);
   }
   if (!growing.empty()) {
-    const auto middle = growing.begin() + static_cast<std::ptrdiff_t>(growing.size() / 2);
+    const auto middle = growing.begin() + (growing.size() / 2);
     std::nth_element(growing.begin(), middle, growing.end());
     out.growing = *middle;
   }

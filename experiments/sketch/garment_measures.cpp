@@ -48,13 +48,13 @@ std::vector<TracedEdges> traced_strokes(const Drawing& aligned, const Frame& fra
   const auto& views = part->require_array("view", NamedArray::On::cells, 1).values;
   const auto& numbers = part->require_array("number", NamedArray::On::cells, 1).values;
   for (std::size_t i = 0; i < part->lines.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
+    const Eigen::Index row = i;
     if (static_cast<StrokeKind>(kinds(row)) != kind || views(row) < 0) continue;
     const auto view = static_cast<ViewKind>(views(row));
     const int number = static_cast<int>(numbers(row));
     TracedEdges& stroke = strokes[{static_cast<int>(view), number}];
     stroke.view = view;
-    stroke.drawn = strokes_of(*aligned.find(view), kind)[static_cast<std::size_t>(number)];
+    stroke.drawn = strokes_of(*aligned.find(view), kind)[number];
     stroke.edges.push_back({part->lines[i][0], part->lines[i][1]});
   }
   std::vector<TracedEdges> list;
@@ -110,7 +110,7 @@ std::map<int, std::vector<int>> panels_of(const Frame& frame) {
   const Part& surface = frame.require_part("surface");
   const auto& piece = surface.require_array("piece", NamedArray::On::cells, 1).values;
   for (Eigen::Index t = 0; t < piece.rows(); ++t) {
-    if (piece(t) >= 0) panels[static_cast<int>(piece(t))].push_back(static_cast<int>(t));
+    if (piece(t) >= 0) panels[piece(t)].push_back(static_cast<int>(t));
   }
   return panels;
 }

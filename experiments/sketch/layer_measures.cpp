@@ -47,9 +47,8 @@ bool has_arcs(const SketchScene& scene) {
 /// Points of a line of a part.
 Eigen::MatrixX3d line_points(const Part& part, std::size_t line) {
   const std::vector<int>& indices = part.lines[line];
-  Eigen::MatrixX3d points(static_cast<Eigen::Index>(indices.size()), 3);
-  for (std::size_t i = 0; i < indices.size(); ++i)
-    points.row(static_cast<Eigen::Index>(i)) = part.points.row(indices[i]);
+  Eigen::MatrixX3d points(indices.size(), 3);
+  for (std::size_t i = 0; i < indices.size(); ++i) points.row(i) = part.points.row(indices[i]);
   return points;
 }
 
@@ -74,9 +73,8 @@ int layer_count(const Part& part) {
 void add_circle_errors(const SyntheticView& truth, std::size_t stroke,
                        const Eigen::MatrixX3d& points, ArcMeasures& measures) {
   const std::vector<Eigen::Vector3d>& known = truth.truth[stroke];
-  Eigen::MatrixX3d real(static_cast<Eigen::Index>(known.size()), 3);
-  for (std::size_t i = 0; i < known.size(); ++i)
-    real.row(static_cast<Eigen::Index>(i)) = known[i].transpose();
+  Eigen::MatrixX3d real(known.size(), 3);
+  for (std::size_t i = 0; i < known.size(); ++i) real.row(i) = known[i].transpose();
   const ArcDifference off = arc_difference(circular_arc(points), circular_arc(real));
   measures.radius_error = std::max(measures.radius_error.value_or(0), off.radius);
   measures.axis_error_deg = std::max(measures.axis_error_deg.value_or(0), off.axis / kDegree);
@@ -127,7 +125,7 @@ void measure_cover(const Frame& frame, LayerMeasures& measures) {
   constexpr double kEnds = 0.1;  // beside the rivets
   double worst = 0;
   for (int j = 1; j < layer_count(surface); ++j) {
-    const Eigen::MatrixX3d rear = line_points(rims, static_cast<std::size_t>(2 * j - 1));
+    const Eigen::MatrixX3d rear = line_points(rims, 2 * j - 1);
     worst = std::max(worst, uncovered_share(rear, kEnds, layer_mesh(surface, j + 1)));
   }
   measures.uncovered = worst;
@@ -176,7 +174,7 @@ ArcMeasures arc_measures(const SketchScene& scene, const Frame& frame) {
   const auto& stroke = lines.require_array("stroke", LayerOn::points, 1).values;
   double sum = 0, most = 0, count = 0;
   for (std::size_t l = 0; l < lines.lines.size(); ++l) {
-    const auto number = static_cast<std::size_t>(stroke(lines.lines[l].front()));
+    const std::size_t number = stroke(lines.lines[l].front());
     const Eigen::MatrixX3d points = line_points(lines, l);
     const auto [squares, largest] = image_distances(view.strokes[number], points);
     sum += squares;
@@ -210,8 +208,7 @@ std::optional<double> sector_length_error(const SketchScene& /*scene*/, const Fr
   const Part& surface = frame.require_part("surface", Part::Kind::triangles);
   const auto& vertex = flat.require_array("surface_vertex", LayerOn::points, 1).values;
   Eigen::MatrixX3d real(flat.points.rows(), 3);
-  for (Eigen::Index i = 0; i < real.rows(); ++i)
-    real.row(i) = surface.points.row(static_cast<Eigen::Index>(vertex(i)));
+  for (Eigen::Index i = 0; i < real.rows(); ++i) real.row(i) = surface.points.row(vertex(i));
   return border_length_error(flat.points.leftCols<2>(), flat.triangles, real);
 }
 

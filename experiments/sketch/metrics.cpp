@@ -68,7 +68,7 @@ template <class Read>
 auto of_flat(Read read) {
   return [read](const PatternMeasures& m) -> std::optional<double> {
     if (!m.flat) return {};
-    return static_cast<double>(read(*m.flat));
+    return read(*m.flat);
   };
 }
 

@@ -7,9 +7,9 @@ namespace geoprior::sketch {
 namespace {
 
 Eigen::MatrixX2d flat_line(const Part& pattern, const std::vector<int>& points) {
-  Eigen::MatrixX2d line(static_cast<Eigen::Index>(points.size()), 2);
+  Eigen::MatrixX2d line(points.size(), 2);
   for (std::size_t i = 0; i < points.size(); ++i)
-    line.row(static_cast<Eigen::Index>(i)) = pattern.points.row(points[i]).head<2>();
+    line.row(i) = pattern.points.row(points[i]).head<2>();
   return line;
 }
 

@@ -53,9 +53,8 @@ Part bones_part(const SkinningScene& scene, const Pose& pose) {
     points.emplace_back(pose[j] * *joint.tail);
     part.lines.push_back({first, first + 1});
   }
-  part.points.resize(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    part.points.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+  part.points.resize(points.size(), 3);
+  for (std::size_t i = 0; i < points.size(); ++i) part.points.row(i) = points[i].transpose();
   return part;
 }
 

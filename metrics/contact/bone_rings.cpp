@@ -124,7 +124,7 @@ Eigen::VectorXd BoneRings::radii() const {
 }
 
 Eigen::VectorXd BoneRings::section_ratios(const Eigen::MatrixX3d& posed, const Pose& pose) const {
-  if (posed.rows() != static_cast<Eigen::Index>(ring_of_.size())) {
+  if (posed.rows() != std::ssize(ring_of_)) {
     throw Error(std::to_string(posed.rows()) + " posed vertices", "rings of skin",
                 std::to_string(ring_of_.size()) + ", as at rest");
   }

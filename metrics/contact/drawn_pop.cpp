@@ -47,16 +47,14 @@ TriMesh carried_drawing(const TriMesh& drawn, const TriMesh& before, const TriMe
   const TriangleTree tree(before);
   const FramedSurface from(before), to(now);
   TriMesh carried = drawn;
-  parallel_blocks(
-      static_cast<std::size_t>(drawn.V.rows()), kVerticesOfBlock,
-      [&](std::size_t begin, std::size_t end) {
-        for (auto v = static_cast<Eigen::Index>(begin); v < static_cast<Eigen::Index>(end); ++v) {
-          const Eigen::Vector3d x = drawn.V.row(v);
-          const SurfacePoint at = tree.nearest(x).point;
-          const Eigen::Vector3d offset = from.axes(at).transpose() * (x - from.origin(at));
-          carried.V.row(v) = (to.origin(at) + to.axes(at) * offset).transpose();
-        }
-      });
+  parallel_blocks(drawn.V.rows(), kVerticesOfBlock, [&](std::size_t begin, std::size_t end) {
+    for (Eigen::Index v = begin; v < static_cast<Eigen::Index>(end); ++v) {
+      const Eigen::Vector3d x = drawn.V.row(v);
+      const SurfacePoint at = tree.nearest(x).point;
+      const Eigen::Vector3d offset = from.axes(at).transpose() * (x - from.origin(at));
+      carried.V.row(v) = (to.origin(at) + to.axes(at) * offset).transpose();
+    }
+  });
   return carried;
 }
 

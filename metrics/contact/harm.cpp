@@ -15,9 +15,9 @@ std::optional<TriangleTree> tree_of(const Eigen::MatrixX3d& V, const Eigen::Matr
                                     const std::vector<int>& triangles) {
   TriMesh part;
   part.V = V;
-  part.F.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+  part.F.resize(triangles.size(), 3);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    part.F.row(static_cast<Eigen::Index>(i)) = F.row(triangles[i]);
+    part.F.row(i) = F.row(triangles[i]);
   }
   if (faces_with_area(part).empty()) return std::nullopt;
   return TriangleTree(part);

@@ -42,7 +42,7 @@ double distance_to_segment(const Eigen::Vector3d& x, const Eigen::Vector3d& a,
 }
 
 double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  const auto middle = values.begin() + (values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
@@ -280,7 +280,7 @@ void absorb_islands(const TriMesh& mesh, const Neighbours& neighbours,
   const Eigen::VectorXd area = triangle_areas(mesh.V, mesh.F);
   double region_area = 0;
   for (std::size_t t = 0; t < in_region.size(); ++t) {
-    if (in_region[t]) region_area += area(static_cast<Eigen::Index>(t));
+    if (in_region[t]) region_area += area(t);
   }
   std::vector<bool> seen = in_region;
   const std::vector<bool> region = in_region;
@@ -306,8 +306,8 @@ std::vector<std::vector<int>> trace_loops(const Eigen::MatrixX3i& F, const Neigh
     for (std::size_t k = 0; k < 3; ++k) {
       const int n = neighbours[t][k];
       if (n >= 0 && in_region[n]) continue;
-      const auto i = static_cast<Eigen::Index>(t);
-      const auto e = static_cast<Eigen::Index>(k);
+      const Eigen::Index i = t;
+      const Eigen::Index e = k;
       next.emplace(F(i, e), F(i, (e + 1) % 3));
     }
   }
@@ -372,8 +372,8 @@ JointRegion make_joint_region(const RiggedMesh& rig, const std::string& name,
   std::vector<bool> in_region(candidate.size(), false);
   flood(neighbours, seeds(rig, region, candidate), in_region, [&](int t) { return candidate[t]; });
   absorb_islands(rig.mesh, neighbours, in_region);
-  for (std::size_t t = 0; t < in_region.size(); ++t) {
-    if (in_region[t]) region.triangles.push_back(static_cast<int>(t));
+  for (int t = 0; t < std::ssize(in_region); ++t) {
+    if (in_region[t]) region.triangles.push_back(t);
   }
   region.border_loops = trace_loops(rig.mesh.F, neighbours, in_region);
   return region;

@@ -141,7 +141,7 @@ int outline_crossings(std::span<const PlanarLoop> loops) {
   for (const LoopSegment& s : segments) boxes.push_back({s.a.cwiseMin(s.b), s.a.cwiseMax(s.b)});
   const BoxGrid grid(std::move(boxes));
   int crossings = 0;
-  for (int i = 0; i < static_cast<int>(segments.size()); ++i) {
+  for (int i = 0; i < std::ssize(segments); ++i) {
     grid.visit(grid.box(i), [&](int j) {
       if (j > i && segments_cross(segments, i, j)) ++crossings;
     });
@@ -153,7 +153,7 @@ std::vector<TrianglePair> overlapping_triangles(const Eigen::MatrixX2d& points,
                                                 const Eigen::MatrixX3i& triangles,
                                                 std::span<const int> group) {
   if (!points.allFinite()) throw Error("coordinate is not finite", "overlap", "finite numbers");
-  if (!group.empty() && group.size() != static_cast<std::size_t>(triangles.rows())) {
+  if (!group.empty() && std::ssize(group) != triangles.rows()) {
     throw Error(std::to_string(group.size()) + " groups", "overlap",
                 std::to_string(triangles.rows()) + ", one a triangle, or none");
   }

@@ -25,7 +25,7 @@ Eigen::MatrixX3d in_bone_frame(const SkinWeights& weights, const Pose& pose,
   back.reserve(pose.size());
   for (const Eigen::Affine3d& T : pose) back.push_back(T.inverse());
   Eigen::MatrixX3d local(posed.rows(), 3);
-  for (int v = 0; v < static_cast<int>(local.rows()); ++v) {
+  for (int v = 0; v < local.rows(); ++v) {
     Eigen::Index dominant = 0;
     double largest = -1;
     for (SkinWeights::InnerIterator it(weights, v); it; ++it) {

@@ -26,7 +26,7 @@ class TrianglePairs {
       }
       points_.emplace_back(V(v, 0), V(v, 1), V(v, 2));
     }
-    for (int t = 0; t < static_cast<int>(F.rows()); ++t) {
+    for (int t = 0; t < F.rows(); ++t) {
       const auto& p = point(t, 0);
       const auto& q = point(t, 1);
       const auto& r = point(t, 2);

@@ -106,8 +106,7 @@ struct EnergyField {
   /// Negative beyond the field.
   [[nodiscard]] double at(int i, int j) const {
     if (i < 0 || j < 0 || i >= columns || j >= rows) return -1;
-    return value[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) +
-                 static_cast<std::size_t>(i)];
+    return value[static_cast<std::size_t>(j) * columns + i];
   }
 };
 

@@ -36,7 +36,7 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 Stars stars_of(const TriMesh& mesh, const Eigen::MatrixX3d& normal) {
-  const auto n = static_cast<std::size_t>(mesh.vertex_count());
+  const std::size_t n = mesh.vertex_count();
   Stars stars;
   stars.angle = Eigen::VectorXd::Zero(mesh.vertex_count());
   stars.area = Eigen::VectorXd::Zero(mesh.vertex_count());
@@ -189,8 +189,7 @@ double mean_angle(const WeightedNormals& image, const Eigen::Vector3d& axis) {
 std::vector<Eigen::Index> counted_vertices(const Stars& stars, const std::vector<bool>& left_out) {
   std::vector<Eigen::Index> counted;
   for (std::size_t v = 0; v < stars.interior.size(); ++v) {
-    if (stars.interior[v] && (left_out.empty() || !left_out[v]))
-      counted.push_back(static_cast<Eigen::Index>(v));
+    if (stars.interior[v] && (left_out.empty() || !left_out[v])) counted.push_back(v);
   }
   return counted;
 }
@@ -229,7 +228,7 @@ DevelopabilitySummary developability(const TriMesh& mesh) {
 }
 
 DevelopabilitySpread developability_spread(const TriMesh& mesh, const std::vector<bool>& left_out) {
-  if (!left_out.empty() && left_out.size() != static_cast<std::size_t>(mesh.vertex_count())) {
+  if (!left_out.empty() && std::ssize(left_out) != mesh.vertex_count()) {
     throw Error(std::to_string(left_out.size()) + " marks", "developability",
                 std::to_string(mesh.vertex_count()) + ", one a vertex, or none");
   }

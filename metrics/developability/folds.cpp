@@ -32,13 +32,13 @@ class HingeField {
   HingeField(const CurvatureFit& fit, const Eigen::MatrixX2d& pattern,
              const std::vector<double>& angle)
       : fit_(fit), of_triangle_(fit.area.size()), angle_(angle) {
-    for (std::size_t h = 0; h < fit.hinges.size(); ++h) {
+    for (int h = 0; h < std::ssize(fit.hinges); ++h) {
       const Hinge& hinge = fit.hinges[h];
       const Vector2d edge = pattern.row(hinge.b) - pattern.row(hinge.a);
       weight_.push_back(edge.squaredNorm() / (fit.area[hinge.left] + fit.area[hinge.right]));
       normal_.push_back(Vector2d(-edge.y(), edge.x()).normalized());
-      of_triangle_[hinge.left].push_back(static_cast<int>(h));
-      of_triangle_[hinge.right].push_back(static_cast<int>(h));
+      of_triangle_[hinge.left].push_back(h);
+      of_triangle_[hinge.right].push_back(h);
     }
   }
 
@@ -143,8 +143,8 @@ SheetFolds sheet_folds(const CurvatureFit& fit, const Eigen::MatrixX2d& pattern,
   const std::vector<double> angle = dihedral_angles(fit, x);
   const HingeField field(fit, pattern, angle);
   SheetFolds folds;
-  for (std::size_t h = 0; h < fit.hinges.size(); ++h) {
-    const auto index = static_cast<int>(h);
+  for (int h = 0; h < std::ssize(fit.hinges); ++h) {
+    const auto index = h;
     const Vector2d d = field.direction(field.patch_of_hinge(index));
     folds.angle.push_back(field.on_cylinder(index, d) < 0 ? -angle[h] : angle[h]);
     folds.a.emplace_back(pattern.row(fit.hinges[h].a).transpose());
@@ -167,7 +167,7 @@ double cancelling_share(const SheetFolds& folds, double radius) {
   const Vector2d size = (high - low) / spacing;
   require_count((size.x() + 1) * (size.y() + 1), "discs", kMostDiscs, "radius of the discs");
   const int columns = static_cast<int>(size.x()) + 2, rows = static_cast<int>(size.y()) + 2;
-  std::vector<double> up(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0);
+  std::vector<double> up(static_cast<std::size_t>(columns) * rows, 0);
   std::vector<double> down = up;
   for (std::size_t h = 0; h < folds.angle.size(); ++h) {
     const Vector2d from = (folds.a[h].cwiseMin(folds.b[h]) - low).array() / spacing - 2;
@@ -176,8 +176,7 @@ double cancelling_share(const SheetFolds& folds, double radius) {
       for (int i = std::max(0, static_cast<int>(from.x())); i < columns && i <= to.x(); ++i) {
         const Vector2d centre = low + spacing * Vector2d(i, j);
         const double m = length_within(folds.a[h], folds.b[h], centre, radius) * folds.angle[h];
-        const auto at = static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) +
-                        static_cast<std::size_t>(i);
+        const auto at = static_cast<std::size_t>(j) * columns + i;
         (m > 0 ? up[at] : down[at]) += std::abs(m);
       }
     }
@@ -193,7 +192,7 @@ double cancelling_share(const SheetFolds& folds, double radius) {
 double fold_energy(const CurvatureFit& fit, const Eigen::MatrixX2d& pattern,
                    const Eigen::MatrixX3d& x, const Eigen::MatrixX3d& rest_curvature,
                    const PlateStiffness& plate) {
-  const auto m = static_cast<Eigen::Index>(fit.area.size());
+  const Eigen::Index m = fit.area.size();
   if (rest_curvature.rows() != m) {
     throw Error(std::to_string(rest_curvature.rows()) + " rest curvatures", "fold energy",
                 std::to_string(m) + ", one a triangle");

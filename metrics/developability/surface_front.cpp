@@ -57,7 +57,7 @@ UnfoldedSurface::Triangle lay_out(const TriMesh& mesh, int f) {
 
 UnfoldedSurface::UnfoldedSurface(TriMesh surface) : mesh_(std::move(surface)) {
   if (!mesh_.V.allFinite()) throw Error("a vertex is not finite", "unfolded surface");
-  const auto vertices = static_cast<std::size_t>(mesh_.vertex_count());
+  const std::size_t vertices = mesh_.vertex_count();
   longest_edge_.assign(vertices, 0);
   for (int f = 0; f < mesh_.triangle_count(); ++f) {
     const Eigen::RowVector3i corner = mesh_.F.row(f);
@@ -97,8 +97,8 @@ void UnfoldedSurface::require(const SurfacePoint& place) const {
 
 SurfaceFront::SurfaceFront(const UnfoldedSurface& surface)
     : surface_(surface),
-      distance_(static_cast<std::size_t>(surface.mesh().vertex_count()), kFar),
-      is_reached_(static_cast<std::size_t>(surface.mesh().triangle_count()), 0) {}
+      distance_(surface.mesh().vertex_count(), kFar),
+      is_reached_(surface.mesh().triangle_count(), 0) {}
 
 void SurfaceFront::clear() {
   for (const int v : touched_) distance_[v] = kFar;
@@ -164,9 +164,9 @@ void SurfaceFront::spread(const SurfacePoint& source, double reach) {
   reach_ = reach;
   is_reached_[source_face_] = 1;
   reached_.push_back(source_face_);
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (int c = 0; c < 3; ++c) {
     const Eigen::Vector2d& corner = surface_.triangle(source_face_).corner[c];
-    offer(surface_.mesh().F(source_face_, static_cast<int>(c)), (corner - source_layout_).norm());
+    offer(surface_.mesh().F(source_face_, c), (corner - source_layout_).norm());
   }
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
@@ -193,8 +193,8 @@ SurfaceFront::Within SurfaceFront::within(int face) const {
   w.corner_ = t.corner;
   w.has_source_ = face == source_face_;
   w.source_ = source_layout_;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const int vertex = surface_.mesh().F(face, static_cast<int>(c));
+  for (int c = 0; c < 3; ++c) {
+    const int vertex = surface_.mesh().F(face, c);
     w.at_corner_[c] = distance_[vertex];
   }
   for (std::size_t c = 0; c < 3; ++c) {

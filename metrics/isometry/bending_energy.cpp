@@ -80,7 +80,7 @@ QuadricCurvature::QuadricCurvature(const Eigen::MatrixX2d& pattern,
     : triangles_(triangles),
       corners_(triangles, static_cast<int>(pattern.rows())),
       area_(areas_in_pattern(pattern, triangles)),
-      patches_(static_cast<std::size_t>(triangles.rows())) {
+      patches_(triangles.rows()) {
   const auto fitted = [&](int t) {
     const Eigen::RowVector2d centroid =
         (pattern.row(triangles(t, 0)) + pattern.row(triangles(t, 1)) +
@@ -107,7 +107,7 @@ Eigen::RowVector3d QuadricCurvature::shape_operator(const Patch& patch,
                                                     const Eigen::MatrixX3d& x) const {
   Eigen::Matrix<double, 6, 3> f = Eigen::Matrix<double, 6, 3>::Zero();
   for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
-    f += patch.fit.weights.row(static_cast<Eigen::Index>(i)).transpose() * x.row(patch.vertices[i]);
+    f += patch.fit.weights.row(i).transpose() * x.row(patch.vertices[i]);
   }
   const Eigen::Vector3d n = f.row(QuadricFit::kU)
                                 .transpose()
@@ -121,8 +121,7 @@ Eigen::RowVector3d QuadricCurvature::shape_operator(const Patch& patch,
 Eigen::MatrixX3d QuadricCurvature::shape_operators(const Eigen::MatrixX3d& x) const {
   Eigen::MatrixX3d result(triangles_.rows(), 3);
   parallel_blocks(patches_.size(), kPatchesOfBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t)
-      result.row(static_cast<Eigen::Index>(t)) = shape_operator(patches_[t], x);
+    for (std::size_t t = begin; t < end; ++t) result.row(t) = shape_operator(patches_[t], x);
   });
   return result;
 }
@@ -130,7 +129,7 @@ Eigen::MatrixX3d QuadricCurvature::shape_operators(const Eigen::MatrixX3d& x) co
 Eigen::MatrixX3d QuadricCurvature::patch_means(const Eigen::MatrixX3d& of_triangles) const {
   Eigen::MatrixX3d result = Eigen::MatrixX3d::Zero(triangles_.rows(), 3);
   parallel_blocks(patches_.size(), kPatchesOfBlock, [&](std::size_t begin, std::size_t end) {
-    for (auto t = static_cast<Eigen::Index>(begin); t < static_cast<Eigen::Index>(end); ++t) {
+    for (Eigen::Index t = begin; t < static_cast<Eigen::Index>(end); ++t) {
       double sum = 0;
       for (const int near : touching(triangles_.row(t), corners_)) {
         result.row(t) += area_[near] * of_triangles.row(near);

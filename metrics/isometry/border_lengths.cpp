@@ -69,10 +69,10 @@ double border_length_error(const Eigen::MatrixX2d& flat, const Eigen::MatrixX3i&
                            const Eigen::MatrixX3d& space) {
   double worst = 0;
   for (const std::vector<int>& stretch : border_stretches(flat, F)) {
-    const auto n = static_cast<Eigen::Index>(stretch.size());
+    const Eigen::Index n = stretch.size();
     Eigen::MatrixX3d laid(n, 3), real(n, 3);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const int v = stretch[static_cast<std::size_t>(i)];
+      const int v = stretch[i];
       laid.row(i) << flat(v, 0), flat(v, 1), 0;
       real.row(i) = space.row(v);
     }

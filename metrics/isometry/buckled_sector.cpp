@@ -65,12 +65,12 @@ double gap(const std::vector<Crossing>& p, std::size_t i) {
 
 /// Median over the circle: the height of the ring, as most of the circle lies on it.
 double median_height(const std::vector<Crossing>& p) {
-  const auto n = static_cast<Eigen::Index>(p.size());
+  const Eigen::Index n = p.size();
   Eigen::VectorXd height(n);
   Eigen::VectorXd weight(n);
   for (std::size_t i = 0; i < p.size(); ++i) {
-    height(static_cast<Eigen::Index>(i)) = p[i].height;
-    weight(static_cast<Eigen::Index>(i)) = (gap(p, i) + gap(p, i == 0 ? p.size() - 1 : i - 1)) / 2;
+    height(i) = p[i].height;
+    weight(i) = (gap(p, i) + gap(p, i == 0 ? p.size() - 1 : i - 1)) / 2;
   }
   return weighted_quantile(height, weight, 0.5);
 }
@@ -123,7 +123,7 @@ std::optional<double> buckled_sector(const Eigen::MatrixX2d& pattern, const Eige
       p.begin(), p.end(), [](const Crossing& a, const Crossing& b) { return a.height < b.height; });
   const double rise = peak->height - ring;
   if (!(ring > 0) || rise < kLeastRise * ring) return std::nullopt;
-  const auto at = static_cast<std::size_t>(peak - p.begin());
+  const std::size_t at = peak - p.begin();
   const double level = ring + kLevel * rise;
   if (rises(p, level) != 1) return std::nullopt;
   return kSectorOfWidth * (reach(p, at, 1, level) + reach(p, at, -1, level)) * 180 /

@@ -40,16 +40,16 @@ Eigen::MatrixX2d singular_values(const Eigen::MatrixX3d& rest, const Eigen::Matr
     throw Error(std::to_string(posed.rows()) + " posed vertices", "distortion",
                 std::to_string(rest.rows()) + ", as at rest");
   }
-  Eigen::MatrixX2d values(static_cast<Eigen::Index>(triangles.size()), 2);
+  Eigen::MatrixX2d values(triangles.size(), 2);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const int a = F(triangles[i], 0);
     const int b = F(triangles[i], 1);
     const int c = F(triangles[i], 2);
-    values.row(static_cast<Eigen::Index>(i)) =
-        singular_values_of(
-            (rest.row(b) - rest.row(a)).transpose(), (rest.row(c) - rest.row(a)).transpose(),
-            (posed.row(b) - posed.row(a)).transpose(), (posed.row(c) - posed.row(a)).transpose())
-            .transpose();
+    values.row(i) = singular_values_of((rest.row(b) - rest.row(a)).transpose(),
+                                       (rest.row(c) - rest.row(a)).transpose(),
+                                       (posed.row(b) - posed.row(a)).transpose(),
+                                       (posed.row(c) - posed.row(a)).transpose())
+                        .transpose();
   }
   return values;
 }
@@ -62,7 +62,7 @@ DistortionSummary distortion(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3
     const Eigen::RowVector3d a = rest.row(F(triangles[i], 0));
     const Eigen::RowVector3d u = rest.row(F(triangles[i], 1)) - a;
     const Eigen::RowVector3d v = rest.row(F(triangles[i], 2)) - a;
-    area(static_cast<Eigen::Index>(i)) = 0.5 * u.cross(v).norm();
+    area(i) = 0.5 * u.cross(v).norm();
   }
   if (!(area.sum() > 0)) throw Error("no triangles with an area", "distortion", "at least one");
   const Eigen::VectorXd ratio = values.col(0).cwiseProduct(values.col(1));

@@ -126,12 +126,12 @@ std::vector<PieceOverlap> piece_overlaps(std::span<const FlatPiece> laid_out) {
   Eigen::MatrixX3i all_triangles(triangles, 3);
   std::vector<int> group;
   Eigen::Index at_point = 0, at_triangle = 0;
-  for (std::size_t i = 0; i < laid_out.size(); ++i) {
+  for (int i = 0; i < std::ssize(laid_out); ++i) {
     const FlatPiece& piece = laid_out[i];
     all_points.middleRows(at_point, piece.points.rows()) = piece.points;
     all_triangles.middleRows(at_triangle, piece.triangles.rows()) =
         piece.triangles.array() + static_cast<int>(at_point);
-    group.insert(group.end(), piece.triangles.rows(), static_cast<int>(i));
+    group.insert(group.end(), piece.triangles.rows(), i);
     at_point += piece.points.rows();
     at_triangle += piece.triangles.rows();
   }

@@ -20,14 +20,14 @@ void measure_edges(const Eigen::MatrixX3d& flat, const Eigen::MatrixX3d& x,
                    const Eigen::MatrixX3i& triangles, IsometrySummary& summary) {
   const EdgeConnectivity connectivity(triangles);
   const std::vector<Edge>& edges = connectivity.edges();
-  Eigen::VectorXd error(static_cast<Eigen::Index>(edges.size()));
+  Eigen::VectorXd error(edges.size());
   Eigen::VectorXd length(error.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const auto [a, b] = edges[i];
     const double rest = (flat.row(a) - flat.row(b)).norm();
     const double now = (x.row(a) - x.row(b)).norm();
-    length(static_cast<Eigen::Index>(i)) = rest;
-    error(static_cast<Eigen::Index>(i)) = rest > 0 ? std::abs(now / rest - 1) : 0.0;
+    length(i) = rest;
+    error(i) = rest > 0 ? std::abs(now / rest - 1) : 0.0;
   }
   summary.edge_error_p95 = weighted_quantile(error, length, 0.95);
   summary.edge_error_max = error.maxCoeff();

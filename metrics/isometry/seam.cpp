@@ -22,7 +22,7 @@ Eigen::Vector3d doubled_area(const TriMesh& mesh, int t) {
 }
 
 void require_marks(const TriMesh& mesh, const std::vector<char>& marked) {
-  if (static_cast<int>(marked.size()) != mesh.vertex_count()) {
+  if (std::ssize(marked) != mesh.vertex_count()) {
     throw Error(std::to_string(marked.size()) + " marks", "seam",
                 std::to_string(mesh.vertex_count()) + ", one a vertex");
   }

@@ -102,14 +102,14 @@ std::vector<Segment> cut(const JointRegion& region, const Eigen::MatrixX3i& F,
                          const PlaneFrame& plane) {
   std::vector<Segment> segments;
   const double window = kSkinWindow * hinge.rest.radius;
-  for (std::size_t slot = 0; slot < region.triangles.size(); ++slot) {
+  for (int slot = 0; slot < std::ssize(region.triangles); ++slot) {
     const ChainRange& range = hinge.chain[slot];
     if (range.low > s + window || range.high < s - window) continue;
     const int t = region.triangles[slot];
     std::array<Eigen::Vector3d, 3> r;
     std::array<double, 3> d{};
     for (std::size_t k = 0; k < 3; ++k) {
-      r[k] = V.row(F(t, static_cast<Eigen::Index>(k))).transpose() - plane.centre;
+      r[k] = V.row(F(t, k)).transpose() - plane.centre;
       d[k] = r[k].dot(plane.n);
     }
     std::array<Eigen::Vector2d, 2> ends;
@@ -118,11 +118,11 @@ std::vector<Segment> cut(const JointRegion& region, const Eigen::MatrixX3i& F,
       std::size_t i = k;
       std::size_t j = (k + 1) % 3;
       if ((d[i] >= 0) == (d[j] >= 0)) continue;
-      if (F(t, static_cast<Eigen::Index>(i)) > F(t, static_cast<Eigen::Index>(j))) std::swap(i, j);
+      if (F(t, i) > F(t, j)) std::swap(i, j);
       const Eigen::Vector3d x = r[i] + d[i] / (d[i] - d[j]) * (r[j] - r[i]);
       ends[count++] = {x.dot(plane.u), x.dot(plane.v)};
     }
-    if (count == 2) segments.push_back({ends[0], ends[1], static_cast<int>(slot)});
+    if (count == 2) segments.push_back({ends[0], ends[1], slot});
   }
   return segments;
 }
@@ -356,16 +356,16 @@ std::vector<SectionRatio> cross_sections(const JointRegion& region, const Eigen:
   }
   const Surface surface{region, F, rest, posed, options};
   std::vector<SectionRatio> sections;
-  for (std::size_t h = 0; h < region.hinges.size(); ++h) {
+  for (int h = 0; h < std::ssize(region.hinges); ++h) {
     const PosedHinge hinge = pose_hinge(region, region.hinges[h], F, rest, pose);
     for (const double side : {-1.0, 1.0}) {
       const double reach = side > 0 ? hinge.rest.distal_reach : hinge.rest.proximal_reach;
       for (int i = 0; i < options.planes; ++i) {
         sections.push_back(bone_section(surface, hinge, side, reach * i / (options.planes - 1)));
-        sections.back().hinge = static_cast<int>(h);
+        sections.back().hinge = h;
       }
     }
-    if (hinge.has_halves) add_wedge_sections(surface, hinge, static_cast<int>(h), sections);
+    if (hinge.has_halves) add_wedge_sections(surface, hinge, h, sections);
   }
   return sections;
 }

@@ -14,7 +14,7 @@ VertexDistance vertex_distance(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d
     throw Error(std::to_string(a.rows()) + " and " + std::to_string(b.rows()) + " vertices",
                 "vertex distance", "equal numbers, at least one");
   }
-  const Eigen::Index n = vertices.empty() ? a.rows() : static_cast<Eigen::Index>(vertices.size());
+  const Eigen::Index n = vertices.empty() ? a.rows() : std::ssize(vertices);
   double sum = 0;
   double largest = 0;
   for (Eigen::Index k = 0; k < n; ++k) {

@@ -57,7 +57,7 @@ class Projection {
   Projection(const Eigen::MatrixX2d& points, const Eigen::MatrixX3i& F)
       : candidates_(collect_candidates(points, F)), grid_(boxes_of(corners_)) {
     PlanarBox all = grid_.box(0);
-    for (int i = 1; i < static_cast<int>(corners_.size()); ++i)
+    for (int i = 1; i < std::ssize(corners_); ++i)
       all = {all.low.cwiseMin(grid_.box(i).low), all.high.cwiseMax(grid_.box(i).high)};
     size_ = (all.high - all.low).norm();
   }

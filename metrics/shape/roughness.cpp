@@ -43,7 +43,7 @@ struct Sample {
 
  private:
   static Eigen::Map<const Eigen::VectorXd> as_vector(const std::vector<double>& v) {
-    return {v.data(), static_cast<Eigen::Index>(v.size())};
+    return {v.data(), std::ssize(v)};
   }
 };
 
@@ -121,7 +121,7 @@ Eigen::VectorXd Roughness::dihedral_angles(const Eigen::MatrixX3d& V) const {
 Eigen::VectorXd Roughness::umbrella_heights(const Eigen::MatrixX3d& V) const {
   const Eigen::MatrixX3d normals = vertex_normals({V, F_});
   Eigen::VectorXd heights(V.rows());
-  for (int v = 0; v < static_cast<int>(V.rows()); ++v) {
+  for (int v = 0; v < V.rows(); ++v) {
     const auto ring = rings_.of(v);
     heights(v) = kNoMeasure;
     if (at_border_[v] || ring.empty()) continue;

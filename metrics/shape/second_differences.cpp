@@ -18,8 +18,7 @@ void SecondDifferences::add(const Eigen::MatrixX3d& x) {
 double SecondDifferences::quantile(int percent) const {
   assert(!differences_.empty() && 0 <= percent && percent < 100);
   std::vector<double> sorted = differences_;
-  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(
-                                       sorted.size() * static_cast<std::size_t>(percent) / 100);
+  const auto at = sorted.begin() + (sorted.size() * percent / 100);
   std::nth_element(sorted.begin(), at, sorted.end());
   return *at;
 }

@@ -114,8 +114,7 @@ template <class Visit>
 void each_row_between(const std::vector<double>& middle, double low, double high,
                       const Visit& visit) {
   const auto first = std::lower_bound(middle.begin(), middle.end(), low) - middle.begin();
-  for (auto r = static_cast<std::size_t>(first); r < middle.size() && middle[r] < high; ++r)
-    visit(r);
+  for (std::size_t r = first; r < middle.size() && middle[r] < high; ++r) visit(r);
 }
 
 RowLists<Span> spans_of_mesh(const Eigen::MatrixX2d& points, const Eigen::MatrixX3i& F,

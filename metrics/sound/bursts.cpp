@@ -107,7 +107,7 @@ void measure_burst(const Eigen::Ref<const Eigen::VectorXd>& samples, int sample_
     return;
   }
   if (!(burst.peak_db >= options.silence_db)) return;  // silent
-  const auto beside = static_cast<Eigen::Index>(kBesideS * sample_rate);
+  const Eigen::Index beside = kBesideS * sample_rate;
   const double clear = loudest * std::pow(10., -options.clear_db / 10);
   const Eigen::Index before = std::min(beside, window.begin);
   if (mean_square(samples.segment(window.begin - before, before)) > clear) {
@@ -129,7 +129,7 @@ void measure_burst(const Eigen::Ref<const Eigen::VectorXd>& samples, int sample_
 
 Quartiles quartiles_of(const std::vector<double>& values) {
   if (values.empty()) return {};
-  const auto n = static_cast<Eigen::Index>(values.size());
+  const Eigen::Index n = values.size();
   const std::vector<double> q =
       weighted_quantiles(Eigen::Map<const Eigen::VectorXd>(values.data(), n),
                          Eigen::VectorXd::Ones(n), std::array{0.25, 0.5, 0.75});

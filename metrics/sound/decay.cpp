@@ -57,8 +57,8 @@ std::vector<BandDecay> octave_decays(const Eigen::Ref<const Eigen::VectorXd>& sa
   require_finite_samples(samples);
   // Silence on both sides, for filters that ring before and after.
   const Eigen::Index margin = sample_rate / 4;
-  const auto padded = static_cast<Eigen::Index>(
-      std::bit_ceil(static_cast<std::uint64_t>(samples.size() + 2 * margin)));
+  const Eigen::Index padded =
+      std::bit_ceil(static_cast<std::uint64_t>(samples.size() + 2 * margin));
   Eigen::VectorXd sound = Eigen::VectorXd::Zero(padded);
   sound.segment(margin, samples.size()) = samples;
   Eigen::FFT<double> transform;

@@ -13,7 +13,7 @@ namespace {
 
 std::optional<double> median_interval(const std::vector<double>& sorted_times) {
   if (sorted_times.size() < 2) return {};
-  const auto n = static_cast<Eigen::Index>(sorted_times.size());
+  const Eigen::Index n = sorted_times.size();
   const Eigen::Map<const Eigen::VectorXd> times(sorted_times.data(), n);
   return weighted_quantile(times.tail(n - 1) - times.head(n - 1), Eigen::VectorXd::Ones(n - 1),
                            0.5);
@@ -23,10 +23,10 @@ std::optional<double> fano_factor(const std::vector<double>& times, double durat
                                   double window_s) {
   const double windows = std::floor(duration_s / window_s * (1 + 1e-12));
   if (windows < 2) return {};
-  Eigen::VectorXd counts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(windows));
+  Eigen::VectorXd counts = Eigen::VectorXd::Zero(windows);
   for (const double time : times) {
     const double window = std::floor(time / window_s);
-    if (window < windows) counts(static_cast<Eigen::Index>(window)) += 1;
+    if (window < windows) counts(window) += 1;
   }
   const Moments of_counts = moments(counts);
   if (!(of_counts.mean > 0)) return {};
@@ -88,8 +88,7 @@ PowerLawFit event_energy_exponent(std::span<const Event> events, const std::stri
                    [](const Event& a, const Event& b) { return a.time_s < b.time_s; });
   std::vector<double> energies;
   for (const Event& event : chosen) energies.push_back(event.energy_J);
-  return fit_power_law(Eigen::Map<const Eigen::VectorXd>(
-                           energies.data(), static_cast<Eigen::Index>(energies.size())),
+  return fit_power_law(Eigen::Map<const Eigen::VectorXd>(energies.data(), energies.size()),
                        options);
 }
 

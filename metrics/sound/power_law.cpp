@@ -274,7 +274,7 @@ Eigen::VectorXd positive_logarithms(const Eigen::Ref<const Eigen::VectorXd>& ene
     }
     if (energies(i) > 0) logs.push_back(std::log(energies(i)));
   }
-  return Eigen::Map<Eigen::VectorXd>(logs.data(), static_cast<Eigen::Index>(logs.size()));
+  return Eigen::Map<Eigen::VectorXd>(logs.data(), logs.size());
 }
 
 /// The last rank from which on there are as many values, and as many decades, as asked for; -1:

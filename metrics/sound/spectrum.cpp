@@ -99,8 +99,8 @@ PowerSpectrum whole_spectrum(const Eigen::Ref<const Eigen::VectorXd>& samples, i
                              SoundWindow window) {
   require_sound(samples, sample_rate);
   const Eigen::Index n = samples.size();
-  const auto padded = static_cast<Eigen::Index>(std::bit_ceil(
-      static_cast<std::uint64_t>(std::max<Eigen::Index>({2 * n, sample_rate / 2, 8}))));
+  const Eigen::Index padded = std::bit_ceil(
+      static_cast<std::uint64_t>(std::max<Eigen::Index>({2 * n, sample_rate / 2, 8})));
   Periodogram periodogram(
       window == SoundWindow::hann ? hann_window(n) : Eigen::VectorXd::Ones(n).eval(), padded,
       sample_rate);

@@ -23,8 +23,8 @@ Roll roll_of(const DetailsOfFrame& details) {
                 "details of a frame", "equal numbers");
   }
   Roll roll;
-  for (std::size_t i = 0; i < details.birth.size(); ++i) {
-    roll.emplace_back(details.birth[i], static_cast<int>(i));
+  for (int i = 0; i < std::ssize(details.birth); ++i) {
+    roll.emplace_back(details.birth[i], i);
   }
   std::sort(roll.begin(), roll.end());
   for (std::size_t i = 1; i < roll.size(); ++i) {

@@ -27,7 +27,7 @@ void require_points(const Eigen::MatrixX3i& triangles, std::size_t count) {
 
 double decile(const std::vector<double>& sorted, int tenths) {
   // The smallest value with that share of the edges at or below it: ceil(n k / 10) - 1.
-  const std::size_t upto = (sorted.size() * static_cast<std::size_t>(tenths) + 9) / 10;
+  const std::size_t upto = (sorted.size() * tenths + 9) / 10;
   return sorted[upto - 1];
 }
 
@@ -54,7 +54,7 @@ std::vector<std::pair<int, int>> edges_among_details(const Eigen::MatrixX3i& tri
     const std::span<const int> here = connectivity.half_edges(e);
     const auto up =
         std::count_if(here.begin(), here.end(), [&](int h) { return connectivity.ascends(h); });
-    const auto pairs = std::min(up, static_cast<std::ptrdiff_t>(here.size()) - up);
+    const auto pairs = std::min(up, std::ssize(here) - up);
     edges.insert(edges.end(), pairs, {low, high});
   }
   return edges;
@@ -62,7 +62,7 @@ std::vector<std::pair<int, int>> edges_among_details(const Eigen::MatrixX3i& tri
 
 DetailSpacing detail_spacing(const Eigen::MatrixX3d& positions, const Eigen::MatrixX3i& triangles,
                              std::span<const char> ghosts, double reference) {
-  require_points(triangles, static_cast<std::size_t>(positions.rows()));
+  require_points(triangles, positions.rows());
   std::vector<double> lengths;
   for (const auto& [a, b] : edges_among_details(triangles, ghosts)) {
     lengths.push_back((positions.row(a) - positions.row(b)).norm());
@@ -103,9 +103,9 @@ WorstChange worst_mean_change(std::span<const DetailSpacing> frames) {
     throw Error("the original has no spacing", "worst mean change", "edges of positive length");
   }
   WorstChange worst;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
+  for (int i = 0; i < std::ssize(frames); ++i) {
     const double change = relative(frames[i].mean, frames.front().mean);
-    if (std::abs(change) > std::abs(worst.change)) worst = {change, static_cast<int>(i)};
+    if (std::abs(change) > std::abs(worst.change)) worst = {change, i};
   }
   return worst;
 }

@@ -26,7 +26,7 @@ class Histogram {
   void add(double distance, double amount) {
     const double at = distance / cell_;
     if (!(at < static_cast<double>(amount_.size() - 1))) return;
-    const auto i = static_cast<Eigen::Index>(at);
+    const Eigen::Index i = at;
     const double upper = amount * (at - static_cast<double>(i));
     amount_(i) += amount - upper;
     amount_(i + 1) += upper;
@@ -75,7 +75,7 @@ void require(std::span<const SurfacePoint> details, double unit, const PairCurve
                   "not negative");
     }
   }
-  if (!mask.region.empty() && mask.region.size() != static_cast<std::size_t>(triangles)) {
+  if (!mask.region.empty() && std::ssize(mask.region) != triangles) {
     throw Error(std::to_string(mask.region.size()) + " flags of a region", "pair curve",
                 "one for each of " + std::to_string(triangles) + " triangles");
   }

@@ -76,8 +76,7 @@ PatternGrid pattern_grid(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX3i
   grid.spacing = spacing;
   grid.columns = static_cast<int>(steps(0));
   grid.rows = static_cast<int>(steps(1));
-  grid.triangle.assign(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows),
-                       -1);
+  grid.triangle.assign(static_cast<std::size_t>(grid.columns) * grid.rows, -1);
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     fill(pattern, triangles.row(t), static_cast<int>(t), grid);
   }

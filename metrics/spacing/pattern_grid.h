@@ -23,8 +23,7 @@ struct PatternGrid {
   /// -1 outside the pattern and beyond the grid.
   [[nodiscard]] int at(int i, int j) const {
     if (i < 0 || j < 0 || i >= columns || j >= rows) return -1;
-    return triangle[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) +
-                    static_cast<std::size_t>(i)];
+    return triangle[static_cast<std::size_t>(j) * columns + i];
   }
 };
 

@@ -13,10 +13,9 @@ bool fills_rectangle(const TriMesh& surface) {
 
 RadialSpectrum plane_spectrum(const TriMesh& surface, std::span<const SurfacePoint> places,
                               double unit) {
-  Eigen::MatrixX2d points(static_cast<Eigen::Index>(places.size()), 2);
+  Eigen::MatrixX2d points(places.size(), 2);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    points.row(static_cast<Eigen::Index>(i)) =
-        position_of(places[i], surface.V, surface.F).head<2>();
+    points.row(i) = position_of(places[i], surface.V, surface.F).head<2>();
   }
   const Eigen::Vector2d low = surface.V.leftCols<2>().colwise().minCoeff();
   const Eigen::Vector2d high = surface.V.leftCols<2>().colwise().maxCoeff();

@@ -50,7 +50,7 @@ ScanLines scan(const Eigen::MatrixX2d& points, const Eigen::MatrixX3i& F, int ro
   lines.height = (high.y() - low.y()) / rows;
   lines.left = low.x() - lines.height;
   lines.right = high.x() + lines.height;
-  lines.covered.resize(static_cast<std::size_t>(rows));
+  lines.covered.resize(rows);
   for (Eigen::Index t = 0; t < F.rows(); ++t) {
     std::array<Eigen::Vector2d, 3> corner;
     for (int k = 0; k < 3; ++k) corner[k] = points.row(F(t, k)).transpose();
@@ -82,9 +82,9 @@ struct HolePart {
 std::vector<HolePart> hole_parts(const ScanLines& lines) {
   std::vector<HolePart> all;
   std::vector<std::size_t> first{0};
-  for (std::size_t r = 0; r < lines.covered.size(); ++r) {
+  for (int r = 0; r < std::ssize(lines.covered); ++r) {
     for (const LinePart& part : open_parts(lines.covered[r], lines.left, lines.right))
-      all.push_back({static_cast<int>(r), part});
+      all.push_back({r, part});
     first.push_back(all.size());
   }
   const auto outside = static_cast<int>(all.size());
@@ -105,7 +105,7 @@ std::vector<HolePart> hole_parts(const ScanLines& lines) {
   }
   std::vector<HolePart> holes;
   for (int i = 0; i < outside; ++i) {
-    if (joined.find(i) != joined.find(outside)) holes.push_back(all[static_cast<std::size_t>(i)]);
+    if (joined.find(i) != joined.find(outside)) holes.push_back(all[i]);
   }
   return holes;
 }
@@ -117,11 +117,11 @@ TriMesh with_filled_holes(const TriMesh& mesh, const Eigen::Matrix3d& view, int 
   const ScanLines lines = scan(projected_points(mesh, view), mesh.F, rows);
   const std::vector<HolePart> holes = hole_parts(lines);
   TriMesh filled = mesh;
-  const auto count = static_cast<Eigen::Index>(holes.size());
+  const Eigen::Index count = holes.size();
   filled.V.conservativeResize(mesh.V.rows() + 4 * count, 3);
   filled.F.conservativeResize(mesh.F.rows() + 2 * count, 3);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const HolePart& hole = holes[static_cast<std::size_t>(i)];
+    const HolePart& hole = holes[i];
     const double x0 = hole.part.begin - lines.height, x1 = hole.part.end + lines.height;
     const double y0 = lines.bottom + (hole.row - 1) * lines.height, y1 = y0 + 3 * lines.height;
     const Eigen::Index v = mesh.V.rows() + 4 * i;

@@ -7,8 +7,8 @@ namespace {
 
 /// Rows <= columns; least total cost. Row by row, along a shortest augmenting path.
 std::vector<int> least_cost(const Eigen::MatrixXd& cost) {
-  const auto rows = static_cast<std::size_t>(cost.rows());
-  const auto columns = static_cast<std::size_t>(cost.cols());
+  const std::size_t rows = cost.rows();
+  const std::size_t columns = cost.cols();
   constexpr double kFar = std::numeric_limits<double>::infinity();
   // Index 0 stands for "no row" and for the column from which a path starts.
   std::vector<double> row_potential(rows + 1, 0), column_potential(columns + 1, 0);
@@ -25,8 +25,7 @@ std::vector<int> least_cost(const Eigen::MatrixXd& cost) {
       for (std::size_t c = 1; c <= columns; ++c) {
         if (done[c] != 0) continue;
         const double reduced =
-            cost(static_cast<Eigen::Index>(row_of[at] - 1), static_cast<Eigen::Index>(c - 1)) -
-            row_potential[row_of[at]] - column_potential[c];
+            cost(row_of[at] - 1, c - 1) - row_potential[row_of[at]] - column_potential[c];
         if (reduced < slack[c]) {
           slack[c] = reduced;
           before[c] = at;
@@ -62,7 +61,7 @@ std::vector<int> optimal_assignment(const Eigen::MatrixXd& value) {
   if (value.rows() <= value.cols()) return least_cost(-value);
   const std::vector<int> row_of = least_cost(-value.transpose());
   std::vector<int> column_of(value.rows(), -1);
-  for (std::size_t c = 0; c < row_of.size(); ++c) column_of[row_of[c]] = static_cast<int>(c);
+  for (int c = 0; c < std::ssize(row_of); ++c) column_of[row_of[c]] = c;
   return column_of;
 }
 

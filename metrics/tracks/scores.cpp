@@ -78,12 +78,10 @@ Comparison compare(const TrackedFrames& truth, const TrackedFrames& found,
     Comparison::Frame& frame = c.frames.emplace_back();
     frame.truth = numbers_of(truth[f], c.true_ids, f, c.true_length);
     frame.found = numbers_of(found[f], c.found_ids, f, c.found_length);
-    frame.similarity.resize(static_cast<Eigen::Index>(truth[f].size()),
-                            static_cast<Eigen::Index>(found[f].size()));
+    frame.similarity.resize(truth[f].size(), found[f].size());
     for (std::size_t i = 0; i < truth[f].size(); ++i) {
       for (std::size_t j = 0; j < found[f].size(); ++j)
-        frame.similarity(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-            similarity_of(truth[f][i], found[f][j], options);
+        frame.similarity(i, j) = similarity_of(truth[f][i], found[f][j], options);
     }
   }
   return c;
@@ -95,7 +93,7 @@ std::vector<int> matched(const Comparison::Frame& frame, const Eigen::MatrixXd& 
   const auto enough = frame.similarity.array() >= threshold;
   std::vector<int> column = optimal_assignment(enough.select(value.array(), 0.0).matrix());
   for (std::size_t i = 0; i < column.size(); ++i) {
-    if (column[i] >= 0 && !enough(static_cast<Eigen::Index>(i), column[i])) column[i] = -1;
+    if (column[i] >= 0 && !enough(i, column[i])) column[i] = -1;
   }
   return column;
 }
@@ -120,8 +118,7 @@ void clear_scores(const Comparison& c, const TrackedFrames& truth, const Tracked
     Eigen::MatrixXd value = frame.similarity.array() + 10;  // the most matches before the best
     for (std::size_t i = 0; i < frame.truth.size(); ++i) {
       for (std::size_t j = 0; j < frame.found.size(); ++j) {
-        if (following[frame.truth[i]].before == frame.found[j])
-          value(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) += 1e4;
+        if (following[frame.truth[i]].before == frame.found[j]) value(i, j) += 1e4;
       }
     }
     const std::vector<int> column = matched(frame, value, threshold);
@@ -134,7 +131,7 @@ void clear_scores(const Comparison& c, const TrackedFrames& truth, const Tracked
       }
       const int j = column[i];
       ++s.matches;
-      similarity += frame.similarity(static_cast<Eigen::Index>(i), column[i]);
+      similarity += frame.similarity(i, column[i]);
       square += (truth[f][i].centre - found[f][j].centre).squaredNorm();
       if (track.last >= 0 && track.last != frame.found[j]) ++s.switches;
       if (track.interrupted) ++s.fragments;
@@ -157,25 +154,22 @@ void clear_scores(const Comparison& c, const TrackedFrames& truth, const Tracked
 std::vector<std::pair<int, int>> lifetimes(const Comparison& c, bool of_truth) {
   std::vector<std::pair<int, int>> result(of_truth ? c.true_ids.size() : c.found_ids.size(),
                                           {-1, -1});
-  for (std::size_t f = 0; f < c.frames.size(); ++f) {
+  for (int f = 0; f < std::ssize(c.frames); ++f) {
     for (const int n : of_truth ? c.frames[f].truth : c.frames[f].found) {
       auto& [first, last] = result[n];
-      if (first < 0) first = static_cast<int>(f);
-      last = static_cast<int>(f);
+      if (first < 0) first = f;
+      last = f;
     }
   }
   return result;
 }
 
 void identity_scores(const Comparison& c, double threshold, TrackingScores& s) {
-  Eigen::MatrixXd common = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(c.true_ids.size()),
-                                                 static_cast<Eigen::Index>(c.found_ids.size()));
+  Eigen::MatrixXd common = Eigen::MatrixXd::Zero(c.true_ids.size(), c.found_ids.size());
   for (const Comparison::Frame& frame : c.frames) {
     for (std::size_t i = 0; i < frame.truth.size(); ++i) {
       for (std::size_t j = 0; j < frame.found.size(); ++j) {
-        if (frame.similarity(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) >=
-            threshold)
-          common(frame.truth[i], frame.found[j]) += 1;
+        if (frame.similarity(i, j) >= threshold) common(frame.truth[i], frame.found[j]) += 1;
       }
     }
   }
@@ -183,9 +177,9 @@ void identity_scores(const Comparison& c, double threshold, TrackingScores& s) {
   const auto true_life = lifetimes(c, true), found_life = lifetimes(c, false);
   double both = 0, error = 0, pairs = 0;
   for (std::size_t t = 0; t < partner.size(); ++t) {
-    if (partner[t] < 0 || common(static_cast<Eigen::Index>(t), partner[t]) <= 0) continue;
+    if (partner[t] < 0 || common(t, partner[t]) <= 0) continue;
     const auto& found = found_life[partner[t]];
-    both += common(static_cast<Eigen::Index>(t), partner[t]);
+    both += common(t, partner[t]);
     error +=
         std::abs(true_life[t].first - found.first) + std::abs(true_life[t].second - found.second);
     ++pairs;
@@ -200,8 +194,7 @@ void identity_scores(const Comparison& c, double threshold, TrackingScores& s) {
 /// A_max: how well two tracks go together over all frames, whatever the threshold: it decides
 /// between matches of one frame (Luiten et al., section 4.1.2).
 Eigen::MatrixXd track_alignment(const Comparison& c) {
-  Eigen::MatrixXd common = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(c.true_ids.size()),
-                                                 static_cast<Eigen::Index>(c.found_ids.size()));
+  Eigen::MatrixXd common = Eigen::MatrixXd::Zero(c.true_ids.size(), c.found_ids.size());
   for (const Comparison::Frame& frame : c.frames) {
     const Eigen::ArrayXXd S = frame.similarity.array().max(0);
     const Eigen::ArrayXd row = S.rowwise().sum(), column = S.colwise().sum().transpose();

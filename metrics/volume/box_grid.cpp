@@ -32,8 +32,8 @@ BoxGrid::BoxGrid(std::vector<PlanarBox> boxes) : boxes_(std::move(boxes)) {
   for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
   entry_.resize(begin_.back());
   std::vector<int> next(begin_.begin(), begin_.end() - 1);
-  for (std::size_t i = 0; i < boxes_.size(); ++i)
-    each_cell(boxes_[i], [&](int cell) { entry_[next[cell]++] = static_cast<int>(i); });
+  for (int i = 0; i < std::ssize(boxes_); ++i)
+    each_cell(boxes_[i], [&](int cell) { entry_[next[cell]++] = i; });
 }
 
 }  // namespace geoprior

@@ -32,7 +32,7 @@ int pinched(const Eigen::MatrixX3i& F, int vertex_count, DisjointSets& corners) 
   int count = 0;
   for (int t = 0; t < F.rows(); ++t) {
     for (int c = 0; c < 3; ++c) {
-      const auto v = static_cast<std::size_t>(F(t, c));
+      const std::size_t v = F(t, c);
       const int root = corners.find(3 * t + c);
       if (fan[v] < 0) fan[v] = root;
       if (fan[v] != root && counted[v] == 0) {

@@ -28,9 +28,7 @@ struct OverlapGrid {
   int width, height;
   double z_low, z_high;
 
-  [[nodiscard]] std::size_t strips() const {
-    return static_cast<std::size_t>((height + kRowsOfStrip - 1) / kRowsOfStrip);
-  }
+  [[nodiscard]] std::size_t strips() const { return (height + kRowsOfStrip - 1) / kRowsOfStrip; }
   /// Whether the column stands beside a side face of the box.
   [[nodiscard]] bool is_border(int column) const {
     const int i = column % width, j = column / width;
@@ -190,7 +188,7 @@ OverlapVolume visit_columns(StripBuffers& b, int first_column, int columns, cons
   OverlapVolume strip;
   std::size_t begin = 0;
   for (int i = 0; i < columns; ++i) {
-    const std::size_t end = b.end_of_column[static_cast<std::size_t>(i)];
+    const std::size_t end = b.end_of_column[i];
     if (begin == end) continue;
     Crossing* first = b.sorted.data() + begin;
     Crossing* last = b.sorted.data() + end;

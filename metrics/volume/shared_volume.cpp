@@ -69,7 +69,7 @@ std::vector<Strip> strips_of(const Balls& balls, const TriMesh& surface, const C
     const double row = (y - grid.origin.y()) / grid.spacing - 0.5;
     return static_cast<int>(std::clamp(row, 0.0, grid.ny - 1.0)) / kRowsAtOnce;
   };
-  for (int b = 0; b < static_cast<int>(balls.radii.size()); ++b) {
+  for (int b = 0; b < std::ssize(balls.radii); ++b) {
     const double y = balls.centres(b, 1), r = balls.radii[b];
     for (int s = strip_at(y - r); s <= strip_at(y + r); ++s) strips[s].balls.push_back(b);
   }

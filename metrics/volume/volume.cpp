@@ -11,9 +11,9 @@ TriMesh region_surface(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
   std::size_t fan_triangles = 0;
   for (const std::vector<int>& loop : region.border_loops) fan_triangles += loop.size();
   TriMesh closed;
-  closed.V.resize(V.rows() + static_cast<Eigen::Index>(region.border_loops.size()), 3);
+  closed.V.resize(V.rows() + region.border_loops.size(), 3);
   closed.V.topRows(V.rows()) = V;
-  closed.F.resize(static_cast<Eigen::Index>(region.triangles.size() + fan_triangles), 3);
+  closed.F.resize(region.triangles.size() + fan_triangles, 3);
   Eigen::Index t = 0;
   for (const int of_mesh : region.triangles) closed.F.row(t++) = F.row(of_mesh);
   int centre = static_cast<int>(V.rows());

@@ -24,9 +24,7 @@ Eigen::MatrixXcd transform_matrix(Eigen::Index n) {
   return matrix;
 }
 
-double signed_number(Eigen::Index m, Eigen::Index n) {
-  return static_cast<double>(2 * m < n ? m : m - n);
-}
+double signed_number(Eigen::Index m, Eigen::Index n) { return 2 * m < n ? m : m - n; }
 
 }  // namespace
 

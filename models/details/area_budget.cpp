@@ -64,9 +64,9 @@ FaceDistances face_distances(const DetailMesh& d, const std::vector<int>& source
     result.nearest[face] = source;
     queue.emplace(distance, face);
   };
-  for (std::size_t i = 0; i < sources.size(); ++i) {
+  for (int i = 0; i < std::ssize(sources); ++i) {
     const int f = d.site[sources[i]].at.face;
-    offer(f, (centre(f) - d.position[sources[i]]).norm(), static_cast<int>(i));
+    offer(f, (centre(f) - d.position[sources[i]]).norm(), i);
   }
   while (!queue.empty()) {
     const auto [distance, f] = queue.top();
@@ -125,8 +125,8 @@ AreaBudget::AreaBudget(const DetailMesh& original, int details_per_patch) {
   std::partial_sum(face_begin_.begin(), face_begin_.end(), face_begin_.begin());
   face_.resize(face_begin_.back());
   std::vector<int> fill(face_begin_.begin(), face_begin_.end() - 1);
-  for (std::size_t f = 0; f < patch_.size(); ++f)
-    if (patch_[f] >= 0) face_[fill[patch_[f]]++] = static_cast<int>(f);
+  for (int f = 0; f < std::ssize(patch_); ++f)
+    if (patch_[f] >= 0) face_[fill[patch_[f]]++] = f;
   rest_area_.assign(patches, 0);
   rest_count_.assign(patches, 0);
   for (std::size_t f = 0; f < patch_.size(); ++f)
@@ -153,7 +153,7 @@ void AreaBudget::leave_bare_faces(const DetailMesh& original) {
   }
   for (const int i : all) {
     // A face larger than the reach still holds its details.
-    const std::size_t f = static_cast<std::size_t>(original.site[i].at.face);
+    const std::size_t f = original.site[i].at.face;
     patch_[f] = nearest_seed[f];
   }
 }

@@ -62,10 +62,10 @@ void IntrinsicTriangulation::link(std::span<const std::array<int, 3>> triangles)
     origin_[h] = edges.origin(h);
     twin_[h] = edges.twin(h);
   }
-  for (std::size_t h = 0; h < twin_.size(); ++h) {
+  for (int h = 0; h < std::ssize(twin_); ++h) {
     if (twin_[h] >= 0) continue;
     border_[origin_[h]] = 1;
-    border_[tip(static_cast<int>(h))] = 1;
+    border_[tip(h)] = 1;
   }
   for (int t = 0; t < triangle_slots(); ++t) refresh_outgoing(t);
 }
@@ -158,7 +158,7 @@ void IntrinsicTriangulation::set_triangle(int t, const std::array<int, 3>& corne
                                           const std::array<double, 3>& length,
                                           const std::array<int, 3>& twin) {
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t h = static_cast<std::size_t>(3 * t) + k;
+    const std::size_t h = (3 * t) + k;
     origin_[h] = corner[k];
     length_[h] = length[k];
     twin_[h] = twin[k];
@@ -168,7 +168,7 @@ void IntrinsicTriangulation::set_triangle(int t, const std::array<int, 3>& corne
 
 void IntrinsicTriangulation::refresh_outgoing(int t) {
   for (int h = 3 * t; h < 3 * t + 3; ++h) {
-    const std::size_t v = static_cast<std::size_t>(origin_[h]);
+    const std::size_t v = origin_[h];
     if (border_[v] == 0 || twin_[h] < 0) out_[v] = h;
   }
 }
@@ -251,8 +251,8 @@ int IntrinsicTriangulation::flip_to_delaunay() {
     }
   });
   stack_.clear();
-  for (std::size_t t = 0; t < wanting.size(); ++t)
-    if (wanting[t] != 0) push_edges(static_cast<int>(t), stack_);
+  for (int t = 0; t < std::ssize(wanting); ++t)
+    if (wanting[t] != 0) push_edges(t, stack_);
   return settle(stack_);
 }
 
@@ -342,7 +342,7 @@ void IntrinsicTriangulation::renumber(std::span<const int> number) {
   std::vector<char> border;
   for (std::size_t v = 0; v < out_.size(); ++v) {
     if (out_[v] < 0) continue;
-    const std::size_t w = static_cast<std::size_t>(number[v]);
+    const std::size_t w = number[v];
     if (out.size() <= w) {
       out.resize(w + 1, -1);
       border.resize(w + 1, 0);

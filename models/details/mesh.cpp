@@ -98,7 +98,7 @@ void measure_edges(DetailMesh& d, LengthRule rule) {
 
 bool surface_differs(const DetailMesh& d, const Eigen::MatrixX3d& V) {
   for (std::size_t v = 0; v < d.x.size(); ++v)
-    if (d.x[v] != V.row(static_cast<Eigen::Index>(v)).transpose()) return true;
+    if (d.x[v] != V.row(v).transpose()) return true;
   return false;
 }
 
@@ -106,8 +106,7 @@ int move_surface(DetailMesh& d, const Eigen::MatrixX3d& V, LengthRule rule) {
   ++d.frame;
   if (!surface_differs(d, V)) return 0;  // nothing is measured anew, so that nothing changes
   parallel_blocks(d.x.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      d.x[v] = V.row(static_cast<Eigen::Index>(v)).transpose();
+    for (std::size_t v = begin; v < end; ++v) d.x[v] = V.row(v).transpose();
   });
   place_sites(d);
   measure_edges(d, rule);
@@ -117,8 +116,7 @@ int move_surface(DetailMesh& d, const Eigen::MatrixX3d& V, LengthRule rule) {
 SurfacePoint surface_point_in(const DetailMesh& d, int t, const Eigen::Vector3d& barycentric) {
   const auto corner = d.mesh.corners(t);
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < 3; ++k)
-    target += barycentric[static_cast<Eigen::Index>(k)] * d.position[corner[k]];
+  for (std::size_t k = 0; k < 3; ++k) target += barycentric[k] * d.position[corner[k]];
   Eigen::Index nearest = 0;
   barycentric.maxCoeff(&nearest);
   return walk_to_nearest(d.site[corner[nearest]].at, target, *d.surface, d.x);
@@ -262,8 +260,7 @@ void number_sites(DetailMesh& result, std::span<const Detail> details,
                   std::span<const int> vertex_of_detail, int surface_vertices) {
   std::vector<int> number(result.mesh.vertex_slots(), -1);
   result.site.assign(details.begin(), details.end());
-  for (std::size_t i = 0; i < details.size(); ++i)
-    number[vertex_of_detail[i]] = static_cast<int>(i);
+  for (int i = 0; i < std::ssize(details); ++i) number[vertex_of_detail[i]] = i;
   for (int v = 0; v < surface_vertices; ++v) {
     if (!result.mesh.vertex_alive(v)) continue;
     number[v] = static_cast<int>(result.site.size());
@@ -319,11 +316,11 @@ DetailMesh build_detail_mesh(const TriMesh& rest, std::span<const Detail> detail
   for (Eigen::Index v = 0; v < rest.V.rows(); ++v) x[v] = rest.V.row(v).transpose();
   std::vector<Detail> sites(details.begin(), details.end());
   for (std::size_t i = 0; i < sites.size(); ++i) {
-    sites[i].birth = static_cast<std::int64_t>(i);
+    sites[i].birth = i;
     sites[i].birth_frame = sites[i].generation = 0;
   }
   DetailMesh result = build_detail_mesh(std::make_shared<SurfaceTopology>(rest), x, sites);
-  result.births = static_cast<std::int64_t>(sites.size());
+  result.births = sites.size();
   return result;
 }
 
@@ -404,8 +401,8 @@ void measure_sections(DetailMesh& d) {
       length[i] = Section(d, d.mesh.origin(h), d.mesh.tip(h)).length();
     }
   });
-  for (std::size_t i = 0; i < length.size(); ++i)
-    if (length[i] > 0) d.mesh.set_length(static_cast<int>(i), length[i]);
+  for (int i = 0; i < std::ssize(length); ++i)
+    if (length[i] > 0) d.mesh.set_length(i, length[i]);
 }
 
 }  // namespace geoprior::details

@@ -44,8 +44,8 @@ template <class Visit>
 void PointGrid::visit_near(const Eigen::Vector3d& p, double radius, const Visit& visit) const {
   std::array<std::int64_t, 3> low{}, high{};
   for (std::size_t k = 0; k < 3; ++k) {
-    low[k] = cell_of(p[static_cast<Eigen::Index>(k)] - radius);
-    high[k] = cell_of(p[static_cast<Eigen::Index>(k)] + radius);
+    low[k] = cell_of(p[k] - radius);
+    high[k] = cell_of(p[k] + radius);
   }
   for (std::int64_t x = low[0]; x <= high[0]; ++x)
     for (std::int64_t y = low[1]; y <= high[1]; ++y)

@@ -19,9 +19,8 @@ std::vector<int> points_in_order(const DetailMesh& d) {
 
 Part surface_part(const DetailMesh& d) {
   Part part;
-  part.points.resize(static_cast<Eigen::Index>(d.x.size()), 3);
-  for (std::size_t v = 0; v < d.x.size(); ++v)
-    part.points.row(static_cast<Eigen::Index>(v)) = d.x[v].transpose();
+  part.points.resize(d.x.size(), 3);
+  for (std::size_t v = 0; v < d.x.size(); ++v) part.points.row(v) = d.x[v].transpose();
   part.triangles.resize(d.surface->face_count(), 3);
   for (int t = 0; t < d.surface->face_count(); ++t)
     part.triangles.row(t) = Eigen::Map<const Eigen::RowVector3i>(d.surface->face[t].data());
@@ -29,19 +28,16 @@ Part surface_part(const DetailMesh& d) {
 }
 
 Eigen::MatrixX3d points_of(const DetailMesh& d, std::span<const int> sites) {
-  Eigen::MatrixX3d points(static_cast<Eigen::Index>(sites.size()), 3);
-  for (std::size_t i = 0; i < sites.size(); ++i)
-    points.row(static_cast<Eigen::Index>(i)) = d.position[sites[i]].transpose();
+  Eigen::MatrixX3d points(sites.size(), 3);
+  for (std::size_t i = 0; i < sites.size(); ++i) points.row(i) = d.position[sites[i]].transpose();
   return points;
 }
 
 template <class Value>
 NamedArray point_array(const char* name, std::span<const int> sites, Eigen::Index components,
                        const Value& value) {
-  NamedArray array{name, "1", NamedArray::On::points,
-                   Eigen::MatrixXd(static_cast<Eigen::Index>(sites.size()), components)};
-  for (std::size_t i = 0; i < sites.size(); ++i)
-    array.values.row(static_cast<Eigen::Index>(i)) = value(sites[i]);
+  NamedArray array{name, "1", NamedArray::On::points, Eigen::MatrixXd(sites.size(), components)};
+  for (std::size_t i = 0; i < sites.size(); ++i) array.values.row(i) = value(sites[i]);
   return array;
 }
 
@@ -76,14 +72,12 @@ Part details_part(const DetailMesh& d, std::span<const int> sites) {
 Part mesh_part(const DetailMesh& d, std::span<const int> sites,
                std::span<const std::array<int, 3>> triangles) {
   std::vector<int> row(d.site_slots(), -1);
-  for (std::size_t i = 0; i < sites.size(); ++i) row[sites[i]] = static_cast<int>(i);
+  for (int i = 0; i < std::ssize(sites); ++i) row[sites[i]] = i;
   Part part;
   part.points = points_of(d, sites);
-  part.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+  part.triangles.resize(triangles.size(), 3);
   for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      part.triangles(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(k)) =
-          row[triangles[t][k]];
+    for (std::size_t k = 0; k < 3; ++k) part.triangles(t, k) = row[triangles[t][k]];
   part.arrays.push_back(point_array("ghost", sites, 1, [&](int i) {
     return Eigen::Matrix<double, 1, 1>::Constant(d.is_detail(i) ? 0.0 : 1.0);
   }));
@@ -131,7 +125,7 @@ class DetailFrames final : public FrameModel {
 
 Frame detail_frame(const DetailMesh& d, double parameter) {
   const std::vector<int> all = points_in_order(d);
-  const std::span<const int> details(all.data(), static_cast<std::size_t>(d.detail_count()));
+  const std::span<const int> details(all.data(), d.detail_count());
   Frame frame;
   frame.parameter = parameter;
   frame.parts["surface"] = surface_part(d);

@@ -61,7 +61,7 @@ void require_one_manifold(const TriMesh& mesh, const std::string& where) {
   std::vector<int> stack{0};
   seen[0] = 1;
   while (!stack.empty()) {
-    const auto f = static_cast<std::size_t>(stack.back());
+    const std::size_t f = stack.back();
     stack.pop_back();
     for (const int g : topology.across[f]) {
       if (g < 0 || seen[g] != 0) continue;
@@ -176,8 +176,7 @@ void require_valid(const DetailScene& scene) {
                 "at least 3: a mesh of details has triangles");
   }
   for (std::size_t i = 0; i < scene.details.size(); ++i)
-    require_detail(scene.details[i], static_cast<Eigen::Index>(i), scene.surface.F.rows(),
-                   scene.name);
+    require_detail(scene.details[i], i, scene.surface.F.rows(), scene.name);
   require_apart(scene, 1e-9 * bounding_box_diagonal(scene.surface.V));
   if (!scene.motion || scene.motion->frame_count() < 1)
     throw Error("there is no motion", scene.name, "at least one frame");

@@ -39,7 +39,7 @@ Eigen::Vector3d nearest_on_triangle(const std::array<Eigen::Vector3d, 3>& c,
   Eigen::Vector3d b;
   for (std::size_t k = 0; k < 3; ++k) {
     const Eigen::Vector3d &u = c[(k + 1) % 3], &v = c[(k + 2) % 3];
-    b[static_cast<Eigen::Index>(k)] = normal.dot((v - u).cross(p - u)) / s;
+    b[k] = normal.dot((v - u).cross(p - u)) / s;
   }
   if (b.minCoeff() >= 0) return b / b.sum();
   double best = std::numeric_limits<double>::infinity();
@@ -80,8 +80,7 @@ Heading heading_in(int face, const Eigen::Vector3d& d, const SurfaceTopology& su
   heading.direction = (d - n * (n.dot(d) / n.squaredNorm())).normalized();
   for (std::size_t k = 0; k < 3; ++k) {
     const Eigen::Vector3d edge = c[(k + 2) % 3] - c[(k + 1) % 3];
-    heading.velocity[static_cast<Eigen::Index>(k)] =
-        n.cross(edge).dot(heading.direction) / n.squaredNorm();
+    heading.velocity[k] = n.cross(edge).dot(heading.direction) / n.squaredNorm();
   }
   return heading;
 }
@@ -118,9 +117,9 @@ int cross_edge(std::size_t edge, const SurfaceTopology& surface, Points x, Surfa
   for (int k = 0; k < 3; ++k) {
     const int w = surface.face[q.face][k];
     if (w == a)
-      q.barycentric[k] = p.barycentric[static_cast<Eigen::Index>(edge)];
+      q.barycentric[k] = p.barycentric[edge];
     else if (w == b)
-      q.barycentric[k] = p.barycentric[static_cast<Eigen::Index>((edge + 1) % 3)];
+      q.barycentric[k] = p.barycentric[(edge + 1) % 3];
     else
       opposite = k;
   }
@@ -135,9 +134,7 @@ int cross_edge(std::size_t edge, const SurfaceTopology& surface, Points x, Surfa
 }  // namespace
 
 SurfaceTopology::SurfaceTopology(const TriMesh& rest)
-    : face(static_cast<std::size_t>(rest.F.rows())),
-      corners(rest.F, rest.vertex_count()),
-      border_vertex(static_cast<std::size_t>(rest.V.rows()), 0) {
+    : face(rest.F.rows()), corners(rest.F, rest.vertex_count()), border_vertex(rest.V.rows(), 0) {
   const EdgeConnectivity edges(rest.F);
   across = edges.across();
   for (int e = 0; e < edges.edge_count(); ++e) {
@@ -165,7 +162,7 @@ int SurfaceTopology::fan_of(int vertex) const {
       const int g = across[f][forward ? (k + 2) % 3 : k];
       if (forward || f != start) ++count;
       if (g == start) return count;
-      if (g < 0 || count > static_cast<int>(around.size())) break;
+      if (g < 0 || count > std::ssize(around)) break;
       f = g;
     }
   }
@@ -192,10 +189,10 @@ SurfacePoint walk_to_nearest(const SurfacePoint& start, const Eigen::Vector3d& t
     const auto& b = before.point.barycentric;
     for (std::size_t k = 0; k < 3; ++k) {
       // The nearest point may lie beyond an edge it touches, or anywhere around a corner.
-      if (b[static_cast<Eigen::Index>(k)] >= 1 - 1e-12) {
+      if (b[k] >= 1 - 1e-12) {
         for (const int c : surface.corners_of(f[k])) try_face(c / 3, target, surface, x, best);
       }
-      if (b[static_cast<Eigen::Index>((k + 2) % 3)] > 1e-12) continue;
+      if (b[(k + 2) % 3] > 1e-12) continue;
       const int g = surface.across[before.point.face][k];
       if (g >= 0) try_face(g, target, surface, x, best);
     }
@@ -215,7 +212,7 @@ SurfacePoint trace_straight(const SurfacePoint& start, const Eigen::Vector3d& di
     p.barycentric /= p.barycentric.sum();
     length -= exit.after;
     if (exit.opposite < 0) break;
-    const auto edge = static_cast<std::size_t>((exit.opposite + 1) % 3);
+    const std::size_t edge = (exit.opposite + 1) % 3;
     if (surface.across[p.face][edge] < 0) break;
     entered = cross_edge(edge, surface, x, p, heading);
   }

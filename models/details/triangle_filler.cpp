@@ -25,7 +25,7 @@ int TriangleFiller::insert(const Eigen::Vector3d& barycentric) {
   std::size_t at = 0;
   Eigen::Vector3d inside = barycentric;
   while (pieces_[at].child >= 0) {
-    const auto first = static_cast<std::size_t>(pieces_[at].child);
+    const std::size_t first = pieces_[at].child;
     for (std::size_t c = first; c < first + 3; ++c) {
       const Eigen::Vector3d b = local(pieces_[c], barycentric);
       if (c > first && !(b.minCoeff() > inside.minCoeff())) continue;

@@ -57,8 +57,7 @@ class StrokePartBuilder {
     part_.points = X;
     const auto array = [&](const char* name, const std::vector<double>& values) {
       part_.arrays.push_back({name, "1", NamedArray::On::cells,
-                              Eigen::Map<const Eigen::VectorXd>(
-                                  values.data(), static_cast<Eigen::Index>(values.size()))});
+                              Eigen::Map<const Eigen::VectorXd>(values.data(), values.size())});
     };
     array("kind", kind_);
     array("view", view_);
@@ -142,10 +141,9 @@ FrameTable sewn_table(const Pattern& pattern) {
       }
     }
   }
-  FrameTable table{{"stretch", "partner", "seam", "point"},
-                   Eigen::MatrixXd(static_cast<Eigen::Index>(rows.size()), 4)};
+  FrameTable table{{"stretch", "partner", "seam", "point"}, Eigen::MatrixXd(rows.size(), 4)};
   for (std::size_t i = 0; i < rows.size(); ++i)
-    table.rows.row(static_cast<Eigen::Index>(i)) = Eigen::Map<Eigen::RowVector4d>(rows[i].data());
+    table.rows.row(i) = Eigen::Map<Eigen::RowVector4d>(rows[i].data());
   return table;
 }
 
@@ -218,7 +216,7 @@ class SketchFrames final : public FrameModel {
     suggest(context);
     prepared_.start = method_->positions();
     method_.reset();
-    const auto count = static_cast<std::size_t>(suggester_.apply);
+    const std::size_t count = suggester_.apply;
     const std::size_t applied = std::min(count, suggestions_.size());
     for (std::size_t i = 0; i < applied; ++i) {
       add_seam(prepared_.surface, prepared_.start, {suggestions_[i].cut},
@@ -246,7 +244,7 @@ PreparedSketch prepare_sketch(const SketchInput& input) {
   PreparedSketch prepared;
   if (input.surface) {
     prepared.surface.hull.mesh = *input.surface;
-    prepared.surface.border_of.assign(static_cast<std::size_t>(input.surface->V.rows()), -1);
+    prepared.surface.border_of.assign(input.surface->V.rows(), -1);
     prepared.start = input.surface->V;
     return prepared;
   }
@@ -290,8 +288,8 @@ Part suggestions_part(const std::vector<SuggestedSeam>& suggestions) {
 
 std::vector<SeamEdge> seam_edges(const SketchSurface& surface) {
   std::vector<SeamEdge> edges;
-  for (std::size_t s = 0; s < surface.seams.size(); ++s) {
-    for (const Edge& e : surface.seams[s].edges) edges.push_back({e, static_cast<int>(s)});
+  for (int s = 0; s < std::ssize(surface.seams); ++s) {
+    for (const Edge& e : surface.seams[s].edges) edges.push_back({e, s});
   }
   return edges;
 }

@@ -105,9 +105,9 @@ Eigen::MatrixXd solve_columns(const Sparse& system, const Eigen::MatrixXd& rhs,
   const SparseLdlt factor(system);
   if (!factor.succeeded()) throw Error(what + " has no unique solution", "skin weights");
   Eigen::MatrixXd solution(rhs.rows(), rhs.cols());
-  parallel_blocks(static_cast<std::size_t>(rhs.cols()), 1, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(rhs.cols(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
-      const auto column = static_cast<Eigen::Index>(j);
+      const Eigen::Index column = j;
       solution.col(column) = factor.solve(rhs.col(column));
     }
   });

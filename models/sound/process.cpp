@@ -16,14 +16,14 @@ using On = NamedArray::On;
 Part events_part(const std::vector<SoundEvent>& events, const std::vector<EventVoice>& heard) {
   Part part;
   part.kind = Part::Kind::points;
-  const auto n = static_cast<Eigen::Index>(events.size());
+  const Eigen::Index n = events.size();
   part.points.resize(n, 3);
   Eigen::MatrixXd value(n, 7);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const SoundEvent& e = events[static_cast<std::size_t>(i)];
+    const SoundEvent& e = events[i];
     part.points.row(i) = e.position;
     value.row(i) << static_cast<double>(e.kind), e.time, e.energy, e.ruling_length, e.free_border,
-        e.area, heard[static_cast<std::size_t>(i)].sample;
+        e.area, heard[i].sample;
   }
   const std::array<std::pair<const char*, const char*>, 7> names{{{"kind", "1"},
                                                                   {"time", "s"},
@@ -33,8 +33,7 @@ Part events_part(const std::vector<SoundEvent>& events, const std::vector<EventV
                                                                   {"area", "m^2"},
                                                                   {"sample", "1"}}};
   for (std::size_t k = 0; k < names.size(); ++k) {
-    part.arrays.push_back(
-        {names[k].first, names[k].second, On::points, value.col(static_cast<Eigen::Index>(k))});
+    part.arrays.push_back({names[k].first, names[k].second, On::points, value.col(k)});
   }
   return part;
 }
@@ -62,26 +61,25 @@ Part resonators_part(const SoundGrid& grid, const SheetField& field,
         }
       }
       for (const auto& [across, along] : {std::pair{2, 3}, {0, 3}, {0, 1}, {2, 1}})
-        points.emplace_back(here + way[static_cast<std::size_t>(across)] +
-                            way[static_cast<std::size_t>(along)]);
+        points.emplace_back(here + way[across] + way[along]);
       for (int k = 0; k < 2; ++k) {
         kind.push_back(static_cast<double>(events[e].kind));
         number.push_back(static_cast<double>(e));
       }
     }
   }
-  part.points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  part.points.resize(points.size(), 3);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    part.points.row(static_cast<Eigen::Index>(i)) = points[i];
+    part.points.row(i) = points[i];
   }
-  part.triangles.resize(static_cast<Eigen::Index>(points.size() / 2), 3);
+  part.triangles.resize(points.size() / 2, 3);
   for (Eigen::Index q = 0; q < part.triangles.rows() / 2; ++q) {
     const int a = static_cast<int>(4 * q);
     part.triangles.row(2 * q) << a, a + 1, a + 2;
     part.triangles.row(2 * q + 1) << a, a + 2, a + 3;
   }
   const auto column = [](const std::vector<double>& x) -> Eigen::MatrixXd {
-    return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+    return Eigen::Map<const Eigen::VectorXd>(x.data(), x.size());
   };
   part.arrays.push_back({"kind", "1", On::cells, column(kind)});
   part.arrays.push_back({"event", "1", On::cells, column(number)});
@@ -175,8 +173,7 @@ class SoundFrames final : public FrameModel {
     }
     Frame frame;
     frame.parameter = snapshot.time;
-    frame.parts["events"] =
-        events_part(events, {heard_.begin() + static_cast<std::ptrdiff_t>(first), heard_.end()});
+    frame.parts["events"] = events_part(events, {heard_.begin() + first, heard_.end()});
     frame.parts["resonators"] = resonators_part(detector_.grid(), detector_.field(), events);
     if (stage_.surface) {
       Part& surface = frame.parts["surface"];

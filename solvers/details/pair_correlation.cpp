@@ -55,7 +55,7 @@ void PairCorrelation::distances(const DetailMesh& details, int t,
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   for (const ChartPoint& p : chart) {
     for (std::size_t k = 1; k < 3; ++k)
-      if (p.vertex == corner[k]) at += barycentric[static_cast<Eigen::Index>(k)] * p.at;
+      if (p.vertex == corner[k]) at += barycentric[k] * p.at;
   }
   for (const ChartPoint& p : chart) {
     const double distance = (p.at - at).norm();

@@ -108,8 +108,7 @@ std::vector<NewDetail> PatternCopier::copy_of(const TripletMatch& match, const D
   for (const TripletInterior& inside : table_.interior(match.triplet)) {
     const Eigen::Vector3d b = inside.barycentric();
     NewDetail one;
-    for (std::size_t k = 0; k < 3; ++k)
-      one.barycentric[static_cast<Eigen::Index>(k)] = b[match.order[k]];
+    for (std::size_t k = 0; k < 3; ++k) one.barycentric[k] = b[match.order[k]];
     one.at = surface_point_in(now, t, one.barycentric);
     one.like = original_.site[inside.detail];
     one.like.weight = 0;

@@ -180,9 +180,8 @@ void SelfReplicating::rank_triangles(Need need, const std::function<double(int)>
   });
   std::vector<int> begin(static_cast<std::size_t>(budget_.patch_count()) + 2, 0);
   const auto each_wanting = [&](const auto& visit) {
-    for (std::size_t i = 0; i < rank_.size(); ++i) {
-      if (rank_[i] < kNotWanting)
-        visit(WantingTriangle{rank_[i], static_cast<int>(i), patch_of_triangle_[i]});
+    for (int i = 0; i < std::ssize(rank_); ++i) {
+      if (rank_[i] < kNotWanting) visit(WantingTriangle{rank_[i], i, patch_of_triangle_[i]});
     }
   };
   each_wanting([&](const WantingTriangle& one) { ++begin[one.patch + 1]; });
@@ -226,7 +225,7 @@ double SelfReplicating::weight_step(const Eigen::MatrixX3d& V) const {
   if (options_.weight_law == WeightLaw::frame) return options_.weight_rate;
   double largest = 0;
   for (std::size_t v = 0; v < now_.x.size(); ++v) {
-    const Eigen::Vector3d shift = V.row(static_cast<Eigen::Index>(v)).transpose() - now_.x[v];
+    const Eigen::Vector3d shift = V.row(v).transpose() - now_.x[v];
     largest = std::max(largest, shift.norm());
   }
   return std::min(options_.weight_rate, options_.motion_rate * largest / rest_edge_);
@@ -372,9 +371,9 @@ void SelfReplicating::fill(int t) {
 bool SelfReplicating::within_budget(const std::vector<NewDetail>& born) const {
   for (std::size_t i = 0; i < born.size(); ++i) {
     const int patch = budget_.patch_of(born[i].at);
-    const auto before =
-        std::count_if(born.begin(), born.begin() + static_cast<std::ptrdiff_t>(i),
-                      [&](const NewDetail& other) { return budget_.patch_of(other.at) == patch; });
+    const auto before = std::count_if(born.begin(), born.begin() + i, [&](const NewDetail& other) {
+      return budget_.patch_of(other.at) == patch;
+    });
     if (budget_.deficit(patch) - static_cast<double>(before) < limit()) return false;
   }
   return true;

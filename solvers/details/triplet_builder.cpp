@@ -63,7 +63,7 @@ bool TripletSearch::collect_interior(const std::array<std::size_t, 3>& corner,
     const Eigen::Vector2d p = points_[i].at - a;
     const double wb = cross(p, c) * inverse, wc = cross(b, p) * inverse, wa = 1 - wb - wc;
     if (wa < kInside || wb < kInside || wc < kInside) continue;  // corners too
-    if (static_cast<int>(triplet.interior.size()) == kMostInside) return false;
+    if (std::ssize(triplet.interior) == kMostInside) return false;
     triplet.interior.push_back(
         {points_[i].vertex, {static_cast<float>(wa), static_cast<float>(wb)}});
   }

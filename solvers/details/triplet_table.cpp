@@ -51,7 +51,7 @@ class Reservoirs {
  public:
   Reservoirs(int cells, int capacity, std::uint64_t seed)
       : capacity_(capacity),
-        kept_(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells)),
+        kept_(static_cast<std::size_t>(cells) * cells),
         seen_(kept_.size(), 0),
         random_(seed, "triplets") {}
 
@@ -114,7 +114,7 @@ TripletTable::TripletTable(const DetailMesh& original, const TripletOptions& opt
 }
 
 std::span<const TripletInterior> TripletTable::interior(int triplet) const {
-  const auto begin = static_cast<std::size_t>(entry_[triplet].interior_begin);
+  const std::size_t begin = entry_[triplet].interior_begin;
   const auto end = static_cast<std::size_t>(triplet) + 1 < entry_.size()
                        ? static_cast<std::size_t>(entry_[triplet + 1].interior_begin)
                        : interior_.size();
@@ -138,7 +138,7 @@ void TripletTable::search_cell(int cell, const std::array<double, 3>& sorted, in
     double difference = 0;
     for (std::size_t k = 0; k < 3; ++k)
       difference += std::abs(sorted[k] - static_cast<double>(entry_[e].edge[k]));
-    const bool full = into.size() == static_cast<std::size_t>(count);
+    const bool full = std::ssize(into) == count;
     if (full && difference >= into.back().edge_difference) continue;
     if (full) into.pop_back();
     const auto place = std::upper_bound(
@@ -169,7 +169,7 @@ void TripletTable::closest(const std::array<double, 3>& edges, int max_interior,
   // sorted, goes to corner by_edges[k] of the triangle.
   const auto by_edges = corners_by_edges(edges);
   std::array<int, 3> order{};
-  for (std::size_t k = 0; k < 3; ++k) order[by_edges[k]] = static_cast<int>(k);
+  for (int k = 0; k < 3; ++k) order[by_edges[k]] = k;
   const bool odd = (order[1] - order[0] + 3) % 3 != 1;
   for (TripletMatch& match : into) {
     match.order = order;

@@ -165,8 +165,7 @@ class ExtractFrames final : public FrameModel {
                           const std::vector<std::vector<double>>& rows) {
     FrameTable result;
     result.columns = columns;
-    result.rows.resize(static_cast<Eigen::Index>(rows.size()),
-                       static_cast<Eigen::Index>(columns.size()));
+    result.rows.resize(rows.size(), columns.size());
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (std::size_t c = 0; c < columns.size(); ++c) {
         result.rows(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = rows[r][c];

@@ -153,7 +153,7 @@ class SculptFrames final : public FrameModel {
     if (!edit.ids.empty()) return all;
     std::vector<FeatureSummary> result;
     for (const FeatureSummary& s : all) {
-      if (static_cast<int>(s.times.size()) >= options_.extraction.shortest_track) {
+      if (std::ssize(s.times) >= options_.extraction.shortest_track) {
         result.push_back(s);
       }
     }

@@ -15,11 +15,11 @@ Part rulings_part(const PaperStructure& structure, const RulingMesh& mesh,
                   const ShellState& state) {
   Part part;
   part.kind = Part::Kind::lines;
-  const auto count = static_cast<Eigen::Index>(mesh.ruling_paths.size());
+  const Eigen::Index count = mesh.ruling_paths.size();
   Eigen::MatrixXd piece(count, 1), kind(count, 1);
   std::size_t points = 0;
   for (const auto& path : mesh.ruling_paths) points += path.size();
-  part.points.resize(static_cast<Eigen::Index>(points), 3);
+  part.points.resize(points, 3);
   int next = 0;
   for (Eigen::Index r = 0; r < count; ++r) {
     std::vector<int> line;
@@ -39,7 +39,7 @@ Part rulings_part(const PaperStructure& structure, const RulingMesh& mesh,
 Part points_part(const PaperStructure& structure, const RulingMesh& mesh, const ShellState& state) {
   Part part;
   part.kind = Part::Kind::points;
-  const auto count = static_cast<Eigen::Index>(structure.singular_points.size());
+  const Eigen::Index count = structure.singular_points.size();
   part.points.resize(count, 3);
   Eigen::MatrixXd id(count, 1), birth(count, 1), weakening(count, 1);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -60,16 +60,15 @@ FrameTable pieces_table(const PaperStructure& structure) {
   table.columns = {"id [1]",         "kind [1]",          "rulings [1]",     "apex_u [m]",
                    "apex_v [m]",     "direction_u [1]",   "direction_v [1]", "area [m^2]",
                    "neighbours [1]", "singular_point [1]"};
-  table.rows.setZero(static_cast<Eigen::Index>(structure.pieces.size()),
-                     static_cast<Eigen::Index>(table.columns.size()));
+  table.rows.setZero(structure.pieces.size(), table.columns.size());
   for (std::size_t i = 0; i < structure.pieces.size(); ++i) {
     const PaperPiece& p = structure.pieces[i];
     const Eigen::Vector2d apex = p.apex.value_or(Eigen::Vector2d::Zero());
     const bool cylinder = p.kind == PaperPiece::Kind::cylinder;
-    table.rows.row(static_cast<Eigen::Index>(i)) << p.id, static_cast<double>(p.kind),
-        static_cast<double>(p.rulings.size()), apex.x(), apex.y(), cylinder ? p.direction.x() : 0,
-        cylinder ? p.direction.y() : 0, signed_area(p.region),
-        static_cast<double>(p.neighbours.size()), p.singular_point.value_or(-1);
+    table.rows.row(i) << p.id, static_cast<double>(p.kind), static_cast<double>(p.rulings.size()),
+        apex.x(), apex.y(), cylinder ? p.direction.x() : 0, cylinder ? p.direction.y() : 0,
+        signed_area(p.region), static_cast<double>(p.neighbours.size()),
+        p.singular_point.value_or(-1);
   }
   return table;
 }
@@ -77,12 +76,11 @@ FrameTable pieces_table(const PaperStructure& structure) {
 FrameTable points_table(const PaperStructure& structure) {
   FrameTable table;
   table.columns = {"id [1]", "u [m]", "v [m]", "birth [s]", "weakening [1]", "on_border [1]"};
-  table.rows.resize(static_cast<Eigen::Index>(structure.singular_points.size()),
-                    static_cast<Eigen::Index>(table.columns.size()));
+  table.rows.resize(structure.singular_points.size(), table.columns.size());
   for (std::size_t i = 0; i < structure.singular_points.size(); ++i) {
     const SingularPoint& s = structure.singular_points[i];
-    table.rows.row(static_cast<Eigen::Index>(i)) << s.id, s.position.x(), s.position.y(), s.birth,
-        s.weakening, s.on_border ? 1 : 0;
+    table.rows.row(i) << s.id, s.position.x(), s.position.y(), s.birth, s.weakening,
+        s.on_border ? 1 : 0;
   }
   return table;
 }
@@ -91,7 +89,7 @@ FrameTable points_table(const PaperStructure& structure) {
 
 void add_structure(const PaperStructure& structure, const RulingMesh& mesh, const ShellState& state,
                    Frame& frame) {
-  const auto m = static_cast<Eigen::Index>(mesh.piece.size());
+  const Eigen::Index m = mesh.piece.size();
   Eigen::MatrixXd piece(m, 1), kind(m, 1);
   for (Eigen::Index f = 0; f < m; ++f) {
     piece(f, 0) = mesh.piece[f];

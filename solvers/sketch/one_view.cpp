@@ -51,7 +51,7 @@ void SurfaceBuilder::add_strip(const RuledStrip& strip, int patch) {
 
 void SurfaceBuilder::add_panel(const std::vector<int>& loop, const TriMesh& mesh, int patch) {
   std::vector<int> vertex = loop;
-  for (Eigen::Index v = static_cast<Eigen::Index>(loop.size()); v < mesh.V.rows(); ++v) {
+  for (Eigen::Index v = loop.size(); v < mesh.V.rows(); ++v) {
     vertex.push_back(static_cast<int>(positions_.size()));
     positions_.push_back(mesh.V.row(v).transpose());
   }
@@ -66,7 +66,7 @@ TexturedSurface SurfaceBuilder::surface(const Eigen::AlignedBox2d& picture) cons
   TexturedSurface s;
   std::vector<int> number(positions_.size(), -1);
   std::vector<int> used;
-  s.mesh.F.resize(static_cast<Eigen::Index>(triangles_.size()), 3);
+  s.mesh.F.resize(triangles_.size(), 3);
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const int v = triangles_[t](k);
@@ -74,18 +74,18 @@ TexturedSurface SurfaceBuilder::surface(const Eigen::AlignedBox2d& picture) cons
         number[v] = static_cast<int>(used.size());
         used.push_back(v);
       }
-      s.mesh.F(static_cast<Eigen::Index>(t), k) = number[v];
+      s.mesh.F(t, k) = number[v];
     }
   }
-  const auto count = static_cast<Eigen::Index>(used.size());
+  const Eigen::Index count = used.size();
   s.mesh.V.resize(count, 3);
   s.texture.resize(count, 2);
   const Eigen::Vector2d size = picture.sizes().cwiseMax(1e-300);
   for (Eigen::Index v = 0; v < count; ++v) {
-    const int source = used[static_cast<std::size_t>(v)];
+    const int source = used[v];
     s.mesh.V.row(v) = positions_[source].transpose();
     // What was drawn is textured where it was drawn, not where the solution moved it.
-    const bool is_node = source < static_cast<int>(result_.net.points.size());
+    const bool is_node = source < std::ssize(result_.net.points);
     const Eigen::Vector2d at =
         is_node ? result_.net.points[source] : Eigen::Vector2d(positions_[source].head<2>());
     s.texture.row(v) = (at - picture.min()).cwiseQuotient(size).transpose();
@@ -120,10 +120,10 @@ double outwardness(const TriMesh& mesh, const std::vector<int>& triangles) {
 void orient_surface(TriMesh& mesh) {
   const EdgeConnectivity edges(mesh.F);
   const Eigen::MatrixX3i F = mesh.F;
-  std::vector<int> sense(static_cast<std::size_t>(F.rows()), 0);
+  std::vector<int> sense(F.rows(), 0);
   for (Eigen::Index seed = 0; seed < F.rows(); ++seed) {
-    if (sense[static_cast<std::size_t>(seed)] != 0) continue;
-    sense[static_cast<std::size_t>(seed)] = 1;
+    if (sense[seed] != 0) continue;
+    sense[seed] = 1;
     std::vector<int> piece{static_cast<int>(seed)};
     for (std::size_t next = 0; next < piece.size(); ++next) {
       for (int k = 0; k < 3; ++k) {
@@ -193,9 +193,8 @@ void fill_patches(const View& view, const std::vector<DrawnPanel>& panels, OneVi
     result.patches.push_back(std::move(patch));
   }
   for (const DrawnPanel& panel : panels) {
-    Eigen::MatrixX3d border(static_cast<Eigen::Index>(panel.loop.size()), 3);
-    for (std::size_t k = 0; k < panel.loop.size(); ++k)
-      border.row(static_cast<Eigen::Index>(k)) = nodes.row(panel.loop[k]);
+    Eigen::MatrixX3d border(panel.loop.size(), 3);
+    for (std::size_t k = 0; k < panel.loop.size(); ++k) border.row(k) = nodes.row(panel.loop[k]);
     const std::string where = "panel '" + panel.name + "'";
     const TriMesh mesh = panel.flat ? flat_patch(border, where)
                                     : fair_patch(border, result.net.spacing, kFairSolves, where);

@@ -39,12 +39,11 @@ Part textured_part(const View& view, const OneViewResult& result) {
   NamedArray image = one_view_array("mirror_image", On::cells, m);
   const std::vector<std::string> names = panels_of(view);
   for (Eigen::Index t = 0; t < m; ++t) {
-    const int p = surface.patch[static_cast<std::size_t>(t)];
-    const auto name =
-        std::find(names.begin(), names.end(), result.patches[static_cast<std::size_t>(p)].name);
+    const int p = surface.patch[t];
+    const auto name = std::find(names.begin(), names.end(), result.patches[p].name);
     patch.values(t) = p;
     panel.values(t) = name == names.end() ? -1 : static_cast<double>(name - names.begin());
-    image.values(t) = surface.mirror_image[static_cast<std::size_t>(t)] ? 1 : 0;
+    image.values(t) = surface.mirror_image[t] ? 1 : 0;
   }
   part.arrays = {
       std::move(texture), std::move(border), std::move(seam), one_view_array("fold", On::points, n),
@@ -57,26 +56,26 @@ Part curves_part(const OneViewResult& result) {
   Part part;
   part.kind = Part::Kind::lines;
   std::vector<std::pair<int, int>> places;  // curve and number of its node
-  for (std::size_t c = 0; c < result.net.curves.size(); ++c) {
+  for (int c = 0; c < std::ssize(result.net.curves); ++c) {
     const SketchCurve& curve = result.net.curves[c];
     std::vector<int> line;
     for (int i = 0; i < curve.size(); ++i) {
       line.push_back(static_cast<int>(places.size()));
-      places.emplace_back(static_cast<int>(c), i);
+      places.emplace_back(c, i);
     }
     if (curve.closed) line.push_back(line.front());
     part.lines.push_back(std::move(line));
   }
-  const auto n = static_cast<Eigen::Index>(places.size());
+  const Eigen::Index n = places.size();
   part.points.resize(n, 3);
   NamedArray stroke = one_view_array("stroke", NamedArray::On::points, n);
   NamedArray drawn_at = one_view_array("drawn_at", NamedArray::On::points, n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const auto& [c, k] = places[static_cast<std::size_t>(i)];
-    const SketchCurve& curve = result.net.curves[static_cast<std::size_t>(c)];
-    part.points.row(i) = result.depth.nodes.row(curve.nodes[static_cast<std::size_t>(k)]);
+    const auto& [c, k] = places[i];
+    const SketchCurve& curve = result.net.curves[c];
+    part.points.row(i) = result.depth.nodes.row(curve.nodes[k]);
     stroke.values(i) = curve.stroke;
-    drawn_at.values(i) = curve.drawn_at[static_cast<std::size_t>(k)];
+    drawn_at.values(i) = curve.drawn_at[k];
   }
   part.arrays = {std::move(stroke), std::move(drawn_at)};
   return part;
@@ -87,8 +86,8 @@ Part rulings_part(const OneViewResult& result) {
   part.kind = Part::Kind::lines;
   part.points = result.depth.nodes;
   for (const RuledPatch& patch : result.rulings) {
-    const SketchCurve& first = result.net.curves[static_cast<std::size_t>(patch.first)];
-    const SketchCurve& second = result.net.curves[static_cast<std::size_t>(patch.second)];
+    const SketchCurve& first = result.net.curves[patch.first];
+    const SketchCurve& second = result.net.curves[patch.second];
     for (const std::array<int, 2>& cell : patch.cells)
       part.lines.push_back({node_of(first, cell[0]), node_of(second, cell[1])});
   }
@@ -163,7 +162,7 @@ Frame one_view_frame(const View& view, const OneViewResult& result) {
 std::vector<SeamEdge> patch_seams(const TexturedSurface& surface) {
   const EdgeConnectivity edges(surface.mesh.F);
   std::map<std::pair<int, int>, std::vector<Edge>> between;
-  for (int h = 0; h < 3 * static_cast<int>(surface.mesh.F.rows()); ++h) {
+  for (int h = 0; h < 3 * surface.mesh.triangle_count(); ++h) {
     const int twin = edges.twin(h);
     if (twin < h) continue;  // a border, or seen from the other side
     const int a = surface.patch[h / 3], b = surface.patch[twin / 3];

@@ -77,8 +77,8 @@ class SeveralViews final : public SketchMethod {
     }
     if (options_.order == StepOrder::alternating) {
       const Phase phase(context, "transfer");
-      const std::vector<Eigen::Matrix3d> unturned(
-          static_cast<std::size_t>(surface_.hull.mesh.F.rows()), Eigen::Matrix3d::Identity());
+      const std::vector<Eigen::Matrix3d> unturned(surface_.hull.mesh.F.rows(),
+                                                  Eigen::Matrix3d::Identity());
       X_ = transfer_.solve(X_, unturned, pins);
     }
     std::vector<Eigen::Matrix3d> rotations;
@@ -110,7 +110,7 @@ class SeveralViews final : public SketchMethod {
     constexpr int kChords = 8;
     Part part;
     part.kind = Part::Kind::lines;
-    part.points.resize(static_cast<Eigen::Index>(gaps_.size()) * (kChords + 1), 3);
+    part.points.resize(std::ssize(gaps_) * (kChords + 1), 3);
     int next = 0;
     for (const auto& [number, gap] : gaps_) {
       const OutlinedView& view = surface_.hull.views[number];
@@ -139,10 +139,10 @@ class SeveralViews final : public SketchMethod {
         }
       }
     }
-    for (std::size_t v = 0; v < surface_.border_of.size(); ++v) {
+    for (int v = 0; v < std::ssize(surface_.border_of); ++v) {
       if (surface_.border_of[v] < 0) continue;
       const BorderPlace& border = surface_.borders[surface_.border_of[v]];
-      pin_across(border.points, surface_.hull.views[border.view], static_cast<int>(v), X_, pins);
+      pin_across(border.points, surface_.hull.views[border.view], v, X_, pins);
     }
     if (!options_.silhouettes) return;
     for (std::size_t view = 0; view < zippering_.size(); ++view) {

@@ -61,7 +61,7 @@ std::vector<BoneField> fit_fields(const RiggedMesh& rig, const BonePartition& pa
     for (std::size_t b = begin; b < end; ++b) {
       BoneField& field = fields[b];
       field.bone = partition.bones[b];
-      const auto joint = static_cast<std::size_t>(field.bone.joint);
+      const std::size_t joint = field.bone.joint;
       const std::string& name = rig.skeleton.joints[joint].name;
       field.samples = sample_bone(rig.mesh, normals, partition, static_cast<int>(b),
                                   options.sampling, context.random("samples of " + name));
@@ -99,7 +99,7 @@ struct ImplicitSkinning::Impl {
       throw Error("no joint moves enough vertices for a field", "implicit skinning",
                   "at least " + std::to_string(kMinBoneVertices) + " vertices a joint");
     }
-    if (static_cast<int>(partition.bones.size()) > kMaxFieldBones) {
+    if (std::ssize(partition.bones) > kMaxFieldBones) {
       throw Error(std::to_string(partition.bones.size()) + " joints have skin of their own",
                   "implicit skinning", "at most " + std::to_string(kMaxFieldBones));
     }
@@ -167,8 +167,7 @@ void ImplicitSkinning::Impl::turn_normals() {
   for (std::size_t j = 0; j < field.rotations().size(); ++j) {
     const Eigen::Matrix3f turn = field.rotations()[j].cast<float>();
     for (int k = 0; k < 3; ++k) {
-      rotation[3 * j + static_cast<std::size_t>(k)] =
-          Float4{turn(0, k), turn(1, k), turn(2, k), 0.0F};
+      rotation[3 * j + k] = Float4{turn(0, k), turn(1, k), turn(2, k), 0.0F};
     }
   }
   parallel_blocks(state.size(), kVerticesPerTask, [this](std::size_t begin, std::size_t end) {
@@ -176,7 +175,7 @@ void ImplicitSkinning::Impl::turn_normals() {
       const Float4 n = state.rest_normal[s];
       Float4 sum{};
       for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i) {
-        const auto k = static_cast<std::size_t>(i);
+        const std::size_t k = i;
         const Float4* r = &rotation[3 * static_cast<std::size_t>(state.influence_joint[k])];
         sum += splat(state.influence_weight[k]) *
                (r[0] * splat(n[0]) + r[1] * splat(n[1]) + r[2] * splat(n[2]));
@@ -290,15 +289,13 @@ std::map<std::string, double> ImplicitSkinning::diagnostics() const {
       ++stopped;
       const int other = state.contact_bone[s], last = state.last_bone[s];
       if (other >= 0 && last >= 0 && other != last) {
-        const auto difference =
-            static_cast<double>(impl.field.difference(state.position[s], last, other));
+        const double difference = impl.field.difference(state.position[s], last, other);
         gap = std::max(gap, std::abs(difference));
       }
     }
     if (state.stop[s] == VertexStop::active) ++unfinished;
     if (state.beta[s] > 0 || state.stop[s] == VertexStop::no_field) continue;
-    const auto error =
-        static_cast<double>(at.value - impl.projection.target_of(state, s, at).value);
+    const double error = at.value - impl.projection.target_of(state, s, at).value;
     ++free;
     squares += error * error;
     largest = std::max(largest, std::abs(error));

@@ -51,15 +51,14 @@ Blend blend(const std::vector<double>& logs, double speed) {
   const double here = std::log(std::max(speed, 1e-9));
   if (here <= logs.front()) return {};
   const auto next = std::upper_bound(logs.begin(), logs.end(), here);
-  const auto above = static_cast<std::size_t>(next - logs.begin());
+  const std::size_t above = next - logs.begin();
   if (next == logs.end()) return {above - 1, above - 1, 0};
   return {above - 1, above, (here - logs[above - 1]) / (*next - logs[above - 1])};
 }
 
 std::vector<double> log_speeds(const SoundBank& bank, const std::vector<int>& loops) {
   std::vector<double> logs;
-  for (const int i : loops)
-    logs.push_back(std::log(std::max(bank.sounds.at(static_cast<std::size_t>(i)).speed, 1e-9)));
+  for (const int i : loops) logs.push_back(std::log(std::max(bank.sounds.at(i).speed, 1e-9)));
   return logs;
 }
 
@@ -78,10 +77,9 @@ class BankVoices final : public SoundVoices {
     const std::vector<int> order = nearest_sounds(bank_, event, options_.descriptors);
     if (order.empty()) return {};
     // Sounds as near as the last of the nearest are drawn from too: without descriptors, all.
-    const auto last =
-        static_cast<std::size_t>(std::min(options_.nearest, static_cast<int>(order.size())) - 1);
+    const std::size_t last = std::min(options_.nearest, static_cast<int>(order.size())) - 1;
     const auto far = [&](int sound) {
-      return distance(bank_.sounds[static_cast<std::size_t>(sound)], event, options_.descriptors);
+      return distance(bank_.sounds[sound], event, options_.descriptors);
     };
     const double reach = far(order[last]) * (1 + 1e-12);
     std::size_t count = last + 1;
@@ -97,8 +95,7 @@ class BankVoices final : public SoundVoices {
   /// Recorded is the loop of the speed that is nearest to the fastest moment.
   [[nodiscard]] EventVoice friction(const SoundEvent& event, RandomStream& random) const {
     std::map<double, std::vector<int>> by_speed;
-    for (const int i : bank_.of(SoundKind::friction))
-      by_speed[bank_.sounds[static_cast<std::size_t>(i)].speed].push_back(i);
+    for (const int i : bank_.of(SoundKind::friction)) by_speed[bank_.sounds[i].speed].push_back(i);
     if (by_speed.empty()) return {};
     std::vector<int> loops;
     for (const auto& entry : by_speed) {
@@ -117,7 +114,7 @@ class BankVoices final : public SoundVoices {
 
   /// By which a sound is played faster.
   [[nodiscard]] double adaptation(const SoundEvent& event, int sound) const {
-    const BankSound& chosen = bank_.sounds[static_cast<std::size_t>(sound)];
+    const BankSound& chosen = bank_.sounds[sound];
     if (!options_.adapt || !(chosen.width > 0) || !(event.area > 0)) return 1;
     if (!(event.ruling_length > 0) || !(chosen.ruling_length > 0)) return 1;
     const auto pitch = [&](double length, double width, double bow) {
@@ -161,7 +158,7 @@ std::vector<int> nearest_sounds(const SoundBank& bank, const SoundEvent& event,
                                 Descriptors descriptors) {
   std::vector<std::pair<double, int>> order;
   for (const int i : bank.of(event.kind)) {
-    order.emplace_back(distance(bank.sounds[static_cast<std::size_t>(i)], event, descriptors), i);
+    order.emplace_back(distance(bank.sounds[i], event, descriptors), i);
   }
   std::sort(order.begin(), order.end());
   std::vector<int> sounds;
@@ -176,7 +173,7 @@ Eigen::VectorXf blended_friction(const SoundBank& bank, const std::vector<int>& 
   const std::vector<double> logs = log_speeds(bank, loops);
   std::vector<const Eigen::VectorXf*> samples;
   for (const int i : loops) {
-    samples.push_back(&bank.sounds[static_cast<std::size_t>(i)].samples);
+    samples.push_back(&bank.sounds[i].samples);
     if (samples.back()->size() == 0) throw Error("has no samples", "loop " + std::to_string(i));
   }
   const double start = sliding.front().time - kSlideFade;

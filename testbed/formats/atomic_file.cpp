@@ -96,7 +96,7 @@ void write_all(int descriptor, std::string_view bytes, const fs::path& file) {
       if (errno == EINTR) continue;
       throw Error("cannot be written: " + system_reason(errno), file.string());
     }
-    bytes.remove_prefix(static_cast<std::size_t>(written));
+    bytes.remove_prefix(written);
   }
 }
 

@@ -55,7 +55,7 @@ struct ReplyHeader {
 std::size_t mapped_bytes() {
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
-  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  return pages * ::sysconf(_SC_PAGESIZE);
 }
 
 /// Both ends of a pipe; what is left open is closed at the end.
@@ -128,7 +128,7 @@ int keep_only(int pipe) {
     if (kAddressSanitizer && stream == STDERR_FILENO) continue;
     if (stream != nothing) ::dup2(nothing, stream);
   }
-  const auto number = static_cast<unsigned>(kept);
+  const unsigned number = kept;
   close_from(3, number - 1);
   close_from(number + 1, ~0U);
   return kept;
@@ -229,7 +229,7 @@ class ReplyReader {
       await();
       const ssize_t n = ::read(pipe_, bytes.data(), bytes.size());
       if (n == 0 || (n < 0 && errno != EINTR)) throw EndsEarly();
-      if (n > 0) bytes = bytes.subspan(static_cast<std::size_t>(n));
+      if (n > 0) bytes = bytes.subspan(n);
     }
   }
 

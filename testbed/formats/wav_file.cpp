@@ -48,7 +48,7 @@ struct SoundBytes {
   }
   static sf_count_t write(const void* from, sf_count_t count, void* user) {
     SoundBytes& bytes = of(user);
-    const auto end = static_cast<std::size_t>(bytes.at + count);
+    const std::size_t end = bytes.at + count;
     if (bytes.out.size() < end) bytes.out.resize(end);
     std::memcpy(bytes.out.data() + bytes.at, from, static_cast<std::size_t>(count));
     bytes.at += count;
@@ -92,7 +92,7 @@ void require_channels(Eigen::Index channels, const std::string& name) {
 std::uint32_t little_endian_at(std::span<const std::byte> bytes, std::size_t at) {
   std::uint32_t value = 0;
   for (int i = 3; i >= 0; --i) {
-    value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + static_cast<std::size_t>(i)]);
+    value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
   }
   return value;
 }
@@ -172,7 +172,7 @@ std::vector<std::byte> wav_bytes(const Sound& sound) {
   info.channels = static_cast<int>(sound.samples.cols());
   info.format = SF_FORMAT_WAV | SF_FORMAT_PCM_24;
   std::vector<int> values;
-  values.reserve(static_cast<std::size_t>(sound.samples.size()));
+  values.reserve(sound.samples.size());
   for (Eigen::Index i = 0; i < sound.samples.rows(); ++i) {
     for (Eigen::Index c = 0; c < sound.samples.cols(); ++c) {
       values.push_back(quantised(sound.samples(i, c)));

@@ -145,7 +145,7 @@ std::map<std::string, Timing> benchmark_poses(const std::vector<BenchmarkEntry>&
     const int repetition = round - options.warm_up;
     for (std::size_t frame = 0; frame < parameters.size(); ++frame) {
       for (std::size_t turn = 0; turn < count; ++turn) {
-        const BenchmarkEntry& entry = entries[(turn + static_cast<std::size_t>(round)) % count];
+        const BenchmarkEntry& entry = entries[(turn + round) % count];
         if (frame == 0) entry.method->restart();
         const auto seconds = time_solve(*entry.method, parameters[frame], context);
         if (context.stop_requested()) return {};
@@ -189,7 +189,7 @@ std::map<std::string, Timing> benchmark_processes(const std::vector<ProcessEntry
   const double all = static_cast<double>(count) * (rounds - 1);
   for (int round = 1; round < rounds; ++round) {
     for (std::size_t turn = 0; turn < count; ++turn) {
-      const ProcessEntry& entry = entries[(turn + static_cast<std::size_t>(round)) % count];
+      const ProcessEntry& entry = entries[(turn + round) % count];
       const double done = static_cast<double>(count) * (round - 1) + static_cast<double>(turn);
       TimedContext context(seed, [&](double of_this) { fraction((done + of_this) / all); });
       const ProcessTimes times = time_process(*entry.process, context);

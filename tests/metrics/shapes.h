@@ -47,12 +47,10 @@ inline TriMesh sphere(double radius, const Eigen::Vector3d& centre, int levels) 
     f = std::move(finer);
   }
   TriMesh m;
-  m.V.resize(static_cast<Eigen::Index>(p.size()), 3);
-  for (std::size_t i = 0; i < p.size(); ++i)
-    m.V.row(static_cast<Eigen::Index>(i)) = (centre + radius * p[i]).transpose();
-  m.F.resize(static_cast<Eigen::Index>(f.size()), 3);
-  for (std::size_t i = 0; i < f.size(); ++i)
-    m.F.row(static_cast<Eigen::Index>(i)) = f[i].transpose();
+  m.V.resize(p.size(), 3);
+  for (std::size_t i = 0; i < p.size(); ++i) m.V.row(i) = (centre + radius * p[i]).transpose();
+  m.F.resize(f.size(), 3);
+  for (std::size_t i = 0; i < f.size(); ++i) m.F.row(i) = f[i].transpose();
   return m;
 }
 

@@ -71,7 +71,7 @@ class AddingAMetric : public ::testing::Test {
   }
   [[nodiscard]] std::size_t runs() const {
     const fs::path folder = home_.root() / "results/runs/sample/growth";
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {}));
+    return std::distance(fs::directory_iterator(folder), {});
   }
   toy::Home home_;
 };

@@ -190,10 +190,10 @@ TEST(SoundEvents, ResonatorOfManyFacetsHasTheOneThatFlipsMost) {
   SheetField field = sampler.sample(rolled_at(a_mesh(sheet), 0, 10));
   const SoundGrid& grid = sampler.grid();
   // Seven strips across the sheet; a column of seeds, the third strip has one more.
-  std::vector<int> parts(static_cast<std::size_t>(grid.count()), -1), seeds;
+  std::vector<int> parts(grid.count(), -1), seeds;
   for (int c = 0; c < grid.count(); ++c) {
     const int row = c / grid.columns;
-    if (row % 4 != 0) parts[static_cast<std::size_t>(c)] = row / 4;
+    if (row % 4 != 0) parts[c] = row / 4;
     if (c % grid.columns == 3 && row < 28 && row % 4 == 2) seeds.push_back(c);
   }
   seeds.push_back(grid.cell(3, 9));
@@ -292,8 +292,7 @@ TEST(SoundEvents, AnObliqueStripIsOnePart) {
       std::set<int> inside;
       for (int c = 0; c < grid.count(); ++c) {
         const bool strip = std::abs(grid.centre(c).dot(across)) < width / 2;
-        if (strip && parts[static_cast<std::size_t>(c)] >= 0)
-          inside.insert(parts[static_cast<std::size_t>(c)]);
+        if (strip && parts[c] >= 0) inside.insert(parts[c]);
       }
       EXPECT_EQ(inside.size(), 1u) << degrees << " degrees, " << width << " m";
     }
@@ -347,7 +346,7 @@ TEST(SoundEvents, StepsOfTearsAreEventsAndCutsAreNot) {
   ASSERT_EQ(events.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(events[k].kind, SoundKind::tear);
-    EXPECT_DOUBLE_EQ(events[k].time, 0.04 * static_cast<double>(k + 1) - 0.01);
+    EXPECT_DOUBLE_EQ(events[k].time, 0.04 * (k + 1) - 0.01);
     EXPECT_NEAR(events[k].energy, 1e4 * 1e-4 * 0.002, 1e-12);
   }
 }

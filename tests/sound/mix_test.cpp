@@ -154,7 +154,7 @@ TEST(SoundBank, NearestSoundsAreNearInBothDescriptors) {
   event.free_border = 0.1;
   const std::vector<int> order = nearest_sounds(bank, event, SoundOptions::Descriptors::both);
   ASSERT_EQ(order.size(), 128u);
-  const BankSound& first = bank.sounds[static_cast<std::size_t>(order[0])];
+  const BankSound& first = bank.sounds[order[0]];
   EXPECT_LT(std::abs(std::log(first.ruling_length / 0.05)), 0.3);
   EXPECT_LT(std::abs(std::log(first.free_border / 0.1)), 0.45);
 }
@@ -163,7 +163,7 @@ TEST(SoundBank, SoundsHavePanelsWhoseBorderTheyName) {
   const SoundBank& bank = default_bank();
   for (const SoundKind kind : {SoundKind::flap, SoundKind::crac}) {
     for (const int i : bank.of(kind)) {
-      const BankSound& sound = bank.sounds[static_cast<std::size_t>(i)];
+      const BankSound& sound = bank.sounds[i];
       const double l = sound.ruling_length, c = sound.free_border, w = sound.width;
       EXPECT_GT(w, 0);
       if (w <= kLeastPanelWidth) continue;
@@ -252,7 +252,7 @@ TEST(SoundProcess, PickedEventsAreHeardAlone) {
     end = starts.back() + numbers.at("voice_length_s");
   }
   const auto* samples = reinterpret_cast<const double*>(record.artifacts[1].bytes.data());
-  const auto count = static_cast<Eigen::Index>(record.artifacts[1].bytes.size() / sizeof(double));
+  const Eigen::Index count = record.artifacts[1].bytes.size() / sizeof(double);
   EXPECT_GE(static_cast<double>(count), end * 48000 - 1);
   for (const double start : starts) {
     const Eigen::Map<const Eigen::VectorXd> all(samples, count);

@@ -152,8 +152,7 @@ TEST(Modes, HeldNormalsAreSimplySupported) {
                       (m * m / (a * a) + n * n / (b * b)));
   std::sort(exact.begin(), exact.end());
   const Modes modes = eigenmodes(material, paper::meshes::flat_state(mesh), supports, lowest(6));
-  for (int i = 0; i < 6; ++i)
-    EXPECT_NEAR(modes.frequency[i] / exact[static_cast<std::size_t>(i)], 1, 0.01);
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(modes.frequency[i] / exact[i], 1, 0.01);
 }
 
 // omega ~ h / a^2 sqrt(E / rho): thickness at constant density of the material, so rho_s ~ h.

@@ -32,7 +32,7 @@ TEST(Swatches, EachIsOneFlapWithItsLengths) {
   for (std::size_t i = 0; i < events.size(); ++i) {
     const double ruling = i % 2 == 0 ? 0.02 : 0.04, width = 0.03;
     EXPECT_EQ(events[i].kind, SoundKind::flap);
-    EXPECT_NEAR(events[i].time, 0.25 * static_cast<double>(i + 1), 1e-3);
+    EXPECT_NEAR(events[i].time, 0.25 * (i + 1), 1e-3);
     EXPECT_NEAR(events[i].area, ruling * width, 1e-9);
     EXPECT_NEAR(events[i].ruling_length, ruling, 2.5e-3);
     // Free all around, or clamped along one ruling; corners of the clamp are held, too.

@@ -49,8 +49,7 @@ struct Unfolded {
   [[nodiscard]] Eigen::Vector3d barycentric(const Eigen::Vector2d& p) const {
     Eigen::Vector3d b;
     for (std::size_t k = 0; k < 3; ++k)
-      b[static_cast<Eigen::Index>(k)] =
-          cross(corner[(k + 2) % 3] - corner[(k + 1) % 3], p - corner[(k + 1) % 3]);
+      b[k] = cross(corner[(k + 2) % 3] - corner[(k + 1) % 3], p - corner[(k + 1) % 3]);
     return b / b.sum();
   }
 };
@@ -206,8 +205,8 @@ int DensityMoves::insert_at_circumcentres(double least) {
     }
   });
   std::vector<std::pair<double, int>> order;
-  for (std::size_t t = 0; t < rank.size(); ++t)
-    if (rank[t] > least) order.emplace_back(-rank[t], static_cast<int>(t));
+  for (int t = 0; t < std::ssize(rank); ++t)
+    if (rank[t] > least) order.emplace_back(-rank[t], t);
   std::sort(order.begin(), order.end());
   int inserted = 0;
   for (const auto& [minus_rank, t] : order)

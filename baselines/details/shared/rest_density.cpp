@@ -133,7 +133,7 @@ Detail newborn_like_neighbour(const DetailMesh& d, int t, const Eigen::Vector3d&
   double nearest = -1;
   const auto corner = d.mesh.corners(t);
   for (std::size_t k = 0; k < 3; ++k) {
-    const double b = barycentric[static_cast<Eigen::Index>(k)];
+    const double b = barycentric[k];
     if (!d.is_detail(corner[k]) || b <= nearest) continue;
     nearest = b;
     const Detail& like = d.site[corner[k]];

@@ -283,7 +283,7 @@ void Liquid::Data::advect(double dt, bool corrected) {
     field = &shift;
   }
   advect_particles(*field, dt, solids_or_null(), open, particles, left);
-  const auto gone = static_cast<std::int64_t>(std::count(left.begin(), left.end(), 1));
+  const std::int64_t gone = std::count(left.begin(), left.end(), 1);
   if (gone > 0) remove_particles(left, particles);
   removed += gone;
 }

@@ -123,7 +123,7 @@ Part solids_part(const Tank& tank, std::span<const PlacedSolid> placed) {
 Part particles_part(const Tank& tank, const LiquidParticles& particles) {
   Part part;
   part.kind = Part::Kind::points;
-  const auto n = static_cast<Eigen::Index>(particles.size());
+  const Eigen::Index n = particles.size();
   part.points.resize(n, 3);
   Eigen::MatrixXd velocity(n, 3);
   for (Eigen::Index i = 0; i < n; ++i) {

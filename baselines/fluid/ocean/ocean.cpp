@@ -88,17 +88,16 @@ struct Ocean::Data {
 
   void make_modes(std::uint64_t seed) {
     const double factor = scale();
-    modes.resize(static_cast<std::size_t>(n()) * static_cast<std::size_t>(columns()));
+    modes.resize(static_cast<std::size_t>(n()) * columns());
     const auto h0 = [&](int kx, int ky) {
       return factor * std::sqrt(mode_variance(kx, ky)) * random_phase(seed, kx, ky);
     };
-    parallel_blocks(static_cast<std::size_t>(n()), kRowBlock, [&](std::size_t b, std::size_t e) {
+    parallel_blocks(n(), kRowBlock, [&](std::size_t b, std::size_t e) {
       for (std::size_t row = b; row < e; ++row) {
         const int ky = ky_of(static_cast<int>(row));
         for (int kx = 0; kx < columns(); ++kx) {
           if (!carries(kx, ky)) continue;
-          Mode& mode =
-              modes[row * static_cast<std::size_t>(columns()) + static_cast<std::size_t>(kx)];
+          Mode& mode = modes[row * columns() + static_cast<std::size_t>(kx)];
           const double length = std::hypot(kx, ky);
           mode = {h0(kx, ky), std::conj(h0(-kx, -ky)), ocean_frequency(options, step() * length),
                   kx / length, ky / length};
@@ -112,8 +111,8 @@ struct Ocean::Data {
   template <class Coefficient>
   InverseTransform::Field synthesise(double time, const Coefficient& coefficient) const {
     const auto spectrum = transform.coefficients();
-    const auto width = static_cast<std::size_t>(columns());
-    parallel_blocks(static_cast<std::size_t>(n()), kRowBlock, [&](std::size_t b, std::size_t e) {
+    const std::size_t width = columns();
+    parallel_blocks(n(), kRowBlock, [&](std::size_t b, std::size_t e) {
       for (std::size_t i = b * width; i < e * width; ++i) {
         spectrum[i] = coefficient(modes[i], std::polar(1.0, -modes[i].omega * time));
       }
@@ -133,8 +132,7 @@ struct Ocean::Data {
           const Complex height = field(mode, turn);
           return c == 2 ? height : i_lambda * (c == 0 ? mode.cosine : mode.sine) * height;
         });
-        out.col(static_cast<Eigen::Index>(c)) =
-            Eigen::Map<const Eigen::VectorXd>(values.get(), count);
+        out.col(c) = Eigen::Map<const Eigen::VectorXd>(values.get(), count);
       }
     });
     return out;

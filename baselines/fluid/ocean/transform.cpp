@@ -29,7 +29,7 @@ void InverseTransform::Release::operator()(void* memory) const { fftw_free(memor
 
 InverseTransform::InverseTransform(int n) : n_(n), plan_(nullptr) {
   const Coefficients in = coefficients();
-  const Field out(allocate<double>(static_cast<std::size_t>(n) * static_cast<std::size_t>(n)));
+  const Field out(allocate<double>(static_cast<std::size_t>(n) * n));
   const std::scoped_lock lock(planner());
   plan_ =
       fftw_plan_dft_c2r_2d(n, n, as_fftw(in.get()), out.get(), FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
@@ -41,12 +41,12 @@ InverseTransform::~InverseTransform() {
 }
 
 InverseTransform::Coefficients InverseTransform::coefficients() const {
-  const auto count = static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_ / 2 + 1);
+  const auto count = static_cast<std::size_t>(n_) * (n_ / 2 + 1);
   return Coefficients(allocate<std::complex<double>>(count));
 }
 
 InverseTransform::Field InverseTransform::field(std::complex<double>* coefficients) const {
-  Field out(allocate<double>(static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_)));
+  Field out(allocate<double>(static_cast<std::size_t>(n_) * n_));
   fftw_execute_dft_c2r(static_cast<fftw_plan>(plan_), as_fftw(coefficients), out.get());
   return out;
 }

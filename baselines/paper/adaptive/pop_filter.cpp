@@ -112,7 +112,7 @@ void Relaxation::assemble(const Eigen::MatrixX3d& x, Eigen::VectorXd& gradient,
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const int row = unknown_[nodes[i]];
       if (row < 0) continue;
-      const auto at = static_cast<Eigen::Index>(3 * i);
+      const Eigen::Index at = 3 * i;
       gradient.segment<3>(3 * row) += local.gradient.segment<3>(at);
       for (std::size_t j = 0; j < nodes.size(); ++j) {
         const int column = unknown_[nodes[j]];

@@ -30,9 +30,8 @@ ShellMesh recut(const ShellMesh& mesh, const Pattern& torn, const std::vector<Ve
   const std::vector<std::vector<int>> loops = border_chains(torn, kNever, tolerance, set);
   const std::vector<Eigen::Vector2i> segments = cut_segments(torn, kNever, tolerance, set);
   ShellMesh result;
-  result.pattern.resize(static_cast<Eigen::Index>(set.points().size()), 2);
-  for (std::size_t i = 0; i < set.points().size(); ++i)
-    result.pattern.row(static_cast<Eigen::Index>(i)) = set.points()[i];
+  result.pattern.resize(set.points().size(), 2);
+  for (std::size_t i = 0; i < set.points().size(); ++i) result.pattern.row(i) = set.points()[i];
   result.triangles = constrained_delaunay(result.pattern, loops, segments);
   open_along(result, segments);
   return result;

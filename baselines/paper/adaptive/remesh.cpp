@@ -96,9 +96,9 @@ void Remesher::classify(const Sheet& sheet) {
   for (EditableSheet::Vertex& v : vertices) {
     const auto is_here = [&](const Vector2d& p) { return (p - v.pattern).norm() <= tolerance; };
     if (std::any_of(fixed.begin(), fixed.end(), is_here)) v.kind = Kind::fixed;
-    for (std::size_t h = 0; h < sheet.handles.size(); ++h) {
+    for (int h = 0; h < std::ssize(sheet.handles); ++h) {
       if (sheet.handles[h].segment && sheet.handles[h].covers(v.pattern)) {
-        v.segment = static_cast<int>(h);
+        v.segment = h;
       }
     }
   }

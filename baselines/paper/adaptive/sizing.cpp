@@ -144,7 +144,7 @@ std::vector<SizingField::Hinge> SizingField::hinges() const {
   const auto across = EdgeConnectivity(F).across();
   std::vector<Hinge> result;
   result.reserve(2 * across.size());
-  for (int f = 0; f < static_cast<int>(F.rows()); ++f) {
+  for (int f = 0; f < F.rows(); ++f) {
     for (int k = 0; k < 3; ++k) {
       const int g = across[f][k];
       if (g > f) result.push_back({F(f, k), F(f, (k + 1) % 3), f, g});
@@ -157,11 +157,11 @@ std::vector<SizingField::Hinge> SizingField::hinges() const {
 /// sum depends on how its edges lie to the curvature; the mean over it and its neighbours does so
 /// much less.
 void SizingField::build_curvature() {
-  const auto m = static_cast<std::size_t>(state_.mesh.triangle_count());
+  const std::size_t m = state_.mesh.triangle_count();
   std::vector<Matrix2d> bend(m, Matrix2d::Zero());  // area times curvature
   const std::vector<Hinge> all = hinges();
   for (const Hinge& h : all) {
-    const auto f = static_cast<std::size_t>(h.left), g = static_cast<std::size_t>(h.right);
+    const std::size_t f = h.left, g = h.right;
     const Vector2d along = pattern(h.b) - pattern(h.a);
     const double length = along.norm();
     const Vector2d across(-along.y() / length, along.x() / length);
@@ -177,7 +177,7 @@ void SizingField::build_curvature() {
   curvature_ = bend;
   std::vector<double> area(twice_area_);
   for (const Hinge& h : all) {
-    const auto f = static_cast<std::size_t>(h.left), g = static_cast<std::size_t>(h.right);
+    const std::size_t f = h.left, g = h.right;
     curvature_[f] += bend[g];
     curvature_[g] += bend[f];
     area[f] += twice_area_[g];
@@ -187,7 +187,7 @@ void SizingField::build_curvature() {
 }
 
 SizeTensor SizingField::of_triangle(int f) const {
-  const auto i = static_cast<std::size_t>(f);
+  const std::size_t i = f;
   const int a = state_.mesh.triangles(f, 0), b = state_.mesh.triangles(f, 1),
             c = state_.mesh.triangles(f, 2);
   const auto normal = [&](int v) { return smooth_[v]; };
@@ -230,14 +230,14 @@ std::vector<SizeTensor> sizing_tensors(const ShellState& state,
                                        const std::vector<Obstacle>& obstacles,
                                        const SizingOptions& options) {
   const SizingField field(state, obstacles, options);
-  const auto n = static_cast<std::size_t>(state.mesh.vertex_count());
+  const std::size_t n = state.mesh.vertex_count();
   std::vector<SizeTensor> sum(n, SizeTensor::Zero());
   std::vector<double> weight(n, 0);
   for (int f = 0; f < state.mesh.triangle_count(); ++f) {
     const SizeTensor size = field.of_triangle(f);
     const double area = field.twice_area(f);
     for (int k = 0; k < 3; ++k) {
-      const auto v = static_cast<std::size_t>(state.mesh.triangles(f, k));
+      const std::size_t v = state.mesh.triangles(f, k);
       sum[v] += area * size;
       weight[v] += area;
     }

@@ -126,7 +126,7 @@ PerTriangle AngleFlattening::curvature(int t) const {
 Eigen::VectorXd AngleFlattening::residuals(const Eigen::MatrixX3d& angle) const {
   Eigen::VectorXd residual(2 * inner_count_);
   for (int i = 0; i < inner_count_; ++i) residual.segment<2>(2 * i) << -kFullTurn, 0;
-  for (int t = 0; t < static_cast<int>(F_.rows()); ++t) {
+  for (int t = 0; t < F_.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
       if (inner_[F_(t, k)] < 0) continue;
       residual(unknown(t, 2 * k)) += angle(t, k);
@@ -148,9 +148,9 @@ double AngleFlattening::violation() const {
 /// one: each acts on its own angles alone.
 bool AngleFlattening::solve_multipliers() {
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<std::size_t>(21 * F_.rows()));
+  entries.reserve(21 * F_.rows());
   Eigen::VectorXd right = residuals(angle_);
-  for (int t = 0; t < static_cast<int>(F_.rows()); ++t) {
+  for (int t = 0; t < F_.rows(); ++t) {
     const PerTriangle inverse = curvature(t).cwiseInverse();
     const TriangleRows scaled = rows(t) * inverse.asDiagonal();
     const Eigen::Matrix<double, 6, 1> coupling = scaled.rowwise().sum();
@@ -254,7 +254,7 @@ Eigen::MatrixX2d flatten_abf(const TriMesh& disc) {
   const std::vector<int> border = disc_border(disc, "angle-based flattening");
   const AbfAngles angles = abf_angles(disc);
   std::vector<std::array<double, 3>> cot;
-  cot.reserve(static_cast<std::size_t>(disc.triangle_count()));
+  cot.reserve(disc.triangle_count());
   for (int t = 0; t < disc.triangle_count(); ++t) {
     cot.push_back(opposite_cotangents({angles.angle(t, 0), angles.angle(t, 1), angles.angle(t, 2)},
                                       kLargestLayoutCotangent));

@@ -52,7 +52,7 @@ class NeighbourWalk {
         corners_(corners),
         barycentre_(barycentre),
         squared_radius_(radius * radius),
-        seen_from_(static_cast<std::size_t>(mesh.triangle_count()), -1) {}
+        seen_from_(mesh.triangle_count(), -1) {}
 
   /// Triangles around one, ascending.
   std::vector<int> around(int centre) {
@@ -105,14 +105,14 @@ GaussThinning::GaussThinning(const TriMesh& mesh, const GaussThinningOptions& op
       options_(checked_thinning(options)),
       poisson_(mesh),
       normal_(4, mesh.triangle_count()),
-      rotation_(static_cast<std::size_t>(mesh.triangle_count()), Eigen::Matrix3d::Identity()),
+      rotation_(mesh.triangle_count(), Eigen::Matrix3d::Identity()),
       missed_(Eigen::VectorXd::Zero(mesh.triangle_count())),
       cone_deg_(options.start_angle_deg) {
   find_neighbourhoods(options.radius * bounding_box_diagonal(mesh.V));
 }
 
 void GaussThinning::find_neighbourhoods(double radius) {
-  const auto m = static_cast<std::size_t>(mesh_.triangle_count());
+  const std::size_t m = mesh_.triangle_count();
   Eigen::MatrixX3d barycentre(mesh_.triangle_count(), 3);
   for (Eigen::Index t = 0; t < mesh_.F.rows(); ++t) {
     barycentre.row(t) =
@@ -134,7 +134,7 @@ void GaussThinning::find_neighbourhoods(double radius) {
 void GaussThinning::measure() {
   parallel_blocks(rotation_.size(), kTrianglesTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto t = static_cast<Eigen::Index>(i);
+      const Eigen::Index t = i;
       const Eigen::RowVector3d a = mesh_.V.row(mesh_.F(t, 0));
       const Eigen::Vector3d cross =
           (mesh_.V.row(mesh_.F(t, 1)) - a).cross(mesh_.V.row(mesh_.F(t, 2)) - a).transpose();
@@ -169,7 +169,7 @@ void GaussThinning::step() {
   const double cone_cosine = std::cos(cone_deg_ * kDegree);
   parallel_blocks(rotation_.size(), kTrianglesTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
-      const auto i = static_cast<Eigen::Index>(t);
+      const Eigen::Index i = t;
       missed_(i) = normal_(3, i) * turn_onto_circle(static_cast<int>(t), cone_cosine);
     }
   });

@@ -31,7 +31,7 @@ Eigen::MatrixX3d weighted_cotangents(const TriMesh& mesh, TriangleWeight weight)
 /// The stiffness with identity in the rows and columns of vertices that are held at the origin.
 Eigen::SparseMatrix<double> held_at_origin(Eigen::SparseMatrix<double> stiffness,
                                            const std::vector<int>& held) {
-  std::vector<bool> holds(static_cast<std::size_t>(stiffness.rows()), false);
+  std::vector<bool> holds(stiffness.rows(), false);
   for (const int v : held) holds[v] = true;
   stiffness.prune(
       [&](Eigen::Index i, Eigen::Index j, double) { return i == j || (!holds[i] && !holds[j]); });
@@ -89,16 +89,15 @@ Eigen::MatrixX3d RotationPoisson::right_hand_side(std::span<const Eigen::Matrix3
     }
     rhs.row(v) = sum.transpose();
   };
-  parallel_blocks(static_cast<std::size_t>(rhs.rows()), kVerticesOfBlock,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t v = begin; v < end; ++v) sum_star(static_cast<int>(v));
-                  });
+  parallel_blocks(rhs.rows(), kVerticesOfBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) sum_star(static_cast<int>(v));
+  });
   for (const int v : held_) rhs.row(v).setZero();
   return rhs;
 }
 
 void RotationPoisson::keep_means(const Eigen::MatrixX3d& positions, Eigen::MatrixX3d& x) const {
-  Eigen::MatrixX3d shift = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(held_.size()), 3);
+  Eigen::MatrixX3d shift = Eigen::MatrixX3d::Zero(held_.size(), 3);
   Eigen::VectorXd count = Eigen::VectorXd::Zero(shift.rows());
   for (Eigen::Index v = 0; v < x.rows(); ++v) {
     shift.row(component_[v]) += positions.row(v) - x.row(v);
@@ -114,8 +113,7 @@ Eigen::MatrixX3d RotationPoisson::solve(std::span<const Eigen::Matrix3d> rotatio
 
 Eigen::MatrixX3d RotationPoisson::solve(std::span<const Eigen::Matrix3d> rotations,
                                         const Eigen::MatrixX3d& positions) const {
-  if (static_cast<Eigen::Index>(rotations.size()) != reference_.F.rows() ||
-      positions.rows() != reference_.V.rows()) {
+  if (std::ssize(rotations) != reference_.F.rows() || positions.rows() != reference_.V.rows()) {
     throw Error(std::to_string(rotations.size()) + " rotations and " +
                     std::to_string(positions.rows()) + " positions",
                 "rotation targets",

@@ -21,7 +21,7 @@ void Lbfgs::add(const Eigen::MatrixX3d& step, const Eigen::MatrixX3d& change,
   Eigen::MatrixX3d smooth = change;
   precondition(smooth);
   scale_ = product / inner_product(change, smooth);
-  if (static_cast<int>(pairs_.size()) == memory_) pairs_.pop_front();
+  if (std::ssize(pairs_) == memory_) pairs_.pop_front();
   pairs_.push_back({step, change, 1 / product});
 }
 

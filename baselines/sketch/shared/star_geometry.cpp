@@ -47,11 +47,9 @@ void StarGeometry::measure_triangle(int t, const Eigen::MatrixX3d& x) {
 }
 
 void StarGeometry::measure(const Eigen::MatrixX3d& x) {
-  parallel_blocks(static_cast<std::size_t>(F_.rows()), kStarsTogether,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t t = begin; t < end; ++t)
-                      measure_triangle(static_cast<int>(t), x);
-                  });
+  parallel_blocks(F_.rows(), kStarsTogether, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) measure_triangle(static_cast<int>(t), x);
+  });
 }
 
 void StarGeometry::differentiate_triangle(int t, const StarDerivatives& derivatives) {
@@ -78,20 +76,18 @@ void StarGeometry::differentiate_triangle(int t, const StarDerivatives& derivati
 }
 
 void StarGeometry::gradient(const StarDerivatives& derivatives, Eigen::MatrixX3d& gradient) {
-  parallel_blocks(static_cast<std::size_t>(F_.rows()), kStarsTogether,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t t = begin; t < end; ++t)
-                      differentiate_triangle(static_cast<int>(t), derivatives);
-                  });
+  parallel_blocks(F_.rows(), kStarsTogether, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      differentiate_triangle(static_cast<int>(t), derivatives);
+  });
   gradient.resize(vertex_count(), 3);
-  parallel_blocks(static_cast<std::size_t>(vertex_count()), kStarsTogether,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t v = begin; v < end; ++v) {
-                      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-                      for (const int c : corners_.of(static_cast<int>(v))) sum += at_corner_.col(c);
-                      gradient.row(static_cast<Eigen::Index>(v)) = sum.transpose();
-                    }
-                  });
+  parallel_blocks(vertex_count(), kStarsTogether, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (const int c : corners_.of(static_cast<int>(v))) sum += at_corner_.col(c);
+      gradient.row(v) = sum.transpose();
+    }
+  });
 }
 
 }  // namespace geoprior::sketch

@@ -84,7 +84,7 @@ SurfaceDescent::SurfaceDescent(const TriMesh& mesh, PositionEnergy energy,
     : mesh_(mesh),
       function_(std::move(energy)),
       options_(options),
-      fixed_(static_cast<std::size_t>(mesh.vertex_count()), false),
+      fixed_(mesh.vertex_count(), false),
       lbfgs_(options.memory) {
   if (options.fixed_border) fixed_ = boundary_vertices(mesh.F, mesh.vertex_count());
   area_ = thirds_of_areas(mesh);
@@ -128,24 +128,23 @@ double SurfaceDescent::evaluate(const Eigen::MatrixX3d& x, Eigen::MatrixX3d& gra
 bool SurfaceDescent::turns_too_far(const Eigen::MatrixX3d& x) const {
   const double least = std::cos(kLargestTurn);
   std::atomic<bool> too_far = false;
-  parallel_blocks(static_cast<std::size_t>(mesh_.F.rows()), kGuardedTogether,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t i = begin; i < end; ++i) {
-                      const auto t = static_cast<Eigen::Index>(i);
-                      const Eigen::RowVector3d now = twice_area(mesh_.F, t, mesh_.V);
-                      const Eigen::RowVector3d then = twice_area(mesh_.F, t, x);
-                      if (!(now.dot(then) >= least * now.norm() * then.norm())) too_far = true;
-                    }
-                  });
+  parallel_blocks(mesh_.F.rows(), kGuardedTogether, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Index t = i;
+      const Eigen::RowVector3d now = twice_area(mesh_.F, t, mesh_.V);
+      const Eigen::RowVector3d then = twice_area(mesh_.F, t, x);
+      if (!(now.dot(then) >= least * now.norm() * then.norm())) too_far = true;
+    }
+  });
   return too_far;
 }
 
 bool SurfaceDescent::hold_thin(const Eigen::MatrixX3d& x, Eigen::MatrixX3d& direction) const {
   const double thin = std::sin(kThinAngle);
-  std::vector<char> offends(static_cast<std::size_t>(mesh_.F.rows()), 0);
+  std::vector<char> offends(mesh_.F.rows(), 0);
   parallel_blocks(offends.size(), kGuardedTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto t = static_cast<Eigen::Index>(i);
+      const Eigen::Index t = i;
       const double then = smallest_sine(mesh_.F, t, x);
       offends[i] = !(then >= thin) && !(then >= smallest_sine(mesh_.F, t, mesh_.V));
     }

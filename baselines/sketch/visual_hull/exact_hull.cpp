@@ -38,7 +38,7 @@ TriMesh extruded(const OutlinedView& view, double reach) {
   Eigen::MatrixX2d points(n, 2);
   std::vector<Eigen::Vector2i> segments;
   for (int i = 0; i < n; ++i) {
-    points.row(i) = outline[static_cast<std::size_t>(i)].transpose();
+    points.row(i) = outline[i].transpose();
     segments.emplace_back(i, (i + 1) % n);
   }
   const Eigen::MatrixX3i cap = constrained_delaunay(points, segments);

@@ -84,7 +84,7 @@ TriangleWeights weights_of(const RiggedMesh& rig, Eigen::Index triangle) {
   }
   std::sort(result.joints.begin(), result.joints.end());
   result.joints.erase(std::unique(result.joints.begin(), result.joints.end()), result.joints.end());
-  result.of_corner.setZero(static_cast<Eigen::Index>(result.joints.size()), 3);
+  result.of_corner.setZero(result.joints.size(), 3);
   for (int corner = 0; corner < 3; ++corner) {
     for (SkinWeights::InnerIterator w(rig.weights, rig.mesh.F(triangle, corner)); w; ++w) {
       const auto joint = std::lower_bound(result.joints.begin(), result.joints.end(), w.col());
@@ -130,9 +130,8 @@ PiecesOfPairs pieces_by_pair(const RiggedMesh& rig, const CentersOfRotationOptio
       for (Eigen::Index a = 0; a < w.size(); ++a) {
         for (Eigen::Index b = a + 1; b < w.size(); ++b) {
           if (!(w(a) * w(b) > 0)) continue;
-          pairs[{weights.joints[static_cast<std::size_t>(a)],
-                 weights.joints[static_cast<std::size_t>(b)]}]
-              .add(w(a), w(b), area / (k * k), corners * barycentric, options.weight_cell);
+          pairs[{weights.joints[a], weights.joints[b]}].add(
+              w(a), w(b), area / (k * k), corners * barycentric, options.weight_cell);
         }
       }
     });
@@ -251,12 +250,10 @@ Eigen::MatrixX3d centers_of_rotation(const RiggedMesh& rig,
   require_skinnable(rig);
   const PiecesOfPairs pairs = pieces_by_pair(rig, options);
   Eigen::MatrixX3d centers(rig.mesh.vertex_count(), 3);
-  parallel_blocks(static_cast<std::size_t>(centers.rows()), 64,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t v = begin; v < end; ++v)
-                      centers.row(static_cast<Eigen::Index>(v)) =
-                          center_of(static_cast<int>(v), rig, pairs, options.similarity_width);
-                  });
+  parallel_blocks(centers.rows(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      centers.row(v) = center_of(static_cast<int>(v), rig, pairs, options.similarity_width);
+  });
   return centers;
 }
 

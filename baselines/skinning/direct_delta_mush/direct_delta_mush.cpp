@@ -40,7 +40,7 @@ Eigen::MatrixX3d direct_delta_mush(const RiggedMesh& rig, const DirectDeltaMushM
     const Eigen::Vector3d p = matrices.smoothed.row(i);
     Eigen::Matrix3d S = Eigen::Matrix3d::Zero();
     Eigen::Vector3d q = Eigen::Vector3d::Zero();
-    const auto vertex = static_cast<std::size_t>(i);
+    const std::size_t vertex = i;
     for (std::size_t e = matrices.offset[vertex]; e < matrices.offset[vertex + 1]; ++e) {
       const JointMatrix& omega = matrices.matrices[e];
       const Eigen::Affine3d& M = pose[omega.joint];
@@ -101,7 +101,7 @@ void DirectDeltaMush::deform(const Pose& pose, Eigen::MatrixX3d& posed) const {
                                               patch_of(b, 3)};
       lanes::Double4 position[3];
       lanes::place(patch, detail_.data() + 12 * b, position[0], position[1], position[2]);
-      const auto first = static_cast<Eigen::Index>(kFour * b);
+      const Eigen::Index first = kFour * b;
       const Eigen::Index count = std::min<Eigen::Index>(kFour, vertex_count_ - first);
       for (int k = 0; k < 3; ++k) {
         for (int l = 0; l < count; ++l) posed(first + l, k) = position[k][l];

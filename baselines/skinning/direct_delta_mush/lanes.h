@@ -65,7 +65,7 @@ template <class Matrix>
   by_element(&BlendedRows::row2);
   Matrices S;
   for (int c = 0; c < 3; ++c) {
-    const BlendedRows& column = patch[static_cast<std::size_t>(c)];
+    const BlendedRows& column = patch[c];
     S.m[0][c] = column.row0;
     S.m[1][c] = column.row1;
     S.m[2][c] = column.row2;

@@ -62,7 +62,7 @@ Columns dense_weights(const RiggedMesh& rig) {
 
 /// Smooths columns in groups that are as wide as ten products, groups in parallel.
 void smooth_columns(const ImplicitSmoothing& smoothing, Columns& columns) {
-  const auto groups = static_cast<std::size_t>((columns.cols() + kProducts - 1) / kProducts);
+  const std::size_t groups = (columns.cols() + kProducts - 1) / kProducts;
   parallel_blocks(groups, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t g = begin; g < end; ++g) {
       const Eigen::Index first = static_cast<Eigen::Index>(g) * kProducts;
@@ -118,7 +118,7 @@ class MatrixBuilder {
   /// Entries of every vertex, without shapes yet; the strongest first.
   void choose_influences() {
     result_.offset.push_back(0);
-    entries_of_joint_.resize(static_cast<std::size_t>(rig_.skeleton.size()));
+    entries_of_joint_.resize(rig_.skeleton.size());
     for (int i = 0; i < rig_.mesh.vertex_count(); ++i) {
       int strongest = 0;
       for (int j = 1; j < rig_.skeleton.size(); ++j) {
@@ -129,7 +129,7 @@ class MatrixBuilder {
         if (j == strongest ||
             std::max(shape_weights_(i, j), carried_weights_(i, j)) < options_.smallest_influence)
           continue;
-        entries_of_joint_[static_cast<std::size_t>(j)].push_back({i, result_.matrices.size()});
+        entries_of_joint_[j].push_back({i, result_.matrices.size()});
         result_.matrices.push_back({.joint = j, .share = share(i, j)});
       }
       result_.offset.push_back(result_.matrices.size());
@@ -164,7 +164,7 @@ class MatrixBuilder {
   /// The strongest joint has what the others leave.
   void finish_strongest() {
     for (int i = 0; i < rig_.mesh.vertex_count(); ++i) {
-      const std::size_t begin = result_.offset[static_cast<std::size_t>(i)];
+      const std::size_t begin = result_.offset[i];
       const std::size_t end = result_.offset[static_cast<std::size_t>(i) + 1];
       JointMatrix& strongest = result_.matrices[begin];
       const Eigen::Matrix3d covariance =

@@ -11,7 +11,7 @@ namespace geoprior::skinning {
 namespace {
 
 void require_one_transform_a_joint(const Pose& pose, int joints) {
-  if (static_cast<int>(pose.size()) == joints) return;
+  if (std::ssize(pose) == joints) return;
   throw Error("pose of " + std::to_string(pose.size()) + " transforms", "linear blend",
               std::to_string(joints));
 }

@@ -160,7 +160,7 @@ struct Block {
 template <class Kernel>
 [[gnu::always_inline]] inline void for_chunk(const PackedInfluences& packed, std::size_t chunk,
                                              Eigen::MatrixX3d& posed, const Kernel& kernel) {
-  constexpr auto kBlocks = static_cast<std::size_t>(PackedInfluences::kChunkBlocks);
+  constexpr std::size_t kBlocks = PackedInfluences::kChunkBlocks;
   // Padded: rows 4 KiB apart would fall into the same sets of the first cache.
   alignas(32) double buffer[3][4 * kBlocks + 8];
   const std::size_t first = chunk * kBlocks;
@@ -182,7 +182,7 @@ template <class Kernel>
     joints += 4 * static_cast<std::ptrdiff_t>(slots);
     weights += 4 * static_cast<std::ptrdiff_t>(slots - 1);
   }
-  const auto total = static_cast<std::size_t>(packed.vertex_count);
+  const std::size_t total = packed.vertex_count;
   const std::size_t count = std::min(4 * last, total) - 4 * first;
   for (std::size_t k = 0; k < 3; ++k) {
     double* to = posed.data() + k * total + 4 * first;

@@ -9,7 +9,7 @@
 namespace geoprior::skinning {
 
 void require_finite_pose(const Pose& pose, int joints, std::string_view who) {
-  if (static_cast<int>(pose.size()) != joints) {
+  if (std::ssize(pose) != joints) {
     throw Error("pose of " + std::to_string(pose.size()) + " transforms", std::string(who),
                 std::to_string(joints));
   }

@@ -127,7 +127,7 @@ class ModalVoices final : public SoundVoices {
     const double tau = event.kind == SoundKind::crac ? kCracTime : kFlapTime;
     const double length =
         std::min(kLongest, ringing_time(modes.frequency[0], options_.damping)) + tau + 0.02;
-    Eigen::VectorXd samples = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(length * kRate));
+    Eigen::VectorXd samples = Eigen::VectorXd::Zero(length * kRate);
     for (Eigen::Index m = 0; m < count; ++m) {
       add_ringing({modes.frequency[m], modes.pressure[m], 2 * pi * random.uniform()},
                   options_.damping, kRate, 0, samples);
@@ -154,8 +154,8 @@ Eigen::VectorXd radiated_pressure(const ShellState& state, const Modes& modes, i
   const Eigen::RowVector3d middle = state.x.colwise().mean();
   Eigen::MatrixXd along(state.x.rows(), directions), facing(state.x.rows(), directions);
   for (int d = 0; d < directions; ++d) {
-    along.col(d) = (state.x.rowwise() - middle) * sky[static_cast<std::size_t>(d)];
-    facing.col(d) = areas * sky[static_cast<std::size_t>(d)];
+    along.col(d) = (state.x.rowwise() - middle) * sky[d];
+    facing.col(d) = areas * sky[d];
   }
   const double area = areas.rowwise().norm().sum();
   Eigen::VectorXd pressure(modes.frequency.size());

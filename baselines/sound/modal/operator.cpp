@@ -112,7 +112,7 @@ class Mirrors {
     append(pattern_, state.mesh.pattern);
     append(triangles_, state.mesh.triangles);
     append(x_, state.x);
-    const auto added = static_cast<Eigen::Index>(triangles_.size());
+    const Eigen::Index added = triangles_.size();
     state.plastic_curvature.conservativeResize(state.mesh.triangle_count(), 3);
     state.plastic_curvature.bottomRows(added).setZero();
     state.damage.conservativeResize(state.mesh.triangle_count());
@@ -124,9 +124,8 @@ class Mirrors {
   template <class Row, class Matrix>
   static void append(const std::vector<Row>& rows, Matrix& matrix) {
     const Eigen::Index before = matrix.rows();
-    matrix.conservativeResize(before + static_cast<Eigen::Index>(rows.size()), matrix.cols());
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      matrix.row(before + static_cast<Eigen::Index>(i)) = rows[i].transpose();
+    matrix.conservativeResize(before + rows.size(), matrix.cols());
+    for (std::size_t i = 0; i < rows.size(); ++i) matrix.row(before + i) = rows[i].transpose();
   }
 
   const ShellState& sheet_;
@@ -153,8 +152,7 @@ void free_directions(const std::vector<Eigen::Vector3d>& held, ModalOperator::Fr
   freedom.basis.setIdentity();
   if (held.empty()) return;
   Eigen::Matrix3Xd directions(3, held.size());
-  for (std::size_t i = 0; i < held.size(); ++i)
-    directions.col(static_cast<Eigen::Index>(i)) = held[i].normalized();
+  for (std::size_t i = 0; i < held.size(); ++i) directions.col(i) = held[i].normalized();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(directions), Eigen::ComputeFullU);
   const auto rank = (svd.singularValues().array() > kRankTolerance).count();
   freedom.size = 3 - static_cast<int>(rank);
@@ -233,10 +231,8 @@ void ModalOperator::assemble() {
       for (std::size_t j = 0; j < members.size(); ++j) {
         const Freedom& column = freedoms[nodes[members[j]].vertex];
         if (column.first > row.first) continue;
-        const Eigen::Matrix3d block = left.transpose() *
-                                      local.hessian.block<3, 3>(3 * static_cast<Eigen::Index>(i),
-                                                                3 * static_cast<Eigen::Index>(j)) *
-                                      map(j, column);
+        const Eigen::Matrix3d block =
+            left.transpose() * local.hessian.block<3, 3>(3 * i, 3 * j) * map(j, column);
         for (int r = 0; r < row.size; ++r) {
           for (int c = 0; c < column.size; ++c) {
             if (column.first + c <= row.first + r)
@@ -264,12 +260,11 @@ void ModalOperator::find_rigid_motions(const ModalSupports& supports) {
       motions.block<3, 1>(3 * v, 3 + c) = Eigen::Vector3d::Unit(c).cross(arm);
     }
   }
-  Eigen::MatrixXd held = Eigen::MatrixXd::Zero(
-      std::max<Eigen::Index>(6, static_cast<Eigen::Index>(supports.holds.size())), 6);
+  Eigen::MatrixXd held =
+      Eigen::MatrixXd::Zero(std::max<Eigen::Index>(6, std::ssize(supports.holds)), 6);
   for (std::size_t i = 0; i < supports.holds.size(); ++i) {
     const auto& [vertex, direction] = supports.holds[i];
-    held.row(static_cast<Eigen::Index>(i)) =
-        direction.normalized().transpose() * motions.middleRows<3>(3 * vertex);
+    held.row(i) = direction.normalized().transpose() * motions.middleRows<3>(3 * vertex);
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(held, Eigen::ComputeFullV);
   const auto rank = (svd.singularValues().array() > kRankTolerance).count();

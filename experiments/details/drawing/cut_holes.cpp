@@ -67,11 +67,9 @@ DrawnDetails compact(const HoledMesh& cut) {
     drawn.normals.row(number[v]) = cut.normal[v].transpose();
     drawn.detail[number[v]] = cut.hole[v];
   }
-  drawn.mesh.F.resize(static_cast<Eigen::Index>(cut.triangle.size()), 3);
+  drawn.mesh.F.resize(cut.triangle.size(), 3);
   for (std::size_t t = 0; t < cut.triangle.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      drawn.mesh.F(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(k)) =
-          number[cut.triangle[t][k]];
+    for (std::size_t k = 0; k < 3; ++k) drawn.mesh.F(t, k) = number[cut.triangle[t][k]];
   return drawn;
 }
 

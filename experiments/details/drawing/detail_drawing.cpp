@@ -120,7 +120,7 @@ DrawnDetails draw_details(const TriMesh& surface, std::span<const DrawnAnchor> a
                           const DrawingOptions& options, double mean_edge,
                           const TriMesh& instance) {
   std::vector<Eigen::Vector3d> x(surface.V.rows());
-  for (std::size_t v = 0; v < x.size(); ++v) x[v] = surface.V.row(static_cast<Eigen::Index>(v));
+  for (std::size_t v = 0; v < x.size(); ++v) x[v] = surface.V.row(v);
   return draw_details(SurfaceTopology(surface), x, anchors, options, mean_edge, instance);
 }
 
@@ -132,7 +132,7 @@ std::vector<DrawnAnchor> anchors_of(const Part& details) {
   const auto &barycentric = array("barycentric", 3), &tangent = array("tangent", 3);
   std::vector<DrawnAnchor> anchors(details.points.rows());
   for (std::size_t i = 0; i < anchors.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
+    const Eigen::Index row = i;
     anchors[i].at = {static_cast<int>(face(row, 0)), barycentric.row(row).transpose()};
     anchors[i].weight = weight(row, 0);
     anchors[i].tangent = tangent.row(row).transpose();

@@ -79,12 +79,12 @@ DrawnDetails draw_instances(const SurfaceTopology& surface, std::span<const Eige
                             std::span<const DrawnAnchor> anchors, const TriMesh& instance,
                             double radius, double sink) {
   std::vector<int> visible;
-  for (std::size_t i = 0; i < anchors.size(); ++i)
-    if (anchors[i].weight >= kLeastWeight) visible.push_back(static_cast<int>(i));
+  for (int i = 0; i < std::ssize(anchors); ++i)
+    if (anchors[i].weight >= kLeastWeight) visible.push_back(i);
   const std::vector<Eigen::Vector3d> up = normals_at(surface, x, anchors);
   const Eigen::MatrixX3d own_normals = vertex_normals(instance);
   const Eigen::Index vertices = instance.V.rows(), triangles = instance.F.rows();
-  const auto count = static_cast<Eigen::Index>(visible.size());
+  const Eigen::Index count = visible.size();
   DrawnDetails drawn;
   drawn.mesh.V.resize(count * vertices, 3);
   drawn.normals.resize(count * vertices, 3);

@@ -84,7 +84,7 @@ class SpikeDrawer {
         rays_(surface, x),
         distance_(rings_.size()),
         on_surface_(rings_.size()),
-        point_(rings_.size() * static_cast<std::size_t>(kSpikeSectors) + 2),
+        point_(rings_.size() * kSpikeSectors + 2),
         normal_(point_.size()) {
     for (int k = 0; k < kSpikeSectors; ++k) {
       const double angle = 2 * std::numbers::pi * k / kSpikeSectors;
@@ -102,7 +102,7 @@ class SpikeDrawer {
     const Eigen::Vector3d ahead = anchor.weight * height_ * rays_.tangent();
     for (std::size_t j = 0; j < rings_.size(); ++j)
       distance_[j] = rings_[j].radius * width * radius_;
-    const auto sectors = static_cast<std::size_t>(kSpikeSectors);
+    const std::size_t sectors = kSpikeSectors;
     Eigen::Vector3d bottom = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < sectors; ++k) {
       rays_.trace(ray_[k], distance_, on_surface_);
@@ -116,8 +116,8 @@ class SpikeDrawer {
   }
 
   void write(int detail, std::size_t number, DrawnDetails& drawn) {
-    const auto vertex = static_cast<Eigen::Index>(number * point_.size());
-    auto triangle = static_cast<Eigen::Index>(number * triangles_.size());
+    const Eigen::Index vertex = number * point_.size();
+    Eigen::Index triangle = number * triangles_.size();
     std::fill(normal_.begin(), normal_.end(), Eigen::Vector3d::Zero());
     for (const auto& f : triangles_) {
       const Eigen::Vector3d n = (point_[f[1]] - point_[f[0]]).cross(point_[f[2]] - point_[f[0]]);
@@ -163,16 +163,16 @@ DrawnDetails draw_spikes(const SurfaceTopology& surface, std::span<const Eigen::
                          std::span<const DrawnAnchor> anchors, const SpikeOptions& options,
                          double radius, double height) {
   std::vector<int> visible;
-  for (std::size_t i = 0; i < anchors.size(); ++i)
-    if (anchors[i].weight >= kLeastSpikeWeight) visible.push_back(static_cast<int>(i));
+  for (int i = 0; i < std::ssize(anchors); ++i)
+    if (anchors[i].weight >= kLeastSpikeWeight) visible.push_back(i);
   const std::vector<Eigen::Vector3d> normals = normals_at(surface, x, anchors);
   const SpikeDrawer model(surface, x, options, radius, height);
   DrawnDetails drawn;
-  const auto rows = static_cast<Eigen::Index>(visible.size() * model.vertices());
+  const Eigen::Index rows = visible.size() * model.vertices();
   drawn.mesh.V.resize(rows, 3);
   drawn.normals.resize(rows, 3);
   drawn.detail.resize(rows);
-  drawn.mesh.F.resize(static_cast<Eigen::Index>(visible.size() * model.triangles()), 3);
+  drawn.mesh.F.resize(visible.size() * model.triangles(), 3);
   parallel_blocks(visible.size(), kSpikeBlock, [&](std::size_t begin, std::size_t end) {
     SpikeDrawer spike = model;
     for (std::size_t i = begin; i < end; ++i) {

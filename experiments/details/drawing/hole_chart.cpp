@@ -82,7 +82,7 @@ void HoleCharter::spread_from(int v, double radius) {
 
 void HoleCharter::limit_by_edge(int face, std::size_t edge) {
   const auto& c = surface_.face[face];
-  const auto a = static_cast<std::size_t>(c[edge]), b = static_cast<std::size_t>(c[(edge + 1) % 3]);
+  const std::size_t a = c[edge], b = c[(edge + 1) % 3];
   if (surface_.across[face][edge] < 0)
     chart_.radius = std::min(chart_.radius, 0.9 * distance_to_segment(at_[a], at_[b]));
   if ((at_[a] - at_[b]).norm() > 1.6 * (x_[a] - x_[b]).norm())
@@ -99,7 +99,7 @@ void HoleCharter::collect_faces(double radius) {
       face_round_[f] = round_;
       chart_.faces.push_back(f);
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto a = static_cast<std::size_t>(c[k]), b = static_cast<std::size_t>(c[(k + 1) % 3]);
+        const std::size_t a = c[k], b = c[(k + 1) % 3];
         if (distance_to_segment(at_[a], at_[b]) < radius) limit_by_edge(f, k);
       }
     }

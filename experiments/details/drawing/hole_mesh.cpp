@@ -201,14 +201,14 @@ void HoleMesh::keep_whole(std::vector<int>& inside) const {
     }
   }
   std::vector<int> size(x_.size(), 0);
-  for (int v = 0; v < static_cast<int>(x_.size()); ++v) ++size[pieces.find(v)];
+  for (int v = 0; v < std::ssize(x_); ++v) ++size[pieces.find(v)];
   // The largest piece of each hole, and of each connected surface.
   std::vector<int> largest(hole_.size() + x_.size(), -1);
   const auto owner = [&](int v) {
     const int hole = inside[v];
     return hole >= 0 ? hole : static_cast<int>(hole_.size()) + whole.find(v);
   };
-  for (int v = 0; v < static_cast<int>(x_.size()); ++v) {
+  for (int v = 0; v < std::ssize(x_); ++v) {
     int& best = largest[owner(v)];
     if (pieces.find(v) == v && (best < 0 || size[v] > size[best])) best = v;
   }
@@ -224,7 +224,7 @@ void HoleMesh::keep_whole(std::vector<int>& inside) const {
     }
   }
   std::vector<int> result = inside;
-  for (int v = 0; v < static_cast<int>(x_.size()); ++v)
+  for (int v = 0; v < std::ssize(x_); ++v)
     if (const int to = corrected[pieces.find(v)]; to > -2) result[v] = to;
   inside = std::move(result);
 }
@@ -358,7 +358,7 @@ HoledMesh HoleMesh::cut() {
   for (std::size_t v = 0; v < x_.size(); ++v)
     if (on_border[v] >= 0) cut.hole[v] = hole_[on_border[v]].number;
   TriangleCutter cutter(*this, inside, on_border, cut);
-  for (int t = 0; t < static_cast<int>(corner_.size()); ++t) cutter.cut(t);
+  for (int t = 0; t < std::ssize(corner_); ++t) cutter.cut(t);
   return cut;
 }
 
@@ -372,7 +372,7 @@ class HoleMesh::Snapper {
  public:
   Snapper(HoleMesh& mesh, std::vector<int>& inside, std::vector<int>& on_border)
       : mesh_(mesh), inside_(inside), on_border_(on_border), triangle_of_(mesh.x_.size(), -1) {
-    for (int t = 0; t < static_cast<int>(mesh.corner_.size()); ++t)
+    for (int t = 0; t < std::ssize(mesh.corner_); ++t)
       for (const int v : mesh.corner_[t]) triangle_of_[v] = t;
   }
 

@@ -47,8 +47,7 @@ std::vector<Eigen::Vector3d> normals_at(const SurfaceTopology& surface,
     const SurfacePoint& at = anchors[i].at;
     const auto& f = surface.face[at.face];
     Eigen::Vector3d n = Eigen::Vector3d::Zero();
-    for (std::size_t k = 0; k < 3; ++k)
-      n += at.barycentric[static_cast<Eigen::Index>(k)] * of_vertex[f[k]];
+    for (std::size_t k = 0; k < 3; ++k) n += at.barycentric[k] * of_vertex[f[k]];
     // The vertex normals of a knife's edge cancel.
     normals[i] = n.norm() > 1e-6 ? n.normalized() : normal_of_face(at.face, surface, x);
   }

@@ -11,8 +11,7 @@ template <class T>
 std::vector<T> column(const Part& part, const char* name) {
   const Eigen::MatrixXd& values = part.require_array(name, NamedArray::On::points, 1).values;
   std::vector<T> out(values.rows());
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = static_cast<T>(values(static_cast<Eigen::Index>(i), 0));
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<T>(values(i, 0));
   return out;
 }
 
@@ -34,7 +33,7 @@ std::vector<SurfacePoint> FrameDetails::visible_places() const {
   std::vector<SurfacePoint> places;
   for (std::size_t i = 0; i < face.size(); ++i) {
     if (!(weight[i] > kVisible)) continue;
-    const auto b = barycentric.row(static_cast<Eigen::Index>(i));
+    const auto b = barycentric.row(i);
     places.push_back({face[i], b.transpose()});
   }
   return places;

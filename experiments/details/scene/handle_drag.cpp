@@ -83,10 +83,10 @@ void require_start_at_rest(const std::vector<Handle>& handles, double time) {
 }
 
 Eigen::MatrixX3d positions_of(const Mesh& mesh) {
-  Eigen::MatrixX3d V(static_cast<Eigen::Index>(mesh.number_of_vertices()), 3);
+  Eigen::MatrixX3d V(mesh.number_of_vertices(), 3);
   for (const Vertex v : mesh.vertices()) {
     const auto& p = mesh.point(v);
-    V.row(static_cast<Eigen::Index>(v.idx())) << p.x(), p.y(), p.z();
+    V.row(v.idx()) << p.x(), p.y(), p.z();
   }
   return V;
 }

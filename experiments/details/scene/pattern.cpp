@@ -110,7 +110,7 @@ Places uniform(const Ground& ground, int count, RandomStream& random) {
 Places poisson_disk(const Ground& ground, int count, double radius, double share,
                     RandomStream& random) {
   const double mean = ground.area() / count;
-  PointGrid grid(radius * std::sqrt(mean), static_cast<std::size_t>(count));
+  PointGrid grid(radius * std::sqrt(mean), count);
   Places places;
   const std::int64_t darts = std::int64_t{kDartsPerDetail} * count;
   for (std::int64_t i = 0; i < darts && std::ssize(places) < count; ++i) {
@@ -161,7 +161,7 @@ void add_cluster(const Ground& ground, const SurfacePoint& centre, int size, dou
   constexpr int kTries = 100;
   const std::size_t first = places.size();
   for (int tries = 0; tries < kTries * size; ++tries) {
-    if (places.size() == first + static_cast<std::size_t>(size)) return;
+    if (places.size() == first + size) return;
     const Eigen::Vector3d direction =
         tangent_direction(centre.face, kFullTurn * random.uniform(), ground.topology(), ground.x());
     const double length = radius * std::sqrt(random.uniform());
@@ -170,8 +170,7 @@ void add_cluster(const Ground& ground, const SurfacePoint& centre, int size, dou
     const auto is_near = [&](const SurfacePoint& q) {
       return (ground.position(q) - x).norm() < kApartInCluster * radius;
     };
-    const bool crowded =
-        std::any_of(places.begin() + static_cast<std::ptrdiff_t>(first), places.end(), is_near);
+    const bool crowded = std::any_of(places.begin() + first, places.end(), is_near);
     if (!crowded && ground.holds(p)) places.push_back(p);
   }
 }
@@ -225,8 +224,8 @@ std::vector<char> faces_of_region(const TriMesh& surface,
                   "a vector of any length");
     }
     direction.normalize();
-    for (std::size_t t = 0; t < inside.size(); ++t) {
-      const SurfacePoint centre{static_cast<int>(t), Eigen::Vector3d::Constant(1.0 / 3)};
+    for (int t = 0; t < std::ssize(inside); ++t) {
+      const SurfacePoint centre{t, Eigen::Vector3d::Constant(1.0 / 3)};
       const Eigen::Vector3d x = position_of(centre, surface.V, surface.F);
       const Eigen::Vector3d n = position_of(centre, normals, surface.F).normalized();
       if (is_in(region[i], direction, x, n) == region[i].outside) inside[t] = 0;

@@ -108,12 +108,10 @@ void LatticeContour::add_cell(int i, int j, int k, const double (&values)[8]) {
 
 TriMesh LatticeContour::mesh() const {
   TriMesh mesh;
-  mesh.V.resize(static_cast<Eigen::Index>(vertices_.size()), 3);
-  for (std::size_t v = 0; v < vertices_.size(); ++v)
-    mesh.V.row(static_cast<Eigen::Index>(v)) = vertices_[v].transpose();
-  mesh.F.resize(static_cast<Eigen::Index>(triangles_.size()), 3);
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
-    mesh.F.row(static_cast<Eigen::Index>(t)) = triangles_[t].transpose();
+  mesh.V.resize(vertices_.size(), 3);
+  for (std::size_t v = 0; v < vertices_.size(); ++v) mesh.V.row(v) = vertices_[v].transpose();
+  mesh.F.resize(triangles_.size(), 3);
+  for (std::size_t t = 0; t < triangles_.size(); ++t) mesh.F.row(t) = triangles_[t].transpose();
   return mesh;
 }
 

@@ -56,7 +56,7 @@ int map_row(int picture_row, int n) { return n - 1 - picture_row; }
 
 std::vector<float> pixels_of(const MapFrame& map, int n) {
   std::vector<float> pixels;
-  pixels.reserve(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) * 4);
+  pixels.reserve(static_cast<std::size_t>(n) * n * 4);
   for (int row = 0; row < n; ++row) {
     for (int i = 0; i < n; ++i) {
       const Eigen::Index texel = static_cast<Eigen::Index>(map_row(row, n)) * n + i;
@@ -122,9 +122,9 @@ class Picture {
 
   [[nodiscard]] MapFrame map() {
     const int n = size(), channels = input_->channels();
-    const auto width = static_cast<std::size_t>(channels);
+    const std::size_t width = channels;
     require_justified(static_cast<double>(n) * n * channels * sizeof(float));
-    std::vector<float> pixels(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) * width);
+    std::vector<float> pixels(static_cast<std::size_t>(n) * n * width);
     if (!input_->read(pixels.data())) {
       throw Error("cannot be read: " + input_->error(), name_);
     }
@@ -133,10 +133,10 @@ class Picture {
     map.displacement.resize(texels, 3);
     map.alpha.resize(texels);
     for (int c = 0; c < 4; ++c) {
-      const auto at = static_cast<std::size_t>(input_->channel(kChannels[c]));
+      const std::size_t at = input_->channel(kChannels[c]);
       for (Eigen::Index p = 0; p < texels; ++p) {
         const Eigen::Index row = map_row(static_cast<int>(p / n), n);
-        const float value = pixels[static_cast<std::size_t>(p) * width + at];
+        const float value = pixels[p * width + at];
         (c < 3 ? map.displacement(row * n + p % n, c) : map.alpha(row * n + p % n)) = value;
       }
     }
@@ -147,7 +147,7 @@ class Picture {
   /// Pixels that no compression has in so small a file are not allocated.
   void require_justified(double bytes) const {
     constexpr double kMostCompression = 2000;  // deflate reaches about 1000
-    const auto file = static_cast<double>(std::filesystem::file_size(name_));
+    const double file = std::filesystem::file_size(name_);
     if (bytes > kMostCompression * file) {
       throw Error("says that it has " + bytes_text(bytes) + " of pixels in " + bytes_text(file),
                   name_, "a whole picture");

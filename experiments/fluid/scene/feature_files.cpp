@@ -43,7 +43,7 @@ void write_placements(H5Group& group, const Feature& feature) {
 }
 
 void write_maps(H5Group& group, const Feature& feature) {
-  const auto n = static_cast<std::size_t>(feature.resolution);
+  const std::size_t n = feature.resolution;
   group.write_attribute("resolution", static_cast<std::int64_t>(n));
   group.write_attribute("extent", feature.extent);
   std::vector<float> displacement, alpha;
@@ -130,7 +130,7 @@ void read_maps(const H5Node& group, Feature& feature) {
   const std::size_t frames = feature.times.size(), n = static_cast<std::size_t>(resolution);
   const std::vector<float> displacement = read<float>(group, "displacement", {frames, n, n, 3});
   const std::vector<float> alpha = read<float>(group, "alpha", {frames, n, n});
-  const auto texels = static_cast<Eigen::Index>(n * n);
+  const Eigen::Index texels = n * n;
   feature.maps.resize(frames);
   for (std::size_t i = 0; i < frames; ++i) {
     feature.maps[i].displacement =

@@ -179,7 +179,7 @@ void require_edit(const std::vector<Edit>& edits, std::size_t i, const SculptSce
     throw Error(e.what(), place);
   }
   const auto same_name = [&](const Edit& other) { return other.name == edit.name; };
-  const auto end = edits.begin() + static_cast<std::ptrdiff_t>(i);
+  const auto end = edits.begin() + i;
   if (!edit.name.empty() && std::any_of(edits.begin(), end, same_name)) {
     throw Error("the name '" + edit.name + "' is taken", place + ".name", "a name of its own");
   }

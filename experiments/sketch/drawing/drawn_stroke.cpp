@@ -33,7 +33,7 @@ class TaggedShape {
   void look_outwards(const std::function<bool(const SvgTags&)>& look) const {
     if (look(shape_.tags)) return;
     for (int group = shape_.group; group >= 0;) {
-      const SvgGroup& around = document_.groups[static_cast<std::size_t>(group)];
+      const SvgGroup& around = document_.groups[group];
       if (look(around.tags)) return;
       group = around.parent;
     }

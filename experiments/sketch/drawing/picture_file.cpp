@@ -32,15 +32,14 @@ PixelImage decoded(ImageInput& input, const std::string& where) {
         "the picture has " + std::to_string(width) + " x " + std::to_string(height) + " pixels",
         where, "at most " + std::to_string(kMostPicturePixels));
   }
-  const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  std::vector<std::uint8_t> values(count * static_cast<std::size_t>(channels));
+  const auto count = static_cast<std::size_t>(width) * height;
+  std::vector<std::uint8_t> values(count * channels);
   if (channels < 1 || !input.read(values.data()))
     throw Error("the picture cannot be read: " + input.error(), where, "a PNG or JPEG file");
   PixelImage image{width, height, {}};
   image.pixels.reserve(count);
   for (std::size_t i = 0; i < count; ++i)
-    image.pixels.push_back(
-        over_white(values.data() + i * static_cast<std::size_t>(channels), channels));
+    image.pixels.push_back(over_white(values.data() + i * channels, channels));
   return image;
 }
 

@@ -71,7 +71,7 @@ class SilhouetteChain {
 
   void append(std::size_t which, bool backwards) {
     Stroke next = std::move(open_[which]);
-    open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(which));
+    open_.erase(open_.begin() + which);
     if (backwards) std::reverse(next.points.begin(), next.points.end());
     chain_.points.insert(chain_.points.end(), next.points.begin() + 1, next.points.end());
     chain_.id += "+" + next.id;

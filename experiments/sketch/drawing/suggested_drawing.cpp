@@ -69,12 +69,12 @@ struct Seen {
 
 std::vector<Seen> seen_from(const Eigen::MatrixX3d& line, const Eigen::MatrixX3d& normals,
                             const std::vector<View>& views) {
-  const auto segments = static_cast<std::size_t>(std::max<Eigen::Index>(line.rows() - 1, 0));
+  const std::size_t segments = std::max<Eigen::Index>(line.rows() - 1, 0);
   const std::size_t states = 2 * views.size();
   std::vector<std::vector<double>> cost(segments, std::vector<double>(states));
   std::vector<std::vector<std::size_t>> before(segments, std::vector<std::size_t>(states, 0));
   for (std::size_t i = 0; i < segments; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
+    const Eigen::Index row = i;
     const Eigen::RowVector3d normal = (normals.row(row) + normals.row(row + 1)).normalized();
     const double size = (line.row(row + 1) - line.row(row)).norm();
     for (std::size_t s = 0; s < states; ++s) {
@@ -95,8 +95,8 @@ std::vector<Seen> seen_from(const Eigen::MatrixX3d& line, const Eigen::MatrixX3d
   }
   std::vector<Seen> seen(segments);
   if (segments == 0) return seen;
-  auto state = static_cast<std::size_t>(std::min_element(cost.back().begin(), cost.back().end()) -
-                                        cost.back().begin());
+  std::size_t state =
+      std::min_element(cost.back().begin(), cost.back().end()) - cost.back().begin();
   for (std::size_t i = segments; i-- > 0; state = before[i][state])
     seen[i] = {state / 2, state % 2 == 1};
   return seen;
@@ -117,8 +117,7 @@ void add_line(const Eigen::MatrixX3d& line, const Eigen::MatrixX3d& normals, con
     stroke.kind = StrokeKind::seam;
     stroke.side = seen[i].back ? DepthSide::back : DepthSide::front;
     for (std::size_t k = i; k <= end; ++k) {
-      stroke.points.emplace_back(view_frame(view.kind).topRows<2>() *
-                                 line.row(static_cast<Eigen::Index>(k)).transpose());
+      stroke.points.emplace_back(view_frame(view.kind).topRows<2>() * line.row(k).transpose());
     }
     view.strokes.push_back(std::move(stroke));
     i = end;

@@ -59,7 +59,7 @@ ViewLayers find_view_layers(const SvgDocument& document, std::vector<std::string
   ViewLayers layers;
   std::map<ViewKind, std::size_t> line_of;
   bool any_hidden = false;
-  for (std::size_t g = 0; g < document.groups.size(); ++g) {
+  for (int g = 0; g < std::ssize(document.groups); ++g) {
     const SvgGroup& group = document.groups[g];
     const std::string name = view_layer_name(group);
     if (!name.starts_with(kViewPrefix)) continue;
@@ -75,7 +75,7 @@ ViewLayers find_view_layers(const SvgDocument& document, std::vector<std::string
       throw Error(name + " is drawn twice, here and on line " + std::to_string(known->second),
                   place, "one layer for each view");
     }
-    layers.kind_of_group.emplace(static_cast<int>(g), kind);
+    layers.kind_of_group.emplace(g, kind);
   }
   for (const auto& [kind, line] : line_of) layers.kinds.push_back(kind);
   if (layers.kinds.empty()) {
@@ -88,7 +88,7 @@ ViewLayers find_view_layers(const SvgDocument& document, std::vector<std::string
 
 std::optional<ViewKind> view_of_group(const SvgDocument& document, const ViewLayers& layers,
                                       int group) {
-  for (; group >= 0; group = document.groups[static_cast<std::size_t>(group)].parent) {
+  for (; group >= 0; group = document.groups[group].parent) {
     const auto found = layers.kind_of_group.find(group);
     if (found != layers.kind_of_group.end()) return found->second;
   }

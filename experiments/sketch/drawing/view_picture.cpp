@@ -56,7 +56,7 @@ std::string head_of(const std::filesystem::path& file, const std::string& where)
   try {
     std::ifstream in = open_input_file(file);
     in.read(head.data(), static_cast<std::streamsize>(kHead));
-    head.resize(static_cast<std::size_t>(in.gcount()));
+    head.resize(in.gcount());
   } catch (const Error& e) {
     throw Error(std::string("the picture cannot be read: ") + e.what(), where,
                 "a PNG or JPEG file");

@@ -31,12 +31,11 @@ std::string group_name(const Pattern& pattern, std::size_t piece) {
 }
 
 void require_surface(const Pattern& pattern, Eigen::Index vertices) {
-  for (std::size_t p = 0; p < pattern.pieces.size(); ++p) {
+  for (int p = 0; p < std::ssize(pattern.pieces); ++p) {
     for (const int v : pattern.pieces[p].surface_vertex) {
       if (v < 0 || v >= vertices) {
         throw Error("counts vertex " + std::to_string(v) + " of the surface",
-                    piece_label(pattern, static_cast<int>(p)),
-                    "0 to " + std::to_string(vertices - 1));
+                    piece_label(pattern, p), "0 to " + std::to_string(vertices - 1));
       }
     }
   }
@@ -84,8 +83,8 @@ ClothJson seams_json(const Pattern& pattern, const std::vector<int>& first) {
     const PatternPiece& piece = pattern.pieces[p];
     for (std::size_t e = 0; e < piece.edges.size(); ++e) {
       const PieceEdge& edge = piece.edges[e];
-      const auto q = static_cast<std::size_t>(edge.partner_piece);
-      const auto other = static_cast<std::size_t>(edge.partner_edge);
+      const std::size_t q = edge.partner_piece;
+      const std::size_t other = edge.partner_edge;
       if (edge.partner_piece < 0 || std::pair(q, other) < std::pair(p, e)) continue;
       const std::vector<int>& back = pattern.pieces[q].edges[other].vertices;
       ClothJson pairs = ClothJson::array();

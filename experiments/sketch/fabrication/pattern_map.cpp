@@ -69,12 +69,12 @@ void require_map(const Pattern& pattern, const PatternSheet& sheet) {
     throw Error("the sheet has " + std::to_string(sheet.pieces.size()) + " pieces", "pattern map",
                 std::to_string(pattern.pieces.size()));
   }
-  for (std::size_t k = 0; k < pattern.pieces.size(); ++k) {
+  for (int k = 0; k < std::ssize(pattern.pieces); ++k) {
     const PatternPiece& piece = pattern.pieces[k];
-    const auto given = static_cast<Eigen::Index>(piece.surface_vertex.size());
+    const Eigen::Index given = piece.surface_vertex.size();
     if (given != piece.points.rows()) {
       throw Error("has surface vertices for " + std::to_string(given) + " points",
-                  piece_label(pattern, static_cast<int>(k)), std::to_string(piece.points.rows()));
+                  piece_label(pattern, k), std::to_string(piece.points.rows()));
     }
   }
 }
@@ -90,7 +90,7 @@ std::string pattern_map_csv(const Pattern& pattern, const PatternSheet& sheet) {
       const Eigen::Vector2d p = piece.points.row(i).transpose();
       const Eigen::Vector2d on_sheet = sheet.pieces[k].own(p) + sheet.pieces[k].place;
       out += std::to_string(k) + "," + std::to_string(i) + "," +
-             std::to_string(piece.surface_vertex[static_cast<std::size_t>(i)]);
+             std::to_string(piece.surface_vertex[i]);
       for (const double x : {1000 * p.x(), 1000 * p.y(), on_sheet.x(), on_sheet.y()}) {
         out.append(",").append(written_number(x));
       }

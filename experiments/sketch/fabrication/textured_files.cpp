@@ -37,8 +37,7 @@ std::string obj_text(const OneViewResult& result, const Pattern& pattern, const 
       faces += "f";
       for (int k = 0; k < 3; ++k) {
         const int p = piece.triangles(t, k);
-        faces.append(" ").append(
-            std::to_string(piece.surface_vertex[static_cast<std::size_t>(p)] + 1));
+        faces.append(" ").append(std::to_string(piece.surface_vertex[p] + 1));
         faces.append("/").append(std::to_string(first + p));
       }
       faces += "\n";

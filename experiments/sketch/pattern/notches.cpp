@@ -29,7 +29,7 @@ std::vector<NotchShare> notch_shares(double length, double spacing) {
 /// The edge's point at an arc length, and there the normal away from the material.
 void place_notch(const PatternPiece& piece, const std::set<std::pair<int, int>>& directed,
                  Notch& notch) {
-  const std::vector<int>& chain = piece.edges[static_cast<std::size_t>(notch.edge)].vertices;
+  const std::vector<int>& chain = piece.edges[notch.edge].vertices;
   double left = notch.arc;
   for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
     const Eigen::Vector2d a = piece.points.row(chain[i]).transpose();
@@ -55,17 +55,17 @@ std::vector<Notch> paired_notches(const Pattern& pattern, const NotchOptions& op
   for (const PatternPiece& piece : pattern.pieces) directed.push_back(directed_segments(piece));
   std::vector<Notch> notches;
   const auto add = [&](int label, bool direction, int piece, int edge, double share) {
-    const PatternPiece& p = pattern.pieces[static_cast<std::size_t>(piece)];
-    const double length = edge_length(p, p.edges[static_cast<std::size_t>(edge)]);
+    const PatternPiece& p = pattern.pieces[piece];
+    const double length = edge_length(p, p.edges[edge]);
     Notch notch{label, direction, piece, edge, share * length};
-    place_notch(p, directed[static_cast<std::size_t>(piece)], notch);
+    place_notch(p, directed[piece], notch);
     notches.push_back(notch);
   };
   int label = 0;
-  for (int k = 0; k < static_cast<int>(pattern.pieces.size()); ++k) {
-    const PatternPiece& piece = pattern.pieces[static_cast<std::size_t>(k)];
-    for (int e = 0; e < static_cast<int>(piece.edges.size()); ++e) {
-      const PieceEdge& edge = piece.edges[static_cast<std::size_t>(e)];
+  for (int k = 0; k < std::ssize(pattern.pieces); ++k) {
+    const PatternPiece& piece = pattern.pieces[k];
+    for (int e = 0; e < std::ssize(piece.edges); ++e) {
+      const PieceEdge& edge = piece.edges[e];
       const std::pair here(k, e), there(edge.partner_piece, edge.partner_edge);
       const double length = edge_length(piece, edge);
       // Each seam once, from its first side.

@@ -27,14 +27,11 @@ constexpr double kLeastGrain = 4;      // mm
 class PieceDrawing {
  public:
   PieceDrawing(const Pattern& pattern, int piece, const SheetOptions& options)
-      : pattern_(pattern),
-        piece_(pattern.pieces[static_cast<std::size_t>(piece)]),
-        index_(piece),
-        options_(options) {}
+      : pattern_(pattern), piece_(pattern.pieces[piece]), index_(piece), options_(options) {}
 
   SheetPiece draw(const std::vector<Notch>& notches) {
     draw_borders();
-    for (std::size_t i = 0; i < piece_.folds.size(); ++i) draw_fold(static_cast<int>(i));
+    for (int i = 0; i < std::ssize(piece_.folds); ++i) draw_fold(i);
     draw_placements();
     draw_holes();
     for (const Notch& notch : notches) {
@@ -48,7 +45,7 @@ class PieceDrawing {
 
  private:
   [[nodiscard]] double allowance_of(int edge) const {
-    const bool sewn = edge >= 0 && piece_.edges[static_cast<std::size_t>(edge)].partner_piece >= 0;
+    const bool sewn = edge >= 0 && piece_.edges[edge].partner_piece >= 0;
     return sewn ? options_.allowance_mm : options_.hem_mm;
   }
 
@@ -95,20 +92,20 @@ class PieceDrawing {
 
   void draw_fold(int fold) {
     PlaneLoop points;
-    for (const int v : piece_.folds[static_cast<std::size_t>(fold)])
+    for (const int v : piece_.folds[fold])
       points.push_back(drawing_.own(piece_.points.row(v).transpose()));
     add_line(SheetLayer::fold, points, fold);
   }
 
   void draw_placements() {
-    for (std::size_t i = 0; i < piece_.placements.size(); ++i)
-      add_line(SheetLayer::place, own(piece_.placements[i]), static_cast<int>(i));
+    for (int i = 0; i < std::ssize(piece_.placements); ++i)
+      add_line(SheetLayer::place, own(piece_.placements[i]), i);
   }
 
   /// As polygons, of which no side is farther from the circle than a hundredth of its radius.
   void draw_holes() {
     constexpr int kSides = 24;
-    for (std::size_t i = 0; i < piece_.holes.size(); ++i) {
+    for (int i = 0; i < std::ssize(piece_.holes); ++i) {
       const PieceHole& hole = piece_.holes[i];
       PlaneLoop circle;
       for (int k = 0; k < kSides; ++k) {
@@ -116,7 +113,7 @@ class PieceDrawing {
         circle.push_back(drawing_.own(
             hole.centre + hole.radius * Eigen::Vector2d(std::cos(angle), std::sin(angle))));
       }
-      add_line(SheetLayer::drill, circle, static_cast<int>(i));
+      add_line(SheetLayer::drill, circle, i);
       drawing_.lines.back().closed = true;
     }
   }

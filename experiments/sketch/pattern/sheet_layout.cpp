@@ -87,7 +87,7 @@ PatternSheet pattern_sheet(const Pattern& pattern, const SheetOptions& options) 
       paired_notches(pattern, {.spacing = options.notch_spacing_mm / 1000});
   PatternSheet sheet;
   sheet.title = label_text(options.title, 80);
-  for (int k = 0; k < static_cast<int>(pattern.pieces.size()); ++k) {
+  for (int k = 0; k < std::ssize(pattern.pieces); ++k) {
     sheet.pieces.push_back(draw_piece(pattern, k, notches, options));
   }
   place_sheet_pieces(sheet, options);

@@ -101,9 +101,7 @@ std::string KnownSvg::text() const {
 
 }  // namespace
 
-std::string known_name(KnownShape shape) {
-  return std::string(kKnownNames[static_cast<std::size_t>(shape)]);
-}
+std::string known_name(KnownShape shape) { return std::string(kKnownNames[shape]); }
 
 void describe(OptionVisitor& v, KnownDrawingOptions& o) {
   describe_choice(v, "shape", o.shape, kKnownNames, {.doc = "the object that the drawing shows"});

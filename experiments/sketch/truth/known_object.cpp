@@ -235,7 +235,7 @@ KnownObject known_object(KnownShape shape) {
 
 TriMesh panel_mesh(const KnownPanel& panel) {
   TriMesh mesh;
-  const auto n = static_cast<Eigen::Index>(panel.first.size());
+  const Eigen::Index n = panel.first.size();
   const auto put = [&](Eigen::Index row, const Eigen::Vector3d& p) {
     mesh.V.row(row) = p.transpose();
   };
@@ -244,7 +244,7 @@ TriMesh panel_mesh(const KnownPanel& panel) {
     mesh.F.resize(n, 3);
     Eigen::Vector3d centre(0, 0, 0);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const Eigen::Vector3d& p = panel.first[static_cast<std::size_t>(i)];
+      const Eigen::Vector3d& p = panel.first[i];
       put(i, p);
       centre += p / static_cast<double>(n);
       mesh.F.row(i) << static_cast<int>(i), static_cast<int>((i + 1) % n), static_cast<int>(n);
@@ -255,8 +255,8 @@ TriMesh panel_mesh(const KnownPanel& panel) {
   mesh.V.resize(2 * n, 3);
   mesh.F.resize(2 * (n - 1), 3);
   for (Eigen::Index i = 0; i < n; ++i) {
-    put(2 * i, panel.first[static_cast<std::size_t>(i)]);
-    put(2 * i + 1, panel.second[static_cast<std::size_t>(i)]);
+    put(2 * i, panel.first[i]);
+    put(2 * i + 1, panel.second[i]);
     if (i + 1 == n) break;
     const int a = static_cast<int>(2 * i);
     mesh.F.row(2 * i) << a, a + 2, a + 1;

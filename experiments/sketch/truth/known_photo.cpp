@@ -107,14 +107,14 @@ Eigen::Vector3d backdrop(double up) {
 /// Colours of fine samples, averaged over pixels.
 PixelImage averaged(const std::vector<Eigen::Vector3d>& fine, int width, int height) {
   PixelImage image{width, height, {}};
-  image.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  image.pixels.resize(static_cast<std::size_t>(width) * height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       Eigen::Vector3d sum(0, 0, 0);
       for (int j = 0; j < kSuperSamples; ++j) {
         for (int i = 0; i < kSuperSamples; ++i) {
           const int row = y * kSuperSamples + j, column = x * kSuperSamples + i;
-          sum += fine[static_cast<std::size_t>(row * width * kSuperSamples + column)];
+          sum += fine[row * width * kSuperSamples + column];
         }
       }
       sum /= kSuperSamples * kSuperSamples;
@@ -148,7 +148,7 @@ PixelImage known_photo(KnownShape shape, const KnownObject& object, int width) {
   std::vector<Eigen::Vector3d> fine;
   for (std::size_t i = 0; i < seen.triangle.size(); ++i) {
     if (!seen.covered(i)) {
-      const auto line = i / static_cast<std::size_t>(grid.width);
+      const auto line = i / grid.width;
       fine.push_back(backdrop(1 - static_cast<double>(line) / grid.height));
       continue;
     }
@@ -156,8 +156,7 @@ PixelImage known_photo(KnownShape shape, const KnownObject& object, int width) {
     Eigen::Vector2d uv(0, 0);
     for (int k = 0; k < 3; ++k)
       uv += seen.weights[i](k) * cloth.row(panels.mesh.F(t, k)).transpose();
-    const PanelMaterial& m =
-        materials[static_cast<std::size_t>(panels.panel[static_cast<std::size_t>(t)])];
+    const PanelMaterial& m = materials[panels.panel[t]];
     fine.push_back(printed_colour(m, uv) * light_on(normals.row(t).transpose()));
   }
   return averaged(fine, width, height);

@@ -203,7 +203,7 @@ KnownPlacement known_placement(const KnownObject& object) {
 
 PlacedPanels placed_panels(const KnownObject& object, const KnownPlacement& placement) {
   PlacedPanels placed;
-  for (std::size_t p = 0; p < object.panels.size(); ++p) {
+  for (int p = 0; p < std::ssize(object.panels); ++p) {
     const TriMesh panel = panel_mesh(object.panels[p]);
     const Eigen::Index n = placed.mesh.V.rows(), m = placed.mesh.F.rows();
     placed.mesh.V.conservativeResize(n + panel.V.rows(), 3);
@@ -211,8 +211,7 @@ PlacedPanels placed_panels(const KnownObject& object, const KnownPlacement& plac
     for (Eigen::Index v = 0; v < panel.V.rows(); ++v)
       placed.mesh.V.row(n + v) = placement(panel.V.row(v).transpose()).transpose();
     placed.mesh.F.bottomRows(panel.F.rows()) = panel.F.array() + static_cast<int>(n);
-    placed.panel.insert(placed.panel.end(), static_cast<std::size_t>(panel.F.rows()),
-                        static_cast<int>(p));
+    placed.panel.insert(placed.panel.end(), panel.F.rows(), p);
   }
   return placed;
 }

@@ -174,8 +174,8 @@ Eigen::Vector3d rest_bone(const BvhMotion& motion, int joint) {
 
 int driver_of(const BvhMotion& motion, const std::string& bvh, const std::string& joint) {
   std::string names;
-  for (std::size_t b = 0; b < motion.joints.size(); ++b) {
-    if (motion.joints[b].name == bvh) return static_cast<int>(b);
+  for (int b = 0; b < std::ssize(motion.joints); ++b) {
+    if (motion.joints[b].name == bvh) return b;
     names += (b == 0 ? "" : ", ") + motion.joints[b].name;
   }
   throw Error("the motion has no joint '" + bvh + "'", "joint '" + joint + "'", names);
@@ -218,8 +218,8 @@ BvhFrame bvh_frame(const BvhMotion& motion, int frame) {
   for (const BvhJoint& joint : motion.joints) {
     Eigen::Quaterniond local = Eigen::Quaterniond::Identity();
     Eigen::Vector3d moved = Eigen::Vector3d::Zero();
-    for (std::size_t c = 0; c < joint.channels.size(); ++c) {
-      const double x = motion.values(frame, joint.first_column + static_cast<int>(c));
+    for (int c = 0; c < std::ssize(joint.channels); ++c) {
+      const double x = motion.values(frame, joint.first_column + c);
       const int axis = joint.channels[c].axis;
       if (joint.channels[c].is_rotation) {
         local = local * Eigen::AngleAxisd(x * std::numbers::pi / 180, Eigen::Vector3d::Unit(axis));
@@ -231,7 +231,7 @@ BvhFrame bvh_frame(const BvhMotion& motion, int frame) {
       result.rotation.push_back(local);
       result.position.push_back(joint.offset + moved);
     } else {
-      const auto p = static_cast<std::size_t>(joint.parent);
+      const std::size_t p = joint.parent;
       result.position.push_back(result.position[p] + result.rotation[p] * (joint.offset + moved));
       result.rotation.push_back((result.rotation[p] * local).normalized());
     }
@@ -274,7 +274,7 @@ Pose BvhRetarget::pose(int frame) const {
   Pose pose(joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const Joint& joint = joints[j];
-    const auto p = static_cast<std::size_t>(std::max(joint.parent, 0));
+    const std::size_t p = std::max(joint.parent, 0);
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     if (driver_[j] >= 0) {
       rotation = (state.rotation[driver_[j]] * align_[j]).toRotationMatrix();

@@ -23,10 +23,10 @@ struct DrivenJoints {
 DrivenJoints driven_joints(const BvhMotion& motion, const SkeletonFile& skeleton) {
   DrivenJoints joints;
   for (int j = 0; j < skeleton.skeleton.size(); ++j) {
-    for (std::size_t b = 0; b < motion.joints.size(); ++b) {
+    for (int b = 0; b < std::ssize(motion.joints); ++b) {
       if (skeleton.bvh_joint[j] != motion.joints[b].name) continue;
       joints.ours.push_back(j);
-      joints.theirs.push_back(static_cast<int>(b));
+      joints.theirs.push_back(b);
     }
   }
   return joints;
@@ -37,7 +37,7 @@ bool tells_up(const SkeletonFile& skeleton, const DrivenJoints& joints) {
   if (joints.ours.size() < 3) return false;
   Eigen::MatrixX3d heads(joints.ours.size(), 3);
   for (std::size_t i = 0; i < joints.ours.size(); ++i)
-    heads.row(static_cast<Eigen::Index>(i)) = skeleton.skeleton.joints[joints.ours[i]].head;
+    heads.row(i) = skeleton.skeleton.joints[joints.ours[i]].head;
   const Eigen::MatrixX3d centred = heads.rowwise() - heads.colwise().mean();
   const Eigen::Matrix3d covariance = centred.transpose() * centred;
   const Eigen::Vector3d spread =
@@ -57,11 +57,11 @@ BvhMotion turned(BvhMotion motion, int up) {
 /// height.)
 double agreement(const SkeletonFile& skeleton, const DrivenJoints& joints,
                  const std::vector<Eigen::Vector3d>& positions) {
-  const auto n = static_cast<Eigen::Index>(joints.ours.size());
+  const Eigen::Index n = joints.ours.size();
   Eigen::VectorXd heights(n);
   Eigen::MatrixX3d places(n, 3);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
+    const std::size_t k = i;
     heights[i] = skeleton.skeleton.joints[joints.ours[k]].head.y();
     places.row(i) = positions[joints.theirs[k]];
   }

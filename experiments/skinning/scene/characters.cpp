@@ -37,7 +37,7 @@ void drop_degenerate(TriMesh& split, const std::vector<int>& welded) {
 
 /// Weights of welded vertices: the mean over the split vertices they are made of.
 SkinWeights weld_weights(const SkinWeights& split, const Weld& weld, std::string& warning) {
-  const auto n = static_cast<std::size_t>(weld.mesh.vertex_count());
+  const std::size_t n = weld.mesh.vertex_count();
   std::vector<double> copies(n, 0);
   for (const int w : weld.welded_of_split) copies[w] += 1;
   std::vector<Eigen::Triplet<double>> triplets;

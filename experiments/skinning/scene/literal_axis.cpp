@@ -20,7 +20,7 @@ std::optional<LiteralAxis> parse_literal_axis(std::string_view text) {
   if (!axis.is_local) take_word(text, "world");
   const std::size_t which = text.size() == 2 ? std::string_view("xyz").find(text[1]) : text.npos;
   if (which == text.npos || (text[0] != '+' && text[0] != '-')) return std::nullopt;
-  axis.direction[static_cast<Eigen::Index>(which)] = text[0] == '+' ? 1 : -1;
+  axis.direction[which] = text[0] == '+' ? 1 : -1;
   return axis;
 }
 

@@ -72,8 +72,7 @@ struct Value {
     const toml::array* array = node.as_array();
     if (array == nullptr || array->size() != 3) fail("is no vector", "[x, y, z]");
     Eigen::Vector3d x;
-    for (std::size_t i = 0; i < 3; ++i)
-      x[static_cast<Eigen::Index>(i)] = Value{*array->get(i), key, file}.number();
+    for (std::size_t i = 0; i < 3; ++i) x[i] = Value{*array->get(i), key, file}.number();
     return x;
   }
 };

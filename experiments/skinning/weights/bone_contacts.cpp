@@ -16,8 +16,8 @@ template <class Visible>
 BoneContact nearest_bones(const Eigen::Vector3d& p, const std::vector<Bone>& bones,
                           const Visible& visible) {
   std::vector<std::pair<double, int>> by_distance;
-  for (std::size_t j = 0; j < bones.size(); ++j)
-    by_distance.emplace_back((bones[j].nearest(p) - p).norm(), static_cast<int>(j));
+  for (int j = 0; j < std::ssize(bones); ++j)
+    by_distance.emplace_back((bones[j].nearest(p) - p).norm(), j);
   std::sort(by_distance.begin(), by_distance.end());
   BoneContact contact;
   double nearest = std::numeric_limits<double>::infinity();
@@ -43,7 +43,7 @@ DisjointSets components(const TriMesh& mesh) {
 }  // namespace
 
 std::vector<BoneContact> bone_contacts(const TriMesh& mesh, const std::vector<Bone>& bones) {
-  const auto n = static_cast<std::size_t>(mesh.vertex_count());
+  const std::size_t n = mesh.vertex_count();
   std::vector<BoneContact> contacts(n);
   const InsideVisibility visibility(mesh);
   parallel_blocks(n, 256, [&](std::size_t begin, std::size_t end) {

@@ -80,7 +80,7 @@ std::vector<Eigen::Vector3d> cut_centroids() {
 void hold_lone_vertices(const std::vector<BoneContact>& contacts, Eigen::MatrixXd& skin) {
   const double mean = skin.sum() / static_cast<double>(skin.rows());
   for (Eigen::Index v = 0; v < skin.rows(); ++v) {
-    const std::vector<int>& bones = contacts[static_cast<std::size_t>(v)].bones;
+    const std::vector<int>& bones = contacts[v].bones;
     if (bones.empty() || skin.row(v).sum() > 0) continue;
     for (const int b : bones) skin(v, b) = mean / static_cast<double>(bones.size());
   }
@@ -92,8 +92,7 @@ Eigen::MatrixXd bone_skins(const TriMesh& mesh, const std::vector<Bone>& bones,
                            const std::vector<BoneContact>& contacts) {
   const std::vector<Eigen::Vector3d> centroids = cut_centroids();
   const Eigen::VectorXd area = triangle_areas(mesh.V, mesh.F);
-  Eigen::MatrixXd skin =
-      Eigen::MatrixXd::Zero(mesh.vertex_count(), static_cast<Eigen::Index>(bones.size()));
+  Eigen::MatrixXd skin = Eigen::MatrixXd::Zero(mesh.vertex_count(), bones.size());
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
     const std::vector<int> candidates = bones_at(mesh, t, contacts);
     if (candidates.empty()) continue;

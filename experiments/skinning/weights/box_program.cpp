@@ -103,7 +103,7 @@ class ActiveSet {
 
   void solve_free(const std::vector<Eigen::Index>& free, const std::vector<int>& free_index) {
     if (free.empty()) return;
-    const auto n = static_cast<Eigen::Index>(free.size());
+    const Eigen::Index n = free.size();
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::VectorXd rhs(n);
     for (Eigen::Index k = 0; k < n; ++k) {
@@ -159,14 +159,14 @@ BoxSolution solve_in_box(const BoxProgram& program, int max_pivots) {
   const SparseLdlt factor(program.Q);
   require_factor(factor);
   const Eigen::VectorXd diagonal = program.Q.diagonal();
-  const auto m = static_cast<std::size_t>(program.C.cols());
+  const std::size_t m = program.C.cols();
   BoxSolution solution;
   solution.X.resize(program.C.rows(), program.C.cols());
   std::vector<int> pivots(m);
   std::vector<double> residual(m);
   parallel_blocks(m, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
-      const auto column = static_cast<Eigen::Index>(j);
+      const Eigen::Index column = j;
       const Eigen::VectorXd c = program.C.col(column);
       ActiveSet set(program.Q, diagonal, c, factor.solve(c));
       pivots[j] = pivot(set, max_pivots);

@@ -17,8 +17,7 @@ Eigen::MatrixXd equilibrium(const TriMesh& mesh, const std::vector<BoneContact>&
   Eigen::SparseMatrix<double> system = positive_cotangent_laplacian(mesh);
   const double smallest_area = 1e-9 * area.mean();
   const double smallest_distance = 1e-9 * bounding_box_diagonal(mesh.V);
-  Eigen::MatrixXd rhs =
-      Eigen::MatrixXd::Zero(mesh.vertex_count(), static_cast<Eigen::Index>(bone_count));
+  Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(mesh.vertex_count(), bone_count);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const std::vector<int>& nearest = contacts[v].bones;
     if (nearest.empty()) continue;
@@ -40,7 +39,7 @@ SkinWeights strongest(const Eigen::MatrixXd& temperature, const std::vector<Bone
   for (Eigen::Index v = 0; v < temperature.rows(); ++v) {
     row.clear();
     for (std::size_t j = 0; j < bones.size(); ++j)
-      row.emplace_back(temperature(v, static_cast<Eigen::Index>(j)), bones[j].joint);
+      row.emplace_back(temperature(v, j), bones[j].joint);
     std::stable_sort(row.begin(), row.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
     if (options.max_influences > 0)

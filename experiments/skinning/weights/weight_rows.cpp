@@ -43,7 +43,7 @@ SkinWeights strongest_influences(const Eigen::MatrixXd& values, const std::vecto
   for (Eigen::Index v = 0; v < values.rows(); ++v) {
     sorted_values(values, v, row);
     if (row.empty()) throw Error("no bone holds the skin", "vertex " + std::to_string(v));
-    if (max_influences > 0) keep_strongest(row, static_cast<std::size_t>(max_influences));
+    if (max_influences > 0) keep_strongest(row, max_influences);
     double sum = 0;
     for (const BoneValue& entry : row) sum += entry.value;
     for (const BoneValue& entry : row) {

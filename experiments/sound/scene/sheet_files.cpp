@@ -92,7 +92,7 @@ class SheetFiles final : public SheetAnimation {
   }
 
   [[nodiscard]] const FrameFile& file(int frame) const {
-    if (frame >= 0 && frame < frame_count()) return files_.files[static_cast<std::size_t>(frame)];
+    if (frame >= 0 && frame < frame_count()) return files_.files[frame];
     throw Error("has no frame " + std::to_string(frame), name_,
                 "0 to " + std::to_string(frame_count() - 1));
   }

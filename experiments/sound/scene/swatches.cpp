@@ -87,9 +87,7 @@ class Swatches final : public SheetAnimation {
   }
 
   [[nodiscard]] int frame_count() const override { return static_cast<int>(times_.size()); }
-  [[nodiscard]] double time(int frame) const override {
-    return times_.at(static_cast<std::size_t>(frame));
-  }
+  [[nodiscard]] double time(int frame) const override { return times_.at(frame); }
   [[nodiscard]] std::string name() const override { return "scene.swatches"; }
 
   [[nodiscard]] SheetSnapshot snapshot(int frame) const override {
@@ -98,7 +96,7 @@ class Swatches final : public SheetAnimation {
     out.mesh = mesh_;
     out.x.resize(mesh_.vertex_count(), 3);
     for (int v = 0; v < mesh_.vertex_count(); ++v) {
-      const Swatch& one = swatches_[static_cast<std::size_t>(owner_[static_cast<std::size_t>(v)])];
+      const Swatch& one = swatches_[owner_[v]];
       const double turned = std::clamp((out.time - one.snaps) / snap_ + 0.5, 0.0, 1.0);
       const double k = one.curvature * (1 - 2 * turned);
       // Bent about the edge that is clamped, else about the middle.

@@ -21,14 +21,14 @@ void collect_rows(const NodeGraph& graph, std::span<const int> position, int nod
     }
   }
   rows.push_back(column);
-  std::sort(rows.begin() + static_cast<std::ptrdiff_t>(begin), rows.end());
+  std::sort(rows.begin() + begin, rows.end());
 }
 
 }  // namespace
 
 std::span<const int> NodeGraph::neighbours(int node) const {
-  const std::size_t begin = static_cast<std::size_t>(offset[node]);
-  return {items.data() + begin, static_cast<std::size_t>(offset[node + 1]) - begin};
+  const std::size_t begin = offset[node];
+  return {items.data() + begin, offset[node + 1] - begin};
 }
 
 NodeGraph couple_groups(int nodes, std::span<const int> offset, std::span<const int> members) {
@@ -77,7 +77,7 @@ BlockMatrix::BlockMatrix(const NodeGraph& graph, std::span<const int> position, 
     first_.push_back(static_cast<int>(rows_.size()));
   }
   sparse_.resize(3 * n, 3 * n);
-  sparse_.resizeNonZeros(9 * static_cast<Eigen::Index>(rows_.size()));
+  sparse_.resizeNonZeros(9 * std::ssize(rows_));
   int* outer = sparse_.outerIndexPtr();
   int* inner = sparse_.innerIndexPtr();
   int filled = 0;

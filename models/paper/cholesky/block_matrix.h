@@ -42,8 +42,8 @@ class BlockMatrix {
   [[nodiscard]] std::size_t block_count() const { return rows_.size(); }
   /// Block rows stored in a column, ascending; its values are a panel of three times as many rows.
   [[nodiscard]] std::span<const int> column_rows(int column) const {
-    const auto begin = static_cast<std::size_t>(first_[column]);
-    const auto end = static_cast<std::size_t>(first_[column + 1]);
+    const std::size_t begin = first_[column];
+    const std::size_t end = first_[column + 1];
     return {rows_.data() + begin, end - begin};
   }
   [[nodiscard]] const double* column_values(int column) const {

@@ -47,7 +47,7 @@ class Common {
 cholmod_sparse view(int n, int* outer, int* inner, double* values, int stype) {
   cholmod_sparse s{};
   s.nrow = s.ncol = static_cast<std::size_t>(n);
-  s.nzmax = static_cast<std::size_t>(outer[n]);
+  s.nzmax = outer[n];
   s.p = outer;
   s.i = inner;
   s.x = values;

@@ -26,7 +26,7 @@ class Arena {
       start = live_[k].start + live_[k].size;
       ++k;
     }
-    live_.insert(live_.begin() + static_cast<std::ptrdiff_t>(k), {start, size});
+    live_.insert(live_.begin() + k, {start, size});
     end_ = std::max(end_, start + size);
     return start;
   }

@@ -36,7 +36,7 @@ Columns factor_columns(const BlockMatrix& matrix) {
     for (int child = first_child[j]; child >= 0; child = next_child[child]) {
       for (int p = c.offset[child]; p < c.offset[child + 1]; ++p) take(c.rows[p]);
     }
-    std::sort(c.rows.begin() + static_cast<std::ptrdiff_t>(begin), c.rows.end());
+    std::sort(c.rows.begin() + begin, c.rows.end());
     c.offset.push_back(static_cast<int>(c.rows.size()));
     if (c.rows.size() == begin) continue;
     const int parent = c.rows[begin];
@@ -121,18 +121,18 @@ std::vector<Supernode> find_supernodes(const BlockMatrix& matrix) {
   const std::vector<Candidate> ranges = merge_columns(columns);
   std::vector<Supernode> supernodes(ranges.size());
   std::vector<int> owner(matrix.nodes());
-  for (std::size_t s = 0; s < ranges.size(); ++s) {
+  for (int s = 0; s < std::ssize(ranges); ++s) {
     supernodes[s].first = ranges[s].first;
     supernodes[s].end = ranges[s].end;
     const auto rows = columns.of(ranges[s].end - 1);
     supernodes[s].rows.assign(rows.begin(), rows.end());
-    for (int j = ranges[s].first; j < ranges[s].end; ++j) owner[j] = static_cast<int>(s);
+    for (int j = ranges[s].first; j < ranges[s].end; ++j) owner[j] = s;
   }
-  for (std::size_t s = 0; s < supernodes.size(); ++s) {
+  for (int s = 0; s < std::ssize(supernodes); ++s) {
     if (supernodes[s].rows.empty()) continue;
     const int parent = owner[supernodes[s].rows.front()];
     supernodes[s].parent = parent;
-    supernodes[parent].children.push_back(static_cast<int>(s));
+    supernodes[parent].children.push_back(s);
     place_rows(supernodes[s], supernodes[parent]);
   }
   return supernodes;

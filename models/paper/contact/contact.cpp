@@ -19,7 +19,7 @@ struct Sample {
 
 Eigen::Vector3d combine(const Sample& s, const Eigen::MatrixX3d& x) {
   Eigen::Vector3d p = s.weight[0] * x.row(s.vertex[0]).transpose();
-  for (std::size_t k = 1; k < static_cast<std::size_t>(s.count); ++k) {
+  for (int k = 1; k < s.count; ++k) {
     p += s.weight[k] * x.row(s.vertex[k]).transpose();
   }
   return p;
@@ -90,7 +90,7 @@ class ObstacleContact final : public ContactTerm {
       if (!(reach < options_.distance)) continue;
       ContactPoint point;
       point.count = sample.count;
-      for (std::size_t k = 0; k < static_cast<std::size_t>(sample.count); ++k) {
+      for (int k = 0; k < sample.count; ++k) {
         point.vertex[k] = sample.vertex[k];
         point.weight[k] = sample.weight[k];
       }

@@ -114,17 +114,16 @@ std::optional<Part> obstacle_part(const Sheet& sheet, double time) {
     owner.resize(shape.triangles.size(), static_cast<double>(i));
   }
   Part part;
-  part.points.resize(static_cast<Eigen::Index>(shape.points.size()), 3);
-  part.triangles.resize(static_cast<Eigen::Index>(shape.triangles.size()), 3);
+  part.points.resize(shape.points.size(), 3);
+  part.triangles.resize(shape.triangles.size(), 3);
   for (std::size_t i = 0; i < shape.points.size(); ++i) {
-    part.points.row(static_cast<Eigen::Index>(i)) = shape.points[i].transpose();
+    part.points.row(i) = shape.points[i].transpose();
   }
   for (std::size_t i = 0; i < shape.triangles.size(); ++i) {
-    part.triangles.row(static_cast<Eigen::Index>(i)) = shape.triangles[i].transpose();
+    part.triangles.row(i) = shape.triangles[i].transpose();
   }
-  part.arrays.push_back(
-      {"obstacle", "1", NamedArray::On::cells,
-       Eigen::Map<const Eigen::VectorXd>(owner.data(), static_cast<Eigen::Index>(owner.size()))});
+  part.arrays.push_back({"obstacle", "1", NamedArray::On::cells,
+                         Eigen::Map<const Eigen::VectorXd>(owner.data(), owner.size())});
   return part;
 }
 

@@ -34,7 +34,7 @@ class AnchorPlacer {
       : mesh_(mesh),
         pattern_(pattern),
         tolerance_(1e-9 * width(pattern)),
-        taken_(static_cast<std::size_t>(mesh.vertex_count()), false) {}
+        taken_(mesh.vertex_count(), false) {}
 
   /// Moves a vertex to the anchor; false when none can go.
   bool move_vertex(const Vector2d& anchor);
@@ -159,12 +159,11 @@ ShellMesh with_new_vertices(const ShellMesh& mesh, const Pattern& pattern,
                             const std::vector<Vector2d>& anchors) {
   const double tolerance = 1e-9 * width(pattern);
   ShellMesh grown;
-  grown.pattern.resize(mesh.vertex_count() + static_cast<Eigen::Index>(anchors.size()), 2);
+  grown.pattern.resize(mesh.vertex_count() + anchors.size(), 2);
   grown.pattern.topRows(mesh.vertex_count()) = mesh.pattern;
   for (std::size_t i = 0; i < anchors.size(); ++i) {
     const BorderPoint b = nearest_on_border(pattern, anchors[i]);
-    grown.pattern.row(mesh.vertex_count() + static_cast<Eigen::Index>(i)) =
-        b.distance <= tolerance ? b.point : anchors[i];
+    grown.pattern.row(mesh.vertex_count() + i) = b.distance <= tolerance ? b.point : anchors[i];
   }
   std::vector<Eigen::Vector2i> segments;
   add_border(mesh, grown.pattern, tolerance, segments);

@@ -27,9 +27,9 @@ std::vector<int> points_along(const std::vector<Vector2d>& points, const Vector2
                               const Vector2d& b, double tolerance) {
   std::vector<std::pair<double, int>> along;
   const Vector2d d = (b - a).normalized();
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (int i = 0; i < std::ssize(points); ++i) {
     if (distance_to_segment(points[i], a, b) <= tolerance) {
-      along.emplace_back((points[i] - a).dot(d), static_cast<int>(i));
+      along.emplace_back((points[i] - a).dot(d), i);
     }
   }
   std::sort(along.begin(), along.end());
@@ -43,13 +43,13 @@ std::vector<std::vector<int>> border_chains(const Pattern& pattern, double longe
   const std::vector<Vector2d> all = corners(pattern);
   std::vector<OnBorder> on_border;
   const std::vector<Vector2d> points = set.points();
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (int i = 0; i < std::ssize(points); ++i) {
     const BorderPoint near = nearest_on_loops(pattern, points[i]);
     if (near.distance > tolerance) continue;
     // A corner is both the end of one edge and the start of the next: count it once, as the start.
     const int next = next_edge(pattern, near.edge);
-    const bool at_end = (points[i] - all[static_cast<std::size_t>(next)]).norm() <= tolerance;
-    on_border.push_back({at_end ? next : near.edge, at_end ? 0 : near.t, static_cast<int>(i)});
+    const bool at_end = (points[i] - all[next]).norm() <= tolerance;
+    on_border.push_back({at_end ? next : near.edge, at_end ? 0 : near.t, i});
   }
   std::sort(on_border.begin(), on_border.end());
   std::vector<std::vector<int>> chains;

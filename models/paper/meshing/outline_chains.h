@@ -12,8 +12,8 @@ class PointSet {
  public:
   explicit PointSet(double tolerance) : tolerance_(tolerance) {}
   int add(const Eigen::Vector2d& p) {
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      if ((points_[i] - p).norm() <= tolerance_) return static_cast<int>(i);
+    for (int i = 0; i < std::ssize(points_); ++i) {
+      if ((points_[i] - p).norm() <= tolerance_) return i;
     }
     points_.push_back(p);
     return static_cast<int>(points_.size()) - 1;

@@ -184,8 +184,8 @@ ShellMesh triangulate(const Sites& sites, double tolerance) {
   std::vector<Eigen::Vector2i> segments;
   // A cut begins and ends at a point that is there, or at a tip.
   const auto point_at = [&](const Vector2d& p) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if ((points[i] - p).norm() <= tolerance) return static_cast<int>(i);
+    for (int i = 0; i < std::ssize(points); ++i) {
+      if ((points[i] - p).norm() <= tolerance) return i;
     }
     points.push_back(p);
     return static_cast<int>(points.size()) - 1;
@@ -200,9 +200,9 @@ ShellMesh triangulate(const Sites& sites, double tolerance) {
   }
   points.insert(points.end(), sites.anchors.begin(), sites.anchors.end());
   points.insert(points.end(), sites.free.begin(), sites.free.end());
-  mesh.pattern.resize(static_cast<Eigen::Index>(points.size()), 2);
+  mesh.pattern.resize(points.size(), 2);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    mesh.pattern.row(static_cast<Eigen::Index>(i)) = points[i];
+    mesh.pattern.row(i) = points[i];
   }
   mesh.triangles = constrained_delaunay(mesh.pattern, loops, segments);
   open_along(mesh, segments);

@@ -102,7 +102,7 @@ void keep_one_lip(const ShellMesh& mesh, std::vector<int>& vertices, const Dista
 
 HandleMap::HandleMap(const Sheet& sheet, const ShellState& state, std::uint64_t seed) {
   const ShellMesh& mesh = state.mesh;
-  for (std::size_t h = 0; h < sheet.handles.size(); ++h) {
+  for (int h = 0; h < std::ssize(sheet.handles); ++h) {
     const Handle& handle = sheet.handles[h];
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     const std::vector<Eigen::Vector2d> anchors = handle.anchors();
@@ -125,8 +125,8 @@ HandleMap::HandleMap(const Sheet& sheet, const ShellState& state, std::uint64_t 
     const std::vector<double> shares = load_shares(handle, mesh, vertices);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       const int v = vertices[i];
-      covered_.push_back({v, static_cast<int>(h),
-                          sheet.rest_place(mesh.pattern.row(v).transpose(), seed), shares[i]});
+      covered_.push_back(
+          {v, h, sheet.rest_place(mesh.pattern.row(v).transpose(), seed), shares[i]});
     }
   }
   std::sort(covered_.begin(), covered_.end(), [](const Covered& a, const Covered& b) {

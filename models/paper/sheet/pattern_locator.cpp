@@ -45,8 +45,8 @@ Eigen::Vector3d clamped_weights(const std::array<Vector2d, 3>& t, const Vector2d
     if (d >= distance) continue;
     distance = d;
     best.setZero();
-    best[static_cast<Eigen::Index>(k)] = 1 - s;
-    best[static_cast<Eigen::Index>(j)] = s;
+    best[k] = 1 - s;
+    best[j] = s;
   }
   return best;
 }
@@ -103,7 +103,7 @@ PatternLocator::Place PatternLocator::locate(const Vector2d& p, int guess) const
     const Eigen::Vector3d weights = barycentric(guess, p);
     if (weights.minCoeff() > 0) return {guess, weights};
   }
-  const auto cell = static_cast<std::size_t>(row(p.y()) * columns_ + column(p.x()));
+  const std::size_t cell = row(p.y()) * columns_ + column(p.x());
   Place best;
   double most = kInside;
   for (int i = offset_[cell]; i < offset_[cell + 1]; ++i) {
@@ -148,7 +148,7 @@ PatternLocator::Place PatternLocator::locate(const Vector2d& p, const Vector2d& 
 PatternLocator::Place PatternLocator::nearest(const Vector2d& p) const {
   Place best;
   double closest = std::numeric_limits<double>::infinity();
-  for (int f = 0; f < static_cast<int>(triangles_.rows()); ++f) {
+  for (int f = 0; f < triangles_.rows(); ++f) {
     const Eigen::Vector3d inside = barycentric(f, p);
     if (inside.minCoeff() >= 0) return {f, inside};
     double distance = 0;

@@ -47,16 +47,16 @@ Part handles_part(const ShellState& state, const std::vector<ShellStepper::Held>
                   const FrameReport& report) {
   std::vector<int> count(report.handle_force.size(), 0);
   for (const auto& h : held) {
-    if (h.handle < static_cast<int>(count.size())) ++count[h.handle];
+    if (h.handle < std::ssize(count)) ++count[h.handle];
   }
   Part part;
   part.kind = Part::Kind::points;
-  const auto rows = static_cast<Eigen::Index>(held.size());
+  const Eigen::Index rows = held.size();
   part.points.resize(rows, 3);
   Eigen::MatrixXd handle(rows, 1), force = Eigen::MatrixXd::Zero(rows, 3);
   for (Eigen::Index i = 0; i < rows; ++i) {
     const auto& h = held[i];
-    const auto k = static_cast<std::size_t>(h.handle);
+    const std::size_t k = h.handle;
     part.points.row(i) = state.x.row(h.vertex);
     handle(i, 0) = h.handle;
     if (k < count.size()) force.row(i) = report.handle_force[k].transpose() / count[k];

@@ -93,7 +93,7 @@ Eigen::MatrixX3d ShellDynamics::elastic_forces(const ShellState& state,
     elements().evaluate(f, state, state.x, ShellElements::Order::gradient, local);
     const auto nodes = elements().nodes(f);
     for (std::size_t k = 0; k < nodes.size(); ++k)
-      forces.row(nodes[k]) -= local.gradient.segment<3>(static_cast<Eigen::Index>(3 * k));
+      forces.row(nodes[k]) -= local.gradient.segment<3>(3 * k);
   }
   return forces;
 }

@@ -79,11 +79,10 @@ Root divider_rows(const ShellMesh& mesh, const CurvatureFit& fit, int t, Plastic
   for (int k = 0; k < fit.own[t]; ++k) {
     if (!is_ruling(fit.hinges[terms[k].hinge])) dividers.push_back(k);
   }
-  if (fit.rank[t] == 3 && static_cast<int>(dividers.size()) == fit.own[t]) return {};
-  Root rows = Root::Zero(static_cast<Eigen::Index>(dividers.size()),
-                         static_cast<Eigen::Index>(terms.size()));
+  if (fit.rank[t] == 3 && std::ssize(dividers) == fit.own[t]) return {};
+  Root rows = Root::Zero(dividers.size(), terms.size());
   for (std::size_t r = 0; r < dividers.size(); ++r) {
-    const auto row = static_cast<Eigen::Index>(r);
+    const Eigen::Index row = r;
     const auto& h = fit.hinges[terms[dividers[r]].hinge];
     const double length = (mesh.pattern.row(h.b) - mesh.pattern.row(h.a)).norm();
     const double areas = fit.area[h.left] + fit.area[h.right];
@@ -98,7 +97,7 @@ Root divider_rows(const ShellMesh& mesh, const CurvatureFit& fit, int t, Plastic
 Root plate_rows(const CurvatureFit& fit, int t, const Eigen::Matrix3d& root,
                 double residual_share) {
   const auto& terms = fit.terms[t];
-  const auto n = static_cast<Eigen::Index>(terms.size());
+  const Eigen::Index n = terms.size();
   if (n == 0) return {};
   Eigen::MatrixXd fitted(3, n), jumps(n, 3);
   Eigen::VectorXd curvature(n);  // per angle, of an edge alone
@@ -188,7 +187,7 @@ int ShellElements::Impl::add_hinges(const ShellMesh& mesh, int t, Element& eleme
   for (int k = 0; k < 3; ++k) nodes.push_back(mesh.triangles(t, k));
   int own_nodes = 3;
   const auto& terms = fit.terms[t];
-  for (std::size_t i = 0; i < terms.size(); ++i) {
+  for (int i = 0; i < std::ssize(terms); ++i) {
     const CurvatureFit::Hinge& h = fit.hinges[terms[i].hinge];
     LocalHinge local;
     local.fit = terms[i].coefficient;
@@ -200,8 +199,7 @@ int ShellElements::Impl::add_hinges(const ShellMesh& mesh, int t, Element& eleme
       local.node[k] = static_cast<std::uint8_t>(at);
     }
     hinges.push_back(local);
-    if (static_cast<int>(i) < fit.own[t])
-      own_nodes = static_cast<int>(nodes.size()) - element.first_node;
+    if (i < fit.own[t]) own_nodes = static_cast<int>(nodes.size()) - element.first_node;
   }
   return own_nodes;
 }
@@ -350,7 +348,7 @@ void ShellElements::Impl::bending_rows(const Element& e, double stiffness, const
 
 void ShellElements::evaluate(int element, const ShellState& state, const Eigen::MatrixX3d& x,
                              Order order, Local& out) const {
-  const auto index = static_cast<std::size_t>(element);
+  const std::size_t index = element;
   const Element& e = impl_->elements[index];
   const int columns = 3 * e.nodes;
   std::array<Eigen::Vector3d, kMostNodes> p;

@@ -14,7 +14,7 @@ double curvature_norm(const Eigen::Vector3d& s) {
 int flow_plastically(const ShellElements& elements, double yield_curvature, ShellState& state) {
   std::atomic<int> yielded{0};
   constexpr std::size_t kBlock = 256;
-  const auto count = static_cast<std::size_t>(elements.size());
+  const std::size_t count = elements.size();
   parallel_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
     for (auto e = static_cast<int>(begin); e < static_cast<int>(end); ++e) {
       const Eigen::Vector3d elastic = elements.elastic_curvature(e, state, state.x);

@@ -102,8 +102,7 @@ void ShellSystem::sum_chunk(const Chunk& chunk, std::size_t index, const ShellEl
     if (order == ShellElements::Order::energy) continue;
     const auto nodes = elements.nodes(e);
     for (std::size_t k = 0; k < nodes.size(); ++k) {
-      gradient.segment<3>(3 * position_[nodes[k]]) +=
-          local.gradient.segment<3>(3 * static_cast<Eigen::Index>(k));
+      gradient.segment<3>(3 * position_[nodes[k]]) += local.gradient.segment<3>(3 * k);
     }
     if (order != ShellElements::Order::hessian) continue;
     const Target* target = targets_.data() + target_of_[i];
@@ -126,17 +125,15 @@ void ShellSystem::run(const ShellElements& elements, const ShellState& state,
                       const Eigen::MatrixX3d& x, ShellElements::Order order, double scale,
                       Sums& sums, double* values) const {
   if (order != ShellElements::Order::energy) {
-    sums.gradient.setZero(3 * static_cast<Eigen::Index>(position_.size()));
+    sums.gradient.setZero(3 * position_.size());
   }
   for (std::size_t colour = 0; colour + 1 < colours_.size(); ++colour) {
-    const std::size_t first = static_cast<std::size_t>(colours_[colour]);
-    parallel_blocks(static_cast<std::size_t>(colours_[colour + 1]) - first, 1,
-                    [&](std::size_t begin, std::size_t end) {
-                      for (std::size_t c = first + begin; c < first + end; ++c) {
-                        sum_chunk(chunks_[c], c, elements, state, x, order, scale, sums.gradient,
-                                  values);
-                      }
-                    });
+    const std::size_t first = colours_[colour];
+    parallel_blocks(colours_[colour + 1] - first, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = first + begin; c < first + end; ++c) {
+        sum_chunk(chunks_[c], c, elements, state, x, order, scale, sums.gradient, values);
+      }
+    });
   }
   sums.membrane = sums.bending = 0;
   for (const auto& [membrane, bending] : chunk_energy_) {

@@ -36,7 +36,7 @@ Part tears_part(const Tears& tears, const ShellState& state) {
       }
     }
   }
-  const auto rows = static_cast<Eigen::Index>(points.size());
+  const Eigen::Index rows = points.size();
   part.points.resize(rows, 3);
   Eigen::MatrixXd pattern(rows, 2), time(rows, 1), number(rows, 1), lip(rows, 1);
   for (Eigen::Index i = 0; i < rows; ++i) {

@@ -120,7 +120,7 @@ class LipPoints {
     return static_cast<int>(x_.size()) - 1;
   }
   void put_into(Part& part) const {
-    const auto rows = static_cast<Eigen::Index>(x_.size());
+    const Eigen::Index rows = x_.size();
     part.points.resize(rows, 3);
     Eigen::MatrixXd pattern(rows, 2), tear(rows, 1), lip(rows, 1);
     for (Eigen::Index i = 0; i < rows; ++i) {
@@ -163,7 +163,7 @@ class LipStrips {
   [[nodiscard]] Part part() const {
     Part part;
     points_.put_into(part);
-    const auto rows = static_cast<Eigen::Index>(triangles_.size());
+    const Eigen::Index rows = triangles_.size();
     part.triangles.resize(rows, 3);
     Eigen::MatrixXd bevel(rows, 1);
     for (Eigen::Index f = 0; f < rows; ++f) {
@@ -224,13 +224,12 @@ Part fibres_part(const std::vector<std::vector<Fibre>>& of_tears, const LipPlace
   Part part;
   part.kind = Part::Kind::lines;
   LipPoints points;
-  for (std::size_t t = 0; t < of_tears.size(); ++t) {
+  for (int t = 0; t < std::ssize(of_tears); ++t) {
     for (const Fibre& fibre : of_tears[t]) {
       const int triangle = places.on_lip(fibre.at.place, fibre.at.left, fibre.lip).triangle;
       std::vector<int>& line = part.lines.emplace_back();
       for (const Vector2d& p : {fibre.root, fibre.end})
-        line.push_back(
-            points.add(places.in_plane_of(triangle, p), p, static_cast<int>(t), fibre.lip));
+        line.push_back(points.add(places.in_plane_of(triangle, p), p, t, fibre.lip));
     }
   }
   points.put_into(part);

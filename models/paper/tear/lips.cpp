@@ -12,7 +12,7 @@ namespace {
 std::vector<Edge> carried(const std::vector<Edge>& rulings, const Eigen::MatrixX3i& before,
                           const Eigen::MatrixX3i& after) {
   std::vector<Edge> result;
-  for (int f = 0; f < static_cast<int>(before.rows()); ++f) {
+  for (int f = 0; f < before.rows(); ++f) {
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3;
       const Edge old = undirected(before(f, k), before(f, next));
@@ -66,9 +66,9 @@ void open_along(ShellMesh& mesh, const std::vector<Eigen::Vector2i>& along) {
     }
   }
   const int n = mesh.vertex_count();
-  mesh.pattern.conservativeResize(n + static_cast<Eigen::Index>(source.size()), 2);
+  mesh.pattern.conservativeResize(n + source.size(), 2);
   for (std::size_t i = 0; i < source.size(); ++i) {
-    mesh.pattern.row(n + static_cast<Eigen::Index>(i)) = mesh.pattern.row(source[i]);
+    mesh.pattern.row(n + i) = mesh.pattern.row(source[i]);
   }
   mesh.rulings = carried(mesh.rulings, before, mesh.triangles);
 }
@@ -108,7 +108,7 @@ std::vector<double> part_areas(const ShellMesh& mesh) {
 int part_count(const Eigen::MatrixX3i& triangles) {
   const std::vector<int> first = parts(triangles);
   int count = 0;
-  for (std::size_t f = 0; f < first.size(); ++f) count += first[f] == static_cast<int>(f) ? 1 : 0;
+  for (int f = 0; f < std::ssize(first); ++f) count += first[f] == f ? 1 : 0;
   return count;
 }
 

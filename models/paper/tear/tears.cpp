@@ -28,7 +28,7 @@ Vector2d Tear::heading() const {
 
 int Tear::torn_from() const {
   int from = 0;
-  while (from + 1 < static_cast<int>(times.size()) && times[from + 1] == 0) ++from;
+  while (from + 1 < std::ssize(times) && times[from + 1] == 0) ++from;
   return from;
 }
 
@@ -36,16 +36,15 @@ Tears::Tears(const Pattern& whole, double tolerance) : whole_(whole), tolerance_
   whole_.cuts.clear();
   for (const std::vector<Vector2d>& cut : whole.cuts) {
     const int tear = start(cut.front(), 0);
-    for (std::size_t i = 1; i < cut.size(); ++i) {
+    for (int i = 1; i < std::ssize(cut); ++i) {
       tears_[tear].path.push_back(cut[i]);
       tears_[tear].times.push_back(0);
       tears_[tear].shear.push_back(0);
-      tears_[tear].knots.push_back(static_cast<int>(i));
+      tears_[tear].knots.push_back(i);
     }
   }
-  for (std::size_t t = 0; t < tears_.size(); ++t) {
-    for (const Vector2d& end : {tears_[t].path.front(), tears_[t].path.back()})
-      join(static_cast<int>(t), end);
+  for (int t = 0; t < std::ssize(tears_); ++t) {
+    for (const Vector2d& end : {tears_[t].path.front(), tears_[t].path.back()}) join(t, end);
   }
   rebuild();
 }
@@ -86,9 +85,9 @@ void Tears::end(int tear) {
 
 /// A knot stays where a tear ends on the last edge of another one, which else would turn away.
 void Tears::join(int tear, const Vector2d& end) {
-  for (std::size_t t = 0; t < tears_.size(); ++t) {
+  for (int t = 0; t < std::ssize(tears_); ++t) {
     Tear& other = tears_[t];
-    if (static_cast<int>(t) == tear || other.knots.size() < 2) continue;
+    if (t == tear || other.knots.size() < 2) continue;
     const Vector2d& last_knot = other.path[other.knots[other.knots.size() - 2]];
     if (distance_to_segment(end, last_knot, other.tip()) <= kOnKnot * width(whole_))
       other.joined = true;
@@ -125,8 +124,8 @@ void Tears::set_knots(Tear& tear, int from, int to) const {
 
 Pattern Tears::torn_without(int tear) const {
   Pattern torn = whole_;
-  for (std::size_t t = 0; t < tears_.size(); ++t) {
-    if (tears_[t].path.size() < 2 || static_cast<int>(t) == tear) continue;
+  for (int t = 0; t < std::ssize(tears_); ++t) {
+    if (tears_[t].path.size() < 2 || t == tear) continue;
     std::vector<Vector2d>& cut = torn.cuts.emplace_back();
     for (const int i : tears_[t].knots) cut.push_back(tears_[t].path[i]);
   }

@@ -110,7 +110,7 @@ Images images_on(const Sheet& sheet, const ShellState& state, const std::vector<
     const Stress of_triangle = stress(sheet, state, f, gradient, area);
     const Eigen::Matrix2d& S = of_triangle.seen_in_pattern;
     for (std::size_t k = 0; k < 3; ++k) {
-      const int v = t[static_cast<Eigen::Index>(k)];
+      const int v = t[k];
       images.force.row(v) += (S * gradient[k]).transpose();
       images.energy.row(v) += (of_triangle.energy * gradient[k]).transpose();
       images.middle.row(v) += centroid(mesh, f).transpose();

@@ -49,16 +49,16 @@ class PointOnCurve final : public ceres::CostFunction {
 /// Of the distances along the curve's normals by the parameters that are free.
 double distance_condition(const ConjugateCurve& curve, const CurveFit& fit,
                           const std::vector<int>& fixed) {
-  const auto n = static_cast<Eigen::Index>(fit.at.size());
+  const Eigen::Index n = fit.at.size();
   const Eigen::Index m = fit.parameters.size();
-  if (m == static_cast<Eigen::Index>(fixed.size())) return 1;
+  if (m == std::ssize(fixed)) return 1;
   Eigen::Matrix<double, 2, 3> columns;
   Eigen::Matrix<double, 6, Eigen::Dynamic> d(6, m);
   curve(fit.parameters, columns, d);
-  Eigen::MatrixXd J(n, m - static_cast<Eigen::Index>(fixed.size()));
+  Eigen::MatrixXd J(n, m - fixed.size());
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double c = std::cos(fit.at[static_cast<std::size_t>(i)]);
-    const double s = std::sin(fit.at[static_cast<std::size_t>(i)]);
+    const double c = std::cos(fit.at[i]);
+    const double s = std::sin(fit.at[i]);
     const Eigen::Vector2d along = (c * columns.col(2) - s * columns.col(1)).normalized();
     const Eigen::RowVector2d normal(-along.y(), along.x());
     Eigen::Index column = 0;
@@ -101,7 +101,7 @@ CurveFit fit_curve(const ConjugateCurve& curve, const std::vector<Eigen::Vector2
     problem.AddResidualBlock(new PointOnCurve(curve, m, points[i]), nullptr, fit.parameters.data(),
                              &fit.at[i]);
   }
-  if (static_cast<int>(fixed.size()) == m) {
+  if (std::ssize(fixed) == m) {
     problem.SetParameterBlockConstant(fit.parameters.data());
   } else if (!fixed.empty()) {
     problem.SetManifold(fit.parameters.data(), new ceres::SubsetManifold(m, fixed));

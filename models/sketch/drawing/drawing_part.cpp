@@ -54,12 +54,11 @@ Part drawing_part(const Drawing& drawing) {
       kinds.push_back(static_cast<double>(stroke.kind));
     }
   }
-  part.points.setZero(static_cast<Eigen::Index>(points.size()), 3);
+  part.points.setZero(points.size(), 3);
   for (std::size_t i = 0; i < points.size(); ++i)
-    part.points.row(static_cast<Eigen::Index>(i)).head<2>() = points[i].transpose();
-  part.arrays.push_back(
-      {"kind", "1", NamedArray::On::cells,
-       Eigen::Map<const Eigen::VectorXd>(kinds.data(), static_cast<Eigen::Index>(kinds.size()))});
+    part.points.row(i).head<2>() = points[i].transpose();
+  part.arrays.push_back({"kind", "1", NamedArray::On::cells,
+                         Eigen::Map<const Eigen::VectorXd>(kinds.data(), kinds.size())});
   return part;
 }
 

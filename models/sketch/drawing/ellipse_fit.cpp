@@ -74,9 +74,9 @@ using Conic = Eigen::Matrix<double, 6, 1>;
 double discriminant(const Conic& q) { return 4 * q(0) * q(2) - q(1) * q(1); }
 
 Eigen::MatrixXd conic_rows(const std::vector<Eigen::Vector2d>& points) {
-  Eigen::MatrixXd D(static_cast<Eigen::Index>(points.size()), 6);
+  Eigen::MatrixXd D(points.size(), 6);
   for (Eigen::Index i = 0; i < D.rows(); ++i) {
-    const Eigen::Vector2d& p = points[static_cast<std::size_t>(i)];
+    const Eigen::Vector2d& p = points[i];
     D.row(i) << p.x() * p.x(), p.x() * p.y(), p.y() * p.y(), p.x(), p.y(), 1;
   }
   return D;

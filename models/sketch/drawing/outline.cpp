@@ -53,8 +53,7 @@ void Outline::fill_grid() {
   spacing_ = diagonal() / std::clamp(n / 4, 8, 256);
   columns_ = static_cast<int>((highest_.x() - lowest_.x()) / spacing_) + 1;
   rows_ = static_cast<int>((highest_.y() - lowest_.y()) / spacing_) + 1;
-  std::vector<std::vector<int>> of_cell(static_cast<std::size_t>(columns_) *
-                                        static_cast<std::size_t>(rows_));
+  std::vector<std::vector<int>> of_cell(static_cast<std::size_t>(columns_) * rows_);
   for (int s = 0; s < n; ++s) {
     const Eigen::Vector2d a = points_[s], b = points_[(s + 1) % n];
     const Eigen::Vector2d low = a.cwiseMin(b), high = a.cwiseMax(b);

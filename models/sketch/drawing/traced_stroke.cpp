@@ -51,7 +51,7 @@ class StrokeTrace {
  private:
   /// Where the stroke crosses each edge: a vertex of it, or a new one.
   void find_nodes() {
-    node_.assign(static_cast<std::size_t>(edges_.edge_count()), -1);
+    node_.assign(edges_.edge_count(), -1);
     for (int e = 0; e < edges_.edge_count(); ++e) {
       const auto [a, b] = edges_.edge(e);
       if ((side_of_[a] > 0) == (side_of_[b] > 0)) continue;
@@ -69,7 +69,7 @@ class StrokeTrace {
       } else if (share > 1 - kSnapShare) {
         node_[e] = b;
       } else {
-        node_[e] = static_cast<int>(mesh_.V.rows()) + static_cast<int>(added_.size());
+        node_[e] = mesh_.vertex_count() + static_cast<int>(added_.size());
         added_.push_back({e, share});
       }
     }
@@ -94,7 +94,7 @@ class StrokeTrace {
   }
 
   [[nodiscard]] Eigen::RowVector3d position(int node) const {
-    const int n = static_cast<int>(mesh_.V.rows());
+    const int n = mesh_.vertex_count();
     if (node < n) return mesh_.V.row(node);
     const auto& [e, share] = added_[node - n];
     const auto [a, b] = edges_.edge(e);
@@ -105,7 +105,7 @@ class StrokeTrace {
   /// the view sees (or the last one behind it).
   void keep_nearest_sheet(std::vector<Edge>& path) const {
     if (side_ == DepthSide::both || path.empty()) return;
-    const int nodes = static_cast<int>(mesh_.V.rows()) + static_cast<int>(added_.size());
+    const int nodes = mesh_.vertex_count() + static_cast<int>(added_.size());
     DisjointSets sets(nodes);
     for (const Edge& e : path) sets.join(e[0], e[1]);
     struct Sheet {
@@ -145,7 +145,7 @@ class StrokeTrace {
 
   /// Adds the new vertices that the path uses, and splits the triangles at them.
   void split(std::vector<Edge>& path, const std::vector<std::vector<Edge>*>& kept) {
-    const int n = static_cast<int>(mesh_.V.rows());
+    const int n = mesh_.vertex_count();
     std::vector<char> used(added_.size(), 0);
     for (const Edge& e : path) {
       for (const int v : e) {
@@ -153,13 +153,13 @@ class StrokeTrace {
       }
     }
     std::vector<int> renamed(added_.size(), -1);
-    std::vector<int> split_at(static_cast<std::size_t>(edges_.edge_count()), -1);
+    std::vector<int> split_at(edges_.edge_count(), -1);
     Eigen::MatrixX3d V(n + std::count(used.begin(), used.end(), 1), 3);
     V.topRows(n) = mesh_.V;
     int next = n;
-    for (std::size_t i = 0; i < added_.size(); ++i) {
+    for (int i = 0; i < std::ssize(added_); ++i) {
       if (!used[i]) continue;
-      V.row(next) = position(n + static_cast<int>(i));
+      V.row(next) = position(n + i);
       split_at[added_[i].first] = next;
       renamed[i] = next++;
     }
@@ -217,15 +217,15 @@ class StrokeTrace {
         made.push_back({at[0], at[1], at[2]});
       }
     }
-    mesh_.F.resize(static_cast<Eigen::Index>(made.size()), 3);
+    mesh_.F.resize(made.size(), 3);
     for (std::size_t t = 0; t < made.size(); ++t)
-      mesh_.F.row(static_cast<Eigen::Index>(t)) << made[t][0], made[t][1], made[t][2];
+      mesh_.F.row(t) << made[t][0], made[t][1], made[t][2];
   }
 
   /// Share of the stroke in bins of a reach's length beside which no edge of the path lies.
   [[nodiscard]] double missed_share(const std::vector<Edge>& path) const {
     const int bins = std::max(1, static_cast<int>(length_ / reach_));
-    std::vector<char> met(static_cast<std::size_t>(bins), 0);
+    std::vector<char> met(bins, 0);
     for (const Edge& e : path) {
       double from = beside(points_, view_.project(mesh_.V.row(e[0]).transpose())).along;
       double to = beside(points_, view_.project(mesh_.V.row(e[1]).transpose())).along;

@@ -11,9 +11,9 @@ constexpr double kMixingRidge = 1e-12;
 }  // namespace
 
 void AndersonMixing::remember(const Eigen::VectorXd& residual, const Eigen::VectorXd& image) {
-  if (static_cast<int>(residual_change_.size()) < window_) {
-    residual_change_.resize(static_cast<std::size_t>(window_));
-    image_change_.resize(static_cast<std::size_t>(window_));
+  if (std::ssize(residual_change_) < window_) {
+    residual_change_.resize(window_);
+    image_change_.resize(window_);
     gram_.setZero(window_, window_);
   }
   if (used_ == 0) place_ = 0;

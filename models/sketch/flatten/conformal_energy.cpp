@@ -24,7 +24,7 @@ constexpr double kMapSettled = 1e-9;  ///< change of the eigenvector in a step
 class ConformalAssembly {
  public:
   ConformalAssembly(const Eigen::MatrixX3i& F, int vertex_count) : F_(F), n_(vertex_count) {
-    entries_.reserve(static_cast<std::size_t>(9 * F.rows()));
+    entries_.reserve(9 * F.rows());
   }
 
   void add(int t, const std::array<double, 3>& cot) {
@@ -95,14 +95,14 @@ Eigen::VectorXcd scattered_guess(Eigen::Index n) {
 SparseComplex conformal_energy(const Eigen::MatrixX3i& F,
                                std::span<const std::array<double, 3>> cot, int vertex_count) {
   ConformalAssembly assembly(F, vertex_count);
-  for (int t = 0; t < static_cast<int>(F.rows()); ++t) assembly.add(t, cot[t]);
+  for (int t = 0; t < F.rows(); ++t) assembly.add(t, cot[t]);
   return assembly.matrix();
 }
 
 SparseComplex conformal_energy(const Eigen::MatrixX3i& F, std::span<const FlatTriangle> triangles,
                                int vertex_count) {
   ConformalAssembly assembly(F, vertex_count);
-  for (int t = 0; t < static_cast<int>(F.rows()); ++t) assembly.add(t, triangles[t].cot);
+  for (int t = 0; t < F.rows(); ++t) assembly.add(t, triangles[t].cot);
   return assembly.matrix();
 }
 
@@ -125,7 +125,7 @@ Eigen::VectorXcd pinned_conformal_map(const SparseComplex& energy, std::array<in
   Eigen::VectorXcd right(count);
   const Eigen::VectorXcd pull = energy.selfadjointView<Eigen::Lower>() * z;
   std::vector<Eigen::Triplet<Complex>> entries;
-  entries.reserve(static_cast<std::size_t>(energy.nonZeros()));
+  entries.reserve(energy.nonZeros());
   for (Eigen::Index column = 0; column < n; ++column) {
     if (unknown[column] >= 0) right(unknown[column]) = -pull(column);
     for (SparseComplex::InnerIterator it(energy, column); it; ++it) {

@@ -70,7 +70,7 @@ class MeanRows {
 
 void add_mean_values(const Eigen::MatrixX3i& F, std::span<const FlatTriangle> triangles,
                      MeanRows& rows) {
-  for (int t = 0; t < static_cast<int>(F.rows()); ++t) {
+  for (int t = 0; t < F.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3, last = (k + 2) % 3;
       const double half = std::tan(std::min(triangles[t].angle[k], 3.0) / 2);

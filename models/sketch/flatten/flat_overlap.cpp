@@ -46,10 +46,9 @@ class TriangleGrid {
     size = std::max(size, extent.maxCoeff() / (most + 1));
     inverse_ = size > 0 ? 1 / size : 0;
     columns_ = cell(extent.x()) + 1;
-    cells_.resize(static_cast<std::size_t>(columns_) *
-                  static_cast<std::size_t>(cell(extent.y()) + 1));
-    for (std::size_t t = 0; t < boxes.size(); ++t) {
-      visit(boxes[t], [&](std::vector<int>& in) { in.push_back(static_cast<int>(t)); });
+    cells_.resize(static_cast<std::size_t>(columns_) * (cell(extent.y()) + 1));
+    for (int t = 0; t < std::ssize(boxes); ++t) {
+      visit(boxes[t], [&](std::vector<int>& in) { in.push_back(t); });
     }
   }
 
@@ -77,14 +76,13 @@ std::vector<std::array<int, 2>> overlapping_triangles(const Eigen::MatrixX2d& po
                                                       const Eigen::MatrixX3i& triangles,
                                                       double depth) {
   std::vector<std::array<int, 2>> pairs;
-  const auto m = static_cast<std::size_t>(triangles.rows());
+  const std::size_t m = triangles.rows();
   if (m == 0) return pairs;
   std::vector<FlatCorners> corners(m);
   std::vector<FlatBox> boxes(m);
   FlatBox all{points.row(triangles(0, 0)).transpose(), points.row(triangles(0, 0)).transpose()};
   for (std::size_t t = 0; t < m; ++t) {
-    for (int k = 0; k < 3; ++k)
-      corners[t][k] = points.row(triangles(static_cast<Eigen::Index>(t), k)).transpose();
+    for (int k = 0; k < 3; ++k) corners[t][k] = points.row(triangles(t, k)).transpose();
     boxes[t] = {corners[t][0].cwiseMin(corners[t][1]).cwiseMin(corners[t][2]),
                 corners[t][0].cwiseMax(corners[t][1]).cwiseMax(corners[t][2])};
     all = {all.low.cwiseMin(boxes[t].low), all.high.cwiseMax(boxes[t].high)};

@@ -18,8 +18,7 @@ FlatTriangle lay_triangle_flat(const Eigen::Vector3d& a, const Eigen::Vector3d& 
                 std::atan2(2 * flat.area, -ca.dot(bc))};
   // Laid along its longest edge, so that a needle keeps its shape to round-off.
   const std::array<double, 3> length{ab.norm(), bc.norm(), ca.norm()};
-  const auto k =
-      static_cast<std::size_t>(std::max_element(length.begin(), length.end()) - length.begin());
+  const std::size_t k = std::max_element(length.begin(), length.end()) - length.begin();
   if (!(length[k] > 0)) return flat;
   const std::array<Eigen::Vector3d, 3> side{ab, bc, ca};
   const auto along = [&](std::size_t i) { return side[i].dot(side[k]) / length[k]; };
@@ -39,8 +38,7 @@ double longest_flat_edge(const FlatTriangle& t) {
 
 std::array<double, 3> opposite_cotangents(const std::array<double, 3>& angle, double largest) {
   const double least = std::atan2(1.0, largest);
-  const auto widest =
-      static_cast<std::size_t>(std::max_element(angle.begin(), angle.end()) - angle.begin());
+  const std::size_t widest = std::max_element(angle.begin(), angle.end()) - angle.begin();
   const auto cot_of = [&](std::size_t k) { return 1 / std::tan(std::max(angle[k], least)); };
   std::array<double, 3> at{};
   const std::size_t i = (widest + 1) % 3, j = (widest + 2) % 3;
@@ -52,7 +50,7 @@ std::array<double, 3> opposite_cotangents(const std::array<double, 3>& angle, do
 
 std::vector<FlatTriangle> flat_triangles(const TriMesh& mesh, double largest_cotangent) {
   std::vector<FlatTriangle> triangles;
-  triangles.reserve(static_cast<std::size_t>(mesh.triangle_count()));
+  triangles.reserve(mesh.triangle_count());
   const auto corner = [&](int t, int k) -> Eigen::Vector3d {
     return mesh.V.row(mesh.F(t, k)).transpose();
   };
@@ -79,7 +77,7 @@ Eigen::MatrixX2d to_points(const Eigen::VectorXcd& z) {
 std::vector<int> flipped_triangles(const std::vector<FlatTriangle>& triangles,
                                    const Eigen::MatrixX3i& F, const Eigen::VectorXcd& z) {
   std::vector<int> flipped;
-  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+  for (int t = 0; t < std::ssize(triangles); ++t) {
     const double length = longest_flat_edge(triangles[t]);
     if (2 * triangles[t].area <= kFlatThinnest * length * length) continue;
     if (!(twice_signed_area(z(F(t, 0)), z(F(t, 1)), z(F(t, 2))) > 0)) flipped.push_back(t);
@@ -90,7 +88,7 @@ std::vector<int> flipped_triangles(const std::vector<FlatTriangle>& triangles,
 void scale_to_area(const std::vector<FlatTriangle>& triangles, const Eigen::MatrixX3i& F,
                    Eigen::VectorXcd& z) {
   double in_space = 0, in_plane = 0;
-  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+  for (int t = 0; t < std::ssize(triangles); ++t) {
     in_space += triangles[t].area;
     in_plane += twice_signed_area(z(F(t, 0)), z(F(t, 1)), z(F(t, 2))) / 2;
   }

@@ -46,7 +46,7 @@ void centre_on_area(const std::vector<FlatTriangle>& triangles, const Eigen::Mat
                     Eigen::VectorXcd& z) {
   Complex moment = 0;
   double area = 0;
-  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+  for (int t = 0; t < std::ssize(triangles); ++t) {
     moment += triangles[t].area * (z(F(t, 0)) + z(F(t, 1)) + z(F(t, 2))) / 3.0;
     area += triangles[t].area;
   }

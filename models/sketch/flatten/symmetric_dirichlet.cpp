@@ -124,7 +124,7 @@ TriangleMap SymmetricDirichlet::map(const Eigen::VectorXcd& z, int t) const {
 
 double SymmetricDirichlet::energy(const Eigen::VectorXcd& z) const {
   double sum = 0;
-  for (int t = 0; t < static_cast<int>(hats_.size()); ++t) {
+  for (int t = 0; t < std::ssize(hats_); ++t) {
     const TriangleMap m = map(z, t);
     if (!(m.small() > 0)) return std::numeric_limits<double>::infinity();
     sum += hats_[t].area * dirichlet_density(m.large(), m.small());
@@ -177,7 +177,7 @@ void SymmetricDirichlet::add_triangle(const Eigen::VectorXcd& z, int t) {
 Eigen::VectorXcd SymmetricDirichlet::step(const Eigen::VectorXcd& z) {
   gradient_.setZero();
   entries_.clear();
-  for (int t = 0; t < static_cast<int>(hats_.size()); ++t) add_triangle(z, t);
+  for (int t = 0; t < std::ssize(hats_); ++t) add_triangle(z, t);
   hessian_.setFromTriplets(entries_.begin(), entries_.end());
   // Translations, and turns at a minimum, cost nothing: a small cost to every coordinate.
   const double ridge = kHessianRidge * hessian_.diagonal().mean();
@@ -202,7 +202,7 @@ double SymmetricDirichlet::slope(const Eigen::VectorXcd& step) const {
 double SymmetricDirichlet::longest_step(const Eigen::VectorXcd& z,
                                         const Eigen::VectorXcd& step) const {
   double first = std::numeric_limits<double>::infinity();
-  for (int t = 0; t < static_cast<int>(hats_.size()); ++t)
+  for (int t = 0; t < std::ssize(hats_); ++t)
     first = std::min(first, time_of_collapse(corners(z, t), corners(step, t)));
   return std::min(1.0, kShareOfCollapse * first);
 }
@@ -212,7 +212,7 @@ double SymmetricDirichlet::longest_step(const Eigen::VectorXcd& z,
 SymmetricDirichletReport lower_symmetric_dirichlet(std::span<const FlatTriangle> triangles,
                                                    const Eigen::MatrixX3i& F, Eigen::VectorXcd& z,
                                                    const SymmetricDirichletOptions& options) {
-  for (int t = 0; t < static_cast<int>(F.rows()); ++t) {
+  for (int t = 0; t < F.rows(); ++t) {
     if (!(twice_signed_area(z(F(t, 0)), z(F(t, 1)), z(F(t, 2))) > 0)) {
       throw Error("triangle is turned over before the first step", "triangle " + std::to_string(t),
                   "a map that turns none over");

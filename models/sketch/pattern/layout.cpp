@@ -27,7 +27,7 @@ void move_piece(PatternPiece& piece, const Eigen::RowVector2d& by) {
 }  // namespace
 
 void lay_on_shelves(Pattern& pattern, const ShelfOptions& options) {
-  const auto count = static_cast<Eigen::Index>(pattern.pieces.size());
+  const Eigen::Index count = pattern.pieces.size();
   Eigen::MatrixX2d low(count, 2), size(count, 2);
   for (Eigen::Index p = 0; p < count; ++p) {
     low.row(p) = pattern.pieces[p].points.colwise().minCoeff();

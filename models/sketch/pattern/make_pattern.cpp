@@ -112,7 +112,7 @@ std::vector<KeptLength> agreed_lengths(const std::vector<CutPiece>& cut,
   bool agree = true;
   for (const PieceEdge& edge : cut[piece].edges) {
     if (edge.partner_piece < 0) continue;
-    const auto other = static_cast<std::size_t>(edge.partner_piece);
+    const std::size_t other = edge.partner_piece;
     const double here = flat_length(flat[piece], edge);
     const double there = flat_length(flat[other], cut[other].edges[edge.partner_edge]);
     const double mean = (here + there) / 2, most = mismatch * mean / 2;
@@ -232,9 +232,9 @@ MadePattern make_pattern(const TriMesh& surface, std::span<const SeamEdge> seams
 
 std::vector<SeamMismatch> seam_mismatches(const Pattern& pattern) {
   std::vector<SeamMismatch> mismatches;
-  for (int p = 0; p < static_cast<int>(pattern.pieces.size()); ++p) {
+  for (int p = 0; p < std::ssize(pattern.pieces); ++p) {
     const PatternPiece& piece = pattern.pieces[p];
-    for (int e = 0; e < static_cast<int>(piece.edges.size()); ++e) {
+    for (int e = 0; e < std::ssize(piece.edges); ++e) {
       const PieceEdge& edge = piece.edges[e];
       if (edge.partner_piece < 0 ||
           std::pair(edge.partner_piece, edge.partner_edge) < std::pair(p, e)) {

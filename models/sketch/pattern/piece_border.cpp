@@ -36,7 +36,7 @@ void require_chain(const PatternPiece& piece, const std::vector<int>& chain, std
 }
 
 void require_piece_shape(const Pattern& pattern, int k) {
-  const PatternPiece& piece = pattern.pieces[static_cast<std::size_t>(k)];
+  const PatternPiece& piece = pattern.pieces[k];
   const std::string where = piece_label(pattern, k);
   for (Eigen::Index i = 0; i < piece.points.rows(); ++i) {
     // Not by the larger coordinate: Eigen's maximum may pass over a NaN.
@@ -59,7 +59,7 @@ void require_piece_shape(const Pattern& pattern, int k) {
 }
 
 void require_piece_edges(const Pattern& pattern, int k) {
-  const PatternPiece& piece = pattern.pieces[static_cast<std::size_t>(k)];
+  const PatternPiece& piece = pattern.pieces[k];
   const auto segments = directed_segments(piece);
   for (std::size_t e = 0; e < piece.edges.size(); ++e) {
     const PieceEdge& edge = piece.edges[e];
@@ -74,8 +74,8 @@ void require_piece_edges(const Pattern& pattern, int k) {
       }
     }
     if (edge.partner_piece < 0) continue;
-    const auto q = static_cast<std::size_t>(edge.partner_piece);
-    const auto f = static_cast<std::size_t>(edge.partner_edge);
+    const std::size_t q = edge.partner_piece;
+    const std::size_t f = edge.partner_edge;
     if (q >= pattern.pieces.size() || edge.partner_edge < 0 ||
         f >= pattern.pieces[q].edges.size()) {
       throw Error("is sewn to an edge that does not exist", where, "edges of the pattern");
@@ -90,8 +90,7 @@ void require_piece_edges(const Pattern& pattern, int k) {
 }  // namespace
 
 std::string piece_label(const Pattern& pattern, int piece) {
-  return "piece " + std::to_string(piece) + " '" +
-         pattern.pieces[static_cast<std::size_t>(piece)].name + "'";
+  return "piece " + std::to_string(piece) + " '" + pattern.pieces[piece].name + "'";
 }
 
 void require_drawable(const Pattern& pattern) {
@@ -111,10 +110,10 @@ std::vector<std::vector<int>> oriented_borders(const PatternPiece& piece) {
 
 std::map<std::pair<int, int>, int> edge_of_segment(const PatternPiece& piece) {
   std::map<std::pair<int, int>, int> edge_of;
-  for (std::size_t e = 0; e < piece.edges.size(); ++e) {
+  for (int e = 0; e < std::ssize(piece.edges); ++e) {
     const std::vector<int>& chain = piece.edges[e].vertices;
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
-      edge_of[std::minmax(chain[i], chain[i + 1])] = static_cast<int>(e);
+      edge_of[std::minmax(chain[i], chain[i + 1])] = e;
     }
   }
   return edge_of;

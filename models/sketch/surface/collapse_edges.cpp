@@ -68,7 +68,7 @@ class CollapsingMesh {
 
 /// The triangles that are left, with the vertices that they use in their order.
 void take_over(const CollapsingMesh& collapsed, TriMesh& mesh) {
-  std::vector<int> renamed(static_cast<std::size_t>(mesh.V.rows()), -1);
+  std::vector<int> renamed(mesh.V.rows(), -1);
   Eigen::Index count = 0;
   for (const std::array<int, 3>& t : collapsed.triangles()) {
     if (t[0] < 0) continue;
@@ -79,7 +79,7 @@ void take_over(const CollapsingMesh& collapsed, TriMesh& mesh) {
   int next = 0;
   for (std::size_t v = 0; v < renamed.size(); ++v) {
     if (renamed[v] < 0) continue;
-    mesh.V.row(next) = mesh.V.row(static_cast<Eigen::Index>(v));
+    mesh.V.row(next) = mesh.V.row(v);
     renamed[v] = next++;
   }
   mesh.V.conservativeResize(next, 3);

@@ -43,7 +43,7 @@ Eigen::SparseMatrix<double> cotangent_stiffness(const Eigen::MatrixX3i& F,
                                                 const Eigen::MatrixX3d& cotangents,
                                                 int vertex_count) {
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<std::size_t>(12 * F.rows() + vertex_count));
+  entries.reserve(12 * F.rows() + vertex_count);
   for (int v = 0; v < vertex_count; ++v) entries.emplace_back(v, v, 0.0);
   for (Eigen::Index t = 0; t < F.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {

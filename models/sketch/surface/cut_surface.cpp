@@ -100,7 +100,7 @@ class SurfaceCutter {
 
   std::vector<CutPiece> cut() {
     separate();
-    for (std::size_t p = 0; p < pieces_.size(); ++p) trace_borders(static_cast<int>(p));
+    for (int p = 0; p < std::ssize(pieces_); ++p) trace_borders(p);
     for (CutPiece& piece : pieces_) pair_up(piece);
     return std::move(pieces_);
   }
@@ -151,7 +151,7 @@ void SurfaceCutter::separate() {
       }
     }
     piece.mesh.V = surface_.V(piece.surface_vertex, Eigen::all);
-    piece.mesh.F.resize(static_cast<Eigen::Index>(piece.surface_triangle.size()), 3);
+    piece.mesh.F.resize(piece.surface_triangle.size(), 3);
     for (Eigen::Index i = 0; i < piece.mesh.F.rows(); ++i) {
       const int c = 3 * piece.surface_triangle[i];
       piece.mesh.F.row(i) << vertex_of_corner_[c], vertex_of_corner_[c + 1],
@@ -170,10 +170,10 @@ std::vector<std::vector<int>> SurfaceCutter::border_loops(const CutPiece& piece)
     }
   }
   std::vector<std::vector<int>> loops;
-  for (std::size_t v = 0; v < leaving.size(); ++v) {
+  for (int v = 0; v < std::ssize(leaving); ++v) {
     if (leaving[v] < 0) continue;
     std::vector<int>& loop = loops.emplace_back();
-    for (int at = static_cast<int>(v); leaving[at] >= 0;) {
+    for (int at = v; leaving[at] >= 0;) {
       const int h = std::exchange(leaving[at], -1);
       loop.push_back(h);
       at = vertex_of_corner_[EdgeConnectivity::next(h)];
@@ -221,7 +221,7 @@ void SurfaceCutter::cut_loop(int p, const std::vector<int>& loop) {
   std::vector<PieceEdge>& edges = pieces_[p].edges;
   const int start = start_of(loop);
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const int h = loop[(static_cast<std::size_t>(start) + i) % loop.size()];
+    const int h = loop[(start + i) % loop.size()];
     if (i == 0 || end_[marked_.edges.origin(h)]) {
       edges.emplace_back().vertices.push_back(vertex_of_corner_[h]);
       edges.back().seam = marked_.seam(h);
@@ -233,7 +233,7 @@ void SurfaceCutter::cut_loop(int p, const std::vector<int>& loop) {
 }
 
 void SurfaceCutter::pair_up(CutPiece& piece) {
-  const auto p = static_cast<std::size_t>(&piece - pieces_.data());
+  const std::size_t p = &piece - pieces_.data();
   for (std::size_t i = 0; i < piece.edges.size(); ++i) {
     if (piece.edges[i].seam == kNoSeam) continue;
     const Stretch other = stretch_[marked_.edges.twin(first_half_edge_[p][i])];

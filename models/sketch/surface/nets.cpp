@@ -90,9 +90,8 @@ class Netting {
         }
       }
     }
-    mesh_.V.resize(static_cast<Eigen::Index>(points_.size()), 3);
-    for (std::size_t v = 0; v < points_.size(); ++v)
-      mesh_.V.row(static_cast<Eigen::Index>(v)) = points_[v];
+    mesh_.V.resize(points_.size(), 3);
+    for (std::size_t v = 0; v < points_.size(); ++v) mesh_.V.row(v) = points_[v];
     return std::move(mesh_);
   }
 

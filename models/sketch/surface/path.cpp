@@ -39,7 +39,7 @@ SurfacePaths::SurfacePaths(const TriMesh& mesh, Eigen::VectorXd price)
       price_(std::move(price)),
       edges_(mesh.F),
       corners_(mesh.F, mesh.vertex_count()),
-      border_(static_cast<std::size_t>(mesh.vertex_count()), 0) {
+      border_(mesh.vertex_count(), 0) {
   for (int e = 0; e < edges_.edge_count(); ++e) {
     if (edges_.half_edges(e).size() == 2) continue;
     for (const int v : edges_.edge(e)) border_[v] = 1;
@@ -49,8 +49,7 @@ SurfacePaths::SurfacePaths(const TriMesh& mesh, Eigen::VectorXd price)
 /// Nodes are the vertices, then the points of every edge from its lower vertex on.
 struct SurfacePaths::Search {
   explicit Search(const SurfacePaths& paths)
-      : cost(static_cast<std::size_t>(paths.mesh_.vertex_count() +
-                                      kPointsOfEdge * paths.edges_.edge_count()),
+      : cost(paths.mesh_.vertex_count() + kPointsOfEdge * paths.edges_.edge_count(),
              std::numeric_limits<double>::infinity()),
         before(cost.size(), -1),
         through(cost.size(), -1) {}

@@ -55,7 +55,7 @@ bool runs_along(const std::vector<Eigen::Vector2d>& stroke, const Outline& outli
 /// Takes out triangles, and vertices that none is left of.
 void remove_triangles(SketchSurface& s, const std::vector<char>& removed) {
   TriMesh& mesh = s.hull.mesh;
-  std::vector<int> renamed(static_cast<std::size_t>(mesh.V.rows()), -1);
+  std::vector<int> renamed(mesh.V.rows(), -1);
   Eigen::Index kept = 0;
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
     if (removed[t]) continue;
@@ -66,29 +66,28 @@ void remove_triangles(SketchSurface& s, const std::vector<char>& removed) {
   int next = 0;
   for (std::size_t v = 0; v < renamed.size(); ++v) {
     if (renamed[v] < 0) continue;
-    mesh.V.row(next) = mesh.V.row(static_cast<Eigen::Index>(v));
+    mesh.V.row(next) = mesh.V.row(v);
     for (auto& places : s.hull.places) places[next] = places[v];
     renamed[v] = next++;
   }
   mesh.V.conservativeResize(next, 3);
-  for (auto& places : s.hull.places) places.resize(static_cast<std::size_t>(next));
+  for (auto& places : s.hull.places) places.resize(next);
   mesh.F = mesh.F.unaryExpr([&](int v) { return renamed[v]; });
 }
 
 /// Opens the hull where borders were drawn: triangles all of whose corners lie on borders close an
 /// opening that the drawing leaves.
 void open_borders(SketchSurface& s, const Drawing& drawing) {
-  for (std::size_t view = 0; view < s.hull.views.size(); ++view) {
+  for (int view = 0; view < std::ssize(s.hull.views); ++view) {
     const View& drawn = *drawing.find(s.hull.views[view].kind);
     int number = 0;
     for (const Stroke* stroke : strokes_of(drawn, StrokeKind::border)) {
-      if (!stroke->inside)
-        s.borders.push_back({stroke->id, static_cast<int>(view), polyline_of(*stroke), number});
+      if (!stroke->inside) s.borders.push_back({stroke->id, view, polyline_of(*stroke), number});
       ++number;
     }
   }
   TriMesh& mesh = s.hull.mesh;
-  std::vector<char> on(static_cast<std::size_t>(mesh.V.rows()), 0);
+  std::vector<char> on(mesh.V.rows(), 0);
   for (const BorderPlace& border : s.borders) {
     bool met = false;
     for (int v = 0; v < mesh.V.rows(); ++v) {
@@ -102,7 +101,7 @@ void open_borders(SketchSurface& s, const Drawing& drawing) {
                   "a border on the silhouette, where the surface is open");
     }
   }
-  std::vector<char> removed(static_cast<std::size_t>(mesh.F.rows()), 0);
+  std::vector<char> removed(mesh.F.rows(), 0);
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t)
     removed[t] = static_cast<char>(on[mesh.F(t, 0)] && on[mesh.F(t, 1)] && on[mesh.F(t, 2)]);
   remove_triangles(s, removed);
@@ -110,7 +109,7 @@ void open_borders(SketchSurface& s, const Drawing& drawing) {
 
 /// Of each vertex, whether it is on the border of the surface.
 std::vector<char> border_vertices(const TriMesh& mesh) {
-  std::vector<char> on(static_cast<std::size_t>(mesh.V.rows()), 0);
+  std::vector<char> on(mesh.V.rows(), 0);
   for (const Edge& e : boundary_edges(mesh.F)) on[e[0]] = on[e[1]] = 1;
   return on;
 }
@@ -181,7 +180,7 @@ void place_new_vertices(SketchSurface& s) {
   const Eigen::MatrixX3d& V = s.hull.mesh.V;
   for (std::size_t view = 0; view < s.hull.views.size(); ++view) {
     auto& places = s.hull.places[view];
-    for (auto v = static_cast<Eigen::Index>(places.size()); v < V.rows(); ++v) {
+    for (Eigen::Index v = places.size(); v < V.rows(); ++v) {
       const Outline::Nearest nearest =
           s.hull.views[view].outline.nearest(s.hull.views[view].project(V.row(v).transpose()));
       places.emplace_back();
@@ -219,7 +218,7 @@ void remove_within(SketchSurface& s, const StrokePath& path) {
   const Outline hole({path.points.begin(), path.points.end() - 1});
   const Eigen::MatrixX3d normals = triangle_normals(s.hull.mesh);
   const double sign = path.side == DepthSide::back ? -1 : 1;
-  std::vector<char> removed(static_cast<std::size_t>(s.hull.mesh.F.rows()), 0);
+  std::vector<char> removed(s.hull.mesh.F.rows(), 0);
   for (Eigen::Index t = 0; t < s.hull.mesh.F.rows(); ++t) {
     Eigen::RowVector3d middle = Eigen::RowVector3d::Zero();
     for (int k = 0; k < 3; ++k) middle += s.hull.mesh.V.row(s.hull.mesh.F(t, k)) / 3;
@@ -236,7 +235,7 @@ int stroke_count(const SketchSurface& s, const Drawing& drawing, int view, Strok
 
 /// Slits and holes: borders drawn inside of the silhouette.
 void open_inside(SketchSurface& s, const Drawing& drawing, double reach) {
-  for (int view = 0; view < static_cast<int>(s.hull.views.size()); ++view) {
+  for (int view = 0; view < std::ssize(s.hull.views); ++view) {
     const OutlinedView& seen = s.hull.views[view];
     for (int i = 0; i < stroke_count(s, drawing, view, StrokeKind::border); ++i) {
       if (!strokes_of(*drawing.find(seen.kind), StrokeKind::border)[i]->inside) continue;
@@ -256,7 +255,7 @@ void open_inside(SketchSurface& s, const Drawing& drawing, double reach) {
 /// Puts the strokes of one kind onto the surface; paths that are there are split along with it.
 void trace_strokes(SketchSurface& s, const Drawing& drawing, StrokeKind kind, double reach) {
   std::vector<StrokePath>& paths = kind == StrokeKind::seam ? s.seams : s.folds;
-  for (int view = 0; view < static_cast<int>(s.hull.views.size()); ++view) {
+  for (int view = 0; view < std::ssize(s.hull.views); ++view) {
     for (int i = 0; i < stroke_count(s, drawing, view, kind); ++i) {
       std::vector<std::vector<Edge>*> kept;
       for (StrokePath& path : s.seams) kept.push_back(&path.edges);
@@ -284,7 +283,7 @@ void trim_strokes(SketchSurface& s, double reach) {
 /// Which drawn border each vertex of the surface's border lies on.
 void assign_borders(SketchSurface& s) {
   const Eigen::MatrixX3d& V = s.hull.mesh.V;
-  s.border_of.assign(static_cast<std::size_t>(V.rows()), -1);
+  s.border_of.assign(V.rows(), -1);
   for (const Edge& e : boundary_edges(s.hull.mesh.F)) {
     for (const int v : e) {
       for (std::size_t b = 0; b < s.borders.size() && s.border_of[v] < 0; ++b) {

@@ -12,7 +12,7 @@ namespace {
 class PathSplitter {
  public:
   explicit PathSplitter(const TriMesh& mesh)
-      : mesh_(mesh), edges_(mesh.F), node_(static_cast<std::size_t>(edges_.edge_count()), -1) {}
+      : mesh_(mesh), edges_(mesh.F), node_(edges_.edge_count(), -1) {}
 
   std::optional<SurfaceSplit> split(std::span<const SurfacePath> paths) {
     for (const SurfacePath& path : paths) add_nodes(path);
@@ -53,9 +53,9 @@ class PathSplitter {
   void split_triangles() {
     std::vector<std::array<int, 3>> made;
     for (int t = 0; t < mesh_.triangle_count(); ++t) split_triangle(t, made);
-    split_.triangles.resize(static_cast<Eigen::Index>(made.size()), 3);
+    split_.triangles.resize(made.size(), 3);
     for (std::size_t t = 0; t < made.size(); ++t)
-      split_.triangles.row(static_cast<Eigen::Index>(t)) << made[t][0], made[t][1], made[t][2];
+      split_.triangles.row(t) << made[t][0], made[t][1], made[t][2];
   }
 
   void split_triangle(int t, std::vector<std::array<int, 3>>& made) const {
@@ -98,10 +98,10 @@ class PathSplitter {
 }  // namespace
 
 Eigen::MatrixX3d SurfaceSplit::interpolated(const Eigen::MatrixX3d& values) const {
-  Eigen::MatrixX3d result(values.rows() + static_cast<Eigen::Index>(added.size()), 3);
+  Eigen::MatrixX3d result(values.rows() + added.size(), 3);
   result.topRows(values.rows()) = values;
   for (std::size_t i = 0; i < added.size(); ++i)
-    result.row(values.rows() + static_cast<Eigen::Index>(i)) = added[i].position(values);
+    result.row(values.rows() + i) = added[i].position(values);
   return result;
 }
 

@@ -70,8 +70,7 @@ PlaneDistances plane_distances(const OutlinedView& view, const HullGrid& grid) {
   const std::array<int, 2> axes{view_axis(view.frame, 0).axis, view_axis(view.frame, 1).axis};
   PlaneDistances plane;
   plane.size = {grid.size[axes[0]], grid.size[axes[1]]};
-  plane.values.resize(static_cast<std::size_t>(plane.size[0]) *
-                      static_cast<std::size_t>(plane.size[1]));
+  plane.values.resize(static_cast<std::size_t>(plane.size[0]) * plane.size[1]);
   Eigen::Vector3d x = grid.origin;
   for (int j = 0; j < plane.size[1]; ++j) {
     x[axes[1]] = grid.origin[axes[1]] + j * grid.spacing;
@@ -98,8 +97,7 @@ GridFunction hull_function(const std::vector<OutlinedView>& views, const HullGri
   f.size = grid.size;
   f.origin = grid.origin;
   f.spacing = grid.spacing;
-  f.values.assign(static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]) *
-                      static_cast<std::size_t>(grid.size[2]),
+  f.values.assign(static_cast<std::size_t>(grid.size[0]) * grid.size[1] * grid.size[2],
                   -std::numeric_limits<double>::infinity());
   for (const OutlinedView& view : views) {
     const PlaneDistances plane = plane_distances(view, grid);
@@ -204,11 +202,11 @@ void bound_by_sections(const TopSections& sections, const HullGrid& grid, GridFu
 std::vector<double> corners_of(const Outline& outline) {
   const std::vector<Eigen::Vector2d>& p = outline.points();
   std::vector<double> corners;
-  for (std::size_t i = 0; i < p.size(); ++i) {
+  for (int i = 0; i < std::ssize(p); ++i) {
     const Eigen::Vector2d in = p[i] - p[(i + p.size() - 1) % p.size()];
     const Eigen::Vector2d out = p[(i + 1) % p.size()] - p[i];
     if (in.dot(out) < std::cos(0.5236) * in.norm() * out.norm())
-      corners.push_back(outline.arc_length(static_cast<int>(i)));
+      corners.push_back(outline.arc_length(i));
   }
   return corners;
 }
@@ -261,7 +259,7 @@ class SilhouetteFit {
       if (nearest[v].distance < outermost - same_) continue;
       const std::vector<double>& corners = corners_[v];
       const auto after = std::upper_bound(corners.begin(), corners.end(), nearest[v].arc_length);
-      const auto run = static_cast<std::size_t>(after - corners.begin());
+      const std::size_t run = after - corners.begin();
       runs[v].insert(run == corners.size() ? 0 : run);  // the last run goes on past the first point
     }
     return true;
@@ -301,9 +299,7 @@ void fit_to_silhouettes(QuadMesh& nets, const std::vector<OutlinedView>& views, 
                         HullSections sections) {
   const SilhouetteFit fit(views, spacing, sections);
   for (Eigen::Index v = 0; v < nets.V.rows(); ++v) {
-    nets.V.row(v) =
-        fit.fitted(nets.V.row(v).transpose(), nets.crossings[static_cast<std::size_t>(v)])
-            .transpose();
+    nets.V.row(v) = fit.fitted(nets.V.row(v).transpose(), nets.crossings[v]).transpose();
   }
 }
 
@@ -311,7 +307,7 @@ void fit_to_silhouettes(QuadMesh& nets, const std::vector<OutlinedView>& views, 
 TriMesh split_quads(const QuadMesh& quads) {
   TriMesh mesh;
   mesh.V = quads.V;
-  mesh.F.resize(2 * static_cast<Eigen::Index>(quads.quads.size()), 3);
+  mesh.F.resize(2 * quads.quads.size(), 3);
   Eigen::Index t = 0;
   for (const std::array<int, 4>& q : quads.quads) {
     const double first = (mesh.V.row(q[0]) - mesh.V.row(q[2])).squaredNorm();
@@ -325,7 +321,7 @@ TriMesh split_quads(const QuadMesh& quads) {
 
 std::vector<std::optional<SilhouettePlace>> places_on(const OutlinedView& view,
                                                       const Eigen::MatrixX3d& V, double near) {
-  std::vector<std::optional<SilhouettePlace>> places(static_cast<std::size_t>(V.rows()));
+  std::vector<std::optional<SilhouettePlace>> places(V.rows());
   for (Eigen::Index v = 0; v < V.rows(); ++v) {
     const Outline::Nearest nearest = view.outline.nearest(view.project(V.row(v).transpose()));
     if (std::abs(nearest.distance) < near) places[v] = {nearest.arc_length, nearest.normal};

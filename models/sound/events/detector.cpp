@@ -64,7 +64,7 @@ ResonatorShape SoundDetector::shape(const SoundEvent& event) const {
 SoundEvent SoundDetector::snap(const FlipCluster& cluster) {
   std::vector<int> seeds;
   for (const CellFlip& flip : cluster.flips) {
-    if (field_.inside[static_cast<std::size_t>(flip.cell)]) seeds.push_back(flip.cell);
+    if (field_.inside[flip.cell]) seeds.push_back(flip.cell);
   }
   SoundEvent event;
   event.time = cluster.time();
@@ -117,7 +117,7 @@ void SoundDetector::add_tears(const SheetSnapshot& frame, std::vector<SoundEvent
                    step.norm();
     event.flipped_area = sheet_.material.thickness * step.norm();
     const int cell = grid().at(to.pattern);
-    if (field_.inside[static_cast<std::size_t>(cell)]) {
+    if (field_.inside[cell]) {
       Resonator found = resonator({cell});
       event.ruling_length = found.ruling_length;
       event.free_border = found.free_border;

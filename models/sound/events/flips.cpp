@@ -36,18 +36,15 @@ void describe(OptionVisitor& v, FlipOptions& o) {
 }
 
 FlipDetector::FlipDetector(const SoundGrid& grid, const FlipOptions& options)
-    : grid_(grid),
-      options_(options),
-      cells_(static_cast<std::size_t>(grid.count())),
-      held_(cells_.size(), {0, 0, 0, 0}) {}
+    : grid_(grid), options_(options), cells_(grid.count()), held_(cells_.size(), {0, 0, 0, 0}) {}
 
 std::vector<CellFlip> FlipDetector::flips_of(const SheetField& field) {
   const double dt = field.time - time_, k_min = options_.threshold;
   const double forgotten = std::exp(-dt / options_.sudden);
   std::vector<CellFlip> flips;
   for (int c = 0; c < grid_.count(); ++c) {
-    Cell& cell = cells_[static_cast<std::size_t>(c)];
-    if (!field.inside[static_cast<std::size_t>(c)]) continue;
+    Cell& cell = cells_[c];
+    if (!field.inside[c]) continue;
     const double k0 = cell.curvature, k1 = field.curvature[c];
     cell.curvature = k1;
     // When it was k, if it was so between the two frames.
@@ -86,29 +83,29 @@ std::vector<FlipCluster> FlipDetector::take(double until) {
   DisjointSets events(static_cast<int>(pending_.size()));  // the earliest flip stands for each
   std::vector<int> last(cells_.size(), -1);                // flip of each cell
   for (int i = 0; i < events.size(); ++i) {
-    const int cell = pending_[static_cast<std::size_t>(i)].cell;
+    const int cell = pending_[i].cell;
     const auto join = [&](int other) {
       if (other < 0) return;
-      const double first = pending_[static_cast<std::size_t>(events.find(other))].time;
-      const double mine = pending_[static_cast<std::size_t>(events.find(i))].time;
-      const double now = pending_[static_cast<std::size_t>(i)].time;
+      const double first = pending_[events.find(other)].time;
+      const double mine = pending_[events.find(i)].time;
+      const double now = pending_[i].time;
       if (now - std::min(first, mine) <= options_.together) events.join(i, other);
     };
-    join(last[static_cast<std::size_t>(cell)]);
+    join(last[cell]);
     const std::array<int, 4> beside = grid_.neighbours(cell);
     for (std::size_t side = 0; side < 4; ++side) {
-      if (beside[side] >= 0 && held_[static_cast<std::size_t>(cell)][side] != 0) {
-        join(last[static_cast<std::size_t>(beside[side])]);
+      if (beside[side] >= 0 && held_[cell][side] != 0) {
+        join(last[beside[side]]);
       }
     }
-    last[static_cast<std::size_t>(cell)] = i;
+    last[cell] = i;
   }
   std::map<int, FlipCluster> begun;  // by the number of the earliest flip: in order of time
   std::vector<CellFlip> later;
   for (int i = 0; i < events.size(); ++i) {
     const int event = events.find(i);
-    const CellFlip& flip = pending_[static_cast<std::size_t>(i)];
-    if (pending_[static_cast<std::size_t>(event)].time < until) {
+    const CellFlip& flip = pending_[i];
+    if (pending_[event].time < until) {
       begun[event].flips.push_back(flip);
     } else {
       later.push_back(flip);
@@ -127,8 +124,7 @@ std::vector<FlipCluster> FlipDetector::push(const SheetField& field) {
   pending_.insert(pending_.end(), flips.begin(), flips.end());
   for (const CellFlip& flip : pending_) {
     for (int side = 0; side < 4; ++side) {
-      held_[static_cast<std::size_t>(flip.cell)][static_cast<std::size_t>(side)] =
-          field.holds(grid_, flip.cell, side) ? 1 : 0;
+      held_[flip.cell][side] = field.holds(grid_, flip.cell, side) ? 1 : 0;
     }
   }
   time_ = field.time;

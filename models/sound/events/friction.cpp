@@ -35,7 +35,7 @@ std::vector<SoundEvent> SlideDetector::push(const SheetField& field) {
     Course& course = courses_[k];
     Sliding now{field.time};
     for (int c = 0; c < grid_.count(); ++c) {
-      if (!field.inside[static_cast<std::size_t>(c)]) continue;
+      if (!field.inside[c]) continue;
       const Vector3d place = field.place.row(c);
       const Obstacle::Contact contact = obstacle.contact(place);
       if (contact.distance > contact_.distance + kSlideMargin) continue;

@@ -32,9 +32,9 @@ SoundGrid sound_grid(const Pattern& pattern, double spacing) {
   grid.rows = static_cast<int>(std::ceil(size.y() / spacing - 1e-9));
   // Centred: a symmetric sheet is seen symmetrically.
   grid.corner = box.center() - spacing / 2 * Vector2d(grid.columns, grid.rows);
-  grid.inside.resize(static_cast<std::size_t>(grid.count()));
+  grid.inside.resize(grid.count());
   for (int c = 0; c < grid.count(); ++c) {
-    grid.inside[static_cast<std::size_t>(c)] = contains(pattern, grid.centre(c)) ? 1 : 0;
+    grid.inside[c] = contains(pattern, grid.centre(c)) ? 1 : 0;
   }
   return grid;
 }
@@ -52,10 +52,10 @@ std::array<int, 4> SoundGrid::neighbours(int c) const {
 }
 
 bool SheetField::holds(const SoundGrid& grid, int cell, int side) const {
-  const int other = grid.neighbours(cell)[static_cast<std::size_t>(side)];
+  const int other = grid.neighbours(cell)[side];
   if (other < 0) return false;
-  const auto first = static_cast<std::size_t>(side < 2 ? cell : other);
-  return joined[first][static_cast<std::size_t>(side % 2)] != 0;
+  const std::size_t first = side < 2 ? cell : other;
+  return joined[first][side % 2] != 0;
 }
 
 /// What depends on the mesh in the pattern alone.
@@ -77,7 +77,8 @@ constexpr double kOnTriangle = -1e-9;  // barycentric
 /// The triangle at the centre of a cell, or the nearest one where the mesh cuts a corner of the
 /// pattern; none where the mesh leaves that part of the pattern out.
 paper::PatternLocator::Place place_in_mesh(const SoundGrid& grid, const ShellMesh& mesh,
-                                    const paper::PatternLocator& locator, int cell, int guess) {
+                                           const paper::PatternLocator& locator, int cell,
+                                           int guess) {
   constexpr double kBeside = 0.4;  // of a cell
   const paper::PatternLocator::Place at = locator.locate(grid.centre(cell), guess);
   Vector2d there(0, 0);
@@ -94,12 +95,12 @@ void join_cells(const SoundGrid& grid, const paper::PatternLocator& locator,
                 std::vector<std::array<char, 2>>& joined) {
   joined.assign(at.size(), {0, 0});
   for (int c = 0; c < grid.count(); ++c) {
-    const auto i = static_cast<std::size_t>(c);
+    const std::size_t i = c;
     if (at[i].triangle < 0) continue;
     const std::array<int, 4> beside = grid.neighbours(c);
     for (std::size_t side = 0; side < 2; ++side) {
       if (beside[side] < 0) continue;
-      const int other = at[static_cast<std::size_t>(beside[side])].triangle;
+      const int other = at[beside[side]].triangle;
       if (other < 0) continue;
       joined[i][side] = 1;
       if (other == at[i].triangle) continue;
@@ -121,7 +122,7 @@ int bounded_cell(const SoundGrid& grid, const std::vector<paper::PatternLocator:
       const int column = middle % grid.columns + du, row = middle / grid.columns + dv;
       if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) continue;
       const int c = grid.cell(column, row);
-      if (at[static_cast<std::size_t>(c)].triangle < 0) continue;
+      if (at[c].triangle < 0) continue;
       const Vector2d way = grid.centre(c) - place;
       if (way.dot(inwards) < 0) continue;
       if (way.norm() >= least) continue;
@@ -180,10 +181,10 @@ const SheetSampler::Cover& SheetSampler::cover_of(const ShellMesh& mesh) {
   cover->mesh = mesh;
   cover->fit = fit_curvature(mesh.pattern, mesh.triangles);
   const paper::PatternLocator locator(mesh);
-  cover->at.resize(static_cast<std::size_t>(grid_.count()));
+  cover->at.resize(grid_.count());
   int last = -1;
   for (int c = 0; c < grid_.count(); ++c) {
-    const auto i = static_cast<std::size_t>(c);
+    const std::size_t i = c;
     if (!grid_.inside[i]) continue;
     cover->at[i] = place_in_mesh(grid_, mesh, locator, c, last);
     last = cover->at[i].triangle;
@@ -192,7 +193,7 @@ const SheetSampler::Cover& SheetSampler::cover_of(const ShellMesh& mesh) {
   cover->border = border_of(grid_, mesh, cover->at);
   for (const std::size_t axis : {0, 1}) {
     const int step = axis == 0 ? 1 : grid_.columns;
-    const auto holds = [&](int c) { return cover->joined[static_cast<std::size_t>(c)][axis] != 0; };
+    const auto holds = [&](int c) { return cover->joined[c][axis] != 0; };
     for (int c = 0; c < grid_.count(); ++c) {
       cover->beside[axis].push_back(
           {holds(c) ? c + step : c, c >= step && holds(c - step) ? c - step : c});
@@ -211,7 +212,7 @@ void SheetSampler::smooth(const Cover& cover, Eigen::MatrixX3d& S) const {
       for (const Cover::Beside& beside : cover.beside) {
         const double* s = S.col(component).data();
         for (std::size_t c = 0; c < beside.size(); ++c) {
-          next[static_cast<Eigen::Index>(c)] = (4 * s[c] + s[beside[c][0]] + s[beside[c][1]]) / 6;
+          next[c] = (4 * s[c] + s[beside[c][0]] + s[beside[c][1]]) / 6;
         }
         S.col(component) = next;
       }
@@ -227,7 +228,7 @@ SheetField SheetSampler::sample(const SheetSnapshot& frame) {
   field.time = frame.time;
   field.joined = cover.joined;
   field.border = cover.border;
-  field.inside.assign(static_cast<std::size_t>(n), 0);
+  field.inside.assign(n, 0);
   field.place = field.velocity = field.normal = Eigen::MatrixX3d::Zero(n, 3);
   field.curvature = Eigen::VectorXd::Zero(n);
   field.ruling = Eigen::MatrixX2d::Zero(n, 2);
@@ -235,9 +236,9 @@ SheetField SheetSampler::sample(const SheetSnapshot& frame) {
   Eigen::MatrixX3d S = Eigen::MatrixX3d::Zero(n, 3);
   const bool moves = frame.v.rows() == frame.x.rows();
   for (int c = 0; c < n; ++c) {
-    const paper::PatternLocator::Place& at = cover.at[static_cast<std::size_t>(c)];
+    const paper::PatternLocator::Place& at = cover.at[c];
     if (at.triangle < 0) continue;
-    field.inside[static_cast<std::size_t>(c)] = 1;
+    field.inside[c] = 1;
     S.row(c) = shape.row(at.triangle);
     const Eigen::RowVector3i t = frame.mesh.triangles.row(at.triangle);
     const Eigen::Vector3d p = frame.x.row(t[0]), q = frame.x.row(t[1]), r = frame.x.row(t[2]);
@@ -249,7 +250,7 @@ SheetField SheetSampler::sample(const SheetSnapshot& frame) {
   }
   smooth(cover, S);
   for (int c = 0; c < n; ++c) {
-    if (!field.inside[static_cast<std::size_t>(c)]) continue;
+    if (!field.inside[c]) continue;
     field.curvature[c] = S(c, 0) + S(c, 2);
     field.ruling.row(c) = least_bent(S.row(c));
   }

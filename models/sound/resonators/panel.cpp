@@ -26,8 +26,7 @@ double beta_of(BeamEnds ends, int n) {
   static constexpr std::array<double, 4> kCantilever{1.875104068711961, 4.694091132974175,
                                                      7.854757438237613, 10.995540734875467};
   const int i = ends == BeamEnds::free_free ? n - 2 : n;
-  if (i < 4)
-    return (ends == BeamEnds::clamped_free ? kCantilever : kEqual)[static_cast<std::size_t>(i)];
+  if (i < 4) return (ends == BeamEnds::clamped_free ? kCantilever : kEqual)[i];
   return ends == BeamEnds::clamped_free ? (i + 0.5) * pi : (i + 1.5) * pi;
 }
 

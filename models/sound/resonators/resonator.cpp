@@ -21,7 +21,7 @@ std::set<int> parts_of(const std::vector<int>& parts, const std::vector<int>& se
   std::map<int, int> count;
   int all = 0;
   for (const int c : seeds) {
-    const int part = parts[static_cast<std::size_t>(c)];
+    const int part = parts[c];
     if (part < 0) continue;
     ++count[part];
     ++all;
@@ -41,7 +41,7 @@ std::vector<int> cells_about(const SoundGrid& grid, const SheetField& field,
                              const std::vector<int>& parts, const std::vector<int>& seeds,
                              std::vector<char>& in) {
   for (const int c : seeds) {
-    if (c < 0 || c >= grid.count() || !field.inside[static_cast<std::size_t>(c)]) {
+    if (c < 0 || c >= grid.count() || !field.inside[c]) {
       throw Error("cell " + std::to_string(c) + " lies outside the sheet", "seeds of a resonator");
     }
   }
@@ -50,18 +50,17 @@ std::vector<int> cells_about(const SoundGrid& grid, const SheetField& field,
     std::vector<int> beside;
     for (const int c : seeds) {
       for (int side = 0; side < 4; ++side) {
-        if (field.holds(grid, c, side))
-          beside.push_back(grid.neighbours(c)[static_cast<std::size_t>(side)]);
+        if (field.holds(grid, c, side)) beside.push_back(grid.neighbours(c)[side]);
       }
     }
     taken = parts_of(parts, beside);
   }
   for (const int c : seeds) {
-    if (parts[static_cast<std::size_t>(c)] < 0) in[static_cast<std::size_t>(c)] = 1;
+    if (parts[c] < 0) in[c] = 1;
   }
   std::vector<int> cells;
   for (int c = 0; c < grid.count(); ++c) {
-    const auto i = static_cast<std::size_t>(c);
+    const std::size_t i = c;
     if (taken.contains(parts[i])) in[i] = 1;
     if (in[i]) cells.push_back(c);
   }
@@ -78,7 +77,7 @@ double way_inside(const SoundGrid& grid, const std::vector<char>& in, int cell,
   while (true) {
     const Vector2d p = centre + (way + step) * direction;
     if ((p - grid.corner).minCoeff() < 0 || (last - p).minCoeff() < 0) return way;
-    if (!in[static_cast<std::size_t>(grid.at(p))]) return way;
+    if (!in[grid.at(p)]) return way;
     way += step;
   }
 }
@@ -107,7 +106,7 @@ Resonator find_resonator(const SoundGrid& grid, const SheetField& field,
                          const std::vector<int>& parts, const std::vector<int>& seeds,
                          const IsHeld& is_held) {
   if (seeds.empty()) throw Error("has no seeds", "resonator");
-  std::vector<char> in(static_cast<std::size_t>(grid.count()), 0);
+  std::vector<char> in(grid.count(), 0);
   Resonator found;
   found.cells = cells_about(grid, field, parts, seeds, in);
   found.area = static_cast<double>(found.cells.size()) * grid.cell_area();
@@ -115,20 +114,20 @@ Resonator find_resonator(const SoundGrid& grid, const SheetField& field,
   double blocked = 0, held = 0, between = 0, creased = 0;
   int smooth = 0;
   for (const int c : found.cells) {
-    const bool crease = parts[static_cast<std::size_t>(c)] < 0;
+    const bool crease = parts[c] < 0;
     (crease ? creased : between) += std::abs(field.curvature[c]);
     smooth += crease ? 0 : 1;
     const std::array<int, 4> beside = grid.neighbours(c);
     for (int side = 0; side < 4; ++side) {
-      const int other = beside[static_cast<std::size_t>(side)];
-      if (other < 0 || in[static_cast<std::size_t>(other)]) continue;
+      const int other = beside[side];
+      if (other < 0 || in[other]) continue;
       if (field.holds(grid, c, side)) blocked += std::numbers::pi / 4 * grid.spacing;
     }
   }
   found.curvature =
       smooth > 0 ? between / smooth : creased / static_cast<double>(found.cells.size());
   for (const BorderStretch& stretch : field.border) {
-    if (!in[static_cast<std::size_t>(stretch.cell)]) continue;
+    if (!in[stretch.cell]) continue;
     (is_held(stretch.place) ? held : found.free_border) += stretch.length;
   }
   const double border = blocked + held + found.free_border;

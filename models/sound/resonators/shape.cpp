@@ -24,9 +24,7 @@ Differences differences(const SoundGrid& grid, const SheetField& field, int cell
                         int behind) {
   const std::array<int, 4> beside = grid.neighbours(cell);
   const Vector3d here = field.place.row(cell);
-  const auto there = [&](int side) -> Vector3d {
-    return field.place.row(beside[static_cast<std::size_t>(side)]);
-  };
+  const auto there = [&](int side) -> Vector3d { return field.place.row(beside[side]); };
   const bool has_ahead = field.holds(grid, cell, ahead),
              has_behind = field.holds(grid, cell, behind);
   if (has_ahead && has_behind) {
@@ -43,10 +41,10 @@ Vector3d mixed(const SoundGrid& grid, const SheetField& field, int cell) {
   Vector3d sum = Vector3d::Zero();
   for (const int side : {0, 2}) {
     if (!field.holds(grid, cell, side)) return Vector3d::Zero();
-    const int next = beside[static_cast<std::size_t>(side)];
+    const int next = beside[side];
     for (const int up : {1, 3}) {
       if (!field.holds(grid, next, up)) return Vector3d::Zero();
-      const int corner = grid.neighbours(next)[static_cast<std::size_t>(up)];
+      const int corner = grid.neighbours(next)[up];
       const double sign = (side == 0) == (up == 1) ? 1 : -1;
       sum += sign * field.place.row(corner).transpose();
     }
@@ -72,12 +70,12 @@ Eigen::Matrix<double, 3, 6> local_surface(const SoundGrid& grid, const SheetFiel
 std::vector<int> largest_piece(const SoundGrid& grid, const SheetField& field,
                                const std::vector<int>& cells) {
   std::map<int, int> number;
-  for (std::size_t i = 0; i < cells.size(); ++i) number[cells[i]] = static_cast<int>(i);
+  for (int i = 0; i < std::ssize(cells); ++i) number[cells[i]] = i;
   DisjointSets pieces(static_cast<int>(cells.size()));
   for (const int c : cells) {
     for (const int side : {0, 1}) {
       if (!field.holds(grid, c, side)) continue;
-      const auto other = number.find(grid.neighbours(c)[static_cast<std::size_t>(side)]);
+      const auto other = number.find(grid.neighbours(c)[side]);
       if (other != number.end()) pieces.join(number[c], other->second);
     }
   }
@@ -118,7 +116,7 @@ class Lattice {
     for (int c = 0; c < count(); ++c) at[{cell(c).column, cell(c).row}] = c;
     for (int c = 0; c < count(); ++c) {
       for (const int side : {0, 1}) {
-        if (cell(c).sides[static_cast<std::size_t>(side)] != Side::inside) continue;
+        if (cell(c).sides[side] != Side::inside) continue;
         const int other = at.at({cell(c).column + (side == 0), cell(c).row + (side == 1)});
         for (int k = 0; k <= s_; ++k) {
           if (side == 0) joined_.join(local(c, s_, k), local(other, 0, k));
@@ -129,9 +127,7 @@ class Lattice {
     for (int i = 0; i < joined_.size(); ++i) number_.try_emplace(joined_.find(i), number_.size());
   }
   [[nodiscard]] int count() const { return static_cast<int>(shape_.cells.size()); }
-  [[nodiscard]] const ResonatorShape::Cell& cell(int c) const {
-    return shape_.cells[static_cast<std::size_t>(c)];
-  }
+  [[nodiscard]] const ResonatorShape::Cell& cell(int c) const { return shape_.cells[c]; }
   [[nodiscard]] int vertices() const { return static_cast<int>(number_.size()); }
   [[nodiscard]] int vertex(int c, int a, int b) {
     return static_cast<int>(number_.at(joined_.find(local(c, a, b))));
@@ -167,7 +163,7 @@ ResonatorShape resonator_shape(const SoundGrid& grid, const SheetField& field,
     cell.place = local_surface(grid, field, c);
     const std::array<int, 4> beside = grid.neighbours(c);
     for (int side = 0; side < 4; ++side) {
-      const auto at = static_cast<std::size_t>(side);
+      const std::size_t at = side;
       const auto border = held.find({c, side});
       if (!field.holds(grid, c, side)) {
         const bool is_free = border == held.end() || border->second <= 0;
@@ -182,7 +178,7 @@ ResonatorShape resonator_shape(const SoundGrid& grid, const SheetField& field,
   for (const FlippedCell& flip : event.flips) {
     const auto at = std::lower_bound(cells.begin(), cells.end(), flip.cell);
     if (at == cells.end() || *at != flip.cell) continue;
-    shape.cells[static_cast<std::size_t>(at - cells.begin())].change +=
+    shape.cells[at - cells.begin()].change +=
         change_across(field.ruling.row(flip.cell), flip.change);
   }
   return shape;
@@ -227,7 +223,7 @@ ResonatorMesh mesh_of(const ResonatorShape& shape, int subdivision) {
       }
     }
     for (int side = 0; side < 4; ++side) {
-      if (cell.sides[static_cast<std::size_t>(side)] != Side::clamped) continue;
+      if (cell.sides[side] != Side::clamped) continue;
       for (int k = 0; k < s; ++k) {
         const int a = side == 0 ? s : side == 2 ? 0 : k, b = side == 1 ? s : side == 3 ? 0 : k;
         const bool upright = side == 0 || side == 2;

@@ -214,8 +214,8 @@ double pressure_energy(double energy, double free_border) {
 
 std::vector<int> SoundBank::of(SoundKind kind) const {
   std::vector<int> all;
-  for (std::size_t i = 0; i < sounds.size(); ++i) {
-    if (sounds[i].kind == kind) all.push_back(static_cast<int>(i));
+  for (int i = 0; i < std::ssize(sounds); ++i) {
+    if (sounds[i].kind == kind) all.push_back(i);
   }
   return all;
 }

@@ -29,13 +29,13 @@ inline double cubic(const float* from, double t) {
 /// A sample between two, by the cubic through four; 0 before the first and after the last, unless
 /// the samples repeat.
 double sample_at(std::span<const float> samples, double at, bool repeats) {
-  const auto n = static_cast<std::ptrdiff_t>(samples.size());
+  const std::ptrdiff_t n = samples.size();
   const double floor = std::floor(at);
   const double t = at - floor;
   const auto first = static_cast<std::ptrdiff_t>(floor);
   const auto value = [&](std::ptrdiff_t i) -> float {
     if (repeats) i = ((i % n) + n) % n;
-    return i < 0 || i >= n ? 0.0F : samples[static_cast<std::size_t>(i)];
+    return i < 0 || i >= n ? 0.0F : samples[i];
   };
   const std::array<float, 4> four{value(first - 1), value(first), value(first + 1),
                                   value(first + 2)};
@@ -45,7 +45,7 @@ double sample_at(std::span<const float> samples, double at, bool repeats) {
 /// Adds a voice that sounds once. In the middle of its samples no end of them has to be thought of.
 void add_once(const Voice& voice, double start, double gain, int rate,
               Eigen::Ref<Eigen::VectorXd> out) {
-  const auto count = static_cast<std::ptrdiff_t>(voice.samples.size());
+  const std::ptrdiff_t count = voice.samples.size();
   const double length = static_cast<double>(count + 2) / voice.rate;
   const auto first = std::max<Eigen::Index>(0, static_cast<Eigen::Index>(std::ceil(start * rate)));
   const auto end = std::min<Eigen::Index>(
@@ -168,10 +168,10 @@ Mix mix(const std::vector<Voice>& voices, double duration, const MixOptions& opt
     ears = {listener - half, listener + half};
   }
   Mix result;
-  result.samples = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(std::ceil(duration * rate)),
-                                         static_cast<Eigen::Index>(ears.size()));
+  result.samples =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(std::ceil(duration * rate)), ears.size());
   for (std::size_t ear = 0; ear < ears.size(); ++ear) {
-    auto channel = result.samples.col(static_cast<Eigen::Index>(ear));
+    auto channel = result.samples.col(ear);
     for (const Voice& voice : voices) {
       const auto hear = [&](const Vector3d& from, double share) {
         const double distance = (from - ears[ear]).norm();

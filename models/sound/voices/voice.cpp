@@ -7,7 +7,7 @@ namespace geoprior::sound {
 
 Voice voice_of(const SoundEvent& event, const SoundBank& bank, int sound,
                const PaperMaterial& material) {
-  const BankSound& chosen = bank.sounds.at(static_cast<std::size_t>(sound));
+  const BankSound& chosen = bank.sounds.at(sound);
   Voice voice;
   voice.time = event.time;
   voice.position = event.position;

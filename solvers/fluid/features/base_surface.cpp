@@ -62,10 +62,10 @@ void grow(const TriMesh& mesh, Patch& patch, std::vector<int>& local) {
 Patch patch_of(const TriMesh& mesh, const std::vector<char>& marks) {
   Patch patch;
   std::vector<int> local(marks.size(), -1);
-  for (std::size_t v = 0; v < marks.size(); ++v) {
+  for (int v = 0; v < std::ssize(marks); ++v) {
     if (marks[v] != 1) continue;
     local[v] = static_cast<int>(patch.vertices.size());
-    patch.vertices.push_back(static_cast<int>(v));
+    patch.vertices.push_back(v);
   }
   patch.moving = static_cast<int>(patch.vertices.size());
   grow(mesh, patch, local);
@@ -128,7 +128,7 @@ Laplacian laplacian_of(const TriMesh& mesh, const Patch& patch, double smallest,
     }
   }
   Laplacian result;
-  result.L.resize(patch.with_ring, static_cast<Eigen::Index>(patch.vertices.size()));
+  result.L.resize(patch.with_ring, patch.vertices.size());
   result.L.setFromTriplets(entries.begin(), entries.end());
   const double floor = kSmallestMass * mass.sum() / std::max(1, patch.with_ring);
   result.mass = mass.cwiseMax(std::max(floor, 1e-300));
@@ -146,7 +146,7 @@ void require_solved(const SparseLdlt& solver, const Patch& patch) {
 /// @param weights  of the rows of L in the least squares; empty: L x = 0 for those that move
 void solve(const SparseMatrix& L, const Eigen::VectorXd& weights, const Patch& patch,
            Eigen::MatrixXd& x) {
-  const Eigen::Index m = patch.moving, all = static_cast<Eigen::Index>(patch.vertices.size());
+  const Eigen::Index m = patch.moving, all = std::ssize(patch.vertices);
   const SparseMatrix moving = L.leftCols(m), staying = L.rightCols(all - m);
   SparseMatrix A;
   Eigen::MatrixXd b;
@@ -163,15 +163,15 @@ void solve(const SparseMatrix& L, const Eigen::VectorXd& weights, const Patch& p
 }
 
 Eigen::MatrixXd patch_positions(const TriMesh& mesh, const Patch& patch) {
-  Eigen::MatrixXd x(static_cast<Eigen::Index>(patch.vertices.size()), 3);
+  Eigen::MatrixXd x(patch.vertices.size(), 3);
   for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
-    x.row(static_cast<Eigen::Index>(i)) = mesh.V.row(patch.vertices[i]);
+    x.row(i) = mesh.V.row(patch.vertices[i]);
   }
   return x;
 }
 
 void check_sizes(const TriMesh& mesh, const std::vector<char>& inside) {
-  if (inside.size() == static_cast<std::size_t>(mesh.vertex_count())) return;
+  if (std::ssize(inside) == mesh.vertex_count()) return;
   throw Error("a mark for every vertex is needed", std::to_string(inside.size()) + " marks",
               std::to_string(mesh.vertex_count()));
 }

@@ -59,7 +59,7 @@ void shape_at(const SurfaceGraph& g, const std::vector<Cotangents>& cot, std::si
   Eigen::Vector3d bend = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
   double area = 0;
   for (const int c : g.corners(static_cast<int>(v))) {
-    const auto t = static_cast<std::size_t>(c / 3), k = static_cast<std::size_t>(c % 3);
+    const std::size_t t = c / 3, k = c % 3;
     const auto& vertices = g.triangle[t];
     const Eigen::Vector3d next = g.x[vertices[(k + 1) % 3]] - g.x[v];
     const Eigen::Vector3d last = g.x[vertices[(k + 2) % 3]] - g.x[v];
@@ -124,8 +124,7 @@ SurfaceShape surface_shape(const SurfaceGraph& g, const CurvatureOptions& option
 
 Eigen::VectorXd mean_curvature(const TriMesh& mesh, const CurvatureOptions& options) {
   const SurfaceShape shape = surface_shape(surface_graph(mesh), options);
-  return Eigen::Map<const Eigen::VectorXd>(shape.curvature.data(),
-                                           static_cast<Eigen::Index>(shape.curvature.size()));
+  return Eigen::Map<const Eigen::VectorXd>(shape.curvature.data(), shape.curvature.size());
 }
 
 namespace {

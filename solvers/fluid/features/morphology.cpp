@@ -32,8 +32,8 @@ void Morphology::spread(std::vector<char>& set, char from, double radius) {
       std::push_heap(heap_.begin(), heap_.end(), later);
     }
   };
-  for (std::size_t v = 0; v < set.size(); ++v) {
-    if (active_[v] != 0 && set[v] == from) relax(static_cast<int>(v), 0);
+  for (int v = 0; v < std::ssize(set); ++v) {
+    if (active_[v] != 0 && set[v] == from) relax(v, 0);
   }
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end(), later);
@@ -55,9 +55,9 @@ void Morphology::fill_holes(std::vector<char>& set, const std::vector<double>& a
                             double largest) {
   std::vector<char> seen(set.size(), 0);
   std::vector<int> part;
-  for (std::size_t s = 0; s < set.size(); ++s) {
+  for (int s = 0; s < std::ssize(set); ++s) {
     if (seen[s] != 0 || set[s] != 0 || active_[s] == 0) continue;
-    part.assign(1, static_cast<int>(s));
+    part.assign(1, s);
     seen[s] = 1;
     double total = 0;
     bool surrounded = true, touches = false;

@@ -59,8 +59,8 @@ std::vector<Region> region_attributes(const SurfaceGraph& graph, const SurfaceSh
                                       const std::vector<int>& label, int count,
                                       const Eigen::MatrixX3d& velocity, double cell) {
   std::vector<Region> regions(count);
-  for (std::size_t r = 0; r < regions.size(); ++r) {
-    regions[r].label = static_cast<int>(r) + 1;
+  for (int r = 0; r < std::ssize(regions); ++r) {
+    regions[r].label = r + 1;
     regions[r].has_velocity = velocity.rows() > 0;
     regions[r].box_min.setConstant(std::numeric_limits<double>::infinity());
     regions[r].box_max.setConstant(-std::numeric_limits<double>::infinity());
@@ -69,8 +69,7 @@ std::vector<Region> region_attributes(const SurfaceGraph& graph, const SurfaceSh
     if (label[v] == 0) continue;
     Region& region = regions[label[v] - 1];
     add_vertex(graph, shape, v, cell, region);
-    if (region.has_velocity)
-      region.velocity += shape.area[v] * velocity.row(static_cast<Eigen::Index>(v)).transpose();
+    if (region.has_velocity) region.velocity += shape.area[v] * velocity.row(v).transpose();
   }
   for (Region& region : regions) finish(region);
   for (std::size_t v = 0; v < label.size(); ++v) {

@@ -142,10 +142,10 @@ struct Canvas {
 std::vector<char> hysteresis(const Canvas& c, double high, double low) {
   std::vector<char> set(c.active.size(), 0);
   std::vector<int> queue;
-  for (std::size_t v = 0; v < set.size(); ++v) {
+  for (int v = 0; v < std::ssize(set); ++v) {
     if (c.active[v] == 0 || set[v] != 0 || std::abs(c.shape.curvature[v]) <= high) continue;
     set[v] = 1;
-    queue.assign(1, static_cast<int>(v));
+    queue.assign(1, v);
     while (!queue.empty()) {
       const int from = queue.back();
       queue.pop_back();
@@ -165,9 +165,9 @@ int label_parts(const Canvas& c, const std::vector<char>& set, double smallest, 
                 std::vector<int>& label) {
   std::vector<char> seen(set.size(), 0);
   std::vector<int> part;
-  for (std::size_t s = 0; s < set.size(); ++s) {
+  for (int s = 0; s < std::ssize(set); ++s) {
     if (set[s] == 0 || seen[s] != 0) continue;
-    part.assign(1, static_cast<int>(s));
+    part.assign(1, s);
     seen[s] = 1;
     double area = 0;
     for (std::size_t i = 0; i < part.size(); ++i) {
@@ -213,11 +213,11 @@ std::vector<int> label_drops(const Canvas& c, const std::vector<char>& masked, d
                              int next, std::vector<int>& label) {
   const std::vector<double> share = masked_shares(c, masked);
   std::vector<int> label_of(c.components.list.size(), 0), drops;
-  for (std::size_t i = 0; i < label_of.size(); ++i) {
+  for (int i = 0; i < std::ssize(label_of); ++i) {
     if (c.roles.role[i] != ComponentRole::drop || c.components.list[i].area < smallest) continue;
     if (share[i] > 0.5) continue;
     label_of[i] = next++;
-    drops.push_back(static_cast<int>(i));
+    drops.push_back(i);
   }
   for (std::size_t v = 0; v < label.size(); ++v) {
     const int l = label_of[c.components.of_vertex[v]];
@@ -252,11 +252,11 @@ void require_frame(const SurfaceFrame& frame, int frame_index) {
 SegmentedFrame Segmenter::segment(const SurfaceFrame& frame, int frame_index) const {
   SegmentedFrame result;
   require_frame(frame, frame_index);
-  const auto n = static_cast<std::size_t>(frame.mesh.vertex_count());
+  const std::size_t n = frame.mesh.vertex_count();
   result.label.assign(n, 0);
   result.masked.assign(n, 0);
   if (frame.mesh.triangle_count() == 0) {
-    result.curvature.setZero(static_cast<Eigen::Index>(n));
+    result.curvature.setZero(n);
     result.warnings.emplace_back("empty");
     return result;
   }
@@ -289,8 +289,7 @@ SegmentedFrame Segmenter::segment(const SurfaceFrame& frame, int frame_index) co
     region.volume = std::abs(drop.volume);
     region.centre = drop.centre;
   }
-  result.curvature =
-      Eigen::Map<const Eigen::VectorXd>(c.shape.curvature.data(), static_cast<Eigen::Index>(n));
+  result.curvature = Eigen::Map<const Eigen::VectorXd>(c.shape.curvature.data(), n);
   return result;
 }
 

@@ -12,10 +12,10 @@ namespace {
 constexpr std::size_t kGraphBlock = 2048;
 
 void copy_vertices(const TriMesh& mesh, SurfaceGraph& g) {
-  const auto n = static_cast<std::size_t>(mesh.vertex_count());
+  const std::size_t n = mesh.vertex_count();
   g.x.resize(n);
   for (std::size_t v = 0; v < n; ++v) {
-    g.x[v] = mesh.V.row(static_cast<Eigen::Index>(v)).transpose();
+    g.x[v] = mesh.V.row(v).transpose();
     if (!g.x[v].allFinite()) {
       throw Error("position is not finite", "vertex " + std::to_string(v), "finite coordinates");
     }
@@ -27,7 +27,7 @@ void copy_triangles(const TriMesh& mesh, SurfaceGraph& g) {
   g.triangle.resize(mesh.triangle_count());
   for (std::size_t t = 0; t < g.triangle.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
-      const int v = mesh.F(static_cast<Eigen::Index>(t), k);
+      const int v = mesh.F(t, k);
       if (v < 0 || v >= n) {
         throw Error("no vertex " + std::to_string(v), "triangle " + std::to_string(t),
                     "0 to " + std::to_string(n - 1));
@@ -40,7 +40,7 @@ void copy_triangles(const TriMesh& mesh, SurfaceGraph& g) {
 /// Every triangle around v leads from one neighbour to the next: the ring is those led from, and at
 /// a border also those only led to. A neighbour met twice is no manifold.
 void collect_ring(SurfaceGraph& g, int v) {
-  const auto i = static_cast<std::size_t>(v);
+  const std::size_t i = v;
   int* const begin = g.ring.data() + 2 * g.corner.begin(v);
   int* end = begin;
   bool closed = !g.corners(v).empty();

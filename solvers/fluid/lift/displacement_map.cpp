@@ -15,8 +15,7 @@ using Value = MapPatch::Value;
 constexpr double kEdgeSlack = 1e-9;
 
 std::size_t texel(int resolution, int i, int j) {
-  return static_cast<std::size_t>(j) * static_cast<std::size_t>(resolution) +
-         static_cast<std::size_t>(i);
+  return static_cast<std::size_t>(j) * resolution + i;
 }
 
 struct Range {
@@ -74,7 +73,7 @@ struct Level {
 Level coarser(const Level& fine) {
   Level result;
   result.n = (fine.n + 1) / 2;
-  const auto count = static_cast<std::size_t>(result.n) * static_cast<std::size_t>(result.n);
+  const auto count = static_cast<std::size_t>(result.n) * result.n;
   result.value.assign(count, Value::Zero());
   result.weight.assign(count, 0);
   for (int j = 0; j < fine.n; ++j) {
@@ -118,7 +117,7 @@ MapRaster rasterise(const MapPatch& patch, int resolution, double extent, const 
   MapRaster raster;
   raster.resolution = resolution;
   raster.extent = extent;
-  const auto count = static_cast<std::size_t>(resolution) * static_cast<std::size_t>(resolution);
+  const auto count = static_cast<std::size_t>(resolution) * resolution;
   raster.value.assign(count, Value::Zero());
   raster.covered.assign(count, 0);
   const auto in_texels = [&](int v) -> Eigen::Vector2d {

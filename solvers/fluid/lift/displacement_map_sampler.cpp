@@ -45,7 +45,7 @@ std::vector<Contribution> contributions(const Feature& feature, double time) {
 
 DisplacementSampler::DisplacementSampler(const Feature& feature, double source_time)
     : resolution_(feature.resolution), extent_(feature.extent) {
-  const auto side = static_cast<std::size_t>(resolution_ + 2 * kPad);
+  const std::size_t side = resolution_ + 2 * kPad;
   texels_.assign(side * side, Texel::Zero());
   blend(feature, source_time);
   count_occupied();
@@ -53,7 +53,7 @@ DisplacementSampler::DisplacementSampler(const Feature& feature, double source_t
 
 void DisplacementSampler::blend(const Feature& feature, double source_time) {
   const std::vector<Contribution> parts = contributions(feature, source_time);
-  const auto n = static_cast<std::size_t>(resolution_);
+  const std::size_t n = resolution_;
   parallel_blocks(n, kRowsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
       Texel* row = texels_.data() + padded(0, static_cast<int>(j));
@@ -71,7 +71,7 @@ void DisplacementSampler::blend(const Feature& feature, double source_time) {
 }
 
 void DisplacementSampler::count_occupied() {
-  const auto n = static_cast<std::size_t>(resolution_);
+  const std::size_t n = resolution_;
   table_.assign((n + 1) * (n + 1), 0);
   for (std::size_t j = 0; j < n; ++j) {
     const Texel* row = texels_.data() + padded(0, static_cast<int>(j));
@@ -114,7 +114,7 @@ bool DisplacementSampler::occupied(const Eigen::Vector2d& low, const Eigen::Vect
 }
 
 double DisplacementSampler::min_jacobian(double fade) const {
-  const auto n = static_cast<std::size_t>(resolution_);
+  const std::size_t n = resolution_;
   const std::size_t blocks = (n + kRowsPerBlock - 1) / kRowsPerBlock;
   std::vector<double> smallest(blocks, 1);
   const double factor = fade / (2 * texel());

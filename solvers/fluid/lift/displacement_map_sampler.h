@@ -29,8 +29,7 @@ class DisplacementSampler {
 
  private:
   [[nodiscard]] std::size_t padded(int i, int j) const {
-    return static_cast<std::size_t>(j + kPad) * static_cast<std::size_t>(resolution_ + 2 * kPad) +
-           static_cast<std::size_t>(i + kPad);
+    return static_cast<std::size_t>(j + kPad) * (resolution_ + 2 * kPad) + (i + kPad);
   }
   void blend(const Feature& feature, double source_time);
   void count_occupied();

@@ -35,10 +35,10 @@ Neighbourhood within_ball(std::span<const Eigen::Vector3d> positions,
     kept.push_back(t);
     for (const int v : f) local[v] = 0;
   }
-  for (std::size_t v = 0; v < local.size(); ++v) {
+  for (int v = 0; v < std::ssize(local); ++v) {
     if (local[v] < 0) continue;
     local[v] = static_cast<int>(near.vertices.size());
-    near.vertices.push_back(static_cast<int>(v));
+    near.vertices.push_back(v);
     near.x.push_back(positions[v]);
   }
   for (const std::size_t t : kept) {
@@ -127,8 +127,8 @@ class Unrolling {
   }
 
   [[nodiscard]] std::span<const int> ring(int v) const {
-    const auto begin = static_cast<std::size_t>(near_.offset[v]);
-    const auto end = static_cast<std::size_t>(near_.offset[v + 1]);
+    const std::size_t begin = near_.offset[v];
+    const std::size_t end = near_.offset[v + 1];
     return {near_.neighbours.data() + begin, end - begin};
   }
 

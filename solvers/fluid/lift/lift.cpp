@@ -89,7 +89,7 @@ std::vector<std::vector<Piece>> lift_pieces(const SurfaceSequence& sequence,
   for (auto first = by_frame.begin(); first != by_frame.end() && !context.stop_requested();) {
     std::vector<std::pair<int, std::vector<Piece>*>> chunk;
     std::vector<SurfaceFrame> frames;
-    for (; first != by_frame.end() && static_cast<int>(chunk.size()) < kFramesAtOnce; ++first) {
+    for (; first != by_frame.end() && std::ssize(chunk) < kFramesAtOnce; ++first) {
       chunk.emplace_back(first->first, &first->second);
       frames.push_back(sequence.frame(first->first));
     }
@@ -219,7 +219,7 @@ SurfaceFrame without_vertices(const SurfaceFrame& frame, const std::vector<char>
   if (frame.velocity.rows() > 0) result.velocity.resize(count, 3);
   for (std::size_t v = 0; v < gone.size(); ++v) {
     if (local[v] < 0) continue;
-    const auto i = static_cast<Eigen::Index>(v);
+    const Eigen::Index i = v;
     result.mesh.V.row(local[v]) = frame.mesh.V.row(i);
     if (frame.velocity.rows() > 0) result.velocity.row(local[v]) = frame.velocity.row(i);
   }
@@ -326,7 +326,7 @@ SurfaceFrame without_feature(const SurfaceFrame& frame, int frame_index,
 std::vector<FeatureSummary> track_summaries(const Extraction& extraction, int shortest) {
   std::vector<FeatureSummary> result;
   for (const Track& track : extraction.tracking.tracks) {
-    if (static_cast<int>(track.regions.size()) < shortest) continue;
+    if (std::ssize(track.regions) < shortest) continue;
     FeatureSummary summary;
     summary.id = track.id;
     for (const int r : track.regions) {

@@ -17,7 +17,7 @@ double total_area(const Feature& feature) {
 std::optional<std::size_t> frame_at(const Feature& feature, double time) {
   const auto found = std::lower_bound(feature.times.begin(), feature.times.end(), time);
   if (found == feature.times.end() || *found != time) return {};
-  return static_cast<std::size_t>(found - feature.times.begin());
+  return found - feature.times.begin();
 }
 
 }  // namespace
@@ -70,16 +70,16 @@ FrameTable feature_table(const std::vector<Feature>& features, const std::vector
   FrameTable table;
   table.columns = {"feature [1]",    "kind [1]",   "begin [s]", "end [s]",           "frames [1]",
                    "resolution [1]", "extent [m]", "bytes [B]", "sequence_bytes [B]"};
-  table.rows.resize(static_cast<Eigen::Index>(features.size()), 9);
+  table.rows.resize(features.size(), 9);
   for (std::size_t i = 0; i < features.size(); ++i) {
     const Feature& f = features[i];
     double beside = 0;
     for (std::size_t k = 0; k < times.size(); ++k) {
       if (times[k] >= f.times.front() && times[k] <= f.times.back()) beside += frame_bytes[k];
     }
-    table.rows.row(static_cast<Eigen::Index>(i)) << f.id, f.kind == RegionKind::isolated ? 1 : 2,
-        f.times.front(), f.times.back(), f.frame_count(), f.resolution, f.extent,
-        static_cast<double>(f.bytes()), beside;
+    table.rows.row(i) << f.id, f.kind == RegionKind::isolated ? 1 : 2, f.times.front(),
+        f.times.back(), f.frame_count(), f.resolution, f.extent, static_cast<double>(f.bytes()),
+        beside;
   }
   return table;
 }

@@ -53,12 +53,12 @@ double steep_share(const LiftPatch& patch, const Eigen::Vector3d& z) {
 int nearest_triangle(const LiftPatch& patch, const PlacedPatch& placed) {
   int best = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
+  for (int t = 0; t < std::ssize(patch.triangles); ++t) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (const int v : patch.triangles[t]) middle += placed.bed[v] / 3;
     if (middle.squaredNorm() >= least) continue;
     least = middle.squaredNorm();
-    best = static_cast<int>(t);
+    best = t;
   }
   return best;
 }
@@ -121,7 +121,7 @@ struct LiftedFrame {
 };
 
 LiftedFrame lifted(const MapRaster& raster, double border) {
-  const auto count = static_cast<Eigen::Index>(raster.value.size());
+  const Eigen::Index count = raster.value.size();
   LiftedFrame frame;
   frame.map.displacement.resize(count, 3);
   frame.map.alpha.resize(count);
@@ -174,8 +174,7 @@ double alpha_near(const LiftedFrame& other, const Eigen::Isometry3d& frame,
   const int n = other.bed.resolution;
   const Eigen::Array2d g = (local.head<2>().array() / other.bed.extent + 0.5) * n;
   if (!(g >= 0).all() || !(g < n).all()) return 0;
-  return static_cast<double>(
-      other.map.alpha[static_cast<int>(g.y()) * n + static_cast<int>(g.x())]);
+  return other.map.alpha[static_cast<int>(g.y()) * n + static_cast<int>(g.x())];
 }
 
 /// What the low-pass of the bed in time takes from the z displacements of a frame.

@@ -37,7 +37,7 @@ Fit fit_at(const std::vector<FrameSample>& samples, const FrameTime& at, int win
     if (after != samples.begin()) used.push_back(&*(after - 1));
     if (after != samples.end()) used.push_back(&*after);
   }
-  const auto m = static_cast<Eigen::Index>(used.size());
+  const Eigen::Index m = used.size();
   const Eigen::Index terms = std::min<Eigen::Index>(3, m);
   Eigen::MatrixXd A(m, terms);
   Eigen::MatrixX3d b(m, 3);

@@ -125,7 +125,7 @@ TriMesh isolated_mesh(const TriMesh& mesh, const FrameLabels& labels, int label)
   }
   result.V.resize(count, 3);
   for (std::size_t v = 0; v < local.size(); ++v) {
-    if (local[v] >= 0) result.V.row(local[v]) = mesh.V.row(static_cast<Eigen::Index>(v));
+    if (local[v] >= 0) result.V.row(local[v]) = mesh.V.row(v);
   }
   std::vector<Eigen::Index> kept;
   for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
@@ -133,10 +133,10 @@ TriMesh isolated_mesh(const TriMesh& mesh, const FrameLabels& labels, int label)
       kept.push_back(t);
     }
   }
-  result.F.resize(static_cast<Eigen::Index>(kept.size()), 3);
+  result.F.resize(kept.size(), 3);
   for (std::size_t i = 0; i < kept.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
-      result.F(static_cast<Eigen::Index>(i), k) = local[mesh.F(kept[i], k)];
+      result.F(i, k) = local[mesh.F(kept[i], k)];
     }
   }
   return result;

@@ -103,9 +103,9 @@ double facing_weight(const Eigen::Vector3d& normal, const Eigen::Vector3d& z) {
 MapCoordinates projected(const Projection& projection, const Footprint& under,
                          const Eigen::Vector3d& z) {
   MapCoordinates places;
-  for (std::size_t v = 0; v < under.inside.size(); ++v) {
+  for (int v = 0; v < std::ssize(under.inside); ++v) {
     if (under.inside[v] == 0) continue;
-    places.vertex.push_back(static_cast<int>(v));
+    places.vertex.push_back(v);
     places.uv.emplace_back(projection.local[v].head<2>());
     places.weight.push_back(facing_weight(under.normal[v], z));
   }
@@ -137,8 +137,8 @@ class Covered {
  public:
   Covered(const MapCoordinates& places, int vertex_count)
       : places_(places), slot_(vertex_count, -1) {
-    for (std::size_t i = 0; i < places.vertex.size(); ++i) {
-      slot_[places.vertex[i]] = static_cast<int>(i);
+    for (int i = 0; i < std::ssize(places.vertex); ++i) {
+      slot_[places.vertex[i]] = i;
     }
   }
   void extend(int vertex_count) {
@@ -224,16 +224,16 @@ MapCoordinates locate(const WorkMesh& mesh, const EditedFrame& frame,
 
 void add_middles(const std::vector<std::array<int, 2>>& parents, int first,
                  MapCoordinates& places) {
-  const auto known = static_cast<std::ptrdiff_t>(places.vertex.size());
+  const std::ptrdiff_t known = places.vertex.size();
   const auto find = [&](int v) -> std::ptrdiff_t {
     const auto end = places.vertex.begin() + known;
     const auto it = std::lower_bound(places.vertex.begin(), end, v);
     return it != end && *it == v ? it - places.vertex.begin() : -1;
   };
-  for (std::size_t e = 0; e < parents.size(); ++e) {
+  for (int e = 0; e < std::ssize(parents); ++e) {
     const std::ptrdiff_t a = find(parents[e][0]), b = a < 0 ? -1 : find(parents[e][1]);
     if (b < 0) continue;
-    places.vertex.push_back(first + static_cast<int>(e));
+    places.vertex.push_back(first + e);
     places.uv.emplace_back(0.5 * (places.uv[a] + places.uv[b]));
     places.weight.push_back(0.5 * (places.weight[a] + places.weight[b]));
     if (!places.axes.empty()) places.axes.emplace_back(0.5 * (places.axes[a] + places.axes[b]));
@@ -251,11 +251,11 @@ void refine_under_map(WorkMesh& mesh, const DisplacementSampler& map, const Past
     return;
   }
   std::vector<int> candidates;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (covered.holds(mesh.triangles[t], map)) candidates.push_back(static_cast<int>(t));
+  for (int t = 0; t < std::ssize(mesh.triangles); ++t) {
+    if (covered.holds(mesh.triangles[t], map)) candidates.push_back(t);
   }
   const std::size_t needed = triangles_needed(mesh, candidates, covered, limit);
-  const auto allowed = static_cast<std::size_t>(options.max_triangles);
+  const std::size_t allowed = options.max_triangles;
   while (!candidates.empty()) {
     EdgeSplitter splitter(mesh.vertex_count());
     for (const int t : candidates) {

@@ -14,7 +14,7 @@ namespace geoprior::fluid {
 TriMesh isolated_at(const Feature& feature, const EditedFrame& frame) {
   const auto& times = feature.times;
   const auto after = std::lower_bound(times.begin(), times.end(), frame.source_time);
-  auto i = static_cast<std::size_t>(after - times.begin());
+  std::size_t i = after - times.begin();
   if (i == times.size() ||
       (i > 0 && frame.source_time - times[i - 1] <= times[i] - frame.source_time)) {
     --i;
@@ -73,15 +73,15 @@ Eigen::MatrixX3d carried(const TriMesh& mesh, const Eigen::MatrixX3d& before,
     return of_target[v] >= 0 ? Eigen::RowVector3d(before.row(of_target[v])) : velocity.transpose();
   };
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    const auto i = static_cast<std::size_t>(v);
+    const std::size_t i = v;
     if (known(i)) {
       result.row(v) = row(i);
       continue;
     }
     int count = 0;
     for (const int w : rings.of(v)) {
-      if (!known(static_cast<std::size_t>(w))) continue;
-      result.row(v) += row(static_cast<std::size_t>(w));
+      if (!known(w)) continue;
+      result.row(v) += row(w);
       ++count;
     }
     if (count > 0) result.row(v) /= count;

@@ -148,10 +148,10 @@ void displace(const std::vector<PlacedMap>& placed, double time, WorkMesh& mesh,
   Sums sums(mesh.x.size());
   std::vector<Eigen::Vector3d> rate(mesh.velocity.size(), Eigen::Vector3d::Zero());
   std::set<std::pair<int, int>> overlaps;
-  for (std::size_t k = 0; k < placed.size(); ++k) {
+  for (int k = 0; k < std::ssize(placed); ++k) {
     Displaced displaced = displacements(placed[k]);
     if (placed[k].insertion->edit.volume_lock) lock_volume(mesh, placed[k], displaced);
-    add(placed[k], displaced, static_cast<int>(k), placed, sums, overlaps);
+    add(placed[k], displaced, k, placed, sums, overlaps);
     const std::vector<Eigen::Vector3d> rates = displacement_rates(mesh, placed[k]);
     for (std::size_t i = 0; i < rates.size(); ++i) {
       rate[placed[k].places.vertex[i]] += rates[i];

@@ -8,7 +8,7 @@ namespace {
 constexpr std::uint64_t kFree = ~std::uint64_t{0};
 
 std::uint64_t edge_key(int a, int b) {
-  const auto low = static_cast<std::uint64_t>(std::min(a, b));
+  const std::uint64_t low = std::min(a, b);
   return (low << 32) | static_cast<std::uint64_t>(std::max(a, b));
 }
 
@@ -75,18 +75,18 @@ void split(const std::array<int, 3>& f, const std::array<int, 3>& m, Parts& part
 
 WorkMesh work_mesh(const SurfaceFrame& frame) {
   WorkMesh mesh;
-  const auto n = static_cast<std::size_t>(frame.mesh.V.rows());
+  const std::size_t n = frame.mesh.V.rows();
   mesh.x.resize(n);
-  for (std::size_t v = 0; v < n; ++v) mesh.x[v] = frame.mesh.V.row(static_cast<Eigen::Index>(v));
+  for (std::size_t v = 0; v < n; ++v) mesh.x[v] = frame.mesh.V.row(v);
   if (frame.velocity.rows() == frame.mesh.V.rows()) {
     mesh.velocity.resize(n);
     for (std::size_t v = 0; v < n; ++v) {
-      mesh.velocity[v] = frame.velocity.row(static_cast<Eigen::Index>(v));
+      mesh.velocity[v] = frame.velocity.row(v);
     }
   }
   mesh.triangles.resize(frame.mesh.F.rows());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto i = static_cast<Eigen::Index>(t);
+    const Eigen::Index i = t;
     mesh.triangles[t] = {frame.mesh.F(i, 0), frame.mesh.F(i, 1), frame.mesh.F(i, 2)};
   }
   return mesh;
@@ -95,20 +95,20 @@ WorkMesh work_mesh(const SurfaceFrame& frame) {
 SurfaceFrame surface_frame(const WorkMesh& mesh, double time) {
   SurfaceFrame frame;
   frame.time = time;
-  frame.mesh.V.resize(static_cast<Eigen::Index>(mesh.x.size()), 3);
+  frame.mesh.V.resize(mesh.x.size(), 3);
   for (std::size_t v = 0; v < mesh.x.size(); ++v) {
-    frame.mesh.V.row(static_cast<Eigen::Index>(v)) = mesh.x[v].transpose();
+    frame.mesh.V.row(v) = mesh.x[v].transpose();
   }
   if (!mesh.velocity.empty()) {
     frame.velocity.resize(frame.mesh.V.rows(), 3);
     for (std::size_t v = 0; v < mesh.x.size(); ++v) {
-      frame.velocity.row(static_cast<Eigen::Index>(v)) = mesh.velocity[v].transpose();
+      frame.velocity.row(v) = mesh.velocity[v].transpose();
     }
   }
-  frame.mesh.F.resize(static_cast<Eigen::Index>(mesh.triangles.size()), 3);
+  frame.mesh.F.resize(mesh.triangles.size(), 3);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
-      frame.mesh.F(static_cast<Eigen::Index>(t), k) = mesh.triangles[t][k];
+      frame.mesh.F(t, k) = mesh.triangles[t][k];
     }
   }
   return frame;
@@ -125,10 +125,10 @@ std::size_t EdgeSplitter::slot(std::uint64_t key) const {
 void EdgeSplitter::grow() {
   keys_.assign(std::max<std::size_t>(1024, 2 * keys_.size()), kFree);
   values_.assign(keys_.size(), -1);
-  for (std::size_t e = 0; e < parents_.size(); ++e) {
+  for (int e = 0; e < std::ssize(parents_); ++e) {
     const std::size_t i = slot(edge_key(parents_[e][0], parents_[e][1]));
     keys_[i] = edge_key(parents_[e][0], parents_[e][1]);
-    values_[i] = vertex_count_ + static_cast<int>(e);
+    values_[i] = vertex_count_ + e;
   }
 }
 

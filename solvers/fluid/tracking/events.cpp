@@ -98,7 +98,7 @@ class EventFinder {
   void find_merge(const Track& track) {
     const int last = track.regions.back();
     const int frame = region(last).frame + 1;
-    if (frame >= static_cast<int>(times_.size())) return;
+    if (frame >= std::ssize(times_)) return;
     const int into = best_overlap(last, frame, false, [&](int o) {
       return begins_[o] == 0 &&
              (region(o).kind == track.kind || track.kind == RegionKind::isolated);

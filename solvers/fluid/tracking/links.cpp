@@ -16,8 +16,8 @@ class FrameIndex {
   FrameIndex(std::span<const Region> regions, std::size_t frames) : regions_(regions) {
     order_.resize(regions.size());
     offset_.assign(frames + 1, 0);
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-      order_[i] = static_cast<int>(i);
+    for (int i = 0; i < std::ssize(regions); ++i) {
+      order_[i] = i;
       ++offset_[regions[i].frame + 1];
     }
     for (std::size_t f = 0; f < frames; ++f) offset_[f + 1] += offset_[f];
@@ -28,7 +28,7 @@ class FrameIndex {
   }
   /// Regions of a frame whose centres are at most `reach` from `centre` along x.
   [[nodiscard]] std::span<const int> window(int frame, double centre, double reach) const {
-    const auto f = static_cast<std::size_t>(frame);
+    const std::size_t f = frame;
     const auto begin = order_.begin() + offset_[f], end = order_.begin() + offset_[f + 1];
     const auto first =
         std::partition_point(begin, end, [&](int r) { return x_of(r) < centre - reach; });
@@ -84,14 +84,14 @@ GateSpeeds gate_speeds(std::span<const Region> regions, std::span<const double> 
   };
   std::array<std::vector<double>, 2> needed;
   double interval = 0;
-  for (std::size_t i = 0; i < regions.size(); ++i) {
+  for (int i = 0; i < std::ssize(regions); ++i) {
     const Region& a = regions[i];
-    if (a.frame + 1 >= static_cast<int>(times.size())) break;
-    const auto f = static_cast<std::size_t>(a.frame);
+    if (a.frame + 1 >= std::ssize(times)) break;
+    const std::size_t f = a.frame;
     const double dt = times[f + 1] - times[f];
     interval = interval == 0 ? dt : std::min(interval, dt);
     const int j = nearest(a, a.frame + 1);
-    if (j < 0 || nearest(regions[j], a.frame) != static_cast<int>(i)) continue;
+    if (j < 0 || nearest(regions[j], a.frame) != i) continue;
     const double way = (regions[j].centre - a.centre).norm();
     needed[a.kind == RegionKind::isolated ? 0 : 1].push_back(way / dt);
   }
@@ -99,7 +99,7 @@ GateSpeeds gate_speeds(std::span<const Region> regions, std::span<const double> 
   for (std::size_t k = 0; k < 2; ++k) {
     result[k] = interval > 0 ? 4 * cell / interval : cell;
     if (needed[k].empty()) continue;
-    const auto at = needed[k].begin() + static_cast<std::ptrdiff_t>(needed[k].size() * 9 / 10);
+    const auto at = needed[k].begin() + (needed[k].size() * 9 / 10);
     std::nth_element(needed[k].begin(), at, needed[k].end());
     result[k] = std::max(result[k], 1.5 * *at);
   }
@@ -113,7 +113,7 @@ std::vector<int> first_paths(std::span<const Region> regions, std::span<const do
   std::vector<int> successor(regions.size(), -1), predecessor(regions.size(), -1);
   std::vector<PathLink> links;
   std::size_t first_open = 0;  // regions before it are too old to be linked
-  for (int frame = 1; frame < static_cast<int>(times.size()); ++frame) {
+  for (int frame = 1; frame < std::ssize(times); ++frame) {
     links.clear();
     while (first_open < regions.size() && regions[first_open].frame < frame - options.largest_gap)
       ++first_open;
@@ -152,12 +152,12 @@ std::vector<PathLink> candidate_links(std::span<const Region> regions,
                                       const RegionMotions& motions) {
   const FrameIndex index(regions, times.size());
   std::vector<PathLink> links;
-  for (std::size_t i = 0; i < regions.size(); ++i) {
+  for (int i = 0; i < std::ssize(regions); ++i) {
     const Region& a = regions[i];
     const double variance = centre_variance(a, cell, options);
     for (int g = 1; g <= options.largest_gap; ++g) {
       const int frame = a.frame + g;
-      if (frame >= static_cast<int>(times.size())) break;
+      if (frame >= std::ssize(times)) break;
       const double dt = times[frame] - times[a.frame];
       const RegionMotion& past = motions.from_past[i];
       // The mean of two terms, neither below 3 ln(1/2), is under c_new: so is either under twice.
@@ -173,7 +173,7 @@ std::vector<PathLink> candidate_links(std::span<const Region> regions,
         double cost = 0.5 * (ahead + back) + (g - 1) * options.gap_cost;
         if (cost >= options.new_path_cost) continue;
         cost += size_cost(a, b, options);
-        if (cost < options.new_path_cost) links.push_back({static_cast<int>(i), to, cost});
+        if (cost < options.new_path_cost) links.push_back({i, to, cost});
       }
     }
   }

@@ -58,8 +58,8 @@ RegionMotions region_motions(std::span<const Region> regions, std::span<const do
                              double cell, const TrackingOptions& options, const GateSpeeds& speeds,
                              const std::vector<int>& successor) {
   std::vector<int> predecessor(successor.size(), -1);
-  for (std::size_t i = 0; i < successor.size(); ++i) {
-    if (successor[i] >= 0) predecessor[successor[i]] = static_cast<int>(i);
+  for (int i = 0; i < std::ssize(successor); ++i) {
+    if (successor[i] >= 0) predecessor[successor[i]] = i;
   }
   RegionMotions motions;
   for (std::size_t i = 0; i < regions.size(); ++i) {

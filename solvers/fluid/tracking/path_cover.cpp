@@ -96,16 +96,15 @@ void solve_part(const std::vector<Gain>& part, std::vector<int>& successor) {
   lemon::NetworkSimplex<lemon::SmartDigraph, long long, long long> simplex(graph);
   lemon::SmartDigraph::ArcMap<long long> cost(graph, 0), upper(graph, 1);
   lemon::SmartDigraph::NodeMap<long long> supply(graph, 0);
-  for (std::size_t i = 0; i < part.size(); ++i)
-    cost[lemon::SmartDigraph::arcFromId(static_cast<int>(i))] = -part[i].gain;
+  for (int i = 0; i < std::ssize(part); ++i)
+    cost[lemon::SmartDigraph::arcFromId(i)] = -part[i].gain;
   for (int i = 0; i < a; ++i) supply[node(i)] = 1;
   for (int i = a; i < a + b; ++i) supply[node(i)] = -1;
   supply[node(a + b)] = b - a;
   simplex.costMap(cost).upperMap(upper).supplyMap(supply);
   if (simplex.run() != simplex.OPTIMAL) throw Error("the flow has no solution", "path cover");
-  for (std::size_t i = 0; i < part.size(); ++i) {
-    if (simplex.flow(lemon::SmartDigraph::arcFromId(static_cast<int>(i))) > 0)
-      successor[part[i].from] = part[i].to;
+  for (int i = 0; i < std::ssize(part); ++i) {
+    if (simplex.flow(lemon::SmartDigraph::arcFromId(i)) > 0) successor[part[i].from] = part[i].to;
   }
 }
 

@@ -75,12 +75,12 @@ std::vector<Track> tracks_of(std::span<const Region> regions, const std::vector<
     if (s >= 0) entered[s] = 1;
   }
   std::vector<Track> tracks;
-  for (std::size_t i = 0; i < regions.size(); ++i) {
+  for (int i = 0; i < std::ssize(regions); ++i) {
     if (entered[i] != 0) continue;
     Track& track = tracks.emplace_back();
     track.id = static_cast<int>(tracks.size());
     track.kind = regions[i].kind;
-    for (int r = static_cast<int>(i); r >= 0; r = successor[r]) track.regions.push_back(r);
+    for (int r = i; r >= 0; r = successor[r]) track.regions.push_back(r);
   }
   return tracks;
 }
@@ -88,8 +88,7 @@ std::vector<Track> tracks_of(std::span<const Region> regions, const std::vector<
 void require_ordered(std::span<const Region> regions, std::span<const double> times) {
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const int frame = regions[i].frame;
-    if (frame < 0 || frame >= static_cast<int>(times.size()) ||
-        (i > 0 && frame < regions[i - 1].frame)) {
+    if (frame < 0 || frame >= std::ssize(times) || (i > 0 && frame < regions[i - 1].frame)) {
       throw Error("frame " + std::to_string(frame), "region " + std::to_string(i),
                   "frames that have a time, in order");
     }

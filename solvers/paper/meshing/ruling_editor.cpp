@@ -62,14 +62,13 @@ RulingHit RulingEditor::propagate(const Vector2d& origin, const Vector2d& direct
     }
     offer(RulingHit::Kind::ruling, ray_hit(origin, d, ruling.a, ruling.b, same_), r);
   }
-  for (std::size_t s = 0; s < structure_.singular_points.size(); ++s) {
-    if (from_singular == static_cast<int>(s)) continue;
+  for (int s = 0; s < std::ssize(structure_.singular_points); ++s) {
+    if (from_singular == s) continue;
     const Vector2d to = structure_.singular_points[s].position - origin;
     const double t = to.dot(d);
     // A singular point decides before the rulings that end in it.
     if (t > same_ && std::abs(cross(d, to)) < bounds_.gap && t < hit.distance + bounds_.gap) {
-      hit = {RulingHit::Kind::singular, structure_.singular_points[s].position, t,
-             static_cast<int>(s)};
+      hit = {RulingHit::Kind::singular, structure_.singular_points[s].position, t, s};
     }
   }
   return hit;
@@ -276,9 +275,9 @@ std::optional<Ruling> RulingEditor::ray_to(int singular_point, const Vector2d& e
   ruling.a = structure_.singular_points[singular_point].position;
   ruling.b = end;
   ruling.singular_a = singular_point;
-  for (std::size_t s = 0; s < structure_.singular_points.size(); ++s) {
+  for (int s = 0; s < std::ssize(structure_.singular_points); ++s) {
     if ((structure_.singular_points[s].position - end).norm() <= same_) {
-      ruling.singular_b = static_cast<int>(s);
+      ruling.singular_b = s;
     }
   }
   if (!fits(ruling)) return std::nullopt;

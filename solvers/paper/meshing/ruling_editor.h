@@ -43,8 +43,7 @@ class RulingEditor {
   [[nodiscard]] std::vector<Eigen::Vector2d> middles_of_parts(const Eigen::Vector2d& p,
                                                               const Eigen::Vector2d& d) const;
   [[nodiscard]] bool is_hole(const RulingHit& hit) const {
-    return hit.kind == RulingHit::Kind::border &&
-           hit.index >= static_cast<int>(pattern_.border.size());
+    return hit.kind == RulingHit::Kind::border && hit.index >= std::ssize(pattern_.border);
   }
   /// True when the ruling keeps all bounds, rulings marked in `ignored` aside.
   [[nodiscard]] bool fits(const Ruling& ruling, const std::vector<bool>& ignored = {}) const;

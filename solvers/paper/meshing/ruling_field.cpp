@@ -61,7 +61,7 @@ bool is_bent(const Matrix2d& T, const HybridOptions& options) {
 bool turn(const BendingField& field, const HybridOptions& options, RulingEditor& editor) {
   std::vector<Ruling>& rulings = editor.structure().rulings;
   bool any = false;
-  for (std::size_t i = 0; i < rulings.size(); ++i) {
+  for (int i = 0; i < std::ssize(rulings); ++i) {
     if (!is_chord(rulings[i])) continue;
     const Matrix2d T = bending_along(field, rulings[i].a, rulings[i].b);
     if (!is_bent(T, options)) continue;
@@ -70,8 +70,7 @@ bool turn(const BendingField& field, const HybridOptions& options, RulingEditor&
     std::optional<Ruling> best;
     for (int k = -kTurns; k <= kTurns; ++k) {
       if (k == 0) continue;
-      const auto line =
-          editor.turned(static_cast<int>(i), k * options.tracking_rate_deg * kDegree / kTurns);
+      const auto line = editor.turned(i, k * options.tracking_rate_deg * kDegree / kTurns);
       if (!line) continue;
       const double share = share_along(bending_along(field, line->a, line->b), line->b - line->a);
       if (share >= least) continue;
@@ -98,7 +97,7 @@ class RulingLayer {
   int lay() {
     for (std::size_t i = 0; i < rulings().size(); ++i) grow(i);
     const Eigen::VectorXd bent = field_.curvature().rowwise().norm();
-    std::vector<int> order(static_cast<std::size_t>(bent.size()));
+    std::vector<int> order(bent.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return bent[i] > bent[j]; });
     for (const int v : order) {

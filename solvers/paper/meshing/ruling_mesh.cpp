@@ -173,9 +173,9 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
     const std::vector<int>& path = result.ruling_paths.back();
     for (std::size_t k = 0; k + 1 < path.size(); ++k) segments.emplace_back(path[k], path[k + 1]);
   }
-  result.mesh.pattern.resize(static_cast<Eigen::Index>(set.points().size()), 2);
+  result.mesh.pattern.resize(set.points().size(), 2);
   for (std::size_t i = 0; i < set.points().size(); ++i) {
-    result.mesh.pattern.row(static_cast<Eigen::Index>(i)) = set.points()[i];
+    result.mesh.pattern.row(i) = set.points()[i];
   }
   result.mesh.triangles = constrained_delaunay(result.mesh.pattern, loops, segments);
   sort_triangles(result.mesh.triangles);

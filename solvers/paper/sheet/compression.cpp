@@ -275,8 +275,8 @@ std::vector<DemandGroup> group_demands(const std::vector<Demand>& demands, const
                                        double group_angle_deg) {
   const double group_angle = group_angle_deg * kDegree;
   std::vector<int> order;
-  for (std::size_t f = 0; f < demands.size(); ++f) {
-    if (demands[f].weight > 0) order.push_back(static_cast<int>(f));
+  for (int f = 0; f < std::ssize(demands); ++f) {
+    if (demands[f].weight > 0) order.push_back(f);
   }
   std::stable_sort(order.begin(), order.end(), [&](int f, int g) {
     return strength_of(demands, mesh, f) > strength_of(demands, mesh, g);

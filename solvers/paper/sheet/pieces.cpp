@@ -33,7 +33,7 @@ void mark_holes(const Pattern& pattern, const RulingMesh& mesh, const EdgeConnec
     if (left >= 0 && right >= 0) continue;
     const auto [a, b] = edges.edge(e);
     const Vector2d middle = (mesh.mesh.pattern.row(a) + mesh.mesh.pattern.row(b)) / 2;
-    if (nearest_on_border(pattern, middle).edge < static_cast<int>(pattern.border.size())) continue;
+    if (nearest_on_border(pattern, middle).edge < std::ssize(pattern.border)) continue;
     cells[mesh.cell[std::max(left, right)]].at_hole = true;
   }
 }
@@ -41,7 +41,7 @@ void mark_holes(const Pattern& pattern, const RulingMesh& mesh, const EdgeConnec
 std::vector<CellOutline> outlines_of_cells(const Pattern& pattern, const RulingMesh& mesh,
                                            const EdgeConnectivity& edges) {
   std::vector<CellOutline> result(mesh.cell_count);
-  for (std::size_t r = 0; r < mesh.ruling_paths.size(); ++r) {
+  for (int r = 0; r < std::ssize(mesh.ruling_paths); ++r) {
     const std::vector<int>& path = mesh.ruling_paths[r];
     for (std::size_t k = 0; k + 1 < path.size(); ++k) {
       const auto e = edges.find(path[k], path[k + 1]);
@@ -51,8 +51,8 @@ std::vector<CellOutline> outlines_of_cells(const Pattern& pattern, const RulingM
         const int f = left ? edges.left(*e) : edges.right(*e);
         if (f < 0) continue;
         CellOutline& cell = result[mesh.cell[f]];
-        if (cell.rulings.empty() || cell.rulings.back() != static_cast<int>(r)) {
-          cell.rulings.push_back(static_cast<int>(r));
+        if (cell.rulings.empty() || cell.rulings.back() != r) {
+          cell.rulings.push_back(r);
           cell.left.push_back(false);
           cell.right.push_back(false);
         }
@@ -157,7 +157,7 @@ void sort_cone(const PaperStructure& structure, int apex, PaperPiece& piece) {
       first = k;
     }
   }
-  std::rotate(angles.begin(), angles.begin() + static_cast<std::ptrdiff_t>(first), angles.end());
+  std::rotate(angles.begin(), angles.begin() + first, angles.end());
   for (std::size_t k = 0; k < angles.size(); ++k) piece.rulings[k] = angles[k].second;
   piece.apex = p;
   piece.singular_point = apex;
@@ -169,17 +169,17 @@ void inherit_ids(const PaperStructure& before, std::vector<PaperPiece>& pieces, 
     int count, piece, id;
   };
   std::vector<Vote> votes;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
+  for (int i = 0; i < std::ssize(pieces); ++i) {
     pieces[i].id = -1;
     std::map<int, int> counts;
     for (const int r : pieces[i].rulings) {
       const int old = before.rulings[r].piece;
-      if (old >= 0 && old < static_cast<int>(before.pieces.size()) &&
+      if (old >= 0 && old < std::ssize(before.pieces) &&
           before.pieces[old].kind == pieces[i].kind) {
         ++counts[before.pieces[old].id];
       }
     }
-    for (const auto& [id, count] : counts) votes.push_back({count, static_cast<int>(i), id});
+    for (const auto& [id, count] : counts) votes.push_back({count, i, id});
   }
   std::stable_sort(votes.begin(), votes.end(),
                    [](const Vote& x, const Vote& y) { return x.count > y.count; });
@@ -250,10 +250,10 @@ void fill_regions(std::vector<PaperPiece>& pieces, const RulingMesh& mesh,
 void fill_border_points(PaperStructure& structure, const Pattern& pattern) {
   structure.border_points.assign(edge_count(pattern), {});
   std::vector<std::pair<std::pair<int, double>, int>> on_border;
-  for (std::size_t s = 0; s < structure.singular_points.size(); ++s) {
+  for (int s = 0; s < std::ssize(structure.singular_points); ++s) {
     if (!structure.singular_points[s].on_border) continue;
     const BorderPoint at = nearest_on_border(pattern, structure.singular_points[s].position);
-    on_border.push_back({{at.edge, at.t}, static_cast<int>(s)});
+    on_border.push_back({{at.edge, at.t}, s});
   }
   std::sort(on_border.begin(), on_border.end());
   for (const auto& [place, s] : on_border) {
@@ -326,9 +326,9 @@ void derive_pieces(PaperStructure& structure, const Pattern& pattern, RulingMesh
     pieces.back().id = -1;
   }
   for (Ruling& r : structure.rulings) r.piece = -1;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
+  for (int i = 0; i < std::ssize(pieces); ++i) {
     for (const int r : pieces[i].rulings) {
-      structure.rulings[r].piece = static_cast<int>(i);
+      structure.rulings[r].piece = i;
     }
   }
   mesh.piece.resize(mesh.cell.size());

@@ -41,10 +41,10 @@ void collect_crossings(const RulingEditor& editor, const GroupTest& in_group, Ve
                        double group_angle, Candidate& candidate) {
   std::vector<std::pair<double, int>> hits;
   const auto& rulings = editor.structure().rulings;
-  for (std::size_t i = 0; i < rulings.size(); ++i) {
+  for (int i = 0; i < std::ssize(rulings); ++i) {
     if (line_angle(rulings[i].b - rulings[i].a, d) < group_angle) continue;
     const auto t = ray_hit(candidate.seed, d, rulings[i].a, rulings[i].b, editor.same());
-    if (t) hits.emplace_back(*t, static_cast<int>(i));
+    if (t) hits.emplace_back(*t, i);
   }
   std::sort(hits.begin(), hits.end());
   for (const auto& [t, i] : hits) {
@@ -161,9 +161,9 @@ bool widen_nearest(const Vector2d& p, const Conflict& conflict, const HybridOpti
                    RulingEditor& editor) {
   const auto& points = editor.structure().singular_points;
   std::optional<int> nearest;
-  for (std::size_t s = 0; s < points.size(); ++s) {
+  for (int s = 0; s < std::ssize(points); ++s) {
     if (!nearest || (points[s].position - p).norm() < (points[*nearest].position - p).norm()) {
-      nearest = static_cast<int>(s);
+      nearest = s;
     }
   }
   return nearest && widen_singular_point(*nearest, conflict, options, editor);

@@ -21,8 +21,8 @@ void connect(int index, RulingEditor& editor) {
   const Vector2d p = editor.structure().singular_points[index].position;
   std::vector<std::pair<double, Vector2d>> targets;
   const auto& points = editor.structure().singular_points;
-  for (std::size_t s = 0; s < points.size(); ++s) {
-    if (static_cast<int>(s) != index) targets.emplace_back(0, points[s].position);
+  for (int s = 0; s < std::ssize(points); ++s) {
+    if (s != index) targets.emplace_back(0, points[s].position);
   }
   for (const Ruling& r : editor.structure().rulings) {
     if (!r.singular_a) targets.emplace_back(0, r.a);

@@ -8,27 +8,27 @@ namespace geoprior::paper {
 
 std::vector<int> PaperStructure::pieces_at(int singular_point) const {
   std::vector<int> touching;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (pieces[i].singular_point == singular_point) touching.push_back(static_cast<int>(i));
+  for (int i = 0; i < std::ssize(pieces); ++i) {
+    if (pieces[i].singular_point == singular_point) touching.push_back(i);
   }
   return touching;
 }
 
 int PaperStructure::piece_at(const Eigen::Vector2d& p) const {
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (contains(pieces[i].region, p)) return static_cast<int>(i);
+  for (int i = 0; i < std::ssize(pieces); ++i) {
+    if (contains(pieces[i].region, p)) return i;
   }
   return -1;
 }
 
 std::vector<int> PaperStructure::rulings_at(int singular_point) const {
   std::vector<std::pair<double, int>> by_angle;
-  for (std::size_t i = 0; i < rulings.size(); ++i) {
+  for (int i = 0; i < std::ssize(rulings); ++i) {
     const Ruling& r = rulings[i];
     if (r.singular_a != singular_point && r.singular_b != singular_point) continue;
     const Eigen::Vector2d d =
         r.singular_a == singular_point ? Eigen::Vector2d(r.b - r.a) : Eigen::Vector2d(r.a - r.b);
-    by_angle.emplace_back(std::atan2(d.y(), d.x()), static_cast<int>(i));
+    by_angle.emplace_back(std::atan2(d.y(), d.x()), i);
   }
   std::sort(by_angle.begin(), by_angle.end());
   std::vector<int> result;

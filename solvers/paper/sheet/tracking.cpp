@@ -97,12 +97,11 @@ std::vector<bool> flat_cylinders(const PaperStructure& structure, const HybridOp
 /// a right angle stays open.
 void mark_idle_rays(const PaperStructure& structure, const HybridOptions& options,
                     std::vector<bool>& gone) {
-  for (std::size_t i = 0; i < gone.size(); ++i) {
+  for (int i = 0; i < std::ssize(gone); ++i) {
     const Ruling& r = structure.rulings[i];
     if (gone[i] || !is_idle(r, options) || !(r.singular_a || r.singular_b)) continue;
     const auto may_open = [&](const std::optional<int>& point) {
-      return !point ||
-             opening(structure, *point, static_cast<int>(i), gone) <= std::numbers::pi / 2;
+      return !point || opening(structure, *point, i, gone) <= std::numbers::pi / 2;
     };
     gone[i] = may_open(r.singular_a) && may_open(r.singular_b);
   }

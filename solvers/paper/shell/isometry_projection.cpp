@@ -226,7 +226,7 @@ bool IsometryProjector::Impl::factorise(double mu) {
   for (std::size_t v = 0; v < free_index.size(); ++v) {
     if (free_index[v] < 0) continue;
     for (int k = 0; k < 3; ++k) {
-      matrix.valuePtr()[diagonal[3 * free_index[v] + k]] += mu * mass[static_cast<Eigen::Index>(v)];
+      matrix.valuePtr()[diagonal[3 * free_index[v] + k]] += mu * mass[v];
     }
   }
   solver.factorize(matrix);
@@ -236,7 +236,7 @@ bool IsometryProjector::Impl::factorise(double mu) {
 void IsometryProjector::Impl::move(Eigen::MatrixX3d& x, const Eigen::VectorXd& step) const {
   for (std::size_t v = 0; v < free_index.size(); ++v) {
     if (free_index[v] < 0) continue;
-    x.row(static_cast<Eigen::Index>(v)) += step.segment<3>(3 * free_index[v]).transpose();
+    x.row(v) += step.segment<3>(3 * free_index[v]).transpose();
   }
 }
 

@@ -31,8 +31,8 @@ std::optional<Vector2d> crossing(const Pattern& pattern, const Ruling& r) {
 }
 
 std::optional<int> tip_point(const PaperStructure& structure, int tear) {
-  for (std::size_t s = 0; s < structure.singular_points.size(); ++s) {
-    if (structure.singular_points[s].tear == tear) return static_cast<int>(s);
+  for (int s = 0; s < std::ssize(structure.singular_points); ++s) {
+    if (structure.singular_points[s].tear == tear) return s;
   }
   return std::nullopt;
 }

@@ -158,9 +158,9 @@ void close_loops(std::vector<DrawnPiece>& pieces, double snap, double turn) {
   DisjointSets sets = joined_ends(ends, snap);
   std::vector<int> members(ends.count(), 0);
   for (int e = 0; e < ends.count(); ++e) ++members[sets.find(e)];
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
+  for (int p = 0; p < std::ssize(pieces); ++p) {
     DrawnPiece& piece = pieces[p];
-    const int e = 2 * static_cast<int>(p);
+    const int e = 2 * p;
     const std::size_t n = piece.points.size();
     if (piece.closed || n < 4 || sets.find(e) != sets.find(e + 1) || members[sets.find(e)] != 2)
       continue;
@@ -211,11 +211,11 @@ std::vector<DrawnPiece> drawn_pieces(const View& view, const CurveNetOptions& op
   net.snap = options.snap * net.diagonal;
   std::vector<DrawnPiece> whole;
   double longest = 0;
-  for (std::size_t s = 0; s < view.strokes.size(); ++s) {
+  for (int s = 0; s < std::ssize(view.strokes); ++s) {
     const Stroke& stroke = view.strokes[s];
     const bool hidden = stroke.kind == StrokeKind::occlusion;
     if (hidden ? marks_border(view, stroke, net.snap) : stroke.kind != StrokeKind::border) continue;
-    whole.push_back(whole_stroke(stroke, static_cast<int>(s)));
+    whole.push_back(whole_stroke(stroke, s));
     longest = std::max(longest, chain_length(whole.back()));
   }
   net.spacing = longest / options.samples;
@@ -264,14 +264,14 @@ bool holds(const SketchCurve& curve, int node) {
 
 /// Joins free ends that touch the inside of another curve to its nearest node.
 void weld_touching_ends(CurveNet& net) {
-  for (std::size_t c = 0; c < net.curves.size(); ++c) {
+  for (int c = 0; c < std::ssize(net.curves); ++c) {
     if (net.curves[c].closed) continue;
     for (const bool front : {true, false}) {
       int& end = front ? net.curves[c].nodes.front() : net.curves[c].nodes.back();
       int users = 0;
       for (const SketchCurve& curve : net.curves) users += holds(curve, end) ? 1 : 0;
       if (users > 1) continue;
-      const NearestOnNet near = nearest_on_net(net, net.points[end], net.snap, static_cast<int>(c));
+      const NearestOnNet near = nearest_on_net(net, net.points[end], net.snap, c);
       if (near.place.curve < 0) continue;
       const SketchCurve& other = net.curves[near.place.curve];
       end = node_of(other, static_cast<int>(std::lround(near.place.at)));
@@ -415,7 +415,7 @@ NearestOnNet nearest_on_curve(const CurveNet& net, int curve, const Eigen::Vecto
 NearestOnNet nearest_on_net(const CurveNet& net, const Eigen::Vector2d& point, double reach,
                             int skip_curve) {
   NearestOnNet best{{}, reach};
-  for (int c = 0; c < static_cast<int>(net.curves.size()); ++c) {
+  for (int c = 0; c < std::ssize(net.curves); ++c) {
     if (c == skip_curve) continue;
     const NearestOnNet near = nearest_on_curve(net, c, point);
     if (near.distance < best.distance) best = near;

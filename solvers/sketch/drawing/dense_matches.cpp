@@ -121,9 +121,9 @@ std::vector<PairAnchor> anchors_on(const std::vector<SymmetricPair>& pairs, int 
       }
     }
   };
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
-    add(pairs[p].point_at, pairs[p].image_at, static_cast<int>(p));
-    if (!pairs[p].in_plane) add(pairs[p].image_at, pairs[p].point_at, static_cast<int>(p));
+  for (int p = 0; p < std::ssize(pairs); ++p) {
+    add(pairs[p].point_at, pairs[p].image_at, p);
+    if (!pairs[p].in_plane) add(pairs[p].image_at, pairs[p].point_at, p);
   }
   std::sort(anchors.begin(), anchors.end(), [](const PairAnchor& a, const PairAnchor& b) {
     return a.first != b.first ? a.first < b.first : a.second < b.second;

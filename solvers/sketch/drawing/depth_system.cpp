@@ -91,11 +91,11 @@ DepthRows::DepthRows(const DepthProblem& problem, const DepthOptions& options)
 }
 
 void DepthRows::add_accuracy() {
-  for (std::size_t v = 0; v < problem_.net.points.size(); ++v) {
+  for (int v = 0; v < std::ssize(problem_.net.points); ++v) {
     for (int axis = 0; axis < 2; ++axis) {
       rows_.push_back({DepthTerm::accuracy,
                        options_.accuracy,
-                       {{unknown(static_cast<int>(v), axis), 1.0}},
+                       {{unknown(v, axis), 1.0}},
                        problem_.net.points[v](axis)});
     }
   }
@@ -194,21 +194,21 @@ void DepthRows::add_planes() {
 void DepthRows::finish() {
   std::array<int, kDepthTerms> count{};
   for (const Row& row : rows_) ++count[static_cast<int>(row.term)];
-  right_.resize(static_cast<Eigen::Index>(rows_.size()));
+  right_.resize(rows_.size());
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     Row& row = rows_[r];
     row.weight = std::sqrt(row.weight / count[static_cast<int>(row.term)]);
-    right_(static_cast<Eigen::Index>(r)) = row.weight * row.right;
+    right_(r) = row.weight * row.right;
   }
 }
 
 DepthMatrix DepthRows::matrix() const {
   std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
+  for (int r = 0; r < std::ssize(rows_); ++r) {
     for (const auto& [column, c] : rows_[r].terms)
-      entries.emplace_back(static_cast<int>(r), column, rows_[r].weight * c);
+      entries.emplace_back(r, column, rows_[r].weight * c);
   }
-  DepthMatrix A(static_cast<Eigen::Index>(rows_.size()), unknowns_);
+  DepthMatrix A(rows_.size(), unknowns_);
   A.setFromTriplets(entries.begin(), entries.end());
   return A;
 }
@@ -264,7 +264,7 @@ std::string curves_that_move(const CurveNet& net, const Eigen::VectorXd& mode) {
   constexpr double kMoves = 0.3;  // of the largest motion
   double largest = 0;
   for (std::size_t v = 0; v < net.points.size(); ++v)
-    largest = std::max(largest, std::abs(mode(3 * static_cast<Eigen::Index>(v) + 2)));
+    largest = std::max(largest, std::abs(mode(3 * v + 2)));
   std::vector<std::string> ids;
   for (const SketchCurve& curve : net.curves) {
     double most = 0;
@@ -345,7 +345,7 @@ DepthSolution solve_depth(const DepthProblem& problem, const DepthOptions& optio
   x += factor.solve(b - N * x);
   DepthSolution solution;
   solution.condition = greatest / weakest.eigenvalue;
-  const auto nodes = static_cast<Eigen::Index>(problem.net.points.size());
+  const Eigen::Index nodes = problem.net.points.size();
   solution.nodes.resize(nodes, 3);
   for (Eigen::Index v = 0; v < nodes; ++v) solution.nodes.row(v) = x.segment<3>(3 * v).transpose();
   rows.report(x, solution);

@@ -46,7 +46,7 @@ int take_next(const CurveNet& net, std::vector<int>& left, int node, std::vector
     if (nodes.back() == node) std::reverse(nodes.begin(), nodes.end());
     if (nodes.front() != node) continue;
     const int taken = left[k];
-    left.erase(left.begin() + static_cast<std::ptrdiff_t>(k));
+    left.erase(left.begin() + k);
     return taken;
   }
   return -1;
@@ -85,9 +85,9 @@ std::vector<DrawnPanel> find_drawn_panels(const CurveNet& net,
     if (is_ruled(net, ruled, name)) continue;
     std::vector<int> curves;
     bool straight = true;
-    for (std::size_t c = 0; c < net.curves.size(); ++c) {
+    for (int c = 0; c < std::ssize(net.curves); ++c) {
       if (!names_panel(net.curves[c], name)) continue;
-      curves.push_back(static_cast<int>(c));
+      curves.push_back(c);
       straight = straight && is_straight(net, net.curves[c]);
     }
     const bool flat = straight || name.rfind("flat", 0) == 0;

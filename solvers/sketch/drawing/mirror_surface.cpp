@@ -39,7 +39,7 @@ KeptHalf::KeptHalf(const TexturedSurface& surface, const MirrorPlane& plane, boo
     : surface_(surface),
       V_(surface.mesh.V),
       distance_(V_.rows()),
-      number_(static_cast<std::size_t>(V_.rows()), -1),
+      number_(V_.rows(), -1),
       edges_(surface.mesh.F),
       crossing_(edges_.edge_count(), -1) {
   for (Eigen::Index v = 0; v < V_.rows(); ++v) {
@@ -90,29 +90,29 @@ void KeptHalf::cut(Eigen::Index triangle) {
   }
   for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
     triangles_.push_back({polygon[0], polygon[k], polygon[k + 1]});
-    patch_.push_back(surface_.patch[static_cast<std::size_t>(triangle)]);
+    patch_.push_back(surface_.patch[triangle]);
   }
 }
 
 TexturedSurface KeptHalf::with_image(const MirrorPlane& plane) const {
-  const auto n = static_cast<Eigen::Index>(position_.size());
+  const Eigen::Index n = position_.size();
   std::vector<int> image(position_.size());
   Eigen::Index count = n;
-  for (std::size_t v = 0; v < image.size(); ++v)
-    image[v] = in_plane_[v] ? static_cast<int>(v) : static_cast<int>(count++);
+  for (int v = 0; v < std::ssize(image); ++v)
+    image[v] = in_plane_[v] ? v : static_cast<int>(count++);
   TexturedSurface whole;
   whole.mesh.V.resize(count, 3);
   whole.texture.resize(count, 2);
   for (std::size_t v = 0; v < image.size(); ++v) {
-    const auto row = static_cast<Eigen::Index>(v);
+    const Eigen::Index row = v;
     whole.mesh.V.row(image[v]) = mirrored(plane, position_[v]).transpose();
     whole.mesh.V.row(row) = position_[v].transpose();
     whole.texture.row(row) = whole.texture.row(image[v]) = texture_[v].transpose();
   }
-  const auto m = static_cast<Eigen::Index>(triangles_.size());
+  const Eigen::Index m = triangles_.size();
   whole.mesh.F.resize(2 * m, 3);
   for (Eigen::Index t = 0; t < m; ++t) {
-    const auto& [a, b, c] = triangles_[static_cast<std::size_t>(t)];
+    const auto& [a, b, c] = triangles_[t];
     whole.mesh.F.row(t) << a, b, c;
     whole.mesh.F.row(m + t) << image[a], image[c], image[b];
   }

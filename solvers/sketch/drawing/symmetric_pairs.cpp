@@ -22,11 +22,11 @@ std::vector<CurvePoint> all_places(const CurveNet& net, const CurvePoint& place)
   const double off = (net.points[node] - evaluate(net, position_form(net, place))).norm();
   std::vector<CurvePoint> places;
   if (off <= std::max(net.snap, net.spacing / 2)) {
-    for (std::size_t c = 0; c < net.curves.size(); ++c) {
-      if (static_cast<int>(c) == place.curve) continue;
+    for (int c = 0; c < std::ssize(net.curves); ++c) {
+      if (c == place.curve) continue;
       const std::vector<int>& nodes = net.curves[c].nodes;
       for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (nodes[i] == node) places.push_back({static_cast<int>(c), static_cast<double>(i)});
+        if (nodes[i] == node) places.push_back({c, static_cast<double>(i)});
       }
     }
   }
@@ -39,7 +39,7 @@ std::vector<CurvePoint> all_places(const CurveNet& net, const CurvePoint& place)
 std::vector<int> borders_for_pair(const CurveNet& net, const Stroke& stroke) {
   const std::vector<std::string> panels = panels_in(stroke.panels);
   std::vector<int> borders;
-  for (int c = 0; c < static_cast<int>(net.curves.size()); ++c) {
+  for (int c = 0; c < std::ssize(net.curves); ++c) {
     const std::vector<std::string>& own = net.curves[c].panels;
     const bool belongs = std::all_of(panels.begin(), panels.end(), [&](const std::string& name) {
       return std::find(own.begin(), own.end(), name) != own.end();

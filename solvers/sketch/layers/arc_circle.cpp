@@ -210,11 +210,11 @@ std::vector<ArcCircle> fit_arc_circles(const View& view, const MirrorPlane& plan
                                        bool constrained) {
   std::vector<ArcCircle> circles;
   std::vector<const Stroke*> arcs;
-  for (std::size_t i = 0; i < view.strokes.size(); ++i) {
+  for (int i = 0; i < std::ssize(view.strokes); ++i) {
     if (view.strokes[i].kind != StrokeKind::arc) continue;
     arcs.push_back(&view.strokes[i]);
     circles.push_back(fit_arc_circle(view.strokes[i], plane, constrained));
-    circles.back().stroke = static_cast<int>(i);
+    circles.back().stroke = i;
   }
   if (circles.size() < 2) {
     throw Error("has " + std::to_string(circles.size()) + " arcs", "view:photo",

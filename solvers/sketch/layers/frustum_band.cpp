@@ -101,9 +101,8 @@ TriMesh band_solid(const FrustumBand& band, double thickness, const BandGrid& gr
     close((i + 1) * row, i * row);
     close(i * row + grid.around, (i + 1) * row + grid.around);
   }
-  solid.F.resize(static_cast<Eigen::Index>(faces.size()), 3);
-  for (std::size_t t = 0; t < faces.size(); ++t)
-    solid.F.row(static_cast<Eigen::Index>(t)) = faces[t];
+  solid.F.resize(faces.size(), 3);
+  for (std::size_t t = 0; t < faces.size(); ++t) solid.F.row(t) = faces[t];
   return solid;
 }
 

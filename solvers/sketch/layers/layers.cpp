@@ -17,9 +17,7 @@ namespace {
 using LayerOn = NamedArray::On;
 
 NamedArray layer_array(const char* name, LayerOn on, const std::vector<double>& values) {
-  return {
-      name, "1", on,
-      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()))};
+  return {name, "1", on, Eigen::Map<const Eigen::VectorXd>(values.data(), values.size())};
 }
 
 /// Meshes one after the other, moved.
@@ -40,7 +38,7 @@ Part joined_layers(const std::vector<TriMesh>& meshes,
     part.points.middleRows(n, mesh.V.rows()) =
         (mesh.V * poses[j].linear().transpose()).rowwise() + poses[j].translation().transpose();
     part.triangles.middleRows(m, mesh.F.rows()) = mesh.F.array() + static_cast<int>(n);
-    layer.insert(layer.end(), static_cast<std::size_t>(mesh.F.rows()), static_cast<double>(j + 1));
+    layer.insert(layer.end(), mesh.F.rows(), static_cast<double>(j + 1));
     n += mesh.V.rows();
     m += mesh.F.rows();
   }
@@ -58,9 +56,8 @@ class LinesPart {
   }
   [[nodiscard]] Part take() {
     part_.kind = Part::Kind::lines;
-    part_.points.resize(static_cast<Eigen::Index>(points_.size()), 3);
-    for (std::size_t i = 0; i < points_.size(); ++i)
-      part_.points.row(static_cast<Eigen::Index>(i)) = points_[i].transpose();
+    part_.points.resize(points_.size(), 3);
+    for (std::size_t i = 0; i < points_.size(); ++i) part_.points.row(i) = points_[i].transpose();
     return std::move(part_);
   }
 
@@ -109,7 +106,7 @@ Part drawn_arcs_part(const ArticulatedLayers& layers) {
 Part rivets_part(const ArticulatedLayers& layers, const std::vector<Eigen::Isometry3d>& poses) {
   Part part;
   part.kind = Part::Kind::points;
-  part.points.resize(static_cast<Eigen::Index>(4 * layers.hinges.size()), 3);
+  part.points.resize(4 * layers.hinges.size(), 3);
   std::vector<double> layer, number;
   Eigen::Index row = 0;
   for (std::size_t j = 0; j < layers.hinges.size(); ++j) {
@@ -188,9 +185,8 @@ class LayersModel final : public FrameModel {
     Frame frame;
     frame.parameter = number;
     Part surface = joined_layers(sheets_, poses);
-    std::vector<double> none(static_cast<std::size_t>(surface.points.rows())), border = none;
-    for (const Edge& e : boundary_edges(surface.triangles))
-      border[static_cast<std::size_t>(e[0])] = border[static_cast<std::size_t>(e[1])] = 1;
+    std::vector<double> none(surface.points.rows()), border = none;
+    for (const Edge& e : boundary_edges(surface.triangles)) border[e[0]] = border[e[1]] = 1;
     surface.arrays.push_back(layer_array("border", LayerOn::points, border));
     surface.arrays.push_back(layer_array("seam", LayerOn::points, none));
     surface.arrays.push_back(layer_array("fold", LayerOn::points, none));

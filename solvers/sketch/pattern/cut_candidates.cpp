@@ -184,7 +184,7 @@ int CandidateFinder::place_of(const Eigen::VectorXd& height) const {
 }
 
 SurfacePath CandidateFinder::to_vertex(int from, int to) const {
-  std::vector<char> targets(static_cast<std::size_t>(mesh_.vertex_count()), 0);
+  std::vector<char> targets(mesh_.vertex_count(), 0);
   targets[to] = 1;
   return paths_.shortest(from, targets);
 }
@@ -192,7 +192,7 @@ SurfacePath CandidateFinder::to_vertex(int from, int to) const {
 /// Where on the longest border a star begins: nearest to its place, or nearest to that of the
 /// points on the mirror plane that lies at the back.
 int CandidateFinder::border_start(int from, bool on_plane) const {
-  std::vector<char> targets(static_cast<std::size_t>(mesh_.vertex_count()), 0);
+  std::vector<char> targets(mesh_.vertex_count(), 0);
   if (!on_plane) {
     for (const std::vector<int>& border : piece_.borders) {
       for (const int v : border) targets[v] = 1;
@@ -217,7 +217,7 @@ std::vector<int> CandidateFinder::dividing(int start, int count) const {
     std::vector<double> along{0};
     std::vector<int> vertices;
     for (std::size_t i = 0; i < border.size(); ++i) {
-      const auto at = static_cast<std::size_t>(first - border.begin()) + i;
+      const auto at = (first - border.begin()) + i;
       vertices.push_back(border[at % border.size()]);
       along.push_back(
           along.back() +
@@ -292,14 +292,14 @@ SurfacePath CandidateFinder::shortest_loop(const CutPiece& ring,
   for (int t = 0; t < disc.mesh.triangle_count(); ++t)
     disc_price(t) = price(disc.surface_triangle[t]);
   const SurfacePaths paths(disc.mesh, disc_price);
-  std::vector<std::vector<int>> copies(static_cast<std::size_t>(ring.mesh.vertex_count()));
-  for (std::size_t v = 0; v < disc.surface_vertex.size(); ++v)
-    copies[disc.surface_vertex[v]].push_back(static_cast<int>(v));
+  std::vector<std::vector<int>> copies(ring.mesh.vertex_count());
+  for (int v = 0; v < std::ssize(disc.surface_vertex); ++v)
+    copies[disc.surface_vertex[v]].push_back(v);
   SurfacePath best;
   double least = std::numeric_limits<double>::infinity();
   for (const std::vector<int>& both : copies) {
     if (both.size() != 2) continue;
-    std::vector<char> targets(static_cast<std::size_t>(disc.mesh.vertex_count()), 0);
+    std::vector<char> targets(disc.mesh.vertex_count(), 0);
     targets[both[1]] = 1;
     SurfacePath path = paths.shortest(both[0], targets);
     if (path.empty()) continue;
@@ -397,7 +397,7 @@ std::vector<SurfacePath> mirrored_cut(const CutPiece& piece,
     for (int s = 1; s <= stretches; ++s) {
       const int to = nearest((image.rows() - 1) * s / stretches, s == stretches);
       if (to == from || to < 0) continue;
-      std::vector<char> targets(static_cast<std::size_t>(mesh.vertex_count()), 0);
+      std::vector<char> targets(mesh.vertex_count(), 0);
       targets[to] = 1;
       const SurfacePath stretch = paths.shortest(from, targets);
       if (stretch.empty()) return {};
@@ -422,7 +422,7 @@ SurfacePath bridge(const CutPiece& piece, const std::optional<MirrorAxis>& mirro
     return best;
   };
   const int from = at_back(piece.borders[1]);
-  std::vector<char> targets(static_cast<std::size_t>(piece.mesh.vertex_count()), 0);
+  std::vector<char> targets(piece.mesh.vertex_count(), 0);
   for (const int v : piece.borders[0]) targets[v] = 1;
   const int to = mirror ? at_back(piece.borders[0]) : -1;
   if (from >= 0 && to >= 0) {

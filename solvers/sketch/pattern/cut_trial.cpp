@@ -55,10 +55,10 @@ CutLines lines_of(const std::vector<SurfacePath>& paths, const TriMesh& mesh) {
   const Eigen::MatrixX3d N = vertex_normals(mesh);
   CutLines lines;
   for (const SurfacePath& path : paths) {
-    Eigen::MatrixX3d line(static_cast<Eigen::Index>(path.size()), 3), normal = line;
+    Eigen::MatrixX3d line(path.size(), 3), normal = line;
     for (std::size_t i = 0; i < path.size(); ++i) {
-      line.row(static_cast<Eigen::Index>(i)) = path[i].position(mesh.V);
-      normal.row(static_cast<Eigen::Index>(i)) = path[i].position(N).normalized();
+      line.row(i) = path[i].position(mesh.V);
+      normal.row(i) = path[i].position(N).normalized();
     }
     lines.length += length(path, mesh.V);
     lines.points.push_back(std::move(line));
@@ -86,10 +86,10 @@ std::optional<Openings> open_rings(SeamedSurface& surface, int seam, const Trial
 
 std::vector<Panel> panels_of(const SeamedSurface& surface) {
   const EdgeConnectivity edges(surface.mesh.F);
-  std::vector<int> piece_of(static_cast<std::size_t>(surface.mesh.triangle_count()));
+  std::vector<int> piece_of(surface.mesh.triangle_count());
   const std::vector<CutPiece> pieces = cut_surface(surface.mesh, surface.seams);
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    for (const int t : pieces[p].surface_triangle) piece_of[t] = static_cast<int>(p);
+  for (int p = 0; p < std::ssize(pieces); ++p) {
+    for (const int t : pieces[p].surface_triangle) piece_of[t] = p;
   }
   std::vector<SeamEdge> outer, inner;
   for (const SeamEdge& seam : surface.seams) {

@@ -49,7 +49,7 @@ std::vector<SurfacePath> random_cuts(const TriMesh& piece, double length_asked, 
   for (int draw = 0; draw < kDraws && left > 0.02 * length_asked; ++draw) {
     const int from = border[random.below(static_cast<std::uint32_t>(border.size()))];
     const auto to = random.below(static_cast<std::uint32_t>(piece.vertex_count()));
-    std::vector<char> targets(static_cast<std::size_t>(piece.vertex_count()), 0);
+    std::vector<char> targets(piece.vertex_count(), 0);
     targets[to] = 1;
     const SurfacePath whole = paths.shortest(from, targets);
     if (whole.size() < 2) continue;

@@ -43,7 +43,7 @@ class GreedySuggester {
 
   std::vector<SuggestedSeam> suggest() {
     std::vector<SuggestedSeam> suggestions;
-    while (static_cast<int>(suggestions.size()) < options_.count) {
+    while (std::ssize(suggestions) < options_.count) {
       std::optional<SuggestedSeam> next = suggest_one();
       if (!next) break;
       suggestions.push_back(std::move(*next));

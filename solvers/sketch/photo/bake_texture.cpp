@@ -35,8 +35,7 @@ Eigen::Vector3d photo_colour(const PixelImage& photo, const Eigen::Vector2d& at)
 PixelColour rounded_colour(const Eigen::Vector3d& c) {
   PixelColour colour{};
   for (int k = 0; k < 3; ++k)
-    colour[static_cast<std::size_t>(k)] =
-        static_cast<std::uint8_t>(std::lround(std::clamp(c(k), 0.0, 255.0)));
+    colour[k] = static_cast<std::uint8_t>(std::lround(std::clamp(c(k), 0.0, 255.0)));
   return colour;
 }
 
@@ -90,16 +89,16 @@ SeenSurface::SeenSurface(const View& view, const PixelImage& photo, const OneVie
 /// A connected surface has one outside.
 void SeenSurface::decide_outsides(const OneViewResult& result) {
   const EdgeConnectivity edges(result.surface.mesh.F);
-  const auto count = static_cast<int>(result.surface.mesh.F.rows());
+  const auto count = result.surface.mesh.triangle_count();
   DisjointSets parts(count);
   for (int h = 0; h < 3 * count; ++h)
     if (edges.twin(h) >= 0) parts.join(h / 3, edges.twin(h) / 3);
-  std::vector<double> facing(static_cast<std::size_t>(count), 0);
+  std::vector<double> facing(count, 0);
   for (const int t : nearest_.triangle) {
-    if (t >= 0) facing[static_cast<std::size_t>(parts.find(t))] += normals_(t, 2) > 0 ? 1 : -1;
+    if (t >= 0) facing[parts.find(t)] += normals_(t, 2) > 0 ? 1 : -1;
   }
   for (int t = 0; t < count; ++t) {
-    if (facing[static_cast<std::size_t>(parts.find(t))] < 0) normals_.row(t) *= -1;
+    if (facing[parts.find(t)] < 0) normals_.row(t) *= -1;
   }
 }
 
@@ -110,8 +109,7 @@ std::optional<Eigen::Vector3d> SeenSurface::colour(const Eigen::Vector3d& point,
   const Eigen::Vector2d at = grid_.pixels_at(point.head<2>());
   const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
   if (x < 0 || y < 0 || x >= grid_.width || y >= grid_.height) return {};
-  const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.width) +
-                        static_cast<std::size_t>(x);
+  const std::size_t i = static_cast<std::size_t>(y) * grid_.width + x;
   if (nearest_.depth[i] > point.z() + behind_) return {};
   return photo_colour(photo_,
                       {texture.x() * photo_.width - 0.5, (1 - texture.y()) * photo_.height - 0.5});
@@ -187,8 +185,8 @@ class PatternBaker {
 
  private:
   [[nodiscard]] int patch_at(std::size_t texel) const {
-    const int t = pieces_.triangle[static_cast<std::size_t>(covered_.triangle[texel])];
-    return result_.surface.patch[static_cast<std::size_t>(t)];
+    const int t = pieces_.triangle[covered_.triangle[texel]];
+    return result_.surface.patch[t];
   }
   void colour_texel(std::size_t texel);
   void fill_hidden();
@@ -206,11 +204,11 @@ class PatternBaker {
 void PatternBaker::colour_texel(std::size_t texel) {
   const TexturedSurface& surface = result_.surface;
   const int flat = covered_.triangle[texel];
-  const int t = pieces_.triangle[static_cast<std::size_t>(flat)];
+  const int t = pieces_.triangle[flat];
   Eigen::Vector3d point(0, 0, 0);
   Eigen::Vector2d texture(0, 0);
   for (int k = 0; k < 3; ++k) {
-    const int v = pieces_.vertex[static_cast<std::size_t>(pieces_.flat.F(flat, k))];
+    const int v = pieces_.vertex[pieces_.flat.F(flat, k)];
     point += covered_.weights[texel](k) * surface.mesh.V.row(v).transpose();
     texture += covered_.weights[texel](k) * surface.texture.row(v).transpose();
   }
@@ -219,7 +217,7 @@ void PatternBaker::colour_texel(std::size_t texel) {
     return n - 2 * n.dot(plane.normal) * plane.normal;
   };
   Eigen::Vector3d normal = seen_.normals().row(t).transpose();
-  if (surface.mirror_image[static_cast<std::size_t>(t)]) {
+  if (surface.mirror_image[t]) {
     point = mirrored(plane, point);
     normal = reflected(normal);
   }
@@ -242,7 +240,7 @@ void PatternBaker::fill_hidden() {
   double number = 0;
   for (std::size_t i = 0; i < source_.size(); ++i) {
     if (source_[i] != TexelSource::seen && source_[i] != TexelSource::mirrored) continue;
-    const auto p = static_cast<std::size_t>(patch_at(i));
+    const std::size_t p = patch_at(i);
     sum[p] += colour_[i];
     all += colour_[i];
     ++count[p];
@@ -250,7 +248,7 @@ void PatternBaker::fill_hidden() {
   }
   for (std::size_t i = 0; i < source_.size(); ++i) {
     if (source_[i] != TexelSource::flat) continue;
-    const auto p = static_cast<std::size_t>(patch_at(i));
+    const std::size_t p = patch_at(i);
     if (count[p] > 0) {
       colour_[i] = sum[p] / count[p];
     } else if (number > 0) {
@@ -264,10 +262,7 @@ void PatternBaker::bleed_once() {
   std::vector<TexelSource> grown = source_;
   for (int y = 0; y < grid_.height; ++y) {
     for (int x = 0; x < grid_.width; ++x) {
-      const auto at = [&](int i, int j) {
-        return static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.width) +
-               static_cast<std::size_t>(i);
-      };
+      const auto at = [&](int i, int j) { return static_cast<std::size_t>(j) * grid_.width + i; };
       if (source_[at(x, y)] != TexelSource::none) continue;
       Eigen::Vector3d sum(0, 0, 0);
       int count = 0;

@@ -37,8 +37,7 @@ void paint_triangle(const TriangleCorners& c, int number, const PixelGrid& grid,
       w.z() = 1 - w.x() - w.y();
       if (w.minCoeff() < kOnEdge) continue;
       const double z = w.x() * c[0].z() + w.y() * c[1].z() + w.z() * c[2].z();
-      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(grid.width) +
-                            static_cast<std::size_t>(x);
+      const std::size_t i = static_cast<std::size_t>(y) * grid.width + x;
       if (!(z > seen.depth[i])) continue;
       seen.depth[i] = z;
       seen.triangle[i] = number;
@@ -50,8 +49,7 @@ void paint_triangle(const TriangleCorners& c, int number, const PixelGrid& grid,
 }  // namespace
 
 NearestTriangles nearest_triangles(const TriMesh& mesh, const PixelGrid& grid) {
-  const std::size_t count =
-      static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
+  const std::size_t count = static_cast<std::size_t>(grid.width) * grid.height;
   NearestTriangles seen;
   seen.triangle.assign(count, -1);
   seen.depth.assign(count, -std::numeric_limits<double>::infinity());

@@ -16,12 +16,10 @@ struct PixelImage {
   std::vector<PixelColour> pixels;
 
   [[nodiscard]] PixelColour& at(int x, int y) {
-    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                  static_cast<std::size_t>(x)];
+    return pixels[static_cast<std::size_t>(y) * width + x];
   }
   [[nodiscard]] const PixelColour& at(int x, int y) const {
-    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                  static_cast<std::size_t>(x)];
+    return pixels[static_cast<std::size_t>(y) * width + x];
   }
 };
 

@@ -23,7 +23,7 @@ void triangle_rings(const Eigen::MatrixX3i& F, int vertex_count, int rings, std:
                     std::vector<int>& neighbour) {
   const VertexCorners corners(F, vertex_count);
   begin.assign(1, 0);
-  std::vector<int> seen(static_cast<std::size_t>(F.rows()), -1), found;
+  std::vector<int> seen(F.rows(), -1), found;
   for (int t = 0; t < F.rows(); ++t) {
     found.assign(1, t);
     seen[t] = t;
@@ -109,7 +109,7 @@ Eigen::Matrix3d DevelopableRotation::rotation(int triangle, const Eigen::MatrixX
 }
 
 std::vector<Eigen::Matrix3d> DevelopableRotation::rotations(const Eigen::MatrixX3d& normals) const {
-  std::vector<Eigen::Matrix3d> result(static_cast<std::size_t>(normals.rows()));
+  std::vector<Eigen::Matrix3d> result(normals.rows());
   parallel_blocks(result.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) result[t] = rotation(static_cast<int>(t), normals);
   });

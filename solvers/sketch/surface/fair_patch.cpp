@@ -66,10 +66,10 @@ Eigen::MatrixX2d points_inside(const Eigen::MatrixX2d& border, double spacing) {
       if (well_inside(border, p, kBorderGap * spacing)) inner.push_back(p);
     }
   }
-  Eigen::MatrixX2d points(border.rows() + static_cast<Eigen::Index>(inner.size()), 2);
+  Eigen::MatrixX2d points(border.rows() + inner.size(), 2);
   points.topRows(border.rows()) = border;
   for (std::size_t k = 0; k < inner.size(); ++k)
-    points.row(border.rows() + static_cast<Eigen::Index>(k)) = inner[k].transpose();
+    points.row(border.rows() + k) = inner[k].transpose();
   return points;
 }
 

@@ -26,19 +26,19 @@ struct FoldDistance {
 
 FoldDistance fold_distances(const SketchSurface& s, double most) {
   const Eigen::MatrixX3d& V = s.hull.mesh.V;
-  const auto n = static_cast<std::size_t>(V.rows());
+  const std::size_t n = V.rows();
   FoldDistance d{std::vector<double>(n, std::numeric_limits<double>::infinity()),
                  std::vector<int>(n, -1), std::vector<int>(n, -1)};
   const VertexGraph graph = one_rings(s.hull.mesh.F, static_cast<int>(V.rows()));
   using Item = std::tuple<double, int>;
   std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;
-  for (std::size_t f = 0; f < s.folds.size(); ++f) {
-    for (std::size_t e = 0; e < s.folds[f].edges.size(); ++e) {
+  for (int f = 0; f < std::ssize(s.folds); ++f) {
+    for (int e = 0; e < std::ssize(s.folds[f].edges); ++e) {
       for (const int v : s.folds[f].edges[e]) {
         if (d.distance[v] == 0) continue;
         d.distance[v] = 0;
-        d.fold[v] = static_cast<int>(f);
-        d.edge[v] = static_cast<int>(e);
+        d.fold[v] = f;
+        d.edge[v] = e;
         queue.emplace(0.0, v);
       }
     }
@@ -153,9 +153,8 @@ void FoldRotation::add_edges(const SketchSurface& s) {
       edges_.push_back({e, {}});
     }
     for (std::size_t i = 0; i < middle.size(); ++i) {
-      for (std::size_t j = 0; j < middle.size(); ++j) {
-        if ((middle[i] - middle[j]).norm() <= window)
-          edges_[first + i].nearby.push_back(first + static_cast<int>(j));
+      for (int j = 0; j < std::ssize(middle); ++j) {
+        if ((middle[i] - middle[j]).norm() <= window) edges_[first + i].nearby.push_back(first + j);
       }
     }
   }

@@ -70,7 +70,7 @@ struct PinnedTransfer::Impl {
   void assemble(const Eigen::MatrixX3d& X, const std::vector<Eigen::Matrix3d>& rotations,
                 std::vector<double>& weight, Eigen::MatrixX3d& rhs) const {
     const Eigen::MatrixX3d half = half_cotangents(X, F);
-    weight.assign(static_cast<std::size_t>(edges.edge_count()), 0);
+    weight.assign(edges.edge_count(), 0);
     rhs.setZero(n, 3);
     for (int t = 0; t < F.rows(); ++t) {
       for (int k = 0; k < 3; ++k) {

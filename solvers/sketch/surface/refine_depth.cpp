@@ -249,11 +249,11 @@ void Refinement::add_accuracy() {
   const std::vector<Eigen::Vector2d>& points = problem_.net.points;
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& p : points) box.extend(p);
-  for (std::size_t v = 0; v < points.size(); ++v) {
+  for (int v = 0; v < std::ssize(points); ++v) {
     system_.AddResidualBlock(
         new ceres::AutoDiffCostFunction<AccuracyResidual, 2, 3, 1>(
             new AccuracyResidual{points[v], box.center(), weight, problem_.net.diagonal}),
-        nullptr, node(static_cast<int>(v)), &perspective_);
+        nullptr, node(v), &perspective_);
   }
   if (!refine_.perspective) {
     system_.SetParameterBlockConstant(&perspective_);

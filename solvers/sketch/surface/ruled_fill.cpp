@@ -53,14 +53,14 @@ RuledStrip ruled_strip(const CurveNet& net, const RuledPatch& patch,
     a = next_a;
     b = next_b;
   }
-  strip.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+  strip.triangles.resize(triangles.size(), 3);
   for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) strip.triangles(static_cast<Eigen::Index>(t), k) = triangles[t][k];
+    for (int k = 0; k < 3; ++k) strip.triangles(t, k) = triangles[t][k];
   return strip;
 }
 
 Eigen::MatrixX2d unroll_strip(const RuledStrip& strip, const Eigen::MatrixX3d& positions) {
-  Eigen::MatrixX2d flat = Eigen::MatrixX2d::Zero(static_cast<Eigen::Index>(strip.node.size()), 2);
+  Eigen::MatrixX2d flat = Eigen::MatrixX2d::Zero(strip.node.size(), 2);
   std::vector<bool> laid(strip.node.size(), false);
   const auto distance = [&](int u, int v) {
     return (positions.row(strip.node[u]) - positions.row(strip.node[v])).norm();

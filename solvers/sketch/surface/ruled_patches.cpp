@@ -62,7 +62,7 @@ int node_near(const CurveNet& net, const CurvePoint& place) {
 /// Borders that an end of a ruling may lie on: those of the panel that it names, else all.
 std::vector<int> borders_for_ruling(const CurveNet& net, const Stroke& stroke) {
   std::vector<int> all, named;
-  for (int c = 0; c < static_cast<int>(net.curves.size()); ++c) {
+  for (int c = 0; c < std::ssize(net.curves); ++c) {
     all.push_back(c);
     const std::vector<std::string>& panels = net.curves[c].panels;
     if (std::find(panels.begin(), panels.end(), stroke.name) != panels.end()) named.push_back(c);
@@ -119,11 +119,11 @@ RulingsOfBorders read_rulings(const View& view, const CurveNet& net) {
 /// joined to the node nearest to its place.
 std::vector<std::array<int, 2>> cells_of(const std::vector<double>& image) {
   std::vector<std::array<int, 2>> cells{{0, static_cast<int>(std::lround(image.front()))}};
-  for (std::size_t i = 1; i < image.size(); ++i) {
+  for (int i = 1; i < std::ssize(image); ++i) {
     const int to = static_cast<int>(std::lround(image[i]));
     int j = std::min(cells.back()[1] + 1, to);
-    cells.push_back({static_cast<int>(i), j});
-    while (j < to) cells.push_back({static_cast<int>(i), ++j});
+    cells.push_back({i, j});
+    while (j < to) cells.push_back({i, ++j});
   }
   return cells;
 }

@@ -45,8 +45,8 @@ int owner_joint(const RiggedMesh& rig, int v, PartitionRule rule,
 
 std::vector<std::vector<int>> clusters_of(const std::vector<int>& owner, int joints) {
   std::vector<std::vector<int>> clusters(joints);
-  for (std::size_t v = 0; v < owner.size(); ++v) {
-    if (owner[v] >= 0) clusters[owner[v]].push_back(static_cast<int>(v));
+  for (int v = 0; v < std::ssize(owner); ++v) {
+    if (owner[v] >= 0) clusters[owner[v]].push_back(v);
   }
   return clusters;
 }
@@ -85,13 +85,13 @@ BonePartition partition_bones(const RiggedMesh& rig, PartitionRule rule, double 
   std::vector<int> owner(rig.mesh.vertex_count());
   std::vector<std::vector<int>> clusters;
   for (bool changed = true; changed;) {
-    for (std::size_t v = 0; v < owner.size(); ++v) {
-      owner[v] = owner_joint(rig, static_cast<int>(v), rule, segments, allowed);
+    for (int v = 0; v < std::ssize(owner); ++v) {
+      owner[v] = owner_joint(rig, v, rule, segments, allowed);
     }
     clusters = clusters_of(owner, joints);
     changed = false;
     for (std::size_t j = 0; j < clusters.size(); ++j) {
-      if (allowed[j] && static_cast<int>(clusters[j].size()) < kMinBoneVertices) {
+      if (allowed[j] && std::ssize(clusters[j]) < kMinBoneVertices) {
         allowed[j] = false;
         changed = changed || !clusters[j].empty();
       }
@@ -99,10 +99,10 @@ BonePartition partition_bones(const RiggedMesh& rig, PartitionRule rule, double 
   }
   BonePartition result;
   std::vector<int> bone_of_joint(joints, -1);
-  for (std::size_t j = 0; j < clusters.size(); ++j) {
+  for (int j = 0; j < std::ssize(clusters); ++j) {
     if (!allowed[j]) continue;
     FieldBone bone;
-    bone.joint = static_cast<int>(j);
+    bone.joint = j;
     for (int a = rig.skeleton.joints[j].parent; a >= 0 && bone.parent < 0;
          a = rig.skeleton.joints[a].parent) {
       bone.parent = bone_of_joint[a];

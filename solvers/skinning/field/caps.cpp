@@ -58,7 +58,7 @@ bool surrounds(const Ring& ring) {
 }
 
 Series fit_radius(const Ring& ring) {
-  const auto n = static_cast<Eigen::Index>(ring.azimuth.size());
+  const Eigen::Index n = ring.azimuth.size();
   Eigen::MatrixXd rows(n, 5);
   Eigen::VectorXd values(n);
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -36,15 +36,15 @@ std::vector<std::uint8_t> body_parts(const std::vector<int>& parent,
   const std::size_t n = parent.size();
   std::vector<std::uint8_t> same(n * n, everything ? 1 : 0);
   const auto join = [&](int a, int b) {
-    same[static_cast<std::size_t>(a) * n + static_cast<std::size_t>(b)] = 1;
-    same[static_cast<std::size_t>(b) * n + static_cast<std::size_t>(a)] = 1;
+    same[a * n + b] = 1;
+    same[b * n + a] = 1;
   };
   for (std::size_t b = 0; b < n; ++b) {
     join(static_cast<int>(b), static_cast<int>(b));
     if (parent[b] >= 0) join(static_cast<int>(b), parent[b]);
   }
-  for (std::size_t v = 0; v < bone_of_vertex.size(); ++v) {
-    for (const int w : graph.of(static_cast<int>(v))) {
+  for (int v = 0; v < std::ssize(bone_of_vertex); ++v) {
+    for (const int w : graph.of(v)) {
       const int a = bone_of_vertex[v], b = bone_of_vertex[w];
       if (a >= 0 && b >= 0) join(a, b);
     }
@@ -120,7 +120,7 @@ int FieldComposition::bones_near(Float4 low, Float4 high, int* bones) const {
   const Float4 centre = (low + high) * 0.5F;
   const Float4 half = (high - low) * 0.5F;
   int count = 0;
-  for (std::size_t b = 0; b < posed_.size(); ++b) {
+  for (int b = 0; b < std::ssize(posed_); ++b) {
     const PosedBone& posed = posed_[b];
     const Float4 c = posed.to_grid[0] * splat(centre[0]) + posed.to_grid[1] * splat(centre[1]) +
                      posed.to_grid[2] * splat(centre[2]) + posed.to_grid[3] - posed.centre;
@@ -131,7 +131,7 @@ int FieldComposition::bones_near(Float4 low, Float4 high, int* bones) const {
                           std::abs(posed.to_grid[2][k]) * half[2];
       meets = meets && std::abs(c[k]) <= reach;
     }
-    if (meets) bones[count++] = static_cast<int>(b);
+    if (meets) bones[count++] = b;
   }
   return count;
 }

@@ -125,8 +125,7 @@ class FieldComposition {
   [[nodiscard]] int bone_count() const { return static_cast<int>(fields_.size()); }
   [[nodiscard]] const std::vector<BoneField>& fields() const { return fields_; }
   [[nodiscard]] bool same_part(int a, int b) const {
-    return same_part_[static_cast<std::size_t>(a) * fields_.size() + static_cast<std::size_t>(b)] !=
-           0;
+    return same_part_[static_cast<std::size_t>(a) * fields_.size() + b] != 0;
   }
 
  private:

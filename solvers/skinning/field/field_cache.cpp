@@ -70,8 +70,8 @@ FieldCache::FieldCache(const Hrbf& field, const FieldBox& box, int grid) {
   for (int k = 0; k < 3; ++k) size_[k] = static_cast<int>(extent_(k)) + 1;
   stride_j_ = size_[0];
   stride_k_ = size_[0] * size_[1];
-  nodes_.resize(static_cast<std::size_t>(stride_k_) * static_cast<std::size_t>(size_[2]));
-  const auto rows = static_cast<std::size_t>(size_[1]) * static_cast<std::size_t>(size_[2]);
+  nodes_.resize(static_cast<std::size_t>(stride_k_) * size_[2]);
+  const auto rows = static_cast<std::size_t>(size_[1]) * size_[2];
   parallel_blocks(rows, 32, [&](std::size_t begin, std::size_t end) {
     Eigen::MatrixX3d points(size_[0], 3);
     Eigen::MatrixX4d values;
@@ -84,8 +84,7 @@ FieldCache::FieldCache(const Hrbf& field, const FieldBox& box, int grid) {
       field.evaluate(points, values);
       for (int i = 0; i < size_[0]; ++i) {
         const Eigen::RowVector4f v = values.row(i).cast<float>();
-        nodes_[row * static_cast<std::size_t>(size_[0]) + static_cast<std::size_t>(i)] =
-            Float4{v(0), v(1), v(2), v(3)};
+        nodes_[row * size_[0] + static_cast<std::size_t>(i)] = Float4{v(0), v(1), v(2), v(3)};
       }
     }
   });

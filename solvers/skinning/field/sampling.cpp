@@ -168,8 +168,8 @@ CapSamples close_ends(const TriMesh& mesh, const BonePartition& partition, int b
   };
   const int parent = partition.bones[bone_index].parent;
   if (parent >= 0) close(bone_index, parent, -1);
-  for (std::size_t b = 0; b < partition.bones.size(); ++b) {
-    if (partition.bones[b].parent == bone_index) close(static_cast<int>(b), bone_index, 1);
+  for (int b = 0; b < std::ssize(partition.bones); ++b) {
+    if (partition.bones[b].parent == bone_index) close(b, bone_index, 1);
   }
   return caps;
 }
@@ -187,8 +187,8 @@ BoneSamples sample_bone(const TriMesh& mesh, const Eigen::MatrixX3d& normals,
     for (const int v : bone.vertices) candidates.push_back({mesh.V.row(v), normals.row(v)});
   }
   candidates = usable(candidates, bone, options);
-  const std::vector<std::size_t> chosen = poisson_disk(
-      candidates, static_cast<std::size_t>(options.samples), bounding_box_diagonal(mesh.V));
+  const std::vector<std::size_t> chosen =
+      poisson_disk(candidates, options.samples, bounding_box_diagonal(mesh.V));
 
   std::vector<Eigen::Vector3d> points, normals_of_points;
   for (const std::size_t i : chosen) {
@@ -201,7 +201,7 @@ BoneSamples sample_bone(const TriMesh& mesh, const Eigen::MatrixX3d& normals,
 
   BoneSamples samples;
   samples.cap_count = static_cast<int>(caps.points.size());
-  samples.points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  samples.points.resize(points.size(), 3);
   samples.normals.resize(samples.points.rows(), 3);
   for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
     samples.points.row(i) = points[i].transpose();

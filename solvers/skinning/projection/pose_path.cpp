@@ -33,7 +33,7 @@ PosePath::PosePath(Skeleton skeleton) : skeleton_(std::move(skeleton)) {}
 Eigen::Isometry3d PosePath::against_parent(const Pose& pose, std::size_t joint) const {
   const int parent = skeleton_.joints[joint].parent;
   const Eigen::Isometry3d own = rigid_part(pose[joint]);
-  return parent < 0 ? own : rigid_part(pose[static_cast<std::size_t>(parent)]).inverse() * own;
+  return parent < 0 ? own : rigid_part(pose[parent]).inverse() * own;
 }
 
 int PosePath::go_to(const Pose& pose, double largest_turn) {
@@ -86,9 +86,8 @@ const Pose& PosePath::at(int step) {
     Eigen::Isometry3d local = Eigen::Isometry3d::Identity();
     local.linear() = turn.toRotationMatrix();
     local.translation() = head - local.linear() * joint.head;
-    between_[j] = joint.parent < 0
-                      ? Eigen::Affine3d(local)
-                      : between_[static_cast<std::size_t>(joint.parent)] * Eigen::Affine3d(local);
+    between_[j] =
+        joint.parent < 0 ? Eigen::Affine3d(local) : between_[joint.parent] * Eigen::Affine3d(local);
   }
   return between_;
 }

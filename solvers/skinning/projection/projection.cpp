@@ -65,18 +65,18 @@ void Projection::step(SkinState& state) const {
     SkinState* state;
   };
   const Task task{this, &state};
-  parallel_blocks(
-      state.live_blocks.size(), kLiveBlocksPerTask, [task](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) {
-          task.self->step_block(*task.state, static_cast<std::size_t>(task.state->live_blocks[b]));
-        }
-      });
+  parallel_blocks(state.live_blocks.size(), kLiveBlocksPerTask,
+                  [task](std::size_t begin, std::size_t end) {
+                    for (std::size_t b = begin; b < end; ++b) {
+                      task.self->step_block(*task.state, task.state->live_blocks[b]);
+                    }
+                  });
   state.drop_dead_blocks();
 }
 
 void Projection::step_block(SkinState& state, std::size_t block) const {
   const std::size_t begin = block * SkinState::kBlock;
-  const auto count = static_cast<std::size_t>(state.active_count[block]);
+  const std::size_t count = state.active_count[block];
   Float4Bounds bounds;
   for (std::size_t i = begin; i < begin + count; ++i) {
     bounds.include(state.position[state.active[i]]);
@@ -87,7 +87,7 @@ void Projection::step_block(SkinState& state, std::size_t block) const {
   std::size_t kept = begin;
   std::int64_t evaluations = 0;
   for (std::size_t i = begin; i < begin + count; ++i) {
-    const auto slot = static_cast<std::size_t>(state.active[i]);
+    const std::size_t slot = state.active[i];
     const FieldAt at = field_.at(state.position[slot], state.owner[slot], reach);
     evaluations += at.evaluations;
     if (step_vertex(state, slot, at)) state.active[kept++] = static_cast<int>(slot);

@@ -42,8 +42,8 @@ bool mean_value_coordinates(const std::vector<Eigen::Vector2d>& ring, std::vecto
 }
 
 void prepare_vertex(SkinState& state, std::size_t s) {
-  const auto begin = static_cast<std::size_t>(state.ring_offset[s]);
-  const auto end = static_cast<std::size_t>(state.ring_offset[s + 1]);
+  const std::size_t begin = state.ring_offset[s];
+  const std::size_t end = state.ring_offset[s + 1];
   const Eigen::Vector3d inward = to_vector(state.gradient[s]);
   if (end - begin < 3 || !(inward.norm() > 0)) return;
   const Eigen::Vector3d normal = -inward.normalized();
@@ -102,9 +102,9 @@ void prepare_relaxation(SkinState& state) {
 void relax(SkinState& state, RelaxationLaw law) {
   const auto each_active = [&state](std::size_t begin, std::size_t end, const auto& visit) {
     for (std::size_t b = begin; b < end; ++b) {
-      const auto block = static_cast<std::size_t>(state.live_blocks[b]);
+      const std::size_t block = state.live_blocks[b];
       const std::size_t first = block * SkinState::kBlock;
-      const std::size_t last = first + static_cast<std::size_t>(state.active_count[block]);
+      const std::size_t last = first + state.active_count[block];
       for (std::size_t i = first; i < last; ++i) visit(static_cast<std::size_t>(state.active[i]));
     }
   };

@@ -31,8 +31,7 @@ void SkinProximity::build(const std::vector<Float4>& position) {
   const Float4 extent = bounds.high - bounds.low;
   cell_ = std::max({extent[0], extent[1], extent[2], 1e-12F}) / kMostCells;
   for (int k = 0; k < 3; ++k) size_[k] = 1 + static_cast<int>(extent[k] / cell_);
-  const auto cells = static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
-                     static_cast<std::size_t>(size_[2]);
+  const auto cells = static_cast<std::size_t>(size_[0]) * size_[1] * size_[2];
   offset_.assign(cells + 1, 0);
   cell_of_slot_.resize(position.size());
   slots_.resize(position.size());
@@ -44,9 +43,9 @@ void SkinProximity::build(const std::vector<Float4>& position) {
   }
   for (std::size_t c = 0; c < cells; ++c) offset_[c + 1] += offset_[c];
   cursor_.assign(offset_.begin(), offset_.end() - 1);
-  for (std::size_t s = 0; s < position.size(); ++s) {
-    int& next = cursor_[static_cast<std::size_t>(cell_of_slot_[s])];
-    slots_[static_cast<std::size_t>(next++)] = static_cast<int>(s);
+  for (int s = 0; s < std::ssize(position); ++s) {
+    int& next = cursor_[cell_of_slot_[s]];
+    slots_[next++] = s;
   }
 }
 
@@ -65,10 +64,10 @@ std::optional<SkinProximity::Facing> SkinProximity::facing(const SkinState& stat
   for (int z = begin[2]; z <= end[2]; ++z) {
     for (int y = begin[1]; y <= end[1]; ++y) {
       const int row = (z * size_[1] + y) * size_[0];
-      const int first = offset_[static_cast<std::size_t>(row + begin[0])];
-      const int last = offset_[static_cast<std::size_t>(row + end[0] + 1)];
+      const int first = offset_[row + begin[0]];
+      const int last = offset_[row + end[0] + 1];
       for (int i = first; i < last; ++i) {
-        const auto other = static_cast<std::size_t>(slots_[static_cast<std::size_t>(i)]);
+        const std::size_t other = slots_[i];
         const Float4 way = (*position_)[other] - p;
         const float distance2 = dot3(way, way);
         if (distance2 >= nearest) continue;

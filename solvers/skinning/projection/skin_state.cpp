@@ -37,7 +37,7 @@ std::vector<std::uint64_t> morton_codes(const Eigen::MatrixX3d& V) {
 
 SkinState::SkinState(const RiggedMesh& rig, const VertexGraph& graph,
                      const std::vector<int>& bone_of_vertex) {
-  const auto n = static_cast<std::size_t>(rig.mesh.vertex_count());
+  const std::size_t n = rig.mesh.vertex_count();
   const std::vector<std::uint64_t> codes = morton_codes(rig.mesh.V);
   vertex.resize(n);
   std::iota(vertex.begin(), vertex.end(), 0);

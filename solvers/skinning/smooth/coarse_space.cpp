@@ -27,17 +27,17 @@ class Walk {
   template <class Visit>
   void from(int start, float reach, const Visit& visit) {
     touched_.assign(1, start);
-    distance_[static_cast<std::size_t>(start)] = 0;
+    distance_[start] = 0;
     queue_.emplace(0.0F, start);
     while (!queue_.empty()) {
       const auto [distance, slot] = queue_.top();
       queue_.pop();
-      const auto s = static_cast<std::size_t>(slot);
+      const std::size_t s = slot;
       if (distance > distance_[s]) continue;
       visit(slot);
       for (int j = rings_.offset[s]; j < rings_.offset[s + 1]; ++j) {
-        const int next = rings_.neighbour[static_cast<std::size_t>(j)];
-        const auto n = static_cast<std::size_t>(next);
+        const int next = rings_.neighbour[j];
+        const std::size_t n = next;
         const Float4 edge = state_.rest[n] - state_.rest[s];
         const float there = distance + std::sqrt(dot3(edge, edge));
         if (there > reach || there >= distance_[n]) continue;
@@ -46,7 +46,7 @@ class Walk {
         queue_.emplace(there, next);
       }
     }
-    for (const int slot : touched_) distance_[static_cast<std::size_t>(slot)] = kFar;
+    for (const int slot : touched_) distance_[slot] = kFar;
   }
 
  private:
@@ -75,9 +75,7 @@ void reproduce_lines(const SkinState& state, std::size_t slot, const Eigen::Vect
   std::vector<Eigen::Vector3d> basis;
   double reach2 = 1e-30;
   for (const CoarseSpace::Entry& entry : entries) {
-    const Float4 way =
-        state.rest[static_cast<std::size_t>(nodes[static_cast<std::size_t>(entry.at)])] -
-        state.rest[slot];
+    const Float4 way = state.rest[nodes[entry.at]] - state.rest[slot];
     const Eigen::Vector2d along =
         tangents.transpose() * Eigen::Vector3d(static_cast<double>(way[0]),
                                                static_cast<double>(way[1]),
@@ -111,18 +109,17 @@ void CoarseSpace::place_nodes(const SkinState& state, const Rings& rings,
     // Skin without a bone stands still.
     if (covered[s] != 0 || !(radius[s] > 0)) continue;
     nodes.push_back(static_cast<int>(s));
-    walk.from(static_cast<int>(s), kSpacing * radius[s],
-              [&](int slot) { covered[static_cast<std::size_t>(slot)] = 1; });
+    walk.from(static_cast<int>(s), kSpacing * radius[s], [&](int slot) { covered[slot] = 1; });
   }
   std::vector<std::vector<Entry>> rows(size_);
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    const auto centre = static_cast<std::size_t>(nodes[n]);
+  for (int n = 0; n < std::ssize(nodes); ++n) {
+    const std::size_t centre = nodes[n];
     const float reach = kBump * kSpacing * radius[centre];
     walk.from(nodes[n], kDetour * reach, [&](int slot) {
-      const auto s = static_cast<std::size_t>(slot);
+      const std::size_t s = slot;
       const Float4 way = state.rest[s] - state.rest[centre];
       const float inside = 1 - dot3(way, way) / (reach * reach);
-      if (inside > 0) rows[s].push_back({static_cast<int>(n), inside * inside * inside});
+      if (inside > 0) rows[s].push_back({n, inside * inside * inside});
     });
   }
   row_offset_.assign(1, 0);
@@ -131,7 +128,7 @@ void CoarseSpace::place_nodes(const SkinState& state, const Rings& rings,
     reproduce_lines(state, s, normals.row(state.vertex[s]), nodes, rows[s]);
     for (const Entry& entry : rows[s]) {
       row_.push_back(entry);
-      columns[static_cast<std::size_t>(entry.at)].push_back({static_cast<int>(s), entry.weight});
+      columns[entry.at].push_back({static_cast<int>(s), entry.weight});
     }
     row_offset_.push_back(row_.size());
   }
@@ -154,18 +151,15 @@ CoarseSpace::CoarseSpace(const SkinState& state, const Rings& rings,
                          const std::vector<float>& area)
     : size_(state.size()) {
   place_nodes(state, rings, radius, normals);
-  const auto nodes = static_cast<Eigen::Index>(node_count());
-  Eigen::SparseMatrix<double> P(static_cast<Eigen::Index>(size_), nodes);
+  const Eigen::Index nodes = node_count();
+  Eigen::SparseMatrix<double> P(size_, nodes);
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t s = 0; s < size_; ++s)
     for (const Entry& entry : row(s))
       entries.emplace_back(static_cast<int>(s), entry.at, static_cast<double>(entry.weight));
   P.setFromTriplets(entries.begin(), entries.end());
   const auto diagonal = [](const std::vector<float>& values) {
-    return Eigen::Map<const Eigen::VectorXf>(values.data(),
-                                             static_cast<Eigen::Index>(values.size()))
-        .cast<double>()
-        .eval();
+    return Eigen::Map<const Eigen::VectorXf>(values.data(), values.size()).cast<double>().eval();
   };
   const Eigen::SparseMatrix<double> LP = laplace * P;
   const Eigen::SparseMatrix<double> bent =
@@ -193,9 +187,8 @@ void CoarseSpace::open(const std::vector<std::uint8_t>& chosen) {
   nodes_.clear();
   for (std::size_t n = 0; n < node_count(); ++n) {
     const std::vector<int>& blocks = blocks_of_[n];
-    const bool inside = std::all_of(blocks.begin(), blocks.end(), [&](int b) {
-      return chosen[static_cast<std::size_t>(b)] != 0;
-    });
+    const bool inside =
+        std::all_of(blocks.begin(), blocks.end(), [&](int b) { return chosen[b] != 0; });
     is_open_[n] = inside ? 1 : 0;
     value_[n] = search_[n] = Float4{};
     if (inside) nodes_.push_back(static_cast<int>(n));
@@ -205,25 +198,22 @@ void CoarseSpace::open(const std::vector<std::uint8_t>& chosen) {
 void CoarseSpace::apply(const std::vector<Demand>& demands, const std::vector<int>& slots,
                         const std::vector<float>& area, float kappa, float diagonal) {
   for (const int node : nodes_) {
-    const auto n = static_cast<std::size_t>(node);
+    const std::size_t n = node;
     Float4 sum{};
     for (std::size_t j = pair_offset_[n]; j < pair_offset_[n + 1]; ++j) {
       const Pair& pair = pair_[j];
-      sum += splat(kappa * pair.bend + diagonal * pair.mass) *
-             search_[static_cast<std::size_t>(pair.node)];
+      sum += splat(kappa * pair.bend + diagonal * pair.mass) * search_[pair.node];
     }
     image_[n] = sum;
   }
   for (const int slot : slots) {
-    const auto s = static_cast<std::size_t>(slot);
+    const std::size_t s = slot;
     const Demand& demand = demands[s];
     Float4 x{};
-    for (const Entry& entry : row(s))
-      x += splat(entry.weight) * search_[static_cast<std::size_t>(entry.at)];
+    for (const Entry& entry : row(s)) x += splat(entry.weight) * search_[entry.at];
     const Float4 answer =
         demand.direction * splat(area[s] * demand.weight * dot3(demand.direction, x));
-    for (const Entry& entry : row(s))
-      image_[static_cast<std::size_t>(entry.at)] += splat(entry.weight) * answer;
+    for (const Entry& entry : row(s)) image_[entry.at] += splat(entry.weight) * answer;
   }
 }
 
@@ -233,11 +223,11 @@ void CoarseSpace::solve(const std::vector<Demand>& demands, const std::vector<in
                         std::vector<Float4>& u) {
   double energy = 0;
   for (const int node : nodes_) {
-    const auto n = static_cast<std::size_t>(node);
+    const std::size_t n = node;
     Float4 sum{};
     float asked = 0;
     for (std::size_t j = column_offset_[n]; j < column_offset_[n + 1]; ++j) {
-      const auto s = static_cast<std::size_t>(column_[j].at);
+      const std::size_t s = column_[j].at;
       const float weight = column_[j].weight;
       sum += splat(weight) * residual[s];
       asked += weight * weight * area[s] * demands[s].weight;
@@ -255,20 +245,20 @@ void CoarseSpace::solve(const std::vector<Demand>& demands, const std::vector<in
   for (int i = 0; i < kIterations && energy > enough; ++i) {
     const auto keep = static_cast<float>(i == 0 ? 0 : energy / last);
     for (const int node : nodes_) {
-      const auto n = static_cast<std::size_t>(node);
+      const std::size_t n = node;
       search_[n] = splat(inverse_[n]) * residual_[n] + splat(keep) * search_[n];
     }
     apply(demands, slots, area, kappa, diagonal);
     double along = 0;
     for (const int node : nodes_) {
-      const auto n = static_cast<std::size_t>(node);
+      const std::size_t n = node;
       along += static_cast<double>(dot3(search_[n], image_[n]));
     }
     const auto step = static_cast<float>(energy / along);
     last = energy;
     energy = 0;
     for (const int node : nodes_) {
-      const auto n = static_cast<std::size_t>(node);
+      const std::size_t n = node;
       value_[n] += splat(step) * search_[n];
       residual_[n] -= splat(step) * image_[n];
       energy += static_cast<double>(inverse_[n] * dot3(residual_[n], residual_[n]));
@@ -278,8 +268,7 @@ void CoarseSpace::solve(const std::vector<Demand>& demands, const std::vector<in
     const std::size_t first = static_cast<std::size_t>(block) * SkinState::kBlock;
     for (std::size_t s = first; s < std::min(size_, first + SkinState::kBlock); ++s) {
       Float4 sum{};
-      for (const Entry& entry : row(s))
-        sum += splat(entry.weight) * value_[static_cast<std::size_t>(entry.at)];
+      for (const Entry& entry : row(s)) sum += splat(entry.weight) * value_[entry.at];
       u[s] = sum;
     }
   }

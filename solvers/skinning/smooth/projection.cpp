@@ -76,7 +76,7 @@ void smooth_values(std::vector<float>& values, const SkinState& state) {
     for (std::size_t s = 0; s < values.size(); ++s) {
       float sum = values[s];
       for (int j = state.ring_offset[s]; j < state.ring_offset[s + 1]; ++j)
-        sum += values[static_cast<std::size_t>(state.ring[j])];
+        sum += values[state.ring[j]];
       next[s] = sum / static_cast<float>(1 + state.ring_offset[s + 1] - state.ring_offset[s]);
     }
     values.swap(next);
@@ -94,7 +94,7 @@ EndTrust end_trust(const BonePartition& partition, const std::vector<double>& li
   for (std::size_t b = 0; b < limb.size(); ++b) {
     const int parent = partition.bones[b].parent;
     if (parent < 0) continue;
-    const auto p = static_cast<std::size_t>(parent);
+    const std::size_t p = parent;
     trust.head[b] = std::min(limb[b], limb[p]);
     trust.tail[p] = std::min(trust.tail[p], trust.head[b]);
   }
@@ -107,7 +107,7 @@ std::vector<float> local_radii(const RiggedMesh& rig, const BonePartition& parti
   for (std::size_t s = 0; s < state.size(); ++s) {
     double r = 0;
     if (state.owner[s] >= 0) {
-      const FieldBone& bone = partition.bones[static_cast<std::size_t>(state.owner[s])];
+      const FieldBone& bone = partition.bones[state.owner[s]];
       r = std::max(kLeastRadius * bone.radius,
                    segment_distance(rig.mesh.V.row(state.vertex[s]), bone.head, bone.tail));
     }
@@ -125,10 +125,10 @@ Float4 blended_rotation(const SkinState& state, std::size_t s,
   for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i) {
     if (state.influence_weight[i] <= largest) continue;
     largest = state.influence_weight[i];
-    pivot = rotations[static_cast<std::size_t>(state.influence_joint[i])];
+    pivot = rotations[state.influence_joint[i]];
   }
   for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i) {
-    const Float4 q = rotations[static_cast<std::size_t>(state.influence_joint[i])];
+    const Float4 q = rotations[state.influence_joint[i]];
     const float same = dot3(q, pivot) + q[3] * pivot[3];
     sum += splat(same < 0 ? -state.influence_weight[i] : state.influence_weight[i]) * q;
   }
@@ -161,8 +161,7 @@ std::vector<int> joints_about(const SkinState& state, const FieldComposition& fi
   std::array<int, kMaxFieldBones> near;
   const Float4Bounds bounds = bounds_of(state, block);
   const int count = field.bones_near(bounds.low, bounds.high, near.data());
-  for (int i = 0; i < count; ++i)
-    joints.push_back(field.fields()[static_cast<std::size_t>(near[i])].bone.joint);
+  for (int i = 0; i < count; ++i) joints.push_back(field.fields()[near[i]].bone.joint);
   std::sort(joints.begin(), joints.end());
   joints.erase(std::unique(joints.begin(), joints.end()), joints.end());
   return joints;
@@ -195,10 +194,10 @@ SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& p
       trust_.push_back(0);
       continue;
     }
-    const auto b = static_cast<std::size_t>(state.owner[s]);
+    const std::size_t b = state.owner[s];
     const FieldBone& bone = partition.bones[b];
     const double along = segment_parameter(rig.mesh.V.row(state.vertex[s]), bone.head, bone.tail);
-    const auto share = static_cast<double>(ramp(0.3F, 0.7F, static_cast<float>(along)));
+    const double share = ramp(0.3F, 0.7F, static_cast<float>(along));
     trust_.push_back(static_cast<float>(trust.head[b] + share * (trust.tail[b] - trust.head[b])));
   }
   smooth_values(trust_, state);
@@ -246,8 +245,7 @@ float SmoothProjection::excess_of(std::size_t slot, const Sampled& at,
 
 float SmoothProjection::slack_of(std::size_t slot, int bone) const {
   for (int i = overlap_offset_[slot]; i < overlap_offset_[slot + 1]; ++i)
-    if (overlap_[static_cast<std::size_t>(i)].bone == bone)
-      return overlap_[static_cast<std::size_t>(i)].slack;
+    if (overlap_[i].bone == bone) return overlap_[i].slack;
   return 0;
 }
 
@@ -345,14 +343,14 @@ void SmoothProjection::find_awake(const SkinState& state) {
       const std::vector<int>& joints = joints_[b];
       is_awake_[b] = 0;
       if (joints.empty()) continue;
-      const auto group = [&](int joint) { return groups[static_cast<std::size_t>(joint)]; };
+      const auto group = [&](int joint) { return groups[joint]; };
       bool awake = false;
       for (const int joint : joints) awake = awake || group(joint) != group(joints.front());
       if (!awake) {
         const Float4Bounds bounds = bounds_of(state, b);
         const int count = field_.bones_near(bounds.low, bounds.high, near.data());
         for (int i = 0; i < count; ++i) {
-          const int joint = field_.fields()[static_cast<std::size_t>(near[i])].bone.joint;
+          const int joint = field_.fields()[near[i]].bone.joint;
           awake = awake || group(joint) != group(joints.front());
         }
       }
@@ -362,10 +360,10 @@ void SmoothProjection::find_awake(const SkinState& state) {
 }
 
 void SmoothProjection::list_awake() {
-  for (const int b : system_.open_blocks()) is_awake_[static_cast<std::size_t>(b)] = 1;
+  for (const int b : system_.open_blocks()) is_awake_[b] = 1;
   awake_.clear();
-  for (std::size_t b = 0; b < is_awake_.size(); ++b)
-    if (is_awake_[b] != 0) awake_.push_back(static_cast<int>(b));
+  for (int b = 0; b < std::ssize(is_awake_); ++b)
+    if (is_awake_[b] != 0) awake_.push_back(b);
 }
 
 float SmoothProjection::nearest_contact(const SkinState& state, std::size_t slot,
@@ -391,7 +389,7 @@ void SmoothProjection::ask(SkinState& state, Stage stage) {
   parallel_blocks(awake_.size(), kBlocksOfTask, [&](std::size_t begin, std::size_t end) {
     std::array<int, kMaxFieldBones> near;
     for (std::size_t i = begin; i < end; ++i) {
-      const auto b = static_cast<std::size_t>(awake_[i]);
+      const std::size_t b = awake_[i];
       const Float4Bounds bounds = bounds_of(state, b);
       const int count = field_.bones_near(bounds.low, bounds.high, near.data());
       const std::span<const int> bones{near.data(), static_cast<std::size_t>(count)};

@@ -59,8 +59,7 @@ void SmoothSystem::weigh_vertices(const TriMesh& mesh, const SkinState& state,
 void SmoothSystem::list_stiffness(const TriMesh& mesh, const SkinState& state) {
   const Eigen::SparseMatrix<double> stiffness = positive_cotangent_laplacian(mesh);
   std::vector<int> slot_of(size_);
-  for (std::size_t s = 0; s < size_; ++s)
-    slot_of[static_cast<std::size_t>(state.vertex[s])] = static_cast<int>(s);
+  for (std::size_t s = 0; s < size_; ++s) slot_of[state.vertex[s]] = static_cast<int>(s);
   offset_.push_back(0);
   for (std::size_t s = 0; s < size_; ++s) {
     const int v = state.vertex[s];
@@ -69,7 +68,7 @@ void SmoothSystem::list_stiffness(const TriMesh& mesh, const SkinState& state) {
         diagonal_.push_back(static_cast<float>(it.value()));
         continue;
       }
-      neighbour_.push_back(slot_of[static_cast<std::size_t>(it.row())]);
+      neighbour_.push_back(slot_of[it.row()]);
       conductance_.push_back(static_cast<float>(-it.value()));
     }
     offset_.push_back(static_cast<int>(neighbour_.size()));
@@ -79,9 +78,8 @@ void SmoothSystem::list_stiffness(const TriMesh& mesh, const SkinState& state) {
 void SmoothSystem::sum_bend_diagonal() {
   for (std::size_t s = 0; s < size_; ++s) {
     float sum = diagonal_[s] * diagonal_[s] * bend_[s];
-    for (auto j = static_cast<std::size_t>(offset_[s]);
-         j < static_cast<std::size_t>(offset_[s + 1]); ++j)
-      sum += conductance_[j] * conductance_[j] * bend_[static_cast<std::size_t>(neighbour_[j])];
+    for (std::size_t j = offset_[s]; j < static_cast<std::size_t>(offset_[s + 1]); ++j)
+      sum += conductance_[j] * conductance_[j] * bend_[neighbour_[j]];
     bend_diagonal_.push_back(sum);
   }
 }
@@ -96,7 +94,7 @@ void SmoothSystem::bound_blocks(const SkinState& state, const std::vector<float>
     radius_[block] = std::max(radius_[block], radius[s]);
     std::vector<int>& near = near_blocks_[block];
     for (int j = offset_[s]; j < offset_[s + 1]; ++j)
-      near.push_back(neighbour_[static_cast<std::size_t>(j)] / static_cast<int>(SkinState::kBlock));
+      near.push_back(neighbour_[j] / static_cast<int>(SkinState::kBlock));
   }
   for (std::vector<int>& near : near_blocks_) {
     std::sort(near.begin(), near.end());
@@ -110,11 +108,11 @@ Eigen::SparseMatrix<double> SmoothSystem::laplace() const {
     const int row = static_cast<int>(s);
     entries.emplace_back(row, row, static_cast<double>(diagonal_[s]));
     for (int j = offset_[s]; j < offset_[s + 1]; ++j) {
-      const auto k = static_cast<std::size_t>(j);
+      const std::size_t k = j;
       entries.emplace_back(row, neighbour_[k], -static_cast<double>(conductance_[k]));
     }
   }
-  Eigen::SparseMatrix<double> L(static_cast<Eigen::Index>(size_), static_cast<Eigen::Index>(size_));
+  Eigen::SparseMatrix<double> L(size_, size_);
   L.setFromTriplets(entries.begin(), entries.end());
   return L;
 }
@@ -144,8 +142,8 @@ void SmoothSystem::open(const std::vector<Demand>& demands, const Options& optio
   list_asked(demands);
   reach_around_asked(static_cast<float>(kReach * decay));
   front_.clear();
-  for (std::size_t b = 0; b < reached_.size(); ++b)
-    if (reached_[b] != 0) front_.push_back(static_cast<int>(b));
+  for (int b = 0; b < std::ssize(reached_); ++b)
+    if (reached_[b] != 0) front_.push_back(b);
   open(front_);
 }
 
@@ -165,15 +163,15 @@ void SmoothSystem::reach_around_asked(float reach) {
   std::fill(reached_.begin(), reached_.end(), std::uint8_t{0});
   for (const int from : asked_) {
     // Through blocks that touch: what is near across a gap belongs to another part of the skin.
-    const auto first = static_cast<std::size_t>(from);
+    const std::size_t first = from;
     const float limit = reach * radius_[first];
     front_.assign(1, from);
     for (std::size_t i = 0; i < front_.size(); ++i) {
-      const auto b = static_cast<std::size_t>(front_[i]);
+      const std::size_t b = front_[i];
       seen_[b] = static_cast<int>(first) + 1;
       reached_[b] = 1;
       for (const int near : near_blocks_[b]) {
-        const auto n = static_cast<std::size_t>(near);
+        const std::size_t n = near;
         if (seen_[n] == static_cast<int>(first) + 1) continue;
         seen_[n] = static_cast<int>(first) + 1;
         if (gap2(bounds_[first], bounds_[n]) <= limit * limit) front_.push_back(near);
@@ -185,7 +183,7 @@ void SmoothSystem::reach_around_asked(float reach) {
 
 void SmoothSystem::open(const std::vector<int>& blocks) {
   for (const int block : blocks) {
-    std::uint8_t& chosen = chosen_[static_cast<std::size_t>(block)];
+    std::uint8_t& chosen = chosen_[block];
     if (chosen == 0) blocks_.push_back(block);
     chosen = 1;
   }
@@ -197,9 +195,8 @@ void SmoothSystem::bend(const std::vector<Float4>& x, float kappa) {
   each_slot([&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       Float4 sum = splat(diagonal_[s]) * x[s];
-      for (auto j = static_cast<std::size_t>(offset_[s]);
-           j < static_cast<std::size_t>(offset_[s + 1]); ++j)
-        sum -= splat(conductance_[j]) * x[static_cast<std::size_t>(neighbour_[j])];
+      for (std::size_t j = offset_[s]; j < static_cast<std::size_t>(offset_[s + 1]); ++j)
+        sum -= splat(conductance_[j]) * x[neighbour_[j]];
       bent_[s] = splat(kappa * bend_[s]) * sum;
     }
   });
@@ -212,9 +209,8 @@ double SmoothSystem::apply(const std::vector<Demand>& demands, const std::vector
     double product = 0;
     for (std::size_t s = begin; s < end; ++s) {
       Float4 sum = splat(diagonal_[s]) * bent_[s];
-      for (auto j = static_cast<std::size_t>(offset_[s]);
-           j < static_cast<std::size_t>(offset_[s + 1]); ++j)
-        sum -= splat(conductance_[j]) * bent_[static_cast<std::size_t>(neighbour_[j])];
+      for (std::size_t j = offset_[s]; j < static_cast<std::size_t>(offset_[s + 1]); ++j)
+        sum -= splat(conductance_[j]) * bent_[neighbour_[j]];
       const Demand& demand = demands[s];
       sum += splat(area_[s]) *
              (splat(diagonal) * x[s] +
@@ -229,7 +225,7 @@ double SmoothSystem::apply(const std::vector<Demand>& demands, const std::vector
 
 double SmoothSystem::sum() const {
   double total = 0;
-  for (const int block : blocks_) total += partial_[static_cast<std::size_t>(block)];
+  for (const int block : blocks_) total += partial_[block];
   return total;
 }
 

@@ -94,7 +94,7 @@ class SmoothSystem {
   void each_slot(const Body& body) const {
     parallel_blocks(blocks_.size(), kBlocksOfTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const auto block = static_cast<std::size_t>(blocks_[i]);
+        const std::size_t block = blocks_[i];
         body(block, block * SkinState::kBlock, std::min(size_, (block + 1) * SkinState::kBlock));
       }
     });

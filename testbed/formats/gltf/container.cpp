@@ -57,8 +57,7 @@ Container split_glb(const std::vector<std::byte>& bytes, const std::string& wher
       result.json = as_text(bytes, at, size);
       has_json = true;
     } else if (kind == kBinaryChunk && !result.has_binary) {
-      result.binary.assign(bytes.begin() + static_cast<std::ptrdiff_t>(at),
-                           bytes.begin() + static_cast<std::ptrdiff_t>(at + size));
+      result.binary.assign(bytes.begin() + at, bytes.begin() + (at + size));
       result.has_binary = true;
     }
     at += size;

@@ -51,7 +51,7 @@ double load_component(const std::byte* at, Component component, bool normalized)
     case Component::u32:
       return load<std::uint32_t>(at);
     case Component::f32:
-      return static_cast<double>(load<float>(at));
+      return load<float>(at);
   }
   return 0;
 }
@@ -59,7 +59,7 @@ double load_component(const std::byte* at, Component component, bool normalized)
 /// Columns of matrices of one- and two-byte components start at multiples of four bytes.
 std::vector<std::size_t> component_offsets(const Accessor& accessor) {
   const std::size_t size = bytes_of(accessor.component);
-  const auto columns = static_cast<std::size_t>(accessor.columns);
+  const std::size_t columns = accessor.columns;
   const std::size_t rows = !accessor.is_matrix ? columns : columns == 4 ? 2 : columns == 9 ? 3 : 4;
   const std::size_t column_bytes = accessor.is_matrix ? (rows * size + 3) / 4 * 4 : rows * size;
   std::vector<std::size_t> offsets;
@@ -132,12 +132,11 @@ Eigen::MatrixXd decode(const Model& model, std::size_t accessor_index) {
     throw Error(std::to_string(accessor.count) + " elements without a buffer view", where,
                 "at most " + std::to_string(kMaxWithoutData));
   }
-  Eigen::MatrixXd values =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(accessor.count), accessor.columns);
+  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(accessor.count, accessor.columns);
   if (data != nullptr) {
     for (std::size_t i = 0; i < accessor.count; ++i) {
       for (std::size_t c = 0; c < offsets.size(); ++c) {
-        values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) =
+        values(i, c) =
             load_component(data + i * stride + offsets[c], accessor.component, accessor.normalized);
       }
     }
@@ -159,7 +158,7 @@ std::vector<std::uint32_t> decode_indices(const Model& model, std::size_t access
   const Eigen::MatrixXd values = decode(model, accessor_index);
   std::vector<std::uint32_t> indices(values.rows());
   for (std::size_t i = 0; i < indices.size(); ++i)
-    indices[i] = static_cast<std::uint32_t>(values(static_cast<Eigen::Index>(i), 0));
+    indices[i] = static_cast<std::uint32_t>(values(i, 0));
   return indices;
 }
 

@@ -105,10 +105,9 @@ Eigen::MatrixXd read_positions(const Model& model, const gltf::Primitive& primit
 void add_primitive(const Model& model, const gltf::Primitive& primitive, const std::string& where,
                    const Eigen::Affine3d& to_rest, const gltf::SkinData* skin, Builder& builder) {
   Eigen::MatrixXd positions = read_positions(model, primitive, where);
-  const auto count = static_cast<std::size_t>(positions.rows());
-  constexpr auto kMax = static_cast<std::size_t>(std::numeric_limits<int>::max());
-  if (count > kMax - static_cast<std::size_t>(builder.vertex_count))
-    throw Error("more than 2^31 vertices", where);
+  const std::size_t count = positions.rows();
+  constexpr std::size_t kMax = std::numeric_limits<int>::max();
+  if (count > kMax - builder.vertex_count) throw Error("more than 2^31 vertices", where);
   std::vector<std::uint32_t> indices;
   if (primitive.indices) {
     if (!model.accessors[*primitive.indices].view) throw Error("the indices have no data", where);
@@ -151,10 +150,9 @@ TriMesh finish_mesh(const Builder& builder, const std::string& file) {
     mesh.V.middleRows(row, block.rows()) = block;
     row += block.rows();
   }
-  mesh.F.resize(static_cast<Eigen::Index>(builder.triangles.size()), 3);
+  mesh.F.resize(builder.triangles.size(), 3);
   for (std::size_t f = 0; f < builder.triangles.size(); ++f) {
-    for (std::size_t k = 0; k < 3; ++k)
-      mesh.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) = builder.triangles[f][k];
+    for (std::size_t k = 0; k < 3; ++k) mesh.F(f, k) = builder.triangles[f][k];
   }
   return mesh;
 }

@@ -23,7 +23,7 @@ std::vector<Eigen::Affine3d> inverse_bind_matrices(const Model& model, const Ski
   }
   const Eigen::MatrixXd values = decode(model, *skin.inverse_bind_matrices);
   for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Matrix<double, 16, 1> row = values.row(static_cast<Eigen::Index>(i)).transpose();
+    const Eigen::Matrix<double, 16, 1> row = values.row(i).transpose();
     const Eigen::Map<const Eigen::Matrix4d> m(row.data());
     const std::string joint = where + ", bind matrix of joint " + std::to_string(i);
     if (!row.allFinite()) throw Error("not finite", joint);
@@ -131,7 +131,7 @@ SkinData read_skin(const Model& model, std::size_t skin_index) {
     if (entry_of_node[node] < 0) continue;
     const int joint = result.skeleton.size();
     result.joint_of_skin[entry_of_node[node]] = joint;
-    entry_of_joint.push_back(static_cast<std::size_t>(entry_of_node[node]));
+    entry_of_joint.push_back(entry_of_node[node]);
     result.node_of_joint.push_back(node);
     result.skeleton.joints.push_back({unique_name(model.nodes[node], joint, names),
                                       parent_joint(model, node, joint_of_node),

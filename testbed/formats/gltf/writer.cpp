@@ -32,7 +32,7 @@ class GltfBuilder {
     document_["bufferViews"].push_back(view);
     document_["accessors"].push_back({{"bufferView", document_["bufferViews"].size() - 1},
                                       {"componentType", component},
-                                      {"count", values.size() / static_cast<std::size_t>(columns)},
+                                      {"count", values.size() / columns},
                                       {"type", type}});
     const std::size_t at = bytes_.size();
     bytes_.resize(at + values.size() * sizeof(T));
@@ -167,10 +167,10 @@ void add_turns(GltfBuilder& builder, const std::vector<GltfLink>& links,
   accessor["min"] = {times.front()};
   accessor["max"] = {times.back()};
   json samplers = json::array(), channels = json::array();
-  for (std::size_t i = 1; i < links.size(); ++i) {
+  for (int i = 1; i < std::ssize(links); ++i) {
     const int output = builder.add(turn_keys(links[i]), "VEC4", 4, kFloat);
-    channels.push_back({{"sampler", samplers.size()},
-                        {"target", {{"node", static_cast<int>(i)}, {"path", "rotation"}}}});
+    channels.push_back(
+        {{"sampler", samplers.size()}, {"target", {{"node", i}, {"path", "rotation"}}}});
     samplers.push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
   }
   if (channels.empty()) return;

@@ -237,7 +237,7 @@ class Reader {
     std::vector<H5Column> columns;
     const int members = check(H5Tget_nmembers(type), "table cannot be read", where);
     for (int i = 0; i < members; ++i) {
-      const auto index = static_cast<unsigned>(i);
+      const unsigned index = i;
       char* name = H5Tget_member_name(type, index);
       if (name == nullptr) h5::fail("table column", where);
       columns.push_back({name, {}});

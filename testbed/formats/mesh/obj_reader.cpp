@@ -39,18 +39,18 @@ class Texture {
       return;
     }
     const int index = index_from_zero(text, coordinates_.size(), "texture coordinate", lines);
-    const auto v = static_cast<std::size_t>(vertex);
+    const std::size_t v = vertex;
     if (of_vertex_.size() <= v) of_vertex_.resize(v + 1, -1);
     if (of_vertex_[v] >= 0 && of_vertex_[v] != index) whole_ = false;
     of_vertex_[v] = index;
   }
   [[nodiscard]] Eigen::MatrixX2d rows(Eigen::Index vertices) const {
     Eigen::MatrixX2d rows(vertices, 2);
-    if (!whole_ || static_cast<Eigen::Index>(of_vertex_.size()) != vertices) return {};
+    if (!whole_ || std::ssize(of_vertex_) != vertices) return {};
     for (Eigen::Index v = 0; v < vertices; ++v) {
-      const int index = of_vertex_[static_cast<std::size_t>(v)];
-      if (index < 0 || index >= static_cast<int>(coordinates_.size())) return {};
-      rows.row(v) = coordinates_[static_cast<std::size_t>(index)];
+      const int index = of_vertex_[v];
+      if (index < 0 || index >= std::ssize(coordinates_)) return {};
+      rows.row(v) = coordinates_[index];
     }
     return rows;
   }

@@ -68,7 +68,7 @@ MeshFile parse_off(std::string_view bytes, const std::string& name) {
     }
     lines.require_words(static_cast<std::size_t>(corners) + 1, "count and corners");
     for (long long k = 1; k <= corners; ++k) {
-      const long long v = lines.integer_at(static_cast<std::size_t>(k));
+      const long long v = lines.integer_at(k);
       if (v < 0 || v >= counts.vertices) {
         throw Error("refers to vertex " + std::to_string(v), lines.place(),
                     "0 to " + std::to_string(counts.vertices - 1));

@@ -41,7 +41,7 @@ class BinaryValues {
       case Type::uint32:
         return take<std::uint32_t>();
       case Type::float32:
-        return static_cast<double>(take<float>());
+        return take<float>();
       case Type::float64:
         return take<double>();
     }

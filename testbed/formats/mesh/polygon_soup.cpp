@@ -29,7 +29,7 @@ class EarClipper {
     while (left_.size() > 3) {
       const std::size_t ear = find_ear();
       triangles.emplace_back(before(ear), left_[ear], after(ear));
-      left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(ear));
+      left_.erase(left_.begin() + ear);
     }
     triangles.emplace_back(left_[0], left_[1], left_[2]);
   }
@@ -75,9 +75,9 @@ class EarClipper {
 };
 
 Eigen::MatrixX3d rows_of(const std::vector<Eigen::Vector3d>& vectors) {
-  Eigen::MatrixX3d out(static_cast<Eigen::Index>(vectors.size()), 3);
+  Eigen::MatrixX3d out(vectors.size(), 3);
   for (std::size_t i = 0; i < vectors.size(); ++i) {
-    out.row(static_cast<Eigen::Index>(i)) = vectors[i].transpose();
+    out.row(i) = vectors[i].transpose();
   }
   return out;
 }
@@ -120,9 +120,9 @@ MeshFile mesh_of(const PolygonSoup& soup, const std::string& name) {
   }
   MeshFile file;
   file.mesh.V = rows_of(soup.points);
-  file.mesh.F.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+  file.mesh.F.resize(triangles.size(), 3);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    file.mesh.F.row(static_cast<Eigen::Index>(t)) = triangles[t].transpose();
+    file.mesh.F.row(t) = triangles[t].transpose();
   }
   file.velocity = rows_of(soup.velocity);
   return file;

@@ -205,7 +205,7 @@ FoundFiles find_in_pvd(const fs::path& file, const std::string& part) {
   FoundFiles found;
   found.collection = file;
   std::vector<std::string> missing;
-  for (std::size_t i = 0; i < sets.size(); ++i) {
+  for (int i = 0; i < std::ssize(sets); ++i) {
     if (i > 0 && sets[i].time == sets[i - 1].time) {
       throw Error("has two files for the time " + std::to_string(sets[i].time) +
                       " s: " + sets[i - 1].file.filename().string() + ", " +
@@ -217,7 +217,7 @@ FoundFiles find_in_pvd(const fs::path& file, const std::string& part) {
                   sets[i].file.string(), mesh_file_extensions());
     }
     if (fs::is_regular_file(sets[i].file)) {
-      found.files.push_back({sets[i].file, static_cast<int>(i), sets[i].time});
+      found.files.push_back({sets[i].file, i, sets[i].time});
     } else {
       missing.push_back(sets[i].file.filename().string());
     }

@@ -49,9 +49,9 @@ Eigen::Index drop_degenerate(Eigen::MatrixX3i& F) {
 
 Eigen::MatrixX3d rows_at(const Eigen::MatrixX3d& rows, const std::vector<int>& which) {
   if (rows.rows() == 0) return rows;
-  Eigen::MatrixX3d out(static_cast<Eigen::Index>(which.size()), 3);
+  Eigen::MatrixX3d out(which.size(), 3);
   for (std::size_t i = 0; i < which.size(); ++i) {
-    out.row(static_cast<Eigen::Index>(i)) = rows.row(which[i]);
+    out.row(i) = rows.row(which[i]);
   }
   return out;
 }
@@ -107,7 +107,7 @@ class Repair {
 
   void orient() {
     const std::vector<Neighbours> neighbours = adjacency();
-    const auto count = static_cast<std::size_t>(frame_.mesh.F.rows());
+    const std::size_t count = frame_.mesh.F.rows();
     std::vector<signed char> turned(count, -1);  // -1: not reached yet
     bool any = false;
     for (std::size_t seed = 0; seed < count; ++seed) {
@@ -145,10 +145,10 @@ class Repair {
       number[frame_.mesh.F.data()[i]] = 0;
     }
     std::vector<int> kept;
-    for (std::size_t v = 0; v < number.size(); ++v) {
+    for (int v = 0; v < std::ssize(number); ++v) {
       if (number[v] < 0) continue;
       number[v] = static_cast<int>(kept.size());
-      kept.push_back(static_cast<int>(v));
+      kept.push_back(v);
     }
     if (kept.size() == number.size()) return;
     frame_.mesh.V = rows_at(frame_.mesh.V, kept);
@@ -192,7 +192,7 @@ class Repair {
     std::vector<int> component{static_cast<int>(seed)};
     turned[seed] = 0;
     for (std::size_t next = 0; next < component.size(); ++next) {
-      const auto t = static_cast<std::size_t>(component[next]);
+      const std::size_t t = component[next];
       for (int k = 0; k < neighbours[t].count; ++k) {
         const int other = neighbours[t].triangle[k];
         const bool disagree = neighbours[t].disagree[k];

@@ -76,7 +76,7 @@ std::string uneven_times(const std::vector<double>& times, const std::vector<int
   const bool gaps_only = std::all_of(intervals.begin(), intervals.end(), [&](double x) {
     return std::abs(x / shortest - std::round(x / shortest)) <= kSameInterval;
   });
-  const auto at = static_cast<std::size_t>(odd - intervals.begin());
+  const std::size_t at = odd - intervals.begin();
   const std::string change = text_of(intervals.front()) + " s between frames, but " +
                              text_of(*odd) + " s from " + text_of(times[at]) + " s to " +
                              text_of(times[at + 1]) + " s";

@@ -72,7 +72,7 @@ bool is_name_character(char c) {
 
 std::string_view take_name(std::string_view& text) {
   const auto end = std::find_if_not(text.begin(), text.end(), is_name_character);
-  const std::string_view name = text.substr(0, static_cast<std::size_t>(end - text.begin()));
+  const std::string_view name = text.substr(0, end - text.begin());
   text.remove_prefix(name.size());
   return name;
 }

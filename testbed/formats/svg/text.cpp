@@ -59,7 +59,7 @@ double SvgText::number() {
     fail("is no finite number", "a finite number, at most 1e15");
   }
   if (error != std::errc{}) fail("a number is missing", "a number");
-  at_ = static_cast<std::size_t>(end - text_.data());
+  at_ = end - text_.data();
   skip(',');
   return x;
 }

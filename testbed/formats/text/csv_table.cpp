@@ -61,7 +61,7 @@ void CsvTable::read_header(const std::vector<std::string>& header, const std::st
   for (std::size_t i = 0; i < header.size(); ++i) {
     const auto named = std::find(columns_.begin(), columns_.end(), header[i]);
     if (named == columns_.end()) continue;
-    std::optional<std::size_t>& at = at_[static_cast<std::size_t>(named - columns_.begin())];
+    std::optional<std::size_t>& at = at_[named - columns_.begin()];
     if (at) throw Error("names the column '" + header[i] + "' twice", place, "each once");
     at = i;
   }
@@ -76,7 +76,7 @@ std::optional<std::string> CsvTable::text(const Row& row, std::string_view colum
   if (named == columns_.end()) {
     throw Error("column '" + std::string(column) + "' was not asked for", row.place);
   }
-  const std::optional<std::size_t> at = at_[static_cast<std::size_t>(named - columns_.begin())];
+  const std::optional<std::size_t> at = at_[named - columns_.begin()];
   if (!at) return {};
   if (*at >= row.cells.size()) {
     throw Error("has no " + *named, row.place, "a row as long as the first");

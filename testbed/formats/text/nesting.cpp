@@ -12,7 +12,7 @@ std::string byte_place(const std::string& name, std::size_t at) {
 }
 
 std::string line_place(std::string_view text, const std::string& name, std::size_t at) {
-  const auto end = text.begin() + static_cast<std::ptrdiff_t>(at);
+  const auto end = text.begin() + at;
   return name + ":" + std::to_string(1 + std::count(text.begin(), end, '\n'));
 }
 

@@ -15,7 +15,7 @@ namespace {
 void require_svg_size(const std::filesystem::path& file) {
   require_regular_file(file);
   std::error_code unknown;
-  const auto bytes = static_cast<double>(std::filesystem::file_size(file, unknown));
+  const double bytes = std::filesystem::file_size(file, unknown);
   if (!unknown && bytes > kMostSvgBytes) {
     throw Error("is too large for a drawing: " + bytes_text(bytes), file.string(),
                 "at most " + bytes_text(kMostSvgBytes));
@@ -66,8 +66,7 @@ void SvgXml::parse() {
       pugi::encoding_utf8);
   if (!parsed) {
     throw Error("no valid XML: " + std::string(parsed.description()),
-                name_ + ":" + std::to_string(line_at(static_cast<std::size_t>(parsed.offset))),
-                "an SVG file");
+                name_ + ":" + std::to_string(line_at(parsed.offset)), "an SVG file");
   }
 }
 
@@ -126,11 +125,11 @@ pugi::xml_node SvgXml::find(std::string_view id) const {
 
 std::size_t SvgXml::line_at(std::size_t offset) const {
   const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
-  return static_cast<std::size_t>(after - line_starts_.begin());
+  return after - line_starts_.begin();
 }
 
 std::size_t SvgXml::line(const pugi::xml_node& node) const {
-  return line_at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, node.offset_debug())));
+  return line_at(std::max<std::ptrdiff_t>(0, node.offset_debug()));
 }
 
 std::string SvgXml::place(const pugi::xml_node& node) const {

@@ -15,7 +15,7 @@ std::optional<unsigned> sextet(char c) {
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   const std::size_t at = kAlphabet.find(c);
   if (at == std::string_view::npos) return std::nullopt;
-  return static_cast<unsigned>(at);
+  return at;
 }
 
 /// The first bytes of base64 text, fewer where it ends or has other characters. VTK takes padding

@@ -95,7 +95,7 @@ vtkSmartPointer<vtkCellArray> triangle_cells(const Part& part) {
   for (Eigen::Index t = 0; t < part.triangles.rows(); ++t) {
     cells->InsertNextCell(3);
     for (int corner = 0; corner < 3; ++corner) {
-      check_index(part.triangles(t, corner), part, static_cast<std::size_t>(t));
+      check_index(part.triangles(t, corner), part, t);
       cells->InsertCellPoint(part.triangles(t, corner));
     }
   }
@@ -299,10 +299,9 @@ Part from_poly_data(vtkPolyData& input, const std::string& where) {
   }
   if (part.kind == Part::Kind::triangles) {
     const auto triangles = cell_lists(*data->GetPolys());
-    part.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+    part.triangles.resize(triangles.size(), 3);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-      part.triangles.row(static_cast<Eigen::Index>(t)) =
-          Eigen::Map<const Eigen::RowVector3i>(triangles[t].data());
+      part.triangles.row(t) = Eigen::Map<const Eigen::RowVector3i>(triangles[t].data());
     }
   }
   if (part.kind == Part::Kind::lines) part.lines = cell_lists(*data->GetLines());

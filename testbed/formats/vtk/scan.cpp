@@ -221,7 +221,7 @@ class VtkXmlScan {
     std::int32_t value = 0;
     const auto [end, code] = std::from_chars(text.begin(), text.end(), value);
     if (code != std::errc()) fail(std::string(name) + " has no six whole numbers of 32 bits");
-    text.remove_prefix(static_cast<std::size_t>(end - text.begin()));
+    text.remove_prefix(end - text.begin());
     return value;
   }
 

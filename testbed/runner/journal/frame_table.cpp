@@ -43,7 +43,7 @@ std::vector<std::string> split_header(const std::string& line, const std::string
 }  // namespace
 
 std::string table_to_csv(const FrameTable& table) {
-  const auto columns = static_cast<std::size_t>(table.rows.cols());
+  const std::size_t columns = table.rows.cols();
   if (columns != table.columns.size() && table.rows.rows() > 0) {
     throw Error("a table has " + std::to_string(columns) + " columns and " +
                 std::to_string(table.columns.size()) + " names");
@@ -91,7 +91,7 @@ FrameTable table_from_csv(const std::string& text, const std::string& where) {
   }
   table.rows =
       Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-          values.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+          values.data(), rows, columns);
   return table;
 }
 

@@ -319,7 +319,7 @@ std::optional<RunLine> read_head(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string text(kMost, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
+  text.resize(in.gcount());
   const std::size_t end = text.find('\n');
   if (end == std::string::npos) return std::nullopt;
   try {

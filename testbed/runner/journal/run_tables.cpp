@@ -30,7 +30,7 @@ FrameTable read_table(const StoredFile& file, const fs::path& run_folder) {
 }
 
 std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  return std::find(names.begin(), names.end(), name) - names.begin();
 }
 
 StackedTable stack(const std::vector<TableOfFrame>& tables) {

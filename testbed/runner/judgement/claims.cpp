@@ -140,7 +140,7 @@ std::vector<std::string> that_mostly_pass(const std::vector<Decision>& seeds, co
   std::vector<std::string> names;
   for (const auto& [name, n] : passed) {
     const auto has = [&](const CaseRecord* in) { return find_variant(*in, name) != nullptr; };
-    const auto cases = static_cast<std::size_t>(std::count_if(group.begin(), group.end(), has));
+    const std::size_t cases = std::count_if(group.begin(), group.end(), has);
     if (most(n, cases)) names.push_back(name);
   }
   return names;
@@ -160,8 +160,8 @@ NullRecord null_over(const std::vector<Decision>& seeds) {
   NullRecord null = std::max_element(seeds.begin(), seeds.end(), [](const auto& a, const auto& b) {
                       return a.null_margin < b.null_margin;
                     })->record.null;
-  const auto failed = static_cast<std::size_t>(
-      std::count_if(seeds.begin(), seeds.end(), is(Discrimination::discriminates)));
+  const std::size_t failed =
+      std::count_if(seeds.begin(), seeds.end(), is(Discrimination::discriminates));
   null.verdict =
       most(failed, seeds.size()) ? Discrimination::discriminates : Discrimination::is_void;
   return null;
@@ -171,8 +171,8 @@ NullRecord null_over(const std::vector<Decision>& seeds) {
 ClaimRecord over_seeds(const std::vector<Decision>& seeds, const Cases& group) {
   const auto worst = std::min_element(
       seeds.begin(), seeds.end(), [](const auto& a, const auto& b) { return a.margin < b.margin; });
-  const auto held = static_cast<std::size_t>(
-      std::count_if(seeds.begin(), seeds.end(), [](const auto& d) { return d.record.holds; }));
+  const std::size_t held =
+      std::count_if(seeds.begin(), seeds.end(), [](const auto& d) { return d.record.holds; });
   ClaimRecord record = worst->record;
   record.case_name = seeds.front().record.case_name;
   record.holds = most(held, seeds.size());

@@ -129,9 +129,9 @@ void OptionLister::walk_tags(const std::string& prefix, std::size_t tag, Walked&
                              const std::function<void()>& inside) {
   const Tag of = all.tags[tag];
   std::map<std::string, std::vector<std::string>> names_with;
-  for (std::size_t i = 0; i < of.names.size(); ++i) {
+  for (int i = 0; i < std::ssize(of.names); ++i) {
     Forced forced = of.context;
-    forced[of.key] = static_cast<int>(i);
+    forced[of.key] = i;
     Walked one = walk_once(prefix, forced, inside);
     for (const OptionRow& row : one.rows) names_with[row.key].push_back(of.names[i]);
     insert_new(all.rows, one.rows);

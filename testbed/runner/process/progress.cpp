@@ -20,7 +20,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 std::string duration_text(double seconds) {
-  const auto total = static_cast<long>(std::lround(std::clamp(seconds, 0.0, 1e9)));
+  const long total = std::lround(std::clamp(seconds, 0.0, 1e9));
   char text[40];
   if (total >= 3600) {
     std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", total / 3600, total / 60 % 60, total % 60);

@@ -64,7 +64,7 @@ class VariantDifference {
     frames_before_ = before.frames.size();
     for (const FrameRecord& frame : now.frames) {
       const int old = frame_of_parameter(before.frames, frame.parameter);
-      const bool same = old >= 0 && compare(frame, before.frames[static_cast<std::size_t>(old)]);
+      const bool same = old >= 0 && compare(frame, before.frames[old]);
       if (same) continue;
       ++differ_;
       if (!first_) first_ = frame.parameter;

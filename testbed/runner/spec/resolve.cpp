@@ -166,7 +166,7 @@ CaseSpec resolve_case(const SweptCase& swept, const TomlNode& plain, const Topic
   result.swept = swept.swept;
   result.claims_only = swept.claims_only;
   const HeaderTable values = read_header(root);
-  result.seed = static_cast<std::uint64_t>(values.seed);
+  result.seed = values.seed;
   result.threads = values.threads;
   result.scene = resolve_scene(root, topic, result.scene_json);
   if (const TomlNode* scene = root.find("scene")) {

@@ -142,7 +142,7 @@ std::vector<std::vector<T>> wrap(const std::vector<T>& columns) {
   const std::size_t width = rows == 0 ? 0 : (columns.size() + rows - 1) / rows;
   std::vector<std::vector<T>> out;
   for (std::size_t i = 0; i < columns.size(); i += width) {
-    const auto begin = columns.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto begin = columns.begin() + i;
     out.emplace_back(begin,
                      begin + static_cast<std::ptrdiff_t>(std::min(width, columns.size() - i)));
   }

@@ -41,7 +41,7 @@ std::vector<double> frame_parameters(const RunRecord& record, const FigureView& 
 }
 
 std::vector<double> evenly_chosen(const std::vector<double>& parameters, int count) {
-  const auto wanted = static_cast<std::size_t>(std::max(count, 1));
+  const std::size_t wanted = std::max(count, 1);
   if (parameters.size() <= wanted) return parameters;
   std::vector<double> chosen;
   for (std::size_t i = 0; i < wanted; ++i) {

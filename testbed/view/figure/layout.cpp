@@ -428,13 +428,13 @@ Picture draw_panels(const FigureBlock& block, int panel_width) {
   const double height = 1.0 * layout.panel_height * static_cast<double>(block.rows.size());
   require_picture(1.0 * panel_width * layout.columns, height);
   Picture picture(panel_width * layout.columns, static_cast<int>(height));
-  for (std::size_t r = 0; r < block.rows.size(); ++r) {
+  for (int r = 0; r < std::ssize(block.rows); ++r) {
     const std::vector<FigureCell>& cells = block.rows[r].cells;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
+    for (int c = 0; c < std::ssize(cells); ++c) {
       throw_if_stopped();
       const DrawnPanel panel{&cells[c], Showing::as_viewed, {}};
-      picture.paste(draw_cell(panel, block.view, block.look, layout),
-                    static_cast<int>(c) * panel_width, static_cast<int>(r) * layout.panel_height);
+      picture.paste(draw_cell(panel, block.view, block.look, layout), c * panel_width,
+                    r * layout.panel_height);
     }
   }
   return picture;

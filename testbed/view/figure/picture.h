@@ -18,14 +18,9 @@ struct Picture {
 
   Picture() = default;
   Picture(int w, int h, Rgb fill = {255, 255, 255})
-      : width(w),
-        height(h),
-        pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), fill) {}
+      : width(w), height(h), pixels(static_cast<std::size_t>(w) * h, fill) {}
 
-  [[nodiscard]] Rgb& at(int x, int y) {
-    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                  static_cast<std::size_t>(x)];
-  }
+  [[nodiscard]] Rgb& at(int x, int y) { return pixels[static_cast<std::size_t>(y) * width + x]; }
   [[nodiscard]] const Rgb& at(int x, int y) const { return const_cast<Picture*>(this)->at(x, y); }
 
   /// Copies `other` with its top left corner at (x, y); what lies outside is dropped.

@@ -129,7 +129,7 @@ std::vector<CurveSegment> pattern_border(const Part& sheet) {
   const Eigen::MatrixX2d places = pattern_of(sheet, "sheet");
   const EdgeConnectivity edges(sheet.triangles);
   std::vector<CurveSegment> border;
-  for (int f = 0; f < static_cast<int>(sheet.triangles.rows()); ++f) {
+  for (int f = 0; f < sheet.triangles.rows(); ++f) {
     const auto t = sheet.triangles.row(f);
     Eigen::Matrix2d sides;
     sides << places.row(t[1]) - places.row(t[0]), places.row(t[2]) - places.row(t[0]);

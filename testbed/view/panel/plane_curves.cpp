@@ -56,7 +56,7 @@ void fill_line(Picture& picture, int y, const std::vector<CurveSegment>& segment
     std::array<double, 3> color{};
     double coverage = 0;
   };
-  std::vector<Sum> row(static_cast<std::size_t>(picture.width));
+  std::vector<Sum> row(picture.width);
   for (int sample = 0; sample < kSupersampling; ++sample) {
     const double height = y + (sample + 0.5) / kSupersampling;
     for (const Span& span : spans_at(segments, height, picture.width)) {
@@ -65,14 +65,14 @@ void fill_line(Picture& picture, int y, const std::vector<CurveSegment>& segment
       for (int x = static_cast<int>(span.begin); x <= last; ++x) {
         const double covered =
             (std::min(span.end, x + 1.0) - std::max(span.begin, double{1} * x)) / kSupersampling;
-        Sum& sum = row[static_cast<std::size_t>(x)];
+        Sum& sum = row[x];
         sum.coverage += covered;
         for (std::size_t c = 0; c < 3; ++c) sum.color[c] += covered * paint[c];
       }
     }
   }
   for (int x = 0; x < picture.width; ++x) {
-    const Sum& sum = row[static_cast<std::size_t>(x)];
+    const Sum& sum = row[x];
     for (std::size_t c = 0; c < 3; ++c) {
       std::uint8_t& channel = picture.at(x, y)[c];
       const double mixed = sum.color[c] + (1 - sum.coverage) * channel;
@@ -113,8 +113,7 @@ std::vector<double> stroke_coverage(const Picture& picture, const std::vector<Cu
     for (int y = rows.first; y <= rows.last; ++y) {
       for (int x = columns.first; x <= columns.last; ++x) {
         const double d = distance_to(s, {x + 0.5, y + 0.5});
-        double& c = coverage[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
-                             static_cast<std::size_t>(x)];
+        double& c = coverage[static_cast<std::size_t>(y) * picture.width + x];
         c = std::max(c, std::clamp(thickness / 2 + 0.5 - d, 0.0, 1.0));
       }
     }

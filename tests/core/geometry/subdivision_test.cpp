@@ -132,7 +132,7 @@ TEST(LoopSubdivision, RepeatedRefinementOfARegionMakesNoSlivers) {
     for (const int parent : step.parent) ++children[parent];
     std::vector<bool> next;
     for (const int parent : step.parent) {
-      const auto p = static_cast<std::size_t>(parent);
+      const std::size_t p = parent;
       EXPECT_FALSE(halved[p] && children[p] > 1) << "a halved triangle is split again";
       next.push_back(halved[p] || children[p] == 2);
     }
@@ -167,7 +167,7 @@ TEST(LoopSubdivision, SplitMeshesFollowTheirWeldedOne) {
       split.F(t, k) = c;
     }
   }
-  split.V.resize(static_cast<Eigen::Index>(welded_of_split.size()), 3);
+  split.V.resize(welded_of_split.size(), 3);
   for (Eigen::Index v = 0; v < split.V.rows(); ++v)
     split.V.row(v) = rig.mesh.V.row(welded_of_split[v]);
 
@@ -178,7 +178,7 @@ TEST(LoopSubdivision, SplitMeshesFollowTheirWeldedOne) {
   ASSERT_EQ(followed.mesh.F.rows(), step.F.rows());
   for (Eigen::Index t = 0; t < step.F.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
-      const auto v = static_cast<std::size_t>(followed.mesh.F(t, k));
+      const std::size_t v = followed.mesh.F(t, k);
       EXPECT_EQ(followed.welded_of_split[v], step.F(t, k));
     }
   }

@@ -78,8 +78,8 @@ TEST(DartThrowing, ThrowsNothingWhereNothingIsStretched) {
   run_through(*method, s);
   const DetailMesh& d = method->details();
   EXPECT_GT(d.detail_count(), 500);
-  for (std::size_t i = 0; i < d.site.size(); ++i)
-    if (d.is_detail(static_cast<int>(i)) && d.site[i].birth_frame > 0) {
+  for (int i = 0; i < std::ssize(d.site); ++i)
+    if (d.is_detail(i) && d.site[i].birth_frame > 0) {
       EXPECT_GT(d.position[i].x(), middle);
     }
 }

@@ -17,8 +17,7 @@ using namespace detail_scenes;
 Eigen::Vector3d place_of(const MeshPoint& p, const DetailMesh& d) {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   const auto corner = d.mesh.corners(p.triangle);
-  for (std::size_t k = 0; k < 3; ++k)
-    x += p.barycentric[static_cast<Eigen::Index>(k)] * d.position[corner[k]];
+  for (std::size_t k = 0; k < 3; ++k) x += p.barycentric[k] * d.position[corner[k]];
   return x;
 }
 
@@ -118,8 +117,8 @@ TEST(DelaunayRefinement, ActsWhereTheSurfaceIsStretched) {
   run_through(*method, s);
   const DetailMesh& d = method->details();
   EXPECT_NEAR(d.detail_count(), 1350, 15);
-  for (std::size_t i = 0; i < d.site.size(); ++i)
-    if (d.is_detail(static_cast<int>(i)) && d.site[i].birth_frame > 0) {
+  for (int i = 0; i < std::ssize(d.site); ++i)
+    if (d.is_detail(i) && d.site[i].birth_frame > 0) {
       EXPECT_GT(d.position[i].x(), middle - 7 * side / 30);
     }
 }

@@ -102,10 +102,9 @@ TEST(PointGrid, FindsWhatASearchOfAllPointsFinds) {
     const Eigen::Vector3d p = draw();
     const double radius = 0.1 * random.uniform();
     int nearest = -1;
-    for (std::size_t k = 0; k < points.size(); ++k) {
+    for (int k = 0; k < std::ssize(points); ++k) {
       const double r = (points[k] - p).norm();
-      if (r < radius && (nearest < 0 || r < (points[nearest] - p).norm()))
-        nearest = static_cast<int>(k);
+      if (r < radius && (nearest < 0 || r < (points[nearest] - p).norm())) nearest = k;
     }
     EXPECT_EQ(grid.nearest(p, Eigen::Vector3d::UnitZ(), radius), nearest);
     EXPECT_EQ(grid.is_free(p, Eigen::Vector3d::UnitZ(), radius), nearest < 0);

@@ -13,7 +13,7 @@ namespace geoprior::details::drawing_checks {
 
 inline std::vector<Eigen::Vector3d> points_of(const TriMesh& mesh) {
   std::vector<Eigen::Vector3d> x(mesh.V.rows());
-  for (std::size_t v = 0; v < x.size(); ++v) x[v] = mesh.V.row(static_cast<Eigen::Index>(v));
+  for (std::size_t v = 0; v < x.size(); ++v) x[v] = mesh.V.row(v);
   return x;
 }
 
@@ -38,7 +38,7 @@ inline int border_loops(const TriMesh& mesh) {
   for (std::size_t v = 0; v < next.size(); ++v) {
     if (next[v] < 0) continue;
     ++loops;
-    for (auto w = v; next[w] >= 0;) w = static_cast<std::size_t>(std::exchange(next[w], -1));
+    for (auto w = v; next[w] >= 0;) w = std::exchange(next[w], -1);
   }
   return loops;
 }

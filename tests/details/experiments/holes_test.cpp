@@ -113,7 +113,7 @@ TEST(Holes, BorderLiesAtTheRadius) {
     const int i = after.drawn.detail[v];
     if (i < 0) continue;
     ++border;
-    const Eigen::Vector3d p = after.drawn.mesh.V.row(static_cast<Eigen::Index>(v));
+    const Eigen::Vector3d p = after.drawn.mesh.V.row(v);
     const Eigen::Vector3d centre = position_of(anchors[i].at, square.V, square.F);
     // A border vertex keeps 1/1000 of its edge from a vertex; edges there are below the radius.
     EXPECT_NEAR((p - centre).norm(), 0.04, 1e-3 * 0.04);

@@ -213,8 +213,8 @@ TEST_F(TankMetrics, SeamJitterOfARidgeThatMovesIsItsHeight) {
     for (int f = 0; f < 3; ++f) {
       const int first = 8 + step * f;
       frames.push_back(pool_with_a_ridge(
-          *scene.gauges, kPool[static_cast<std::size_t>(f)], 0.02,
-          [=](int i) { return i >= first && i < first + 4; }, 0.1 * f));
+          *scene.gauges, kPool[f], 0.02, [=](int i) { return i >= first && i < first + 4; },
+          0.1 * f));
     }
     EXPECT_NEAR(over("seam_jitter", frames).value(), step == 0 ? 1 : 5, 1e-9) << step;
   }

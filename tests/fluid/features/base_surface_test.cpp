@@ -32,14 +32,14 @@ TEST(BaseSurface, AHillLeavesTheTiltedPlaneItStandsOn) {
   const TriMesh flat = mesh;
   const auto inside = within(mesh, {0.5, 0.5}, 0.3);
   for (std::size_t v = 0; v < inside.size(); ++v) {
-    const auto i = static_cast<Eigen::Index>(v);
+    const Eigen::Index i = v;
     const double tilt = 0.3 * mesh.V(i, 0) + 0.1 * mesh.V(i, 1);
     if (mesh.V(i, 2) > -0.4) mesh.V(i, 2) += tilt;
     if (inside[v] != 0) mesh.V(i, 2) += 0.1;
   }
   const Eigen::MatrixX3d bed = base_under(mesh, inside);
   for (std::size_t v = 0; v < inside.size(); ++v) {
-    const auto i = static_cast<Eigen::Index>(v);
+    const Eigen::Index i = v;
     if (inside[v] == 0) {
       EXPECT_EQ(bed.row(i), mesh.V.row(i));
       continue;
@@ -65,7 +65,7 @@ TEST(BaseSurface, MovesWithRigidMotions) {
   TriMesh mesh = tank(24, 1, 0.5, 0.2);
   const auto inside = within(mesh, {0.5, 0.5}, 0.3);
   for (std::size_t v = 0; v < inside.size(); ++v) {
-    if (inside[v] != 0) mesh.V(static_cast<Eigen::Index>(v), 2) += 0.05;
+    if (inside[v] != 0) mesh.V(v, 2) += 0.05;
   }
   const Eigen::Isometry3d motion = Eigen::Translation3d(3, -2, 5) *
                                    Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -1).normalized());
@@ -83,7 +83,7 @@ TEST(BaseSurface, UnfoldsWhatIsMuchLongerThanItsBed) {
   TriMesh mesh = tank(60, 1, 0.5, 0);
   const auto inside = within(mesh, {0.5, 0.5}, 0.3);
   for (std::size_t v = 0; v < inside.size(); ++v) {
-    const auto i = static_cast<Eigen::Index>(v);
+    const Eigen::Index i = v;
     const double r = (mesh.V.row(i).head<2>() - Eigen::RowVector2d(0.5, 0.5)).norm();
     if (inside[v] != 0) mesh.V(i, 2) += 1.2 * (0.5 - 0.5 * std::tanh((r - 0.15) / 0.02));
   }
@@ -117,7 +117,7 @@ TEST(BaseSurface, HoldsTheBorderOfAnOpenMesh) {
   TriMesh mesh = shapes::square(20);
   std::vector<char> inside(mesh.vertex_count(), 0);
   for (std::size_t v = 0; v < inside.size(); ++v) {
-    inside[v] = mesh.V(static_cast<Eigen::Index>(v), 0) < 0.5 ? 1 : 0;
+    inside[v] = mesh.V(v, 0) < 0.5 ? 1 : 0;
   }
   const Eigen::MatrixX3d bed = base_under(mesh, inside);
   EXPECT_LT((bed - mesh.V).cwiseAbs().maxCoeff(), 1e-11);  // a plane, up to its border

@@ -14,7 +14,7 @@ namespace geoprior::fluid {
 namespace {
 
 TrackedFrames truth_of(const InjectedSequence& sequence) {
-  TrackedFrames frames(static_cast<std::size_t>(sequence.frame_count()));
+  TrackedFrames frames(sequence.frame_count());
   for (const InjectedTruth& t : sequence.truth()) {
     frames[t.frame].push_back({t.id, t.isolated ? 1 : 0, t.centre, t.box_min, t.box_max});
   }
@@ -24,7 +24,7 @@ TrackedFrames truth_of(const InjectedSequence& sequence) {
 TrackedFrames found_in(const Extraction& extraction, int shortest) {
   TrackedFrames frames(extraction.times.size());
   for (const Track& track : extraction.tracking.tracks) {
-    if (static_cast<int>(track.regions.size()) < shortest) continue;
+    if (std::ssize(track.regions) < shortest) continue;
     for (const int r : track.regions) {
       const Region& region = extraction.regions[r];
       frames[region.frame].push_back({track.id, region.kind == RegionKind::isolated ? 1 : 0,

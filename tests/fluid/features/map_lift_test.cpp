@@ -51,7 +51,7 @@ TEST(MapRaster, IsLinearOnTrianglesAndFillsTheRestWithin) {
   for (int k = 0; k < 400; ++k) {
     const double u = (k % 20 + 0.5) / 20 - 0.5, v = (k / 20 + 0.5) / 20 - 0.5;
     const bool in = std::abs(u) <= 0.4 && std::abs(v) <= 0.4;
-    const auto i = static_cast<std::size_t>(k);
+    const std::size_t i = k;
     ASSERT_EQ(raster.covered[i] == 1, in) << u << " " << v;
     if (!in) continue;
     ++covered;

@@ -51,9 +51,9 @@ inline TriMesh tank(int n, double size, double depth, double jitter) {
     quad(left, left + row, top + left + row, top + left);
     quad(right + row, right, top + right, top + right + row);
   }
-  mesh.F.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+  mesh.F.resize(triangles.size(), 3);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    mesh.F.row(static_cast<Eigen::Index>(t)) = triangles[t];
+    mesh.F.row(t) = triangles[t];
   }
   return mesh;
 }
@@ -145,7 +145,7 @@ inline double rms_over_region(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d&
   int count = 0;
   for (std::size_t v = 0; v < label.size(); ++v) {
     if (label[v] == 0) continue;
-    const auto i = static_cast<Eigen::Index>(v);
+    const Eigen::Index i = v;
     sum += (a.row(i) - b.row(i)).squaredNorm();
     ++count;
   }

@@ -23,9 +23,7 @@ double area_of(const TriMesh& mesh, const std::vector<char>& set) {
   for (std::size_t v = 0; v < set.size(); ++v) sum += set[v] != 0 ? area[v] : 0;
   return sum;
 }
-std::size_t count(const std::vector<char>& set) {
-  return static_cast<std::size_t>(std::count(set.begin(), set.end(), 1));
-}
+std::size_t count(const std::vector<char>& set) { return std::count(set.begin(), set.end(), 1); }
 
 // Paths along edges are longer than straight ones: a disc of 0.3 grown by 0.2 reaches less than
 // 0.5, by up to a tenth of the way and an edge.

@@ -15,10 +15,10 @@ namespace {
 double cost_of(const std::vector<int>& successor, const std::vector<PathLink>& links,
                double new_path_cost) {
   double cost = new_path_cost * static_cast<double>(successor.size());
-  for (std::size_t i = 0; i < successor.size(); ++i) {
+  for (int i = 0; i < std::ssize(successor); ++i) {
     if (successor[i] < 0) continue;
     const auto it = std::find_if(links.begin(), links.end(), [&](const PathLink& l) {
-      return l.from == static_cast<int>(i) && l.to == successor[i];
+      return l.from == i && l.to == successor[i];
     });
     EXPECT_NE(it, links.end());
     cost += it->cost - new_path_cost;
@@ -52,9 +52,9 @@ std::vector<PathLink> random_links(RandomStream& random, int nodes, double densi
 
 void expect_disjoint(const std::vector<int>& successor) {
   std::vector<char> entered(successor.size(), 0);
-  for (std::size_t i = 0; i < successor.size(); ++i) {
+  for (int i = 0; i < std::ssize(successor); ++i) {
     if (successor[i] < 0) continue;
-    EXPECT_GT(successor[i], static_cast<int>(i));
+    EXPECT_GT(successor[i], i);
     char& e = entered[successor[i]];
     EXPECT_EQ(e, 0);
     e = 1;

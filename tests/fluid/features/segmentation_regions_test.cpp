@@ -67,8 +67,8 @@ TEST(Segmentation, LabelsFollowTheRegions) {
   std::vector<double> area(frame.regions.size() + 1, 0.0);
   const std::vector<double> of_vertex = surface_shape(surface_graph(mesh), {}).area;
   for (std::size_t v = 0; v < frame.label.size(); ++v) area.at(frame.label[v]) += of_vertex[v];
-  for (std::size_t r = 0; r < frame.regions.size(); ++r) {
-    EXPECT_EQ(frame.regions[r].label, static_cast<int>(r) + 1);
+  for (int r = 0; r < std::ssize(frame.regions); ++r) {
+    EXPECT_EQ(frame.regions[r].label, r + 1);
     EXPECT_NEAR(area[r + 1], frame.regions[r].area, 1e-12);
   }
 }

@@ -133,9 +133,9 @@ TEST(Tracking, EveryRegionIsInOneTrackAndIdsFollowTheirBeginnings) {
     const TrackResult result = track_regions(regions, times(12), kTrackedCell, options);
     std::vector<int> seen(regions.size(), 0);
     int last_begin = 0;
-    for (std::size_t t = 0; t < result.tracks.size(); ++t) {
+    for (int t = 0; t < std::ssize(result.tracks); ++t) {
       const Track& track = result.tracks[t];
-      EXPECT_EQ(track.id, static_cast<int>(t) + 1);
+      EXPECT_EQ(track.id, t + 1);
       EXPECT_GE(track.regions.front(), last_begin);
       last_begin = track.regions.front();
       for (std::size_t k = 0; k < track.regions.size(); ++k) {

@@ -92,7 +92,7 @@ double enclosed_volume(const std::vector<Eigen::Vector3f>& x, const Eigen::Matri
   double six = 0;
   for (Eigen::Index f = 0; f < F.rows(); ++f) {
     const auto corner = [&](int c) -> Eigen::Vector3d {
-      return x[static_cast<std::size_t>(F(f, c))].cast<double>() - Eigen::Vector3d::Constant(0.35);
+      return x[F(f, c)].cast<double>() - Eigen::Vector3d::Constant(0.35);
     };
     six += corner(0).dot(corner(1).cross(corner(2)));
   }
@@ -222,7 +222,7 @@ TEST(LiquidExtrapolation, ClosedFacesOfASolidKeepItsNormalVelocityAndSlipAlong) 
   std::array<std::vector<char>, 3> known;
   const Eigen::Vector3f u(1, 2, -3), solid(0, 0.5F, 0);
   for (int a = 0; a < 3; ++a) {
-    const auto c = static_cast<std::size_t>(a);
+    const std::size_t c = a;
     solids.open[c] = ScalarGrid(shape.face_cells(a), 0);
     solids.velocity[c] = ScalarGrid(shape.face_cells(a), solid[a]);
     grid.face[c] = ScalarGrid(shape.face_cells(a), u[a]);

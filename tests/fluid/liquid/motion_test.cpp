@@ -125,8 +125,8 @@ double front(const Liquid& liquid) {
     ++count[std::min(i, count.size() - 1)];
   }
   int last = 0;
-  for (std::size_t i = 0; i < count.size(); ++i)
-    if (count[i] > 4 * shape.cells.y()) last = static_cast<int>(i);
+  for (int i = 0; i < std::ssize(count); ++i)
+    if (count[i] > 4 * shape.cells.y()) last = i;
   return (last + 1) * shape.cell;
 }
 

@@ -26,7 +26,7 @@ Eigen::Vector3i place(const PressureSystem& system, int c) {
 /// A blob of unknowns in a box, links of 0.2 to 1 between neighbours, and open faces at its border.
 PressureSystem blob(const Eigen::Vector3i& size) {
   RandomStream random(5, "links");
-  std::vector<std::uint8_t> marked(static_cast<std::size_t>(size.prod()));
+  std::vector<std::uint8_t> marked(size.prod());
   for (std::uint8_t& mark : marked) mark = random.uniform() < 0.9 ? 1 : 0;
   PressureSystem system;
   system.number_cells(size, marked);
@@ -105,7 +105,7 @@ Level coarsened(const Level& fine, Matrix& P) {
     entries.emplace_back(c, static_cast<int>(found - coarse.cell.begin()), 1);
     if (found == coarse.cell.end()) coarse.cell.push_back(at);
   }
-  P.resize(fine.A.rows(), static_cast<Eigen::Index>(coarse.cell.size()));
+  P.resize(fine.A.rows(), coarse.cell.size());
   P.setFromTriplets(entries.begin(), entries.end());
   coarse.A = 0.5 * (P.transpose() * fine.A * P);
   return coarse;

@@ -80,7 +80,7 @@ TEST(PressureSolids, ABallThatMovesWithTheLiquidLeavesItAlone) {
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t f = 0; f < valid[a].size(); ++f)
       if (valid[a][f]) {
-        ASSERT_NEAR(velocity.face[a].values[f], u[static_cast<Eigen::Index>(a)], 1e-6);
+        ASSERT_NEAR(velocity.face[a].values[f], u[a], 1e-6);
       }
 }
 

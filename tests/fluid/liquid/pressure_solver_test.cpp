@@ -63,7 +63,7 @@ Row reference_row(const Pool& pool, const Eigen::Vector3i& c) {
       Eigen::Vector3i face = c, next = c;
       if (side > 0) face[a] += 1;
       next[a] += side;
-      const auto axis = static_cast<std::size_t>(a);
+      const std::size_t axis = a;
       const double open = pool.solids.open[axis](face.x(), face.y(), face.z());
       row.right -= side * (open * pool.velocity.face[axis](face.x(), face.y(), face.z()) +
                            (1 - open) * pool.solids.velocity[axis](face.x(), face.y(), face.z()));

@@ -270,9 +270,9 @@ TEST(LiquidProcess, AnOpenTopLetsLiquidLeaveAClosedOneDoesNot) {
     LiquidOptions options;
     options.reseed = false;
     Liquid liquid(tank, options, 1);
-    const auto start = static_cast<std::int64_t>(liquid.particles().size());
+    const std::int64_t start = liquid.particles().size();
     run_until(liquid, 0.2);
-    const auto left = static_cast<std::int64_t>(liquid.particles().size());
+    const std::int64_t left = liquid.particles().size();
     EXPECT_EQ(liquid.removed(), start - left);
     EXPECT_EQ(left == start, !open);
   }
@@ -360,7 +360,7 @@ TEST(LiquidProcess, AMovingSolidPushesLiquid) {
   int beside = 0;
   const LiquidParticles& particles = liquid->particles();
   for (std::size_t p = 0; p < particles.size(); ++p) {
-    const double x = static_cast<double>(particles.position[p].x());
+    const double x = particles.position[p].x();
     EXPECT_GT(x, face - 0.1 / 32);
     if (x > face + 1.0 / 32) continue;
     speed += static_cast<double>(particles.velocity[p].x());

@@ -78,7 +78,7 @@ struct Kernel {
 void sum_particles(const Kernel& kernel, const LiquidParticles& particles,
                    std::vector<double>& mass, std::vector<double>& momentum) {
   const Eigen::Vector3i n = kernel.samples();
-  mass.assign(static_cast<std::size_t>(n.prod()), 0);
+  mass.assign(n.prod(), 0);
   momentum = mass;
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const Eigen::Vector3d x = particles.position[p].cast<double>();
@@ -86,7 +86,7 @@ void sum_particles(const Kernel& kernel, const LiquidParticles& particles,
       const int i = at.x() + n.x() * (at.y() + n.y() * at.z());
       mass[i] += weight;
       if (kernel.component == 3) return;
-      double u = static_cast<double>(particles.velocity[p][kernel.component]);
+      double u = particles.velocity[p][kernel.component];
       if (!particles.affine.empty()) {
         const Eigen::Vector3d xi(kernel.place(0, at.x()), kernel.place(1, at.y()),
                                  kernel.place(2, at.z()));
@@ -188,7 +188,7 @@ TEST(LiquidTransfer, ParticlesTakeWhatTheKernelSays) {
               u += weight * here;
               gradient += slope * here;
             });
-        const double kept = 0.25 * static_cast<double>(before.velocity[p][a]);
+        const double kept = 0.25 * before.velocity[p][a];
         EXPECT_NEAR(after.velocity[p][a], kept + u, 1e-5);
         if (!affine) continue;
         EXPECT_LT((after.affine[p].row(a).transpose().cast<double>() - gradient).norm(), 2e-4);
@@ -203,10 +203,10 @@ TEST(LiquidTransfer, UniformVelocityIsReproducedEverywhere) {
   const Eigen::Vector3f u(1.5F, -2, 0.25F);
   for (Eigen::Vector3f& v : particles.velocity) v = u;
   trip.run(particles, false);
-  for (std::size_t a = 0; a < 3; ++a) {
+  for (int a = 0; a < 3; ++a) {
     for (std::size_t i = 0; i < trip.touched[a].size(); ++i) {
       if (trip.touched[a][i] == 0) continue;
-      EXPECT_NEAR(trip.grid.face[a].values[i], u[static_cast<int>(a)], 1e-5);
+      EXPECT_NEAR(trip.grid.face[a].values[i], u[a], 1e-5);
     }
   }
   for (const Eigen::Vector3f& v : particles.velocity) EXPECT_LT((v - u).norm(), 1e-5F);
@@ -330,12 +330,12 @@ TEST(LiquidTransfer, KineticEnergyIsThatOfTheGridForALinearField) {
       const std::array<int, 3> d{c % 2, c / 2 % 2, c / 4};
       double w = 1;
       std::array<int, 3> at{};
-      for (std::size_t b = 0; b < 3; ++b) {
-        const AxisSample& along = s.along(static_cast<int>(b), 0);
+      for (int b = 0; b < 3; ++b) {
+        const AxisSample& along = s.along(b, 0);
         w *= static_cast<double>(d[b] != 0 ? along.fraction : 1 - along.fraction);
         at[b] = along.low + d[b];
       }
-      const auto u = static_cast<double>(trip.grid.face[0](at[0], at[1], at[2]));
+      const double u = trip.grid.face[0](at[0], at[1], at[2]);
       grid_energy += 0.5 * w * u * u;
     }
   }
@@ -347,7 +347,7 @@ TEST(LiquidTransfer, SameBytesWithOneAndTwoThreads) {
                                 RoundTrip(grid_of({20, 20, 20}, kCell))};
   std::array<LiquidParticles, 2> particles;
   for (int t = 0; t < 2; ++t) {
-    const auto i = static_cast<std::size_t>(t);
+    const std::size_t i = t;
     particles[i] = scattered(60000, {0, 0, 0}, {2, 2, 2}, 8);
     with_threads(t + 1, [&] { trip[i].run(particles[i], true); });
   }

@@ -192,8 +192,7 @@ Sheet cones_at(const std::vector<Eigen::Vector2d>& apexes, int n, double jitter)
 TEST(DetectedCones, CountApexesOnEveryMesh) {
   const std::vector<Eigen::Vector2d> four{{-0.1, -0.1}, {-0.1, 0.1}, {0.1, -0.1}, {0.1, 0.1}};
   for (const std::size_t count : {std::size_t{1}, std::size_t{2}, std::size_t{4}}) {
-    const std::vector<Eigen::Vector2d> apexes(four.begin(),
-                                              four.begin() + static_cast<std::ptrdiff_t>(count));
+    const std::vector<Eigen::Vector2d> apexes(four.begin(), four.begin() + count);
     EXPECT_EQ(cones_of(cones_at(apexes, 40, 0)).size(), count);
     EXPECT_EQ(cones_of(cones_at(apexes, 80, 0)).size(), count);
     EXPECT_EQ(cones_of(cones_at(apexes, 40, 0.1)).size(), count);

@@ -61,7 +61,7 @@ FitTally tally(double exponent, const std::function<Eigen::VectorXd(std::uint64_
   FitTally result;
   for (int seed = 1; seed <= seeds; ++seed) {
     PowerLawOptions options;
-    options.seed = static_cast<std::uint64_t>(seed);
+    options.seed = seed;
     options.replicates = 100;
     const PowerLawFit fit = fit_power_law(sample(options.seed), options);
     const double error = fit.exponent - exponent;
@@ -199,7 +199,7 @@ Eigen::VectorXd energies_above(const Eigen::VectorXd& sound, double threshold, i
     quiet = is_loud ? 0 : quiet + 1;
     if (quiet <= gap && !energies.empty()) energies.back() += x * x;
   }
-  return Eigen::Map<Eigen::VectorXd>(energies.data(), static_cast<Eigen::Index>(energies.size()));
+  return Eigen::Map<Eigen::VectorXd>(energies.data(), energies.size());
 }
 
 /// Noise that falls by 60 dB and sets in anew every `period` samples.

@@ -144,7 +144,7 @@ template <class Distance>
 Places darts(const UnfoldedSurface& surface, int count, double least, const Distance& distance) {
   sampled::UniformPlaces uniform(surface.mesh(), 4);
   Places kept;
-  for (int trial = 0; trial < 200000 && static_cast<int>(kept.size()) < count; ++trial) {
+  for (int trial = 0; trial < 200000 && std::ssize(kept) < count; ++trial) {
     const SurfacePoint place = uniform.next();
     bool is_free = true;
     for (const SurfacePoint& other : kept) {

@@ -26,7 +26,7 @@ TEST(OptimalAssignment, IsTheBestOfAllPermutations) {
     Eigen::MatrixXd value(rows, columns);
     for (Eigen::Index i = 0; i < value.size(); ++i) value(i) = 10 * random.uniform() - 3;
     std::vector<int> order(std::max(rows, columns));
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+    for (int i = 0; i < std::ssize(order); ++i) order[i] = i;
     double best = -1e30;
     do {
       double sum = 0;

@@ -172,7 +172,7 @@ TEST(Contact, SamplesShareTheAreaOfTheSheet) {
     Eigen::Vector2d moment = Eigen::Vector2d::Zero();
     for (const ContactPoint& point : points) {
       sum += point.stiffness;
-      for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k) {
+      for (int k = 0; k < point.count; ++k) {
         moment +=
             point.stiffness * point.weight[k] * state.mesh.pattern.row(point.vertex[k]).transpose();
       }

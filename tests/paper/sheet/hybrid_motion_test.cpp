@@ -219,7 +219,7 @@ TEST(HybridProcess, GoesOnFromACheckpointAsIfItHadNotStopped) {
     std::vector<State> states;
     void frame(Frame f) override {
       places.push_back(f.require_part("surface").points);
-      pieces.push_back(static_cast<std::size_t>(f.require_table("pieces").rows.rows()));
+      pieces.push_back(f.require_table("pieces").rows.rows());
     }
     void event(const Event&) override {}
     void artifact(Artifact) override {}

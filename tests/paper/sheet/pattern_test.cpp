@@ -140,8 +140,8 @@ TEST(PatternWithHoles, NumbersCornersAndEdgesThroughAllLoops) {
   const std::vector<Eigen::Vector2d> all = corners(p);
   int edge = 0;
   each_edge(p, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    EXPECT_EQ(a, all[static_cast<std::size_t>(edge)]);
-    EXPECT_EQ(b, all[static_cast<std::size_t>(next_edge(p, edge))]);
+    EXPECT_EQ(a, all[edge]);
+    EXPECT_EQ(b, all[next_edge(p, edge)]);
     // The material is on the left.
     const Eigen::Vector2d along = b - a;
     EXPECT_TRUE(contains(p, (a + b) / 2 + 0.01 * Eigen::Vector2d(-along.y(), along.x())));

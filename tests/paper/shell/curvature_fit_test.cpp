@@ -126,11 +126,11 @@ TEST(CurvatureFit, StaysBoundedOnRandomDelaunayMeshes) {
 TEST(CurvatureFit, CountsOwnEdgesFirst) {
   const ShellMesh mesh = meshes::delaunay(6, 6, 1, 1);
   const CurvatureFit fit = fit_curvature(mesh.pattern, mesh.triangles);
-  for (std::size_t t = 0; t < fit.terms.size(); ++t) {
+  for (int t = 0; t < std::ssize(fit.terms); ++t) {
     EXPECT_LE(fit.terms[t].size(), static_cast<std::size_t>(CurvatureFit::kMostTerms));
     for (std::size_t i = 0; i < fit.terms[t].size(); ++i) {
       const auto& h = fit.hinges[fit.terms[t][i].hinge];
-      const bool own = h.left == static_cast<int>(t) || h.right == static_cast<int>(t);
+      const bool own = h.left == t || h.right == t;
       EXPECT_EQ(own, i < static_cast<std::size_t>(fit.own[t]));
     }
   }

@@ -45,12 +45,12 @@ Assembled assemble(const ShellElements& elements, const ShellState& state,
     if (order == Order::energy) continue;
     const auto nodes = elements.nodes(e);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const auto row = static_cast<Eigen::Index>(3 * i);
+      const Eigen::Index row = 3 * i;
       sum.gradient.segment<3>(3 * nodes[i]) += local.gradient.segment<3>(row);
       if (order != Order::hessian) continue;
       for (std::size_t j = 0; j < nodes.size(); ++j)
         sum.hessian.block<3, 3>(3 * nodes[i], 3 * nodes[j]) +=
-            local.hessian.block<3, 3>(row, static_cast<Eigen::Index>(3 * j));
+            local.hessian.block<3, 3>(row, 3 * j);
     }
   }
   return sum;
@@ -276,7 +276,7 @@ TEST(ShellElements, HessianIsPositiveSemidefinite) {
     ShellElements::Local local;
     for (int e = 0; e < elements.size(); ++e) {
       elements.evaluate(e, state, x, Order::hessian, local);
-      const auto n = static_cast<Eigen::Index>(3 * elements.nodes(e).size());
+      const Eigen::Index n = 3 * elements.nodes(e).size();
       const Eigen::MatrixXd H = local.hessian.topLeftCorner(n, n);
       EXPECT_LT((H - H.transpose()).cwiseAbs().maxCoeff(), 1e-13 * H.norm()) << name;
       const Eigen::VectorXd values =

@@ -96,9 +96,7 @@ inline void add_energy(const Side& x, const Side& s, const Strain& strain, doubl
     for (std::size_t j = 0; j < 3; ++j)
       for (const Term& a : strain[i])
         for (const Term& b : strain[j]) {
-          const double factor = stiffness *
-                                law(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) *
-                                a.factor * b.factor;
+          const double factor = stiffness * law(i, j) * a.factor * b.factor;
           if (factor == 0) continue;
           const Eigen::MatrixXd& X = x.integral(a.p, b.p);
           const Eigen::MatrixXd& S = s.integral(a.q, b.q);

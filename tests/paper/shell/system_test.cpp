@@ -113,8 +113,7 @@ TEST(ShellSystem, ScattersTheElementsHessians) {
       for (std::size_t a = 0; a < nodes.size(); ++a) {
         for (std::size_t b = 0; b < nodes.size(); ++b) {
           expected.block<3, 3>(3 * s.position[nodes[a]], 3 * s.position[nodes[b]]) +=
-              2 * local.hessian.block<3, 3>(static_cast<Eigen::Index>(3 * a),
-                                            static_cast<Eigen::Index>(3 * b));
+              2 * local.hessian.block<3, 3>(3 * a, 3 * b);
         }
       }
     }

@@ -123,7 +123,7 @@ class LongRandomPulls : public testing::TestWithParam<int> {};
 
 TEST_P(LongRandomPulls, LeaveASheetThatIsWholeInEveryPart) {
   const int frames = test::at_length() ? 500 : 38;
-  const auto seed = static_cast<std::uint64_t>(GetParam());
+  const std::uint64_t seed = GetParam();
   const Sheet sheet = pulled_about(seed, frames);
   int frame = 0, strained = 0;
   double length = 0;

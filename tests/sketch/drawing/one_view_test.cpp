@@ -28,7 +28,7 @@ using ::testing::HasSubstr;
 Eigen::Vector3d true_place(const SyntheticView& drawing, const SketchCurve& curve, int i) {
   const std::vector<Eigen::Vector3d>& truth = drawing.truth[curve.stroke];
   const double at = curve.drawn_at[i];
-  const auto low = static_cast<std::size_t>(at);
+  const std::size_t low = at;
   const double t = at - std::floor(at);
   return (1 - t) * truth[low % truth.size()] + t * truth[(low + 1) % truth.size()];
 }
@@ -155,8 +155,8 @@ void keep_front_of_lower_circle(SyntheticView& drawing) {
   strokes[circle].closed = false;
   strokes[circle].points = points;
   drawing.truth[circle] = truth;
-  strokes.erase(strokes.begin() + static_cast<std::ptrdiff_t>(back));
-  drawing.truth.erase(drawing.truth.begin() + static_cast<std::ptrdiff_t>(back));
+  strokes.erase(strokes.begin() + back);
+  drawing.truth.erase(drawing.truth.begin() + back);
 }
 
 // As in a photograph: the hidden part of the lower circle is not drawn. All pairs are on the upper
@@ -209,8 +209,8 @@ TEST(OneView, SurfaceIsSymmetricAndWelded) {
       const Eigen::Vector3d a = mesh.V.row(mesh.F(t, 0)).transpose();
       const Eigen::Vector3d b = mesh.V.row(mesh.F(half + t, 0)).transpose();
       EXPECT_LT((mirrored(result.planes.chosen, a) - b).norm(), 1e-12);
-      EXPECT_FALSE(result.surface.mirror_image[static_cast<std::size_t>(t)]);
-      EXPECT_TRUE(result.surface.mirror_image[static_cast<std::size_t>(half + t)]);
+      EXPECT_FALSE(result.surface.mirror_image[t]);
+      EXPECT_TRUE(result.surface.mirror_image[half + t]);
     }
     EXPECT_FALSE(EdgeConnectivity(mesh.F).first_repeated());
     EXPECT_TRUE(non_manifold_edges(mesh.F).empty());
@@ -222,10 +222,10 @@ int border_loops(const TriMesh& mesh) {
   std::vector<int> next(static_cast<std::size_t>(mesh.vertex_count()), -1);
   for (const Edge& edge : boundary_edges(mesh.F)) next[edge[0]] = edge[1];
   int loops = 0;
-  for (std::size_t v = 0; v < next.size(); ++v) {
+  for (int v = 0; v < std::ssize(next); ++v) {
     if (next[v] < 0) continue;
     ++loops;
-    int w = static_cast<int>(v);
+    int w = v;
     while (next[w] >= 0) w = std::exchange(next[w], -1);
   }
   return loops;
@@ -270,8 +270,7 @@ TEST(OneView, FrustumUnrollsIntoTheSectorOfItsCone) {
   const auto last = patch.unrolled.rows() - 1;
   const Eigen::RowVector2d from = patch.unrolled.row(1) - patch.unrolled.row(0);
   // The last ruling joins the last vertices of the two borders, made last.
-  const bool last_is_second =
-      patch.strip.node[static_cast<std::size_t>(last)] == patch.strip.node[1];
+  const bool last_is_second = patch.strip.node[last] == patch.strip.node[1];
   const Eigen::RowVector2d to =
       (patch.unrolled.row(last) - patch.unrolled.row(last - 1)) * (last_is_second ? 1 : -1);
   const double turn = std::acos(from.dot(to) / (from.norm() * to.norm()));

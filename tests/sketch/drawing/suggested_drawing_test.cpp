@@ -65,7 +65,7 @@ TEST(CutMeasures, OfAPipeIsTheLengthOfItsSeam) {
   PreparedSketch prepared;
   prepared.surface.hull.mesh = shapes::tube(0.1, 0.1, 0.7, 24, 14);
   const TriMesh& mesh = prepared.surface.hull.mesh;
-  prepared.surface.border_of.assign(static_cast<std::size_t>(mesh.vertex_count()), -1);
+  prepared.surface.border_of.assign(mesh.vertex_count(), -1);
   Frame frame = sketch_frame(prepared, mesh.V, 0);
   EXPECT_FALSE(cut_measures({}, frame).seam_length);
   add_pattern(frame, make_pattern(mesh, shapes::tube_seam(24, 14)));
@@ -89,7 +89,7 @@ TEST(AddSeam, CutsTheSurfaceAndKeepsItsSilhouettes) {
     (before.V.rowwise() - x).rowwise().squaredNorm().minCoeff(&v);
     return static_cast<int>(v);
   };
-  std::vector<char> targets(static_cast<std::size_t>(before.vertex_count()), 0);
+  std::vector<char> targets(before.vertex_count(), 0);
   targets[nearest({0, 0, 0})] = 1;
   const SurfacePath path = paths.shortest(nearest({0, 0.3, 0}), targets);
   ASSERT_FALSE(path.empty());
@@ -111,8 +111,7 @@ TEST(HullSections, OfTheTopViewAreRoundWhereItIsRound) {
   // A cone's frustum: the views alone see a pyramid's with its corners cut.
   Drawing drawing = test::drawn_cylinder(0.2, 0.1, 360);
   for (int v = 0; v < 2; ++v)
-    drawing.views[static_cast<std::size_t>(v)].strokes[0].points = {
-        {0, 0}, {0.2, 0}, {0.15, 0.1}, {0.05, 0.1}};
+    drawing.views[v].strokes[0].points = {{0, 0}, {0.2, 0}, {0.15, 0.1}, {0.05, 0.1}};
   const Drawing aligned = align_views(drawing, {});
   const auto worst = [&](HullSections sections) {
     const TriMesh mesh = visual_hull(aligned, {4000, sections}).mesh;

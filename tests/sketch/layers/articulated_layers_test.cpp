@@ -108,9 +108,9 @@ TEST(ArcCircle, RecoversTheCirclesOfAKnownBody) {
   const auto circles = fit_arc_circles(body.view, planes.chosen);
   ASSERT_EQ(circles.size(), 8U);
   for (std::size_t k = 0; k < circles.size(); ++k) {
-    Eigen::MatrixX3d real(static_cast<Eigen::Index>(body.truth[k].size()), 3);
+    Eigen::MatrixX3d real(body.truth[k].size(), 3);
     for (std::size_t i = 0; i < body.truth[k].size(); ++i)
-      real.row(static_cast<Eigen::Index>(i)) = body.truth[k][i].transpose();
+      real.row(i) = body.truth[k][i].transpose();
     const CircularArc truth = circular_arc(real);
     EXPECT_NEAR(circles[k].radius, truth.radius, 1e-9);
     EXPECT_NEAR((circles[k].centre - truth.centre).norm(), 0, 1e-9);
@@ -205,7 +205,7 @@ int contacts(const ArticulatedLayers& layers, const LayerOptions& options, doubl
   const auto poses = layer_poses(layers, angles);
   TriMesh all;
   std::vector<int> layer;
-  for (std::size_t j = 0; j < layers.bands.size(); ++j) {
+  for (int j = 0; j < std::ssize(layers.bands); ++j) {
     const TriMesh solid =
         band_solid(layers.bands[j], options.thickness * layers.unit, options.grid);
     const Eigen::Index n = all.V.rows(), m = all.F.rows();
@@ -214,11 +214,11 @@ int contacts(const ArticulatedLayers& layers, const LayerOptions& options, doubl
     for (Eigen::Index v = 0; v < solid.V.rows(); ++v)
       all.V.row(n + v) = (poses[j] * Eigen::Vector3d(solid.V.row(v).transpose())).transpose();
     all.F.bottomRows(solid.F.rows()) = solid.F.array() + static_cast<int>(n);
-    layer.insert(layer.end(), static_cast<std::size_t>(solid.F.rows()), static_cast<int>(j));
+    layer.insert(layer.end(), solid.F.rows(), j);
   }
   int count = 0;
   for (const auto& pair : intersecting_triangles(all.V, all.F)) {
-    count += layer[static_cast<std::size_t>(pair[0])] != layer[static_cast<std::size_t>(pair[1])];
+    count += layer[pair[0]] != layer[pair[1]];
   }
   return count;
 }
@@ -320,9 +320,9 @@ TEST(LayerPattern, EdgesHaveTheLengthsOfTheBandsAndHolesTheirPlaces) {
                                2 * band.half_angle * band.front_radius, band.slant()};
     for (std::size_t e = 0; e < 4; ++e) {
       const std::vector<int>& chain = piece.edges[e].vertices;
-      Eigen::MatrixX3d points = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(chain.size()), 3);
+      Eigen::MatrixX3d points = Eigen::MatrixX3d::Zero(chain.size(), 3);
       for (std::size_t i = 0; i < chain.size(); ++i)
-        points.row(static_cast<Eigen::Index>(i)).head<2>() = piece.points.row(chain[i]);
+        points.row(i).head<2>() = piece.points.row(chain[i]);
       EXPECT_NEAR(circular_arc(points).length, lengths[e], 1e-9);
     }
     const bool end = j == 0 || j + 1 == pattern.pieces.size();

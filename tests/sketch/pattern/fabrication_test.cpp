@@ -130,7 +130,7 @@ TEST(PatternSvg, PairsNotches) {
   ASSERT_GE(pieces.size(), 10U);
   for (const auto& [label, of] : pieces) {
     const auto at_disc = std::count(of.begin(), of.end(), 1);
-    EXPECT_TRUE(at_disc == 0 || 2 * at_disc == static_cast<std::ptrdiff_t>(of.size())) << label;
+    EXPECT_TRUE(at_disc == 0 || 2 * at_disc == std::ssize(of)) << label;
     EXPECT_TRUE(of.size() == 2 || of.size() == 4) << label;
   }
   // The numbers are written once on each side.
@@ -365,7 +365,7 @@ TEST(PatternMap, FindsEveryPointOnTheSheet) {
     words >> piece >> point >> vertex >> own.x() >> own.y() >> on_sheet.x() >> on_sheet.y();
     const PatternPiece& asked = pattern.pieces.at(piece);
     EXPECT_EQ(vertex, asked.surface_vertex.at(point));
-    EXPECT_LT((own - 1000 * asked.points.row(static_cast<int>(point)).transpose()).norm(), 1e-4);
+    EXPECT_LT((own - 1000 * asked.points.row(point).transpose()).norm(), 1e-4);
     EXPECT_LT((on_sheet - sewn[piece].points[point]).norm(), 1e-4);
     ++occurrences[vertex];
   }

@@ -30,7 +30,7 @@ inline sketch::Pattern bucket(int count = 48, double wide = 0.12, double narrow 
     wall.points.row(i) << outer * std::cos(a), outer * std::sin(a);
     wall.points.row(2 * count + 1 - i) << inner * std::cos(a), inner * std::sin(a);
   }
-  std::vector<int> border(static_cast<std::size_t>(2 * count + 2));
+  std::vector<int> border(2 * count + 2);
   std::iota(border.begin(), border.end(), 0);
   wall.borders = {border};
   const auto range = [](int from, int to) {
@@ -63,12 +63,12 @@ inline sketch::PatternPiece polygon_piece(const std::string& name,
                                           const std::vector<Eigen::Vector2d>& corners) {
   sketch::PatternPiece piece;
   piece.name = name;
-  piece.points.resize(static_cast<Eigen::Index>(corners.size()), 2);
+  piece.points.resize(corners.size(), 2);
   std::vector<int> border;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    piece.points.row(static_cast<Eigen::Index>(i)) = corners[i].transpose();
-    border.push_back(static_cast<int>(i));
-    piece.surface_vertex.push_back(static_cast<int>(i));
+  for (int i = 0; i < std::ssize(corners); ++i) {
+    piece.points.row(i) = corners[i].transpose();
+    border.push_back(i);
+    piece.surface_vertex.push_back(i);
   }
   piece.borders = {border};
   return piece;

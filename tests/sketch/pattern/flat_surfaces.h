@@ -105,9 +105,8 @@ inline TriMesh part(const TriMesh& mesh, const std::function<bool(const Eigen::V
     }
   }
   result.V = mesh.V(vertices, Eigen::all);
-  result.F.resize(static_cast<Eigen::Index>(triangles.size()), 3);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    result.F.row(static_cast<Eigen::Index>(t)) = triangles[t].transpose();
+  result.F.resize(triangles.size(), 3);
+  for (std::size_t t = 0; t < triangles.size(); ++t) result.F.row(t) = triangles[t].transpose();
   return result;
 }
 

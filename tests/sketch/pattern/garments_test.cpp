@@ -51,7 +51,7 @@ Stroke inner_border(std::vector<Eigen::Vector2d> points, bool closed) {
 
 int euler_characteristic(const TriMesh& mesh) {
   const EdgeConnectivity edges(mesh.F);
-  return static_cast<int>(mesh.V.rows()) - edges.edge_count() + static_cast<int>(mesh.F.rows());
+  return mesh.vertex_count() - edges.edge_count() + mesh.triangle_count();
 }
 
 double surface_area(const TriMesh& mesh) {
@@ -301,7 +301,7 @@ TEST(ClothFiles, KeepMaterialDistancesAndSeams) {
     Eigen::Vector2d p;
     if (words >> word && word == "vt" && words >> p.x() >> p.y()) material.push_back(p);
   }
-  ASSERT_EQ(static_cast<Eigen::Index>(material.size()), read.V.rows());
+  ASSERT_EQ(std::ssize(material), read.V.rows());
   std::size_t first = 0;
   Eigen::Index t = 0;
   for (const PatternPiece& piece : made.pattern.pieces) {

@@ -17,8 +17,8 @@ namespace {
 using ::testing::HasSubstr;
 
 double notched_length(const Pattern& pattern, const Notch& notch) {
-  const PatternPiece& piece = pattern.pieces[static_cast<std::size_t>(notch.piece)];
-  return edge_length(piece, piece.edges[static_cast<std::size_t>(notch.edge)]);
+  const PatternPiece& piece = pattern.pieces[notch.piece];
+  return edge_length(piece, piece.edges[notch.edge]);
 }
 
 TEST(Notches, LieAtEqualLengthsOnBothSides) {
@@ -42,15 +42,15 @@ TEST(Notches, MeetOnTheSewnSurface) {
   const Pattern pattern = test::bucket(24);
   const auto notches = paired_notches(pattern, {.spacing = 0.07});
   const auto surface_place = [&](const Notch& notch) {
-    const PatternPiece& piece = pattern.pieces[static_cast<std::size_t>(notch.piece)];
-    const auto& chain = piece.edges[static_cast<std::size_t>(notch.edge)].vertices;
+    const PatternPiece& piece = pattern.pieces[notch.piece];
+    const auto& chain = piece.edges[notch.edge].vertices;
     std::map<int, double> weights;
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
       const Eigen::Vector2d a = piece.points.row(chain[i]), b = piece.points.row(chain[i + 1]);
       const double t = (notch.point - a).dot(b - a) / (b - a).squaredNorm();
       if (t < 0 || t > 1 || (a + t * (b - a) - notch.point).norm() > 1e-12) continue;
-      weights[piece.surface_vertex[static_cast<std::size_t>(chain[i])]] = 1 - t;
-      weights[piece.surface_vertex[static_cast<std::size_t>(chain[i + 1])]] = t;
+      weights[piece.surface_vertex[chain[i]]] = 1 - t;
+      weights[piece.surface_vertex[chain[i + 1]]] = t;
     }
     return weights;
   };

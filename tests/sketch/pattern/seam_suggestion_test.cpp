@@ -44,9 +44,8 @@ TriMesh cone(double sine, int segments, int rows) {
       triangles.emplace_back(a + i, b + next, a + next);
     }
   }
-  mesh.F.resize(static_cast<Eigen::Index>(triangles.size()), 3);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    mesh.F.row(static_cast<Eigen::Index>(t)) = triangles[t].transpose();
+  mesh.F.resize(triangles.size(), 3);
+  for (std::size_t t = 0; t < triangles.size(); ++t) mesh.F.row(t) = triangles[t].transpose();
   return mesh;
 }
 

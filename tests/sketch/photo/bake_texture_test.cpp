@@ -61,8 +61,7 @@ FlatObject flat_tent() {
 }
 
 PixelImage uniform_image(int width, int height, const PixelColour& colour) {
-  return {width, height,
-          std::vector<PixelColour>(static_cast<std::size_t>(width * height), colour)};
+  return {width, height, std::vector<PixelColour>(width * height, colour)};
 }
 
 /// Red grows with x and green with y, from 0 to 255 over the picture.
@@ -79,8 +78,7 @@ PixelImage ramp(int width, int height) {
 
 const PixelColour& pixel_at(const BakedPattern& baked, const Eigen::Vector2d& place) {
   const Eigen::Vector2d at = baked.grid.pixels_at(place);
-  return baked.image.at(static_cast<int>(std::lround(at.x())),
-                        static_cast<int>(std::lround(at.y())));
+  return baked.image.at(std::lround(at.x()), std::lround(at.y()));
 }
 
 /// A square of side 1 at depth 2 before one of side 4 at depth 1, seen by 8 x 8 pixels.
@@ -158,8 +156,8 @@ TEST(BakePattern, SeenSidesHaveTheColourOfTheirImage) {
   int compared = 0;
   for (const PatternPiece& piece : tent.pattern.pieces) {
     for (Eigen::Index t = 0; t < piece.triangles.rows(); ++t) {
-      const int on_surface = piece.surface_triangle[static_cast<std::size_t>(t)];
-      if (surface.mirror_image[static_cast<std::size_t>(on_surface)]) continue;
+      const int on_surface = piece.surface_triangle[t];
+      if (surface.mirror_image[on_surface]) continue;
       if (normals(on_surface, 2) < 0.3) continue;
       Eigen::Vector2d place(0, 0), texture(0, 0);
       for (int k = 0; k < 3; ++k) {
@@ -182,13 +180,13 @@ TEST(BakePattern, IsSymmetric) {
   options.most_side = 800;
   const BakedPattern baked =
       bake_pattern(tent.view, ramp(600, 500), tent.result, tent.pattern, options);
-  const auto n = static_cast<std::size_t>(tent.result.surface.mesh.F.rows());
+  const std::size_t n = tent.result.surface.mesh.F.rows();
   std::vector<Eigen::Vector2d> place(n);
   for (const PatternPiece& piece : tent.pattern.pieces) {
     for (Eigen::Index t = 0; t < piece.triangles.rows(); ++t) {
       Eigen::Vector2d middle(0, 0);
       for (int k = 0; k < 3; ++k) middle += piece.points.row(piece.triangles(t, k)).transpose() / 3;
-      place[static_cast<std::size_t>(piece.surface_triangle[static_cast<std::size_t>(t)])] = middle;
+      place[piece.surface_triangle[t]] = middle;
     }
   }
   for (std::size_t t = 0; t < n / 2; ++t) {

@@ -113,7 +113,7 @@ TEST(KnownViews, SilhouetteIsWhereTheNormalIsOrthogonalToTheView) {
   const auto stroke = std::find_if(view.view.strokes.begin(), view.view.strokes.end(),
                                    [](const Stroke& s) { return s.id == "room-silhouette-1"; });
   ASSERT_NE(stroke, view.view.strokes.end());
-  const auto number = static_cast<std::size_t>(stroke - view.view.strokes.begin());
+  const std::size_t number = stroke - view.view.strokes.begin();
   for (const Eigen::Vector3d& q : view.truth[number]) {
     const Eigen::Vector3d p = place.frame.transpose() * (q - place.shift);
     const Eigen::Vector3d normal(p.x() / 0.25, p.y() / (0.625 * 0.625), 0);

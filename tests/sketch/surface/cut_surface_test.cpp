@@ -28,20 +28,20 @@ using ::testing::SizeIs;
 /// the two sides of a seam run the opposite ways through the same vertices of the surface.
 void expect_consistent(const TriMesh& surface, const std::vector<CutPiece>& pieces) {
   std::vector<int> seen(surface.triangle_count(), 0);
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
+  for (int p = 0; p < std::ssize(pieces); ++p) {
     const CutPiece& piece = pieces[p];
     for (std::size_t i = 0; i < piece.surface_triangle.size(); ++i) {
       const int t = piece.surface_triangle[i];
       ++seen[t];
       for (int k = 0; k < 3; ++k) {
-        const int v = piece.mesh.F(static_cast<Eigen::Index>(i), k);
+        const int v = piece.mesh.F(i, k);
         EXPECT_EQ(piece.surface_vertex[v], surface.F(t, k));
         EXPECT_EQ(piece.mesh.V.row(v), surface.V.row(surface.F(t, k)));
       }
     }
     std::size_t border = 0, stretches = 0;
     for (const std::vector<int>& loop : piece.borders) border += loop.size();
-    for (std::size_t e = 0; e < piece.edges.size(); ++e) {
+    for (int e = 0; e < std::ssize(piece.edges); ++e) {
       const PieceEdge& edge = piece.edges[e];
       stretches += edge.vertices.size() - 1;
       EXPECT_EQ(edge.seam < 0, edge.partner_piece < 0);
@@ -49,8 +49,8 @@ void expect_consistent(const TriMesh& surface, const std::vector<CutPiece>& piec
       const CutPiece& other = pieces[edge.partner_piece];
       const PieceEdge& partner = other.edges[edge.partner_edge];
       EXPECT_EQ(partner.seam, edge.seam);
-      EXPECT_EQ(partner.partner_piece, static_cast<int>(p));
-      EXPECT_EQ(partner.partner_edge, static_cast<int>(e));
+      EXPECT_EQ(partner.partner_piece, p);
+      EXPECT_EQ(partner.partner_edge, e);
       ASSERT_EQ(partner.vertices.size(), edge.vertices.size());
       for (std::size_t i = 0; i < edge.vertices.size(); ++i) {
         EXPECT_EQ(piece.surface_vertex[edge.vertices[i]],

@@ -17,20 +17,19 @@ namespace {
 double depth_share(const SyntheticView& drawing, const OneViewResult& result) {
   std::vector<Eigen::Vector3d> found, real;
   for (const SketchCurve& curve : result.net.curves) {
-    const std::vector<Eigen::Vector3d>& truth =
-        drawing.truth[static_cast<std::size_t>(curve.stroke)];
+    const std::vector<Eigen::Vector3d>& truth = drawing.truth[curve.stroke];
     for (int i = 0; i < curve.size(); ++i) {
-      const double at = curve.drawn_at[static_cast<std::size_t>(i)];
-      const auto low = static_cast<std::size_t>(at);
+      const double at = curve.drawn_at[i];
+      const std::size_t low = at;
       const double t = at - std::floor(at);
-      found.push_back(result.depth.nodes.row(curve.nodes[static_cast<std::size_t>(i)]).transpose());
+      found.push_back(result.depth.nodes.row(curve.nodes[i]).transpose());
       real.push_back((1 - t) * truth[low % truth.size()] + t * truth[(low + 1) % truth.size()]);
     }
   }
-  Eigen::MatrixX3d points(static_cast<Eigen::Index>(found.size()), 3), places(points);
+  Eigen::MatrixX3d points(found.size(), 3), places(points);
   for (std::size_t k = 0; k < found.size(); ++k) {
-    points.row(static_cast<Eigen::Index>(k)) = found[k].transpose();
-    places.row(static_cast<Eigen::Index>(k)) = real[k].transpose();
+    points.row(k) = found[k].transpose();
+    places.row(k) = real[k].transpose();
   }
   return geoprior::depth_error(points, places, Eigen::Vector3d::UnitZ(), drawing.height).share;
 }

@@ -15,7 +15,7 @@ namespace {
 using flow_shapes::bumpy_sphere;
 
 std::vector<Eigen::Matrix3d> equal_rotations(const TriMesh& mesh, const Eigen::Matrix3d& rotation) {
-  return std::vector<Eigen::Matrix3d>(static_cast<std::size_t>(mesh.triangle_count()), rotation);
+  return std::vector<Eigen::Matrix3d>(mesh.triangle_count(), rotation);
 }
 
 Eigen::Matrix3d a_rotation() {

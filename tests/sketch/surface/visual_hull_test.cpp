@@ -77,8 +77,8 @@ TriMesh triangles_of(const QuadMesh& quads) {
   TriMesh mesh{quads.V, Eigen::MatrixX3i(2 * quads.quads.size(), 3)};
   for (std::size_t q = 0; q < quads.quads.size(); ++q) {
     const auto& [a, b, c, d] = quads.quads[q];
-    mesh.F.row(static_cast<Eigen::Index>(2 * q)) << a, b, c;
-    mesh.F.row(static_cast<Eigen::Index>(2 * q + 1)) << a, c, d;
+    mesh.F.row(2 * q) << a, b, c;
+    mesh.F.row(2 * q + 1) << a, c, d;
   }
   return mesh;
 }

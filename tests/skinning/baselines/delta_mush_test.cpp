@@ -30,10 +30,10 @@ Eigen::Matrix3d ring_frame(const std::vector<int>& ring, int i, const Eigen::Mat
   Eigen::MatrixX3d before(ring.size(), 3), after(ring.size(), 3);
   Eigen::Vector3d area = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < ring.size(); ++k) {
-    before.row(static_cast<Eigen::Index>(k)) = rest.row(ring[k]) - rest.row(i);
-    after.row(static_cast<Eigen::Index>(k)) = posed.row(ring[k]) - posed.row(i);
+    before.row(k) = rest.row(ring[k]) - rest.row(i);
+    after.row(k) = posed.row(ring[k]) - posed.row(i);
     const Eigen::Vector3d next = rest.row(ring[(k + 1) % ring.size()]) - rest.row(i);
-    area += Eigen::Vector3d(before.row(static_cast<Eigen::Index>(k))).cross(next);
+    area += Eigen::Vector3d(before.row(k)).cross(next);
   }
   const Eigen::Vector3d x = area.unitOrthogonal(), y = area.normalized().cross(x);
   Eigen::MatrixX2d plane(before.rows(), 2);

@@ -141,7 +141,7 @@ TEST(DualQuaternionBlend, CopiesOfAJointActAsOne) {
   const RiggedMesh two = two_bone_cylinder(cylinder_options());
   const RiggedMesh many = fixtures::cylinder_of_many_influences(7);
   const Pose pose = fixtures::turned(two, "upper", "flexion", 1.4);
-  Pose copied(static_cast<std::size_t>(many.skeleton.size()), pose[1]);
+  Pose copied(many.skeleton.size(), pose[1]);
   copied[0] = pose[0];
   // Weights are packed as floats.
   EXPECT_LE(fixtures::largest_distance(fixtures::deformed<DualQuaternionBlend>(two, pose),

@@ -137,7 +137,7 @@ BvhMotion with_up(BvhMotion motion, int up) {
       axis.cwiseAbs().maxCoeff(&where);
       channel.axis = static_cast<int>(where);
       if (axis[where] < 0) {
-        motion.values.col(joint.first_column + static_cast<Eigen::Index>(c)) *= -1;
+        motion.values.col(joint.first_column + c) *= -1;
       }
     }
   }

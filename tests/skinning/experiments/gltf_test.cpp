@@ -170,7 +170,7 @@ TEST(Gltf, EverythingElseIsIgnoredWithOneWarningThatNamesIt) {
 TEST(Gltf, TruncationAtAnyByteIsAnError) {
   const std::vector<std::byte> bytes = skinned_square().bytes();
   for (std::size_t n = 0; n < bytes.size(); n += 7) {
-    const std::vector<std::byte> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n));
+    const std::vector<std::byte> cut(bytes.begin(), bytes.begin() + n);
     EXPECT_THROW(read_gltf_bytes(cut, "cut.glb"), Error) << n;
   }
   const std::vector<std::byte> cut(bytes.begin(), bytes.end() - 4);

@@ -177,9 +177,8 @@ TEST(RigCommand, QuotesNamesThatAreNoBareKeys) {
   const std::vector<std::string> names{"mixamorig:Hips", "a.b",         "\"quoted\"\\", "",
                                        "Bein-Ä",         "tab\tand\x7f"};
   Skeleton skeleton;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    skeleton.joints.push_back(
-        joint_at(names[i], static_cast<int>(i) - 1, {0, static_cast<double>(i), 0}));
+  for (int i = 0; i < std::ssize(names); ++i) {
+    skeleton.joints.push_back(joint_at(names[i], i - 1, {0, static_cast<double>(i), 0}));
   }
   const Skeleton back = parse_skeleton(skeleton_file_text(with_tails(skeleton), "x"), "x").skeleton;
   ASSERT_EQ(back.size(), skeleton.size());

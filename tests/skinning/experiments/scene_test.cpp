@@ -195,7 +195,7 @@ TEST(SkinningScene, PosesOfTheBodyArePlausible) {
   const auto scene = load(options);
   const Skeleton& skeleton = scene->rig.skeleton;
   const auto head = [&](double parameter, const char* name) -> Eigen::Vector3d {
-    const auto j = static_cast<std::size_t>(skeleton.index_of(name));
+    const std::size_t j = skeleton.index_of(name);
     return scene->pose_at(parameter)[j] * skeleton.joints[j].head;
   };
   // Sitting: thighs level within 10 degrees of their 0.41 m, shanks upright.

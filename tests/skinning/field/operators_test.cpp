@@ -145,8 +145,7 @@ double uniform_cubic_spline(const std::vector<double>& control, double u) {
   const int spans = static_cast<int>(control.size()) - 3;
   const double x = std::min(u * spans, spans * (1 - 1e-15));
   double sum = 0;
-  for (std::size_t i = 0; i < control.size(); ++i)
-    sum += control[i] * basis(static_cast<int>(i) - 3, 3, x);
+  for (int i = 0; i < std::ssize(control); ++i) sum += control[i] * basis(i - 3, 3, x);
   return sum;
 }
 

@@ -53,7 +53,7 @@ TEST(ImplicitSkinning, RigidMotionOfTheWholeMovesTheInputRigidly) {
   ImplicitSkinning skin = make(finger());
   const Eigen::Isometry3d motion = Eigen::Translation3d(0.02, -0.05, 0.01) *
                                    Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -1).normalized());
-  const Pose pose(static_cast<std::size_t>(finger().skeleton.size()), Eigen::Affine3d(motion));
+  const Pose pose(finger().skeleton.size(), Eigen::Affine3d(motion));
   Eigen::MatrixX3d posed;
   RunContext context;
   skin.deform(pose, posed, context);
@@ -229,7 +229,7 @@ TEST(ImplicitSkinning, EveryOperatorKeepsVolumeAndBonesOfABentFinger) {
 TEST(ImplicitSkinning, DropsScaleAndShearOfThePose) {
   ImplicitSkinning skin = make(finger());
   Pose plain = bend(finger(), "middle", 40), scaled = plain;
-  const auto j = static_cast<std::size_t>(finger().skeleton.index_of("distal"));
+  const std::size_t j = finger().skeleton.index_of("distal");
   const Eigen::Vector3d head = finger().skeleton.joints[j].head;
   scaled[j] =
       scaled[j] * Eigen::Translation3d(head) * Eigen::Scaling(1.3) * Eigen::Translation3d(-head);
@@ -435,7 +435,7 @@ TEST(Tracking, RefusesPosesThatBeginAwayFromRest) {
 TEST(Tracking, MayBeginAnywhereInSpace) {
   ImplicitSkinning skin = make(finger(), tracking());
   const Eigen::Isometry3d motion(Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -1).normalized()));
-  const Pose pose(static_cast<std::size_t>(finger().skeleton.size()), Eigen::Affine3d(motion));
+  const Pose pose(finger().skeleton.size(), Eigen::Affine3d(motion));
   Eigen::MatrixX3d posed;
   RunContext context;
   EXPECT_NO_THROW(skin.deform(pose, posed, context));

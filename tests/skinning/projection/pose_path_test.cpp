@@ -14,28 +14,25 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 double angle_at(const Pose& pose, int joint, int parent) {
-  const Eigen::Matrix3d turn = pose[static_cast<std::size_t>(parent)].linear().transpose() *
-                               pose[static_cast<std::size_t>(joint)].linear();
+  const Eigen::Matrix3d turn = pose[parent].linear().transpose() * pose[joint].linear();
   return Eigen::AngleAxisd(turn).angle();
 }
 
 TEST(PosePath, TurnsJointsInEqualSteps) {
   const RiggedMesh rig = two_bone_cylinder(fixtures::cylinder_options());
   const int joint = rig.skeleton.index_of("upper");
-  const int parent = rig.skeleton.joints[static_cast<std::size_t>(joint)].parent;
+  const int parent = rig.skeleton.joints[joint].parent;
   PosePath path(rig.skeleton);
   EXPECT_EQ(path.go_to(rest_pose(rig.skeleton.size()), 10 * kDegree), 1);
   const Pose end = fixtures::turned(rig, "upper", "flexion", 75 * kDegree);
   ASSERT_EQ(path.go_to(end, 10 * kDegree), 8);
-  const Joint& upper = rig.skeleton.joints[static_cast<std::size_t>(joint)];
+  const Joint& upper = rig.skeleton.joints[joint];
   for (int step = 1; step <= 8; ++step) {
     const Pose& pose = path.at(step);
     EXPECT_NEAR(angle_at(pose, joint, parent), 75 * kDegree * step / 8, 1e-9);
-    EXPECT_LE((pose[static_cast<std::size_t>(joint)] * upper.head - upper.head).norm(), 1e-12)
-        << "the joint stays in place";
+    EXPECT_LE((pose[joint] * upper.head - upper.head).norm(), 1e-12) << "the joint stays in place";
   }
-  EXPECT_EQ(path.at(8)[static_cast<std::size_t>(joint)].matrix(),
-            end[static_cast<std::size_t>(joint)].matrix());
+  EXPECT_EQ(path.at(8)[joint].matrix(), end[joint].matrix());
 }
 
 TEST(PosePath, GoesOnFromWhereItIs) {

@@ -22,7 +22,7 @@ constexpr double kAnchor = 0.02;
 struct Asked {
   RiggedMesh rig = two_bone_cylinder(fixtures::fine_cylinder_options(24, 30));
   SkinState state{rig, one_rings(rig.mesh.F, rig.mesh.vertex_count()),
-                  std::vector<int>(static_cast<std::size_t>(rig.mesh.vertex_count()), 0)};
+                  std::vector<int>(rig.mesh.vertex_count(), 0)};
   std::vector<float> radius = std::vector<float>(state.size(), static_cast<float>(kRadius));
   std::vector<Demand> demands = std::vector<Demand>(state.size());
   std::vector<Float4> u = std::vector<Float4>(state.size());
@@ -43,7 +43,7 @@ struct Asked {
 
   /// The minimiser of what smooth/system.h states, by a dense factorisation.
   [[nodiscard]] Eigen::VectorXd exact() const {
-    const auto n = static_cast<Eigen::Index>(state.size());
+    const Eigen::Index n = state.size();
     const Eigen::MatrixXd L(positive_cotangent_laplacian(rig.mesh));
     const Eigen::VectorXd A = vertex_areas(rig.mesh);
     const double kappa = std::pow(kCutoff / 7.85, 4) * std::pow(kRadius, 4);
@@ -69,7 +69,7 @@ struct Asked {
 
   /// Root mean square of the difference from `exact`, over that of `exact`.
   [[nodiscard]] double error(const Eigen::VectorXd& exact) const {
-    const auto n = static_cast<Eigen::Index>(state.size());
+    const Eigen::Index n = state.size();
     double sum = 0;
     for (std::size_t s = 0; s < state.size(); ++s) {
       for (int k = 0; k < 3; ++k) {

@@ -14,8 +14,7 @@ std::vector<Bone> five_bones() {
 }
 
 Eigen::VectorXd row_of(const std::vector<double>& values, int max_influences) {
-  const Eigen::MatrixXd row =
-      Eigen::Map<const Eigen::RowVectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  const Eigen::MatrixXd row = Eigen::Map<const Eigen::RowVectorXd>(values.data(), values.size());
   const SkinWeights weights = strongest_influences(row, five_bones(), 5, max_influences);
   return Eigen::VectorXd(weights.row(0).transpose());
 }

@@ -45,7 +45,7 @@ class CheckJobs : public ::testing::Test {
   [[nodiscard]] std::size_t runs_of(const std::string& id) const {
     const fs::path folder = home_.root() / "results/runs" / id;
     std::error_code none;
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder, none), {}));
+    return std::distance(fs::directory_iterator(folder, none), {});
   }
   /// The program on this folder, as a process that can be sent signals.
   [[nodiscard]] ToyProgram start(const std::vector<std::string>& arguments) const {

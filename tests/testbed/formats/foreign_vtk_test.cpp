@@ -310,7 +310,7 @@ TEST_F(ForeignVtk, RepliesThatEndEarlyAreRefused) {
     const State bytes = part_to_bytes(part, 1);
     for (std::size_t size = 0; size < bytes.size(); size += 7) {
       std::optional<double> time;
-      const State cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+      const State cut(bytes.begin(), bytes.begin() + size);
       EXPECT_NE(error_of([&] { (void)part_from_bytes(cut, time, "f"); }), "");
     }
   }

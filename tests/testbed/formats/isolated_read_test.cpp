@@ -76,7 +76,7 @@ TEST_F(IsolatedRead, OfACrashIsAnErrorThatNamesTheFile) {
   EXPECT_THAT(error_in_child([]() -> Bytes { throw std::runtime_error("of a library"); }), crash);
   EXPECT_THAT(error_in_child([]() -> Bytes {
                 int place = 0;
-                return Bytes(static_cast<std::size_t>(at_depth(&place, 1)));
+                return Bytes(at_depth(&place, 1));
               }),
               crash);
 }

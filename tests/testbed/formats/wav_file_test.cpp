@@ -176,7 +176,7 @@ TEST(WavFile, DamagedAnywhereIsReadOrRefused) {
       try {
         const Sound sound = wav_from_bytes(damaged, "damaged");
         EXPECT_TRUE(sound.samples.allFinite());
-        EXPECT_LE(sound.samples.size(), static_cast<Eigen::Index>(whole.size()));
+        EXPECT_LE(sound.samples.size(), std::ssize(whole));
       } catch (const Error&) {
         ++refused;
       }

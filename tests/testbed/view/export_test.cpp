@@ -71,7 +71,7 @@ TEST(Export, PlyHoldsPositionsArraysAndTriangles) {
   for (std::size_t i = 0; i < 8; ++i) {
     std::array<double, 4> row{};
     std::memcpy(row.data(), ply.data() + body + i * sizeof(row), sizeof(row));
-    const auto vertex = static_cast<Eigen::Index>(i);
+    const Eigen::Index vertex = i;
     EXPECT_EQ(Eigen::RowVector3d(row[0], row[1], row[2]), part.points.row(vertex));
     EXPECT_EQ(row[3], part.points(vertex, 1));
   }

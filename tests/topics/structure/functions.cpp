@@ -102,8 +102,7 @@ std::size_t start_of_declaration(const std::string& code, std::size_t begin, std
 }
 
 int line_of(std::string_view text, std::size_t at) {
-  return 1 + static_cast<int>(
-                 std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + at, '\n'));
 }
 
 /// The brace behind a name without a space is that of an initialiser.

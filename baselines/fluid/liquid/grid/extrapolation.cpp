@@ -15,8 +15,7 @@ struct FaceGrid {
 
   explicit FaceGrid(const Eigen::Vector3i& n)
       : size(n),
-        stride{1, static_cast<std::size_t>(n.x()),
-               static_cast<std::size_t>(n.x()) * static_cast<std::size_t>(n.y())} {}
+        stride{1, static_cast<std::size_t>(n.x()), static_cast<std::size_t>(n.x()) * n.y()} {}
   [[nodiscard]] Eigen::Vector3i place(std::size_t i) const {
     return {static_cast<int>(i % stride[1]), static_cast<int>(i % stride[2] / stride[1]),
             static_cast<int>(i / stride[2])};
@@ -60,8 +59,7 @@ void first_front(const FaceGrid& grid, const std::vector<char>& known,
                  std::vector<std::uint32_t>& front) {
   front.clear();
   const std::size_t nx = grid.stride[1];
-  const auto ny = static_cast<std::size_t>(grid.size.y()),
-             nz = static_cast<std::size_t>(grid.size.z());
+  const std::size_t ny = grid.size.y(), nz = grid.size.z();
   const std::vector<char> any = rows_with_known(grid, known);
   std::vector<char> beside(nx);
   for (std::size_t k = 0; k < nz; ++k) {

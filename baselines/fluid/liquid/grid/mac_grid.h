@@ -15,14 +15,12 @@ struct GridShape {
   double cell = 1;                                   ///< h (m)
 
   [[nodiscard]] std::size_t cell_count() const {
-    return static_cast<std::size_t>(cells.x()) * static_cast<std::size_t>(cells.y()) *
-           static_cast<std::size_t>(cells.z());
+    return static_cast<std::size_t>(cells.x()) * cells.y() * cells.z();
   }
   [[nodiscard]] std::size_t index(int i, int j, int k) const {
     return static_cast<std::size_t>(i) +
            static_cast<std::size_t>(cells.x()) *
-               (static_cast<std::size_t>(j) +
-                static_cast<std::size_t>(cells.y()) * static_cast<std::size_t>(k));
+               (static_cast<std::size_t>(j) + static_cast<std::size_t>(cells.y()) * k);
   }
   [[nodiscard]] Eigen::Vector3d cell_centre(int i, int j, int k) const {
     return origin + cell * Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5);
@@ -45,15 +43,11 @@ struct ScalarGrid {
 
   ScalarGrid() = default;
   ScalarGrid(const Eigen::Vector3i& n, float fill)
-      : size(n),
-        values(static_cast<std::size_t>(n.x()) * static_cast<std::size_t>(n.y()) *
-                   static_cast<std::size_t>(n.z()),
-               fill) {}
+      : size(n), values(static_cast<std::size_t>(n.x()) * n.y() * n.z(), fill) {}
   [[nodiscard]] std::size_t index(int i, int j, int k) const {
     return static_cast<std::size_t>(i) +
            static_cast<std::size_t>(size.x()) *
-               (static_cast<std::size_t>(j) +
-                static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(k));
+               (static_cast<std::size_t>(j) + static_cast<std::size_t>(size.y()) * k);
   }
   float& operator()(int i, int j, int k) { return values[index(i, j, k)]; }
   [[nodiscard]] float operator()(int i, int j, int k) const { return values[index(i, j, k)]; }

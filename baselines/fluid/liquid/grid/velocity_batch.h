@@ -39,11 +39,11 @@ inline void load_batch(const std::vector<Eigen::Vector3f>& position, std::size_t
 class BatchSampler {
  public:
   explicit BatchSampler(const MacGrid& grid) {
-    for (std::size_t a = 0; a < 3; ++a) {
+    for (int a = 0; a < 3; ++a) {
       data_[a] = grid.face[a].values.data();
       row_[a] = grid.face[a].size.x();
       slice_[a] = row_[a] * grid.face[a].size.y();
-      cells_[a] = grid.shape.cells[static_cast<int>(a)];
+      cells_[a] = grid.shape.cells[a];
     }
   }
   /// @param x  in cells from the grid's origin

@@ -32,9 +32,9 @@ void gather_array(const std::vector<std::uint32_t>& order, std::vector<T>& from,
 
 void CellSorter::count_rows(const GridShape& shape, const LiquidParticles& particles) {
   const std::size_t n = particles.size();
-  const auto nx = static_cast<std::uint32_t>(shape.cells.x());
-  const auto ny = static_cast<std::uint32_t>(shape.cells.y());
-  const std::size_t rows = static_cast<std::size_t>(ny) * static_cast<std::size_t>(shape.cells.z());
+  const std::uint32_t nx = shape.cells.x();
+  const std::uint32_t ny = shape.cells.y();
+  const std::size_t rows = static_cast<std::size_t>(ny) * shape.cells.z();
   // At most 32 blocks: their counters, one a row, must not outgrow the cache.
   block_ = std::max<std::size_t>(16384, (n + 31) / 32);
   const std::size_t blocks = (n + block_ - 1) / block_;
@@ -71,7 +71,7 @@ void CellSorter::spread_rows(std::size_t rows) {
 }
 
 void CellSorter::sort_rows(const GridShape& shape, LiquidParticles& particles) {
-  const auto nx = static_cast<std::size_t>(shape.cells.x());
+  const std::size_t nx = shape.cells.x();
   const std::size_t rows = shape.cell_count() / nx;
   const std::size_t n = cell_.size();
   by_row_.resize(n);

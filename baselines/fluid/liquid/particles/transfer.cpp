@@ -70,11 +70,10 @@ inline void add_component(const Target& t, const CellSample& s, const Eigen::Vec
 }
 
 inline void add_density(const Target& t, const CellSample& s) {
-  const auto row = static_cast<std::size_t>(t.cells.x());
-  const std::size_t slice = row * static_cast<std::size_t>(t.cells.y());
+  const std::size_t row = t.cells.x();
+  const std::size_t slice = row * t.cells.y();
   const AxisSample &sx = s.centre[0], &sy = s.centre[1], &sz = s.centre[2];
-  float* at = t.density + static_cast<std::size_t>(sx.low) +
-              row * static_cast<std::size_t>(sy.low) + slice * static_cast<std::size_t>(sz.low);
+  float* at = t.density + static_cast<std::size_t>(sx.low) + row * sy.low + slice * sz.low;
   const float x1 = sx.fraction, x0 = 1 - x1;
   const auto pair = [&](float* to, float w) {
     to[0] += x0 * w;
@@ -104,14 +103,13 @@ void add_row(const LiquidParticles& particles, std::size_t begin, std::size_t en
 
 /// One tile: rows y0 … y0 + 3, z0 … z0 + 3 of cells. It reaches one row beyond on either side.
 void add_tile(const LiquidParticles& particles, int tile_y, int tile_z, const Target& t) {
-  const auto nx = static_cast<std::size_t>(t.cells.x());
+  const std::size_t nx = t.cells.x();
   const int y_end = std::min(t.cells.y(), (tile_y + 1) * kTile);
   const int z_end = std::min(t.cells.z(), (tile_z + 1) * kTile);
   for (int k = tile_z * kTile; k < z_end; ++k) {
     for (int j = tile_y * kTile; j < y_end; ++j) {
       const std::size_t row =
-          nx * (static_cast<std::size_t>(j) +
-                static_cast<std::size_t>(t.cells.y()) * static_cast<std::size_t>(k));
+          nx * (static_cast<std::size_t>(j) + static_cast<std::size_t>(t.cells.y()) * k);
       const std::size_t begin = particles.cell_begin[row], end = particles.cell_begin[row + nx];
       if (particles.affine.empty()) {
         add_row<false>(particles, begin, end, t);
@@ -129,7 +127,7 @@ void add_tiles(const LiquidParticles& particles, const Target& t) {
     const int first_y = colour % 2, first_z = colour / 2;
     const int count_y = (tiles_y - first_y + 1) / 2, count_z = (tiles_z - first_z + 1) / 2;
     if (count_y <= 0 || count_z <= 0) continue;
-    const auto count = static_cast<std::size_t>(count_y) * static_cast<std::size_t>(count_z);
+    const auto count = static_cast<std::size_t>(count_y) * count_z;
     parallel_blocks(count, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const int n = static_cast<int>(i);
@@ -167,11 +165,11 @@ void ParticleToGrid::gather(const LiquidParticles& particles, int particles_per_
   t.cell = static_cast<float>(shape_.cell);
   t.per_metre = static_cast<float>(1 / shape_.cell);
   t.density = density.values.data();
-  for (std::size_t a = 0; a < 3; ++a) {
-    const Eigen::Vector3i n = shape_.face_cells(static_cast<int>(a));
+  for (int a = 0; a < 3; ++a) {
+    const Eigen::Vector3i n = shape_.face_cells(a);
     sums_[a].assign(2 * velocity.face[a].values.size(), 0.0F);
-    const auto row = static_cast<std::size_t>(n.x());
-    t.face[a] = {sums_[a].data(), row, row * static_cast<std::size_t>(n.y())};
+    const std::size_t row = n.x();
+    t.face[a] = {sums_[a].data(), row, row * n.y()};
   }
   add_tiles(particles, t);
   for (std::size_t a = 0; a < 3; ++a) divide(sums_[a], velocity.face[a], touched[a]);
@@ -254,8 +252,8 @@ double kinetic_energy(const GridShape& shape, const LiquidParticles& particles) 
       for (int a = 0; a < 3; ++a) {
         for (int b = 0; b < 3; ++b) {
           // Second moment of the two weights of an axis.
-          const auto f = static_cast<double>(s.along(b, a).fraction);
-          const auto c = static_cast<double>(particles.affine[p](a, b));
+          const double f = s.along(b, a).fraction;
+          const double c = particles.affine[p](a, b);
           sum += h2 * f * (1 - f) * c * c;
         }
       }

@@ -16,11 +16,11 @@ constexpr float kSmallestRest = 0.05F;
 /// Calls visit(row start, j, k) for the rows of a grid of cells, in parallel.
 template <class Visit>
 void for_rows(const Eigen::Vector3i& size, const Visit& visit) {
-  const auto rows = static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(size.z());
+  const auto rows = static_cast<std::size_t>(size.y()) * size.z();
   parallel_blocks(rows, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       const int j = static_cast<int>(r) % size.y(), k = static_cast<int>(r) / size.y();
-      visit(r * static_cast<std::size_t>(size.x()), j, k);
+      visit(r * size.x(), j, k);
     }
   });
 }
@@ -75,7 +75,7 @@ void close_holes(ScalarGrid& distance, float h) {
   const ScalarGrid before = distance;
   for_rows(distance.size, [&](std::size_t row, int j, int k) {
     for (int i = 0; i < distance.size.x(); ++i) {
-      const std::size_t at = row + static_cast<std::size_t>(i);
+      const std::size_t at = row + i;
       if (before.values[at] < 0 || before.values[at] >= h) continue;
       const int sides = count_sides(distance.size, {i, j, k}, [&](const Eigen::Vector3i& n) {
         return before(n.x(), n.y(), n.z()) < 0;
@@ -95,7 +95,7 @@ void shrink_axis(std::vector<char>& inside, const Eigen::Vector3i& size, int axi
   for_rows(size, [&](std::size_t row, int j, int k) {
     for (int i = 0; i < size.x(); ++i) {
       const int at = axis == 0 ? i : axis == 1 ? j : k;
-      const std::size_t c = row + static_cast<std::size_t>(i);
+      const std::size_t c = row + i;
       char all = from[c];
       if (at > 0) all = static_cast<char>(all & from[c - stride]);
       if (at + 1 < size[axis]) all = static_cast<char>(all & from[c + stride]);
@@ -110,7 +110,7 @@ ScalarGrid rest_density(const SolidFractions& solids, const GridShape& shape) {
   ScalarGrid rest(shape.cells, 1.0F);
   for_rows(shape.cells, [&](std::size_t row, int j, int k) {
     for (int i = 0; i < shape.cells.x(); ++i) {
-      rest.values[row + static_cast<std::size_t>(i)] = free_part(solids.distance, i, j, k);
+      rest.values[row + i] = free_part(solids.distance, i, j, k);
     }
   });
   for (int axis = 0; axis < 3; ++axis) filter_axis(rest, axis);

@@ -16,7 +16,7 @@ class IncompleteCholesky final : public PressureApproximation {
  public:
   void build(const PressureSystem& system) override {
     system_ = &system;
-    const auto n = static_cast<std::size_t>(system.n);
+    const std::size_t n = system.n;
     slab_ = std::max<std::size_t>((n + kSlabs - 1) / kSlabs, 1);
     pivot_.assign(n + 2, 0);
     value_.assign(n + 2, 0);
@@ -76,7 +76,7 @@ class IncompleteCholesky final : public PressureApproximation {
     }
   }
 
-  static std::size_t at(std::int32_t number) { return static_cast<std::size_t>(number); }
+  static std::size_t at(std::int32_t number) { return number; }
   /// 0, whose links are 0, for a lower neighbour in another slab.
   static std::size_t inside(std::size_t c, std::size_t begin) { return c > begin ? c : 0; }
 

@@ -39,11 +39,11 @@ void invert_diagonal(Level& level) {
 /// Gauss–Seidel on the unknowns by_colour[from … to).
 void relax(const Level& level, Floats& x, int from, int to) {
   const PressureSystem& a = *level.system;
-  const auto offset = static_cast<std::size_t>(from);
+  const std::size_t offset = from;
   parallel_blocks(to - from, kPressureBlock, [&](std::size_t begin, std::size_t end) {
     float* values = x.data();
     for (std::size_t s = begin; s < end; ++s) {
-      const auto c = static_cast<std::size_t>(a.by_colour[offset + s]);
+      const std::size_t c = a.by_colour[offset + s];
       values[c] = level.inverse_diagonal[c] * (level.right[c] + a.neighbours<float>(values, c));
     }
   });
@@ -62,11 +62,8 @@ void relax_even_from_zero(const Level& level, Floats& x) {
 
 /// Cells of the coarse grid that hold an unknown of the fine one.
 std::vector<std::uint8_t> mark_coarse(const PressureSystem& fine, const Eigen::Vector3i& coarse) {
-  const auto nx = static_cast<std::size_t>(coarse.x()), ny = static_cast<std::size_t>(coarse.y()),
-             nz = static_cast<std::size_t>(coarse.z());
-  const auto fx = static_cast<std::size_t>(fine.size.x()),
-             fy = static_cast<std::size_t>(fine.size.y()),
-             fz = static_cast<std::size_t>(fine.size.z());
+  const std::size_t nx = coarse.x(), ny = coarse.y(), nz = coarse.z();
+  const std::size_t fx = fine.size.x(), fy = fine.size.y(), fz = fine.size.z();
   std::vector<std::uint8_t> marked(nx * ny * nz, 0);
   parallel_blocks(nz, 2, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = 2 * begin; k < std::min(fz, 2 * end); ++k)
@@ -94,11 +91,10 @@ void gather_coefficients(const PressureSystem& fine, PressureSystem& coarse, Lev
     const int d[3] = {o & 1, (o >> 1) & 1, o >> 2};
     const int i = base[0] + d[0], j = base[1] + d[1], k = base[2] + d[2];
     if (i >= n[0] || j >= n[1] || k >= n[2]) continue;
-    const auto f = static_cast<std::size_t>(
+    const std::size_t f =
         fine.number[static_cast<std::size_t>(i) +
                     static_cast<std::size_t>(n[0]) *
-                        (static_cast<std::size_t>(j) +
-                         static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(k))]);
+                        (static_cast<std::size_t>(j) + static_cast<std::size_t>(n[1]) * k)];
     if (f == 0) continue;
     parent[f] = static_cast<std::int32_t>(c);
     if (((d[0] + d[1] + d[2]) & 1) == 0) children[child_count++] = static_cast<std::int32_t>(f);
@@ -193,7 +189,7 @@ class Multigrid final : public PressureApproximation {
       for (std::size_t c = begin + 1; c <= end; ++c) {
         float sum = 0;
         for (const std::int32_t child : coarse.even_children[c]) {
-          const auto f = static_cast<std::size_t>(child);
+          const std::size_t f = child;
           if (f == 0) break;
           sum += fine.right[f] - a.diagonal[f] * x[f] + a.neighbours<float>(x, f);
         }

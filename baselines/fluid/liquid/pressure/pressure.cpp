@@ -25,8 +25,8 @@ struct Problem {
 
   /// Offset to the neighbour on an axis in the list of cells.
   [[nodiscard]] std::size_t stride(int axis) const {
-    const auto nx = static_cast<std::size_t>(shape.cells.x());
-    return axis == 0 ? 1 : axis == 1 ? nx : nx * static_cast<std::size_t>(shape.cells.y());
+    const std::size_t nx = shape.cells.x();
+    return axis == 0 ? 1 : axis == 1 ? nx : nx * shape.cells.y();
   }
   [[nodiscard]] std::size_t face(int axis, const Eigen::Vector3i& at, int upper) const {
     Eigen::Vector3i i = at;
@@ -34,8 +34,7 @@ struct Problem {
     return solids.open[axis].index(i.x(), i.y(), i.z());
   }
   [[nodiscard]] Eigen::Vector3i cell(std::size_t index) const {
-    const auto nx = static_cast<std::size_t>(shape.cells.x()),
-               ny = static_cast<std::size_t>(shape.cells.y());
+    const std::size_t nx = shape.cells.x(), ny = shape.cells.y();
     return {static_cast<int>(index % nx), static_cast<int>(index / nx % ny),
             static_cast<int>(index / (nx * ny))};
   }
@@ -98,7 +97,7 @@ double excess_outflow(const Problem& problem, const MacGrid& velocity, const Eig
 /// Coefficients and right-hand side of row `c`. @return true when it touches air
 bool assemble_row(const Problem& problem, const MacGrid& velocity, PressureSystem& system,
                   std::vector<double>& right, std::size_t c) {
-  const auto cell = static_cast<std::size_t>(system.cell[c]);
+  const std::size_t cell = system.cell[c];
   const Eigen::Vector3i at = problem.cell(cell);
   double diagonal = 0;
   bool touches_air = false;
@@ -134,11 +133,11 @@ void flood(const PressureSystem& system, std::vector<char>& reached,
     stack.push_back(static_cast<std::int32_t>(to));
   };
   for (std::size_t s = 0; s < stack.size(); ++s) {
-    const auto c = static_cast<std::size_t>(stack[s]);
+    const std::size_t c = stack[s];
     visit(c + 1, system.link[0][c]);
     visit(c - 1, system.link[0][c - 1]);
     for (std::size_t o = 0; o < 2; ++o) {
-      const auto down = static_cast<std::size_t>(system.lower[o][c]);
+      const std::size_t down = system.lower[o][c];
       visit(static_cast<std::size_t>(system.upper[o][c]), system.link[o + 1][c]);
       visit(down, system.link[o + 1][down]);
     }
@@ -289,7 +288,7 @@ double PressureSolver::Workspace::remaining_divergence(const Problem& problem,
                                                        const MacGrid& velocity) {
   parallel_blocks(system.n, kPressureBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin + 1; c <= end; ++c) {
-      const auto cell = static_cast<std::size_t>(system.cell[c]);
+      const std::size_t cell = system.cell[c];
       q[c] = excess_outflow(problem, velocity, problem.cell(cell), cell);
     }
   });

@@ -69,7 +69,7 @@ float wall_distance(const GridShape& shape, bool open_top, const DomainSide& top
 template <class Body>
 void for_nodes(const Eigen::AlignedBox3i& box, const Body& body) {
   if (box.isEmpty()) return;
-  const auto layers = static_cast<std::size_t>(box.max().z() - box.min().z() + 1);
+  const std::size_t layers = box.max().z() - box.min().z() + 1;
   parallel_blocks(layers, 2, [&](std::size_t begin, std::size_t end) {
     for (int k = box.min().z() + static_cast<int>(begin); k < box.min().z() + static_cast<int>(end);
          ++k)
@@ -135,7 +135,7 @@ void SolidSampler::update_faces(std::span<const PlacedSolid> solids, const NodeB
                                 SolidFractions& out) {
   const float touching = kTouching * static_cast<float>(shape_.cell);
   for (int a = 0; a < 3; ++a) {
-    const auto axis = static_cast<std::size_t>(a);
+    const std::size_t axis = a;
     const Eigen::Vector3i u = unit((a + 1) % 3), v = unit((a + 2) % 3);
     const Eigen::Array3d half = 0.5 * (u + v).cast<double>().array();
     for_nodes(box, [&](const Eigen::Vector3i& n) {

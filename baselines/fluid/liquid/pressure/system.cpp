@@ -35,7 +35,7 @@ void PressureSystem::resize_coefficients() {
 void PressureSystem::number_cells(const Eigen::Vector3i& grid,
                                   const std::vector<std::uint8_t>& marked) {
   size = grid;
-  const std::size_t layer = static_cast<std::size_t>(size.x()) * static_cast<std::size_t>(size.y()),
+  const std::size_t layer = static_cast<std::size_t>(size.x()) * size.y(),
                     layers = static_cast<std::size_t>(size.z());
   const std::vector<std::int32_t> first = first_numbers(layer, layers, marked);
   n = first.back() - 1;
@@ -62,8 +62,7 @@ void PressureSystem::find_neighbours(const std::vector<std::int32_t>& first) {
     for (auto& values : *table) values.assign(cell.size(), 0);
   parallel_blocks(nz, 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      for (auto c = static_cast<std::size_t>(first[k]); c < static_cast<std::size_t>(first[k + 1]);
-           ++c) {
+      for (std::size_t c = first[k]; c < static_cast<std::size_t>(first[k + 1]); ++c) {
         const auto at = static_cast<std::size_t>(cell[c]), j = at / nx - k * ny;
         lower[0][c] = j > 0 ? number[at - nx] : 0;
         upper[0][c] = j + 1 < ny ? number[at + nx] : 0;
@@ -74,8 +73,7 @@ void PressureSystem::find_neighbours(const std::vector<std::int32_t>& first) {
 }
 
 void PressureSystem::sort_by_colour(const std::vector<std::int32_t>& first) {
-  const auto nx = static_cast<std::size_t>(size.x()), ny = static_cast<std::size_t>(size.y()),
-             nz = static_cast<std::size_t>(size.z());
+  const std::size_t nx = size.x(), ny = size.y(), nz = size.z();
   const auto is_odd = [&](std::int32_t c, std::size_t k) {
     const auto at = static_cast<std::size_t>(cell[c]), row = at / nx;
     return (((at - row * nx) + (row - k * ny) + k) & 1) != 0;
@@ -90,8 +88,8 @@ void PressureSystem::sort_by_colour(const std::vector<std::int32_t>& first) {
   by_colour.resize(n);
   parallel_blocks(nz, 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      auto next_even = static_cast<std::size_t>(evens[k]);
-      auto next_odd = static_cast<std::size_t>(even + first[k] - 1 - evens[k]);
+      std::size_t next_even = evens[k];
+      std::size_t next_odd = even + first[k] - 1 - evens[k];
       for (std::int32_t c = first[k]; c < first[k + 1]; ++c)
         by_colour[is_odd(c, k) ? next_odd++ : next_even++] = c;
     }

@@ -56,15 +56,15 @@ class Contour {
  public:
   Contour(const ScalarGrid& nodes, const Eigen::Vector3d& origin, double cell)
       : nodes_(padded(nodes)), origin_(origin), cell_(cell), size_(nodes_.size) {
-    const auto nx = static_cast<std::size_t>(size_.x());
-    stride_ = {1, nx, nx * static_cast<std::size_t>(size_.y())};
+    const std::size_t nx = size_.x();
+    stride_ = {1, nx, nx * size_.y()};
     for (std::size_t c = 0; c < 8; ++c)
       corner_[c] = (c & 1) * stride_[0] + ((c >> 1) & 1) * stride_[1] + (c >> 2) * stride_[2];
   }
 
   TriMesh run() {
     mark_inside();
-    const auto layers = static_cast<std::size_t>(size_.z());
+    const std::size_t layers = size_.z();
     first_vertex_.assign(layers + 1, 0);
     first_triangle_.assign(layers + 1, 0);
     vertices_.resize(inside_.size());
@@ -165,8 +165,7 @@ class Contour {
         for (std::size_t e = 0; e < edges.size(); e += 3, ++t)
           for (std::size_t c = 0; c < 3; ++c) {
             const CubeEdge& edge = edges[e + c];
-            mesh.F(t, static_cast<Eigen::Index>(c)) =
-                vertices_[n + corner_[edge.corner]].of(edge.axis);
+            mesh.F(t, c) = vertices_[n + corner_[edge.corner]].of(edge.axis);
           }
       }
   }

@@ -69,10 +69,10 @@ CubeTable make_table() {
   CubeTable table;
   for (int inside = 0; inside < 256; ++inside) {
     std::array<int, 24> next = successors(inside);
-    for (std::size_t start = 0; start < next.size(); ++start) {
+    for (int start = 0; start < std::ssize(next); ++start) {
       if (next[start] < 0) continue;
       std::vector<int> loop;
-      for (auto e = static_cast<int>(start); next[e] >= 0;) {
+      for (auto e = start; next[e] >= 0;) {
         loop.push_back(e);
         const int following = next[e];
         next[e] = -1;

@@ -48,7 +48,7 @@ float FlatSurfaceProfile::distance(float measured) const {
   const float at = std::clamp(measured, 0.0F, 1.0F) * kSteps;
   const int step = std::min(static_cast<int>(at), kSteps - 1);
   const float t = at - static_cast<float>(step);
-  const auto i = static_cast<std::size_t>(step);
+  const std::size_t i = step;
   return distance_[i] + t * (distance_[i + 1] - distance_[i]);
 }
 
@@ -62,18 +62,17 @@ using Bits = std::vector<std::uint8_t>;
 /// `inner` and `outer` count the entries before and after that axis.
 Bits gather_axis(const Bits& cells, std::size_t inner, int cell_count, std::size_t outer,
                  int node_count, double cells_per_node, double reach) {
-  Bits nodes(inner * static_cast<std::size_t>(node_count) * outer, 0);
-  const auto work = outer * static_cast<std::size_t>(node_count);
+  Bits nodes(inner * node_count * outer, 0);
+  const auto work = outer * node_count;
   parallel_blocks(work, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t w = begin; w < end; ++w) {
-      const std::size_t o = w / static_cast<std::size_t>(node_count);
-      const auto n = static_cast<int>(w % static_cast<std::size_t>(node_count));
+      const std::size_t o = w / node_count;
+      const auto n = static_cast<int>(w % node_count);
       const CellRange range = cells_in_reach(n * cells_per_node, reach, cell_count);
       std::uint8_t* to = nodes.data() + w * inner;
       for (int c = range.begin; c < range.end; ++c) {
         const std::uint8_t* from =
-            cells.data() +
-            (o * static_cast<std::size_t>(cell_count) + static_cast<std::size_t>(c)) * inner;
+            cells.data() + (o * cell_count + static_cast<std::size_t>(c)) * inner;
         for (std::size_t i = 0; i < inner; ++i) to[i] = static_cast<std::uint8_t>(to[i] | from[i]);
       }
     }
@@ -132,8 +131,7 @@ ParticlePlaces split(const LiquidParticles& particles) {
   for (auto& x : places.x) x.resize(particles.size() + kLanes, 0);
   parallel_blocks(particles.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p)
-      for (std::size_t a = 0; a < 3; ++a)
-        places.x[a][p] = particles.position[p][static_cast<Eigen::Index>(a)];
+      for (std::size_t a = 0; a < 3; ++a) places.x[a][p] = particles.position[p][a];
   });
   return places;
 }
@@ -246,28 +244,25 @@ ScalarGrid zhu_bridson_field(const GridShape& shape, const LiquidParticles& part
       for (int y = rows.begin; y < rows.end; ++y) {
         // The cells of a row are neighbours in memory, and so are their particles.
         const std::size_t row = shape.index(0, y, z);
-        sums.add(places, node, 1 / radius,
-                 particles.cell_begin[row + static_cast<std::size_t>(columns.begin)],
-                 particles.cell_begin[row + static_cast<std::size_t>(columns.end)]);
+        sums.add(places, node, 1 / radius, particles.cell_begin[row + columns.begin],
+                 particles.cell_begin[row + columns.end]);
       }
     return radius * (profile.distance(mean_offset(sums, r)) - at_surface);
   };
   const float inside = radius * (profile.distance(0) - at_surface);
-  const auto rows = static_cast<std::size_t>(field.size.y());
-  parallel_blocks(rows * static_cast<std::size_t>(field.size.z()), 16,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t w = begin; w < end; ++w) {
-                      const auto j = static_cast<int>(w % rows), k = static_cast<int>(w / rows);
-                      const CellRange y = cells_in_reach(j * step, reach, shape.cells.y()),
-                                      z = cells_in_reach(k * step, reach, shape.cells.z());
-                      for (int i = 0; i < field.size.x(); ++i) {
-                        const std::size_t n = field.index(i, j, k);
-                        if (around[n] == NodeSurroundings::full) field.values[n] = inside;
-                        if (around[n] == NodeSurroundings::mixed)
-                          field.values[n] = node_value(i, y, z, j, k);
-                      }
-                    }
-                  });
+  const std::size_t rows = field.size.y();
+  parallel_blocks(rows * field.size.z(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t w = begin; w < end; ++w) {
+      const auto j = static_cast<int>(w % rows), k = static_cast<int>(w / rows);
+      const CellRange y = cells_in_reach(j * step, reach, shape.cells.y()),
+                      z = cells_in_reach(k * step, reach, shape.cells.z());
+      for (int i = 0; i < field.size.x(); ++i) {
+        const std::size_t n = field.index(i, j, k);
+        if (around[n] == NodeSurroundings::full) field.values[n] = inside;
+        if (around[n] == NodeSurroundings::mixed) field.values[n] = node_value(i, y, z, j, k);
+      }
+    }
+  });
   return field;
 }
 
@@ -392,8 +387,7 @@ std::vector<Kernel> make_kernels(const GridShape& shape, const LiquidParticles& 
   const auto around = node_surroundings(shape, particles, shape, reach + 1);
   const Eigen::Matrix3f ball = Eigen::Matrix3f::Identity() / radius;
   std::vector<Kernel> kernels(particles.size());
-  const auto nx = static_cast<std::size_t>(shape.cells.x()),
-             ny = static_cast<std::size_t>(shape.cells.y());
+  const std::size_t nx = shape.cells.x(), ny = shape.cells.y();
   parallel_blocks(shape.cell_count(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const std::size_t i = c % nx, j = c / nx % ny, k = c / (nx * ny);
@@ -433,19 +427,18 @@ ScalarGrid anisotropic_field(const GridShape& shape, const LiquidParticles& part
     return radius * (profile.distance(density) - kDrawnInwards);
   };
   const float inside = -radius * (FlatSurfaceProfile::kDeepest + kDrawnInwards);
-  const auto rows = static_cast<std::size_t>(field.size.y());
-  parallel_blocks(rows * static_cast<std::size_t>(field.size.z()), 16,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t w = begin; w < end; ++w) {
-                      const auto j = static_cast<int>(w % rows), k = static_cast<int>(w / rows);
-                      for (int i = 0; i < field.size.x(); ++i) {
-                        const std::size_t n = field.index(i, j, k);
-                        if (around[n] == NodeSurroundings::full) field.values[n] = inside;
-                        if (around[n] == NodeSurroundings::mixed)
-                          field.values[n] = node_value(field_shape.cell * Eigen::Vector3d(i, j, k));
-                      }
-                    }
-                  });
+  const std::size_t rows = field.size.y();
+  parallel_blocks(rows * field.size.z(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t w = begin; w < end; ++w) {
+      const auto j = static_cast<int>(w % rows), k = static_cast<int>(w / rows);
+      for (int i = 0; i < field.size.x(); ++i) {
+        const std::size_t n = field.index(i, j, k);
+        if (around[n] == NodeSurroundings::full) field.values[n] = inside;
+        if (around[n] == NodeSurroundings::mixed)
+          field.values[n] = node_value(field_shape.cell * Eigen::Vector3d(i, j, k));
+      }
+    }
+  });
   return field;
 }
 

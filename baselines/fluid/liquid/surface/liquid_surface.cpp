@@ -35,8 +35,7 @@ GridShape refined(const GridShape& shape, double cells_per_cell) {
 /// One pass of phi <- phi / 2 + (mean of six neighbours) / 2 inside the grid.
 void smooth(ScalarGrid& field) {
   const ScalarGrid old = field;
-  const std::size_t dx = 1, dy = static_cast<std::size_t>(field.size.x()),
-                    dz = dy * static_cast<std::size_t>(field.size.y());
+  const std::size_t dx = 1, dy = static_cast<std::size_t>(field.size.x()), dz = dy * field.size.y();
   for_layers(field.size.z(), [&](int k) {
     if (k == 0 || k + 1 == field.size.z()) return;
     for (int j = 1; j + 1 < field.size.y(); ++j)
@@ -71,8 +70,7 @@ float trilinear(const ScalarGrid& grid, const Eigen::Vector3f& x) {
   const Eigen::Array3f inside = x.array().max(0.0F).min(last);
   const Eigen::Array3i base = inside.floor().cast<int>().min(grid.size.array() - 2);
   const Eigen::Array3f t = inside - base.cast<float>();
-  const std::size_t dy = static_cast<std::size_t>(grid.size.x()),
-                    dz = dy * static_cast<std::size_t>(grid.size.y());
+  const std::size_t dy = static_cast<std::size_t>(grid.size.x()), dz = dy * grid.size.y();
   const float* v = grid.values.data() + grid.index(base.x(), base.y(), base.z());
   const auto along = [&](std::size_t o) { return v[o] + t.x() * (v[o + 1] - v[o]); };
   const float low = along(0) + t.y() * (along(dy) - along(0));
@@ -149,7 +147,7 @@ void meet_solids(const GridShape& shape, const SolidFractions& solids, const Gri
 Eigen::MatrixX3d surface_velocity(const MacGrid& velocity, const Eigen::MatrixX3d& points) {
   Eigen::MatrixX3d result(points.rows(), 3);
   parallel_blocks(points.rows(), 2048, [&](std::size_t begin, std::size_t end) {
-    for (auto p = static_cast<Eigen::Index>(begin); p < static_cast<Eigen::Index>(end); ++p)
+    for (Eigen::Index p = begin; p < static_cast<Eigen::Index>(end); ++p)
       result.row(p) = velocity_at(velocity, points.row(p)).transpose();
   });
   return result;

@@ -72,8 +72,8 @@ void stamp_triangle(const TriMesh& mesh, const Pseudonormals& normals, int t, in
                     MeshDistance& grid) {
   std::array<Eigen::Vector3d, 3> corner;
   Eigen::AlignedBox3d box;
-  for (std::size_t c = 0; c < 3; ++c) {
-    corner[c] = mesh.V.row(mesh.F(t, static_cast<int>(c)));
+  for (int c = 0; c < 3; ++c) {
+    corner[c] = mesh.V.row(mesh.F(t, c));
     box.extend(corner[c]);
   }
   const Eigen::Array3d low = (box.min() - grid.origin).array() / grid.cell - kBand;
@@ -159,7 +159,7 @@ MeshDistance mesh_distance(const TriMesh& mesh, double cell) {
       (room / result.cell).ceil().cast<int>().matrix() + Eigen::Vector3i::Constant(2 * kMargin + 1);
   result.nodes = ScalarGrid(size, kUnknown);
   const Pseudonormals normals = pseudonormals(mesh);
-  parallel_blocks(static_cast<std::size_t>(size.z()), 8, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(size.z(), 8, [&](std::size_t begin, std::size_t end) {
     for (int t = 0; t < mesh.triangle_count(); ++t)
       stamp_triangle(mesh, normals, t, static_cast<int>(begin), static_cast<int>(end) - 1, result);
   });

@@ -10,7 +10,7 @@ namespace {
 Eigen::Vector3d slip_of(const ContactPoint& point, const StepProblem& problem,
                         const Eigen::MatrixX3d& x) {
   Eigen::Vector3d moved = -problem.dt * point.surface_velocity;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k) {
+  for (int k = 0; k < point.count; ++k) {
     const int i = point.vertex[k];
     moved += point.weight[k] * (x.row(i) - problem.state->x.row(i)).transpose();
   }
@@ -44,7 +44,7 @@ void StepFriction::find(const StepProblem& problem, const StepContact& contact) 
 double StepFriction::expected_slip(const StepProblem& problem, const Eigen::MatrixX3d& ballistic,
                                    const ContactPoint& point, double limit) const {
   Eigen::Vector3d now = -point.surface_velocity, flying = now;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k) {
+  for (int k = 0; k < point.count; ++k) {
     now += point.weight[k] * problem.state->v.row(point.vertex[k]).transpose();
     flying += point.weight[k] / problem.dt * ballistic.row(point.vertex[k]).transpose();
   }

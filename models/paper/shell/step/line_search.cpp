@@ -31,7 +31,7 @@ double search_line(const StepMatrix& rows, const Eigen::VectorXd& direction, dou
   double length = 1;
   for (int k = 0; k < kMostBacktracks; ++k, length /= 2) {
     trial = at.x;
-    for (int i = 0; i < static_cast<int>(trial.rows()); ++i) {
+    for (int i = 0; i < trial.rows(); ++i) {
       trial.row(i) += length * direction.segment<3>(rows.row(i)).transpose();
     }
     const double tried = potential.value(trial);

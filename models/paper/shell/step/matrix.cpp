@@ -11,7 +11,7 @@ NodeGraph element_graph(const ShellElements& elements, int vertices) {
   std::vector<int> offset(1, 0);
   std::vector<int> members;
   offset.reserve(elements.size() + 1);
-  members.reserve(static_cast<std::size_t>(elements.size()) * 6);
+  members.reserve(elements.size() * 6);
   for (int e = 0; e < elements.size(); ++e) {
     const auto nodes = elements.nodes(e);
     members.insert(members.end(), nodes.begin(), nodes.end());
@@ -47,7 +47,7 @@ void StepMatrix::gather(const Eigen::MatrixX3d& by_vertex, Eigen::VectorXd& by_p
 
 Eigen::Vector3d StepMatrix::at(const ContactPoint& point, const Eigen::VectorXd& u) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k) {
+  for (int k = 0; k < point.count; ++k) {
     sum += point.weight[k] * u.segment<3>(row(point.vertex[k]));
   }
   return sum;
@@ -55,7 +55,7 @@ Eigen::Vector3d StepMatrix::at(const ContactPoint& point, const Eigen::VectorXd&
 
 void StepMatrix::add_vector(const ContactPoint& point, const Eigen::Vector3d& vector,
                             Eigen::VectorXd& sum) const {
-  for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k) {
+  for (int k = 0; k < point.count; ++k) {
     sum.segment<3>(row(point.vertex[k])) += point.weight[k] * vector;
   }
 }

@@ -95,7 +95,7 @@ struct PendulumState {
 Artifact wav(const std::vector<double>& samples, double full_scale, int rate_hz) {
   Sound sound{rate_hz, Eigen::MatrixXd(samples.size(), 1)};
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    sound.samples(static_cast<Eigen::Index>(i), 0) = std::clamp(samples[i] / full_scale, -1.0, 1.0);
+    sound.samples(i, 0) = std::clamp(samples[i] / full_scale, -1.0, 1.0);
   }
   return {"swing.wav", wav_bytes(sound)};
 }
