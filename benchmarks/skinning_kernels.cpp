@@ -94,7 +94,8 @@ Pose curled(const Skeleton& skeleton) {
 /// Source and destination of a copy that moves `bytes` in all.
 class Copy {
  public:
-  explicit Copy(double bytes) : from_(bytes / 16, 1.0), to_(from_.size(), 0.0) {}
+  explicit Copy(double bytes)
+      : from_(static_cast<std::size_t>(bytes / 16), 1.0), to_(from_.size(), 0.0) {}
   void run() {
     constexpr std::size_t kBlock = 2048;
     parallel_blocks(from_.size(), kBlock, [&](std::size_t begin, std::size_t end) {

@@ -18,8 +18,8 @@ RandomStream::RandomStream(std::uint64_t seed, std::string_view purpose)
 std::uint32_t RandomStream::next() {
   const std::uint64_t old = state_;
   state_ = old * 6364136223846793005ULL + increment_;
-  const std::uint32_t shifted = ((old >> 18U) ^ old) >> 27U;
-  const std::uint32_t turn = old >> 59U;
+  const auto shifted = static_cast<std::uint32_t>(((old >> 18U) ^ old) >> 27U);
+  const auto turn = static_cast<std::uint32_t>(old >> 59U);
   return (shifted >> turn) | (shifted << ((32U - turn) & 31U));
 }
 

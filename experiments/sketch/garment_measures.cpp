@@ -110,7 +110,7 @@ std::map<int, std::vector<int>> panels_of(const Frame& frame) {
   const Part& surface = frame.require_part("surface");
   const auto& piece = surface.require_array("piece", NamedArray::On::cells, 1).values;
   for (Eigen::Index t = 0; t < piece.rows(); ++t) {
-    if (piece(t) >= 0) panels[piece(t)].push_back(static_cast<int>(t));
+    if (piece(t) >= 0) panels[static_cast<int>(piece(t))].push_back(static_cast<int>(t));
   }
   return panels;
 }

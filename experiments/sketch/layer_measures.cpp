@@ -174,7 +174,7 @@ ArcMeasures arc_measures(const SketchScene& scene, const Frame& frame) {
   const auto& stroke = lines.require_array("stroke", LayerOn::points, 1).values;
   double sum = 0, most = 0, count = 0;
   for (std::size_t l = 0; l < lines.lines.size(); ++l) {
-    const std::size_t number = stroke(lines.lines[l].front());
+    const auto number = static_cast<std::size_t>(stroke(lines.lines[l].front()));
     const Eigen::MatrixX3d points = line_points(lines, l);
     const auto [squares, largest] = image_distances(view.strokes[number], points);
     sum += squares;
@@ -208,7 +208,8 @@ std::optional<double> sector_length_error(const SketchScene& /*scene*/, const Fr
   const Part& surface = frame.require_part("surface", Part::Kind::triangles);
   const auto& vertex = flat.require_array("surface_vertex", LayerOn::points, 1).values;
   Eigen::MatrixX3d real(flat.points.rows(), 3);
-  for (Eigen::Index i = 0; i < real.rows(); ++i) real.row(i) = surface.points.row(vertex(i));
+  for (Eigen::Index i = 0; i < real.rows(); ++i)
+    real.row(i) = surface.points.row(static_cast<Eigen::Index>(vertex(i)));
   return border_length_error(flat.points.leftCols<2>(), flat.triangles, real);
 }
 

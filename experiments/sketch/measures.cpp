@@ -30,7 +30,8 @@ std::vector<FlatPiece> flat_pieces(const Frame& frame) {
   const auto& piece = pattern.require_array("piece", NamedArray::On::cells, 1).values;
   const auto& vertex = pattern.require_array("surface_vertex", NamedArray::On::points, 1).values;
   std::map<int, std::vector<Eigen::Index>> triangles;
-  for (Eigen::Index t = 0; t < piece.rows(); ++t) triangles[piece(t)].push_back(t);
+  for (Eigen::Index t = 0; t < piece.rows(); ++t)
+    triangles[static_cast<int>(piece(t))].push_back(t);
   std::vector<FlatPiece> pieces;
   for (const auto& [number, rows] : triangles) {
     FlatPiece flat;
@@ -46,7 +47,7 @@ std::vector<FlatPiece> flat_pieces(const Frame& frame) {
     flat.x.resize(local.size(), 3);
     for (const auto& [v, l] : local) {
       flat.points.row(l) = pattern.points.row(v).head<2>();
-      flat.x.row(l) = surface.points.row(vertex(v));
+      flat.x.row(l) = surface.points.row(static_cast<Eigen::Index>(vertex(v)));
     }
     pieces.push_back(std::move(flat));
   }
@@ -106,8 +107,8 @@ CutMeasures cut_measures(const SketchScene& /*scene*/, const Frame& frame) {
     const auto& vertex = pattern->require_array("surface_vertex", NamedArray::On::points, 1).values;
     const Eigen::MatrixXd& sewn = frame.require_table("sewn").rows;
     const auto at = [&](Eigen::Index row) -> Eigen::RowVector3d {
-      const Eigen::Index point = sewn(row, 3);
-      return surface.points.row(vertex(point));
+      const auto point = static_cast<Eigen::Index>(sewn(row, 3));
+      return surface.points.row(static_cast<Eigen::Index>(vertex(point)));
     };
     double both_sides = 0;
     for (Eigen::Index i = 1; i < sewn.rows(); ++i) {
@@ -146,8 +147,8 @@ void add_panel_areas(const SyntheticView& truth, const Frame& frame, TruthMeasur
   const Eigen::VectorXd areas = triangle_areas(pattern->points, pattern->triangles);
   std::map<std::string, double> flat;
   for (Eigen::Index t = 0; t < areas.size(); ++t) {
-    const auto number = static_cast<int>(panel(triangle(t)));
-    if (number >= 0) flat[names[number]] += areas(t);
+    const auto number = static_cast<int>(panel(static_cast<Eigen::Index>(triangle(t))));
+    if (number >= 0) flat[names[static_cast<std::size_t>(number)]] += areas(t);
   }
   double whole = 0, worst = 0;
   for (const auto& [name, area] : truth.panel_areas) {
@@ -184,7 +185,7 @@ TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame) {
   Eigen::MatrixX3d real(curves.points.rows(), 3);
   double left = std::numeric_limits<double>::infinity(), right = -left;
   for (Eigen::Index i = 0; i < real.rows(); ++i) {
-    const auto& points = truth.truth[stroke(i)];
+    const auto& points = truth.truth[static_cast<std::size_t>(stroke(i))];
     const double at = std::floor(drawn_at(i));
     const Eigen::Vector3d a = points[static_cast<std::size_t>(at) % points.size()];
     const Eigen::Vector3d b = points[(static_cast<std::size_t>(at) + 1) % points.size()];

@@ -107,7 +107,7 @@ void measure_burst(const Eigen::Ref<const Eigen::VectorXd>& samples, int sample_
     return;
   }
   if (!(burst.peak_db >= options.silence_db)) return;  // silent
-  const Eigen::Index beside = kBesideS * sample_rate;
+  const auto beside = static_cast<Eigen::Index>(kBesideS * sample_rate);
   const double clear = loudest * std::pow(10., -options.clear_db / 10);
   const Eigen::Index before = std::min(beside, window.begin);
   if (mean_square(samples.segment(window.begin - before, before)) > clear) {

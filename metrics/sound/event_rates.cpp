@@ -23,10 +23,10 @@ std::optional<double> fano_factor(const std::vector<double>& times, double durat
                                   double window_s) {
   const double windows = std::floor(duration_s / window_s * (1 + 1e-12));
   if (windows < 2) return {};
-  Eigen::VectorXd counts = Eigen::VectorXd::Zero(windows);
+  Eigen::VectorXd counts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(windows));
   for (const double time : times) {
     const double window = std::floor(time / window_s);
-    if (window < windows) counts(window) += 1;
+    if (window < windows) counts(static_cast<Eigen::Index>(window)) += 1;
   }
   const Moments of_counts = moments(counts);
   if (!(of_counts.mean > 0)) return {};

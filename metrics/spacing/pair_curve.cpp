@@ -26,7 +26,7 @@ class Histogram {
   void add(double distance, double amount) {
     const double at = distance / cell_;
     if (!(at < static_cast<double>(amount_.size() - 1))) return;
-    const Eigen::Index i = at;
+    const auto i = static_cast<Eigen::Index>(at);
     const double upper = amount * (at - static_cast<double>(i));
     amount_(i) += amount - upper;
     amount_(i + 1) += upper;

@@ -69,7 +69,7 @@ std::vector<Bin> in_bins(const std::vector<Row>& rows, const Eigen::Vector2d& si
     for (std::size_t i = 0; i < rows[k].power.size(); ++i) {
       const std::complex<double> f(static_cast<double>(k) / size.x(),
                                    (rows[k].first + static_cast<double>(i)) / size.y());
-      const std::size_t b = std::abs(f) / width;
+      const auto b = static_cast<std::size_t>(std::abs(f) / width);
       if (b >= bins.size()) continue;
       const double power = rows[k].power[i];
       ++bins[b].count;

@@ -24,7 +24,9 @@ Eigen::MatrixXcd transform_matrix(Eigen::Index n) {
   return matrix;
 }
 
-double signed_number(Eigen::Index m, Eigen::Index n) { return 2 * m < n ? m : m - n; }
+double signed_number(Eigen::Index m, Eigen::Index n) {
+  return static_cast<double>(2 * m < n ? m : m - n);
+}
 
 }  // namespace
 

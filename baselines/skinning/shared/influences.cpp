@@ -67,8 +67,8 @@ PackedInfluences::PackedInfluences(const RiggedMesh& rig)
       }
     }
   }
-  const double bytes = rest.size() * sizeof(double) + slots.size() * 2 + joints.size() * 2 +
-                       weights.size() * sizeof(float);
+  const auto bytes = static_cast<double>(rest.size() * sizeof(double) + slots.size() * 2 +
+                                         joints.size() * 2 + weights.size() * sizeof(float));
   bytes_per_vertex = vertex_count > 0 ? bytes / vertex_count + 3 * sizeof(double) : 0;
 }
 

@@ -127,7 +127,7 @@ class ModalVoices final : public SoundVoices {
     const double tau = event.kind == SoundKind::crac ? kCracTime : kFlapTime;
     const double length =
         std::min(kLongest, ringing_time(modes.frequency[0], options_.damping)) + tau + 0.02;
-    Eigen::VectorXd samples = Eigen::VectorXd::Zero(length * kRate);
+    Eigen::VectorXd samples = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(length * kRate));
     for (Eigen::Index m = 0; m < count; ++m) {
       add_ringing({modes.frequency[m], modes.pressure[m], 2 * pi * random.uniform()},
                   options_.damping, kRate, 0, samples);

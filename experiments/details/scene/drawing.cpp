@@ -17,7 +17,7 @@ Eigen::VectorXd classes_of(const Part& drawing, const Part& details) {
   const auto& born = details.require_array("birth_frame", NamedArray::On::points, 1).values;
   Eigen::VectorXd classes = Eigen::VectorXd::Constant(drawing.points.rows(), kSurface);
   for (Eigen::Index i = 0; i < classes.size(); ++i) {
-    const Eigen::Index row = detail(i, 0);
+    const auto row = static_cast<Eigen::Index>(detail(i, 0));
     if (row >= 0) classes[i] = born(row, 0) > 0 ? kBorn : kOriginal;
   }
   return classes;

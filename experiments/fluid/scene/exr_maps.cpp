@@ -147,7 +147,7 @@ class Picture {
   /// Pixels that no compression has in so small a file are not allocated.
   void require_justified(double bytes) const {
     constexpr double kMostCompression = 2000;  // deflate reaches about 1000
-    const double file = std::filesystem::file_size(name_);
+    const auto file = static_cast<double>(std::filesystem::file_size(name_));
     if (bytes > kMostCompression * file) {
       throw Error("says that it has " + bytes_text(bytes) + " of pixels in " + bytes_text(file),
                   name_, "a whole picture");

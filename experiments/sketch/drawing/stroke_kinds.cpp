@@ -62,7 +62,9 @@ bool is_near(const SvgColour& a, const SvgColour& b) {
 
 std::span<const StrokeKindRow> stroke_kinds() { return kind_table(); }
 
-const StrokeKindRow& row_of(StrokeKind kind) { return kind_table()[kind]; }
+const StrokeKindRow& row_of(StrokeKind kind) {
+  return kind_table()[static_cast<std::size_t>(kind)];
+}
 
 std::optional<StrokeKind> kind_of_name(std::string_view name) {
   for (const StrokeKindRow& row : kind_table()) {

@@ -7,7 +7,7 @@ namespace geoprior::sketch {
 std::string_view layer_name(SheetLayer layer) {
   static constexpr std::array<std::string_view, 8> kNames{"cut",   "sew",  "fold",  "notch",
                                                           "grain", "text", "drill", "place"};
-  return kNames[layer];
+  return kNames[static_cast<std::size_t>(layer)];
 }
 
 std::vector<SheetLayer> used_layers(const PatternSheet& sheet) {

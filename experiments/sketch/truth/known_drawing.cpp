@@ -101,7 +101,9 @@ std::string KnownSvg::text() const {
 
 }  // namespace
 
-std::string known_name(KnownShape shape) { return std::string(kKnownNames[shape]); }
+std::string known_name(KnownShape shape) {
+  return std::string(kKnownNames[static_cast<std::size_t>(shape)]);
+}
 
 void describe(OptionVisitor& v, KnownDrawingOptions& o) {
   describe_choice(v, "shape", o.shape, kKnownNames, {.doc = "the object that the drawing shows"});

@@ -15,7 +15,7 @@ double value_noise(const Eigen::Vector2d& p, std::uint64_t seed) {
   const Eigen::Vector2d low = p.array().floor();
   const Eigen::Vector2d t = p - low;
   const auto fade = [](double s) { return s * s * s * (s * (6 * s - 15) + 10); };
-  const std::int64_t i = low.x(), j = low.y();
+  const auto i = static_cast<std::int64_t>(low.x()), j = static_cast<std::int64_t>(low.y());
   const double a = fade(t.x()), b = fade(t.y());
   return (1 - b) * ((1 - a) * lattice_value(i, j, seed) + a * lattice_value(i + 1, j, seed)) +
          b * ((1 - a) * lattice_value(i, j + 1, seed) + a * lattice_value(i + 1, j + 1, seed));

@@ -15,7 +15,7 @@ namespace {
 void require_svg_size(const std::filesystem::path& file) {
   require_regular_file(file);
   std::error_code unknown;
-  const double bytes = std::filesystem::file_size(file, unknown);
+  const auto bytes = static_cast<double>(std::filesystem::file_size(file, unknown));
   if (!unknown && bytes > kMostSvgBytes) {
     throw Error("is too large for a drawing: " + bytes_text(bytes), file.string(),
                 "at most " + bytes_text(kMostSvgBytes));

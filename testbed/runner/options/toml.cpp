@@ -105,7 +105,7 @@ int OptionTomlReader::integer(const TomlNode& node, std::string_view key,
   }
   const double low = std::max(info.min, static_cast<double>(std::numeric_limits<int>::min()));
   const double high = std::min(info.max, static_cast<double>(std::numeric_limits<int>::max()));
-  const double x = node.integer;
+  const auto x = static_cast<double>(node.integer);
   if (x < low || x > high) {
     OptionInfo limits = info;
     limits.min = low;

@@ -47,9 +47,17 @@ inline constexpr std::array<std::string_view, 2> kFiner{"smaller", "larger"};
 inline bool is_null_control(const std::string& role) { return role == "null"; }
 
 /// The words of the enumerators, as files have them.
-inline std::string text_of(Comparison x) { return std::string(kComparisons.at(x)); }
-inline std::string text_of(Reduction x) { return std::string(kReductions.at(x)); }
-inline std::string text_of(Discrimination x) { return std::string(kDiscriminations.at(x)); }
-inline std::string text_of(StudyKind x) { return std::string(kStudyKinds.at(x)); }
+inline std::string text_of(Comparison x) {
+  return std::string(kComparisons.at(static_cast<std::size_t>(x)));
+}
+inline std::string text_of(Reduction x) {
+  return std::string(kReductions.at(static_cast<std::size_t>(x)));
+}
+inline std::string text_of(Discrimination x) {
+  return std::string(kDiscriminations.at(static_cast<std::size_t>(x)));
+}
+inline std::string text_of(StudyKind x) {
+  return std::string(kStudyKinds.at(static_cast<std::size_t>(x)));
+}
 
 }  // namespace geoprior

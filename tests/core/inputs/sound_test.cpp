@@ -12,7 +12,7 @@ namespace {
 
 /// sin(2π f t), and its negative in a second channel.
 Sound sine(double frequency, int sample_rate, double seconds) {
-  const Eigen::Index count = seconds * sample_rate;
+  const auto count = static_cast<Eigen::Index>(seconds * sample_rate);
   Sound sound{sample_rate, Eigen::MatrixXd(count, 2)};
   for (Eigen::Index i = 0; i < count; ++i) {
     const double t = static_cast<double>(i) / sample_rate;
