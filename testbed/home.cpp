@@ -62,4 +62,19 @@ fs::path find_file(const std::string& name, const fs::path& folder, const fs::pa
   throw Error("no file '" + name + "'", where, "looked for " + tried);
 }
 
+fs::path find_folder(const std::string& name, const fs::path& folder, const fs::path& of_clone,
+                     const std::string& where) {
+  std::string tried;
+  for (const fs::path& base : {folder, geoprior_home() / of_clone}) {
+    const fs::path candidate = (base / name).lexically_normal();
+    std::error_code ignored;
+    if (fs::is_directory(candidate, ignored)) return candidate;
+    if (fs::exists(candidate, ignored)) {
+      throw Error("is no folder: '" + candidate.string() + "'", where, "a folder");
+    }
+    tried += (tried.empty() ? "" : ", ") + candidate.string();
+  }
+  throw Error("no folder '" + name + "'", where, "looked for " + tried);
+}
+
 }  // namespace geoprior

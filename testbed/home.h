@@ -15,4 +15,9 @@ std::filesystem::path geoprior_home();
 std::filesystem::path find_file(const std::string& name, const std::filesystem::path& folder,
                                 const std::filesystem::path& of_clone, const std::string& where);
 
+/// A folder named in an experiment, looked for in the same places.
+/// @throws Error  naming the places looked at, or the file that has the name
+std::filesystem::path find_folder(const std::string& name, const std::filesystem::path& folder,
+                                  const std::filesystem::path& of_clone, const std::string& where);
+
 }  // namespace geoprior

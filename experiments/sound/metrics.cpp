@@ -30,6 +30,26 @@ auto of_sound(Measures (*measure)(const FrameSequence&)) {
       });
 }
 
+/// Duration and centroid of a kind of snap: a quartile of each.
+template <class Rows>
+void add_quartile(Rows& rows, const std::string& name, const std::string& suffix,
+                  double Quartiles::*which, const std::string& of) {
+  using M = const SoundMeasures&;
+  using Kind = SoundMeasures::Kind;
+  const auto read = [name, which](M m, auto member) -> Value {
+    const std::optional<Quartiles> heard = m.of(name).*member;
+    if (!heard) return std::nullopt;
+    return (*heard).*which;
+  };
+  rows.row(name + "_duration" + suffix, "s",
+           "time in which the energy of a " + name +
+               ", as it is heard in the mix, falls by 20 dB (Schroeder): " + of +
+               " of those that stand alone",
+           kNone, {1e-4, 0.02}, [read](M m) { return read(m, &Kind::duration); })
+      .row(name + "_centroid" + suffix, "Hz", "mean frequency by power of the same, " + of, kNone,
+           {1, 0.02}, [read](M m) { return read(m, &Kind::centroid); });
+}
+
 MetricGroup sound_group() {
   using M = const SoundMeasures&;
   auto rows = of_sound(sound_measures);
@@ -69,26 +89,10 @@ MetricGroup sound_group() {
     rows.row(name + "_events", "1", "events of the kind " + name, kNone, kCount,
              [name](M m) { return static_cast<double>(m.of(name).count); });
   }
-  const auto quartile = [&](const std::string& name, const std::string& suffix,
-                            double Quartiles::*which, const std::string& of) {
-    const auto read = [name, which](M m, auto member) -> Value {
-      const std::optional<Quartiles> heard = m.of(name).*member;
-      if (!heard) return std::nullopt;
-      return (*heard).*which;
-    };
-    using Kind = SoundMeasures::Kind;
-    rows.row(name + "_duration" + suffix, "s",
-             "time in which the energy of a " + name +
-                 ", as it is heard in the mix, falls by 20 dB (Schroeder): " + of +
-                 " of those that stand alone",
-             kNone, {1e-4, 0.02}, [read](M m) { return read(m, &Kind::duration); })
-        .row(name + "_centroid" + suffix, "Hz", "mean frequency by power of the same, " + of, kNone,
-             {1, 0.02}, [read](M m) { return read(m, &Kind::centroid); });
-  };
   for (const char* kind : {"flap", "crac"}) {
-    quartile(kind, "", &Quartiles::median, "median");
-    quartile(kind, "_lower", &Quartiles::lower, "lower quartile");
-    quartile(kind, "_upper", &Quartiles::upper, "upper quartile");
+    add_quartile(rows, kind, "", &Quartiles::median, "median");
+    add_quartile(rows, kind, "_lower", &Quartiles::lower, "lower quartile");
+    add_quartile(rows, kind, "_upper", &Quartiles::upper, "upper quartile");
   }
   return rows;
 }

@@ -10,6 +10,7 @@
 #include "testbed/formats/atomic_file.h"
 #include "testbed/joined.h"
 #include "tests/testbed/run_fixture.h"
+#include "tests/topics/structure/source_tree.h"
 #include "tests/topics/turned_options.h"
 
 namespace geoprior::test {
@@ -195,6 +196,58 @@ TEST_F(PlantedOptions, AreNotTurnedByAnotherSeedOrMethod) {
   for (const OptionUnit& unit : turned_.units()) EXPECT_EQ(unit.turned, Turned::never) << unit.key;
 }
 
+/// A scene with points and a motion as the disc has them, and with a radius that is another one.
+struct EarOptions {
+  double radius_m = 1;
+  int points = 24;
+};
+void describe(OptionVisitor& v, EarOptions& o) {
+  v.value("radius_m", o.radius_m, {.doc = "radius of the ear", .unit = "m", .min = 0});
+  v.value("points", o.points, {.doc = "points on the rim", .min = 3, .max = 1000000});
+}
+
+class PlantedUser : public PlantedOptions {
+ protected:
+  /// What is known of the scene of a topic that uses the disc's.
+  [[nodiscard]] std::string text_of_user(const std::string& key,
+                                         const std::vector<UsersChoice>& choices = {}) const {
+    Topic ear = topic_;
+    ear.name = "ear";
+    ear.default_scene = [] { return std::make_unique<TypedOptions<EarOptions>>(); };
+    TurnedOptions known(ear);
+    known.share_scene(turned_, choices);
+    for (const OptionUnit& unit : known.units()) {
+      if (unit.where == "ear/scene" && unit.key == key) return unit.text();
+    }
+    return "there is no such option";
+  }
+
+  [[nodiscard]] static std::string sweep(const std::string& key) {
+    return "[[sweep]]\nkey = \"scene." + key + "\"\nvalues = [8]\n";
+  }
+};
+
+TEST_F(PlantedUser, SharesRowsOfTheSceneThatAreDescribedAlike) {
+  EXPECT_THAT(text_of_user("points"), HasSubstr("never turned"));
+  add(sweep("points") + sweep("radius_m"), {{"default", {{"base", "1"}}},
+                                            {"points=8", {{"base", "2"}}},
+                                            {"radius_m=8", {{"base", "3"}}}});
+  EXPECT_THAT(text_of_user("points"), HasSubstr("turned in toy-circle/disc"));
+  EXPECT_THAT(text_of("scene", "radius_m"), HasSubstr("turned in toy-circle/disc"));
+  EXPECT_THAT(text_of_user("radius_m"), HasSubstr("never turned")) << "in other words";
+}
+
+TEST_F(PlantedUser, SharesChoicesOfTheUsersAndNoFailures) {
+  add(sweep("points"), {{"default", {{"base", "1"}}}, {"points=8", {{"base", "1"}}}});
+  EXPECT_THAT(text_of_user("points"), HasSubstr("without effect"));
+  const auto choose = [](const std::string& where) {
+    return users_choices(where + " points a_test.cpp Disc.HasPoints\n", "disc.txt");
+  };
+  EXPECT_THAT(text_of_user("points", choose("toy-circle/scene")),
+              HasSubstr("turned in disc.txt:1"));
+  EXPECT_THAT(text_of_user("points", choose("toy-circle/polygon")), HasSubstr("without effect"));
+}
+
 class UsersChoices : public RunTest {};
 
 TEST_F(UsersChoices, NameAnOptionAndItsTest) {
@@ -252,11 +305,22 @@ std::vector<UsersChoice> users_choices_of(const std::string& topic) {
 TEST(Options, AreTurnedOrAreAUsersChoice) {
   const std::vector<Topic> topics = all_topics();
   const std::vector<CatalogueEntry> experiments = catalogue();
+  std::map<std::string, TurnedOptions> turned_in;
   for (const Topic& topic : topics) {
-    TurnedOptions turned(topic);
+    TurnedOptions& turned = turned_in.emplace(topic.name, topic).first->second;
     for (const CatalogueEntry& entry : experiments) {
       if (entry.topic == topic.name) add_experiment(entry, topics, turned);
     }
+  }
+  for (const auto& [topic, used] : structure::uses_of_topics(GEOPRIOR_SOURCE_DIR)) {
+    const auto user = turned_in.find(topic);
+    if (user == turned_in.end()) continue;
+    for (const std::string& name : used) {
+      user->second.share_scene(turned_in.at(name), users_choices_of(name));
+    }
+  }
+  for (const Topic& topic : topics) {
+    const TurnedOptions& turned = turned_in.at(topic.name);
     const std::vector<OptionUnit> units = turned.units();
     const std::vector<std::string> problems =
         option_problems(units, users_choices_of(topic.name), GEOPRIOR_SOURCE_DIR);

@@ -357,6 +357,23 @@ TurnedOptions::Evidence TurnedOptions::shared_evidence_of(const std::string& pla
   return best;
 }
 
+void TurnedOptions::share_scene(const TurnedOptions& used,
+                                const std::vector<UsersChoice>& choices) {
+  const std::string where = used.topic_ + "/scene";
+  for (const OptionRow& row : rows_of("scene").rows()) {
+    const OptionRow* there = used.rows_of("scene").find(row.key);
+    if (there == nullptr || !are_described_alike(row, *there)) continue;
+    for (const std::string& value : values_of(row)) {
+      note("scene", row.key, value, used.evidence_of("scene", *there, value));
+      for (const UsersChoice& choice : choices) {
+        const bool is_value = choice.key == row.key || choice.key == row.key + "=" + value;
+        if (choice.where != where || !is_value) continue;
+        note("scene", row.key, value, {Turned::with_effect, choice.place});
+      }
+    }
+  }
+}
+
 std::vector<OptionUnit> TurnedOptions::units() const {
   std::vector<OptionUnit> units;
   for (const std::string& place : places_) {

@@ -64,6 +64,15 @@ struct OptionUnit {
   [[nodiscard]] std::string text() const;
 };
 
+/// An option that is a matter of the user's taste or input, and the test that drives it.
+struct UsersChoice {
+  std::string where;
+  std::string key;
+  std::string file;
+  std::string test;   ///< "Suite.Test"
+  std::string place;  ///< "sketch.txt:3"
+};
+
 /// What experiments of a topic turn.
 class TurnedOptions {
  public:
@@ -72,6 +81,11 @@ class TurnedOptions {
   /// Compares the columns of an experiment.
   /// @param blessed  its reference of the same size, null where there is none
   void add(const Experiment& experiment, const BlessedSet* blessed);
+
+  /// Takes over what is known of the scene of a topic that this one uses, of the rows that both
+  /// describe alike: what is turned, or a user's choice, there need not be so here.
+  /// @param choices  those of the topic that is used
+  void share_scene(const TurnedOptions& used, const std::vector<UsersChoice>& choices);
 
   /// Every row, in the order of the listings: scene first, then the methods in theirs.
   [[nodiscard]] std::vector<OptionUnit> units() const;
@@ -102,15 +116,6 @@ class TurnedOptions {
   std::set<std::string> reference_metrics_;
   /// By place, row, and value of a choice ("" of other options).
   std::map<std::string, std::map<std::string, std::map<std::string, Evidence>>> found_;
-};
-
-/// An option that is a matter of the user's taste or input, and the test that drives it.
-struct UsersChoice {
-  std::string where;
-  std::string key;
-  std::string file;
-  std::string test;   ///< "Suite.Test"
-  std::string place;  ///< "sketch.txt:3"
 };
 
 /// One choice a line, `<where> <key> <test file> <Suite.Test>`; lines that begin with # are none.

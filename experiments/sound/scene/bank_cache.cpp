@@ -33,7 +33,7 @@ std::string name_of(const PaperMaterial& material, const BankOptions& o, std::ui
         o.damping, o.flap_bow, o.crac_bow, o.crackles, o.highest}) {
     out.number(x);
   }
-  for (const int n : {o.sizes, o.variants, o.speeds, o.tears, o.most_modes}) out.number(n);
+  for (const int n : {o.sizes, o.variants, o.most_modes}) out.number(n);
   out.number(seed);
   return sha256(out.take()).substr(0, 16) + ".bank";
 }

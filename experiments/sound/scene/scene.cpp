@@ -63,7 +63,7 @@ std::shared_ptr<SoundScene> load_sound_scene(const SoundSceneOptions& options,
                                         scene->load_warnings, scene->input_files);
   }
   if (options.bank) {
-    const fs::path bank = find_file(*options.bank, folder, "data", "scene.bank");
+    const fs::path bank = find_folder(*options.bank, folder, "data", "scene.bank");
     scene->bank =
         std::make_shared<SoundBank>(read_bank(bank, scene->load_warnings, scene->input_files));
   }

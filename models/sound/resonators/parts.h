@@ -13,7 +13,6 @@ struct CreaseOptions {
   double contrast = 1.25;
   double fold = 40;
   double gap = 0.01;
-  double neck = 0.5;
 };
 /// How far from a crease, across its ruling, the sheet beside it is looked at: twice the smoothing
 /// of curvature (m).
@@ -31,7 +30,7 @@ void describe(OptionVisitor& v, CreaseOptions& options);
 ///
 /// Creases that are found so have gaps, through which everything would be one part. A gap lets
 /// nothing pass that is longer than twice its width: one of 10 mm stops bending waves of office
-/// paper below 1 kHz. So a gap closes when it is narrower than `gap`, and than `neck` times the
+/// paper below 1 kHz. So a gap closes when it is narrower than `gap`, and than half the
 /// widest place of the narrower of the parts that it joins, whatever the cell to which widths are
 /// known: a strip is no neck of itself. Between a crease and the border of the sheet a gap counts
 /// twice. Parts are the basins of the distance from the creases, flooded from the widest places

@@ -23,6 +23,8 @@ constexpr double kLeak = 5e-3;  // m: border that a resonator without free borde
 // slipping (m/s).
 constexpr double kLeastRuling = 5e-3, kMostRuling = 0.3, kMostBorder = 0.6;
 constexpr double kLeastSpeed = 0.01, kMostSpeed = 2;
+// Loops of friction and steps of tears: so many that none is heard again at once (a choice).
+constexpr int kSpeeds = 8, kVariantsOfFriction = 8, kSteps = 16;
 
 double uniform(RandomStream& random, double low, double high) {
   return low + (high - low) * random.uniform();
@@ -229,10 +231,6 @@ void describe(OptionVisitor& v, BankOptions& o) {
           {.doc = "flaps, and as many cracs, in the bank for each pair of lengths",
            .min = 1,
            .max = 64});
-  v.value("speeds", o.speeds,
-          {.doc = "speeds of friction in the bank, eight variants each", .min = 1, .max = 64});
-  v.value("tears", o.tears,
-          {.doc = "sounds of a step of a tear in the bank", .min = 1, .max = 1024});
   v.value("damping", o.damping,
           {.doc = "loss factor eta of the paper of the bank", .min = 1e-4, .max = 1});
   v.value("flap_bow", o.flap_bow,
@@ -266,13 +264,12 @@ SoundBank generate_bank(const PaperMaterial& material, const BankOptions& option
       }
     }
   }
-  constexpr int kVariantsOfFriction = 8;
-  for (const double speed : ratios(kLeastSpeed, kMostSpeed, options.speeds)) {
+  for (const double speed : ratios(kLeastSpeed, kMostSpeed, kSpeeds)) {
     for (int i = 0; i < kVariantsOfFriction; ++i) {
       bank.sounds.push_back({SoundKind::friction, 0, 0, speed});
     }
   }
-  for (int i = 0; i < options.tears; ++i) bank.sounds.push_back({SoundKind::tear});
+  for (int i = 0; i < kSteps; ++i) bank.sounds.push_back({SoundKind::tear});
   parallel_blocks(bank.sounds.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       BankSound& sound = bank.sounds[i];

@@ -68,8 +68,6 @@ inline constexpr double kLeastPanelWidth = 3e-3;  ///< of the bank, across the r
 struct BankOptions {
   int sizes = 8;
   int variants = 2;
-  int speeds = 8;
-  int tears = 16;
   double damping = 0.03;
   double flap_bow = 10;
   double crac_bow = 25;

@@ -156,14 +156,12 @@ std::string error_of(const RiggedMesh& rig, const BoundedWeightsOptions& options
   return "";
 }
 
-// The first solution, (2, 1/2), violates a bound: a single change of the active set does not
-// settle.
+// The unconstrained solution, (34, -8) / 15, is clamped to (1, 0), where the second multiplier has
+// the wrong sign: the active set changes once more, to (1, 1/10).
 TEST(BoxProgram, IsRefusedWhenItsActiveSetDoesNotSettle) {
-  BoxProgram program;
-  program.Q.resize(2, 2);
-  program.Q.setIdentity();
-  program.C = Eigen::Vector2d(2, 0.5);
-  EXPECT_EQ(solve_in_box(program, 2).X, Eigen::MatrixXd(Eigen::Vector2d(1, 0.5)));
+  const Eigen::Matrix2d Q{{1, 0.5}, {0.5, 1}};
+  const BoxProgram program{Q.sparseView(), Eigen::Vector2d(2, 0.6)};
+  EXPECT_TRUE(solve_in_box(program, 2).X.isApprox(Eigen::Vector2d(1, 0.1), 1e-12));
   std::string error;
   try {
     solve_in_box(program, 1);

@@ -52,6 +52,10 @@ std::map<std::string, std::set<std::string>> read_uses(const std::string& cmake)
 
 }  // namespace
 
+std::map<std::string, std::set<std::string>> uses_of_topics(const fs::path& root) {
+  return read_uses(text_of_file(root / "CMakeLists.txt"));
+}
+
 SourceTree read_source_tree(const fs::path& root) {
   SourceTree tree;
   for (const char* room : kRooms) {
@@ -68,7 +72,7 @@ SourceTree read_source_tree(const fs::path& root) {
   }
   std::sort(tree.files.begin(), tree.files.end(),
             [](const SourceFile& a, const SourceFile& b) { return a.path < b.path; });
-  tree.uses = read_uses(text_of_file(root / "CMakeLists.txt"));
+  tree.uses = uses_of_topics(root);
   return tree;
 }
 

@@ -25,6 +25,9 @@ struct SourceTree {
 /// Reads the rooms below `root` and the topics of its CMakeLists.txt.
 SourceTree read_source_tree(const std::filesystem::path& root);
 
+/// Topics of the CMakeLists.txt of a tree, each with those that it USES.
+std::map<std::string, std::set<std::string>> uses_of_topics(const std::filesystem::path& root);
+
 /// "core/mesh" of core/mesh.h and core/mesh.cpp: a header and its source are one unit.
 std::string unit_of(const std::string& path);
 

@@ -1,0 +1,175 @@
+// What is the user's of the scene: the animation, what holds the sheet, what it slides along, the
+// bank.
+#include "experiments/sound/scene/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "experiments/sound/scene/bank_files.h"
+#include "experiments/sound/topic.h"
+#include "tests/sound/recording.h"
+#include "tests/testbed/run_fixture.h"
+
+namespace geoprior::sound {
+namespace {
+
+namespace fs = std::filesystem;
+using test::error_of;
+using ::testing::HasSubstr;
+
+const std::string kSquare = "pattern = { kind = \"rectangle\", width = 0.2, height = 0.2 }\n";
+const std::string kSwatch = "swatches = { rulings = [0.03], widths = [0.03] }\n";
+
+class SoundScenes : public test::RunTest {
+ protected:
+  struct Loaded {
+    Experiment experiment;
+    std::shared_ptr<const SoundScene> scene;
+  };
+
+  /// What a [scene] table describes.
+  [[nodiscard]] Loaded load(const std::string& scene_lines) const {
+    const fs::path file = write_experiment(
+        "sound/scene", "title = \"A scene\"\ntopic = \"sound\"\n[scene]\n" + scene_lines +
+                           "\n[[variant]]\nname = \"clicks\"\nmethod = \"clicks\"\n");
+    Loaded loaded{load_experiment(file, {make_topic()}, {}), nullptr};
+    loaded.scene = std::dynamic_pointer_cast<const SoundScene>(std::shared_ptr<Scene>(
+        make_topic().load(*loaded.experiment.cases[0].scene, file.parent_path(), 1)));
+    return loaded;
+  }
+  [[nodiscard]] std::shared_ptr<const SoundScene> scene(const std::string& lines) const {
+    return load(lines).scene;
+  }
+
+  /// Energy of what is heard of a scene (J).
+  [[nodiscard]] double energy(const std::string& scene_lines) const {
+    const Loaded loaded = load(scene_lines);
+    RunContext context;
+    for (const MethodEntry& method : make_topic().methods) {
+      if (method.name != "clicks") continue;
+      const auto made = method.make(*loaded.scene, *method.default_options(), context);
+      Recording record;
+      std::get<std::unique_ptr<Process>>(made)->run(record, context, {});
+      double sum = 0;
+      for (const Event& event : record.events) sum += event.energy_J;
+      return sum;
+    }
+    return -1;
+  }
+
+  /// Beside the experiment file.
+  [[nodiscard]] fs::path beside(const std::string& name) const {
+    fs::create_directories(folder() / "experiments" / "sound");
+    return folder() / "experiments" / "sound" / name;
+  }
+
+  /// Frames of a square of 0.2 m that lies at z = 0, a millimetre farther along x in each.
+  /// @param unit  of the files (m)
+  void write_frames(const std::string& name, int count, double unit = 1) const {
+    fs::create_directories(beside(name).parent_path());
+    for (int i = 0; i < count; ++i) {
+      std::ofstream out(beside(name + "_000" + std::to_string(i) + ".obj"));
+      const double corners[4][2] = {{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}};
+      for (const auto& [u, v] : corners) {
+        out << "v " << (u + 1e-3 * i) / unit << ' ' << v / unit << " 0\nvt " << u / unit << ' '
+            << v / unit << '\n';
+      }
+      out << "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+    }
+  }
+};
+
+TEST_F(SoundScenes, ListenToAnAnimationOrToSwatches) {
+  write_frames("sheet", 3);
+  const std::string animation =
+      "animation = { path = \"sheet_%04d.obj\", frames_per_second = 50 }\n";
+  EXPECT_EQ(scene(animation + kSquare)->animation->frame_count(), 3);
+  EXPECT_EQ(scene(kSwatch)->animation->name(), "scene.swatches");
+  EXPECT_THAT(error_of([&] { (void)scene(animation + kSwatch); }), HasSubstr("one of both"));
+  EXPECT_THAT(error_of([&] { (void)scene(kSquare); }), HasSubstr("nothing to listen to"));
+}
+
+TEST_F(SoundScenes, ReadTheFramesOfAnAnimationThatAreAskedFor) {
+  write_frames("frames/sheet", 7, 1e-3);
+  write_frames("frames/surface", 2, 1e-3);
+  const auto animation = [&](const std::string& more) {
+    return scene("animation = { path = \"frames\", scale = 1e-3" + more + " }\n" + kSquare)
+        ->animation;
+  };
+  const std::string part = ", frames_per_second = 50, part = \"sheet\"";
+  EXPECT_EQ(animation(", frames_per_second = 50")->frame_count(), 2) << "the part surface";
+  const auto all = animation(part);
+  ASSERT_EQ(all->frame_count(), 7);
+  EXPECT_NEAR(all->time(6), 0.12, 1e-12);
+  const Eigen::RowVector3d corner = all->snapshot(6).x.row(1);
+  EXPECT_NEAR((corner - Eigen::RowVector3d(0.106, -0.1, 0)).norm(), 0, 1e-12);
+  const auto some = animation(part + ", first = 1, last = 5, every = 2, start = 3");
+  ASSERT_EQ(some->frame_count(), 3);
+  EXPECT_NEAR(some->snapshot(2).x(1, 0), 0.105, 1e-12);
+  EXPECT_NEAR(some->time(0), 3, 1e-12);
+  EXPECT_NEAR(some->time(2), 3.08, 1e-12);
+  const Eigen::RowVector3d turned = animation(part + ", up = \"y\"")->snapshot(0).x.row(1);
+  EXPECT_NEAR((turned - Eigen::RowVector3d(0.1, 0, -0.1)).norm(), 0, 1e-12) << "y is up";
+}
+
+TEST_F(SoundScenes, AreHeldByPointsLinesAndDiscsForAsLongAsTheyAre) {
+  write_frames("sheet", 3);
+  const auto s =
+      scene("animation = { path = \"sheet_%04d.obj\", frames_per_second = 50 }\n" + kSquare +
+            "handles = [{ points = [{ u = 0.05, v = 0.02 }] },\n"
+            "  { segment = [-0.1, -0.1, -0.1, 0.1], active = [{ from = 0, to = 1 }] },\n"
+            "  { disc = { u = 0, v = -0.05, radius = 0.01 } }]\n");
+  ASSERT_EQ(s->sheet.handles.size(), 3U);
+  EXPECT_TRUE(s->sheet.handles[0].covers({0.05, 0.02}));
+  EXPECT_FALSE(s->sheet.handles[0].covers({0.05, 0.03}));
+  EXPECT_TRUE(s->sheet.handles[0].is_active(2));
+  EXPECT_TRUE(s->sheet.handles[1].covers({-0.1, 0.04}));
+  EXPECT_TRUE(s->sheet.handles[1].is_active(0.5));
+  EXPECT_FALSE(s->sheet.handles[1].is_active(1.5));
+  EXPECT_TRUE(s->sheet.handles[2].covers({0.005, -0.05}));
+  EXPECT_FALSE(s->sheet.handles[2].covers({0.02, -0.05}));
+}
+
+// It slides at 5 cm/s over a plane that it touches: the energy is that of friction alone.
+TEST_F(SoundScenes, SlideAsLoudAsTheFrictionSays) {
+  write_frames("sheet", 4);
+  const std::string sliding =
+      "animation = { path = \"sheet_%04d.obj\", frames_per_second = 50 }\n" + kSquare +
+      "obstacles = [{ kind = \"plane\" }]\nmaterial = { friction = ";
+  const double once = energy(sliding + "0.2 }\n");
+  EXPECT_GT(once, 0);
+  EXPECT_NEAR(energy(sliding + "0.6 }\n"), 3 * once, 1e-9 * once);
+}
+
+TEST_F(SoundScenes, AreHeardThroughABankThatWasWrittenToAFolder) {
+  SoundBank bank;
+  for (const SoundKind kind : {SoundKind::flap, SoundKind::friction}) {
+    BankSound& sound = bank.sounds.emplace_back();
+    sound.kind = kind;
+    sound.ruling_length = sound.free_border = sound.speed = 0.02;
+    sound.samples = Eigen::VectorXf::LinSpaced(480, -0.003F, 0.002F);
+  }
+  EXPECT_EQ(scene(kSwatch)->bank, nullptr) << "one is generated";
+  write_bank(bank, beside("my-bank"));
+  const auto heard = scene(kSwatch + "bank = \"my-bank\"\n");
+  ASSERT_NE(heard->bank, nullptr);
+  ASSERT_EQ(heard->bank->sounds.size(), 2U);
+  EXPECT_EQ(heard->bank->sounds[1].kind, SoundKind::friction);
+  EXPECT_EQ(heard->inputs().size(), 3U);
+  const auto error = [&](const std::string& name) {
+    return error_of([&] { (void)scene(kSwatch + "bank = \"" + name + "\"\n"); });
+  };
+  EXPECT_THAT(error("my-bank/bank.csv"), HasSubstr("scene.bank"));
+  EXPECT_THAT(error("my-bank/bank.csv"), HasSubstr("is no folder"));
+  EXPECT_THAT(error("your-bank"), HasSubstr("no folder 'your-bank'"));
+  EXPECT_THAT(error("your-bank"), HasSubstr(beside("your-bank").string()));
+}
+
+}  // namespace
+}  // namespace geoprior::sound
