@@ -5,8 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <variant>
@@ -34,10 +36,12 @@ class SoundScenes : public test::RunTest {
   };
 
   /// What a [scene] table describes.
-  [[nodiscard]] Loaded load(const std::string& scene_lines) const {
+  /// @param method_lines  of the variant
+  [[nodiscard]] Loaded load(const std::string& scene_lines,
+                            const std::string& method_lines = "method = \"clicks\"\n") const {
     const fs::path file = write_experiment(
         "sound/scene", "title = \"A scene\"\ntopic = \"sound\"\n[scene]\n" + scene_lines +
-                           "\n[[variant]]\nname = \"clicks\"\nmethod = \"clicks\"\n");
+                           "\n[[variant]]\nname = \"heard\"\n" + method_lines);
     Loaded loaded{load_experiment(file, {make_topic()}, {}), nullptr};
     loaded.scene = std::dynamic_pointer_cast<const SoundScene>(std::shared_ptr<Scene>(
         make_topic().load(*loaded.experiment.cases[0].scene, file.parent_path(), 1)));
@@ -47,20 +51,24 @@ class SoundScenes : public test::RunTest {
     return load(lines).scene;
   }
 
-  /// Energy of what is heard of a scene (J).
-  [[nodiscard]] double energy(const std::string& scene_lines) const {
-    const Loaded loaded = load(scene_lines);
+  /// What the experiment's method makes of the scene.
+  [[nodiscard]] static Recording record(const Loaded& loaded) {
+    const VariantSpec& variant = loaded.experiment.cases[0].variants[0];
+    Recording record;
     RunContext context;
     for (const MethodEntry& method : make_topic().methods) {
-      if (method.name != "clicks") continue;
-      const auto made = method.make(*loaded.scene, *method.default_options(), context);
-      Recording record;
+      if (method.name != variant.method) continue;
+      const auto made = method.make(*loaded.scene, *variant.options, context);
       std::get<std::unique_ptr<Process>>(made)->run(record, context, {});
-      double sum = 0;
-      for (const Event& event : record.events) sum += event.energy_J;
-      return sum;
     }
-    return -1;
+    return record;
+  }
+
+  /// Energy of what is heard of a scene (J).
+  [[nodiscard]] double energy(const std::string& scene_lines) const {
+    double sum = 0;
+    for (const Event& event : record(load(scene_lines)).events) sum += event.energy_J;
+    return sum;
   }
 
   /// Beside the experiment file.
@@ -81,6 +89,33 @@ class SoundScenes : public test::RunTest {
             << v / unit << '\n';
       }
       out << "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+    }
+  }
+
+  /// The square as a cylinder whose curvature is 12 cos(20 pi t) 1/m, a frame each 10 ms.
+  void write_snaps(const std::string& name, int count) const {
+    constexpr int kCells = 10;
+    for (int i = 0; i < count; ++i) {
+      const std::string number = std::to_string(10000 + i).substr(1);
+      std::ofstream out(beside(name + "_" + number + ".obj"));
+      const double k = 12 * std::cos(0.2 * std::numbers::pi * i);
+      for (int a = 0; a <= kCells; ++a) {
+        for (int b = 0; b <= kCells; ++b) {
+          const double u = 0.02 * a - 0.1, v = 0.02 * b - 0.1;
+          out << "v " << std::sin(k * u) / k << ' ' << v << ' ' << (1 - std::cos(k * u)) / k
+              << "\nvt " << u << ' ' << v << '\n';
+        }
+      }
+      const auto corner = [](int a, int b) {
+        const std::string vertex = std::to_string(a * (kCells + 1) + b + 1);
+        return " " + vertex + "/" + vertex;
+      };
+      for (int a = 0; a < kCells; ++a) {
+        for (int b = 0; b < kCells; ++b) {
+          out << 'f' << corner(a, b) << corner(a + 1, b) << corner(a + 1, b + 1) << "\nf"
+              << corner(a, b) << corner(a + 1, b + 1) << corner(a, b + 1) << '\n';
+        }
+      }
     }
   }
 };
@@ -145,6 +180,37 @@ TEST_F(SoundScenes, SlideAsLoudAsTheFrictionSays) {
   const double once = energy(sliding + "0.2 }\n");
   EXPECT_GT(once, 0);
   EXPECT_NEAR(energy(sliding + "0.6 }\n"), 3 * once, 1e-9 * once);
+}
+
+// Snaps of an animation in slow motion: a cell that has just flipped is deaf for longer.
+TEST_F(SoundScenes, SnapAgainOnceTheRefractoryTimeIsOver) {
+  write_snaps("snaps", 31);
+  const auto events = [&](const std::string& refractory) {
+    const std::string lines =
+        "animation = { path = \"snaps_%04d.obj\", frames_per_second = 100 }\n";
+    return record(load(lines + kSquare,
+                       "method = \"clicks\"\noptions = { surface = false, detection = { flips = { "
+                       "refractory = " +
+                           refractory + " } } }\n"))
+        .events.size();
+  };
+  EXPECT_EQ(events("0.02"), 6U) << "every 50 ms";
+  EXPECT_EQ(events("0.07"), 3U) << "every second one";
+}
+
+TEST_F(SoundScenes, AreDrawnWithTheirSurfaceOrWithout) {
+  for (const char* method : {"sound", "clicks", "random-sounds", "modal"}) {
+    const std::string lines = "method = \"" + std::string(method) + "\"\noptions = { ";
+    const std::string bank = std::string(method).find("sound") == std::string::npos
+                                 ? ""
+                                 : "bank = { sizes = 1, variants = 1 }, ";
+    const auto has_surface = [&](const std::string& options) {
+      const Recording made = record(load(kSwatch, lines + bank + options + " }\n"));
+      return !made.frames.empty() && made.frames.front().find_part("surface") != nullptr;
+    };
+    EXPECT_TRUE(has_surface("tail = 0.1")) << method;
+    EXPECT_FALSE(has_surface("tail = 0.1, surface = false")) << method;
+  }
 }
 
 TEST_F(SoundScenes, AreHeardThroughABankThatWasWrittenToAFolder) {
