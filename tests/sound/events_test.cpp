@@ -344,7 +344,7 @@ TEST(SoundEvents, StepsOfTearsAreEventsAndCutsAreNot) {
   }
   const auto events = all_events(sheet, {}, frames);
   ASSERT_EQ(events.size(), 3u);
-  for (std::size_t k = 0; k < 3; ++k) {
+  for (int k = 0; k < 3; ++k) {
     EXPECT_EQ(events[k].kind, SoundKind::tear);
     EXPECT_DOUBLE_EQ(events[k].time, 0.04 * (k + 1) - 0.01);
     EXPECT_NEAR(events[k].energy, 1e4 * 1e-4 * 0.002, 1e-12);

@@ -29,7 +29,7 @@ TEST(Swatches, EachIsOneFlapWithItsLengths) {
   }
   for (const SoundEvent& e : detector.finish(context)) events.push_back(e);
   ASSERT_EQ(events.size(), 6u);  // two lengths, three supports
-  for (std::size_t i = 0; i < events.size(); ++i) {
+  for (int i = 0; i < std::ssize(events); ++i) {
     const double ruling = i % 2 == 0 ? 0.02 : 0.04, width = 0.03;
     EXPECT_EQ(events[i].kind, SoundKind::flap);
     EXPECT_NEAR(events[i].time, 0.25 * (i + 1), 1e-3);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "solvers/paper/hybrid.h"
 #include "solvers/paper/sheet/invariants.h"
 #include "tests/paper/contact/plane_shapes.h"
 #include "tests/paper/sheet/hybrid_fixture.h"
