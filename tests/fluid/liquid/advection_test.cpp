@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "baselines/fluid/liquid/grid/extrapolation.h"
+#include "baselines/fluid/liquid/grid/mac_grid_sampler.h"
 #include "baselines/fluid/liquid/particles/transfer.h"
 #include "baselines/fluid/liquid/particles/volume_correction.h"
 #include "tests/core/geometry/shapes.h"

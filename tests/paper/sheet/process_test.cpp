@@ -199,7 +199,7 @@ TEST(SheetProcess, PutsHandlesWhereTheirTrajectoriesAre) {
     const Part& held = frame.require_part("handles");
     ASSERT_GE(held.points.rows(), 4);
     for (Eigen::Index i = 0; i < held.points.rows(); ++i) {
-      const std::size_t h = held.arrays[0].values(i, 0);
+      const auto h = static_cast<std::size_t>(held.arrays[0].values(i, 0));
       const double x =
           (h == 0 ? -0.05 : 0.05) + sheet.handles[h].motion->at(frame.parameter).shift.x();
       EXPECT_NEAR(held.points(i, 0), x, 1e-12) << "at " << frame.parameter;
