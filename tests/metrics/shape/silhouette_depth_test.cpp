@@ -11,7 +11,7 @@
 namespace geoprior {
 namespace {
 
-const Eigen::Matrix3d kEye = Eigen::Matrix3d::Identity();
+const Eigen::Matrix3d kIdentity = Eigen::Matrix3d::Identity();
 
 PlanarLoop unit_circle() {
   PlanarLoop loop;
@@ -26,7 +26,7 @@ PlanarLoop unit_circle() {
 // mesh zigzag about it by less than an edge, 0.07 here.
 TEST(SilhouetteDepth, OfABallIsPlanar) {
   const TriMesh ball = shapes::sphere(1, {0, 0, 5}, 4);
-  const SilhouetteDepth depth = silhouette_depth(ball, kEye, unit_circle());
+  const SilhouetteDepth depth = silhouette_depth(ball, kIdentity, unit_circle());
   for (const auto& d : depth.depth) {
     ASSERT_TRUE(d.has_value());
     EXPECT_NEAR(*d, 5, 0.07);
@@ -41,7 +41,7 @@ TEST(SilhouetteDepth, JumpsFromOneBoxToTheOther) {
   const TriMesh boxes =
       shapes::together(shapes::box({-1, 0, 0}, {0, 1, 1}), shapes::box({0, 0, 3}, {1, 1, 4}));
   const PlanarLoop outline{{-1, 0}, {1, 0}, {1, 1}, {-1, 1}};
-  const SilhouetteDepth depth = silhouette_depth(boxes, kEye, outline);
+  const SilhouetteDepth depth = silhouette_depth(boxes, kIdentity, outline);
   EXPECT_NEAR(depth.jump, 0.75, 1e-12);
   EXPECT_NEAR(depth.range, 0.75, 1e-12);
   EXPECT_GT(depth.plane_rms, 0.1);
@@ -50,8 +50,9 @@ TEST(SilhouetteDepth, JumpsFromOneBoxToTheOther) {
 TEST(SilhouetteDepth, RefusesADrawingThatIsElsewhere) {
   PlanarLoop away = unit_circle();
   for (Eigen::Vector2d& p : away) p.x() += 10;
-  EXPECT_THROW(silhouette_depth(shapes::sphere(1, {0, 0, 0}, 2), kEye, away), Error);
-  EXPECT_THROW(silhouette_depth(shapes::sphere(1, {0, 0, 0}, 2), kEye, {{0, 0}, {1, 0}}), Error);
+  EXPECT_THROW(silhouette_depth(shapes::sphere(1, {0, 0, 0}, 2), kIdentity, away), Error);
+  EXPECT_THROW(silhouette_depth(shapes::sphere(1, {0, 0, 0}, 2), kIdentity, {{0, 0}, {1, 0}}),
+               Error);
 }
 
 }  // namespace

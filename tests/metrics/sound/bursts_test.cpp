@@ -23,11 +23,11 @@ Event event_at(double time_s, const std::string& kind = "crac") {
 
 /// A struck tone or noise, amplitude exp(-t / tau).
 Eigen::VectorXd struck_tone(double hz, double tau_s) {
-  const Eigen::Index n = 12 * tau_s * kSoundRate;
+  const auto n = static_cast<Eigen::Index>(12 * tau_s * kSoundRate);
   return sine(n, hz / kSoundRate).cwiseProduct(exponential_decay(n, tau_s * kSoundRate));
 }
 Eigen::VectorXd struck_noise(double tau_s, std::uint64_t seed) {
-  const Eigen::Index n = 12 * tau_s * kSoundRate;
+  const auto n = static_cast<Eigen::Index>(12 * tau_s * kSoundRate);
   return white_noise(n, seed).cwiseProduct(exponential_decay(n, tau_s * kSoundRate));
 }
 
@@ -37,7 +37,9 @@ void add_at(Eigen::VectorXd& sound, double time_s, const Eigen::VectorXd& burst)
   sound.segment(begin, n) += burst.head(n);
 }
 
-Eigen::VectorXd silence(double seconds) { return Eigen::VectorXd::Zero(seconds * kSoundRate); }
+Eigen::VectorXd silence(double seconds) {
+  return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(seconds * kSoundRate));
+}
 
 // Energy exp(-2 t / tau): from 1 % to 99 % of it, tau ln(99) / 2.
 TEST(SoundBursts, OfStruckTonesLastAsTheirDecaySays) {

@@ -48,7 +48,7 @@ TEST(PlaneSpectrum, IsThatOfThePlacesInTheRectangle) {
   const RadialSpectrum is = plane_spectrum(mesh, places, 0.5);
   const RadialSpectrum expected = radial_spectrum(points, {0, 0}, {3, 2}, 0.5);
   EXPECT_LT((is.power - expected.power).cwiseAbs().maxCoeff(), 1e-9 * expected.power.maxCoeff());
-  const Eigen::Index one = 1 / is.step + 1e-9;
+  const auto one = static_cast<Eigen::Index>(1 / is.step + 1e-9);
   Eigen::Index first = 0;
   while (is.power(first) < 1e-6) ++first;
   EXPECT_EQ(first, one);

@@ -61,12 +61,12 @@ TEST(RadialSpectrum, OfASquareGridHasItsSpotsAndNothingElse) {
       {1, 2}, {std::sqrt(2.), 2}, {2, 2}, {std::sqrt(5.), 4}, {std::sqrt(8.), 2}};
   Eigen::VectorXd expected = Eigen::VectorXd::Zero(options.bins);
   for (const auto& [f, count] : spots) {
-    expected(f / s.step + 1e-9) += count * n * n;
+    expected(static_cast<Eigen::Index>(f / s.step + 1e-9)) += count * n * n;
   }
   for (Eigen::Index b = 0; b < expected.size(); ++b) {
     EXPECT_NEAR(s.power(b) * s.count(b), expected(b), 1e-8) << s.frequency(b);
   }
-  const Eigen::Index one = 1 / s.step + 1e-9;
+  const auto one = static_cast<Eigen::Index>(1 / s.step + 1e-9);
   EXPECT_NEAR(s.elongation(one), 0, 1e-9);
   // 2 of m frequencies have all the power: variance / mean^2 is m / 2 - 1.
   EXPECT_NEAR(s.anisotropy(one), s.count(one) / 2. - 1, 1e-6);

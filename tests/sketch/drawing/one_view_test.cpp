@@ -28,7 +28,7 @@ using ::testing::HasSubstr;
 Eigen::Vector3d true_place(const SyntheticView& drawing, const SketchCurve& curve, int i) {
   const std::vector<Eigen::Vector3d>& truth = drawing.truth[curve.stroke];
   const double at = curve.drawn_at[i];
-  const std::size_t low = at;
+  const auto low = static_cast<std::size_t>(at);
   const double t = at - std::floor(at);
   return (1 - t) * truth[low % truth.size()] + t * truth[(low + 1) % truth.size()];
 }

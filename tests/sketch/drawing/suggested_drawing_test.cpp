@@ -34,7 +34,7 @@ SuggestedSeam belt() {
 }
 
 TEST(SuggestedDrawing, IsADrawingWhoseSeamsLieWhereTheCutsDo) {
-  const Drawing aligned = align_views(test::drawn_cylinder(0.1, 0.3, 180), {});
+  const Drawing aligned = align_views(solids::drawn_cylinder(0.1, 0.3, 180), {});
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / "suggested_drawing_test.svg";
   std::ofstream(file) << suggested_drawing_svg(aligned, {belt()});
@@ -55,7 +55,7 @@ TEST(SuggestedDrawing, IsADrawingWhoseSeamsLieWhereTheCutsDo) {
 }
 
 TEST(SuggestedDrawing, AStrokeOfTheFarSideSaysSo) {
-  const Drawing aligned = align_views(test::drawn_cylinder(0.1, 0.3, 180), {});
+  const Drawing aligned = align_views(solids::drawn_cylinder(0.1, 0.3, 180), {});
   const std::string svg = suggested_drawing_svg(aligned, {belt()});
   EXPECT_NE(svg.find("data-depth=\"back\""), std::string::npos);
   EXPECT_NE(svg.find("data-depth=\"front\""), std::string::npos);
@@ -63,12 +63,12 @@ TEST(SuggestedDrawing, AStrokeOfTheFarSideSaysSo) {
 
 TEST(CutMeasures, OfAPipeIsTheLengthOfItsSeam) {
   PreparedSketch prepared;
-  prepared.surface.hull.mesh = shapes::tube(0.1, 0.1, 0.7, 24, 14);
+  prepared.surface.hull.mesh = flats::tube(0.1, 0.1, 0.7, 24, 14);
   const TriMesh& mesh = prepared.surface.hull.mesh;
   prepared.surface.border_of.assign(mesh.vertex_count(), -1);
   Frame frame = sketch_frame(prepared, mesh.V, 0);
   EXPECT_FALSE(cut_measures({}, frame).seam_length);
-  add_pattern(frame, make_pattern(mesh, shapes::tube_seam(24, 14)));
+  add_pattern(frame, make_pattern(mesh, flats::tube_seam(24, 14)));
   frame.parts["suggestions"] = suggestions_part({belt(), belt()});
   const CutMeasures measures = cut_measures({}, frame);
   EXPECT_NEAR(*measures.seam_length, 0.7, 1e-12);
@@ -79,7 +79,7 @@ TEST(CutMeasures, OfAPipeIsTheLengthOfItsSeam) {
 }
 
 TEST(AddSeam, CutsTheSurfaceAndKeepsItsSilhouettes) {
-  const Drawing drawing = align_views(test::drawn_cylinder(0.1, 0.3, 180), {});
+  const Drawing drawing = align_views(solids::drawn_cylinder(0.1, 0.3, 180), {});
   SketchSurface surface = sketch_surface(drawing, visual_hull(drawing, {.triangles = 2000}));
   const TriMesh before = surface.hull.mesh;
   // From the middle of the lid to the middle of the base, on edges and across triangles.
@@ -109,7 +109,7 @@ TEST(AddSeam, CutsTheSurfaceAndKeepsItsSilhouettes) {
 
 TEST(HullSections, OfTheTopViewAreRoundWhereItIsRound) {
   // A cone's frustum: the views alone see a pyramid's with its corners cut.
-  Drawing drawing = test::drawn_cylinder(0.2, 0.1, 360);
+  Drawing drawing = solids::drawn_cylinder(0.2, 0.1, 360);
   for (int v = 0; v < 2; ++v)
     drawing.views[v].strokes[0].points = {{0, 0}, {0.2, 0}, {0.15, 0.1}, {0.05, 0.1}};
   const Drawing aligned = align_views(drawing, {});

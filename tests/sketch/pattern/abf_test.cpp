@@ -47,7 +47,7 @@ std::array<NamedBaseline, 4> baselines() {
 
 /// Plane sheet of uneven triangles.
 TriMesh uneven_plane() {
-  return shapes::grid(9, 7, [](int i, int j) {
+  return flats::grid(9, 7, [](int i, int j) {
     const double x = i + 0.3 * std::sin(2.0 * i + 3.0 * j), y = j + 0.3 * std::cos(3.0 * i - j);
     return Eigen::Vector3d(0.1 * x, 0.1 * y, 0);
   });
@@ -55,8 +55,7 @@ TriMesh uneven_plane() {
 
 TriMesh cut_frustum() {
   constexpr int kSegments = 24, kRows = 6;
-  return cut_surface(shapes::tube(1, 0.6, 1.5, kSegments, kRows),
-                     shapes::tube_seam(kSegments, kRows))
+  return cut_surface(flats::tube(1, 0.6, 1.5, kSegments, kRows), flats::tube_seam(kSegments, kRows))
       .at(0)
       .mesh;
 }
@@ -88,7 +87,7 @@ TEST(Abf, LeavesTheAnglesOfAPlaneSheet) {
 
 // Sums and products are formed here anew, from the angles alone.
 TEST(Abf, AnglesMeetTheirConstraints) {
-  for (const TriMesh& mesh : {shapes::hemisphere(4), shapes::hemisphere(2), cut_frustum()}) {
+  for (const TriMesh& mesh : {flats::hemisphere(4), flats::hemisphere(2), cut_frustum()}) {
     const AbfAngles result = abf_angles(mesh);
     ASSERT_TRUE(result.converged);
     EXPECT_GT(result.angle.minCoeff(), 0);
@@ -136,7 +135,7 @@ TEST(Abf, PyramidOpensToARegularPolygon) {
 // Karush, Kuhn, Tucker: to first order no change of the angles that respects the constraints lowers
 // the objective. Perturbed layouts of the result give such changes.
 TEST(Abf, AnglesAreNearestAmongThoseOfLayouts) {
-  const TriMesh mesh = shapes::hemisphere(2);
+  const TriMesh mesh = flats::hemisphere(2);
   const AbfAngles result = abf_angles(mesh);
   const Eigen::MatrixX2d points = flatten_abf(mesh);
   EXPECT_LT((angles_of(points, mesh.F) - result.angle).cwiseAbs().maxCoeff(), 1e-9)
@@ -175,7 +174,7 @@ TEST(FlattenBaselines, DevelopableSurfacesComeOutIsometric) {
   for (const NamedBaseline& baseline : baselines()) {
     for (const TriMesh& mesh : {uneven_plane(), cut_frustum()}) {
       const Eigen::MatrixX2d points = baseline.flatten(mesh);
-      EXPECT_LT(shapes::worst_edge(mesh, points), 1e-6) << baseline.name;
+      EXPECT_LT(flats::worst_edge(mesh, points), 1e-6) << baseline.name;
       EXPECT_GT(pattern_mesh(points, mesh.F).min_area, 0) << baseline.name;
     }
   }
@@ -184,7 +183,7 @@ TEST(FlattenBaselines, DevelopableSurfacesComeOutIsometric) {
 // Conformal maps have the surface's area because they are scaled to it. Rigidity trades angles for
 // lengths: ours has the least strain of all.
 TEST(FlattenBaselines, KeepTheAreaOfAHemisphereAndStrainItMoreThanTheRigidLayout) {
-  const TriMesh half = shapes::hemisphere(3);
+  const TriMesh half = flats::hemisphere(3);
   const std::vector<FlatTriangle> triangles = flat_triangles(half);
   double area = 0;
   for (const FlatTriangle& t : triangles) area += t.area;
@@ -216,7 +215,7 @@ TEST(FlattenBaselines, KeepTheAreaOfAHemisphereAndStrainItMoreThanTheRigidLayout
 
 TEST(FlattenBaselines, RefuseWhatIsNoDisc) {
   const CutPiece frame =
-      cut_surface(square(4), shapes::seam_along({6, 7, 8, 13, 18, 17, 16, 11, 6}, 0)).at(0);
+      cut_surface(square(4), flats::seam_along({6, 7, 8, 13, 18, 17, 16, 11, 6}, 0)).at(0);
   for (const NamedBaseline& baseline : baselines()) {
     EXPECT_THROW(baseline.flatten(sphere(1)), Error) << baseline.name;
     EXPECT_THROW(baseline.flatten(frame.mesh), Error) << baseline.name;

@@ -11,7 +11,7 @@
 #include "models/sketch/surface/cut_surface.h"
 #include "tests/core/geometry/shapes.h"
 
-namespace geoprior::sketch::shapes {
+namespace geoprior::sketch::flats {
 
 /// Grid of `columns` x `rows` cells whose vertex (i, j), number j (columns + 1) + i, is at
 /// `at(i, j)`; in the plane it faces +z.
@@ -128,4 +128,4 @@ inline double worst_edge(const TriMesh& mesh, const Eigen::MatrixX2d& points) {
   return worst;
 }
 
-}  // namespace geoprior::sketch::shapes
+}  // namespace geoprior::sketch::flats

@@ -47,7 +47,7 @@ double distance(const Eigen::MatrixX2d& points, int a, int b) {
 
 /// A surface that is far from flat in both directions.
 TriMesh spike(int n, double height) {
-  return shapes::grid(n, n, [&](int i, int j) {
+  return flats::grid(n, n, [&](int i, int j) {
     const double x = static_cast<double>(i) / n - 0.5, y = static_cast<double>(j) / n - 0.5;
     return Eigen::Vector3d(x, y, height * std::exp(-60 * (x * x + y * y)));
   });
@@ -67,10 +67,10 @@ Eigen::VectorXcd conformal_start(const TriMesh& mesh) {
 TEST(Flatten, ConeFrustumIsASectorOfAnAnnulus) {
   constexpr int kSegments = 48, kRows = 12;
   const double r0 = 1, r1 = 0.6, h = 1.5, s = std::hypot(h, r0 - r1);
-  const TriMesh cone = shapes::tube(r0, r1, h, kSegments, kRows);
-  const CutPiece piece = cut_surface(cone, shapes::tube_seam(kSegments, kRows)).at(0);
+  const TriMesh cone = flats::tube(r0, r1, h, kSegments, kRows);
+  const CutPiece piece = cut_surface(cone, flats::tube_seam(kSegments, kRows)).at(0);
   const Flattening flat = flatten(piece.mesh);
-  EXPECT_LT(shapes::worst_edge(piece.mesh, flat.points), kIsometric);
+  EXPECT_LT(flats::worst_edge(piece.mesh, flat.points), kIsometric);
   EXPECT_THAT(flat.report.flipped, IsEmpty());
   EXPECT_THAT(flat.report.overlaps, IsEmpty());
   const double large = r0 * s / (r0 - r1);
@@ -87,10 +87,10 @@ TEST(Flatten, ConeFrustumIsASectorOfAnAnnulus) {
 
 TEST(Flatten, CylinderIsARectangle) {
   constexpr int kSegments = 40, kRows = 10;
-  const TriMesh tube = shapes::tube(0.5, 0.5, 2, kSegments, kRows);
-  const CutPiece piece = cut_surface(tube, shapes::tube_seam(kSegments, kRows)).at(0);
+  const TriMesh tube = flats::tube(0.5, 0.5, 2, kSegments, kRows);
+  const CutPiece piece = cut_surface(tube, flats::tube_seam(kSegments, kRows)).at(0);
   const Flattening flat = flatten(piece.mesh);
-  EXPECT_LT(shapes::worst_edge(piece.mesh, flat.points), kIsometric);
+  EXPECT_LT(flats::worst_edge(piece.mesh, flat.points), kIsometric);
   const auto copies = [&](int vertex) {
     std::vector<int> found;
     for (int v = 0; v < piece.mesh.vertex_count(); ++v) {
@@ -109,12 +109,12 @@ TEST(Flatten, CylinderIsARectangle) {
 
 // A sheet with one sharp fold between two rectangles of 1 x 1: flat it is 2 x 1.
 TEST(Flatten, TentOpensAlongItsRidge) {
-  const TriMesh tent = shapes::grid(8, 4, [](int i, int j) {
+  const TriMesh tent = flats::grid(8, 4, [](int i, int j) {
     const double s = i / 4.0 - 1, angle = kDegree * 65;
     return Eigen::Vector3d(s * std::cos(angle), j / 4.0, -std::abs(s) * std::sin(angle));
   });
   const Flattening flat = flatten(tent);
-  EXPECT_LT(shapes::worst_edge(tent, flat.points), kIsometric);
+  EXPECT_LT(flats::worst_edge(tent, flat.points), kIsometric);
   EXPECT_NEAR(distance(flat.points, 0, 8), 2, 1e-9);
   EXPECT_NEAR(distance(flat.points, 0, 44), std::sqrt(5), 1e-9);
 }
@@ -122,7 +122,7 @@ TEST(Flatten, TentOpensAlongItsRidge) {
 // Needles and coplanar triangles of wide angles: the weights are clamped, the isometry is kept.
 TEST(Flatten, BadTrianglesOfADevelopableSurfaceKeepTheirLengths) {
   RandomStream random(3, "needles");
-  const TriMesh sheet = shapes::grid(12, 12, [&](int i, int j) {
+  const TriMesh sheet = flats::grid(12, 12, [&](int i, int j) {
     const double x = std::pow(i / 12.0, 3) + 1e-4 * random.uniform() * (i % 12 != 0), y = j / 12.0;
     return Eigen::Vector3d(std::cos(2 * x), y, std::sin(2 * x));
   });
@@ -131,13 +131,13 @@ TEST(Flatten, BadTrianglesOfADevelopableSurfaceKeepTheirLengths) {
   TriMesh plane = sheet;
   for (Eigen::Index v = 0; v < plane.V.rows(); ++v)
     plane.V.row(v) << std::atan2(sheet.V(v, 2), sheet.V(v, 0)), sheet.V(v, 1), 0;
-  EXPECT_LT(shapes::worst_edge(plane, flatten(plane).points), kIsometric);
+  EXPECT_LT(flats::worst_edge(plane, flatten(plane).points), kIsometric);
 }
 
 // Gauss: no map of a piece of the sphere keeps all lengths. By symmetry the octahedral mesh of the
 // hemisphere has a fourfold layout; its border is too long for its radius.
 TEST(Flatten, HemisphereIsSymmetricAndCannotBeIsometric) {
-  const TriMesh half = shapes::hemisphere(4);
+  const TriMesh half = flats::hemisphere(4);
   const Flattening flat = flatten(half);
   EXPECT_THAT(flat.report.flipped, IsEmpty());
   EXPECT_EQ(flat.report.unflip_iterations, 0);
@@ -176,7 +176,7 @@ TEST(Flatten, MendsTurnedTrianglesAndSaysSo) {
 
 // A flat strip that winds by one turn and a half: isometric, and its ends must cover each other.
 TEST(Flatten, ReportsFarPartsThatComeToLieOverEachOther) {
-  const TriMesh spiral = shapes::grid(90, 3, [](int i, int j) {
+  const TriMesh spiral = flats::grid(90, 3, [](int i, int j) {
     const double angle = kDegree * 6 * i, r = 1 - 0.1 * j;
     return Eigen::Vector3d(r * std::cos(angle), r * std::sin(angle), 0.01 * angle);
   });
@@ -192,18 +192,18 @@ TEST(Flatten, ReportsFarPartsThatComeToLieOverEachOther) {
 
 // Both sides of a slit in a plane sheet coincide: they touch and do not overlap.
 TEST(Flatten, ClosedDartInAPlaneSheetIsNoOverlap) {
-  const CutPiece piece = cut_surface(square(6), shapes::seam_along({3, 10, 17, 24}, 0)).at(0);
+  const CutPiece piece = cut_surface(square(6), flats::seam_along({3, 10, 17, 24}, 0)).at(0);
   const Flattening flat = flatten(piece.mesh);
-  EXPECT_LT(shapes::worst_edge(piece.mesh, flat.points), kIsometric);
+  EXPECT_LT(flats::worst_edge(piece.mesh, flat.points), kIsometric);
   EXPECT_THAT(flat.report.overlaps, IsEmpty());
 }
 
 // A hole in something flat stays open: a square frame is a square frame.
 TEST(Flatten, FrameKeepsItsHole) {
   const std::vector<CutPiece> pieces =
-      cut_surface(square(4), shapes::seam_along({6, 7, 8, 13, 18, 17, 16, 11, 6}, 0));
+      cut_surface(square(4), flats::seam_along({6, 7, 8, 13, 18, 17, 16, 11, 6}, 0));
   const Flattening flat = flatten(pieces[0].mesh);
-  EXPECT_LT(shapes::worst_edge(pieces[0].mesh, flat.points), kIsometric);
+  EXPECT_LT(flats::worst_edge(pieces[0].mesh, flat.points), kIsometric);
 }
 
 TEST(Flatten, RefusesWhatHasNoFlatLayout) {
@@ -234,7 +234,7 @@ TEST(Flatten, RefusesWhatHasNoFlatLayout) {
 
 // Local and global steps never raise the energy, and the accelerated ones end where they do.
 TEST(RigidLayout, AccelerationChangesTheWayNotTheEnd) {
-  const TriMesh half = shapes::hemisphere(3);
+  const TriMesh half = flats::hemisphere(3);
   const std::vector<FlatTriangle> triangles = flat_triangles(half);
   const RigidLayout rigid(triangles, half.F, half.vertex_count());
   const Eigen::VectorXcd start = conformal_start(half);
@@ -258,7 +258,7 @@ TEST(RigidLayout, AccelerationChangesTheWayNotTheEnd) {
 // A dome's border is longer when it is laid flat freely than on the dome. Held at a tenth less it
 // costs energy and turns nothing over.
 TEST(RigidLayout, HoldsTheLengthOfABorder) {
-  const TriMesh half = shapes::hemisphere(3);
+  const TriMesh half = flats::hemisphere(3);
   const std::vector<FlatTriangle> triangles = flat_triangles(half);
   const RigidLayout rigid(triangles, half.F, half.vertex_count());
   KeptLength border{piece_borders(half, "test").front(), 0};
@@ -329,7 +329,7 @@ TEST(SymmetricDirichlet, FindsTheIsometryOfAPlaneSheet) {
   const SymmetricDirichletReport report = lower_symmetric_dirichlet(triangles, mesh.F, z, {});
   EXPECT_NEAR(report.energy, 2, 1e-9);
   EXPECT_LT(report.iterations, 15);
-  EXPECT_LT(shapes::worst_edge(mesh, to_points(z)), 1e-4);
+  EXPECT_LT(flats::worst_edge(mesh, to_points(z)), 1e-4);
   std::swap(z(0), z(8));
   EXPECT_THROW(lower_symmetric_dirichlet(triangles, mesh.F, z, {}), Error);
 }
@@ -348,7 +348,7 @@ TEST(ConvexLayout, TurnsNothingOverWhereTheConformalMapDoes) {
 
 // Holes too: a sphere without its six faces' middles.
 TEST(ConvexLayout, TurnsNothingOverAroundHoles) {
-  const TriMesh mesh = shapes::part(
+  const TriMesh mesh = flats::part(
       sphere(3), [](const Eigen::Vector3d& c) { return c.cwiseAbs().maxCoeff() < 0.9; });
   const std::vector<FlatTriangle> triangles = flat_triangles(mesh);
   const CutPiece piece = cut_surface(mesh, {}).at(0);
@@ -386,7 +386,7 @@ TEST(MakePattern, LaysSphereOutAndReportsItsSeams) {
   const TriMesh ball = sphere(3);
   std::vector<SeamEdge> seams;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::vector<SeamEdge> circle = shapes::great_circle(ball, axis, axis);
+    const std::vector<SeamEdge> circle = flats::great_circle(ball, axis, axis);
     seams.insert(seams.end(), circle.begin(), circle.end());
   }
   const MadePattern made = make_pattern(ball, seams);
@@ -413,7 +413,7 @@ TEST(MakePattern, LaysSphereOutAndReportsItsSeams) {
 // The two sides of a seam between a cap of a sphere and a belt have one length in space; laid flat
 // freely, the cap's is shorter or longer by what the strain allows, and that is what is reported.
 TEST(MakePattern, ReportsTheMismatchOfASeam) {
-  const TriMesh half = shapes::hemisphere(4);
+  const TriMesh half = flats::hemisphere(4);
   std::vector<SeamEdge> seams;
   const EdgeConnectivity edges(half.F);
   const auto band = [&](int t) {
@@ -458,7 +458,7 @@ TEST(MakePattern, ReportsTheMismatchOfASeam) {
 
 // A tube is cut along a column; its surface's up is the pattern's.
 TEST(MakePattern, TurnsPiecesUpAndCutsTubesOpen) {
-  const TriMesh tube = shapes::tube(0.5, 0.5, 0.4, 24, 6);
+  const TriMesh tube = flats::tube(0.5, 0.5, 0.4, 24, 6);
   const MadePattern made = make_pattern(tube, {});
   ASSERT_THAT(made.pattern.pieces, SizeIs(1));
   EXPECT_THAT(made.added_seams, SizeIs(6));
@@ -474,7 +474,7 @@ TEST(MakePattern, TurnsPiecesUpAndCutsTubesOpen) {
 // A frame keeps its hole: no further cut, and the outer border comes first.
 TEST(MakePattern, LeavesHolesInFlatPieces) {
   const MadePattern made =
-      make_pattern(square(4), shapes::seam_along({6, 7, 8, 13, 18, 17, 16, 11, 6}, 0));
+      make_pattern(square(4), flats::seam_along({6, 7, 8, 13, 18, 17, 16, 11, 6}, 0));
   EXPECT_THAT(made.added_seams, IsEmpty());
   ASSERT_THAT(made.pattern.pieces, SizeIs(2));
   EXPECT_THAT(made.pattern.pieces[0].borders, SizeIs(2));
@@ -483,7 +483,7 @@ TEST(MakePattern, LeavesHolesInFlatPieces) {
 
 TEST(MakePattern, IsTheSameAtAnyNumberOfThreads) {
   const TriMesh ball = sphere(4);
-  const std::vector<SeamEdge> seams = shapes::great_circle(ball, 1, 0);
+  const std::vector<SeamEdge> seams = flats::great_circle(ball, 1, 0);
   std::vector<Eigen::MatrixX2d> one, many;
   for (const auto& [threads, result] : {std::pair(1, &one), std::pair(4, &many)}) {
     with_threads(threads, [&, into = result] {

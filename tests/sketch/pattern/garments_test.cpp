@@ -38,13 +38,13 @@ SketchInput garment_input(Drawing drawing, int triangles) {
 }
 
 Drawing box_with(Stroke stroke) {
-  Drawing drawing = test::drawn_box(0.2, 0.3, 0.1);
+  Drawing drawing = solids::drawn_box(0.2, 0.3, 0.1);
   drawing.views[0].strokes.push_back(std::move(stroke));
   return drawing;
 }
 
 Stroke inner_border(std::vector<Eigen::Vector2d> points, bool closed) {
-  Stroke stroke = test::stroke_of("opening", StrokeKind::border, std::move(points), closed);
+  Stroke stroke = solids::stroke_of("opening", StrokeKind::border, std::move(points), closed);
   stroke.inside = true;
   return stroke;
 }
@@ -85,7 +85,8 @@ TEST(InnerBorder, AnOpenLineIsASlitWithTwoSides) {
 // The front loses what lies within, up to where the path of edges leaves the line by a sixth of an
 // edge; the back loses nothing.
 TEST(InnerBorder, AClosedLineIsAHoleInItsSide) {
-  const PreparedSketch whole = prepare_sketch(garment_input(test::drawn_box(0.2, 0.3, 0.1), 3000));
+  const PreparedSketch whole =
+      prepare_sketch(garment_input(solids::drawn_box(0.2, 0.3, 0.1), 3000));
   const PreparedSketch open = prepare_sketch(garment_input(
       box_with(inner_border({{0.05, 0.1}, {0.15, 0.1}, {0.15, 0.2}, {0.05, 0.2}}, true)), 3000));
   const TriMesh& mesh = open.surface.hull.mesh;
@@ -96,7 +97,7 @@ TEST(InnerBorder, AClosedLineIsAHoleInItsSide) {
 }
 
 std::vector<Eigen::Vector3d> turned_normals(std::optional<FoldSide> side, DepthSide depth) {
-  Stroke stroke = test::stroke_of("f", StrokeKind::fold, {{0.1, 0.02}, {0.1, 0.28}}, false);
+  Stroke stroke = solids::stroke_of("f", StrokeKind::fold, {{0.1, 0.02}, {0.1, 0.28}}, false);
   stroke.fold_side = side;
   stroke.side = depth;
   const PreparedSketch prepared = prepare_sketch(garment_input(box_with(stroke), 1500));
@@ -133,7 +134,7 @@ TEST(FoldRotation, AllOfAFoldFallsToOneSide) {
 // middle of its depth.
 TEST(Zippering, PlanarChoiceTakesEdgesOfTheMiddle) {
   const VisualHull hull =
-      visual_hull(align_views(test::drawn_box(0.2, 0.3, 0.1)), {.triangles = 600});
+      visual_hull(align_views(solids::drawn_box(0.2, 0.3, 0.1)), {.triangles = 600});
   const EdgeConnectivity edges(hull.mesh.F);
   const Zippering zippering(hull.views[0], hull.places[0], edges.edges(), SilhouetteChoice::planar);
   const ZippedSilhouette zipped = zippering.close(hull.mesh.V, hull.mesh.V);
@@ -169,7 +170,7 @@ TEST(CollapseShortEdges, MergesCoincidentVerticesAndStaysAManifold) {
 
 TEST(ExactHull, OfABoxIsTheBox) {
   const VisualHull hull =
-      exact_hull(align_views(test::drawn_box(0.2, 0.3, 0.1)), {.triangles = 1000});
+      exact_hull(align_views(solids::drawn_box(0.2, 0.3, 0.1)), {.triangles = 1000});
   EXPECT_NO_THROW(require_closed_manifold(hull.mesh, "hull", "test"));
   EXPECT_NEAR(signed_volume(hull.mesh.V, hull.mesh.F), 0.2 * 0.3 * 0.1, 1e-12);
   EXPECT_GT(hull.mesh.F.rows(), 600);
@@ -178,7 +179,7 @@ TEST(ExactHull, OfABoxIsTheBox) {
 
 // Both hulls of a drawn cylinder are the prism over the drawn polygon.
 TEST(ExactHull, AgreesWithTheHullOfSignedDistances) {
-  const Drawing aligned = align_views(test::drawn_cylinder(0.1, 0.2, 90));
+  const Drawing aligned = align_views(solids::drawn_cylinder(0.1, 0.2, 90));
   const VisualHull exact = exact_hull(aligned, {.triangles = 4000});
   const VisualHull ours = visual_hull(aligned, {.triangles = 4000});
   EXPECT_NEAR(signed_volume(ours.mesh.V, ours.mesh.F) / signed_volume(exact.mesh.V, exact.mesh.F),
@@ -232,8 +233,8 @@ struct BoxScene {
 BoxScene box_scene() {
   BoxScene made;
   Drawing drawing =
-      box_with(test::stroke_of("f", StrokeKind::fold, {{0.02, 0.2}, {0.18, 0.2}}, false));
-  Stroke belt = test::stroke_of("belt", StrokeKind::seam, {{0, 0.1}, {0.2, 0.1}}, false);
+      box_with(solids::stroke_of("f", StrokeKind::fold, {{0.02, 0.2}, {0.18, 0.2}}, false));
+  Stroke belt = solids::stroke_of("belt", StrokeKind::seam, {{0, 0.1}, {0.2, 0.1}}, false);
   belt.side = DepthSide::both;
   drawing.views[0].strokes.push_back(belt);
   made.scene.input = garment_input(drawing, 1500);

@@ -51,7 +51,7 @@ TriMesh cone(double sine, int segments, int rows) {
 
 /// Dome over the unit disc: half of a sphere about y, squeezed along y.
 TriMesh dome(double height) {
-  TriMesh mesh = shapes::hemisphere(4);
+  TriMesh mesh = flats::hemisphere(4);
   const Eigen::MatrixX3d V = mesh.V;
   mesh.V.col(1) = height * V.col(2);
   mesh.V.col(2) = -V.col(1);
@@ -60,7 +60,7 @@ TriMesh dome(double height) {
 
 TEST(SurfacePaths, OfAPlaneIsStraight) {
   const TriMesh plane =
-      shapes::grid(20, 20, [](int i, int j) { return Eigen::Vector3d(0.05 * i, 0.05 * j, 0); });
+      flats::grid(20, 20, [](int i, int j) { return Eigen::Vector3d(0.05 * i, 0.05 * j, 0); });
   const SurfacePaths paths(plane, Eigen::VectorXd::Ones(plane.triangle_count()));
   std::vector<char> targets(plane.vertex_count(), 0);
   targets[15 * 21 + 19] = 1;                                     // (0.95, 0.75)
@@ -72,7 +72,7 @@ TEST(SurfacePaths, BendsAtAChangeOfPriceAsLightDoes) {
   // Snell: price times the sine of the angle with the normal of the line y = 0.5 is kept. From
   // (0.2, 0.1) at price 2 to (0.8, 0.9) at price 1.
   const TriMesh plane =
-      shapes::grid(40, 40, [](int i, int j) { return Eigen::Vector3d(0.025 * i, 0.025 * j, 0); });
+      flats::grid(40, 40, [](int i, int j) { return Eigen::Vector3d(0.025 * i, 0.025 * j, 0); });
   Eigen::VectorXd price = Eigen::VectorXd::Ones(plane.triangle_count());
   price.head(price.size() / 2).setConstant(2);
   const SurfacePaths paths(plane, price);
@@ -89,7 +89,7 @@ TEST(SurfacePaths, BendsAtAChangeOfPriceAsLightDoes) {
 
 TEST(SplitAlong, KeepsTheAreaAndHasThePathAsEdges) {
   const TriMesh plane =
-      shapes::grid(10, 10, [](int i, int j) { return Eigen::Vector3d(0.1 * i, 0.1 * j, 0); });
+      flats::grid(10, 10, [](int i, int j) { return Eigen::Vector3d(0.1 * i, 0.1 * j, 0); });
   const SurfacePaths paths(plane, Eigen::VectorXd::Ones(plane.triangle_count()));
   std::vector<char> targets(plane.vertex_count(), 0);
   targets[7 * 11 + 10] = 1;
@@ -125,7 +125,7 @@ TEST(ConformalScale, KnowsTheDefectsOfTheMetric) {
 
 TEST(PanelsOf, CloseTheSeamsThatSewAPieceToItself) {
   // A tube slit along its side is one piece with one border; its panel is the ring again.
-  const SeamedSurface slit{shapes::tube(0.5, 0.4, 1, 24, 8), shapes::tube_seam(24, 8)};
+  const SeamedSurface slit{flats::tube(0.5, 0.4, 1, 24, 8), flats::tube_seam(24, 8)};
   ASSERT_EQ(cut_surface(slit.mesh, slit.seams).front().border_count(), 1);
   const std::vector<Panel> panels = panels_of(slit);
   ASSERT_EQ(panels.size(), 1u);
@@ -133,14 +133,14 @@ TEST(PanelsOf, CloseTheSeamsThatSewAPieceToItself) {
   EXPECT_EQ(panels[0].inner.size(), 8u);
   // Two halves of a sphere are sewn to each other: nothing is closed.
   const TriMesh sphere = geoprior::shapes::sphere(2);
-  const std::vector<Panel> halves = panels_of({sphere, shapes::great_circle(sphere, 0, 0)});
+  const std::vector<Panel> halves = panels_of({sphere, flats::great_circle(sphere, 0, 0)});
   ASSERT_EQ(halves.size(), 2u);
   EXPECT_TRUE(halves[0].inner.empty());
   EXPECT_EQ(halves[1].piece.border_count(), 1);
 }
 
 TEST(SeamedSurface, ACutAcrossASeamSplitsItsEdges) {
-  SeamedSurface slit{shapes::tube(0.5, 0.5, 1, 24, 8), shapes::tube_seam(24, 8)};
+  SeamedSurface slit{flats::tube(0.5, 0.5, 1, 24, 8), flats::tube_seam(24, 8)};
   // Half way up the edges of one ring of triangles, all around: it crosses the seam once.
   SurfacePath around;
   for (int i = 0; i <= 24; ++i) {
@@ -172,12 +172,12 @@ TEST(SuggestSeams, ConeWantsOneDartFromItsApexToItsBorder) {
 }
 
 TEST(SuggestSeams, WhatIsDevelopableWantsNone) {
-  EXPECT_TRUE(suggest_seams(shapes::tube(0.5, 0.5, 1, 40, 10), {}, {}).empty());
+  EXPECT_TRUE(suggest_seams(flats::tube(0.5, 0.5, 1, 40, 10), {}, {}).empty());
   EXPECT_TRUE(suggest_seams(cone(1, 40, 10), {}, {}).empty());  // a flat disc
   const TriMesh slit = cone(0.6, 48, 16);
   std::vector<int> path{0};
   for (int j = 0; j < 16; ++j) path.push_back(1 + j * 48);
-  EXPECT_TRUE(suggest_seams(slit, shapes::seam_along(path, 0), {}).empty());
+  EXPECT_TRUE(suggest_seams(slit, flats::seam_along(path, 0), {}).empty());
 }
 
 TEST(SuggestSeams, MoreGoresFitAHemisphereBetter) {
@@ -214,7 +214,7 @@ TEST(SuggestSeams, MirroredSurfacesGetMirroredSuggestions) {
 
 TEST(SuggestSeams, PiecesThatAreMirrorImagesAreCutAlike) {
   const TriMesh mesh = dome(1);
-  const auto suggested = suggest_seams(mesh, shapes::great_circle(mesh, 0, 0), {.count = 1});
+  const auto suggested = suggest_seams(mesh, flats::great_circle(mesh, 0, 0), {.count = 1});
   ASSERT_EQ(suggested.size(), 1u);
   const std::vector<Eigen::MatrixX3d>& lines = suggested[0].lines.points;
   ASSERT_GE(lines.size(), 2u);

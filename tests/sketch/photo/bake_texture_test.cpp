@@ -78,7 +78,8 @@ PixelImage ramp(int width, int height) {
 
 const PixelColour& pixel_at(const BakedPattern& baked, const Eigen::Vector2d& place) {
   const Eigen::Vector2d at = baked.grid.pixels_at(place);
-  return baked.image.at(std::lround(at.x()), std::lround(at.y()));
+  return baked.image.at(static_cast<int>(std::lround(at.x())),
+                        static_cast<int>(std::lround(at.y())));
 }
 
 /// A square of side 1 at depth 2 before one of side 4 at depth 1, seen by 8 x 8 pixels.

@@ -87,7 +87,7 @@ TEST(CutSurface, WithoutSeamsCopiesTheSurface) {
 
 TEST(CutSurface, SeamAcrossMakesTwoPiecesThatAreSewnTogether) {
   const TriMesh mesh = square(4);
-  const std::vector<CutPiece> pieces = cut(mesh, shapes::seam_along({2, 7, 12, 17, 22}, 5));
+  const std::vector<CutPiece> pieces = cut(mesh, flats::seam_along({2, 7, 12, 17, 22}, 5));
   ASSERT_THAT(pieces, SizeIs(2));
   EXPECT_EQ(pieces[0].mesh.vertex_count() + pieces[1].mesh.vertex_count(), 25 + 5);
   for (const CutPiece& piece : pieces) {
@@ -101,7 +101,7 @@ TEST(CutSurface, SeamAcrossMakesTwoPiecesThatAreSewnTogether) {
 // border; its tip stays one vertex.
 TEST(CutSurface, DartStaysOnePieceAndIsSewnToItself) {
   const TriMesh mesh = square(4);
-  const std::vector<CutPiece> pieces = cut(mesh, shapes::seam_along({2, 7, 12}, 0));
+  const std::vector<CutPiece> pieces = cut(mesh, flats::seam_along({2, 7, 12}, 0));
   ASSERT_THAT(pieces, SizeIs(1));
   const CutPiece& piece = pieces[0];
   EXPECT_TRUE(piece.is_disc());
@@ -118,7 +118,7 @@ TEST(CutSurface, DartStaysOnePieceAndIsSewnToItself) {
 // A slit that does not reach the border makes a second border of twice its edges.
 TEST(CutSurface, SlitInsideMakesAnAnnulus) {
   const TriMesh mesh = square(4);
-  const std::vector<CutPiece> pieces = cut(mesh, shapes::seam_along({11, 12, 13}, 0));
+  const std::vector<CutPiece> pieces = cut(mesh, flats::seam_along({11, 12, 13}, 0));
   ASSERT_THAT(pieces, SizeIs(1));
   EXPECT_FALSE(pieces[0].is_disc());
   EXPECT_EQ(pieces[0].genus(), 0);
@@ -130,7 +130,7 @@ TEST(CutSurface, SlitInsideMakesAnAnnulus) {
 TEST(CutSurface, ClosedSeamCutsOutADiscAndLeavesAHole) {
   const TriMesh mesh = square(4);
   const std::vector<CutPiece> pieces =
-      cut(mesh, shapes::seam_along({6, 7, 8, 13, 18, 17, 16, 11, 6}, 0));
+      cut(mesh, flats::seam_along({6, 7, 8, 13, 18, 17, 16, 11, 6}, 0));
   ASSERT_THAT(pieces, SizeIs(2));
   EXPECT_EQ(pieces[0].border_count(), 2);
   EXPECT_TRUE(pieces[1].is_disc());
@@ -148,7 +148,7 @@ TEST(CutSurface, FigureEightIsCutAtItsCrossing) {
   std::vector<int> eight{v(3, 3), v(2, 3), v(1, 3), v(1, 2), v(1, 1), v(2, 1),
                          v(3, 1), v(3, 2), v(3, 3), v(4, 3), v(5, 3), v(5, 4),
                          v(5, 5), v(4, 5), v(3, 5), v(3, 4), v(3, 3)};
-  const std::vector<CutPiece> pieces = cut(mesh, shapes::seam_along(eight, 1));
+  const std::vector<CutPiece> pieces = cut(mesh, flats::seam_along(eight, 1));
   ASSERT_THAT(pieces, SizeIs(3));
   int discs = 0;
   for (const CutPiece& piece : pieces) {
@@ -169,8 +169,8 @@ TEST(CutSurface, FigureEightIsCutAtItsCrossing) {
 // Three seams that meet in a vertex: the sides of the branches end there.
 TEST(CutSurface, BranchEndsStretchesOfOneSeam) {
   const TriMesh mesh = square(4);
-  std::vector<SeamEdge> seams = shapes::seam_along({10, 11, 12, 13, 14}, 0);
-  seams = joined(seams, shapes::seam_along({12, 17, 22}, 0));
+  std::vector<SeamEdge> seams = flats::seam_along({10, 11, 12, 13, 14}, 0);
+  seams = joined(seams, flats::seam_along({12, 17, 22}, 0));
   const std::vector<CutPiece> pieces = cut(mesh, seams);
   ASSERT_THAT(pieces, SizeIs(3));
   EXPECT_THAT(pieces[0].edges, SizeIs(3)) << "the seam is cut where the branch leaves";
@@ -179,7 +179,7 @@ TEST(CutSurface, BranchEndsStretchesOfOneSeam) {
 TEST(CutSurface, TwoGreatCirclesCutASphereIntoFourAndTwoParallelsIntoThree) {
   const TriMesh ball = sphere(3);
   const std::vector<CutPiece> four =
-      cut(ball, joined(shapes::great_circle(ball, 0, 0), shapes::great_circle(ball, 1, 1)));
+      cut(ball, joined(flats::great_circle(ball, 0, 0), flats::great_circle(ball, 1, 1)));
   ASSERT_THAT(four, SizeIs(4));
   for (const CutPiece& piece : four) {
     EXPECT_TRUE(piece.is_disc());
@@ -210,7 +210,7 @@ TEST(CutSurface, TwoGreatCirclesCutASphereIntoFourAndTwoParallelsIntoThree) {
 
 TEST(CutSurface, CountsHandles) {
   // A torus of 8 x 6 cells.
-  TriMesh torus = shapes::tube(1, 1, 1, 8, 6);
+  TriMesh torus = flats::tube(1, 1, 1, 8, 6);
   for (Eigen::Index i = 0; i < torus.F.size(); ++i) torus.F.data()[i] %= 48;
   torus.V.conservativeResize(48, 3);
   const std::vector<CutPiece> pieces = cut(torus, {});
@@ -243,7 +243,7 @@ TEST(CutSurface, RefusesWhatIsNoSeamAndNoManifold) {
 }
 
 TEST(ShortestCut, OfATubeIsOneColumn) {
-  const TriMesh tube = shapes::tube(1, 1, 2, 12, 5);
+  const TriMesh tube = flats::tube(1, 1, 2, 12, 5);
   const std::vector<Edge> path = shortest_cut(tube);
   ASSERT_THAT(path, SizeIs(5));
   double length = 0;
@@ -254,7 +254,7 @@ TEST(ShortestCut, OfATubeIsOneColumn) {
 
 TEST(ShortestCut, MakesDiscsOfClosedSurfacesAndOfManyBorders) {
   for (const TriMesh& mesh : {tetrahedron(), octahedron(), sphere(2),
-                              shapes::part(sphere(3), [](const Eigen::Vector3d& c) {
+                              flats::part(sphere(3), [](const Eigen::Vector3d& c) {
                                 return c.cwiseAbs().maxCoeff() < 0.9;
                               })}) {
     std::vector<SeamEdge> seams;
@@ -270,14 +270,14 @@ TEST(ShortestCut, MakesDiscsOfClosedSurfacesAndOfManyBorders) {
 TEST(BorderTurnings, FollowGaussBonnet) {
   const std::vector<double> flat = border_turnings(cut_surface(square(3), {})[0]);
   EXPECT_THAT(flat, ElementsAre(::testing::DoubleNear(kFullTurn, 1e-12)));
-  const std::vector<double> tube = border_turnings(cut_surface(shapes::tube(1, 1, 1, 9, 2), {})[0]);
+  const std::vector<double> tube = border_turnings(cut_surface(flats::tube(1, 1, 1, 9, 2), {})[0]);
   EXPECT_THAT(tube, ElementsAre(::testing::DoubleNear(0, 1e-12), ::testing::DoubleNear(0, 1e-12)));
   const std::vector<double> frustum =
-      border_turnings(cut_surface(shapes::tube(2, 1, 1, 9, 3), {})[0]);
+      border_turnings(cut_surface(flats::tube(2, 1, 1, 9, 3), {})[0]);
   EXPECT_NEAR(frustum[0] + frustum[1], 0, 1e-12);
   EXPECT_GT(frustum[0], 1);
   const std::vector<CutPiece> ring =
-      cut_surface(square(4), shapes::seam_along({6, 7, 8, 13, 18, 17, 16, 11, 6}, 0));
+      cut_surface(square(4), flats::seam_along({6, 7, 8, 13, 18, 17, 16, 11, 6}, 0));
   EXPECT_NEAR(border_turnings(ring[0])[1], -kFullTurn, 1e-12);
 }
 

@@ -8,7 +8,7 @@
 
 #include "models/sketch/drawing/drawing.h"
 
-namespace geoprior::sketch::test {
+namespace geoprior::sketch::solids {
 
 inline Stroke stroke_of(std::string id, StrokeKind kind, std::vector<Eigen::Vector2d> points,
                         bool closed) {
@@ -48,4 +48,4 @@ inline Drawing drawn_cylinder(double diameter, double height, int points) {
            View{ViewKind::top, {ellipse(diameter, diameter, points)}}}};
 }
 
-}  // namespace geoprior::sketch::test
+}  // namespace geoprior::sketch::solids

@@ -19,8 +19,8 @@ double depth_share(const SyntheticView& drawing, const OneViewResult& result) {
   for (const SketchCurve& curve : result.net.curves) {
     const std::vector<Eigen::Vector3d>& truth = drawing.truth[curve.stroke];
     for (int i = 0; i < curve.size(); ++i) {
-      const double at = curve.drawn_at[i];
-      const std::size_t low = at;
+      const double at = curve.drawn_at[static_cast<std::size_t>(i)];
+      const auto low = static_cast<std::size_t>(at);
       const double t = at - std::floor(at);
       found.push_back(result.depth.nodes.row(curve.nodes[i]).transpose());
       real.push_back((1 - t) * truth[low % truth.size()] + t * truth[(low + 1) % truth.size()]);

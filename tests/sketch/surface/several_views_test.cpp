@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 
 /// A bottle: its belly is round from above, its neck narrower.
 Drawing drawn_bottle() {
-  Drawing drawing = test::drawn_cylinder(0.1, 0.3, 180);
+  Drawing drawing = solids::drawn_cylinder(0.1, 0.3, 180);
   for (int v = 0; v < 2; ++v) {
     std::vector<Eigen::Vector2d> p{{0, 0}, {0.1, 0}};
     for (int i = 0; i <= 40; ++i) {
@@ -154,7 +154,7 @@ TEST(Zippering, CoversTheWholeSilhouetteOfTheHull) {
 // Of two edges over the same stretch the one that was pushed outward is chosen.
 TEST(Zippering, ChoosesTheEdgeThatProtrudesMost) {
   const VisualHull hull =
-      visual_hull(align_views(test::drawn_box(0.2, 0.3, 0.1)), {.triangles = 600});
+      visual_hull(align_views(solids::drawn_box(0.2, 0.3, 0.1)), {.triangles = 600});
   const EdgeConnectivity edges(hull.mesh.F);
   const Zippering zippering(hull.views[0], hull.places[0], edges.edges());
   // All vertices retreat along x, but for those of one depth.
@@ -179,7 +179,7 @@ TEST(Zippering, ChoosesTheEdgeThatProtrudesMost) {
 TEST(SeveralViews, SurfaceEndsAtTheSilhouettesAndBordersStayOnTheirStrokes) {
   Drawing drawing = drawn_bottle();
   drawing.views[0].strokes.push_back(
-      test::stroke_of("mouth", StrokeKind::border, {{0.03, 0.3}, {0.07, 0.3}}, false));
+      solids::stroke_of("mouth", StrokeKind::border, {{0.03, 0.3}, {0.07, 0.3}}, false));
   drawing.views[1].strokes.push_back(drawing.views[0].strokes.back());
   const PreparedSketch prepared = prepare_sketch(input_of(drawing, 3000));
   EXPECT_FALSE(boundary_edges(prepared.surface.hull.mesh.F).empty());
@@ -210,8 +210,8 @@ TEST(SeveralViews, GivesTheSameBytesAtAnyThreadCount) {
 }
 
 TEST(SketchSurface, SeamAroundABoxIsAClosedPathThatCutsIt) {
-  Drawing drawing = test::drawn_box(0.2, 0.3, 0.1);
-  Stroke belt = test::stroke_of("belt", StrokeKind::seam, {{0, 0.1}, {0.2, 0.14}}, false);
+  Drawing drawing = solids::drawn_box(0.2, 0.3, 0.1);
+  Stroke belt = solids::stroke_of("belt", StrokeKind::seam, {{0, 0.1}, {0.2, 0.14}}, false);
   belt.side = DepthSide::both;
   drawing.views[0].strokes.push_back(belt);
   const PreparedSketch prepared = prepare_sketch(input_of(drawing, 1500));
@@ -229,7 +229,7 @@ TEST(SketchSurface, SeamAroundABoxIsAClosedPathThatCutsIt) {
 
 TEST(SketchSurface, NamesStrokesThatLeaveTheSurface) {
   const auto refusal = [](Stroke stroke) {
-    Drawing drawing = test::drawn_box(0.2, 0.3, 0.1);
+    Drawing drawing = solids::drawn_box(0.2, 0.3, 0.1);
     drawing.views[0].strokes.push_back(std::move(stroke));
     try {
       prepare_sketch(input_of(drawing, 600));
@@ -238,22 +238,23 @@ TEST(SketchSurface, NamesStrokesThatLeaveTheSurface) {
     }
     return std::string();
   };
-  EXPECT_THAT(refusal(test::stroke_of("s1", StrokeKind::seam, {{0.1, 0.1}, {0.9, 0.1}}, false)),
+  EXPECT_THAT(refusal(solids::stroke_of("s1", StrokeKind::seam, {{0.1, 0.1}, {0.9, 0.1}}, false)),
               HasSubstr("view front, stroke 's1': leaves the surface"));
-  EXPECT_THAT(refusal(test::stroke_of("f1", StrokeKind::fold, {{0.5, 0.1}, {0.9, 0.1}}, false)),
+  EXPECT_THAT(refusal(solids::stroke_of("f1", StrokeKind::fold, {{0.5, 0.1}, {0.9, 0.1}}, false)),
               HasSubstr("view front, stroke 'f1': leaves the surface"));
-  EXPECT_THAT(refusal(test::stroke_of("b1", StrokeKind::border, {{0.1, 0.1}, {0.15, 0.1}}, false)),
-              HasSubstr("view front, stroke 'b1': is not drawn along the silhouette"));
-  EXPECT_THAT(refusal(test::stroke_of("b2", StrokeKind::border, {{0, 0.1}, {0.2, 0.1}}, false)),
+  EXPECT_THAT(
+      refusal(solids::stroke_of("b1", StrokeKind::border, {{0.1, 0.1}, {0.15, 0.1}}, false)),
+      HasSubstr("view front, stroke 'b1': is not drawn along the silhouette"));
+  EXPECT_THAT(refusal(solids::stroke_of("b2", StrokeKind::border, {{0, 0.1}, {0.2, 0.1}}, false)),
               HasSubstr("view front, stroke 'b2': is not drawn along the silhouette"))
       << "from rim to rim across the front";
 }
 
 // A fold across the front of a box asks for 60 degrees between normal and view direction.
 TEST(FoldRotation, TurnsTrianglesOnAFoldToItsAngle) {
-  Drawing drawing = test::drawn_box(0.2, 0.3, 0.1);
+  Drawing drawing = solids::drawn_box(0.2, 0.3, 0.1);
   drawing.views[0].strokes.push_back(
-      test::stroke_of("f1", StrokeKind::fold, {{0.02, 0.15}, {0.18, 0.15}}, false));
+      solids::stroke_of("f1", StrokeKind::fold, {{0.02, 0.15}, {0.18, 0.15}}, false));
   const PreparedSketch prepared = prepare_sketch(input_of(drawing, 1500));
   const FoldRotation fold(prepared.surface, {});
   ASSERT_FALSE(fold.empty());

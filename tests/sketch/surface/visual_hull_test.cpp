@@ -125,7 +125,7 @@ TEST(SurfaceNets, RefusesASurfaceThatLeavesTheGrid) {
 // Vertices of cells that the box's edges and corners pass are put onto them.
 TEST(VisualHull, BoxHasItsEdgesAndCorners) {
   const VisualHull hull =
-      visual_hull(align_views(test::drawn_box(0.2, 0.3, 0.1)), {.triangles = 1500});
+      visual_hull(align_views(solids::drawn_box(0.2, 0.3, 0.1)), {.triangles = 1500});
   // A quadrilateral at a corner may be split across an edge of the box, never by more than a cell.
   EXPECT_NEAR(signed_volume(hull.mesh.V, hull.mesh.F), 0.2 * 0.3 * 0.1, 1e-4 * 0.006);
   EXPECT_EQ(hull.mesh.V.colwise().minCoeff(), Eigen::RowVector3d(-0.1, 0, -0.05));
@@ -137,7 +137,7 @@ TEST(VisualHull, BoxHasItsEdgesAndCorners) {
 
 // Chords of a circle of radius r with edges of length h lie h^2 / 8r inside.
 TEST(VisualHull, CylinderIsThatOfItsChords) {
-  const VisualHull hull = visual_hull(align_views(test::drawn_cylinder(0.2, 0.3, 720)), {});
+  const VisualHull hull = visual_hull(align_views(solids::drawn_cylinder(0.2, 0.3, 720)), {});
   const double volume = std::numbers::pi * 0.01 * 0.3;
   EXPECT_LT(signed_volume(hull.mesh.V, hull.mesh.F), volume);
   EXPECT_GT(signed_volume(hull.mesh.V, hull.mesh.F),
@@ -149,7 +149,7 @@ TEST(VisualHull, CylinderIsThatOfItsChords) {
 }
 
 TEST(VisualHull, NamesWhatIsMissing) {
-  Drawing one = test::drawn_box(1, 1, 1);
+  Drawing one = solids::drawn_box(1, 1, 1);
   one.views.pop_back();
   try {
     visual_hull(align_views(one), {});
@@ -160,7 +160,7 @@ TEST(VisualHull, NamesWhatIsMissing) {
 }
 
 TEST(AlignViews, PutsViewsIntoOneFrameAndTakesOutSmallDifferences) {
-  Drawing drawing = test::drawn_box(0.2, 0.3, 0.1);
+  Drawing drawing = solids::drawn_box(0.2, 0.3, 0.1);
   for (Eigen::Vector2d& p : drawing.views[1].strokes[0].points)
     p = 1.005 * p + Eigen::Vector2d(7, -3);
   const Drawing aligned = align_views(drawing);
@@ -170,7 +170,7 @@ TEST(AlignViews, PutsViewsIntoOneFrameAndTakesOutSmallDifferences) {
 }
 
 TEST(AlignViews, NamesBothViewsWhenTheirExtentsDiffer) {
-  Drawing drawing = test::drawn_box(0.2, 0.3, 0.1);
+  Drawing drawing = solids::drawn_box(0.2, 0.3, 0.1);
   for (Eigen::Vector2d& p : drawing.views[1].strokes[0].points) p.y() *= 1.1;
   try {
     align_views(drawing);

@@ -301,7 +301,7 @@ TEST_F(Benchmark, RatiosAreOfEveryMethodAndAblationOverEveryBaseline) {
   for (std::size_t v = 0; v < 4; ++v) {
     variants[v].name = names[v];
     variants[v].role = roles[v];
-    timing[names[v]]["solve"] = {{1.0 * (v + 1)}};
+    timing[names[v]]["solve"] = {{1.0 * static_cast<double>(v + 1)}};
   }
   const auto ratios = timing_ratios(variants, timing, 1);
   ASSERT_EQ(ratios.size(), 4U);

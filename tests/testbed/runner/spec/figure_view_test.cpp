@@ -96,7 +96,7 @@ TEST_F(SpecView, FramesOfTheFigureAreJudgedAgainstTheFullRun) {
     const Experiment first = load(text("parameters = [10, 90]"), request);
     const Experiment again =
         load_experiment(home_.write("spec.toml", first.resolved_toml), topics_, {});
-    EXPECT_EQ(drawn_parameters(again), drawn(first))
+    EXPECT_EQ(drawn_parameters(again), drawn_parameters(first))
         << "the resolved text is an experiment file itself";
   }
 }
