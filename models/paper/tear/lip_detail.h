@@ -42,7 +42,7 @@ struct TornPoint {
   Eigen::Vector2d place{0, 0};  ///< of the tip's way, in the pattern (m)
   Eigen::Vector2d left{0, 0};   ///< across, to the left of the way (unit)
   double displacement = 0;      ///< of the torn line from it, to the left (m)
-  double bevel = 0;             ///< m
+  double bevel = 0;             ///< width of the band (m)
   int bevel_lip = 0;            ///< that it lies on: 0 left, 1 right
 
   /// By how much the torn line leaves a lip longer than the mesh has it (m).
