@@ -16,7 +16,7 @@
 #include "models/sound/voices/mixer.h"
 #include "solvers/sound/sound.h"
 #include "tests/paper/meshes.h"
-#include "tests/sound/recording.h"
+#include "tests/support/recording.h"
 
 namespace geoprior::sound {
 namespace {
@@ -209,7 +209,7 @@ std::unique_ptr<Process> a_process(const Sheet& sheet, const SoundOptions& optio
 TEST(SoundProcess, RecordsEventsPicturesAndOneSound) {
   Sheet sheet;
   sheet.pattern = paper::rectangle_pattern(0.2, 0.3);
-  Recording record;
+  test::Recording record;
   RunContext context;
   a_process(sheet)->run(record, context, {});
   ASSERT_EQ(record.frames.size(), 41u);
@@ -236,7 +236,7 @@ TEST(SoundProcess, PickedEventsAreHeardAlone) {
   sheet.pattern = paper::rectangle_pattern(0.2, 0.3);
   SoundOptions options;
   options.stage.picked = {2, 2};  // of six events the first and the third
-  Recording record;
+  test::Recording record;
   RunContext context;
   a_process(sheet, options)->run(record, context, {});
   ASSERT_EQ(record.artifacts.size(), 2u);
@@ -274,7 +274,7 @@ TEST(SoundProcess, ModalSoundsOfPickedEventsSurviveACheckpoint) {
   Sheet sheet;
   sheet.pattern = paper::rectangle_pattern(0.2, 0.3);
   RunContext context;
-  Recording whole, rest;
+  test::Recording whole, rest;
   a_modal_process(sheet)->run(whole, context, {});
   a_modal_process(sheet)->run(rest, context, whole.checkpoints.at(25));
   ASSERT_EQ(rest.artifacts.size(), 2u);
@@ -291,7 +291,7 @@ TEST(SoundProcess, ResumesToTheSameSound) {
   Sheet sheet;
   sheet.pattern = paper::rectangle_pattern(0.2, 0.3);
   RunContext context;
-  Recording whole, rest;
+  test::Recording whole, rest;
   a_process(sheet)->run(whole, context, {});
   a_process(sheet)->run(rest, context, whole.checkpoints.at(17));
   ASSERT_EQ(rest.artifacts.size(), 1u);

@@ -15,7 +15,7 @@
 
 #include "experiments/sound/scene/bank_files.h"
 #include "experiments/sound/topic.h"
-#include "tests/sound/recording.h"
+#include "tests/support/recording.h"
 #include "tests/testbed/run_fixture.h"
 
 namespace geoprior::sound {
@@ -52,9 +52,9 @@ class SoundScenes : public test::RunTest {
   }
 
   /// What the experiment's method makes of the scene.
-  [[nodiscard]] static Recording record(const Loaded& loaded) {
+  [[nodiscard]] static test::Recording record(const Loaded& loaded) {
     const VariantSpec& variant = loaded.experiment.cases[0].variants[0];
-    Recording record;
+    test::Recording record;
     RunContext context;
     for (const MethodEntry& method : make_topic().methods) {
       if (method.name != variant.method) continue;
@@ -205,7 +205,7 @@ TEST_F(SoundScenes, AreDrawnWithTheirSurfaceOrWithout) {
                                  ? ""
                                  : "bank = { sizes = 1, variants = 1 }, ";
     const auto has_surface = [&](const std::string& options) {
-      const Recording made = record(load(kSwatch, lines + bank + options + " }\n"));
+      const test::Recording made = record(load(kSwatch, lines + bank + options + " }\n"));
       return !made.frames.empty() && made.frames.front().find_part("surface") != nullptr;
     };
     EXPECT_TRUE(has_surface("tail = 0.1")) << method;
