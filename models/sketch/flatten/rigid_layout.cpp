@@ -61,7 +61,7 @@ std::vector<KeptLength> lengths_on_the_way(std::span<const KeptLength> kept,
 class LengthRows {
  public:
   LengthRows(std::span<const KeptLength> kept, const Eigen::VectorXcd& z, const SparseLdlt& factor)
-      : kept_(kept), answer_(z.size(), kept.size()) {
+      : kept_(kept), answer_(z.size(), static_cast<Eigen::Index>(kept.size())) {
     Eigen::MatrixXcd rows = Eigen::MatrixXcd::Zero(z.size(), answer_.cols());
     for (Eigen::Index c = 0; c < rows.cols(); ++c) {
       const std::vector<int>& chain = kept[c].vertices;
@@ -127,7 +127,7 @@ struct RigidLayout::Impl {
 void RigidLayout::Impl::factorise() {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(triangles.size() * 9 + 1);
-  for (int t = 0; t < std::ssize(triangles); ++t) {
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     for (int k = 0; k < 3; ++k) {
       const int a = F(t, k), b = F(t, (k + 1) % 3);
       const double w = weight[t][k];
@@ -150,7 +150,7 @@ void RigidLayout::Impl::factorise() {
 double RigidLayout::Impl::turn(const Eigen::VectorXcd& z, std::vector<Complex>& turns) const {
   double energy = 0;
   turns.resize(triangles.size());
-  for (int t = 0; t < std::ssize(triangles); ++t) {
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     const std::array<Complex, 3> corner{z(F(t, 0)), z(F(t, 1)), z(F(t, 2))};
     const std::array<Complex, 3> image{corner[1] - corner[0], corner[2] - corner[1],
                                        corner[0] - corner[2]};
@@ -168,7 +168,7 @@ double RigidLayout::Impl::turn(const Eigen::VectorXcd& z, std::vector<Complex>& 
 /// Global step.
 Eigen::VectorXcd RigidLayout::Impl::place(const std::vector<Complex>& turns) const {
   Eigen::MatrixX2d right = Eigen::MatrixX2d::Zero(n, 2);
-  for (int t = 0; t < std::ssize(triangles); ++t) {
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     for (int k = 0; k < 3; ++k) {
       const Complex pull = weight[t][k] * turns[t] * triangles[t].edge[k];
       const int a = F(t, k), b = F(t, (k + 1) % 3);
