@@ -232,7 +232,7 @@ void describe(OptionVisitor& v, DeformationOptions& options) {
   }
   if (options.kind == Kind::stretch) {
     v.value("cross", options.cross,
-            {.doc = "across the axis, the surface is multiplied by factor^-cross",
+            {.doc = "exponent by which the surface is multiplied across the axis: factor^-cross",
              .min = -1,
              .max = 1});
     v.value("ramp", options.ramp,

@@ -11,7 +11,7 @@ namespace geoprior::fluid {
 void describe(OptionVisitor& v, StoredExtractOptions& options) {
   describe(v, options.extract);
   v.value("exr", options.exr,
-          {.doc = "with lift: the maps as OpenEXR pictures too, beside the library"});
+          {.doc = "whether the maps of lifted features are written as OpenEXR pictures too"});
 }
 
 FeatureFiles feature_files(const StoredExtractOptions& options) {

@@ -28,7 +28,7 @@ const std::array<StrokeKindRow, 9>& kind_table() {
        "magenta",
        {{255, 0, 255}},
        false,
-       "straight line from a point to its mirror image, named pair-1, pair-2, …"},
+       "straight line from a point to its mirror image, named pair-1, pair-2 and so on"},
       {StrokeKind::plane_vector,
        "plane-vector",
        "orange",
@@ -109,8 +109,9 @@ TopicFile drawing_keys() {
   }
   const std::vector<OptionRow> attributes{
       {"data-kind", "text", "", stroke_kind_names() + ", none", "",
-       "of a stroke, or a group of them; none: a guide line that is left out"},
-      {"data-name", "text", "", "", "", "of a pair, a plane vector or a layer; else label, or id"},
+       "kind of a stroke, or of a group of them; none: a guide line that is left out"},
+      {"data-name", "text", "", "", "",
+       "name of a pair, a plane vector or a layer; else label, or id"},
       {"data-panel", "text", "", "", "",
        "panel that a seam, fold, border or ruling belongs to; of a pair that of its border; "
        "several "
@@ -118,19 +119,20 @@ TopicFile drawing_keys() {
       {"data-depth", "text", "front", "front, back, both", "",
        "side of the object on which a line inside of the silhouette lies"},
       {"data-border", "text", "silhouette", "silhouette, inside", "",
-       "of a border: along the silhouette, which opens the end there; or inside of it, where an "
+       "where a border runs: along the silhouette, which opens the end there; or inside of it, "
+       "where an "
        "open "
        "line is a slit and a closed one a hole"},
       {"data-fold-angle", "number", "", "0 to 90", "deg",
-       "between normal and view direction; absent: the method's"},
+       "angle between normal and view direction; absent: the method's"},
       {"data-fold-width", "length", "", "more than 0", "mm",
-       "of the bent strip in true size, with or without a unit; absent: the method's"},
+       "width of the bent strip in true size, with or without a unit; absent: the method's"},
       {"data-fold-side", "text", "", "left, right", "",
        "side of the stroke, along it, to which the surface falls away from the eye; absent: the "
        "one "
        "that turns it less"},
       {"data-scale", "number", "1", "", "",
-       "of the outermost svg: 10 or 1:10 for a drawing at a tenth of true size"}};
+       "scale of the outermost svg: 10 or 1:10 for a drawing at a tenth of true size"}};
   file.keys.insert(file.keys.end(), attributes.begin(), attributes.end());
   return file;
 }

@@ -88,11 +88,15 @@ struct BankCommandOptions {
 };
 
 void describe(OptionVisitor& v, BankCommandOptions& o) {
-  v.value("seed", o.seed, {.doc = "of the bank, as `seed` of an experiment", .min = 0});
-  v.value("thickness", o.thickness, {.doc = "of the paper", .unit = "m", .min = 1e-9, .max = 1});
-  v.value("young_modulus", o.young_modulus, {.doc = "of the paper", .unit = "Pa", .min = 1e-3});
-  v.value("poisson_ratio", o.poisson_ratio, {.doc = "of the paper", .min = 0, .max = 0.499});
-  v.value("area_density", o.area_density, {.doc = "of the paper", .unit = "kg/m^2", .min = 1e-9});
+  v.value("seed", o.seed, {.doc = "seed of the bank, as `seed` of an experiment", .min = 0});
+  v.value("thickness", o.thickness,
+          {.doc = "thickness h of the paper", .unit = "m", .min = 1e-9, .max = 1});
+  v.value("young_modulus", o.young_modulus,
+          {.doc = "Young's modulus E of the paper", .unit = "Pa", .min = 1e-3});
+  v.value("poisson_ratio", o.poisson_ratio,
+          {.doc = "Poisson's ratio nu of the paper", .min = 0, .max = 0.499});
+  v.value("area_density", o.area_density,
+          {.doc = "mass of an area of the paper", .unit = "kg/m^2", .min = 1e-9});
   describe(v, o.bank);
 }
 

@@ -14,7 +14,7 @@ namespace geoprior::sound {
 /// The frames of an animated sheet, and which of them are looked at.
 struct SheetFileOptions {
   SequenceOptions sequence;
-  int every = 1;  ///< n: the first frame and every n-th after it are taken
+  int every = 1;
 };
 void describe(OptionVisitor& v, SheetFileOptions& options);
 

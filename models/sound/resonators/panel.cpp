@@ -82,6 +82,13 @@ double stiffening(const SoundPanel& panel, double along, double across,
          std::pow(panel.bow * share, 2);
 }
 
+/// A mode of a panel before its pressure is known: the beams' modes it is made of.
+struct Found {
+  PanelMode mode;
+  std::size_t n, j;
+  double coordinate, wave_square;
+};
+
 }  // namespace
 
 BeamMode::BeamMode(BeamEnds ends, int n) : n_(n) {
@@ -132,11 +139,6 @@ std::vector<PanelMode> panel_modes(const SoundPanel& panel, const PaperMaterial&
   for (int j = 0; j < kMostAlong; ++j)
     along.emplace_back(panel.along, j, panel.along_from, panel.along_to);
 
-  struct Found {
-    PanelMode mode;
-    std::size_t n, j;
-    double coordinate, wave_square;
-  };
   std::vector<Found> all;
   for (std::size_t n = 0; n < across.size(); ++n) {
     for (std::size_t j = 0; j < along.size(); ++j) {

@@ -136,19 +136,23 @@ TEST_F(FluidChoices, BodiesAreReadFromTheFilesNamed) {
   for (const std::string file : {"near.obj", "far.obj"}) {
     const double x = file == "near.obj" ? 0.5 : 0.75;
     const std::string shape = "{ shape = { kind = \"mesh\", file = \"" + file + "\" }";
-    const FluidScene s = scene(kTankSize + "volumes = [" + shape + " }], sources = [" + shape +
-                               ", until = 1 }], solids = [" + shape + " }] }\n");
-    EXPECT_EQ(s.tank->volumes[0].shape.mesh.V(0, 0), x);
-    EXPECT_EQ(s.tank->sources[0].shape.mesh.V(0, 0), x);
-    EXPECT_EQ(s.tank->solids[0].shape.mesh.V(0, 0), x);
+    const FluidScene filled = scene(kTankSize + "volumes = [" + shape + " }] }\n");
+    EXPECT_EQ(filled.tank->volumes[0].shape.mesh.V(0, 0), x);
+    const FluidScene poured = scene(kTankSize + "sources = [" + shape + ", until = 1 }] }\n");
+    EXPECT_EQ(poured.tank->sources[0].shape.mesh.V(0, 0), x);
+    const FluidScene solid = scene(kTankSize + "solids = [" + shape + " }] }\n");
+    EXPECT_EQ(solid.tank->solids[0].shape.mesh.V(0, 0), x);
   }
 }
 
 TEST_F(FluidChoices, AFrameEndsTheRunBeyondItsSubsteps) {
-  const std::string falls = kTankSize + kWater + " }\n";
-  EXPECT_THAT(failure(falls, "liquid", "max_substeps = 1, cfl = 0.1"),
+  // 0.12 m a frame, in substeps of 0.025 m at most.
+  const std::string flows = kTankSize +
+                            "volumes = [{ shape = { centre = [1, 1, 0.5], size = [1, 1, 1] }, "
+                            "velocity = [3, 0, 0] }] }\n";
+  EXPECT_THAT(failure(flows, "liquid", "max_substeps = 1, cfl = 0.1"),
               HasSubstr("more than 1 substeps"));
-  EXPECT_EQ(failure(falls, "liquid", "cfl = 0.1"), "");
+  EXPECT_EQ(failure(flows, "liquid", "cfl = 0.1"), "");
 }
 
 const std::string kInjected =

@@ -27,8 +27,8 @@ std::vector<fs::path> experiment_files() {
 /// What moves faster than a sheet follows on purpose: five fast hands, a sheet that is shaken, and
 /// short scenes that show what options do.
 bool is_fast(const fs::path& file) {
-  static const std::set<fs::path> fast{"fast-hands",       "shake",         "options-hybrid",
-                                       "options-adaptive", "options-tears", "options-scene"};
+  static const std::set<fs::path> fast{"fast-hands", "shake", "options-hybrid", "options-adaptive",
+                                       "options-tears"};
   return fast.contains(file.stem());
 }
 

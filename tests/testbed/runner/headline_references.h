@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "testbed/catalogue.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/runner/reference/reference.h"
 #include "testbed/runner/reference/text.h"
@@ -64,21 +65,20 @@ inline std::size_t expect_guarded(const ReferenceSet& set, const Gates& gates,
 
 /// Does so for every experiment of the topic that has reference values, full and quick.
 inline void expect_headline_metrics_are_guarded(const Topic& topic) {
-  const std::filesystem::path home = GEOPRIOR_SOURCE_DIR;
   std::size_t files = 0, headlines = 0;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(home / "results/reference" / topic.name)) {
-    const std::string id = topic.name + "/" + entry.path().stem().string();
-    const Reference reference = read_reference(entry.path());
-    EXPECT_TRUE(reference_text(reference) == read_whole_file(entry.path()))
-        << "not as bless writes it: " << entry.path();
+  for (const CatalogueEntry& entry : catalogue()) {
+    if (entry.topic != topic.name) continue;
+    const std::filesystem::path file = reference_file(entry.id);
+    const Reference reference = read_reference(file);
+    EXPECT_TRUE(reference.empty() || reference_text(reference) == read_whole_file(file))
+        << "not as bless writes it: " << file;
     ++files;
     for (const auto& [size, set] : reference) {
       LoadRequest load;
       load.quick = size == "quick";
-      const Experiment experiment =
-          load_experiment(home / "experiments" / (id + ".toml"), {topic}, load);
-      headlines += expect_guarded(set.values, Gates(experiment, topic), id + " (" + size + ")");
+      const Experiment experiment = load_experiment(entry.file, {topic}, load);
+      headlines +=
+          expect_guarded(set.values, Gates(experiment, topic), entry.id + " (" + size + ")");
     }
   }
   EXPECT_GT(files, 0U);
