@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "testbed/catalogue.h"
 #include "testbed/commands/blessed_run.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
@@ -41,7 +42,8 @@ void require_reason(const BlessRequest& request) {
 /// may call itself what it likes.
 void require_file_of_clone(const Experiment& experiment) {
   namespace fs = std::filesystem;
-  const fs::path own = geoprior_home() / "experiments" / (experiment.id + ".toml");
+  const fs::path own = catalogued_file(experiment.id)
+                           .value_or(geoprior_home() / "experiments" / (experiment.id + ".toml"));
   if (fs::weakly_canonical(experiment.file) == fs::weakly_canonical(own)) return;
   throw Error("is not the file of the experiment '" + experiment.id +
                   "': it has no reference values to bless",
