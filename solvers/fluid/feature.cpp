@@ -36,10 +36,6 @@ void describe(OptionVisitor& v, MapOptions& o) {
           {.doc = "frames over which the moving frame is smoothed (Savitzky and Golay, order 2)",
            .min = 1,
            .max = 101});
-  v.value("base_smoothing", o.base_smoothing,
-          {.doc = "weight of the frames before and after in the mean that smooths the bed in time",
-           .min = 0,
-           .max = 1});
 }
 
 }  // namespace geoprior::fluid

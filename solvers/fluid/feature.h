@@ -51,7 +51,6 @@ struct MapOptions {
   double border = 6;
   double margin = 1.2;
   int smoothing_window = 7;
-  double base_smoothing = 0.5;
 };
 void describe(OptionVisitor& v, MapOptions& options);
 

@@ -326,15 +326,16 @@ Turned TurnedOptions::effect(const Experiment& experiment, const BlessedSet* ble
   return any ? Turned::without_effect : Turned::unknown;
 }
 
-/// Of a list of tables what is best known of it and of the members of its elements: these say that
-/// elements do something.
+/// Of a table that may be absent and of a list of tables what is best known of it and of its
+/// members: these say that it does something.
 TurnedOptions::Evidence TurnedOptions::evidence_of(const std::string& place, const OptionRow& row,
                                                    const std::string& value) const {
   const auto rows = found_.find(place);
   if (rows == found_.end()) return {};
   Evidence best;
   for (const auto& [key, values] : rows->second) {
-    const bool is_member = row.type == "tables" && key.starts_with(row.key + "[].");
+    const bool is_member = (row.type == "tables" && key.starts_with(row.key + "[].")) ||
+                           (row.type == "table" && key.starts_with(row.key + "."));
     if (key != row.key && !is_member) continue;
     for (const auto& [of_value, evidence] : values) {
       if ((is_member || of_value == value) && evidence.turned > best.turned) best = evidence;
@@ -425,7 +426,7 @@ std::string problem_of_test(const UsersChoice& choice, const std::filesystem::pa
   const std::string key = choice.key.substr(0, choice.key.find('='));
   std::string name = key.substr(key.rfind('.') + 1);
   name.erase(std::min(name.find('['), name.size()));
-  const std::regex word("\\b" + name + "\\b");
+  const std::regex word("(\\b|\\\\n)" + name + "\\b");  // a line of a text in a source, too
   return std::regex_search(text, word) ? "" : choice.file + " never says " + name;
 }
 

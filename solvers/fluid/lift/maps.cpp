@@ -202,14 +202,17 @@ Eigen::VectorXf bed_correction(const LiftedFrame& before, const LiftedFrame& fra
   return result;
 }
 
-void smooth_beds(std::vector<LiftedFrame>& frames, const std::vector<Eigen::Isometry3d>& placement,
-                 double weight) {
-  if (frames.size() < 3 || weight <= 0) return;
+void smooth_beds(std::vector<LiftedFrame>& frames,
+                 const std::vector<Eigen::Isometry3d>& placement) {
+  /// Of the frames before and after in the mean that smooths a bed in time: ours, as much as its
+  /// own.
+  constexpr double kNeighbours = 0.5;
+  if (frames.size() < 3) return;
   std::vector<Eigen::VectorXf> corrections(frames.size());
   parallel_blocks(frames.size() - 2, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin + 1; i < end + 1; ++i) {
       corrections[i] = bed_correction(frames[i - 1], frames[i], frames[i + 1], placement[i - 1],
-                                      placement[i], placement[i + 1], weight);
+                                      placement[i], placement[i + 1], kNeighbours);
     }
   });
   for (std::size_t i = 1; i + 1 < frames.size(); ++i) {
@@ -310,7 +313,7 @@ Feature feature_of_patches(std::vector<LiftPatch> patches, const std::vector<dou
                              options.border * cell, options.vector_map);
     }
   });
-  if (!unrolled) smooth_beds(frames, own, options.base_smoothing);
+  if (!unrolled) smooth_beds(frames, own);
   feature.maps.resize(feature.times.size());
   feature.area.assign(feature.times.size(), 0);
   feature.volume.assign(feature.times.size(), 0);

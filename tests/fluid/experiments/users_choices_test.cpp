@@ -158,6 +158,15 @@ TEST_F(FluidChoices, AFrameEndsTheRunBeyondItsSubsteps) {
 const std::string kInjected =
     "injected = { bumps = 1, rings = 1, drops = 1, crossings = 0, frames = 5 }\n";
 
+const std::string kPasted = kInjected + "target = { kind = \"injected\" }\n";
+
+TEST_F(FluidChoices, AnEditTakesWhatMeetsItsInterval) {
+  const std::string edit = "edits = [{ name = \"moved\", source = \"injected\", interval = ";
+  EXPECT_THAT(failure(kPasted + edit + "[5, 6] }]\n", "sculpt"),
+              HasSubstr("no feature meets its box, interval"));
+  EXPECT_EQ(failure(kPasted + edit + "[0, 6] }]\n", "sculpt", "extraction.map.texel = 2"), "");
+}
+
 TEST_F(FluidChoices, TheMapAskedForIsRecorded) {
   const std::string lift = "lift = true, extraction = { map = { texel = 2 } }";
   EXPECT_EQ(failure(kInjected, "extract", lift), "");
