@@ -27,10 +27,10 @@ std::vector<Edge> sorted_edges(const std::vector<Edge>& edges);
 
 /// Small vibrations of the dense solver's own shell about a shape, K u = omega^2 M u.
 ///
-/// K is the sum of the elements' material Hessians (paper::ShellElements, Order::material_hessian), M the
-/// lumped masses of the stepper. So the shape is taken for one free of stress, whether it is bent
-/// elastically or creased: K does not depend on the rest curvature. What that leaves out of a sheet
-/// bent elastically by the curvature kappa are the moments it holds, (kappa / k)^2 of the
+/// K is the sum of the elements' material Hessians (ShellElements, Order::material_hessian),
+/// M the lumped masses of the stepper. So the shape is taken for one free of stress, whether it is
+/// bent elastically or creased: K does not depend on the rest curvature. What that leaves out of a
+/// sheet bent elastically by the curvature kappa are the moments it holds, (kappa / k)^2 of the
 /// stiffness of a wave k, and membrane tension, which in a simulated sheet is mostly error of its
 /// mesh. A sheet near the point where it snaps is softer than K.
 ///

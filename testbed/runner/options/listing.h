@@ -16,7 +16,7 @@ struct OptionRow {
   std::string range;          ///< "at least 0", or the names of a choice
   std::string unit;
   std::string doc;
-  std::string when = {};  ///< "kind = disc | svg": there under these tags only; "" for always
+  std::string when = {};       ///< "kind = disc | svg": there under these tags only; "" for always
   bool may_be_absent = false;  ///< a table that `key = false` switches off
 
   /// `doc`, preceded by `when` in brackets.
