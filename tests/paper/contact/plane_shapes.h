@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <map>
@@ -84,6 +86,21 @@ inline int euler_characteristic(const ShellMesh& mesh) {
 /// Distance of the nearest vertex (m).
 inline double distance_to_vertices(const ShellMesh& mesh, const Eigen::Vector2d& p) {
   return (mesh.pattern.rowwise() - p.transpose()).rowwise().norm().minCoeff();
+}
+
+/// Exactly once: areas, orientation, topology, borders and corners are those of the pattern.
+inline void expect_covers(const ShellMesh& mesh, const Pattern& pattern) {
+  const double area = signed_area(pattern);
+  EXPECT_NEAR(total_area(mesh), area, 1e-12 * area);
+  EXPECT_GT(least_area(mesh), 0);
+  EXPECT_EQ(euler_characteristic(mesh), 1 - static_cast<int>(pattern.holes.size()));
+  for (const auto& [edge, count] : directed_edges(mesh)) EXPECT_EQ(count, 1);
+  for (const auto& [a, b] : border_edges(mesh)) {
+    EXPECT_LT(nearest_on_border(pattern, mesh.pattern.row(a)).distance, 1e-15);
+  }
+  for (const Eigen::Vector2d& corner : corners(pattern)) {
+    EXPECT_EQ(distance_to_vertices(mesh, corner), 0);
+  }
 }
 
 }  // namespace geoprior::paper::plane_shapes

@@ -57,25 +57,11 @@ std::vector<Eigen::Vector2d> some_anchors(const Pattern& pattern) {
   return anchors;
 }
 
-void expect_covers(const ShellMesh& mesh, const Pattern& pattern) {
-  const double area = signed_area(pattern);
-  EXPECT_NEAR(plane_shapes::total_area(mesh), area, 1e-12 * area);
-  EXPECT_GT(plane_shapes::least_area(mesh), 0);
-  EXPECT_EQ(plane_shapes::euler_characteristic(mesh), 1 - static_cast<int>(pattern.holes.size()));
-  for (const auto& [edge, count] : plane_shapes::directed_edges(mesh)) EXPECT_EQ(count, 1);
-  for (const auto& [a, b] : plane_shapes::border_edges(mesh)) {
-    EXPECT_LT(nearest_on_border(pattern, mesh.pattern.row(a)).distance, 1e-15);
-  }
-  for (const Eigen::Vector2d& corner : corners(pattern)) {
-    EXPECT_EQ(plane_shapes::distance_to_vertices(mesh, corner), 0);
-  }
-}
-
 TEST_P(UniformMesh, CoversThePatternExactly) {
   for (const int triangles : {8, 100, 1500}) {
     SCOPED_TRACE(triangles);
-    expect_covers(uniform_mesh(GetParam().pattern, triangles, GetParam().layout, {}, 1),
-                  GetParam().pattern);
+    plane_shapes::expect_covers(
+        uniform_mesh(GetParam().pattern, triangles, GetParam().layout, {}, 1), GetParam().pattern);
   }
 }
 
@@ -93,7 +79,7 @@ TEST_P(UniformMesh, HasAVertexAtEveryAnchor) {
     SCOPED_TRACE(triangles);
     const ShellMesh mesh =
         uniform_mesh(GetParam().pattern, triangles, GetParam().layout, anchors, 1);
-    expect_covers(mesh, GetParam().pattern);
+    plane_shapes::expect_covers(mesh, GetParam().pattern);
     for (const Eigen::Vector2d& p : anchors)
       EXPECT_LT(plane_shapes::distance_to_vertices(mesh, p), 1e-12);
   }
@@ -155,7 +141,8 @@ TEST(AutomaticMesh, IsStructuredOnAnUprightRectangleOnly) {
 TEST(EquilateralMesh, GoesAroundTwoHoles) {
   const Pattern pattern = plane_shapes::pierced_square();
   for (const int triangles : {20, 200, 2000})
-    expect_covers(uniform_mesh(pattern, triangles, UniformLayout::equilateral, {}, 1), pattern);
+    plane_shapes::expect_covers(uniform_mesh(pattern, triangles, UniformLayout::equilateral, {}, 1),
+                                pattern);
 }
 
 TEST(StructuredMesh, RefusesARectangleWithAHole) {
