@@ -10,47 +10,33 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/mesh.h"
 #include "solvers/paper/hybrid.h"
 
-namespace {
-
 /// Keeps the last frame.
-class LastFrame final : public geoprior::FrameSink {
- public:
+struct LastFrame final : geoprior::FrameSink {
   void frame(geoprior::Frame frame) override { last = std::move(frame); }
   void event(const geoprior::Event&) override {}
   void artifact(geoprior::Artifact) override {}
   void checkpoint(const geoprior::State&) override {}
-
   geoprior::Frame last;
 };
-
-}  // namespace
 
 int main() {
   geoprior::paper::Sheet sheet;
   sheet.pattern = geoprior::paper::rectangle_pattern(0.2, 0.05);
   sheet.duration = 0.2;
   for (const double side : {-1.0, 1.0}) {
-    geoprior::paper::Handle hand;
-    hand.name = side < 0 ? "left" : "right";
+    geoprior::paper::Handle& hand = sheet.handles.emplace_back();
     hand.segment = {{side * 0.1, -0.025}, {side * 0.1, 0.025}};
     hand.motion = geoprior::Trajectory{{{.time = 0}, {.time = 0.2, .shift = {-side * 0.01, 0, 0}}}};
-    sheet.handles.push_back(hand);
   }
-
   geoprior::RunContext context;
   LastFrame sink;
   geoprior::paper::make_hybrid_sheet(sheet, {})->run(sink, context, std::nullopt);
 
   const geoprior::Part& surface = sink.last.require_part("surface");
-  double area = 0;
-  for (int f = 0; f < surface.triangles.rows(); ++f) {
-    const Eigen::Vector3d a = surface.points.row(surface.triangles(f, 0));
-    const Eigen::Vector3d b = surface.points.row(surface.triangles(f, 1));
-    const Eigen::Vector3d c = surface.points.row(surface.triangles(f, 2));
-    area += (b - a).cross(c - a).norm() / 2;
-  }
+  const double area = geoprior::triangle_areas(surface.points, surface.triangles).sum();
   const double rise = surface.points.col(2).cwiseAbs().maxCoeff();
   std::printf("rise %.4f m of 0.0390 m, area %.6f m^2 of 0.01 m^2\n", rise, area);
   return std::abs(rise - 0.0390) < 1e-3 && std::abs(area - 0.01) < 1e-5 ? 0 : 1;

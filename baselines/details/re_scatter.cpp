@@ -80,8 +80,7 @@ class ReScatter final : public DetailMethod {
     std::vector<double> sums(now_.surface->face.size());
     double sum = 0;
     for (int f = 0; f < std::ssize(sums); ++f) {
-      const int face = f;
-      sum += density_.at(face) * area_of_face(face, *now_.surface, now_.x);
+      sum += density_.at(f) * area_of_face(f, *now_.surface, now_.x);
       sums[f] = sum;
     }
     return sums;

@@ -80,10 +80,8 @@ DeltaMush::DeltaMush(const RiggedMesh& rig, const DeltaMushOptions& options)
   load(rig.mesh.V);
   smooth();
   for (std::size_t v = 0; v < n; ++v) {
-    const Eigen::Index row = v;
     const Point& s = current_[v];
-    rest_offset_[v] = {rig.mesh.V(row, 0) - s.x, rig.mesh.V(row, 1) - s.y, rig.mesh.V(row, 2) - s.z,
-                       0};
+    rest_offset_[v] = {rig.mesh.V(v, 0) - s.x, rig.mesh.V(v, 1) - s.y, rig.mesh.V(v, 2) - s.z, 0};
   }
   build_frames();
 }
@@ -150,8 +148,7 @@ void DeltaMush::build_frames() {
 void DeltaMush::load(const Eigen::MatrixX3d& V) {
   parallel_blocks(current_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const Eigen::Index row = v;
-      current_[v] = {V(row, 0), V(row, 1), V(row, 2), 0};
+      current_[v] = {V(v, 0), V(v, 1), V(v, 2), 0};
     }
   });
 }
@@ -192,14 +189,13 @@ void DeltaMush::deform(const Pose& pose, Eigen::MatrixX3d& posed) {
       const LocalFrame frame =
           orthonormal({along4[0], along4[1], along4[2]}, {across4[0], across4[1], across4[2]});
       const Eigen::Vector3d s(p[0], p[1], p[2]);
-      const Eigen::Index row = v;
       if (frame.valid) {
         const Point& d = detail_[v];
-        posed.row(row) = s + d.x * frame.t + d.y * frame.b + d.z * frame.n;
+        posed.row(v) = s + d.x * frame.t + d.y * frame.b + d.z * frame.n;
       } else {
         const Point& d = rest_offset_[v];
         const auto& T = pose[strongest_joint_[v]];
-        posed.row(row) = s + T.linear() * Eigen::Vector3d(d.x, d.y, d.z);
+        posed.row(v) = s + T.linear() * Eigen::Vector3d(d.x, d.y, d.z);
       }
     }
   });

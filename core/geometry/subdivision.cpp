@@ -76,9 +76,8 @@ std::vector<bool> quartered_triangles(const EdgeTable& table, std::vector<bool> 
       edge_is_split[edge] = true;
       for (const int side : table.edges[edge].triangle) {
         if (side < 0) continue;
-        const std::size_t s = side;
-        if (++split_edges[s] >= 2 && !quartered[s]) {
-          quartered[s] = true;
+        if (++split_edges[side] >= 2 && !quartered[side]) {
+          quartered[side] = true;
           stack.push_back(side);
         }
       }

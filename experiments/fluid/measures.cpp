@@ -6,7 +6,6 @@
 
 #include "core/mesh.h"
 #include "metrics/contact/self_contact.h"
-#include "metrics/shape/surface_distance.h"
 #include "metrics/tracks/tracked_objects.h"
 #include "metrics/volume/dam_break.h"
 #include "metrics/volume/enclosed_volume.h"
@@ -153,13 +152,9 @@ std::optional<DamMeasures> dam_measures(const FluidScene& scene, const Frame& fr
   return dam;
 }
 
-SurfaceDistance surface_distance(const FluidScene& scene, const Frame& frame,
-                                 const Frame& reference) {
-  const TriMesh mesh = mesh_of(frame), other = mesh_of(reference);
-  const double spacing = std::max(scene.cell / 2, 1e-9);
-  const SurfaceDeviation there = surface_deviation(mesh, other, spacing);
-  const SurfaceDeviation back = surface_deviation(other, mesh, spacing);
-  return {std::max(there.rms, back.rms), std::max(there.max, back.max)};
+SurfaceDeviation surface_distance(const FluidScene& scene, const Frame& frame,
+                                  const Frame& reference) {
+  return mutual_deviation(mesh_of(frame), mesh_of(reference), std::max(scene.cell / 2, 1e-9));
 }
 
 std::optional<ColumnComparison> height_comparison(const FluidScene& scene, const Frame& frame,

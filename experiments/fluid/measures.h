@@ -5,6 +5,7 @@
 #include "core/frame.h"
 #include "experiments/fluid/scene/scene.h"
 #include "metrics/isometry/seam.h"
+#include "metrics/shape/surface_distance.h"
 #include "metrics/tracks/scores.h"
 #include "metrics/volume/closedness.h"
 #include "metrics/volume/liquid_columns.h"
@@ -57,11 +58,8 @@ std::optional<DamMeasures> dam_measures(const FluidScene& scene, const Frame& fr
 
 /// Distances of the surface from the reference's and of the reference's from it, the larger, at
 /// points half a cell apart (m).
-struct SurfaceDistance {
-  double rms = 0, max = 0;
-};
-SurfaceDistance surface_distance(const FluidScene& scene, const Frame& frame,
-                                 const Frame& reference);
+SurfaceDeviation surface_distance(const FluidScene& scene, const Frame& frame,
+                                  const Frame& reference);
 
 /// Highest points at the gauges against the reference's; absent without gauges or surface.
 std::optional<ColumnComparison> height_comparison(const FluidScene& scene, const Frame& frame,

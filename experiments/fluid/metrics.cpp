@@ -127,9 +127,9 @@ MetricGroup distance_group() {
   return reference_metrics<FluidScene>({"surface"}, surface_distance)
       .row("distance_rms", "m",
            "RMS distance of the surface from the reference's, both ways, the larger", kLow,
-           kChaotic, &SurfaceDistance::rms)
+           kChaotic, &SurfaceDeviation::rms)
       .row("distance_max", "m", "Hausdorff distance of the surface and the reference's", kLow,
-           kChaotic, &SurfaceDistance::max);
+           kChaotic, &SurfaceDeviation::max);
 }
 
 MetricGroup height_group() {

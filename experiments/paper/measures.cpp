@@ -104,48 +104,18 @@ Eigen::MatrixX3d places_of(const std::vector<Eigen::Vector2d>& points, const She
   return x;
 }
 
-/// Two opposite sides of a rectangle, corner to corner: p(s, t) is at `s` along the sides, `t` from
-/// one to the other.
-struct Strip {
-  std::pair<Eigen::Vector2d, Eigen::Vector2d> first, second;
-  [[nodiscard]] Eigen::Vector2d at(double s, double t) const {
-    const Eigen::Vector2d a = (1 - s) * first.first + s * first.second;
-    const Eigen::Vector2d b = (1 - s) * second.first + s * second.second;
-    return (1 - t) * a + t * b;
-  }
-  [[nodiscard]] double length() const { return (at(0.5, 1) - at(0.5, 0)).norm(); }
-};
-
-/// The two segments that are moved, when nothing else acts on the sheet at `time`.
-std::optional<Strip> held_sides(const Sheet& sheet, double time) {
-  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> sides;
+/// The strip between two segments that are moved, when nothing else acts on the sheet at `time`.
+std::optional<Strip> strip_of(const Sheet& sheet, double time) {
+  std::vector<Strip::Side> sides;
   for (const Handle& handle : sheet.handles) {
     if (handle.motion && handle.segment && handle.is_active(time)) {
-      sides.push_back(*handle.segment);
+      sides.push_back({handle.segment->first, handle.segment->second});
     } else if (handle.is_active(time)) {
       return std::nullopt;
     }
   }
   if (sides.size() != 2 || !sheet.obstacles.empty() || !sheet.gravity.isZero()) return std::nullopt;
-  return Strip{sides[0], sides[1]};
-}
-
-std::optional<Strip> strip_of(const Sheet& sheet, double time) {
-  std::optional<Strip> held = held_sides(sheet, time);
-  if (!held) return std::nullopt;
-  Strip strip = *held;
-  const Eigen::Vector2d side = strip.first.second - strip.first.first;
-  if (side.dot(strip.second.second - strip.second.first) < 0) {
-    std::swap(strip.second.first, strip.second.second);
-  }
-  // Equal parallel sides, their distance along the normal, and nothing beyond them.
-  const double tolerance = 1e-6 * side.norm();
-  const Eigen::Vector2d across = strip.second.first - strip.first.first;
-  const bool rectangle = (strip.second.second - strip.second.first - side).norm() < tolerance &&
-                         std::abs(across.dot(side.normalized())) < tolerance;
-  const double area = side.norm() * across.norm();
-  if (!rectangle || std::abs(signed_area(sheet.pattern) - area) > 1e-6 * area) return std::nullopt;
-  return strip;
+  return strip_between(sides[0], sides[1], signed_area(sheet.pattern));
 }
 
 }  // namespace

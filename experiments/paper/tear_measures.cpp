@@ -26,18 +26,12 @@ std::optional<std::pair<Vector2d, Vector2d>> two_hands(const Sheet& sheet) {
   return std::pair(hands[0], hands[1]);
 }
 
-/// Of a tear along paths: E_f times the section, by the middle of every step (J).
-double fracture_energy(const Sheet& sheet, const std::vector<TearPath>& paths) {
-  double sum = 0;
-  for (const TearPath& path : paths) {
-    for (std::size_t i = 1; i < path.size(); ++i) {
-      const Vector2d way = path[i] - path[i - 1];
-      if (way.isZero(0)) continue;
-      sum += sheet.toughness.at(path[i - 1] + way / 2, way.normalized()) * way.norm() *
-             sheet.material.thickness;
-    }
-  }
-  return sum;
+/// E_f times the torn section (J).
+double energy_of(const Sheet& sheet, const std::vector<TearPath>& paths) {
+  const auto toughness = [&](const Vector2d& at, const Vector2d& direction) {
+    return sheet.toughness.at(at, direction);
+  };
+  return fracture_energy(paths, toughness, sheet.material.thickness);
 }
 
 }  // namespace
@@ -75,7 +69,7 @@ std::optional<TearMeasures> tear_measures(const SheetFrame& f) {
   if (!torn) return std::nullopt;
   TearMeasures m;
   m.length = torn->length();
-  m.energy = fracture_energy(f.sheet, torn->paths);
+  m.energy = energy_of(f.sheet, torn->paths);
   m.parts = part_count(f.triangles());
   const auto hands = two_hands(f.sheet);
   const TearPath* path = longest_path(torn->paths);
@@ -100,7 +94,7 @@ Value energy_gap(FitMemo& fits, const SheetFrame& f) {
     const auto& stiffness = f.sheet.handles[handle].stiffness;
     if (stiffness) left -= force.squaredNorm() / (2 * *stiffness);
   }
-  return (left - fracture_energy(f.sheet, torn->paths)) / *work;
+  return (left - energy_of(f.sheet, torn->paths)) / *work;
 }
 
 std::optional<TearingForces> tearing_forces(const PaperScene& scene, const FrameSequence& frames) {

@@ -14,8 +14,8 @@
 #include "core/connectivity.h"
 #include "core/geometry/topology.h"
 #include "experiments/sketch/sewn_lines.h"
-#include "metrics/developability/developability.h"
 #include "metrics/developability/fold_angle.h"
+#include "metrics/developability/panels.h"
 #include "metrics/isometry/seam_lengths.h"
 #include "metrics/shape/mirror_symmetry.h"
 #include "metrics/shape/silhouette_depth.h"
@@ -48,10 +48,9 @@ std::vector<TracedEdges> traced_strokes(const Drawing& aligned, const Frame& fra
   const auto& views = part->require_array("view", NamedArray::On::cells, 1).values;
   const auto& numbers = part->require_array("number", NamedArray::On::cells, 1).values;
   for (std::size_t i = 0; i < part->lines.size(); ++i) {
-    const Eigen::Index row = i;
-    if (static_cast<StrokeKind>(kinds(row)) != kind || views(row) < 0) continue;
-    const auto view = static_cast<ViewKind>(views(row));
-    const int number = static_cast<int>(numbers(row));
+    if (static_cast<StrokeKind>(kinds(i)) != kind || views(i) < 0) continue;
+    const auto view = static_cast<ViewKind>(views(i));
+    const int number = static_cast<int>(numbers(i));
     TracedEdges& stroke = strokes[{static_cast<int>(view), number}];
     stroke.view = view;
     stroke.drawn = strokes_of(*aligned.find(view), kind)[number];
@@ -62,27 +61,12 @@ std::vector<TracedEdges> traced_strokes(const Drawing& aligned, const Frame& fra
   return list;
 }
 
-/// Area-weighted sums over triangles on folds.
-struct FoldSum {
-  double area = 0, off = 0, most = 0;
-};
-
-double area_of_triangles(const TriMesh& mesh, const std::vector<int>& triangles) {
-  double area = 0;
-  for (const int t : triangles) {
-    const Eigen::RowVector3d a = mesh.V.row(mesh.F(t, 0));
-    const Eigen::RowVector3d u = mesh.V.row(mesh.F(t, 1)) - a, v = mesh.V.row(mesh.F(t, 2)) - a;
-    area += u.cross(v).norm() / 2;
-  }
-  return area;
-}
-
-void add_fold(const TriMesh& mesh, const EdgeConnectivity& edges, const TracedEdges& fold,
-              FoldSum& sum) {
+/// Triangles beside the edges of a fold: those of the side that it is drawn on, and of the other.
+void add_sides(const EdgeConnectivity& edges, const Eigen::MatrixX3d& normals,
+               const TracedEdges& fold, std::vector<FoldSide>& sides) {
   const double asked =
       fold.drawn->fold_angle_deg ? *fold.drawn->fold_angle_deg * kDegree : kThesisFoldAngle;
   const Eigen::Vector3d eye = view_frame(fold.view).row(2).transpose();
-  const Eigen::MatrixX3d normals = triangle_normals(mesh);
   std::set<int> front, back;
   for (const Edge& e : fold.edges) {
     for (const int h : edges.half_edges(edges.find(e[0], e[1]).value())) {
@@ -91,27 +75,21 @@ void add_fold(const TriMesh& mesh, const EdgeConnectivity& edges, const TracedEd
       (behind ? back : front).insert(h / 3);
     }
   }
-  for (const auto& [triangles, to_eye] :
-       {std::pair(front, eye), std::pair(back, Eigen::Vector3d(-eye))}) {
-    if (triangles.empty()) continue;
-    const std::vector<int> list(triangles.begin(), triangles.end());
-    const FoldAngle angle = fold_angle(mesh, list, to_eye, asked);
-    const double area = area_of_triangles(mesh, list);
-    sum.area += area;
-    sum.off += area * angle.mean;
-    sum.most = std::max(sum.most, angle.max);
-  }
+  if (!front.empty()) sides.push_back({{front.begin(), front.end()}, eye, asked});
+  if (!back.empty()) sides.push_back({{back.begin(), back.end()}, -eye, asked});
 }
 
 /// Triangles of each piece on the surface; none before the last frame.
-std::map<int, std::vector<int>> panels_of(const Frame& frame) {
-  std::map<int, std::vector<int>> panels;
-  if (frame.find_part("pattern") == nullptr) return panels;
+std::vector<std::vector<int>> panels_of(const Frame& frame) {
+  if (frame.find_part("pattern") == nullptr) return {};
   const Part& surface = frame.require_part("surface");
   const auto& piece = surface.require_array("piece", NamedArray::On::cells, 1).values;
+  std::map<int, std::vector<int>> of_piece;
   for (Eigen::Index t = 0; t < piece.rows(); ++t) {
-    if (piece(t) >= 0) panels[static_cast<int>(piece(t))].push_back(static_cast<int>(t));
+    if (piece(t) >= 0) of_piece[static_cast<int>(piece(t))].push_back(static_cast<int>(t));
   }
+  std::vector<std::vector<int>> panels;
+  for (auto& [number, triangles] : of_piece) panels.push_back(std::move(triangles));
   return panels;
 }
 
@@ -122,9 +100,11 @@ FoldMeasures fold_measures(const SketchScene& scene, const Frame& frame) {
   if (folds.empty()) return {};
   const TriMesh mesh = garment_mesh(frame);
   const EdgeConnectivity edges(mesh.F);
-  FoldSum sum;
-  for (const TracedEdges& fold : folds) add_fold(mesh, edges, fold, sum);
-  return {sum.off / sum.area / kDegree, sum.most / kDegree};
+  const Eigen::MatrixX3d normals = triangle_normals(mesh);
+  std::vector<FoldSide> sides;
+  for (const TracedEdges& fold : folds) add_sides(edges, normals, fold, sides);
+  const FoldAngle angle = fold_angles(mesh, sides);
+  return {angle.mean / kDegree, angle.max / kDegree};
 }
 
 StrokeMeasures stroke_measures(const SketchScene& scene, const Frame& frame) {
@@ -162,19 +142,10 @@ GeneratorMeasures generator_measures(const SketchScene& scene, const Frame& fram
 }
 
 GaussMeasures gauss_measures(const SketchScene& /*scene*/, const Frame& frame) {
-  const std::map<int, std::vector<int>> panels = panels_of(frame);
+  const std::vector<std::vector<int>> panels = panels_of(frame);
   if (panels.empty()) return {};
-  const TriMesh mesh = garment_mesh(frame);
-  double great = 0, small = 0, rms = 0, whole = 0;
-  for (const auto& [piece, triangles] : panels) {
-    const GaussImage image = gauss_image(mesh, triangles);
-    const double area = area_of_triangles(mesh, triangles);
-    great += area * image.great_circle_thinness;
-    small += area * image.small_circle_thinness;
-    rms += area * std::min(image.great_circle_rms, image.small_circle_rms);
-    whole += area;
-  }
-  return {great / whole, small / whole, rms / whole / kDegree};
+  const PanelImages images = panel_images(garment_mesh(frame), panels);
+  return {images.great_circle_thinness, images.small_circle_thinness, images.circle_rms / kDegree};
 }
 
 SeamPointMeasures seam_point_measures(const SketchScene& /*scene*/, const Frame& frame) {

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "core/angles.h"
-#include "core/geometry/triangle_tree.h"
 #include "metrics/contact/intersection_depth.h"
 #include "metrics/contact/self_contact.h"
 #include "metrics/isometry/border_lengths.h"
 #include "metrics/isometry/circular_arc.h"
 #include "metrics/shape/mirror_symmetry.h"
+#include "metrics/shape/surface_distance.h"
 #include "metrics/spacing/rim_cover.h"
 #include "models/sketch/drawing/polyline.h"
 #include "solvers/sketch/drawing/mirror_plane.h"
@@ -98,21 +98,12 @@ std::pair<double, double> image_distances(const Stroke& stroke, const Eigen::Mat
   return {sum, most};
 }
 
-/// Largest distance of points from triangles.
-double largest_distance(const Eigen::MatrixX3d& points, const TriangleTree& tree) {
-  double squared = 0;
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-    squared = std::max(squared, tree.squared_distance(points.row(i).transpose()));
-  return std::sqrt(squared);
-}
-
 void measure_contact(const Frame& frame, double width, LayerMeasures& measures) {
   const Part& solid = frame.require_part("solid", Part::Kind::triangles);
   const auto& layer = solid.require_array("layer", LayerOn::cells, 1).values;
-  std::vector<std::array<int, 2>> between;
-  for (const std::array<int, 2>& pair : intersecting_triangles(solid.points, solid.triangles)) {
-    if (layer(pair[0]) != layer(pair[1])) between.push_back(pair);
-  }
+  const Eigen::VectorXi number = layer.col(0).cast<int>();
+  const auto between = pairs_between_layers(intersecting_triangles(solid.points, solid.triangles),
+                                            {number.data(), layer.size()});
   measures.pairs = static_cast<double>(between.size());
   measures.depth_percent =
       kPercentOf * intersection_depth(solid.points, solid.triangles, between) / width;
@@ -139,8 +130,8 @@ void measure_rivets(const Frame& frame, double width, LayerMeasures& measures) {
   double off = 0, apart = 0;
   for (Eigen::Index first = 0; first + 3 < rivets.points.rows(); first += 4) {
     for (const Eigen::Index pair : {first, first + 2}) {
-      const TriangleTree tree(layer_mesh(surface, static_cast<int>(layer(pair))));
-      off = std::max(off, largest_distance(rivets.points.middleRows(pair, 2), tree));
+      const TriMesh own = layer_mesh(surface, static_cast<int>(layer(pair)));
+      off = std::max(off, largest_distance(rivets.points.middleRows(pair, 2), own));
     }
     const Eigen::RowVector3d a = rivets.points.row(first);
     const Eigen::RowVector3d line = (rivets.points.row(first + 1) - a).normalized();
@@ -186,8 +177,8 @@ ArcMeasures arc_measures(const SketchScene& scene, const Frame& frame) {
   measures.max_percent = kPercentOf * std::sqrt(most) / width;
   const Part& surface = frame.require_part("surface", Part::Kind::triangles);
   measures.off_surface_percent =
-      kPercentOf *
-      largest_distance(lines.points, TriangleTree({surface.points, surface.triangles})) / width;
+      kPercentOf * largest_distance(lines.points, TriMesh{surface.points, surface.triangles}) /
+      width;
   return measures;
 }
 

@@ -29,29 +29,12 @@ std::vector<FlatPiece> flat_pieces(const Frame& frame) {
   const Part& surface = frame.require_part("surface", Part::Kind::triangles);
   const auto& piece = pattern.require_array("piece", NamedArray::On::cells, 1).values;
   const auto& vertex = pattern.require_array("surface_vertex", NamedArray::On::points, 1).values;
-  std::map<int, std::vector<Eigen::Index>> triangles;
-  for (Eigen::Index t = 0; t < piece.rows(); ++t)
-    triangles[static_cast<int>(piece(t))].push_back(t);
-  std::vector<FlatPiece> pieces;
-  for (const auto& [number, rows] : triangles) {
-    FlatPiece flat;
-    std::map<int, int> local;
-    flat.triangles.resize(rows.size(), 3);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      for (int k = 0; k < 3; ++k) {
-        const int v = pattern.triangles(rows[i], k);
-        flat.triangles(i, k) = local.try_emplace(v, static_cast<int>(local.size())).first->second;
-      }
-    }
-    flat.points.resize(local.size(), 2);
-    flat.x.resize(local.size(), 3);
-    for (const auto& [v, l] : local) {
-      flat.points.row(l) = pattern.points.row(v).head<2>();
-      flat.x.row(l) = surface.points.row(static_cast<Eigen::Index>(vertex(v)));
-    }
-    pieces.push_back(std::move(flat));
-  }
-  return pieces;
+  Eigen::MatrixX3d x(pattern.points.rows(), 3);
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    x.row(i) = surface.points.row(static_cast<Eigen::Index>(vertex(i)));
+  const Eigen::VectorXi number = piece.col(0).cast<int>();
+  return pieces_apart(pattern.points.leftCols<2>(), x, pattern.triangles,
+                      {number.data(), piece.size()});
 }
 
 /// Largest relative difference of two stretches that are sewn together.

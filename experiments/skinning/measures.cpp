@@ -83,12 +83,7 @@ std::optional<OverlapStudy> excess(Shared& shared, const Measured& m, const Join
     });
   };
   const OverlapStudy rest = study(m.mesh().V, rest_pose(m.scene.rig.skeleton.size()));
-  OverlapStudy above = study(m.posed, m.pose);
-  above.volume -= rest.volume;
-  above.noise_floor += rest.noise_floor;  // errors of a difference add up at worst
-  above.inside_out -= rest.inside_out;
-  above.cut_area = std::max(above.cut_area - rest.cut_area, 0.0);
-  return above;
+  return overlap_above_rest(study(m.posed, m.pose), rest);
 }
 
 /// All pairs of triangles that intersect; remembered, because the rest pose and dual quaternions'
@@ -181,9 +176,7 @@ Value volume_change_union_body(Shared& shared, const Measured& m) {
   const double spacing = body_column_spacing(m.mesh().V);
   const double rest = shared.union_volume.get(
       key_of(m.mesh(), m.mesh().V), [&] { return union_volume(m.mesh().V, m.mesh().F, spacing); });
-  const double change = signed_volume(m.posed, m.mesh().F) - signed_volume(m.mesh().V, m.mesh().F) -
-                        above->volume + above->inside_out;
-  return change / rest;
+  return union_volume_change(m.mesh().V, m.posed, m.mesh().F, *above, rest);
 }
 
 std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m) {
@@ -203,25 +196,19 @@ std::optional<RegionOverlaps> overlap_of_regions(Shared& shared, const Measured&
     const std::optional<OverlapStudy> study = excess(shared, m, &region);
     outside.volume -= study->volume;
     outside.noise_floor += study->noise_floor;
-    overlaps.largest = std::max(overlaps.largest, clipped(*study));
-    overlaps.sum += clipped(*study);
+    overlaps.largest = std::max(overlaps.largest, study->above_floor());
+    overlaps.sum += study->above_floor();
     overlaps.cut_area = std::max(overlaps.cut_area, study->cut_area);
   }
-  overlaps.outside = clipped(outside);
+  overlaps.outside = outside.above_floor();
   return overlaps;
-}
-
-double clipped(const OverlapStudy& study) {
-  return study.volume > study.noise_floor ? study.volume : 0.0;
 }
 
 Value overlap_excess_ratio(Shared& shared, const Measured& m, const Measured& reference) {
   const std::optional<OverlapStudy> own = overlap_excess(shared, m);
   const std::optional<OverlapStudy> other = overlap_excess(shared, reference);
   if (!own || !other) return std::nullopt;
-  const double floor = std::max(own->noise_floor, other->noise_floor);
-  if (own->volume <= floor) return 0.0;
-  return own->volume / std::max(other->volume, floor);
+  return own->ratio_to(*other);
 }
 
 PairsExcess pairs_excess(Shared& shared, const Measured& m) {

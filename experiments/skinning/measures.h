@@ -76,8 +76,6 @@ Value volume_change_union_body(Shared& shared, const Measured& m);
 std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m);
 /// The same of the whole body.
 std::optional<OverlapStudy> overlap_excess_body(Shared& shared, const Measured& m);
-/// The excess, 0 where it does not exceed the floor.
-double clipped(const OverlapStudy& study);
 /// 0 up to the floor, else over the reference's excess or the floor, whichever is larger.
 Value overlap_excess_ratio(Shared& shared, const Measured& m, const Measured& reference);
 

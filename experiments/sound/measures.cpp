@@ -8,10 +8,10 @@
 
 #include "core/error.h"
 #include "metrics/sound/bursts.h"
-#include "metrics/sound/decay.h"
 #include "metrics/sound/event_rates.h"
 #include "metrics/sound/spectrum.h"
 #include "metrics/sound/true_peak.h"
+#include "metrics/sound/voice_difference.h"
 #include "testbed/formats/wav_file.h"
 #include "testbed/runner/judgement/timing_statistics.h"
 
@@ -39,9 +39,6 @@ std::optional<double> median_of_snaps(const std::vector<Event>& events, const ch
   if (values.empty()) return {};
   return median(values);
 }
-
-constexpr double kFloor = 40;    // dB below the loudest band: not heard beside it
-constexpr double kLowest = 100;  // Hz: the band about it is the lowest that is compared
 
 /// A sound that was recorded alone.
 struct PickedVoice {
@@ -73,27 +70,6 @@ std::optional<std::vector<PickedVoice>> picked_voices(const FrameSequence& frame
     voice.samples = all.samples.col(0).segment(first, length);
   }
   return voices;
-}
-
-/// Levels of the bands from `kLowest` to below `highest`; absent for silence.
-std::optional<Eigen::VectorXd> audible_levels(const PickedVoice& voice, double highest) {
-  if (voice.samples.size() == 0 || !(voice.samples.cwiseAbs().maxCoeff() > 0)) return {};
-  PowerSpectrum spectrum = whole_spectrum(voice.samples, voice.rate, SoundWindow::none);
-  const double edge = std::pow(10, 0.05);
-  int first = 0, last = kThirdOctaves;
-  while (third_octave_middle(first) * edge < kLowest) ++first;
-  while (last > first && third_octave_middle(last - 1) * edge > highest) --last;
-  if (last == first) return {};
-  // What lies beside is no yardstick for the loudest band.
-  const double from = third_octave_middle(first) / edge,
-               until = third_octave_middle(last - 1) * edge;
-  for (Eigen::Index k = 0; k < spectrum.density.size(); ++k) {
-    const double f = static_cast<double>(k) * spectrum.step_hz;
-    if (f < from || f > until) spectrum.density[k] = 0;
-  }
-  const auto levels = third_octave_levels(spectrum, kFloor);
-  if (!levels) return {};
-  return levels->segment(first, last - first);
 }
 
 }  // namespace
@@ -157,25 +133,16 @@ std::optional<VoiceDistance> voice_distance(const FrameSequence& frames) {
   }
   std::vector<double> distances, decays;
   for (std::size_t i = 0; i < own->size(); ++i) {
-    if (std::abs((*own)[i].time - (*of)[i].time) > 1e-9) {
+    const PickedVoice &heard = (*own)[i], &wanted = (*of)[i];
+    if (std::abs(heard.time - wanted.time) > 1e-9 || heard.rate != wanted.rate) {
       throw Error("picked event " + std::to_string(i) + " is another one than the reference's",
                   "voices.wav");
     }
-    const double highest = (*of)[i].resolved;
-    const auto wanted = audible_levels((*of)[i], highest);
-    if (!wanted || wanted->size() < 3) continue;
-    const auto heard = audible_levels((*own)[i], highest);
-    // A sound that is silent there is as far away as one of which every band is at the floor.
-    const Eigen::VectorXd levels =
-        heard ? *heard : Eigen::VectorXd::Constant(wanted->size(), -kFloor);
-    distances.push_back(log_spectral_distance(levels, *wanted, kFloor));
-    const auto rings = octave_decays((*of)[i].samples, (*of)[i].rate, highest);
-    if (rings.empty()) continue;
-    const bool silent = (*own)[i].samples.size() == 0;
-    decays.push_back(
-        decay_difference(silent ? std::vector<BandDecay>{}
-                                : octave_decays((*own)[i].samples, (*own)[i].rate, highest),
-                         rings));
+    const auto difference =
+        voice_difference(heard.samples, wanted.samples, wanted.rate, wanted.resolved);
+    if (!difference) continue;
+    distances.push_back(difference->distance_db);
+    if (difference->decay) decays.push_back(*difference->decay);
   }
   if (distances.empty()) return {};
   const Interval spread = bootstrap_median(distances, 1);

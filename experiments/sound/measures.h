@@ -36,15 +36,13 @@ struct SoundMeasures {
 };
 std::optional<SoundMeasures> sound_measures(const FrameSequence& frames);
 
-/// How far the sounds of picked events ("voices.wav") are from those of the reference variant: the
-/// log-spectral distance per third octave (metrics/sound/spectrum.h) from 100 Hz up to where the
-/// reference knows its modes, of what is less than 40 dB below the loudest band. Absent where one
-/// of both has no such file.
+/// How far the sounds of picked events ("voices.wav") are from those of the reference variant, up
+/// to where that knows its modes (metrics/sound/voice_difference.h). Absent where one of both has
+/// no such file.
 struct VoiceDistance {
   double median = 0, low = 0, high = 0;  ///< over the events, with its 95 % bootstrap interval (dB)
   int count = 0;                         ///< events that were compared
-  /// How reverberation times per octave differ (metrics/sound/decay.h), in doublings: median over
-  /// the events for which the reference has a whole octave below where its modes are known.
+  /// Median of the differences of reverberation times, in doublings.
   std::optional<double> decay;
 };
 /// @throws Error  when the two have picked other events

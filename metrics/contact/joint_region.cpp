@@ -306,9 +306,7 @@ std::vector<std::vector<int>> trace_loops(const Eigen::MatrixX3i& F, const Neigh
     for (std::size_t k = 0; k < 3; ++k) {
       const int n = neighbours[t][k];
       if (n >= 0 && in_region[n]) continue;
-      const Eigen::Index i = t;
-      const Eigen::Index e = k;
-      next.emplace(F(i, e), F(i, (e + 1) % 3));
+      next.emplace(F(t, k), F(t, (k + 1) % 3));
     }
   }
   std::vector<std::vector<int>> loops;

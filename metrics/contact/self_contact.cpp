@@ -106,6 +106,15 @@ int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F) {
   return static_cast<int>(intersecting_triangles(V, F).size());
 }
 
+std::vector<std::array<int, 2>> pairs_between_layers(std::span<const std::array<int, 2>> pairs,
+                                                     std::span<const int> layer) {
+  std::vector<std::array<int, 2>> between;
+  for (const std::array<int, 2>& pair : pairs) {
+    if (layer[pair[0]] != layer[pair[1]]) between.push_back(pair);
+  }
+  return between;
+}
+
 int pairs_in_region(std::span<const std::array<int, 2>> pairs, const JointRegion& region) {
   const auto inside = [&](int t) {
     return std::binary_search(region.triangles.begin(), region.triangles.end(), t);

@@ -26,6 +26,11 @@ int intersecting_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F);
 std::vector<std::array<int, 2>> intersecting_triangles(const Eigen::MatrixX3d& V,
                                                        const Eigen::MatrixX3i& F);
 
+/// The pairs whose triangles belong to different layers, in the same order.
+/// @param layer  of each triangle
+std::vector<std::array<int, 2>> pairs_between_layers(std::span<const std::array<int, 2>> pairs,
+                                                     std::span<const int> layer);
+
 /// Number of the pairs of which at least one triangle belongs to the region.
 int pairs_in_region(std::span<const std::array<int, 2>> pairs, const JointRegion& region);
 

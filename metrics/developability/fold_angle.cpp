@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "metrics/developability/panels.h"
 
 namespace geoprior {
 
@@ -32,6 +33,21 @@ FoldAngle fold_angle(const TriMesh& mesh, std::span<const int> triangles,
   if (!(weights > 0)) throw Error("no triangle with an area", "fold angle", "at least one");
   result.mean /= weights;
   return result;
+}
+
+FoldAngle fold_angles(const TriMesh& mesh, std::span<const FoldSide> sides) {
+  if (sides.empty()) throw Error("no side of a fold", "fold angle", "at least one");
+  FoldAngle all;
+  double whole = 0;
+  for (const FoldSide& side : sides) {
+    const FoldAngle angle = fold_angle(mesh, side.triangles, side.to_eye, side.asked);
+    const double area = panel_area(mesh, side.triangles);
+    whole += area;
+    all.mean += area * angle.mean;
+    all.max = std::max(all.max, angle.max);
+  }
+  all.mean /= whole;
+  return all;
 }
 
 }  // namespace geoprior

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "core/mesh.h"
 
@@ -27,5 +28,15 @@ struct FoldAngle {
 ///                   angle out of range
 FoldAngle fold_angle(const TriMesh& mesh, std::span<const int> triangles,
                      const Eigen::Vector3d& to_eye, double asked);
+
+/// One side of a drawn fold.
+struct FoldSide {
+  std::vector<int> triangles;                         ///< rows of F, at least one with an area
+  Eigen::Vector3d to_eye = Eigen::Vector3d::UnitZ();  ///< of those that see it from there
+  double asked = 0;                                   ///< rad
+};
+/// Of several sides together: mean by area, largest of all.
+/// @throws Error  without sides; as `fold_angle`
+FoldAngle fold_angles(const TriMesh& mesh, std::span<const FoldSide> sides);
 
 }  // namespace geoprior

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 
@@ -51,6 +52,29 @@ double elastica_height(double length, double distance) {
   }
   const double k = (low + high) / 2;
   return length * k / elliptic_integrals(k).first;
+}
+
+Eigen::Vector2d Strip::at(double s, double t) const {
+  const Eigen::Vector2d a = (1 - s) * first[0] + s * first[1];
+  const Eigen::Vector2d b = (1 - s) * second[0] + s * second[1];
+  return (1 - t) * a + t * b;
+}
+
+double Strip::length() const { return (at(0.5, 1) - at(0.5, 0)).norm(); }
+
+std::optional<Strip> strip_between(const Strip::Side& first, const Strip::Side& second,
+                                   double area) {
+  Strip strip{first, second};
+  const Eigen::Vector2d side = first[1] - first[0];
+  if (side.dot(second[1] - second[0]) < 0) std::swap(strip.second[0], strip.second[1]);
+  // Equal parallel sides, their distance along the normal, and nothing beyond them.
+  const double tolerance = 1e-6 * side.norm();
+  const Eigen::Vector2d across = strip.second[0] - strip.first[0];
+  const bool rectangle = (strip.second[1] - strip.second[0] - side).norm() < tolerance &&
+                         std::abs(across.dot(side.normalized())) < tolerance;
+  const double between = side.norm() * across.norm();
+  if (!rectangle || std::abs(area - between) > 1e-6 * between) return std::nullopt;
+  return strip;
 }
 
 StripRise strip_rise(std::span<const BentLine> lines) {

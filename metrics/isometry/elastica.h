@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <optional>
 #include <span>
 
 namespace geoprior {
@@ -26,6 +28,21 @@ EllipticIntegrals elliptic_integrals(double modulus);
 /// @throws Error    when they are out of range
 /// Source: Love, A Treatise on the Mathematical Theory of Elasticity, art. 263.
 double elastica_height(double length, double distance);
+
+/// Two opposite sides of a rectangle in the plane, corner to corner, both the same way.
+struct Strip {
+  using Side = std::array<Eigen::Vector2d, 2>;
+  Side first, second;
+
+  /// `s` along the sides, `t` from the first to the second.
+  [[nodiscard]] Eigen::Vector2d at(double s, double t) const;
+  [[nodiscard]] double length() const;  ///< from side to side, in their middle (m)
+};
+/// The strip between two segments, if they are equal and parallel sides of a rectangle whose area
+/// is all that there is, to a millionth; absent otherwise. Either may run the other way.
+/// @param area  of the sheet (m^2)
+std::optional<Strip> strip_between(const Strip::Side& first, const Strip::Side& second,
+                                   double area);
 
 /// A line across a bent strip, from one held end to the other.
 struct BentLine {

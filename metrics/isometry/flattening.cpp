@@ -76,6 +76,37 @@ double largest_weighted(const Eigen::ArrayXd& values, const Eigen::ArrayXd& weig
 
 }  // namespace
 
+std::vector<FlatPiece> pieces_apart(const Eigen::MatrixX2d& points, const Eigen::MatrixX3d& x,
+                                    const Eigen::MatrixX3i& triangles, std::span<const int> piece) {
+  if (points.rows() != x.rows() || triangles.rows() != std::ssize(piece)) {
+    throw Error(std::to_string(points.rows()) + " points, " + std::to_string(x.rows()) +
+                    " places, " + std::to_string(triangles.rows()) + " triangles and " +
+                    std::to_string(piece.size()) + " numbers of pieces",
+                "flattening", "a place a point and a number a triangle");
+  }
+  std::map<int, std::vector<Eigen::Index>> triangles_of;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) triangles_of[piece[t]].push_back(t);
+  std::vector<FlatPiece> pieces;
+  for (const auto& [number, rows] : triangles_of) {
+    FlatPiece& flat = pieces.emplace_back();
+    std::map<int, int> local;
+    flat.triangles.resize(rows.size(), 3);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const int v = triangles(rows[i], k);
+        flat.triangles(i, k) = local.try_emplace(v, static_cast<int>(local.size())).first->second;
+      }
+    }
+    flat.points.resize(local.size(), 2);
+    flat.x.resize(local.size(), 3);
+    for (const auto& [v, l] : local) {
+      flat.points.row(l) = points.row(v);
+      flat.x.row(l) = x.row(v);
+    }
+  }
+  return pieces;
+}
+
 Eigen::MatrixX2d flattening_singular_values(const FlatPiece& piece) {
   require_piece(piece);
   Eigen::MatrixX3d flat = Eigen::MatrixX3d::Zero(piece.points.rows(), 3);

@@ -14,6 +14,16 @@ struct FlatPiece {
   Eigen::MatrixX3i triangles;  ///< m x 3, counter-clockwise in the plane
 };
 
+/// The pieces of a pattern that holds them all, ascending by number, each with its own points.
+/// @param points     n x 2 (m)
+/// @param x          n x 3, where the points are on the surface (m)
+/// @param triangles  m x 3
+/// @param piece      the number of the piece of each triangle, m of them
+/// @throws Error     unless there are as many rows of `points` as of `x`, and as many numbers as
+///                   triangles
+std::vector<FlatPiece> pieces_apart(const Eigen::MatrixX2d& points, const Eigen::MatrixX3d& x,
+                                    const Eigen::MatrixX3i& triangles, std::span<const int> piece);
+
 /// Singular values s1 >= s2 of the linear map of each triangle from the surface to the plane,
 /// without any rescaling: both 1 where the material keeps its lengths. m x 2; a triangle without
 /// area on the surface gets 1, 1.

@@ -170,6 +170,14 @@ double largest_distance(const TriMesh& from, const TriMesh& to, double spacing) 
   return std::sqrt(largest_distance2(samples_of(from, triangles, spacing), TriangleTree(to), 0));
 }
 
+double largest_distance(const Eigen::MatrixX3d& points, const TriMesh& to) {
+  const TriangleTree tree(to);
+  double squared = 0;
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    squared = std::max(squared, tree.squared_distance(points.row(i).transpose()));
+  return std::sqrt(squared);
+}
+
 SurfaceDeviation surface_deviation(const TriMesh& a, const TriMesh& b, double spacing) {
   if (!(spacing > 0)) throw Error("spacing is not positive", "surface deviation", "above 0");
   const Triangles from = triangles_of(a, "a");
@@ -191,6 +199,13 @@ SurfaceDeviation surface_deviation(const TriMesh& a, const TriMesh& b, double sp
   for (const PieceSums& block : sums) total.add(block);
   return {std::sqrt(total.squares / total.area), total.distances / total.area,
           std::sqrt(total.largest2)};
+}
+
+SurfaceDeviation mutual_deviation(const TriMesh& a, const TriMesh& b, double spacing) {
+  const SurfaceDeviation there = surface_deviation(a, b, spacing);
+  const SurfaceDeviation back = surface_deviation(b, a, spacing);
+  return {std::max(there.rms, back.rms), std::max(there.mean, back.mean),
+          std::max(there.max, back.max)};
 }
 
 }  // namespace geoprior

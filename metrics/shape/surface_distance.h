@@ -22,6 +22,10 @@ double hausdorff_distance(const TriMesh& a, const TriMesh& b, double spacing);
 /// @throws Error   as `hausdorff_distance`
 double largest_distance(const TriMesh& from, const TriMesh& to, double spacing);
 
+/// Largest distance of points from a surface (m); 0 for no points.
+/// @throws Error  on a surface without triangles
+double largest_distance(const Eigen::MatrixX3d& points, const TriMesh& to);
+
 /// How far points of one surface are from another, over its area.
 struct SurfaceDeviation {
   double rms = 0, mean = 0, max = 0;  ///< m
@@ -32,5 +36,9 @@ struct SurfaceDeviation {
 /// `b` has too, corner for corner, are at distance 0. Not symmetric.
 /// @throws Error   as `hausdorff_distance`
 SurfaceDeviation surface_deviation(const TriMesh& a, const TriMesh& b, double spacing);
+
+/// The larger of the deviations of `a` from `b` and of `b` from `a`, value by value: symmetric.
+/// @throws Error  as `hausdorff_distance`
+SurfaceDeviation mutual_deviation(const TriMesh& a, const TriMesh& b, double spacing);
 
 }  // namespace geoprior

@@ -98,6 +98,19 @@ double path_distance(const TearPath& p, const TearPath& q) {
   return most;
 }
 
+double fracture_energy(const std::vector<TearPath>& paths, const TearToughness& toughness,
+                       double thickness) {
+  double sum = 0;
+  for (const TearPath& path : paths) {
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      const Eigen::Vector2d way = path[i] - path[i - 1];
+      if (way.isZero(0)) continue;
+      sum += toughness(path[i - 1] + way / 2, way.normalized()) * way.norm() * thickness;
+    }
+  }
+  return sum;
+}
+
 Vector2d bisector_direction(const Vector2d& c, const Vector2d& a, const Vector2d& b) {
   const Vector2d sum = (a - c).normalized() + (b - c).normalized();
   const double norm = sum.norm();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 namespace geoprior {
@@ -39,6 +40,15 @@ double path_distance(const TearPath& p, const TearPath& q);
 /// @throws Error  when start, A and B are on one line
 TearPath bisector_path(const Eigen::Vector2d& start, const Eigen::Vector2d& a,
                        const Eigen::Vector2d& b, double length, double step);
+
+/// Energy per area that tearing takes at a place, in a direction of unit length (J/m^2).
+using TearToughness =
+    std::function<double(const Eigen::Vector2d& at, const Eigen::Vector2d& direction)>;
+
+/// Energy that tears along paths took (J): toughness over the torn section, by the middle of every
+/// step. @param thickness  of the sheet (m)
+double fracture_energy(const std::vector<TearPath>& paths, const TearToughness& toughness,
+                       double thickness);
 
 /// Direction of the tear at C: away from A and B along the bisector, unit; zero where C lies
 /// between them.

@@ -365,6 +365,28 @@ OverlapStudy overlap_study(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
   return study;
 }
 
+double OverlapStudy::ratio_to(const OverlapStudy& other) const {
+  const double floor = std::max(noise_floor, other.noise_floor);
+  return volume <= floor ? 0.0 : volume / std::max(other.volume, floor);
+}
+
+OverlapStudy overlap_above_rest(const OverlapStudy& posed, const OverlapStudy& rest) {
+  OverlapStudy above = posed;
+  above.volume -= rest.volume;
+  above.noise_floor += rest.noise_floor;
+  above.inside_out -= rest.inside_out;
+  above.cut_area = std::max(above.cut_area - rest.cut_area, 0.0);
+  return above;
+}
+
+double union_volume_change(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3d& posed,
+                           const Eigen::MatrixX3i& F, const OverlapStudy& above,
+                           double rest_union) {
+  const double change =
+      signed_volume(posed, F) - signed_volume(rest, F) - above.volume + above.inside_out;
+  return change / rest_union;
+}
+
 double body_column_spacing(const Eigen::MatrixX3d& rest) {
   return bounding_box_diagonal(rest) / kBodySpacings;
 }

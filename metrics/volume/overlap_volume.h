@@ -46,7 +46,24 @@ struct OverlapStudy {
   double inside_out = 0;   ///< of the same columns, as `cut_area` (m^3)
   double cut_area = 0;     ///< overlap goes on outside the box across this area (m^2)
   int unbalanced_columns = 0;
+
+  /// The overlap; 0 where it does not exceed the floor.
+  [[nodiscard]] double above_floor() const { return volume > noise_floor ? volume : 0.0; }
+  /// This over another one: 0 up to the larger of the two floors, which is also the least that it
+  /// is divided by.
+  [[nodiscard]] double ratio_to(const OverlapStudy& other) const;
 };
+
+/// What a pose has more than rest; noise floors add up, as the errors of a difference do at worst.
+/// `cut_area` is 0 where rest has more.
+OverlapStudy overlap_above_rest(const OverlapStudy& posed, const OverlapStudy& rest);
+
+/// Relative change of the volume of the points inside a closed mesh, however often they are: that
+/// of the signed volume, less what overlaps more and plus what is inside out more than at rest.
+/// @param above       of the whole mesh (`overlap_above_rest`)
+/// @param rest_union  `union_volume` at rest (m^3)
+double union_volume_change(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3d& posed,
+                           const Eigen::MatrixX3i& F, const OverlapStudy& above, double rest_union);
 
 /// Evaluates at spacing h and h/2 along one axis and at h along another: those in whose direction
 /// the box's projection is smallest.

@@ -107,8 +107,7 @@ Eigen::MatrixXd solve_columns(const Sparse& system, const Eigen::MatrixXd& rhs,
   Eigen::MatrixXd solution(rhs.rows(), rhs.cols());
   parallel_blocks(rhs.cols(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
-      const Eigen::Index column = j;
-      solution.col(column) = factor.solve(rhs.col(column));
+      solution.col(j) = factor.solve(rhs.col(j));
     }
   });
   return solution;

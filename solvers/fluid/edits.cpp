@@ -309,8 +309,7 @@ bool meets(const FeatureSummary& feature, const Edit& edit) {
   if (edit.box.size() != 6) return true;
   return std::any_of(feature.centres.begin(), feature.centres.end(), [&](const Eigen::Vector3d& c) {
     for (int k = 0; k < 3; ++k) {
-      const std::size_t i = k;
-      if (c[k] < edit.box[i] || c[k] > edit.box[i + 3]) return false;
+      if (c[k] < edit.box[k] || c[k] > edit.box[k + 3]) return false;
     }
     return true;
   });

@@ -175,9 +175,8 @@ void ImplicitSkinning::Impl::turn_normals() {
       const Float4 n = state.rest_normal[s];
       Float4 sum{};
       for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i) {
-        const std::size_t k = i;
-        const Float4* r = &rotation[3 * static_cast<std::size_t>(state.influence_joint[k])];
-        sum += splat(state.influence_weight[k]) *
+        const Float4* r = &rotation[3 * static_cast<std::size_t>(state.influence_joint[i])];
+        sum += splat(state.influence_weight[i]) *
                (r[0] * splat(n[0]) + r[1] * splat(n[1]) + r[2] * splat(n[2]));
       }
       state.outward[s] = sum;

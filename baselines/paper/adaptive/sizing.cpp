@@ -187,14 +187,13 @@ void SizingField::build_curvature() {
 }
 
 SizeTensor SizingField::of_triangle(int f) const {
-  const std::size_t i = f;
   const int a = state_.mesh.triangles(f, 0), b = state_.mesh.triangles(f, 1),
             c = state_.mesh.triangles(f, 2);
   const auto normal = [&](int v) { return smooth_[v]; };
   const auto square = [](const auto& m, double unit) -> Matrix2d {
     return m.transpose() * m / (unit * unit);
   };
-  SizeTensor size = square(curvature_[i], options_.refine_angle);
+  SizeTensor size = square(curvature_[f], options_.refine_angle);
   size =
       tensor_max(size, square(gradient(f, normal(a), normal(b), normal(c)), options_.refine_angle));
   size = tensor_max(size, square(gradient(f, state_.v.row(a), state_.v.row(b), state_.v.row(c)),
@@ -206,7 +205,7 @@ SizeTensor SizingField::of_triangle(int f) const {
   for (const Eigen::VectorXd& h : distance_) {
     const double mean = (h[a] + h[b] + h[c]) / 3;
     if (mean > options_.size_max) continue;
-    const Eigen::RowVector2d slope = Eigen::RowVector2d(h[b] - h[a], h[c] - h[a]) * inverse_[i];
+    const Eigen::RowVector2d slope = Eigen::RowVector2d(h[b] - h[a], h[c] - h[a]) * inverse_[f];
     size = tensor_max(size, square(slope, std::max(mean, options_.size_min)));
   }
   return limited(size, options_);

@@ -132,11 +132,10 @@ std::vector<DrawnAnchor> anchors_of(const Part& details) {
   const auto &barycentric = array("barycentric", 3), &tangent = array("tangent", 3);
   std::vector<DrawnAnchor> anchors(details.points.rows());
   for (std::size_t i = 0; i < anchors.size(); ++i) {
-    const Eigen::Index row = i;
-    anchors[i].at = {static_cast<int>(face(row, 0)), barycentric.row(row).transpose()};
-    anchors[i].weight = weight(row, 0);
-    anchors[i].tangent = tangent.row(row).transpose();
-    anchors[i].type = static_cast<int>(type(row, 0));
+    anchors[i].at = {static_cast<int>(face(i, 0)), barycentric.row(i).transpose()};
+    anchors[i].weight = weight(i, 0);
+    anchors[i].tangent = tangent.row(i).transpose();
+    anchors[i].type = static_cast<int>(type(i, 0));
   }
   return anchors;
 }

@@ -50,6 +50,26 @@ Pattern uncut_pattern(const PatternOptions& options, const fs::path& folder,
   throw Error("unknown kind of pattern", "scene.pattern", "rectangle, disc, polygon, svg");
 }
 
+/// @param where  the key of the obstacle, for messages
+Obstacle make_obstacle(const ObstacleOptions& options, const std::string& where) {
+  Obstacle obstacle;
+  obstacle.kind = options.kind;
+  obstacle.name = options.name;
+  obstacle.centre = to_vector(options.centre);
+  const Eigen::Vector3d axis = to_vector(options.axis);
+  if (!(axis.norm() > 0))
+    throw Error("has no direction", where + ".axis", "a vector of any length");
+  obstacle.axis = axis.normalized();
+  obstacle.radius = options.radius;
+  obstacle.tube_radius = options.tube_radius;
+  obstacle.half_length = options.half_length;
+  if (!options.keys.empty()) obstacle.motion = to_trajectory(options.keys, where + ".keys");
+  for (const RadiusKeyOptions& key : options.radii) {
+    obstacle.radii.emplace_back(key.t, key.radius);
+  }
+  return obstacle;
+}
+
 }  // namespace
 
 Handle make_handle(const HandleOptions& options, const std::string& where) {
@@ -85,23 +105,11 @@ Toughness make_toughness(const ToughnessOptions& options, std::uint64_t seed) {
           scene_seed(seed, options.seed), options.grain_deg, options.across};
 }
 
-Obstacle make_obstacle(const ObstacleOptions& options, const std::string& where) {
-  Obstacle obstacle;
-  obstacle.kind = options.kind;
-  obstacle.name = options.name;
-  obstacle.centre = to_vector(options.centre);
-  const Eigen::Vector3d axis = to_vector(options.axis);
-  if (!(axis.norm() > 0))
-    throw Error("has no direction", where + ".axis", "a vector of any length");
-  obstacle.axis = axis.normalized();
-  obstacle.radius = options.radius;
-  obstacle.tube_radius = options.tube_radius;
-  obstacle.half_length = options.half_length;
-  if (!options.keys.empty()) obstacle.motion = to_trajectory(options.keys, where + ".keys");
-  for (const RadiusKeyOptions& key : options.radii) {
-    obstacle.radii.emplace_back(key.t, key.radius);
-  }
-  return obstacle;
+std::vector<Obstacle> make_obstacles(const std::vector<ObstacleOptions>& options) {
+  std::vector<Obstacle> obstacles;
+  for (std::size_t i = 0; i < options.size(); ++i)
+    obstacles.push_back(make_obstacle(options[i], "scene.obstacles." + std::to_string(i)));
+  return obstacles;
 }
 
 Pattern make_pattern(const PatternOptions& options, const fs::path& folder,

@@ -21,9 +21,9 @@ Pattern make_pattern(const PatternOptions& options, const std::filesystem::path&
 /// @throws Error  naming the key
 Handle make_handle(const HandleOptions& options, const std::string& where);
 
-/// @param where   the key of the obstacle, for messages
+/// The obstacles of "scene.obstacles", in order.
 /// @throws Error  naming the key
-Obstacle make_obstacle(const ObstacleOptions& options, const std::string& where);
+std::vector<Obstacle> make_obstacles(const std::vector<ObstacleOptions>& options);
 
 /// @param seed  of the experiment
 Toughness make_toughness(const ToughnessOptions& options, std::uint64_t seed);

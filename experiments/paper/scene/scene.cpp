@@ -51,10 +51,7 @@ Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern, std::
   for (std::size_t i = 0; i < options.handles.size(); ++i) {
     sheet.handles.push_back(make_handle(options.handles[i], "scene.handles." + std::to_string(i)));
   }
-  for (std::size_t i = 0; i < options.obstacles.size(); ++i) {
-    sheet.obstacles.push_back(
-        make_obstacle(options.obstacles[i], "scene.obstacles." + std::to_string(i)));
-  }
+  sheet.obstacles = make_obstacles(options.obstacles);
   sheet.gravity = to_vector(options.gravity);
   sheet.placement = Eigen::Isometry3d::Identity();
   sheet.placement.translate(to_vector(options.placement.move))

@@ -74,9 +74,8 @@ std::vector<Seen> seen_from(const Eigen::MatrixX3d& line, const Eigen::MatrixX3d
   std::vector<std::vector<double>> cost(segments, std::vector<double>(states));
   std::vector<std::vector<std::size_t>> before(segments, std::vector<std::size_t>(states, 0));
   for (std::size_t i = 0; i < segments; ++i) {
-    const Eigen::Index row = i;
-    const Eigen::RowVector3d normal = (normals.row(row) + normals.row(row + 1)).normalized();
-    const double size = (line.row(row + 1) - line.row(row)).norm();
+    const Eigen::RowVector3d normal = (normals.row(i) + normals.row(i + 1)).normalized();
+    const double size = (line.row(i + 1) - line.row(i)).norm();
     for (std::size_t s = 0; s < states; ++s) {
       const double sign = s % 2 == 0 ? 1 : -1;
       const double facing = sign * view_frame(views[s / 2].kind).row(2).dot(normal);

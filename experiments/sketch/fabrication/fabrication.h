@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/options.h"
-#include "experiments/sketch/drawing/layer_style.h"
+#include "experiments/sketch/fabrication/layer_style.h"
 #include "experiments/sketch/fabrication/pattern_tiles.h"
 #include "experiments/sketch/pattern/sheet.h"
 #include "models/sketch/pattern/pattern.h"

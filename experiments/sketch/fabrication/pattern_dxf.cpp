@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/geometry/planar.h"
-#include "experiments/sketch/drawing/layer_style.h"
 #include "experiments/sketch/fabrication/escaped_text.h"
+#include "experiments/sketch/fabrication/layer_style.h"
 #include "experiments/sketch/fabrication/written_number.h"
 #include "experiments/sketch/pattern/sheet_text.h"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "experiments/sketch/drawing/layer_style.h"
+#include "experiments/sketch/fabrication/layer_style.h"
 #include "experiments/sketch/fabrication/pattern_tiles.h"
 #include "experiments/sketch/pattern/sheet.h"
 

@@ -8,9 +8,9 @@
 
 #include "core/angles.h"
 #include "core/geometry/planar.h"
+#include "experiments/sketch/pattern/clear_box.h"
 #include "experiments/sketch/pattern/seam_allowance.h"
 #include "experiments/sketch/pattern/sheet_text.h"
-#include "experiments/sketch/truth/clear_box.h"
 #include "models/sketch/pattern/piece_border.h"
 
 namespace geoprior::sketch {

@@ -61,9 +61,8 @@ double agreement(const SkeletonFile& skeleton, const DrivenJoints& joints,
   Eigen::VectorXd heights(n);
   Eigen::MatrixX3d places(n, 3);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const std::size_t k = i;
-    heights[i] = skeleton.skeleton.joints[joints.ours[k]].head.y();
-    places.row(i) = positions[joints.theirs[k]];
+    heights[i] = skeleton.skeleton.joints[joints.ours[i]].head.y();
+    places.row(i) = positions[joints.theirs[i]];
   }
   heights.array() -= heights.mean();
   places.rowwise() -= Eigen::RowVector3d(places.colwise().mean());

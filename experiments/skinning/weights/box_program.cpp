@@ -166,12 +166,11 @@ BoxSolution solve_in_box(const BoxProgram& program, int max_pivots) {
   std::vector<double> residual(m);
   parallel_blocks(m, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
-      const Eigen::Index column = j;
-      const Eigen::VectorXd c = program.C.col(column);
+      const Eigen::VectorXd c = program.C.col(j);
       ActiveSet set(program.Q, diagonal, c, factor.solve(c));
       pivots[j] = pivot(set, max_pivots);
       residual[j] = set.residual();
-      solution.X.col(column) = set.bounded();
+      solution.X.col(j) = set.bounded();
     }
   });
   solution.pivots = *std::max_element(pivots.begin(), pivots.end());

@@ -26,10 +26,7 @@ Sheet make_sheet(const SoundSceneOptions& options, const Pattern& pattern, std::
   for (std::size_t i = 0; i < options.handles.size(); ++i) {
     sheet.handles.push_back(make_hold(options.handles[i], "scene.handles." + std::to_string(i)));
   }
-  for (std::size_t i = 0; i < options.obstacles.size(); ++i) {
-    sheet.obstacles.push_back(
-        paper::make_obstacle(options.obstacles[i], "scene.obstacles." + std::to_string(i)));
-  }
+  sheet.obstacles = paper::make_obstacles(options.obstacles);
   return sheet;
 }
 

@@ -82,13 +82,12 @@ Root divider_rows(const ShellMesh& mesh, const CurvatureFit& fit, int t, Plastic
   if (fit.rank[t] == 3 && std::ssize(dividers) == fit.own[t]) return {};
   Root rows = Root::Zero(dividers.size(), terms.size());
   for (std::size_t r = 0; r < dividers.size(); ++r) {
-    const Eigen::Index row = r;
     const auto& h = fit.hinges[terms[dividers[r]].hinge];
     const double length = (mesh.pattern.row(h.b) - mesh.pattern.row(h.a)).norm();
     const double areas = fit.area[h.left] + fit.area[h.right];
     const double stiffness = length / std::sqrt(2 * areas * fit.area[t]);
-    rows(row, dividers[r]) = stiffness;
-    plastic.row(first_plastic + row) = stiffness * h.jump;
+    rows(r, dividers[r]) = stiffness;
+    plastic.row(first_plastic + r) = stiffness * h.jump;
   }
   return rows;
 }

@@ -95,17 +95,16 @@ void join_cells(const SoundGrid& grid, const paper::PatternLocator& locator,
                 std::vector<std::array<char, 2>>& joined) {
   joined.assign(at.size(), {0, 0});
   for (int c = 0; c < grid.count(); ++c) {
-    const std::size_t i = c;
-    if (at[i].triangle < 0) continue;
+    if (at[c].triangle < 0) continue;
     const std::array<int, 4> beside = grid.neighbours(c);
     for (std::size_t side = 0; side < 2; ++side) {
       if (beside[side] < 0) continue;
       const int other = at[beside[side]].triangle;
       if (other < 0) continue;
-      joined[i][side] = 1;
-      if (other == at[i].triangle) continue;
-      const auto end = locator.locate(grid.centre(beside[side]), grid.centre(c), at[i].triangle);
-      joined[i][side] = end.weights.minCoeff() >= kOnTriangle ? 1 : 0;
+      joined[c][side] = 1;
+      if (other == at[c].triangle) continue;
+      const auto end = locator.locate(grid.centre(beside[side]), grid.centre(c), at[c].triangle);
+      joined[c][side] = end.weights.minCoeff() >= kOnTriangle ? 1 : 0;
     }
   }
 }
@@ -184,10 +183,9 @@ const SheetSampler::Cover& SheetSampler::cover_of(const ShellMesh& mesh) {
   cover->at.resize(grid_.count());
   int last = -1;
   for (int c = 0; c < grid_.count(); ++c) {
-    const std::size_t i = c;
-    if (!grid_.inside[i]) continue;
-    cover->at[i] = place_in_mesh(grid_, mesh, locator, c, last);
-    last = cover->at[i].triangle;
+    if (!grid_.inside[c]) continue;
+    cover->at[c] = place_in_mesh(grid_, mesh, locator, c, last);
+    last = cover->at[c].triangle;
   }
   join_cells(grid_, locator, cover->at, cover->joined);
   cover->border = border_of(grid_, mesh, cover->at);

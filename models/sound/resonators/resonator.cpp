@@ -60,9 +60,8 @@ std::vector<int> cells_about(const SoundGrid& grid, const SheetField& field,
   }
   std::vector<int> cells;
   for (int c = 0; c < grid.count(); ++c) {
-    const std::size_t i = c;
-    if (taken.contains(parts[i])) in[i] = 1;
-    if (in[i]) cells.push_back(c);
+    if (taken.contains(parts[c])) in[c] = 1;
+    if (in[c]) cells.push_back(c);
   }
   return cells;
 }

@@ -163,15 +163,14 @@ ResonatorShape resonator_shape(const SoundGrid& grid, const SheetField& field,
     cell.place = local_surface(grid, field, c);
     const std::array<int, 4> beside = grid.neighbours(c);
     for (int side = 0; side < 4; ++side) {
-      const std::size_t at = side;
       const auto border = held.find({c, side});
       if (!field.holds(grid, c, side)) {
         const bool is_free = border == held.end() || border->second <= 0;
-        cell.sides[at] = is_free ? Side::free : Side::clamped;
-      } else if (std::binary_search(cells.begin(), cells.end(), beside[at])) {
-        cell.sides[at] = Side::inside;
+        cell.sides[side] = is_free ? Side::free : Side::clamped;
+      } else if (std::binary_search(cells.begin(), cells.end(), beside[side])) {
+        cell.sides[side] = Side::inside;
       } else {
-        cell.sides[at] = Side::clamped;
+        cell.sides[side] = Side::clamped;
       }
     }
   }

@@ -40,7 +40,6 @@ void copy_triangles(const TriMesh& mesh, SurfaceGraph& g) {
 /// Every triangle around v leads from one neighbour to the next: the ring is those led from, and at
 /// a border also those only led to. A neighbour met twice is no manifold.
 void collect_ring(SurfaceGraph& g, int v) {
-  const std::size_t i = v;
   int* const begin = g.ring.data() + 2 * g.corner.begin(v);
   int* end = begin;
   bool closed = !g.corners(v).empty();
@@ -61,8 +60,8 @@ void collect_ring(SurfaceGraph& g, int v) {
     closed = false;
     if (std::find(led_from, end, to) == end) *end++ = to;
   }
-  g.ring_size[i] = static_cast<int>(end - begin);
-  g.border[i] = closed ? 0 : 1;
+  g.ring_size[v] = static_cast<int>(end - begin);
+  g.border[v] = closed ? 0 : 1;
 }
 
 }  // namespace

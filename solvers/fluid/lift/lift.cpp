@@ -219,9 +219,8 @@ SurfaceFrame without_vertices(const SurfaceFrame& frame, const std::vector<char>
   if (frame.velocity.rows() > 0) result.velocity.resize(count, 3);
   for (std::size_t v = 0; v < gone.size(); ++v) {
     if (local[v] < 0) continue;
-    const Eigen::Index i = v;
-    result.mesh.V.row(local[v]) = frame.mesh.V.row(i);
-    if (frame.velocity.rows() > 0) result.velocity.row(local[v]) = frame.velocity.row(i);
+    result.mesh.V.row(local[v]) = frame.mesh.V.row(v);
+    if (frame.velocity.rows() > 0) result.velocity.row(local[v]) = frame.velocity.row(v);
   }
   Eigen::Index kept = 0;
   result.mesh.F.resize(frame.mesh.F.rows(), 3);

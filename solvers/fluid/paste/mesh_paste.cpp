@@ -73,9 +73,8 @@ Eigen::MatrixX3d carried(const TriMesh& mesh, const Eigen::MatrixX3d& before,
     return of_target[v] >= 0 ? Eigen::RowVector3d(before.row(of_target[v])) : velocity.transpose();
   };
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    const std::size_t i = v;
-    if (known(i)) {
-      result.row(v) = row(i);
+    if (known(v)) {
+      result.row(v) = row(v);
       continue;
     }
     int count = 0;

@@ -86,8 +86,7 @@ WorkMesh work_mesh(const SurfaceFrame& frame) {
   }
   mesh.triangles.resize(frame.mesh.F.rows());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Eigen::Index i = t;
-    mesh.triangles[t] = {frame.mesh.F(i, 0), frame.mesh.F(i, 1), frame.mesh.F(i, 2)};
+    mesh.triangles[t] = {frame.mesh.F(t, 0), frame.mesh.F(t, 1), frame.mesh.F(t, 2)};
   }
   return mesh;
 }

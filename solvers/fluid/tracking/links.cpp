@@ -28,8 +28,7 @@ class FrameIndex {
   }
   /// Regions of a frame whose centres are at most `reach` from `centre` along x.
   [[nodiscard]] std::span<const int> window(int frame, double centre, double reach) const {
-    const std::size_t f = frame;
-    const auto begin = order_.begin() + offset_[f], end = order_.begin() + offset_[f + 1];
+    const auto begin = order_.begin() + offset_[frame], end = order_.begin() + offset_[frame + 1];
     const auto first =
         std::partition_point(begin, end, [&](int r) { return x_of(r) < centre - reach; });
     const auto last =

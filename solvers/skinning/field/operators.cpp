@@ -266,9 +266,8 @@ Opening::Opening(OpeningPreset preset) : table_(kIntervals + 1) {
 double Opening::tan_theta(double cos_alpha) const {
   const double x = (std::clamp(cos_alpha, -1.0, 1.0) + 1) * (kIntervals / 2.0);
   const int i = std::min(kIntervals - 1, static_cast<int>(x));
-  const std::size_t k = i;
   const double s = x - i;
-  return (1 - s) * static_cast<double>(table_[k]) + s * static_cast<double>(table_[k + 1]);
+  return (1 - s) * static_cast<double>(table_[i]) + s * static_cast<double>(table_[i + 1]);
 }
 
 }  // namespace geoprior::skinning

@@ -108,8 +108,7 @@ Eigen::SparseMatrix<double> SmoothSystem::laplace() const {
     const int row = static_cast<int>(s);
     entries.emplace_back(row, row, static_cast<double>(diagonal_[s]));
     for (int j = offset_[s]; j < offset_[s + 1]; ++j) {
-      const std::size_t k = j;
-      entries.emplace_back(row, neighbour_[k], -static_cast<double>(conductance_[k]));
+      entries.emplace_back(row, neighbour_[j], -static_cast<double>(conductance_[j]));
     }
   }
   Eigen::SparseMatrix<double> L(size_, size_);
@@ -171,10 +170,9 @@ void SmoothSystem::reach_around_asked(float reach) {
       seen_[b] = static_cast<int>(first) + 1;
       reached_[b] = 1;
       for (const int near : near_blocks_[b]) {
-        const std::size_t n = near;
-        if (seen_[n] == static_cast<int>(first) + 1) continue;
-        seen_[n] = static_cast<int>(first) + 1;
-        if (gap2(bounds_[first], bounds_[n]) <= limit * limit) front_.push_back(near);
+        if (seen_[near] == static_cast<int>(first) + 1) continue;
+        seen_[near] = static_cast<int>(first) + 1;
+        if (gap2(bounds_[first], bounds_[near]) <= limit * limit) front_.push_back(near);
       }
     }
   }

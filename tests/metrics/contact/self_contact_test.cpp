@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
+#include <vector>
 
 #include "core/error.h"
 #include "tests/metrics/shapes.h"
@@ -126,6 +128,13 @@ TEST(IntersectingPairs, NamesTheVertexThatIsNotFinite) {
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("vertex 5"), std::string::npos);
   }
+}
+
+TEST(PairsBetweenLayers, LeaveOutThoseOfOneLayer) {
+  const std::vector<std::array<int, 2>> pairs{{0, 1}, {0, 2}, {1, 3}, {2, 3}};
+  const std::vector<int> layer{1, 1, 2, 2};
+  const std::vector<std::array<int, 2>> between{{0, 2}, {1, 3}};
+  EXPECT_EQ(pairs_between_layers(pairs, layer), between);
 }
 
 }  // namespace

@@ -98,5 +98,18 @@ TEST(StripRise, OfAHalfCylinderIsItsRadius) {
   EXPECT_NEAR(rise.height, kRadius, 1e-15);
 }
 
+TEST(Strip, IsBetweenOppositeSidesOfAWholeRectangle) {
+  const Strip::Side left{Eigen::Vector2d(0, 0), Eigen::Vector2d(0, 0.1)},
+      down{Eigen::Vector2d(0.3, 0.1), Eigen::Vector2d(0.3, 0)};
+  const auto strip = strip_between(left, down, 0.03);
+  ASSERT_TRUE(strip);
+  EXPECT_NEAR(strip->length(), 0.3, 1e-15);
+  EXPECT_LT((strip->at(0.25, 0.5) - Eigen::Vector2d(0.15, 0.025)).norm(), 1e-15);
+  // A sheet that goes on beyond, a parallelogram, sides of unequal length.
+  EXPECT_FALSE(strip_between(left, down, 0.031));
+  EXPECT_FALSE(strip_between(left, {Eigen::Vector2d(0.3, 0.05), Eigen::Vector2d(0.3, 0.15)}, 0.03));
+  EXPECT_FALSE(strip_between(left, {Eigen::Vector2d(0.3, 0), Eigen::Vector2d(0.3, 0.09)}, 0.03));
+}
+
 }  // namespace
 }  // namespace geoprior

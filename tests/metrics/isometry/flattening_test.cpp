@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "core/error.h"
 #include "tests/metrics/sheets.h"
@@ -181,6 +182,31 @@ TEST(Flattening, RefusesWhatItCannotMeasure) {
   piece = stretched(1, 1);
   piece.points(0, 0) = std::numeric_limits<double>::infinity();
   EXPECT_THROW(flattening_of(piece), Error);
+}
+
+TEST(PiecesApart, AreTheStripsThatAPatternWasCutInto) {
+  // Strips of a sheet, numbered from right to left with a gap: each has the points of its own
+  // triangles alone, and together they are flattened as the whole is.
+  const sheets::Sheet s =
+      sheets::mapped(sheets::rectangle(0.4, 0.3, 8, 6, 0.2), sheets::cylinder(0.1));
+  std::vector<int> piece;
+  for (Eigen::Index t = 0; t < s.triangles.rows(); ++t)
+    piece.push_back(t < s.triangles.rows() / 2 ? 7 : 3);
+  const auto pieces = pieces_apart(s.pattern, s.x, s.triangles, piece);
+  ASSERT_EQ(pieces.size(), 2U);
+  for (const FlatPiece& half : pieces) {
+    EXPECT_EQ(half.points.rows(), 5 * 7);
+    EXPECT_EQ(half.triangles.rows(), s.triangles.rows() / 2);
+    EXPECT_EQ(half.triangles.maxCoeff(), half.points.rows() - 1);
+  }
+  EXPECT_GT(pieces[0].points.col(0).minCoeff(), -1e-12);  // 3, the right half, comes first
+  EXPECT_LT(pieces[1].points.col(0).maxCoeff(), 1e-12);
+  const FlatteningSummary apart = flattening(pieces), whole = flattening_of(piece_of(s));
+  EXPECT_NEAR(apart.stretch_mean, whole.stretch_mean, 1e-12);
+  EXPECT_NEAR(apart.stretch_max, whole.stretch_max, 1e-12);
+  piece.pop_back();
+  EXPECT_THROW(pieces_apart(s.pattern, s.x, s.triangles, piece), Error);
+  EXPECT_THROW(pieces_apart(s.pattern, s.x.topRows(3), s.triangles, piece), Error);
 }
 
 }  // namespace

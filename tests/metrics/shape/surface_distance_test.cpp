@@ -106,5 +106,27 @@ TEST(SurfaceDeviation, TrianglesInCommonCountWithDistanceZero) {
   EXPECT_EQ(surface_deviation(square, square, 0.05).max, 0);
 }
 
+TEST(SurfaceDeviation, MutualIsTheLargerOfBothWays) {
+  // A square and half of it: from the half nothing is missing, from the whole half of it is.
+  const TriMesh whole = sheets::rectangle(2, 1, 4, 2).mesh();
+  TriMesh half = sheets::rectangle(1, 1, 2, 2).mesh();
+  half.V.col(0).array() -= 0.5;
+  EXPECT_LT(surface_deviation(half, whole, 0.05).max, 1e-12);
+  const SurfaceDeviation far = surface_deviation(whole, half, 0.05),
+                         mutual = mutual_deviation(half, whole, 0.05);
+  EXPECT_EQ(mutual.rms, far.rms);
+  EXPECT_EQ(mutual.mean, far.mean);
+  EXPECT_EQ(mutual.max, far.max);
+  EXPECT_NEAR(mutual.mean, 0.25, 0.01);  // 0 … 1 over one half, 0 over the other
+}
+
+TEST(LargestDistance, OfPointsIsThatOfTheFarthest) {
+  const TriMesh square = sheets::rectangle(1, 1, 2, 2).mesh();
+  Eigen::MatrixX3d points(3, 3);
+  points << 0.1, 0.2, 0.3, 0.5, 0.5, 0, 0.8, 0.9, 0;
+  EXPECT_NEAR(largest_distance(points, square), 0.5, 1e-12);  // (0.3, 0.4) beyond the corner
+  EXPECT_EQ(largest_distance(Eigen::MatrixX3d(0, 3), square), 0);
+}
+
 }  // namespace
 }  // namespace geoprior

@@ -73,5 +73,15 @@ TEST(TearPath, TheFirstPartHasTheLengthAskedFor) {
   EXPECT_EQ(first_part(path, 0), (TearPath{{0, 0}}));
 }
 
+TEST(TearPath, FractureEnergyIsToughnessOverTheTornSection) {
+  // A sheet whose toughness grows along x, and is tripled across the grain: the middle of each
+  // step decides, so a linear field is exact.
+  const auto toughness = [](const Vector2d& at, const Vector2d& along) {
+    return (1 + at.x()) * (std::abs(along.y()) > 0.5 ? 3 : 1);
+  };
+  const std::vector<TearPath> paths{{{0, 0}, {0.4, 0}, {0.4, 0}, {0.4, 0.2}}, {{1, 1}}};
+  EXPECT_NEAR(fracture_energy(paths, toughness, 1e-4), 1e-4 * (0.4 * 1.2 + 0.2 * 3 * 1.4), 1e-18);
+}
+
 }  // namespace
 }  // namespace geoprior

@@ -316,5 +316,37 @@ TEST(JointBox, HoldsTheBallsAboutThePosedJoints) {
   EXPECT_TRUE(box.max().isApprox(Eigen::Vector3d(1.3, 5.3, 0.3), 1e-12));
 }
 
+TEST(OverlapStudy, AboveRestTakesDifferencesAndAddsFloors) {
+  const OverlapStudy rest{2, 0.5, 0.25, 4, 0}, posed{5, 1, 1, 3, 0};
+  const OverlapStudy above = overlap_above_rest(posed, rest);
+  EXPECT_EQ(above.volume, 3);
+  EXPECT_EQ(above.noise_floor, 1.5);
+  EXPECT_EQ(above.inside_out, 0.75);
+  EXPECT_EQ(above.cut_area, 0);
+  EXPECT_EQ(above.above_floor(), 3);
+  EXPECT_EQ((OverlapStudy{1, 1, 0, 0, 0}).above_floor(), 0);
+}
+
+TEST(OverlapStudy, RatioDividesByNoLessThanTheFloor) {
+  const OverlapStudy much{6, 1, 0, 0, 0}, little{2, 0.5, 0, 0, 0}, none{0, 0.5, 0, 0, 0};
+  EXPECT_EQ(much.ratio_to(little), 3);
+  EXPECT_EQ(much.ratio_to(none), 6);  // over the floor of the larger of the two, 1
+  EXPECT_EQ(none.ratio_to(much), 0);
+}
+
+TEST(UnionVolume, ChangesByWhatComesToOverlap) {
+  // Two unit spheres move into each other until their centres are 1.2 apart: the signed volume
+  // stays, the union loses the lens.
+  const TriMesh sphere = shapes::sphere(1, {0, 0, 0}, 5);
+  const TriMesh rest = shapes::together(sphere, shapes::sphere(1, {2.5, 0, 0}, 5)),
+                posed = shapes::together(sphere, shapes::sphere(1, {1.2, 0, 0}, 5));
+  const double spacing = body_column_spacing(rest.V);
+  const OverlapStudy above = overlap_above_rest(body_overlap_study(posed.V, posed.F, spacing),
+                                                body_overlap_study(rest.V, rest.F, spacing));
+  const double whole = union_volume(rest.V, rest.F, spacing);
+  EXPECT_NEAR(union_volume_change(rest.V, posed.V, rest.F, above, whole),
+              -lens(1, 1.2) / (8 * pi / 3), 1e-3);
+}
+
 }  // namespace
 }  // namespace geoprior

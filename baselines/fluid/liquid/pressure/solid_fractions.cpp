@@ -135,12 +135,11 @@ void SolidSampler::update_faces(std::span<const PlacedSolid> solids, const NodeB
                                 SolidFractions& out) {
   const float touching = kTouching * static_cast<float>(shape_.cell);
   for (int a = 0; a < 3; ++a) {
-    const std::size_t axis = a;
     const Eigen::Vector3i u = unit((a + 1) % 3), v = unit((a + 2) % 3);
     const Eigen::Array3d half = 0.5 * (u + v).cast<double>().array();
     for_nodes(box, [&](const Eigen::Vector3i& n) {
       if (((n + u + v).array() > shape_.cells.array()).any()) return;
-      const std::size_t face = out.open[axis].index(n.x(), n.y(), n.z());
+      const std::size_t face = out.open[a].index(n.x(), n.y(), n.z());
       std::array<float, 4> d{};
       const std::array<Eigen::Vector3i, 4> corners{n, n + u, n + u + v, n + v};
       float nearest = kFar;
@@ -159,14 +158,14 @@ void SolidSampler::update_faces(std::span<const PlacedSolid> solids, const NodeB
       const bool leads_out = open_top_ && top_.axis == a && (top_.upper ? upper : lower);
       if ((lower || upper) && !leads_out) open = 0;
       if (open < kSmallestOpening) open = 0;
-      out.open[axis].values[face] = open;
+      out.open[a].values[face] = open;
       float speed = 0;
       if (open < 1 && owner >= 0 && moves_[owner] && !lower && !upper) {
         const Eigen::Vector3d x =
             shape_.origin + shape_.cell * (n.cast<double>().array() + half).matrix();
         speed = static_cast<float>(solids[owner].velocity_at(x)[a]);
       }
-      out.velocity[axis].values[face] = speed;
+      out.velocity[a].values[face] = speed;
     });
   }
 }

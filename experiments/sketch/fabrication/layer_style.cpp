@@ -1,4 +1,4 @@
-#include "experiments/sketch/drawing/layer_style.h"
+#include "experiments/sketch/fabrication/layer_style.h"
 
 #include <charconv>
 

@@ -1,4 +1,4 @@
-#include "experiments/sketch/truth/clear_box.h"
+#include "experiments/sketch/pattern/clear_box.h"
 
 #include <algorithm>
 #include <array>
