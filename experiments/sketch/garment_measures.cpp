@@ -63,7 +63,7 @@ std::vector<TracedEdges> traced_strokes(const Drawing& aligned, const Frame& fra
 
 /// Triangles beside the edges of a fold: those of the side that it is drawn on, and of the other.
 void add_sides(const EdgeConnectivity& edges, const Eigen::MatrixX3d& normals,
-               const TracedEdges& fold, std::vector<FoldSide>& sides) {
+               const TracedEdges& fold, std::vector<SeenFold>& sides) {
   const double asked =
       fold.drawn->fold_angle_deg ? *fold.drawn->fold_angle_deg * kDegree : kThesisFoldAngle;
   const Eigen::Vector3d eye = view_frame(fold.view).row(2).transpose();
@@ -101,7 +101,7 @@ FoldMeasures fold_measures(const SketchScene& scene, const Frame& frame) {
   const TriMesh mesh = garment_mesh(frame);
   const EdgeConnectivity edges(mesh.F);
   const Eigen::MatrixX3d normals = triangle_normals(mesh);
-  std::vector<FoldSide> sides;
+  std::vector<SeenFold> sides;
   for (const TracedEdges& fold : folds) add_sides(edges, normals, fold, sides);
   const FoldAngle angle = fold_angles(mesh, sides);
   return {angle.mean / kDegree, angle.max / kDegree};

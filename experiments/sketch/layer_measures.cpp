@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -103,7 +104,7 @@ void measure_contact(const Frame& frame, double width, LayerMeasures& measures) 
   const auto& layer = solid.require_array("layer", LayerOn::cells, 1).values;
   const Eigen::VectorXi number = layer.col(0).cast<int>();
   const auto between = pairs_between_layers(intersecting_triangles(solid.points, solid.triangles),
-                                            {number.data(), layer.size()});
+                                            std::span<const int>(number.data(), layer.size()));
   measures.pairs = static_cast<double>(between.size());
   measures.depth_percent =
       kPercentOf * intersection_depth(solid.points, solid.triangles, between) / width;

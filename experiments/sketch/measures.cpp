@@ -34,7 +34,7 @@ std::vector<FlatPiece> flat_pieces(const Frame& frame) {
     x.row(i) = surface.points.row(static_cast<Eigen::Index>(vertex(i)));
   const Eigen::VectorXi number = piece.col(0).cast<int>();
   return pieces_apart(pattern.points.leftCols<2>(), x, pattern.triangles,
-                      {number.data(), piece.size()});
+                      std::span<const int>(number.data(), piece.size()));
 }
 
 /// Largest relative difference of two stretches that are sewn together.

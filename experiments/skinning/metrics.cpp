@@ -82,7 +82,7 @@ MetricGroup overlap_group(const SharedPtr& shared) {
            "integral of max(0, winding number - 1) over the box about the region's "
            "joints (whole body without a region) minus the same at rest; 0 where it "
            "does not exceed overlap_noise_floor",
-           kLow, kVolume, clipped)
+           kLow, kVolume, &OverlapStudy::above_floor)
       .row("overlap_excess_raw", "m^3", "overlap_excess before it is set to 0", kLow, kVolume,
            &OverlapStudy::volume)
       .row("overlap_noise_floor", "m^3",
@@ -96,7 +96,7 @@ MetricGroup body_overlap_group(const SharedPtr& shared) {
       .row("overlap_excess_body", "m^3",
            "integral of max(0, winding number - 1) over the whole body minus the same at rest; 0 "
            "where it does not exceed overlap_noise_floor_body",
-           kLow, kVolume, clipped)
+           kLow, kVolume, &OverlapStudy::above_floor)
       .row("overlap_excess_raw_body", "m^3", "overlap_excess_body before it is set to 0", kLow,
            kVolume, &OverlapStudy::volume)
       .row("overlap_noise_floor_body", "m^3",

@@ -35,11 +35,11 @@ FoldAngle fold_angle(const TriMesh& mesh, std::span<const int> triangles,
   return result;
 }
 
-FoldAngle fold_angles(const TriMesh& mesh, std::span<const FoldSide> sides) {
+FoldAngle fold_angles(const TriMesh& mesh, std::span<const SeenFold> sides) {
   if (sides.empty()) throw Error("no side of a fold", "fold angle", "at least one");
   FoldAngle all;
   double whole = 0;
-  for (const FoldSide& side : sides) {
+  for (const SeenFold& side : sides) {
     const FoldAngle angle = fold_angle(mesh, side.triangles, side.to_eye, side.asked);
     const double area = panel_area(mesh, side.triangles);
     whole += area;

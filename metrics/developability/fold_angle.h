@@ -29,14 +29,14 @@ struct FoldAngle {
 FoldAngle fold_angle(const TriMesh& mesh, std::span<const int> triangles,
                      const Eigen::Vector3d& to_eye, double asked);
 
-/// One side of a drawn fold.
-struct FoldSide {
+/// Triangles beside a fold that are seen from one side.
+struct SeenFold {
   std::vector<int> triangles;                         ///< rows of F, at least one with an area
   Eigen::Vector3d to_eye = Eigen::Vector3d::UnitZ();  ///< of those that see it from there
   double asked = 0;                                   ///< rad
 };
 /// Of several sides together: mean by area, largest of all.
 /// @throws Error  without sides; as `fold_angle`
-FoldAngle fold_angles(const TriMesh& mesh, std::span<const FoldSide> sides);
+FoldAngle fold_angles(const TriMesh& mesh, std::span<const SeenFold> sides);
 
 }  // namespace geoprior

@@ -70,13 +70,13 @@ TEST(FoldAngles, OfSidesAreWeighedByTheirArea) {
   const sheets::Sheet s =
       sheets::mapped(sheets::rectangle(2, 1, 8, 3), sheets::fold(50 * kDegree, 0.5));
   const TriMesh mesh = s.mesh();
-  FoldSide flat{{}, Eigen::Vector3d::UnitZ(), 60 * kDegree}, sloped = flat;
+  SeenFold flat{{}, Eigen::Vector3d::UnitZ(), 60 * kDegree}, sloped = flat;
   for (const int t : numbers_of_triangles(mesh)) {
     double middle = 0;
     for (int k = 0; k < 3; ++k) middle += s.pattern(mesh.F(t, k), 0) / 3;
     (middle < 0.5 ? flat : sloped).triangles.push_back(t);
   }
-  const std::vector<FoldSide> sides{flat, sloped};
+  const std::vector<SeenFold> sides{flat, sloped};
   const FoldAngle both = fold_angles(mesh, sides);
   EXPECT_NEAR(both.mean, (0.75 * 60 + 0.25 * 10) * kDegree, 1e-12);
   EXPECT_NEAR(both.max, 60 * kDegree, 1e-12);

@@ -13,13 +13,13 @@ namespace {
 
 /// The strip itself: theta'' = -load sin(theta) over arc length 1, theta(0) = `slope`, theta'(0) =
 /// 0 (no moment at a pinned end), by Runge-Kutta; the load makes theta(1/2) = 0.
-struct Strip {
+struct Integrated {
   double theta = 0, x = 0, y = 0;  ///< at the middle
 };
-Strip half_strip(double slope, double load) {
+Integrated half_strip(double slope, double load) {
   constexpr int kSteps = 2000;
   const double h = 0.5 / kSteps;
-  Strip s{slope, 0, 0};
+  Integrated s{slope, 0, 0};
   double curvature = 0;
   for (int i = 0; i < kSteps; ++i) {
     const double t0 = s.theta, c0 = curvature;
@@ -43,7 +43,7 @@ TEST(Elastica, AgreesWithTheStripsDifferentialEquation) {
       const double load = (low + high) / 2;
       (half_strip(slope, load).theta > 0 ? low : high) = load;
     }
-    const Strip middle = half_strip(slope, (low + high) / 2);
+    const Integrated middle = half_strip(slope, (low + high) / 2);
     EXPECT_NEAR(elastica_height(1, 2 * middle.x), middle.y, 1e-8) << slope;
   }
 }
@@ -98,7 +98,7 @@ TEST(StripRise, OfAHalfCylinderIsItsRadius) {
   EXPECT_NEAR(rise.height, kRadius, 1e-15);
 }
 
-TEST(Strip, IsBetweenOppositeSidesOfAWholeRectangle) {
+TEST(StripBetween, IsBetweenOppositeSidesOfAWholeRectangle) {
   const Strip::Side left{Eigen::Vector2d(0, 0), Eigen::Vector2d(0, 0.1)},
       down{Eigen::Vector2d(0.3, 0.1), Eigen::Vector2d(0.3, 0)};
   const auto strip = strip_between(left, down, 0.03);
