@@ -8,10 +8,10 @@
 
 #include "core/error.h"
 #include "metrics/sound/bursts.h"
+#include "metrics/sound/decay.h"
 #include "metrics/sound/event_rates.h"
 #include "metrics/sound/spectrum.h"
 #include "metrics/sound/true_peak.h"
-#include "metrics/sound/voice_difference.h"
 #include "testbed/formats/wav_file.h"
 #include "testbed/runner/judgement/timing_statistics.h"
 

@@ -37,7 +37,7 @@ struct SoundMeasures {
 std::optional<SoundMeasures> sound_measures(const FrameSequence& frames);
 
 /// How far the sounds of picked events ("voices.wav") are from those of the reference variant, up
-/// to where that knows its modes (metrics/sound/voice_difference.h). Absent where one of both has
+/// to where that knows its modes (metrics/sound/decay.h). Absent where one of both has
 /// no such file.
 struct VoiceDistance {
   double median = 0, low = 0, high = 0;  ///< over the events, with its 95 % bootstrap interval (dB)

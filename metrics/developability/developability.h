@@ -119,4 +119,18 @@ struct GaussImage {
 /// 2006.
 GaussImage gauss_image(const TriMesh& mesh, std::span<const int> triangles = {});
 
+/// Area of some triangles of a mesh (m^2).
+double panel_area(const TriMesh& mesh, std::span<const int> triangles);
+
+/// Gauss images of the panels of a surface: means by
+/// area.
+struct PanelImages {
+  double great_circle_thinness = 0;
+  double small_circle_thinness = 0;
+  double circle_rms = 0;  ///< of the nearer of each panel's two circles (rad)
+};
+/// @param panels  triangles of each, rows of F
+/// @throws Error  without panels; as `gauss_image`
+PanelImages panel_images(const TriMesh& mesh, std::span<const std::vector<int>> panels);
+
 }  // namespace geoprior

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "metrics/developability/panels.h"
+#include "metrics/developability/developability.h"
 
 namespace geoprior {
 

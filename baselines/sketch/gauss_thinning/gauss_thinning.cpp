@@ -134,12 +134,13 @@ void GaussThinning::find_neighbourhoods(double radius) {
 void GaussThinning::measure() {
   parallel_blocks(rotation_.size(), kTrianglesTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::RowVector3d a = mesh_.V.row(mesh_.F(i, 0));
+      const Eigen::Index t = i;
+      const Eigen::RowVector3d a = mesh_.V.row(mesh_.F(t, 0));
       const Eigen::Vector3d cross =
-          (mesh_.V.row(mesh_.F(i, 1)) - a).cross(mesh_.V.row(mesh_.F(i, 2)) - a).transpose();
+          (mesh_.V.row(mesh_.F(t, 1)) - a).cross(mesh_.V.row(mesh_.F(t, 2)) - a).transpose();
       const double twice_area = cross.norm();
-      normal_.col(i).head<3>() = cross / (twice_area > 0 ? twice_area : 1);
-      normal_(3, i) = twice_area / 2;
+      normal_.col(t).head<3>() = cross / (twice_area > 0 ? twice_area : 1);
+      normal_(3, t) = twice_area / 2;
     }
   });
 }
@@ -168,7 +169,8 @@ void GaussThinning::step() {
   const double cone_cosine = std::cos(cone_deg_ * kDegree);
   parallel_blocks(rotation_.size(), kTrianglesTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
-      missed_(t) = normal_(3, t) * turn_onto_circle(static_cast<int>(t), cone_cosine);
+      const Eigen::Index i = t;
+      missed_(i) = normal_(3, i) * turn_onto_circle(static_cast<int>(t), cone_cosine);
     }
   });
   const double area = normal_.row(3).sum();

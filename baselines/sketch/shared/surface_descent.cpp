@@ -130,8 +130,9 @@ bool SurfaceDescent::turns_too_far(const Eigen::MatrixX3d& x) const {
   std::atomic<bool> too_far = false;
   parallel_blocks(mesh_.F.rows(), kGuardedTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::RowVector3d now = twice_area(mesh_.F, i, mesh_.V);
-      const Eigen::RowVector3d then = twice_area(mesh_.F, i, x);
+      const Eigen::Index t = i;
+      const Eigen::RowVector3d now = twice_area(mesh_.F, t, mesh_.V);
+      const Eigen::RowVector3d then = twice_area(mesh_.F, t, x);
       if (!(now.dot(then) >= least * now.norm() * then.norm())) too_far = true;
     }
   });
@@ -143,8 +144,9 @@ bool SurfaceDescent::hold_thin(const Eigen::MatrixX3d& x, Eigen::MatrixX3d& dire
   std::vector<char> offends(mesh_.F.rows(), 0);
   parallel_blocks(offends.size(), kGuardedTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const double then = smallest_sine(mesh_.F, i, x);
-      offends[i] = !(then >= thin) && !(then >= smallest_sine(mesh_.F, i, mesh_.V));
+      const Eigen::Index t = i;
+      const double then = smallest_sine(mesh_.F, t, x);
+      offends[i] = !(then >= thin) && !(then >= smallest_sine(mesh_.F, t, mesh_.V));
     }
   });
   bool any = false;

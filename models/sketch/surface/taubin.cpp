@@ -61,10 +61,11 @@ void filter_step(const Averages& averages, double factor, const Eigen::Matrix3Xd
                  Eigen::Matrix3Xd& filtered) {
   parallel_blocks(x.cols(), kSmoothedTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
+      const Eigen::Index i = v;
       Eigen::Vector3d change = Eigen::Vector3d::Zero();
       for (int e = averages.begin[v]; e < averages.begin[v + 1]; ++e)
-        change += averages.weight[e] * (x.col(averages.neighbour[e]) - x.col(v));
-      filtered.col(v) = x.col(v) + factor * change;
+        change += averages.weight[e] * (x.col(averages.neighbour[e]) - x.col(i));
+      filtered.col(i) = x.col(i) + factor * change;
     }
   });
 }

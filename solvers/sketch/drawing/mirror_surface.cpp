@@ -104,9 +104,10 @@ TexturedSurface KeptHalf::with_image(const MirrorPlane& plane) const {
   whole.mesh.V.resize(count, 3);
   whole.texture.resize(count, 2);
   for (std::size_t v = 0; v < image.size(); ++v) {
+    const Eigen::Index row = v;
     whole.mesh.V.row(image[v]) = mirrored(plane, position_[v]).transpose();
-    whole.mesh.V.row(v) = position_[v].transpose();
-    whole.texture.row(v) = whole.texture.row(image[v]) = texture_[v].transpose();
+    whole.mesh.V.row(row) = position_[v].transpose();
+    whole.texture.row(row) = whole.texture.row(image[v]) = texture_[v].transpose();
   }
   const Eigen::Index m = triangles_.size();
   whole.mesh.F.resize(2 * m, 3);

@@ -187,8 +187,7 @@ TEST(Flattening, RefusesWhatItCannotMeasure) {
 TEST(PiecesApart, AreTheStripsThatAPatternWasCutInto) {
   // Strips of a sheet, numbered from right to left with a gap: each has the points of its own
   // triangles alone, and together they are flattened as the whole is.
-  const sheets::Sheet s =
-      sheets::mapped(sheets::rectangle(0.4, 0.3, 8, 6, 0.2), sheets::cylinder(0.1));
+  const sheets::Sheet s = sheets::mapped(sheets::rectangle(0.4, 0.3, 8, 6), sheets::cylinder(0.1));
   std::vector<int> piece;
   for (Eigen::Index t = 0; t < s.triangles.rows(); ++t)
     piece.push_back(t < s.triangles.rows() / 2 ? 7 : 3);
