@@ -1,7 +1,7 @@
 #include "experiments/fluid/scene/edit_list.h"
 
 #include "core/error.h"
-#include "testbed/formats/atomic_file.h"
+#include "testbed/formats/text/text_file.h"
 #include "testbed/runner/options/toml.h"
 #include "testbed/runner/spec/toml_tree.h"
 
@@ -35,7 +35,7 @@ std::vector<Edit> parse_edit_list(std::string_view text, const std::string& name
 }
 
 std::vector<Edit> read_edit_list(const std::filesystem::path& file) {
-  return parse_edit_list(read_whole_file(file), file.string());
+  return parse_edit_list(read_text_file(file), file.string());
 }
 
 }  // namespace geoprior::fluid

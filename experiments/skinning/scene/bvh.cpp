@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "testbed/formats/atomic_file.h"
+#include "testbed/formats/text/text_file.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -200,7 +200,7 @@ BvhMotion parse_bvh(std::string_view text, const std::string& name) {
 }
 
 BvhMotion read_bvh(const std::filesystem::path& file) {
-  return parse_bvh(read_whole_file(file), file.string());
+  return parse_bvh(read_text_file(file), file.string());
 }
 
 std::vector<Eigen::Vector3d> rest_positions(const BvhMotion& motion) {

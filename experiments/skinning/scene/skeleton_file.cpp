@@ -9,8 +9,8 @@
 
 #include "core/error.h"
 #include "experiments/skinning/scene/literal_axis.h"
-#include "testbed/formats/atomic_file.h"
 #include "testbed/formats/text/nesting.h"
+#include "testbed/formats/text/text_file.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -259,7 +259,7 @@ SkeletonFile with_kept_joints(const SkeletonFile& file, const Skeleton& own,
 }
 
 SkeletonFile read_skeleton_file(const std::filesystem::path& file) {
-  return parse_skeleton(read_whole_file(file), file.string());
+  return parse_skeleton(read_text_file(file), file.string());
 }
 
 std::vector<NamedPose> parse_poses(std::string_view text, const std::string& name) {
@@ -283,7 +283,7 @@ std::vector<NamedPose> parse_poses(std::string_view text, const std::string& nam
 }
 
 std::vector<NamedPose> read_pose_file(const std::filesystem::path& file) {
-  return parse_poses(read_whole_file(file), file.string());
+  return parse_poses(read_text_file(file), file.string());
 }
 
 Eigen::Vector3d joint_axis(const Skeleton& skeleton, const std::string& joint,

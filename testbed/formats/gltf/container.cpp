@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/text/text_file.h"
 
 namespace geoprior::gltf {
 namespace {
@@ -124,7 +125,7 @@ Container split_container(const std::vector<std::byte>& bytes, const std::filesy
     return split_glb(bytes, file.string());
   }
   Container result;
-  result.json = as_text(bytes, 0, bytes.size());
+  result.json = plain_text(as_text(bytes, 0, bytes.size()), file.string());
   return result;
 }
 

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "testbed/formats/atomic_file.h"
 #include "testbed/formats/text/nesting.h"
+#include "testbed/formats/text/text_file.h"
 
 namespace geoprior {
 namespace {
@@ -61,7 +61,7 @@ SequenceSidecar parse_sidecar(std::string_view text, const std::string& name) {
 }
 
 SequenceSidecar read_sidecar(const std::filesystem::path& file) {
-  return parse_sidecar(read_whole_file(file), file.string());
+  return parse_sidecar(read_text_file(file), file.string());
 }
 
 }  // namespace geoprior

@@ -9,6 +9,7 @@ namespace geoprior {
 namespace {
 
 constexpr std::size_t kLongestQuote = 40;
+constexpr std::string_view kBlank = " \t\r\v\f";
 
 std::string quoted(std::string_view word) {
   const bool cut = word.size() > kLongestQuote;
@@ -18,8 +19,11 @@ std::string quoted(std::string_view word) {
 }  // namespace
 
 void split_words(std::string_view line, std::vector<std::string_view>& words) {
-  constexpr std::string_view kBlank = " \t\r\v\f";
   words.clear();
+  append_words(line, words);
+}
+
+void append_words(std::string_view line, std::vector<std::string_view>& words) {
   for (std::size_t end = 0;;) {
     const std::size_t begin = line.find_first_not_of(kBlank, end);
     if (begin == std::string_view::npos) return;
@@ -68,6 +72,20 @@ bool TextLines::next_with_words() {
   }
   words_.clear();
   return false;
+}
+
+bool TextLines::next_with_words_continued() {
+  words_.clear();
+  for (bool goes_on = false; words_.empty() || goes_on;) {
+    if (!next()) break;
+    const std::size_t comment = line_.find('#');
+    std::string_view text = line_.substr(0, comment);
+    text = text.substr(0, text.find_last_not_of(kBlank) + 1);
+    goes_on = comment == std::string_view::npos && text.ends_with('\\');
+    if (goes_on) text.remove_suffix(1);
+    append_words(text, words_);
+  }
+  return !words_.empty();
 }
 
 double TextLines::number_at(std::size_t word) const {

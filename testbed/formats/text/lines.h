@@ -14,10 +14,13 @@ class TextLines {
   TextLines(std::string_view text, std::string name, int first_line = 1)
       : rest_(text), name_(std::move(name)), next_line_(first_line) {}
 
-  /// Goes to the next line; false at the end. Line ends may be \n or \r\n.
+  /// Goes to the next line; false at the end. Line ends are \n or \r\n (text_file.h knows more).
   bool next();
   /// Goes to the next line that has words once `#` and what follows is gone.
   bool next_with_words();
+  /// The same where a line that ends in `\` goes on in the next one, as if there were a blank; a
+  /// comment ends with its line.
+  bool next_with_words_continued();
   [[nodiscard]] std::string_view line() const { return line_; }
   /// What follows the line.
   [[nodiscard]] std::string_view rest() const { return rest_; }
@@ -44,6 +47,8 @@ class TextLines {
 
 /// Splits at blanks and tabs.
 void split_words(std::string_view line, std::vector<std::string_view>& words);
+/// The same, behind the words that are there.
+void append_words(std::string_view line, std::vector<std::string_view>& words);
 
 /// A word as a finite number, or nothing.
 std::optional<double> finite_number(std::string_view word);

@@ -5,9 +5,9 @@
 
 #include "core/error.h"
 #include "core/limits.h"
-#include "testbed/formats/atomic_file.h"
 #include "testbed/formats/input_file.h"
 #include "testbed/formats/text/nesting.h"
+#include "testbed/formats/text/text_file.h"
 
 namespace geoprior {
 namespace {
@@ -38,7 +38,7 @@ std::string declared_prefix(const pugi::xml_node& root, std::string_view vocabul
 
 SvgXml::SvgXml(const std::filesystem::path& file) : name_(file.string()) {
   require_svg_size(file);
-  text_ = read_whole_file(file);
+  text_ = read_text_file(file);
   if (text_.find('\0') != std::string::npos)
     throw Error("is no text in UTF-8", name_, "an SVG file that is encoded in UTF-8");
   require_shallow_xml(text_, name_);

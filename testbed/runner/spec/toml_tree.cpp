@@ -6,8 +6,8 @@
 #include <charconv>
 
 #include "core/error.h"
-#include "testbed/formats/atomic_file.h"
 #include "testbed/formats/text/nesting.h"
+#include "testbed/formats/text/text_file.h"
 #include "testbed/joined.h"
 #include "testbed/streams.h"
 
@@ -139,7 +139,7 @@ TomlNode parse_toml_text(std::string_view text, const std::string& source) {
 }
 
 TomlNode parse_toml_file(const std::filesystem::path& file) {
-  return parse_toml_text(read_whole_file(file), file.string());
+  return parse_toml_text(read_text_file(file), file.string());
 }
 
 TomlNode parse_toml_value(const std::string& value, const std::string& source) {
