@@ -26,10 +26,12 @@
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/isolated_read.h"
+#include "testbed/formats/text/text_file.h"
 #include "testbed/formats/vtk/checks.h"
 #include "testbed/formats/vtk/part_bytes.h"
 #include "testbed/formats/vtk/points.h"
 #include "testbed/formats/vtk/scan.h"
+#include "testbed/formats/vtk/surface_cells.h"
 
 namespace geoprior {
 namespace {
@@ -261,14 +263,11 @@ Part::Kind kind_of(vtkPolyData& data, const std::string& where) {
     if (value == 2) return Part::Kind::points;
     throw Error("PartKind is " + std::to_string(value), where, "0, 1, 2");
   }
-  const bool faces = data.GetNumberOfPolys() + data.GetNumberOfStrips() > 0;
+  if (data.GetNumberOfPolys() + data.GetNumberOfStrips() > 0) return Part::Kind::triangles;
   const bool lines = data.GetNumberOfLines() > 0;
-  if (static_cast<int>(faces) + static_cast<int>(lines) +
-          static_cast<int>(data.GetNumberOfVerts() > 0) >
-      1) {
-    throw Error("mixes cells of several kinds", where, "polygons, lines or vertices alone");
+  if (lines && data.GetNumberOfVerts() > 0) {
+    throw Error("mixes lines and vertex cells", where, "lines or vertices alone");
   }
-  if (faces) return Part::Kind::triangles;
   return lines ? Part::Kind::lines : Part::Kind::points;
 }
 
@@ -286,13 +285,14 @@ vtkSmartPointer<vtkPolyData> only_triangles(vtkPolyData& data) {
   return filter->GetOutput();
 }
 
-Part from_poly_data(vtkPolyData& input, const std::string& where) {
+Part from_poly_data(vtkPolyData& input, const std::string& where, std::vector<std::string>& notes) {
   check_cells(input, where);
   check_arrays(input, where);
   Part part;
   part.kind = kind_of(input, where);
-  const auto data = part.kind == Part::Kind::triangles ? only_triangles(input)
-                                                       : vtkSmartPointer<vtkPolyData>(&input);
+  const auto data = part.kind == Part::Kind::triangles
+                        ? only_triangles(*surface_cells(input, notes))
+                        : vtkSmartPointer<vtkPolyData>(&input);
   part.points.resize(data->GetNumberOfPoints(), 3);
   for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
     part.points.row(i) = Eigen::Map<const Eigen::RowVector3d>(data->GetPoint(i));
@@ -409,32 +409,60 @@ Part read_foreign_vtk_part(const std::filesystem::path& file, std::optional<doub
 
 Part parse_foreign_vtk_part(const std::string& bytes, const std::string& extension,
                             const std::string& where, std::optional<double>& parameter) {
+  VtkFile file = parse_foreign_vtk_file(bytes, extension, where);
+  parameter = file.parameter;
+  return std::move(file.part);
+}
+
+VtkFile parse_foreign_vtk_file(const std::string& bytes, const std::string& extension,
+                               const std::string& where) {
   const State reply = read_in_child(where, limits_of(bytes.size()), [&] {
-    std::optional<double> time;
-    const Part part = parse_vtk_part(bytes, extension, where, time);
-    return part_to_bytes(part, time);
+    const VtkFile file = parse_vtk_file(bytes, extension, where);
+    StateWriter out;
+    out.number(file.notes.size());
+    for (const std::string& note : file.notes) out.text(note);
+    out.bytes(part_to_bytes(file.part, file.parameter));
+    return out.take();
   });
-  Part part = part_from_bytes(reply, parameter, where);
-  require_finite(part, parameter, where);
-  return part;
+  StateReader in(reply);
+  VtkFile file;
+  file.notes.resize(in.count(sizeof(std::size_t)));
+  for (std::string& note : file.notes) note = in.text();
+  const State part = in.bytes();
+  in.require_end();
+  file.part = part_from_bytes(part, file.parameter, where);
+  require_finite(file.part, file.parameter, where);
+  return file;
 }
 
 Part parse_vtk_part(const std::string& bytes, const std::string& extension,
                     const std::string& where, std::optional<double>& parameter) {
+  VtkFile file = parse_vtk_file(bytes, extension, where);
+  parameter = file.parameter;
+  return std::move(file.part);
+}
+
+VtkFile parse_vtk_file(const std::string& bytes, const std::string& extension,
+                       const std::string& where) {
   if (extension != ".vti" && extension != ".vtp") {
     throw Error("has the extension '" + extension + "'", where, ".vtp, .vti");
   }
+  const std::string_view plain = without_byte_order_mark(bytes, where);
+  if (plain.size() < bytes.size()) return parse_vtk_file(std::string(plain), extension, where);
   check_vtk_xml(bytes, where);
+  VtkFile file;
   if (extension == ".vti") {
     vtkNew<vtkXMLImageDataReader> reader;
     update(*reader.Get(), bytes, where);
-    parameter = time_value(*reader->GetOutput());
-    return from_image(*reader->GetOutput(), where);
+    file.parameter = time_value(*reader->GetOutput());
+    file.part = from_image(*reader->GetOutput(), where);
+    return file;
   }
   vtkNew<vtkXMLPolyDataReader> reader;
   update(*reader.Get(), bytes, where);
-  parameter = time_value(*reader->GetOutput());
-  return from_poly_data(*reader->GetOutput(), where);
+  file.parameter = time_value(*reader->GetOutput());
+  file.part = from_poly_data(*reader->GetOutput(), where, file.notes);
+  return file;
 }
 
 }  // namespace geoprior

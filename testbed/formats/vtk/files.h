@@ -30,6 +30,22 @@ Part read_vtk_part(const std::filesystem::path& file, std::optional<double>& par
 Part parse_vtk_part(const std::string& bytes, const std::string& extension,
                     const std::string& where, std::optional<double>& parameter);
 
+/// What a VTK XML file holds.
+struct VtkFile {
+  Part part;
+  std::optional<double> parameter;  ///< its TimeValue
+  std::vector<std::string> notes;   ///< cells that are left out
+};
+
+/// As `parse_vtk_part`. Where there are polygons or strips they alone make the part: vertex cells
+/// and lines, ghost cells (`vtkGhostType`: of another piece, refined or hidden) and cells at hidden
+/// points are left out and noted.
+VtkFile parse_vtk_file(const std::string& bytes, const std::string& extension,
+                       const std::string& where);
+/// The same as `parse_foreign_vtk_part` reads it.
+VtkFile parse_foreign_vtk_file(const std::string& bytes, const std::string& extension,
+                               const std::string& where);
+
 /// Reads a .vtp or .vti of anybody, in a child process (isolated_read.h) that may take 1 GB and 64
 /// times the file's size of memory, and a minute and a second for each 4 MB of the file.
 /// `parameter` is empty where it has no TimeValue. What comes back is checked again.
