@@ -1,6 +1,8 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "experiments/details/scene/position_file.h"
 #include "experiments/fluid/scene/exr_maps.h"
@@ -32,7 +34,8 @@ void fuzz_points(const std::uint8_t* data, std::size_t size) {
   static const TriMesh surface = octahedron();
   read_as_file(data, size, ".csv", [](const std::filesystem::path& file) {
     constexpr double kAnywhere = 1e300;
-    details::details_of_file(file, surface, kAnywhere);
+    std::vector<std::string> warnings;
+    details::details_of_file(file, surface, kAnywhere, warnings);
   });
 }
 

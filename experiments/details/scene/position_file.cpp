@@ -45,8 +45,8 @@ std::vector<Position> read_csv(const fs::path& file) {
   return positions;
 }
 
-std::vector<Position> read_vertices(const fs::path& file) {
-  const MeshFile read = read_mesh_file(file);
+std::vector<Position> read_vertices(const fs::path& file, std::vector<std::string>& warnings) {
+  const MeshFile read = read_mesh_file(file, warnings);
   std::vector<Position> positions;
   for (Eigen::Index v = 0; v < read.mesh.V.rows(); ++v) {
     Position p;
@@ -62,9 +62,9 @@ using PlaceKey = std::array<double, 3>;
 }  // namespace
 
 std::vector<Detail> details_of_file(const fs::path& file, const TriMesh& surface,
-                                    double max_distance) {
-  const std::vector<Position> positions =
-      file.extension() == ".csv" ? read_csv(file) : read_vertices(file);
+                                    double max_distance, std::vector<std::string>& warnings) {
+  const bool table = file.extension() == ".csv" || file.extension() == ".CSV";
+  const std::vector<Position> positions = table ? read_csv(file) : read_vertices(file, warnings);
   const TriangleTree tree(surface);
   std::vector<Detail> details;
   std::map<PlaceKey, std::string> taken;

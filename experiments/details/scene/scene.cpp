@@ -88,7 +88,7 @@ struct Loading {
       const fs::path file = find_file(o.file, folder, "data", "scene.pattern.file");
       result.input_files.push_back(file);
       const double far = o.max_distance.value_or(0.01 * bounding_box_diagonal(scene.surface.V));
-      scene.details = details_of_file(file, scene.surface, far);
+      scene.details = details_of_file(file, scene.surface, far, result.load_warnings);
       if (o.aligned) align(scene.details);
       return;
     }
@@ -113,9 +113,9 @@ struct Loading {
     if (!options.drawing) return;
     const DrawingOptions& look = options.drawing->look;
     if (look.kind == DrawnKind::mesh && look.instance.shape == InstanceShape::given) {
-      result.input_files.push_back(
-          find_file(options.drawing->file, folder, "data", "scene.drawing.file"));
-      result.instance = read_mesh_file(result.input_files.back()).mesh;
+      const fs::path file = find_file(options.drawing->file, folder, "data", "scene.drawing.file");
+      for (const fs::path& piece : files_of_mesh(file)) result.input_files.push_back(piece);
+      result.instance = read_mesh_file(file, result.load_warnings).mesh;
     }
     require_drawable(look, result.input.details.size(), result.instance);
   }

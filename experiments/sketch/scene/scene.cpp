@@ -24,8 +24,8 @@ namespace {
 void load_surface(const SketchSceneOptions& o, const std::filesystem::path& folder,
                   SketchScene& scene) {
   const std::filesystem::path file = find_file(o.surface, folder, "data", "scene.surface");
-  scene.input_files.push_back(file);
-  TriMesh mesh = weld_by_position(read_mesh_file(file).mesh).mesh;
+  scene.input_files = files_of_mesh(file);
+  TriMesh mesh = weld_by_position(read_mesh_file(file, scene.load_warnings).mesh).mesh;
   mesh.V *= o.surface_scale;
   scene.input.surface = std::move(mesh);
 }

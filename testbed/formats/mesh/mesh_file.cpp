@@ -1,14 +1,17 @@
 #include "testbed/formats/mesh/mesh_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <string_view>
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/mesh/obj_reader.h"
 #include "testbed/formats/mesh/off_reader.h"
 #include "testbed/formats/mesh/ply_reader.h"
-#include "testbed/formats/vtk/files.h"
+#include "testbed/formats/mesh/stl_reader.h"
+#include "testbed/formats/mesh/vtp_reader.h"
 
 namespace geoprior {
 namespace {
@@ -19,28 +22,24 @@ std::string lower(std::string text) {
   return text;
 }
 
-MeshFile read_vtp(const std::filesystem::path& file) {
-  MeshFile out;
-  Part part = parse_foreign_vtk_part(read_whole_file(file), ".vtp", file.string(), out.time);
-  if (part.kind != Part::Kind::triangles && part.points.rows() > 0) {
-    throw Error("holds no surface", file.string(), "polygons or strips");
-  }
-  for (const NamedArray& array : part.arrays) {
-    if (array.on != NamedArray::On::points || array.values.rows() != part.points.rows()) continue;
-    if (array.name == "velocity" && array.values.cols() == 3) out.velocity = array.values;
-    if (array.name == "pattern" && array.values.cols() == 2) out.pattern = array.values;
-  }
-  out.mesh = {std::move(part.points), std::move(part.triangles)};
-  return out;
-}
+constexpr std::array<std::string_view, 6> kMeshExtensions{".obj", ".ply",  ".off",
+                                                          ".vtp", ".pvtp", ".stl"};
 
 }  // namespace
 
-std::string mesh_file_extensions() { return ".obj, .ply, .off, .vtp"; }
+std::string mesh_file_extensions() { return ".obj, .ply, .off, .stl, .vtp, .pvtp"; }
 
 bool is_mesh_file_extension(std::string extension) {
-  extension = lower(std::move(extension));
-  return extension == ".obj" || extension == ".ply" || extension == ".off" || extension == ".vtp";
+  return std::find(kMeshExtensions.begin(), kMeshExtensions.end(), lower(std::move(extension))) !=
+         kMeshExtensions.end();
+}
+
+std::vector<std::filesystem::path> files_of_mesh(const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> files{file};
+  if (lower(file.extension().string()) != ".pvtp") return files;
+  const std::vector<std::filesystem::path> pieces = pvtp_pieces(file);
+  files.insert(files.end(), pieces.begin(), pieces.end());
+  return files;
 }
 
 MeshFile read_mesh_file(const std::filesystem::path& file) {
@@ -51,9 +50,18 @@ MeshFile read_mesh_file(const std::filesystem::path& file) {
   }
   if (!std::filesystem::is_regular_file(file)) throw Error("is no file", name);
   if (extension == ".vtp") return read_vtp(file);
+  if (extension == ".pvtp") return read_pvtp(file);
   const std::string bytes = read_whole_file(file);
   if (extension == ".obj") return parse_obj(bytes, name);
+  if (extension == ".stl") return parse_stl(bytes, name);
   return extension == ".ply" ? parse_ply(bytes, name) : parse_off(bytes, name);
+}
+
+MeshFile read_mesh_file(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+  MeshFile read = read_mesh_file(file);
+  for (const std::string& note : read.notes)
+    warnings.push_back(file.filename().string() + ": " + note);
+  return read;
 }
 
 }  // namespace geoprior

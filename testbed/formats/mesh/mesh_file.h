@@ -2,24 +2,26 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "testbed/formats/mesh/parsed_mesh.h"
 
 namespace geoprior {
 
-/// Reads .obj, .ply, .off or .vtp by extension (any case).
-///
-/// - OBJ: `v` and `f`; corners `v/vt/vn` share the position, negative indices count from the end.
-/// - PLY: ascii or binary of either byte order; velocities as vx vy vz or velocity_0 … velocity_2;
-///   other elements and properties are skipped.
-/// - OFF: with or without colours and normals of the vertices, ascii.
-/// - VTP: polygons and strips; velocities as the point array `velocity`.
+/// Reads a mesh by its extension (any case): `parse_obj`, `parse_ply`, `parse_off`, `parse_stl`,
+/// `read_vtp` and `read_pvtp` say what of each format. What of the file is left out stands in its
+/// `notes`.
 ///
 /// @throws Error  naming file and line or byte: unreadable, truncated, no finite number, an index
 ///                out of range, a face of fewer than 3 or more than 256 corners, unknown extension
 MeshFile read_mesh_file(const std::filesystem::path& file);
+/// The same. @param warnings  added: the notes, with the name of the file
+MeshFile read_mesh_file(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
-/// Extensions that `read_mesh_file` knows: ".obj, .ply, .off, .vtp".
+/// The file, and those that it names as its pieces (.pvtp).
+std::vector<std::filesystem::path> files_of_mesh(const std::filesystem::path& file);
+
+/// Extensions that `read_mesh_file` knows: ".obj, .ply, .off, .stl, .vtp, .pvtp".
 std::string mesh_file_extensions();
 bool is_mesh_file_extension(std::string extension);
 

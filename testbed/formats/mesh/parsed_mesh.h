@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/mesh.h"
 
@@ -14,7 +16,8 @@ struct MeshFile {
   /// Flat coordinates of the vertices: the point array `pattern` of a .vtp, or `vt` of an .obj
   /// whose corners have one each, the same at every corner of a vertex; or no rows.
   Eigen::MatrixX2d pattern = {};
-  std::optional<double> time = {};  ///< TimeValue of a .vtp (s)
+  std::optional<double> time = {};      ///< TimeValue of a .vtp (s)
+  std::vector<std::string> notes = {};  ///< what of the file is left out or was changed
 };
 
 }  // namespace geoprior

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/text/lines.h"
+#include "testbed/formats/text/text_file.h"
 
 namespace geoprior {
 namespace {
@@ -71,6 +72,23 @@ PlyHeader::Property property_of(const TextLines& lines) {
           type_of(words[2], lines.place())};
 }
 
+/// Bytes up to the end of the line `end_header`, all of them when there is no such line. Data of
+/// any bytes follow: a \n behind a \r is one of them where the first line ends in \r alone.
+std::size_t head_size(std::string_view bytes) {
+  constexpr std::string_view kLast = "end_header";
+  const std::size_t first_end = bytes.find_first_of("\r\n");
+  const std::string_view first_ends = bytes.substr(std::min(first_end, bytes.size()), 2);
+  const bool returns_alone = first_ends.starts_with('\r') && first_ends != "\r\n";
+  for (std::size_t at = bytes.find(kLast); at < bytes.size(); at = bytes.find(kLast, at + 1)) {
+    if (at > 0 && bytes[at - 1] != '\n' && bytes[at - 1] != '\r') continue;
+    const std::size_t end = bytes.find_first_not_of(" \t", at + kLast.size());
+    if (end == std::string_view::npos) return bytes.size();
+    if (bytes[end] == '\n') return end + 1;
+    if (bytes[end] == '\r') return end + (!returns_alone && bytes.substr(end, 2) == "\r\n" ? 2 : 1);
+  }
+  return bytes.size();
+}
+
 }  // namespace
 
 std::size_t size_of(PlyHeader::Type type) {
@@ -99,15 +117,17 @@ const PlyHeader::Element* PlyHeader::element(std::string_view name) const {
 }
 
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
-  TextLines lines(bytes, name);
-  if (!lines.next() || lines.line() != "ply") throw Error("is no PLY file", name);
+  const std::string_view marked = without_byte_order_mark(bytes, name);
   PlyHeader header;
+  header.data = bytes.size() - marked.size() + head_size(marked);
+  const std::string head = plain_text(std::string(marked.substr(0, head_size(marked))), name);
+  TextLines lines(head, name);
+  if (!lines.next() || lines.line() != "ply") throw Error("is no PLY file", name);
   bool has_format = false;
   while (lines.next_with_words()) {
     const std::string_view keyword = lines.words()[0];
     if (keyword == "end_header") {
       if (!has_format) throw Error("has no format", lines.place());
-      header.data = bytes.size() - lines.rest().size();
       header.data_line = lines.number() + 1;
       return header;
     }

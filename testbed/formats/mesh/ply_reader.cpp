@@ -11,6 +11,7 @@
 #include "testbed/formats/mesh/ply_header.h"
 #include "testbed/formats/mesh/polygon_soup.h"
 #include "testbed/formats/text/lines.h"
+#include "testbed/formats/text/text_file.h"
 
 namespace geoprior {
 namespace {
@@ -121,13 +122,19 @@ int integer(double value, const char* what, const Values& at) {
 template <class Values>
 class ElementReader {
  public:
-  ElementReader(Values values, PolygonSoup& soup) : values_(std::move(values)), soup_(soup) {}
+  ElementReader(Values values, PolygonSoup& soup, std::vector<std::string>& notes)
+      : values_(std::move(values)), soup_(soup), notes_(notes) {}
 
   void read(const Element& element) {
     if (element.properties.empty()) return;
     if (!values_.can_hold(element, element.count)) truncated(element, 0);
     if (element.name == "vertex") return vertices(element);
     if (element.name == "face") return faces(element);
+    if (element.name == "tristrips") return strips(element);
+    if (element.count > 0) {
+      notes_.push_back(std::to_string(element.count) + " of its element '" +
+                       element.name.substr(0, 40) + "' left out");
+    }
     rows(
         element, [](std::size_t, double) {}, [] {});
   }
@@ -199,13 +206,45 @@ class ElementReader {
         [&] { soup_.end_face(); });
   }
 
+  /// Lists of vertices, each with the two before it a triangle, every second one turned over; -1
+  /// begins another strip. A triangle that names a vertex twice only joins two strips.
+  void strips(const Element& element) {
+    const auto corners = element.find({"vertex_indices", "vertex_index"});
+    if (!corners || !element.properties[*corners].count) {
+      throw Error("its strips have no list vertex_indices", values_.place());
+    }
+    std::array<int, 2> before{};
+    int length = 0;  // of the strip so far
+    rows(
+        element,
+        [&](std::size_t p, double value) {
+          if (p != *corners) return;
+          const int v = integer(value, "index of a vertex", values_);
+          if (v == -1) {
+            length = 0;
+            return;
+          }
+          if (length >= 2 && before[0] != before[1] && v != before[0] && v != before[1]) {
+            const bool odd = length % 2 != 0;
+            for (const int corner : {before[odd ? 1 : 0], before[odd ? 0 : 1], v})
+              soup_.corners.push_back(corner);
+            soup_.end_face();
+          }
+          before = {before[1], v};
+          ++length;
+        },
+        [&] { length = 0; });
+  }
+
   Values values_;
   PolygonSoup& soup_;
+  std::vector<std::string>& notes_;
 };
 
 template <class Values>
-void read_elements(const PlyHeader& header, Values values, PolygonSoup& soup) {
-  ElementReader<Values> reader(std::move(values), soup);
+void read_elements(const PlyHeader& header, Values values, PolygonSoup& soup,
+                   std::vector<std::string>& notes) {
+  ElementReader<Values> reader(std::move(values), soup, notes);
   for (const Element& element : header.elements) reader.read(element);
 }
 
@@ -214,18 +253,23 @@ void read_elements(const PlyHeader& header, Values values, PolygonSoup& soup) {
 MeshFile parse_ply(std::string_view bytes, const std::string& name) {
   const PlyHeader header = parse_ply_header(bytes, name);
   if (header.element("vertex") == nullptr) throw Error("has no element 'vertex'", name);
-  if (header.element("face") == nullptr) {
-    throw Error("has no element 'face'", name, "faces; strips and points are not read");
+  if (header.element("face") == nullptr && header.element("tristrips") == nullptr) {
+    throw Error("has no element 'face'", name,
+                "faces or tristrips; a cloud of points is no surface, a range_grid is not read");
   }
   PolygonSoup soup;
+  std::vector<std::string> notes;
   const std::string_view data = bytes.substr(header.data);
   if (header.format == PlyHeader::Format::ascii) {
-    read_elements(header, TextValues(data, header.data_line, name), soup);
+    const std::string text = plain_text(std::string(data), name);
+    read_elements(header, TextValues(text, header.data_line, name), soup, notes);
   } else {
     const bool swapped = header.format == PlyHeader::Format::big_endian;
-    read_elements(header, BinaryValues(data, header.data, swapped, name), soup);
+    read_elements(header, BinaryValues(data, header.data, swapped, name), soup, notes);
   }
-  return mesh_of(soup, name);
+  MeshFile file = mesh_of(soup, name);
+  file.notes = std::move(notes);
+  return file;
 }
 
 }  // namespace geoprior

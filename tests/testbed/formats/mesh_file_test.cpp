@@ -13,6 +13,7 @@
 #include "testbed/formats/mesh/off_reader.h"
 #include "testbed/formats/mesh/ply_reader.h"
 #include "testbed/formats/mesh/polygon_soup.h"
+#include "testbed/formats/mesh/stl_reader.h"
 #include "testbed/formats/vtk/files.h"
 #include "testbed/view/mesh_text.h"
 #include "tests/testbed/formats/octahedron.h"
@@ -75,6 +76,28 @@ TEST(ObjReader, NamesTheLineOfAMistake) {
   expect_error([] { parse_obj("v 0 0 0\nf 1 x 1\n", "a.obj"); }, {"a.obj:2", "'x'"});
   expect_error([] { parse_obj("v 0 0 0\nf 1 2 3\n", "a.obj"); }, {"a.obj, face 0", "0 to 0"});
   EXPECT_EQ(parse_obj("v 1e-400 0 0\n", "a.obj").mesh.V(0, 0), 0);
+}
+
+// Blender and others go on behind a backslash; a path in a comment ends with one too.
+TEST(ObjReader, LinesGoOnBehindABackslashAndCommentsDoNot) {
+  const MeshFile file = parse_obj(
+      "v 0 0 0\nv 1 \\\n 0\\\r\n0\nv 0 1 0 # in C:\\folder\\\nv 1 1 0\nf 1 2\\  \n3 \\\n# none\nf "
+      "2 4 "
+      "3\\",
+      "a.obj");
+  EXPECT_EQ(file.mesh.V.rows(), 4);
+  EXPECT_EQ(file.mesh.V.row(1), Eigen::RowVector3d(1, 0, 0));
+  EXPECT_EQ(file.mesh.F, (Eigen::MatrixX3i(2, 3) << 0, 1, 2, 1, 3, 2).finished());
+  EXPECT_TRUE(file.notes.empty());
+}
+
+TEST(ObjReader, NotesNameWhatIsLeftOut) {
+  const MeshFile file = parse_obj(
+      "mtllib a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\nl 2 3\nvv 0 0 0\nusemtl b\n", "a.obj");
+  ASSERT_EQ(file.notes.size(), 2U);
+  EXPECT_EQ(file.notes[0],
+            "2 lines 'l' left out (the first is line 6): the surface is made of faces alone");
+  EXPECT_EQ(file.notes[1], "1 line 'vv' left out (the first is line 8): OBJ has no such statement");
 }
 
 // A pentagon with a dent: a fan about any corner but two would leave it.
@@ -160,6 +183,56 @@ TEST(PlyReader, ReadsWhatTheTestbedExports) {
   EXPECT_EQ(file.velocity, -ball.V);
 }
 
+// Strips of the Stanford models: (0 1 2), (2 1 3); a new strip; a vertex named twice joins two.
+TEST(PlyReader, ReadsStrips) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+  const std::string points = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 2 0\n";
+  const MeshFile file = parse_ply(head + points + "8 0 1 2 3 -1 2 3 4\n", "a.ply");
+  EXPECT_EQ(file.mesh.F, (Eigen::MatrixX3i(3, 3) << 0, 1, 2, 2, 1, 3, 2, 3, 4).finished());
+  const MeshFile joined = parse_ply(head + points + "7 0 1 2 2 3 3 4\n", "a.ply");
+  EXPECT_EQ(joined.mesh.F, (Eigen::MatrixX3i(1, 3) << 0, 1, 2).finished());
+  expect_error([&] { parse_ply(head + points + "3 0 1 -2\n", "a.ply"); }, {"a.ply", "vertex -2"});
+  expect_error([&] { parse_ply(head + points + "3 0 1 5\n", "a.ply"); }, {"a.ply", "vertex 5"});
+}
+
+TEST(PlyReader, NotesOtherElements) {
+  const std::string text =
+      ply_text_header("ascii") +
+      "0 0 .25 0 1 2 200\n1.5 0 .25 10 11 12 200\n0 1 .25 20 21 22 200\n7 3 0 1 "
+      "2\n2 5 6\n";
+  EXPECT_EQ(parse_ply(text, "a.ply").notes.at(0), "1 of its element 'note' left out");
+}
+
+TEST(StlReader, NamesWhatIsWrong) {
+  const std::string facet =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+      "0\nendloop\nendfacet\n";
+  const auto refused = [](const std::string& text, std::initializer_list<std::string> parts) {
+    expect_error([&] { parse_stl(text, "a.stl"); }, parts);
+  };
+  refused("", {"a.stl", "no STL file"});
+  refused("solid a\n" + facet, {"a.stl:8", "truncated", "endsolid"});
+  refused("solid a\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n", {"a.stl:5", "2 corners"});
+  refused("solid a\nouter loop\nvertex 0 0 nan\n", {"a.stl:3", "'nan'"});
+  refused("solid a\nbox 1 2 3\n", {"a.stl:2", "'box'"});
+  std::string binary(84 + 50, '\0');
+  binary[80] = 2;
+  refused(binary, {"a.stl", "truncated", "134 bytes", "184", "2 triangles"});
+  binary[80] = 1;
+  for (const int at : {84 + 14, 84 + 15}) binary[at] = '\x7f';
+  binary[84 + 14] = '\xc0';
+  refused(binary, {"triangle 0", "not finite"});
+  // Triangles that are points are left out, and so are bytes behind the last one.
+  binary[84 + 14] = binary[84 + 15] = 0;
+  const MeshFile points = parse_stl(binary + "##", "a.stl");
+  EXPECT_EQ(points.mesh.F.rows(), 0);
+  ASSERT_EQ(points.notes.size(), 2U);
+  EXPECT_EQ(points.notes[0], "2 bytes behind the last of its 1 triangles left out");
+  EXPECT_EQ(points.notes[1], "1 triangles with two corners in one place left out");
+}
+
 // Cut after every byte: whole, or an Error; never a mesh of less.
 TEST(PlyReader, EveryTruncationIsAnError) {
   for (const bool big : {false, true}) {
@@ -213,6 +286,37 @@ TEST(OffReader, ReadsCubesWithAndWithoutColours) {
   EXPECT_EQ(coloured.mesh.F, (Eigen::MatrixX3i(1, 3) << 0, 1, 2).finished());
 }
 
+void expect_two_triangles(const std::string& text) {
+  const MeshFile file = parse_off(text, "a.off");
+  EXPECT_EQ(file.mesh.V, (Eigen::MatrixX3d(4, 3) << 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0).finished())
+      << text;
+  EXPECT_EQ(file.mesh.F, (Eigen::MatrixX3i(2, 3) << 0, 1, 2, 1, 3, 2).finished()) << text;
+}
+
+// ModelNet's files begin so.
+TEST(OffReader, ReadsCountsThatAreGluedToTheHead) {
+  expect_two_triangles("OFF4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n");
+  expect_two_triangles("OFF4 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n");
+}
+
+TEST(OffReader, ReadsAnyLineBreaks) {
+  expect_two_triangles("OFF 4 2 0 0 0 0 1 0 0 0 1 0 1 1 0 3 0 1 2 3 1 3 2");
+  expect_two_triangles("OFF\n4\n2\n0\n0 0 0 1 0 0\n0 1 0 1 1 0\n3 0 1\n2 3 1 3 2\n");
+  expect_two_triangles("4 2 0\n0 0 0 1 0\n0 0 1 0 1\n1 0\n3 0 1 2\n3 1 3 2\n");
+  // Colours of vertices by the head, those of faces to the end of their line.
+  expect_two_triangles(
+      "COFF\n4 2 0\n0 0 0 9 9 9 9 1 0 0 9 9 9 9\n0 1 0 9 9 9 9 1 1 0 9 9 9 9\n3 0 1 2 0.5 1 0\n3 1 "
+      "3 "
+      "2 0.5 1 0\n");
+}
+
+TEST(OffReader, NotesWhatIsBehindTheLastFace) {
+  EXPECT_EQ(parse_off("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 2 1\n", "a.off").notes.at(0),
+            "1 lines behind the last face left out: more than its counts say");
+  expect_error([] { parse_off("OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2 3 0 1 2", "a.off"); },
+               {"a.off:1", "more words than its counts need"});
+}
+
 TEST(OffReader, NamesWhatIsWrong) {
   expect_error([] { parse_off("", "a.off"); }, {"a.off", "empty"});
   expect_error([] { parse_off("4OFF\n1 0 0\n", "a.off"); }, {"a.off:1", "another kind"});
@@ -236,7 +340,7 @@ TEST_F(MeshFiles, AreReadByExtension) {
   EXPECT_EQ(file.mesh.V, ball.V);
   EXPECT_EQ(file.velocity, 2 * ball.V);
   EXPECT_EQ(file.time, 0.75);
-  expect_error([&] { read_mesh_file(write("a.stl", "solid")); }, {"'.stl'", ".obj, .ply"});
+  expect_error([&] { read_mesh_file(write("a.3ds", "solid")); }, {"'.3ds'", ".obj, .ply"});
   expect_error([&] { read_mesh_file(folder() / "none.obj"); }, {"none.obj", "no file"});
   expect_error([&] { read_mesh_file(write("cut.vtp", "<VTKFile type=\"PolyData\">")); },
                {"cut.vtp", "no readable VTK file"});
