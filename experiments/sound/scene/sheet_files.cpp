@@ -58,6 +58,8 @@ class SheetFiles final : public SheetAnimation {
   [[nodiscard]] std::string name() const override { return name_; }
   [[nodiscard]] const fs::path& path(int frame) const { return file(frame).file; }
 
+  [[nodiscard]] const std::set<std::string>& notes() const { return notes_; }
+
   /// Methods that are run one after the other ask for the same frames: they are kept, the first
   /// ones as long as they are not too many.
   [[nodiscard]] SheetSnapshot snapshot(int frame) const override {
@@ -74,7 +76,9 @@ class SheetFiles final : public SheetAnimation {
  private:
   [[nodiscard]] SheetSnapshot read_frame(int frame) const {
     const FrameFile& at = file(frame);
-    MeshFile read = read_mesh_file(at.file);
+    MeshFile read = read_frame_file(at);
+    for (const std::string& note : read.notes)
+      notes_.insert(at.file.filename().string() + ": " + note);
     if (read.pattern.rows() != read.mesh.V.rows()) {
       throw Error("has no coordinates of the pattern", at.file.string(),
                   "a point array 'pattern' of two components (.vtp), or texture coordinates, one "
@@ -101,7 +105,8 @@ class SheetFiles final : public SheetAnimation {
   std::string name_;
   mutable std::mutex mutex_;
   mutable std::map<int, SheetSnapshot> kept_;
-  mutable Eigen::Index vertices_ = 0;  ///< of all frames read
+  mutable std::set<std::string> notes_;  ///< of the frames that were read
+  mutable Eigen::Index vertices_ = 0;    ///< of all frames read
 };
 
 void require_of_sheet(const SheetSnapshot& frame, const Pattern& pattern, const fs::path& file) {
@@ -164,6 +169,7 @@ std::shared_ptr<const SheetAnimation> open_sheet_files(const SheetFileOptions& o
   for (const int i : {0, last / 2, last}) {
     require_of_sheet(sheet->snapshot(i), pattern, sheet->path(i));
   }
+  warnings.insert(warnings.end(), sheet->notes().begin(), sheet->notes().end());
   return sheet;
 }
 

@@ -35,12 +35,13 @@ FoundFiles find_files(const fs::path& path, const std::string& part) {
   if (fs::is_directory(path)) return find_in_folder(path, part);
   if (!fs::is_regular_file(path)) {
     throw Error("is no file or folder", path.string(),
-                "name_%04d with " + mesh_file_extensions() + ", a folder, .pvd, a mesh");
+                "name_%04d with " + mesh_file_extensions() + ", a folder, .pvd, .series, a mesh");
   }
-  if (path.extension() == ".pvd") return find_in_pvd(path, part);
+  if (path.extension() == ".pvd" || path.extension() == ".series")
+    return find_in_collection(path, part);
   if (!is_mesh_file_extension(path.extension().string())) {
     throw Error("has the extension '" + path.extension().string() + "'", path.string(),
-                mesh_file_extensions() + ", .pvd");
+                mesh_file_extensions() + ", .pvd, .series");
   }
   FoundFiles found;
   found.files.push_back({path, 0, {}});
@@ -74,6 +75,31 @@ void probe(const MeshSequence& sequence, std::vector<std::string>& warnings) {
   }
 }
 
+/// Takes away the frames at the beginning that have no triangle: nothing has flowed in yet.
+void drop_empty_beginning(std::vector<FrameFile>& files, const std::string& name,
+                          std::vector<std::string>& warnings) {
+  if (files.size() < 2) return;
+  std::size_t empty = 0;
+  while (empty < files.size() && read_frame_file(files[empty]).mesh.F.rows() == 0) ++empty;
+  if (empty == 0) return;
+  if (empty == files.size()) throw Error("has no triangle in any frame", name);
+  const std::string last = empty == 1 ? "" : " to " + files[empty - 1].file.filename().string();
+  warnings.push_back(files.front().file.filename().string() + last +
+                     " without a triangle: no surface yet; the sequence begins with " +
+                     files[empty].file.filename().string() + ", at " +
+                     std::to_string(files[empty].time) + " s");
+  files.erase(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(empty));
+}
+
+/// Every file that is read for a frame.
+void add_files(const FoundFile& frame, std::vector<fs::path>& inputs) {
+  const auto add = [&](const fs::path& file) {
+    for (const fs::path& piece : files_of_mesh(file)) inputs.push_back(piece);
+  };
+  add(frame.file);
+  for (const fs::path& file : frame.further) add(file);
+}
+
 }  // namespace
 
 void describe(OptionVisitor& v, SequenceOptions& o) {
@@ -91,8 +117,8 @@ void describe(OptionVisitor& v, SequenceOptions& o) {
       {.doc = "default: sidecar, else times of the files, else 25", .unit = "1/s", .min = 1e-6});
   v.value("start", o.start,
           {.doc = "time of the first frame; default: sidecar, the files', else 0", .unit = "s"});
-  v.value("first", o.first, {.doc = "number of the first frame to take", .min = 0});
-  v.value("last", o.last, {.doc = "number of the last frame to take", .min = 0});
+  v.value("first", o.first, {.doc = "number of the first frame to take"});
+  v.value("last", o.last, {.doc = "number of the last frame to take"});
 }
 
 SequenceFiles find_sequence(const SequenceOptions& options, const fs::path& folder,
@@ -103,7 +129,7 @@ SequenceFiles find_sequence(const SequenceOptions& options, const fs::path& fold
   select(found, options, name);
   for (std::string& warning : found.warnings) warnings.push_back(std::move(warning));
   if (found.collection) inputs.push_back(*found.collection);
-  for (const FoundFile& file : found.files) inputs.push_back(file.file);
+  for (const FoundFile& file : found.files) add_files(file, inputs);
 
   const fs::path sidecar_file = path.string() + ".json";
   SequenceSidecar sidecar;
@@ -128,6 +154,7 @@ std::shared_ptr<SurfaceSequence> open_sequence(const SequenceOptions& options,
                                                std::vector<std::string>& warnings,
                                                std::vector<fs::path>& inputs) {
   SequenceFiles found = find_sequence(options, folder, warnings, inputs);
+  drop_empty_beginning(found.files, options.path, warnings);
   auto sequence =
       std::make_shared<MeshSequence>(std::move(found.files), found.y_up, found.scale, options.path);
   probe(*sequence, warnings);

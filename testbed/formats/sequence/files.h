@@ -18,8 +18,8 @@ enum class UpAxis { from_sidecar, z, y };
 /// An animated surface on disk. What a sidecar `<path>.json` says ({"frames_per_second": 24, "up":
 /// "y", "scale": 0.01, "start": 0}, every key optional) holds where the option is absent.
 struct SequenceOptions {
-  /// Numbered files "splash_%04d.ply" (.obj, .ply, .vtp, .off), a folder with one such sequence
-  /// (the frames of a run), a .pvd, or one mesh file: a still.
+  /// Numbered files "splash_%04d.ply", a folder with one such sequence (the frames of a run), a
+  /// .pvd, a .vtp.series, or one mesh file: a still.
   std::string path;
   std::string part = "surface";
   UpAxis up = UpAxis::from_sidecar;
@@ -48,7 +48,8 @@ SequenceFiles find_sequence(const SequenceOptions& options, const std::filesyste
 /// from frame to frame.
 ///
 /// Files are looked for relative to `folder`, then to the working folder. The first, the middle and
-/// the last frame are read here, so that most mistakes come up at once.
+/// the last frame are read here, so that most mistakes come up at once. Frames without a triangle
+/// at the beginning are left out, with a warning; times stay.
 ///
 /// @param warnings  added: missing frames, uneven times, a frame rate that nothing says, meshes
 ///                  turned over because they were inside out, welded or dropped vertices

@@ -34,13 +34,18 @@ struct Pattern {
         !name.ends_with(suffix)) {
       return std::nullopt;
     }
-    const std::string digits =
-        name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
-    if (!all_digits(digits) || digits.size() > kMostDigits || digits.size() < width) {
+    std::string_view digits = name;
+    digits = digits.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
+    const bool negative = digits.starts_with('-');
+    if (negative) digits.remove_prefix(1);
+    // C counts the sign among the digits, others do not.
+    const std::size_t fewest = negative && width > 1 ? width - 1 : width;
+    if (!all_digits(digits) || digits.size() > kMostDigits || digits.size() < fewest) {
       return std::nullopt;
     }
     if (digits.size() > width && digits.front() == '0') return std::nullopt;
-    return static_cast<int>(*whole_number(digits));
+    const int number = static_cast<int>(*whole_number(digits));
+    return negative ? -number : number;
   }
 };
 
@@ -98,6 +103,14 @@ FoundFiles in_order(std::map<int, fs::path> by_number) {
 /// Numbered meshes of a folder: stem and extension ("surface_", ".vtp") -> number -> file.
 using Families = std::map<std::pair<std::string, std::string>, std::map<int, fs::path>>;
 
+/// Whether a minus before digits is their sign ("a_-2") and no hyphen ("a-2").
+bool is_sign(std::string_view before) {
+  if (before == "-") return true;
+  if (!before.ends_with('-')) return false;
+  const char c = before[before.size() - 2];
+  return c == '_' || c == '.' || c == ' ';
+}
+
 Families families_in(const fs::path& folder) {
   Families families;
   for (const std::string& name : names_in(folder)) {
@@ -107,8 +120,13 @@ Families families_in(const fs::path& folder) {
     const std::size_t last = stem.find_last_not_of("0123456789");
     const std::string digits = stem.substr(last == std::string::npos ? 0 : last + 1);
     if (digits.empty() || digits.size() > kMostDigits) continue;
-    const int number = static_cast<int>(*whole_number(digits));
-    auto& family = families[{stem.substr(0, stem.size() - digits.size()), extension}];
+    int number = static_cast<int>(*whole_number(digits));
+    std::string before = stem.substr(0, stem.size() - digits.size());
+    if (is_sign(before)) {
+      number = -number;
+      before.pop_back();
+    }
+    auto& family = families[{before, extension}];
     if (const auto [it, is_new] = family.emplace(number, path); !is_new) {
       throw Error("has the same number as " + it->second.filename().string(), path.string());
     }
@@ -141,20 +159,40 @@ void take_times(FoundFiles& found, const fs::path& folder, const std::string& pa
   found.collection = pvd;
 }
 
+void require_mesh(const fs::path& file) {
+  const std::string extension = file.extension().string();
+  if (is_mesh_file_extension(extension)) return;
+  throw Error("has the extension '" + extension + "'", file.string(), mesh_file_extensions());
+}
+
+/// Of two files of one time in a collection.
+void require_other_part(const PvdDataSet& a, const PvdDataSet& b, const fs::path& file,
+                        const std::string& part) {
+  if (a.part != b.part) return;
+  throw Error("has two files for the time " + std::to_string(a.time) +
+                  " s: " + a.file.filename().string() + ", " + b.file.filename().string(),
+              file.string(),
+              "one a time, several with numbers of their own (part=\"0\", \"1\", …), or several of "
+              "which some are named '" +
+                  part + "'");
+}
+
 }  // namespace
 
 FoundFiles find_pattern(const fs::path& path) {
   const Pattern pattern = parse_pattern(path);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (!is_mesh_file_extension(path.extension().string())) {
-    throw Error("has the extension '" + path.extension().string() + "'", path.string(),
-                mesh_file_extensions());
-  }
+  require_mesh(path);
   if (!fs::is_directory(folder)) throw Error("is in no folder", path.string());
   const std::vector<std::string> names = names_in(folder);
   std::map<int, fs::path> by_number;
   for (const std::string& name : names) {
-    if (const auto number = pattern.match(name)) by_number[*number] = folder / name;
+    const auto number = pattern.match(name);
+    if (!number) continue;
+    if (const auto [it, is_new] = by_number.emplace(*number, folder / name); !is_new) {
+      throw Error("has the same number as " + it->second.filename().string(),
+                  (folder / name).string());
+    }
   }
   if (by_number.empty()) {
     throw Error("matches no file", path.string(),
@@ -195,41 +233,50 @@ FoundFiles find_in_folder(const fs::path& folder, const std::string& part) {
   return found;
 }
 
-FoundFiles find_in_pvd(const fs::path& file, const std::string& part) {
-  std::vector<PvdDataSet> sets = read_pvd(file);
+FoundFiles find_in_collection(const fs::path& file, const std::string& part) {
+  std::vector<PvdDataSet> sets = file.extension() == ".series" ? read_series(file) : read_pvd(file);
   const bool named = std::any_of(sets.begin(), sets.end(),
                                  [&](const PvdDataSet& set) { return set.name == part; });
   if (named) std::erase_if(sets, [&](const PvdDataSet& set) { return set.name != part; });
-  std::stable_sort(sets.begin(), sets.end(),
-                   [](const PvdDataSet& a, const PvdDataSet& b) { return a.time < b.time; });
+  std::stable_sort(sets.begin(), sets.end(), [](const PvdDataSet& a, const PvdDataSet& b) {
+    return std::pair(a.time, a.part) < std::pair(b.time, b.part);
+  });
   FoundFiles found;
   found.collection = file;
   std::vector<std::string> missing;
-  for (int i = 0; i < std::ssize(sets); ++i) {
-    if (i > 0 && sets[i].time == sets[i - 1].time) {
-      throw Error("has two files for the time " + std::to_string(sets[i].time) +
-                      " s: " + sets[i - 1].file.filename().string() + ", " +
-                      sets[i].file.filename().string(),
-                  file.string(), "one a time, or several that name the part '" + part + "'");
+  bool lacks_a_part = false, joins = false;
+  int number = 0;
+  for (auto set = sets.begin(); set != sets.end(); ++number) {
+    const auto end =
+        std::find_if(set, sets.end(), [&](const PvdDataSet& s) { return s.time != set->time; });
+    FoundFile frame{set->file, number, set->time};
+    const std::size_t missing_before = missing.size();
+    for (auto of = set; of != end; ++of) {
+      if (of != set) {
+        require_other_part(*(of - 1), *of, file, part);
+        frame.further.push_back(of->file);
+      }
+      require_mesh(of->file);
+      if (!fs::is_regular_file(of->file)) missing.push_back(of->file.filename().string());
     }
-    if (!is_mesh_file_extension(sets[i].file.extension().string())) {
-      throw Error("has the extension '" + sets[i].file.extension().string() + "'",
-                  sets[i].file.string(), mesh_file_extensions());
-    }
-    if (fs::is_regular_file(sets[i].file)) {
-      found.files.push_back({sets[i].file, i, sets[i].time});
-    } else {
-      missing.push_back(sets[i].file.filename().string());
-    }
+    if (missing.size() == missing_before) found.files.push_back(std::move(frame));
+    joins = joins || end - set > 1;
+    lacks_a_part = lacks_a_part || (missing.size() > missing_before && end - set > 1);
+    set = end;
   }
   if (found.files.empty()) {
     throw Error(sets.empty() ? "names no file" : "none of its files is there: " + listed(missing),
                 file.string());
   }
+  if (joins) {
+    found.warnings.push_back(file.filename().string() +
+                             ": files of one time are parts of one frame, and joined");
+  }
   if (!missing.empty()) {
     found.warnings.push_back(file.filename().string() + ": " + std::to_string(missing.size()) +
                              " of " + std::to_string(sets.size()) +
-                             " files are missing: " + listed(missing));
+                             " files are missing: " + listed(missing) +
+                             (lacks_a_part ? "; frames that lack a part are left out" : ""));
   }
   return found;
 }

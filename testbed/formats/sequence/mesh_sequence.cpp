@@ -4,9 +4,18 @@
 
 #include "core/error.h"
 #include "testbed/formats/mesh/mesh_file.h"
+#include "testbed/formats/mesh/vtp_reader.h"
 #include "testbed/formats/sequence/repair.h"
 
 namespace geoprior {
+
+MeshFile read_frame_file(const FrameFile& frame) {
+  std::vector<MeshFile> parts;
+  parts.push_back(read_mesh_file(frame.file));
+  for (const std::filesystem::path& file : frame.further) parts.push_back(read_mesh_file(file));
+  return joined(std::move(parts));
+}
+
 Eigen::MatrixX3d in_metres_z_up(const Eigen::MatrixX3d& rows, bool y_up, double scale) {
   Eigen::MatrixX3d out = scale * rows;
   if (y_up) {
@@ -37,12 +46,13 @@ const FrameFile& MeshSequence::file_at(int frame) const {
 
 SurfaceFrame MeshSequence::frame(int frame) const {
   const FrameFile& file = file_at(frame);
-  MeshFile read = read_mesh_file(file.file);
+  MeshFile read = read_frame_file(file);
   SurfaceFrame out;
   out.time = file.time;
   out.mesh.V = in_metres_z_up(read.mesh.V, y_up_, scale_);
   out.mesh.F = std::move(read.mesh.F);
   out.velocity = in_metres_z_up(read.velocity, y_up_, scale_);
+  out.notes = std::move(read.notes);
   repair(out, file.file.string(), out.notes);
   return out;
 }

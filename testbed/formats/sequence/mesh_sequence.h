@@ -5,15 +5,20 @@
 #include <vector>
 
 #include "core/inputs/surface_sequence.h"
+#include "testbed/formats/mesh/parsed_mesh.h"
 
 namespace geoprior {
 
 /// One frame on disk.
 struct FrameFile {
   std::filesystem::path file;
-  int number = 0;   ///< in its name, or in the list of a .pvd
-  double time = 0;  ///< s
+  int number = 0;                                   ///< in its name, or in the list of a .pvd
+  double time = 0;                                  ///< s
+  std::vector<std::filesystem::path> further = {};  ///< parts of the same frame
 };
+
+/// The mesh of a frame, its parts joined. @throws Error  as `read_mesh_file`
+MeshFile read_frame_file(const FrameFile& frame);
 
 /// Rows of coordinates or velocities of a file, in metres with z up.
 /// @param y_up   the file has y up: (x, y, z) becomes (x, -z, y)

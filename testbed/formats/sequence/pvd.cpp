@@ -1,11 +1,14 @@
 #include "testbed/formats/sequence/pvd.h"
 
+#include <cmath>
+#include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 
 #include "core/error.h"
-#include "testbed/formats/atomic_file.h"
+#include "testbed/formats/mesh/vtp_reader.h"
 #include "testbed/formats/text/lines.h"
 #include "testbed/formats/text/nesting.h"
+#include "testbed/formats/text/text_file.h"
 
 namespace geoprior {
 
@@ -28,15 +31,50 @@ std::vector<PvdDataSet> parse_pvd(std::string_view text, const std::filesystem::
     if (!time) throw Error("timestep is no finite number", where);
     const std::string relative = node.attribute("file").as_string();
     if (relative.empty()) throw Error("DataSet without a file", where);
-    sets.push_back({*time, node.attribute("name").as_string(),
-                    std::filesystem::path(relative).is_absolute() ? std::filesystem::path(relative)
-                                                                  : file.parent_path() / relative});
+    sets.push_back({*time, node.attribute("name").as_string(), named_in(file, relative),
+                    node.attribute("part").as_int(0)});
   }
   return sets;
 }
 
 std::vector<PvdDataSet> read_pvd(const std::filesystem::path& file) {
-  return parse_pvd(read_whole_file(file), file);
+  return parse_pvd(read_text_file(file), file);
+}
+
+std::vector<PvdDataSet> parse_series(std::string_view text, const std::filesystem::path& file) {
+  using Json = nlohmann::json;
+  const std::string name = file.string();
+  require_shallow_json(text, name);
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::parse_error& e) {
+    throw Error("is no valid JSON", name + ", byte " + std::to_string(e.byte));
+  } catch (const Json::exception&) {
+    throw Error("holds a number that is too large", name);
+  }
+  const char* expected = R"({"files": [{"name": "a_0.vtp", "time": 0}, …]})";
+  if (!json.is_object() || !json.contains("files") || !json["files"].is_array()) {
+    throw Error("is no file series: has no list \"files\"", name, expected);
+  }
+  std::vector<PvdDataSet> sets;
+  for (const Json& entry : json["files"]) {
+    const std::string where = name + ", file " + std::to_string(sets.size());
+    if (!entry.is_object() || !entry.contains("name") || !entry["name"].is_string()) {
+      throw Error("has no name", where, expected);
+    }
+    if (!entry.contains("time") || !entry["time"].is_number()) {
+      throw Error("has no time", where, expected);
+    }
+    const auto time = entry["time"].get<double>();
+    if (!std::isfinite(time)) throw Error("its time is not finite", where);
+    sets.push_back({time, "", named_in(file, entry["name"].get<std::string>())});
+  }
+  return sets;
+}
+
+std::vector<PvdDataSet> read_series(const std::filesystem::path& file) {
+  return parse_series(read_text_file(file), file);
 }
 
 }  // namespace geoprior

@@ -261,7 +261,8 @@ void repair(SurfaceFrame& frame, const std::string& where, std::vector<std::stri
     notes.push_back("triangles that name a vertex twice were dropped");
   }
   if (frame.mesh.F.rows() == 0) {
-    throw Error("is an empty frame: no triangles", where, "one triangle or more");
+    throw Error("is an empty frame: no triangles", where,
+                "one triangle or more; first and last take the frames that have a surface");
   }
   Repair work(frame, where, notes);
   work.weld();

@@ -26,7 +26,8 @@ std::vector<double> own_times(const std::vector<FoundFile>& files) {
   std::vector<double> times;
   for (const FoundFile& file : files) {
     std::optional<double> time = file.time;
-    if (!time && file.file.extension() == ".vtp" && files.size() > 1) {
+    const bool may_say = file.file.extension() == ".vtp" || file.file.extension() == ".pvtp";
+    if (!time && may_say && files.size() > 1) {
       time = read_mesh_file(file.file).time;
     }
     if (!time) return {};
@@ -108,7 +109,7 @@ std::vector<FrameFile> timed(const std::vector<FoundFile>& files, const Clock& c
   if (!missing.empty()) warnings.push_back(name + ": frames are missing: " + missing);
   std::vector<FrameFile> out;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    out.push_back({files[i].file, files[i].number, times[i]});
+    out.push_back({files[i].file, files[i].number, times[i], files[i].further});
   }
   return out;
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <limits>
 
@@ -99,6 +100,31 @@ TEST_F(SequenceFiles, NumbersMayStartAtZeroAndTopologyMayChange) {
   EXPECT_TRUE(warned("25 frames a second are assumed"));
   EXPECT_EQ(sequence->frame(0).mesh.vertex_count(), 6);
   EXPECT_EQ(sequence->frame(1).mesh.vertex_count(), 3);
+}
+
+// C's "%04d" counts the sign, Blender does not; "-" alone is a hyphen.
+TEST_F(SequenceFiles, NumbersMayBeBelowZero) {
+  write_objs("a_%d.obj", {-2, -1, 0, 1, 2});
+  const auto sequence = open("a_%d.obj");
+  ASSERT_EQ(sequence->frame_count(), 5);
+  EXPECT_NEAR(sequence->frame(0).mesh.V.maxCoeff(), 1, 1e-12) << "-2 comes first";
+  EXPECT_NEAR(sequence->time(4), 4 / 25.0, 1e-15);
+  SequenceOptions options;
+  options.path = "a_%d.obj";
+  options.first = -1;
+  options.last = 0;
+  EXPECT_EQ(open(options)->frame_count(), 2);
+  write_objs("in/b_%04d.obj", {-12, 0, 1});
+  EXPECT_EQ(open("in/b_%04d.obj")->frame_count(), 3);
+  EXPECT_EQ(open("in")->frame_count(), 3);
+  write_obj("blender/c_-0001.obj", octahedron(1));
+  write_obj("blender/c_0000.obj", octahedron(2));
+  EXPECT_EQ(open("blender/c_%04d.obj")->frame_count(), 2);
+  EXPECT_NEAR(open("blender")->frame(0).mesh.V.maxCoeff(), 1, 1e-12);
+  write_obj("blender/c_-001.obj", octahedron(3));
+  expect_error([&] { open("blender/c_%04d.obj"); }, {"c_-001.obj", "same number as c_-0001.obj"});
+  write_objs("hyphen/d-%d.obj", {1, 2, 3});
+  EXPECT_NEAR(open("hyphen")->frame(0).mesh.V.maxCoeff(), 1, 1e-12) << "1 comes first";
 }
 
 TEST_F(SequenceFiles, MissingFramesLeaveAGapInTimeAndAreReported) {
@@ -231,6 +257,89 @@ TEST_F(SequenceFiles, CollectionsWithTwoRatesOrLostFilesAreReported) {
   std::filesystem::remove(folder() / "s_3.vtp");
   EXPECT_EQ(open("s.pvd")->frame_count(), 4);
   EXPECT_TRUE(warned("1 of 5 files are missing: s_3.vtp"));
+}
+
+TEST_F(SequenceFiles, FilesOfOneTimeAreOneFrame) {
+  std::string text = "<VTKFile type=\"Collection\"><Collection>";
+  for (int i = 0; i < 3; ++i) {
+    for (int part = 1; part >= 0; --part) {
+      const std::string file = numbered(part == 0 ? "a%d.vtp" : "sub/b%d.vtp", i);
+      write_vtp(file, octahedron(1, {5.0 * part, 0, 0}), 0);
+      std::string name = file;
+      std::replace(name.begin(), name.end(), '/', '\\');
+      text += "<DataSet timestep=\"" + std::to_string(i) + "\" part=\"" + std::to_string(part) +
+              "\" file=\".\\" + name + "\"/>";
+    }
+  }
+  write("s.pvd", text + "</Collection></VTKFile>");
+  const auto sequence = open("s.pvd");
+  ASSERT_EQ(sequence->frame_count(), 3);
+  const SurfaceFrame frame = sequence->frame(1);
+  EXPECT_EQ(frame.mesh.triangle_count(), 16);
+  EXPECT_NEAR(signed_volume(frame.mesh.V, frame.mesh.F), 2 * 4. / 3, 1e-12);
+  EXPECT_EQ(frame.mesh.V(0, 0), 1) << "part 0 comes first";
+  EXPECT_TRUE(warned("files of one time are parts of one frame"));
+  EXPECT_EQ(inputs.size(), 7U);
+  std::filesystem::remove(folder() / "sub/b1.vtp");
+  EXPECT_EQ(open("s.pvd")->frame_count(), 2);
+  EXPECT_TRUE(warned("1 of 6 files are missing: b1.vtp; frames that lack a part are left out"));
+}
+
+TEST_F(SequenceFiles, SeriesAndPiecesAreRead) {
+  for (int i = 0; i < 2; ++i) {
+    for (int p = 0; p < 2; ++p)
+      write_vtp(numbered("p_%d", i) + numbered("_%d.vtp", p), octahedron(1, {4.0 * p, 0, 0}), 0);
+    write(numbered("p_%d.pvtp", i), "<VTKFile type=\"PPolyData\"><PPolyData><Piece Source=\"" +
+                                        numbered("p_%d_0.vtp", i) + "\"/><Piece Source=\".\\" +
+                                        numbered("p_%d_1.vtp", i) + "\"/></PPolyData></VTKFile>");
+  }
+  write("p.pvtp.series",
+        R"({"files": [{"name": "p_1.pvtp", "time": 2.5}, {"name": "p_0.pvtp", "time": 2}]})");
+  const auto sequence = open("p.pvtp.series");
+  ASSERT_EQ(sequence->frame_count(), 2);
+  EXPECT_EQ(sequence->time(1), 2.5);
+  EXPECT_EQ(sequence->frame(1).mesh.triangle_count(), 16);
+  EXPECT_EQ(inputs.size(), 7U) << "the series, two frames, their pieces";
+  const auto refused = [&](const std::string& text, std::initializer_list<std::string> parts) {
+    write("s.vtp.series", text);
+    expect_error([&] { open("s.vtp.series"); }, parts);
+  };
+  refused("{", {"s.vtp.series, byte", "JSON"});
+  refused("[]", {"no file series"});
+  refused(R"({"files": [{"time": 1}]})", {"file 0", "no name"});
+  refused(R"({"files": [{"name": "p_0.pvtp"}]})", {"file 0", "no time"});
+  write("q.pvtp",
+        "<VTKFile type=\"PPolyData\"><PPolyData><Piece Source=\"none.vtp\"/></PPolyData>"
+        "</VTKFile>");
+  expect_error([&] { open("q.pvtp"); }, {"q.pvtp", "not there", "none.vtp"});
+}
+
+// An inflow: the first frames have no surface yet. Times stay those of the files.
+TEST_F(SequenceFiles, EmptyFramesAtTheBeginningAreLeftOut) {
+  write_objs("a_%d.obj", {0, 1, 2, 3, 4});
+  write("a_0.obj", "# nothing yet\n");
+  write("a_1.obj", "v 0 0 0\n");
+  SequenceOptions options;
+  options.path = "a_%d.obj";
+  options.frames_per_second = 10;
+  const auto sequence = open(options);
+  ASSERT_EQ(sequence->frame_count(), 3);
+  EXPECT_DOUBLE_EQ(sequence->time(0), 0.2);
+  EXPECT_TRUE(
+      warned("a_0.obj to a_1.obj without a triangle: no surface yet; the sequence begins "
+             "with a_2.obj, at 0.200000 s"));
+  EXPECT_EQ(inputs.size(), 5U);
+  for (int i = 2; i < 5; ++i) write(numbered("a_%d.obj", i), "");
+  expect_error([&] { open(options); }, {"a_%d.obj", "no triangle in any frame"});
+  write_objs("b_%d.obj", {0, 1, 2});
+  write("b_2.obj", "");
+  expect_error([&] { open("b_%d.obj"); }, {"b_2.obj", "empty frame", "first and last"});
+}
+
+TEST_F(SequenceFiles, NotesOfReadersAreWarnings) {
+  write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n");
+  open("a.obj");
+  EXPECT_TRUE(warned("a.obj: 1 line 'l' left out"));
 }
 
 TEST_F(SequenceFiles, CollectionMistakesAreNamed) {
