@@ -10,6 +10,7 @@
 #include "experiments/sound/scene/bank_files.h"
 #include "experiments/sound/scene/sheet_files.h"
 #include "testbed/formats/wav_file.h"
+#include "tests/support/text_forms.h"
 #include "tests/testbed/scratch_folder.h"
 
 namespace geoprior::sound {
@@ -71,6 +72,20 @@ TEST_F(BankFiles, OtherRatesAndChannelsAreTakenAndSaid) {
   ASSERT_EQ(notes_.size(), 2u);
   EXPECT_THAT(notes_[0], HasSubstr("channels"));
   EXPECT_THAT(notes_[1], HasSubstr("24000 Hz"));
+}
+
+TEST_F(BankFiles, ListsAreReadInEveryForm) {
+  write_wav("a.wav", {48000, Eigen::MatrixXd::Constant(480, 1, 0.25)});
+  for (const std::string list : {"file,kind,L_R,l_c,peak\na.wav,flap,0.5,0.25,\n",
+                                 "\"file\";Kind;l_r;l_c\n\"a.wav\";flap;0,5;0,25\n"}) {
+    for (const test::TextForm& form : test::text_forms(list)) {
+      write("bank.csv", form.bytes);
+      const SoundBank bank = read();
+      ASSERT_EQ(bank.sounds.size(), 1U) << form.name;
+      EXPECT_EQ(bank.sounds[0].l_r, 0.5) << form.name;
+      EXPECT_EQ(bank.sounds[0].l_c, 0.25) << form.name;
+    }
+  }
 }
 
 TEST_F(BankFiles, BadOnesAreNamed) {
