@@ -40,7 +40,9 @@ std::string in_small_letters(std::string_view word) {
 /// Binary files may begin with "solid" too: the size tells, then whether there is text.
 bool is_binary_stl(std::string_view bytes) {
   if (bytes.size() >= kHeadBytes && binary_size(bytes) == bytes.size()) return true;
-  if (bytes.starts_with("\xEF\xBB\xBF")) return false;
+  for (const std::string_view mark : {"\xEF\xBB\xBF", "\xFF\xFE", "\xFE\xFF"}) {
+    if (bytes.starts_with(mark)) return false;
+  }
   std::vector<std::string_view> words;
   split_words(bytes.substr(0, std::min(bytes.find_first_of("\r\n"), bytes.size())), words);
   const bool says_solid = !words.empty() && in_small_letters(words[0]) == "solid";
