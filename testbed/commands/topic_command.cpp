@@ -9,7 +9,8 @@ namespace {
 
 /// The value of a flag: a text is a text whatever it holds, anything else is TOML.
 TomlNode flag_value(const OptionRow& row, const std::string& written) {
-  if (row.type != "text") return parse_toml_value(written, "option " + row.key);
+  const bool text = row.type == "text" || row.type == "file" || row.type == "folder";
+  if (!text) return parse_toml_value(written, "option " + row.key);
   TomlNode node;
   node.kind = TomlNode::Kind::text;
   node.text = written;

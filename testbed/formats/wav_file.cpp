@@ -12,12 +12,11 @@
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/input_file.h"
+#include "testbed/formats/wav_chunks.h"
 
 namespace geoprior {
 
 namespace {
-
-constexpr const char* kAllowedSound = "a WAV file of 16, 24 or 32-bit PCM or floating point";
 
 /// Bytes in memory as libsndfile reads and writes them.
 struct SoundBytes {
@@ -89,37 +88,6 @@ void require_channels(Eigen::Index channels, const std::string& name) {
               "1 to " + std::to_string(kMostChannels));
 }
 
-std::uint32_t little_endian_at(std::span<const std::byte> bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (int i = 3; i >= 0; --i) {
-    value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
-  }
-  return value;
-}
-
-bool has_word(std::span<const std::byte> bytes, std::size_t at, const char* word) {
-  return std::memcmp(bytes.data() + at, word, 4) == 0;
-}
-
-/// libsndfile reads what is there of a file that was cut short, and other kinds of files as well.
-void require_whole_wav(std::span<const std::byte> bytes, const std::string& name) {
-  constexpr std::size_t kHead = 12, kChunkHead = 8;
-  if (bytes.empty()) throw Error("is empty", name, kAllowedSound);
-  if (bytes.size() < kHead || !has_word(bytes, 0, "RIFF") || !has_word(bytes, 8, "WAVE")) {
-    throw Error("is no WAV file", name, kAllowedSound);
-  }
-  for (std::size_t at = kHead; bytes.size() - at >= kChunkHead;) {
-    const std::size_t size = little_endian_at(bytes, at + 4);
-    const std::size_t there = bytes.size() - at - kChunkHead;
-    if (size > there) {
-      throw Error("is cut short: " + std::to_string(size - there) + " bytes are missing", name);
-    }
-    if (has_word(bytes, at, "data")) return;
-    at += std::min(kChunkHead + size + size % 2, bytes.size() - at);  // chunks are padded
-  }
-  throw Error("is cut short: it has no samples", name);
-}
-
 void require_samples_of_known_kind(const SF_INFO& info, const std::string& name) {
   switch (info.format & SF_FORMAT_SUBMASK) {
     case SF_FORMAT_PCM_16:
@@ -131,9 +99,9 @@ void require_samples_of_known_kind(const SF_INFO& info, const std::string& name)
     case SF_FORMAT_PCM_U8:
       throw Error(
           "has 8 bits a sample, whose steps (48 dB below full scale) are heard in what decays",
-          name, kAllowedSound);
+          name, kAllowedWav);
     default:
-      throw Error("has samples of another kind", name, kAllowedSound);
+      throw Error("has samples of another kind", name, kAllowedWav);
   }
 }
 
@@ -189,18 +157,19 @@ std::vector<std::byte> wav_bytes(const Sound& sound) {
   return std::move(out.out);
 }
 
-Sound wav_from_bytes(std::span<const std::byte> bytes, const std::string& name) {
-  require_whole_wav(bytes, name);
-  SoundBytes in{bytes, {}, 0};
+Sound wav_from_bytes(std::span<const std::byte> bytes, const std::string& name,
+                     std::vector<std::string>& notes) {
+  const std::vector<std::byte> plain = plain_wav(bytes, name, notes);
+  SoundBytes in{plain, {}, 0};
   SF_INFO info{};
   const SoundFile file = open_sound(in, SFM_READ, info);
-  if (!file) throw Error(std::string("is damaged: ") + sf_strerror(nullptr), name, kAllowedSound);
+  if (!file) throw Error(std::string("is damaged: ") + sf_strerror(nullptr), name, kAllowedWav);
   require_samples_of_known_kind(info, name);
   require_sample_rate(info.samplerate, name);
   require_channels(info.channels, name);
   if (info.frames <= 0) throw Error("has no samples", name);
   // Each sample has two bytes at least: what says to have more is not believed.
-  if (info.frames > static_cast<sf_count_t>(bytes.size()) / (2 * info.channels)) {
+  if (info.frames > static_cast<sf_count_t>(plain.size()) / (2 * info.channels)) {
     throw Error("is damaged: it says to have more samples than it has bytes for", name);
   }
   Samples samples(info.frames, info.channels);
@@ -211,10 +180,15 @@ Sound wav_from_bytes(std::span<const std::byte> bytes, const std::string& name) 
   return {info.samplerate, samples};
 }
 
-Sound read_wav(const std::filesystem::path& file) {
+Sound wav_from_bytes(std::span<const std::byte> bytes, const std::string& name) {
+  std::vector<std::string> notes;
+  return wav_from_bytes(bytes, name, notes);
+}
+
+Sound read_wav(const std::filesystem::path& file, std::vector<std::string>& notes) {
   require_regular_file(file);
   const std::string bytes = read_whole_file(file);
-  return wav_from_bytes(std::as_bytes(std::span(bytes)), file.string());
+  return wav_from_bytes(std::as_bytes(std::span(bytes)), file.string(), notes);
 }
 
 }  // namespace geoprior

@@ -25,12 +25,15 @@ inline constexpr int kMostChannels = 8;
 /// The sound of a WAV file of 16, 24 or 32-bit PCM, or 32 or 64-bit floating point. Floating point
 /// may lie beyond ±1.
 ///
+/// @param notes    added: what its head left open (wav_chunks.h)
 /// @throws Error  naming the file: missing, no WAV, cut short, without samples, of 8 bits (its
 /// steps are louder than what decays) or packed otherwise, a sample that is not finite, more than
 /// kMostChannels, a sample rate out of range
-Sound read_wav(const std::filesystem::path& file);
+Sound read_wav(const std::filesystem::path& file, std::vector<std::string>& notes);
 
-/// The same, of bytes in memory; `name` is what errors call them.
+/// The same, of bytes in memory; `name` is what errors and notes call them.
+Sound wav_from_bytes(std::span<const std::byte> bytes, const std::string& name,
+                     std::vector<std::string>& notes);
 Sound wav_from_bytes(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace geoprior

@@ -42,10 +42,12 @@ void fuzz_points(const std::uint8_t* data, std::size_t size) {
 void fuzz_svg(const std::uint8_t* data, std::size_t size) {
   read_as_file(data, size, ".svg", [](const std::filesystem::path& file) {
     paper::SvgPatternOptions only_path;
-    allow_error([&] { paper::read_svg_pattern(file, only_path); });
+    std::vector<std::string> notes;
+    allow_error([&] { paper::read_svg_pattern(file, only_path, notes); });
     paper::SvgPatternOptions named;
     named.path = "a";
-    paper::read_svg_pattern(file, named);
+    named.unit = paper::SvgScale::page;
+    paper::read_svg_pattern(file, named, notes);
   });
 }
 

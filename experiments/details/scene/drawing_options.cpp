@@ -19,7 +19,9 @@ void describe(OptionVisitor& v, DetailDrawingOptions& options) {
       options.look.kind == DrawnKind::mesh && options.look.instance.shape == InstanceShape::given;
   if (given) {
     v.value("file", options.file,
-            {.doc = "mesh of a detail (z its normal): .obj, .ply, .off, .vtp", .required = true});
+            {.doc = "mesh of a detail (z its normal): .obj, .ply, .off, .vtp",
+             .unit = "file",
+             .required = true});
   }
 }
 

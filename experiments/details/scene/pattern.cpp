@@ -328,6 +328,7 @@ void describe(OptionVisitor& v, DetailPatternOptions& options) {
             {.doc = "positions of details: .csv with the columns x, y, z and, if need be, weight, "
                     "type; or "
                     "the vertices of a mesh file",
+             .unit = "file",
              .required = true});
     v.value(
         "max_distance", options.max_distance,

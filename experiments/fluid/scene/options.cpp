@@ -39,7 +39,9 @@ void describe(OptionVisitor& v, LiquidShapeOptions& options) {
   }
   if (options.kind == Kind::mesh) {
     v.value("file", options.file,
-            {.doc = "file of the closed mesh: .obj, .ply, .off, .vtp", .required = true});
+            {.doc = "file of the closed mesh: .obj, .ply, .off, .vtp",
+             .unit = "file",
+             .required = true});
     v.value("scale", options.scale,
             {.doc = "metres for one unit of the file", .unit = "m", .min = kSmallest});
     v.value("turn_z_deg", options.turn_z_deg,
@@ -90,7 +92,8 @@ void describe(OptionVisitor& v, NamedSequenceOptions& options) {
 
 void describe(OptionVisitor& v, LibraryOptions& options) {
   v.value("name", options.name, {.doc = "name of the library in edits", .required = true});
-  v.value("path", options.path, {.doc = "file of the feature library (HDF5)", .required = true});
+  v.value("path", options.path,
+          {.doc = "file of the feature library (HDF5)", .unit = "file", .required = true});
 }
 
 void describe(OptionVisitor& v, TargetOptions& options) {
@@ -104,7 +107,9 @@ void describe(OptionVisitor& v, TargetOptions& options) {
       break;
     case TargetKind::mesh:
       v.value("file", options.file,
-              {.doc = "file of the still mesh: .obj, .ply, .off, .vtp", .required = true});
+              {.doc = "file of the still mesh: .obj, .ply, .off, .vtp",
+               .unit = "file",
+               .required = true});
       v.value("scale", options.scale,
               {.doc = "metres for one unit of the file", .unit = "m", .min = kSmallest});
       v.value("turn_deg", options.turn_deg,
@@ -138,7 +143,7 @@ void describe(OptionVisitor& v, FluidSceneOptions& options) {
   describe_group(v, "target", options.target,
                  {.doc = "animation, mesh or ocean that features are pasted into"});
   describe_list(v, "edits", options.edits, {.doc = "features that are pasted, and how"});
-  v.value("edit_list", options.edit_list, {.doc = "TOML file of further edits"});
+  v.value("edit_list", options.edit_list, {.doc = "TOML file of further edits", .unit = "file"});
 }
 
 }  // namespace geoprior::fluid

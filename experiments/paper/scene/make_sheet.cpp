@@ -34,7 +34,7 @@ Pattern with_holes(Pattern pattern, const std::vector<HoleOptions>& holes) {
 
 /// Without cuts.
 Pattern uncut_pattern(const PatternOptions& options, const fs::path& folder,
-                      std::vector<fs::path>& files) {
+                      std::vector<fs::path>& files, std::vector<std::string>& notes) {
   switch (options.kind) {
     case PatternKind::rectangle:
       return with_holes(rectangle_pattern(options.width, options.height), options.holes);
@@ -44,7 +44,7 @@ Pattern uncut_pattern(const PatternOptions& options, const fs::path& folder,
       return with_holes({loop_of(options.points)}, options.holes);
     case PatternKind::svg: {
       files.push_back(find_file(options.file, folder, "experiments/paper", "scene.pattern.file"));
-      return read_svg_pattern(files.back(), options.svg);
+      return read_svg_pattern(files.back(), options.svg, notes);
     }
   }
   throw Error("unknown kind of pattern", "scene.pattern", "rectangle, disc, polygon, svg");
@@ -113,8 +113,8 @@ std::vector<Obstacle> make_obstacles(const std::vector<ObstacleOptions>& options
 }
 
 Pattern make_pattern(const PatternOptions& options, const fs::path& folder,
-                     std::vector<fs::path>& files) {
-  Pattern pattern = uncut_pattern(options, folder, files);
+                     std::vector<fs::path>& files, std::vector<std::string>& notes) {
+  Pattern pattern = uncut_pattern(options, folder, files, notes);
   for (const CutOptions& cut : options.cuts) pattern.cuts.push_back(loop_of(cut.points));
   return pattern;
 }

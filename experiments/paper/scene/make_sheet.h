@@ -13,9 +13,10 @@ namespace geoprior::paper {
 /// The pattern that the options describe, with its holes and cuts.
 /// @param folder  of the experiment file, against which a relative file is tried first
 /// @param files   added: the file of an SVG pattern
+/// @param notes   added: what was left out of it or assumed
 /// @throws Error  naming the key, or file and place
 Pattern make_pattern(const PatternOptions& options, const std::filesystem::path& folder,
-                     std::vector<std::filesystem::path>& files);
+                     std::vector<std::filesystem::path>& files, std::vector<std::string>& notes);
 
 /// @param where   the key of the handle, for messages
 /// @throws Error  naming the key

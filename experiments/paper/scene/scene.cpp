@@ -68,8 +68,9 @@ std::shared_ptr<PaperScene> load_paper_scene(const PaperSceneOptions& options,
                                              const std::filesystem::path& folder,
                                              std::uint64_t seed) {
   auto scene = std::make_shared<PaperScene>();
-  scene->sheet =
-      make_sheet(options, make_pattern(options.pattern, folder, scene->input_files), seed);
+  const Pattern pattern =
+      make_pattern(options.pattern, folder, scene->input_files, scene->load_warnings);
+  scene->sheet = make_sheet(options, pattern, seed);
   scene->fold_radius = options.fold_radius;
   require_valid(scene->sheet, "scene");
   // Ten times what the imperfection may add.

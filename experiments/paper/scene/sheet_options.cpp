@@ -55,9 +55,10 @@ void describe(OptionVisitor& v, ToughnessOptions& options) {
 
 void describe(OptionVisitor& v, PatternOptions& options) {
   static constexpr std::array<std::string_view, 4> kKinds{"rectangle", "disc", "polygon", "svg"};
+  static constexpr std::array<std::string_view, 3> kScales{"guess", "page", "viewbox"};
   describe_choice(v, "kind", options.kind, kKinds,
                   {.doc = "rectangle: width, height; disc: radius, corners; polygon: points; svg: "
-                          "file, path, unit_m, tolerance, centred; holes of all but svg"});
+                          "file, path, unit, unit_m, tolerance, centred; holes of all but svg"});
   switch (options.kind) {
     case PatternKind::rectangle:
       v.value("width", options.width,
@@ -78,12 +79,16 @@ void describe(OptionVisitor& v, PatternOptions& options) {
       break;
     case PatternKind::svg:
       v.value("file", options.file,
-              {.doc = "SVG file that the pattern is read from", .required = true});
+              {.doc = "SVG file that the pattern is read from", .unit = "file", .required = true});
       v.value("path", options.svg.path,
-              {.doc = "id of the path, polygon, polyline, rect, circle or ellipse, its subpaths "
-                      "border and holes; absent: the only one"});
+              {.doc = "id of the path, polygon, polyline, rect, circle, ellipse, use or group, its "
+                      "lines border and holes; absent: the only one"});
+      describe_choice(v, "unit", options.svg.unit, kScales,
+                      {.doc = "what says how large a unit of the outermost viewBox is: the page's "
+                              "size, unit_m (viewbox), or unit_m where it is given and the page "
+                              "where it has a size in mm, cm, in, pt or pc (guess)"});
       v.value("unit_m", options.svg.unit_m,
-              {.doc = "metres for one unit of the outermost viewBox",
+              {.doc = "metres for one unit of the outermost viewBox; absent: see unit, else 0.001",
                .unit = "m",
                .min = 1e-9,
                .max = kLargest});

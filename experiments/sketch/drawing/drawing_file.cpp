@@ -59,8 +59,18 @@ class DrawingReader {
     if (const auto kind = kind_of_shape(document_, shape)) {
       for (DrawnStroke& stroke : strokes_of_shape(document_, shape, *kind))
         strokes.push_back(std::move(stroke));
+      note_clips(shape);
     } else if (!shape.stroked) {
       ++without_stroke_;
+    }
+  }
+
+  /// Of what hides a part of the shape.
+  void note_clips(const SvgShape& shape) {
+    for (const int clip : shape.clips) {
+      if (!hides_part_of(document_.clips[clip], shape.lines)) continue;
+      if (std::find(not_applied_.begin(), not_applied_.end(), clip) == not_applied_.end())
+        not_applied_.push_back(clip);
     }
   }
 
@@ -201,10 +211,22 @@ class DrawingReader {
     }
   }
 
+  template <class Add>
+  void warn_of_clips(const Add& add) const {
+    constexpr std::size_t kMost = 20;
+    for (std::size_t i = 0; i < std::min(not_applied_.size(), kMost); ++i) {
+      add(document_.clips[not_applied_[i]].name +
+          " is not applied: what it hides is a stroke as well");
+    }
+    if (not_applied_.size() > kMost)
+      add(std::to_string(not_applied_.size() - kMost) + " more clips are not applied");
+  }
+
   void warn() {
     const auto add = [&](const std::string& text) {
       result_.warnings.push_back(document_.name + ": " + text);
     };
+    warn_of_clips(add);
     if (outside_ > 0) add(std::to_string(outside_) + " shapes outside of the views are left out");
     if (without_stroke_ > 0) {
       add(std::to_string(without_stroke_) +
@@ -222,6 +244,7 @@ class DrawingReader {
   ViewLayers layers_;
   DrawingFile result_;
   std::size_t outside_ = 0, without_stroke_ = 0;
+  std::vector<int> not_applied_;  ///< clips that hide parts of strokes
 };
 
 }  // namespace

@@ -100,7 +100,7 @@ SoundBank read_bank(const fs::path& folder, std::vector<std::string>& notes,
     BankSound sound = descriptors_of(table, row);
     const fs::path file = file_in(folder, *table.text(row, "file"), row.place);
     inputs.push_back(file);
-    Sound read = read_wav(file);
+    Sound read = read_wav(file, notes);
     if (bank.sounds.empty()) bank.sample_rate = read.sample_rate;
     sound.samples = mono(std::move(read), bank.sample_rate, file.string(), notes);
     sound.samples *= static_cast<float>(table.number(row, kPeak).value_or(1));

@@ -42,7 +42,8 @@ void describe(OptionVisitor& v, SoundSceneOptions& options) {
                          "one after the other; pattern and handles are then theirs"});
   v.value("bank", options.bank,
           {.doc = "folder with a bank of sounds, bank.csv and WAV files (docs/file-formats.md); "
-                  "absent: methods of sound generate theirs"});
+                  "absent: methods of sound generate theirs",
+           .unit = "folder"});
 }
 
 }  // namespace geoprior::sound

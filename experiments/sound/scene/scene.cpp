@@ -51,8 +51,9 @@ std::shared_ptr<SoundScene> load_sound_scene(const SoundSceneOptions& options,
                 "animation, a table with the path of an animated sheet, or swatches");
   }
   auto scene = std::make_shared<SoundScene>();
-  scene->sheet =
-      make_sheet(options, paper::make_pattern(options.pattern, folder, scene->input_files), seed);
+  const Pattern pattern =
+      paper::make_pattern(options.pattern, folder, scene->input_files, scene->load_warnings);
+  scene->sheet = make_sheet(options, pattern, seed);
   paper::require_valid(scene->sheet, "scene");
   if (options.swatches) scene->animation = make_swatches(*options.swatches, scene->sheet);
   if (options.animation) {

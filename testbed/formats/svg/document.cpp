@@ -58,6 +58,8 @@ struct Surroundings {
   SvgPaint paint;
   int group = -1;
   std::string layer;
+  std::vector<int> clips;
+  bool overflows = false;  ///< of the element itself: what is drawn beyond its viewport is seen
   int depth = 0;
 };
 
@@ -114,13 +116,17 @@ class SvgReader {
     const SvgBox user = view_box.value_or(SvgBox{0, 0, size.width, size.height});
     Surroundings page;
     double pixel = kSvgPixel_m * scale;
-    if (options_.unit_m) {
+    const Eigen::Affine2d fit =
+        view_box ? fit_svg_box(*view_box, size, aspect_of(root)) : Eigen::Affine2d::Identity();
+    document_.page_unit = pixel * fit.linear().diagonal();
+    if (options_.unit_m && !(options_.page_first && document_.true_size)) {
+      document_.unit_m = options_.unit_m;
       pixel = *options_.unit_m;
       page.to_page = Eigen::Translation2d(-user.x, -user.y);
       document_.width_m = pixel * user.width;
       document_.height_m = pixel * user.height;
     } else {
-      if (view_box) page.to_page = fit_svg_box(*view_box, size, aspect_of(root));
+      page.to_page = fit;
       document_.width_m = pixel * size.width;
       document_.height_m = pixel * size.height;
     }
@@ -206,8 +212,7 @@ class SvgReader {
       throw Error("has a transform in its style, which is not applied", xml_.place(node),
                   "the attribute transform");
     }
-    if (!property("clip-path").empty() || node.attribute("clip-path"))
-      notes_.add("clip-path is not applied", xml_.place(node));
+    note_style_of_geometry(node, properties);
     around.paint = inherited_paint(around.paint, properties, xml_, sheet_, xml_.place(node));
     const std::string_view transform = node.attribute("transform").value();
     if (!transform.empty()) {
@@ -215,7 +220,70 @@ class SvgReader {
           around.to_page * parse_svg_transform(transform, xml_.place(node) + ": transform");
       require_finite(around, node);
     }
+    for (const char* name : {"clip-path", "mask"}) {
+      const std::string_view value = property(name);
+      if (!value.empty() && value != "none") add_clip(node, name, value, around);
+    }
+    around.overflows = property("overflow") == "visible" || property("overflow") == "auto";
     return true;
+  }
+
+  /// CSS may give places and sizes (SVG 2), which only some programs look at.
+  void note_style_of_geometry(const pugi::xml_node& node, const SvgProperties& properties) {
+    if (!is_svg_shape(xml_.element(node))) return;
+    for (const char* name : {"x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "d"}) {
+      if (properties.find(name) != properties.end())
+        notes_.add("'" + std::string(name) + "' given by style is not applied", xml_.place(node));
+    }
+  }
+
+  /// The clip path or mask that `value` names holds for `node` and what is in it.
+  void add_clip(const pugi::xml_node& node, const std::string& property, std::string_view value,
+                Surroundings& around) {
+    constexpr std::size_t kMostQuoted = 100;
+    const std::string id(id_of_svg_url(value).substr(0, kMostQuoted));
+    SvgClip clip;
+    clip.name = property + " '" + id + "' of " + name_of(node);
+    const pugi::xml_node target = id.empty() ? pugi::xml_node() : xml_.find(id);
+    if (!id.empty() && !target) {  // an unknown one is none
+      return notes_.add(property + " names '" + id + "', which is not there", xml_.place(node));
+    }
+    if (property == "clip-path") clip.region = region_of(target, around);
+    around.clips.push_back(static_cast<int>(document_.clips.size()));
+    document_.clips.push_back(std::move(clip));
+  }
+
+  [[nodiscard]] std::string name_of(const pugi::xml_node& node) const {
+    const std::string id = node.attribute("id").value();
+    return std::string(xml_.element(node)) + (id.empty() ? "" : " '" + id + "'");
+  }
+
+  /// Of a clip path of one convex shape; empty of any other.
+  [[nodiscard]] std::vector<Eigen::Vector2d> region_of(const pugi::xml_node& clip,
+                                                       const Surroundings& around) {
+    if (xml_.element(clip) != "clipPath" || clip.attribute("clip-path") ||
+        clip.attribute("style") || clip.attribute("class") ||
+        std::string_view(clip.attribute("clipPathUnits").value()) == "objectBoundingBox")
+      return {};
+    pugi::xml_node shape;
+    for (const pugi::xml_node& child : clip.children()) {
+      if (xml_.element(child).empty() || only_serves(xml_.element(child))) continue;
+      if (shape || !is_svg_shape(xml_.element(child))) return {};
+      shape = child;
+    }
+    const std::string_view style = shape.attribute("style").value();
+    if (!shape || shape.attribute("clip-path") || shape.attribute("display") ||
+        style.find("clip-path") != std::string_view::npos ||
+        style.find("display") != std::string_view::npos)
+      return {};
+    Eigen::Affine2d to_page = around.to_page;
+    for (const pugi::xml_node& node : {clip, shape}) {
+      to_page = to_page * parse_svg_transform(node.attribute("transform").value(),
+                                              xml_.place(node) + ": transform");
+    }
+    const auto lines = lines_of(shape, xml_.element(shape), around, to_page);
+    count_points(lines, shape);
+    return convex_region(lines);
   }
 
   void require_finite(const Surroundings& around, const pugi::xml_node& node) const {
@@ -284,7 +352,7 @@ class SvgReader {
   /// @param sized   gives width and height: itself, or the `use` that shows it
   /// @param placed  its own x and y hold
   void enter_viewport(const pugi::xml_node& node, const pugi::xml_node& sized, Surroundings& around,
-                      bool placed) const {
+                      bool placed) {
     const auto length = [&](const pugi::xml_node& of, const char* name, double reference,
                             double otherwise) {
       const std::string_view text = of.attribute(name).value();
@@ -302,6 +370,7 @@ class SvgReader {
     box.height = size("height", around.height);
     const auto view_box = view_box_of(node);
     const SvgBox user = view_box.value_or(SvgBox{0, 0, box.width, box.height});
+    if (!around.overflows) add_viewport(node, box, around);
     if (view_box) {
       around.to_page = around.to_page * fit_svg_box(*view_box, box, aspect_of(node));
     } else {
@@ -310,6 +379,21 @@ class SvgReader {
     around.width = user.width;
     around.height = user.height;
     require_finite(around, node);
+  }
+
+  /// What is drawn beyond the box is hidden, by some programs.
+  void add_viewport(const pugi::xml_node& node, const SvgBox& box, Surroundings& around) {
+    SvgClip clip;
+    clip.name = "the viewport of " + name_of(node);
+    clip.viewport = true;
+    const double right = box.x + box.width, down = box.y + box.height;
+    const Eigen::Vector2d corners[] = {
+        {box.x, box.y}, {box.x, down}, {right, down}, {right, box.y}};
+    for (const Eigen::Vector2d& p : corners) clip.region.emplace_back(around.to_page * p);
+    if (around.to_page.linear().determinant() > 0)
+      std::reverse(clip.region.begin(), clip.region.end());
+    around.clips.push_back(static_cast<int>(document_.clips.size()));
+    document_.clips.push_back(std::move(clip));
   }
 
   void visit_use(const pugi::xml_node& node, Surroundings around) {
@@ -373,18 +457,34 @@ class SvgReader {
     shape.stroked = around.paint.stroked;
     shape.stroke = around.paint.stroke;
     shape.dashed = around.paint.dashed;
+    shape.filled = around.paint.filled;
+    shape.even_odd = around.paint.even_odd;
+    shape.clips = around.clips;
+    shape.lines = lines_of(node, element, around, around.to_page);
+    count_points(shape.lines, node);
+    document_.shapes.push_back(std::move(shape));
+  }
+
+  void count_points(const std::vector<SvgSubpath>& lines, const pugi::xml_node& node) {
+    for (const SvgSubpath& line : lines) points_ += static_cast<double>(line.points.size());
+    require_count(points_, "points of lines", kMostSvgPoints, xml_.place(node));
+  }
+
+  /// The lines that a shape draws (m).
+  [[nodiscard]] std::vector<SvgSubpath> lines_of(const pugi::xml_node& node,
+                                                 std::string_view element,
+                                                 const Surroundings& around,
+                                                 const Eigen::Affine2d& to_page) const {
     const SvgAttributes attributes = [&](std::string_view name) -> std::string_view {
       return node.attribute(std::string(name).c_str()).value();
     };
     const SvgShapeFrame frame{around.width, around.height,
-                              options_.tolerance / largest_stretch(around.to_page)};
-    shape.lines = svg_shape_lines(element, attributes, frame, xml_.place(node));
-    for (SvgSubpath& line : shape.lines) {
-      points_ += static_cast<double>(line.points.size());
-      require_count(points_, "points of lines", kMostSvgPoints, xml_.place(node));
-      for (Eigen::Vector2d& p : line.points) p = around.to_page * p;
+                              options_.tolerance / largest_stretch(to_page)};
+    std::vector<SvgSubpath> lines = svg_shape_lines(element, attributes, frame, xml_.place(node));
+    for (SvgSubpath& line : lines) {
+      for (Eigen::Vector2d& p : line.points) p = to_page * p;
     }
-    document_.shapes.push_back(std::move(shape));
+    return lines;
   }
 
   void add_image(const pugi::xml_node& node, const Surroundings& around) {

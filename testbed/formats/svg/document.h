@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "testbed/formats/svg/clip.h"
 #include "testbed/formats/svg/color.h"
 #include "testbed/formats/svg/path.h"
 #include "testbed/formats/svg/viewport.h"
@@ -50,6 +51,9 @@ struct SvgShape {
   bool stroked = false;             ///< its outline is drawn
   std::optional<SvgColour> stroke;  ///< absent: not stroked, or with no single colour
   bool dashed = false;
+  bool filled = true;
+  bool even_odd = false;          ///< fill-rule: evenodd, else nonzero
+  std::vector<int> clips;         ///< indices of what hides parts of it; its lines are whole
   std::vector<SvgSubpath> lines;  ///< metres, y up
 };
 
@@ -74,9 +78,14 @@ struct SvgDocument {
   double width_m = 0, height_m = 0;
   Eigen::Vector2d user_origin{0, 0};  ///< place of (0, 0) of the outermost viewBox (m)
   bool true_size = false;             ///< the file says how large it is in mm, cm, in, pt or pc
-  std::vector<SvgGroup> groups;       ///< parents first
-  std::vector<SvgShape> shapes;       ///< in the order in which they are drawn
+  /// One unit of the outermost viewBox by the size of the page (m), along x and y: not equal where
+  /// the page stretches it. A px is taken for a 96th of an inch.
+  Eigen::Vector2d page_unit{0, 0};
+  std::optional<double> unit_m;  ///< what was taken instead of the page's size
+  std::vector<SvgGroup> groups;  ///< parents first
+  std::vector<SvgShape> shapes;  ///< in the order in which they are drawn
   std::vector<SvgImage> images;
+  std::vector<SvgClip> clips;
   std::vector<std::string> notes;  ///< what was left out, a line for each kind with its first place
 
   /// "drawing.svg:12: path 'seam-3'".
@@ -86,16 +95,18 @@ struct SvgDocument {
 struct SvgReadOptions {
   double tolerance = 1e-4;       ///< largest distance of a curve from its chords (m, true size)
   std::optional<double> unit_m;  ///< metres for one unit of the outermost viewBox; the file's
+  bool page_first = false;       ///< unit_m holds only where the page has no true size
 };
 
 /// Reads an SVG file.
 ///
 /// Read: g, a, switch, nested svg, symbol and use (inside of the file), path and the basic shapes,
 /// image; transform, viewBox, preserveAspectRatio; lengths in px, mm, cm, Q, in, pt, pc and %;
-/// stroke, stroke-dasharray, color, display, visibility from attributes, style and <style>
-/// (svg_style.h). `data-scale` of the outermost svg enlarges what is drawn: 10, or "1:10". Left
-/// out, and said in `notes`: text, selectors and rules of style that are not understood, clipping.
-/// Never drawn: defs and what else only serves others.
+/// stroke, stroke-dasharray, color, display, visibility, fill-rule from attributes, style and
+/// <style> (style.h). `data-scale` of the outermost svg enlarges what is drawn: 10, or "1:10". Left
+/// out, and said in `notes`: text, selectors and rules of style that are not understood, places and
+/// sizes given by style. Clip paths, masks and viewports are told (`clips`) and not applied. Never
+/// drawn: defs and what else only serves others.
 ///
 /// Nothing but the file is read, and no entity is expanded. A px is a 96th of an inch.
 ///

@@ -40,15 +40,10 @@ std::optional<SvgColour> gradient_colour(std::string_view id, const SvgXml& xml,
 void set_served_stroke(SvgPaint& paint, std::string_view value, const SvgXml& xml,
                        const SvgStyleSheet& sheet) {
   const std::size_t end = value.find(')');
-  std::string_view id = value.substr(4, end == std::string_view::npos ? end : end - 4);
   const std::string_view rest =
       end == std::string_view::npos ? std::string_view() : value.substr(end + 1);
-  const std::size_t hash = id.find('#');
-  id.remove_prefix(hash == std::string_view::npos ? id.size() : hash + 1);
-  while (!id.empty() && std::string_view("\"' ").find(id.back()) != std::string_view::npos)
-    id.remove_suffix(1);
   paint.stroked = true;
-  paint.stroke = gradient_colour(id, xml, sheet);
+  paint.stroke = gradient_colour(id_of_svg_url(value), xml, sheet);
   if (!paint.stroke) paint.stroke = parse_svg_colour(rest);
 }
 
@@ -78,6 +73,17 @@ bool is_dashed(std::string_view value) {
 
 }  // namespace
 
+std::string_view id_of_svg_url(std::string_view value) {
+  if (!value.starts_with("url(")) return {};
+  const std::size_t end = value.find(')');
+  std::string_view id = value.substr(4, end == std::string_view::npos ? end : end - 4);
+  const std::size_t hash = id.find('#');
+  id.remove_prefix(hash == std::string_view::npos ? id.size() : hash + 1);
+  while (!id.empty() && std::string_view("\"' ").find(id.back()) != std::string_view::npos)
+    id.remove_suffix(1);
+  return id;
+}
+
 SvgElementName selector_name(const SvgXml& xml, const pugi::xml_node& node) {
   SvgElementName name;
   name.element = xml.element(node);
@@ -93,8 +99,9 @@ SvgElementName selector_name(const SvgXml& xml, const pugi::xml_node& node) {
 }
 
 SvgProperties presentation_attributes(const pugi::xml_node& node) {
-  constexpr std::array<const char*, 6> kRead{"stroke",  "stroke-dasharray", "color",
-                                             "display", "visibility",       "stop-color"};
+  constexpr std::array<const char*, 12> kRead{
+      "stroke", "stroke-dasharray", "color",     "display",   "visibility", "stop-color",
+      "fill",   "fill-rule",        "clip-rule", "clip-path", "mask",       "overflow"};
   SvgProperties properties;
   for (const char* name : kRead) {
     const pugi::xml_attribute attribute = node.attribute(name);
@@ -115,6 +122,10 @@ SvgPaint inherited_paint(const SvgPaint& outer, const SvgProperties& properties,
   if (!dashes.empty() && dashes != "inherit") paint.dashed = is_dashed(dashes);
   const std::string visibility = value_of(properties, "visibility");
   if (!visibility.empty() && visibility != "inherit") paint.visible = visibility == "visible";
+  const std::string fill = value_of(properties, "fill");
+  if (!fill.empty() && fill != "inherit") paint.filled = fill != "none" && fill != "transparent";
+  const std::string rule = value_of(properties, "fill-rule");
+  if (!rule.empty() && rule != "inherit") paint.even_odd = rule == "evenodd";
   return paint;
 }
 

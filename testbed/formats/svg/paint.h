@@ -17,6 +17,8 @@ struct SvgPaint {
   SvgColour color;                  ///< `currentColor`
   bool dashed = false;
   bool visible = true;
+  bool filled = true;
+  bool even_odd = false;  ///< fill-rule
 };
 
 /// The presentation attributes of an element that are read.
@@ -27,6 +29,9 @@ SvgProperties presentation_attributes(const pugi::xml_node& node);
 /// @throws Error  at `where` for what names no colour
 SvgPaint inherited_paint(const SvgPaint& outer, const SvgProperties& properties, const SvgXml& xml,
                          const SvgStyleSheet& sheet, const std::string& where);
+
+/// The id of "url(#id)", in quotes or not; empty of anything else.
+std::string_view id_of_svg_url(std::string_view value);
 
 /// Classes, id and name that selectors look at; they live as long as `xml`.
 SvgElementName selector_name(const SvgXml& xml, const pugi::xml_node& node);

@@ -98,6 +98,7 @@ class OptionLister final : public OptionVisitor {
   void visit_value(std::string_view key, const OptionReference& x,
                    const OptionInfo& info) override {
     const Shown as = std::visit([](const auto* value) { return shown(*value); }, x);
+    if (as.type == "text" && !info.unit.empty()) return add_path(key, as.value, info);
     add(key, as.type, as.value, info);
   }
   Walked walk_once(const std::string& prefix, Forced forced, const std::function<void()>& inside);
@@ -105,6 +106,11 @@ class OptionLister final : public OptionVisitor {
                  const std::function<void()>& inside);
   void add(std::string_view key, std::string type, std::string default_value,
            const OptionInfo& info);
+  /// A text that names a file or a folder: its type says which.
+  void add_path(std::string_view key, const std::string& value, OptionInfo info) {
+    const std::string type(std::exchange(info.unit, ""));
+    add(key, type, value, info);
+  }
   void add_inside(const std::string& key, const std::function<void()>& inside);
 
   Walked walked_;

@@ -59,6 +59,26 @@ TEST_F(PaperScenes, ReadADrawingInItsUnitAndPlace) {
   EXPECT_NEAR((drawn.min() - Eigen::Vector2d(0, -0.2)).norm(), 0, 1e-12);
 }
 
+/// 2 x 1 units on a page of which a unit is a centimetre.
+TEST_F(PaperScenes, ReadADrawingByThePagesSizeOrTheirOwn) {
+  std::ofstream(write_experiment("paper/scene", "").parent_path() / "page.svg")
+      << "<svg xmlns='http://www.w3.org/2000/svg' width='10cm' height='10cm' viewBox='0 0 10 10'>"
+         "<rect width='2' height='1'/></svg>";
+  const auto loaded = [&](const std::string& more) {
+    return scene("pattern = { kind = \"svg\", file = \"page.svg\"" + more + " }\n");
+  };
+  const PaperScene guessed = loaded("");
+  EXPECT_NEAR(signed_area(guessed.sheet.pattern), 2e-4, 1e-15);
+  EXPECT_THAT(guessed.load_warnings,
+              testing::ElementsAre(testing::HasSubstr("is 10 mm by the size")));
+  const auto area = [&](const std::string& more) {
+    return signed_area(loaded(more).sheet.pattern);
+  };
+  EXPECT_NEAR(area(", unit = \"guess\", unit_m = 0.1"), 2e-2, 1e-15);
+  EXPECT_NEAR(area(", unit = \"page\""), 2e-4, 1e-15);
+  EXPECT_NEAR(area(", unit = \"viewbox\""), 2e-6, 1e-15);
+}
+
 TEST_F(PaperScenes, TurnIsAxisTimesAngleInDegrees) {
   const Sheet s = sheet(
       "handles = [{ points = [{ u = 0, v = 0.1 }], keys = [{ t = 0 }, { t = 2, move = [1, 2, 3], "

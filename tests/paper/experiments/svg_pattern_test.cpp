@@ -20,7 +20,9 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::AnyOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using Points = std::vector<Eigen::Vector2d>;
 
 /// The first line of path data, closed.
@@ -137,6 +139,12 @@ TEST(SvgPath, AnswersMutatedPathsWithPointsOrAnError) {
   EXPECT_LT(refused, 19000);
 }
 
+/// Whatever the reader has to say of it.
+Pattern read_pattern(const std::filesystem::path& file, const SvgPatternOptions& options) {
+  std::vector<std::string> notes;
+  return read_svg_pattern(file, options, notes);
+}
+
 class SvgPattern : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -152,10 +160,19 @@ class SvgPattern : public ::testing::Test {
     std::ofstream(name) << "<svg xmlns='http://www.w3.org/2000/svg'>" << inside << "</svg>";
     return name;
   }
+  /// Of a whole file; `notes` are what was said of it.
+  Pattern noted(const std::string& text, const SvgPatternOptions& options) {
+    const auto name = folder_ / "noted.svg";
+    std::ofstream(name) << text;
+    notes_.clear();
+    return read_svg_pattern(name, options, notes_);
+  }
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+
   [[nodiscard]] std::string refusal(const std::string& inside,
                                     const SvgPatternOptions& options = {}) const {
     const auto name = file(inside);
-    const std::string error = test::error_of([&] { read_svg_pattern(name, options); });
+    const std::string error = test::error_of([&] { read_pattern(name, options); });
     EXPECT_THAT(error, HasSubstr(name.string()));
     return error;
   }
@@ -164,12 +181,13 @@ class SvgPattern : public ::testing::Test {
 
  private:
   std::filesystem::path folder_;
+  std::vector<std::string> notes_;
 };
 
 // Millimetres, y down: the point that is highest in the drawing is highest in the pattern.
 TEST_F(SvgPattern, LooksLikeTheDrawing) {
-  const Pattern p = read_svg_pattern(file("<g><path id='triangle' d='M10 30 L30 30 L10 10Z'/></g>"),
-                                     SvgPatternOptions{});
+  const Pattern p = read_pattern(file("<g><path id='triangle' d='M10 30 L30 30 L10 10Z'/></g>"),
+                                 SvgPatternOptions{});
   ASSERT_EQ(p.border.size(), 3U);
   EXPECT_NEAR(signed_area(p), 2e-4, 1e-15);
   bool top_left = false;
@@ -184,8 +202,8 @@ TEST_F(SvgPattern, ChoosesByIdAndScales) {
   options.path = "b";
   options.unit_m = 1;
   options.centred = false;
-  const Pattern p = read_svg_pattern(
-      file("<path id='a' d='M0 0 9 0 9 9Z'/><path id='b' d='M0 0H2V1H0Z'/>"), options);
+  const Pattern p =
+      read_pattern(file("<path id='a' d='M0 0 9 0 9 9Z'/><path id='b' d='M0 0H2V1H0Z'/>"), options);
   EXPECT_NEAR(signed_area(p), 2, 1e-15);
   EXPECT_NEAR(nearest_on_border(p, {2, -1}).distance, 0, 1e-15);
 }
@@ -214,16 +232,16 @@ TEST_F(SvgPattern, ReadsEveryShapeThatEnclosesSomething) {
       {"<ellipse cx='5' cy='6' rx='2' ry='0.5'/>", pi},
       {"<path d='M0 0 4 0 4 3'/>", 6}};
   for (const auto& [shape, area] : shapes) {
-    const Pattern p = read_svg_pattern(file(shape), as_drawn());
+    const Pattern p = read_pattern(file(shape), as_drawn());
     EXPECT_NO_THROW(require_simple(p, shape));
     EXPECT_NEAR(signed_area(p), area, 2e-3) << shape;
     EXPECT_TRUE(p.holes.empty()) << shape;
   }
   // A line encloses nothing and is no choice beside the shape; what is not shown is none either.
-  EXPECT_EQ(read_svg_pattern(file("<line x2='4'/><defs><rect width='3' height='3'/></defs>"
-                                  "<rect width='9' height='9' display='none'/>"
-                                  "<polygon points='0,0 4,0 4,3'/>"),
-                             as_drawn())
+  EXPECT_EQ(read_pattern(file("<line x2='4'/><defs><rect width='3' height='3'/></defs>"
+                              "<rect width='9' height='9' display='none'/>"
+                              "<polygon points='0,0 4,0 4,3'/>"),
+                         as_drawn())
                 .border.size(),
             3U);
 }
@@ -233,7 +251,8 @@ TEST_F(SvgPattern, SubpathsInTheBorderAreHoles) {
   const std::string border = "M0 0H10V10H0Z", hole = "M2 2h2v2h-2z", other = "M6 6v2h2v-2z";
   for (const std::string& d : {border + hole + other, border + other + hole, hole + border + other,
                                other + hole + border}) {
-    const Pattern p = read_svg_pattern(file("<path id='a' d='" + d + "'/>"), as_drawn());
+    const Pattern p =
+        read_pattern(file("<path id='a' fill-rule='evenodd' d='" + d + "'/>"), as_drawn());
     EXPECT_NO_THROW(require_simple(p, d));
     EXPECT_NEAR(signed_area(p), 92, 1e-12) << d;
     ASSERT_EQ(p.holes.size(), 2U);
@@ -245,16 +264,16 @@ TEST_F(SvgPattern, SubpathsInTheBorderAreHoles) {
   // The box of the border, not that of all, is centred: here they are the same.
   SvgPatternOptions centred = as_drawn();
   centred.centred = true;
-  const Pattern p = read_svg_pattern(file("<path d='" + border + hole + "'/>"), centred);
+  const Pattern p = read_pattern(file("<path d='" + border + hole + "' fill='none'/>"), centred);
   EXPECT_TRUE(contains(p, {0, 0}));
   EXPECT_FALSE(contains(p, {-2, 2}));
 }
 
 // The L of a path with a hole, by matrices that are written down beside it.
 TEST_F(SvgPattern, AppliesTheTransformsOfTheShapeAndAroundIt) {
-  const std::string ell = "M0 0H4V1H2V3H0ZM.5 .5H1V1H.5Z";
+  const std::string ell = "M0 0H4V1H2V3H0ZM.5 .5V1H1V.5Z";
   const auto with = [&](const std::string& outer, const std::string& own) {
-    return read_svg_pattern(
+    return read_pattern(
         file("<g transform='" + outer + "'><path transform='" + own + "' d='" + ell + "'/></g>"),
         as_drawn());
   };
@@ -294,16 +313,198 @@ TEST_F(SvgPattern, AppliesTheTransformsOfTheShapeAndAroundIt) {
 
 // `use` draws a shape where it stands; a viewBox does not change what a unit is.
 TEST_F(SvgPattern, ReadsWhatUseDrawsInUnitsOfTheViewBox) {
-  const Pattern p = read_svg_pattern(
+  const Pattern p = read_pattern(
       file("<defs><circle id='dot' r='1'/></defs><g id='there'><use href='#dot' x='5'/></g>"),
       as_drawn("dot"));
   EXPECT_NEAR(bounding_box(p).center().x(), 5, 1e-12);
   const auto boxed = folder() / "boxed.svg";
   std::ofstream(boxed) << "<svg xmlns='http://www.w3.org/2000/svg' width='10mm' height='20mm' "
                           "viewBox='-3 -2 5 10'><rect x='1' y='2' width='3' height='1'/></svg>";
-  const Pattern q = read_svg_pattern(boxed, as_drawn());
+  const Pattern q = read_pattern(boxed, as_drawn());
   EXPECT_NEAR(signed_area(q), 3, 1e-12);
   EXPECT_NEAR((bounding_box(q).min() - Eigen::Vector2d(1, -3)).norm(), 0, 1e-12);
+}
+
+/// A rectangle of 100 x 50 units on a page.
+std::string on_page(const std::string& attributes, const std::string& more = {}) {
+  return "<svg xmlns='http://www.w3.org/2000/svg' " + attributes +
+         "><path id='p' d='M10 10h100v50h-100z'" + more + "/></svg>";
+}
+
+// 1 in = 25.4 mm = 72 pt = 6 pc, and 96 px where nothing says more.
+TEST_F(SvgPattern, BelievesThePageWhereItHasASizeInTheWorld) {
+  const auto area = [&](const std::string& attributes, const SvgPatternOptions& options = {}) {
+    return 1e6 * signed_area(noted(on_page(attributes), options));
+  };
+  const auto is_noted = [&](const std::string& text) {
+    EXPECT_THAT(notes(), ElementsAre(HasSubstr(text))) << text;
+  };
+  const double point = 25.4 / 72;
+  EXPECT_NEAR(area("width='300pt' height='300pt' viewBox='0 0 300 300'"), 5000 * point * point,
+              1e-6);
+  is_noted("a unit of its viewBox is 0.352778 mm by the size of its page; unit_m says otherwise");
+  EXPECT_NEAR(area("width='2in' height='2in' viewBox='0 0 200 200'"), 5000 * 0.254 * 0.254, 1e-6);
+  EXPECT_NEAR(area("width='20cm' viewBox='0 0 100 100'"), 5000 * 4, 1e-6);
+  EXPECT_NEAR(area("width='200mm' height='100mm' viewBox='0 0 100 100' preserveAspectRatio='none'"),
+              5000 * 2, 1e-6);
+  is_noted("2 mm x 1 mm");
+  EXPECT_NEAR(area("width='200mm' height='100mm' viewBox='0 0 100 100'"), 5000, 1e-6);
+  EXPECT_NEAR(area("width='200mm' height='100mm' viewBox='0 0 100 100' "
+                   "preserveAspectRatio='xMinYMin slice'"),
+              5000 * 4, 1e-6);
+  // Nothing in the world: a millimetre, as ever.
+  EXPECT_NEAR(area("width='200' height='200' viewBox='0 0 100 100'"), 5000, 1e-6);
+  is_noted("is taken for 1 mm; unit_m says otherwise");
+  EXPECT_NEAR(area("width='100%' viewBox='0 0 100 100'"), 5000, 1e-6);
+}
+
+TEST_F(SvgPattern, TakesTheScaleThatIsAskedFor) {
+  const std::string inches = "width='2in' height='2in' viewBox='0 0 200 200'";
+  SvgPatternOptions options;
+  options.unit_m = 2e-3;
+  EXPECT_NEAR(signed_area(noted(on_page(inches), options)), 5000 * 4e-6, 1e-12);
+  EXPECT_THAT(notes(), IsEmpty());
+  (void)noted(on_page("width='9mm' height='3mm' viewBox='0 0 3 3' preserveAspectRatio='none'"),
+              options);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("stretches what it draws, a unit of its viewBox is "
+                                             "3 mm x 1 mm, and unit_m does not")));
+  options.unit = SvgScale::view_box;
+  EXPECT_NEAR(signed_area(noted(on_page(inches), options)), 5000 * 4e-6, 1e-12);
+  options.unit_m.reset();
+  EXPECT_NEAR(signed_area(noted(on_page(inches), options)), 5000 * 1e-6, 1e-12);
+  options.unit = SvgScale::page;
+  EXPECT_NEAR(signed_area(noted(on_page(inches), options)), 5000 * 0.254e-3 * 0.254e-3, 1e-12);
+  const double pixel = 25.4e-3 / 96;
+  EXPECT_NEAR(signed_area(noted(on_page(""), options)), 5000 * pixel * pixel, 1e-12);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("96 are taken for an inch")));
+  options.unit_m = 1;
+  EXPECT_THAT(test::error_of([&] { (void)noted(on_page(inches), options); }),
+              AllOf(HasSubstr("scene.pattern.unit"), HasSubstr("not both")));
+}
+
+// Both run the same way round: with nonzero the inner one is a line on a filled square.
+TEST_F(SvgPattern, LeavesOutWhatIsNoHoleByItsFillRule) {
+  const std::string same = "M10 10h100v100h-100z M30 30h20v20h-20z";
+  const std::string other = "M10 10h100v100h-100z M30 30v20h20v-20z";
+  const auto area = [&](const std::string& shape) {
+    return signed_area(
+        noted("<svg xmlns='http://www.w3.org/2000/svg'>" + shape + "</svg>", as_drawn()));
+  };
+  const auto path = [](const std::string& d, const std::string& more = {}) {
+    return "<path d='" + d + "' " + more + "/>";
+  };
+  EXPECT_NEAR(area(path(same)), 10000, 1e-9);
+  EXPECT_THAT(notes(), ElementsAre(AllOf(HasSubstr("line 0"), HasSubstr("nonzero"),
+                                         HasSubstr("no hole, and is left out"))));
+  EXPECT_NEAR(area(path(same, "transform='scale(-1 1)'")), 10000, 1e-9);
+  EXPECT_NEAR(area(path(other)), 9600, 1e-9);
+  EXPECT_THAT(notes(), IsEmpty());
+  for (const char* more : {"fill-rule='evenodd'", "style='fill-rule:evenodd'", "fill='none'",
+                           "style='fill:none' fill-rule='nonzero'"})
+    EXPECT_NEAR(area(path(same, more)), 9600, 1e-9) << more;
+  EXPECT_NEAR(area("<g fill-rule='evenodd'>" + path(same) + "</g>"), 9600, 1e-9);
+  EXPECT_NEAR(area("<style>path { fill-rule: evenodd }</style>" + path(same)), 9600, 1e-9);
+  // A hole in the inner line leaves a hole as deep as the paper is thick: none.
+  EXPECT_NEAR(area(path(same + "M35 35v5h5v-5z")), 10000, 1e-9);
+  EXPECT_EQ(notes().size(), 2U);
+  EXPECT_THAT(test::error_of([&] { area(path("M0 0h9v9h-9z M8 8h4v1h-4z")); }),
+              HasSubstr("of the border"));
+}
+
+// A convex clip path cuts; what it does not reach is as it was.
+TEST_F(SvgPattern, IsCutOffByAClipPath) {
+  const auto clipped = [&](const std::string& clip, const std::string& shape,
+                           const std::string& group = "clip-path='url(#c)'") {
+    return noted("<svg xmlns='http://www.w3.org/2000/svg'><defs><clipPath id='c'>" + clip +
+                     "</clipPath></defs><g id='g' " + group + ">" + shape + "</g></svg>",
+                 as_drawn());
+  };
+  const std::string box = "<path d='M10,10 h100 v50 h-100 z'/>";
+  const Pattern left = clipped("<rect width='60' height='200'/>", box);
+  EXPECT_NEAR(signed_area(left), 2500, 1e-9);
+  EXPECT_NEAR(bounding_box(left).max().x(), 60, 1e-9);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("clip-path 'c' of g 'g' cuts off a part of it")));
+  EXPECT_NEAR(signed_area(clipped("<rect width='60' height='200' transform='scale(.5 1)'/>", box,
+                                  "style='clip-path:url(#c)' transform='translate(7 0)'")),
+              1000, 1e-9)
+      << "in the axes of the group";
+  EXPECT_NEAR(signed_area(clipped("<polygon points='60,0 60,200 300,200 300,0'/>", box)), 2500,
+              1e-9);
+  EXPECT_NEAR(signed_area(clipped("<rect width='500' height='500'/>", box)), 5000, 1e-9);
+  EXPECT_THAT(notes(), IsEmpty());
+  const std::string holes =
+      "<path fill-rule='evenodd' d='M10 10h100v50h-100z M20 20h9v9h-9z "
+      "M90 20h9v9h-9z'/>";
+  EXPECT_NEAR(signed_area(clipped("<rect width='60' height='200'/>", holes)), 2500 - 81, 1e-9);
+  EXPECT_THAT(test::error_of([&] { clipped("<rect width='25' height='200'/>", holes); }),
+              HasSubstr("runs across a hole"));
+  EXPECT_THAT(test::error_of([&] { clipped("<rect width='5' height='200'/>", box); }),
+              HasSubstr("hides all of it"));
+}
+
+TEST_F(SvgPattern, SaysWhatOfClipsIsNotApplied) {
+  const auto noted_area = [&](const std::string& inside) {
+    return signed_area(
+        noted("<svg xmlns='http://www.w3.org/2000/svg'>" + inside + "</svg>", as_drawn()));
+  };
+  const std::string box = "<path d='M10,10 h100 v50 h-100 z'/>";
+  EXPECT_NEAR(noted_area("<clipPath id='c'><path d='M0 0H60V99H0ZM5 5v5h5z'/></clipPath>"
+                         "<g clip-path='url(#c)'>" +
+                         box + "</g>"),
+              5000, 1e-9);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("clip-path 'c' of g is not applied")));
+  EXPECT_NEAR(noted_area("<mask id='m'><rect width='60' height='99' fill='#fff'/></mask>"
+                         "<g mask='url(#m)'>" +
+                         box + "</g>"),
+              5000, 1e-9);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("mask 'm' of g is not applied")));
+  EXPECT_NEAR(noted_area("<svg id='s' width='60' height='90'>" + box + "</svg>"), 5000, 1e-9);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("the viewport of svg 's' hides a part of it")));
+  EXPECT_NEAR(noted_area("<svg overflow='visible' width='60' height='90'>" + box + "</svg>"), 5000,
+              1e-9);
+  EXPECT_THAT(notes(), IsEmpty());
+  (void)noted_area(box + "<text>leaf</text>");
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("<text> is not read")));
+}
+
+TEST_F(SvgPattern, IsTheIdOfAUseOrAGroup) {
+  const auto of = [&](const std::string& inside, const std::string& id) {
+    return noted("<svg xmlns='http://www.w3.org/2000/svg'>" + inside + "</svg>", as_drawn(id));
+  };
+  const std::string dot = "<defs><path id='q' d='M0 0h100v50h-100z'/></defs>";
+  const Pattern p =
+      of(dot + "<use id='p' href='#q' x='5' y='5'/><use id='r' href='#q' x='300'/>", "p");
+  EXPECT_NEAR(signed_area(p), 5000, 1e-9);
+  EXPECT_NEAR(bounding_box(p).min().x(), 5, 1e-9);
+  EXPECT_NEAR(signed_area(of("<rect width='1' height='1'/><g id='p'><g>" + dot +
+                                 "<circle r='0.1' display='none'/><use href='#q'/></g></g>",
+                             "p")),
+              5000, 1e-9);
+  EXPECT_THAT(test::error_of([&] { of("<rect id='a' width='1' height='1'/><g id='p'/>", "p"); }),
+              HasSubstr("draws no shape"));
+  EXPECT_THAT(
+      test::error_of([&] { of(dot + "<g id='p' display='none'><use href='#q'/></g>", "p"); }),
+      HasSubstr("is not displayed"));
+}
+
+// Four sides in any order and direction, and a circle in them that is cut out.
+TEST_F(SvgPattern, JoinsLinesThatTouch) {
+  const std::string sides =
+      "<line x2='100'/><path d='M100 50V0'/>"
+      "<polyline points='0,50 40,50.00005 100,50.00004'/><line y2='50'/>";
+  const auto of = [&](const std::string& inside, const std::optional<std::string>& id = {}) {
+    return noted("<svg xmlns='http://www.w3.org/2000/svg'>" + inside + "</svg>", as_drawn(id));
+  };
+  EXPECT_NEAR(signed_area(of("<g fill='none'>" + sides + "</g>")), 5000, 1e-2);
+  EXPECT_THAT(notes(),
+              ElementsAre(AllOf(HasSubstr("4 open lines were joined"), HasSubstr("0.04 mm"))));
+  const Pattern p = of("<rect width='9' height='9'/><g id='p'>" + sides +
+                           "<rect x='10' y='10' width='10' height='20'/></g>",
+                       "p");
+  EXPECT_NEAR(signed_area(p), 4800, 1e-2);
+  EXPECT_EQ(p.holes.size(), 1U);
+  EXPECT_THAT(test::error_of([&] { of("<g id='p'><line x2='9'/><path d='M9 0V9'/></g>", "p"); }),
+              AllOf(HasSubstr("the outline is open"), HasSubstr("scene.pattern.tolerance")));
 }
 
 TEST_F(SvgPattern, NamesFileAndShapeOfWhatItRefuses) {
@@ -345,7 +546,7 @@ TEST_F(SvgPattern, RefusesShapesWithoutArea) {
 
 TEST_F(SvgPattern, NamesTheHolesThatAreNone) {
   const auto holes = [&](const std::string& d) {
-    return refusal("<path id='a' d='M0 0H10V10H0Z" + d + "'/>");
+    return refusal("<path id='a' style='fill-rule:evenodd' d='M0 0H10V10H0Z" + d + "'/>");
   };
   EXPECT_THAT(holes("M12 2h2v2h-2z"),
               AllOf(HasSubstr("path 'a' hole 0"), HasSubstr("outside of the border")));

@@ -165,6 +165,53 @@ TEST(WavFile, OfOtherSamplesIsRefusedAndSaysWhy) {
   EXPECT_THAT(refusal(made_wav({1, 9, 48000, 16}, Bytes(18 * 10))), HasSubstr("9 channels"));
 }
 
+/// A ramp of 16 bits, of which the head says these sizes.
+Bytes with_sizes(std::uint32_t riff, std::uint32_t data) {
+  Bytes bytes = made_wav({}, stored<std::int16_t>({1 << 14, -(1 << 13), 77}));
+  for (const auto& [at, value] : {std::pair(4, riff), std::pair(40, data)}) {
+    for (int i = 0; i < 4; ++i) bytes[at + i] = static_cast<std::byte>(value >> 8 * i);
+  }
+  return bytes;
+}
+
+// ffmpeg, GStreamer, SoX and arecord, of which none can go back to the head of what is in a pipe.
+TEST(WavFile, FromAPipeIsReadToItsEnd) {
+  for (const std::uint32_t size : {0xffffffffU, 0U, 0x7ffff000U, 0x80000000U}) {
+    std::vector<std::string> notes;
+    const Sound sound = wav_from_bytes(with_sizes(size, size), "bank/a.wav", notes);
+    ASSERT_EQ(sound.samples.rows(), 3) << size;
+    EXPECT_EQ(sound.samples(0, 0), 0.5);
+    ASSERT_EQ(notes.size(), 1U) << size;
+    EXPECT_THAT(notes[0], AllOf(HasSubstr("bank/a.wav"), HasSubstr("6 bytes of samples")));
+  }
+  EXPECT_THAT(refusal(with_sizes(42, 600)), HasSubstr("594 bytes are missing"));
+  Bytes empty = made_wav({}, {});
+  add(empty, "LIST");
+  add(empty, 4, 4);
+  add(empty, "INFO");
+  EXPECT_THAT(refusal(empty), HasSubstr("no samples")) << "chunks follow it";
+}
+
+TEST(WavFile, IsReadWhateverItsByteOrderAndTheWidthOfItsSizes) {
+  Bytes big;
+  add(big, "RIFX");
+  for (const int b : {0, 0, 0, 38}) big.push_back(static_cast<std::byte>(b));
+  add(big, "WAVEfmt ");
+  for (const int b : {0, 0, 0, 16, 0, 1, 0, 1, 0, 0, 0xbb, 0x80, 0, 1, 0x77, 0, 0, 2, 0, 16})
+    big.push_back(static_cast<std::byte>(b));
+  add(big, "data");
+  for (const int b : {0, 0, 0, 2, 0x40, 0}) big.push_back(static_cast<std::byte>(b));
+  EXPECT_EQ(wav_from_bytes(big, "RIFX").samples, (Eigen::Matrix<double, 1, 1>(0.5)));
+  Bytes wide = with_sizes(0xffffffff, 0xffffffff);
+  wide[2] = std::byte{'6'};
+  wide[3] = std::byte{'4'};
+  Bytes sizes;
+  add(sizes, "ds64");
+  for (const std::uint32_t x : {28U, 0U, 0U, 4U, 0U, 2U, 0U, 0U}) add(sizes, x, 4);
+  wide.insert(wide.begin() + 12, sizes.begin(), sizes.end());
+  EXPECT_EQ(wav_from_bytes(wide, "RF64").samples.rows(), 2) << "four bytes of samples";
+}
+
 // Whatever stands in a byte, the answer is a sound or an Error.
 TEST(WavFile, DamagedAnywhereIsReadOrRefused) {
   const Bytes whole = wav_bytes(stereo_ramp(5));

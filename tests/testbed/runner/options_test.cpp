@@ -197,6 +197,26 @@ TEST(OptionListing, ListsEveryKeyWithDefaultRangeAndUnit) {
   for (const OptionRow& row : rows) EXPECT_EQ(row.when, "") << row.key;
 }
 
+/// Texts that name files and folders.
+struct Places {
+  std::string drawing;
+  std::optional<std::string> bank;
+};
+void describe(OptionVisitor& v, Places& o) {
+  v.value("drawing", o.drawing, {.doc = "a drawing", .unit = "file", .required = true});
+  v.value("bank", o.bank, {.doc = "a bank", .unit = "folder"});
+}
+
+TEST(OptionListing, TellsFilesAndFoldersFromTexts) {
+  Places options;
+  const std::vector<OptionRow> rows = list_options([&](OptionVisitor& v) { describe(v, options); });
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].type, "file");
+  EXPECT_EQ(rows[0].default_value, "required");
+  EXPECT_EQ(rows[1].type, "folder");
+  for (const OptionRow& row : rows) EXPECT_EQ(row.unit, "") << row.key;
+}
+
 /// Tags select members, one of them a tag itself.
 struct Tagged {
   enum class Kind { ball, box, none };
