@@ -72,7 +72,8 @@ std::optional<FoldMeasures> fold_measures(FitMemo& fits, const SheetFrame& f);
 /// How quietly the sheet moves, at the points of a grid of the pattern: the same on every mesh.
 struct MotionMeasures {
   /// That 95 % of the points stay under, of |x_{i+1} - 2 x_i + x_{i-1}| over all frames (m).
-  double second_difference_p95 = 0;
+  /// Absent where no point of the grid lies in the pattern.
+  std::optional<double> second_difference_p95;
   /// Most that a frame's elastic energy is over that of the greater of its two neighbours, where it
   /// is a tenth of the run's largest or more.
   double energy_spike = 0;

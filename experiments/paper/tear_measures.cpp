@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "metrics/tracks/of_values.h"
 #include "models/paper/tear/lips.h"
 
 namespace geoprior::paper {
@@ -119,11 +120,7 @@ std::optional<TearingForces> tearing_forces(const PaperScene& scene, const Frame
     last = force->max / onset_force(torn->outlines[0].back(), hands->first, hands->second,
                                     f.sheet.toughness.energy, f.sheet.material.thickness);
   }
-  if (!growing.empty()) {
-    const auto middle = growing.begin() + (growing.size() / 2);
-    std::nth_element(growing.begin(), middle, growing.end());
-    out.growing = *middle;
-  }
+  out.growing = percentile_of(std::move(growing), 50);
   return out;
 }
 

@@ -51,6 +51,7 @@ std::vector<TracedEdges> traced_strokes(const Drawing& aligned, const Frame& fra
     if (static_cast<StrokeKind>(kinds(i)) != kind || views(i) < 0) continue;
     const auto view = static_cast<ViewKind>(views(i));
     const int number = static_cast<int>(numbers(i));
+    if (aligned.find(view) == nullptr) continue;
     TracedEdges& stroke = strokes[{static_cast<int>(view), number}];
     stroke.view = view;
     stroke.drawn = strokes_of(*aligned.find(view), kind)[number];
@@ -115,6 +116,7 @@ StrokeMeasures stroke_measures(const SketchScene& scene, const Frame& frame) {
       const auto drawn = std::find_if(
           scene.silhouettes.begin(), scene.silhouettes.end(),
           [&](const DrawnSilhouette& silhouette) { return silhouette.view == stroke.view; });
+      if (drawn == scene.silhouettes.end()) continue;  // a view without one has no size
       Eigen::Vector2d low = drawn->outline.front(), high = low;
       for (const Eigen::Vector2d& p : drawn->outline) {
         low = low.cwiseMin(p);
@@ -136,8 +138,10 @@ StrokeMeasures stroke_measures(const SketchScene& scene, const Frame& frame) {
 
 GeneratorMeasures generator_measures(const SketchScene& scene, const Frame& frame) {
   if (scene.silhouettes.empty() || frame.find_part("pattern") == nullptr) return {};
+  const TriMesh mesh = garment_mesh(frame);
+  if (mesh.vertex_count() == 0) return {};
   const DrawnSilhouette& first = scene.silhouettes.front();
-  const SilhouetteDepth depth = silhouette_depth(garment_mesh(frame), first.frame, first.outline);
+  const SilhouetteDepth depth = silhouette_depth(mesh, first.frame, first.outline);
   return {depth.range, depth.jump, 100 * depth.plane_rms};
 }
 
@@ -164,6 +168,7 @@ SeamPointMeasures seam_point_measures(const SketchScene& /*scene*/, const Frame&
 std::optional<double> mirror_percent(const SketchScene& scene, const Frame& frame) {
   if (scene.silhouettes.empty() || frame.find_part("pattern") == nullptr) return {};
   const TriMesh mesh = garment_mesh(frame);
+  if (mesh.vertex_count() == 0) return {};
   const double diagonal = (mesh.V.colwise().maxCoeff() - mesh.V.colwise().minCoeff()).norm();
   const MirrorSymmetry mirror =
       mirror_symmetry(mesh, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(), diagonal / 200);

@@ -17,6 +17,7 @@
 #include "metrics/shape/mirror_symmetry.h"
 #include "metrics/shape/surface_distance.h"
 #include "metrics/spacing/rim_cover.h"
+#include "metrics/tracks/of_values.h"
 #include "models/sketch/drawing/polyline.h"
 #include "solvers/sketch/drawing/mirror_plane.h"
 
@@ -67,7 +68,8 @@ TriMesh layer_mesh(const Part& part, int layer) {
 }
 
 int layer_count(const Part& part) {
-  return static_cast<int>(part.require_array("layer", LayerOn::cells, 1).values.maxCoeff());
+  const auto& layer = part.require_array("layer", LayerOn::cells, 1).values;
+  return static_cast<int>(largest_of(layer.col(0)).value_or(0));
 }
 
 /// Where the stroke that a line belongs to really is, and how the line compares with it.
@@ -166,6 +168,7 @@ ArcMeasures arc_measures(const SketchScene& scene, const Frame& frame) {
   const auto& stroke = lines.require_array("stroke", LayerOn::points, 1).values;
   double sum = 0, most = 0, count = 0;
   for (std::size_t l = 0; l < lines.lines.size(); ++l) {
+    if (lines.lines[l].empty()) continue;
     const auto number = static_cast<std::size_t>(stroke(lines.lines[l].front()));
     const Eigen::MatrixX3d points = line_points(lines, l);
     const auto [squares, largest] = image_distances(view.strokes[number], points);
@@ -174,6 +177,7 @@ ArcMeasures arc_measures(const SketchScene& scene, const Frame& frame) {
     count += static_cast<double>(view.strokes[number].points.size());
     if (scene.truth) add_circle_errors(*scene.truth, number, points, measures);
   }
+  if (count == 0) return measures;
   measures.rms_percent = kPercentOf * std::sqrt(sum / count) / width;
   measures.max_percent = kPercentOf * std::sqrt(most) / width;
   const Part& surface = frame.require_part("surface", Part::Kind::triangles);

@@ -100,7 +100,7 @@ CutMeasures cut_measures(const SketchScene& /*scene*/, const Frame& frame) {
     measures.seam_length = both_sides / 2;
   }
   const Part* part = frame.find_part("suggestions");
-  if (part == nullptr) return measures;
+  if (part == nullptr || part->lines.empty()) return measures;
   const auto& rank = part->require_array("rank", NamedArray::On::cells, 1).values;
   double sum = 0, first = 0;
   for (std::size_t l = 0; l < part->lines.size(); ++l) {
@@ -148,6 +148,7 @@ std::optional<double> ruling_angle(const SyntheticView& truth, const Frame& fram
   if (!truth.conical || rulings == nullptr) return {};
   std::vector<std::array<Eigen::Vector3d, 2>> ends;
   for (const std::vector<int>& line : rulings->lines) {
+    if (line.empty()) continue;
     ends.push_back({rulings->points.row(line.front()).transpose(),
                     rulings->points.row(line.back()).transpose()});
   }
@@ -163,6 +164,7 @@ TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame) {
   if (!scene.truth || frame.find_part("strokes") == nullptr) return measures;
   const SyntheticView& truth = *scene.truth;
   const Part& curves = frame.require_part("strokes", Part::Kind::lines);
+  if (curves.points.rows() == 0) return measures;
   const auto& stroke = curves.require_array("stroke", NamedArray::On::points, 1).values;
   const auto& drawn_at = curves.require_array("drawn_at", NamedArray::On::points, 1).values;
   Eigen::MatrixX3d real(curves.points.rows(), 3);

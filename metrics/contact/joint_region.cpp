@@ -9,6 +9,7 @@
 #include "core/connectivity.h"
 #include "core/error.h"
 #include "core/inputs/rig.h"
+#include "metrics/tracks/of_values.h"
 
 namespace geoprior {
 namespace {
@@ -39,12 +40,6 @@ double distance_to_segment(const Eigen::Vector3d& x, const Eigen::Vector3d& a,
   const double length2 = d.squaredNorm();
   const double t = length2 > 0 ? std::clamp((x - a).dot(d) / length2, 0.0, 1.0) : 0.0;
   return (x - a - t * d).norm();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + (values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Direction and length of the bone of a joint; by its tail, else by the mean of its children.
@@ -107,7 +102,8 @@ double local_radius(const RiggedMesh& rig, const JointRegion::Hinge& hinge) {
     if ((x - hinge.head).norm() <= 3 * nearest) near.push_back(distance);
   }
   const bool enough = blended.size() >= static_cast<std::size_t>(kEnoughBlended);
-  const double radius = near.empty() ? 0.0 : median(enough ? std::move(blended) : std::move(near));
+  const double radius =
+      percentile_of(enough ? std::move(blended) : std::move(near), 50).value_or(0);
   if (radius <= 0) {
     throw Error("the joint has no skin around it",
                 "joint '" + rig.skeleton.joints[hinge.joint].name + "'", "a joint inside the mesh");

@@ -105,6 +105,7 @@ int rises(const std::vector<Crossing>& p, double level) {
 std::optional<double> buckled_sector(const Eigen::MatrixX2d& pattern, const Eigen::MatrixX3d& x,
                                      const Eigen::MatrixX3i& triangles, const Eigen::Vector2d& apex,
                                      double radius, const Eigen::Vector3d& axis) {
+  if (pattern.rows() == 0) return std::nullopt;
   const Eigen::MatrixX2d from_apex = pattern.rowwise() - apex.transpose();
   Eigen::Index tip = 0;
   from_apex.rowwise().squaredNorm().minCoeff(&tip);

@@ -1,8 +1,8 @@
 #include "metrics/shape/second_differences.h"
 
-#include <algorithm>
-#include <cassert>
 #include <cstddef>
+
+#include "metrics/tracks/of_values.h"
 
 namespace geoprior {
 
@@ -15,12 +15,8 @@ void SecondDifferences::add(const Eigen::MatrixX3d& x) {
   differences_.insert(differences_.end(), difference.begin(), difference.end());
 }
 
-double SecondDifferences::quantile(int percent) const {
-  assert(!differences_.empty() && 0 <= percent && percent < 100);
-  std::vector<double> sorted = differences_;
-  const auto at = sorted.begin() + (sorted.size() * percent / 100);
-  std::nth_element(sorted.begin(), at, sorted.end());
-  return *at;
+std::optional<double> SecondDifferences::quantile(int percent) const {
+  return percentile_of(differences_, percent);
 }
 
 }  // namespace geoprior

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace geoprior {
@@ -16,9 +17,9 @@ class SecondDifferences {
  public:
   /// @param x  places of the same points in the next frame (n x 3, m)
   void add(const Eigen::MatrixX3d& x);
-  /// What the given share of all points and frames stays under (m).
-  /// @pre  three frames or more were added, at least one point each
-  [[nodiscard]] double quantile(int percent) const;
+  /// What the given share of all points and frames stays under (m); absent for fewer than three
+  /// frames, and without points.
+  [[nodiscard]] std::optional<double> quantile(int percent) const;
 
  private:
   std::array<Eigen::MatrixX3d, 3> x_;

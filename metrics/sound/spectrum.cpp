@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "metrics/tracks/of_values.h"
 
 namespace geoprior {
 
@@ -84,9 +85,10 @@ std::optional<Eigen::VectorXd> relative_levels(const Eigen::VectorXd& power, dou
   if (!(floor_db > 0)) {
     throw Error("floor of " + std::to_string(floor_db) + " dB", "third-octave levels", "positive");
   }
-  if (!(power.maxCoeff() > 0)) return {};
+  const std::optional<double> most = largest_of(power);
+  if (!most || !(*most > 0)) return {};
   const double least = std::pow(10., -floor_db / 10);
-  return 10 * (power / power.maxCoeff()).array().max(least).log10();
+  return 10 * (power / *most).array().max(least).log10();
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 namespace geoprior {
 
 bool fills_rectangle(const TriMesh& surface) {
+  if (surface.vertex_count() == 0) return false;
   const Eigen::RowVector3d size = surface.V.colwise().maxCoeff() - surface.V.colwise().minCoeff();
   if (size.z() > 1e-9 * size.norm()) return false;
   const double area = triangle_areas(surface.V, surface.F).sum();

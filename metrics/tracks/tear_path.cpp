@@ -48,6 +48,7 @@ const TearPath* longest_path(const std::vector<TearPath>& paths) {
 }
 
 TearPath first_part(const TearPath& path, double length) {
+  require_points(path);
   TearPath result{path.front()};
   for (std::size_t i = 1; i < path.size() && length > 0; ++i) {
     const double step = (path[i] - path[i - 1]).norm();

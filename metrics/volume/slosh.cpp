@@ -43,7 +43,7 @@ double slosh_frequency(double length, double depth, double gravity) {
 std::optional<double> slosh_frequency_error(const std::vector<double>& times,
                                             const std::vector<Columns>& columns,
                                             const ColumnGrid& grid, double length, double gravity) {
-  if (columns.empty()) return {};
+  if (columns.empty() || columns.front().depth.size() == 0) return {};
   std::vector<double> swing;
   for (const Columns& at : columns) swing.push_back(slosh_amplitude(at, grid));
   const double measured = crossing_frequency(times, swing);

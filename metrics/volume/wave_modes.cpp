@@ -50,6 +50,7 @@ double WavePatch::frequency(Eigen::Index m, Eigen::Index n, Eigen::Index rows,
 DispersionError dispersion_error(const Eigen::MatrixXcd& before, const Eigen::MatrixXcd& now,
                                  const Eigen::MatrixXcd& after, double interval,
                                  const WavePatch& patch, double floor) {
+  if (now.size() == 0) return {};
   const double weakest = floor * now.cwiseAbs().maxCoeff();
   std::vector<double> errors;
   for (Eigen::Index m = 0; m < now.rows(); ++m) {
