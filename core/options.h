@@ -18,7 +18,7 @@ namespace geoprior {
 /// What `describe` says of one option beside key and default.
 struct OptionInfo {
   std::string_view doc;        ///< one line of meaning, with the thesis' symbol where it has one
-  std::string_view unit = "";  ///< "" for a number; "file" or "folder": a text that names one
+  std::string_view unit = "";  ///< "" for a pure number
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   bool required = false;  ///< no default: the file must give it
