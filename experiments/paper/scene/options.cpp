@@ -15,15 +15,22 @@ void describe(OptionVisitor& v, PaperSceneOptions& options) {
   describe_group(v, "toughness", options.toughness, {.doc = "what the paper opposes to tearing"});
   describe_list(v, "handles", options.handles, {.doc = "where the sheet is held or pulled"});
   describe_list(v, "obstacles", options.obstacles, {.doc = "bodies that the sheet does not enter"});
-  v.value("gravity", options.gravity, {.doc = "acceleration of free fall", .unit = "m/s^2"});
+  constexpr double kFastestFall = 1e6;  // at the surface of a white dwarf
+  v.value("gravity", options.gravity,
+          {.doc = "acceleration of free fall",
+           .unit = "m/s^2",
+           .min = -kFastestFall,
+           .max = kFastestFall});
   describe_group(
       v, "placement", options.placement,
       {.doc = "where the pattern (u, v, 0) is in space at the start; default: as it is"});
-  v.value("imperfection", options.imperfection,
-          {.doc = "height of the seeded waves of the flat start", .unit = "m", .min = 0});
-  v.value("duration", options.duration, {.doc = "simulated time", .unit = "s", .min = 1e-9});
+  v.value(
+      "imperfection", options.imperfection,
+      {.doc = "height of the seeded waves of the flat start", .unit = "m", .min = 0, .max = 1e6});
+  v.value("duration", options.duration,
+          {.doc = "simulated time", .unit = "s", .min = 1e-9, .max = 1e6});
   v.value("frame_interval", options.frame_interval,
-          {.doc = "time between recorded frames", .unit = "s", .min = 1e-9});
+          {.doc = "time between recorded frames", .unit = "s", .min = 1e-9, .max = 1e6});
   v.value("substeps", options.substeps,
           {.doc = "least number of time steps of a frame", .min = 1, .max = 100000});
   v.value("handle_step", options.handle_step,

@@ -5,6 +5,13 @@ namespace {
 
 constexpr double kLargest = 1e6;
 
+// Beyond what there is, a factor of ten or more: diamond has 1.2e12 Pa, osmium a metre thick
+// 2.3e4 kg/m^2, rubber on rubber a friction of 4; a thinnest sheet bends to 1/h = 1e9 1/m.
+constexpr double kStiffest = 1e13;
+constexpr double kHeaviest = 1e6;
+constexpr double kSharpest = 1e10;
+constexpr double kSlowest = 1e3;
+
 }  // namespace
 
 void describe(OptionVisitor& v, PatternPointOptions& options) {
@@ -95,7 +102,8 @@ void describe(OptionVisitor& v, PatternOptions& options) {
       v.value("tolerance", options.svg.tolerance,
               {.doc = "largest distance of a curve of the drawing from its chords",
                .unit = "m",
-               .min = 1e-9});
+               .min = 1e-9,
+               .max = kLargest});
       v.value("centred", options.svg.centred,
               {.doc = "puts the middle of the shape's box at the origin"});
       break;
@@ -107,23 +115,31 @@ void describe(OptionVisitor& v, PatternOptions& options) {
                 {.doc = "lines along which the pattern is open from the start"});
 }
 
-void describe(OptionVisitor& v, PaperMaterial& options) {
+void describe_plate(OptionVisitor& v, PaperMaterial& options) {
   v.value("thickness", options.thickness,
           {.doc = "thickness h of the paper", .unit = "m", .min = 1e-9, .max = 1});
   v.value("young_modulus", options.young_modulus,
-          {.doc = "Young's modulus E of the paper", .unit = "Pa", .min = 1e-3});
+          {.doc = "Young's modulus E of the paper", .unit = "Pa", .min = 1e-3, .max = kStiffest});
   v.value("poisson_ratio", options.poisson_ratio,
           {.doc = "Poisson's ratio nu of the paper", .min = 0, .max = 0.499});
   v.value("area_density", options.area_density,
-          {.doc = "mass of an area of the paper", .unit = "kg/m^2", .min = 1e-9});
+          {.doc = "mass of an area of the paper", .unit = "kg/m^2", .min = 1e-9, .max = kHeaviest});
+}
+
+void describe(OptionVisitor& v, PaperMaterial& options) {
+  describe_plate(v, options);
   v.value("yield_curvature", options.yield_curvature,
-          {.doc = "elastic curvature beyond which the sheet creases", .unit = "1/m", .min = 1e-9});
+          {.doc = "elastic curvature beyond which the sheet creases",
+           .unit = "1/m",
+           .min = 1e-9,
+           .max = kSharpest});
   v.value("weakening", options.weakening,
           {.doc = "weakening of bending by damage: its stiffness falls by 1 / (1 + weakening "
                   "* damage)",
-           .min = 0});
+           .min = 0,
+           .max = kLargest});
   v.value("friction", options.friction,
-          {.doc = "Coulomb friction of the sheet against obstacles", .min = 0});
+          {.doc = "Coulomb friction of the sheet against obstacles", .min = 0, .max = kRoughest});
   v.value(
       "grain_deg", options.grain_deg,
       {.doc = "direction of the fibres that bend more stiffly, from u towards v", .unit = "deg"});
@@ -134,7 +150,8 @@ void describe(OptionVisitor& v, PaperMaterial& options) {
   v.value("damping", options.damping,
           {.doc = "time of the damping that is proportional to stiffness (Rayleigh)",
            .unit = "s",
-           .min = 0});
+           .min = 0,
+           .max = kSlowest});
 }
 
 void describe(OptionVisitor& v, IntervalOptions& options) {

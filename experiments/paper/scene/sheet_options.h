@@ -102,6 +102,11 @@ struct ToughnessOptions {
 };
 void describe(OptionVisitor& v, ToughnessOptions& options);
 
+/// Largest coefficient of friction that is taken.
+inline constexpr double kRoughest = 100;
+
 void describe(OptionVisitor& v, PaperMaterial& options);
+/// Of these, what a flat elastic sheet has: thickness, stiffness and mass.
+void describe_plate(OptionVisitor& v, PaperMaterial& options);
 
 }  // namespace geoprior::paper

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "testbed/formats/input_file.h"
 #include "testbed/images/image_codec.h"
 
@@ -27,11 +28,7 @@ PixelColour over_white(const std::uint8_t* value, int channels) {
 
 PixelImage decoded(ImageInput& input, const std::string& where) {
   const int width = input.width(), height = input.height(), channels = input.channels();
-  if (static_cast<long long>(width) * height > kMostPicturePixels) {
-    throw Error(
-        "the picture has " + std::to_string(width) + " x " + std::to_string(height) + " pixels",
-        where, "at most " + std::to_string(kMostPicturePixels));
-  }
+  require_picture_size({width, height}, channels, where);
   const auto count = static_cast<std::size_t>(width) * height;
   std::vector<std::uint8_t> values(count * channels);
   if (channels < 1 || !input.read(values.data()))
@@ -44,6 +41,15 @@ PixelImage decoded(ImageInput& input, const std::string& where) {
 }
 
 }  // namespace
+
+void require_picture_size(const Eigen::Vector2i& size, int channels, const std::string& where) {
+  constexpr int kOurs = 3;
+  const double bytes = static_cast<double>(size.x()) * size.y() * (channels + kOurs);
+  if (bytes <= kMostPictureBytes) return;
+  throw Error("the picture has " + std::to_string(size.x()) + " x " + std::to_string(size.y()) +
+                  " pixels, " + bytes_text(bytes) + " in memory",
+              where, "at most " + bytes_text(kMostPictureBytes) + ": make it smaller");
+}
 
 PixelImage read_picture(const Picture& picture) {
   const std::string where = picture.file.empty() ? "the drawing's picture" : picture.file;

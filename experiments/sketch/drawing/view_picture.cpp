@@ -49,22 +49,25 @@ std::optional<Eigen::Vector2i> jpeg_size(std::string_view bytes) {
   return std::nullopt;
 }
 
-/// What comes before the pixels of a picture.
 std::string head_of(const std::filesystem::path& file, const std::string& where) {
-  constexpr std::size_t kHead = 1 << 20;  // cameras put a small picture and a profile there
-  std::string head(kHead, '\0');
   try {
-    std::ifstream in = open_input_file(file);
-    in.read(head.data(), static_cast<std::streamsize>(kHead));
-    head.resize(in.gcount());
+    return head_of_picture(file);
   } catch (const Error& e) {
     throw Error(std::string("the picture cannot be read: ") + e.what(), where,
                 "a PNG or JPEG file");
   }
-  return head;
 }
 
 }  // namespace
+
+std::string head_of_picture(const std::filesystem::path& file) {
+  constexpr std::size_t kHead = 1 << 20;  // cameras put a small picture and a profile there
+  std::string head(kHead, '\0');
+  std::ifstream in = open_input_file(file);
+  in.read(head.data(), static_cast<std::streamsize>(kHead));
+  head.resize(in.gcount());
+  return head;
+}
 
 std::optional<Eigen::Vector2i> picture_size(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG\r\n\x1a\n") && bytes.size() >= 24 && bytes.substr(12, 4) == "IHDR")

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +10,10 @@
 #include "testbed/formats/svg/document.h"
 
 namespace geoprior::sketch {
+
+/// What comes before the pixels of a picture: its first million bytes.
+/// @throws Error  naming the file: missing, unreadable
+std::string head_of_picture(const std::filesystem::path& file);
 
 /// Pixels that the head of a PNG or JPEG picture tells, width and height; absent for what is
 /// neither, or is cut off before. Nothing is decoded.

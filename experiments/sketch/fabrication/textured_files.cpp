@@ -81,10 +81,9 @@ std::string textured_svg(const Pattern& pattern, const PixelGrid& grid) {
 
 void describe(OptionVisitor& v, TexturedFileOptions& options) { describe(v, options.bake); }
 
-TexturedFiles textured_files(const View& view, const OneViewResult& result, const Pattern& pattern,
-                             const TexturedFileOptions& options) {
-  const BakedPattern baked =
-      bake_pattern(view, read_picture(view.picture), result, pattern, options.bake);
+TexturedFiles textured_files(const View& view, const PixelImage& photo, const OneViewResult& result,
+                             const Pattern& pattern, const TexturedFileOptions& options) {
+  const BakedPattern baked = bake_pattern(view, photo, result, pattern, options.bake);
   TexturedFiles made;
   made.files = {{kTextureFile, png_bytes(baked.image, 1 / baked.grid.pixel)},
                 {"textured-pattern.svg", textured_svg(pattern, baked.grid)},

@@ -27,8 +27,9 @@ struct TexturedFiles {
 /// - `textured-pattern.svg`: that picture with the outlines of the pieces, in millimetres;
 /// - `model.obj`, `model.mtl`: the surface (m), one group a piece, textured with `texture.png`.
 ///
-/// @throws Error  when the view's picture cannot be read; as `bake_pattern`
-TexturedFiles textured_files(const View& view, const OneViewResult& result, const Pattern& pattern,
-                             const TexturedFileOptions& options);
+/// @param photo   of the view
+/// @throws Error  as `bake_pattern`
+TexturedFiles textured_files(const View& view, const PixelImage& photo, const OneViewResult& result,
+                             const Pattern& pattern, const TexturedFileOptions& options);
 
 }  // namespace geoprior::sketch

@@ -1,10 +1,13 @@
 #include "experiments/sketch/scene/scene.h"
 
 #include <cstring>
+#include <mutex>
 #include <utility>
 
 #include "core/error.h"
 #include "core/geometry/topology.h"
+#include "experiments/sketch/drawing/picture_file.h"
+#include "experiments/sketch/drawing/view_picture.h"
 #include "experiments/sketch/fabrication/cloth_files.h"
 #include "testbed/formats/gltf/writer.h"
 #include "testbed/formats/mesh/mesh_file.h"
@@ -67,15 +70,38 @@ std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const Eigen::Mat
   return artifacts;
 }
 
+/// The picture of the scene's view, decoded when it is first asked for, whatever variants follow.
+class DecodedPicture {
+ public:
+  const PixelImage& of(const View& view) {
+    const std::lock_guard lock(mutex_);
+    if (!image_) image_ = read_picture(view.picture);
+    return *image_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::optional<PixelImage> image_;
+};
+
+/// Refuses a picture that is too large before anything is computed.
+void require_picture(const SketchScene& scene) {
+  const Picture& picture = scene.photo().picture;
+  const std::string head = picture.file.empty() ? picture.content : head_of_picture(picture.file);
+  if (const auto size = picture_size(head)) {
+    require_picture_size(*size, 3, picture.file.empty() ? "the drawing's picture" : picture.file);
+  }
+}
+
 /// Files of one view: the pattern's, the textured ones, and the drawing that was made here.
-OneViewFiles one_view_files(const SketchSceneOptions& o, const View& view,
+OneViewFiles one_view_files(const SketchSceneOptions& o, DecodedPicture& picture, const View& view,
                             const OneViewResult& result, const Pattern& pattern) {
   OneViewFiles files;
   if (o.fabrication)
     files.artifacts = pattern_artifacts(pattern, result.surface.mesh.V, *o.fabrication);
   std::vector<FabricationFile> made;
   if (o.textures) {
-    TexturedFiles textured = textured_files(view, result, pattern, *o.textures);
+    TexturedFiles textured = textured_files(view, picture.of(view), result, pattern, *o.textures);
     made = std::move(textured.files);
     files.diagnostics = std::move(textured.diagnostics);
   }
@@ -177,9 +203,10 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
     };
   }
   if (options.fabrication || options.textures || options.known) {
-    scene->photo_files = [options](const View& view, const OneViewResult& result,
-                                   const Pattern& pattern) {
-      return one_view_files(options, view, result, pattern);
+    scene->photo_files = [options, picture = std::make_shared<DecodedPicture>()](
+                             const View& view, const OneViewResult& result,
+                             const Pattern& pattern) {
+      return one_view_files(options, *picture, view, result, pattern);
     };
   }
   if (options.synthetic) {
@@ -200,6 +227,8 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
     scene->input.patterns = false;
   } else if (!options.drawing.empty()) {
     load_drawing(options, folder, *scene);
+    if (options.textures && scene->input.drawing.find(ViewKind::photo) != nullptr)
+      require_picture(*scene);
   }
   if (options.known) load_known(options, seed, *scene);
   return scene;

@@ -80,23 +80,13 @@ std::optional<SoundBank> read(const fs::path& file) {
 /// Options of `geoprior bank`.
 struct BankCommandOptions {
   int seed = 1;
-  double thickness = PaperMaterial{}.thickness;
-  double young_modulus = PaperMaterial{}.young_modulus;
-  double poisson_ratio = PaperMaterial{}.poisson_ratio;
-  double area_density = PaperMaterial{}.area_density;
+  PaperMaterial material;
   BankOptions bank;
 };
 
 void describe(OptionVisitor& v, BankCommandOptions& o) {
   v.value("seed", o.seed, {.doc = "seed of the bank, as `seed` of an experiment", .min = 0});
-  v.value("thickness", o.thickness,
-          {.doc = "thickness h of the paper", .unit = "m", .min = 1e-9, .max = 1});
-  v.value("young_modulus", o.young_modulus,
-          {.doc = "Young's modulus E of the paper", .unit = "Pa", .min = 1e-3});
-  v.value("poisson_ratio", o.poisson_ratio,
-          {.doc = "Poisson's ratio nu of the paper", .min = 0, .max = 0.499});
-  v.value("area_density", o.area_density,
-          {.doc = "mass of an area of the paper", .unit = "kg/m^2", .min = 1e-9});
+  paper::describe_plate(v, o.material);
   describe(v, o.bank);
 }
 
@@ -105,13 +95,8 @@ CommandText write_generated(const std::string& folder, const BankCommandOptions&
   if (fs::exists(folder, error) && !fs::is_empty(folder, error)) {
     throw Error("is there and not empty", folder, "a folder to be made, or an empty one");
   }
-  PaperMaterial material;
-  material.thickness = options.thickness;
-  material.young_modulus = options.young_modulus;
-  material.poisson_ratio = options.poisson_ratio;
-  material.area_density = options.area_density;
   const SoundBank bank =
-      generate_bank(material, options.bank, static_cast<std::uint64_t>(options.seed));
+      generate_bank(options.material, options.bank, static_cast<std::uint64_t>(options.seed));
   write_bank(bank, folder);
   return {std::to_string(bank.sounds.size()) + " sounds in " + folder + "\n", {}};
 }

@@ -4,16 +4,11 @@ namespace geoprior::sound {
 
 void describe(OptionVisitor& v, HeardMaterial& options) {
   PaperMaterial& m = options.paper;
-  v.value("thickness", m.thickness,
-          {.doc = "thickness h of the paper", .unit = "m", .min = 1e-9, .max = 1});
-  v.value("young_modulus", m.young_modulus,
-          {.doc = "Young's modulus E of the paper", .unit = "Pa", .min = 1e-3});
-  v.value("poisson_ratio", m.poisson_ratio,
-          {.doc = "Poisson's ratio nu of the paper", .min = 0, .max = 0.499});
-  v.value("area_density", m.area_density,
-          {.doc = "mass of an area of the paper", .unit = "kg/m^2", .min = 1e-9});
+  paper::describe_plate(v, m);
   v.value("friction", m.friction,
-          {.doc = "Coulomb coefficient of friction between paper and obstacles", .min = 0});
+          {.doc = "Coulomb coefficient of friction between paper and obstacles",
+           .min = 0,
+           .max = paper::kRoughest});
 }
 
 void describe(OptionVisitor& v, HoldOptions& options) {

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include "core/error.h"
 #include "core/geometry/planar.h"
@@ -85,8 +88,8 @@ void sample_border(const Pattern& pattern, const std::vector<Vector2d>& anchors,
     }
   }
   int first = edge_count({pattern.border, pattern.holes});  // edge of cut k
+  Pattern others = pattern;
   for (std::size_t k = 0; k < pattern.cuts.size(); ++k) {
-    Pattern others = pattern;
     others.cuts[k].clear();
     const auto own = static_cast<int>(pattern.cuts[k].size()) - 1;
     for (const Vector2d& end : {pattern.cuts[k].front(), pattern.cuts[k].back()}) {
@@ -94,6 +97,7 @@ void sample_border(const Pattern& pattern, const std::vector<Vector2d>& anchors,
       if (b.distance > tolerance) continue;
       stops[b.edge < first ? b.edge : b.edge + own].push_back(b.t);
     }
+    others.cuts[k] = pattern.cuts[k];
     first += own;
   }
   std::size_t e = 0;
@@ -172,6 +176,42 @@ Sites delaunay_sites(const Pattern& pattern, const std::vector<Vector2d>& anchor
   return sites;
 }
 
+/// Points by squares of the plane, to find those within a tolerance.
+class PointCells {
+ public:
+  PointCells(const std::vector<Vector2d>& points, double tolerance) : tolerance_(tolerance) {
+    for (int i = 0; i < std::ssize(points); ++i) add(points[i], i);
+  }
+  void add(const Vector2d& p, int number) { cells_[cell_of(p)].push_back(number); }
+  /// The lowest number of a point within the tolerance.
+  [[nodiscard]] std::optional<int> first_near(const std::vector<Vector2d>& points,
+                                              const Vector2d& p) const {
+    std::optional<int> first;
+    const auto [x, y] = cell_of(p);
+    for (const double dx : {-1, 0, 1}) {
+      for (const double dy : {-1, 0, 1}) {
+        const auto cell = cells_.find({x + dx, y + dy});
+        if (cell == cells_.end()) continue;
+        for (const int i : cell->second) {
+          if ((points[i] - p).norm() <= tolerance_ && (!first || i < *first)) first = i;
+        }
+      }
+    }
+    return first;
+  }
+
+ private:
+  using Cell = std::pair<double, double>;
+  [[nodiscard]] Cell cell_of(const Vector2d& p) const {
+    // Wider than the tolerance, so that rounding hides nothing behind a neighbour.
+    const double side = 4 * tolerance_;
+    return {std::floor(p.x() / side), std::floor(p.y() / side)};
+  }
+
+  double tolerance_;
+  std::map<Cell, std::vector<int>> cells_;
+};
+
 ShellMesh triangulate(const Sites& sites, double tolerance) {
   ShellMesh mesh;
   std::vector<Vector2d> points;
@@ -183,10 +223,10 @@ ShellMesh triangulate(const Sites& sites, double tolerance) {
   }
   std::vector<Eigen::Vector2i> segments;
   // A cut begins and ends at a point that is there, or at a tip.
+  PointCells cells(points, tolerance);
   const auto point_at = [&](const Vector2d& p) {
-    for (int i = 0; i < std::ssize(points); ++i) {
-      if ((points[i] - p).norm() <= tolerance) return i;
-    }
+    if (const auto there = cells.first_near(points, p)) return *there;
+    cells.add(p, static_cast<int>(points.size()));
     points.push_back(p);
     return static_cast<int>(points.size()) - 1;
   };

@@ -178,22 +178,20 @@ bool ends_at(const std::vector<Loop>& cuts, const Vector2d& p, double tolerance)
 
 /// Begins on the border, on another cut or in the ground, ends there too, and meets nothing on the
 /// way but ends of earlier cuts on it (a tear may end on a younger one).
-void require_cut(const Pattern& pattern, std::size_t k, const std::string& where) {
-  const Loop& cut = pattern.cuts[k];
-  const double nearest = kNearest * width(pattern);
+/// @param others  the pattern with the cuts before this one
+void require_cut(const Pattern& others, const Loop& cut, const std::string& where) {
+  const double across = width(others), nearest = kNearest * across;
   if (cut.size() < 2) throw Error("cut has fewer than two points", where, "at least 2");
-  Pattern others = pattern;
-  others.cuts.resize(k);
   for (std::size_t i = 0; i < cut.size(); ++i) {
     const std::string here = where + " point " + std::to_string(i);
     if (!cut[i].allFinite()) throw Error("point of a cut is not finite", here, "finite numbers");
     const bool at_end = i == 0 || i + 1 == cut.size();
-    if (!contains(pattern, cut[i], at_end ? nearest : 0)) {
+    if (!contains(others, cut[i], at_end ? nearest : 0)) {
       throw Error("cut leaves the pattern", here, "points of the pattern");
     }
     const double distance = nearest_on_border(others, cut[i]).distance;
     // An end lies on the border, or the mesher's rounding decides.
-    if (at_end ? distance > 1e-9 * width(pattern) && distance < nearest : distance < nearest) {
+    if (at_end ? distance > 1e-9 * across && distance < nearest : distance < nearest) {
       throw Error("cut comes too near to the border, a hole or another cut", here,
                   "ends on them, or points apart from them");
     }
@@ -207,8 +205,7 @@ void require_cut(const Pattern& pattern, std::size_t k, const std::string& where
     const Vector2d along = cut[i] - cut[i - 1];
     each_edge(others, [&](const Vector2d& a, const Vector2d& b) {
       const auto t = ray_hit(cut[i - 1], along, a, b, 1e-6);
-      if (t && *t < 1 - 1e-6 &&
-          !ends_at(others.cuts, cut[i - 1] + *t * along, 1e-9 * width(pattern))) {
+      if (t && *t < 1 - 1e-6 && !ends_at(others.cuts, cut[i - 1] + *t * along, 1e-9 * across)) {
         throw Error("cut crosses the border, a hole or another cut", here,
                     "a line that ends where it meets them");
       }
@@ -321,7 +318,15 @@ void require_simple(const Pattern& pattern, const std::string& where) {
     if (loop_area(pattern.holes[k]) < 0) continue;
     throw Error("hole of the pattern runs counter-clockwise", place_of(where, k + 1), "clockwise");
   }
-  for (std::size_t k = 0; k < pattern.cuts.size(); ++k) require_cut(pattern, k, cut_name(where, k));
+  if (pattern.cuts.empty()) return;
+  std::size_t points = 0;
+  for (const Loop& cut : pattern.cuts) points += cut.size();
+  require_count(static_cast<double>(points), "points of cuts", kMostCorners, where);
+  Pattern before{pattern.border, pattern.holes};
+  for (std::size_t k = 0; k < pattern.cuts.size(); ++k) {
+    require_cut(before, pattern.cuts[k], cut_name(where, k));
+    before.cuts.push_back(pattern.cuts[k]);
+  }
 }
 
 double signed_area(const Pattern& pattern) {

@@ -240,7 +240,8 @@ TEST(TexturedFiles, ModelRefersToItsTexture) {
   bag.view.picture.content = png_bytes(ramp(90, 90));
   TexturedFileOptions options;
   options.bake.most_side = 200;
-  const TexturedFiles made = textured_files(bag.view, bag.result, bag.pattern, options);
+  const TexturedFiles made =
+      textured_files(bag.view, read_picture(bag.view.picture), bag.result, bag.pattern, options);
   std::map<std::string, std::string> file;
   for (const FabricationFile& one : made.files) file[one.name] = one.bytes;
   EXPECT_THAT(file.at("model.obj"), HasSubstr("mtllib model.mtl"));
