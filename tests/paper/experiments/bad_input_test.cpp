@@ -160,6 +160,29 @@ TEST_F(BadSheet, NamesLineAndKeyOfAMaterialOutOfRange) {
               AllOf(HasSubstr("scene.gravity"), HasSubstr("not finite")));
 }
 
+TEST_F(BadSheet, NamesTheRangeOfAMaterialThatThereIsNot) {
+  const auto material = [&](const std::string& key_and_value) {
+    return refusal(kRectangle + "material = { " + key_and_value + " }\n");
+  };
+  EXPECT_THAT(material("young_modulus = 1e300"), AllOf(HasSubstr("scene.material.young_modulus"),
+                                                       HasSubstr("between 0.001 and 1e+13 Pa")));
+  EXPECT_THAT(material("area_density = 1e9"), HasSubstr("between 1e-09 and 1e+06 kg/m^2"));
+  for (const char* key : {"yield_curvature", "weakening", "friction", "damping", "thickness"})
+    EXPECT_THAT(material(std::string(key) + " = 1e12"), HasSubstr("between")) << key;
+  EXPECT_THAT(refusal(kRectangle + "gravity = [0, 0, -1e9]\n"), HasSubstr("scene.gravity"));
+}
+
+TEST_F(BadSheet, OfMoreCutsThanAreLookedAtIsRefusedAtOnce) {
+  std::string cuts = "cuts = [";
+  for (int i = 0; i < 5001; ++i) {
+    const std::string u = std::to_string(-0.09 + 3.6e-5 * i);
+    cuts += "{ points = [{ u = " + u + ", v = 0.01 }, { u = " + u + ", v = 0.02 }] },\n";
+  }
+  EXPECT_THAT(
+      refusal("pattern = { kind = \"rectangle\", width = 0.2, height = 0.1, " + cuts + "] }\n"),
+      AllOf(HasSubstr("10002 points of cuts"), HasSubstr("10000")));
+}
+
 TEST_F(BadSheet, NamesTheObstacleThatContainsTheStart) {
   EXPECT_THAT(refusal(kRectangle +
                       "obstacles = [{ kind = \"sphere\", name = \"ball\", radius = 0.02, centre = "

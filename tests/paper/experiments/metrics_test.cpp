@@ -151,6 +151,17 @@ TEST_F(StripMetrics, EnergySpikesAreOverTheGreaterNeighbour) {
   EXPECT_NEAR(table.of_sequence("energy_spike", scene, frames).value(), 144.0 / 121, 1e-6);
 }
 
+// A strip of 120 mm x 0.4 mm, between two rows of the grid of points.
+TEST_F(StripMetrics, OfAStripTooNarrowForTheGridTheSecondDifferenceIsAbsent) {
+  scene.sheet.pattern = rectangle_pattern(0.12, 4e-4);
+  scene.sheet.handles.clear();
+  std::vector<Frame> frames;
+  for (int i = 0; i < 4; ++i)
+    frames.push_back(frame_of(geoprior::sheets::rectangle(0.12, 4e-4, 60, 1), 0.1 * i));
+  EXPECT_FALSE(table.of_sequence("second_difference_p95", scene, frames));
+  EXPECT_TRUE(table.of_sequence("energy_spike", scene, frames));
+}
+
 TEST_F(StripMetrics, ACylinderFoldsOneWayAndCostsWhatThePlateDoes) {
   const double radius = 0.1;
   const Frame bent = frame_of(geoprior::sheets::mapped(strip, geoprior::sheets::cylinder(radius)));
