@@ -64,7 +64,10 @@ void fuzz_exr(const std::uint8_t* data, std::size_t size) {
 }
 
 void fuzz_wav(const std::uint8_t* data, std::size_t size) {
-  read_as_file(data, size, ".wav", read_wav);
+  read_as_file(data, size, ".wav", [](const std::filesystem::path& file) {
+    std::vector<std::string> notes;
+    read_wav(file, notes);
+  });
 }
 
 void fuzz_run_file(const std::uint8_t* data, std::size_t size) {

@@ -93,12 +93,12 @@ class SvgChooser {
 
  private:
   [[nodiscard]] Error nothing() const {
-    return {"draws no shape that encloses anything", key_ + drawing_.name, kEnclosing};
+    return Error("draws no shape that encloses anything", key_ + drawing_.name, kEnclosing);
   }
 
   [[nodiscard]] Error unknown(const std::string& id) const {
     if (enclosing_.empty()) return nothing();
-    return {"no shape with id '" + id + "'", key_ + drawing_.name, ids_of(enclosing_)};
+    return Error("no shape with id '" + id + "'", key_ + drawing_.name, ids_of(enclosing_));
   }
 
   [[nodiscard]] SvgChoice of_shape(const SvgShape& shape) const {

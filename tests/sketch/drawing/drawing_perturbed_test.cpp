@@ -172,7 +172,7 @@ double nearest(const Points& points, const Eigen::Vector2d& to) {
 using PerturbedDrawings = test::ScratchFolder;
 
 TEST_F(PerturbedDrawings, GiveTheStrokesThatWereDrawn) {
-  for (int seed = 0; seed < test::perturbed_files(); ++seed) {
+  for (int seed = 0; seed < perturbed_files(); ++seed) {
     const PerturbedDrawing drawn(seed);
     const auto file = write("drawing.svg", drawn.text());
     DrawingFile read;
