@@ -143,7 +143,8 @@ int turns_round(const Loop& loop, const Eigen::Vector2d& p) {
 }
 
 /// Takes out the loops that have paper on both sides by fill-rule nonzero.
-void leave_out_filled(Pattern& pattern, const std::string& where, std::vector<std::string>& notes) {
+void leave_out_filled(Pattern& pattern, const std::string& where, const std::string& place,
+                      std::vector<std::string>& notes) {
   const std::vector<Loop> loops = pattern.holes;
   std::vector<Loop> holes;
   for (std::size_t k = 0; k < loops.size(); ++k) {
@@ -156,7 +157,7 @@ void leave_out_filled(Pattern& pattern, const std::string& where, std::vector<st
       continue;
     }
     require_simple_loops({pattern.border, {loops[k]}}, where);
-    notes.push_back(where + ": line " + std::to_string(k) +
+    notes.push_back(place + ": line " + std::to_string(k) +
                     " beside the border runs the same way round as what is around it: by fill-rule "
                     "nonzero it is no hole, and is left out");
   }
@@ -229,7 +230,7 @@ Pattern read_svg_pattern(const std::filesystem::path& file, const SvgPatternOpti
   const SvgChoice choice = choose_lines(drawing, options.path, options.tolerance, kPathKey, notes);
   std::string where = kFileKey + choice.where;
   Pattern pattern = loops_of(choice, where);
-  if (choice.nonzero) leave_out_filled(pattern, where, notes);
+  if (choice.nonzero) leave_out_filled(pattern, where, choice.where, notes);
   apply_clips(pattern, drawing, choice, where, notes);
   require_simple_loops(pattern, where);
   move(pattern, options.centred ? Eigen::Vector2d(-bounding_box(pattern).center())
