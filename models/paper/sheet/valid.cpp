@@ -12,6 +12,10 @@
 namespace geoprior::paper {
 namespace {
 
+/// Most handles, and most obstacles: every pair of handles is looked at, and every obstacle by
+/// every vertex in every step.
+constexpr double kMostBodies = 1000;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string text(double x) {
@@ -223,6 +227,7 @@ void require_agreement(const Sheet& sheet, std::size_t i, std::size_t j, const s
 
 /// Shapes inside the pattern, one kind of drive each, no point that two of them move differently.
 void require_handles(const Sheet& sheet, const std::string& where) {
+  require_count(static_cast<double>(sheet.handles.size()), "handles", kMostBodies, where);
   for (std::size_t i = 0; i < sheet.handles.size(); ++i) {
     const std::string at = place_of(sheet, i, where);
     require_shape(sheet.handles[i], sheet.pattern, at);
@@ -302,6 +307,7 @@ class StartSearch {
 
 /// Shapes that exist, and a start of the sheet outside all of them.
 void require_obstacles(const Sheet& sheet, const std::string& where) {
+  require_count(static_cast<double>(sheet.obstacles.size()), "obstacles", kMostBodies, where);
   const double tolerance = std::max(sheet.imperfection, 1e-9);
   for (std::size_t i = 0; i < sheet.obstacles.size(); ++i) {
     const Obstacle& obstacle = sheet.obstacles[i];
