@@ -15,13 +15,17 @@
 
 namespace geoprior {
 
+/// What a text names: nothing, a file that is read, a folder, or either (the frames of a sequence).
+enum class Named { nothing, file, folder, file_or_folder };
+
 /// What `describe` says of one option beside key and default.
 struct OptionInfo {
   std::string_view doc;        ///< one line of meaning, with the thesis' symbol where it has one
   std::string_view unit = "";  ///< "" for a pure number
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  bool required = false;  ///< no default: the file must give it
+  bool required = false;         ///< no default: the file must give it
+  Named named = Named::nothing;  ///< by a text or by each of several
 };
 
 /// The types of options, in the one place that lists them.

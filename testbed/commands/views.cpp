@@ -38,6 +38,7 @@ std::vector<std::vector<std::string>> overview(const std::vector<fs::path>& fold
   for (const fs::path& folder : folders) {
     throw_if_stopped();
     const OpenedRun run(folder, unverified);
+    require_recorded_files(run);
     const fs::path figure = folder / "figure.png";
     rows.push_back({run.record().experiment_id, claim_count_text(count_claims(run.record())),
                     fs::exists(figure) ? figure.string() : "-"});

@@ -44,16 +44,21 @@ void require_same_specification(const std::string& recorded, const Experiment& e
 }
 
 /// The record of a run that is finished already; absent when there is work left.
+/// @throws Error  for another specification, and when a frame or artifact is not what was recorded:
+///                what is finished is not made anew
 std::optional<RunRecord> finished_record(const Experiment& experiment, const fs::path& folder) {
   if (!recorded_result(folder)) return std::nullopt;
   require_same_specification(recorded_hash(folder).value_or(""), experiment, folder);
+  std::optional<OpenedRun> run;
   try {
-    return OpenedRun(folder).record();
+    run.emplace(folder);
   } catch (const Error& error) {
     // The journal has it all.
     say(std::string(error.what()) + ": assembled again from the journal");
     return std::nullopt;
   }
+  require_recorded_files(*run);
+  return run->record();
 }
 
 RunState restore(const Experiment& experiment, const Journal& journal, const fs::path& folder) {

@@ -124,6 +124,17 @@ void set_usual_signals(posix_spawnattr_t& attributes) {
 
 }  // namespace
 
+std::string ChildResult::reason() const {
+  const std::size_t end = errors.find_last_not_of(" \t\r\n");
+  if (end == std::string::npos) {
+    if (exit_code > 128) return "was ended by signal " + std::to_string(exit_code - 128);
+    return "ended with code " + std::to_string(exit_code);
+  }
+  const std::size_t before = errors.find_last_of("\r\n", end);
+  const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+  return errors.substr(begin, end + 1 - begin);
+}
+
 std::optional<std::string> find_program(const std::string& name) {
   const char* path = std::getenv("PATH");
   std::string folders = path != nullptr ? path : "";

@@ -12,6 +12,10 @@ std::optional<std::string> find_program(const std::string& name);
 struct ChildResult {
   int exit_code = 0;   ///< 127 when the program could not be started, 128 + n after signal n
   std::string errors;  ///< what it wrote on its standard error
+
+  /// Why it failed: the last line of `errors` that is not blank (programs warn first and name their
+  /// error last), or its exit code.
+  [[nodiscard]] std::string reason() const;
 };
 
 /// Runs a program to its end without a shell: arguments arrive as they are given. Its standard

@@ -33,11 +33,7 @@ std::string find_python() {
     const ChildResult test =
         run_child({python, "-E", "-c", "import h5py, matplotlib, numpy"}, kEnvironment);
     if (test.exit_code == 0) return python;
-    const auto last_line = test.errors.find_last_of('\n', test.errors.size() - 2);
-    std::string reason =
-        last_line == std::string::npos ? test.errors : test.errors.substr(last_line + 1);
-    while (!reason.empty() && reason.back() == '\n') reason.pop_back();
-    tried += (tried.empty() ? "" : "; ") + python + ": " + reason;
+    tried += (tried.empty() ? "" : "; ") + python + ": " + test.reason();
   }
   throw Error("no Python with h5py, matplotlib and numpy (" + tried + ")", "plots and report",
               kInstallPython);
@@ -53,13 +49,9 @@ void run_python(const std::string& script, const std::vector<std::string>& argum
   std::vector<std::string> command{python, "-B", "-E", file.string()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   const ChildResult result = run_child(command, kEnvironment);
-  std::string text = result.errors;
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  if (result.exit_code != 0) {
-    throw Error(text.empty() ? "ended with code " + std::to_string(result.exit_code) : text,
-                script + ".py");
-  }
-  if (!text.empty()) say(text);
+  if (result.exit_code != 0) throw Error(result.reason(), script + ".py");
+  const std::size_t end = result.errors.find_last_not_of('\n');
+  if (end != std::string::npos) say(result.errors.substr(0, end + 1));
 }
 
 }  // namespace geoprior

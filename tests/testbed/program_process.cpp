@@ -65,7 +65,9 @@ ProgramProcess::~ProgramProcess() {
   wait();
 }
 
-void ProgramProcess::signal(int number) const { ::kill(pid_, number); }
+void ProgramProcess::signal(int number) const {
+  if (pid_ > 0) ::kill(pid_, number);
+}
 
 int ProgramProcess::wait() { return *collect(0); }
 
@@ -79,11 +81,13 @@ double ProgramProcess::processor_seconds() const {
 }
 
 std::optional<int> ProgramProcess::collect(int flags) {
+  if (ended_) return ended_;
   int status = 0;
   if (::waitpid(pid_, &status, flags) == 0) return std::nullopt;
   ::kill(-pid_, SIGKILL);  // what it left behind
   pid_ = -1;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  ended_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  return ended_;
 }
 
 int become_program(const std::string& program, const std::vector<std::string>& arguments) {

@@ -20,7 +20,7 @@ class ProgramProcess {
   ProgramProcess(const ProgramProcess&) = delete;
   ProgramProcess& operator=(const ProgramProcess&) = delete;
 
-  /// Of the child alone.
+  /// To the child alone; nothing once it has been seen to end.
   void signal(int number) const;
   /// Exit code, or minus the signal that ended it.
   int wait();
@@ -33,6 +33,7 @@ class ProgramProcess {
   std::optional<int> collect(int flags);
 
   int pid_ = -1;
+  std::optional<int> ended_;
 };
 
 /// Replaces this process by a program; returns only when there is none.

@@ -20,8 +20,7 @@ void describe(OptionVisitor& v, DetailDrawingOptions& options) {
   if (given) {
     v.value("file", options.file,
             {.doc = "mesh of a detail (z its normal): .obj, .ply, .off, .vtp",
-             .unit = "file",
-             .required = true});
+             .required = true, .named = Named::file});
   }
 }
 

@@ -40,8 +40,7 @@ void describe(OptionVisitor& v, LiquidShapeOptions& options) {
   if (options.kind == Kind::mesh) {
     v.value("file", options.file,
             {.doc = "file of the closed mesh: .obj, .ply, .off, .vtp",
-             .unit = "file",
-             .required = true});
+             .required = true, .named = Named::file});
     v.value("scale", options.scale,
             {.doc = "metres for one unit of the file", .unit = "m", .min = kSmallest});
     v.value("turn_z_deg", options.turn_z_deg,
@@ -93,7 +92,7 @@ void describe(OptionVisitor& v, NamedSequenceOptions& options) {
 void describe(OptionVisitor& v, LibraryOptions& options) {
   v.value("name", options.name, {.doc = "name of the library in edits", .required = true});
   v.value("path", options.path,
-          {.doc = "file of the feature library (HDF5)", .unit = "file", .required = true});
+          {.doc = "file of the feature library (HDF5)", .required = true, .named = Named::file});
 }
 
 void describe(OptionVisitor& v, TargetOptions& options) {
@@ -108,8 +107,7 @@ void describe(OptionVisitor& v, TargetOptions& options) {
     case TargetKind::mesh:
       v.value("file", options.file,
               {.doc = "file of the still mesh: .obj, .ply, .off, .vtp",
-               .unit = "file",
-               .required = true});
+               .required = true, .named = Named::file});
       v.value("scale", options.scale,
               {.doc = "metres for one unit of the file", .unit = "m", .min = kSmallest});
       v.value("turn_deg", options.turn_deg,
@@ -143,7 +141,7 @@ void describe(OptionVisitor& v, FluidSceneOptions& options) {
   describe_group(v, "target", options.target,
                  {.doc = "animation, mesh or ocean that features are pasted into"});
   describe_list(v, "edits", options.edits, {.doc = "features that are pasted, and how"});
-  v.value("edit_list", options.edit_list, {.doc = "TOML file of further edits", .unit = "file"});
+  v.value("edit_list", options.edit_list, {.doc = "TOML file of further edits", .named = Named::file});
 }
 
 }  // namespace geoprior::fluid

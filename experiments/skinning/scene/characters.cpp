@@ -420,7 +420,7 @@ void describe(OptionVisitor& v, CharacterOptions& options) {
       {.doc =
            "name of the mesh of the file that is read; absent: all of its first skin, else all"});
   v.value("skeleton", options.skeleton,
-          {.doc = "skeleton file that overrides the file's hierarchy", .unit = "file"});
+          {.doc = "skeleton file that overrides the file's hierarchy", .named = Named::file});
   v.value("unit_m", options.unit_m,
           {.doc = "metres for one unit of the file", .unit = "m", .min = 1e-9, .max = 1e9});
   describe_choice(

@@ -248,7 +248,7 @@ void describe(OptionVisitor& v, MotionOptions& options) {
       describe_ramp(v, options);
       break;
     case MotionKind::poses:
-      v.value("file", options.file, {.doc = "pose file", .unit = "file"});
+      v.value("file", options.file, {.doc = "pose file", .named = Named::file});
       v.value("names", options.names,
               {.doc = "names of the poses in order; empty: all of the file"});
       break;
@@ -263,7 +263,7 @@ void describe(OptionVisitor& v, MotionOptions& options) {
               {.doc = "number of frames, equally spaced", .min = 1, .max = kMostFrames});
       break;
     case MotionKind::bvh:
-      v.value("file", options.file, {.doc = "motion capture file", .unit = "file"});
+      v.value("file", options.file, {.doc = "motion capture file", .named = Named::file});
       v.value("first_frame", options.first_frame,
               {.doc = "first frame that is taken, counted from 0", .min = 0});
       v.value("last_frame", options.last_frame,

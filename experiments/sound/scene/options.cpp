@@ -38,7 +38,7 @@ void describe(OptionVisitor& v, SoundSceneOptions& options) {
   v.value("bank", options.bank,
           {.doc = "folder with a bank of sounds, bank.csv and WAV files (docs/file-formats.md); "
                   "absent: methods of sound generate theirs",
-           .unit = "folder"});
+           .named = Named::folder});
 }
 
 }  // namespace geoprior::sound

@@ -1,6 +1,7 @@
 #include "testbed/runner/options/listing.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -44,6 +45,14 @@ Shown shown(const std::vector<T>& x) {
 template <class T>
 Shown shown(const std::array<T, 3>& x) {
   return {"3 " + shown(T{}).type + "s", array_text(x)};
+}
+
+/// The type of a text, or of several, by what it names.
+std::string type_of(std::string type, Named named) {
+  constexpr std::array<std::string_view, 4> kTexts{"text", "file", "folder", "file or folder"};
+  const bool is_text = type == "text" || type == "texts";
+  if (!is_text || named == Named::nothing) return type;
+  return std::string(kTexts[static_cast<std::size_t>(named)]) + (type == "texts" ? "s" : "");
 }
 
 /// Values that choices are made to have, by key.
@@ -98,19 +107,13 @@ class OptionLister final : public OptionVisitor {
   void visit_value(std::string_view key, const OptionReference& x,
                    const OptionInfo& info) override {
     const Shown as = std::visit([](const auto* value) { return shown(*value); }, x);
-    if (as.type == "text" && !info.unit.empty()) return add_path(key, as.value, info);
-    add(key, as.type, as.value, info);
+    add(key, type_of(as.type, info.named), as.value, info);
   }
   Walked walk_once(const std::string& prefix, Forced forced, const std::function<void()>& inside);
   void walk_tags(const std::string& prefix, std::size_t tag, Walked& all,
                  const std::function<void()>& inside);
   void add(std::string_view key, std::string type, std::string default_value,
            const OptionInfo& info);
-  /// A text that names a file or a folder: its type says which.
-  void add_path(std::string_view key, const std::string& value, OptionInfo info) {
-    const std::string type(std::exchange(info.unit, ""));
-    add(key, type, value, info);
-  }
   void add_inside(const std::string& key, const std::function<void()>& inside);
 
   Walked walked_;

@@ -11,7 +11,7 @@ namespace geoprior {
 /// One option as `geoprior describe` and the documentation show it.
 struct OptionRow {
   std::string key;            ///< dotted; elements of a list as "joints[].to_deg"
-  std::string type;           ///< "number", "integer", "boolean", "text", "choice", "table", …
+  std::string type;           ///< "number", "integer", "boolean", "text", "file", "choice", …
   std::string default_value;  ///< as TOML; "" when absent, "required" when it must be given
   std::string range;          ///< "at least 0", or the names of a choice
   std::string unit;

@@ -7,8 +7,11 @@
 #include <atomic>
 #include <cerrno>
 #include <mutex>
+#include <string>
+#include <system_error>
 #include <thread>
 
+#include "core/error.h"
 #include "testbed/streams.h"
 
 namespace geoprior {
@@ -71,7 +74,12 @@ void install_stop_handler() {
   static std::once_flag once;
   // Makes what the handler uses, before there is a handler.
   (void)leaving();
-  std::call_once(once, [] { std::thread(leave_when_requested).detach(); });
+  try {
+    std::call_once(once, [] { std::thread(leave_when_requested).detach(); });
+  } catch (const std::system_error& error) {
+    throw Error(std::string("cannot start a thread: ") + error.code().message(), "geoprior",
+                "a limit on processes (ulimit -u) that leaves room for a few");
+  }
   // SA_RESTART: writing a frame is never interrupted half-way by the first signal.
   struct sigaction action {};
   action.sa_handler = on_stop_signal;
@@ -79,6 +87,9 @@ void install_stop_handler() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction inherited {};
+  sigaction(SIGHUP, nullptr, &inherited);
+  if (inherited.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
 }
 
 bool stop_requested() noexcept { return stop_flag != 0; }

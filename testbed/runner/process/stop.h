@@ -7,8 +7,11 @@
 
 namespace geoprior {
 
-/// From now on the first Ctrl-C (SIGINT, or SIGTERM) asks the run to stop at its next consistent
-/// state, the second ends the program at once.
+/// From now on the first Ctrl-C (SIGINT; SIGTERM; SIGHUP of a terminal that is closed, unless it
+/// was ignored from the start, as under nohup) asks the run to stop at its next consistent state,
+/// the second ends the program at once.
+///
+/// @throws Error  when no thread can be started (a limit on processes)
 void install_stop_handler();
 
 /// True after the first Ctrl-C, or after `request_stop`. The runner's context hands it to the

@@ -77,7 +77,7 @@ void encode(const std::string& ffmpeg, const fs::path& pictures,
        pending.temporary().string()});
   const ChildResult result = run_child(command);
   if (result.exit_code != 0) {
-    throw Error("ffmpeg failed: " + result.errors, file.string(),
+    throw Error("ffmpeg failed: " + result.reason(), file.string(),
                 sound ? "an ffmpeg that can write mp4 with AAC; the frames are there"
                       : "an ffmpeg that can write mp4; the frames are there");
   }

@@ -203,8 +203,8 @@ struct Places {
   std::optional<std::string> bank;
 };
 void describe(OptionVisitor& v, Places& o) {
-  v.value("drawing", o.drawing, {.doc = "a drawing", .unit = "file", .required = true});
-  v.value("bank", o.bank, {.doc = "a bank", .unit = "folder"});
+  v.value("drawing", o.drawing, {.doc = "a drawing", .required = true, .named = Named::file});
+  v.value("bank", o.bank, {.doc = "a bank", .named = Named::folder});
 }
 
 TEST(OptionListing, TellsFilesAndFoldersFromTexts) {
