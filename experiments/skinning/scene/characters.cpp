@@ -414,7 +414,8 @@ void describe(OptionVisitor& v, CharacterOptions& options) {
   static constexpr std::array<std::string_view, 5> kWeights{"file-or-heat", "file", "heat",
                                                             "bounded", "narrow"};
   v.value("character", options.character,
-          {.doc = "\"human\", \"cylinder\", \"finger\", or a .glb or .gltf file"});
+          {.doc = "\"human\", \"cylinder\", \"finger\", or a .glb or .gltf file",
+           .named = Named::file});
   v.value(
       "mesh", options.mesh,
       {.doc =

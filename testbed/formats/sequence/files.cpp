@@ -107,7 +107,8 @@ void describe(OptionVisitor& v, SequenceOptions& o) {
   v.value("path", o.path,
           {.doc = "numbered files (name_%04d.obj, .ply, .vtp, .off), a folder of them, a .pvd, one "
                   "mesh, or run:<topic>/<experiment>/<variant>",
-           .required = true});
+           .required = true,
+           .named = Named::file_or_folder});
   v.value("part", o.part, {.doc = "part to read of a folder or .pvd that holds several"});
   describe_choice(v, "up", o.up, kUp, {.doc = "axis of the files that points up; no sidecar: z"});
   v.value("scale", o.scale,

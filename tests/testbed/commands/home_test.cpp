@@ -89,6 +89,18 @@ TEST(ChildProcess, MissingProgramIsAResultNotACrash) {
   EXPECT_THAT(result.errors, HasSubstr("No such file"));
 }
 
+// Programs warn first and say last what they failed of.
+TEST(ChildProcess, ReasonIsTheLastLineOfItsErrors) {
+  const auto reason = [](const std::string& script) {
+    return run_child({"/bin/sh", "-c", script}).reason();
+  };
+  EXPECT_EQ(reason("printf 'warning: old\\n\\nerror: no disk \\r\\n\\n' >&2; exit 3"),
+            "error: no disk");
+  EXPECT_EQ(reason("printf 'alone' >&2; exit 3"), "alone");
+  EXPECT_EQ(reason("exit 3"), "ended with code 3");
+  EXPECT_EQ(reason("kill -9 $$"), "was ended by signal 9");
+}
+
 TEST(Python, PassesArgumentsAndTheScriptsError) {
   const HomeWithScript home(
       "import sys\nimport h5py, numpy\nif sys.argv[1:] != ['a b', \"c'd\"]:\n"
@@ -97,6 +109,12 @@ TEST(Python, PassesArgumentsAndTheScriptsError) {
   EXPECT_NO_THROW(run_python("script", {"a b", "c'd"}));
   EXPECT_THAT(test::error_of([] { run_python("script", {"other"}); }), HasSubstr("got ['other']"));
   EXPECT_THAT(test::error_of([] { run_python("absent", {}); }), HasSubstr("absent.py"));
+  const HomeWithScript warning(
+      "import sys\nprint('DeprecationWarning: old', file=sys.stderr)\n"
+      "raise ValueError('no such row')\n");
+  const Variable other("GEOPRIOR_HOME", warning.folder.string());
+  EXPECT_THAT(test::error_of([] { run_python("script", {}); }),
+              AllOf(HasSubstr("ValueError: no such row"), Not(HasSubstr("DeprecationWarning"))));
 }
 
 }  // namespace

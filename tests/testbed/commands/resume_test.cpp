@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <thread>
@@ -17,6 +18,7 @@
 namespace geoprior::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 namespace fs = std::filesystem;
@@ -190,6 +192,56 @@ TEST_F(Resume, OfAFinishedRunDoesNothing) {
   EXPECT_TRUE(again.was_finished);
   EXPECT_EQ(again.record.content_sha256, first.record.content_sha256);
   EXPECT_EQ(fs::last_write_time(out() / "run.h5"), written);
+}
+
+// Of a finished run every frame and artifact is what the journal says, or nothing is said of it.
+TEST_F(Resume, OfAFinishedRunWithOtherFramesIsRefused) {
+  const auto file = circle();
+  const fs::path frames = out() / "frames";
+  run(load(file), out());
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(frames)) {
+    if (entry.path().extension() == ".vtp") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  ASSERT_GE(files.size(), 2U);
+  const fs::path aside = folder() / "aside";
+  const auto refusal = [&] { return error_of([&] { run(load(file), out(), true); }); };
+
+  fs::rename(files[0], aside);  // two frames swapped
+  fs::rename(files[1], files[0]);
+  fs::rename(aside, files[1]);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr(files[0].filename().string()),
+                               HasSubstr("its SHA-256 is not the recorded one")));
+  EXPECT_EQ(ToyProgram({"report", out().string()}, log()).wait(), 2);
+  EXPECT_THAT(text_of(log()), HasSubstr("its SHA-256 is not the recorded one"));
+  fs::rename(files[1], aside);
+  fs::rename(files[0], files[1]);
+  fs::rename(aside, files[0]);
+  EXPECT_TRUE(run(load(file), out(), true).was_finished);
+
+  fs::rename(files[1], aside);  // one is gone
+  EXPECT_THAT(refusal(), HasSubstr(files[1].filename().string()));
+  fs::rename(aside, files[1]);
+
+  fs::rename(frames, folder() / "elsewhere");  // a link in place of a folder
+  fs::create_directory_symlink(folder() / "elsewhere", frames);
+  EXPECT_THAT(refusal(), HasSubstr("link"));
+}
+
+// A terminal that is closed leaves a run that goes on; under nohup it does not matter.
+TEST_F(Resume, AfterAClosedTerminal) {
+  const auto file = pendulum("frames = 6\nframe_delay_ms = 50");
+  EXPECT_EQ(interrupt(file, 3, SIGHUP), 2) << text_of(log());
+  EXPECT_THAT(text_of(log()), HasSubstr("--resume"));
+  expect_equal_to_undisturbed(file);
+}
+
+TEST_F(Resume, IsNotNeededAfterAClosedTerminalUnderNohup) {
+  const auto file = pendulum("frames = 3\nframe_delay_ms = 50");
+  ::signal(SIGHUP, SIG_IGN);
+  EXPECT_EQ(interrupt(file, 2, SIGHUP), 0) << text_of(log());
+  ::signal(SIGHUP, SIG_DFL);
 }
 
 TEST_F(Resume, AssemblesADamagedRunFileAgain) {

@@ -1,0 +1,254 @@
+#include "tests/topics/named_files.h"
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "testbed/formats/wav_file.h"
+#include "tests/testbed/formats/gltf_samples.h"
+
+namespace geoprior::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_text(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+/// A closed box from the origin, as OBJ.
+std::string box(double x, double y, double z) {
+  std::string text;
+  for (int i = 0; i < 8; ++i) {
+    text += "v " + std::to_string((i & 1) != 0 ? x : 0) + " " +
+            std::to_string((i & 2) != 0 ? y : 0) + " " + std::to_string((i & 4) != 0 ? z : 0) +
+            "\n";
+  }
+  return text +
+         "f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\n"
+         "f 1 7 3\nf 2 4 8\nf 2 8 6\n";
+}
+
+auto writes(const std::string& name, std::function<std::string(bool changed)> text) {
+  return [=](const fs::path& folder, bool changed) { write_text(folder / name, text(changed)); };
+}
+
+/// A square plate of a grid of vertices at height `z`, as OBJ with its pattern as texture.
+std::string plate(double side, double z, int cells, double shift = 0) {
+  std::string text;
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      const double u = side * (static_cast<double>(i) / cells - 0.5),
+                   v = side * (static_cast<double>(j) / cells - 0.5);
+      const double wave = z * std::sin(std::numbers::pi * (u + shift) / side);
+      text += "v " + std::to_string(u) + " " + std::to_string(v) + " " + std::to_string(wave) +
+              "\nvt " + std::to_string(u) + " " + std::to_string(v) + "\n";
+    }
+  }
+  for (int j = 0; j < cells; ++j) {
+    for (int i = 0; i < cells; ++i) {
+      const int a = j * (cells + 1) + i + 1, b = a + cells + 1;
+      const auto corner = [](int k) { return " " + std::to_string(k) + "/" + std::to_string(k); };
+      text += "f" + corner(a) + corner(a + 1) + corner(b + 1) + "\nf" + corner(a) + corner(b + 1) +
+              corner(b) + "\n";
+    }
+  }
+  return text;
+}
+
+void write_frames(const fs::path& folder, bool changed) {
+  for (int i = 0; i < 3; ++i) {
+    const double z = 0.02 * i + (changed && i == 2 ? 0.005 : 0);
+    write_text(folder / ("wave_" + std::to_string(i) + ".obj"), plate(0.2, z, 6));
+  }
+}
+const std::vector<std::string> kFrames{"wave_0.obj", "wave_1.obj", "wave_2.obj"};
+
+void add_details(std::map<std::string, NamedFile>& files) {
+  const std::string plane = "surface = { kind = \"plane\", width = 1, height = 1, edge = 0.2 }\n",
+                    few = "pattern = { kind = \"poisson-disk\", count = 12 }\n",
+                    two = "motion = { frames = 2 }\n";
+  files["details surface.file"] = {
+      writes("plate.obj", [](bool changed) { return plate(1, changed ? 0.2 : 0.1, 6); }),
+      "surface = { kind = \"file\", file = \"plate.obj\" }\n" + few + two,
+      {"plate.obj"},
+      "naive-stretch"};
+  files["details pattern.file"] = {
+      writes("places.csv",
+             [](bool changed) {
+               return std::string("x,y,z\n0.1,0.1,0\n-0.2,0.3,0\n0.3,") +
+                      (changed ? "-0.3" : "-0.2") + ",0\n-0.3,-0.3,0\n";
+             }),
+      plane + "pattern = { kind = \"file\", file = \"places.csv\" }\n" + two,
+      {"places.csv"},
+      "naive-stretch"};
+  files["details drawing.file"] = {
+      writes("stud.obj", [](bool changed) { return box(1, 1, changed ? 2 : 1); }),
+      plane + few + two +
+          "drawing = { parameters = [1], look = { kind = \"mesh\", instance = { shape = "
+          "\"given\" } }, file = \"stud.obj\" }\n",
+      {"stud.obj"},
+      "naive-stretch"};
+  files["details sequence.path"] = {
+      write_frames,
+      "surface = { kind = \"sequence\" }\nsequence = { path = \"wave_%d.obj\" }\n" + few, kFrames,
+      "naive-stretch"};
+}
+
+void add_fluid(std::map<std::string, NamedFile>& files) {
+  const std::string tank =
+      "duration = 0.04\nframe_interval = 0.04\ntank = { size = [1, 1, 1], cell = 0.125, ";
+  const std::string body =
+      "shape = { kind = \"mesh\", file = \"body.obj\", centre = [0.3, 0.3, "
+      "0.1] }";
+  const auto solid =
+      writes("body.obj", [](bool changed) { return box(0.4, changed ? 0.5 : 0.4, 0.4); });
+  const std::vector<std::string> read{"body.obj"};
+  files["fluid tank.volumes[].shape.file"] = {solid, tank + "volumes = [{ " + body + " }] }\n",
+                                              read, "liquid"};
+  files["fluid tank.sources[].shape.file"] = {
+      solid, tank + "sources = [{ " + body + ", until = 1, velocity = [0, 0, -1] }] }\n", read,
+      "liquid"};
+  files["fluid tank.solids[].shape.file"] = {
+      solid,
+      tank +
+          "volumes = [{ shape = { centre = [0.5, 0.5, 0.25], size = [1, 1, 0.5] } }], solids = "
+          "[{ " +
+          body + " }] }\n",
+      read, "liquid"};
+  const std::string injected =
+      "injected = { bumps = 1, rings = 1, drops = 1, crossings = 0, frames = 3 }\n";
+  files["fluid target.file"] = {
+      writes("bed.obj", [](bool changed) { return plate(4, changed ? 0.02 : 0.01, 80); }),
+      injected +
+          "target = { kind = \"mesh\", file = \"bed.obj\" }\nedits = [{ name = \"a\", "
+          "source = \"injected\" }]\n",
+      {"bed.obj"},
+      "sculpt",
+      "extraction.map.texel = 2"};
+  files["fluid target.path"] = {
+      write_frames,
+      injected +
+          "target = { kind = \"sequence\", path = \"wave_%d.obj\" }\nedits = [{ name = "
+          "\"a\", source = \"injected\" }]\n",
+      kFrames, "sculpt", "extraction.map.texel = 2"};
+  files["fluid sequences[].path"] = {write_frames,
+                                     "sequences = [{ name = \"mine\", path = \"wave_%d.obj\" }]\n",
+                                     kFrames, "extract"};
+}
+
+void add_paper_and_sound(std::map<std::string, NamedFile>& files) {
+  const auto pattern = writes("cut.svg", [](bool changed) {
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"200mm\" height=\"100mm\" viewBox=\"0 "
+           "0 200 100\"><rect id=\"p\" x=\"0\" y=\"0\" width=\"" +
+           std::string(changed ? "180" : "200") + "\" height=\"100\"/></svg>\n";
+  });
+  const std::string svg =
+      "pattern = { kind = \"svg\", file = \"cut.svg\", path = \"p\", unit = \"mm\" }\n";
+  files["paper pattern.file"] = {pattern,
+                                 svg +
+                                     "gravity = [0, 0, 0]\nimperfection = 0\nduration = 0.01\n"
+                                     "frame_interval = 0.01\nsubsteps = 1\n",
+                                 {"cut.svg"},
+                                 "dense",
+                                 "triangles = 60"};
+  const std::string frames = "animation = { path = \"wave_%d.obj\", frames_per_second = 50 }\n",
+                    square = "pattern = { kind = \"rectangle\", width = 0.2, height = 0.2 }\n";
+  files["sound pattern.file"] = {[pattern](const fs::path& folder, bool changed) {
+                                   pattern(folder, changed);
+                                   for (int i = 0; i < 3; ++i)
+                                     write_text(folder / ("wave_" + std::to_string(i) + ".obj"),
+                                                plate(0.2, 0.02 * i, 6));
+                                 },
+                                 svg + frames,
+                                 {"cut.svg"},
+                                 "clicks"};
+  files["sound animation.path"] = {write_frames, square + frames, kFrames, "clicks"};
+  files["sound bank"] = {
+      [](const fs::path& folder, bool changed) {
+        const auto tone = [](double cycles) {
+          Sound sound;
+          sound.sample_rate = 48000;
+          sound.samples.resize(4800, 1);
+          for (Eigen::Index i = 0; i < 4800; ++i) {
+            const double t = static_cast<double>(i) / 4800;
+            sound.samples(i, 0) = 0.5 * (1 - t) * std::sin(2 * std::numbers::pi * cycles * t);
+          }
+          return wav_bytes(sound);
+        };
+        write_text(folder / "bank" / "a.wav", tone(changed ? 90 : 60));
+        write_text(folder / "bank" / "b.wav", tone(40));
+        write_text(folder / "bank" / "bank.csv",
+                   "file,kind,ruling_length,free_border,speed\na.wav,flap,0.03,0.03,0.1\n"
+                   "b.wav,friction,0.03,0.03,0.1\n");
+      },
+      "swatches = { rulings = [0.03], widths = [0.03] }\nbank = \"bank\"\n",
+      {"bank/bank.csv", "bank/a.wav", "bank/b.wav"},
+      "sound"};
+}
+
+/// The square of a knee, or the same a little wider.
+void write_square(const fs::path& folder, bool changed) {
+  GltfSample sample = skinned_square();
+  if (changed) sample.json["nodes"][0]["scale"] = {1, 1, 1};
+  const std::vector<std::byte> bytes = sample.bytes();
+  std::string text(bytes.size(), '\0');
+  std::memcpy(text.data(), bytes.data(), bytes.size());
+  write_text(folder / "my.glb", text);
+}
+
+void add_skinning_and_sketch(std::map<std::string, NamedFile>& files) {
+  files["sketch drawing"] = {[](const fs::path& folder, bool changed) {
+                               const fs::path drawings = GEOPRIOR_SOURCE_DIR "/experiments/sketch";
+                               fs::copy_file(drawings / (changed ? "tunic.svg" : "boot.svg"),
+                                             folder / "mine.svg",
+                                             fs::copy_options::overwrite_existing);
+                             },
+                             "drawing = \"mine.svg\"\nhull = { triangles = 300 }\n",
+                             {"mine.svg"},
+                             "visual-hull"};
+  const std::string character = "character = \"my.glb\"\n",
+                    turn =
+                        "motion = { joint = \"knee\", axis = \"+z\", to_deg = 60, frames = 2 "
+                        "}\n";
+  files["skinning character"] = {write_square, character + turn, {"my.glb"}, "linear-blend"};
+  files["skinning skeleton"] = {
+      [](const fs::path& folder, bool changed) {
+        write_square(folder, false);
+        write_text(folder / "my.skeleton.toml",
+                   std::string("[joint.hip]\nhead = [0, 0, 0]\n[joint.knee]\nparent = \"hip\"\n"
+                               "head = [0, 1, 0]\naxes = { bend = \"") +
+                       (changed ? "-z" : "+z") + "\" }\n");
+      },
+      character +
+          "skeleton = \"my.skeleton.toml\"\nmotion = { joint = \"knee\", axis = \"bend\", "
+          "to_deg = 60, frames = 2 }\n",
+      {"my.glb", "my.skeleton.toml"},
+      "linear-blend"};
+  files["skinning motion.file"] = {
+      [](const fs::path& folder, bool changed) {
+        write_square(folder, false);
+        write_text(folder / "my.poses.toml", std::string("[pose.bent]\nknee = { \"+z\" = ") +
+                                                 (changed ? "50" : "40") + " }\n");
+      },
+      character + "motion = { kind = \"poses\", file = \"my.poses.toml\" }\n",
+      {"my.glb", "my.poses.toml"},
+      "linear-blend"};
+}
+
+}  // namespace
+
+const std::map<std::string, NamedFile>& named_files() {
+  static const std::map<std::string, NamedFile> files = [] {
+    std::map<std::string, NamedFile> made;
+    add_details(made);
+    add_fluid(made);
+    add_paper_and_sound(made);
+    add_skinning_and_sketch(made);
+    return made;
+  }();
+  return files;
+}
+
+}  // namespace geoprior::test
