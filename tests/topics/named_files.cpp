@@ -5,7 +5,9 @@
 #include <numbers>
 
 #include "testbed/formats/wav_file.h"
+#include "testbed/topic.h"
 #include "tests/testbed/formats/gltf_samples.h"
+#include "tests/testbed/program_process.h"
 
 namespace geoprior::test {
 namespace {
@@ -138,6 +140,53 @@ void add_fluid(std::map<std::string, NamedFile>& files) {
                                      kFrames, "extract"};
 }
 
+/// Features that were lifted out of an animation, stored by the program.
+void write_library(const fs::path& folder, bool changed) {
+  const fs::path file = folder / "lift.toml", out = folder / "lifted";
+  write_text(
+      file, std::string("title = \"Features\"\ntopic = \"fluid\"\n[scene]\ninjected = { bumps = ") +
+                (changed ? "2" : "1") +
+                ", rings = 1, drops = 1, crossings = 0, frames = 3 }\n[[variant]]\nname = "
+                "\"v\"\nmethod = \"extract\"\noptions = { lift = true, extraction = { map = { "
+                "texel = 2 } } }\n");
+  fs::remove_all(out);
+  ProgramProcess program(
+      [&] {
+        return run_as_program({"run", file.string(), "--no-pictures", "--out", out.string()},
+                              all_topics());
+      },
+      folder / "lift.log");
+  program.wait();
+  for (const auto& entry : fs::recursive_directory_iterator(out)) {
+    if (entry.path().filename() == "features.h5")
+      fs::copy_file(entry.path(), folder / "mine.h5", fs::copy_options::overwrite_existing);
+  }
+}
+
+void add_edits(std::map<std::string, NamedFile>& files) {
+  const std::string pasted =
+      "injected = { bumps = 1, rings = 1, drops = 1, crossings = 0, frames = 3 }\ntarget = { kind "
+      "= "
+      "\"injected\" }\n";
+  files["fluid libraries[].path"] = {
+      write_library,
+      pasted +
+          "libraries = [{ name = \"stored\", path = \"mine.h5\" }]\nedits = [{ name = \"a\", "
+          "source = \"stored\" }]\n",
+      {"mine.h5"},
+      "sculpt"};
+  files["fluid edit_list"] = {
+      writes("edits.toml",
+             [](bool changed) {
+               return std::string("[[edit]]\nname = \"a\"\nsource = \"injected\"\nscale = ") +
+                      (changed ? "1.5" : "1.25") + "\n";
+             }),
+      pasted + "edit_list = \"edits.toml\"\n",
+      {"edits.toml"},
+      "sculpt",
+      "extraction.map.texel = 2"};
+}
+
 void add_paper_and_sound(std::map<std::string, NamedFile>& files) {
   const auto pattern = writes("cut.svg", [](bool changed) {
     return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"200mm\" height=\"100mm\" viewBox=\"0 "
@@ -244,6 +293,7 @@ const std::map<std::string, NamedFile>& named_files() {
     std::map<std::string, NamedFile> made;
     add_details(made);
     add_fluid(made);
+    add_edits(made);
     add_paper_and_sound(made);
     add_skinning_and_sketch(made);
     return made;

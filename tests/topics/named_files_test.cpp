@@ -49,14 +49,15 @@ class NamedFiles : public RunTest, public ::testing::WithParamInterface<std::str
     const fs::path file = write_experiment(
         topic + "/named", "title = \"A file of one's own\"\ntopic = \"" + topic + "\"\n[scene]\n" +
                               sample.scene + "[[variant]]\nname = \"v\"\nmethod = \"" +
-                              sample.method + "\"\noptions = { " + sample.options + " }\n");
+                              sample.method + "\"\noptions = { " + sample.options +
+                              " }\n[timing]\nrepetitions = 1\n");
     sample.write(file.parent_path(), changed);
     const fs::path out = folder() / (changed ? "changed" : "out");
     ProgramProcess program(
         [&] {
-          return run_as_program({"run", file.string(), "--no-pictures", "--no-timing", "--threads",
-                                 "1", "--out", out.string()},
-                                all_topics());
+          return run_as_program(
+              {"run", file.string(), "--no-pictures", "--threads", "1", "--out", out.string()},
+              all_topics());
         },
         folder() / "log");
     EXPECT_EQ(program.wait(), 0) << text_of(folder() / "log");
