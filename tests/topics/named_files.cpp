@@ -179,7 +179,7 @@ void add_edits(std::map<std::string, NamedFile>& files) {
       writes("edits.toml",
              [](bool changed) {
                return std::string("[[edit]]\nname = \"a\"\nsource = \"injected\"\nscale = ") +
-                      (changed ? "1.5" : "1.25") + "\n";
+                      (changed ? "[1.5, 1, 1]" : "[1.25, 1, 1]") + "\n";
              }),
       pasted + "edit_list = \"edits.toml\"\n",
       {"edits.toml"},

@@ -60,11 +60,12 @@ class NamedFiles : public RunTest, public ::testing::WithParamInterface<std::str
               all_topics());
         },
         folder() / "log");
-    EXPECT_EQ(program.wait(), 0) << text_of(folder() / "log");
+    EXPECT_EQ(program.wait(), 0) << log();
     for (const std::string& name : sample.read)
       hashes_[name] = sha256_of_file(file.parent_path() / name);
     return read_run_file(out / "run.h5");
   }
+  [[nodiscard]] std::string log() const { return text_of(folder() / "log"); }
 
   mutable std::map<std::string, std::string> hashes_;  ///< of the files that are named
 };
@@ -78,6 +79,10 @@ TEST_P(NamedFiles, AreReadRecordedAndDecideTheResult) {
         std::any_of(first.inputs.begin(), first.inputs.end(),
                     [&, hash = sha256](const auto& input) { return input.sha256 == hash; });
     EXPECT_TRUE(recorded) << name << " is not among the inputs of the record";
+  }
+  for (const CaseRecord& one : first.cases) {
+    for (const std::string& warning : one.warnings)
+      EXPECT_NE(log().find(warning), std::string::npos) << "not printed: " << warning;
   }
   const RunRecord second = record(found->second, true);
   EXPECT_NE(second.content_sha256, first.content_sha256) << "another file, the same result";
