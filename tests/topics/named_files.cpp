@@ -257,6 +257,12 @@ void add_skinning_and_sketch(std::map<std::string, NamedFile>& files) {
                              "drawing = \"mine.svg\"\nhull = { triangles = 300 }\n",
                              {"mine.svg"},
                              "visual-hull"};
+  files["sketch surface"] = {
+      writes("mine.obj", [](bool changed) { return plate(1, changed ? 0.3 : 0.2, 8); }),
+      "surface = \"mine.obj\"\n",
+      {"mine.obj"},
+      "gauss-thinning",
+      "iterations = 2"};
   const std::string character = "character = \"my.glb\"\n",
                     turn =
                         "motion = { joint = \"knee\", axis = \"+z\", to_deg = 60, frames = 2 "

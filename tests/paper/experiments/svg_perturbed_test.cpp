@@ -226,9 +226,9 @@ class PerturbedSvg {
   std::string page_, style_, prefix_, text_;
 };
 
-using PerturbedSvgs = test::ScratchFolder;
+using LongPerturbedSvgs = test::ScratchFolder;
 
-TEST_F(PerturbedSvgs, GiveTheOutlineThatWasDrawn) {
+TEST_F(LongPerturbedSvgs, GiveTheOutlineThatWasDrawn) {
   for (int seed = 0; seed < perturbed_files(); ++seed) {
     const PerturbedSvg drawn(seed);
     const auto file = write("outline.svg", drawn.text());
@@ -251,7 +251,7 @@ TEST_F(PerturbedSvgs, GiveTheOutlineThatWasDrawn) {
 }
 
 // Round shapes: the areas of the formulas, less what chords cut off.
-TEST_F(PerturbedSvgs, GiveTheAreaOfRoundShapes) {
+TEST_F(LongPerturbedSvgs, GiveTheAreaOfRoundShapes) {
   const double pi = std::numbers::pi;
   for (int seed = 0; seed < perturbed_files(); ++seed) {
     test::SvgSamples samples(seed);

@@ -169,9 +169,9 @@ double nearest(const Points& points, const Eigen::Vector2d& to) {
   return best;
 }
 
-using PerturbedDrawings = test::ScratchFolder;
+using LongPerturbedDrawings = test::ScratchFolder;
 
-TEST_F(PerturbedDrawings, GiveTheStrokesThatWereDrawn) {
+TEST_F(LongPerturbedDrawings, GiveTheStrokesThatWereDrawn) {
   for (int seed = 0; seed < perturbed_files(); ++seed) {
     const PerturbedDrawing drawn(seed);
     const auto file = write("drawing.svg", drawn.text());

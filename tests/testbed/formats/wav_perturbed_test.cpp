@@ -153,7 +153,7 @@ class PerturbedWav {
   Bytes bytes_;
 };
 
-TEST(PerturbedWavs, HaveTheSamplesThatWereStored) {
+TEST(LongPerturbedWavs, HaveTheSamplesThatWereStored) {
   for (int seed = 0; seed < perturbed_files(); ++seed) {
     const PerturbedWav file(seed);
     std::vector<std::string> notes;

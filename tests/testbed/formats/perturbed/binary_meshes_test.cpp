@@ -189,7 +189,7 @@ class PlyWriter {
   std::size_t other_elements_ = 0;
 };
 
-TEST(PerturbedFiles, OfPlyAreReadRight) {
+TEST(LongPerturbedFiles, OfPlyAreReadRight) {
   for (int seed = 0; seed < perturbed_files(); ++seed) {
     SCOPED_TRACE(seed);
     RandomStream random(seed, "ply");
@@ -294,7 +294,7 @@ void expect_same_triangles(const TriMesh& mesh, const SurfaceSample& sample) {
   }
 }
 
-TEST(PerturbedFiles, OfStlAreReadRight) {
+TEST(LongPerturbedFiles, OfStlAreReadRight) {
   for (int seed = 0; seed < perturbed_files(); ++seed) {
     SCOPED_TRACE(seed);
     RandomStream random(seed, "stl");

@@ -115,9 +115,9 @@ class TableWriter {
   std::vector<std::string> columns_;
 };
 
-using PerturbedTables = test::ScratchFolder;
+using LongPerturbedTables = test::ScratchFolder;
 
-TEST_F(PerturbedTables, AreReadRight) {
+TEST_F(LongPerturbedTables, AreReadRight) {
   for (int seed = 0; seed < perturbed_files(); ++seed) {
     SCOPED_TRACE(seed);
     RandomStream random(seed, "csv");

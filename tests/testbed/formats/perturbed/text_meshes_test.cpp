@@ -122,7 +122,7 @@ class ObjWriter {
   bool has_lines_ = false;
 };
 
-TEST(PerturbedFiles, OfObjAreReadRight) {
+TEST(LongPerturbedFiles, OfObjAreReadRight) {
   for (int seed = 0; seed < perturbed_files(); ++seed) {
     SCOPED_TRACE(seed);
     RandomStream random(seed, "obj");
@@ -197,7 +197,7 @@ class OffWriter {
   bool free_ = false;
 };
 
-TEST(PerturbedFiles, OfOffAreReadRight) {
+TEST(LongPerturbedFiles, OfOffAreReadRight) {
   for (int seed = 0; seed < perturbed_files(); ++seed) {
     SCOPED_TRACE(seed);
     RandomStream random(seed, "off");

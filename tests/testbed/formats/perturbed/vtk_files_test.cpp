@@ -187,9 +187,9 @@ class VtpWriter {
   std::string appended_;
 };
 
-class PerturbedVtk : public test::ScratchFolder {};
+class LongPerturbedVtk : public test::ScratchFolder {};
 
-TEST_F(PerturbedVtk, PolyDataAreReadRight) {
+TEST_F(LongPerturbedVtk, PolyDataAreReadRight) {
   for (int seed = 0; seed < perturbed_files(); ++seed) {
     SCOPED_TRACE(seed);
     RandomStream random(seed, "vtp");
@@ -286,7 +286,7 @@ void expect_steps(const FoundFiles& found, const std::vector<Step>& steps,
   }
 }
 
-TEST_F(PerturbedVtk, CollectionsAndSeriesAreReadRight) {
+TEST_F(LongPerturbedVtk, CollectionsAndSeriesAreReadRight) {
   std::filesystem::create_directory(folder() / "sub");
   for (int seed = 0; seed < perturbed_files(); ++seed) {
     SCOPED_TRACE(seed);
@@ -308,7 +308,7 @@ TEST_F(PerturbedVtk, CollectionsAndSeriesAreReadRight) {
   }
 }
 
-TEST_F(PerturbedVtk, PiecesAreJoinedInTheirOrder) {
+TEST_F(LongPerturbedVtk, PiecesAreJoinedInTheirOrder) {
   for (int seed = 0; seed < perturbed_files() / 4 + 1; ++seed) {
     SCOPED_TRACE(seed);
     RandomStream random(seed, "pvtp");

@@ -168,9 +168,9 @@ segments = %d
   const DiscValues& values_;
 };
 
-class PerturbedExperiments : public SpecTest {};
+class LongPerturbedExperiments : public SpecTest {};
 
-TEST_F(PerturbedExperiments, AreTheSameExperiment) {
+TEST_F(LongPerturbedExperiments, AreTheSameExperiment) {
   for (int number = 0; number < perturbed_files(); ++number) {
     SCOPED_TRACE(number);
     RandomStream random(number, "toml");
