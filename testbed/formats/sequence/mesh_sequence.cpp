@@ -10,9 +10,14 @@
 namespace geoprior {
 
 MeshFile read_frame_file(const FrameFile& frame) {
+  if (frame.further.empty()) return read_mesh_file(frame.file);
   std::vector<MeshFile> parts;
-  parts.push_back(read_mesh_file(frame.file));
-  for (const std::filesystem::path& file : frame.further) parts.push_back(read_mesh_file(file));
+  const auto add = [&](const std::filesystem::path& file) {
+    parts.push_back(read_mesh_file(file));
+    for (std::string& note : parts.back().notes) note = file.filename().string() + ": " + note;
+  };
+  add(frame.file);
+  for (const std::filesystem::path& file : frame.further) add(file);
   return joined(std::move(parts));
 }
 

@@ -29,6 +29,7 @@
 #include "testbed/formats/text/text_file.h"
 #include "testbed/formats/vtk/checks.h"
 #include "testbed/formats/vtk/part_bytes.h"
+#include "testbed/formats/vtk/pieces.h"
 #include "testbed/formats/vtk/points.h"
 #include "testbed/formats/vtk/scan.h"
 #include "testbed/formats/vtk/surface_cells.h"
@@ -457,6 +458,12 @@ VtkFile parse_vtk_file(const std::string& bytes, const std::string& extension,
     file.parameter = time_value(*reader->GetOutput());
     file.part = from_image(*reader->GetOutput(), where);
     return file;
+  }
+  if (const std::vector<std::string> parted = parted_by_ghosts(bytes); !parted.empty()) {
+    std::vector<VtkFile> pieces;
+    for (const std::string& piece : parted)
+      pieces.push_back(parse_vtk_file(piece, extension, where));
+    return joined_pieces(std::move(pieces));
   }
   vtkNew<vtkXMLPolyDataReader> reader;
   update(*reader.Get(), bytes, where);

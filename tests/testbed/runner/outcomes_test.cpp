@@ -30,7 +30,7 @@ VariantRecord column(const std::string& name, double error) {
   return variant;
 }
 
-RunRecord run_of(std::vector<VariantRecord> variants) {
+RunRecord run_with(std::vector<VariantRecord> variants) {
   RunRecord record;
   record.cases.emplace_back().name = "default";
   record.cases.front().variants = std::move(variants);
@@ -47,7 +47,7 @@ Topic topic_with_distance() {
 }
 
 std::map<std::string, std::string> outcomes_by_variant(const std::vector<VariantRecord>& variants) {
-  return outcomes_of(run_of(variants), topic_with_distance()).at("default");
+  return outcomes_of(run_with(variants), topic_with_distance()).at("default");
 }
 
 TEST(Outcomes, AreEqualExactlyWhereResultsAre) {
@@ -77,8 +77,8 @@ TEST(Outcomes, LeaveOutWhatIsNotBlessedOrDoesNotRepeat) {
   Topic topic = topic_with_distance();
   topic.methods.emplace_back().name = "polygon";
   topic.methods.back().ungated = "its threads race";
-  EXPECT_THAT(outcomes_of(run_of({column("base", 1)}), topic), IsEmpty());
-  RunRecord record = run_of({column("base", 1)});
+  EXPECT_THAT(outcomes_of(run_with({column("base", 1)}), topic), IsEmpty());
+  RunRecord record = run_with({column("base", 1)});
   record.cases.front().claims_only = true;
   EXPECT_THAT(outcomes_of(record, topic_with_distance()), IsEmpty());
 }
