@@ -12,6 +12,10 @@ void fuzz_pvd(const std::uint8_t* data, std::size_t size) {
   allow_error([&] { parse_pvd(text_of(data, size), "fuzz.pvd"); });
 }
 
+void fuzz_series(const std::uint8_t* data, std::size_t size) {
+  allow_error([&] { parse_series(text_of(data, size), "fuzz.vtp.series"); });
+}
+
 void fuzz_sidecar(const std::uint8_t* data, std::size_t size) {
   allow_error([&] { parse_sidecar(text_of(data, size), "fuzz"); });
 }

@@ -1,7 +1,9 @@
 #include "testbed/formats/mesh/mesh_file.h"
+#include "testbed/formats/mesh/named_files.h"
 #include "testbed/formats/mesh/obj_reader.h"
 #include "testbed/formats/mesh/off_reader.h"
 #include "testbed/formats/mesh/ply_reader.h"
+#include "testbed/formats/mesh/stl_reader.h"
 #include "testbed/formats/sequence/repair.h"
 #include "tests/fuzz/allow_error.h"
 #include "tests/fuzz/targets.h"
@@ -29,6 +31,14 @@ void fuzz_ply(const std::uint8_t* data, std::size_t size) {
 
 void fuzz_off(const std::uint8_t* data, std::size_t size) {
   allow_error([&] { use(parse_off(text_of(data, size), "fuzz")); });
+}
+
+void fuzz_stl(const std::uint8_t* data, std::size_t size) {
+  allow_error([&] { use(parse_stl(text_of(data, size), "fuzz")); });
+}
+
+void fuzz_pvtp(const std::uint8_t* data, std::size_t size) {
+  allow_error([&] { parse_pvtp(text_of(data, size), "fuzz.pvtp"); });
 }
 
 }  // namespace geoprior::test

@@ -76,8 +76,11 @@ TEST(LongFuzz, TomlReadersAcceptOrThrowError) { run(".toml", fuzz_toml); }
 TEST(LongFuzz, ObjReaderAcceptsOrThrowsError) { run(".obj", fuzz_obj); }
 TEST(LongFuzz, PlyReaderAcceptsOrThrowsError) { run(".ply", fuzz_ply); }
 TEST(LongFuzz, OffReaderAcceptsOrThrowsError) { run(".off", fuzz_off); }
+TEST(LongFuzz, StlReaderAcceptsOrThrowsError) { run(".stl", fuzz_stl); }
 TEST(LongFuzz, VtkReaderAcceptsOrThrowsError) { run(".vtp", fuzz_vtp); }
 TEST(LongFuzz, CollectionReaderAcceptsOrThrowsError) { run(".pvd", fuzz_pvd); }
+TEST(LongFuzz, SeriesReaderAcceptsOrThrowsError) { run(".series", fuzz_series); }
+TEST(LongFuzz, PieceReaderAcceptsOrThrowsError) { run(".pvtp", fuzz_pvtp); }
 TEST(LongFuzz, SidecarReaderAcceptsOrThrowsError) { run(".json", fuzz_sidecar); }
 TEST(LongFuzz, EditListReaderAcceptsOrThrowsError) { run(".toml", fuzz_edits); }
 TEST(LongFuzz, JournalReaderAcceptsOrThrowsError) { run(".jsonl", fuzz_journal); }

@@ -13,9 +13,12 @@ void fuzz_toml(const std::uint8_t* data, std::size_t size);
 void fuzz_obj(const std::uint8_t* data, std::size_t size);
 void fuzz_ply(const std::uint8_t* data, std::size_t size);
 void fuzz_off(const std::uint8_t* data, std::size_t size);
+void fuzz_stl(const std::uint8_t* data, std::size_t size);
 /// In a child process, as the program reads it: a crash of VTK there is an Error here.
 void fuzz_vtp(const std::uint8_t* data, std::size_t size);
 void fuzz_pvd(const std::uint8_t* data, std::size_t size);
+void fuzz_series(const std::uint8_t* data, std::size_t size);
+void fuzz_pvtp(const std::uint8_t* data, std::size_t size);
 void fuzz_sidecar(const std::uint8_t* data, std::size_t size);
 void fuzz_edits(const std::uint8_t* data, std::size_t size);
 void fuzz_journal(const std::uint8_t* data, std::size_t size);

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/mesh/named_files.h"
 #include "testbed/formats/mesh/obj_reader.h"
 #include "testbed/formats/mesh/off_reader.h"
 #include "testbed/formats/mesh/ply_reader.h"

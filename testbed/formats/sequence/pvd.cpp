@@ -5,7 +5,7 @@
 #include <pugixml.hpp>
 
 #include "core/error.h"
-#include "testbed/formats/mesh/vtp_reader.h"
+#include "testbed/formats/mesh/named_files.h"
 #include "testbed/formats/text/lines.h"
 #include "testbed/formats/text/nesting.h"
 #include "testbed/formats/text/text_file.h"
