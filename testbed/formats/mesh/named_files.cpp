@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <pugixml.hpp>
+#include <system_error>
 
 #include "core/error.h"
 #include "testbed/formats/text/nesting.h"
@@ -16,7 +17,8 @@ fs::path named_in(const fs::path& file, const std::string& name) {
     return given.is_absolute() ? given : file.parent_path() / given;
   };
   const fs::path found = beside(name);
-  if (name.find('\\') == std::string::npos || fs::exists(found)) return found;
+  std::error_code unknown;  // a name may be too long for the system
+  if (name.find('\\') == std::string::npos || fs::exists(found, unknown)) return found;
   std::string with_slashes = name;
   std::replace(with_slashes.begin(), with_slashes.end(), '\\', '/');
   return beside(with_slashes).lexically_normal();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <system_error>
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
@@ -86,7 +87,8 @@ MeshFile joined(std::vector<MeshFile> parts) {
 MeshFile read_pvtp(const fs::path& file) {
   std::vector<MeshFile> parts;
   for (const fs::path& piece : pvtp_pieces(file)) {
-    if (!fs::is_regular_file(piece))
+    std::error_code unknown;
+    if (!fs::is_regular_file(piece, unknown))
       throw Error("names a piece that is not there", file.string(), piece.string());
     parts.push_back(read_vtp(piece));
     for (std::string& note : parts.back().notes) note = piece.filename().string() + ": " + note;

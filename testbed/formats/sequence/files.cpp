@@ -104,11 +104,12 @@ void add_files(const FoundFile& frame, std::vector<fs::path>& inputs) {
 
 void describe(OptionVisitor& v, SequenceOptions& o) {
   static constexpr std::array<std::string_view, 3> kUp{"from-sidecar", "z", "y"};
-  v.value("path", o.path,
-          {.doc = "numbered files (name_%04d.obj, .ply, .vtp, .off), a folder of them, a .pvd, one "
-                  "mesh, or run:<topic>/<experiment>/<variant>",
-           .required = true,
-           .named = Named::file_or_folder});
+  v.value(
+      "path", o.path,
+      {.doc = "numbered files (name_%04d.obj, .ply, .off, .stl, .vtp, .pvtp), a folder of them, "
+              "a .pvd or .series, one mesh, or run:<topic>/<experiment>/<variant>",
+       .required = true,
+       .named = Named::file_or_folder});
   v.value("part", o.part, {.doc = "part to read of a folder or .pvd that holds several"});
   describe_choice(v, "up", o.up, kUp, {.doc = "axis of the files that points up; no sidecar: z"});
   v.value("scale", o.scale,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include "core/error.h"
@@ -257,7 +258,8 @@ FoundFiles find_in_collection(const fs::path& file, const std::string& part) {
         frame.further.push_back(of->file);
       }
       require_mesh(of->file);
-      if (!fs::is_regular_file(of->file)) missing.push_back(of->file.filename().string());
+      std::error_code unknown;
+      if (!fs::is_regular_file(of->file, unknown)) missing.push_back(of->file.filename().string());
     }
     if (missing.size() == missing_before) found.files.push_back(std::move(frame));
     joins = joins || end - set > 1;

@@ -170,10 +170,13 @@ class VtpWriter {
   /// Rows of cells go by kind: vertices, lines, polygons, strips.
   std::string cell_data() {
     if (ghosts.empty()) return "";
+    // Duplicate, refined, hidden; none, or a connectivity that does not matter here.
+    constexpr std::array<std::uint8_t, 3> kGone{1, 8, 32}, kStays{0, 2, 4};
     std::vector<std::uint8_t> types(stray_ + stray_lines_, 0);
     std::vector<float> ids(stray_ + stray_lines_ + polygons_.size() + strips_.size(), 1.5F);
     for (const auto& flags : {polygon_ghosts_, strip_ghosts_}) {
-      for (const int ghost : flags) types.push_back(ghost != 0 ? 1 : 0);
+      for (const int ghost : flags)
+        types.push_back((ghost != 0 ? kGone : kStays)[random_.below(3)]);
     }
     return "<CellData>\n" + array("Float32", "id", 1, ids) +
            array("UInt8", "vtkGhostType", 1, types) + "</CellData>\n";
