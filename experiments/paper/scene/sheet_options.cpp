@@ -94,11 +94,13 @@ void describe(OptionVisitor& v, PatternOptions& options) {
                       {.doc = "what says how large a unit of the outermost viewBox is: the page's "
                               "size, unit_m (viewbox), or unit_m where it is given and the page "
                               "where it has a size in mm, cm, in, pt or pc (guess)"});
-      v.value("unit_m", options.svg.unit_m,
-              {.doc = "metres for one unit of the outermost viewBox; absent: see unit, else 0.001",
-               .unit = "m",
-               .min = 1e-9,
-               .max = kLargest});
+      v.value(
+          "unit_m", options.svg.unit_m,
+          {.doc =
+               "metres for one unit of the outermost viewBox; absent: 0.001, or as the page has it",
+           .unit = "m",
+           .min = 1e-9,
+           .max = kLargest});
       v.value("tolerance", options.svg.tolerance,
               {.doc = "largest distance of a curve of the drawing from its chords",
                .unit = "m",
