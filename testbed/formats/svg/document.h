@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "testbed/formats/svg/clip.h"
 #include "testbed/formats/svg/color.h"
 #include "testbed/formats/svg/path.h"
 #include "testbed/formats/svg/viewport.h"
