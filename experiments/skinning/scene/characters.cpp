@@ -418,8 +418,8 @@ void describe(OptionVisitor& v, CharacterOptions& options) {
            .named = Named::file});
   v.value(
       "mesh", options.mesh,
-      {.doc =
-           "name of the mesh of the file that is read; absent: all of its first skin, else all"});
+      {.doc = "name of the mesh of the file that is read; absent: all of its scene that move with "
+              "its first skeleton, without one all"});
   v.value("skeleton", options.skeleton,
           {.doc = "skeleton file that overrides the file's hierarchy", .named = Named::file});
   v.value("unit_m", options.unit_m,

@@ -58,7 +58,8 @@ Eigen::VectorXd sample(const GltfTrack& track, double time_s) {
 
 }  // namespace
 
-Pose clip_pose(const GltfCharacter& character, const GltfClip& clip, double time_s) {
+Pose clip_pose(const GltfCharacter& character, const GltfClip& clip, double time_s,
+               ClipScale scale) {
   std::vector<GltfNode> nodes = character.binding.nodes;
   for (const GltfTrack& track : clip.tracks) {
     GltfNode& node = nodes[track.node];
@@ -71,7 +72,7 @@ Pose clip_pose(const GltfCharacter& character, const GltfClip& clip, double time
         node.rotation = quaternion(x);
         break;
       case GltfTrack::Property::scale:
-        node.scale = x;
+        if (scale == ClipScale::played) node.scale = x;
         break;
     }
   }

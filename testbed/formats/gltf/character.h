@@ -54,12 +54,16 @@ struct GltfCharacter {
   SkinWeights weights;               ///< split vertices x joints, rows sum to 1; empty: no skin
   GltfBinding binding;
   std::vector<GltfClip> clips;
-  std::vector<std::string> warnings;  ///< what was ignored or repaired, at most one of each kind
+  std::vector<std::string> warnings;  ///< what was left out, by name, or repaired; a few of a kind
   std::vector<std::filesystem::path> files;  ///< the file and its buffers
 };
 
+/// Whether tracks of scale are played; nodes keep their scale at rest where they are left out.
+enum class ClipScale { played, left_out };
+
 /// Skinning transforms of the file's joints at a time of a clip (clamped to its keys): identity
 /// where the nodes are in the bind pose.
-Pose clip_pose(const GltfCharacter& character, const GltfClip& clip, double time_s);
+Pose clip_pose(const GltfCharacter& character, const GltfClip& clip, double time_s,
+               ClipScale scale = ClipScale::played);
 
 }  // namespace geoprior

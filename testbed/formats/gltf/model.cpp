@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/gltf/container.h"
+#include "testbed/formats/gltf/extensions.h"
 #include "testbed/formats/text/nesting.h"
 
 namespace geoprior::gltf {
@@ -238,16 +239,23 @@ class At {
     if (list.size() != N)
       fail("has " + std::to_string(list.size()) + " numbers", std::to_string(N));
     Eigen::Matrix<double, N, 1> x;
-    for (int i = 0; i < N; ++i) {
-      const At& element = list[i];
-      if (!element.value().is_number()) element.fail("is not a number");
-      x[i] = element.value().get<double>();
-      if (!std::isfinite(x[i])) element.fail("is not finite");
-    }
+    for (int i = 0; i < N; ++i) x[i] = list[i].number();
     return x;
+  }
+  /// Numbers of an array of any length that may be absent.
+  [[nodiscard]] std::vector<double> all_numbers(const char* key) const {
+    std::vector<double> numbers;
+    for (const At& element : elements(key)) numbers.push_back(element.number());
+    return numbers;
   }
 
  private:
+  [[nodiscard]] double number() const {
+    if (!value_.is_number()) fail("is not a number");
+    const double x = value_.get<double>();
+    if (!std::isfinite(x)) fail("is not finite");
+    return x;
+  }
   const json& value_;
   std::string pointer_;
   const std::filesystem::path& file_;
@@ -367,7 +375,10 @@ Primitive parse_primitive(const At& at, const Model& model) {
   if (mode > 6) at.member("mode").fail("is " + std::to_string(mode), "0 to 6");
   primitive.mode = static_cast<int>(mode);
   primitive.indices = at.optional_index("indices", model.accessors.size(), "accessors");
-  primitive.has_targets = at.has("targets");
+  for (const At& target : at.elements("targets")) {
+    primitive.targets.push_back(
+        target.object().optional_index("POSITION", model.accessors.size(), "accessors"));
+  }
   const At attributes = at.member("attributes").object();
   for (const auto& [name, value] : attributes.value().items()) {
     primitive.attributes[name] =
@@ -383,6 +394,7 @@ void parse_meshes(const At& root, Model& model) {
     for (const At& primitive : at.member("primitives").elements())
       mesh.primitives.push_back(parse_primitive(primitive, model));
     if (mesh.primitives.empty()) at.member("primitives").fail("is empty", "at least one");
+    mesh.weights = at.all_numbers("weights");
     model.meshes.push_back(std::move(mesh));
   }
 }
@@ -434,6 +446,15 @@ void order_nodes(const At& root, Model& model) {
   }
 }
 
+bool is_hidden(const At& node) {
+  constexpr const char* kVisibility = "KHR_node_visibility";
+  if (!node.has("extensions")) return false;
+  const At extensions = node.member("extensions").object();
+  if (!extensions.has(kVisibility)) return false;
+  const At visibility = extensions.member(kVisibility).object();
+  return visibility.has("visible") && visibility.member("visible").value() == false;
+}
+
 void parse_nodes(const At& root, std::size_t skin_count, Model& model) {
   const std::vector<At> list = root.elements("nodes");
   for (const At& at : list) {
@@ -443,6 +464,8 @@ void parse_nodes(const At& root, std::size_t skin_count, Model& model) {
     node.skin = at.optional_index("skin", skin_count, "skins");
     for (const At& child : at.elements("children"))
       node.children.push_back(child.index(list.size(), "nodes"));
+    node.weights = at.all_numbers("weights");
+    node.is_hidden = is_hidden(at);
     parse_local_transform(at, node);
     model.nodes.push_back(std::move(node));
   }
@@ -499,28 +522,62 @@ void note_ignored(const At& root, Model& model) {
     const std::size_t n = root.elements(key).size();
     if (n > 0) model.ignored.push_back(std::to_string(n) + " " + key);
   }
-  // Extensions that a reader must know to get positions and skin right; all others only say how
-  // the surface looks.
-  static const std::set<std::string> kHarmless{"KHR_mesh_quantization", "FB_ngon_encoding",
-                                               "KHR_texture_transform", "KHR_lights_punctual"};
   for (const At& at : root.elements("extensionsRequired")) {
     const std::string name = at.text();
-    if (kHarmless.count(name) == 0 && !name.starts_with("KHR_materials_")) {
-      at.fail("the file requires the extension '" + name.substr(0, 60) + "'",
-              "files without required extensions, KHR_mesh_quantization");
-    }
+    if (is_read_without(name)) continue;
+    at.fail("the file requires the extension '" + name.substr(0, 60) + "'",
+            way_out_of_extension(name));
   }
-  for (const At& at : root.elements("extensionsUsed"))
-    model.ignored.push_back("extension " + at.text());
+  for (const At& at : root.elements("extensionsUsed")) {
+    const std::string loss = loss_without_extension(at.text());
+    model.ignored.push_back("extension " + at.text() + (loss.empty() ? "" : ": " + loss));
+  }
 }
 
-void check_scenes(const At& root, const Model& model) {
-  const std::vector<At> scenes = root.elements("scenes");
-  for (const At& scene : scenes) {
-    for (const At& node : scene.object().elements("nodes"))
-      static_cast<void>(node.index(model.nodes.size(), "nodes"));
+/// Nodes are shown with their parents, unless they are hidden, and with them their children.
+void mark_shown(Model& model) {
+  for (const std::size_t i : model.node_order) {
+    Node& node = model.nodes[i];
+    const bool with_parent = node.parent && model.nodes[*node.parent].in_scene;
+    const bool below_hidden = node.parent && !with_parent && model.scene.empty();
+    node.in_scene = !node.is_hidden && !below_hidden && (node.in_scene || with_parent);
   }
-  static_cast<void>(root.optional_index("scene", scenes.size(), "scenes"));
+}
+
+/// Marks the nodes of the scene that is shown: that of `scene`, else the first, as other programs
+/// take it. A file without scenes is a library, of which everything is read.
+void parse_scenes(const At& root, Model& model) {
+  const std::vector<At> scenes = root.elements("scenes");
+  std::vector<std::vector<std::size_t>> roots;
+  for (const At& scene : scenes) {
+    roots.emplace_back();
+    for (const At& node : scene.object().elements("nodes"))
+      roots.back().push_back(node.index(model.nodes.size(), "nodes"));
+  }
+  const auto named = root.optional_index("scene", scenes.size(), "scenes");
+  if (scenes.empty()) return mark_shown(model);
+  const std::size_t shown = named.value_or(0);
+  const std::string name = scenes[shown].text("name");
+  model.scene = "scene " + std::to_string(shown) + (name.empty() ? "" : " '" + name + "'") +
+                (!named && scenes.size() > 1
+                     ? ", the first of " + std::to_string(scenes.size()) + " as the file names none"
+                     : "");
+  for (Node& node : model.nodes) node.in_scene = false;
+  for (const std::size_t node : roots[shown]) model.nodes[node].in_scene = true;
+  mark_shown(model);
+}
+
+void require_version(const At& asset) {
+  const std::string version = asset.member("version").text();
+  if (!version.starts_with("2.")) {
+    asset.member("version").fail("is '" + version.substr(0, 20) + "'",
+                                 "2.x; Blender or assimp convert glTF 1.0");
+  }
+  const std::string least = asset.text("minVersion");
+  if (least.empty() || least == "2.0" || least.starts_with("1.")) return;
+  asset.member("minVersion")
+      .fail("the file needs a reader of glTF " + least.substr(0, 20),
+            "2.0, the version that is read");
 }
 
 }  // namespace
@@ -542,10 +599,7 @@ Model parse_gltf(const std::vector<std::byte>& bytes, const std::filesystem::pat
   Model model;
   model.file = file;
   const At root(document, "", file);
-  const std::string version = root.object().member("asset").object().member("version").text();
-  if (!version.starts_with("2.")) {
-    root.member("asset").member("version").fail("is '" + version.substr(0, 20) + "'", "2.x");
-  }
+  require_version(root.object().member("asset").object());
   note_ignored(root, model);
   parse_buffers(root, container, other_files_allowed, model);
   parse_views(root, model);
@@ -554,7 +608,7 @@ Model parse_gltf(const std::vector<std::byte>& bytes, const std::filesystem::pat
   parse_nodes(root, root.elements("skins").size(), model);
   parse_skins(root, model);
   parse_animations(root, model);
-  check_scenes(root, model);
+  parse_scenes(root, model);
   return model;
 }
 

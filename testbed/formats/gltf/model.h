@@ -49,12 +49,14 @@ struct Primitive {
   int mode = 4;
   std::optional<std::size_t> indices;
   std::map<std::string, std::size_t> attributes;
-  bool has_targets = false;
+  /// Accessor of the displacements of each morph target; absent: it moves no position.
+  std::vector<std::optional<std::size_t>> targets;
 };
 
 struct Mesh {
   std::string name;
   std::vector<Primitive> primitives;
+  std::vector<double> weights;  ///< of the morph targets, by default; empty: all zero
 };
 
 struct Node {
@@ -63,6 +65,9 @@ struct Node {
   std::vector<std::size_t> children;
   std::optional<std::size_t> mesh;
   std::optional<std::size_t> skin;
+  bool is_hidden = false;                 ///< with its children (KHR_node_visibility)
+  bool in_scene = true;                   ///< reached from the scene that is shown, and not hidden
+  std::vector<double> weights;            ///< of the mesh's morph targets; empty: those of the mesh
   std::optional<Eigen::Affine3d> matrix;  ///< given as matrix: the three below are unused
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
@@ -107,6 +112,7 @@ struct Model {
   std::vector<Mesh> meshes;
   std::vector<Node> nodes;
   std::vector<std::size_t> node_order;  ///< parents before children
+  std::string scene;                    ///< "scene 0 'street'", whose nodes are shown; empty: all
   std::vector<Skin> skins;
   std::vector<Animation> animations;
   std::vector<std::string> ignored;  ///< "2 materials", "1 camera", "extension X" …

@@ -76,6 +76,118 @@ void set_tails(Skeleton& skeleton) {
   }
 }
 
+/// Joints of the skins, parents first; returns the joint of each node, or -1.
+std::vector<int> make_joints(const Model& model, const std::vector<std::size_t>& skins,
+                             RigData& rig) {
+  std::vector<bool> is_joint(model.nodes.size(), false);
+  for (const std::size_t skin : skins) {
+    for (const std::size_t node : model.skins[skin].joints) is_joint[node] = true;
+  }
+  std::vector<int> joint_of_node(model.nodes.size(), -1);
+  std::set<std::string> names;
+  for (const std::size_t node : model.node_order) {
+    if (!is_joint[node]) continue;
+    const int joint = rig.skeleton.size();
+    rig.node_of_joint.push_back(node);
+    rig.skeleton.joints.push_back({unique_name(model.nodes[node], joint, names),
+                                   parent_joint(model, node, joint_of_node),
+                                   Eigen::Vector3d::Zero(),
+                                   std::nullopt,
+                                   {}});
+    joint_of_node[node] = joint;
+  }
+  return joint_of_node;
+}
+
+/// What the skins of a rig are bound by.
+struct BindPoses {
+  const Model& model;
+  std::vector<Eigen::Affine3d> world;  ///< of the nodes at rest
+  const std::vector<int>& joint_of_node;
+};
+
+/// Where the node of a joint that is not bound yet stands in the rest pose: as it does to the
+/// nearest joint above it that is; in the scene where there is none.
+Eigen::Affine3d node_at_rest(const BindPoses& poses, int joint, const std::vector<bool>& is_bound,
+                             const RigData& rig) {
+  const Eigen::Affine3d& own = poses.world[rig.node_of_joint[joint]];
+  for (int p = rig.skeleton.joints[joint].parent; p >= 0; p = rig.skeleton.joints[p].parent) {
+    if (is_bound[p])
+      return rig.from_rest[p].inverse() * poses.world[rig.node_of_joint[p]].inverse() * own;
+  }
+  return own;
+}
+
+/// Whether the joints of a skin are bound in the pose of the skeleton: the heads differ by less
+/// than a thousandth of its size.
+bool is_one_pose(const SkinBinding& skin, const std::vector<int>& joints,
+                 const std::vector<Eigen::Vector3d>& heads) {
+  Eigen::AlignedBox3d box;
+  for (std::size_t k = 0; k < joints.size(); ++k) box.extend(skin.first_to_rest * heads[k]);
+  const double size = skin.first_to_rest.linear().norm();
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const Eigen::Affine3d& to_rest = skin.to_rest[joints[k]];
+    const double moved = (to_rest * heads[k] - skin.first_to_rest * heads[k]).norm();
+    const double extent = std::max(box.diagonal().norm(), 1e-3 * box.min().norm());
+    if ((to_rest.linear() - skin.first_to_rest.linear()).norm() > 1e-3 * size) return false;
+    if (moved > 1e-3 * extent + 1e-9 * size) return false;
+  }
+  return true;
+}
+
+void require_extent(const Eigen::Affine3d& to_rest, const std::string& joint,
+                    const std::string& where) {
+  const double size = to_rest.linear().norm();
+  if (!to_rest.matrix().allFinite() ||
+      !(std::abs(to_rest.linear().determinant()) > 1e-9 * size * size * size)) {
+    throw Error("the root joint '" + joint + "' flattens the mesh", where,
+                "transforms that can be inverted");
+  }
+}
+
+/// Binds a skin to the joints of the rig that it has, and binds those that no skin before it had.
+void bind_skin(const BindPoses& poses, std::size_t skin_index, std::vector<bool>& is_bound,
+               RigData& rig) {
+  const Skin& skin = poses.model.skins[skin_index];
+  const std::string where = place(poses.model, "/skins/" + std::to_string(skin_index));
+  const auto inverse_bind = inverse_bind_matrices(poses.model, skin, where);
+  SkinBinding binding;
+  binding.to_rest.resize(rig.skeleton.joints.size(), Eigen::Affine3d::Identity());
+  std::vector<int> entry_of_joint(rig.skeleton.joints.size(), -1);
+  for (std::size_t entry = 0; entry < skin.joints.size(); ++entry) {
+    binding.joint_of_entry.push_back(poses.joint_of_node[skin.joints[entry]]);
+    entry_of_joint[binding.joint_of_entry.back()] = static_cast<int>(entry);
+  }
+  std::vector<int> joints;
+  std::vector<Eigen::Vector3d> heads;  // in the mesh's coordinates
+  std::optional<Eigen::Affine3d> known;
+  for (int j = 0; j < rig.skeleton.size() && !known; ++j) {
+    if (entry_of_joint[j] >= 0 && is_bound[j])
+      known = rig.from_rest[j].inverse() * inverse_bind[entry_of_joint[j]];
+  }
+  for (int j = 0; j < rig.skeleton.size(); ++j) {
+    if (entry_of_joint[j] < 0) continue;
+    const Eigen::Affine3d& inverse = inverse_bind[entry_of_joint[j]];
+    Eigen::Affine3d& to_rest = binding.to_rest[j];
+    if (is_bound[j]) {
+      to_rest = rig.from_rest[j].inverse() * inverse;
+    } else {
+      if (!known) known = node_at_rest(poses, j, is_bound, rig) * inverse;
+      to_rest = *known;
+    }
+    require_extent(to_rest, rig.skeleton.joints[j].name, where);
+    if (joints.empty()) binding.first_to_rest = to_rest;
+    joints.push_back(j);
+    heads.push_back(inverse.inverse().translation());
+    if (is_bound[j]) continue;
+    rig.skeleton.joints[j].head = to_rest * heads.back();
+    rig.from_rest[j] = inverse * to_rest.inverse();
+    is_bound[j] = true;
+  }
+  binding.is_one_pose = is_one_pose(binding, joints, heads);
+  rig.skins.push_back(std::move(binding));
+}
+
 bool is_weight_type(const Accessor& a) {
   return a.columns == 4 &&
          (a.component == Component::f32 ||
@@ -114,55 +226,22 @@ std::vector<Eigen::Affine3d> world_transforms(const Model& model) {
   return world;
 }
 
-SkinData read_skin(const Model& model, std::size_t skin_index) {
-  const Skin& skin = model.skins[skin_index];
-  const std::string where = place(model, "/skins/" + std::to_string(skin_index));
-  const auto inverse_bind = inverse_bind_matrices(model, skin, where);
-  std::vector<int> entry_of_node(model.nodes.size(), -1);
-  for (std::size_t i = 0; i < skin.joints.size(); ++i)
-    entry_of_node[skin.joints[i]] = static_cast<int>(i);
-
-  SkinData result;
-  result.joint_of_skin.assign(skin.joints.size(), -1);
-  std::vector<int> joint_of_node(model.nodes.size(), -1);
-  std::vector<std::size_t> entry_of_joint;
-  std::set<std::string> names;
-  for (const std::size_t node : model.node_order) {
-    if (entry_of_node[node] < 0) continue;
-    const int joint = result.skeleton.size();
-    result.joint_of_skin[entry_of_node[node]] = joint;
-    entry_of_joint.push_back(entry_of_node[node]);
-    result.node_of_joint.push_back(node);
-    result.skeleton.joints.push_back({unique_name(model.nodes[node], joint, names),
-                                      parent_joint(model, node, joint_of_node),
-                                      Eigen::Vector3d::Zero(),
-                                      std::nullopt,
-                                      {}});
-    joint_of_node[node] = joint;
-  }
-
-  const auto world = world_transforms(model);
-  result.to_rest = world[result.node_of_joint[0]] * inverse_bind[entry_of_joint[0]];
-  const double size = result.to_rest.linear().norm();
-  if (!result.to_rest.matrix().allFinite() ||
-      !(std::abs(result.to_rest.linear().determinant()) > 1e-9 * size * size * size)) {
-    throw Error("the root joint '" + result.skeleton.joints[0].name + "' flattens the mesh", where,
-                "transforms that can be inverted");
-  }
-  const Eigen::Affine3d from_rest_to_mesh = result.to_rest.inverse();
-  for (std::size_t j = 0; j < entry_of_joint.size(); ++j) {
-    const Eigen::Affine3d& inverse = inverse_bind[entry_of_joint[j]];
-    result.skeleton.joints[j].head = result.to_rest * inverse.inverse().translation();
-    result.from_rest.push_back(inverse * from_rest_to_mesh);
-    result.skeleton.joints[j].frame = unit_axes(result.from_rest.back());
-  }
-  set_tails(result.skeleton);
-  validate(result.skeleton);
-  return result;
+RigData read_rig(const Model& model, const std::vector<std::size_t>& skins) {
+  RigData rig;
+  const std::vector<int> joint_of_node = make_joints(model, skins, rig);
+  rig.from_rest.resize(rig.skeleton.joints.size());
+  const BindPoses poses{model, world_transforms(model), joint_of_node};
+  std::vector<bool> is_bound(rig.skeleton.joints.size(), false);
+  for (const std::size_t skin : skins) bind_skin(poses, skin, is_bound, rig);
+  for (int j = 0; j < rig.skeleton.size(); ++j)
+    rig.skeleton.joints[j].frame = unit_axes(rig.from_rest[j]);
+  set_tails(rig.skeleton);
+  validate(rig.skeleton);
+  return rig;
 }
 
 void read_influences(const Model& model, const Primitive& primitive, const std::string& where,
-                     const SkinData& skin, int vertex_count, int first_vertex,
+                     const SkinBinding& skin, int vertex_count, int first_vertex,
                      std::vector<Eigen::Triplet<double>>& triplets, bool& renormalised) {
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(vertex_count);
   const std::size_t first_triplet = triplets.size();
@@ -189,10 +268,10 @@ void read_influences(const Model& model, const Primitive& primitive, const std::
           throw Error("weight " + std::to_string(w), vertex, "finite and >= 0");
         if (w == 0) continue;  // the joint of an unused slot may be anything
         const auto entry = static_cast<std::size_t>(joints(v, k));
-        if (entry >= skin.joint_of_skin.size())
+        if (entry >= skin.joint_of_entry.size())
           throw Error("joint index " + std::to_string(entry) + " is out of range", vertex,
-                      "0 to " + std::to_string(skin.joint_of_skin.size() - 1));
-        triplets.emplace_back(first_vertex + v, skin.joint_of_skin[entry], w);
+                      "0 to " + std::to_string(skin.joint_of_entry.size() - 1));
+        triplets.emplace_back(first_vertex + v, skin.joint_of_entry[entry], w);
         sums[v] += w;
       }
     }

@@ -162,8 +162,8 @@ TEST(Gltf, EverythingElseIsIgnoredWithOneWarningThatNamesIt) {
   s.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = 0;
   const GltfCharacter c = read(s);
   ASSERT_EQ(c.warnings.size(), 1U);
-  for (const char* what :
-       {"sample.glb", "1 cameras", "1 materials", "KHR_lights_punctual", "morph targets", "NORMAL"})
+  for (const char* what : {"sample.glb", "1 cameras", "1 materials", "KHR_lights_punctual",
+                           "morph targets, of default weight 0", "NORMAL"})
     EXPECT_THAT(c.warnings[0], HasSubstr(what));
 }
 

@@ -58,7 +58,9 @@ TEST(SkinningScene, BodyLoadsWeldedClosedAndRigged) {
   EXPECT_THAT(scene->parameters(), testing::ElementsAre(0, 30, 60, 90, 120));
   ASSERT_EQ(scene->regions.size(), 1U);
   EXPECT_EQ(scene->regions[0].name, "knee-left");
-  EXPECT_EQ(scene->warnings().size(), 1U);
+  ASSERT_EQ(scene->warnings().size(), 2U);
+  EXPECT_THAT(scene->warnings()[1],
+              testing::AllOf(HasSubstr("left out"), HasSubstr("human-highpolyeyes")));
   EXPECT_EQ(scene->inputs().size(), 2U);
 }
 
