@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "experiments/skinning/scene/bvh_root.h"
 #include "testbed/formats/text/text_file.h"
 
 namespace geoprior::skinning {
@@ -20,8 +21,17 @@ std::string quoted(std::string_view word) {
 }
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f'; }
+bool is_brace(char c) { return c == '{' || c == '}'; }
 
-/// Words of a text, with the line of the last one.
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+/// Whether a word is this keyword, in any case.
+bool is_word(std::string_view word, std::string_view keyword) {
+  return std::equal(word.begin(), word.end(), keyword.begin(), keyword.end(),
+                    [](char a, char b) { return lower(a) == lower(b); });
+}
+
+/// Words of a text, with the line of the last one. Braces are words of their own.
 class Words {
  public:
   Words(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -37,12 +47,54 @@ class Words {
     skip_space();
     if (at_ == text_.size()) fail("the file ends", expected);
     const std::size_t begin = at_;
-    while (at_ < text_.size() && !is_space(text_[at_])) ++at_;
+    if (is_brace(text_[at_])) return text_.substr(at_++, 1);
+    while (at_ < text_.size() && !is_space(text_[at_]) && !is_brace(text_[at_])) ++at_;
     return text_.substr(begin, at_ - begin);
   }
   void expect(std::string_view word) {
     const std::string_view found = next(std::string(word).c_str());
-    if (found != word) fail(quoted(found), std::string(word));
+    if (!is_word(found, word)) fail(quoted(found), std::string(word));
+  }
+  [[nodiscard]] bool next_is(std::string_view word) {
+    const std::size_t at = at_;
+    const int line = line_;
+    const bool found = !at_end() && is_word(next("a word"), word);
+    at_ = at;
+    line_ = line;
+    return found;
+  }
+  /// The rest of the line, up to a brace, without the blanks around it.
+  std::string_view rest_of_line() {
+    while (at_ < text_.size() && is_space(text_[at_]) && text_[at_] != '\n') ++at_;
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && text_[at_] != '\n' && text_[at_] != '\r' && !is_brace(text_[at_]))
+      ++at_;
+    std::string_view rest = text_.substr(begin, at_ - begin);
+    while (!rest.empty() && is_space(rest.back())) rest.remove_suffix(1);
+    return rest;
+  }
+  /// A name, which may have blanks in it.
+  std::string_view name() {
+    skip_space();
+    if (at_ == text_.size()) fail("the file ends", "the joint's name");
+    const std::string_view found = rest_of_line();
+    if (found.empty()) fail("a joint without a name", "the joint's name");
+    return found;
+  }
+  /// "Frames:" or "Frame Time:", with or without blanks between the parts and before the number.
+  void expect_key(std::string_view key) {
+    skip_space();
+    const std::size_t begin = at_;
+    for (const char c : key) {
+      if (c == ' ' || c == ':') skip_space();
+      if (c == ' ') continue;
+      if (at_ == text_.size()) fail("the file ends", std::string(key));
+      if (lower(text_[at_]) != lower(c)) {
+        at_ = begin;
+        fail(quoted(next("a word")), std::string(key));
+      }
+      ++at_;
+    }
   }
   double number() {
     std::string_view word = next("a number");
@@ -83,51 +135,55 @@ class Words {
 };
 
 BvhChannel channel_of(const Words& words, std::string_view word) {
-  static constexpr std::string_view kAxes = "XYZ";
-  const std::size_t axis = word.empty() ? std::string_view::npos : kAxes.find(word[0]);
+  static constexpr std::string_view kAxes = "xyz";
+  const std::size_t axis = word.empty() ? std::string_view::npos : kAxes.find(lower(word[0]));
   const std::string_view kind = word.empty() ? word : word.substr(1);
-  if (axis == std::string_view::npos || (kind != "rotation" && kind != "position"))
+  const bool is_rotation = is_word(kind, "rotation");
+  if (axis == std::string_view::npos || (!is_rotation && !is_word(kind, "position")))
     words.fail("channel " + quoted(word),
                "Xposition, Yposition, Zposition, Xrotation, Yrotation, Zrotation");
-  return {kind == "rotation", static_cast<int>(axis)};
+  return {is_rotation, static_cast<int>(axis)};
 }
 
-/// Parses what stands between the braces of a joint up to its first child or its end. Iterative:
-/// the depth of the hierarchy is the file's choice.
-void parse_hierarchy(Words& words, BvhMotion& motion, int& columns) {
-  words.expect("HIERARCHY");
+void parse_end_site(Words& words, std::string_view first, BvhJoint& joint) {
+  if (is_word(first, "End")) words.expect("Site");
+  words.rest_of_line();  // a name that nothing refers to
+  words.expect("{");
+  words.expect("OFFSET");
+  joint.end_site = words.vector();
+  words.expect("}");
+}
+
+/// Parses a root and what hangs on it. Iterative: the depth of the hierarchy is the file's choice.
+void parse_root(Words& words, std::vector<BvhJoint>& joints, int& columns) {
   words.expect("ROOT");
   std::vector<int> open;
   const auto begin_joint = [&] {
     BvhJoint joint;
-    joint.name = std::string(words.next("the joint's name"));
+    joint.name = std::string(words.name());
     joint.parent = open.empty() ? -1 : open.back();
     joint.first_column = columns;
     words.expect("{");
-    open.push_back(static_cast<int>(motion.joints.size()));
-    motion.joints.push_back(std::move(joint));
+    open.push_back(static_cast<int>(joints.size()));
+    joints.push_back(std::move(joint));
   };
   begin_joint();
   while (!open.empty()) {
     const std::string_view word = words.next("OFFSET, CHANNELS, JOINT, End Site or }");
-    BvhJoint& joint = motion.joints[open.back()];
-    if (word == "OFFSET") {
+    BvhJoint& joint = joints[open.back()];
+    if (is_word(word, "OFFSET")) {
       joint.offset = words.vector();
-    } else if (word == "CHANNELS") {
+    } else if (is_word(word, "CHANNELS")) {
       if (!joint.channels.empty()) words.fail("CHANNELS of joint '" + joint.name + "' again");
       const int n = words.integer(0, 6);
       for (int i = 0; i < n; ++i)
         joint.channels.push_back(channel_of(words, words.next("channel")));
       joint.first_column = columns;
       columns += n;
-    } else if (word == "JOINT") {
+    } else if (is_word(word, "JOINT")) {
       begin_joint();
-    } else if (word == "End") {
-      words.expect("Site");
-      words.expect("{");
-      words.expect("OFFSET");
-      joint.end_site = words.vector();
-      words.expect("}");
+    } else if (is_word(word, "End") || is_word(word, "EndSite")) {
+      parse_end_site(words, word, joint);
     } else if (word == "}") {
       open.pop_back();
     } else {
@@ -136,12 +192,51 @@ void parse_hierarchy(Words& words, BvhMotion& motion, int& columns) {
   }
 }
 
+/// "1 joint", "12 joints".
+std::string joints_text(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " joint" : " joints");
+}
+
+/// The first root, and the columns of all.
+void parse_hierarchy(Words& words, BvhMotion& motion, int& columns) {
+  words.expect("HIERARCHY");
+  parse_root(words, motion.joints, columns);
+  std::string others;
+  std::size_t count = 0;
+  while (words.next_is("ROOT")) {
+    constexpr std::size_t kShown = 12;
+    std::vector<BvhJoint> joints;
+    parse_root(words, joints, columns);
+    if (++count > kShown) continue;
+    others +=
+        (others.empty() ? "'" : ", '") + joints[0].name + "' of " + joints_text(joints.size());
+  }
+  if (count == 0) return;
+  motion.notes.push_back("of " + std::to_string(count + 1) + " roots the first, '" +
+                         motion.joints[0].name + "' of " + joints_text(motion.joints.size()) +
+                         ", is read; left out: " + others);
+}
+
+/// Numbers behind the last frame: one whole row becomes a note.
+void parse_rest(Words& words, BvhMotion& motion, int columns) {
+  if (words.at_end()) return;
+  const std::string frames = std::to_string(motion.frame_count());
+  int more = 0;
+  for (; more < columns && !words.at_end(); ++more) words.number();
+  if (more < columns || !words.at_end()) {
+    words.fail(
+        "more numbers than " + frames + " frames of " + std::to_string(columns) + " channels",
+        "as many rows as \"Frames:\" says");
+  }
+  motion.notes.push_back("one row of motion more than the " + frames +
+                         " that \"Frames:\" says is left out");
+}
+
 void parse_motion(Words& words, BvhMotion& motion, int columns) {
   words.expect("MOTION");
-  words.expect("Frames:");
+  words.expect_key("Frames:");
   const int frames = words.integer(1, 100000000);
-  words.expect("Frame");
-  words.expect("Time:");
+  words.expect_key("Frame Time:");
   motion.frame_time_s = words.number();
   if (!(motion.frame_time_s > 0)) words.fail("the frame time is not positive", "seconds above 0");
   if (columns == 0) words.fail("no joint has a channel");
@@ -154,11 +249,7 @@ void parse_motion(Words& words, BvhMotion& motion, int columns) {
   motion.values.resize(frames, columns);
   for (int f = 0; f < frames; ++f)
     for (int c = 0; c < columns; ++c) motion.values(f, c) = words.number();
-  if (!words.at_end()) {
-    words.next("nothing");
-    words.fail("more numbers than " + std::to_string(frames) + " frames of " +
-               std::to_string(columns) + " channels");
-  }
+  parse_rest(words, motion, columns);
 }
 
 /// From the joint to the mean of its children's offsets, or to its end site, in world coordinates;
@@ -196,6 +287,8 @@ BvhMotion parse_bvh(std::string_view text, const std::string& name) {
   int columns = 0;
   parse_hierarchy(words, motion, columns);
   parse_motion(words, motion, columns);
+  find_held_offsets(motion);
+  for (std::string& note : motion.notes) note.insert(0, name + ": ");
   return motion;
 }
 
@@ -217,6 +310,7 @@ BvhFrame bvh_frame(const BvhMotion& motion, int frame) {
   BvhFrame result;
   for (const BvhJoint& joint : motion.joints) {
     Eigen::Quaterniond local = Eigen::Quaterniond::Identity();
+    Eigen::Vector3d offset = joint.offset;
     Eigen::Vector3d moved = Eigen::Vector3d::Zero();
     for (int c = 0; c < std::ssize(joint.channels); ++c) {
       const double x = motion.values(frame, joint.first_column + c);
@@ -225,14 +319,15 @@ BvhFrame bvh_frame(const BvhMotion& motion, int frame) {
         local = local * Eigen::AngleAxisd(x * std::numbers::pi / 180, Eigen::Vector3d::Unit(axis));
       } else {
         moved[axis] += x;
+        if (joint.channels_hold_offset) offset[axis] = 0;
       }
     }
     if (joint.parent < 0) {
       result.rotation.push_back(local);
-      result.position.push_back(joint.offset + moved);
+      result.position.push_back(offset + moved);
     } else {
       const std::size_t p = joint.parent;
-      result.position.push_back(result.position[p] + result.rotation[p] * (joint.offset + moved));
+      result.position.push_back(result.position[p] + result.rotation[p] * (offset + moved));
       result.rotation.push_back((result.rotation[p] * local).normalized());
     }
   }

@@ -22,6 +22,8 @@ struct BvhJoint {
   std::vector<BvhChannel> channels;                  ///< in the order of the file
   int first_column = 0;                              ///< of its channels in `values`
   std::optional<Eigen::Vector3d> end_site;           ///< from the joint
+  /// Position channels hold the offset already and replace it, instead of being added (bvh_root.h).
+  bool channels_hold_offset = false;
 };
 
 /// Motion capture in the Biovision hierarchical format.
@@ -31,10 +33,15 @@ struct BvhMotion {
   Eigen::MatrixXd values;  ///< one row a frame; degrees, and lengths in the file's unit
   /// Turns the file's coordinates into those of the world, where y is up (bvh_up.h).
   Eigen::Quaterniond to_y_up = Eigen::Quaterniond::Identity();
+  std::vector<std::string> notes;  ///< what was left out or guessed, a sentence each
 
   [[nodiscard]] int frame_count() const { return static_cast<int>(values.rows()); }
 };
 
+/// Keywords may be written in any case and with or without blanks ("End site", "Frames:3"); names
+/// of joints reach to the end of their line or to the brace. Of several roots the first is read,
+/// and of rows as many as are announced: a further root, or one row too many, becomes a note.
+///
 /// @throws Error  naming file and line: syntax, unknown channels, a frame with too few numbers,
 ///                numbers that are not finite, counts beyond what the file holds
 BvhMotion read_bvh(const std::filesystem::path& file);

@@ -108,6 +108,11 @@ BvhMotion stand_up(BvhMotion motion, const SkeletonFile& skeleton, BvhUp up, int
     chosen = static_cast<int>(std::max_element(score.begin(), score.end()) - score.begin());
   }
   if (score[chosen] < kStands) refuse(score, chosen, name);
+  if (chosen != named) {
+    motion.notes.push_back(name + ": guessed bvh_up = \"" + "xyz"[chosen] +
+                           "\": heights of the joints agree by " + rounded_text(score[chosen], 2) +
+                           ", with \"y\" by " + rounded_text(score[kY], 2));
+  }
   return turned(std::move(motion), chosen);
 }
 

@@ -14,7 +14,8 @@ enum class BvhUp { guess, x, y, z };
 /// assimp-testmodels has 0.81, 0.01 and -0.09 for y, x and z), at its rest pose or at
 /// `origin_frame` (a rest pose may be any; a capture may begin on the floor). `guess` takes y, the
 /// format's custom, where it does, else the axis that agrees best. A skeleton of which fewer than
-/// three joints are driven, or that lie on a line, says nothing: it is taken as it is.
+/// three joints are driven, or that lie on a line, says nothing: it is taken as it is. A guess of
+/// another axis than y is noted with its reason.
 ///
 /// @param name  of the motion's file, for messages
 /// @throws Error  when the body would lie down or stand on its head, with the axes' agreements

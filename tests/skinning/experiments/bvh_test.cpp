@@ -201,6 +201,90 @@ TEST(BvhUpOfALine, IsWhatTheFileSays) {
                   .isApprox(Eigen::Vector3d::UnitY(), 1e-12));
 }
 
+/// The notes of a text that is read to the same joints and numbers as kLeg.
+std::vector<std::string> notes_of_same(const std::string& text) {
+  const BvhMotion expected = parse_bvh(kLeg, "leg.bvh");
+  BvhMotion motion;
+  EXPECT_EQ(test::error_of([&] { motion = parse_bvh(text, "test.bvh"); }), "") << text;
+  EXPECT_EQ(motion.values.leftCols(9).eval(), expected.values) << text;
+  EXPECT_EQ(motion.frame_time_s, expected.frame_time_s) << text;
+  EXPECT_EQ(motion.joints.size(), expected.joints.size()) << text;
+  if (motion.joints.size() == 2) EXPECT_EQ(motion.joints[1].end_site, expected.joints[1].end_site);
+  return motion.notes;
+}
+
+TEST(Bvh, KeywordsAreReadAsProgramsWriteThem) {
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"End Site", "End site"},
+           {"End Site", "END SITE"},
+           {"End Site", "EndSite"},
+           {"End Site", "End Site ToeTip"},
+           {"End Site\n    {", "End Site {"},
+           {"Frames: 2", "Frames:2"},
+           {"Frames: 2", "Frames : 2"},
+           {"Frames: 2", "FRAMES:\t2"},
+           {"Frame Time: 0.5", "Frame Time:0.5"},
+           {"Frame Time: 0.5", "FrameTime : 5e-1"},
+           {"Frame Time: 0.5", "Frame  Time:\t+.5"},
+           {"HIERARCHY", "Hierarchy"},
+           {"Zrotation Yrotation Xrotation", "ZROTATION YRotation xrotation"},
+           {"ROOT Hips\n{", "ROOT Hips {"},
+           {"ROOT Hips\n{", "root Hips{"}}) {
+    EXPECT_THAT(notes_of_same(replaced(kLeg, from, to)), testing::IsEmpty()) << to;
+  }
+}
+
+TEST(Bvh, NamesMayHaveBlanks) {
+  const std::string text =
+      replaced(replaced(kLeg, "Hips", "Bip01  Pelvis \t"), "Knee\n  {", "Bip01 L Calf {");
+  const BvhMotion motion = parse_bvh(text, "test.bvh");
+  EXPECT_EQ(motion.joints[0].name, "Bip01  Pelvis");
+  EXPECT_EQ(motion.joints[1].name, "Bip01 L Calf");
+  EXPECT_THAT(bvh_error(replaced(kLeg, "JOINT Knee", "JOINT")),
+              HasSubstr("test.bvh:8: a joint without a name"));
+}
+
+TEST(Bvh, OfSeveralRootsTheFirstIsReadAndTheOthersAreNamed) {
+  const std::string ball =
+      "ROOT Ball\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\nJOINT Seam\n{\n"
+      "OFFSET 0 1 0\nCHANNELS 0\n}\n}\n";
+  std::string text = replaced(kLeg, "MOTION", ball + "root Flag\n{\nOFFSET 1 2 3\n}\nMOTION");
+  text = replaced(text, "0 0 0\n1 2 3", "0 0 0  7 8 9\n1 2 3");
+  text = replaced(text, "0 90 0\n", "0 90 0  7 8 9\n");
+  EXPECT_THAT(notes_of_same(text),
+              testing::ElementsAre("test.bvh: of 3 roots the first, 'Hips' of 2 joints, is read; "
+                                   "left out: 'Ball' of 2 joints, 'Flag' of 1 joint"));
+}
+
+TEST(Bvh, OneRowTooManyIsNotedAndNoneMore) {
+  const std::string row = "1 2 3  4 5 6  7 8 9\n";
+  EXPECT_THAT(notes_of_same(kLeg + row),
+              testing::ElementsAre(HasSubstr("one row of motion more than the 2")));
+  EXPECT_THAT(bvh_error(kLeg + row + row), HasSubstr("more numbers than 2 frames"));
+  EXPECT_THAT(bvh_error(kLeg + "1 2 3\n"), HasSubstr("more numbers than 2 frames"));
+  EXPECT_THAT(bvh_error(kLeg + "thanks for reading\n"), HasSubstr("'thanks' is no number"));
+  EXPECT_THAT(bvh_error(replaced(kLeg, "Frames: 2", "Frames: 3")), HasSubstr("the file"));
+}
+
+// A knee whose position channels say where it is, as its OFFSET does, and a little more.
+TEST(Bvh, PositionChannelsOfJointsHoldTheirOffsetOrAreAdded) {
+  const auto knee = [](const std::string& first, const std::string& second) {
+    std::string text = replaced(kLeg, "CHANNELS 3 Y", "CHANNELS 6 Xposition Yposition Zposition Y");
+    text = replaced(text, "0 0 0  0 0 0\n", "0 0 0  " + first + "  0 0 0\n");
+    text = replaced(text, "90 0 0  0 90 0", "90 0 0  " + second + "  0 90 0");
+    return parse_bvh(text, "test.bvh");
+  };
+  const BvhMotion held = knee("0 -4 0", "0 -4 0");
+  EXPECT_NEAR((bvh_frame(held, 1).position[1] - Eigen::Vector3d(5, 12, 3)).norm(), 0, 1e-12);
+  EXPECT_THAT(held.notes, testing::IsEmpty());
+  const BvhMotion added = knee("0 0 0", "0 0 0");
+  EXPECT_NEAR((bvh_frame(added, 1).position[1] - Eigen::Vector3d(5, 12, 3)).norm(), 0, 1e-12);
+  EXPECT_THAT(
+      knee("0 -4 0", "0 -5 0").notes,
+      testing::ElementsAre(HasSubstr("position channels of joint 'Knee' stretch bones by up "
+                                     "to 1: left out")));
+}
+
 TEST(Bvh, MistakesNameTheLine) {
   EXPECT_THAT(bvh_error(replaced(kLeg, "OFFSET 0 10 0", "OFFSET 0 ten 0")),
               HasSubstr("test.bvh:4: 'ten' is no number"));
