@@ -165,11 +165,23 @@ Motion make_clip(const MotionOptions& options, const Character& character) {
   Motion motion;
   motion.parameter_name = "time";
   motion.parameter_unit = "s";
-  for (int i = 0; i < options.frames; ++i) {
-    const double t = at_fraction(start, end, i, options.frames);
-    motion.parameters.push_back(t);
-    motion.poses.push_back(convert_pose(clip_pose(*character.gltf, clip, t), character));
-  }
+  const auto play = [&](ClipScale scale) {
+    motion.poses.clear();
+    for (const double t : motion.parameters)
+      motion.poses.push_back(convert_pose(clip_pose(*character.gltf, clip, t, scale), character));
+  };
+  for (int i = 0; i < options.frames; ++i)
+    motion.parameters.push_back(at_fraction(start, end, i, options.frames));
+  play(ClipScale::played);
+  const auto scaled = most_scaled_joint(motion.poses, character.rig);
+  if (!scaled) return motion;
+  const std::string what = "the clip '" + clip.name + "' " +
+                           scale_text(*scaled, character.rig.skeleton, motion.parameters);
+  if (options.joint_scale == JointScale::refuse) refuse_scale(what, character.files[0].string());
+  play(ClipScale::left_out);
+  for (Pose& pose : motion.poses) make_rigid(character.rig.skeleton, pose);
+  motion.warnings.push_back(character.files[0].string() + ": " + what +
+                            "; it is played without scale (joint_scale = \"strip\")");
   return motion;
 }
 
@@ -191,11 +203,13 @@ Motion make_bvh(const MotionOptions& options, const Character& character,
   }
   capture = stand_up(std::move(capture), *character.skeleton_file, options.bvh_up,
                      options.origin_frame, file.string());
+  capture = place_root(std::move(capture), options.bvh_root, file.string());
   const BvhRetarget retarget(capture, *character.skeleton_file, options.origin_frame);
   Motion motion;
   motion.parameter_name = "time";
   motion.parameter_unit = "s";
   motion.files.push_back(file);
+  motion.warnings = capture.notes;
   for (std::int64_t next = options.first_frame; next <= last; next += options.stride) {
     const int f = static_cast<int>(next);
     motion.parameters.push_back(f * capture.frame_time_s);
@@ -238,6 +252,8 @@ void describe(OptionVisitor& v, JointRamp& options) {
 void describe(OptionVisitor& v, MotionOptions& options) {
   static constexpr std::array<std::string_view, 5> kKinds{"ramp", "loop", "poses", "clip", "bvh"};
   static constexpr std::array<std::string_view, 4> kUps{"guess", "x", "y", "z"};
+  static constexpr std::array<std::string_view, 3> kRoots{"guess", "added", "replaced"};
+  static constexpr std::array<std::string_view, 2> kScales{"refuse", "strip"};
   describe_choice(
       v, "kind", options.kind, kKinds,
       {.doc = "a ramp of joint angles, a loop out and back, poses of a file, a clip of the "
@@ -261,6 +277,9 @@ void describe(OptionVisitor& v, MotionOptions& options) {
               {.doc = "time of the last frame; absent: the clip's end", .unit = "s"});
       v.value("frames", options.frames,
               {.doc = "number of frames, equally spaced", .min = 1, .max = kMostFrames});
+      describe_choice(v, "joint_scale", options.joint_scale, kScales,
+                      {.doc = "what becomes of a clip that scales joints, which not every method "
+                              "can follow: an error, or played without scale"});
       break;
     case MotionKind::bvh:
       v.value("file", options.file, {.doc = "motion capture file", .named = Named::file});
@@ -274,6 +293,9 @@ void describe(OptionVisitor& v, MotionOptions& options) {
               {.doc = "frame at which the root stands over the origin", .min = 0});
       describe_choice(v, "bvh_up", options.bvh_up, kUps,
                       {.doc = "axis of the file that is up; guess: by the heights of the joints"});
+      describe_choice(v, "bvh_root", options.bvh_root, kRoots,
+                      {.doc = "whether position channels of the root are added to its OFFSET or "
+                              "replace it; guess: by the height of the body above the ground"});
       break;
   }
 }

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "core/options.h"
+#include "experiments/skinning/scene/bvh_root.h"
 #include "experiments/skinning/scene/bvh_up.h"
 #include "experiments/skinning/scene/characters.h"
+#include "experiments/skinning/scene/joint_scale.h"
 
 namespace geoprior::skinning {
 
@@ -41,12 +43,14 @@ struct MotionOptions {
   std::optional<std::string> name;
   std::optional<double> start_s;
   std::optional<double> end_s;
+  JointScale joint_scale = JointScale::refuse;
   // bvh
   int first_frame = 0;
   std::optional<int> last_frame;
   int stride = 1;
   int origin_frame = 0;
   BvhUp bvh_up = BvhUp::guess;
+  BvhRoot bvh_root = BvhRoot::guess;
 };
 void describe(OptionVisitor& v, MotionOptions& options);
 
@@ -61,10 +65,11 @@ struct Motion {
   std::vector<int> turned_joints;
   std::vector<Eigen::Vector3d> turned_axes;
   std::vector<std::filesystem::path> files;
+  std::vector<std::string> warnings;
 };
 
 /// @throws Error  naming the option or file: unknown joints, axes, poses or clips, a motion that
-///                needs a file and names none
+///                needs a file and names none, a clip that scales joints
 Motion make_motion(const MotionOptions& options, const Character& character,
                    const std::filesystem::path& folder);
 

@@ -124,6 +124,8 @@ std::shared_ptr<SkinningScene> load_skinning_scene(const SkinningSceneOptions& o
   scene->input_files = std::move(character.files);
   scene->input_files.insert(scene->input_files.end(), motion.files.begin(), motion.files.end());
   scene->load_warnings = std::move(character.warnings);
+  scene->load_warnings.insert(scene->load_warnings.end(), motion.warnings.begin(),
+                              motion.warnings.end());
   return scene;
 }
 

@@ -15,6 +15,7 @@ namespace geoprior::skinning {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::HasSubstr;
 
 constexpr const char* kMine = "character = \"my.glb\"\n";
@@ -75,6 +76,46 @@ TEST_F(SkinningSceneFile, ClipIsTheAnimationOfThatName) {
               AllOf(HasSubstr("no clip 'fly'"), HasSubstr("bend, bend back")));
 }
 
+/// The square whose knee a clip scales by 2 along y, in one second.
+test::GltfSample growing_square() {
+  test::GltfSample s = test::skinned_square();
+  s.json["animations"][0]["samplers"][0]["output"] =
+      s.accessor<float>({1, 1, 1, 1, 2, 1}, "VEC3", 3, 5126);
+  s.json["animations"][0]["channels"][0]["target"]["path"] = "scale";
+  return s;
+}
+
+// Linear blend would scale the skin, dual quaternions would not: no comparison of one motion.
+TEST_F(SkinningSceneFile, ClipThatScalesAJointIsRefusedOrStripped) {
+  write_character(growing_square());
+  const std::string clip = "motion = { kind = \"clip\", frames = 2";
+  for (const std::string said : {"", ", joint_scale = \"refuse\""}) {
+    EXPECT_THAT(error(kMine + clip + said + " }"),
+                AllOf(HasSubstr("my.glb: the clip 'bend' scales joint 'knee' by 2 at 1 s"),
+                      HasSubstr("dual quaternions"), HasSubstr("joint_scale = \"strip\"")));
+  }
+  const auto stripped = scene(kMine + clip + ", joint_scale = \"strip\" }");
+  for (const Eigen::Affine3d& t : stripped->pose_at(1))
+    EXPECT_TRUE(t.isApprox(Eigen::Affine3d::Identity(), 1e-12));
+  EXPECT_THAT(stripped->warnings(), Contains(HasSubstr("scales joint 'knee' by 2 at 1 s; it is "
+                                                       "played without scale")));
+  EXPECT_EQ(scene(kMine + clip + ", end_s = 0.0001, joint_scale = \"refuse\" }")->warnings().size(),
+            0U)
+      << "of the frames that are played";
+}
+
+// A joint that is twice as large in the file's nodes as when it was bound, and turns by the clip.
+TEST_F(SkinningSceneFile, ScaleThatStandsInTheNodesIsStrippedAboutTheHead) {
+  test::GltfSample s = test::skinned_square();
+  s.json["nodes"][2]["scale"] = {2, 2, 2};
+  write_character(s);
+  const std::string clip = "motion = { kind = \"clip\", frames = 2";
+  EXPECT_THAT(error(kMine + clip + " }"), HasSubstr("scales joint 'knee' by 2 at 0 s"));
+  const auto stripped = scene(kMine + clip + ", joint_scale = \"strip\" }");
+  const Eigen::Vector3d corner = stripped->pose_at(1)[1] * Eigen::Vector3d(1, 1, 0);
+  EXPECT_NEAR((corner - Eigen::Vector3d(0, 2, 0)).norm(), 0, 1e-6);
+}
+
 /// An arm of two bones, upright in the axis `offset` of the file; in the second frame its root
 /// stands at (3, 0, 2) and is turned by 90 degrees about the file's z.
 std::string captured_arm(const std::string& offset) {
@@ -125,6 +166,69 @@ TEST_F(CapturedArm, StandsOverTheOriginInTheFrameAskedFor) {
   EXPECT_GT(beside("", 0.5), 0.1);
   EXPECT_NEAR(beside(", origin_frame = 1", 0.5), 0, 1e-12);
   EXPECT_NEAR(beside(", origin_frame = 1", 0), beside("", 0.5), 1e-12);
+}
+
+/// A leg of two bones, 2 m long, hanging from (0, 2, 0), and its motion in centimetres: at rest,
+/// then raised by 50, with the knee bent by 90 degrees.
+class CapturedLeg : public SkinningSceneFile {
+ protected:
+  /// @param offset   of the root
+  /// @param heights  of its channels in both frames
+  [[nodiscard]] std::shared_ptr<SkinningScene> leg(const std::string& offset,
+                                                   const std::string& first,
+                                                   const std::string& second,
+                                                   const std::string& motion_lines) const {
+    write_character(test::skinned_square());
+    write("my.skeleton.toml",
+          "[joint.hip]\nhead = [0, 2, 0]\ntail = [0, 1, 0]\nbvh = \"Hips\"\n"
+          "[joint.knee]\nparent = \"hip\"\nhead = [0, 1, 0]\ntail = [0, 0, 0]\nbvh = \"Knee\"\n");
+    write("my.bvh",
+          "HIERARCHY\nROOT Hips\n{\nOFFSET 0 " + offset +
+              " 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
+              "JOINT Knee\n{\nOFFSET 0 -100 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n"
+              "End Site\n{\nOFFSET 0 -100 0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.5\n"
+              "0 " +
+              first + " 0 0 0 0  0 0 0\n0 " + second + " 0 0 0 0  0 90 0\n");
+    return scene(kMine +
+                 ("skeleton = \"my.skeleton.toml\"\nmotion = { kind = \"bvh\", file = \"my.bvh\"" +
+                  motion_lines + " }\n"));
+  }
+  /// Height (m) by which the root is off its rest in a frame.
+  [[nodiscard]] static double raised(const SkinningScene& scene, double time) {
+    return scene.pose_at(time)[0].translation().y();
+  }
+};
+
+// What the file says means two heights: the root at rest, or 2 m above it.
+TEST_F(CapturedLeg, StandsWhereTheRootsOffsetIsAddedOrReplaced) {
+  const auto added = leg("200", "200", "250", ", bvh_root = \"added\"");
+  EXPECT_NEAR(raised(*added, 0), 2, 1e-9);
+  EXPECT_NEAR(raised(*added, 0.5), 2.5, 1e-9);
+  const auto replaced = leg("200", "200", "250", ", bvh_root = \"replaced\"");
+  EXPECT_NEAR(raised(*replaced, 0), 0, 1e-9);
+  EXPECT_NEAR(raised(*replaced, 0.5), 0.5, 1e-9);
+  EXPECT_NEAR(raised(*leg("200", "0", "50", ", bvh_root = \"added\""), 0.5), 0.5, 1e-9);
+  for (const auto& named : {added, replaced})
+    for (const std::string& warning : named->warnings())
+      EXPECT_THAT(warning, testing::Not(HasSubstr("bvh_root"))) << "nothing was guessed";
+}
+
+TEST_F(CapturedLeg, IsGuessedToStandOnTheGround) {
+  const auto holds = leg("200", "200", "250", "");
+  EXPECT_NEAR(raised(*holds, 0), 0, 1e-9);
+  EXPECT_THAT(holds->warnings(),
+              Contains(AllOf(HasSubstr("my.bvh: guessed bvh_root = \"replaced\""),
+                             HasSubstr("stands at a height of 0, else of 200"))));
+  const auto adds = leg("200", "0", "50", ", bvh_root = \"guess\"");
+  EXPECT_NEAR(raised(*adds, 0.5), 0.5, 1e-9);
+  EXPECT_THAT(adds->warnings(), Contains(HasSubstr("guessed bvh_root = \"added\"")));
+  // An offset that is no leg's: by the channels alone.
+  const auto high = leg("900", "0", "50", "");
+  EXPECT_NEAR(raised(*high, 0.5), 7.5, 1e-9);
+  EXPECT_THAT(high->warnings(), Contains(HasSubstr("mostly 0, that of the OFFSET 900")));
+  EXPECT_NEAR(raised(*leg("900", "900", "950", ""), 0.5), 7.5, 1e-9);
+  for (const std::string& warning : leg("0", "200", "250", "")->warnings())
+    EXPECT_THAT(warning, testing::Not(HasSubstr("bvh_root"))) << "it makes no difference";
 }
 
 }  // namespace
