@@ -8,7 +8,7 @@ namespace geoprior::gltf {
 namespace {
 
 constexpr std::array<std::string_view, 13> kLookPrefixes{
-    "KHR_materials_", "KHR_texture_",     "KHR_lights_",    "KHR_xmp",     "KHR_techniques_",
+    "KHR_materials_", "KHR_texture_",     "KHR_lights_",    "KHR_xmp",     "KHR_technique",
     "KHR_audio",      "EXT_materials_",   "EXT_texture_",   "EXT_lights_", "MSFT_texture_",
     "MSFT_packing_",  "ADOBE_materials_", "VRMC_materials_"};
 

@@ -54,6 +54,7 @@ struct Builder {
   std::vector<std::array<int, 3>> triangles;
   std::vector<Eigen::Triplet<double>> influences;
   bool renormalised = false;
+  int degenerate = 0;           ///< triangles of lists that name a vertex twice
   std::string without_surface;  ///< the first primitive that is no surface, and where it stands
 };
 
@@ -155,7 +156,10 @@ void add_primitive(const Model& model, const gltf::Primitive& primitive, const s
   const bool mirrored = placement.to_rest.linear().determinant() < 0;
   for (auto t : triangles_of(indices, primitive.mode, where)) {
     if (mirrored) std::swap(t[1], t[2]);
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;  // strips restart so
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {  // strips restart so
+      if (primitive.mode == 4) ++builder.degenerate;
+      continue;
+    }
     std::array<int, 3> corners{};
     for (std::size_t k = 0; k < 3; ++k) corners[k] = builder.vertex_count + static_cast<int>(t[k]);
     builder.triangles.push_back(corners);
@@ -381,6 +385,9 @@ GltfCharacter make_character(const Model& model, const GltfReadOptions& options)
   }
   character.mesh = finish_mesh(builder, model.file.string());
   note_doubles(model, character.mesh, blocks, notes);
+  if (builder.degenerate > 0)
+    notes.push_back("left out, without area: " + std::to_string(builder.degenerate) +
+                    " triangles that name a vertex twice");
   const std::vector<int> number = renumber_nodes(model, character.binding);
   if (!selection.skins.empty()) {
     character.weights.resize(builder.vertex_count, rig.skeleton.size());

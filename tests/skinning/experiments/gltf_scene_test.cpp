@@ -275,6 +275,14 @@ TEST(GltfPrimitives, LinesBesideTrianglesAreLeftOut) {
                                              "no surface and is left out")));
 }
 
+TEST(GltfPrimitives, TrianglesThatNameAVertexTwiceAreCounted) {
+  GltfSample s = skinned_square();
+  s.json["meshes"][0]["primitives"][0]["indices"] =
+      s.accessor<std::uint16_t>({0, 1, 2, 0, 2, 3, 1, 1, 2}, "SCALAR", 1, 5123);
+  EXPECT_EQ(read_scene(s).mesh.triangle_count(), 2);
+  EXPECT_THAT(read_scene(s).warnings, Contains(HasSubstr("1 triangles that name a vertex twice")));
+}
+
 TEST(GltfExtensions, ThatSayHowItLooksMayBeRequired) {
   for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp", "KHR_materials_unlit",
                            "KHR_materials_variants", "KHR_texture_transform", "KHR_lights_punctual",
