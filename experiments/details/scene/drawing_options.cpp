@@ -20,7 +20,8 @@ void describe(OptionVisitor& v, DetailDrawingOptions& options) {
   if (given) {
     v.value("file", options.file,
             {.doc = "mesh of a detail (z its normal): .obj, .ply, .off, .vtp",
-             .required = true, .named = Named::file});
+             .required = true,
+             .named = Named::file});
   }
 }
 

@@ -328,7 +328,8 @@ void describe(OptionVisitor& v, DetailPatternOptions& options) {
             {.doc = "positions of details: .csv with the columns x, y, z and, if need be, weight, "
                     "type; or "
                     "the vertices of a mesh file",
-             .required = true, .named = Named::file});
+             .required = true,
+             .named = Named::file});
     v.value(
         "max_distance", options.max_distance,
         {.doc = "largest distance of a position from the surface; absent: a hundredth of its size",

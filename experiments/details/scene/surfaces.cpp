@@ -106,9 +106,10 @@ void describe(OptionVisitor& v, DetailSurfaceOptions& options) {
             {.doc = "height of the bumps of a blob, over its radius", .min = 0, .max = 0.5});
   }
   if (options.kind == Kind::file) {
-    v.value(
-        "file", options.file,
-        {.doc = "mesh of the surface: .obj, .ply, .off, .vtp", .required = true, .named = Named::file});
+    v.value("file", options.file,
+            {.doc = "mesh of the surface: .obj, .ply, .off, .vtp",
+             .required = true,
+             .named = Named::file});
     v.value("scale", options.scale, {.doc = "metres for one unit of the file", .min = 1e-9});
     v.value("turn_deg", options.turn_deg,
             {.doc = "turn of the file's mesh: axis times angle", .unit = "deg"});

@@ -40,7 +40,8 @@ void describe(OptionVisitor& v, LiquidShapeOptions& options) {
   if (options.kind == Kind::mesh) {
     v.value("file", options.file,
             {.doc = "file of the closed mesh: .obj, .ply, .off, .vtp",
-             .required = true, .named = Named::file});
+             .required = true,
+             .named = Named::file});
     v.value("scale", options.scale,
             {.doc = "metres for one unit of the file", .unit = "m", .min = kSmallest});
     v.value("turn_z_deg", options.turn_z_deg,
@@ -107,7 +108,8 @@ void describe(OptionVisitor& v, TargetOptions& options) {
     case TargetKind::mesh:
       v.value("file", options.file,
               {.doc = "file of the still mesh: .obj, .ply, .off, .vtp",
-               .required = true, .named = Named::file});
+               .required = true,
+               .named = Named::file});
       v.value("scale", options.scale,
               {.doc = "metres for one unit of the file", .unit = "m", .min = kSmallest});
       v.value("turn_deg", options.turn_deg,
@@ -141,7 +143,8 @@ void describe(OptionVisitor& v, FluidSceneOptions& options) {
   describe_group(v, "target", options.target,
                  {.doc = "animation, mesh or ocean that features are pasted into"});
   describe_list(v, "edits", options.edits, {.doc = "features that are pasted, and how"});
-  v.value("edit_list", options.edit_list, {.doc = "TOML file of further edits", .named = Named::file});
+  v.value("edit_list", options.edit_list,
+          {.doc = "TOML file of further edits", .named = Named::file});
 }
 
 }  // namespace geoprior::fluid

@@ -86,7 +86,9 @@ void describe(OptionVisitor& v, PatternOptions& options) {
       break;
     case PatternKind::svg:
       v.value("file", options.file,
-              {.doc = "SVG file that the pattern is read from", .required = true, .named = Named::file});
+              {.doc = "SVG file that the pattern is read from",
+               .required = true,
+               .named = Named::file});
       v.value("path", options.svg.path,
               {.doc = "id of the path, polygon, polyline, rect, circle, ellipse, use or group, its "
                       "lines border and holes; absent: the only one"});

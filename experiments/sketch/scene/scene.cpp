@@ -118,8 +118,9 @@ OneViewFiles one_view_files(const SketchSceneOptions& o, DecodedPicture& picture
 
 void describe(OptionVisitor& v, SketchSceneOptions& o) {
   v.value("drawing", o.drawing, {.doc = "SVG file with the annotated views", .named = Named::file});
-  v.value("surface", o.surface,
-          {.doc = "mesh file in place of a drawing, for methods that need none", .named = Named::file});
+  v.value(
+      "surface", o.surface,
+      {.doc = "mesh file in place of a drawing, for methods that need none", .named = Named::file});
   describe_group(v, "synthetic", o.synthetic,
                  {.doc = "one view of a shape that is known, in place of a drawing"});
   describe_group(v, "closed_form", o.closed_form,
