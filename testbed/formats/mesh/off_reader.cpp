@@ -183,6 +183,9 @@ class OffBody {
       at_ = std::min(at_ + words_a_vertex - 3, words_.size());
     }
     for (long long i = 0; i < head_.faces; ++i) {
+      if (faces_end_lines && !begins_line(at_)) {
+        throw Error("a face begins within a line", words_.place(at_), "a face a line");
+      }
       face(i);
       if (faces_end_lines) to_line_end();
     }
