@@ -209,7 +209,9 @@ std::vector<std::string> notes_of_same(const std::string& text) {
   EXPECT_EQ(motion.values.leftCols(9).eval(), expected.values) << text;
   EXPECT_EQ(motion.frame_time_s, expected.frame_time_s) << text;
   EXPECT_EQ(motion.joints.size(), expected.joints.size()) << text;
-  if (motion.joints.size() == 2) EXPECT_EQ(motion.joints[1].end_site, expected.joints[1].end_site);
+  if (motion.joints.size() == 2) {
+    EXPECT_EQ(motion.joints[1].end_site, expected.joints[1].end_site);
+  }
   return motion.notes;
 }
 
