@@ -294,7 +294,7 @@ void expect_places(const BvhMotion& motion, const PerturbedCapture& capture) {
   }
 }
 
-TEST(PerturbedBvh, MeansWhatItsGeneratorWrote) {
+TEST(LongPerturbedBvh, MeansWhatItsGeneratorWrote) {
   for (int seed = 0; seed < perturbed_files(); ++seed) {
     const PerturbedCapture capture(seed);
     SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + capture.text());

@@ -663,7 +663,7 @@ void expect_skeleton(const GltfCharacter& c, const Meaning& meaning) {
   }
 }
 
-TEST(PerturbedGltf, MeansWhatItsGeneratorWrote) {
+TEST(LongPerturbedGltf, MeansWhatItsGeneratorWrote) {
   for (int seed = 0; seed < perturbed_files(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     PerturbedFile file(seed);
