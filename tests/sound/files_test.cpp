@@ -82,8 +82,8 @@ TEST_F(BankFiles, ListsAreReadInEveryForm) {
       write("bank.csv", form.bytes);
       const SoundBank bank = read();
       ASSERT_EQ(bank.sounds.size(), 1U) << form.name;
-      EXPECT_EQ(bank.sounds[0].l_r, 0.5) << form.name;
-      EXPECT_EQ(bank.sounds[0].l_c, 0.25) << form.name;
+      EXPECT_EQ(bank.sounds[0].ruling_length, 0.5) << form.name;
+      EXPECT_EQ(bank.sounds[0].free_border, 0.25) << form.name;
     }
   }
 }

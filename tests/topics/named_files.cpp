@@ -1,6 +1,7 @@
 #include "tests/topics/named_files.h"
 
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <numbers>
 
@@ -13,6 +14,12 @@ namespace geoprior::test {
 namespace {
 
 namespace fs = std::filesystem;
+
+std::string text_of_bytes(const std::vector<std::byte>& bytes) {
+  std::string text(bytes.size(), '\0');
+  std::memcpy(text.data(), bytes.data(), bytes.size());
+  return text;
+}
 
 void write_text(const fs::path& file, const std::string& text) {
   fs::create_directories(file.parent_path());
@@ -224,13 +231,13 @@ void add_paper_and_sound(std::map<std::string, NamedFile>& files) {
             const double t = static_cast<double>(i) / 4800;
             sound.samples(i, 0) = 0.5 * (1 - t) * std::sin(2 * std::numbers::pi * cycles * t);
           }
-          return wav_bytes(sound);
+          return text_of_bytes(wav_bytes(sound));
         };
         write_text(folder / "bank" / "a.wav", tone(changed ? 90 : 60));
         write_text(folder / "bank" / "b.wav", tone(40));
         write_text(folder / "bank" / "bank.csv",
-                   "file,kind,ruling_length,free_border,speed\na.wav,flap,0.03,0.03,0.1\n"
-                   "b.wav,friction,0.03,0.03,0.1\n");
+                   "file,kind,l_r,l_c,width\na.wav,flap,0.03,0.03,0.03\n"
+                   "b.wav,friction,0.03,0.03,0.03\n");
       },
       "swatches = { rulings = [0.03], widths = [0.03] }\nbank = \"bank\"\n",
       {"bank/bank.csv", "bank/a.wav", "bank/b.wav"},
@@ -240,11 +247,8 @@ void add_paper_and_sound(std::map<std::string, NamedFile>& files) {
 /// The square of a knee, or the same a little wider.
 void write_square(const fs::path& folder, bool changed) {
   GltfSample sample = skinned_square();
-  if (changed) sample.json["nodes"][0]["scale"] = {1, 1, 1};
-  const std::vector<std::byte> bytes = sample.bytes();
-  std::string text(bytes.size(), '\0');
-  std::memcpy(text.data(), bytes.data(), bytes.size());
-  write_text(folder / "my.glb", text);
+  if (changed) sample.binary[3] = std::byte{0xBF};  // the first coordinate
+  write_text(folder / "my.glb", text_of_bytes(sample.bytes()));
 }
 
 void add_skinning_and_sketch(std::map<std::string, NamedFile>& files) {

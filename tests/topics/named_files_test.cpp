@@ -89,8 +89,8 @@ TEST_P(NamedFiles, AreReadRecordedAndDecideTheResult) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Topics, NamedFiles, ::testing::ValuesIn(keys_of_all()), [](const auto& info) {
-      std::string name = info.param;
+    Topics, NamedFiles, ::testing::ValuesIn(keys_of_all()), [](const auto& key) {
+      std::string name = key.param;
       std::replace_if(
           name.begin(), name.end(),
           [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');

@@ -205,7 +205,7 @@ TEST(BvhUpOfALine, IsWhatTheFileSays) {
 std::vector<std::string> notes_of_same(const std::string& text) {
   const BvhMotion expected = parse_bvh(kLeg, "leg.bvh");
   BvhMotion motion;
-  EXPECT_EQ(test::error_of([&] { motion = parse_bvh(text, "test.bvh"); }), "") << text;
+  EXPECT_NO_THROW(motion = parse_bvh(text, "test.bvh")) << text;
   EXPECT_EQ(motion.values.leftCols(9).eval(), expected.values) << text;
   EXPECT_EQ(motion.frame_time_s, expected.frame_time_s) << text;
   EXPECT_EQ(motion.joints.size(), expected.joints.size()) << text;
@@ -243,7 +243,7 @@ TEST(Bvh, NamesMayHaveBlanks) {
   EXPECT_EQ(motion.joints[0].name, "Bip01  Pelvis");
   EXPECT_EQ(motion.joints[1].name, "Bip01 L Calf");
   EXPECT_THAT(bvh_error(replaced(kLeg, "JOINT Knee", "JOINT")),
-              HasSubstr("test.bvh:8: a joint without a name"));
+              HasSubstr("test.bvh:7: a joint without a name"));
 }
 
 TEST(Bvh, OfSeveralRootsTheFirstIsReadAndTheOthersAreNamed) {

@@ -14,6 +14,7 @@
 #include "testbed/runner/journal/frame_table.h"
 #include "testbed/runner/journal/recorder.h"
 #include "testbed/runner/journal/sha256.h"
+#include "testbed/runner/process/stop.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/spec/spec.h"
 #include "tests/testbed/run_fixture.h"

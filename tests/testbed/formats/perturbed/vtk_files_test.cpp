@@ -219,7 +219,7 @@ TEST_F(LongPerturbedVtk, PolyDataAreReadRight) {
 }
 
 // VTK's reader takes the arrays of the first piece: ghosts that only the second one has count too.
-TEST_F(PerturbedVtk, GhostsOfSomePiecesAreLeftOut) {
+TEST_F(LongPerturbedVtk, GhostsOfSomePiecesAreLeftOut) {
   for (int seed = 0; seed < perturbed_files() / 4 + 1; ++seed) {
     SCOPED_TRACE(seed);
     RandomStream random(seed, "ghosts of pieces");
