@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/skinning/scene/bvh.h"
+#include "experiments/skinning/bvh/bvh.h"
 #include "experiments/skinning/scene/skeleton_file.h"
 #include "testbed/formats/gltf/reader.h"
 #include "testbed/runner/spec/toml_tree.h"

@@ -44,7 +44,7 @@ class BankFolder : public RunTest {
         "sound/bank", "title = \"A bank\"\ntopic = \"sound\"\n[scene]\nbank = \"" + bank +
                           "\"\nswatches = { rulings = [0.03], widths = [0.03] }\n[[variant]]\n"
                           "name = \"heard\"\nmethod = \"sound\"\noptions = { tail = 0.1 }\n");
-    program({"run", file.string(), "--out", (folder() / out).string()});
+    program({"run", file.string(), "--no-pictures", "--out", (folder() / out).string()});
     return read_run_file(folder() / out / "run.h5");
   }
 

@@ -99,10 +99,11 @@ void add_details(std::map<std::string, NamedFile>& files) {
           "\"given\" } }, file = \"stud.obj\" }\n",
       {"stud.obj"},
       "naive-stretch"};
-  files["details sequence.path"] = {
+  files["details motion.sequence.path"] = {
       write_frames,
-      "surface = { kind = \"sequence\" }\nsequence = { path = \"wave_%d.obj\" }\n" + few, kFrames,
-      "naive-stretch"};
+      "surface = { kind = \"sequence\" }\nmotion = { sequence = { path = \"wave_%d.obj\" } }\n" +
+          few,
+      kFrames, "naive-stretch"};
 }
 
 void add_fluid(std::map<std::string, NamedFile>& files) {
@@ -127,7 +128,7 @@ void add_fluid(std::map<std::string, NamedFile>& files) {
           body + " }] }\n",
       read, "liquid"};
   const std::string injected =
-      "injected = { bumps = 1, rings = 1, drops = 1, crossings = 0, frames = 3 }\n";
+      "injected = { bumps = 1, rings = 1, drops = 1, crossings = 0, frames = 5 }\n";
   files["fluid target.file"] = {
       writes("bed.obj", [](bool changed) { return plate(4, changed ? 0.02 : 0.01, 80); }),
       injected +
@@ -153,7 +154,7 @@ void write_library(const fs::path& folder, bool changed) {
   write_text(
       file, std::string("title = \"Features\"\ntopic = \"fluid\"\n[scene]\ninjected = { bumps = ") +
                 (changed ? "2" : "1") +
-                ", rings = 1, drops = 1, crossings = 0, frames = 3 }\n[[variant]]\nname = "
+                ", rings = 1, drops = 1, crossings = 0, frames = 5 }\n[[variant]]\nname = "
                 "\"v\"\nmethod = \"extract\"\noptions = { lift = true, extraction = { map = { "
                 "texel = 2 } } }\n");
   fs::remove_all(out);
@@ -172,7 +173,7 @@ void write_library(const fs::path& folder, bool changed) {
 
 void add_edits(std::map<std::string, NamedFile>& files) {
   const std::string pasted =
-      "injected = { bumps = 1, rings = 1, drops = 1, crossings = 0, frames = 3 }\ntarget = { kind "
+      "injected = { bumps = 1, rings = 1, drops = 1, crossings = 0, frames = 5 }\ntarget = { kind "
       "= "
       "\"injected\" }\n";
   files["fluid libraries[].path"] = {
@@ -201,7 +202,7 @@ void add_paper_and_sound(std::map<std::string, NamedFile>& files) {
            std::string(changed ? "180" : "200") + "\" height=\"100\"/></svg>\n";
   });
   const std::string svg =
-      "pattern = { kind = \"svg\", file = \"cut.svg\", path = \"p\", unit = \"mm\" }\n";
+      "pattern = { kind = \"svg\", file = \"cut.svg\", path = \"p\", unit = \"page\" }\n";
   files["paper pattern.file"] = {pattern,
                                  svg +
                                      "gravity = [0, 0, 0]\nimperfection = 0\nduration = 0.01\n"
@@ -221,27 +222,27 @@ void add_paper_and_sound(std::map<std::string, NamedFile>& files) {
                                  {"cut.svg"},
                                  "clicks"};
   files["sound animation.path"] = {write_frames, square + frames, kFrames, "clicks"};
-  files["sound bank"] = {
-      [](const fs::path& folder, bool changed) {
-        const auto tone = [](double cycles) {
-          Sound sound;
-          sound.sample_rate = 48000;
-          sound.samples.resize(4800, 1);
-          for (Eigen::Index i = 0; i < 4800; ++i) {
-            const double t = static_cast<double>(i) / 4800;
-            sound.samples(i, 0) = 0.5 * (1 - t) * std::sin(2 * std::numbers::pi * cycles * t);
-          }
-          return text_of_bytes(wav_bytes(sound));
-        };
-        write_text(folder / "bank" / "a.wav", tone(changed ? 90 : 60));
-        write_text(folder / "bank" / "b.wav", tone(40));
-        write_text(folder / "bank" / "bank.csv",
-                   "file,kind,l_r,l_c,width\na.wav,flap,0.03,0.03,0.03\n"
-                   "b.wav,friction,0.03,0.03,0.03\n");
-      },
-      "swatches = { rulings = [0.03], widths = [0.03] }\nbank = \"bank\"\n",
-      {"bank/bank.csv", "bank/a.wav", "bank/b.wav"},
-      "sound"};
+  files["sound bank"] = {[](const fs::path& folder, bool changed) {
+                           const auto tone = [](double cycles) {
+                             Sound sound;
+                             sound.sample_rate = 48000;
+                             sound.samples.resize(4800, 1);
+                             for (Eigen::Index i = 0; i < 4800; ++i) {
+                               const double t = static_cast<double>(i) / 4800;
+                               sound.samples(i, 0) =
+                                   0.5 * (1 - t) * std::sin(2 * std::numbers::pi * cycles * t);
+                             }
+                             return text_of_bytes(wav_bytes(sound));
+                           };
+                           write_text(folder / "bank" / "a.wav", tone(changed ? 90 : 60));
+                           write_text(folder / "bank" / "b.wav", tone(40));
+                           write_text(folder / "bank" / "bank.csv",
+                                      "file,kind,l_r,l_c,speed\na.wav,flap,0.03,0.06,0.1\n"
+                                      "b.wav,friction,0.03,0.06,0.1\n");
+                         },
+                         "swatches = { rulings = [0.03], widths = [0.03] }\nbank = \"bank\"\n",
+                         {"bank/bank.csv", "bank/a.wav", "bank/b.wav"},
+                         "sound"};
 }
 
 /// The square of a knee, or the same a little wider.
@@ -267,7 +268,7 @@ void add_skinning_and_sketch(std::map<std::string, NamedFile>& files) {
       {"mine.obj"},
       "gauss-thinning",
       "iterations = 2"};
-  const std::string character = "character = \"my.glb\"\n",
+  const std::string character = "character = \"my.glb\"\nregions = [\"hip\"]\n",
                     turn =
                         "motion = { joint = \"knee\", axis = \"+z\", to_deg = 60, frames = 2 "
                         "}\n";

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/options.h"
-#include "experiments/skinning/scene/bvh_root.h"
-#include "experiments/skinning/scene/bvh_up.h"
+#include "experiments/skinning/bvh/root.h"
+#include "experiments/skinning/bvh/up.h"
 #include "experiments/skinning/scene/characters.h"
 #include "experiments/skinning/scene/joint_scale.h"
 

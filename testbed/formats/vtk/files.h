@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/frame.h"
+#include "testbed/formats/vtk/vtk_file.h"
 
 namespace geoprior {
 
@@ -29,13 +30,6 @@ Part read_vtk_part(const std::filesystem::path& file, std::optional<double>& par
 /// @param where      what messages call the file
 Part parse_vtk_part(const std::string& bytes, const std::string& extension,
                     const std::string& where, std::optional<double>& parameter);
-
-/// What a VTK XML file holds.
-struct VtkFile {
-  Part part;
-  std::optional<double> parameter;  ///< its TimeValue
-  std::vector<std::string> notes;   ///< cells that are left out
-};
 
 /// As `parse_vtk_part`. Where there are polygons or strips they alone make the part: vertex cells
 /// and lines, ghost cells (`vtkGhostType`: of another piece, refined or hidden) and cells at hidden

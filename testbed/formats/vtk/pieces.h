@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "testbed/formats/vtk/files.h"
+#include "testbed/formats/vtk/vtk_file.h"
 
 namespace geoprior {
 

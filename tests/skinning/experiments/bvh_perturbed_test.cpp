@@ -10,7 +10,8 @@
 #include <random>
 
 #include "core/error.h"
-#include "experiments/skinning/scene/bvh_root.h"
+#include "experiments/skinning/bvh/bvh.h"
+#include "experiments/skinning/bvh/root.h"
 #include "tests/support/perturbed.h"
 
 namespace geoprior::skinning {

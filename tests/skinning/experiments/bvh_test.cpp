@@ -1,4 +1,4 @@
-#include "experiments/skinning/scene/bvh.h"
+#include "experiments/skinning/bvh/bvh.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "experiments/skinning/scene/bvh_up.h"
+#include "experiments/skinning/bvh/up.h"
 #include "experiments/skinning/scene/characters.h"
 #include "tests/testbed/run_fixture.h"
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <sstream>
 
-#include "experiments/skinning/scene/bvh.h"
+#include "experiments/skinning/bvh/bvh.h"
 #include "experiments/skinning/scene/skeleton_file.h"
 #include "tests/testbed/scratch_folder.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/skinning/scene/bvh.h"
+#include "experiments/skinning/bvh/motion.h"
 
 namespace geoprior::skinning {
 
@@ -18,7 +18,7 @@ enum class BvhRoot { guess, added, replaced };
 /// channels stay nearer to the OFFSET than to zero (median). A guess that makes a difference is
 /// noted with its reason.
 ///
-/// @param motion  its up axis is known (bvh_up.h)
+/// @param motion  its up axis is known (up.h)
 /// @param name    of the motion's file, for the note
 BvhMotion place_root(BvhMotion motion, BvhRoot root, const std::string& name);
 

@@ -1,4 +1,4 @@
-#include "experiments/skinning/scene/bvh_up.h"
+#include "experiments/skinning/bvh/up.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/skinning/scene/bvh.h"
+#include "experiments/skinning/bvh/bvh.h"
 
 namespace geoprior::skinning {
 

@@ -1,4 +1,4 @@
-#include "experiments/skinning/scene/bvh_root.h"
+#include "experiments/skinning/bvh/root.h"
 
 #include <algorithm>
 #include <cmath>
