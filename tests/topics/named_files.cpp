@@ -128,7 +128,8 @@ void add_fluid(std::map<std::string, NamedFile>& files) {
           body + " }] }\n",
       read, "liquid"};
   const std::string injected =
-      "injected = { bumps = 1, rings = 1, drops = 1, crossings = 0, frames = 5 }\n";
+      "duration = 0.08\ninjected = { bumps = 1, rings = 0, drops = 0, crossings = 0, frames = 4, "
+      "cell = 0.05 }\n";
   files["fluid target.file"] = {
       writes("bed.obj", [](bool changed) { return plate(4, changed ? 0.02 : 0.01, 80); }),
       injected +
@@ -138,7 +139,11 @@ void add_fluid(std::map<std::string, NamedFile>& files) {
       "sculpt",
       "extraction.map.texel = 2"};
   files["fluid target.path"] = {
-      write_frames,
+      [](const fs::path& folder, bool changed) {
+        for (int i = 0; i < 3; ++i)
+          write_text(folder / ("wave_" + std::to_string(i) + ".obj"),
+                     plate(4, changed ? 0.02 : 0.01, 80));
+      },
       injected +
           "target = { kind = \"sequence\", path = \"wave_%d.obj\" }\nedits = [{ name = "
           "\"a\", source = \"injected\" }]\n",
@@ -152,11 +157,12 @@ void add_fluid(std::map<std::string, NamedFile>& files) {
 void write_library(const fs::path& folder, bool changed) {
   const fs::path file = folder / "lift.toml", out = folder / "lifted";
   write_text(
-      file, std::string("title = \"Features\"\ntopic = \"fluid\"\n[scene]\ninjected = { bumps = ") +
-                (changed ? "2" : "1") +
-                ", rings = 1, drops = 1, crossings = 0, frames = 5 }\n[[variant]]\nname = "
-                "\"v\"\nmethod = \"extract\"\noptions = { lift = true, extraction = { map = { "
-                "texel = 2 } } }\n");
+      file,
+      std::string("title = \"Features\"\ntopic = \"fluid\"\n[scene]\ninjected = { bumps = ") +
+          (changed ? "2" : "1") +
+          ", rings = 0, drops = 0, crossings = 0, frames = 4, cell = 0.05 }\n[[variant]]\nname = "
+          "\"v\"\nmethod = \"extract\"\noptions = { lift = true, extraction = { map = { "
+          "texel = 2 } } }\n");
   fs::remove_all(out);
   ProgramProcess program(
       [&] {
@@ -173,7 +179,9 @@ void write_library(const fs::path& folder, bool changed) {
 
 void add_edits(std::map<std::string, NamedFile>& files) {
   const std::string pasted =
-      "injected = { bumps = 1, rings = 1, drops = 1, crossings = 0, frames = 5 }\ntarget = { kind "
+      "duration = 0.08\ninjected = { bumps = 1, rings = 0, drops = 0, crossings = 0, frames = 4, "
+      "cell = 0.05 "
+      "}\ntarget = { kind "
       "= "
       "\"injected\" }\n";
   files["fluid libraries[].path"] = {
@@ -197,9 +205,9 @@ void add_edits(std::map<std::string, NamedFile>& files) {
 
 void add_paper_and_sound(std::map<std::string, NamedFile>& files) {
   const auto pattern = writes("cut.svg", [](bool changed) {
-    return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"200mm\" height=\"100mm\" viewBox=\"0 "
-           "0 200 100\"><rect id=\"p\" x=\"0\" y=\"0\" width=\"" +
-           std::string(changed ? "180" : "200") + "\" height=\"100\"/></svg>\n";
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"200mm\" height=\"200mm\" viewBox=\"0 "
+           "0 200 200\"><rect id=\"p\" x=\"0\" y=\"0\" width=\"" +
+           std::string(changed ? "180" : "200") + "\" height=\"200\"/></svg>\n";
   });
   const std::string svg =
       "pattern = { kind = \"svg\", file = \"cut.svg\", path = \"p\", unit = \"page\" }\n";
@@ -220,7 +228,9 @@ void add_paper_and_sound(std::map<std::string, NamedFile>& files) {
                                  },
                                  svg + frames,
                                  {"cut.svg"},
-                                 "clicks"};
+                                 "clicks",
+                                 "",
+                                 "is of another sheet"};
   files["sound animation.path"] = {write_frames, square + frames, kFrames, "clicks"};
   files["sound bank"] = {[](const fs::path& folder, bool changed) {
                            const auto tone = [](double cycles) {

@@ -18,6 +18,7 @@ struct NamedFile {
   std::vector<std::string> read;  ///< the files that a run records, relative to the folder
   std::string method;
   std::string options = {};  ///< of the method
+  std::string refusal = {};  ///< how the changed input is refused; empty: it is run
 };
 
 /// By topic and key, as `geoprior describe` has it: "paper pattern.file".

@@ -43,8 +43,8 @@ std::vector<std::string> keys_of_all() {
 
 class NamedFiles : public RunTest, public ::testing::WithParamInterface<std::string> {
  protected:
-  /// Runs the sample as the program does.
-  [[nodiscard]] RunRecord record(const NamedFile& sample, bool changed) const {
+  /// Runs the sample as the program does; returns its exit code.
+  [[nodiscard]] int run_program(const NamedFile& sample, bool changed) const {
     const std::string topic = GetParam().substr(0, GetParam().find(' '));
     const fs::path file = write_experiment(
         topic + "/named", "title = \"A file of one's own\"\ntopic = \"" + topic + "\"\n[scene]\n" +
@@ -60,10 +60,14 @@ class NamedFiles : public RunTest, public ::testing::WithParamInterface<std::str
               all_topics());
         },
         folder() / "log");
-    EXPECT_EQ(program.wait(), 0) << log();
+    const int code = program.wait();
     for (const std::string& name : sample.read)
       hashes_[name] = sha256_of_file(file.parent_path() / name);
-    return read_run_file(out / "run.h5");
+    return code;
+  }
+  [[nodiscard]] RunRecord record(const NamedFile& sample, bool changed) const {
+    EXPECT_EQ(run_program(sample, changed), 0) << log();
+    return read_run_file(folder() / (changed ? "changed" : "out") / "run.h5");
   }
   [[nodiscard]] std::string log() const { return text_of(folder() / "log"); }
 
@@ -83,6 +87,11 @@ TEST_P(NamedFiles, AreReadRecordedAndDecideTheResult) {
   for (const CaseRecord& one : first.cases) {
     for (const std::string& warning : one.warnings)
       EXPECT_NE(log().find(warning), std::string::npos) << "not printed: " << warning;
+  }
+  if (!found->second.refusal.empty()) {
+    EXPECT_EQ(run_program(found->second, true), 2);
+    EXPECT_NE(log().find(found->second.refusal), std::string::npos) << log();
+    return;
   }
   const RunRecord second = record(found->second, true);
   EXPECT_NE(second.content_sha256, first.content_sha256) << "another file, the same result";
