@@ -265,7 +265,8 @@ TEST_F(Stop, WhileDrawingTellsTheChildAndLeavesNoHalfFile) {
 
 TEST_F(Stop, WhileThePicturesOfARunAreDrawnTheRunIsComplete) {
   use_slow_python("exec 2>&-  # waited for although it says nothing more");
-  const auto file = circle();
+  const auto file = circle(  // one plain panel: drawing it is most of what this costs
+      "motion = { frames = 1 }\n[figure_view]\nshading = \"flat\"\nvariants = [\"polygon\"]");
   ToyProgram program({"run", file.string(), "--out", out().string()}, log());
   await(pid_file(), "\n");
   EXPECT_EQ(stop(program), 2);

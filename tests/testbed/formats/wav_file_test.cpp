@@ -203,6 +203,7 @@ TEST(WavFile, IsReadWhateverItsByteOrderAndTheWidthOfItsSizes) {
   for (const int b : {0, 0, 0, 2, 0x40, 0}) big.push_back(static_cast<std::byte>(b));
   EXPECT_EQ(wav_from_bytes(big, "RIFX").samples, (Eigen::Matrix<double, 1, 1>(0.5)));
   Bytes wide = with_sizes(0xffffffff, 0xffffffff);
+  wide[1] = std::byte{'F'};
   wide[2] = std::byte{'6'};
   wide[3] = std::byte{'4'};
   Bytes sizes;
