@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 #include <thread>
+#include <tuple>
 
 #include "core/random.h"
 #include "experiments/toy/toy_topic.h"
@@ -26,10 +27,12 @@ std::vector<Topic> topics_and_toys() {
   return topics;
 }
 
-/// Of each experiment, so that all together are 100 in long tests, 20 in others.
+/// Tests of each experiment, so that all together are more than 20 kills; and the kills of each.
+constexpr int kTests = 3;
 int kills_asked() {
-  const double all = at_length() ? 100 : 20;
-  return static_cast<int>(std::ceil(all / static_cast<double>(topics_and_toys().size())));
+  constexpr double kLong = 100;
+  const double tests = kTests * static_cast<double>(topics_and_toys().size());
+  return at_length() ? static_cast<int>(std::ceil(kLong / tests)) : 1;
 }
 
 /// Waits until a program has used some processor time, or has ended: how fast it is on a busy
@@ -43,16 +46,18 @@ double wait_until_used(ProgramProcess& program, double seconds) {
   return used;
 }
 
-class LongKills : public RunTest, public ::testing::WithParamInterface<std::string> {
+class LongKills : public RunTest,
+                  public ::testing::WithParamInterface<std::tuple<std::string, int>> {
  protected:
   /// Starts the experiment of the topic, or goes on with it.
   [[nodiscard]] ProgramProcess program(const fs::path& out) const {
-    const std::string file = GEOPRIOR_SOURCE_DIR "/tests/topics/small/" + GetParam() + ".toml";
+    const std::string file = GEOPRIOR_SOURCE_DIR "/tests/topics/small/" + topic() + ".toml";
     std::vector<std::string> words{"run", file, "--no-pictures", "--threads", "1", "--out", out};
     if (fs::exists(out / "journal.jsonl")) words.emplace_back("--resume");
     return {[words] { return run_as_program(words, topics_and_toys()); }, folder() / "log"};
   }
 
+  [[nodiscard]] static std::string topic() { return std::get<0>(GetParam()); }
   [[nodiscard]] std::string log() const { return text_of(folder() / "log"); }
 };
 
@@ -69,7 +74,8 @@ TEST_P(LongKills, AtAnyMomentLoseNothing) {
   for (int i = 0; killed < kills_asked(); ++i) {
     ASSERT_LT(i, 10 * kills_asked()) << "only " << killed << " kills met a program at work";
     const fs::path out = folder() / ("killed-" + std::to_string(i));
-    RandomStream random(static_cast<std::uint64_t>(i), "kill " + GetParam());
+    RandomStream random(static_cast<std::uint64_t>(i),
+                        "kill " + topic() + std::to_string(std::get<1>(GetParam())));
     const double moment_s = whole_s * random.uniform();
     {
       ProgramProcess victim = program(out);
@@ -92,11 +98,14 @@ std::vector<std::string> topic_names() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Topics, LongKills, ::testing::ValuesIn(topic_names()), [](const auto& i) {
-  std::string name = i.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Topics, LongKills,
+                         ::testing::Combine(::testing::ValuesIn(topic_names()),
+                                            ::testing::Range(0, kTests)),
+                         [](const auto& i) {
+                           std::string name = std::get<0>(i.param);
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name + std::to_string(std::get<1>(i.param));
+                         });
 
 }  // namespace
 }  // namespace geoprior::test
