@@ -94,7 +94,7 @@ TEST(LongFuzz, TableReaderAcceptsOrThrowsError) { run(".csv", fuzz_table); }
 
 TEST(LongFuzz, MapReaderAcceptsOrThrowsError) {
   const auto pictures = fluid::exr_maps(sample_features().front(), "map");
-  run_on(".exr", {as_text(pictures[0].bytes), as_text(pictures[1].bytes)}, fuzz_exr, {20, 300});
+  run_on(".exr", {as_text(pictures[0].bytes), as_text(pictures[1].bytes)}, fuzz_exr, {10, 300});
 }
 
 TEST(LongFuzz, SoundReaderAcceptsOrThrowsError) {
