@@ -42,7 +42,11 @@ std::string name_of(const ::testing::TestInfo& test) {
 
 }  // namespace
 
-CostLimits default_cost_limits() { return {2 * kSlowness, 6 * kSlowness}; }
+/// On a machine that others use the same test takes two to three times the processor time (13.5 s
+/// in place of 6.5 s were measured): a test fails at three times the 6 s that none should cost.
+constexpr double kContention = 3;
+
+CostLimits default_cost_limits() { return {2 * kSlowness, 6 * kContention * kSlowness}; }
 
 double processor_seconds() {
   timespec own{};
