@@ -19,9 +19,4 @@ std::optional<double> largest_of(const Eigen::Ref<const Eigen::VectorXd>& values
   return values.maxCoeff();
 }
 
-std::optional<double> mean_of(const Eigen::Ref<const Eigen::VectorXd>& values) {
-  if (values.size() == 0) return std::nullopt;
-  return values.mean();
-}
-
 }  // namespace geoprior

@@ -15,6 +15,4 @@ std::optional<double> percentile_of(std::vector<double> values, int percent);
 
 std::optional<double> largest_of(const Eigen::Ref<const Eigen::VectorXd>& values);
 
-std::optional<double> mean_of(const Eigen::Ref<const Eigen::VectorXd>& values);
-
 }  // namespace geoprior

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
 
 #include "testbed/commands/commands.h"
@@ -11,9 +9,7 @@ namespace {
 
 /// The value of a flag: a text is a text whatever it holds, anything else is TOML.
 TomlNode flag_value(const OptionRow& row, const std::string& written) {
-  constexpr std::array<std::string_view, 4> kTexts{"text", "file", "folder", "file or folder"};
-  if (std::find(kTexts.begin(), kTexts.end(), row.type) == kTexts.end())
-    return parse_toml_value(written, "option " + row.key);
+  if (!row.is_text()) return parse_toml_value(written, "option " + row.key);
   TomlNode node;
   node.kind = TomlNode::Kind::text;
   node.text = written;

@@ -19,7 +19,7 @@ void describe(OptionVisitor& v, DetailDrawingOptions& options) {
       options.look.kind == DrawnKind::mesh && options.look.instance.shape == InstanceShape::given;
   if (given) {
     v.value("file", options.file,
-            {.doc = "mesh of a detail (z its normal): .obj, .ply, .off, .vtp",
+            {.doc = "mesh of a detail (z its normal): .obj, .ply, .off, .stl, .vtp, .pvtp",
              .required = true,
              .named = Named::file});
   }

@@ -11,6 +11,7 @@
 #include "core/geometry/triangle_tree.h"
 #include "testbed/formats/mesh/mesh_file.h"
 #include "testbed/formats/text/csv_table.h"
+#include "testbed/formats/text/letters.h"
 
 namespace geoprior::details {
 namespace {
@@ -63,7 +64,7 @@ using PlaceKey = std::array<double, 3>;
 
 std::vector<Detail> details_of_file(const fs::path& file, const TriMesh& surface,
                                     double max_distance, std::vector<std::string>& warnings) {
-  const bool table = file.extension() == ".csv" || file.extension() == ".CSV";
+  const bool table = lower(file.extension().string()) == ".csv";
   const std::vector<Position> positions = table ? read_csv(file) : read_vertices(file, warnings);
   const TriangleTree tree(surface);
   std::vector<Detail> details;

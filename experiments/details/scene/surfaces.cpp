@@ -107,7 +107,7 @@ void describe(OptionVisitor& v, DetailSurfaceOptions& options) {
   }
   if (options.kind == Kind::file) {
     v.value("file", options.file,
-            {.doc = "mesh of the surface: .obj, .ply, .off, .vtp",
+            {.doc = "mesh of the surface: .obj, .ply, .off, .stl, .vtp, .pvtp",
              .required = true,
              .named = Named::file});
     v.value("scale", options.scale, {.doc = "metres for one unit of the file", .min = 1e-9});

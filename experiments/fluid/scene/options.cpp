@@ -39,7 +39,7 @@ void describe(OptionVisitor& v, LiquidShapeOptions& options) {
   }
   if (options.kind == Kind::mesh) {
     v.value("file", options.file,
-            {.doc = "file of the closed mesh: .obj, .ply, .off, .vtp",
+            {.doc = "file of the closed mesh: .obj, .ply, .off, .stl, .vtp, .pvtp",
              .required = true,
              .named = Named::file});
     v.value("scale", options.scale,
@@ -107,7 +107,7 @@ void describe(OptionVisitor& v, TargetOptions& options) {
       break;
     case TargetKind::mesh:
       v.value("file", options.file,
-              {.doc = "file of the still mesh: .obj, .ply, .off, .vtp",
+              {.doc = "file of the still mesh: .obj, .ply, .off, .stl, .vtp, .pvtp",
                .required = true,
                .named = Named::file});
       v.value("scale", options.scale,

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "experiments/skinning/bvh/root.h"
+#include "testbed/formats/text/letters.h"
 #include "testbed/formats/text/text_file.h"
 
 namespace geoprior::skinning {
@@ -22,8 +23,6 @@ std::string quoted(std::string_view word) {
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f'; }
 bool is_brace(char c) { return c == '{' || c == '}'; }
-
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 /// Whether a word is this keyword, in any case.
 bool is_word(std::string_view word, std::string_view keyword) {

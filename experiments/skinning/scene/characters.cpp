@@ -15,6 +15,7 @@
 #include "core/mesh.h"
 #include "experiments/skinning/scene/skeleton_size.h"
 #include "metrics/contact/joint_region.h"
+#include "testbed/formats/text/letters.h"
 #include "testbed/home.h"
 
 namespace geoprior::skinning {
@@ -203,9 +204,7 @@ void scale_to_metres(Skeleton& skeleton, double unit_m) {
 }
 
 GltfCharacter read_character_file(const fs::path& file, const std::optional<std::string>& mesh) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower(file.extension().string());
   if (extension == ".glb" || extension == ".gltf") return read_gltf(file, {mesh});
   throw Error("is no file that a character is read from", file.string(),
               "glTF 2.0 (.glb, .gltf), skinned or, without skin, with skeleton = "

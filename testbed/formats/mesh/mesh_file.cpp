@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 
 #include "core/error.h"
@@ -13,25 +12,21 @@
 #include "testbed/formats/mesh/ply_reader.h"
 #include "testbed/formats/mesh/stl_reader.h"
 #include "testbed/formats/mesh/vtp_reader.h"
+#include "testbed/formats/text/letters.h"
+#include "testbed/joined.h"
 
 namespace geoprior {
 namespace {
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-constexpr std::array<std::string_view, 6> kMeshExtensions{".obj", ".ply",  ".off",
-                                                          ".vtp", ".pvtp", ".stl"};
+constexpr std::array<std::string_view, 6> kMeshExtensions{".obj", ".ply", ".off",
+                                                          ".stl", ".vtp", ".pvtp"};
 
 }  // namespace
 
-std::string mesh_file_extensions() { return ".obj, .ply, .off, .stl, .vtp, .pvtp"; }
+std::string mesh_file_extensions() { return joined(kMeshExtensions); }
 
-bool is_mesh_file_extension(std::string extension) {
-  return std::find(kMeshExtensions.begin(), kMeshExtensions.end(), lower(std::move(extension))) !=
+bool is_mesh_file_extension(std::string_view extension) {
+  return std::find(kMeshExtensions.begin(), kMeshExtensions.end(), lower(extension)) !=
          kMeshExtensions.end();
 }
 
@@ -60,8 +55,8 @@ MeshFile read_mesh_file(const std::filesystem::path& file) {
 
 MeshFile read_mesh_file(const std::filesystem::path& file, std::vector<std::string>& warnings) {
   MeshFile read = read_mesh_file(file);
-  for (const std::string& note : read.notes)
-    warnings.push_back(file.filename().string() + ": " + note);
+  name_notes(read, file);
+  warnings.insert(warnings.end(), read.notes.begin(), read.notes.end());
   return read;
 }
 

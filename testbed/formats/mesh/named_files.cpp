@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "core/error.h"
-#include "testbed/formats/text/nesting.h"
+#include "testbed/formats/text/parsed_text.h"
 #include "testbed/formats/text/text_file.h"
 
 namespace geoprior {
@@ -26,13 +26,8 @@ fs::path named_in(const fs::path& file, const std::string& name) {
 
 std::vector<fs::path> parse_pvtp(std::string_view text, const fs::path& file) {
   const std::string name = file.string();
-  require_shallow_xml(text, name);
   pugi::xml_document document;
-  const auto result = document.load_buffer(text.data(), text.size());
-  if (!result) {
-    throw Error(std::string("is no valid XML: ") + result.description(),
-                name + ", byte " + std::to_string(result.offset));
-  }
+  parse_xml(text, name, document);
   const pugi::xml_node pieces = document.child("VTKFile").child("PPolyData");
   if (!pieces) throw Error("holds no PPolyData", name, "VTKFile type=\"PPolyData\"");
   std::vector<fs::path> files;

@@ -47,11 +47,11 @@ class OffWords {
   }
   [[nodiscard]] double number(std::size_t at) const {
     if (const auto x = finite_number(words_[at])) return *x;
-    throw Error("'" + std::string(words_[at].substr(0, 40)) + "' is no finite number", place(at));
+    throw no_finite_number(words_[at], place(at));
   }
   [[nodiscard]] long long integer(std::size_t at) const {
     if (const auto x = whole_number(words_[at])) return *x;
-    throw Error("'" + std::string(words_[at].substr(0, 40)) + "' is no whole number", place(at));
+    throw no_whole_number(words_[at], place(at));
   }
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,5 +20,10 @@ struct MeshFile {
   std::optional<double> time = {};      ///< TimeValue of a .vtp (s)
   std::vector<std::string> notes = {};  ///< what of the file is left out or was changed
 };
+
+/// Puts the name of the file before each note.
+inline void name_notes(MeshFile& mesh, const std::filesystem::path& file) {
+  for (std::string& note : mesh.notes) note = file.filename().string() + ": " + note;
+}
 
 }  // namespace geoprior

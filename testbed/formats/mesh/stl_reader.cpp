@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/geometry/topology.h"
+#include "testbed/formats/text/letters.h"
 #include "testbed/formats/text/lines.h"
 #include "testbed/formats/text/text_file.h"
 
@@ -29,14 +30,6 @@ std::size_t binary_size(std::string_view bytes) {
   return kHeadBytes + kTriangleBytes * std::size_t{declared_triangles(bytes)};
 }
 
-std::string in_small_letters(std::string_view word) {
-  std::string small(word.substr(0, 40));
-  for (char& c : small) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return small;
-}
-
 /// Binary files may begin with "solid" too: the size tells, then whether there is text.
 bool is_binary_stl(std::string_view bytes) {
   if (bytes.size() >= kHeadBytes && binary_size(bytes) == bytes.size()) return true;
@@ -45,7 +38,7 @@ bool is_binary_stl(std::string_view bytes) {
   }
   std::vector<std::string_view> words;
   split_words(bytes.substr(0, std::min(bytes.find_first_of("\r\n"), bytes.size())), words);
-  const bool says_solid = !words.empty() && in_small_letters(words[0]) == "solid";
+  const bool says_solid = !words.empty() && lower(words[0]) == "solid";
   return !says_solid || bytes.substr(0, 1000).find('\0') != std::string_view::npos;
 }
 
@@ -96,7 +89,7 @@ std::vector<Eigen::Vector3d> text_corners(std::string_view text, const std::stri
   };
   TextLines lines(text, name);
   while (lines.next_with_words()) {
-    const std::string word = in_small_letters(lines.words()[0]);
+    const std::string word = lower(lines.words()[0].substr(0, 40));
     if (word == "vertex") {
       lines.require_words(4, "vertex x y z");
       corners.emplace_back(lines.number_at(1), lines.number_at(2), lines.number_at(3));

@@ -91,7 +91,7 @@ MeshFile read_pvtp(const fs::path& file) {
     if (!fs::is_regular_file(piece, unknown))
       throw Error("names a piece that is not there", file.string(), piece.string());
     parts.push_back(read_vtp(piece));
-    for (std::string& note : parts.back().notes) note = piece.filename().string() + ": " + note;
+    name_notes(parts.back(), piece);
   }
   return joined(std::move(parts));
 }

@@ -14,7 +14,7 @@ MeshFile read_frame_file(const FrameFile& frame) {
   std::vector<MeshFile> parts;
   const auto add = [&](const std::filesystem::path& file) {
     parts.push_back(read_mesh_file(file));
-    for (std::string& note : parts.back().notes) note = file.filename().string() + ": " + note;
+    name_notes(parts.back(), file);
   };
   add(frame.file);
   for (const std::filesystem::path& file : frame.further) add(file);

@@ -7,20 +7,15 @@
 #include "core/error.h"
 #include "testbed/formats/mesh/named_files.h"
 #include "testbed/formats/text/lines.h"
-#include "testbed/formats/text/nesting.h"
+#include "testbed/formats/text/parsed_text.h"
 #include "testbed/formats/text/text_file.h"
 
 namespace geoprior {
 
 std::vector<PvdDataSet> parse_pvd(std::string_view text, const std::filesystem::path& file) {
   const std::string name = file.string();
-  require_shallow_xml(text, name);
   pugi::xml_document document;
-  const auto result = document.load_buffer(text.data(), text.size());
-  if (!result) {
-    throw Error(std::string("is no valid XML: ") + result.description(),
-                name + ", byte " + std::to_string(result.offset));
-  }
+  parse_xml(text, name, document);
   const pugi::xml_node root = document.child("VTKFile");
   const pugi::xml_node collection = root.child("Collection");
   if (!collection) throw Error("is no ParaView collection", name, "VTKFile type=\"Collection\"");
@@ -44,15 +39,7 @@ std::vector<PvdDataSet> read_pvd(const std::filesystem::path& file) {
 std::vector<PvdDataSet> parse_series(std::string_view text, const std::filesystem::path& file) {
   using Json = nlohmann::json;
   const std::string name = file.string();
-  require_shallow_json(text, name);
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::parse_error& e) {
-    throw Error("is no valid JSON", name + ", byte " + std::to_string(e.byte));
-  } catch (const Json::exception&) {
-    throw Error("holds a number that is too large", name);
-  }
+  const Json json = parse_json(text, name);
   const char* expected = R"({"files": [{"name": "a_0.vtp", "time": 0}, …]})";
   if (!json.is_object() || !json.contains("files") || !json["files"].is_array()) {
     throw Error("is no file series: has no list \"files\"", name, expected);

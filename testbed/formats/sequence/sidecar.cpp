@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "testbed/formats/text/nesting.h"
+#include "testbed/formats/text/parsed_text.h"
 #include "testbed/formats/text/text_file.h"
 
 namespace geoprior {
@@ -32,15 +32,7 @@ bool is_y(const Json& value, const std::string& name) {
 }  // namespace
 
 SequenceSidecar parse_sidecar(std::string_view text, const std::string& name) {
-  require_shallow_json(text, name);
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::parse_error& e) {
-    throw Error("is no valid JSON", name + ", byte " + std::to_string(e.byte));
-  } catch (const Json::exception&) {
-    throw Error("holds a number that is too large", name);
-  }
+  const Json json = parse_json(text, name);
   if (!json.is_object()) throw Error("is no JSON object", name);
   SequenceSidecar sidecar;
   for (const auto& [key, value] : json.items()) {

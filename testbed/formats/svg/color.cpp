@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "testbed/formats/svg/text.h"
+#include "testbed/formats/text/letters.h"
 
 namespace geoprior {
 namespace {
@@ -218,13 +219,12 @@ std::optional<SvgColour> parse_svg_colour(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n\f");
   if (first == std::string_view::npos) return std::nullopt;
   constexpr std::size_t kLongest = 100;
-  std::string lower(text.substr(first, kLongest));
-  lower.erase(lower.find_last_not_of(" \t\r\n\f") + 1);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  if (lower.starts_with('#')) return of_digits(std::string_view(lower).substr(1));
-  if (lower.starts_with("rgba")) return of_components(std::string_view(lower).substr(4));
-  if (lower.starts_with("rgb")) return of_components(std::string_view(lower).substr(3));
-  return of_name(lower);
+  std::string small = lower(text.substr(first, kLongest));
+  small.erase(small.find_last_not_of(" \t\r\n\f") + 1);
+  if (small.starts_with('#')) return of_digits(std::string_view(small).substr(1));
+  if (small.starts_with("rgba")) return of_components(std::string_view(small).substr(4));
+  if (small.starts_with("rgb")) return of_components(std::string_view(small).substr(3));
+  return of_name(small);
 }
 
 std::string to_text(const SvgColour& colour) {

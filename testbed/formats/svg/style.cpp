@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "testbed/formats/text/letters.h"
 
 namespace geoprior {
 namespace {
@@ -13,12 +14,6 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kCssSpace);
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(kCssSpace) - first + 1);
-}
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
 }
 
 /// The first of `marks` outside of quotes and round brackets, from `at` on; the size at the end.
@@ -88,11 +83,10 @@ std::vector<SvgDeclaration> parse_svg_declarations(std::string_view text) {
     const std::size_t colon = part.find(':');
     if (colon == std::string_view::npos) continue;
     SvgDeclaration declaration;
-    declaration.name = lower_case(trimmed(part.substr(0, colon)));
+    declaration.name = lower(trimmed(part.substr(0, colon)));
     std::string_view value = trimmed(part.substr(colon + 1));
     const std::size_t mark = value.rfind('!');
-    if (mark != std::string_view::npos &&
-        lower_case(trimmed(value.substr(mark + 1))) == "important") {
+    if (mark != std::string_view::npos && lower(trimmed(value.substr(mark + 1))) == "important") {
       declaration.important = true;
       value = trimmed(value.substr(0, mark));
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "testbed/formats/text/letters.h"
 #include "testbed/formats/text/lines.h"
 #include "testbed/formats/text/text_file.h"
 
@@ -116,13 +117,6 @@ std::string known(const std::vector<std::string>& columns, std::size_t required)
   return text;
 }
 
-std::string in_lower_case(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
-}
-
 }  // namespace
 
 CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::string_view>& required,
@@ -152,7 +146,7 @@ void CsvTable::read_header(const std::vector<std::string>& header, const std::st
   at_.resize(columns_.size());
   for (std::size_t i = 0; i < header.size(); ++i) {
     const auto named = std::find_if(columns_.begin(), columns_.end(), [&](const auto& column) {
-      return in_lower_case(column) == in_lower_case(header[i]);
+      return lower(column) == lower(header[i]);
     });
     if (named == columns_.end()) continue;
     std::optional<std::size_t>& at = at_[named - columns_.begin()];

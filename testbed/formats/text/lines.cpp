@@ -88,14 +88,22 @@ bool TextLines::next_with_words_continued() {
   return !words_.empty();
 }
 
+Error no_finite_number(std::string_view word, const std::string& place) {
+  return Error(quoted(word) + " is no finite number", place);
+}
+
+Error no_whole_number(std::string_view word, const std::string& place) {
+  return Error(quoted(word) + " is no whole number", place);
+}
+
 double TextLines::number_at(std::size_t word) const {
   if (const auto x = finite_number(words_[word])) return *x;
-  throw Error(quoted(words_[word]) + " is no finite number", place());
+  throw no_finite_number(words_[word], place());
 }
 
 long long TextLines::integer(std::string_view word) const {
   if (const auto x = whole_number(word)) return *x;
-  throw Error(quoted(word) + " is no whole number", place());
+  throw no_whole_number(word, place());
 }
 
 void TextLines::require_words(std::size_t count, const std::string& what) const {

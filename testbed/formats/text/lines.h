@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/error.h"
+
 namespace geoprior {
 
 /// The lines of a text and the words on them, with the place for messages.
@@ -53,5 +55,9 @@ void append_words(std::string_view line, std::vector<std::string_view>& words);
 /// A word as a finite number, or nothing.
 std::optional<double> finite_number(std::string_view word);
 std::optional<long long> whole_number(std::string_view word);
+
+/// What to throw of a word that is none of them.
+Error no_finite_number(std::string_view word, const std::string& place);
+Error no_whole_number(std::string_view word, const std::string& place);
 
 }  // namespace geoprior

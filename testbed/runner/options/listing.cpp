@@ -47,9 +47,10 @@ Shown shown(const std::array<T, 3>& x) {
   return {"3 " + shown(T{}).type + "s", array_text(x)};
 }
 
-/// The type of a text, or of several, by what it names.
+/// Types of a text, by what it names.
+constexpr std::array<std::string_view, 4> kTexts{"text", "file", "folder", "file or folder"};
+
 std::string type_of(std::string type, Named named) {
-  constexpr std::array<std::string_view, 4> kTexts{"text", "file", "folder", "file or folder"};
   const bool is_text = type == "text" || type == "texts";
   if (!is_text || named == Named::nothing) return type;
   return std::string(kTexts[static_cast<std::size_t>(named)]) + (type == "texts" ? "s" : "");
@@ -225,6 +226,10 @@ void OptionLister::list(std::string_view key, std::size_t count, const OptionInf
 }
 
 }  // namespace
+
+bool OptionRow::is_text() const {
+  return std::find(kTexts.begin(), kTexts.end(), type) != kTexts.end();
+}
 
 std::string OptionRow::meaning() const { return when.empty() ? doc : "[" + when + "] " + doc; }
 

@@ -19,6 +19,8 @@ struct OptionRow {
   std::string when = {};       ///< "kind = disc | svg": there under these tags only; "" for always
   bool may_be_absent = false;  ///< a table that `key = false` switches off
 
+  /// A text, whatever it names.
+  [[nodiscard]] bool is_text() const;
   /// `doc`, preceded by `when` in brackets.
   [[nodiscard]] std::string meaning() const;
 };

@@ -11,7 +11,6 @@ namespace {
 TEST(OfValues, AreAbsentOfNothing) {
   EXPECT_FALSE(percentile_of({}, 50));
   EXPECT_FALSE(largest_of(Eigen::VectorXd(0)));
-  EXPECT_FALSE(mean_of(Eigen::VectorXd(0)));
 }
 
 TEST(OfValues, AreThoseOfSortedValues) {
@@ -21,7 +20,6 @@ TEST(OfValues, AreThoseOfSortedValues) {
   EXPECT_EQ(percentile_of({4, 3, 1, 2}, 0), 1);
   EXPECT_EQ(percentile_of({4, 3, 1, 2}, 75), 4);
   EXPECT_EQ(largest_of(Eigen::Vector3d(-3, -1, -2)), -1);
-  EXPECT_EQ(mean_of(Eigen::Vector3d(1, 2, 6)), 3);
 }
 
 // What looked at the first or the largest of none.

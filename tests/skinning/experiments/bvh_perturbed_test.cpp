@@ -12,31 +12,11 @@
 #include "core/error.h"
 #include "experiments/skinning/bvh/bvh.h"
 #include "experiments/skinning/bvh/root.h"
+#include "tests/support/dice.h"
 #include "tests/support/perturbed.h"
 
 namespace geoprior::skinning {
 namespace {
-
-class CaptureDice {
- public:
-  explicit CaptureDice(int seed) : random_(static_cast<std::uint32_t>(seed) * 104729U + 5U) {}
-  double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(random_() >> 8U) / 16777216.0;
-  }
-  int below(int n) { return static_cast<int>(random_() % static_cast<std::uint32_t>(n)); }
-  bool coin() { return below(2) == 0; }
-  std::string one_of(const std::vector<std::string>& texts) {
-    return texts[below(static_cast<int>(texts.size()))];
-  }
-  template <class T>
-  void shuffle(std::vector<T>& list) {
-    for (std::size_t i = list.size(); i > 1; --i)
-      std::swap(list[i - 1], list[below(static_cast<int>(i))]);
-  }
-
- private:
-  std::mt19937 random_;
-};
 
 /// A joint of the generator. Numbers have two decimals, so that any way to write them is exact.
 struct CapturedJoint {
@@ -52,7 +32,7 @@ struct CapturedJoint {
 
 class PerturbedCapture {
  public:
-  explicit PerturbedCapture(int seed) : dice_(seed) {
+  explicit PerturbedCapture(int seed) : dice_(seed, "motion capture") {
     holds_ = dice_.coin();
     joints_hold_ = dice_.coin();
     frames_ = 1 + dice_.below(6);
@@ -272,7 +252,7 @@ class PerturbedCapture {
     line(row);
   }
 
-  CaptureDice dice_;
+  test::Dice dice_;
   bool holds_ = false;
   bool joints_hold_ = false;
   bool has_second_root_ = false;

@@ -140,7 +140,7 @@ TEST_F(ForeignHdf5, FlippedBitsOfARunFileNeverEndTheProgram) {
   const std::string whole = read_whole_file(folder() / "run.h5");
   std::mt19937_64 random(1);
   int refused = 0;
-  for (int i = 0; i < 75; ++i) {
+  for (int i = 0; i < 150; ++i) {
     std::string bytes = whole;
     for (int flips = 1 + i % 3; flips > 0; --flips) {
       char& byte = bytes[random() % bytes.size()];
