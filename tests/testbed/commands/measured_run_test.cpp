@@ -201,10 +201,10 @@ TEST_F(Measured, IsWrittenWholeOrNotAtAll) {
 }
 
 TEST_F(Measured, StoppedByCtrlCWhileASceneIsLoadedLeavesNothing) {
-  (void)run(load(pendulum("load_delay_ms = 300")), out());
+  (void)run(load(pendulum("load_delay_ms = 2000")), out());
   const fs::path log = folder() / "log";
   ToyProgram program({"measure", out().string(), "--out", (folder() / "measured").string()}, log);
-  while (text_of(log).find("measuring") == std::string::npos) {
+  while (text_of(log).find("loading") == std::string::npos) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   program.signal(SIGINT);

@@ -219,8 +219,7 @@ TEST_F(Stop, WhileLoadingActsAtOnceAndTheRunGoesOn) {
     std::vector<std::string> command = run_of(file);
     if (resumed) command.emplace_back("--resume");
     ToyProgram program(command, log());
-    await(out() / "journal.jsonl", "\"kind\":\"run\"");
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    await(log(), "loading");
     EXPECT_EQ(stop(program, resumed ? SIGINT : SIGTERM), 2);
     EXPECT_THAT(text_of(log()),
                 AllOf(HasSubstr("stopped; go on with:  geoprior run"), HasSubstr("--resume\n")));
@@ -232,7 +231,7 @@ TEST_F(Stop, TellsTheCommandThatGoesOnAsAShellReadsIt) {
   const fs::path file = folder() / "d\xe9j\\a 'vu.toml";
   fs::copy_file(pendulum("load_delay_ms = 20000"), file);
   ToyProgram program(run_of(file), log());
-  await(out() / "journal.jsonl", "\"kind\":\"run\"");
+  await(log(), "loading");
   EXPECT_EQ(stop(program), 2);
   EXPECT_THAT(text_of(log()), HasSubstr(R"(/d\xe9j\\a \'vu.toml' --no-pictures --out)"));
 }
@@ -243,8 +242,7 @@ TEST_F(Stop, WhileLoadingAnInputTellsOfTheRunThatNeedsIt) {
                    "[[variant]]\nname = \"v\"\nmethod = \"closed-form\"\n");
   const auto file = pendulum("input = \"run:toy-pendulum/base/v\"");
   ToyProgram program(run_of(file), log());
-  await(log(), "toy-pendulum/base is needed first");
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  await(log(), "loading");
   EXPECT_EQ(stop(program), 2);
   EXPECT_THAT(text_of(log()), HasSubstr("--out " + out().string() + " --resume\n"));
 }

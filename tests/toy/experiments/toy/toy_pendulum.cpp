@@ -11,6 +11,7 @@
 #include "experiments/toy/toy_topic.h"
 #include "testbed/formats/wav_file.h"
 #include "testbed/metric_rows.h"
+#include "testbed/streams.h"
 
 namespace geoprior::toy {
 namespace {
@@ -289,6 +290,7 @@ Topic pendulum_topic() {
   topic.load = [](const OptionSet& set, const std::filesystem::path&,
                   std::uint64_t) -> std::shared_ptr<Scene> {
     const auto& options = dynamic_cast<const TypedOptions<PendulumSceneOptions>&>(set).options;
+    if (options.load_delay_ms > 0) say("loading");  // the time to stop it in has begun
     std::this_thread::sleep_for(std::chrono::milliseconds(options.load_delay_ms));
     if (!options.input.empty() && !std::filesystem::is_directory(options.input)) {
       throw Error("is no folder of frames: " + options.input, "scene.input");
