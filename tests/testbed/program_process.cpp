@@ -32,19 +32,26 @@ std::vector<std::string> command_line(const std::string& program,
   return words;
 }
 
-void redirect_output(const std::filesystem::path& file) {
-  const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0666);
+/// An empty file, before the child is there: what another one wrote is not taken for its words.
+int open_output(const std::filesystem::path& file) {
+  const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+  if (out < 0) throw Error("cannot open " + file.string());
+  return out;
+}
+
+void redirect_output(int out) {
   ::dup2(out, STDOUT_FILENO);
   ::dup2(out, STDERR_FILENO);
-  ::close(out);
 }
 
 }  // namespace
 
 ProgramProcess::ProgramProcess(const std::function<int()>& body,
                                const std::filesystem::path& output) {
+  const int out = open_output(output);
   std::fflush(nullptr);  // or the child would write it again
   pid_ = ::fork();
+  if (pid_ != 0) ::close(out);
   if (pid_ < 0) throw Error("fork failed");
   if (pid_ > 0) {
     ::setpgid(pid_, pid_);
@@ -52,7 +59,7 @@ ProgramProcess::ProgramProcess(const std::function<int()>& body,
   }
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  redirect_output(output);
+  redirect_output(out);
   const int code = body();
   std::cout.flush();
   std::fflush(nullptr);

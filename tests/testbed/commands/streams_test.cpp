@@ -278,14 +278,18 @@ TEST_F(Stop, WhileThePicturesOfARunAreDrawnTheRunIsComplete) {
 TEST_F(Stop, ForTheSecondTimeEndsAtOnceWithTheChild) {
   ToyProgram whole(run_of(circle()), log());
   ASSERT_EQ(whole.wait(), 0);
-  use_slow_python("trap '' TERM");
+  const fs::path told = folder() / "told";
+  use_slow_python("trap 'echo > \"" + told.string() + "\"' TERM");  // and goes on
   ToyProgram program({"report", out().string()}, log());
   await(pid_file(), "\n");
   program.signal(SIGTERM);
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  await(told, "\n");
   EXPECT_EQ(stop(program), -SIGTERM);
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  EXPECT_FALSE(child_runs());
+  const auto deadline = std::chrono::steady_clock::now() + kAtOnce;
+  while (child_runs()) {
+    ASSERT_LT(std::chrono::steady_clock::now(), deadline);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
 }
 
 class SharedInput : public Streams {
