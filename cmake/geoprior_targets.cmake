@@ -65,12 +65,17 @@ function(geoprior_precompile target kind)
 endfunction()
 
 # CGAL's interval arithmetic needs -frounding-math: only sources that include CGAL get it, and no precompiled header.
+# GCC's vectorizer of straight-line code fuses sums of complex products in spite of -ffp-contract=off (vfmaddsub), or not, as
+# it inlines: sources that multiply complex numbers go without it, alone, or their bits would depend on what is compiled with
+# them. A precompiled header would bring its own flags.
 function(geoprior_mark_sources)
   foreach(source IN LISTS ARGN)
     set(includes "")
+    set(complex "")
     if(NOT source MATCHES "/generated/")
       file(STRINGS ${source} includes REGEX "^#include <CGAL/")
       file(STRINGS ${source} toml REGEX "^#include <toml")
+      file(STRINGS ${source} complex REGEX "std::complex|Eigen::FFT|(Vector|Matrix)Xcd")
       if(toml)  # wants to be included once a translation unit, before all else
         set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
       endif()
@@ -80,6 +85,10 @@ function(geoprior_mark_sources)
       list(APPEND options -frounding-math)
       set_source_files_properties(${source} PROPERTIES
         COMPILE_DEFINITIONS "CGAL_USE_GMPXX=1;BOOST_ALL_NO_LIB" SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+    if(complex AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      list(APPEND options -fno-tree-slp-vectorize)
+      set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
     if(source IN_LIST GEOPRIOR_FALSE_OVERFLOWS)
       list(APPEND options -Wno-stringop-overflow -Wno-stringop-overread -Wno-array-bounds)

@@ -40,7 +40,7 @@ std::optional<std::vector<char>> moved_by_features(const Part& surface) {
   if (feature == nullptr) return {};
   std::vector<char> moved(surface.points.rows());
   for (std::size_t v = 0; v < moved.size(); ++v) {
-    moved[v] = feature->values(static_cast<Eigen::Index>(v), 0) != 0 ? 1 : 0;
+    moved[v] = feature->values(v, 0) != 0 ? 1 : 0;
   }
   return moved;
 }

@@ -260,7 +260,7 @@ Part suggestions_part(const std::vector<SuggestedSeam>& suggestions) {
   part.kind = Part::Kind::lines;
   Eigen::Index points = 0, lines = 0;
   for (const SuggestedSeam& seam : suggestions) {
-    lines += static_cast<Eigen::Index>(seam.lines.points.size());
+    lines += seam.lines.points.size();
     for (const Eigen::MatrixX3d& line : seam.lines.points) points += line.rows();
   }
   part.points.resize(points, 3);

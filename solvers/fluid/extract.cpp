@@ -168,7 +168,7 @@ class ExtractFrames final : public FrameModel {
     result.rows.resize(rows.size(), columns.size());
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (std::size_t c = 0; c < columns.size(); ++c) {
-        result.rows(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = rows[r][c];
+        result.rows(r, c) = rows[r][c];
       }
     }
     return result;

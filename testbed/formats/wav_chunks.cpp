@@ -68,11 +68,10 @@ class WavChunks {
   /// Four letters that a chunk may be called, and its size.
   [[nodiscard]] bool may_be_chunk(std::size_t at) const {
     if (at > bytes_.size() || bytes_.size() - at < kChunkHead) return false;
-    return std::all_of(bytes_.begin() + static_cast<std::ptrdiff_t>(at),
-                       bytes_.begin() + static_cast<std::ptrdiff_t>(at + 4), [](std::byte b) {
-                         const int c = std::to_integer<int>(b);
-                         return c >= 0x20 && c < 0x7f;
-                       });
+    return std::all_of(bytes_.begin() + at, bytes_.begin() + at + 4, [](std::byte b) {
+      const int c = std::to_integer<int>(b);
+      return c >= 0x20 && c < 0x7f;
+    });
   }
 
   /// Behind a chunk's content: chunks are padded to even sizes, by most programs.
@@ -140,8 +139,8 @@ class WavChunks {
   void add_chunk(std::vector<std::byte>& out, std::string_view word, const WavChunk& chunk) const {
     add_word(out, word);
     add_number(out, chunk.size);
-    const auto from = bytes_.begin() + static_cast<std::ptrdiff_t>(chunk.at);
-    out.insert(out.end(), from, from + static_cast<std::ptrdiff_t>(chunk.size));
+    const auto from = bytes_.begin() + chunk.at;
+    out.insert(out.end(), from, from + chunk.size);
     if (chunk.size % 2 == 1) out.push_back(std::byte{0});
   }
 

@@ -41,7 +41,7 @@ struct SoundBytes {
     const auto size = static_cast<sf_count_t>(bytes.in.size());
     const sf_count_t there =
         std::clamp<sf_count_t>(size - bytes.at, 0, std::max<sf_count_t>(count, 0));
-    if (there > 0) std::memcpy(to, bytes.in.data() + bytes.at, static_cast<std::size_t>(there));
+    if (there > 0) std::memcpy(to, bytes.in.data() + bytes.at, there);
     bytes.at += there;
     return there;
   }
@@ -49,7 +49,7 @@ struct SoundBytes {
     SoundBytes& bytes = of(user);
     const std::size_t end = bytes.at + count;
     if (bytes.out.size() < end) bytes.out.resize(end);
-    std::memcpy(bytes.out.data() + bytes.at, from, static_cast<std::size_t>(count));
+    std::memcpy(bytes.out.data() + bytes.at, from, count);
     bytes.at += count;
     return count;
   }

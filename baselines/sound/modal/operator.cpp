@@ -306,7 +306,7 @@ Eigen::VectorXd ModalOperator::curvature_load(const Eigen::MatrixX3d& change) co
     const auto members = elements.nodes(e);
     for (std::size_t i = 0; i < members.size(); ++i) {
       const Node& node = nodes[members[i]];
-      const auto at = 3 * static_cast<Eigen::Index>(i);
+      const auto at = 3 * i;
       load.segment<3>(3 * node.vertex) +=
           node.turn.transpose() * (without.gradient.segment<3>(at) - with.gradient.segment<3>(at));
     }

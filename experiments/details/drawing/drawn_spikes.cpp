@@ -127,7 +127,7 @@ class SpikeDrawer {
       ++triangle;
     }
     for (std::size_t v = 0; v < point_.size(); ++v) {
-      const Eigen::Index row = vertex + static_cast<Eigen::Index>(v);
+      const Eigen::Index row = vertex + v;
       drawn.mesh.V.row(row) = point_[v].transpose();
       drawn.normals.row(row) = normal_[v].normalized().transpose();
       drawn.detail[row] = detail;

@@ -92,7 +92,7 @@ class LineJoiner {
       line.back() = (line.back() + more.front()) / 2;
       first = 1;
     }
-    line.insert(line.end(), more.begin() + static_cast<std::ptrdiff_t>(first), more.end());
+    line.insert(line.end(), more.begin() + first, more.end());
   }
 
   static constexpr std::size_t kMostPairs = 50;

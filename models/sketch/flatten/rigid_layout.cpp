@@ -61,7 +61,7 @@ std::vector<KeptLength> lengths_on_the_way(std::span<const KeptLength> kept,
 class LengthRows {
  public:
   LengthRows(std::span<const KeptLength> kept, const Eigen::VectorXcd& z, const SparseLdlt& factor)
-      : kept_(kept), answer_(z.size(), static_cast<Eigen::Index>(kept.size())) {
+      : kept_(kept), answer_(z.size(), kept.size()) {
     Eigen::MatrixXcd rows = Eigen::MatrixXcd::Zero(z.size(), answer_.cols());
     for (Eigen::Index c = 0; c < rows.cols(); ++c) {
       const std::vector<int>& chain = kept[c].vertices;

@@ -182,8 +182,7 @@ Refinement::Refinement(const View& view, const DepthProblem& problem, const Dept
       refine_(refine) {
   for (Eigen::Index v = 0; v < start.nodes.rows(); ++v)
     for (int k = 0; k < 3; ++k) nodes_.push_back(start.nodes(v, k));
-  for (std::size_t k = 0; k < 3; ++k)
-    normal_[k] = problem.plane.normal(static_cast<Eigen::Index>(k));
+  for (std::size_t k = 0; k < 3; ++k) normal_[k] = problem.plane.normal(k);
   tail_ = vector_stroke("sym-a").points.front();
   add_accuracy();
   add_variation();

@@ -88,7 +88,7 @@ void drop_empty_beginning(std::vector<FrameFile>& files, const std::string& name
                      " without a triangle: no surface yet; the sequence begins with " +
                      files[empty].file.filename().string() + ", at " +
                      std::to_string(files[empty].time) + " s");
-  files.erase(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(empty));
+  files.erase(files.begin(), files.begin() + empty);
 }
 
 /// Every file that is read for a frame.

@@ -301,7 +301,7 @@ std::vector<std::vector<double>> timing_rows(const H5Array& array) {
   std::vector<std::vector<double>> rows(array.extents[0]);
   auto from = array.values.begin();
   for (auto& row : rows) {
-    const auto to = from + static_cast<std::ptrdiff_t>(array.extents[1]);
+    const auto to = from + array.extents[1];
     row.assign(from, to);
     from = to;
   }

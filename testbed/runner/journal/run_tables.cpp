@@ -45,7 +45,7 @@ StackedTable stack(const std::vector<TableOfFrame>& tables) {
       std::vector<double> row(out.columns.size(), std::numeric_limits<double>::quiet_NaN());
       row[0] = static_cast<double>(one.frame);
       for (std::size_t c = 0; c < one.table.columns.size(); ++c) {
-        row[index_of(out.columns, one.table.columns[c])] = from(static_cast<Eigen::Index>(c));
+        row[index_of(out.columns, one.table.columns[c])] = from(c);
       }
       out.values.insert(out.values.end(), row.begin(), row.end());
     }

@@ -70,7 +70,7 @@ std::string sha256_of_file(const std::filesystem::path& file) {
   std::vector<char> block(1U << 16U);
   while (stream) {
     stream.read(block.data(), static_cast<std::streamsize>(block.size()));
-    hash.update(std::string_view(block.data(), static_cast<std::size_t>(stream.gcount())));
+    hash.update(std::string_view(block.data(), stream.gcount()));
   }
   if (stream.bad()) throw Error("cannot be read to its end", file.string());
   return hash.finish();

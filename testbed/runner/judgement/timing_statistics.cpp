@@ -19,7 +19,7 @@ double quantile_in_place(std::vector<double>& values, double p) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const double position = std::clamp(p, 0.0, 1.0) * static_cast<double>(values.size() - 1);
   const auto lower = static_cast<std::size_t>(position);
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(lower);
+  const auto at = values.begin() + lower;
   std::nth_element(values.begin(), at, values.end());
   const double low = *at;
   const double weight = position - static_cast<double>(lower);

@@ -42,7 +42,7 @@ class Captured {
     std::array<char, 1 << 14> block;
     off_t at = 0;
     for (ssize_t n; (n = ::pread(descriptor_, block.data(), block.size(), at)) > 0; at += n) {
-      text.append(block.data(), static_cast<std::size_t>(n));
+      text.append(block.data(), n);
     }
     return text;
   }

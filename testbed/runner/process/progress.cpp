@@ -75,8 +75,8 @@ void Progress::draw(bool now) {
   const double share = std::min(1.0, (static_cast<double>(done_) + fraction_) / steps);
   const int filled = static_cast<int>(share * kBarWidth);
   std::string line = "[";
-  line.append(static_cast<std::size_t>(filled), '=');
-  line.append(static_cast<std::size_t>(kBarWidth - filled), ' ').append("] ");
+  line.append(filled, '=');
+  line.append(kBarWidth - filled, ' ').append("] ");
   char percent[16];
   std::snprintf(percent, sizeof percent, "%3.0f %% ", 100 * share);
   line.append(percent).append(printable(what_));

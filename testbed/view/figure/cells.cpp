@@ -143,8 +143,7 @@ std::vector<std::vector<T>> wrap(const std::vector<T>& columns) {
   std::vector<std::vector<T>> out;
   for (std::size_t i = 0; i < columns.size(); i += width) {
     const auto begin = columns.begin() + i;
-    out.emplace_back(begin,
-                     begin + static_cast<std::ptrdiff_t>(std::min(width, columns.size() - i)));
+    out.emplace_back(begin, begin + std::min(width, columns.size() - i));
   }
   return out;
 }
