@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "core/error.h"
 #include "experiments/skinning/bvh/bvh.h"
