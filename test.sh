@@ -41,6 +41,9 @@ count_tests() {
       END { printf "%d tests in %d entries", count, entries }' build/release/Testing/Temporary/LastTest.log
 }
 
+# What the last ctest noticed: tests that cost more processor time than one should.
+tell_costs() { sed -n 's/^\[  NOTICE  \] /test: /p' build/release/Testing/Temporary/LastTest.log; }
+
 # The experiments of topics, one a line.
 experiments_of() {
   local topic file
@@ -144,4 +147,5 @@ else
   changed=$(scripts/changed_topics.sh)
   if grep -q '^same ' <<<"$changed"; then test_changed "$changed"; else test_all; fi
 fi
+tell_costs
 say "$(count_tests) passed, 0 failed"

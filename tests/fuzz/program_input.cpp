@@ -3,10 +3,8 @@
 #include <signal.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <thread>
 
 #include "core/error.h"
 #include "core/frame.h"
@@ -16,6 +14,7 @@
 #include "tests/fuzz/fuzzed_program.h"
 #include "tests/fuzz/mutation.h"
 #include "tests/fuzz/sample_features.h"
+#include "tests/testbed/await.h"
 #include "tests/testbed/program_process.h"
 
 namespace geoprior::test {
@@ -193,11 +192,8 @@ Files interrupted_run() {
   const ScratchHome home({{"experiments/small.toml", small_experiments().at("toy-pendulum.toml")}});
   make_run(home, kRunSmall, [&](ProgramProcess& program) {
     const fs::path journal = home.path() / kRun / "journal.jsonl";
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (!holds(journal, "\"kind\":\"checkpoint\"")) {
-      if (std::chrono::steady_clock::now() > deadline) throw Error("the run made no checkpoint");
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+    if (!await([&] { return holds(journal, "\"kind\":\"checkpoint\""); }))
+      throw Error("the run made no checkpoint");
     program.signal(SIGKILL);
   });
   return read_files(home.path());

@@ -3,5 +3,5 @@
 
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
-  return geoprior::test::run_watched_tests(geoprior::test::default_cost_limits());
+  return geoprior::test::run_watched_tests(geoprior::test::usual_cost());
 }

@@ -62,9 +62,9 @@ bool is_debugged() {
 /// A process that a death test made of this executable: that test judges how it ends.
 bool is_death_test() { return !GTEST_FLAG_GET(internal_run_death_test).empty(); }
 
-int run_tests(CostLimits limits, Progress& progress) {
+int run_tests(double usual_cost, Progress& progress) {
   ::testing::UnitTest::GetInstance()->listeners().Append(
-      new CostListener(limits, [&](const std::string& place) { progress.say_place(place); }));
+      new CostListener(usual_cost, [&](const std::string& place) { progress.say_place(place); }));
   const int code = RUN_ALL_TESTS();
   progress.say_place("the check for leaks");
   progress.say_complete();
@@ -98,15 +98,15 @@ int judge(int status, const Progress& progress) {
 
 }  // namespace
 
-int run_watched_tests(CostLimits limits) {
+int run_watched_tests(double usual_cost) {
   static Progress progress;
-  if (is_debugged() || is_death_test()) return run_tests(limits, progress);
+  if (is_debugged() || is_death_test()) return run_tests(usual_cost, progress);
   std::fflush(nullptr);  // or the child would write it again
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("fork failed");
   if (child == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    end_child(run_tests(limits, progress));
+    end_child(run_tests(usual_cost, progress));
   }
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {

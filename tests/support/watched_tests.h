@@ -10,7 +10,8 @@ namespace geoprior::test {
 /// middle of a test), this process names the test that it was in and returns a failure. It also
 /// says what all of it cost. Under a debugger the tests run in this process.
 ///
+/// @param usual_cost  as the listener's
 /// @return  what `main` returns
-int run_watched_tests(CostLimits limits);
+int run_watched_tests(double usual_cost);
 
 }  // namespace geoprior::test

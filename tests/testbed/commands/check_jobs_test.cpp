@@ -4,11 +4,10 @@
 #include <signal.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <thread>
 
+#include "tests/testbed/await.h"
 #include "tests/testbed/run_fixture.h"
 #include "tests/testbed/toy_home.h"
 
@@ -57,16 +56,15 @@ class CheckJobs : public ::testing::Test {
   [[nodiscard]] fs::path log() const { return home_.root() / "log"; }
   /// Waits until a run of the experiment has a frame.
   void await_frame_of(const std::string& id) const {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (std::chrono::steady_clock::now() < deadline) {
+    const auto has_frame = [](const fs::path& run) {
+      return text_of(run / "journal.jsonl").find("\"kind\":\"frame\"") != std::string::npos;
+    };
+    const auto any_has_frame = [&] {
       std::error_code none;
-      for (const auto& run : fs::directory_iterator(home_.root() / "results/runs" / id, none)) {
-        const std::string journal = text_of(run.path() / "journal.jsonl");
-        if (journal.find("\"kind\":\"frame\"") != std::string::npos) return;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-    FAIL() << "no frame of " << id << ": " << text_of(log());
+      const fs::directory_iterator runs(home_.root() / "results/runs" / id, none);
+      return std::any_of(begin(runs), end(runs), has_frame);
+    };
+    ASSERT_TRUE(await(any_has_frame)) << "no frame of " << id << ": " << text_of(log());
   }
   /// The process, found by its command line, that checks the experiment.
   static pid_t process_of(const std::string& id) {
@@ -133,7 +131,7 @@ TEST_F(CheckJobs, FailWithTheWorstExitCodeAndTheOthersAreCheckedAllTheSame) {
 }
 
 TEST_F(CheckJobs, OneThatIsKilledIsNamedAndFails) {
-  write_pendulum("killed", "frames = 200\nframe_delay_ms = 50");
+  write_pendulum("killed", "frames = 10000\nframe_delay_ms = 50");
   ToyProgram program = start({"check", "--jobs", "2", "toy-pendulum/killed", "toy-circle/disc"});
   await_frame_of("toy-pendulum/killed");
   const pid_t child = process_of("toy-pendulum/killed");
@@ -165,16 +163,12 @@ TEST_F(CheckJobs, StopAtCtrlCAndGoOnWhenTheyAreCheckedAgain) {
 }
 
 TEST_F(CheckJobs, EndWithTheProgramThatStartedThem) {
-  write_pendulum("orphan", "frames = 200\nframe_delay_ms = 50");
+  write_pendulum("orphan", "frames = 10000\nframe_delay_ms = 50");
   ToyProgram program = start({"check", "--jobs", "2", "toy-pendulum/orphan", "toy-circle/disc"});
   await_frame_of("toy-pendulum/orphan");
   program.signal(SIGKILL);
   EXPECT_EQ(program.wait(), -SIGKILL);
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (process_of("toy-pendulum/orphan") != 0 && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  EXPECT_EQ(process_of("toy-pendulum/orphan"), 0);
+  EXPECT_TRUE(await([] { return process_of("toy-pendulum/orphan") == 0; }));
 }
 
 TEST_F(CheckJobs, ThatNeedTheSameInputMakeItOnce) {

@@ -4,9 +4,7 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
-#include <chrono>
 #include <fstream>
-#include <thread>
 
 #include "core/error.h"
 #include "experiments/toy/toy_topic.h"
@@ -14,6 +12,7 @@
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/spec/spec.h"
+#include "tests/testbed/await.h"
 #include "tests/testbed/run_fixture.h"
 #include "tests/testbed/toy_home.h"
 
@@ -201,12 +200,10 @@ TEST_F(Measured, IsWrittenWholeOrNotAtAll) {
 }
 
 TEST_F(Measured, StoppedByCtrlCWhileASceneIsLoadedLeavesNothing) {
-  (void)run(load(pendulum("load_delay_ms = 2000")), out());
+  (void)run(load(pendulum("load_delay_ms = 8000")), out());
   const fs::path log = folder() / "log";
   ToyProgram program({"measure", out().string(), "--out", (folder() / "measured").string()}, log);
-  while (text_of(log).find("loading") == std::string::npos) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
+  ASSERT_TRUE(await([&] { return text_of(log).find("loading") != std::string::npos; }));
   program.signal(SIGINT);
   EXPECT_EQ(program.wait(), 2) << text_of(log);
   EXPECT_THAT(text_of(log), HasSubstr("nothing was written"));

@@ -13,6 +13,7 @@
 #include "testbed/runner/journal/journal.h"
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/spec/spec.h"
+#include "tests/testbed/await.h"
 #include "tests/testbed/run_fixture.h"
 
 namespace geoprior::test {
@@ -43,11 +44,8 @@ class Resume : public RunTest {
                                      out().string()};
     if (fs::exists(journal())) command.emplace_back("--resume");
     ToyProgram program(command, log());
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(120);
-    while (count_lines(journal(), "frame") < frames) {
-      if (std::chrono::steady_clock::now() > deadline) throw Error("no frames: " + text_of(log()));
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+    if (!await([&] { return count_lines(journal(), "frame") >= frames; }))
+      throw Error("no frames: " + text_of(log()));
     program.signal(number);
     return program.wait();
   }

@@ -12,12 +12,12 @@
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "testbed/formats/atomic_file.h"
 #include "testbed/runner/journal/journal.h"
 #include "testbed/runner/journal/run_file.h"
 #include "testbed/runner/run_folder.h"
+#include "tests/testbed/await.h"
 #include "tests/testbed/run_fixture.h"
 
 namespace geoprior::test {
@@ -29,8 +29,10 @@ using ::testing::Not;
 
 namespace fs = std::filesystem;
 
-/// How long a stop may take where nothing has to be brought to an end.
-constexpr std::chrono::seconds kAtOnce{5};
+/// Of what a stop has to end at once: what it interrupts would last far longer than any machine
+/// takes to stop.
+constexpr std::chrono::seconds kAtOnce{60};
+const std::string kSlowToLoad = "load_delay_ms = 600000";
 
 class Streams : public RunTest {
  protected:
@@ -42,11 +44,8 @@ class Streams : public RunTest {
 
   /// Waits until the file has the text.
   static void await(const fs::path& file, const std::string& text) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (text_of(file).find(text) == std::string::npos) {
-      ASSERT_LT(std::chrono::steady_clock::now(), deadline) << file << " has no " << text;
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
+    ASSERT_TRUE(test::await([&] { return text_of(file).find(text) != std::string::npos; }))
+        << file << " has no " << text;
   }
 
   /// Exit code after a stop, which must come at once.
@@ -194,7 +193,7 @@ class Stop : public Streams {
     const fs::path python = folder() / "python";
     const std::string drawing = "echo half > '" + (folder() / "half").string() + "'\n" + on_term +
                                 "\necho $$ > '" + pid_file().string() + "'\n" +
-                                "i=0; while [ $i -lt 600 ]; do sleep 0.1; i=$((i+1)); done\n";
+                                "i=0; while [ $i -lt 6000 ]; do sleep 0.1; i=$((i+1)); done\n";
     write_file_atomically(python,
                           "#!/bin/sh\nfor a; do [ \"$a\" = -c ] && exit 0; done\n" + drawing);
     fs::permissions(python, fs::perms::owner_all);
@@ -214,7 +213,7 @@ class Stop : public Streams {
 };
 
 TEST_F(Stop, WhileLoadingActsAtOnceAndTheRunGoesOn) {
-  const auto file = pendulum("load_delay_ms = 20000");
+  const auto file = pendulum(kSlowToLoad);
   for (const bool resumed : {false, true}) {
     std::vector<std::string> command = run_of(file);
     if (resumed) command.emplace_back("--resume");
@@ -229,7 +228,7 @@ TEST_F(Stop, WhileLoadingActsAtOnceAndTheRunGoesOn) {
 
 TEST_F(Stop, TellsTheCommandThatGoesOnAsAShellReadsIt) {
   const fs::path file = folder() / "d\xe9j\\a 'vu.toml";
-  fs::copy_file(pendulum("load_delay_ms = 20000"), file);
+  fs::copy_file(pendulum(kSlowToLoad), file);
   ToyProgram program(run_of(file), log());
   await(log(), "loading");
   EXPECT_EQ(stop(program), 2);
@@ -238,8 +237,8 @@ TEST_F(Stop, TellsTheCommandThatGoesOnAsAShellReadsIt) {
 
 TEST_F(Stop, WhileLoadingAnInputTellsOfTheRunThatNeedsIt) {
   write_experiment("toy-pendulum/base",
-                   "title = \"b\"\ntopic = \"toy-pendulum\"\n[scene]\nload_delay_ms = 20000\n"
-                   "[[variant]]\nname = \"v\"\nmethod = \"closed-form\"\n");
+                   "title = \"b\"\ntopic = \"toy-pendulum\"\n[scene]\n" + kSlowToLoad +
+                       "\n[[variant]]\nname = \"v\"\nmethod = \"closed-form\"\n");
   const auto file = pendulum("input = \"run:toy-pendulum/base/v\"");
   ToyProgram program(run_of(file), log());
   await(log(), "loading");
@@ -285,11 +284,7 @@ TEST_F(Stop, ForTheSecondTimeEndsAtOnceWithTheChild) {
   program.signal(SIGTERM);
   await(told, "\n");
   EXPECT_EQ(stop(program), -SIGTERM);
-  const auto deadline = std::chrono::steady_clock::now() + kAtOnce;
-  while (child_runs()) {
-    ASSERT_LT(std::chrono::steady_clock::now(), deadline);
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
+  EXPECT_TRUE(test::await([&] { return !child_runs(); }));
 }
 
 class SharedInput : public Streams {

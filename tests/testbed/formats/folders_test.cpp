@@ -7,9 +7,7 @@
 #include <signal.h>
 #include <sys/stat.h>
 
-#include <chrono>
 #include <fstream>
-#include <thread>
 
 #include "core/error.h"
 #include "experiments/toy/toy_topic.h"
@@ -19,6 +17,7 @@
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/view/export.h"
+#include "tests/testbed/await.h"
 #include "tests/testbed/fake_run.h"
 #include "tests/testbed/run_fixture.h"
 
@@ -58,14 +57,12 @@ class OwnFiles : public RunTest {
     const fs::path file = pendulum("frames = 6\nframe_delay_ms = 30", options);
     ToyProgram program({"run", file.string(), "--no-pictures", "--out", out().string()},
                        folder() / "log");
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(120);
-    while (std::chrono::steady_clock::now() < deadline) {
+    EXPECT_TRUE(await([&] {
       const std::string text = text_of(journal());
       std::size_t seen = 0;
       for (std::size_t at = 0; (at = text.find("\"frame\"", at)) != std::string::npos; ++at) ++seen;
-      if (seen >= frames) break;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+      return seen >= frames;
+    }));
     program.signal(SIGKILL);
     EXPECT_EQ(program.wait(), -SIGKILL);
     return file;

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -83,7 +82,6 @@ TEST_F(IsolatedRead, OfACrashIsAnErrorThatNamesTheFile) {
 
 TEST_F(IsolatedRead, OfAnEndlessLoopEndsAfterItsTime) {
   for (const bool busy : {true, false}) {
-    const auto start = std::chrono::steady_clock::now();
     const auto loop = [&]() -> Bytes {
       for (;;) {
         if (!busy) ::pause();
@@ -91,7 +89,6 @@ TEST_F(IsolatedRead, OfAnEndlessLoopEndsAfterItsTime) {
     };
     EXPECT_THAT(error_in_child(loop, {.seconds = 0.3}),
                 AllOf(HasSubstr("strange.file: is damaged"), HasSubstr("hang")));
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
   }
 }
 
