@@ -6,8 +6,8 @@
 #   ./test.sh --all         release build with warnings as errors, every test, quick runs against their reference values
 #   ./test.sh --sanitize    every test under the address, leak and undefined-behaviour sanitizers
 #   ./test.sh --odr         links with -flto -Wodr: no name has two definitions
-#   ./test.sh --long        --odr, --all, tests in another order, fuzzing, long motions, full runs against their reference
-#                           values, kernels
+#   ./test.sh --long        --odr, --all, tests in another order, fuzzing, long motions, files of other
+#                           programs, full runs against their reference values, kernels
 #   ./test.sh --format      only: is every source file formatted?
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -103,6 +103,7 @@ test_at_length() {
     "$tests" --gtest_shuffle --gtest_brief=1
   done
   GEOPRIOR_LONG=1 GEOPRIOR_FUZZ_SECONDS=600 GEOPRIOR_FUZZ_PROGRAM=100000 hang_s=36000 run_tests -L long
+  /usr/bin/python3 tests/packages/foreign_files.py
   build/release/geoprior check --mutations
   build/release/benchmarks/geoprior_kernels
 }

@@ -54,9 +54,9 @@ Eigen::Vector3d volume_centroid(const TriMesh& mesh) {
   return (origin + moment24 / (4 * volume6)).transpose();
 }
 
-double relative_change(double before, double after) {
+std::optional<double> relative_change(double before, double after) {
   if (before == 0 && after == 0) return 0;
-  if (before == 0) throw Error("relative change of a quantity that was 0", "", "a non-zero value");
+  if (before == 0) return std::nullopt;
   return (after - before) / before;
 }
 

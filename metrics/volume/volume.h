@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/mesh.h"
 #include "metrics/contact/joint_region.h"
 
@@ -25,8 +27,7 @@ double region_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
 /// @throws Error  when the mesh encloses no volume
 Eigen::Vector3d volume_centroid(const TriMesh& mesh);
 
-/// (after - before) / before; 0 when both are 0.
-/// @throws Error  when only `before` is 0
-double relative_change(double before, double after);
+/// (after - before) / before; 0 when both are 0, absent when only `before` is.
+std::optional<double> relative_change(double before, double after);
 
 }  // namespace geoprior

@@ -28,7 +28,13 @@ void load_surface(const SketchSceneOptions& o, const std::filesystem::path& fold
                   SketchScene& scene) {
   const std::filesystem::path file = find_file(o.surface, folder, "data", "scene.surface");
   scene.input_files = files_of_mesh(file);
-  TriMesh mesh = weld_by_position(read_mesh_file(file, scene.load_warnings).mesh).mesh;
+  MeshFile read = read_mesh_file(file);
+  TriMesh mesh = weld_by_position(read.mesh).mesh;
+  note_collapsed(read.mesh, mesh, read.notes);
+  name_notes(read, file);
+  scene.load_warnings = std::move(read.notes);
+  if (mesh.triangle_count() == 0)
+    throw Error("has no triangles", file.string(), "a surface of one triangle or more");
   mesh.V *= o.surface_scale;
   scene.input.surface = std::move(mesh);
 }

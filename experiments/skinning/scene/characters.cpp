@@ -15,6 +15,7 @@
 #include "core/mesh.h"
 #include "experiments/skinning/scene/skeleton_size.h"
 #include "metrics/contact/joint_region.h"
+#include "testbed/formats/mesh/parsed_mesh.h"
 #include "testbed/formats/text/letters.h"
 #include "testbed/home.h"
 
@@ -174,6 +175,7 @@ void choose_weights(const CharacterOptions& options, const std::string& file,
 
 void take_mesh(TriMesh split, Character& character, Weld& weld) {
   weld = weld_by_position(split);
+  note_collapsed(split, weld.mesh, character.warnings);
   character.rig.mesh = weld.mesh;
   character.welded_of_input = weld.welded_of_split;
   drop_degenerate(split, weld.welded_of_split);

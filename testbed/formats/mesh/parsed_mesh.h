@@ -21,6 +21,14 @@ struct MeshFile {
   std::vector<std::string> notes = {};  ///< what of the file is left out or was changed
 };
 
+/// Notes the triangles that a weld left out, if there are any.
+inline void note_collapsed(const TriMesh& split, const TriMesh& welded,
+                           std::vector<std::string>& notes) {
+  if (const Eigen::Index left_out = split.F.rows() - welded.F.rows(); left_out > 0) {
+    notes.push_back(std::to_string(left_out) + " triangles with two corners in one place left out");
+  }
+}
+
 /// Puts the name of the file before each note.
 inline void name_notes(MeshFile& mesh, const std::filesystem::path& file) {
   for (std::string& note : mesh.notes) note = file.filename().string() + ": " + note;

@@ -138,10 +138,7 @@ MeshFile parse_stl(std::string_view bytes, const std::string& name) {
     split.F(i / 3, i % 3) = static_cast<int>(i);
   }
   file.mesh = weld_by_position(split).mesh;
-  if (const Eigen::Index left_out = split.F.rows() - file.mesh.F.rows(); left_out > 0) {
-    file.notes.push_back(std::to_string(left_out) +
-                         " triangles with two corners in one place left out");
-  }
+  note_collapsed(split, file.mesh, file.notes);
   return file;
 }
 

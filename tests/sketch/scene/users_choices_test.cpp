@@ -16,6 +16,7 @@ namespace geoprior::sketch {
 namespace {
 
 using geoprior::test::error_of;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 class SketchScenes : public geoprior::test::RunTest {
@@ -80,6 +81,15 @@ TEST_F(SketchScenes, ReadsASurfaceInItsUnit) {
   EXPECT_FALSE(metres->input.patterns);
   const auto centimetres = scene("surface = \"patch.off\"\nsurface_scale = 0.01\n");
   EXPECT_DOUBLE_EQ(centimetres->input.surface->V.col(0).maxCoeff(), 0.05);
+}
+
+TEST_F(SketchScenes, SaysWhatOfASurfaceIsLeftOut) {
+  write_input("patch.off", "OFF\n4 2 0\n0 0 0\n5 0 0\n5 3 0\n5 3 0\n3 0 1 2\n3 0 2 3\n");
+  EXPECT_THAT(scene("surface = \"patch.off\"\n")->load_warnings,
+              ElementsAre("patch.off: 1 triangles with two corners in one place left out"));
+  write_input("none.off", "OFF\n3 0 0\n0 0 0\n5 0 0\n5 3 0\n");
+  EXPECT_THAT(error_of([&] { (void)scene("surface = \"none.off\"\n"); }),
+              HasSubstr("none.off: has no triangles"));
 }
 
 TEST_F(SketchScenes, ReadsADrawingInItsUnit) {
