@@ -175,7 +175,6 @@ void choose_weights(const CharacterOptions& options, const std::string& file,
 
 void take_mesh(TriMesh split, Character& character, Weld& weld) {
   weld = weld_by_position(split);
-  note_collapsed(split, weld.mesh, character.warnings);
   character.rig.mesh = weld.mesh;
   character.welded_of_input = weld.welded_of_split;
   drop_degenerate(split, weld.welded_of_split);
@@ -223,6 +222,10 @@ void load_file(const CharacterOptions& options, const fs::path& file, const fs::
   split.V *= options.unit_m;
   Weld weld;
   take_mesh(std::move(split), character, weld);
+  std::vector<std::string> left_out;
+  note_collapsed(gltf.mesh, weld.mesh, left_out);
+  for (const std::string& note : left_out)
+    character.warnings.push_back(file.string() + ": " + note);
   turn_outwards(file, character);
   if (options.skeleton) read_skeleton_option(*options.skeleton, folder, character);
   if (!gltf.skeleton && !character.skeleton_file) {

@@ -10,7 +10,6 @@
 #include "core/connectivity.h"
 #include "core/error.h"
 #include "core/geometry/topology.h"
-#include "testbed/formats/mesh/parsed_mesh.h"
 
 namespace geoprior {
 namespace {
@@ -85,7 +84,8 @@ class Repair {
     const EdgeCounts after = count_edges(edges);
     if (after.border >= before.border || after.crowded > before.crowded) return;
     frame_.velocity = rows_at(frame_.velocity, welded.split_of_welded);
-    note_collapsed(frame_.mesh, welded.mesh, notes_);
+    if (welded.mesh.triangle_count() < frame_.mesh.triangle_count())
+      notes_.push_back("triangles with two corners in one place left out");
     frame_.mesh = std::move(welded.mesh);
     edges_ = std::move(edges);
     notes_.push_back("doubled vertices along seams were welded");
