@@ -36,6 +36,13 @@ class Scene {
   [[nodiscard]] virtual std::map<std::string, double> facts() const { return {}; }
   /// What shows best what happens, where the experiment file says nothing of the camera; recorded.
   [[nodiscard]] virtual std::optional<Camera> camera() const { return std::nullopt; }
+  /// Files that the user asked for beside a frame of a process, made while no clock runs. They may
+  /// add parts to the frame, or be all that becomes of one.
+  /// @throws Error  when one cannot be made: the variant has failed
+  [[nodiscard]] virtual std::vector<Artifact> files_of(Frame& /*frame*/) const { return {}; }
+  /// False where methods may do the work of several frames in one: times are compared by whole
+  /// runs.
+  [[nodiscard]] virtual bool frames_share_work() const { return true; }
 };
 
 /// A scene of processes, whose frames are times: what all such scenes say alike.
@@ -77,6 +84,9 @@ struct MethodEntry {
   /// `prepare`: builds the method for a scene. Timed by the runner as phase "prepare".
   std::function<Instance(const Scene&, const OptionSet&, RunContext&)> make;
   std::string ungated = {};  ///< why its results do not repeat: `check` does not compare them
+  /// What its user should know of these options on this scene: printed and recorded with what was
+  /// said of the scene. Absent: nothing, ever.
+  std::function<std::vector<std::string>(const Scene&, const OptionSet&)> warnings = {};
 
   [[nodiscard]] bool gated() const { return ungated.empty(); }
 };
@@ -96,6 +106,16 @@ MethodEntry method_entry(std::string name, bool is_baseline, std::string summary
             return make(dynamic_cast<const S&>(scene),
                         dynamic_cast<const TypedOptions<Options>&>(set).options, context);
           }};
+}
+
+/// The entry with its warnings: `warn(const S&, const Options&)` returns texts.
+template <class S, class Options, class Warn>
+MethodEntry with_warnings(MethodEntry entry, Warn warn) {
+  entry.warnings = [warn](const Scene& scene, const OptionSet& set) -> std::vector<std::string> {
+    return warn(dynamic_cast<const S&>(scene),
+                dynamic_cast<const TypedOptions<Options>&>(set).options);
+  };
+  return entry;
 }
 
 enum class Direction { lower_is_better, higher_is_better, closer_to_target, none };

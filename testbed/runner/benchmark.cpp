@@ -122,10 +122,10 @@ struct Pairs {
 };
 
 Pairs pairs_of(const VariantRecord& a, const Timing& of_a, const VariantRecord& b,
-               const Timing& of_b) {
+               const Timing& of_b, bool by_frames) {
   const auto* rows_a = whole_time(of_a);
   const auto* rows_b = whole_time(of_b);
-  if (rows_a != nullptr && rows_b != nullptr && same_frames(a.frames, b.frames)) {
+  if (by_frames && rows_a != nullptr && rows_b != nullptr && same_frames(a.frames, b.frames)) {
     return {"frame", flat(*rows_a), flat(*rows_b)};
   }
   return {"run", whole_runs(of_a), whole_runs(of_b)};
@@ -207,7 +207,7 @@ std::map<std::string, Timing> benchmark_processes(const std::vector<ProcessEntry
 }
 
 std::vector<TimingRatio> timing_ratios(const std::vector<VariantRecord>& variants,
-                                       const std::map<std::string, Timing>& timing,
+                                       const std::map<std::string, Timing>& timing, bool by_frames,
                                        std::uint64_t seed) {
   std::vector<TimingRatio> ratios;
   const auto compared = [&](const VariantRecord& variant) {
@@ -218,7 +218,7 @@ std::vector<TimingRatio> timing_ratios(const std::vector<VariantRecord>& variant
     for (const VariantRecord& baseline : variants) {
       if (baseline.role != "baseline" || !compared(baseline)) continue;
       const Pairs pairs =
-          pairs_of(variant, timing.at(variant.name), baseline, timing.at(baseline.name));
+          pairs_of(variant, timing.at(variant.name), baseline, timing.at(baseline.name), by_frames);
       if (pairs.a.empty() || pairs.a.size() != pairs.b.size()) continue;
       const Interval ratio = median_of_paired_ratios(pairs.a, pairs.b, seed);
       ratios.push_back(

@@ -67,10 +67,10 @@ std::map<std::string, Timing> benchmark_processes(const std::vector<ProcessEntry
 
 /// Ratios of the times of every variant that is no baseline over every baseline (role "baseline"),
 /// by the whole time: "run" of a process, "solve" of a pose method. Paired frame by frame and
-/// repetition by repetition; by whole runs when two processes have frames at other parameters.
-/// Variants that failed have none.
+/// repetition by repetition; by whole runs where `by_frames` is false or two processes have frames
+/// at other parameters. Variants that failed have none.
 std::vector<TimingRatio> timing_ratios(const std::vector<VariantRecord>& variants,
-                                       const std::map<std::string, Timing>& timing,
+                                       const std::map<std::string, Timing>& timing, bool by_frames,
                                        std::uint64_t seed);
 
 }  // namespace geoprior

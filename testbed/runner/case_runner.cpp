@@ -71,6 +71,9 @@ class CaseRunner::Sink final : public FrameSink {
     earlier_.clear();
     const TimedContext::Pause pause(context_);
     require_finite(frame, runner_.state_of(variant_).record.frames.size(), variant_.method);
+    const std::vector<Artifact> files = runner_.scene_->files_of(frame);
+    for (const Artifact& file : files)
+      guarded([&] { runner_.recorder_.write_artifact(runner_.place(variant_), file); });
     guarded([&] { runner_.record_frame(variant_, std::move(frame), seconds); });
   }
   void event(const Event& event) override {
@@ -145,6 +148,12 @@ void CaseRunner::load(const OptionSet& options, std::vector<StoredFile> inputs) 
   line.parameter_unit = scene_->parameter_unit();
   line.facts = scene_->facts();
   line.warnings = scene_->warnings();
+  for (const VariantSpec& variant : spec_.variants) {
+    const MethodEntry& entry = method_of(topic_, variant.method);
+    if (!entry.warnings) continue;
+    for (const std::string& warning : entry.warnings(*scene_, *variant.options))
+      line.warnings.push_back("variant '" + variant.name + "': " + warning);
+  }
   if (const auto camera = scene_->camera()) line.camera = camera_text(*camera);
   for (const auto& file : scene_->inputs()) {
     inputs.push_back({input_name(file), sha256_of_file(file)});
@@ -410,7 +419,7 @@ bool CaseRunner::time_variants() {
     variants.back().status = state.record.status;
     variants.back().frames = state.record.frames;
   }
-  line.ratios = timing_ratios(variants, line.timing, spec_.seed);
+  line.ratios = timing_ratios(variants, line.timing, scene_->frames_share_work(), spec_.seed);
   recorder_.add(line);
   return true;
 }

@@ -137,15 +137,29 @@ void require_chain(const std::vector<GltfLink>& links, const std::vector<double>
   }
 }
 
-json mesh_of(GltfBuilder& builder, const TriMesh& mesh, const Eigen::Vector3d& origin,
-             const std::string& name) {
+/// Positions and indices.
+json primitive_of(GltfBuilder& builder, const TriMesh& mesh, const Eigen::Vector3d& origin) {
   std::vector<std::uint32_t> indices;
+  indices.reserve(mesh.F.size());
   for (Eigen::Index f = 0; f < mesh.F.rows(); ++f)
     for (int k = 0; k < 3; ++k) indices.push_back(static_cast<std::uint32_t>(mesh.F(f, k)));
   json primitive;
   primitive["attributes"]["POSITION"] = builder.add_vectors(mesh.V.rowwise() - origin.transpose());
   primitive["indices"] = builder.add(indices, "SCALAR", 1, kUnsignedInt, kIndexTarget);
-  return {{"name", name}, {"primitives", json::array({primitive})}};
+  return primitive;
+}
+
+json mesh_of(GltfBuilder& builder, const TriMesh& mesh, const Eigen::Vector3d& origin,
+             const std::string& name) {
+  return {{"name", name}, {"primitives", json::array({primitive_of(builder, mesh, origin)})}};
+}
+
+/// A document of one node that has the first mesh.
+void begin_one_node(json& document, const std::string& name) {
+  document["asset"] = {{"version", "2.0"}, {"generator", "geoprior"}};
+  document["scene"] = 0;
+  document["scenes"] = json::array({{{"nodes", {0}}}});
+  document["nodes"] = json::array({{{"name", name}, {"mesh", 0}}});
 }
 
 /// Quaternions x y z w, one a key.
@@ -205,16 +219,8 @@ void write_glb_animation(const std::filesystem::path& file, const TriMesh& base,
   require_sequence(file.string(), base, frames, times_s);
   GltfBuilder builder;
   json& document = builder.document();
-  document["asset"] = {{"version", "2.0"}, {"generator", "geoprior"}};
-  document["scene"] = 0;
-  document["scenes"] = json::array({{{"nodes", {0}}}});
-  document["nodes"] = json::array({{{"name", name}, {"mesh", 0}}});
-  std::vector<std::uint32_t> indices;
-  for (Eigen::Index f = 0; f < base.F.rows(); ++f)
-    for (int k = 0; k < 3; ++k) indices.push_back(static_cast<std::uint32_t>(base.F(f, k)));
-  json primitive;
-  primitive["attributes"]["POSITION"] = builder.add_vectors(base.V);
-  primitive["indices"] = builder.add(indices, "SCALAR", 1, kUnsignedInt, kIndexTarget);
+  begin_one_node(document, name);
+  json primitive = primitive_of(builder, base, Eigen::Vector3d::Zero());
   json mesh{{"name", name}};
   for (const Eigen::MatrixX3d& frame : frames) {
     primitive["targets"].push_back({{"POSITION", builder.add_vectors(frame - base.V)}});
@@ -224,6 +230,17 @@ void write_glb_animation(const std::filesystem::path& file, const TriMesh& base,
   document["meshes"] = json::array({mesh});
   if (!frames.empty()) add_animation(builder, times_s, name);
   write_file_atomically(file, std::string_view(builder.glb(file.string())));
+}
+
+std::string surface_glb(const TriMesh& mesh, const std::string& name) {
+  require_sequence(name, mesh, {}, {});
+  GltfBuilder builder;
+  begin_one_node(builder.document(), name);
+  json primitive = primitive_of(builder, mesh, Eigen::Vector3d::Zero());
+  primitive["attributes"]["NORMAL"] = builder.add_vectors(vertex_normals(mesh));
+  builder.document()["meshes"] =
+      json::array({{{"name", name}, {"primitives", json::array({primitive})}}});
+  return builder.glb(name);
 }
 
 std::string rigid_chain_glb(const std::vector<GltfLink>& links, const std::vector<double>& times_s,

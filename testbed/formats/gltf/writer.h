@@ -25,6 +25,14 @@ void write_glb_animation(const std::filesystem::path& file, const TriMesh& base,
                          const std::vector<Eigen::MatrixX3d>& frames,
                          const std::vector<double>& times_s, const std::string& name);
 
+/// The bytes of a binary glTF 2.0 of a still surface, with its vertex normals: viewers shade it
+/// smoothly. Positions are stored in single precision.
+///
+/// @param mesh    in m
+/// @throws Error  naming `name`: an empty mesh, an index out of range, what is not finite, a file
+///                over 4 GB
+std::string surface_glb(const TriMesh& mesh, const std::string& name);
+
 /// One of the rigid bodies of a chain.
 struct GltfLink {
   std::string name;

@@ -196,7 +196,8 @@ TEST_F(ProcessBenchmark, RefusesARepetitionOfOtherFrames) {
 }
 
 /// Two processes of two frames and two repetitions, the method four times as fast at each.
-std::vector<TimingRatio> ratios_of(std::vector<double> own_parameters, const std::string& status) {
+std::vector<TimingRatio> ratios_of(std::vector<double> own_parameters, const std::string& status,
+                                   bool by_frames = true) {
   std::vector<VariantRecord> variants(2);
   variants[0].name = "ours";
   variants[0].role = "method";
@@ -208,7 +209,7 @@ std::vector<TimingRatio> ratios_of(std::vector<double> own_parameters, const std
   std::map<std::string, Timing> timing;
   timing["ours"] = {{"run", {{1, 2}, {3, 4}}}, {"finish", {{0, 6}}}};
   timing["dense"] = {{"run", {{4, 8}, {12, 16}}}, {"finish", {{0, 0}}}};
-  return timing_ratios(variants, timing, 1);
+  return timing_ratios(variants, timing, by_frames, 1);
 }
 
 TEST(TimingRatios, OfProcessesWithTheSameFramesArePairedByFrame) {
@@ -224,6 +225,12 @@ TEST(TimingRatios, OfProcessesWithOtherFramesArePairedByWholeRuns) {
   // 4 s over 16 s, and 12 s (6 of them after the last frame) over 24 s.
   EXPECT_EQ(ratio.median_ratio, (0.25 + 0.5) / 2);
   EXPECT_EQ(ratio.low, 0.25);
+}
+
+TEST(TimingRatios, OfFramesThatShareNoWorkArePairedByWholeRuns) {
+  const TimingRatio ratio = ratios_of({0, 1}, "done", false).at(0);
+  EXPECT_EQ(ratio.paired, "run");
+  EXPECT_EQ(ratio.median_ratio, (0.25 + 0.5) / 2);
 }
 
 TEST(TimingRatios, AVariantThatFailedHasNone) { EXPECT_TRUE(ratios_of({0, 1}, "failed").empty()); }
@@ -303,7 +310,7 @@ TEST_F(Benchmark, RatiosAreOfEveryMethodAndAblationOverEveryBaseline) {
     variants[v].role = roles[v];
     timing[names[v]]["solve"] = {{1.0 * static_cast<double>(v + 1)}};
   }
-  const auto ratios = timing_ratios(variants, timing, 1);
+  const auto ratios = timing_ratios(variants, timing, true, 1);
   ASSERT_EQ(ratios.size(), 4U);
   EXPECT_EQ(ratios[3].variant, "without");
   EXPECT_EQ(ratios[3].of, "dual");
