@@ -8,7 +8,8 @@
   TOPIC(sound)                 \
   TOPIC(fluid)                 \
   TOPIC(details)               \
-  TOPIC(sketch)
+  TOPIC(sketch)                \
+  TOPIC(torus)
 
 /// What experiments/<name> defines.
 #define GEOPRIOR_DECLARE(name) \
