@@ -33,7 +33,7 @@ void require_valid(const TorusInput& input) {
   const Radii& radii = input.radii;
   if (!(radii.tube > 0 && radii.ring > radii.tube && radii.tube + radii.ring < 1))
     throw Error("asks for 0 < r1 < r2 and r1 + r2 < 1: the torus must be shorter than the square",
-                "scene.radii");
+                "scene.r2");
   if (!input.corrugations.empty() && !input.corrugations[0].begins_stage)
     throw Error("the first corrugation begins no stage: it has no target", "scene.corrugations[0]");
   for (int i = 0; i < std::ssize(input.corrugations); ++i) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
+#include "core/error.h"
 #include "core/random.h"
 #include "models/torus/directions.h"
 
@@ -64,6 +66,13 @@ class FramePlanner {
     plan.parts.push_back({std::move(name), {corrugations, std::move(at)}, std::nullopt});
   }
 
+  [[noreturn]] void refuse_between_nodes(const std::string& name, double width) const {
+    std::ostringstream text;
+    text << "a square of width " << width << " lies between the nodes of a grid of " << *grid_
+         << " points";
+    throw Error(text.str(), name == "detail" ? "scene.detail.width" : "scene.view");
+  }
+
   /// As many points as asked for, or as the method's grid has.
   void add_surface(FramePlan& plan, const std::string& name,
                    const std::optional<SquareWindow>& view,
@@ -71,7 +80,10 @@ class FramePlanner {
     const SquareWindow square = view.value_or(SquareWindow{{0.5, 0.5}, 1});
     const int open = view ? 1 : 0;  // the last point is not the first one
     int n = input_.sampling.surface;
-    if (grid_) n = std::clamp(static_cast<int>(square.width * *grid_) + open, 2, n);
+    if (grid_) {
+      if (square.width * *grid_ < 1) refuse_between_nodes(name, square.width);
+      n = std::min(n, static_cast<int>(square.width * *grid_) + open);
+    }
     Eigen::MatrixX2d at(static_cast<Eigen::Index>(n) * n, 2);
     const Eigen::Vector2d corner = square.centre.array() - square.width / 2;
     const double step = square.width / (n - open);

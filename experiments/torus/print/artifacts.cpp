@@ -18,8 +18,7 @@ Artifact file_of(const std::string& name, const std::string& bytes) {
 
 TriMesh body_of(const TorusInput& input, const Part& part, double thickness) {
   const TriMesh surface{part.points, part.triangles};
-  if (input.sampling.view)
-    return body_between(surface, flat_plate(surface, input.sampling.surface, thickness));
+  if (input.sampling.view) return body_between(surface, flat_plate(surface, thickness));
   if (thickness == 0) return surface;
   const auto& at = part.require_array("parameters", NamedArray::On::points, 2).values;
   const double ring = input.radii.ring / (2 * std::numbers::pi);

@@ -79,7 +79,8 @@ Eigen::MatrixX3d round_cavity(const TriMesh& surface, const Eigen::MatrixXd& at,
   return inside;
 }
 
-Eigen::MatrixX3d flat_plate(const TriMesh& surface, int side, double thickness) {
+Eigen::MatrixX3d flat_plate(const TriMesh& surface, double thickness) {
+  const int side = static_cast<int>(std::lround(std::sqrt(surface.vertex_count())));
   const Eigen::Vector3d up = mean_normal(surface);
   const double bottom = (surface.V * up).minCoeff() - thickness;
   const auto corner = [&](int i, int j) -> Eigen::Vector3d {

@@ -20,9 +20,9 @@ TriMesh body_between(const TriMesh& surface, const Eigen::MatrixX3d& inside);
 Eigen::MatrixX3d round_cavity(const TriMesh& surface, const Eigen::MatrixXd& at, double ring,
                               double thickness);
 
-/// Points of a flat plate below a lattice of `side` x `side` points, `thickness` below the lowest
-/// against the mean normal, between the four corners.
-Eigen::MatrixX3d flat_plate(const TriMesh& surface, int side, double thickness);
+/// Points of a flat plate below a square lattice of points, `thickness` below the lowest against
+/// the mean normal, between the four corners.
+Eigen::MatrixX3d flat_plate(const TriMesh& surface, double thickness);
 
 /// The mesh scaled and moved so that its box begins at 0.
 TriMesh scaled(TriMesh mesh, double factor);

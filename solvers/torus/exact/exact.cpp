@@ -23,8 +23,7 @@ struct BadCoefficient {
 /// The chain of corrugations at four points, from an order to the one that is wanted.
 class JetChain {
  public:
-  JetChain(const TorusInput& input, const Lane& x, const Lane& y)
-      : input_(input), x_(x), y_(y) {}
+  JetChain(const TorusInput& input, const Lane& x, const Lane& y) : input_(input), x_(x), y_(y) {}
 
   /// The surface with derivatives up to `Wanted`.
   template <int Wanted, int Order>
@@ -90,13 +89,20 @@ class JetChain {
 template <int Wanted>
 JetVector<Wanted> run_chain(JetChain& chain, int corrugations) {
   switch (corrugations) {
-    case 0: return chain.run<Wanted, Wanted>();
-    case 1: return chain.run<Wanted, Wanted + 1>();
-    case 2: return chain.run<Wanted, Wanted + 2>();
-    case 3: return chain.run<Wanted, Wanted + 3>();
-    case 4: return chain.run<Wanted, Wanted + 4>();
-    case 5: return chain.run<Wanted, Wanted + 5>();
-    default: return chain.run<Wanted, Wanted + kMostCorrugations>();
+    case 0:
+      return chain.run<Wanted, Wanted>();
+    case 1:
+      return chain.run<Wanted, Wanted + 1>();
+    case 2:
+      return chain.run<Wanted, Wanted + 2>();
+    case 3:
+      return chain.run<Wanted, Wanted + 3>();
+    case 4:
+      return chain.run<Wanted, Wanted + 4>();
+    case 5:
+      return chain.run<Wanted, Wanted + 5>();
+    default:
+      return chain.run<Wanted, Wanted + kMostCorrugations>();
   }
 }
 
@@ -123,8 +129,17 @@ class ExactTorus final : public TorusMap {
   explicit ExactTorus(const TorusInput& input) : input_(input) {}
 
   Eigen::MatrixX3d points(std::size_t /*i*/, const TorusSamples& samples,
-                          RunContext& /*context*/) override {
-    return exact_points(input_, samples.corrugations, samples.at, false).points;
+                          RunContext& context) override {
+    constexpr Eigen::Index kAtOnce = 1 << 18;  // between two looks at whether to stop
+    const Eigen::Index n = samples.at.rows();
+    Eigen::MatrixX3d out(n, 3);
+    for (Eigen::Index first = 0; first < n && !context.stop_requested(); first += kAtOnce) {
+      const Eigen::Index count = std::min(kAtOnce, n - first);
+      out.middleRows(first, count) =
+          exact_points(input_, samples.corrugations, samples.at.middleRows(first, count), false)
+              .points;
+    }
+    return out;
   }
 
   void diagnose(const TorusSamples& places, std::map<std::string, double>& into) const override {

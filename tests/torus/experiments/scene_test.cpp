@@ -86,7 +86,7 @@ TEST(PrintedBodies, HaveTheVolumesOfAPlateAndOfARing) {
   square.V << 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0;
   square.F.resize(2, 3);
   square.F << 0, 1, 3, 0, 3, 2;
-  const TriMesh plate = body_between(square, flat_plate(square, 2, 0.1));
+  const TriMesh plate = body_between(square, flat_plate(square, 0.1));
   EXPECT_NEAR(signed_volume(plate.V, plate.F), 0.1, 1e-12);
   EXPECT_NO_THROW(require_closed_manifold(plate, "a test", "plate"));
 
@@ -132,6 +132,17 @@ TEST_F(TorusScenes, RefuseAGridBeyondTheMemory) {
               AllOf(HasSubstr("options.points"), HasSubstr("400000000 points of a grid")));
   EXPECT_THAT(error_with("integration", "points = 400"), HasSubstr("160000 points of a grid"));
   ::unsetenv("GEOPRIOR_MEMORY_GB");
+}
+
+TEST_F(TorusScenes, ShowTheNodesThatAGridHasAndRefuseAViewBetweenThem) {
+  const std::string view =
+      std::string(kOne) + "print = { thickness = 0.001 }\nview = { width = 0.1";
+  (void)run_torus(view + " }", "grid", "points = 64");
+  const TriMesh body = parse_stl(text_of(artifact("surface.stl")), "surface.stl").mesh;
+  EXPECT_EQ(body.vertex_count(), 2 * 7 * 7) << "nodes of a tenth of the grid";
+  fs::remove_all(folder() / "out");
+  EXPECT_THAT(error_of([&] { (void)run_torus(view + ", zooms = 2 }", "grid", "points = 64"); }),
+              AllOf(HasSubstr("scene.view"), HasSubstr("64 points")));
 }
 
 TEST_F(TorusScenes, WriteTheWholeTorusAsAGrid) {
