@@ -65,8 +65,8 @@ class NextCoefficients {
     const Forms after = forms_of(exact_points(input_, number_ + 1, at_, true));
     const Corrugation& c = input_.corrugations[number_];
     const Eigen::Vector2d pi = kDirections[c.direction].covector;
-    const Eigen::VectorXd rho =
-        coefficients(c.direction, target(base_, c.share) - before_) / kDirections[c.direction].square();
+    const Eigen::VectorXd rho = coefficients(c.direction, target(base_, c.share) - before_) /
+                                kDirections[c.direction].square();
     Forms ideal = before_;
     ideal.col(0) += pi.x() * pi.x() * rho;
     ideal.col(1) += pi.x() * pi.y() * rho;
@@ -92,8 +92,7 @@ class NextCoefficients {
   }
   /// Where the next corrugation wants to go from a metric.
   [[nodiscard]] Forms aim(const Forms& from) const {
-    return new_stage_ ? target(from, share_)
-                      : target(base_, input_.corrugations[number_].share);
+    return new_stage_ ? target(from, share_) : target(base_, input_.corrugations[number_].share);
   }
 
   TorusInput input_;

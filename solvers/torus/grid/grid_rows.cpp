@@ -63,8 +63,8 @@ Lane periods(const Corrugation& corrugation, int n, int row, int column) {
   const Eigen::Vector2d pi = kDirections[corrugation.direction].covector;
   Lane out;
   for (int l = 0; l < 4; ++l) {
-    const auto steps = static_cast<std::int64_t>(pi.x()) * (column + l) +
-                       static_cast<std::int64_t>(pi.y()) * row;
+    const auto steps =
+        static_cast<std::int64_t>(pi.x()) * (column + l) + static_cast<std::int64_t>(pi.y()) * row;
     out[l] = static_cast<double>(steps * corrugation.number % n) / n;
   }
   return out;

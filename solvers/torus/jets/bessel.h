@@ -8,8 +8,8 @@ namespace geoprior::torus {
 
 /// First positive zero of J_0: no loop of a corrugation opens wider.
 constexpr double kFirstZero = 2.404825557695773;
-/// Harmonics of a loop that are summed: what is left of J_n(2.405) / n is below 4e-12, also after as
-/// many derivatives along it as the jet has.
+/// Harmonics of a loop that are summed: what is left of J_n(2.405) / n is below 4e-12, also after
+/// as many derivatives along it as the jet has.
 constexpr int harmonics_of(int order) { return 14 + 2 * order; }
 
 /// J_0, J_1, … of amplitudes in (0, 2.405], by Miller's downward recurrence

@@ -53,8 +53,7 @@ Jet<Order> operator*(const Jet<Order>& a, const Jet<Order>& b) {
     for (int i = 0; i <= p; ++i) {
       const Lane factor = a.c[monomial(p, i)];
       for (int q = 0; q <= Order - p; ++q)
-        for (int j = 0; j <= q; ++j)
-          out.c[monomial(p + q, i + j)] += factor * b.c[monomial(q, j)];
+        for (int j = 0; j <= q; ++j) out.c[monomial(p + q, i + j)] += factor * b.c[monomial(q, j)];
     }
   return out;
 }
@@ -113,17 +112,15 @@ class LinearPowers {
     weights_[0] = 1;
     for (int p = 1; p <= Order; ++p)
       for (int j = 0; j <= p; ++j)
-        weights_[monomial(p, j)] =
-            (j < p ? gradient.x() * weights_[monomial(p - 1, j)] : 0) +
-            (j > 0 ? gradient.y() * weights_[monomial(p - 1, j - 1)] : 0);
+        weights_[monomial(p, j)] = (j < p ? gradient.x() * weights_[monomial(p - 1, j)] : 0) +
+                                   (j > 0 ? gradient.y() * weights_[monomial(p - 1, j - 1)] : 0);
   }
 
   /// sum of series[k] (g_x x + g_y y)^k.
   [[nodiscard]] Jet<Order> compose(const Series<Order>& series) const {
     Jet<Order> out;
     for (int p = 0; p <= Order; ++p)
-      for (int j = 0; j <= p; ++j)
-        out.c[monomial(p, j)] = series[p] * weights_[monomial(p, j)];
+      for (int j = 0; j <= p; ++j) out.c[monomial(p, j)] = series[p] * weights_[monomial(p, j)];
     return out;
   }
 

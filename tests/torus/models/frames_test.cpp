@@ -92,7 +92,9 @@ TEST(TorusInput, SaysWhatIsWrong) {
               HasSubstr("0, 1 or 2"));
   EXPECT_THAT(error([](TorusInput& x) { x.corrugations[0].begins_stage = false; }),
               HasSubstr("no target"));
-  EXPECT_THAT(error([](TorusInput& x) { x.sampling.view = SquareWindow{{0.9, 0.5}, 0.4}; }),
+  EXPECT_THAT(error([](TorusInput& x) {
+                x.sampling.view = SquareWindow{{0.9, 0.5}, 0.4};
+              }),
               HasSubstr("out of the unit square"));
 }
 

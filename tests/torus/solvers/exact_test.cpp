@@ -47,10 +47,9 @@ double mean_error(const TorusInput& input) {
   double sum = 0;
   for (Eigen::Index i = 0; i < places.rows(); ++i) {
     const Form b = form_at(base, i), f = form_at(before, i), F = form_at(after, i);
-    const double rho =
-        coefficient(c.direction, c.share + (1 - c.share) * b.E - f.E, (1 - c.share) * b.F - f.F,
-                    c.share + (1 - c.share) * b.G - f.G) /
-        pi.squaredNorm();
+    const double rho = coefficient(c.direction, c.share + (1 - c.share) * b.E - f.E,
+                                   (1 - c.share) * b.F - f.F, c.share + (1 - c.share) * b.G - f.G) /
+                       pi.squaredNorm();
     sum += norm(f.E + rho * pi.x() * pi.x() - F.E, f.F + rho * pi.x() * pi.y() - F.F,
                 f.G + rho * pi.y() * pi.y() - F.G);
   }
@@ -116,14 +115,15 @@ TEST(Exact, IsPeriodic) {
   Eigen::MatrixX2d shifted = places;
   shifted.col(0).array() += 1;
   shifted.col(1).array() -= 2;
-  EXPECT_LT((exact_points(input, 3, places, false).points -
-             exact_points(input, 3, shifted, false).points)
-                .cwiseAbs()
-                .maxCoeff(),
-            1e-11);
+  EXPECT_LT(
+      (exact_points(input, 3, places, false).points - exact_points(input, 3, shifted, false).points)
+          .cwiseAbs()
+          .maxCoeff(),
+      1e-11);
 }
 
-// The figures are those of a grid of 8000 x 8000 points, and of the published program for the first.
+// The figures are those of a grid of 8000 x 8000 points, and of the published program for the
+// first.
 TEST(Exact, DefaultsOfThePublishedNumbersAreKnown) {
   const TorusInput input = published_input();
   EXPECT_NEAR(mean_default(input, 0), 1.2114, 0.005);
@@ -157,7 +157,8 @@ TEST(Exact, IsTheSameAtAnyNumberOfThreads) {
   const Eigen::MatrixX2d places = drawn_places(5000);
   std::array<Eigen::MatrixX3d, 2> points;
   for (const int threads : {1, 2})
-    with_threads(threads, [&] { points[threads - 1] = exact_points(input, 3, places, false).points; });
+    with_threads(threads,
+                 [&] { points[threads - 1] = exact_points(input, 3, places, false).points; });
   EXPECT_EQ(points[0], points[1]);
 }
 

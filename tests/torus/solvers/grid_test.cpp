@@ -30,8 +30,7 @@ double distance_to_exact(const TorusInput& input, int n) {
   for (int r = 0; r < rows; ++r)
     for (int i = 0; i < n; ++i)
       for (int c = 0; c < 3; ++c)
-        largest = std::max(largest,
-                           std::abs(stages.back().row(c, r)[i] - exact(r * n + i, c)));
+        largest = std::max(largest, std::abs(stages.back().row(c, r)[i] - exact(r * n + i, c)));
   return largest;
 }
 
