@@ -16,6 +16,7 @@
 #include "solvers/sketch/layers/layers.h"
 #include "solvers/sketch/one_view_process.h"
 #include "solvers/sketch/several_views.h"
+#include "testbed/formats/artifact.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -69,9 +70,8 @@ MethodEntry flow_entry(std::string name, std::string summary, std::string source
 std::vector<Artifact> suggestion_files(const SketchInput& input,
                                        const std::vector<SuggestedSeam>& suggestions) {
   if (input.surface) return {};
-  return {
-      text_artifact("suggestions.svg",
-                    suggested_drawing_svg(align_views(input.drawing, input.align), suggestions))};
+  return {artifact_of("suggestions.svg",
+                      suggested_drawing_svg(align_views(input.drawing, input.align), suggestions))};
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <numeric>
 
 #include "core/frame_loop.h"
+#include "core/geometry/area_vector.h"
+#include "core/mesh.h"
 #include "models/torus/sampling.h"
 
 namespace geoprior::torus {
@@ -32,15 +34,8 @@ Eigen::MatrixX3i lattice_triangles(int side, bool closed) {
 /// Moves a view's middle point to the origin, turns its mean normal to +z (where it has one: not of
 /// the whole torus) and what its rows run along to the plane of x and z, and magnifies it.
 void set_upright(Eigen::MatrixX3d& points, const Eigen::MatrixX3i& F, int side, double factor) {
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  double area = 0;
-  for (Eigen::Index t = 0; t < F.rows(); ++t) {
-    const Eigen::Vector3d a = points.row(F(t, 0));
-    const Eigen::Vector3d one =
-        (points.row(F(t, 1)).transpose() - a).cross(points.row(F(t, 2)).transpose() - a);
-    normal += one;
-    area += one.norm();
-  }
+  const Eigen::Vector3d normal = doubled_area_vector(points, F);
+  const double area = 2 * triangle_areas(points, F).sum();
   Eigen::Vector3d along = Eigen::Vector3d::Zero();
   for (Eigen::Index first = 0; first < points.rows(); first += side)
     along += (points.row(first + side - 1) - points.row(first)).transpose();

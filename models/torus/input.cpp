@@ -1,6 +1,7 @@
 #include "models/torus/input.h"
 
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "core/error.h"
@@ -27,6 +28,17 @@ int stage_base(const TorusInput& input, int corrugation) {
 double first_share(const Radii& radii) {
   const double tube = radii.tube * radii.tube, ring = radii.ring * radii.ring;
   return 4 * (ring - tube) / (3 + ring - 3 * tube);
+}
+
+void refuse_coefficient(const TorusInput& input, int corrugation, double rho,
+                        const Eigen::Vector2d& at) {
+  std::ostringstream text;
+  text << "the coefficient rho_" << input.corrugations[corrugation].direction << " = " << rho
+       << " of corrugation " << corrugation + 1 << " is not positive at x = " << at.x()
+       << ", y = " << at.y()
+       << ": those before leave too large an error; larger numbers, or a larger share, mend it "
+          "(on a grid more points too)";
+  throw Error(text.str(), "scene.corrugations[" + std::to_string(corrugation) + "]");
 }
 
 void require_valid(const TorusInput& input) {

@@ -58,6 +58,10 @@ int stage_base(const TorusInput& input, int corrugation);
 /// coefficients are the largest: 4 (r2^2 - r1^2) / (3 + r2^2 - 3 r1^2) (Borrelli et al. 2012).
 double first_share(const Radii& radii);
 
+/// @throws Error  naming the corrugation, its coefficient and the place at which it is not positive
+[[noreturn]] void refuse_coefficient(const TorusInput& input, int corrugation, double rho,
+                                     const Eigen::Vector2d& at);
+
 /// @throws Error  naming what is wrong: radii whose torus is no shorter than the square, no first
 ///                stage, a direction or number out of range, a window outside the square
 void require_valid(const TorusInput& input);

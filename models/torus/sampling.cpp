@@ -177,6 +177,11 @@ double finest_periods(const TorusInput& input, int corrugations) {
   return most;
 }
 
+int grid_node(double parameter, int n) {
+  const auto i = static_cast<int>(std::llround(parameter * n) % n);
+  return i < 0 ? i + n : i;
+}
+
 std::vector<FramePlan> plan_frames(const TorusInput& input, std::optional<int> grid) {
   const FramePlanner planner(input, grid);
   std::vector<FramePlan> plans;

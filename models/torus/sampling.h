@@ -57,6 +57,9 @@ struct FramePlan {
 /// at least 1.
 double finest_periods(const TorusInput& input, int corrugations);
 
+/// The node of a periodic grid of n nodes at a parameter, which is a whole multiple of 1 / n.
+int grid_node(double parameter, int n);
+
 /// @param grid  all parameters are multiples of 1 / grid; absent: any
 std::vector<FramePlan> plan_frames(const TorusInput& input, std::optional<int> grid);
 

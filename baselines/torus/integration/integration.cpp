@@ -4,17 +4,17 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <sstream>
+#include <optional>
 #include <vector>
 
 #include "baselines/torus/integration/integral_curves.h"
 #include "baselines/torus/integration/periodic_spline.h"
 #include "baselines/torus/integration/spline_surface.h"
-#include "core/error.h"
 #include "core/limits.h"
 #include "core/parallel.h"
 #include "models/torus/frames.h"
 #include "models/torus/revolution.h"
+#include "models/torus/sampling.h"
 
 namespace geoprior::torus {
 namespace {
@@ -34,13 +34,21 @@ double loop_amplitude(double q) {
   return 2 * std::sqrt(std::max(0., x));
 }
 
+/// Where a coefficient is not positive.
+struct BadPlace {
+  Eigen::Vector2d at;
+  double rho = 0;
+};
+
 /// One corrugation of a grid surface.
 class Integration {
  public:
-  Integration(const Corrugation& corrugation, const SplineSurface& from, const SplineSurface& base,
-              int n)
-      : corrugation_(corrugation),
-        d_(kDirections[corrugation.direction]),
+  Integration(const TorusInput& input, int number, const SplineSurface& from,
+              const SplineSurface& base, int n)
+      : input_(input),
+        number_(number),
+        corrugation_(input.corrugations[number]),
+        d_(kDirections[corrugation_.direction]),
         from_(from),
         base_(base),
         n_(n) {}
@@ -48,7 +56,7 @@ class Integration {
   GridSurface run() {
     std::vector<Eigen::MatrixX3d> curves(n_);  // glued points at the steps of each
     Eigen::MatrixXd places(n_, n_ + 1);        // a of curve s at step k
-    std::vector<Eigen::Vector2d> bad(n_, {-1, -1});
+    std::vector<std::optional<BadPlace>> bad(n_);
     parallel_blocks(n_, kCurvesOfBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t s = begin; s < end; ++s) {
         const IntegralCurve curve = integral_curve(from_, d_, static_cast<double>(s) / n_, n_);
@@ -56,14 +64,14 @@ class Integration {
         curves[s] = integrate(curve, bad[s]);
       }
     });
-    for (const Eigen::Vector2d& place : bad)
-      if (place.x() >= 0) refuse(place);
+    for (const auto& place : bad)
+      if (place) refuse_coefficient(input_, number_, place->rho, place->at);
     return resample(places, curves);
   }
 
  private:
   /// The corrugated points along a curve, glued.
-  Eigen::MatrixX3d integrate(const IntegralCurve& curve, Eigen::Vector2d& bad) const {
+  Eigen::MatrixX3d integrate(const IntegralCurve& curve, std::optional<BadPlace>& bad) const {
     // Gauss's points and weights of [0, 1].
     constexpr std::array<double, 4> kAt{0.069431844202973712, 0.33000947820757187,
                                         0.66999052179242813, 0.93056815579702629};
@@ -96,7 +104,7 @@ class Integration {
   }
 
   /// r (cos(a cos 2 pi N t) t + sin(a cos 2 pi N t) n).
-  Eigen::Vector3d loop(double a, double t, Eigen::Vector2d& bad) const {
+  Eigen::Vector3d loop(double a, double t, std::optional<BadPlace>& bad) const {
     const Eigen::Vector2d place = a * d_.along + t * d_.across;
     const SplineSurface::Point f = from_.at(place);
     const SplineSurface::Point b = base_.at(place);
@@ -106,7 +114,7 @@ class Integration {
                     share + (1 - share) * b.along_x.squaredNorm() - f.along_x.squaredNorm(),
                     (1 - share) * b.along_x.dot(b.along_y) - f.along_x.dot(f.along_y),
                     share + (1 - share) * b.along_y.squaredNorm() - f.along_y.squaredNorm());
-    if (!(rho > 0) && bad.x() < 0) bad = place.array() - place.array().floor();
+    if (!(rho > 0) && !bad) bad = BadPlace{place.array() - place.array().floor(), rho};
     const Eigen::Vector3d U = d_.across.x() * f.along_x + d_.across.y() * f.along_y;
     const Eigen::Vector3d V = d_.along.x() * f.along_x + d_.along.y() * f.along_y;
     const Eigen::Vector3d W = U - U.dot(V) / V.squaredNorm() * V;
@@ -143,14 +151,8 @@ class Integration {
     return out;
   }
 
-  [[noreturn]] void refuse(const Eigen::Vector2d& place) const {
-    std::ostringstream text;
-    text << "the coefficient rho_" << corrugation_.direction << " of a corrugation of number "
-         << corrugation_.number << " is not positive at x = " << place.x() << ", y = " << place.y()
-         << ": those before leave too large an error; larger numbers with more points mend it";
-    throw Error(text.str());
-  }
-
+  const TorusInput& input_;
+  int number_;
   const Corrugation& corrugation_;
   const WaveDirection& d_;
   const SplineSurface& from_;
@@ -193,7 +195,7 @@ class IntegrationTorus final : public TorusMap {
       const Corrugation& corrugation = input_.corrugations[k];
       now = std::make_unique<SplineSurface>(surface);
       if (corrugation.begins_stage) base = std::make_unique<SplineSurface>(surface);
-      surface = Integration(corrugation, *now, *base, n).run();
+      surface = Integration(input_, k, *now, *base, n).run();
       context.progress((k + 1.) / most);
     }
   }
@@ -205,13 +207,10 @@ class IntegrationTorus final : public TorusMap {
 
  private:
   static Eigen::MatrixX3d nodes(const GridSurface& surface, const Eigen::MatrixX2d& at) {
-    const auto node = [n = surface.n](double parameter) {
-      const auto i = std::llround(parameter * n) % n;
-      return i < 0 ? i + n : i;
-    };
     Eigen::MatrixX3d out(at.rows(), 3);
     for (Eigen::Index r = 0; r < at.rows(); ++r)
-      for (int c = 0; c < 3; ++c) out(r, c) = surface.x[c](node(at(r, 0)), node(at(r, 1)));
+      for (int c = 0; c < 3; ++c)
+        out(r, c) = surface.x[c](grid_node(at(r, 0), surface.n), grid_node(at(r, 1), surface.n));
     return out;
   }
 

@@ -9,19 +9,12 @@
 #include "experiments/sketch/drawing/picture_file.h"
 #include "experiments/sketch/drawing/view_picture.h"
 #include "experiments/sketch/fabrication/cloth_files.h"
+#include "testbed/formats/artifact.h"
 #include "testbed/formats/gltf/writer.h"
 #include "testbed/formats/mesh/mesh_file.h"
 #include "testbed/home.h"
 
 namespace geoprior::sketch {
-Artifact text_artifact(const std::string& name, const std::string& bytes) {
-  Artifact artifact;
-  artifact.name = name;
-  artifact.bytes.resize(bytes.size());
-  std::memcpy(artifact.bytes.data(), bytes.data(), bytes.size());
-  return artifact;
-}
-
 namespace {
 
 void load_surface(const SketchSceneOptions& o, const std::filesystem::path& folder,
@@ -65,13 +58,13 @@ std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const Eigen::Mat
   std::vector<Artifact> artifacts;
   try {
     for (const FabricationFile& file : fabrication_files(pattern, options))
-      artifacts.push_back(text_artifact(file.name, file.bytes));
+      artifacts.push_back(artifact_of(file.name, file.bytes));
     if (options.cloth) {
       for (const FabricationFile& file : cloth_files(pattern, surface))
-        artifacts.push_back(text_artifact(file.name, file.bytes));
+        artifacts.push_back(artifact_of(file.name, file.bytes));
     }
   } catch (const Error& error) {
-    artifacts = {text_artifact("pattern-refused.txt", std::string(error.what()) + "\n")};
+    artifacts = {artifact_of("pattern-refused.txt", std::string(error.what()) + "\n")};
   }
   return artifacts;
 }
@@ -116,7 +109,7 @@ OneViewFiles one_view_files(const SketchSceneOptions& o, DecodedPicture& picture
       made.push_back(std::move(file));
   }
   for (const FabricationFile& file : made)
-    files.artifacts.push_back(text_artifact(file.name, file.bytes));
+    files.artifacts.push_back(artifact_of(file.name, file.bytes));
   return files;
 }
 
@@ -177,7 +170,7 @@ LayerFiles SketchScene::layer_files() const {
     std::vector<double> times;
     for (std::size_t i = 0; i < motion.links.front().angles.size(); ++i)
       times.push_back(kFrame * static_cast<double>(i));
-    return {text_artifact("layers.glb", rigid_chain_glb(links, times, "layers"))};
+    return {artifact_of("layers.glb", rigid_chain_glb(links, times, "layers"))};
   };
   return files;
 }

@@ -74,9 +74,6 @@ class SketchScene final : public ProcessScene {
   [[nodiscard]] std::map<std::string, double> facts() const override;
 };
 
-/// A file of a run with this text.
-Artifact text_artifact(const std::string& name, const std::string& bytes);
-
 /// @param folder  of the experiment file, against which relative files are tried first
 /// @throws Error  naming key or file, and place
 /// @param seed    of the experiment: of the noise of a synthetic view, beside its own

@@ -1,20 +1,14 @@
 #include "experiments/torus/print/artifacts.h"
 
-#include <cstring>
 #include <numbers>
 
 #include "experiments/torus/print/solid.h"
+#include "testbed/formats/artifact.h"
 #include "testbed/formats/gltf/writer.h"
 #include "testbed/formats/vtk/files.h"
 
 namespace geoprior::torus {
 namespace {
-
-Artifact file_of(const std::string& name, const std::string& bytes) {
-  Artifact artifact{name, std::vector<std::byte>(bytes.size())};
-  std::memcpy(artifact.bytes.data(), bytes.data(), bytes.size());
-  return artifact;
-}
 
 TriMesh body_of(const TorusInput& input, const Part& part, double thickness) {
   const TriMesh surface{part.points, part.triangles};
@@ -31,7 +25,7 @@ std::vector<Artifact> artifacts_of(const TorusInput& input,
                                    const std::optional<PrintedBody>& printed, Frame& frame) {
   std::vector<Artifact> files;
   if (const Part* grid = frame.find_part("grid")) {
-    files.push_back(file_of("grid.vti", part_to_vtk_xml(*grid, frame.parameter)));
+    files.push_back(artifact_of("grid.vti", part_to_vtk_xml(*grid, frame.parameter)));
     frame.parts.erase("grid");
   }
   if (!printed) return files;
@@ -39,8 +33,8 @@ std::vector<Artifact> artifacts_of(const TorusInput& input,
   const TriMesh surface{part.points, part.triangles};
   const double factor = printed->size / extent(surface);
   const TriMesh body = scaled(body_of(input, part, printed->thickness / factor), factor);
-  files.push_back(file_of("surface.stl", stl_bytes(body)));
-  files.push_back(file_of("surface.glb", surface_glb(scaled(surface, factor), "torus")));
+  files.push_back(artifact_of("surface.stl", stl_bytes(body)));
+  files.push_back(artifact_of("surface.glb", surface_glb(scaled(surface, factor), "torus")));
   Part& print = frame.parts["print"];
   print.points = body.V;
   print.triangles = body.F;

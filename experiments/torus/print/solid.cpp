@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/geometry/area_vector.h"
 #include "core/geometry/topology.h"
 #include "models/torus/revolution.h"
 
@@ -28,17 +29,6 @@ void append(std::string& bytes, Bits bits) {
 void append(std::string& bytes, const Eigen::RowVector3d& point) {
   for (int k = 0; k < 3; ++k)
     append(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(point(k))));
-}
-
-/// Unit; by area.
-Eigen::Vector3d mean_normal(const TriMesh& mesh) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (Eigen::Index t = 0; t < mesh.F.rows(); ++t) {
-    const Eigen::Vector3d a = mesh.V.row(mesh.F(t, 0)), b = mesh.V.row(mesh.F(t, 1)),
-                          c = mesh.V.row(mesh.F(t, 2));
-    sum += (b - a).cross(c - a);
-  }
-  return sum.normalized();
 }
 
 }  // namespace
@@ -81,7 +71,7 @@ Eigen::MatrixX3d round_cavity(const TriMesh& surface, const Eigen::MatrixXd& at,
 
 Eigen::MatrixX3d flat_plate(const TriMesh& surface, double thickness) {
   const int side = static_cast<int>(std::lround(std::sqrt(surface.vertex_count())));
-  const Eigen::Vector3d up = mean_normal(surface);
+  const Eigen::Vector3d up = doubled_area_vector(surface.V, surface.F).normalized();
   const double bottom = (surface.V * up).minCoeff() - thickness;
   const auto corner = [&](int i, int j) -> Eigen::Vector3d {
     const Eigen::Vector3d point = surface.V.row(j * side + i);

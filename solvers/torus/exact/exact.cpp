@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -48,11 +47,8 @@ class JetChain {
       y[k] = derivative_y(f[k]);
     }
     const JetMetric<Order - 1> base = corrugation.begins_stage ? pulled_back(x, y) : *before;
-    JetMetric<Order - 1> target{(1 - corrugation.share) * base.E, (1 - corrugation.share) * base.F,
-                                (1 - corrugation.share) * base.G};
-    target.E.c[0] += corrugation.share;
-    target.G.c[0] += corrugation.share;
-    const auto made = corrugate(x, y, target, corrugation, periods(corrugation));
+    const auto made =
+        corrugate(x, y, toward_square(base, corrugation.share), corrugation, periods(corrugation));
     note(done, made.rho.value());
     JetVector<Order - 1> next;
     for (int k = 0; k < 3; ++k) next[k] = cut<Order - 1>(f[k]) + made.shift[k];
@@ -112,16 +108,6 @@ void store(const JetVector<Order>& f, int c, Eigen::Index row, Eigen::Index lane
            Eigen::MatrixX3d& into) {
   for (int k = 0; k < 3; ++k)
     for (Eigen::Index l = 0; l < lanes; ++l) into(row + l, k) = f[k].c[c][l];
-}
-
-[[noreturn]] void refuse(const TorusInput& input, const BadCoefficient& bad,
-                         const Eigen::Vector2d& at) {
-  const Corrugation& c = input.corrugations[bad.corrugation];
-  std::ostringstream text;
-  text << "the coefficient rho_" << c.direction << " = " << bad.rho << " of corrugation "
-       << bad.corrugation + 1 << " is not positive at x = " << at.x() << ", y = " << at.y()
-       << ": those before leave too large an error; larger numbers, or a larger share, mend it";
-  throw Error(text.str(), "scene.corrugations[" + std::to_string(bad.corrugation) + "]");
 }
 
 class ExactTorus final : public TorusMap {
@@ -193,7 +179,8 @@ ExactPoints exact_points(const TorusInput& input, int corrugations, const Eigen:
     }
   });
   for (std::size_t b = 0; b < lanes; ++b)
-    if (bad[b].corrugation >= 0) refuse(input, bad[b], at.row(4 * b + bad[b].lane));
+    if (bad[b].corrugation >= 0)
+      refuse_coefficient(input, bad[b].corrugation, bad[b].rho, at.row(4 * b + bad[b].lane));
   return out;
 }
 

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
-#include <sstream>
 #include <thread>
 
 #include "core/error.h"
 #include "core/limits.h"
 #include "core/parallel.h"
 #include "models/torus/frames.h"
+#include "models/torus/sampling.h"
 #include "solvers/torus/grid/grid_rows.h"
 
 namespace geoprior::torus {
@@ -75,7 +75,9 @@ class GridTorus final : public TorusMap {
       context.progress(static_cast<double>(first + count) / bands);
     }
     for (const BadNode& bad : bad_)
-      if (bad.corrugation >= 0) refuse(bad);
+      if (bad.corrugation >= 0)
+        refuse_coefficient(input_, bad.corrugation, bad.rho,
+                           Eigen::Vector2d(bad.column, (bad.row % n_ + n_) % n_) / n_);
   }
 
   Eigen::MatrixX3d points(std::size_t i, const TorusSamples& /*samples*/,
@@ -92,7 +94,7 @@ class GridTorus final : public TorusMap {
       stage_.push_back(samples.corrugations);
       most_ = std::max(most_, samples.corrugations);
       for (Eigen::Index at = 0; at < samples.at.rows(); ++at) {
-        const int column = node(samples.at(at, 0)), row = node(samples.at(at, 1));
+        const int column = grid_node(samples.at(at, 0), n_), row = grid_node(samples.at(at, 1), n_);
         nodes_[row / kBand].push_back({row, column, entry, at});
       }
     }
@@ -108,11 +110,6 @@ class GridTorus final : public TorusMap {
     return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kBandsAtOnce);
   }
 
-  [[nodiscard]] int node(double parameter) const {
-    const auto i = std::llround(parameter * n_) % n_;
-    return static_cast<int>(i < 0 ? i + n_ : i);
-  }
-
   void compute(int band, BandMemory& stages) {
     const int begin = band * kBand, end = std::min(n_, begin + kBand);
     corrugate_band(input_, n_, begin, end, stages, bad_[band]);
@@ -120,15 +117,6 @@ class GridTorus final : public TorusMap {
       for (int c = 0; c < 3; ++c)
         points_[asked.entry](asked.at, c) =
             stages[stage_[asked.entry]].row(c, asked.row)[asked.column];
-  }
-
-  [[noreturn]] void refuse(const BadNode& bad) const {
-    std::ostringstream text;
-    text << "the coefficient rho_" << input_.corrugations[bad.corrugation].direction << " = "
-         << bad.rho << " of corrugation " << bad.corrugation + 1 << " is not positive at column "
-         << bad.column << ", row " << bad.row << " of " << n_
-         << ": those before leave too large an error; larger numbers with more points mend it";
-    throw Error(text.str(), "scene.corrugations[" + std::to_string(bad.corrugation) + "]");
   }
 
   TorusInput input_;

@@ -51,13 +51,6 @@ void start_rows(const Radii& radii, int n, GridRows& f) {
   }
 }
 
-JetMetric<0> toward_square(const JetMetric<0>& base, double share) {
-  JetMetric<0> target{(1 - share) * base.E, (1 - share) * base.F, (1 - share) * base.G};
-  target.E.c[0] += share;
-  target.G.c[0] += share;
-  return target;
-}
-
 /// N pi(x) at four columns, its whole periods left out: N times a whole number over n.
 Lane periods(const Corrugation& corrugation, int n, int row, int column) {
   const Eigen::Vector2d pi = kDirections[corrugation.direction].covector;

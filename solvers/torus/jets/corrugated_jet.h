@@ -105,6 +105,15 @@ LoopIntegrals<Order> loop_integrals(const BesselSeries<Order>& bessel, const Jet
   return {out[0], out[1]};
 }
 
+/// share Id + (1 - share) base.
+template <int Order>
+JetMetric<Order> toward_square(const JetMetric<Order>& base, double share) {
+  JetMetric<Order> target{(1 - share) * base.E, (1 - share) * base.F, (1 - share) * base.G};
+  target.E.c[0] += share;
+  target.G.c[0] += share;
+  return target;
+}
+
 /// What a corrugation adds to a surface, and the coefficient that it adds to the metric.
 template <int Order>
 struct CorrugationJet {
