@@ -74,9 +74,9 @@ function(geoprior_mark_sources)
     set(complex "")
     if(NOT source MATCHES "/generated/")
       file(STRINGS ${source} includes REGEX "^#include <CGAL/")
-      file(STRINGS ${source} toml REGEX "^#include <toml")
+      file(STRINGS ${source} alone REGEX "^#include <(toml|nauty/)")
       file(STRINGS ${source} complex REGEX "std::complex|Eigen::FFT|(Vector|Matrix)Xcd")
-      if(toml)  # wants to be included once a translation unit, before all else
+      if(alone)  # toml++ wants to be included once, before all else; nauty names a global type `set`
         set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
       endif()
     endif()

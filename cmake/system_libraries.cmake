@@ -1,5 +1,6 @@
 # Libraries for which Debian ships no CMake package, or one that does too much: CGAL, CHOLMOD (supernodal sparse
-# Cholesky) and the BLAS below it, FFTW (Fourier transforms), LEMON (network flows), Ceres (non-linear least squares).
+# Cholesky) and the BLAS below it, FFTW (Fourier transforms), LEMON (network flows), nauty (canonical forms of graphs), Ceres
+# (non-linear least squares).
 # Also installed, for the projects that link geoprior.
 if(NOT TARGET geoprior_cholmod)
   # CGAL is headers over two number libraries. Its own target compiles all that links it with -frounding-math; here the
@@ -28,6 +29,13 @@ if(NOT TARGET geoprior_cholmod)
   add_library(geoprior_lemon INTERFACE IMPORTED)
   target_include_directories(geoprior_lemon SYSTEM INTERFACE ${LEMON_INCLUDE_DIR})
   target_link_libraries(geoprior_lemon INTERFACE ${LEMON_LIBRARY})
+
+  # nauty's functions keep state between calls: one caller at a time.
+  find_path(NAUTY_INCLUDE_DIR NAMES nauty/nausparse.h REQUIRED)
+  find_library(NAUTY_LIBRARY nauty REQUIRED)
+  add_library(geoprior_nauty INTERFACE IMPORTED)
+  target_include_directories(geoprior_nauty SYSTEM INTERFACE ${NAUTY_INCLUDE_DIR})
+  target_link_libraries(geoprior_nauty INTERFACE ${NAUTY_LIBRARY})
 
   # Ceres' own package names the static library: its copies of Eigen's functions would be merged with ours, which align
   # memory otherwise (EIGEN_MAX_ALIGN_BYTES), and free what the others allocated. The shared one keeps them to itself.

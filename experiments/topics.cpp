@@ -9,7 +9,8 @@
   TOPIC(fluid)                 \
   TOPIC(details)               \
   TOPIC(sketch)                \
-  TOPIC(torus)
+  TOPIC(torus)                 \
+  TOPIC(assembly)
 
 /// What experiments/<name> defines.
 #define GEOPRIOR_DECLARE(name) \

@@ -14,7 +14,7 @@ packages=(
   ca-certificates git cmake ninja-build ccache g++ clang-format pkg-config
   # libraries
   libeigen3-dev libtbb-dev libcgal-dev libvtk9-dev libhdf5-dev libssl-dev
-  libsuitesparse-dev libopenblas-dev libpugixml-dev libfftw3-dev liblemon-dev libceres-dev libspectra-dev
+  libsuitesparse-dev libopenblas-dev libpugixml-dev libfftw3-dev liblemon-dev libnauty2-dev libceres-dev libspectra-dev
   libopenimageio-dev openimageio-tools python3-imath libsndfile1-dev
   libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev libbenchmark-dev
@@ -23,7 +23,7 @@ packages=(
   # pictures without a display
   xvfb libgl1-mesa-dri fonts-dejavu-core
   # models that nobody here made, and the converter that reads them
-  assimp-utils assimp-testmodels libcgal-demo
+  assimp-utils assimp-testmodels libcgal-demo xtrkcad-common
 )
 
 say() { printf 'setup: %s\n' "$*" >&2; }

@@ -84,12 +84,15 @@ void mutate(std::string& text, const std::vector<std::string>& seeds, RandomStre
   }
 }
 
+const std::filesystem::path kCorpus = GEOPRIOR_SOURCE_DIR "/tests/fuzz/corpus";
+
 }  // namespace
+
+std::string corpus_file(const std::string& name) { return read_whole_file(kCorpus / name); }
 
 std::vector<std::string> corpus(const std::string& extension) {
   std::vector<std::filesystem::path> files;
-  const auto folder = std::filesystem::path(GEOPRIOR_SOURCE_DIR) / "tests" / "fuzz" / "corpus";
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+  for (const auto& entry : std::filesystem::directory_iterator(kCorpus)) {
     if (entry.path().extension() == extension) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());

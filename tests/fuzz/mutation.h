@@ -11,6 +11,9 @@ namespace geoprior::test {
 /// The files of tests/fuzz/corpus with this extension (".ply"), in order of their names.
 std::vector<std::string> corpus(const std::string& extension);
 
+/// One file of it.
+std::string corpus_file(const std::string& name);
+
 /// Uniform in 0 … n-1; 0 for n = 0.
 std::size_t below(RandomStream& random, std::size_t n);
 

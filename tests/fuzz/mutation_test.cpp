@@ -89,6 +89,14 @@ TEST(LongFuzz, PointReaderAcceptsOrThrowsError) { run(".csv", fuzz_points); }
 TEST(LongFuzz, DrawingReaderAcceptsOrThrowsError) { run(".svg", fuzz_svg); }
 TEST(LongFuzz, SketchReaderAcceptsOrThrowsError) { run(".svg", fuzz_sketch); }
 TEST(LongFuzz, TableReaderAcceptsOrThrowsError) { run(".csv", fuzz_table); }
+TEST(LongFuzz, LayoutReaderAcceptsOrThrowsError) { run(".xtc", fuzz_xtrackcad); }
+TEST(LongFuzz, AssemblyReaderAcceptsOrThrowsError) {
+  for (const char* file : {"blocks.assembly.toml", "blocks.json"})
+    run_on(file, {corpus_file(file)}, fuzz_assembly);
+}
+TEST(LongFuzz, ReaderOfPartsInScenesAcceptsOrThrowsError) {
+  run_on("parts.glb", {corpus_file("blocks.glb")}, fuzz_gltf_parts);
+}
 
 TEST(LongFuzz, MapReaderAcceptsOrThrowsError) {
   const auto pictures = fluid::exr_maps(sample_features().front(), "map");

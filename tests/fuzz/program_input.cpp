@@ -64,6 +64,8 @@ ProgramInput input_of(const std::string& topic, const std::string& experiment,
 ProgramInput experiment_input() {
   ProgramInput input;
   for (const auto& [name, text] : small_experiments()) input.seeds.push_back(text);
+  const std::string blocks = "fuzz/corpus/blocks.assembly.toml";  // named by the one of assembly
+  input.home[blocks] = read_whole_file(kSource / "tests" / blocks);
   const std::string file = "experiments/fuzzed/small.toml";
   Words quick = run_command("fuzzed/small");
   quick.emplace_back("--quick");
@@ -82,6 +84,19 @@ ProgramInput gltf_input() {
 
 ProgramInput capture_input() {
   return input_of("skinning", "capture", "capture.bvh", corpus(".bvh"));
+}
+
+/// Models of parts of which a variation is made.
+ProgramInput model_input(const std::string& extension, const std::string& seed) {
+  const std::string folder = "experiments/assembly/", model = "model" + extension;
+  const std::string text = topic_folder("assembly").at(folder + "model.toml");
+  ProgramInput input;
+  input.seeds = {seed};
+  input.home[folder + "model.toml"] = replaced(text, "MODEL", model);
+  const Words vary{"vary", folder + model, "--count", "1", "--out", "results/variations"};
+  for (const Words& words : {run_command("assembly/model"), vary})
+    input.commands.push_back({words, folder + model, kProgram});
+  return input;
 }
 
 /// A character whose skeleton file is written.
@@ -248,8 +263,9 @@ std::vector<InputKind> input_kinds() {
       {"Poses", 1, [] { return input_of("skinning", "poses", "poses.data.toml"); }},
       {"Bvh", 1, capture_input},
       {"Gltf", 1, gltf_input},
-      {"Glb", 1, [] { return input_of("skinning", "glb", "character.glb", corpus(".glb")); }},
-      {"Rig", 1, [] { return rig_input("rig.glb", corpus(".glb")); }},
+      {"Glb", 1,
+       [] { return input_of("skinning", "glb", "character.glb", {corpus_file("skinned.glb")}); }},
+      {"Rig", 1, [] { return rig_input("rig.glb", {corpus_file("skinned.glb")}); }},
       {"RigOfText", 1, [] { return rig_input("rig.gltf", {corpus(".gltf").back()}); }},
       {"Obj", 1, [] { return mesh_input(".obj", corpus(".obj")); }},
       {"Ply", 1, [] { return mesh_input(".ply", corpus(".ply")); }},
@@ -260,6 +276,16 @@ std::vector<InputKind> input_kinds() {
       {"Points", 1, [] { return input_of("details", "points", "points.csv"); }},
       {"Drawing", 1, [] { return input_of("paper", "drawing", "drawing.svg"); }},
       {"Views", 1, views_input},
+      {"Assembly", 1,
+       [] { return model_input(".assembly.toml", corpus_file("blocks.assembly.toml")); }},
+      {"AssemblyOfJson", 1, [] { return model_input(".json", corpus_file("blocks.json")); }},
+      {"Layout", 1, [] { return model_input(".xtc", corpus_file("siding.xtc")); }},
+      {"PartsOfGlb", 1, [] { return model_input(".glb", corpus_file("blocks.glb")); }},
+      {"PartsOfGltf", 1,
+       [] {
+         const std::string file = "experiments/assembly/model.gltf";
+         return model_input(".gltf", topic_folder("assembly").at(file));
+       }},
       {"EditList", 1, [] { return sculpt_input("edits.data.toml"); }},
       {"FeatureLibrary", 1, [] { return sculpt_input("features.h5"); }},
       {"Reference", 1, reference_input},

@@ -307,6 +307,25 @@ void add_skinning_and_sketch(std::map<std::string, NamedFile>& files) {
       "linear-blend"};
 }
 
+void add_assembly(std::map<std::string, NamedFile>& files) {
+  files["assembly inputs"] = {
+      writes(
+          "mine.assembly.toml",
+          [](bool changed) {
+            return std::string(
+                       "[[part]]\nlabel = \"bar\"\nports = [{ name = \"a\", at = [0, 0, 0], "
+                       "out = [-1, 0, 0] }, { name = \"b\", at = [0.1, 0, 0], out = [1, 0, 0] "
+                       "}]\nsolids = [{ kind = \"box\", at = [0.05, 0, 0], size = [0.1, 0.02, ") +
+                   (changed ? "0.03" : "0.02") +
+                   "] }]\n[[model]]\nname = \"m\"\nparts = [{ id = \"p\", part = \"bar\" }, { "
+                   "id = \"q\", part = \"bar\" }]\njoints = [\"p.b q.a\"]\n";
+          }),
+      "inputs = [\"mine.assembly.toml\"]\n",
+      {"mine.assembly.toml"},
+      "exact",
+      "count = 1"};
+}
+
 }  // namespace
 
 const std::map<std::string, NamedFile>& named_files() {
@@ -317,6 +336,7 @@ const std::map<std::string, NamedFile>& named_files() {
     add_edits(made);
     add_paper_and_sound(made);
     add_skinning_and_sketch(made);
+    add_assembly(made);
     return made;
   }();
   return files;
