@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-#include "models/assembly/boundary_types.h"
+#include "models/assembly/exchange/boundary_types.h"
 
 namespace geoprior::assembly {
 

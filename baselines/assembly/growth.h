@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "models/assembly/matching_options.h"
-#include "models/assembly/replacement.h"
+#include "models/assembly/exchange/matching_options.h"
+#include "models/assembly/exchange/replacement.h"
 
 namespace geoprior::assembly {
 

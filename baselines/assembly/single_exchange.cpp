@@ -1,6 +1,6 @@
 #include "baselines/assembly/single_exchange.h"
 
-#include "models/assembly/boundary_types.h"
+#include "models/assembly/exchange/boundary_types.h"
 
 namespace geoprior::assembly {
 

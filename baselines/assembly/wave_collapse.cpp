@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "models/assembly/labels.h"
-#include "models/assembly/search.h"
+#include "models/assembly/graph/labels.h"
+#include "models/assembly/search/search.h"
 
 namespace geoprior::assembly {
 

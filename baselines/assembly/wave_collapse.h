@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "core/method.h"
-#include "models/assembly/input.h"
+#include "models/assembly/search/input.h"
 
 namespace geoprior::assembly {
 

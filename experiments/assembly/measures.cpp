@@ -12,12 +12,12 @@
 #include "metrics/contact/self_contact.h"
 #include "metrics/graphs/differences.h"
 #include "metrics/graphs/plan_distance.h"
-#include "models/assembly/canonical.h"
-#include "models/assembly/compatibility.h"
-#include "models/assembly/embedding.h"
-#include "models/assembly/labels.h"
-#include "models/assembly/rules.h"
-#include "models/assembly/variation.h"
+#include "models/assembly/exchange/embedding.h"
+#include "models/assembly/graph/compatibility.h"
+#include "models/assembly/graph/labels.h"
+#include "models/assembly/isomorphism/canonical.h"
+#include "models/assembly/search/rules.h"
+#include "models/assembly/search/variation.h"
 
 namespace geoprior::assembly {
 namespace {

@@ -8,7 +8,8 @@
 #include "core/error.h"
 #include "experiments/assembly/scene/scene.h"
 #include "experiments/assembly/topic.h"
-#include "models/assembly/search.h"
+#include "experiments/assembly/processes/process.h"
+#include "models/assembly/search/search.h"
 #include "solvers/assembly/exact.h"
 
 namespace geoprior::assembly {

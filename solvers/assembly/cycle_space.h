@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "models/assembly/part_set.h"
-#include "models/assembly/ported_graph.h"
+#include "models/assembly/graph/part_set.h"
+#include "models/assembly/graph/ported_graph.h"
 
 namespace geoprior::assembly {
 

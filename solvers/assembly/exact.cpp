@@ -6,8 +6,8 @@
 #include <unordered_set>
 #include <utility>
 
-#include "models/assembly/boundary_types.h"
-#include "models/assembly/canonical.h"
+#include "models/assembly/exchange/boundary_types.h"
+#include "models/assembly/isomorphism/canonical.h"
 
 namespace geoprior::assembly {
 

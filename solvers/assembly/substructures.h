@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "models/assembly/replacement.h"
+#include "models/assembly/exchange/replacement.h"
 
 namespace geoprior::assembly {
 

@@ -715,7 +715,8 @@ void describe(OptionVisitor& v, AssemblyFile& file) {
   v.value("include", file.include,
           {.doc = "other assembly files, read first", .named = Named::file});
   describe_list(v, "part", file.parts, {.doc = "kinds of parts"});
-  describe_list(v, "model", file.models, {.doc = "models made of them"});
+  describe_list(v, "model", file.models,
+                {.doc = "models: which parts there are and what is joined"});
 }
 
 ReadAssemblies read_assembly_file(const std::filesystem::path& file) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "experiments/assembly/files/read_result.h"
-#include "models/assembly/ported_graph.h"
+#include "models/assembly/graph/ported_graph.h"
 #include "testbed/formats/gltf/model.h"
 
 namespace geoprior::assembly {

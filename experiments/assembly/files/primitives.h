@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/mesh.h"
-#include "models/assembly/part_type.h"
+#include "models/assembly/graph/part_type.h"
 
 namespace geoprior::assembly {
 

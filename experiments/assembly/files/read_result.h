@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "models/assembly/ported_graph.h"
+#include "models/assembly/graph/ported_graph.h"
 
 namespace geoprior::assembly {
 

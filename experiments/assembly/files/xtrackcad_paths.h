@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "models/assembly/part_type.h"
+#include "models/assembly/graph/part_type.h"
 
 namespace geoprior::assembly {
 

@@ -8,7 +8,7 @@
 #include "experiments/assembly/files/assembly_file.h"
 #include "experiments/assembly/files/gltf_parts.h"
 #include "experiments/assembly/files/xtrackcad.h"
-#include "models/assembly/embedding.h"
+#include "models/assembly/exchange/embedding.h"
 #include "testbed/formats/text/letters.h"
 
 namespace geoprior::assembly {
@@ -94,8 +94,8 @@ std::vector<Assembly> cut_pieces(const std::vector<Assembly>& models, const Piec
     return static_cast<int>(random.below(static_cast<std::uint32_t>(n)));
   };
   std::vector<Assembly> out;
-  constexpr int kTries = 1000;  // of a piece: parts that hang on nothing give none
-  for (int i = 0; i < options.count * kTries && static_cast<int>(out.size()) < options.count; ++i) {
+  constexpr int kTries = 1000;  // in a row: parts that hang on nothing give no piece
+  for (int tries = 0; tries < kTries && static_cast<int>(out.size()) < options.count; ++tries) {
     const Assembly& model = models[draw(models.size())];
     const int size = options.least + draw(options.most - options.least + 1);
     std::vector<int> number(model.parts.size(), -1), chosen{draw(model.parts.size())};
@@ -111,6 +111,7 @@ std::vector<Assembly> cut_pieces(const std::vector<Assembly>& models, const Piec
       chosen.push_back(next);
     }
     if (static_cast<int>(chosen.size()) < size) continue;
+    tries = 0;
     Assembly& piece = out.emplace_back();
     piece.name = model.name + ", piece " + std::to_string(out.size());
     for (const int part : chosen) piece.parts.push_back(model.parts[part]);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/options.h"
-#include "models/assembly/input.h"
+#include "models/assembly/search/input.h"
 
 namespace geoprior::assembly {
 

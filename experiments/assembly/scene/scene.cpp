@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "experiments/assembly/scene/inputs.h"
-#include "models/assembly/embedding.h"
-#include "models/assembly/labels.h"
+#include "models/assembly/exchange/embedding.h"
+#include "models/assembly/graph/labels.h"
 #include "testbed/home.h"
 
 namespace geoprior::assembly {

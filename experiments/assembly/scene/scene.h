@@ -6,7 +6,7 @@
 #include <string>
 
 #include "experiments/assembly/scene/options.h"
-#include "models/assembly/input.h"
+#include "models/assembly/search/input.h"
 #include "testbed/topic.h"
 
 namespace geoprior::assembly {

@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "models/assembly/canonical.h"
-#include "models/assembly/rules.h"
+#include "models/assembly/isomorphism/canonical.h"
+#include "models/assembly/search/rules.h"
 #include "tests/assembly/assemblies.h"
 
 namespace geoprior::assembly {

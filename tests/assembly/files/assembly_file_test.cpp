@@ -421,7 +421,7 @@ const std::vector<OwnAssemblyModels>& own_assembly_models() {
        {"pillar-1", "pillar-2", "pillar-3", "pillar-4", "pillar-5", "pillar-6", "pillar-7",
         "pillar-8", "basin"}},
       {"rolling-toys", {"wheel-small", "wheel-big"}},
-      {"playground", {"legs", "slide", "ladder", "ramp", "swing"}},
+      {"playground", {"legs", "slide", "ladder", "gangway", "swing"}},
       {"brick-track", {"straight", "curve", "switch-left", "switch-right", "crossing"}}};
   return kModels;
 }

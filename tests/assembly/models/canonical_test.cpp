@@ -1,6 +1,6 @@
 // Canonical forms and walks, held against isomorphism by trial of all renumberings.
 
-#include "models/assembly/canonical.h"
+#include "models/assembly/isomorphism/canonical.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 #include <numeric>
 
-#include "models/assembly/traversal.h"
+#include "models/assembly/isomorphism/traversal.h"
 #include "tests/assembly/assemblies.h"
 
 namespace geoprior::assembly {

@@ -1,13 +1,13 @@
 // Where replaced pieces come to, and how misfits are spread.
 
-#include "models/assembly/embedding.h"
+#include "models/assembly/exchange/embedding.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "models/assembly/boundary_types.h"
+#include "models/assembly/exchange/boundary_types.h"
 #include "tests/assembly/assemblies.h"
 
 namespace geoprior::assembly {

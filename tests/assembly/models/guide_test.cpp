@@ -1,6 +1,6 @@
 // How far assemblies are from what a user wants of them.
 
-#include "models/assembly/guide.h"
+#include "models/assembly/search/guide.h"
 
 #include <gtest/gtest.h>
 

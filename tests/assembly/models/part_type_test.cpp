@@ -1,6 +1,6 @@
 // Frames of ports, how far they are from being mated, and motions that carry a part onto itself.
 
-#include "models/assembly/part_type.h"
+#include "models/assembly/graph/part_type.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,14 +1,14 @@
 // Ported graphs: what is refused, what hangs together, where parts come to.
 
-#include "models/assembly/ported_graph.h"
+#include "models/assembly/graph/ported_graph.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "models/assembly/compatibility.h"
-#include "models/assembly/embedding.h"
+#include "models/assembly/exchange/embedding.h"
+#include "models/assembly/graph/compatibility.h"
 #include "tests/assembly/assemblies.h"
 #include "tests/testbed/scratch_folder.h"
 

@@ -1,6 +1,6 @@
 // Each rule has an assembly that breaks it and no other; boxes that meet; ways of a ball.
 
-#include "models/assembly/rules.h"
+#include "models/assembly/search/rules.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "models/assembly/labels.h"
+#include "models/assembly/graph/labels.h"
 #include "tests/assembly/assemblies.h"
 
 namespace geoprior::assembly {

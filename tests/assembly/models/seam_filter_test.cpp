@@ -1,12 +1,13 @@
 // What is found out before an assembly is built must be so of the built one.
 
-#include "models/assembly/seam_filter.h"
+#include "models/assembly/search/seam_filter.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "models/assembly/variation.h"
+#include "experiments/assembly/processes/process.h"
+#include "models/assembly/search/variation.h"
 #include "tests/assembly/assemblies.h"
 
 namespace geoprior::assembly {

@@ -1,6 +1,6 @@
 // Variations: valid, distinct, in one order, and the same after a run was stopped.
 
-#include "models/assembly/search.h"
+#include "models/assembly/search/search.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,8 @@
 #include <map>
 #include <set>
 
-#include "models/assembly/survey.h"
+#include "experiments/assembly/processes/process.h"
+#include "experiments/assembly/processes/survey.h"
 #include "tests/assembly/assemblies.h"
 
 namespace geoprior::assembly {

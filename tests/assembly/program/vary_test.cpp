@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "experiments/assembly/files/gltf_parts.h"
+#include "experiments/assembly/processes/process.h"
 #include "experiments/assembly/scene/scene.h"
 #include "experiments/assembly/topic.h"
 #include "experiments/assembly/vary_command.h"
-#include "models/assembly/embedding.h"
+#include "models/assembly/exchange/embedding.h"
 #include "testbed/formats/atomic_file.h"
+#include "tests/assembly/assemblies.h"
 #include "tests/assembly/files/gltf_scenes.h"
 #include "tests/testbed/program_process.h"
 #include "tests/testbed/scratch_folder.h"
@@ -276,6 +278,37 @@ TEST(AssemblyScenes, LeaveOutModelsOfTooFewOrTooManyParts) {
   options.least_parts = 1;
   options.most_parts = *most - 1;
   EXPECT_THAT(model_names(options), SizeIs(4 - of_size(*most)));
+}
+
+/// Variations of a scene by one replacement.
+int variation_count(const AssemblySceneOptions& options, const std::filesystem::path& folder) {
+  const auto scene = load_assembly_scene(options, folder, 1);
+  const auto run = recorded(*replacement_process(scene->input, exact_factory(2), true, {}));
+  return static_cast<int>(std::count_if(run.frames.begin(), run.frames.end(),
+                                        [](const Frame& frame) { return frame.parameter > 0; }));
+}
+
+class AssemblyScenesInFiles : public test::ScratchFolder {};
+
+TEST_F(AssemblyScenesInFiles, OfSeveralPiecesVaryOnlyWhereTheyNeedNotHangTogether) {
+  write("rods.toml", R"(
+[[part]]
+label = "long"
+ports = [{ name = "a", at = [0, 0, 0], out = [-1, 0, 0] }, { name = "b", at = [0.2, 0, 0], out = [1, 0, 0] }]
+[[part]]
+label = "short"
+ports = [{ name = "a", at = [0, 0, 0], out = [-1, 0, 0] }, { name = "b", at = [0.1, 0, 0], out = [1, 0, 0] }]
+[[model]]
+name = "rods"
+parts = [{ id = "p", part = "long" }, { id = "q", part = "long" }, { id = "r", part = "short" }, { id = "s", part = "long" }]
+joints = ["p.b q.a", "r.b s.a"]
+place = [{ part = "p", at = [0, 0, 0] }, { part = "r", at = [0, 1, 0] }]
+)");
+  AssemblySceneOptions options;
+  options.inputs = {"rods.toml"};
+  EXPECT_EQ(variation_count(options, folder()), 0);
+  options.rules.connected = false;
+  EXPECT_GT(variation_count(options, folder()), 0);
 }
 
 }  // namespace

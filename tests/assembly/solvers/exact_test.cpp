@@ -7,7 +7,7 @@
 #include <set>
 
 #include "baselines/assembly/brute_force.h"
-#include "models/assembly/canonical.h"
+#include "models/assembly/isomorphism/canonical.h"
 #include "tests/assembly/assemblies.h"
 
 namespace geoprior::assembly {
