@@ -6,9 +6,9 @@
 #include "baselines/assembly/single_exchange.h"
 #include "baselines/assembly/wave_collapse.h"
 #include "core/error.h"
+#include "experiments/assembly/processes/process.h"
 #include "experiments/assembly/scene/scene.h"
 #include "experiments/assembly/topic.h"
-#include "experiments/assembly/processes/process.h"
 #include "models/assembly/search/search.h"
 #include "solvers/assembly/exact.h"
 

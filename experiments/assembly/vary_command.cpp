@@ -11,8 +11,8 @@
 
 #include "core/error.h"
 #include "experiments/assembly/files/gltf_parts.h"
-#include "experiments/assembly/scene/inputs.h"
 #include "experiments/assembly/processes/process.h"
+#include "experiments/assembly/scene/inputs.h"
 #include "models/assembly/search/search.h"
 #include "solvers/assembly/exact.h"
 #include "testbed/formats/atomic_file.h"
