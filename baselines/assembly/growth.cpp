@@ -96,8 +96,9 @@ class Growth final : public ReplacementFinder {
     const std::vector<Seed> host_seeds = seeds_of(host);
     for (const int donor : donors_.donors) {
       const Assembly& model = donors_.set->models[donor];
+      const std::vector<Seed> donor_seeds = seeds_of(model);
       for (const Seed& s : host_seeds)
-        for (const Seed& t : seeds_of(model)) {
+        for (const Seed& t : donor_seeds) {
           if (!are_alike(host, s, model, t)) continue;
           if (!grow_both(host, s, donor, t, visit)) return;
         }

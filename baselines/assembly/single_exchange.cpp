@@ -1,5 +1,7 @@
 #include "baselines/assembly/single_exchange.h"
 
+#include <utility>
+
 #include "models/assembly/exchange/boundary_types.h"
 
 namespace geoprior::assembly {
@@ -18,8 +20,12 @@ class SingleExchange final : public ReplacementFinder {
  public:
   SingleExchange(const DonorSet& donors, const SingleExchangeOptions& options)
       : donors_(donors), options_(options) {
+    int number = 0;
     for (const int donor : donors.donors)
-      of_donors_.push_back(substructures(donors.set->models[donor]));
+      for (Substructure& s : substructures(donors.set->models[donor])) {
+        BoundaryTypes types = boundary_types(donors.set->models[donor], s, *donors.compatibility);
+        entries_.push_back({donor, ++number, std::move(s), std::move(types)});
+      }
   }
 
   std::vector<Substructure> substructures(const Assembly& host) override {
@@ -36,30 +42,33 @@ class SingleExchange final : public ReplacementFinder {
   }
 
   void find(const Assembly& host, const ReplacementVisitor& visit) override {
-    const Compatibility& types = *donors_.compatibility;
+    const Compatibility& compatibility = *donors_.compatibility;
     int removed_number = 0;
     for (const Substructure& removed : substructures(host)) {
       ++removed_number;
-      int number = 0;
-      for (std::size_t d = 0; d < of_donors_.size(); ++d)
-        for (const Substructure& inserted : of_donors_[d]) {
-          ++number;
-          const int donor = donors_.donors[d];
-          if (!for_each_match(
-                  boundary_types(host, removed, types),
-                  boundary_types(donors_.set->models[donor], inserted, types), types,
-                  options_.matching, [&](const std::vector<int>& match) {
-                    return visit({removed, removed_number, donor, inserted, number, match});
-                  }))
-            return;
-        }
+      const BoundaryTypes types = boundary_types(host, removed, compatibility);
+      for (const Entry& entry : entries_)
+        if (!for_each_match(types, entry.types, compatibility, options_.matching,
+                            [&](const std::vector<int>& match) {
+                              return visit({removed, removed_number, entry.donor,
+                                            entry.substructure, entry.number, match});
+                            }))
+          return;
     }
   }
 
  private:
+  /// A part of a donor.
+  struct Entry {
+    int donor = 0;
+    int number = 0;
+    Substructure substructure;
+    BoundaryTypes types;
+  };
+
   DonorSet donors_;
   SingleExchangeOptions options_;
-  std::vector<std::vector<Substructure>> of_donors_;
+  std::vector<Entry> entries_;
 };
 
 }  // namespace

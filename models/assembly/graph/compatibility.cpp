@@ -4,8 +4,7 @@
 
 namespace geoprior::assembly {
 
-Compatibility::Compatibility(const AssemblySet& set, bool with_symmetries)
-    : with_symmetries_(with_symmetries) {
+Compatibility::Compatibility(const AssemblySet& set, bool with_symmetries) {
   int ports = 0;
   for (const PartType& type : set.types) {
     first_.push_back(ports);

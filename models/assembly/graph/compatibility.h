@@ -34,10 +34,8 @@ class Compatibility {
   }
   /// The classes that were seen joined with this one, in increasing order.
   [[nodiscard]] const std::vector<int>& seen_with(int a) const { return seen_with_[a]; }
-  [[nodiscard]] bool with_symmetries() const { return with_symmetries_; }
 
  private:
-  bool with_symmetries_;
   int count_ = 0;
   std::vector<int> first_, class_of_;
   std::vector<std::vector<int>> seen_with_;  ///< of a class, in increasing order
